@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * narc.h - how the kernels are called: batches of pairs of bodies in, collisions and contacts out.
+ *
+ * The mental model
+ *
+ *   narc_shapes.h says what shapes, bodies and pairs are. A batch call takes all three, and answers for every pair,
+ *   exactly: the shapes collide when no direction separates them, and the separation is the largest gap over all
+ *   directions. There is no approximation and no iteration tolerance. Two forms of answer:
+ *
+ *       narc_find_overlaps()   one bit per pair
+ *       narc_find_contacts()   a compacted list: separation, normal, point and arcs of the pairs that collide
+ *
+ *   Which instruction set runs is chosen at the first call: the best that this build and this processor have. The
+ *   environment variable NARC_ISA or narc_set_isa() choose another. The answer is the same to the last bit on
+ *   every instruction set, with any number of threads and for any split of a batch.
+ *
+ * Precision
+ *
+ *   Positions are subtracted first, in double precision if they are double; everything else is single precision. With the
+ *   extent E of a body = its largest |centre| + radius over its arcs, times its scale, and D the distance between the two
+ *   positions, a separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the exact one, and `overlap` can be wrong only
+ *   for pairs whose exact separation is closer to 0 than that. `overlap` and `contact` agree always.
+ *
+ * Example
+ *
+ *     struct body { float x, y, c, s; uint32_t shape; } body[1000];     (the engine's own)
+ *     struct pair { uint32_t a, b; } pair[5000];
+ *     uint64_t hits[NARC_BIT_WORDS(5000)];
+ *
+ *     narc_bodies bodies = {.count = 1000,
+ *         .x = NARC_COLUMN(body, x), .y = NARC_COLUMN(body, y),
+ *         .cosine = NARC_COLUMN(body, c), .sine = NARC_COLUMN(body, s), .shape = NARC_COLUMN(body, shape)};
+ *     narc_pairs pairs = {5000, NARC_COLUMN(pair, a), NARC_COLUMN(pair, b)};
+ *     narc_find_overlaps(shapes, &bodies, &pairs, 0, hits, NULL);
+ *
+ * Every function here may be called from any number of threads at once.
+ */
+#ifndef NARC_H
+#define NARC_H
+
+#include "narc_shapes.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define NARC_VERSION_MAJOR 0
+#define NARC_VERSION_MINOR 1
+#define NARC_VERSION_PATCH 0
+
+/* "0.1.0". */
+NARC_API const char *narc_version(void);
+
+/* A column over one field of an array of structures, and over a plain array. */
+#define NARC_COLUMN(array, field) {&(array)[0].field, sizeof((array)[0])}
+#define NARC_ARRAY(array) {(array), sizeof((array)[0])}
+
+/* The number of 64-bit words that hold `count` bits. */
+#define NARC_BIT_WORDS(count) (((count) + 63) / 64)
+
+/* See "Precision" above; derived in kernels/overlay.inl. */
+#define NARC_ERROR_BOUND (24.0 / 16777216.0)
+
+/* ------------------------------------------------------------------------------------------------ batches */
+
+/* Which pairs collide? Bit k % 64 of out_bits[k / 64] is set if pair k does; the bits behind the last pair are 0.
+ *   out_bits   NARC_BIT_WORDS(pairs->count) words, overlapping none of the inputs
+ *   threads    how many to use at most; 0: as OpenMP would; 1: the calling thread, without OpenMP. A build without
+ *              OpenMP always uses one.
+ * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (a needed pointer is NULL, too many pairs),
+ * NARC_ERROR_INDEX (`error` names the pair and the body or the shape), NARC_ERROR_ISA_UNKNOWN, NARC_ERROR_ISA_UNSUPPORTED
+ * (NARC_ISA is set to something that can't be had). No pairs: NARC_OK. Allocates nothing. */
+NARC_API narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                        unsigned threads, uint64_t *out_bits, narc_error *error);
+
+/* The same for pairs first .. first + count - 1, in the calling thread, for callers that have their own job system:
+ * `first` is a multiple of 64, and so is `count` unless the sub-range is the last. `out_bits` is that of the whole batch;
+ * only the words of the sub-range are written. */
+NARC_API narc_status narc_find_overlaps_range(const narc_shapes *shapes, const narc_bodies *bodies,
+                                              const narc_pairs *pairs, size_t first, size_t count, uint64_t *out_bits,
+                                              narc_error *error);
+
+/* The contacts of all pairs whose separation is less than `margin`, in the order of the pairs.
+ *   margin        0: the pairs that collide. Above 0: also those that are closer than that (speculative contacts).
+ *                 Below 0: only those that are deeper. +INFINITY: every pair, so that contact k is that of pair k; one
+ *                 that has no answer (see narc_bodies) has separation +INFINITY and all else 0. NaN is an error.
+ *   out_contacts  arrays of out_contacts->capacity items, overlapping none of the inputs
+ *   out_count     the number of contacts found, which may be more than the capacity: then the first `capacity` of
+ *                 them are written and NARC_ERROR_CAPACITY is returned.
+ * Other errors and `threads` as narc_find_overlaps(). A pair is reported with margin 0 exactly if its bit there is set. */
+NARC_API narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                        float margin, unsigned threads, const narc_contacts *out_contacts,
+                                        size_t *out_count, narc_error *error);
+
+/* The same for pairs first .. first + count - 1 (any first and count), in the calling thread. The list starts at item 0 of
+ * out_contacts; `pair` still counts from the start of the batch. */
+NARC_API narc_status narc_find_contacts_range(const narc_shapes *shapes, const narc_bodies *bodies,
+                                              const narc_pairs *pairs, size_t first, size_t count, float margin,
+                                              const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
+
+/* Cosines and sines of `count` angles, in radians, within 1 ulp of exact, in the calling thread. Outputs may be
+ * the input's array, not otherwise overlap it or each other. An angle that is not finite gives NaN, and so a body that
+ * collides with nothing. Uses SLEEF's deterministic functions; in a build without SLEEF, the C library's. */
+NARC_API narc_status narc_compute_poses(const float *angles, size_t count, float *out_cosines, float *out_sines,
+                                        narc_error *error);
+
+/* ------------------------------------------------------------------------------------------------ instruction sets */
+
+/* Chooses the instruction set for all later calls in the process: "scalar", "neon", "avx2" or "avx512"; NULL: the best
+ * one. NARC_ERROR_ISA_UNKNOWN, NARC_ERROR_ISA_UNSUPPORTED; the choice is unchanged then. */
+NARC_API narc_status narc_set_isa(const char *name, narc_error *error);
+
+/* The name of the instruction set in use (chosen now if it was not yet); NULL if NARC_ISA names one that can't be had. */
+NARC_API const char *narc_get_isa(void);
+
+/* The instruction sets this library knows, best first: name number `index`, NULL behind the last. */
+NARC_API const char *narc_isa_name(size_t index);
+
+/* Can this build and this processor run it? False for a name that is not known. */
+NARC_API bool narc_isa_supported(const char *name);
+
+/* The kernels of the table in use: name of number `index`, NULL behind the last, and the instruction set that serves it
+ * (a wider one is not always faster). */
+NARC_API const char *narc_kernel_name(size_t index);
+NARC_API const char *narc_kernel_isa(size_t index);
+
+/* What the processor and the operating system offer, as far as this library asks: such as "avx avx2 fma avx512f". */
+NARC_API const char *narc_cpu_features(void);
+
+/* How many threads `threads` = 0 means now; 1 in a build without OpenMP. */
+NARC_API unsigned narc_default_threads(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

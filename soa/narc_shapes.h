@@ -1,0 +1,341 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * narc_shapes.h - what the data is: arc shapes, their store, bodies, pairs and contacts.
+ *
+ * The mental model
+ *
+ *   An ARC SHAPE is a closed convex outline made of circular arcs, listed counter-clockwise. Arc i has a centre,
+ *   a radius >= 0 and covers the outward normals from angle `start` to angle `end`. The end normal of an arc is the
+ *   start normal of the next, so that all sweeps together make one full turn. Where the end point of one arc is not the
+ *   start point of the next, a straight edge joins them. Everything convex and piecewise circular is an arc shape:
+ *
+ *       n-arc            arcs that follow each other without edges: the tangent is continuous
+ *       circle           one arc, a full turn                 capsule          two half circles, two edges
+ *       polygon          one arc of radius 0 at each vertex   rounded polygon  one arc at each vertex
+ *
+ *   Shapes live in a STORE (`narc_shapes`), laid out for the kernels. A BODY is a shape in a place: position, rotation
+ *   and scale. Bodies and PAIRS of bodies stay in the caller's memory, in whatever layout they have there: every
+ *   property is a `narc_column`, a base pointer with a byte stride. Nothing is copied.
+ *
+ * Conventions, said once
+ *
+ *   Lengths are in the caller's unit; angles are in radians; everything is counter-clockwise, x right and y up.
+ *   Normals are unit vectors and point from A to B. Separation is negative when two bodies penetrate; then its absolute
+ *   value is the length of the smallest translation that separates them. Separation 0, touching, is not colliding.
+ *   Functions return `narc_status`; outputs come last and are untouched on error. `narc_error *error` may be NULL.
+ *   The library prints nothing, aborts nothing and keeps no errors in globals.
+ *
+ * Example
+ *
+ *     narc_shapes *shapes = NULL;
+ *     narc_arc arcs[NARC_MAX_ARCS];
+ *     size_t arc_count;
+ *     uint32_t lens;
+ *     narc_create_shapes(NULL, &shapes);
+ *     narc_build_four_arc((narc_four_arc){5, 5, 8, 0.25, 0.25}, arcs, &arc_count, NULL);
+ *     narc_add_shape(shapes, arcs, arc_count, &lens, NULL);
+ *     ...                                                          (see narc.h for collision queries)
+ *     narc_destroy_shapes(shapes);
+ */
+#ifndef NARC_SHAPES_H
+#define NARC_SHAPES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "narc_export.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ------------------------------------------------------------------------------------------------ limits */
+
+/* Most arcs in one shape. */
+#define NARC_MAX_ARCS 64
+
+/* Most shapes in one store (fewer if their arcs would not fit in 2^31 floats). */
+#define NARC_MAX_SHAPES 0x7fffffffu
+
+/* A shape's bounding radius, times a body's scale, must lie in this range: then every product in the kernels stays far
+ * from overflow and underflow in single precision. Shapes outside it are refused; a body whose scale takes it outside
+ * never collides. */
+#define NARC_MIN_SIZE 1e-9
+#define NARC_MAX_SIZE 1e9
+
+/* An arc's radius may be at most this many times the shape's bounding radius. The error of a separation grows in
+ * proportion to the largest radius, so an arc that is flatter than this is better given as a straight edge. */
+#define NARC_MAX_RADIUS_RATIO 64.0
+
+/* How far, relative to the bounding radius, a list of arcs may be from closed and convex before it is refused (lengths),
+ * and how far apart two normals that should be one may be (radians). Files with 7 significant digits pass. */
+#define NARC_TOLERANCE 1e-5
+
+/* ------------------------------------------------------------------------------------------------ status */
+
+typedef enum narc_status {
+    NARC_OK = 0,
+    NARC_ERROR_ARGUMENT = 1,    /* a NULL pointer, a sub-range that does not fit, a negative count */
+    NARC_ERROR_MEMORY = 2,      /* the allocator returned NULL */
+    NARC_ERROR_INDEX = 3,       /* a body or shape index out of range */
+    NARC_ERROR_CAPACITY = 4,    /* the output list is too short; what fitted was written, the needed size is told */
+    NARC_ERROR_COUNT = 5,       /* too few or too many points, arcs or shapes */
+    NARC_ERROR_NOT_FINITE = 6,  /* NaN or infinity */
+    NARC_ERROR_SIZE = 7,        /* a length is zero or negative, or outside NARC_MIN_SIZE .. NARC_MAX_SIZE */
+    NARC_ERROR_RADIUS = 8,      /* a radius is negative, too large for its shape, or not feasible */
+    NARC_ERROR_SWEEP = 9,       /* an arc turns by nothing, backwards or by more than half a turn; not one turn in all */
+    NARC_ERROR_NOT_CLOSED = 10, /* neighbouring arcs do not meet */
+    NARC_ERROR_NOT_CONVEX = 11, /* an edge runs backwards; points are not convex and counter-clockwise */
+    NARC_ERROR_NOT_SIMPLE = 12, /* a polygon crosses itself or encloses no area */
+    NARC_ERROR_NO_SOLUTION = 13,    /* no n-arc has these junctions */
+    NARC_ERROR_ISA_UNKNOWN = 14,    /* no instruction set has that name */
+    NARC_ERROR_ISA_UNSUPPORTED = 15 /* known, but this build or this processor does not have it */
+} narc_status;
+
+/* The name of a status, such as "NARC_ERROR_INDEX"; "unknown status" for any other value. Static storage. */
+NARC_API const char *narc_status_name(narc_status status);
+
+/* What went wrong, for a person to read. Filled only when a function returns an error. */
+typedef struct narc_error {
+    narc_status status;
+    size_t index;      /* which arc, point, pair or body; 0 where that means nothing */
+    double value;      /* the offending value; 0 where there is none */
+    char message[192]; /* one line, no full stop, names the item and the quantity */
+} narc_error;
+
+/* ------------------------------------------------------------------------------------------------ arcs and builders */
+
+typedef struct narc_point {
+    double x, y;
+} narc_point;
+
+/* One arc: it covers the outward normals from angle `start` counter-clockwise to angle `end`. The sweep, end - start, is
+ * more than 0 and at most pi; a circle alone is one arc with a sweep of 2 pi. A whole number of turns may be
+ * added to both; `end` below `start` means that the arc passes the angle +-pi. Radius 0 is a vertex. */
+typedef struct narc_arc {
+    double center_x, center_y;
+    double radius;
+    double start, end;
+} narc_arc;
+
+/* Is a list of arcs a valid arc shape? Checks, in this order: the count (1 .. NARC_MAX_ARCS), that all is finite, that no
+ * radius is negative, each sweep, that normals join and make one turn, that edges run forwards and have their
+ * normal (closed, convex), the size, and the largest radius. The message names the arc and the quantity. Thread-safe. */
+NARC_API narc_status narc_validate_arcs(const narc_arc *arcs, size_t count, narc_error *error);
+
+/* Every builder below writes at most NARC_MAX_ARCS arcs to `out_arcs` (the caller's array of that size) and their number
+ * to `out_count`; its arcs pass narc_validate_arcs(). On error both are untouched. All are pure and thread-safe. Common
+ * errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE (lengths not positive), and whatever
+ * narc_validate_arcs() finds, a radius above NARC_MAX_RADIUS_RATIO above all. */
+
+/* A circle of `radius` around the origin. */
+NARC_API narc_status narc_build_circle(double radius, narc_arc *out_arcs, size_t *out_count, narc_error *error);
+
+/* A capsule along x around the origin: all points within `radius` of a segment of `length` >= 0. */
+NARC_API narc_status narc_build_capsule(double length, double radius, narc_arc *out_arcs, size_t *out_count,
+                                        narc_error *error);
+
+/* A box around the origin, `width` by `height` outside measure, its corners rounded with `radius` >= 0 inside that box.
+ * NARC_ERROR_RADIUS: the radius is more than half the shorter side. */
+NARC_API narc_status narc_build_box(double width, double height, double radius, narc_arc *out_arcs, size_t *out_count,
+                                    narc_error *error);
+
+/* A convex polygon, `points[0 .. count-1]` counter-clockwise, each corner rounded inside the polygon with `radius`
+ * >= 0: the shape never leaves the polygon and its sides lie on the polygon's. Corner i is arc i.
+ * NARC_ERROR_COUNT: fewer than 3 or more than NARC_MAX_ARCS points. NARC_ERROR_NOT_CONVEX: a corner does not turn
+ * left, or the polygon turns more than once. NARC_ERROR_RADIUS: two rounded corners do not fit on the side between
+ * them (the message names the side and the largest radius that fits it). */
+NARC_API narc_status narc_build_polygon(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
+                                        size_t *out_count, narc_error *error);
+
+/* The paper's figure 3: two large circles that overlap, `distance` between their centres, and two small circles
+ * inscribed where they meet. The large centres are (0, distance / 2), radius `radius_low` (its arc bounds the shape
+ * below), and (0, -distance / 2), radius `radius_high`; `radius_left` and `radius_right` are those of the tips (0: a
+ * sharp tip). Arcs, in order: right, upper, left, lower. With equal large radii R the lens is 2 R - distance thick.
+ * NARC_ERROR_SIZE: the large circles do not overlap, or one contains the other. NARC_ERROR_RADIUS: a small
+ * circle does not fit between them. */
+typedef struct narc_four_arc {
+    double radius_low, radius_high;
+    double distance;
+    double radius_left, radius_right;
+} narc_four_arc;
+NARC_API narc_status narc_build_four_arc(narc_four_arc form, narc_arc *out_arcs, size_t *out_count, narc_error *error);
+
+/* The n-arc whose junctions are `points[0 .. count-1]`, counter-clockwise; arc i runs from point i to point i + 1.
+ * Joining all chords with a common tangent asks that the half central angles satisfy alpha[i-1] + alpha[i] = the
+ * exterior angle at point i; then radius[i] = chord[i] / (2 sin alpha[i]).
+ *   Even count: `radius`, that of arc 0, fixes all others; 0 chooses the feasible one that makes the radii most alike
+ *   (least variance of their logarithms). The exterior angles at the even points must add up to pi (as must the odd ones).
+ *   Odd count: there is exactly one solution, `radius` must be 0.
+ * NARC_ERROR_COUNT: fewer than 3 or more than NARC_MAX_ARCS points. NARC_ERROR_NOT_CONVEX: a point where the
+ * outline does not turn left. NARC_ERROR_NO_SOLUTION: the angle sums differ, or some alpha cannot be positive and at most
+ * pi / 2; the message says which condition fails and where. NARC_ERROR_RADIUS: `radius` is outside the feasible
+ * range (the message tells the range), or an odd count was given one. */
+NARC_API narc_status narc_build_points(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
+                                       size_t *out_count, narc_error *error);
+
+/* The open range of radii of arc 0 that narc_build_points() accepts for these points, and its own choice. For an odd count
+ * all three are the one solution. `*out_max` may be +infinity. Errors as narc_build_points(). */
+NARC_API narc_status narc_find_radius_range(const narc_point *points, size_t count, double *out_min, double *out_max,
+                                            double *out_chosen, narc_error *error);
+
+/* Algorithm 1 of the paper, corrected: from any simple polygon (either orientation, convex or not, odd or even count, 3 ..
+ * NARC_MAX_ARCS vertices) to the junctions of a valid n-arc near it, as many as the polygon has vertices,
+ * counter-clockwise, ready for narc_build_points(). The exterior angles are replaced by the nearest ones (least squares)
+ * for which an n-arc exists; lines with those directions go through the midpoints of the sides, moved only as far as
+ * needed to keep every side's length positive; the junctions are where they meet. The n-arc follows the polygon, it does
+ * not bound it. NARC_ERROR_NOT_SIMPLE: the polygon crosses or touches itself, repeats a vertex, or has no area. */
+NARC_API narc_status narc_adjust_polygon(const narc_point *polygon, size_t count, narc_point *out_points,
+                                         narc_error *error);
+
+/* ------------------------------------------------------------------------------------------------ derived quantities */
+
+/* All of these take a valid list of arcs (see narc_validate_arcs()), compute in double precision from closed forms, and
+ * are pure and thread-safe. They return false, outputs untouched, for NULL, a count of 0 or more than NARC_MAX_ARCS. */
+
+/* Area, its centroid and its second moment about the centroid (times a density: mass and moment of inertia). Green's
+ * theorem, arc by arc. */
+typedef struct narc_mass {
+    double area;
+    double centroid_x, centroid_y;
+    double second_moment;
+} narc_mass;
+NARC_API bool narc_compute_mass(const narc_arc *arcs, size_t count, narc_mass *out_mass);
+
+typedef struct narc_circle {
+    double x, y, radius;
+} narc_circle;
+
+/* The smallest circle around the shape; relative error below 1e-9. */
+NARC_API bool narc_compute_bounding_circle(const narc_arc *arcs, size_t count, narc_circle *out_circle);
+
+/* A largest circle inside the shape; relative error below 1e-9. (For a stadium there are many: it is one of them.) */
+NARC_API bool narc_compute_inscribed_circle(const narc_arc *arcs, size_t count, narc_circle *out_circle);
+
+typedef struct narc_aabb {
+    double min_x, min_y, max_x, max_y;
+} narc_aabb;
+
+/* The axis-aligned bounding box of the shape turned by `angle` about its origin. */
+NARC_API bool narc_compute_aabb(const narc_arc *arcs, size_t count, double angle, narc_aabb *out_aabb);
+
+/* The perimeter: arcs and edges. */
+NARC_API bool narc_compute_perimeter(const narc_arc *arcs, size_t count, double *out_perimeter);
+
+/* The point of the shape that lies furthest in a direction (any length > 0), and the arc it lies on; where a straight edge
+ * is furthest, the edge's counter-clockwise end. Either output may be NULL. */
+NARC_API bool narc_find_support(const narc_arc *arcs, size_t count, double direction_x, double direction_y,
+                                narc_point *out_point, size_t *out_arc);
+
+/* Signed distance from a point to the outline: negative inside. */
+NARC_API bool narc_compute_distance(const narc_arc *arcs, size_t count, narc_point point, double *out_distance);
+
+/* Is the point inside the shape or on its outline? */
+NARC_API bool narc_contains_point(const narc_arc *arcs, size_t count, narc_point point);
+
+/* ------------------------------------------------------------------------------------------------ the store */
+
+/* Memory for a store: `allocate` returns `size` bytes aligned to 16 or NULL; `release` gets what it returned. */
+typedef struct narc_allocator {
+    void *(*allocate)(size_t size, void *context);
+    void (*release)(void *memory, void *context);
+    void *context;
+} narc_allocator;
+
+/* A growing list of arc shapes, each known by its index 0, 1, 2 ... The store keeps single-precision copies in a layout
+ * that belongs to the kernels. Adding shapes needs exclusive access; queries may share it between threads. */
+typedef struct narc_shapes narc_shapes;
+
+/* What a store knows of a shape, bits of narc_shape_flags(). */
+enum {
+    NARC_SHAPE_SMOOTH = 1,         /* no edges: an n-arc */
+    NARC_SHAPE_CIRCLE = 2,         /* one arc, a full turn */
+    NARC_SHAPE_POLYGON = 4,        /* every radius is 0 */
+    NARC_SHAPE_CENTERS_INSIDE = 8, /* every arc's centre lies in the shape */
+};
+
+/* An empty store. `allocator` NULL: malloc and free. NARC_ERROR_MEMORY. */
+NARC_API narc_status narc_create_shapes(const narc_allocator *allocator, narc_shapes **out_shapes);
+
+/* Frees a store; NULL is fine. */
+NARC_API void narc_destroy_shapes(narc_shapes *shapes);
+
+/* Room for `shape_count` more shapes with `arc_count` arcs in all, so that adding them allocates nothing. Optional. */
+NARC_API narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t arc_count);
+
+/* Validates a shape and adds it. Its coordinates are kept as they are: a body's position is the place of the shape's
+ * origin. Errors: those of narc_validate_arcs(), NARC_ERROR_MEMORY, NARC_ERROR_COUNT (the store is full);
+ * the store is unchanged then. `out_shape` may be NULL. */
+NARC_API narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t count, uint32_t *out_shape,
+                                    narc_error *error);
+
+/* The number of shapes; 0 for NULL. */
+NARC_API size_t narc_count_shapes(const narc_shapes *shapes);
+
+/* The arcs of a shape as the kernels see them (single precision, widened): their number, at most NARC_MAX_ARCS, is
+ * returned; 0 if there is no such shape. `out_arcs` may be NULL. */
+NARC_API size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_arcs);
+
+/* The flags of a shape, 0 if there is no such shape. */
+NARC_API unsigned narc_shape_flags(const narc_shapes *shapes, uint32_t shape);
+
+/* The axis-aligned bounding box of a stored shape rotated by (cosine, sine) and then scaled, around its origin; a little
+ * larger than exact so that rounding never makes it too small. False if there is no such shape. Meant for broad phases. */
+NARC_API bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, float sine, float scale,
+                            narc_aabb *out_aabb);
+
+/* ------------------------------------------------------------------------------------------------ bodies and pairs */
+
+/* A strided column in the caller's memory: item k is at (const char *)base + k * stride. A stride of 0 gives every item the
+ * same value. Items must be aligned for their type. */
+typedef struct narc_column {
+    const void *base;
+    size_t stride; /* bytes */
+} narc_column;
+
+/* What a position is made of. Doubles keep their precision in large worlds: positions are subtracted before anything is
+ * rounded to single precision. */
+typedef enum narc_precision { NARC_FLOAT32 = 0, NARC_FLOAT64 = 1 } narc_precision;
+
+/* Bodies: `count` of each column. The place of a shape's point p is (x, y) + scale * [cosine -sine; sine cosine] p.
+ * cosine^2 + sine^2 must be 1 to single-precision rounding: the kernels do not normalise. A body with a NaN or an
+ * infinity, or a scale that is not positive or takes the shape out of NARC_MIN_SIZE .. NARC_MAX_SIZE, collides
+ * with nothing. */
+typedef struct narc_bodies {
+    size_t count;
+    narc_precision position_precision; /* of x and y: float or double */
+    narc_column x, y;
+    narc_column cosine, sine; /* float */
+    narc_column scale;        /* float; base NULL: all 1 */
+    narc_column shape;        /* uint32_t, index in the store */
+} narc_bodies;
+
+/* Pairs of body indices (uint32_t). Both may name the same body (it collides with itself). */
+typedef struct narc_pairs {
+    size_t count; /* at most UINT32_MAX */
+    narc_column a, b;
+} narc_pairs;
+
+/* A list of contacts in the caller's memory, one array per property; an array that is NULL is not written. Contact k is
+ *   pair         the index of the pair in the batch
+ *   separation   signed distance between the bodies, negative: penetration depth
+ *   normal       unit, from A to B, world axes
+ *   point        halfway between the two surfaces where they are closest (or deepest), in world axes, relative to the
+ *                position of body A, so that it is precise in a large world; where two edges touch along a stretch,
+ *                the middle of that stretch
+ *   arc          the arcs of A and B that touch; where an edge touches, the arc at its counter-clockwise end */
+typedef struct narc_contacts {
+    size_t capacity; /* items in each array */
+    uint32_t *pair;
+    float *separation;
+    float *normal_x, *normal_y;
+    float *point_x, *point_y;
+    uint8_t *arc_a, *arc_b;
+} narc_contacts;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
