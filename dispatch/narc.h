@@ -17,10 +17,10 @@
  *
  * Precision
  *
- *   Positions are subtracted first, in double precision if they are double; everything else is single precision. With the
- *   extent E of a body = its largest |centre| + radius over its arcs, times its scale, and D the distance between the two
- *   positions, a separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the exact one, and `overlap` can be wrong only
- *   for pairs whose exact separation is closer to 0 than that. `overlap` and `contact` agree always.
+ *   Positions are subtracted first, in double precision if they are double; everything else is single precision. With
+ *   the extent E of a body = its largest |centre| + radius over its arcs, times its scale, and D the distance between
+ *   the two positions, a separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the exact one, and `overlap` can be
+ *   wrong only for pairs whose exact separation is closer to 0 than that. `overlap` and `contact` agree always.
  *
  * Example
  *
@@ -53,8 +53,10 @@ extern "C" {
 NARC_API const char *narc_version(void);
 
 /* A column over one field of an array of structures, and over a plain array. */
-#define NARC_COLUMN(array, field) {&(array)[0].field, sizeof((array)[0])}
-#define NARC_ARRAY(array) {(array), sizeof((array)[0])}
+#define NARC_COLUMN(array, field)                                                                                      \
+    { &(array)[0].field, sizeof((array)[0]) }
+#define NARC_ARRAY(array)                                                                                              \
+    { (array), sizeof((array)[0]) }
 
 /* The number of 64-bit words that hold `count` bits. */
 #define NARC_BIT_WORDS(count) (((count) + 63) / 64)
@@ -69,14 +71,14 @@ NARC_API const char *narc_version(void);
  *   threads    how many to use at most; 0: as OpenMP would; 1: the calling thread, without OpenMP. A build without
  *              OpenMP always uses one.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (a needed pointer is NULL, too many pairs),
- * NARC_ERROR_INDEX (`error` names the pair and the body or the shape), NARC_ERROR_ISA_UNKNOWN, NARC_ERROR_ISA_UNSUPPORTED
- * (NARC_ISA is set to something that can't be had). No pairs: NARC_OK. Allocates nothing. */
+ * NARC_ERROR_INDEX (`error` names the pair and the body or the shape), NARC_ERROR_ISA_UNKNOWN,
+ * NARC_ERROR_ISA_UNSUPPORTED (NARC_ISA is set to something that can't be had). No pairs: NARC_OK. Allocates nothing. */
 NARC_API narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                         unsigned threads, uint64_t *out_bits, narc_error *error);
 
 /* The same for pairs first .. first + count - 1, in the calling thread, for callers that have their own job system:
- * `first` is a multiple of 64, and so is `count` unless the sub-range is the last. `out_bits` is that of the whole batch;
- * only the words of the sub-range are written. */
+ * `first` is a multiple of 64, and so is `count` unless the sub-range is the last. `out_bits` is that of the whole
+ * batch; only the words of the sub-range are written. */
 NARC_API narc_status narc_find_overlaps_range(const narc_shapes *shapes, const narc_bodies *bodies,
                                               const narc_pairs *pairs, size_t first, size_t count, uint64_t *out_bits,
                                               narc_error *error);
@@ -88,13 +90,14 @@ NARC_API narc_status narc_find_overlaps_range(const narc_shapes *shapes, const n
  *   out_contacts  arrays of out_contacts->capacity items, overlapping none of the inputs
  *   out_count     the number of contacts found, which may be more than the capacity: then the first `capacity` of
  *                 them are written and NARC_ERROR_CAPACITY is returned.
- * Other errors and `threads` as narc_find_overlaps(). A pair is reported with margin 0 exactly if its bit there is set. */
+ * Other errors and `threads` as narc_find_overlaps(). A pair is reported with margin 0 exactly if its bit there is set.
+ *  */
 NARC_API narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                         float margin, unsigned threads, const narc_contacts *out_contacts,
                                         size_t *out_count, narc_error *error);
 
-/* The same for pairs first .. first + count - 1 (any first and count), in the calling thread. The list starts at item 0 of
- * out_contacts; `pair` still counts from the start of the batch. */
+/* The same for pairs first .. first + count - 1 (any first and count), in the calling thread. The list starts at item 0
+ * of out_contacts; `pair` still counts from the start of the batch. */
 NARC_API narc_status narc_find_contacts_range(const narc_shapes *shapes, const narc_bodies *bodies,
                                               const narc_pairs *pairs, size_t first, size_t count, float margin,
                                               const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
@@ -111,7 +114,8 @@ NARC_API narc_status narc_compute_poses(const float *angles, size_t count, float
  * one. NARC_ERROR_ISA_UNKNOWN, NARC_ERROR_ISA_UNSUPPORTED; the choice is unchanged then. */
 NARC_API narc_status narc_set_isa(const char *name, narc_error *error);
 
-/* The name of the instruction set in use (chosen now if it was not yet); NULL if NARC_ISA names one that can't be had. */
+/* The name of the instruction set in use (chosen now if it was not yet); NULL if NARC_ISA names one that can't be had.
+ *  */
 NARC_API const char *narc_get_isa(void);
 
 /* The instruction sets this library knows, best first: name number `index`, NULL behind the last. */

@@ -11,6 +11,7 @@
 #if defined(__GNUC__)
 __attribute__((format(printf, 5, 6)))
 #endif
-narc_status narc_fail(narc_error *error, narc_status status, size_t index, double value, const char *format, ...);
+narc_status
+narc_fail(narc_error *error, narc_status status, size_t index, double value, const char *format, ...);
 
 #endif

@@ -59,35 +59,38 @@ extern "C" {
 #define NARC_MAX_SHAPES 0x7fffffffu
 
 /* A shape's bounding radius, times a body's scale, must lie in this range: then every product in the kernels stays far
- * from overflow and underflow in single precision. Shapes outside it are refused; a body whose scale takes it outside
- * never collides. */
+ * from overflow and underflow in single precision. Shapes outside it are refused, and those that reach further than
+ * NARC_MAX_SIZE from their own origin; a body whose scale takes it outside never collides. */
 #define NARC_MIN_SIZE 1e-9
 #define NARC_MAX_SIZE 1e9
+
+/* Two bodies further apart than this in x or y never collide, and their separation is +infinity. */
+#define NARC_MAX_DISTANCE 1e17
 
 /* An arc's radius may be at most this many times the shape's bounding radius. The error of a separation grows in
  * proportion to the largest radius, so an arc that is flatter than this is better given as a straight edge. */
 #define NARC_MAX_RADIUS_RATIO 64.0
 
-/* How far, relative to the bounding radius, a list of arcs may be from closed and convex before it is refused (lengths),
- * and how far apart two normals that should be one may be (radians). Files with 7 significant digits pass. */
+/* How far, relative to the bounding radius, a list of arcs may be from closed and convex before it is refused
+ * (lengths), and how far apart two normals that should be one may be (radians). Files with 7 digits pass. */
 #define NARC_TOLERANCE 1e-5
 
 /* ------------------------------------------------------------------------------------------------ status */
 
 typedef enum narc_status {
     NARC_OK = 0,
-    NARC_ERROR_ARGUMENT = 1,    /* a NULL pointer, a sub-range that does not fit, a negative count */
-    NARC_ERROR_MEMORY = 2,      /* the allocator returned NULL */
-    NARC_ERROR_INDEX = 3,       /* a body or shape index out of range */
-    NARC_ERROR_CAPACITY = 4,    /* the output list is too short; what fitted was written, the needed size is told */
-    NARC_ERROR_COUNT = 5,       /* too few or too many points, arcs or shapes */
-    NARC_ERROR_NOT_FINITE = 6,  /* NaN or infinity */
-    NARC_ERROR_SIZE = 7,        /* a length is zero or negative, or outside NARC_MIN_SIZE .. NARC_MAX_SIZE */
-    NARC_ERROR_RADIUS = 8,      /* a radius is negative, too large for its shape, or not feasible */
-    NARC_ERROR_SWEEP = 9,       /* an arc turns by nothing, backwards or by more than half a turn; not one turn in all */
-    NARC_ERROR_NOT_CLOSED = 10, /* neighbouring arcs do not meet */
-    NARC_ERROR_NOT_CONVEX = 11, /* an edge runs backwards; points are not convex and counter-clockwise */
-    NARC_ERROR_NOT_SIMPLE = 12, /* a polygon crosses itself or encloses no area */
+    NARC_ERROR_ARGUMENT = 1,        /* a NULL pointer, a sub-range that does not fit, a negative count */
+    NARC_ERROR_MEMORY = 2,          /* the allocator returned NULL */
+    NARC_ERROR_INDEX = 3,           /* a body or shape index out of range */
+    NARC_ERROR_CAPACITY = 4,        /* the output list is too short; what fitted was written, the needed size is told */
+    NARC_ERROR_COUNT = 5,           /* too few or too many points, arcs or shapes */
+    NARC_ERROR_NOT_FINITE = 6,      /* NaN or infinity */
+    NARC_ERROR_SIZE = 7,            /* a length is zero or negative, or outside NARC_MIN_SIZE .. NARC_MAX_SIZE */
+    NARC_ERROR_RADIUS = 8,          /* a radius is negative, too large for its shape, or not feasible */
+    NARC_ERROR_SWEEP = 9,           /* an arc turns by nothing or by more than half a turn; not one turn in all */
+    NARC_ERROR_NOT_CLOSED = 10,     /* neighbouring arcs do not meet */
+    NARC_ERROR_NOT_CONVEX = 11,     /* an edge runs backwards; points are not convex and counter-clockwise */
+    NARC_ERROR_NOT_SIMPLE = 12,     /* a polygon crosses itself or encloses no area */
     NARC_ERROR_NO_SOLUTION = 13,    /* no n-arc has these junctions */
     NARC_ERROR_ISA_UNKNOWN = 14,    /* no instruction set has that name */
     NARC_ERROR_ISA_UNSUPPORTED = 15 /* known, but this build or this processor does not have it */
@@ -110,24 +113,25 @@ typedef struct narc_point {
     double x, y;
 } narc_point;
 
-/* One arc: it covers the outward normals from angle `start` counter-clockwise to angle `end`. The sweep, end - start, is
- * more than 0 and at most pi; a circle alone is one arc with a sweep of 2 pi. A whole number of turns may be
- * added to both; `end` below `start` means that the arc passes the angle +-pi. Radius 0 is a vertex. */
+/* One arc: it covers the outward normals from angle `start` counter-clockwise to angle `end`. The sweep, end - start,
+ * is more than NARC_TOLERANCE and at most pi; a circle alone is one arc with a sweep of 2 pi. A whole number of turns
+ * may be added to both; `end` below `start` means that the arc passes the angle +-pi. Radius 0 is a vertex. */
 typedef struct narc_arc {
     double center_x, center_y;
     double radius;
     double start, end;
 } narc_arc;
 
-/* Is a list of arcs a valid arc shape? Checks, in this order: the count (1 .. NARC_MAX_ARCS), that all is finite, that no
- * radius is negative, each sweep, that normals join and make one turn, that edges run forwards and have their
- * normal (closed, convex), the size, and the largest radius. The message names the arc and the quantity. Thread-safe. */
+/* Is a list of arcs a valid arc shape? Checks, in this order: the count (1 .. NARC_MAX_ARCS), that all is finite, that
+ * no radius is negative, each sweep, that normals join and make one turn, that edges run forwards and have their
+ * normal (closed, convex), the size, and the largest radius. The message names the arc and the quantity. Thread-safe.
+ *  */
 NARC_API narc_status narc_validate_arcs(const narc_arc *arcs, size_t count, narc_error *error);
 
-/* Every builder below writes at most NARC_MAX_ARCS arcs to `out_arcs` (the caller's array of that size) and their number
- * to `out_count`; its arcs pass narc_validate_arcs(). On error both are untouched. All are pure and thread-safe. Common
- * errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE (lengths not positive), and whatever
- * narc_validate_arcs() finds, a radius above NARC_MAX_RADIUS_RATIO above all. */
+/* Every builder below writes at most NARC_MAX_ARCS arcs to `out_arcs` (the caller's array of that size) and their
+ * number to `out_count`; its arcs pass narc_validate_arcs(). On error both are untouched. All are pure and thread-safe.
+ * Common errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE (lengths not positive), and
+ * whatever narc_validate_arcs() finds, a radius above NARC_MAX_RADIUS_RATIO above all. */
 
 /* A circle of `radius` around the origin. */
 NARC_API narc_status narc_build_circle(double radius, narc_arc *out_arcs, size_t *out_count, narc_error *error);
@@ -166,30 +170,32 @@ NARC_API narc_status narc_build_four_arc(narc_four_arc form, narc_arc *out_arcs,
  * Joining all chords with a common tangent asks that the half central angles satisfy alpha[i-1] + alpha[i] = the
  * exterior angle at point i; then radius[i] = chord[i] / (2 sin alpha[i]).
  *   Even count: `radius`, that of arc 0, fixes all others; 0 chooses the feasible one that makes the radii most alike
- *   (least variance of their logarithms). The exterior angles at the even points must add up to pi (as must the odd ones).
- *   Odd count: there is exactly one solution, `radius` must be 0.
+ *   (least variance of their logarithms). The exterior angles at the even points must add up to pi (as must the odd
+ *   ones). Odd count: there is exactly one solution, `radius` must be 0.
  * NARC_ERROR_COUNT: fewer than 3 or more than NARC_MAX_ARCS points. NARC_ERROR_NOT_CONVEX: a point where the
- * outline does not turn left. NARC_ERROR_NO_SOLUTION: the angle sums differ, or some alpha cannot be positive and at most
- * pi / 2; the message says which condition fails and where. NARC_ERROR_RADIUS: `radius` is outside the feasible
+ * outline does not turn left. NARC_ERROR_NO_SOLUTION: the angle sums differ, or some alpha cannot be positive and at
+ * most pi / 2; the message says which condition fails and where. NARC_ERROR_RADIUS: `radius` is outside the feasible
  * range (the message tells the range), or an odd count was given one. */
 NARC_API narc_status narc_build_points(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
                                        size_t *out_count, narc_error *error);
 
-/* The open range of radii of arc 0 that narc_build_points() accepts for these points, and its own choice. For an odd count
- * all three are the one solution. `*out_max` may be +infinity. Errors as narc_build_points(). */
+/* The open range of radii of arc 0 that narc_build_points() accepts for these points, and its own choice. For an odd
+ * count all three are the one solution. `*out_max` may be +infinity. Errors as narc_build_points(). */
 NARC_API narc_status narc_find_radius_range(const narc_point *points, size_t count, double *out_min, double *out_max,
                                             double *out_chosen, narc_error *error);
 
-/* Algorithm 1 of the paper, corrected: from any simple polygon (either orientation, convex or not, odd or even count, 3 ..
- * NARC_MAX_ARCS vertices) to the junctions of a valid n-arc near it, as many as the polygon has vertices,
- * counter-clockwise, ready for narc_build_points(). The exterior angles are replaced by the nearest ones (least squares)
- * for which an n-arc exists; lines with those directions go through the midpoints of the sides, moved only as far as
- * needed to keep every side's length positive; the junctions are where they meet. The n-arc follows the polygon, it does
- * not bound it. NARC_ERROR_NOT_SIMPLE: the polygon crosses or touches itself, repeats a vertex, or has no area. */
+/* Algorithm 1 of the paper, corrected: from any simple polygon (either orientation, convex or not, odd or even count, 3
+ * .. NARC_MAX_ARCS vertices) to the junctions of a valid n-arc near it, as many as the polygon has vertices,
+ * counter-clockwise, ready for narc_build_points(). The exterior angles are replaced by the nearest ones (least
+ * squares) for which an n-arc exists; lines with those directions go through the midpoints of the sides, moved only as
+ * far as needed to keep every side's length positive; the junctions are where they meet. The n-arc follows the polygon,
+ * it does not bound it. NARC_ERROR_NOT_SIMPLE: the polygon crosses or touches itself, repeats a vertex, or has no area.
+ *  */
 NARC_API narc_status narc_adjust_polygon(const narc_point *polygon, size_t count, narc_point *out_points,
                                          narc_error *error);
 
-/* ------------------------------------------------------------------------------------------------ derived quantities */
+/* ------------------------------------------------------------------------------------------------ derived quantities
+ *  */
 
 /* All of these take a valid list of arcs (see narc_validate_arcs()), compute in double precision from closed forms, and
  * are pure and thread-safe. They return false, outputs untouched, for NULL, a count of 0 or more than NARC_MAX_ARCS. */
@@ -223,8 +229,8 @@ NARC_API bool narc_compute_aabb(const narc_arc *arcs, size_t count, double angle
 /* The perimeter: arcs and edges. */
 NARC_API bool narc_compute_perimeter(const narc_arc *arcs, size_t count, double *out_perimeter);
 
-/* The point of the shape that lies furthest in a direction (any length > 0), and the arc it lies on; where a straight edge
- * is furthest, the edge's counter-clockwise end. Either output may be NULL. */
+/* The point of the shape that lies furthest in a direction (any length > 0), and the arc it lies on; where a straight
+ * edge is furthest, the edge's counter-clockwise end. Either output may be NULL. */
 NARC_API bool narc_find_support(const narc_arc *arcs, size_t count, double direction_x, double direction_y,
                                 narc_point *out_point, size_t *out_arc);
 
@@ -280,15 +286,16 @@ NARC_API size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_ar
 /* The flags of a shape, 0 if there is no such shape. */
 NARC_API unsigned narc_shape_flags(const narc_shapes *shapes, uint32_t shape);
 
-/* The axis-aligned bounding box of a stored shape rotated by (cosine, sine) and then scaled, around its origin; a little
- * larger than exact so that rounding never makes it too small. False if there is no such shape. Meant for broad phases. */
+/* The axis-aligned bounding box of a stored shape rotated by (cosine, sine) and then scaled, around its origin; a
+ * little larger than exact so that rounding never makes it too small. False if there is no such shape. Meant for broad
+ * phases. */
 NARC_API bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, float sine, float scale,
                             narc_aabb *out_aabb);
 
 /* ------------------------------------------------------------------------------------------------ bodies and pairs */
 
-/* A strided column in the caller's memory: item k is at (const char *)base + k * stride. A stride of 0 gives every item the
- * same value. Items must be aligned for their type. */
+/* A strided column in the caller's memory: item k is at (const char *)base + k * stride. A stride of 0 gives every item
+ * the same value. Items must be aligned for their type. */
 typedef struct narc_column {
     const void *base;
     size_t stride; /* bytes */
@@ -300,8 +307,8 @@ typedef enum narc_precision { NARC_FLOAT32 = 0, NARC_FLOAT64 = 1 } narc_precisio
 
 /* Bodies: `count` of each column. The place of a shape's point p is (x, y) + scale * [cosine -sine; sine cosine] p.
  * cosine^2 + sine^2 must be 1 to single-precision rounding: the kernels do not normalise. A body with a NaN or an
- * infinity, or a scale that is not positive or takes the shape out of NARC_MIN_SIZE .. NARC_MAX_SIZE, collides
- * with nothing. */
+ * infinity, with a cosine or sine outside -2 .. 2, or with a scale that is not positive or takes the shape out of
+ * NARC_MIN_SIZE .. NARC_MAX_SIZE, collides with nothing. */
 typedef struct narc_bodies {
     size_t count;
     narc_precision position_precision; /* of x and y: float or double */

@@ -2,8 +2,9 @@
  *
  * store.h - the layout of a shape store, as the kernels read it. Internal.
  *
- * Each shape has a HEAD of 32 bytes, all that a filter needs, and a BLOCK with its arcs. A block is structure-of-arrays:
- * five planes of `stride` floats (count rounded up to a multiple of 4, the rest filled with copies of the last arc),
+ * Each shape has a HEAD of 32 bytes, all that a filter needs, and a BLOCK with its arcs. A block is
+ * structure-of-arrays: five planes of `stride` floats (count rounded up to a multiple of 4, the rest filled with copies
+ * of the last arc),
  *
  *     center_x[stride] center_y[stride] radius[stride] normal_x[stride] normal_y[stride]
  *
@@ -26,15 +27,17 @@ typedef struct narc_head {
     uint8_t count;  /* arcs as stored, 2 .. NARC_MAX_ARCS */
     uint8_t stride; /* floats in a plane */
     uint16_t flags; /* NARC_SHAPE_... */
-    /* A circle around the shape and one inside it. Both leave room (NARC_HEAD_SLACK times the extent, the largest |centre| +
-     * radius) for the rounding of the kernels, so that a filter that uses them never contradicts the deciding formula. The
-     * inner radius is 0 where that leaves nothing. */
+    /* A circle around the shape and one inside it. Both leave room (NARC_HEAD_SLACK times the extent, the largest
+     * |centre| + radius) for the rounding of the kernels, so that a filter that uses them never contradicts the
+     * deciding formula. The inner radius is 0 where that leaves nothing. */
     float bound_x, bound_y, bound_radius;
     float inner_x, inner_y, inner_radius;
 } narc_head;
 
-/* 32 roundings: above the 24 of NARC_ERROR_BOUND. */
-#define NARC_HEAD_SLACK (32.0 / 16777216.0)
+/* 64 roundings, so that the circles stay clear of the deciding formula's error: that is 24 roundings (NARC_ERROR_BOUND)
+ * of the distance between the positions plus both extents, and that distance is at most the sum of the extents more
+ * than the distance between the circles' centres. See kernels/relative.inl. */
+#define NARC_HEAD_SLACK (64.0 / 16777216.0)
 
 struct narc_shapes {
     narc_head *heads;

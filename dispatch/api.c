@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * api.c - the batch calls of narc.h: argument checks, then one call down.
+ */
+#include "dispatch.h"
+#include "error.h"
+
+#include <math.h>
+
+#define TEXT_(a) #a
+#define TEXT(a)  TEXT_(a)
+
+const char *narc_version(void) {
+    return TEXT(NARC_VERSION_MAJOR) "." TEXT(NARC_VERSION_MINOR) "." TEXT(NARC_VERSION_PATCH);
+}
+
+static narc_status missing(narc_error *error, const char *name) {
+    return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", name);
+}
+
+/* Says which of pair number `pair`'s indices is out of range. */
+static narc_status describe_bad_pair(const narc_batch *batch, size_t pair, narc_error *error) {
+    const narc_column columns[2] = {batch->pairs->a, batch->pairs->b};
+    for (int k = 0; k < 2; k++) {
+        const uint32_t body = *(const uint32_t *)narc_at(columns[k], pair);
+        if (body >= batch->bodies->count)
+            return narc_fail(error, NARC_ERROR_INDEX, pair, body, "pair %zu: body %c is %lu, but there are %zu bodies",
+                             pair, "ab"[k], (unsigned long)body, batch -> bodies -> count);
+        const uint32_t shape = *(const uint32_t *)narc_at(batch->bodies->shape, body);
+        if (shape >= batch->shapes->count)
+            return narc_fail(error, NARC_ERROR_INDEX, pair, shape,
+                             "pair %zu: body %lu has shape %lu, but there are %zu shapes", pair, (unsigned long)body,
+                             (unsigned long)shape, batch->shapes->count);
+    }
+    return NARC_OK;
+}
+
+/* The checks that all batch calls share: for pairs first .. first + count - 1. */
+static narc_status check_batch(const narc_batch *batch, size_t first, size_t count, unsigned threads,
+                               const narc_kernel_table **out_kernels, narc_error *error) {
+    const narc_pairs *pairs = batch->pairs;
+    const narc_bodies *bodies = batch->bodies;
+    if (!batch->shapes || !bodies || !pairs)
+        return missing(error, !batch->shapes ? "shapes" : !bodies ? "bodies" : "pairs");
+    if (pairs->count > UINT32_MAX)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)pairs->count, "%zu pairs in one batch, at most %lu",
+                         pairs->count, (unsigned long)UINT32_MAX);
+    if (first > pairs->count || count > pairs->count - first)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)count,
+                         "pairs %zu and the %zu from there on, but there are %zu", first, count, pairs->count);
+    if (bodies->position_precision != NARC_FLOAT32 && bodies->position_precision != NARC_FLOAT64)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->position_precision,
+                         "bodies.position_precision is %d", (int)bodies->position_precision);
+    if (count > 0) {
+        if (!pairs->a.base || !pairs->b.base)
+            return missing(error, !pairs->a.base ? "pairs.a" : "pairs.b");
+        if (bodies->count > 0) {
+            if (!bodies->x.base || !bodies->y.base)
+                return missing(error, !bodies->x.base ? "bodies.x" : "bodies.y");
+            if (!bodies->cosine.base || !bodies->sine.base)
+                return missing(error, !bodies->cosine.base ? "bodies.cosine" : "bodies.sine");
+            if (!bodies->shape.base)
+                return missing(error, "bodies.shape");
+        }
+        const size_t bad = narc_find_bad_pair(batch, first, count, threads);
+        if (bad < first + count)
+            return describe_bad_pair(batch, bad, error);
+    }
+    narc_status status = NARC_OK;
+    *out_kernels = narc_kernels(&status, error);
+    return status;
+}
+
+narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                               unsigned threads, uint64_t *out_bits, narc_error *error) {
+    const narc_batch batch = {shapes, bodies, pairs};
+    const narc_kernel_table *kernels;
+    const narc_status status = check_batch(&batch, 0, pairs ? pairs->count : 0, threads, &kernels, error);
+    if (status != NARC_OK)
+        return status;
+    if (pairs->count > 0 && !out_bits)
+        return missing(error, "out_bits");
+    narc_run_overlaps(kernels, &batch, threads, out_bits);
+    return NARC_OK;
+}
+
+narc_status narc_find_overlaps_range(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                     size_t first, size_t count, uint64_t *out_bits, narc_error *error) {
+    const narc_batch batch = {shapes, bodies, pairs};
+    const narc_kernel_table *kernels;
+    const narc_status status = check_batch(&batch, first, count, 1, &kernels, error);
+    if (status != NARC_OK)
+        return status;
+    if (first % 64 != 0 || (count % 64 != 0 && first + count != pairs->count))
+        return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)count,
+                         "pairs %zu and the %zu from there on do not begin and end at multiples of 64", first, count);
+    if (count > 0 && !out_bits)
+        return missing(error, "out_bits");
+    if (count > 0)
+        kernels->overlap(&batch, first, count, out_bits + first / 64);
+    return NARC_OK;
+}
+
+static narc_status find_contacts(const narc_batch *batch, size_t first, size_t count, float margin, unsigned threads,
+                                 const narc_contacts *out_contacts, size_t *out_count, narc_error *error) {
+    const narc_kernel_table *kernels;
+    const narc_status status = check_batch(batch, first, count, threads, &kernels, error);
+    if (status != NARC_OK)
+        return status;
+    if (!out_contacts || !out_count)
+        return missing(error, !out_contacts ? "out_contacts" : "out_count");
+    if (isnan(margin))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)margin, "margin is not a number");
+    const size_t found = narc_run_contacts(kernels, batch, first, count, margin, threads, out_contacts);
+    *out_count = found;
+    if (found > out_contacts->capacity)
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu contacts, but there is room for %zu", found,
+                         out_contacts->capacity);
+    return NARC_OK;
+}
+
+narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                               float margin, unsigned threads, const narc_contacts *out_contacts, size_t *out_count,
+                               narc_error *error) {
+    const narc_batch batch = {shapes, bodies, pairs};
+    return find_contacts(&batch, 0, pairs ? pairs->count : 0, margin, threads, out_contacts, out_count, error);
+}
+
+narc_status narc_find_contacts_range(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                     size_t first, size_t count, float margin, const narc_contacts *out_contacts,
+                                     size_t *out_count, narc_error *error) {
+    const narc_batch batch = {shapes, bodies, pairs};
+    return find_contacts(&batch, first, count, margin, 1, out_contacts, out_count, error);
+}
+
+narc_status narc_compute_poses(const float *angles, size_t count, float *out_cosines, float *out_sines,
+                               narc_error *error) {
+    narc_status status = NARC_OK;
+    const narc_kernel_table *kernels = narc_kernels(&status, error);
+    if (!kernels)
+        return status;
+    if (count > 0 && (!angles || !out_cosines || !out_sines))
+        return missing(error, !angles ? "angles" : !out_cosines ? "out_cosines" : "out_sines");
+    kernels->pose(angles, count, out_cosines, out_sines);
+    return NARC_OK;
+}

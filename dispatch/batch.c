@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * batch.c - spreads a batch over threads. The only place that knows OpenMP.
+ *
+ * Chunks are fixed ranges of pairs whatever the number of threads, and each pair's answer depends on that pair alone,
+ * so the bytes of the result are the same for any split.
+ */
+#include "dispatch.h"
+
+#include <string.h>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+/* Pairs in a chunk: some 50 microseconds of work, against about one for handing it out; a multiple of 64. For contacts
+ * also the size of each thread's buffer on its stack, 27 KB. */
+enum { CHUNK = 1024 };
+
+unsigned narc_default_threads(void) {
+#ifdef _OPENMP
+    return (unsigned)omp_get_max_threads();
+#else
+    return 1;
+#endif
+}
+
+/* How many threads to ask for, given how many chunks there are. */
+static int thread_count(unsigned threads, size_t chunks) {
+    const unsigned wanted = threads ? threads : narc_default_threads();
+    return (int)(wanted < chunks ? wanted : chunks);
+}
+
+static size_t chunk_size(size_t count, size_t start) { return count - start < CHUNK ? count - start : CHUNK; }
+
+void narc_run_overlaps(const narc_kernel_table *kernels, const narc_batch *batch, unsigned threads,
+                       uint64_t *out_bits) {
+    const size_t count = batch->pairs->count, chunks = (count + CHUNK - 1) / CHUNK;
+    const int team = thread_count(threads, chunks);
+    if (team <= 1) {
+        kernels->overlap(batch, 0, count, out_bits);
+        return;
+    }
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic) num_threads(team)
+#endif
+    for (size_t chunk = 0; chunk < chunks; chunk++) {
+        const size_t start = chunk * CHUNK;
+        kernels->overlap(batch, start, chunk_size(count, start), out_bits + start / 64);
+    }
+}
+
+/* A chunk's contacts, before it is known where in the list they belong. */
+struct buffer {
+    uint32_t pair[CHUNK];
+    float separation[CHUNK], normal_x[CHUNK], normal_y[CHUNK], point_x[CHUNK], point_y[CHUNK];
+    uint8_t arc_a[CHUNK], arc_b[CHUNK];
+};
+
+static void copy_array(void *to, const void *from, size_t offset, size_t count, size_t item) {
+    if (to)
+        memcpy((char *)to + offset * item, from, count * item);
+}
+
+/* Copies `found` contacts to items offset ... of the caller's list, as far as they fit. */
+static void copy_contacts(const struct buffer *from, size_t found, size_t offset, const narc_contacts *to) {
+    const size_t room = offset < to->capacity ? to->capacity - offset : 0, count = found < room ? found : room;
+    if (count == 0)
+        return;
+    copy_array(to->pair, from->pair, offset, count, sizeof *to->pair);
+    copy_array(to->separation, from->separation, offset, count, sizeof *to->separation);
+    copy_array(to->normal_x, from->normal_x, offset, count, sizeof *to->normal_x);
+    copy_array(to->normal_y, from->normal_y, offset, count, sizeof *to->normal_y);
+    copy_array(to->point_x, from->point_x, offset, count, sizeof *to->point_x);
+    copy_array(to->point_y, from->point_y, offset, count, sizeof *to->point_y);
+    copy_array(to->arc_a, from->arc_a, offset, count, sizeof *to->arc_a);
+    copy_array(to->arc_b, from->arc_b, offset, count, sizeof *to->arc_b);
+}
+
+size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *batch, size_t first, size_t count,
+                         float margin, unsigned threads, const narc_contacts *out_contacts) {
+    const size_t chunks = (count + CHUNK - 1) / CHUNK;
+    size_t total = 0;
+    /* Chunks run in any order; only the reservation of their place in the list is in the order of the pairs. */
+#ifdef _OPENMP
+    const int team = thread_count(threads, chunks);
+#pragma omp parallel for ordered schedule(dynamic) num_threads(team) if (team > 1)
+#else
+    (void)threads;
+#endif
+    for (size_t chunk = 0; chunk < chunks; chunk++) {
+        struct buffer buffer;
+        const narc_contacts list = {CHUNK,          buffer.pair,    buffer.separation, buffer.normal_x, buffer.normal_y,
+                                    buffer.point_x, buffer.point_y, buffer.arc_a,      buffer.arc_b};
+        const size_t start = chunk * CHUNK;
+        const size_t found = kernels->contact(batch, first + start, chunk_size(count, start), margin, &list);
+        size_t offset;
+#ifdef _OPENMP
+#pragma omp ordered
+#endif
+        {
+            offset = total;
+            total += found;
+        }
+        copy_contacts(&buffer, found, offset, out_contacts);
+    }
+    return total;
+}
+
+static bool is_bad_pair(const narc_batch *batch, size_t pair) {
+    const narc_bodies *bodies = batch->bodies;
+    const uint32_t a = *(const uint32_t *)narc_at(batch->pairs->a, pair);
+    const uint32_t b = *(const uint32_t *)narc_at(batch->pairs->b, pair);
+    return a >= bodies->count || b >= bodies->count ||
+           *(const uint32_t *)narc_at(bodies->shape, a) >= batch->shapes->count ||
+           *(const uint32_t *)narc_at(bodies->shape, b) >= batch->shapes->count;
+}
+
+size_t narc_find_bad_pair(const narc_batch *batch, size_t first, size_t count, unsigned threads) {
+    size_t bad = first + count;
+#ifdef _OPENMP
+    const int team = thread_count(threads, (count + CHUNK - 1) / CHUNK);
+#pragma omp parallel for schedule(static) num_threads(team) if (team > 1) reduction(min : bad)
+#else
+    (void)threads;
+#endif
+    for (size_t pair = first; pair < first + count; pair++)
+        if (is_bad_pair(batch, pair) && pair < bad)
+            bad = pair;
+    return bad;
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * kernels.h - what the dispatcher sees of the kernels: one constant table for each instruction set. Internal.
+ *
+ * Kernels check nothing: arguments, indices and capacities are the caller's business (dispatch/api.c).
+ */
+#ifndef NARC_KERNELS_H
+#define NARC_KERNELS_H
+
+#include "store.h"
+
+/* What a batch call works on. */
+typedef struct narc_batch {
+    const narc_shapes *shapes;
+    const narc_bodies *bodies;
+    const narc_pairs *pairs;
+} narc_batch;
+
+typedef struct narc_kernel_table {
+    const char *isa;
+#define NARC_KERNEL(type, name, parameters) type(*name) parameters;
+#include "kernels.def"
+#undef NARC_KERNEL
+} narc_kernel_table;
+
+extern const narc_kernel_table narc_kernels_scalar;
+extern const narc_kernel_table narc_kernels_neon;
+extern const narc_kernel_table narc_kernels_avx2;
+extern const narc_kernel_table narc_kernels_avx512;
+
+/* Item `index` of a caller's column. */
+static inline const void *narc_at(narc_column column, size_t index) {
+    return (const char *)column.base + index * column.stride;
+}
+
+#endif

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * overlay.inl - stage 2, the deciding formula: the largest gap over all directions, exactly, for one pair in each lane.
+ *
+ * For a direction n (A to B) held by arc i of A, and -n by arc j of B, the gap between the support lines is
+ *     g(n) = u.n - (r_i + r_j),   u = b_j - a_i.
+ * Lay the junction normals of A and the negated ones of B over each other: they cut the circle of directions into m + n
+ * intervals, each with one pair (i, j), walked once in the order of their angle (rotating calipers). Over an interval
+ * from lo to hi, g is largest
+ *     along u, with the value |u| - (r_i + r_j), if u lies between lo and hi, or else
+ *     at an end; g is continuous, so it is enough to take it at lo in every interval.
+ * The largest of these values is the separation of the bodies. Ends matter where a straight edge puts a kink into g;
+ * for shapes without edges they cost nothing extra and close the seams: where rounding puts u just outside both intervals
+ * that meet at a junction, the value at the junction differs from the one along u only by rounding. Hence one path for
+ * all shapes.
+ *
+ * Whether u lies between lo and hi is decided by the signs of lo x u and u x hi. In an interval that is empty up to
+ * rounding, u opposite to lo passes these two, so u must also point to the interval's side: with a sweep of at most pi,
+ *     u.lo + u.hi + lo x u + u x hi = 2 |u| cos(angle between u and the middle) (cos + sin)(sweep / 2) >= 0.
+ *
+ * Error, in units of u = 2^-24, with D the distance between the positions and E the extents (largest |centre| + radius,
+ * scaled); each line bounds what one step adds to g:
+ *     storing centres and radii in single precision                           E_a +   E_b
+ *     rounding and rotating the difference of positions                4 D
+ *     the relative rotation, the rotation and scaling of centres              E_a + 8 E_b
+ *     the difference of centres                                        2 D + 2 E_a + 2 E_b
+ *     norm or dot product                                              3 D + 3 E_a + 3 E_b
+ *     the sum of radii and the last subtraction                        3 D + 3 E_a + 3 E_b
+ *     a junction normal off by 4 u moves a kink along a slope of at
+ *     most |u|, or lets a neighbour answer beyond its end              4 D + 4 E_a + 4 E_b
+ *     the caller's cosine and sine do not lie on the unit circle              E_a +   E_b
+ * Together at most 16 D + 15 E_a + 22 E_b: NARC_ERROR_BOUND, 24 (D + E_a + E_b), covers it.
+ *
+ * The angle that orders the junctions is the diamond angle, monotonic in the true one: 0 along +x, 1 along +y, below 4.
+ * It may swap junctions that agree up to rounding, which the line on junction normals covers. Junctions of one shape
+ * never swap: their normals differ by more than NARC_TOLERANCE.
+ */
+
+/* One junction and the arc that starts there, for all lanes. */
+enum { TURN, NORMAL_X, NORMAL_Y, CENTER_X, CENTER_Y, RADIUS, SLOT_FIELDS };
+enum { SLOT = SLOT_FIELDS * V_WIDTH };
+
+/* Both shapes of each lane in A's frame at world scale: A's slots, then B's with negated normals. */
+struct overlay {
+    float slots[2 * NARC_MAX_ARCS * SLOT];
+};
+
+/* A position in the slots of one shape, a float index for each lane, and where that shape begins and ends. */
+struct cursor {
+    vi at, begin, end;
+};
+
+static inline vf field(const struct overlay *o, int which, vi at) { return v_gather(o->slots + which * V_WIDTH, at); }
+
+static inline vi next_slot(struct cursor c, vi at) {
+    const vi next = vi_add(at, vi_set(SLOT));
+    return vi_select(vi_lt(next, c.end), next, c.begin);
+}
+
+static inline vi previous_slot(struct cursor c, vi at) {
+    return vi_add(vi_select(vi_lt(c.begin, at), at, c.end), vi_set(-SLOT));
+}
+
+/* The diamond angle of a direction of any length. */
+static inline vf turn_of(vf x, vf y) {
+    const vf p = v_div(x, v_add(v_abs(x), v_abs(y)));
+    return v_select(v_le(v_set(0), y), v_sub(v_set(1), p), v_add(v_set(3), p));
+}
+
+/* The largest of the lanes' counts. */
+static inline int max_lane(vi counts) {
+    int32_t lane[V_WIDTH];
+    int most = 0;
+    vi_store(lane, counts);
+    for (int k = 0; k < V_WIDTH; k++)
+        most = lane[k] > most ? lane[k] : most;
+    return most;
+}
+
+/* A placed shape in each lane: the block of its arcs, and its pose in A's frame (for A itself: only the scale). */
+struct placed {
+    vi arcs, stride, count;
+    vf scale;
+    vf t_x, t_y, q_c, q_s;
+};
+
+/* Writes a shape's slots from number `slot` on; the cursor stands at its first junction counter-clockwise from +x. */
+static inline struct cursor place_shape(struct overlay *o, int slot, const float *arcs, const struct placed *s,
+                                        bool is_b, int most) {
+    const vi begin = vi_add(vi_set(slot * SLOT), vi_lanes());
+    struct cursor c = {begin, begin, begin};
+    vf first_turn = v_set(INFINITY);
+    vi at = begin;
+    for (int k = 0; k < most; k++, at = vi_add(at, vi_set(SLOT))) {
+        const vm exists = vi_lt(vi_set(k), s->count);
+        vi index = vi_add(s->arcs, vi_select(exists, vi_set(k), vi_set(0)));
+        vf plane[NARC_PLANES];
+        for (int f = 0; f < NARC_PLANES; f++, index = vi_add(index, s->stride))
+            plane[f] = v_gather(arcs, index);
+        vf x = plane[0], y = plane[1], n_x = plane[3], n_y = plane[4];
+        if (is_b) {
+            x = v_sub(v_mul(s->q_c, plane[0]), v_mul(s->q_s, plane[1]));
+            y = v_add(v_mul(s->q_s, plane[0]), v_mul(s->q_c, plane[1]));
+            n_x = v_sub(v_mul(s->q_s, plane[4]), v_mul(s->q_c, plane[3]));
+            n_y = v_neg(v_add(v_mul(s->q_s, plane[3]), v_mul(s->q_c, plane[4])));
+        }
+        x = v_mul(x, s->scale);
+        y = v_mul(y, s->scale);
+        float *out = o->slots + (slot + k) * SLOT;
+        const vf turn = turn_of(n_x, n_y);
+        v_store(out + TURN * V_WIDTH, turn);
+        v_store(out + NORMAL_X * V_WIDTH, n_x);
+        v_store(out + NORMAL_Y * V_WIDTH, n_y);
+        v_store(out + CENTER_X * V_WIDTH, is_b ? v_add(s->t_x, x) : x);
+        v_store(out + CENTER_Y * V_WIDTH, is_b ? v_add(s->t_y, y) : y);
+        v_store(out + RADIUS * V_WIDTH, v_mul(plane[2], s->scale));
+
+        const vm earlier = vm_and(exists, v_lt(turn, first_turn));
+        first_turn = v_select(earlier, turn, first_turn);
+        c.at = vi_select(earlier, at, c.at);
+        c.end = vi_select(exists, vi_add(at, vi_set(SLOT)), c.end);
+    }
+    return c;
+}
+
+/* The best candidate of each lane so far. */
+struct gap {
+    vf separation;
+    vf n_x, n_y, n_length; /* the normal, not yet divided by its length */
+    vi arc_a, arc_b;       /* slots */
+};
+
+/* The separation of each lane for which `live` holds (elsewhere +infinity). Without `contact` only separation is set,
+ * and the walk ends as soon as every lane is known not to collide: then it is some value >= 0. */
+static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, struct cursor b, vi steps, vm live,
+                                     bool contact) {
+    const vf one_turn = v_set(4);
+    const vf tiny = v_set(0x1p-126f); /* the least normal float: a smaller |u|^2 has lost its digits */
+    const vf start = v_select(live, v_set(-INFINITY), v_set(INFINITY));
+    struct gap best = {start, v_set(0), v_set(0), v_set(1), a.begin, b.begin};
+    vi arc_a = previous_slot(a, a.at), arc_b = previous_slot(b, b.at);
+    vf a_x = field(o, CENTER_X, arc_a), a_y = field(o, CENTER_Y, arc_a), a_r = field(o, RADIUS, arc_a);
+    vf b_x = field(o, CENTER_X, arc_b), b_y = field(o, CENTER_Y, arc_b), b_r = field(o, RADIUS, arc_b);
+    vf a_turn = field(o, TURN, a.at), a_nx = field(o, NORMAL_X, a.at), a_ny = field(o, NORMAL_Y, a.at);
+    vf b_turn = field(o, TURN, b.at), b_nx = field(o, NORMAL_X, b.at), b_ny = field(o, NORMAL_Y, b.at);
+    for (int step = 0;; step++) {
+        vm active = vm_and(live, vi_lt(vi_set(step), steps));
+        if (!contact)
+            active = vm_and(active, v_lt(best.separation, v_set(0)));
+        if (!vm_any(active))
+            return best;
+
+        /* Pass the nearer of the two junctions ahead: it is lo, and its arc takes over. */
+        const vm is_a = v_le(a_turn, b_turn);
+        const vf lo_x = v_select(is_a, a_nx, b_nx), lo_y = v_select(is_a, a_ny, b_ny);
+        const vi passed = vi_select(is_a, a.at, b.at);
+        const vf x = field(o, CENTER_X, passed), y = field(o, CENTER_Y, passed), r = field(o, RADIUS, passed);
+        a_x = v_select(is_a, x, a_x);
+        a_y = v_select(is_a, y, a_y);
+        a_r = v_select(is_a, r, a_r);
+        b_x = v_select(is_a, b_x, x);
+        b_y = v_select(is_a, b_y, y);
+        b_r = v_select(is_a, b_r, r);
+        arc_a = vi_select(is_a, passed, arc_a);
+        arc_b = vi_select(is_a, arc_b, passed);
+
+        /* The junction ahead of it on that shape, a turn later where the list begins anew. */
+        const vi next_a = next_slot(a, a.at), next_b = next_slot(b, b.at);
+        const vi ahead = vi_select(is_a, next_a, next_b);
+        const vf angle = field(o, TURN, ahead), n_x = field(o, NORMAL_X, ahead), n_y = field(o, NORMAL_Y, ahead);
+        const vf later = v_select(v_lt(angle, v_select(is_a, a_turn, b_turn)), v_add(angle, one_turn), angle);
+        a.at = vi_select(is_a, ahead, a.at);
+        b.at = vi_select(is_a, b.at, ahead);
+        a_turn = v_select(is_a, later, a_turn);
+        a_nx = v_select(is_a, n_x, a_nx);
+        a_ny = v_select(is_a, n_y, a_ny);
+        b_turn = v_select(is_a, b_turn, later);
+        b_nx = v_select(is_a, b_nx, n_x);
+        b_ny = v_select(is_a, b_ny, n_y);
+        const vm hi_is_a = v_le(a_turn, b_turn);
+        const vf hi_x = v_select(hi_is_a, a_nx, b_nx), hi_y = v_select(hi_is_a, a_ny, b_ny);
+
+        /* The largest g in this interval. */
+        const vf u_x = v_sub(b_x, a_x), u_y = v_sub(b_y, a_y);
+        const vf u2 = v_add(v_mul(u_x, u_x), v_mul(u_y, u_y));
+        const vf after_lo = v_sub(v_mul(lo_x, u_y), v_mul(lo_y, u_x));
+        const vf before_hi = v_sub(v_mul(u_x, hi_y), v_mul(u_y, hi_x));
+        const vf along_lo = v_add(v_mul(u_x, lo_x), v_mul(u_y, lo_y));
+        const vf along_hi = v_add(v_mul(u_x, hi_x), v_mul(u_y, hi_y));
+        const vf side = v_add(v_add(along_lo, along_hi), v_add(after_lo, before_hi));
+        const vm inside = vm_and(vm_and(v_le(v_set(0), after_lo), v_le(v_set(0), before_hi)),
+                                 vm_and(v_lt(v_set(0), side), v_le(tiny, u2)));
+        const vf length = v_sqrt(u2);
+        const vf value = v_sub(v_select(inside, length, along_lo), v_add(a_r, b_r));
+        const vm better = vm_and(active, v_lt(best.separation, value));
+        best.separation = v_select(better, value, best.separation);
+        if (contact) {
+            best.n_x = v_select(better, v_select(inside, u_x, lo_x), best.n_x);
+            best.n_y = v_select(better, v_select(inside, u_y, lo_y), best.n_y);
+            best.n_length = v_select(better, v_select(inside, length, v_set(1)), best.n_length);
+            best.arc_a = vi_select(better, arc_a, best.arc_a);
+            best.arc_b = vi_select(better, arc_b, best.arc_b);
+        }
+    }
+}
+
+/* Loads the pairs `lanes` of a block into an overlay. */
+static inline void place_pairs(struct overlay *o, const narc_shapes *shapes, const struct pair_block *p, vi lanes,
+                               struct cursor *out_a, struct cursor *out_b, vi *out_steps) {
+    const struct placed a = {.arcs = vi_gather(p->a.arcs, lanes),
+                             .stride = vi_gather(p->a.stride, lanes),
+                             .count = vi_gather(p->a.count, lanes),
+                             .scale = v_gather(p->scale_a, lanes)};
+    const struct placed b = {.arcs = vi_gather(p->b.arcs, lanes),
+                             .stride = vi_gather(p->b.stride, lanes),
+                             .count = vi_gather(p->b.count, lanes),
+                             .scale = v_gather(p->scale_b, lanes),
+                             .t_x = v_gather(p->t_x, lanes),
+                             .t_y = v_gather(p->t_y, lanes),
+                             .q_c = v_gather(p->q_c, lanes),
+                             .q_s = v_gather(p->q_s, lanes)};
+    const int most_a = max_lane(a.count);
+    *out_a = place_shape(o, 0, shapes->arcs, &a, false, most_a);
+    *out_b = place_shape(o, most_a, shapes->arcs, &b, true, max_lane(b.count));
+    *out_steps = vi_add(a.count, b.count);
+}

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * pose.inl - the pose kernel: cosines and sines of many angles.
+ *
+ * SLEEF's `cinz` functions promise equal bits on every instruction set and use no fused multiply-add, so that the
+ * scalar table runs on any processor. Without SLEEF every table calls the C library, one angle at a time.
+ */
+
+#if defined(NARC_WITH_SLEEF)
+#include <sleef.h>
+#if V_WIDTH == 16
+#define V_SINCOS Sleef_cinz_sincosf16_u10avx512fnofma
+#elif V_WIDTH == 8
+#define V_SINCOS Sleef_cinz_sincosf8_u10avx
+#elif V_WIDTH == 4
+#define V_SINCOS Sleef_cinz_sincosf4_u10advsimdnofma
+#else
+#define V_SINCOS Sleef_cinz_sincosf1_u10purec
+#endif
+
+static inline void sincos_lanes(const float *angles, float *out_cosines, float *out_sines) {
+    const vf angle = v_load(angles);
+    const vm finite = v_lt(v_abs(angle), v_set(INFINITY));
+    const __typeof__(V_SINCOS(angle)) sincos = V_SINCOS(angle);
+    v_store(out_cosines, v_select(finite, sincos.y, v_set(NAN)));
+    v_store(out_sines, v_select(finite, sincos.x, v_set(NAN)));
+}
+
+static void pose(const float *angles, size_t count, float *out_cosines, float *out_sines) {
+    size_t k = 0;
+    for (; count - k >= V_WIDTH; k += V_WIDTH)
+        sincos_lanes(angles + k, out_cosines + k, out_sines + k);
+    if (k == count)
+        return;
+    float rest[V_WIDTH] = {0}, cosines[V_WIDTH], sines[V_WIDTH];
+    memcpy(rest, angles + k, (count - k) * sizeof(float));
+    sincos_lanes(rest, cosines, sines);
+    memcpy(out_cosines + k, cosines, (count - k) * sizeof(float));
+    memcpy(out_sines + k, sines, (count - k) * sizeof(float));
+}
+
+#else
+
+static void pose(const float *angles, size_t count, float *out_cosines, float *out_sines) {
+    for (size_t k = 0; k < count; k++) {
+        const float angle = angles[k];
+        const bool finite = fabsf(angle) < INFINITY;
+        out_cosines[k] = finite ? cosf(angle) : NAN;
+        out_sines[k] = finite ? sinf(angle) : NAN;
+    }
+}
+
+#endif

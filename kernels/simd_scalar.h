@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * simd_scalar.h - the vector wrapper with one lane: plain C.
+ */
+#include "simd.h"
+
+#define V_WIDTH 1
+typedef float vf;
+typedef int32_t vi;
+typedef int vm;
+
+static inline vf v_set(float a) { return a; }
+static inline vf v_load(const float *p) { return *p; }
+static inline void v_store(float *p, vf a) { *p = a; }
+static inline vf v_gather(const float *base, vi index) { return base[index]; }
+static inline vf v_add(vf a, vf b) { return a + b; }
+static inline vf v_sub(vf a, vf b) { return a - b; }
+static inline vf v_mul(vf a, vf b) { return a * b; }
+static inline vf v_div(vf a, vf b) { return a / b; }
+static inline vf v_sqrt(vf a) { return sqrtf(a); }
+static inline vf v_abs(vf a) { return fabsf(a); }
+static inline vf v_neg(vf a) { return -a; }
+static inline vf v_min(vf a, vf b) { return a < b ? a : b; }
+static inline vf v_max(vf a, vf b) { return a > b ? a : b; }
+static inline vm v_lt(vf a, vf b) { return a < b; }
+static inline vm v_le(vf a, vf b) { return a <= b; }
+static inline vf v_select(vm m, vf a, vf b) { return m ? a : b; }
+static inline vi vi_set(int32_t a) { return a; }
+static inline vi vi_load(const int32_t *p) { return *p; }
+static inline void vi_store(int32_t *p, vi a) { *p = a; }
+static inline vi vi_gather(const int32_t *base, vi index) { return base[index]; }
+static inline vi vi_add(vi a, vi b) { return (int32_t)((uint32_t)a + (uint32_t)b); }
+static inline vm vi_lt(vi a, vi b) { return a < b; }
+static inline vi vi_select(vm m, vi a, vi b) { return m ? a : b; }
+static inline vi vi_lanes(void) { return 0; }
+static inline vm vm_and(vm a, vm b) { return a & b; }
+static inline vm vm_or(vm a, vm b) { return a | b; }
+static inline vm vm_andnot(vm a, vm b) { return a & !b; }
+static inline uint32_t vm_bits(vm a) { return (uint32_t)a; }
+static inline int vm_any(vm a) { return a; }

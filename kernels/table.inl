@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * table.inl - all kernels for one instruction set, and the table that is the only symbol of its object file. The
+ * including file has included a simd_<isa>.h and defined NARC_ISA_NAME.
+ */
+#include <stdbool.h>
+#include <string.h>
+
+#include "kernels.h"
+
+#include "relative.inl"
+
+#include "overlay.inl"
+
+#include "contact.inl"
+#include "overlap.inl"
+#include "pose.inl"
+
+#define NARC_JOIN_(a, b) a##b
+#define NARC_JOIN(a, b)  NARC_JOIN_(a, b)
+#define NARC_TEXT_(a)    #a
+#define NARC_TEXT(a)     NARC_TEXT_(a)
+
+const narc_kernel_table NARC_JOIN(narc_kernels_, NARC_ISA_NAME) = {
+    .isa = NARC_TEXT(NARC_ISA_NAME),
+#define NARC_KERNEL(type, name, parameters) .name = name,
+#include "kernels.def"
+#undef NARC_KERNEL
+};
