@@ -77,23 +77,37 @@ static void copy_contacts(const struct buffer *from, size_t found, size_t offset
     copy_array(to->arc_b, from->arc_b, offset, count, sizeof *to->arc_b);
 }
 
+/* The contacts of one chunk, to the buffer; returns how many. */
+static size_t fill_buffer(const narc_kernel_table *kernels, const narc_batch *batch, size_t first, size_t count,
+                          float margin, struct buffer *b) {
+    const narc_contacts list = {CHUNK,      b->pair,    b->separation, b->normal_x, b->normal_y,
+                                b->point_x, b->point_y, b->arc_a,      b->arc_b};
+    return kernels->contact(batch, first, count, margin, &list);
+}
+
 size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *batch, size_t first, size_t count,
                          float margin, unsigned threads, const narc_contacts *out_contacts) {
     const size_t chunks = (count + CHUNK - 1) / CHUNK;
+    const int team = thread_count(threads, chunks);
     size_t total = 0;
+    if (team <= 1) {
+        for (size_t start = 0; start < count; start += CHUNK) {
+            struct buffer buffer;
+            const size_t size = chunk_size(count, start);
+            const size_t found = fill_buffer(kernels, batch, first + start, size, margin, &buffer);
+            copy_contacts(&buffer, found, total, out_contacts);
+            total += found;
+        }
+        return total;
+    }
     /* Chunks run in any order; only the reservation of their place in the list is in the order of the pairs. */
 #ifdef _OPENMP
-    const int team = thread_count(threads, chunks);
-#pragma omp parallel for ordered schedule(dynamic) num_threads(team) if (team > 1)
-#else
-    (void)threads;
+#pragma omp parallel for ordered schedule(dynamic) num_threads(team)
 #endif
     for (size_t chunk = 0; chunk < chunks; chunk++) {
         struct buffer buffer;
-        const narc_contacts list = {CHUNK,          buffer.pair,    buffer.separation, buffer.normal_x, buffer.normal_y,
-                                    buffer.point_x, buffer.point_y, buffer.arc_a,      buffer.arc_b};
-        const size_t start = chunk * CHUNK;
-        const size_t found = kernels->contact(batch, first + start, chunk_size(count, start), margin, &list);
+        const size_t start = chunk * CHUNK, size = chunk_size(count, start);
+        const size_t found = fill_buffer(kernels, batch, first + start, size, margin, &buffer);
         size_t offset;
 #ifdef _OPENMP
 #pragma omp ordered
@@ -107,25 +121,34 @@ size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *bat
     return total;
 }
 
-static bool is_bad_pair(const narc_batch *batch, size_t pair) {
+/* The first of pairs first .. last - 1 that names a body or a shape that does not exist; last if none. */
+static size_t find_bad_pair(const narc_batch *batch, size_t first, size_t last) {
     const narc_bodies *bodies = batch->bodies;
-    const uint32_t a = *(const uint32_t *)narc_at(batch->pairs->a, pair);
-    const uint32_t b = *(const uint32_t *)narc_at(batch->pairs->b, pair);
-    return a >= bodies->count || b >= bodies->count ||
-           *(const uint32_t *)narc_at(bodies->shape, a) >= batch->shapes->count ||
-           *(const uint32_t *)narc_at(bodies->shape, b) >= batch->shapes->count;
+    for (size_t pair = first; pair < last; pair++) {
+        const uint32_t a = *(const uint32_t *)narc_at(batch->pairs->a, pair);
+        const uint32_t b = *(const uint32_t *)narc_at(batch->pairs->b, pair);
+        if (a >= bodies->count || b >= bodies->count ||
+            *(const uint32_t *)narc_at(bodies->shape, a) >= batch->shapes->count ||
+            *(const uint32_t *)narc_at(bodies->shape, b) >= batch->shapes->count)
+            return pair;
+    }
+    return last;
 }
 
 size_t narc_find_bad_pair(const narc_batch *batch, size_t first, size_t count, unsigned threads) {
+    const size_t chunks = (count + CHUNK - 1) / CHUNK;
+    const int team = thread_count(threads, chunks);
+    if (team <= 1)
+        return find_bad_pair(batch, first, first + count);
     size_t bad = first + count;
 #ifdef _OPENMP
-    const int team = thread_count(threads, (count + CHUNK - 1) / CHUNK);
-#pragma omp parallel for schedule(static) num_threads(team) if (team > 1) reduction(min : bad)
-#else
-    (void)threads;
+#pragma omp parallel for schedule(static) num_threads(team) reduction(min : bad)
 #endif
-    for (size_t pair = first; pair < first + count; pair++)
-        if (is_bad_pair(batch, pair) && pair < bad)
-            bad = pair;
+    for (size_t chunk = 0; chunk < chunks; chunk++) {
+        const size_t start = first + chunk * CHUNK, last = start + chunk_size(count, chunk * CHUNK);
+        const size_t found = find_bad_pair(batch, start, last);
+        if (found < last && found < bad)
+            bad = found;
+    }
     return bad;
 }

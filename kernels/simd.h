@@ -15,7 +15,7 @@
  *   v_select(vm, vf a, vf b)                                    a where true, b elsewhere
  *   vi_set vi_load vi_store vi_gather vi_add vi_lt vi_select    the same for int32; vi_add wraps
  *   vi_lanes()                                                  0, 1, 2 ...
- *   vm_and vm_or vm_andnot(a, b)                                a and b, a or b, a and not b
+ *   vm_and vm_or
  *   vm_bits(vm)                                                 bit k is lane k
  *   vm_any(vm)
  */

@@ -40,6 +40,5 @@ static inline vi vi_select(vm m, vi a, vi b) { return _mm256_blendv_epi8(b, a, _
 static inline vi vi_lanes(void) { return _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7); }
 static inline vm vm_and(vm a, vm b) { return _mm256_and_ps(a, b); }
 static inline vm vm_or(vm a, vm b) { return _mm256_or_ps(a, b); }
-static inline vm vm_andnot(vm a, vm b) { return _mm256_andnot_ps(b, a); }
 static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_ps(a); }
 static inline int vm_any(vm a) { return _mm256_movemask_ps(a) != 0; }

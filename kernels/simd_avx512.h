@@ -40,6 +40,5 @@ static inline vi vi_select(vm m, vi a, vi b) { return _mm512_mask_blend_epi32(m,
 static inline vi vi_lanes(void) { return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15); }
 static inline vm vm_and(vm a, vm b) { return _kand_mask16(a, b); }
 static inline vm vm_or(vm a, vm b) { return _kor_mask16(a, b); }
-static inline vm vm_andnot(vm a, vm b) { return _kandn_mask16(b, a); }
 static inline uint32_t vm_bits(vm a) { return (uint32_t)a; }
 static inline int vm_any(vm a) { return a != 0; }

@@ -50,6 +50,5 @@ static inline vi vi_select(vm m, vi a, vi b) { return vbslq_s32(m, a, b); }
 static inline vi vi_lanes(void) { return vld1q_s32((const int32_t[4]){0, 1, 2, 3}); }
 static inline vm vm_and(vm a, vm b) { return vandq_u32(a, b); }
 static inline vm vm_or(vm a, vm b) { return vorrq_u32(a, b); }
-static inline vm vm_andnot(vm a, vm b) { return vbicq_u32(a, b); }
 static inline uint32_t vm_bits(vm a) { return vaddvq_u32(vandq_u32(a, vld1q_u32((const uint32_t[4]){1, 2, 4, 8}))); }
 static inline int vm_any(vm a) { return vmaxvq_u32(a) != 0; }

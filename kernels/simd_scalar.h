@@ -35,6 +35,5 @@ static inline vi vi_select(vm m, vi a, vi b) { return m ? a : b; }
 static inline vi vi_lanes(void) { return 0; }
 static inline vm vm_and(vm a, vm b) { return a & b; }
 static inline vm vm_or(vm a, vm b) { return a | b; }
-static inline vm vm_andnot(vm a, vm b) { return a & !b; }
 static inline uint32_t vm_bits(vm a) { return (uint32_t)a; }
 static inline int vm_any(vm a) { return a; }
