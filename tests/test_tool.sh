@@ -1,0 +1,433 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# test_tool.sh NARC [FONT] - the narc command from outside: files in, files, reports and errors out.
+# FONT is a font with the ghost, house, rocket and tree; without one the checks of `narc shapes` on glyphs are skipped.
+set -u
+unset NARC_ISA
+
+narc=$1
+font=${2:-}
+case $narc in */*) narc=$(cd "$(dirname "$narc")" && pwd)/$(basename "$narc") ;; esac
+folder=$(mktemp -d) || exit 1
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+failures=0
+known="--shapes shapes.json --bodies bodies.csv" five="--shapes shapes.json --bodies 5"
+
+# In a build with the leak sanitizer: fontconfig, which cairo asks for a picture's font, never frees its cache.
+echo "leak:libfontconfig" >suppressions
+export LSAN_OPTIONS="${LSAN_OPTIONS:+$LSAN_OPTIONS:}suppressions=$folder/suppressions:print_suppressions=0"
+
+pass() { echo "ok    $1"; }
+miss() {
+    echo "WRONG $1"
+    failures=$((failures + 1))
+}
+# check NAME COMMAND...: the command succeeds.
+check() {
+    name=$1
+    shift
+    if "$@" >check.log 2>&1; then pass "$name"; else miss "$name"; sed 's/^/      /' check.log; fi
+}
+# works NAME ARGUMENTS...: narc succeeds; its outputs stay in out.txt and err.txt.
+works() {
+    name=$1
+    shift
+    if "$narc" "$@" >out.txt 2>err.txt; then pass "$name"; else miss "$name"; sed 's/^/      /' err.txt; fi
+}
+# fails NAME PATTERN ARGUMENTS...: narc exits with status 2 and one line on standard error that begins with PATTERN (a
+# basic regular expression), prints nothing else, and leaves no file behind: neither targets new.* nor temporary ones.
+fails() {
+    name=$1 pattern=$2
+    shift 2
+    "$narc" "$@" >out.txt 2>err.txt
+    status=$?
+    if [ $status -eq 2 ] && [ "$(wc -l <err.txt)" -eq 1 ] && grep -q "^$pattern" err.txt && [ ! -s out.txt ] &&
+        [ -z "$(find . -name 'new*')" ]; then
+        pass "$name"
+    else
+        miss "$name (status $status, expected: $pattern)"
+        sed 's/^/      /' err.txt out.txt
+        find . -name 'new*' | sed 's/^/      left behind: /'
+        rm -f new*
+    fi
+}
+# contact FILE LINE VALUES: the first seven columns of a row of a contacts file are these numbers, within 2e-7.
+contact() {
+    awk -F, -v line="$2" -v want="$3" 'BEGIN { n = split(want, w, " "); bad = 1 }
+        NR == line { bad = NF != 9; for (i = 1; i <= n; i++) { d = $i - w[i]; if (d > 2e-7 || d < -2e-7) bad = 1 } }
+        END { exit bad }' "$1"
+}
+lines() { [ "$(wc -l <"$1")" -eq "$2" ]; }
+reports() { [ "$(awk -v key="$1" 'index($0, key) == 1 { print $NF }' out.txt)" = "$2" ]; }
+begins_with() { [ "$(head -c "${#2}" "$1" | tr '\211' 'X')" = "$2" ]; }
+
+# ------------------------------------------------------------------------------------------- help
+for command in "" shapes collide scene info; do
+    works "help $command" $command --help
+    check "help $command says how to call it" grep -q "^usage: narc" out.txt
+done
+works "version" --version
+check "version has three numbers" grep -Eq '^narc [0-9]+\.[0-9]+\.[0-9]+$' out.txt
+works "info" info
+for word in narc "processor features" "instruction sets" scalar "in use" overlap contact threads; do
+    check "info tells $word" grep -q "$word" out.txt
+done
+isas=$(awk '$NF == "supported" && $(NF - 1) != "not" { print $(NF - 1) }' out.txt)
+check "the scalar instruction set is supported" test -n "$(echo "$isas" | grep scalar)"
+
+# ------------------------------------------------------------------------------------------- answers known by hand
+cat >shapes.json <<'EOF'
+{"shapes": [
+  {"name": "disc", "circle": 1},
+  {"name": "small", "circle": 0.5},
+  {"name": "square", "box": {"width": 2, "height": 2, "radius": 0}},
+  {"name": "pill", "capsule": {"length": 2, "radius": 0.5}},
+  {"name": "triangle", "polygon": [[0, 0], [4, 0], [0, 3]]},
+  {"name": "soft", "polygon": [[-1, -1], [1, -1], [1, 1], [-1, 1]], "radius": 0.25},
+  {"name": "ring", "points": [[1, 0], [0, 1], [-1, 0], [0, -1]], "radius": 1},
+  {"name": "lens", "arcs": [
+    {"center": [0, -4], "radius": 5, "start": 0.92729521800161223, "end": 2.2142974355881810},
+    {"center": [-3, 0], "radius": 0, "start": 2.2142974355881810, "end": 4.0688878715914053},
+    {"center": [0, 4], "radius": 5, "start": 4.0688878715914053, "end": 5.3558900891779739},
+    {"center": [3, 0], "radius": 0, "start": 5.3558900891779739, "end": 7.2104805251811984}]}
+]}
+EOF
+cat >bodies.csv <<'EOF'
+shape,x,y,angle
+disc,0,0,0
+disc,1.5,0,1
+square,10,0,0
+small,11.25,0.5,0
+pill,20,0,1.5707963267948966
+small,20,1.75,0
+2,30,0,0.78539816339744828
+disc,32.75,0,0
+lens,40,0,0
+disc,40,1.9,0
+ring,50,0,0
+disc,50,-2.25,0
+triangle,60,0,0
+small,62,-0.25,0
+soft,70,0,0
+soft,71.75,0,0
+disc,100,0,0
+disc,102,0,0
+EOF
+works "collide" collide $known --out known.csv
+check "header of the contacts" \
+    test "$(head -n 1 known.csv)" = "a,b,separation,normal_x,normal_y,point_x,point_y,arc_a,arc_b"
+check "six contacts; touching is not colliding" lines known.csv 7
+check "disc and disc, 0.5 deep" contact known.csv 2 "0 1 -0.5 1 0 0.75 0"
+check "disc in the side of a square" contact known.csv 3 "2 3 -0.25 1 0 10.875 0.5"
+check "disc over a standing pill" contact known.csv 4 "4 5 -0.25 0 1 20 1.375"
+check "disc on the arc of a lens" contact known.csv 5 "8 9 -0.1 0 1 40 0.95"
+check "disc under a triangle" contact known.csv 6 "12 13 -0.25 0 -1 62 0.125"
+check "side against side" contact known.csv 7 "14 15 -0.25 1 0 70.875 0"
+check "report: shapes" reports shapes 8
+check "report: bodies" reports bodies 18
+check "report: colliding" reports "colliding pairs" 6
+for word in "candidate pairs" "instruction set" threads "broad phase" "narrow phase" "million pairs per second"; do
+    check "report tells $word" grep -q "$word" out.txt
+done
+
+works "margin" collide $known --margin 0.5 --out margin.csv
+check "margin finds the near pairs too" test "$(tail -n +2 margin.csv | cut -d, -f1,2 | tr '\n' ' ')" = \
+    "0,1 2,3 4,5 6,7 8,9 10,11 12,13 14,15 16,17 "
+check "near pair: corner of a turned square" contact margin.csv 5 "6 7 0.335786438 1 0 31.5821068 0"
+check "near pair: n-arc from points" contact margin.csv 7 "10 11 0.25 0 -1 50 -1.125"
+check "touching: separation 0" contact margin.csv 10 "16 17 0 1 0 101 0"
+check "margin does not change what collides" reports "colliding pairs" 6
+works "negative margin" collide $known --margin -0.3 --out deep.csv
+check "only the deep pair" lines deep.csv 2
+check "negative margin does not change what collides" reports "colliding pairs" 6
+
+printf 'a,b\r\n0,1\r\n1,0\r\n0,17\r\n\r\n' >pairs.csv
+works "pairs from a file with CR LF" collide $known --pairs pairs.csv --all --out all.csv
+check "--all reports every pair in order" test "$(tail -n +2 all.csv | cut -d, -f1,2 | tr '\n' ' ')" = "0,1 1,0 0,17 "
+check "swapped pair has the opposite normal" contact all.csv 3 "1 0 -0.5 -1 0 0.75 0"
+check "far pair" contact all.csv 4 "0 17 100 1 0 51 0"
+works "contacts on standard output" collide $known --out -
+check "they are the same" cmp out.txt known.csv
+check "the report is on standard error" grep -q "colliding pairs" err.txt
+works "no output asked for" collide $known
+
+printf 'shape,x,y,angle,scale\ndisc,1e7,0,0,2\n1,10000002.25,0,0,1\n' >scaled.csv
+works "scale, far away" collide --shapes shapes.json --bodies scaled.csv --out scaled.txt
+check "scale multiplies the size" contact scaled.txt 2 "0 1 -0.25 1 0"
+printf 'shape,x,y,angle\n' >none.csv
+works "no bodies" collide --shapes shapes.json --bodies none.csv --out none.txt --picture none.png
+check "only the header" lines none.txt 1
+
+# ------------------------------------------------------------------------------------------- scenes, splits, pictures
+works "scene" scene --shapes shapes.json --bodies 3000 --density 0.6 --seed 7 --out scene.csv
+check "one line for each body" lines scene.csv 3001
+works "scene on standard output" scene --shapes shapes.json --bodies 3000 --density 0.6 --seed 7
+check "the same seed gives the same file" cmp out.txt scene.csv
+works "another seed" scene --shapes shapes.json --bodies 3000 --density 0.6 --seed 8 --out other.csv
+check "gives another file" sh -c '! cmp -s scene.csv other.csv'
+works "collide the scene" collide --shapes shapes.json --bodies scene.csv --out scene.txt --threads 1 --isa scalar
+check "there are contacts" test "$(wc -l <scene.txt)" -gt 1000
+for isa in $isas; do
+    for threads in 1 2 5; do
+        works "$isa, $threads threads" collide --shapes shapes.json --bodies scene.csv --out split.csv \
+            --threads $threads --isa "$isa"
+        check "$isa, $threads threads: same bytes" cmp scene.txt split.csv
+    done
+done
+# The broad phase misses nothing: all pairs of 200 bodies, given one by one.
+head -n 201 scene.csv >few.csv
+awk 'BEGIN { print "a,b"; for (a = 0; a < 200; a++) for (b = a + 1; b < 200; b++) print a "," b }' >every.csv
+works "candidates" collide --shapes shapes.json --bodies few.csv --margin 3 --out found.csv
+works "all pairs" collide --shapes shapes.json --bodies few.csv --margin 3 --pairs every.csv --out asked.csv
+check "the broad phase misses no pair" cmp found.csv asked.csv
+check "there are pairs to miss" test "$(wc -l <found.csv)" -gt 20
+
+# A row, a column, a giant under both and a body far away: sweeps along one axis alone would be slow or miss.
+awk 'BEGIN { print "shape,x,y,angle,scale"; print "disc,0,0,0,200"; print "disc,1e9,-1e9,0,1"
+    for (i = 0; i < 150; i++) { print "square," 1.9 * i ",0,0,1"; print "pill,0," 2.9 * i ",1.5707963,1" } }' >cross.csv
+awk 'BEGIN { print "a,b"; for (a = 0; a < 302; a++) for (b = a + 1; b < 302; b++) print a "," b }' >every.csv
+works "candidates of a cross" collide --shapes shapes.json --bodies cross.csv --out found.csv
+works "all pairs of a cross" collide --shapes shapes.json --bodies cross.csv --pairs every.csv --out asked.csv
+check "the broad phase misses no pair of a cross" cmp found.csv asked.csv
+check "neighbours and the giant collide" test "$(wc -l <found.csv)" -gt 400
+
+works "PNG" collide --shapes shapes.json --bodies few.csv --picture few.png --out few.txt
+check "PNG signature" begins_with few.png XPNG
+works "SVG" collide --shapes shapes.json --bodies few.csv --picture few.svg --margin 1
+check "SVG beginning" begins_with few.svg "<?xml"
+check "SVG end" grep -q "</svg>" few.svg
+
+# ------------------------------------------------------------------------------------------- glyphs
+if [ -n "$font" ]; then
+    works "glyphs" shapes "$font" "👻🏠🚀🌳️👻aZ7" --arcs 8 --out glyphs.json --picture glyphs.svg
+    check "one shape for each character, once" test "$(grep -c '"name"' glyphs.json)" -eq 7
+    check "names" test "$(grep -o '"name": "[^"]*"' glyphs.json | cut -d'"' -f4 | tr '\n' ' ')" = \
+        "U+1F47B U+1F3E0 U+1F680 U+1F333 a Z 7 "
+    check "eight arcs each" test "$(grep -c '"center"' glyphs.json)" -eq 56
+    check "a table is printed" grep -q "U+1F680 *8 " out.txt
+    check "picture of the glyphs" begins_with glyphs.svg "<?xml"
+    works "glyphs on standard output" shapes "$font" "👻🏠🚀🌳aZ7" --arcs=8
+    check "the same" cmp out.txt glyphs.json
+    for arcs in 3 4 5 6 7 9 12 16; do
+        works "ghost and tree of $arcs arcs" shapes "$font" "👻🌳" --arcs $arcs --out "glyphs$arcs.json"
+        works "they can be read" collide --shapes "glyphs$arcs.json" --bodies none.csv
+    done
+    works "scene of glyphs" scene --shapes glyphs.json --bodies 2000 --density 0.5 --seed 1 --out glyphs.csv
+    works "collide glyphs" collide --shapes glyphs.json --bodies glyphs.csv --out glyphs.txt --picture glyphs.png
+    check "glyphs touch" test "$(wc -l <glyphs.txt)" -gt 500
+    check "picture of the scene" begins_with glyphs.png XPNG
+
+    fails "no glyph" "narc: .*U+10FFFD" shapes "$font" "$(printf '\364\217\277\275')" --arcs 8 --out new.json
+    fails "a blank has no outline" "narc: .*U+0020" shapes "$font" " " --arcs 8 --out new.json
+    fails "invalid UTF-8" "narc: .*UTF-8" shapes "$font" "$(printf 'a\300\200')" --arcs 8 --out new.json
+    fails "no characters" "narc: CHARACTERS is empty" shapes "$font" "" --arcs 8 --out new.json
+    for arcs in 2 65 8.5 x -1 ""; do
+        fails "arcs '$arcs'" "narc: --arcs" shapes "$font" a --arcs "$arcs" --out new.json
+    done
+    fails "no --arcs" "narc: --arcs is missing" shapes "$font" a --out new.json
+    fails "no characters given" "narc: CHARACTERS is missing" shapes "$font" --arcs 8
+    fails "glyph picture of another kind" "narc: .*new.jpg" shapes "$font" a --arcs 8 --out new.json --picture new.jpg
+    fails "glyph picture in no folder" "narc: absent/new.png" shapes "$font" a --arcs 8 --out new.json \
+        --picture absent/new.png
+else
+    echo "skipped: glyphs (no font given)"
+fi
+fails "no font" "narc: absent.ttf: " shapes absent.ttf a --arcs 8 --out new.json
+fails "not a font" "narc: shapes.json: " shapes shapes.json a --arcs 8 --out new.json
+
+# ------------------------------------------------------------------------------------------- wrong command lines
+fails "no command" "narc: "
+fails "unknown command" "narc: .*'fly'" fly
+fails "unknown option" "narc: .*'--fly'" --fly
+fails "unknown option of a command" "narc: .*'--fly'" collide $known --fly --out new.csv
+fails "missing value" "narc: --out needs a value" collide $known --out
+fails "option for a value" "narc: --out needs a value" collide --shapes shapes.json --out --bodies bodies.csv
+fails "value for a flag" "narc: --all takes no value" collide $known --all=1
+fails "option twice" "narc: --shapes is given twice" collide --shapes shapes.json --shapes shapes.json
+fails "extra argument" "narc: .*'more'" collide $known more
+fails "extra argument of info" "narc: .*'more'" info more
+fails "no shapes" "narc: --shapes is missing" collide --bodies bodies.csv
+fails "no bodies" "narc: --bodies is missing" collide --shapes shapes.json
+for margin in x nan inf 1e999 1e40 0x1 ""; do
+    fails "margin '$margin'" "narc: --margin" collide $known --margin "$margin" --out new.csv
+done
+for threads in 0 1025 -1 2x 99999999999999999999; do
+    fails "threads '$threads'" "narc: --threads .*'$threads'" collide $known \
+        --threads "$threads" --out new.csv
+done
+fails "unknown instruction set" "narc: .*sse9" collide $known --isa sse9 --out new.csv
+for isa in neon avx2 avx512; do
+    case " $(echo $isas) " in
+    *" $isa "*) ;;
+    *) fails "unsupported $isa" "narc: .*$isa" collide $known --isa $isa --out new.csv ;;
+    esac
+done
+NARC_ISA=sse9
+export NARC_ISA
+fails "NARC_ISA unknown" "narc: .*sse9" collide $known --out new.csv
+fails "NARC_ISA unknown to info" "narc: NARC_ISA" info
+unset NARC_ISA
+fails "picture of another kind" "narc: .*new.gif" collide --shapes absent.json --bodies bodies.csv --picture new.gif
+for density in 0 -1 10.5 nan x; do
+    fails "density '$density'" "narc: --density .*'$density'" scene $five --density "$density" \
+        --seed 1 --out new.csv
+done
+for count in 0 -5 4294967296 1e3; do
+    fails "bodies '$count'" "narc: --bodies .*'$count'" scene --shapes shapes.json --bodies "$count" --density 1 \
+        --seed 1 --out new.csv
+done
+for seed in -1 1.5 18446744073709551616; do
+    fails "seed '$seed'" "narc: --seed .*'$seed'" scene $five --density 1 --seed "$seed" --out new.csv
+done
+fails "scene without a seed" "narc: --seed is missing" scene $five --density 1 --out new.csv
+
+# ------------------------------------------------------------------------------------------- outputs that cannot be
+fails "output in no folder" "narc: absent/new.csv: " collide $known --out absent/new.csv
+fails "output under a file" "narc: shapes.json/new.csv: " collide $known \
+    --out shapes.json/new.csv
+mkdir full.csv
+fails "output is a folder" "narc: full.csv: " collide $known --out full.csv
+fails "picture in no folder, contacts given up" "narc: absent/few.png: " collide $known \
+    --out new.csv --picture absent/few.png
+fails "one file for both outputs" "narc: .*same" collide $known --out few.svg --picture few.svg
+if [ "$(id -u)" -ne 0 ]; then
+    mkdir locked && chmod 555 locked
+    fails "unwritable folder" "narc: locked/new.csv: " collide $known --out locked/new.csv
+fi
+if [ -c /dev/full ]; then
+    fails "full disk" "narc: /dev/full: " collide --shapes shapes.json --bodies scene.csv --out /dev/full \
+        --picture new.png
+    ln -s /dev/full full.png
+    fails "full disk, picture" "narc: full.png: " collide --shapes shapes.json --bodies few.csv --out new.csv \
+        --picture full.png
+    "$narc" --help >/dev/full 2>err.txt
+    check "full standard output" test $? -eq 2
+fi
+echo old >kept.csv
+fails "a wrong input" "narc: absent.csv: " collide --shapes shapes.json --bodies absent.csv --out kept.csv
+check "keeps the old output" test "$(cat kept.csv)" = old
+ln -s kept.csv link.csv
+works "output through a link" collide $known --out link.csv
+check "replaces what the link names" sh -c '[ -L link.csv ] && cmp kept.csv known.csv'
+
+# ------------------------------------------------------------------------------------------- malformed tables
+# bodies NAME PATTERN TEXT, pairs NAME PATTERN TEXT: a file with this text (printf's notation) is refused.
+bodies() {
+    printf "$3" >bad.csv
+    fails "bodies: $1" "$2" collide --shapes shapes.json --bodies bad.csv --out new.csv --picture new.png
+}
+pairs() {
+    printf "$3" >bad.csv
+    fails "pairs: $1" "$2" collide $known --pairs bad.csv --out new.csv
+}
+head='shape,x,y,angle\n'
+scaled='shape,x,y,angle,scale\n'
+fails "bodies: no file" "narc: absent.csv: " collide --shapes shapes.json --bodies absent.csv --out new.csv
+fails "bodies: a folder" "narc: full.csv: " collide --shapes shapes.json --bodies full.csv --out new.csv
+bodies "empty" "bad.csv:1: " ''
+bodies "wrong header" "bad.csv:1: .*'shape,x,y'" 'shape,x,y\ndisc,0,0\n'
+bodies "no header" "bad.csv:1: .*'disc,0,0,0'" 'disc,0,0,0\n'
+bodies "too few columns" "bad.csv:3: 3 columns" "${head}disc,0,0,0\ndisc,0,0\n"
+bodies "too many columns" "bad.csv:2: 5 columns" "${head}disc,0,0,0,1\n"
+bodies "blank line" "bad.csv:3: " "${head}disc,0,0,0\n\ndisc,0,0,0\n"
+bodies "word for a number" "bad.csv:3: y .*'up'" "${head}disc,0,0,0\ndisc,0,up,0\n"
+bodies "number with a tail" "bad.csv:2: x .*'1.5m'" "${head}disc,1.5m,0,0\n"
+bodies "no number" "bad.csv:2: angle .*''" "${head}disc,1,2,\n"
+bodies "hexadecimal" "bad.csv:2: x .*'0x10'" "${head}disc,0x10,0,0\n"
+bodies "NaN" "bad.csv:2: angle .*'nan'" "${head}disc,0,0,nan\n"
+bodies "infinity" "bad.csv:2: x .*'inf'" "${head}disc,inf,0,0\n"
+bodies "overflow" "bad.csv:2: y .*'1e999'" "${head}disc,0,1e999,0\n"
+bodies "unknown shape" "bad.csv:2: .*'disk'" "${head}disk,0,0,0\n"
+bodies "shape index out of range" "bad.csv:2: .*'8'" "${head}8,0,0,0\n"
+bodies "negative shape index" "bad.csv:2: .*'-1'" "${head}-1,0,0,0\n"
+bodies "no shape" "bad.csv:2: .*''" "${head},0,0,0\n"
+bodies "scale 0" "bad.csv:2: scale .*'0'" "${scaled}disc,0,0,0,0\n"
+bodies "negative scale" "bad.csv:3: scale .*'-1'" "${scaled}disc,0,0,0,1\ndisc,0,0,0,-1\n"
+bodies "too small" "bad.csv:2: scale .*'1e-10'" "${scaled}disc,0,0,0,1e-10\n"
+bodies "too large" "bad.csv:2: scale .*'1e10'" "${scaled}disc,0,0,0,1e10\n"
+bodies "NUL byte" "bad.csv:2: " "${head}disc\\000,0,0,0\n"
+bodies "control characters stay on one line" "bad.csv:2: .*'a?b'" "${head}a\\001b,0,0,0\n"
+pairs "wrong header" "bad.csv:1: .*'b,a'" 'b,a\n0,1\n'
+pairs "out of range" "bad.csv:3: b .*'18'" 'a,b\n0,1\n0,18\n'
+pairs "negative" "bad.csv:2: a .*'-1'" 'a,b\n-1,0\n'
+pairs "fraction" "bad.csv:2: b .*'1.5'" 'a,b\n0,1.5\n'
+pairs "huge" "bad.csv:2: a .*'4294967296'" 'a,b\n4294967296,0\n'
+pairs "one column" "bad.csv:2: 1 columns" 'a,b\n0\n'
+fails "pairs: no file" "narc: absent.csv: " collide $known --pairs absent.csv --out new.csv
+
+# ------------------------------------------------------------------------------------------- malformed shapes
+# The text of shape number 1 stands on line 3.
+shape() {
+    printf '{"shapes": [\n  {"name": "first", "circle": 1},\n  %s,\n  {"name": "last", "circle": 1}]}\n' "$3" >bad.json
+    fails "shape: $1" "$2" collide --shapes bad.json --bodies bodies.csv --out new.csv
+}
+json() {
+    printf '%s\n' "$3" >bad.json
+    fails "shapes: $1" "$2" scene --shapes bad.json --bodies 5 --density 1 --seed 1 --out new.csv
+}
+arc='{"center": [0, 0], "radius": 1, "start": 0, "end": 3.141592653589793}'
+fails "shapes: no file" "narc: absent.json: " collide --shapes absent.json --bodies bodies.csv --out new.csv
+: >bad.json
+fails "shapes: empty file" "bad.json:1: the file is empty" collide --shapes bad.json --bodies bodies.csv --out new.csv
+json "no JSON" "bad.json:1: not valid JSON" 'hello'
+json "cut off" "bad.json:[23]: not valid JSON" '{"shapes": [
+  {"name": "a", "circle": 1}'
+json "comma missing" "bad.json:3: not valid JSON" '{"shapes": [
+  {"name": "a",
+   "circle" 1}]}'
+json "tail" "bad.json:2: not valid JSON" '{"shapes": [{"name": "a", "circle": 1}]}
+more'
+json "a list" "bad.json:1: " '[]'
+json "no list of shapes" "bad.json:1: .*missing" '{}'
+json "shapes is no list" "bad.json:1: .*not a list" '{"shapes": 1}'
+json "no shape" "bad.json:1: .*empty" '{"shapes": []}'
+json "unknown key" "bad.json:1: .*'Shapes'" '{"shapes": [{"name": "a", "circle": 1}], "Shapes": []}'
+shape "no object" "bad.json:3: shape 1: " '7'
+shape "no name" "bad.json:3: shape 1: name is missing" '{"circle": 1}'
+shape "name is a number" "bad.json:3: shape 1: name" '{"name": 1, "circle": 1}'
+shape "name with a comma" "bad.json:3: shape 1: .*'a,b'" '{"name": "a,b", "circle": 1}'
+shape "empty name" "bad.json:3: shape 1: " '{"name": "", "circle": 1}'
+shape "name twice" "bad.json:3: .*'first'" '{"name": "first", "circle": 2}'
+shape "no form" "bad.json:3: shape 'a': " '{"name": "a"}'
+shape "two forms" "bad.json:3: shape 'a': .*'arcs' and 'points'" '{"name": "a", "points": [[0, 0]], "arcs": []}'
+shape "unknown key" "bad.json:3: shape 'a': unknown key 'color'" '{"name": "a", "circle": 1, "color": 3}'
+shape "key twice" "bad.json:3: shape 'a': key 'circle'" '{"name": "a", "circle": 1, "circle": 1}'
+shape "radius beside circle" "bad.json:3: shape 'a': .*'radius'" '{"name": "a", "circle": 1, "radius": 1}'
+shape "negative circle" "bad.json:3: shape 'a': .*-1" '{"name": "a", "circle": -1}'
+shape "circle is a word" "bad.json:3: shape 'a': circle is not a number" '{"name": "a", "circle": "1"}'
+shape "overflow" "bad.json:3: shape 'a': circle is not finite" '{"name": "a", "circle": 1e999}'
+shape "no arcs" "bad.json:3: shape 'a': arcs is an empty list" '{"name": "a", "arcs": []}'
+shape "arcs is a number" "bad.json:3: shape 'a': arcs is not a list" '{"name": "a", "arcs": 3}'
+shape "arc is a number" "bad.json:3: shape 'a': arc 1: " "{\"name\": \"a\", \"arcs\": [$arc, 5]}"
+shape "arc without radius" "bad.json:3: shape 'a': arc 0: radius is missing" \
+    '{"name": "a", "arcs": [{"center": [0, 0], "start": 0, "end": 1}]}'
+shape "arc with one coordinate" "bad.json:3: shape 'a': arc 0: center" \
+    '{"name": "a", "arcs": [{"center": [0], "radius": 1, "start": 0, "end": 1}]}'
+shape "arc with an unknown key" "bad.json:3: shape 'a': arc 0: unknown key 'r'" \
+    '{"name": "a", "arcs": [{"center": [0, 0], "r": 1, "start": 0, "end": 1}]}'
+shape "half a circle" "bad.json:3: shape 'a': " "{\"name\": \"a\", \"arcs\": [$arc]}"
+other='{"center": [0, 0], "radius": -1, "start": 3.141592653589793, "end": 6.283185307179586}'
+shape "negative radius" "bad.json:3: shape 'a': arc 1.*-1" "{\"name\": \"a\", \"arcs\": [$arc, $other]}"
+shape "two points" "bad.json:3: shape 'a': " '{"name": "a", "points": [[0, 0], [1, 0]]}'
+shape "point is a number" "bad.json:3: shape 'a': point 1 " '{"name": "a", "points": [[0, 0], 1, [0, 1]]}'
+shape "polygon that turns right" "bad.json:3: shape 'a': " '{"name": "a", "polygon": [[0, 0], [0, 1], [1, 0]]}'
+shape "corner radius too large" "bad.json:3: shape 'a': " \
+    '{"name": "a", "polygon": [[0, 0], [1, 0], [0, 1]], "radius": 5}'
+shape "capsule without length" "bad.json:3: shape 'a': length is missing" '{"name": "a", "capsule": {"radius": 1}}'
+shape "capsule is a number" "bad.json:3: shape 'a': capsule is not an object" '{"name": "a", "capsule": 1}'
+shape "box with an unknown key" "bad.json:3: shape 'a': unknown key 'depth'" \
+    '{"name": "a", "box": {"width": 1, "height": 1, "depth": 1}}'
+shape "box rounder than wide" "bad.json:3: shape 'a': " '{"name": "a", "box": {"width": 1, "height": 1, "radius": 1}}'
+awk 'BEGIN { printf "{\"shapes\": [\n{\"name\": \"a\", \"polygon\": ["
+    for (i = 0; i < 65; i++) printf "%s[%.17g, %.17g]", i ? ", " : "", cos(i * 6.283185 / 65), sin(i * 6.283185 / 65)
+    print "]}]}" }' >bad.json
+fails "shape: 65 corners" "bad.json:2: shape 'a': .*65" collide --shapes bad.json --bodies bodies.csv --out new.csv
+
+echo
+if [ $failures -ne 0 ]; then
+    echo "$failures checks went wrong"
+    exit 1
+fi
+echo "all checks passed"

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * commands.h - the commands of narc. Each runs with the arguments behind its name, and returns only when all went well.
+ */
+#ifndef NARC_TOOL_COMMANDS_H
+#define NARC_TOOL_COMMANDS_H
+
+typedef struct command {
+    const char *name;
+    const char *summary; /* one line */
+    const char *help;
+    void (*run)(int argc, char **argv);
+} command;
+
+extern const command shapes_command, scene_command, collide_command, info_command;
+
+#endif

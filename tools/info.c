@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * info.c - narc info: what runs here.
+ */
+#include <stdio.h>
+
+#include "commands.h"
+#include "fail.h"
+#include "narc.h"
+#include "options.h"
+
+static const char HELP[] = "usage: narc info\n"
+                           "\n"
+                           "Prints the version, the processor's features as far as narc uses them, the instruction\n"
+                           "sets, which of them serves each kernel, and the number of threads. The environment\n"
+                           "variable NARC_ISA chooses another instruction set.\n";
+
+static void run(int argc, char **argv) {
+    parse_options(argc, argv, NULL, 0, NULL, 0, NULL);
+    const char *chosen = narc_get_isa();
+    if (!chosen) {
+        fail("NARC_ISA names an instruction set that is unknown or cannot run here");
+    }
+    const char *features = narc_cpu_features();
+    printf("narc %s\n\n", narc_version());
+    printf("%-20s %s\n", "processor features", *features ? features : "none of those asked for");
+    for (size_t i = 0; narc_isa_name(i); i++) {
+        const char *name = narc_isa_name(i);
+        printf("%-20s %-8s %s\n", i ? "" : "instruction sets", name,
+               narc_isa_supported(name) ? "supported" : "not built, or not supported by this processor");
+    }
+    printf("%-20s %s\n", "in use", chosen);
+    for (size_t i = 0; narc_kernel_name(i); i++) {
+        printf("%-20s %-8s %s\n", i ? "" : "kernels", narc_kernel_name(i), narc_kernel_isa(i));
+    }
+    printf("%-20s %u\n", "threads", narc_default_threads());
+}
+
+const command info_command = {"info", "version, processor features, instruction sets, threads", HELP, run};

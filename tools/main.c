@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * main.c - the narc command: finds the command that is asked for and runs it.
+ */
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "commands.h"
+#include "fail.h"
+#include "narc.h"
+#include "output.h"
+
+static const command *const commands[] = {&shapes_command, &scene_command, &collide_command, &info_command};
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static void print_help(void) {
+    printf("usage: narc COMMAND [ARGUMENTS]\n\n"
+           "Batched collision of 2D convex shapes made of circular arcs.\n\n");
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
+        printf("  narc %-8s %s\n", commands[i]->name, commands[i]->summary);
+    }
+    printf("\n"
+           "  --help      this text; behind a command, the command's\n"
+           "  --version   the version\n"
+           "\n"
+           "Errors are one line on standard error, with exit status 2; then no output is written.\n");
+}
+
+static bool is_help(const char *argument) { return strcmp(argument, "--help") == 0 || strcmp(argument, "-h") == 0; }
+
+static void run_command(const command *chosen, int argc, char **argv) {
+    for (int i = 0; i < argc && strcmp(argv[i], "--") != 0; i++) {
+        if (is_help(argv[i])) {
+            fputs(chosen->help, stdout);
+            return;
+        }
+    }
+    chosen->run(argc, argv);
+}
+
+static const command *find_command(const char *name) {
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
+        if (strcmp(name, commands[i]->name) == 0) {
+            return commands[i];
+        }
+    }
+    fail("%s '%s'; see narc --help", name[0] == '-' ? "unknown option" : "unknown command", name);
+}
+
+int main(int argc, char **argv) {
+    if (argc < 2) {
+        fail("a command is missing; see narc --help");
+    }
+    if (is_help(argv[1])) {
+        print_help();
+    } else if (strcmp(argv[1], "--version") == 0) {
+        printf("narc %s\n", narc_version());
+    } else {
+        run_command(find_command(argv[1]), argc - 2, argv + 2);
+    }
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fail("standard output: it cannot be written");
+    }
+    return 0;
+}

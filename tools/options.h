@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * options.h - the command line of one command: --name value, --name=value, --flag, operands.
+ */
+#ifndef NARC_TOOL_OPTIONS_H
+#define NARC_TOOL_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct option {
+    const char *name; /* with its dashes */
+    bool takes_value;
+    const char *value; /* NULL: not given; "" for a flag that was */
+} option;
+
+/* Fills in the options and the operands, exactly `operand_count` of them, named for messages by `operand_names`. */
+void parse_options(int argc, char **argv, option *options, size_t option_count, const char *const *operand_names,
+                   size_t operand_count, const char **operands);
+
+/* The value of an option that must be given. */
+const char *required_option(const option *given);
+
+/* The value as a number or as a whole number from `smallest` to `largest`. */
+double number_option(const option *given);
+uint64_t whole_option(const option *given, uint64_t smallest, uint64_t largest);
+
+#endif

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * output.h - output files that appear whole or not at all.
+ *
+ * A file is written under a temporary name beside its target and renamed when everything has been written; an error or
+ * a signal removes it. Standard output, devices and pipes are written directly.
+ */
+#ifndef NARC_TOOL_OUTPUT_H
+#define NARC_TOOL_OUTPUT_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+/* Opens an output; "-" is standard output. Two outputs cannot be the same file. */
+FILE *open_output(const char *path);
+
+/* Is this path standard output? NULL, an option that was not given, is not. */
+bool is_standard_output(const char *path);
+
+/* Writes everything out, checks it, and gives the files their names. */
+void commit_outputs(void);
+
+/* Removes what was not committed. */
+void discard_outputs(void);
+
+#endif

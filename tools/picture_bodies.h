@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * picture_bodies.h - a picture of bodies and their contacts.
+ */
+#ifndef NARC_TOOL_PICTURE_BODIES_H
+#define NARC_TOOL_PICTURE_BODIES_H
+
+#include <stdio.h>
+
+#include "bodies.h"
+
+typedef struct body_scene {
+    const shape_list *shapes;
+    const body_list *bodies;
+    const narc_aabb *boxes; /* of the bodies */
+    const bool *colliding;  /* of the bodies: is it in a colliding pair? */
+    const pair_list *pairs;
+    const narc_contacts *contacts;
+    size_t contact_count;
+} body_scene;
+
+/* `file` is an open output for `path`, whose suffix tells the kind. */
+void draw_bodies(const char *path, FILE *file, const body_scene *scene);
+
+#endif

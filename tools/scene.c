@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * scene.c - narc scene: bodies at random places.
+ */
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "commands.h"
+#include "fail.h"
+#include "options.h"
+#include "output.h"
+#include "progress.h"
+#include "shapes_json.h"
+
+static const char HELP[] =
+    "usage: narc scene --shapes shapes.json --bodies N --density D --seed S [--out bodies.csv]\n"
+    "\n"
+    "Strews N bodies over a square around the origin: shapes, positions and angles are uniform,\n"
+    "and the square is so large that the areas of all shapes together are D times its own.\n"
+    "\n"
+    "  --shapes FILE   the shapes file\n"
+    "  --bodies N      how many bodies, 1 to 4294967295\n"
+    "  --density D     more than 0, at most 10; bodies overlap more the denser they lie\n"
+    "  --seed S        a whole number; the same seed gives the same file\n"
+    "  --out FILE      the bodies file to write; left out or -: standard output\n";
+
+static const double LARGEST_DENSITY = 10, FULL_TURN = 6.283185307179586476925;
+
+/* SplitMix64: a counter in steps of the golden ratio, its bits mixed by two multiplications. */
+static uint64_t next_random(uint64_t *state) {
+    uint64_t bits = *state += UINT64_C(0x9e3779b97f4a7c15);
+    bits = (bits ^ (bits >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    bits = (bits ^ (bits >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return bits ^ (bits >> 31);
+}
+
+/* In [0, 1), a multiple of 2^-53. */
+static double next_uniform(uint64_t *state) { return (double)(next_random(state) >> 11) * 0x1p-53; }
+
+/* In [0, count): the bias of a 64-bit multiple is beyond notice. */
+static size_t next_index(uint64_t *state, size_t count) { return (size_t)(next_uniform(state) * (double)count); }
+
+static void run(int argc, char **argv) {
+    enum { SHAPES, BODIES, DENSITY, SEED, OUT, OPTIONS };
+    option options[OPTIONS] = {{"--shapes", true, NULL},
+                               {"--bodies", true, NULL},
+                               {"--density", true, NULL},
+                               {"--seed", true, NULL},
+                               {"--out", true, NULL}};
+    parse_options(argc, argv, options, OPTIONS, NULL, 0, NULL);
+    const char *path = required_option(&options[SHAPES]), *out = options[OUT].value ? options[OUT].value : "-";
+    const uint64_t count = whole_option(&options[BODIES], 1, UINT32_MAX);
+    const double density = number_option(&options[DENSITY]);
+    if (!(density > 0 && density <= LARGEST_DENSITY)) {
+        fail("--density must be more than 0 and at most %g, not '%s'", LARGEST_DENSITY, options[DENSITY].value);
+    }
+    const uint64_t seed = whole_option(&options[SEED], 0, UINT64_MAX);
+
+    shape_list shapes;
+    read_shapes(path, &shapes);
+    uint64_t state = seed;
+    double area = 0;
+    for (uint64_t i = 0; i < count; i++) {
+        area += shapes.items[next_index(&state, shapes.count)].area;
+    }
+    /* Rounded to single precision: areas come from sines, whose last bit differs from one C library to the next. */
+    const double side = (double)(float)sqrt(area / density);
+
+    if (!isfinite(side)) {
+        fail("--density is too small '%s'", options[DENSITY].value);
+    }
+
+    /* The same shapes once more, from the same seed; places from where that sequence ended. */
+    uint64_t shape_state = seed;
+    FILE *file = open_output(out);
+    fprintf(file, "shape,x,y,angle\n");
+    for (uint64_t i = 0; i < count && !ferror(file); i++) {
+        const char *name = shapes.items[next_index(&shape_state, shapes.count)].name;
+        const double x = side * (next_uniform(&state) - 0.5), y = side * (next_uniform(&state) - 0.5);
+        const double angle = FULL_TURN * next_uniform(&state);
+        fprintf(file, "%s,%.17g,%.17g,%.17g\n", name, x, y, angle);
+        show_progress("writing bodies", (size_t)i, (size_t)count);
+    }
+    commit_outputs();
+    hide_progress();
+    fprintf(is_standard_output(out) ? stderr : stdout, "%" PRIu64 " bodies of %zu shapes in a square of side %g\n",
+            count, shapes.count, side);
+    free_shapes(&shapes);
+}
+
+const command scene_command = {"scene", "bodies at random places", HELP, run};
