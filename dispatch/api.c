@@ -2,6 +2,7 @@
  *
  * api.c - the batch calls of narc.h: argument checks, then one call down.
  */
+#include "column.h"
 #include "dispatch.h"
 #include "error.h"
 
@@ -22,11 +23,11 @@ static narc_status missing(narc_error *error, const char *name) {
 static narc_status describe_bad_pair(const narc_batch *batch, size_t pair, narc_error *error) {
     const narc_column columns[2] = {batch->pairs->a, batch->pairs->b};
     for (int k = 0; k < 2; k++) {
-        const uint32_t body = *(const uint32_t *)narc_at(columns[k], pair);
+        const uint32_t body = narc_index_at(columns[k], pair);
         if (body >= batch->bodies->count)
             return narc_fail(error, NARC_ERROR_INDEX, pair, body, "pair %zu: body %c is %lu, but there are %zu bodies",
                              pair, "ab"[k], (unsigned long)body, batch -> bodies -> count);
-        const uint32_t shape = *(const uint32_t *)narc_at(batch->bodies->shape, body);
+        const uint32_t shape = narc_index_at(batch->bodies->shape, body);
         if (shape >= batch->shapes->count)
             return narc_fail(error, NARC_ERROR_INDEX, pair, shape,
                              "pair %zu: body %lu has shape %lu, but there are %zu shapes", pair, (unsigned long)body,

@@ -5,6 +5,7 @@
  * Chunks are fixed ranges of pairs whatever the number of threads, and each pair's answer depends on that pair alone,
  * so the bytes of the result are the same for any split.
  */
+#include "column.h"
 #include "dispatch.h"
 
 #include <string.h>
@@ -125,11 +126,10 @@ size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *bat
 static size_t find_bad_pair(const narc_batch *batch, size_t first, size_t last) {
     const narc_bodies *bodies = batch->bodies;
     for (size_t pair = first; pair < last; pair++) {
-        const uint32_t a = *(const uint32_t *)narc_at(batch->pairs->a, pair);
-        const uint32_t b = *(const uint32_t *)narc_at(batch->pairs->b, pair);
-        if (a >= bodies->count || b >= bodies->count ||
-            *(const uint32_t *)narc_at(bodies->shape, a) >= batch->shapes->count ||
-            *(const uint32_t *)narc_at(bodies->shape, b) >= batch->shapes->count)
+        const uint32_t a = narc_index_at(batch->pairs->a, pair);
+        const uint32_t b = narc_index_at(batch->pairs->b, pair);
+        if (a >= bodies->count || b >= bodies->count || narc_index_at(bodies->shape, a) >= batch->shapes->count ||
+            narc_index_at(bodies->shape, b) >= batch->shapes->count)
             return pair;
     }
     return last;

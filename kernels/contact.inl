@@ -12,21 +12,25 @@
  * rotated normal, 4 * 2^-24, below any angle between two normals of a shape. */
 #define PARALLEL 0x1p-20f
 
-/* Where one shape touches its support line: its position across n and the stretch along it. */
+/* Where one shape touches its support line: its position across n, the stretch along it, and the slot of the arc; of an
+ * edge, the arc at its counter-clockwise end. */
 struct touch {
     vf across, along_min, along_max;
+    vi arc;
 };
 
-/* Widens a stretch by the end of a neighbouring arc, in lanes where n is the normal of the junction between them. */
-static inline void widen(const struct overlay *o, struct touch *t, vi junction, vi arc, vf n_x, vf n_y, vf reach) {
+/* Widens a stretch by the end of a neighbouring arc, in lanes where n is the normal of the junction between them;
+ * returns those lanes. */
+static inline vm widen(const struct overlay *o, struct touch *t, vi junction, vi arc, vf n_x, vf n_y, vf reach) {
     const vf j_x = field(o, NORMAL_X, junction), j_y = field(o, NORMAL_Y, junction);
-    const vf cross = v_sub(v_mul(j_x, n_y), v_mul(j_y, n_x)), dot = v_add(v_mul(j_x, n_x), v_mul(j_y, n_y));
-    const vm meets = vm_and(v_le(v_abs(cross), v_set(PARALLEL)), v_lt(v_set(0), dot));
+    const vf off = v_abs(cross(j_x, j_y, n_x, n_y));
+    const vm meets = vm_and(v_le(off, v_set(PARALLEL)), v_lt(v_set(0), dot(j_x, j_y, n_x, n_y)));
     const vf p_x = v_add(field(o, CENTER_X, arc), v_mul(reach, n_x)),
              p_y = v_add(field(o, CENTER_Y, arc), v_mul(reach, n_y));
-    const vf along = v_sub(v_mul(n_x, p_y), v_mul(n_y, p_x));
+    const vf along = cross(n_x, n_y, p_x, p_y);
     t->along_min = v_select(meets, v_min(t->along_min, along), t->along_min);
     t->along_max = v_select(meets, v_max(t->along_max, along), t->along_max);
+    return meets;
 }
 
 /* `sign` is 1 for A, which is touched on its side n, and -1 for B, touched on -n. */
@@ -35,10 +39,11 @@ static inline struct touch touch_of(const struct overlay *o, struct cursor c, vi
     const vf reach = v_mul(v_set(sign), field(o, RADIUS, arc));
     const vf p_x = v_add(field(o, CENTER_X, arc), v_mul(reach, n_x)),
              p_y = v_add(field(o, CENTER_Y, arc), v_mul(reach, n_y));
-    const vf along = v_sub(v_mul(n_x, p_y), v_mul(n_y, p_x));
-    struct touch t = {v_add(v_mul(n_x, p_x), v_mul(n_y, p_y)), along, along};
+    const vf along = cross(n_x, n_y, p_x, p_y);
+    struct touch t = {dot(n_x, n_y, p_x, p_y), along, along, arc};
     widen(o, &t, arc, previous, n_x, n_y, v_mul(v_set(sign), field(o, RADIUS, previous)));
-    widen(o, &t, next, next, n_x, n_y, v_mul(v_set(sign), field(o, RADIUS, next)));
+    const vm ends = widen(o, &t, next, next, n_x, n_y, v_mul(v_set(sign), field(o, RADIUS, next)));
+    t.arc = vi_select(ends, next, arc);
     return t;
 }
 
@@ -66,8 +71,8 @@ static inline void describe_contacts(const struct overlay *o, const struct pair_
     turn_back(p, lanes, n_x, n_y, out->normal_x, out->normal_y);
     turn_back(p, lanes, v_sub(v_mul(n_x, across), v_mul(n_y, along)), v_add(v_mul(n_y, across), v_mul(n_x, along)),
               out->point_x, out->point_y);
-    vi_store(out->arc_a, gap->arc_a);
-    vi_store(out->arc_b, gap->arc_b);
+    vi_store(out->arc_a, on_a.arc);
+    vi_store(out->arc_b, on_b.arc);
 }
 
 /* The number of an arc from its slot; a circle's two halves are both arc 0. */

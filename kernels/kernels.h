@@ -28,9 +28,4 @@ extern const narc_kernel_table narc_kernels_neon;
 extern const narc_kernel_table narc_kernels_avx2;
 extern const narc_kernel_table narc_kernels_avx512;
 
-/* Item `index` of a caller's column. */
-static inline const void *narc_at(narc_column column, size_t index) {
-    return (const char *)column.base + index * column.stride;
-}
-
 #endif

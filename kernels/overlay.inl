@@ -5,20 +5,27 @@
  * For a direction n (A to B) held by arc i of A, and -n by arc j of B, the gap between the support lines is
  *     g(n) = u.n - (r_i + r_j),   u = b_j - a_i.
  * Lay the junction normals of A and the negated ones of B over each other: they cut the circle of directions into m + n
- * intervals, each with one pair (i, j), walked once in the order of their angle (rotating calipers). Over an interval
- * from lo to hi, g is largest
- *     along u, with the value |u| - (r_i + r_j), if u lies between lo and hi, or else
- *     at an end; g is continuous, so it is enough to take it at lo in every interval.
- * The largest of these values is the separation of the bodies. Ends matter where a straight edge puts a kink into g;
- * for shapes without edges they cost nothing extra and close the seams: where rounding puts u just outside both intervals
- * that meet at a junction, the value at the junction differs from the one along u only by rounding. Hence one path for
- * all shapes.
+ * intervals, each with one pair (i, j), walked once in the order of their angle (rotating calipers). The derivative of
+ * g by the angle of n is n x u: where it turns from rising to falling, g has a local maximum. Within an interval from
+ * lo to hi that is so if it rises at lo, lo x u >= 0, and falls at hi, u x hi >= 0: then u lies between them, and g is
+ * largest along u, with the value |u| - (r_i + r_j). At the junction between two intervals it is so if g rises at the
+ * end of the one and falls at the start of the next, each with its own u: a kink, which an edge makes; the value is u.n
+ * - (r_i + r_j). The largest of all these values is the separation of the bodies.
  *
- * Whether u lies between lo and hi is decided by the signs of lo x u and u x hi. In an interval that is empty up to
- * rounding, u opposite to lo passes these two, so u must also point to the interval's side: with a sweep of at most pi,
- *     u.lo + u.hi + lo x u + u x hi = 2 |u| cos(angle between u and the middle) (cos + sin)(sweep / 2) >= 0.
+ * Edges cost nothing extra, hence one path for all shapes; for those without edges the test at junctions closes the
+ * seams, where rounding puts u just outside both intervals. As every sign is used for what lies on either side of it,
+ * no change from rising to falling can be lost, unless a sign is wrong. It can be where n x u is 0 up to rounding,
+ * that is near a minimum or a maximum; this can make g seem to fall, or rise, all the way past a minimum and a
+ * maximum next to it. If the two are close, so are their values. They are far apart only in an interval of nearly
+ * half a turn with u near one of its ends: so in an interval wider than a right angle, it is enough that u points
+ * less than a right angle into it from either end. Last, g may seem to rise or fall all around; then it is constant
+ * up to rounding (two circles in one place), and its value at the first junction serves.
  *
- * Error, in units of u = 2^-24, with D the distance between the positions and E the extents (largest |centre| + radius,
+ * In an interval that is empty up to rounding, u opposite to lo passes both tests, so in one up to a right angle u must
+ * also have u.lo + u.hi > 0. Where it does not, or is too short to tell, the value at lo is taken: no value of g can do
+ * harm.
+ *
+ * Error, in units of e = 2^-24, with D the distance between the positions and E the extents (largest |centre| + radius,
  * scaled); each line bounds what one step adds to g:
  *     storing centres and radii in single precision                           E_a +   E_b
  *     rounding and rotating the difference of positions                4 D
@@ -26,7 +33,7 @@
  *     the difference of centres                                        2 D + 2 E_a + 2 E_b
  *     norm or dot product                                              3 D + 3 E_a + 3 E_b
  *     the sum of radii and the last subtraction                        3 D + 3 E_a + 3 E_b
- *     a junction normal off by 4 u moves a kink along a slope of at
+ *     a junction normal off by 4 e moves a kink along a slope of at
  *     most |u|, or lets a neighbour answer beyond its end              4 D + 4 E_a + 4 E_b
  *     the caller's cosine and sine do not lie on the unit circle              E_a +   E_b
  * Together at most 16 D + 15 E_a + 22 E_b: NARC_ERROR_BOUND, 24 (D + E_a + E_b), covers it.
@@ -66,6 +73,10 @@ static inline vf turn_of(vf x, vf y) {
     const vf p = v_div(x, v_add(v_abs(x), v_abs(y)));
     return v_select(v_le(v_set(0), y), v_sub(v_set(1), p), v_add(v_set(3), p));
 }
+
+static inline vf cross(vf a_x, vf a_y, vf b_x, vf b_y) { return v_sub(v_mul(a_x, b_y), v_mul(a_y, b_x)); }
+
+static inline vf dot(vf a_x, vf a_y, vf b_x, vf b_y) { return v_add(v_mul(a_x, b_x), v_mul(a_y, b_y)); }
 
 /* The largest of the lanes' counts. */
 static inline int max_lane(vi counts) {
@@ -134,7 +145,7 @@ struct gap {
  * and the walk ends as soon as every lane is known not to collide: then it is some value >= 0. */
 static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, struct cursor b, vi steps, vm live,
                                      bool contact) {
-    const vf one_turn = v_set(4);
+    const vf next_turn = v_set(8);    /* behind all of this turn: a junction just before +x has rounded to 4 */
     const vf tiny = v_set(0x1p-126f); /* the least normal float: a smaller |u|^2 has lost its digits */
     const vf start = v_select(live, v_set(-INFINITY), v_set(INFINITY));
     struct gap best = {start, v_set(0), v_set(0), v_set(1), a.begin, b.begin};
@@ -143,12 +154,18 @@ static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, s
     vf b_x = field(o, CENTER_X, arc_b), b_y = field(o, CENTER_Y, arc_b), b_r = field(o, RADIUS, arc_b);
     vf a_turn = field(o, TURN, a.at), a_nx = field(o, NORMAL_X, a.at), a_ny = field(o, NORMAL_Y, a.at);
     vf b_turn = field(o, TURN, b.at), b_nx = field(o, NORMAL_X, b.at), b_ny = field(o, NORMAL_Y, b.at);
+    /* Does g rise towards the first junction, at the end of the interval before it? */
+    const vm first_is_a = v_le(a_turn, b_turn);
+    vm rises = v_lt(
+        cross(v_sub(b_x, a_x), v_sub(b_y, a_y), v_select(first_is_a, a_nx, b_nx), v_select(first_is_a, a_ny, b_ny)),
+        v_set(0));
+    vf first_value = v_set(0);
     for (int step = 0;; step++) {
         vm active = vm_and(live, vi_lt(vi_set(step), steps));
         if (!contact)
             active = vm_and(active, v_lt(best.separation, v_set(0)));
         if (!vm_any(active))
-            return best;
+            break;
 
         /* Pass the nearer of the two junctions ahead: it is lo, and its arc takes over. */
         const vm is_a = v_le(a_turn, b_turn);
@@ -168,7 +185,7 @@ static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, s
         const vi next_a = next_slot(a, a.at), next_b = next_slot(b, b.at);
         const vi ahead = vi_select(is_a, next_a, next_b);
         const vf angle = field(o, TURN, ahead), n_x = field(o, NORMAL_X, ahead), n_y = field(o, NORMAL_Y, ahead);
-        const vf later = v_select(v_lt(angle, v_select(is_a, a_turn, b_turn)), v_add(angle, one_turn), angle);
+        const vf later = v_select(v_lt(angle, v_select(is_a, a_turn, b_turn)), v_add(angle, next_turn), angle);
         a.at = vi_select(is_a, ahead, a.at);
         b.at = vi_select(is_a, b.at, ahead);
         a_turn = v_select(is_a, later, a_turn);
@@ -180,19 +197,30 @@ static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, s
         const vm hi_is_a = v_le(a_turn, b_turn);
         const vf hi_x = v_select(hi_is_a, a_nx, b_nx), hi_y = v_select(hi_is_a, a_ny, b_ny);
 
-        /* The largest g in this interval. */
+        /* The largest g at lo or between lo and hi, if there is a local maximum. */
         const vf u_x = v_sub(b_x, a_x), u_y = v_sub(b_y, a_y);
-        const vf u2 = v_add(v_mul(u_x, u_x), v_mul(u_y, u_y));
-        const vf after_lo = v_sub(v_mul(lo_x, u_y), v_mul(lo_y, u_x));
-        const vf before_hi = v_sub(v_mul(u_x, hi_y), v_mul(u_y, hi_x));
-        const vf along_lo = v_add(v_mul(u_x, lo_x), v_mul(u_y, lo_y));
-        const vf along_hi = v_add(v_mul(u_x, hi_x), v_mul(u_y, hi_y));
-        const vf side = v_add(v_add(along_lo, along_hi), v_add(after_lo, before_hi));
-        const vm inside = vm_and(vm_and(v_le(v_set(0), after_lo), v_le(v_set(0), before_hi)),
-                                 vm_and(v_lt(v_set(0), side), v_le(tiny, u2)));
+        const vf u2 = dot(u_x, u_y, u_x, u_y);
+        const vf after_lo = cross(lo_x, lo_y, u_x, u_y), before_hi = cross(u_x, u_y, hi_x, hi_y);
+        const vf along_lo = dot(u_x, u_y, lo_x, lo_y), along_hi = dot(u_x, u_y, hi_x, hi_y);
+        const vm rises_at_lo = v_le(v_set(0), after_lo), falls_at_hi = v_le(v_set(0), before_hi);
+        const vm wide = v_lt(dot(lo_x, lo_y, hi_x, hi_y), v_set(0));
+        const vm near_lo = vm_and(rises_at_lo, v_lt(v_set(0), along_lo));
+        const vm near_hi = vm_and(falls_at_hi, v_lt(v_set(0), along_hi));
+        const vm between = vm_or(vm_and(rises_at_lo, falls_at_hi), vm_and(wide, vm_or(near_lo, near_hi)));
+        const vm kink = vm_and(rises, v_lt(after_lo, v_set(0)));
+        const vm forward = vm_or(wide, v_lt(v_set(0), v_add(along_lo, along_hi)));
+        const vm inside = vm_and(between, vm_and(forward, v_le(tiny, u2)));
         const vf length = v_sqrt(u2);
         const vf value = v_sub(v_select(inside, length, along_lo), v_add(a_r, b_r));
-        const vm better = vm_and(active, v_lt(best.separation, value));
+        const vm better = vm_and(vm_and(active, vm_or(between, kink)), v_lt(best.separation, value));
+        rises = v_lt(before_hi, v_set(0));
+        if (step == 0) {
+            first_value = v_sub(along_lo, v_add(a_r, b_r));
+            best.n_x = lo_x;
+            best.n_y = lo_y;
+            best.arc_a = arc_a;
+            best.arc_b = arc_b;
+        }
         best.separation = v_select(better, value, best.separation);
         if (contact) {
             best.n_x = v_select(better, v_select(inside, u_x, lo_x), best.n_x);
@@ -202,6 +230,9 @@ static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, s
             best.arc_b = vi_select(better, arc_b, best.arc_b);
         }
     }
+    const vm none = v_lt(best.separation, v_set(-FLT_MAX));
+    best.separation = v_select(none, first_value, best.separation);
+    return best;
 }
 
 /* Loads the pairs `lanes` of a block into an overlay. */

@@ -8,13 +8,13 @@
  * is divided.
  *
  * The filter may only say what the deciding formula (overlay.inl) would say after all its rounding. That formula is
- * within 24 u (D + E_a + E_b) of exact, u = 2^-24, D = |d|, E the extents; the bounding radii are 64 u E too large and
- * the inner ones 64 u E too small (store.h). Let s be the distance between two circles' centres, D <= s + E_a + E_b.
+ * within 24 e (D + E_a + E_b) of exact, e = 2^-24, D = |d|, E the extents; the bounding radii are 64 e E too large and
+ * the inner ones 64 e E too small (store.h). Let s be the distance between two circles' centres, D <= s + E_a + E_b.
  *
  *   apart   s (1 - 2^-17) > sum of bounding radii + margin. Then the exact gap exceeds the margin by more than
- *           128 u s + 64 u (E_a + E_b), of which the formula can lose 24 u s + 48 u (E_a + E_b).
+ *           128 e s + 64 e (E_a + E_b), of which the formula can lose 24 e s + 48 e (E_a + E_b).
  *   deep    s (1 + 2^-17) < sum of inner radii. Then s + the distances of the centres from their origins are at most
- *           E_a + E_b, and so is D; the exact gap is below -64 u (E_a + E_b), and the formula can add 48 u (E_a + E_b).
+ *           E_a + E_b, and so is D; the exact gap is below -64 e (E_a + E_b), and the formula can add 48 e (E_a + E_b).
  *
  * What is left over covers the rounding of s itself.
  */
@@ -45,15 +45,11 @@ struct pair_masks {
     uint64_t deep;  /* colliding, for certain */
 };
 
-static inline float float_at(narc_column column, size_t index) { return *(const float *)narc_at(column, index); }
-
-static inline uint32_t index_at(narc_column column, size_t index) { return *(const uint32_t *)narc_at(column, index); }
-
 /* Position of b minus position of a, rounded once. */
 static inline float difference(narc_precision precision, narc_column column, size_t a, size_t b) {
     if (precision == NARC_FLOAT64)
-        return (float)(*(const double *)narc_at(column, b) - *(const double *)narc_at(column, a));
-    return float_at(column, b) - float_at(column, a);
+        return (float)(narc_double_at(column, b) - narc_double_at(column, a));
+    return narc_float_at(column, b) - narc_float_at(column, a);
 }
 
 static inline void load_shape(const narc_head *head, size_t k, struct loaded_shape *out) {
@@ -76,26 +72,28 @@ static void load_pairs(const narc_batch *batch, size_t first, size_t count, stru
         if (k >= count && k % V_WIDTH == 0)
             break;
         const size_t pair = first + (k < count ? k : 0);
-        const uint32_t a = index_at(batch->pairs->a, pair), b = index_at(batch->pairs->b, pair);
+        const uint32_t a = narc_index_at(batch->pairs->a, pair), b = narc_index_at(batch->pairs->b, pair);
         p->t_x[k] = difference(bodies->position_precision, bodies->x, a, b);
         p->t_y[k] = difference(bodies->position_precision, bodies->y, a, b);
-        p->cosine_a[k] = float_at(bodies->cosine, a);
-        p->sine_a[k] = float_at(bodies->sine, a);
-        p->q_c[k] = float_at(bodies->cosine, b);
-        p->q_s[k] = float_at(bodies->sine, b);
-        p->scale_a[k] = bodies->scale.base ? float_at(bodies->scale, a) : 1.0f;
-        p->scale_b[k] = bodies->scale.base ? float_at(bodies->scale, b) : 1.0f;
-        load_shape(&batch->shapes->heads[index_at(bodies->shape, a)], k, &p->a);
-        load_shape(&batch->shapes->heads[index_at(bodies->shape, b)], k, &p->b);
+        p->cosine_a[k] = narc_float_at(bodies->cosine, a);
+        p->sine_a[k] = narc_float_at(bodies->sine, a);
+        p->q_c[k] = narc_float_at(bodies->cosine, b);
+        p->q_s[k] = narc_float_at(bodies->sine, b);
+        p->scale_a[k] = bodies->scale.base ? narc_float_at(bodies->scale, a) : 1.0f;
+        p->scale_b[k] = bodies->scale.base ? narc_float_at(bodies->scale, b) : 1.0f;
+        load_shape(&batch->shapes->heads[narc_index_at(bodies->shape, a)], k, &p->a);
+        load_shape(&batch->shapes->heads[narc_index_at(bodies->shape, b)], k, &p->b);
     }
 }
 
 static inline vm within(vf value, float limit) { return v_le(v_abs(value), v_set(limit)); }
 
+/* The bounding radius in the head is a little too large, hence the tolerance. */
 static inline vm size_in_range(vf scale, const struct circles *bound, int k) {
     const float distance = (float)NARC_MAX_DISTANCE;
     const vf size = v_mul(scale, v_load(bound->radius + k));
-    const vm sized = vm_and(v_le(v_set((float)NARC_MIN_SIZE), size), v_le(size, v_set((float)NARC_MAX_SIZE)));
+    const vm sized = vm_and(v_le(v_set((float)NARC_MIN_SIZE), size),
+                            v_le(size, v_set((float)(NARC_MAX_SIZE * (1 + NARC_TOLERANCE)))));
     return vm_and(sized, vm_and(within(v_mul(scale, v_load(bound->x + k)), distance),
                                 within(v_mul(scale, v_load(bound->y + k)), distance)));
 }

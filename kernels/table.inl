@@ -3,9 +3,11 @@
  * table.inl - all kernels for one instruction set, and the table that is the only symbol of its object file. The
  * including file has included a simd_<isa>.h and defined NARC_ISA_NAME.
  */
+#include <float.h>
 #include <stdbool.h>
 #include <string.h>
 
+#include "column.h"
 #include "kernels.h"
 
 #include "relative.inl"

@@ -72,7 +72,8 @@ extern "C" {
 #define NARC_MAX_RADIUS_RATIO 64.0
 
 /* How far, relative to the bounding radius, a list of arcs may be from closed and convex before it is refused
- * (lengths), and how far apart two normals that should be one may be (radians). Files with 7 digits pass. */
+ * (lengths), and how far apart two normals that should be one may be (radians). Arcs must turn by more than that.
+ * Files with 7 digits pass, but for arcs with a radius above some 10 times the bounding radius, which need more. */
 #define NARC_TOLERANCE 1e-5
 
 /* ------------------------------------------------------------------------------------------------ status */
@@ -317,6 +318,12 @@ typedef struct narc_bodies {
     narc_column scale;        /* float; base NULL: all 1 */
     narc_column shape;        /* uint32_t, index in the store */
 } narc_bodies;
+
+/* Are all bodies what the kernels expect? Batch calls check indices only; this checks every number: shapes that exist,
+ * no NaN or infinity, cosine and sine of length 1 within NARC_TOLERANCE, and sizes in range. The message names the body
+ * and the quantity, and error->index is the first such body. Errors: NARC_ERROR_ARGUMENT (NULL, not a rotation),
+ * NARC_ERROR_INDEX, NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE. Thread-safe. */
+NARC_API narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_bodies *bodies, narc_error *error);
 
 /* Pairs of body indices (uint32_t). Both may name the same body (it collides with itself). */
 typedef struct narc_pairs {

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * bodies.c - are a caller's bodies what the kernels take them for?
+ */
+#include <math.h>
+
+#include "column.h"
+#include "error.h"
+#include "store.h"
+
+static narc_status check_columns(const narc_bodies *bodies, narc_error *error) {
+    const struct {
+        const char *name;
+        narc_column column;
+    } columns[] = {{"x", bodies->x},
+                   {"y", bodies->y},
+                   {"cosine", bodies->cosine},
+                   {"sine", bodies->sine},
+                   {"shape", bodies->shape}};
+    for (size_t k = 0; k < sizeof columns / sizeof columns[0]; k++)
+        if (!columns[k].column.base)
+            return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "bodies.%s is NULL", columns[k].name);
+    if (bodies->position_precision != NARC_FLOAT32 && bodies->position_precision != NARC_FLOAT64)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->position_precision,
+                         "bodies.position_precision is %d", (int)bodies->position_precision);
+    return NARC_OK;
+}
+
+static double position_at(const narc_bodies *bodies, narc_column column, size_t body) {
+    return bodies->position_precision == NARC_FLOAT64 ? narc_double_at(column, body)
+                                                      : (double)narc_float_at(column, body);
+}
+
+static narc_status check_body(const narc_shapes *shapes, const narc_bodies *bodies, size_t body, narc_error *error) {
+    const uint32_t shape = narc_index_at(bodies->shape, body);
+    const double x = position_at(bodies, bodies->x, body), y = position_at(bodies, bodies->y, body);
+    const double c = (double)narc_float_at(bodies->cosine, body), s = (double)narc_float_at(bodies->sine, body);
+    const double scale = bodies->scale.base ? (double)narc_float_at(bodies->scale, body) : 1;
+    if (shape >= shapes->count)
+        return narc_fail(error, NARC_ERROR_INDEX, body, shape, "body %zu: shape is %lu, but there are %zu shapes", body,
+                         (unsigned long)shape, shapes->count);
+    if (!isfinite(x) || !isfinite(y))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, body, isfinite(x) ? y : x, "body %zu: %s is %g", body,
+                         isfinite(x) ? "y" : "x", isfinite(x) ? y : x);
+    if (!isfinite(c) || !isfinite(s))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, body, isfinite(c) ? s : c, "body %zu: %s is %g", body,
+                         isfinite(c) ? "sine" : "cosine", isfinite(c) ? s : c);
+    if (fabs(c * c + s * s - 1) > 2 * NARC_TOLERANCE) /* the length is off by half as much */
+        return narc_fail(error, NARC_ERROR_ARGUMENT, body, hypot(c, s),
+                         "body %zu: cosine and sine make a vector of length %.9g, not 1", body, hypot(c, s));
+    const double size = scale * (double)shapes->heads[shape].bound_radius;
+    if (!(scale > 0 && size >= NARC_MIN_SIZE && size <= NARC_MAX_SIZE * (1 + NARC_TOLERANCE)))
+        return narc_fail(error, NARC_ERROR_SIZE, body, scale,
+                         "body %zu: scale is %g, its bounding radius is then %g, not in %g .. %g", body, scale, size,
+                         NARC_MIN_SIZE, NARC_MAX_SIZE);
+    return NARC_OK;
+}
+
+narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_bodies *bodies, narc_error *error) {
+    if (!shapes || !bodies)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", shapes ? "bodies" : "shapes");
+    if (bodies->count == 0)
+        return NARC_OK;
+    narc_status status = check_columns(bodies, error);
+    for (size_t body = 0; body < bodies->count && status == NARC_OK; body++)
+        status = check_body(shapes, bodies, body, error);
+    return status;
+}

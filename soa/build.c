@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * build.c - arcs of circles, capsules, boxes, convex polygons with round corners, and the four-arc lens.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "error.h"
+#include "outline.h"
+
+/* Radii may exceed what fits by so much, relatively, to forgive the rounding of a caller's own arithmetic. */
+#define FIT_SLACK 1e-12
+
+/* A named number that a builder was given. A radius that may be 0 is that of a corner or a tip. */
+typedef enum kind { POSITIVE, LENGTH, RADIUS } kind;
+typedef struct quantity {
+    const char *name;
+    double value;
+    kind kind;
+} quantity;
+
+static narc_status check_lengths(const quantity *lengths, size_t count, narc_error *error) {
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(lengths[i].value))
+            return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, lengths[i].value, "%s is %g", lengths[i].name,
+                             lengths[i].value);
+    for (size_t i = 0; i < count; i++)
+        if (lengths[i].value < 0 || (lengths[i].value == 0 && lengths[i].kind == POSITIVE))
+            return narc_fail(error, lengths[i].kind == RADIUS ? NARC_ERROR_RADIUS : NARC_ERROR_SIZE, 0,
+                             lengths[i].value, "%s is %g, not %s", lengths[i].name, lengths[i].value,
+                             lengths[i].kind == POSITIVE ? "above 0" : "0 or more");
+    return NARC_OK;
+}
+
+static narc_status check_outputs(const narc_arc *out_arcs, const size_t *out_count, narc_error *error) {
+    return out_arcs && out_count ? NARC_OK : narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "an output is NULL");
+}
+
+/* Validates what was built and hands it over. */
+static narc_status finish(const narc_arc *arcs, size_t count, narc_arc *out_arcs, size_t *out_count,
+                          narc_error *error) {
+    narc_status status = narc_validate_arcs(arcs, count, error);
+    if (status == NARC_OK) {
+        memcpy(out_arcs, arcs, count * sizeof *arcs);
+        *out_count = count;
+    }
+    return status;
+}
+
+narc_status narc_build_circle(double radius, narc_arc *out_arcs, size_t *out_count, narc_error *error) {
+    narc_status status = check_outputs(out_arcs, out_count, error);
+    if (status == NARC_OK)
+        status = check_lengths(&(quantity){"radius", radius, POSITIVE}, 1, error);
+    if (status != NARC_OK)
+        return status;
+    return finish(&(narc_arc){0, 0, radius, -NARC_PI, NARC_PI}, 1, out_arcs, out_count, error);
+}
+
+narc_status narc_build_capsule(double length, double radius, narc_arc *out_arcs, size_t *out_count, narc_error *error) {
+    const quantity lengths[] = {{"length", length, LENGTH}, {"radius", radius, POSITIVE}};
+    narc_status status = check_outputs(out_arcs, out_count, error);
+    if (status == NARC_OK)
+        status = check_lengths(lengths, 2, error);
+    if (status != NARC_OK)
+        return status;
+    const narc_arc arcs[2] = {{length / 2, 0, radius, -NARC_PI / 2, NARC_PI / 2},
+                              {-length / 2, 0, radius, NARC_PI / 2, -NARC_PI / 2}};
+    return finish(arcs, 2, out_arcs, out_count, error);
+}
+
+narc_status narc_build_box(double width, double height, double radius, narc_arc *out_arcs, size_t *out_count,
+                           narc_error *error) {
+    const quantity lengths[] = {{"width", width, POSITIVE}, {"height", height, POSITIVE}, {"radius", radius, RADIUS}};
+    narc_status status = check_outputs(out_arcs, out_count, error);
+    if (status == NARC_OK)
+        status = check_lengths(lengths, 3, error);
+    if (status != NARC_OK)
+        return status;
+    double largest = fmin(width, height) / 2;
+    if (radius > largest * (1 + FIT_SLACK))
+        return narc_fail(error, NARC_ERROR_RADIUS, 0, radius, "radius is %.9g, more than half the shorter side, %.9g",
+                         radius, largest);
+    double r = fmin(radius, largest), x = width / 2 - r, y = height / 2 - r;
+    const narc_arc arcs[4] = {{x, y, r, 0, NARC_PI / 2},
+                              {-x, y, r, NARC_PI / 2, NARC_PI},
+                              {-x, -y, r, -NARC_PI, -NARC_PI / 2},
+                              {x, -y, r, -NARC_PI / 2, 0}};
+    return finish(arcs, 4, out_arcs, out_count, error);
+}
+
+/* ------------------------------------------------------------------------------------------------ polygon */
+
+/* Side i of a polygon, from corner i to corner i + 1, and what the outline turns by at corner i. */
+typedef struct side {
+    double length, normal_x, normal_y, turn;
+} side;
+
+static narc_status find_sides(const narc_point *points, size_t count, side *out_sides, narc_error *error) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(points[i].x) || !isfinite(points[i].y))
+            return narc_fail(error, NARC_ERROR_NOT_FINITE, i, isfinite(points[i].x) ? points[i].y : points[i].x,
+                             "point %zu: a coordinate is not finite", i);
+    for (size_t i = 0; i < count; i++) {
+        narc_point from = points[i], to = points[(i + 1) % count];
+        double length = hypot(to.x - from.x, to.y - from.y);
+        if (!(length > 0) || !isfinite(length))
+            return narc_fail(error, NARC_ERROR_SIZE, i, length, "side %zu: length is %g", i, length);
+        out_sides[i] = (side){length, (to.y - from.y) / length, (from.x - to.x) / length, 0};
+    }
+    for (size_t i = 0; i < count; i++) {
+        side *after = &out_sides[i];
+        const side *before = &out_sides[(i + count - 1) % count];
+        double cross = before->normal_x * after->normal_y - before->normal_y * after->normal_x;
+        after->turn = atan2(cross, before->normal_x * after->normal_x + before->normal_y * after->normal_y);
+        if (after->turn < NARC_TOLERANCE)
+            return narc_fail(error, NARC_ERROR_NOT_CONVEX, i, after->turn,
+                             "point %zu: the outline turns by %.6g rad, not left (counter-clockwise)", i, after->turn);
+        sum += after->turn;
+    }
+    if (sum > 3 * NARC_PI) /* a closed outline makes a whole number of turns */
+        return narc_fail(error, NARC_ERROR_NOT_CONVEX, 0, sum, "the polygon turns by %.6g rad in all, not once", sum);
+    return NARC_OK;
+}
+
+narc_status narc_build_polygon(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
+                               size_t *out_count, narc_error *error) {
+    side sides[NARC_MAX_ARCS];
+    narc_arc arcs[NARC_MAX_ARCS];
+    narc_status status = check_outputs(out_arcs, out_count, error);
+    if (status != NARC_OK)
+        return status;
+    if (!points)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "points is NULL");
+    if (count < 3 || count > NARC_MAX_ARCS)
+        return narc_fail(error, NARC_ERROR_COUNT, 0, (double)count, "there are %zu points, not 3 to %d", count,
+                         NARC_MAX_ARCS);
+    if ((status = check_lengths(&(quantity){"radius", radius, RADIUS}, 1, error)) != NARC_OK ||
+        (status = find_sides(points, count, sides, error)) != NARC_OK)
+        return status;
+    for (size_t i = 0; i < count; i++) {
+        /* A corner that turns by e, rounded with radius r, uses up r tan(e / 2) of both its sides. */
+        double most = sides[i].length / (tan(sides[i].turn / 2) + tan(sides[(i + 1) % count].turn / 2));
+        if (radius > most * (1 + FIT_SLACK))
+            return narc_fail(error, NARC_ERROR_RADIUS, i, radius,
+                             "side %zu: radius is %.9g, the largest that fits it is %.9g", i, radius, most);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const side *before = &sides[(i + count - 1) % count], *after = &sides[i];
+        double inset = radius / (1 + cos(after->turn));
+        arcs[i] = (narc_arc){points[i].x - inset * (before->normal_x + after->normal_x),
+                             points[i].y - inset * (before->normal_y + after->normal_y), radius,
+                             atan2(before->normal_y, before->normal_x), atan2(after->normal_y, after->normal_x)};
+    }
+    return finish(arcs, count, out_arcs, out_count, error);
+}
+
+/* ------------------------------------------------------------------------------------------------ four arcs */
+
+/* The centre of a circle of `radius` that touches both large circles from inside: `low` and `high` are its distances
+ * from their centres. Of the two such points the one with x > 0. */
+static narc_point find_tip(narc_four_arc form, double radius) {
+    double low = form.radius_low - radius, high = form.radius_high - radius, y = form.distance / 2;
+    double tip_y = (high - low) * (high + low) / (2 * form.distance);
+    return (narc_point){sqrt(fmax(0, (low - (tip_y - y)) * (low + (tip_y - y)))), tip_y};
+}
+
+narc_status narc_build_four_arc(narc_four_arc form, narc_arc *out_arcs, size_t *out_count, narc_error *error) {
+    const quantity lengths[] = {{"radius_low", form.radius_low, POSITIVE},
+                                {"radius_high", form.radius_high, POSITIVE},
+                                {"distance", form.distance, POSITIVE},
+                                {"radius_left", form.radius_left, RADIUS},
+                                {"radius_right", form.radius_right, RADIUS}};
+    narc_status status = check_outputs(out_arcs, out_count, error);
+    if (status == NARC_OK)
+        status = check_lengths(lengths, 5, error);
+    if (status != NARC_OK)
+        return status;
+    double sum = form.radius_low + form.radius_high, difference = fabs(form.radius_low - form.radius_high);
+    if (form.distance >= sum)
+        return narc_fail(error, NARC_ERROR_SIZE, 0, form.distance,
+                         "distance is %.9g, the large circles overlap only below %.9g", form.distance, sum);
+    if (form.distance <= difference)
+        return narc_fail(error, NARC_ERROR_SIZE, 0, form.distance,
+                         "distance is %.9g, one large circle contains the other up to %.9g", form.distance, difference);
+    /* A small circle that reaches from side to side at the thickest place is the largest one that fits. */
+    double most = (sum - form.distance) / 2;
+    for (size_t i = 3; i < 5; i++)
+        if (lengths[i].value >= most)
+            return narc_fail(error, NARC_ERROR_RADIUS, i == 3 ? 2 : 0, lengths[i].value,
+                             "%s is %.9g, it must be below %.9g to fit between the large circles", lengths[i].name,
+                             lengths[i].value, most);
+    narc_point right = find_tip(form, form.radius_right), left = find_tip(form, form.radius_left);
+    double y = form.distance / 2;
+    double right_low = atan2(right.y - y, right.x), right_high = atan2(right.y + y, right.x);
+    double left_low = atan2(left.y - y, -left.x), left_high = atan2(left.y + y, -left.x);
+    const narc_arc arcs[4] = {{right.x, right.y, form.radius_right, right_low, right_high},
+                              {0, -y, form.radius_high, right_high, left_high},
+                              {-left.x, left.y, form.radius_left, left_high, left_low},
+                              {0, y, form.radius_low, left_low, right_low}};
+    return finish(arcs, 4, out_arcs, out_count, error);
+}

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * error.c - names of status codes, and the one place that fills a narc_error.
+ */
+#include "error.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+const char *narc_status_name(narc_status status) {
+    switch (status) {
+    case NARC_OK:
+        return "NARC_OK";
+    case NARC_ERROR_ARGUMENT:
+        return "NARC_ERROR_ARGUMENT";
+    case NARC_ERROR_MEMORY:
+        return "NARC_ERROR_MEMORY";
+    case NARC_ERROR_INDEX:
+        return "NARC_ERROR_INDEX";
+    case NARC_ERROR_CAPACITY:
+        return "NARC_ERROR_CAPACITY";
+    case NARC_ERROR_COUNT:
+        return "NARC_ERROR_COUNT";
+    case NARC_ERROR_NOT_FINITE:
+        return "NARC_ERROR_NOT_FINITE";
+    case NARC_ERROR_SIZE:
+        return "NARC_ERROR_SIZE";
+    case NARC_ERROR_RADIUS:
+        return "NARC_ERROR_RADIUS";
+    case NARC_ERROR_SWEEP:
+        return "NARC_ERROR_SWEEP";
+    case NARC_ERROR_NOT_CLOSED:
+        return "NARC_ERROR_NOT_CLOSED";
+    case NARC_ERROR_NOT_CONVEX:
+        return "NARC_ERROR_NOT_CONVEX";
+    case NARC_ERROR_NOT_SIMPLE:
+        return "NARC_ERROR_NOT_SIMPLE";
+    case NARC_ERROR_NO_SOLUTION:
+        return "NARC_ERROR_NO_SOLUTION";
+    case NARC_ERROR_ISA_UNKNOWN:
+        return "NARC_ERROR_ISA_UNKNOWN";
+    case NARC_ERROR_ISA_UNSUPPORTED:
+        return "NARC_ERROR_ISA_UNSUPPORTED";
+    }
+    return "unknown status";
+}
+
+narc_status narc_fail(narc_error *error, narc_status status, size_t index, double value, const char *format, ...) {
+    if (error) {
+        error->status = status;
+        error->index = index;
+        error->value = value;
+        va_list arguments;
+        va_start(arguments, format);
+        vsnprintf(error->message, sizeof error->message, format, arguments);
+        va_end(arguments);
+    }
+    return status;
+}

@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * test_bodies.c - narc_validate_bodies(): each kind of bad number, and which body the message names.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "narc.h"
+
+enum { COUNT = 5, BAD = 3 };
+
+struct body {
+    double x, y;
+    float cosine, sine, scale;
+    uint32_t shape;
+};
+
+struct fixture {
+    narc_shapes *shapes;
+    struct body body[COUNT];
+    narc_bodies bodies;
+};
+
+static void set_up(struct fixture *f) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    f->shapes = NULL;
+    assert_int_equal(narc_create_shapes(NULL, &f->shapes), NARC_OK);
+    assert_int_equal(narc_build_circle(2, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(narc_add_shape(f->shapes, arcs, count, NULL, NULL), NARC_OK);
+    for (int k = 0; k < COUNT; k++)
+        f->body[k] = (struct body){k, -k, 0.6f, 0.8f, 1, 0};
+    f->bodies = (narc_bodies){.count = COUNT,
+                              .position_precision = NARC_FLOAT64,
+                              .x = NARC_COLUMN(f->body, x),
+                              .y = NARC_COLUMN(f->body, y),
+                              .cosine = NARC_COLUMN(f->body, cosine),
+                              .sine = NARC_COLUMN(f->body, sine),
+                              .scale = NARC_COLUMN(f->body, scale),
+                              .shape = NARC_COLUMN(f->body, shape)};
+}
+
+static void expect(struct fixture *f, narc_status status, const char *words) {
+    narc_error error = {0};
+    assert_int_equal(narc_validate_bodies(f->shapes, &f->bodies, &error), status);
+    assert_int_equal(error.status, status);
+    assert_int_equal(error.index, BAD);
+    assert_non_null(strstr(error.message, "body 3: "));
+    assert_non_null(strstr(error.message, words));
+    assert_int_equal(narc_validate_bodies(f->shapes, &f->bodies, NULL), status);
+}
+
+static void test_good_bodies(void **state) {
+    (void)state;
+    struct fixture f;
+    set_up(&f);
+    narc_error error = {.status = NARC_ERROR_MEMORY};
+    assert_int_equal(narc_validate_bodies(f.shapes, &f.bodies, &error), NARC_OK);
+    f.bodies.scale.base = NULL;
+    assert_int_equal(narc_validate_bodies(f.shapes, &f.bodies, &error), NARC_OK);
+    f.bodies = (narc_bodies){.count = 0};
+    assert_int_equal(narc_validate_bodies(f.shapes, &f.bodies, &error), NARC_OK);
+    assert_int_equal(error.status, NARC_ERROR_MEMORY); /* untouched */
+    narc_destroy_shapes(f.shapes);
+}
+
+static void test_bad_numbers(void **state) {
+    (void)state;
+    struct fixture f;
+    set_up(&f);
+    struct body good = f.body[BAD], *bad = &f.body[BAD];
+    bad->shape = 1;
+    expect(&f, NARC_ERROR_INDEX, "shape is 1");
+    *bad = good;
+    bad->x = NAN;
+    expect(&f, NARC_ERROR_NOT_FINITE, "x is");
+    *bad = good;
+    bad->y = INFINITY;
+    expect(&f, NARC_ERROR_NOT_FINITE, "y is inf");
+    *bad = good;
+    bad->cosine = NAN;
+    expect(&f, NARC_ERROR_NOT_FINITE, "cosine");
+    *bad = good;
+    bad->sine = -INFINITY;
+    expect(&f, NARC_ERROR_NOT_FINITE, "sine");
+    *bad = good;
+    bad->sine = 0.8001f;
+    expect(&f, NARC_ERROR_ARGUMENT, "length 1.0000");
+    *bad = good;
+    bad->scale = 0;
+    expect(&f, NARC_ERROR_SIZE, "scale is 0");
+    bad->scale = -1;
+    expect(&f, NARC_ERROR_SIZE, "scale is -1");
+    bad->scale = NAN;
+    expect(&f, NARC_ERROR_SIZE, "scale is");
+    bad->scale = 1e9f;
+    expect(&f, NARC_ERROR_SIZE, "radius is then 2");
+    narc_destroy_shapes(f.shapes);
+}
+
+static void test_bad_arguments(void **state) {
+    (void)state;
+    struct fixture f;
+    set_up(&f);
+    assert_int_equal(narc_validate_bodies(NULL, &f.bodies, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_validate_bodies(f.shapes, NULL, NULL), NARC_ERROR_ARGUMENT);
+    narc_column *columns[] = {&f.bodies.x, &f.bodies.y, &f.bodies.cosine, &f.bodies.sine, &f.bodies.shape};
+    for (size_t k = 0; k < sizeof columns / sizeof columns[0]; k++) {
+        const void *base = columns[k]->base;
+        columns[k]->base = NULL;
+        assert_int_equal(narc_validate_bodies(f.shapes, &f.bodies, NULL), NARC_ERROR_ARGUMENT);
+        columns[k]->base = base;
+    }
+    narc_destroy_shapes(f.shapes);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_good_bodies),
+        cmocka_unit_test(test_bad_numbers),
+        cmocka_unit_test(test_bad_arguments),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
