@@ -94,6 +94,12 @@ static void refuses_bad_sweeps(void **state) {
     /* Twice around: four half circles. */
     narc_arc twice[4] = {{0, 0, 1, 0, pi}, {0, 0, 1, pi, 2 * pi}, {0, 0, 1, 0, pi}, {0, 0, 1, pi, 2 * pi}};
     expect_error(narc_validate_arcs(twice, 4, &error), NARC_ERROR_SWEEP, &error, "12.566");
+    /* The kernels need normals that differ by more than their rounding. */
+    narc_arc sliver[3] = {{0, 0, 1, 0, 0.9e-5}, {0, 0, 1, 0.9e-5, pi}, {0, 0, 1, pi, 2 * pi}};
+    expect_error(narc_validate_arcs(sliver, 3, &error), NARC_ERROR_SWEEP, &error,
+                 "arc 0: sweep is 9e-06 rad, it turns by nothing");
+    sliver[0].end = sliver[1].start = 1.1e-5;
+    assert_int_equal(narc_validate_arcs(sliver, 3, &error), NARC_OK);
 }
 
 static void refuses_what_does_not_meet(void **state) {

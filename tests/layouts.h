@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * layouts.h - the same bodies and pairs in the layouts that callers have, each array with a guard page behind it.
+ */
+#ifndef NARC_TEST_LAYOUTS_H
+#define NARC_TEST_LAYOUTS_H
+
+#include "scene.h"
+
+enum layout {
+    LAYOUT_ARRAYS,     /* one packed array per property */
+    LAYOUT_STRUCTURES, /* an engine's bodies, position first; pairs as structures */
+    LAYOUT_REVERSED,   /* the same the other way round, so that positions too end where the guard begins */
+    LAYOUT_SHARED,     /* angle, scale and shape are one value for all, with a stride of 0; needs share_values() */
+    LAYOUT_UNSCALED,   /* no scales; needs unit_scales() */
+    LAYOUT_COUNT
+};
+
+/* The columns of a scene's bodies and its pairs first .. first + count - 1, and the arrays behind them. */
+struct columns {
+    narc_bodies bodies;
+    narc_pairs pairs;
+    void *memory[10];
+    size_t memory_count;
+};
+
+struct columns create_columns(const struct scene *scene, enum layout layout, size_t first, size_t count);
+void destroy_columns(struct columns *columns);
+
+/* Makes a scene fit for LAYOUT_SHARED: every body like the first, but for its position. */
+void share_values(struct scene *scene);
+
+/* Makes a scene fit for LAYOUT_UNSCALED. */
+void unit_scales(struct scene *scene);
+
+/* A copy of a scene's store in guarded memory, no larger than needed. */
+narc_shapes *guard_store(const struct scene *scene);
+
+/* Arrays for exactly `capacity` contacts in guarded memory, full of junk. */
+narc_contacts create_guarded_contacts(size_t capacity);
+void destroy_guarded_contacts(const narc_contacts *contacts);
+
+#endif

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+# One step of the package tests; tests/package.cmake calls it with STEP and the variables used below.
+
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
+  if(NOT status EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "failed (${status}): ${command}")
+  endif()
+endfunction()
+
+function(skip reason)
+  message(STATUS "package test skipped: ${reason}")
+endfunction()
+
+set(prefix "${WORK}/prefix")
+set(folder "${WORK}/${STEP}")
+file(REMOVE_RECURSE "${folder}")
+file(MAKE_DIRECTORY "${folder}")
+separate_arguments(flag_list UNIX_COMMAND "${FLAGS}")
+
+find_program(CXX_COMPILER NAMES c++ g++ clang++)
+if(LANGUAGE STREQUAL "cxx" AND (TOOLCHAIN OR NOT CXX_COMPILER))
+  skip("no C++ compiler for the target")
+  return()
+endif()
+# Code for sanitizers goes with the compiler that made it.
+get_filename_component(compiler_name "${C_COMPILER}" NAME)
+if(compiler_name MATCHES "^clang(-[0-9]+)?$")
+  string(REPLACE "clang" "clang++" CXX_COMPILER "${C_COMPILER}")
+endif()
+
+# Writes the README's first code block in a language to a file.
+function(extract_block language file)
+  file(READ "${SOURCE}/README.md" text)
+  if(NOT text MATCHES "\n```${language}\n(([^`]|`[^`])*)```\n")
+    message(FATAL_ERROR "README.md has no block of ${language}")
+  endif()
+  file(WRITE "${file}" "${CMAKE_MATCH_1}")
+endfunction()
+
+set(configure ${CMAKE_COMMAND} -G "${GENERATOR}" "-DCMAKE_BUILD_TYPE=${CONFIG}" "-DCMAKE_PREFIX_PATH=${prefix}"
+  "-DKIND=${KIND}" "-DLANGUAGE=${LANGUAGE}")
+if(TOOLCHAIN)
+  list(APPEND configure "-DCMAKE_TOOLCHAIN_FILE=${TOOLCHAIN}" "-DCMAKE_FIND_ROOT_PATH_MODE_PACKAGE=BOTH")
+else()
+  list(APPEND configure "-DCMAKE_C_COMPILER=${C_COMPILER}" "-DCMAKE_C_FLAGS=${FLAGS}"
+    "-DCMAKE_CXX_COMPILER=${CXX_COMPILER}" "-DCMAKE_CXX_FLAGS=${FLAGS}" --no-warn-unused-cli)
+endif()
+
+# Configures SOURCE_FOLDER, builds it and runs its tests.
+function(build_and_test source_folder)
+  run(${configure} -S "${source_folder}" -B "${folder}" ${ARGN})
+  run(${CMAKE_COMMAND} --build "${folder}" --config "${CONFIG}")
+  run(${CMAKE_CTEST_COMMAND} --test-dir "${folder}" -C "${CONFIG}" --output-on-failure --no-tests=error)
+endfunction()
+
+if(STEP STREQUAL "install")
+  file(REMOVE_RECURSE "${prefix}")
+  run(${CMAKE_COMMAND} --install "${BUILD}" --prefix "${prefix}" --config "${CONFIG}")
+
+elseif(STEP MATCHES "^cmake_")
+  build_and_test("${SOURCE}/tests/package")
+
+elseif(STEP MATCHES "^pkgconfig_" OR STEP STREQUAL "readme_example")
+  if(TOOLCHAIN OR NOT PKG_CONFIG)
+    skip("pkg-config answers for this machine only, or is not there")
+    return()
+  endif()
+  file(GLOB_RECURSE pc_file "${prefix}/narc.pc")
+  get_filename_component(pc_folder "${pc_file}" DIRECTORY)
+  get_filename_component(library_folder "${pc_folder}" DIRECTORY)
+  set(ENV{PKG_CONFIG_PATH} "${pc_folder}:$ENV{PKG_CONFIG_PATH}")
+  set(source "${SOURCE}/tests/package/consumer.c")
+  set(compile "${C_COMPILER}")
+  if(LANGUAGE STREQUAL "cxx")
+    set(source "${SOURCE}/tests/package/consumer.cpp")
+    set(compile "${CXX_COMPILER}")
+  elseif(STEP STREQUAL "readme_example")
+    set(source "${folder}/example.c")
+    extract_block(c "${source}")
+  endif()
+  set(query --cflags --libs)
+  if(KIND STREQUAL "static")
+    list(APPEND query --static)
+  endif()
+  execute_process(COMMAND "${PKG_CONFIG}" ${query} narc OUTPUT_VARIABLE narc_flags COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(narc_flags UNIX_COMMAND "${narc_flags}")
+  if(KIND STREQUAL "static")
+    # With both libraries in one folder the linker prefers the shared one.
+    list(TRANSFORM narc_flags REPLACE "^-lnarc$" "-l:libnarc.a")
+  else()
+    list(APPEND narc_flags "-Wl,-rpath,${library_folder}")
+  endif()
+  run("${compile}" ${flag_list} -Wall -Wextra -Werror "${source}" -o "${folder}/program" ${narc_flags})
+  run("${folder}/program")
+  if(STEP STREQUAL "readme_example")
+    extract_block(text "${folder}/expected.txt")
+    execute_process(COMMAND "${folder}/program" OUTPUT_FILE "${folder}/printed.txt")
+    run(${CMAKE_COMMAND} -E compare_files "${folder}/expected.txt" "${folder}/printed.txt")
+  endif()
+
+elseif(STEP STREQUAL "readme_shapes")
+  # The installed command reads the README's shapes file.
+  extract_block(json "${folder}/shapes.json")
+  file(GLOB command "${prefix}/bin/narc")
+  set(shapes --shapes "${folder}/shapes.json")
+  run("${command}" scene ${shapes} --bodies 200 --density 1 --seed 1 --out "${folder}/bodies.csv")
+  run("${command}" collide ${shapes} --bodies "${folder}/bodies.csv")
+
+elseif(STEP STREQUAL "subproject")
+  build_and_test("${SOURCE}/tests/package" -DKIND=subproject "-DNARC_SOURCE=${SOURCE}" "-DNARC_SLEEF=${SLEEF}")
+  file(GLOB_RECURSE extra "${folder}/narc/tests/*" "${folder}/narc/tools/*")
+  if(extra)
+    message(FATAL_ERROR "a subproject builds more than the library: ${extra}")
+  endif()
+
+elseif(STEP STREQUAL "compiler_alone")
+  # No pkg-config, no OpenMP, no SLEEF: the library itself must not look for anything.
+  run(${configure} -S "${SOURCE}" -B "${folder}" -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF -DNARC_OPENMP=OFF
+    -DNARC_SLEEF=OFF -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON)
+  run(${CMAKE_COMMAND} --build "${folder}" --config "${CONFIG}")
+
+else()
+  message(FATAL_ERROR "no such step: ${STEP}")
+endif()

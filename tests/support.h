@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * support.h - what all test programs share: the seed, the number of trials, the instruction set, random numbers.
+ *
+ * Environment:
+ *   NARC_TEST_SEED     where the random numbers start; printed by every program
+ *   NARC_TEST_TRIALS   multiplies the number of random trials (0.1: a quick run, 100: a long one)
+ *   NARC_TEST_ISA      the instruction set to test; the program is skipped if it can't be had
+ */
+#ifndef NARC_TEST_SUPPORT_H
+#define NARC_TEST_SUPPORT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* cmocka.h needs these before it. */
+#include <setjmp.h>
+#include <stdarg.h>
+
+#include <cmocka.h>
+
+/* What ctest takes for "skipped" (SKIP_RETURN_CODE). */
+enum { TEST_SKIPPED = 77 };
+
+/* Prints seed and instruction set, and chooses the latter. False if this machine does not have it: then main() returns
+ * TEST_SKIPPED. To be called first. */
+bool test_begin(void);
+
+/* The instruction set under test, never NULL after test_begin(). */
+const char *test_isa(void);
+
+/* `base` times NARC_TEST_TRIALS, at least 1. */
+size_t test_trials(size_t base);
+
+/* Makes `name` the instruction set of all calls that follow; fails the test if that can't be done. */
+void test_use_isa(const char *name);
+
+/* A stream of random numbers (a 64-bit counter put through a mixing function), the same on every machine. */
+struct test_random {
+    uint64_t state;
+};
+
+/* A stream of its own for each name, so that no test depends on those before it. */
+struct test_random test_random_named(const char *name);
+
+uint64_t random_bits(struct test_random *random);
+double random_unit(struct test_random *random);                             /* 0 <= x < 1 */
+double random_between(struct test_random *random, double low, double high); /* low <= x < high */
+double random_log_between(struct test_random *random, double low, double high);
+size_t random_below(struct test_random *random, size_t limit); /* 0 .. limit - 1 */
+
+/* FNV-1a, 64 bits, continued from `hash`. */
+#define TEST_HASH_START 0xcbf29ce484222325u
+uint64_t test_hash(uint64_t hash, const void *bytes, size_t size);
+
+#endif

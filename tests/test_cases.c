@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * test_cases.c - pairs whose answer is known by hand: exact touch, faces on faces, corners, coincident centres.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "check.h"
+
+static const double pi = 3.14159265358979323846;
+
+static struct shape circle_of(double radius) {
+    struct shape shape;
+    assert_int_equal(narc_build_circle(radius, shape.arcs, &shape.count, NULL), NARC_OK);
+    return shape;
+}
+
+static struct shape box_of(double width, double height, double radius) {
+    struct shape shape;
+    assert_int_equal(narc_build_box(width, height, radius, shape.arcs, &shape.count, NULL), NARC_OK);
+    return shape;
+}
+
+static struct shape half_disc(void) {
+    return (struct shape){{{0, -1, 0, -pi / 2, 0}, {0, 1, 0, 0, pi / 2}, {0, 0, 1, pi / 2, 3 * pi / 2}}, 3};
+}
+
+/* The answer for one pair: A at the origin, turned, B at (x, y); checked against the reference before anything else. */
+struct answer {
+    bool overlap;
+    float separation, normal_x, normal_y, point_x, point_y;
+    int arc_a, arc_b;
+};
+
+static struct answer ask_turned(const struct shape *a, double angle, const struct shape *b, double x, double y) {
+    struct scene scene = create_scene(NARC_FLOAT32, 2, 2, 1);
+    scene_add_shape(&scene, a);
+    scene_add_shape(&scene, b);
+    scene_add_body(&scene, turned_body(angle, 1));
+    scene_add_body(&scene, (struct body){.x = x, .y = y, .cosine = 1, .scale = 1, .shape = 1});
+    scene_add_pair(&scene, 0, 1);
+    uint64_t *bits = scene_overlaps(&scene);
+    struct contacts all = scene_contacts(&scene, INFINITY);
+    struct reference_body at_a = scene_reference(&scene, 0), at_b = scene_reference(&scene, 1);
+    struct fractions errors = {0};
+    const char *wrong = check_contact(&at_a, &at_b, reference_find_gap(&at_a, &at_b).gap, &all.view, 0, &errors);
+    if (wrong) {
+        fail_msg("B at (%a, %a): wrong %s; separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), errors %.3g, "
+                 "%.3g, %.3g",
+                 x, y, wrong, (double)all.view.separation[0], (double)all.view.normal_x[0],
+                 (double)all.view.normal_y[0], (double)all.view.point_x[0], (double)all.view.point_y[0],
+                 errors.separation, errors.normal, errors.point);
+    }
+    struct answer answer = {bit_is_set(bits, 0), all.view.separation[0], all.view.normal_x[0], all.view.normal_y[0],
+                            all.view.point_x[0], all.view.point_y[0],    all.view.arc_a[0],    all.view.arc_b[0]};
+    destroy_contacts(&all);
+    free(bits);
+    destroy_scene(&scene);
+    return answer;
+}
+
+static struct answer ask(const struct shape *a, const struct shape *b, double x, double y) {
+    return ask_turned(a, 0, b, x, y);
+}
+
+/* Touching is not colliding, and the next float closer is. */
+static void test_circles_touch(void **state) {
+    (void)state;
+    struct shape one = circle_of(1);
+    struct answer apart = ask(&one, &one, 2, 0), deeper = ask(&one, &one, 2 - 0x1p-22, 0);
+    assert_false(apart.overlap);
+    assert_true(apart.separation == 0);
+    assert_true(deeper.overlap);
+    assert_true(deeper.separation == -0x1p-22f);
+}
+
+/* Side on side, corner on corner, and corner on side. */
+static void test_boxes_touch(void **state) {
+    (void)state;
+    struct shape box = box_of(2, 1, 0);
+    assert_false(ask(&box, &box, 2, 0).overlap);
+    assert_false(ask(&box, &box, 0, 1).overlap);
+    assert_false(ask(&box, &box, -2, 1).overlap);
+    assert_false(ask(&box, &box, -2, 0.25).overlap);
+    assert_true(ask(&box, &box, -2 + 0x1p-20, 0.25).overlap);
+}
+
+/* Where sides lie on each other, the point is the middle of what they share; the arc is the one after the side. */
+static void test_faces_share_a_stretch(void **state) {
+    (void)state;
+    struct shape wide = box_of(4, 1, 0), narrow = box_of(1, 1, 0.25);
+    /* Tops of A from x = -2 to 2; the side of B without its round corners is 0.5 wide. */
+    const struct {
+        double x, y;
+        float point_x, point_y, separation;
+    } cases[] = {
+        {0.75, 1, 0.75f, 0.5f, 0},            /* touching, all of B's side */
+        {0.75, 0.75, 0.75f, 0.375f, -0.25f},  /* inside */
+        {0.75, 1.5, 0.75f, 0.75f, 0.5f},      /* apart */
+        {2, 0.75, 1.875f, 0.375f, -0.25f},    /* half of B's side hangs over the end: 1.75 .. 2 */
+        {-2.125, 1.5, -1.9375f, 0.75f, 0.5f}, /* -2 .. -1.875 */
+    };
+    for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
+        struct answer up = ask(&wide, &narrow, cases[k].x, cases[k].y);
+        assert_true(fabsf(up.separation - cases[k].separation) <= 1e-6f);
+        assert_true(fabsf(up.normal_x) <= 1e-6f && fabsf(up.normal_y - 1) <= 1e-6f);
+        if (fabsf(up.point_x - cases[k].point_x) > 4e-6f || fabsf(up.point_y - cases[k].point_y) > 4e-6f) {
+            fail_msg("case %zu: point (%.9g, %.9g)", k, (double)up.point_x, (double)up.point_y);
+        }
+        /* Arcs of a box, counter-clockwise from the upper right: its top ends at arc 1, its bottom at arc 3. */
+        size_t top, bottom;
+        narc_find_support(wide.arcs, wide.count, 0, 1, NULL, &top);
+        narc_find_support(narrow.arcs, narrow.count, 0, -1, NULL, &bottom);
+        assert_int_equal(up.arc_a, top);
+        assert_int_equal(up.arc_b, bottom);
+    }
+}
+
+static void test_coincident_circles(void **state) {
+    (void)state;
+    struct shape one = circle_of(1), two = circle_of(2);
+    struct answer same = ask(&one, &one, 0, 0), other = ask(&one, &two, 0, 0);
+    assert_true(same.overlap && other.overlap);
+    assert_true(same.separation == -2);
+    assert_true(other.separation == -3);
+    assert_int_equal(other.arc_a, 0);
+    assert_int_equal(other.arc_b, 0);
+}
+
+/* A circle beyond the end of an edge, but so little that the edge's normal has the same gap up to a rounding. The
+ * contact is at the edge's end, and must not be looked for on the edge's continuation. */
+static void test_just_beyond_an_edge(void **state) {
+    (void)state;
+    struct shape half = half_disc(), circle = circle_of(1);
+    for (double beyond = 1e-5; beyond < 0.1; beyond *= 1.004) {
+        ask(&half, &circle, 1.3, -1 - beyond);
+        ask(&half, &circle, 1.3, 1 + beyond);
+        ask(&half, &circle, 0.9, 1 + beyond);
+        ask(&circle, &half, -1, 1 + beyond);
+    }
+}
+
+/* The same at a smooth junction: a tip of a flat lens, whose large arc ends where the tip begins. */
+static void test_just_beyond_a_junction(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("just beyond a junction");
+    struct shape lens, circle = circle_of(1);
+    narc_four_arc form = {25, 25, 49.96, 0.002, 0.002};
+    assert_int_equal(narc_build_four_arc(form, lens.arcs, &lens.count, NULL), NARC_OK);
+    for (size_t trial = 0; trial < test_trials(100000); trial++) {
+        const narc_arc *arc = &lens.arcs[trial % 4];
+        double turn = random_between(&random, -pi, pi), c = cos(turn), s = sin(turn);
+        double beyond = random_between(&random, -1, 1) * random_log_between(&random, 1e-5, 1e-2);
+        double angle = arc->start + beyond, distance = random_between(&random, 1, 4);
+        double x = arc->center_x + arc->radius * cos(arc->start) + distance * cos(angle);
+        double y = arc->center_y + arc->radius * sin(arc->start) + distance * sin(angle);
+        ask_turned(&lens, turn, &circle, c * x - s * y, s * x + c * y);
+    }
+}
+
+/* Arcs of half a turn: where the normal is at one end of them, the opposite direction is at the other, and rounding may
+ * make them a little longer than half a turn. The largest gap must not be lost to the one on the opposite side. */
+static void test_half_turns(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("half turns");
+    struct shape shapes[3] = {circle_of(1), half_disc()};
+    assert_int_equal(narc_build_capsule(1, 0.5, shapes[2].arcs, &shapes[2].count, NULL), NARC_OK);
+    for (size_t trial = 0; trial < test_trials(100000); trial++) {
+        const struct shape *a = &shapes[trial % 3], *b = &shapes[trial / 3 % 3];
+        double quarter = pi / 2 * (double)random_below(&random, 4);
+        double tilt = random_below(&random, 2) ? 0x1p-24 * random_between(&random, -8, 8) : 0;
+        double turn = random_below(&random, 2) ? quarter + tilt : random_between(&random, -pi, pi);
+        /* Along an end of A's arcs, or along an axis, where B's are; from deep to apart. */
+        double direction = random_below(&random, 2) ? turn + pi / 2 * (double)random_below(&random, 4) : quarter;
+        double distance = random_between(&random, 0, 3);
+        ask_turned(a, turn, b, distance * cos(direction), distance * sin(direction));
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_circles_touch),
+        cmocka_unit_test(test_boxes_touch),
+        cmocka_unit_test(test_faces_share_a_stretch),
+        cmocka_unit_test(test_coincident_circles),
+        cmocka_unit_test(test_just_beyond_an_edge),
+        cmocka_unit_test(test_just_beyond_a_junction),
+        cmocka_unit_test(test_half_turns),
+    };
+    return test_begin() ? cmocka_run_group_tests_name("cases", tests, NULL, NULL) : TEST_SKIPPED;
+}

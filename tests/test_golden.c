@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * test_golden.c - the bits of the answers to fixed scenes, recorded: the same for every instruction set and processor.
+ *
+ * The scenes come from whole numbers, sums, products and quotients alone, so that no library function can make them
+ * differ. Rotations are rational, ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)). The recorded numbers may change only
+ * together with a wanted change of the kernels; the program prints what it finds.
+ */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "scene.h"
+
+/* One number for both precisions: the double positions are the single ones, 2^30 away, and as exact. */
+static const uint64_t golden_answers = 0xaa1c8d1a9885bd39u;
+#ifdef NARC_TEST_POSES
+/* Of SLEEF 3.5.1. */
+static const uint64_t golden_poses = 0x8b6998bde9bc55d9u;
+#endif
+
+#define PI 3.14159265358979323846
+
+/* Angles of the directions (3, 4) / 5, (7, 24) / 25 and (20, 99) / 101. */
+#define ANGLE_5   0.92729521800161224
+#define ANGLE_25  1.28700221758656973
+#define ANGLE_101 1.37145902181257261
+
+/* Four arcs around a direction d = (x, y) of the list above, at angle `a`: flat ones of radius R and tips of radius
+ * r. */
+#define LENS(a, x, y, R, r)                                                                                            \
+    {                                                                                                                  \
+        {                                                                                                              \
+            {((R) - (r)) * (x), 0, (r), -(a), (a)},                                                                    \
+            {0, -((R) - (r)) * (y), (R), (a), PI - (a)},                                                               \
+            {-((R) - (r)) * (x), 0, (r), PI - (a), PI + (a)},                                                          \
+            {0, ((R) - (r)) * (y), (R), PI + (a), 2 * PI - (a)},                                                       \
+        },                                                                                                             \
+            4                                                                                                          \
+    }
+
+#define TRIANGLE(r)                                                                                                    \
+    { {{1.5, -1, (r), -PI / 2, ANGLE_5}, {-1, 0.875, (r), ANGLE_5, PI}, {-1, -1, (r), PI, 1.5 * PI}}, 3 }
+
+#define BOX(x, y, r)                                                                                                   \
+    {                                                                                                                  \
+        {{(x), (y), (r), 0, PI / 2},                                                                                   \
+         {-(x), (y), (r), PI / 2, PI},                                                                                 \
+         {-(x), -(y), (r), PI, 1.5 * PI},                                                                              \
+         {(x), -(y), (r), 1.5 * PI, 2 * PI}},                                                                          \
+            4                                                                                                          \
+    }
+
+static const struct shape shapes[] = {
+    {{{0, 0, 1, 0, 2 * PI}}, 1},
+    {{{0.25, -0.5, 0.375, 0, 2 * PI}}, 1},
+    {{{1, 0, 0.25, -PI / 2, PI / 2}, {-1, 0, 0.25, PI / 2, 1.5 * PI}}, 2},
+    {{{0, -1, 0, -PI / 2, 0}, {0, 1, 0, 0, PI / 2}, {0, 0, 1, PI / 2, 1.5 * PI}}, 3},
+    BOX(0.75, 0.5, 0),
+    BOX(0.5, 0.25, 0.125),
+    BOX(1, 0.015625, 0),
+    TRIANGLE(0),
+    TRIANGLE(0.125),
+    LENS(ANGLE_5, 0.6, 0.8, 1.5, 0.25),
+    LENS(ANGLE_25, 0.28, 0.96, 4.0, 0.0625),
+    LENS(ANGLE_101, 20.0 / 101, 99.0 / 101, 6.0, 0),
+    LENS(ANGLE_25, 0.28, 0.96, 1.0, 0.9375),
+};
+enum { SHAPES = sizeof(shapes) / sizeof(shapes[0]), BODIES = 600, PAIRS = 10000 };
+
+static struct scene make_scene(narc_precision precision) {
+    /* Not of NARC_TEST_SEED. */
+    struct test_random random = {1};
+    struct scene scene = create_scene(precision, SHAPES, BODIES, PAIRS);
+    for (size_t k = 0; k < SHAPES; k++) {
+        scene_add_shape(&scene, &shapes[k]);
+    }
+    for (size_t k = 0; k < BODIES; k++) {
+        double t = ((double)random_below(&random, 129) - 64) / 64, square = t * t;
+        double cosine = (1 - square) / (1 + square), sine = 2 * t / (1 + square);
+        bool lattice = random_below(&random, 4) == 0, turned = random_below(&random, 2);
+        cosine = lattice ? 1 : cosine;
+        sine = lattice ? 0 : sine;
+        /* One random number per statement: within one, each compiler has its own order. */
+        struct body body = {.cosine = (float)(turned ? -sine : cosine), .sine = (float)(turned ? cosine : sine)};
+        body.scale = 0.25f * (float)(1 + random_below(&random, 8));
+        body.shape = (uint32_t)random_below(&random, SHAPES);
+        double grid = lattice ? 0.125 : 0x1p-16, far = precision == NARC_FLOAT64 ? 0x1p30 : 0;
+        size_t places = lattice ? 25 : 200000;
+        body.x = far + (double)random_below(&random, places) * grid;
+        body.y = far + (double)random_below(&random, places) * grid;
+        scene_add_body(&scene, body);
+    }
+    for (size_t k = 0; k < PAIRS; k++) {
+        uint32_t a = (uint32_t)random_below(&random, BODIES);
+        scene_add_pair(&scene, a, (uint32_t)random_below(&random, BODIES));
+    }
+    return scene;
+}
+
+static uint64_t hash_answers(const struct scene *scene) {
+    uint64_t *bits = scene_overlaps(scene);
+    struct contacts all = scene_contacts(scene, INFINITY), colliding = scene_contacts(scene, 0);
+    uint64_t hash = test_hash(TEST_HASH_START, bits, NARC_BIT_WORDS(PAIRS) * sizeof(uint64_t));
+    hash = test_hash(hash, all.view.separation, PAIRS * sizeof(float));
+    hash = test_hash(hash, all.view.normal_x, PAIRS * sizeof(float));
+    hash = test_hash(hash, all.view.normal_y, PAIRS * sizeof(float));
+    hash = test_hash(hash, all.view.point_x, PAIRS * sizeof(float));
+    hash = test_hash(hash, all.view.point_y, PAIRS * sizeof(float));
+    hash = test_hash(hash, all.view.arc_a, PAIRS);
+    hash = test_hash(hash, all.view.arc_b, PAIRS);
+    hash = test_hash(hash, colliding.view.pair, colliding.count * sizeof(uint32_t));
+    printf("  %zu of %d pairs collide\n", colliding.count, (int)PAIRS);
+    /* Were all or none to collide, the hash would say little. */
+    assert_true(colliding.count > PAIRS / 4 && colliding.count < PAIRS * 3 / 4);
+    destroy_contacts(&all);
+    destroy_contacts(&colliding);
+    free(bits);
+    return hash;
+}
+
+static void check_hash(const char *name, uint64_t hash, uint64_t golden) {
+    printf("  %s: 0x%016" PRIx64 "\n", name, hash);
+    assert_true(hash == golden);
+}
+
+static void check_scene(const char *name, narc_precision precision, uint64_t golden) {
+    struct scene scene = make_scene(precision);
+    check_hash(name, hash_answers(&scene), golden);
+    destroy_scene(&scene);
+}
+
+static void test_single_positions(void **state) {
+    (void)state;
+    check_scene("single positions", NARC_FLOAT32, golden_answers);
+}
+
+static void test_double_positions(void **state) {
+    (void)state;
+    check_scene("double positions", NARC_FLOAT64, golden_answers);
+}
+
+#ifdef NARC_TEST_POSES
+static void test_poses(void **state) {
+    (void)state;
+    enum { ANGLES = 100000 };
+    static float angles[ANGLES], cosines[ANGLES], sines[ANGLES];
+    struct test_random random = {2};
+    for (size_t k = 0; k < ANGLES; k++) {
+        angles[k] = ((float)random_below(&random, 2000001) - 1000000.0f) / (k % 2 ? 4096.0f : 262144.0f);
+    }
+    assert_int_equal(narc_compute_poses(angles, ANGLES, cosines, sines, NULL), NARC_OK);
+    uint64_t hash = test_hash(TEST_HASH_START, cosines, sizeof(cosines));
+    check_hash("poses", test_hash(hash, sines, sizeof(sines)), golden_poses);
+}
+#endif
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_single_positions),
+        cmocka_unit_test(test_double_positions),
+#ifdef NARC_TEST_POSES
+        cmocka_unit_test(test_poses),
+#endif
+    };
+    return test_begin() ? cmocka_run_group_tests_name("golden", tests, NULL, NULL) : TEST_SKIPPED;
+}
