@@ -2,9 +2,9 @@
  *
  * bench_kernels.c - the kernels on random n-arcs: kernel / arcs / scene / instruction set, one thread.
  *
- * A scene is 65,536 pairs of bodies over 4,096 distinct shapes. `mixed`: the distance between two bodies is spread around
- * the touching distance so that about half of them collide. A circle counts as n1: its pairs are all settled by the filter
- * of bounding and inscribed circles, so this row is the cost of loading a pair.
+ * A scene is 65,536 pairs of bodies over 4,096 distinct shapes. `mixed`: the distance between two bodies is spread
+ * around the touching distance so that about half of them collide. A circle counts as n1: its pairs are all settled
+ * by the filter of bounding and inscribed circles, so this row is the cost of loading a pair.
  */
 #include "bench.h"
 
@@ -33,8 +33,8 @@ static void fail(const char *what, const narc_error *error) {
     exit(1);
 }
 
-/* An n-arc of radius about 1. With junction normals at equal angles the outline closes if the radii, as a function of the
- * angle, have no first harmonic: so they get a second and a third one. */
+/* An n-arc of radius about 1. With junction normals at equal angles the outline closes if the radii, as a function of
+ * the angle, have no first harmonic: so they get a second and a third one. */
 static size_t make_arcs(size_t n, narc_arc arcs[NARC_MAX_ARCS]) {
     const double turn = 2 * PI * random_unit(), second = 0.6 * random_unit(), third = n > 5 ? 0.25 * random_unit() : 0;
     const double phase2 = 2 * PI * random_unit(), phase3 = 2 * PI * random_unit();

@@ -62,7 +62,7 @@ NARC_API const char *narc_version(void);
 #define NARC_BIT_WORDS(count) (((count) + 63) / 64)
 
 /* See "Precision" above; derived in kernels/overlay.inl. */
-#define NARC_ERROR_BOUND (24.0 / 16777216.0)
+#define NARC_ERROR_BOUND (32.0 / 16777216.0)
 
 /* ------------------------------------------------------------------------------------------------ batches */
 

@@ -9,7 +9,7 @@
  */
 
 /* An edge counts as lying on the support line if its normal is this close to n (radians): above the rounding of a
- * rotated normal, 4 * 2^-24, below any angle between two normals of a shape. */
+ * rotated normal, 6 * 2^-24, below any angle between two normals of a shape. */
 #define PARALLEL 0x1p-20f
 
 /* Where one shape touches its support line: its position across n, the stretch along it, and the slot of the arc; of an

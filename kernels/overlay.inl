@@ -28,15 +28,15 @@
  * Error, in units of e = 2^-24, with D the distance between the positions and E the extents (largest |centre| + radius,
  * scaled); each line bounds what one step adds to g:
  *     storing centres and radii in single precision                           E_a +   E_b
+ *     the rotations' rounding and what is left of their length         4 D +          8 E_b
  *     rounding and rotating the difference of positions                4 D
  *     the relative rotation, the rotation and scaling of centres              E_a + 8 E_b
  *     the difference of centres                                        2 D + 2 E_a + 2 E_b
  *     norm or dot product                                              3 D + 3 E_a + 3 E_b
  *     the sum of radii and the last subtraction                        3 D + 3 E_a + 3 E_b
- *     a junction normal off by 4 e moves a kink along a slope of at
- *     most |u|, or lets a neighbour answer beyond its end              4 D + 4 E_a + 4 E_b
- *     the caller's cosine and sine do not lie on the unit circle              E_a +   E_b
- * Together at most 16 D + 15 E_a + 22 E_b: NARC_ERROR_BOUND, 24 (D + E_a + E_b), covers it.
+ *     a junction normal off by 6 e moves a kink along a slope of at
+ *     most |u|, or lets a neighbour answer beyond its end              6 D + 6 E_a + 6 E_b
+ * Together at most 22 D + 16 E_a + 31 E_b: NARC_ERROR_BOUND, 32 (D + E_a + E_b), covers it.
  *
  * The angle that orders the junctions is the diamond angle, monotonic in the true one: 0 along +x, 1 along +y, below 4.
  * It may swap junctions that agree up to rounding, which the line on junction normals covers. Junctions of one shape
@@ -145,17 +145,21 @@ struct gap {
  * and the walk ends as soon as every lane is known not to collide: then it is some value >= 0. */
 static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, struct cursor b, vi steps, vm live,
                                      bool contact) {
-    const vf next_turn = v_set(8);    /* behind all of this turn: a junction just before +x has rounded to 4 */
     const vf tiny = v_set(0x1p-126f); /* the least normal float: a smaller |u|^2 has lost its digits */
     const vf start = v_select(live, v_set(-INFINITY), v_set(INFINITY));
     struct gap best = {start, v_set(0), v_set(0), v_set(1), a.begin, b.begin};
     vi arc_a = previous_slot(a, a.at), arc_b = previous_slot(b, b.at);
     vf a_x = field(o, CENTER_X, arc_a), a_y = field(o, CENTER_Y, arc_a), a_r = field(o, RADIUS, arc_a);
     vf b_x = field(o, CENTER_X, arc_b), b_y = field(o, CENTER_Y, arc_b), b_r = field(o, RADIUS, arc_b);
-    vf a_turn = field(o, TURN, a.at), a_nx = field(o, NORMAL_X, a.at), a_ny = field(o, NORMAL_Y, a.at);
-    vf b_turn = field(o, TURN, b.at), b_nx = field(o, NORMAL_X, b.at), b_ny = field(o, NORMAL_Y, b.at);
+    /* Angles of at least 0 have the order of their bits, as integers. Those of this turn, 0 to 4, are moved down so
+     * that all of the next turn follow them; exactly, so that the last interval ends where the first one began. */
+    const vi this_turn = vi_set(-0x40800001); /* the bits of 4.0f, and one more */
+    vi a_turn = vi_add(vi_bits(field(o, TURN, a.at)), this_turn);
+    vi b_turn = vi_add(vi_bits(field(o, TURN, b.at)), this_turn);
+    vf a_nx = field(o, NORMAL_X, a.at), a_ny = field(o, NORMAL_Y, a.at);
+    vf b_nx = field(o, NORMAL_X, b.at), b_ny = field(o, NORMAL_Y, b.at);
     /* Does g rise towards the first junction, at the end of the interval before it? */
-    const vm first_is_a = v_le(a_turn, b_turn);
+    const vm first_is_a = vi_lt(a_turn, b_turn);
     vm rises = v_lt(
         cross(v_sub(b_x, a_x), v_sub(b_y, a_y), v_select(first_is_a, a_nx, b_nx), v_select(first_is_a, a_ny, b_ny)),
         v_set(0));
@@ -168,7 +172,7 @@ static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, s
             break;
 
         /* Pass the nearer of the two junctions ahead: it is lo, and its arc takes over. */
-        const vm is_a = v_le(a_turn, b_turn);
+        const vm is_a = vi_lt(a_turn, b_turn);
         const vf lo_x = v_select(is_a, a_nx, b_nx), lo_y = v_select(is_a, a_ny, b_ny);
         const vi passed = vi_select(is_a, a.at, b.at);
         const vf x = field(o, CENTER_X, passed), y = field(o, CENTER_Y, passed), r = field(o, RADIUS, passed);
@@ -184,17 +188,18 @@ static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, s
         /* The junction ahead of it on that shape, a turn later where the list begins anew. */
         const vi next_a = next_slot(a, a.at), next_b = next_slot(b, b.at);
         const vi ahead = vi_select(is_a, next_a, next_b);
-        const vf angle = field(o, TURN, ahead), n_x = field(o, NORMAL_X, ahead), n_y = field(o, NORMAL_Y, ahead);
-        const vf later = v_select(v_lt(angle, v_select(is_a, a_turn, b_turn)), v_add(angle, next_turn), angle);
+        const vf n_x = field(o, NORMAL_X, ahead), n_y = field(o, NORMAL_Y, ahead);
+        const vi next_turn = vi_bits(field(o, TURN, ahead)), turn = vi_add(next_turn, this_turn);
+        const vi later = vi_select(vi_lt(turn, vi_select(is_a, a_turn, b_turn)), next_turn, turn);
         a.at = vi_select(is_a, ahead, a.at);
         b.at = vi_select(is_a, b.at, ahead);
-        a_turn = v_select(is_a, later, a_turn);
+        a_turn = vi_select(is_a, later, a_turn);
         a_nx = v_select(is_a, n_x, a_nx);
         a_ny = v_select(is_a, n_y, a_ny);
-        b_turn = v_select(is_a, b_turn, later);
+        b_turn = vi_select(is_a, b_turn, later);
         b_nx = v_select(is_a, b_nx, n_x);
         b_ny = v_select(is_a, b_ny, n_y);
-        const vm hi_is_a = v_le(a_turn, b_turn);
+        const vm hi_is_a = vi_lt(a_turn, b_turn);
         const vf hi_x = v_select(hi_is_a, a_nx, b_nx), hi_y = v_select(hi_is_a, a_ny, b_ny);
 
         /* The largest g at lo or between lo and hi, if there is a local maximum. */

@@ -14,6 +14,7 @@
  *   v_lt v_le                                                   false where an operand is NaN
  *   v_select(vm, vf a, vf b)                                    a where true, b elsewhere
  *   vi_set vi_load vi_store vi_gather vi_add vi_lt vi_select    the same for int32; vi_add wraps
+ *   vi_bits(vf)                                                 the bits of a float
  *   vi_lanes()                                                  0, 1, 2 ...
  *   vm_and vm_or
  *   vm_bits(vm)                                                 bit k is lane k
@@ -24,5 +25,6 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <string.h>
 
 #endif

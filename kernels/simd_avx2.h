@@ -37,6 +37,7 @@ static inline vi vi_gather(const int32_t *base, vi index) { return _mm256_i32gat
 static inline vi vi_add(vi a, vi b) { return _mm256_add_epi32(a, b); }
 static inline vm vi_lt(vi a, vi b) { return _mm256_castsi256_ps(_mm256_cmpgt_epi32(b, a)); }
 static inline vi vi_select(vm m, vi a, vi b) { return _mm256_blendv_epi8(b, a, _mm256_castps_si256(m)); }
+static inline vi vi_bits(vf a) { return _mm256_castps_si256(a); }
 static inline vi vi_lanes(void) { return _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7); }
 static inline vm vm_and(vm a, vm b) { return _mm256_and_ps(a, b); }
 static inline vm vm_or(vm a, vm b) { return _mm256_or_ps(a, b); }

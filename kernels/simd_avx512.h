@@ -37,6 +37,7 @@ static inline vi vi_gather(const int32_t *base, vi index) { return _mm512_i32gat
 static inline vi vi_add(vi a, vi b) { return _mm512_add_epi32(a, b); }
 static inline vm vi_lt(vi a, vi b) { return _mm512_cmplt_epi32_mask(a, b); }
 static inline vi vi_select(vm m, vi a, vi b) { return _mm512_mask_blend_epi32(m, b, a); }
+static inline vi vi_bits(vf a) { return _mm512_castps_si512(a); }
 static inline vi vi_lanes(void) { return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15); }
 static inline vm vm_and(vm a, vm b) { return _kand_mask16(a, b); }
 static inline vm vm_or(vm a, vm b) { return _kor_mask16(a, b); }

@@ -47,6 +47,7 @@ static inline vi vi_gather(const int32_t *base, vi index) {
 static inline vi vi_add(vi a, vi b) { return vaddq_s32(a, b); }
 static inline vm vi_lt(vi a, vi b) { return vcltq_s32(a, b); }
 static inline vi vi_select(vm m, vi a, vi b) { return vbslq_s32(m, a, b); }
+static inline vi vi_bits(vf a) { return vreinterpretq_s32_f32(a); }
 static inline vi vi_lanes(void) { return vld1q_s32((const int32_t[4]){0, 1, 2, 3}); }
 static inline vm vm_and(vm a, vm b) { return vandq_u32(a, b); }
 static inline vm vm_or(vm a, vm b) { return vorrq_u32(a, b); }

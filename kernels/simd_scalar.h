@@ -32,6 +32,11 @@ static inline vi vi_gather(const int32_t *base, vi index) { return base[index]; 
 static inline vi vi_add(vi a, vi b) { return (int32_t)((uint32_t)a + (uint32_t)b); }
 static inline vm vi_lt(vi a, vi b) { return a < b; }
 static inline vi vi_select(vm m, vi a, vi b) { return m ? a : b; }
+static inline vi vi_bits(vf a) {
+    int32_t bits;
+    memcpy(&bits, &a, sizeof bits);
+    return bits;
+}
 static inline vi vi_lanes(void) { return 0; }
 static inline vm vm_and(vm a, vm b) { return a & b; }
 static inline vm vm_or(vm a, vm b) { return a | b; }

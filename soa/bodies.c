@@ -45,7 +45,7 @@ static narc_status check_body(const narc_shapes *shapes, const narc_bodies *bodi
     if (!isfinite(c) || !isfinite(s))
         return narc_fail(error, NARC_ERROR_NOT_FINITE, body, isfinite(c) ? s : c, "body %zu: %s is %g", body,
                          isfinite(c) ? "sine" : "cosine", isfinite(c) ? s : c);
-    if (fabs(c * c + s * s - 1) > 2 * NARC_TOLERANCE) /* the length is off by half as much */
+    if (fabs(c * c + s * s - 1) > NARC_ROTATION_TOLERANCE)
         return narc_fail(error, NARC_ERROR_ARGUMENT, body, hypot(c, s),
                          "body %zu: cosine and sine make a vector of length %.9g, not 1", body, hypot(c, s));
     const double size = scale * (double)shapes->heads[shape].bound_radius;

@@ -306,10 +306,13 @@ typedef struct narc_column {
  * rounded to single precision. */
 typedef enum narc_precision { NARC_FLOAT32 = 0, NARC_FLOAT64 = 1 } narc_precision;
 
+/* How far cosine^2 + sine^2 may be from 1. */
+#define NARC_ROTATION_TOLERANCE (1.0 / 2048)
+
 /* Bodies: `count` of each column. The place of a shape's point p is (x, y) + scale * [cosine -sine; sine cosine] p.
- * cosine^2 + sine^2 must be 1 to single-precision rounding: the kernels do not normalise. A body with a NaN or an
- * infinity, with a cosine or sine outside -2 .. 2, or with a scale that is not positive or takes the shape out of
- * NARC_MIN_SIZE .. NARC_MAX_SIZE, collides with nothing. */
+ * cosine^2 + sine^2 must be 1 within NARC_ROTATION_TOLERANCE; the kernels remove the rest, so that a rotation may
+ * drift a little. A body with a NaN or an infinity, with another cosine and sine, or with a scale that is not
+ * positive or takes the shape out of NARC_MIN_SIZE .. NARC_MAX_SIZE, collides with nothing. */
 typedef struct narc_bodies {
     size_t count;
     narc_precision position_precision; /* of x and y: float or double */
@@ -320,7 +323,7 @@ typedef struct narc_bodies {
 } narc_bodies;
 
 /* Are all bodies what the kernels expect? Batch calls check indices only; this checks every number: shapes that exist,
- * no NaN or infinity, cosine and sine of length 1 within NARC_TOLERANCE, and sizes in range. The message names the body
+ * no NaN or infinity, rotations within NARC_ROTATION_TOLERANCE, and sizes in range. The message names the body
  * and the quantity, and error->index is the first such body. Errors: NARC_ERROR_ARGUMENT (NULL, not a rotation),
  * NARC_ERROR_INDEX, NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE. Thread-safe. */
 NARC_API narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_bodies *bodies, narc_error *error);

@@ -34,10 +34,10 @@ typedef struct narc_head {
     float inner_x, inner_y, inner_radius;
 } narc_head;
 
-/* 64 roundings, so that the circles stay clear of the deciding formula's error: that is 24 roundings (NARC_ERROR_BOUND)
+/* 96 roundings, so that the circles stay clear of the deciding formula's error: that is 32 roundings (NARC_ERROR_BOUND)
  * of the distance between the positions plus both extents, and that distance is at most the sum of the extents more
  * than the distance between the circles' centres. See kernels/relative.inl. */
-#define NARC_HEAD_SLACK (64.0 / 16777216.0)
+#define NARC_HEAD_SLACK (96.0 / 16777216.0)
 
 struct narc_shapes {
     narc_head *heads;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * test_bodies.c - narc_validate_bodies(): each kind of bad number, and which body the message names.
+ * test_bodies.c - narc_validate_bodies(): each kind of bad number, and which body the message names; drifted rotations.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -90,8 +90,8 @@ static void test_bad_numbers(void **state) {
     bad->sine = -INFINITY;
     expect(&f, NARC_ERROR_NOT_FINITE, "sine");
     *bad = good;
-    bad->sine = 0.8001f;
-    expect(&f, NARC_ERROR_ARGUMENT, "length 1.0000");
+    bad->sine = 0.801f;
+    expect(&f, NARC_ERROR_ARGUMENT, "length 1.0008");
     *bad = good;
     bad->scale = 0;
     expect(&f, NARC_ERROR_SIZE, "scale is 0");
@@ -120,11 +120,55 @@ static void test_bad_arguments(void **state) {
     narc_destroy_shapes(f.shapes);
 }
 
+/* The separation of two boxes, B at the given place and rotation, A at the origin; +infinity if they have none. */
+static float separation_of_boxes(float x, float y, float cosine, float sine) {
+    narc_shapes *shapes = NULL;
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    assert_int_equal(narc_build_box(2, 1, 0.25, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+    const struct body body[2] = {{0, 0, 1, 0, 1, 0}, {(double)x, (double)y, cosine, sine, 1, 0}};
+    const uint32_t a = 1, b = 0; /* both orders of a rotated body and one that is not */
+    const narc_bodies bodies = {.count = 2,
+                                .position_precision = NARC_FLOAT64,
+                                .x = NARC_COLUMN(body, x),
+                                .y = NARC_COLUMN(body, y),
+                                .cosine = NARC_COLUMN(body, cosine),
+                                .sine = NARC_COLUMN(body, sine),
+                                .shape = NARC_COLUMN(body, shape)};
+    const narc_pairs forward = {1, {&a, 0}, {&b, 0}}, backward = {1, {&b, 0}, {&a, 0}};
+    float separation[2];
+    for (int k = 0; k < 2; k++) {
+        const narc_contacts contacts = {.capacity = 1, .separation = &separation[k]};
+        assert_int_equal(
+            narc_find_contacts(shapes, &bodies, k ? &backward : &forward, INFINITY, 1, &contacts, &count, NULL),
+            NARC_OK);
+    }
+    narc_destroy_shapes(shapes);
+    assert_true(separation[0] == separation[1] || fabsf(separation[0] - separation[1]) < 2e-6f);
+    return separation[0];
+}
+
+/* A rotation that has drifted from the unit circle is taken as the rotation it was; one that is far off has no answer. */
+static void test_drifted_rotations(void **state) {
+    (void)state;
+    const float exact = separation_of_boxes(1.5f, 0.75f, 0.6f, 0.8f);
+    for (float drift = -2.4e-4f; drift < 2.4e-4f; drift += 0.1e-4f) {
+        const float drifted = separation_of_boxes(1.5f, 0.75f, 0.6f * (1 + drift), 0.8f * (1 + drift));
+        assert_true(fabsf(drifted - exact) < 2e-6f);
+    }
+    assert_true(isinf(separation_of_boxes(1.5f, 0.75f, 0.6f * 1.001f, 0.8f * 1.001f)));
+    assert_true(isinf(separation_of_boxes(0, 0, 0, 0)));
+    assert_true(isinf(separation_of_boxes(0, 0, 0.6f * 0.999f, 0.8f * 0.999f)));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_good_bodies),
         cmocka_unit_test(test_bad_numbers),
         cmocka_unit_test(test_bad_arguments),
+        cmocka_unit_test(test_drifted_rotations),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -33,12 +33,13 @@ struct answer {
     int arc_a, arc_b;
 };
 
-static struct answer ask_turned(const struct shape *a, double angle, const struct shape *b, double x, double y) {
-    struct scene scene = create_scene(NARC_FLOAT32, 2, 2, 1);
+static struct answer ask_bodies(const struct shape *a, struct body body_a, const struct shape *b, struct body body_b) {
+    struct scene scene = create_scene(NARC_FLOAT64, 2, 2, 1);
     scene_add_shape(&scene, a);
     scene_add_shape(&scene, b);
-    scene_add_body(&scene, turned_body(angle, 1));
-    scene_add_body(&scene, (struct body){.x = x, .y = y, .cosine = 1, .scale = 1, .shape = 1});
+    body_b.shape = 1;
+    scene_add_body(&scene, body_a);
+    scene_add_body(&scene, body_b);
     scene_add_pair(&scene, 0, 1);
     uint64_t *bits = scene_overlaps(&scene);
     struct contacts all = scene_contacts(&scene, INFINITY);
@@ -48,7 +49,7 @@ static struct answer ask_turned(const struct shape *a, double angle, const struc
     if (wrong) {
         fail_msg("B at (%a, %a): wrong %s; separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), errors %.3g, "
                  "%.3g, %.3g",
-                 x, y, wrong, (double)all.view.separation[0], (double)all.view.normal_x[0],
+                 body_b.x, body_b.y, wrong, (double)all.view.separation[0], (double)all.view.normal_x[0],
                  (double)all.view.normal_y[0], (double)all.view.point_x[0], (double)all.view.point_y[0],
                  errors.separation, errors.normal, errors.point);
     }
@@ -58,6 +59,10 @@ static struct answer ask_turned(const struct shape *a, double angle, const struc
     free(bits);
     destroy_scene(&scene);
     return answer;
+}
+
+static struct answer ask_turned(const struct shape *a, double angle, const struct shape *b, double x, double y) {
+    return ask_bodies(a, turned_body(angle, 1), b, (struct body){.x = x, .y = y, .cosine = 1, .scale = 1});
 }
 
 static struct answer ask(const struct shape *a, const struct shape *b, double x, double y) {
@@ -178,6 +183,41 @@ static void test_half_turns(void **state) {
     }
 }
 
+/* The first junctions of A and B, counter-clockwise from A's x axis, agree up to rounding, and the normal is theirs: the
+ * interval that ends with them must end with the one that the first interval began with. */
+static void test_last_interval_meets_first(void **state) {
+    (void)state;
+    struct shape lens,
+        mixed = {{{0x1.56102fd2c42edp-2, -0x1.d9db3b05cfe4ep-2, 0, -0x1.9589d6a800c3cp-1, -0x1.f7028ddcac9fep-2},
+                  {0x1.bfb62b95f33e4p-2, 0x1.c4f6721a0f70cp-2, 0x1.5806d3f61a82ap-2, -0x1.f7028ddcac9fep-2,
+                   0x1.45642e7b3042p-3},
+                  {0x1.89b3dc3457d4p-1, 0x1.fb648f678264ep-2, 0, 0x1.45642e7b3042p-3, 0x1.491a0f25ad1d2p+0},
+                  {0x1.d50331e7c39e1p-4, -0x1.ba115f5167896p-1, 0x1.7cf80dac65349p+0, 0x1.491a0f25ad1d2p+0,
+                   0x1.cd1c6f1176f1cp+0},
+                  {-0x1.e38b525d83ce5p-4, -0x1.2ab08260bb1d8p-1, 0x1.2993dcd8a7727p+0, 0x1.cd1c6f1176f1cp+0,
+                   0x1.238bb20caa71dp+1},
+                  {-0x1.43a10a4bb2887p-1, 0x1.2ddbafd401f3ep-6, 0x1.7bdcd2000ce2bp-2, 0x1.238bb20caa71dp+1,
+                   0x1.a3f5aba3688ap+1},
+                  {-0x1.ffb82e8b7586ap-1, -0x1.0f2617eb94bbbp-5, 0, 0x1.a3f5aba3688ap+1, 0x1.ffe6f1aa72d6ep+1},
+                  {-0x1.d1c0a3ab40a67p-5, -0x1.b26adea68c427p-1, 0, 0x1.ffe6f1aa72d6ep+1, 0x1.5f6e7a6f42b9p+2}},
+                 8};
+    lens =
+        (struct shape){{{0x1.cea7f50158eb1p-1, -0x1.368d36697f931p-2, 0x1.4aba6911bf71fp-7, -0x1.2a414faec6d6dp+0,
+                         0x1.0718658603aa1p+0},
+                        {0, -0x1.ccde9df41da2ap+0, 0x1.c2389dffe5fe9p+0, 0x1.0718658603aa1p+0, 0x1.0d1d8252d98e2p+1},
+                        {-0x1.c3421947e9b8ep-1, -0x1.34ffc8dac4467p-2, 0x1.4aba6911bf71fp-6, 0x1.0d1d8252d98e2p+1,
+                         -0x1.f7c332d2b5228p+0},
+                        {0, 0x1.ccde9df41da2ap+0, 0x1.2656698978c85p+1, -0x1.f7c332d2b5228p+0, -0x1.2a414faec6d6dp+0}},
+                       4};
+    const struct body at_a = {.cosine = 0x1.88705p-3f, .sine = 0x1.f6831ep-1f, .scale = 1};
+    const struct body at_b = {.x = -0x1.06d629bce93f6p+0,
+                              .y = 0x1.88c24b752eadbp+0,
+                              .cosine = 0x1.cf4e28p-1f,
+                              .sine = -0x1.b3daa8p-2f,
+                              .scale = 1};
+    assert_false(ask_bodies(&mixed, at_a, &lens, at_b).overlap);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_circles_touch),
@@ -187,6 +227,7 @@ int main(void) {
         cmocka_unit_test(test_just_beyond_an_edge),
         cmocka_unit_test(test_just_beyond_a_junction),
         cmocka_unit_test(test_half_turns),
+        cmocka_unit_test(test_last_interval_meets_first),
     };
     return test_begin() ? cmocka_run_group_tests_name("cases", tests, NULL, NULL) : TEST_SKIPPED;
 }
