@@ -1,0 +1,143 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# From a machine with a shell and apt to a picture (run) or to all tests (test).
+# shellcheck disable=SC2086 # lists of packages and commands are split into words on purpose
+set -eu
+
+usage() {
+    cat <<'EOF'
+usage: sh cmake/bootstrap.sh run     install what is missing, build, collide 20,000 bodies; results in out/
+       sh cmake/bootstrap.sh test    install what is missing, build in every way, run all tests
+
+Installs Debian and Ubuntu packages with apt-get, as root or through sudo, and nothing if all are there.
+EOF
+}
+
+say() { printf '\n== %s\n' "$*"; }
+fail() {
+    printf 'bootstrap: %s\n' "$*" >&2
+    exit 1
+}
+
+cd "$(dirname "$0")/.."
+jobs=$(nproc 2>/dev/null || echo 2)
+export CMAKE_BUILD_PARALLEL_LEVEL="$jobs" CTEST_PARALLEL_LEVEL="$jobs"
+
+# ---------------------------------------------------------------------------- packages
+build_packages="gcc libc6-dev make cmake pkg-config libsleef-dev libfreetype-dev libcjson-dev libcairo2-dev \
+    libcmocka-dev"
+run_packages="$build_packages fonts-symbola"
+test_packages="$run_packages g++ binutils clang libomp-dev libbenchmark-dev"
+arm64_tools="gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
+arm64_libraries="libsleef-dev libsleef3 libcmocka-dev libcmocka0"
+
+missing_of() {
+    for package; do
+        case $(dpkg-query -W -f '${db:Status-Abbrev} ' "$package" 2>/dev/null) in
+        *ii*) ;;
+        *) printf ' %s' "$package" ;;
+        esac
+    done
+}
+
+# Installs those of the named packages that are missing; false if that fails.
+install_packages() {
+    missing=$(missing_of "$@")
+    [ -n "$missing" ] || return 0
+    say "installing:$missing"
+    as_root=
+    if [ "$(id -u)" -ne 0 ]; then
+        as_root=sudo
+        if ! command -v sudo >/dev/null; then
+            echo "bootstrap: to install packages, run this as root or install sudo" >&2
+            return 1
+        fi
+    fi
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get update &&
+        $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
+}
+
+require_packages() {
+    if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+        echo "bootstrap: not Debian or Ubuntu. Install what these packages hold, then use the CMake presets:" >&2
+        printf '  %s\n' "$@" >&2
+        exit 2
+    fi
+    install_packages "$@" || fail "these packages could not be installed:$missing"
+}
+
+# The arm64 libraries are unpacked in build/arm64, from package lists of their own: the system does not change.
+fetch_arm64_libraries() {
+    [ -e build/arm64/complete ] && return 0
+    rm -rf build/arm64 build/arm64-apt
+    mkdir -p build/arm64 build/arm64-apt/lists/partial build/arm64-apt/archives/partial
+    (
+        cd build/arm64-apt
+        arm64_apt="apt-get -q -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o APT::Sandbox::User=root \
+            -o Dir::State::lists=$PWD/lists -o Dir::Cache=$PWD"
+        $arm64_apt update # a source without arm64 may make this fail; the download decides
+        $arm64_apt download $arm64_libraries || exit 1
+        for package in *.deb; do dpkg-deb -x "$package" ../arm64 || exit 1; done
+        touch ../arm64/complete
+    ) || { rm -rf build/arm64; return 1; }
+}
+
+# ---------------------------------------------------------------------------- steps
+# build takes a preset and a target, check a preset and a command to go in front of ctest.
+build() {
+    say "build/$1"
+    cmake --preset "$1" || fail "configuring build/$1 failed"
+    cmake --build --preset "$1" --target "$2" || fail "building build/$1 failed"
+}
+
+check() {
+    build "$1" all
+    ${2:-} ctest --preset "$1" || fail "tests failed in build/$1"
+}
+
+run() {
+    require_packages $run_packages
+    build release narc_tool
+    narc=build/release/tools/narc
+    font=$(dpkg -L fonts-symbola | grep -i -m 1 '\.[ot]tf$') || fail "fonts-symbola has no font file"
+    mkdir -p out
+    say "shapes"
+    "$narc" shapes "$font" '👻🏠🚀🌳' --arcs 8 --out out/shapes.json --picture out/shapes.png
+    say "scene"
+    "$narc" scene --shapes out/shapes.json --bodies 20000 --density 0.25 --seed 1 --out out/bodies.csv
+    say "collide"
+    "$narc" collide --shapes out/shapes.json --bodies out/bodies.csv --out out/contacts.csv --picture out/collisions.png
+    say "written"
+    ls -l out/shapes.json out/shapes.png out/bodies.csv out/contacts.csv out/collisions.png
+}
+
+test_all() {
+    require_packages $test_packages
+    check ci
+    check bare
+    check asan
+    # Thread sanitizer of older compilers wants a fixed address layout, where setting it is allowed.
+    fixed=$(setarch "$(uname -m)" -R true 2>/dev/null && echo "setarch $(uname -m) -R") || fixed=
+    check tsan "$fixed"
+    skipped=
+    case $(uname -m) in
+    aarch64 | arm64) ;; # NEON is what all of the above ran
+    *)
+        if install_packages $arm64_tools && fetch_arm64_libraries; then
+            check aarch64
+        else
+            skipped="; NEON SKIPPED: no arm64 compiler, qemu or libraries from this machine's package sources"
+        fi
+        ;;
+    esac
+    say "all tests passed$skipped"
+}
+
+case ${1:-} in
+run) run ;;
+test) test_all ;;
+*)
+    usage
+    case ${1:-} in -h | --help | help) exit 0 ;; *) exit 2 ;; esac
+    ;;
+esac

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: MIT
+# What cmake --install writes: headers, both libraries, the CMake package and the pkg-config file.
+include(CMakePackageConfigHelpers)
+
+install(FILES soa/narc_export.h soa/narc_shapes.h dispatch/narc.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+
+# Two export files, because only those who ask for the static library need its dependencies.
+set(package_directory "${CMAKE_INSTALL_LIBDIR}/cmake/narc")
+install(TARGETS narc EXPORT narc_shared INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(TARGETS narc_static EXPORT narc_static INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(EXPORT narc_shared NAMESPACE narc:: FILE narcShared.cmake DESTINATION "${package_directory}")
+install(EXPORT narc_static NAMESPACE narc:: FILE narcStatic.cmake DESTINATION "${package_directory}")
+
+configure_package_config_file(cmake/narcConfig.cmake.in narcConfig.cmake INSTALL_DESTINATION "${package_directory}")
+write_basic_package_version_file(narcConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/narcConfig.cmake" "${PROJECT_BINARY_DIR}/narcConfigVersion.cmake"
+  DESTINATION "${package_directory}")
+
+# Paths from the folder of narc.pc, so that the installed tree can be moved. Programs that link the shared library need
+# no package but this one, therefore SLEEF stands in Libs.private and not in Requires.private.
+if(IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+  set(pc_prefix "${CMAKE_INSTALL_PREFIX}")
+  set(pc_libdir "${CMAKE_INSTALL_LIBDIR}")
+else()
+  file(RELATIVE_PATH up "/${CMAKE_INSTALL_LIBDIR}/pkgconfig/" "/")
+  string(REGEX REPLACE "/$" "" pc_prefix "\${pcfiledir}/${up}")
+  set(pc_libdir "\${prefix}/${CMAKE_INSTALL_LIBDIR}")
+endif()
+list(JOIN SLEEF_LDFLAGS " " pc_sleef)
+configure_file(cmake/narc.pc.in narc.pc @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/narc.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
