@@ -8,10 +8,12 @@
 #include "column.h"
 #include "dispatch.h"
 
+#include <stdatomic.h>
 #include <string.h>
 
 #ifdef _OPENMP
 #include <omp.h>
+#include <sched.h>
 #endif
 
 /* Pairs in a chunk: some 50 microseconds of work, against about one for handing it out; a multiple of 64. For contacts
@@ -26,9 +28,13 @@ unsigned narc_default_threads(void) {
 #endif
 }
 
+/* OpenMP ends the process if it cannot start as many threads as it was asked for. */
+enum { MOST_THREADS = 256 };
+
 /* How many threads to ask for, given how many chunks there are. */
 static int thread_count(unsigned threads, size_t chunks) {
-    const unsigned wanted = threads ? threads : narc_default_threads();
+    const unsigned asked = threads ? threads : narc_default_threads(),
+                   wanted = asked < MOST_THREADS ? asked : MOST_THREADS;
     return (int)(wanted < chunks ? wanted : chunks);
 }
 
@@ -78,6 +84,12 @@ static void copy_contacts(const struct buffer *from, size_t found, size_t offset
     copy_array(to->arc_b, from->arc_b, offset, count, sizeof *to->arc_b);
 }
 
+static void give_way(void) {
+#ifdef _OPENMP
+    sched_yield();
+#endif
+}
+
 /* The contacts of one chunk, to the buffer; returns how many. */
 static size_t fill_buffer(const narc_kernel_table *kernels, const narc_batch *batch, size_t first, size_t count,
                           float margin, struct buffer *b) {
@@ -101,22 +113,22 @@ size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *bat
         }
         return total;
     }
-    /* Chunks run in any order; only the reservation of their place in the list is in the order of the pairs. */
+    /* Chunks are handed out in the order of the pairs and run at once; only the reservation of their place in the list
+     * waits for its turn. It gives up the processor while it waits: OpenMP's own `ordered` spins, which on a busy machine
+     * keeps the thread that it waits for from running. */
+    atomic_size_t turn = 0;
 #ifdef _OPENMP
-#pragma omp parallel for ordered schedule(dynamic) num_threads(team)
+#pragma omp parallel for schedule(monotonic : dynamic) num_threads(team)
 #endif
     for (size_t chunk = 0; chunk < chunks; chunk++) {
         struct buffer buffer;
         const size_t start = chunk * CHUNK, size = chunk_size(count, start);
         const size_t found = fill_buffer(kernels, batch, first + start, size, margin, &buffer);
-        size_t offset;
-#ifdef _OPENMP
-#pragma omp ordered
-#endif
-        {
-            offset = total;
-            total += found;
-        }
+        while (atomic_load_explicit(&turn, memory_order_acquire) != chunk)
+            give_way();
+        const size_t offset = total;
+        total += found;
+        atomic_store_explicit(&turn, chunk + 1, memory_order_release);
         copy_contacts(&buffer, found, offset, out_contacts);
     }
     return total;

@@ -20,7 +20,9 @@
  *   Positions are subtracted first, in double precision if they are double; everything else is single precision. With
  *   the extent E of a body = its largest |centre| + radius over its arcs, times its scale, and D the distance between
  *   the two positions, a separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the exact one, and `overlap` can be
- *   wrong only for pairs whose exact separation is closer to 0 than that. `overlap` and `contact` agree always.
+ *   wrong only for pairs whose exact separation is closer to 0 than that. `overlap` and `contact` agree always. (Where
+ *   a shape's arcs were given a little apart, see NARC_TOLERANCE, that much more is uncertain. Kernels expect the
+ *   processor's usual state: rounding to nearest, denormal numbers not flushed to zero.)
  *
  * Example
  *
@@ -68,8 +70,8 @@ NARC_API const char *narc_version(void);
 
 /* Which pairs collide? Bit k % 64 of out_bits[k / 64] is set if pair k does; the bits behind the last pair are 0.
  *   out_bits   NARC_BIT_WORDS(pairs->count) words, overlapping none of the inputs
- *   threads    how many to use at most; 0: as OpenMP would; 1: the calling thread, without OpenMP. A build without
- *              OpenMP always uses one.
+ *   threads    how many to use at most; 0: as OpenMP would; 1: the calling thread, without OpenMP. Never more than 256,
+ *              and a build without OpenMP always uses one.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (a needed pointer is NULL, too many pairs),
  * NARC_ERROR_INDEX (`error` names the pair and the body or the shape), NARC_ERROR_ISA_UNKNOWN,
  * NARC_ERROR_ISA_UNSUPPORTED (NARC_ISA is set to something that can't be had). No pairs: NARC_OK. Allocates nothing. */
@@ -129,7 +131,7 @@ NARC_API bool narc_isa_supported(const char *name);
 NARC_API const char *narc_kernel_name(size_t index);
 NARC_API const char *narc_kernel_isa(size_t index);
 
-/* What the processor and the operating system offer, as far as this library asks: such as "avx avx2 fma avx512f". */
+/* What the processor and the operating system offer, as far as this library asks: such as "avx avx2" or "neon". */
 NARC_API const char *narc_cpu_features(void);
 
 /* How many threads `threads` = 0 means now; 1 in a build without OpenMP. */

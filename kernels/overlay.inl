@@ -38,7 +38,7 @@
  *     most |u|, or lets a neighbour answer beyond its end              6 D + 6 E_a + 6 E_b
  * Together at most 22 D + 16 E_a + 31 E_b: NARC_ERROR_BOUND, 32 (D + E_a + E_b), covers it.
  *
- * The angle that orders the junctions is the diamond angle, monotonic in the true one: 0 along +x, 1 along +y, below 4.
+ * The angle that orders the junctions is the diamond angle, monotonic in the true one: 0 along +x, 1 along +y, at most 4.
  * It may swap junctions that agree up to rounding, which the line on junction normals covers. Junctions of one shape
  * never swap: their normals differ by more than NARC_TOLERANCE.
  */

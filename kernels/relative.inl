@@ -97,14 +97,10 @@ static inline vf inverse_length(vf c, vf s, vm *out_valid) {
 
 static inline vm within(vf value, float limit) { return v_le(v_abs(value), v_set(limit)); }
 
-/* The bounding radius in the head is a little too large, hence the tolerance. */
+/* The bounding radius has 96 e of the extent in it, so this keeps scaled coordinates below 2e14, too. */
 static inline vm size_in_range(vf scale, const struct circles *bound, int k) {
-    const float distance = (float)NARC_MAX_DISTANCE;
     const vf size = v_mul(scale, v_load(bound->radius + k));
-    const vm sized = vm_and(v_le(v_set((float)NARC_MIN_SIZE), size),
-                            v_le(size, v_set((float)(NARC_MAX_SIZE * (1 + NARC_TOLERANCE)))));
-    return vm_and(sized, vm_and(within(v_mul(scale, v_load(bound->x + k)), distance),
-                                within(v_mul(scale, v_load(bound->y + k)), distance)));
+    return vm_and(v_le(v_set((float)NARC_MIN_SIZE), size), v_le(size, v_set((float)NARC_HEAD_MAX_RADIUS)));
 }
 
 /* Squared distance between the centres of the circles of A and B, and the sum of their radii, for lanes k ... */

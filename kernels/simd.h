@@ -23,6 +23,7 @@
 #ifndef NARC_SIMD_H
 #define NARC_SIMD_H
 
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>

@@ -4,6 +4,10 @@
  */
 #include "simd.h"
 
+#if FLT_EVAL_METHOD != 0
+#error "single precision must be computed in single precision: on 32-bit x86, compile with -msse2 -mfpmath=sse"
+#endif
+
 #define V_WIDTH 1
 typedef float vf;
 typedef int32_t vi;

@@ -34,8 +34,11 @@ static double position_at(const narc_bodies *bodies, narc_column column, size_t 
 static narc_status check_body(const narc_shapes *shapes, const narc_bodies *bodies, size_t body, narc_error *error) {
     const uint32_t shape = narc_index_at(bodies->shape, body);
     const double x = position_at(bodies, bodies->x, body), y = position_at(bodies, bodies->y, body);
-    const double c = (double)narc_float_at(bodies->cosine, body), s = (double)narc_float_at(bodies->sine, body);
-    const double scale = bodies->scale.base ? (double)narc_float_at(bodies->scale, body) : 1;
+    /* In single precision, as the kernels compute it: what passes here has an answer there. */
+    const float cosine = narc_float_at(bodies->cosine, body), sine = narc_float_at(bodies->sine, body);
+    const float off = cosine * cosine + sine * sine - 1.0f;
+    const float scale = bodies->scale.base ? narc_float_at(bodies->scale, body) : 1.0f;
+    const double c = (double)cosine, s = (double)sine;
     if (shape >= shapes->count)
         return narc_fail(error, NARC_ERROR_INDEX, body, shape, "body %zu: shape is %lu, but there are %zu shapes", body,
                          (unsigned long)shape, shapes->count);
@@ -45,14 +48,14 @@ static narc_status check_body(const narc_shapes *shapes, const narc_bodies *bodi
     if (!isfinite(c) || !isfinite(s))
         return narc_fail(error, NARC_ERROR_NOT_FINITE, body, isfinite(c) ? s : c, "body %zu: %s is %g", body,
                          isfinite(c) ? "sine" : "cosine", isfinite(c) ? s : c);
-    if (fabs(c * c + s * s - 1) > NARC_ROTATION_TOLERANCE)
+    if (!(fabsf(off) <= (float)NARC_ROTATION_TOLERANCE))
         return narc_fail(error, NARC_ERROR_ARGUMENT, body, hypot(c, s),
                          "body %zu: cosine and sine make a vector of length %.9g, not 1", body, hypot(c, s));
-    const double size = scale * (double)shapes->heads[shape].bound_radius;
-    if (!(scale > 0 && size >= NARC_MIN_SIZE && size <= NARC_MAX_SIZE * (1 + NARC_TOLERANCE)))
-        return narc_fail(error, NARC_ERROR_SIZE, body, scale,
-                         "body %zu: scale is %g, its bounding radius is then %g, not in %g .. %g", body, scale, size,
-                         NARC_MIN_SIZE, NARC_MAX_SIZE);
+    const float size = scale * shapes->heads[shape].bound_radius;
+    if (!(size >= (float)NARC_MIN_SIZE && size <= (float)NARC_HEAD_MAX_RADIUS))
+        return narc_fail(error, NARC_ERROR_SIZE, body, (double)scale,
+                         "body %zu: scale is %.9g, its bounding radius is then %.9g, not in %g .. %g", body,
+                         (double)scale, (double)size, NARC_MIN_SIZE, NARC_MAX_SIZE);
     return NARC_OK;
 }
 

@@ -97,10 +97,9 @@ typedef struct side {
 
 static narc_status find_sides(const narc_point *points, size_t count, side *out_sides, narc_error *error) {
     double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        if (!isfinite(points[i].x) || !isfinite(points[i].y))
-            return narc_fail(error, NARC_ERROR_NOT_FINITE, i, isfinite(points[i].x) ? points[i].y : points[i].x,
-                             "point %zu: a coordinate is not finite", i);
+    narc_status status = narc_check_points(points, count, error);
+    if (status != NARC_OK)
+        return status;
     for (size_t i = 0; i < count; i++) {
         narc_point from = points[i], to = points[(i + 1) % count];
         double length = hypot(to.x - from.x, to.y - from.y);

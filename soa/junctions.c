@@ -43,10 +43,9 @@ static narc_status measure_chords(const narc_point *points, size_t count, chain 
                                   narc_error *error) {
     double sum = 0;
     out_chain->count = count;
-    for (size_t i = 0; i < count; i++)
-        if (!isfinite(points[i].x) || !isfinite(points[i].y))
-            return narc_fail(error, NARC_ERROR_NOT_FINITE, i, isfinite(points[i].x) ? points[i].y : points[i].x,
-                             "point %zu: a coordinate is not finite", i);
+    narc_status status = narc_check_points(points, count, error);
+    if (status != NARC_OK)
+        return status;
     for (size_t i = 0; i < count; i++) {
         narc_point from = points[i], to = points[(i + 1) % count];
         double x = to.x - from.x, y = to.y - from.y, length = hypot(x, y);
@@ -198,18 +197,23 @@ static void find_radii(const chain *c, double *out_min, double *out_max, double 
 static narc_status choose_radius(chain *c, double radius, narc_error *error) {
     double least, most, chosen;
     find_radii(c, &least, &most, &chosen);
-    if (c->count % 2)
+    if (c->count % 2) {
+        if (fabs(radius - chosen) <= NARC_TOLERANCE * chosen)
+            return NARC_OK;
         return narc_fail(error, NARC_ERROR_RADIUS, 0, radius,
-                         "radius is %.9g, but an odd number of points has one solution, %.9g: give 0", radius, chosen);
-    c->alpha = asin(fmin(1, c->chord[0] / (2 * radius)));
-    bool fits = radius >= least * (1 - RIGHT_ANGLE_SLACK);
-    for (size_t i = 0; i < c->count && fits; i++) {
-        double alpha = find_alpha(c, i, c->alpha);
-        fits = alpha >= NARC_TOLERANCE / 2 && alpha <= NARC_PI / 2 + RIGHT_ANGLE_SLACK;
+                         "radius is %.9g, but an odd number of points has one solution, %.9g", radius, chosen);
     }
-    if (!fits)
+    c->alpha = asin(fmin(1, c->chord[0] / (2 * radius)));
+    if (radius < least * (1 - RIGHT_ANGLE_SLACK) || radius > most)
         return narc_fail(error, NARC_ERROR_RADIUS, 0, radius, "radius is %.9g, not between %.9g and %.9g", radius,
                          least, most);
+    for (size_t i = 0; i < c->count; i++) {
+        double alpha = find_alpha(c, i, c->alpha);
+        if (alpha < NARC_TOLERANCE / 2 || alpha > NARC_PI / 2 + RIGHT_ANGLE_SLACK)
+            return narc_fail(error, NARC_ERROR_RADIUS, i, radius,
+                             "radius is %.9g, with which the half central angle of arc %zu is %.9g rad", radius, i,
+                             alpha);
+    }
     return NARC_OK;
 }
 

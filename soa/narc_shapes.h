@@ -58,7 +58,8 @@ extern "C" {
 /* Most shapes in one store (fewer if their arcs would not fit in 2^31 floats). */
 #define NARC_MAX_SHAPES 0x7fffffffu
 
-/* A shape's bounding radius, times a body's scale, must lie in this range: then every product in the kernels stays far
+/* A shape's bounding radius, times a body's scale, must lie in this range (with the room for rounding that the kernels
+ * add to it, 6e-6 of the largest |centre| + radius of its arcs): then every product in the kernels stays far
  * from overflow and underflow in single precision. Shapes outside it are refused, and those that reach further than
  * NARC_MAX_SIZE from their own origin; a body whose scale takes it outside never collides. */
 #define NARC_MIN_SIZE 1e-9
@@ -154,12 +155,12 @@ NARC_API narc_status narc_build_box(double width, double height, double radius, 
 NARC_API narc_status narc_build_polygon(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
                                         size_t *out_count, narc_error *error);
 
-/* The paper's figure 3: two large circles that overlap, `distance` between their centres, and two small circles
- * inscribed where they meet. The large centres are (0, distance / 2), radius `radius_low` (its arc bounds the shape
- * below), and (0, -distance / 2), radius `radius_high`; `radius_left` and `radius_right` are those of the tips (0: a
- * sharp tip). Arcs, in order: right, upper, left, lower. With equal large radii R the lens is 2 R - distance thick.
- * NARC_ERROR_SIZE: the large circles do not overlap, or one contains the other. NARC_ERROR_RADIUS: a small
- * circle does not fit between them. */
+/* Figure 3 of "Using Piecewise Circular Curves as a 2D Collision Primitive": two large circles that overlap,
+ * `distance` between their centres, and two small circles inscribed where they meet. The large centres are (0,
+ * distance / 2), radius `radius_low` (its arc bounds the shape below), and (0, -distance / 2), radius `radius_high`;
+ * `radius_left` and `radius_right` are those of the tips (0: a sharp tip). Arcs, in order: right, upper, left, lower.
+ * With equal large radii R the lens is 2 R - distance thick. NARC_ERROR_SIZE: the large circles do not overlap, or
+ * one contains the other. NARC_ERROR_RADIUS: a small circle does not fit between them. */
 typedef struct narc_four_arc {
     double radius_low, radius_high;
     double distance;
@@ -172,26 +173,28 @@ NARC_API narc_status narc_build_four_arc(narc_four_arc form, narc_arc *out_arcs,
  * exterior angle at point i; then radius[i] = chord[i] / (2 sin alpha[i]).
  *   Even count: `radius`, that of arc 0, fixes all others; 0 chooses the feasible one that makes the radii most alike
  *   (least variance of their logarithms). The exterior angles at the even points must add up to pi (as must the odd
- *   ones). Odd count: there is exactly one solution, `radius` must be 0.
+ *   ones). Odd count: there is exactly one solution, `radius` must be 0 or that of the solution.
  * NARC_ERROR_COUNT: fewer than 3 or more than NARC_MAX_ARCS points. NARC_ERROR_NOT_CONVEX: a point where the
  * outline does not turn left. NARC_ERROR_NO_SOLUTION: the angle sums differ, or some alpha cannot be positive and at
  * most pi / 2; the message says which condition fails and where. NARC_ERROR_RADIUS: `radius` is outside the feasible
- * range (the message tells the range), or an odd count was given one. */
+ * range (the message tells the range), or an odd count was given another. */
 NARC_API narc_status narc_build_points(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
                                        size_t *out_count, narc_error *error);
 
-/* The open range of radii of arc 0 that narc_build_points() accepts for these points, and its own choice. For an odd
- * count all three are the one solution. `*out_max` may be +infinity. Errors as narc_build_points(). */
+/* The open range of radii of arc 0 for which an n-arc with these junctions exists, and the choice of
+ * narc_build_points(), which accepts nothing outside that range; inside, near its ends, it refuses arcs that are too
+ * flat (NARC_MAX_RADIUS_RATIO). For an odd count all three are the one solution. `*out_max` may be +infinity. Errors
+ * as narc_build_points(). */
 NARC_API narc_status narc_find_radius_range(const narc_point *points, size_t count, double *out_min, double *out_max,
                                             double *out_chosen, narc_error *error);
 
-/* Algorithm 1 of the paper, corrected: from any simple polygon (either orientation, convex or not, odd or even count, 3
- * .. NARC_MAX_ARCS vertices) to the junctions of a valid n-arc near it, as many as the polygon has vertices,
- * counter-clockwise, ready for narc_build_points(). The exterior angles are replaced by the nearest ones (least
- * squares) for which an n-arc exists; lines with those directions go through the midpoints of the sides, moved only as
- * far as needed to keep every side's length positive; the junctions are where they meet. The n-arc follows the polygon,
- * it does not bound it. NARC_ERROR_NOT_SIMPLE: the polygon crosses or touches itself, repeats a vertex, or has no area.
- *  */
+/* Algorithm 1 of "Using Piecewise Circular Curves as a 2D Collision Primitive", corrected: from any simple polygon
+ * (either orientation, convex or not, odd or even count, 3 .. NARC_MAX_ARCS vertices) to the junctions of a valid
+ * n-arc near it, as many as the polygon has vertices, counter-clockwise, ready for narc_build_points(). The exterior
+ * angles are replaced by the nearest ones (least squares) for which an n-arc exists; lines with those directions go
+ * through the midpoints of the sides, moved only as far as needed to keep every side's length positive; the junctions
+ * are where they meet. The n-arc follows the polygon, it does not bound it. NARC_ERROR_NOT_SIMPLE: the polygon
+ * crosses or touches itself, repeats a vertex, or has no area. */
 NARC_API narc_status narc_adjust_polygon(const narc_point *polygon, size_t count, narc_point *out_points,
                                          narc_error *error);
 
@@ -288,8 +291,8 @@ NARC_API size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_ar
 NARC_API unsigned narc_shape_flags(const narc_shapes *shapes, uint32_t shape);
 
 /* The axis-aligned bounding box of a stored shape rotated by (cosine, sine) and then scaled, around its origin; a
- * little larger than exact so that rounding never makes it too small. False if there is no such shape. Meant for broad
- * phases. */
+ * little larger than exact so that rounding never makes it too small. False if there is no such shape, or cosine and
+ * sine are 0 or not finite; their length does not matter. Meant for broad phases. */
 NARC_API bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, float sine, float scale,
                             narc_aabb *out_aabb);
 

@@ -33,6 +33,9 @@ double narc_find_sweep(const narc_arc *arc);
  * both arcs; an arc of half a turn gets two exactly opposite normals. */
 void narc_read_outline(const narc_arc *arcs, size_t count, narc_outline *out_outline);
 
+/* Are all coordinates finite? */
+narc_status narc_check_points(const narc_point *points, size_t count, narc_error *error);
+
 /* narc_validate_arcs() for those who need the outline and the bounding circle (absolute coordinates) next. */
 narc_status narc_check_arcs(const narc_arc *arcs, size_t count, narc_outline *out_outline, narc_circle *out_bound,
                             narc_error *error);

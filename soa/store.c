@@ -120,7 +120,7 @@ static size_t find_block_size(size_t count) {
 narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t arc_count) {
     if (!shapes)
         return NARC_ERROR_ARGUMENT;
-    if (shape_count > NARC_MAX_SHAPES || arc_count > MAX_FLOATS)
+    if (shape_count > NARC_MAX_SHAPES || arc_count > MAX_FLOATS / NARC_PLANES)
         return NARC_ERROR_COUNT;
     /* A block has 5 floats an arc, and a shape wastes most with one arc (a circle): 24 - 5 floats. */
     return make_room(shapes, shapes->count + shape_count,
@@ -202,6 +202,10 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
     for (size_t i = 0; i < count; i++)
         extent = fmax(extent, hypot(arcs[i].center_x, arcs[i].center_y) + arcs[i].radius);
     narc_head head = make_head(&outline, count, bound, extent);
+    if ((double)head.bound_radius > NARC_HEAD_MAX_RADIUS)
+        return narc_fail(error, NARC_ERROR_SIZE, 0, bound.radius,
+                         "the shape's bounding radius is %.9g, with room for rounding %.9g, more than %g", bound.radius,
+                         (double)head.bound_radius, NARC_MAX_SIZE);
     head.block = (uint32_t)block;
     memset(shapes->arcs + block, 0, block_size * sizeof(float)); /* what is behind the planes is never read */
     write_block(&outline, shapes->arcs + block);
@@ -262,7 +266,10 @@ bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, floa
     narc_head head = shapes->heads[shape];
     const float *block = shapes->arcs + head.block;
     size_t count = head.count, stride = head.stride;
-    double c = (double)cosine, s = (double)sine, extent = 0;
+    double length = hypot((double)cosine, (double)sine), c = (double)cosine / length, s = (double)sine / length;
+    double extent = 0;
+    if (!(length > 0) || !isfinite(length))
+        return false;
     for (size_t i = 0; i < count; i++)
         extent = fmax(extent, fabs((double)block[i]) + fabs((double)block[stride + i]) + (double)block[2 * stride + i]);
     /* The world's x axis is (c, -s) in the shape's axes, its y axis (s, c). */

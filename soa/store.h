@@ -39,6 +39,9 @@ typedef struct narc_head {
  * than the distance between the circles' centres. See kernels/relative.inl. */
 #define NARC_HEAD_SLACK (96.0 / 16777216.0)
 
+/* The largest bound_radius, scaled: a centred shape of NARC_MAX_SIZE passes with its room for rounding. */
+#define NARC_HEAD_MAX_RADIUS (NARC_MAX_SIZE * (1 + NARC_TOLERANCE))
+
 struct narc_shapes {
     narc_head *heads;
     float *arcs;

@@ -113,6 +113,14 @@ static narc_status check_size(const narc_outline *o, narc_circle bound, narc_err
     return NARC_OK;
 }
 
+narc_status narc_check_points(const narc_point *points, size_t count, narc_error *error) {
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(points[i].x) || !isfinite(points[i].y))
+            return narc_fail(error, NARC_ERROR_NOT_FINITE, i, isfinite(points[i].x) ? points[i].y : points[i].x,
+                             "point %zu: a coordinate is not finite", i);
+    return NARC_OK;
+}
+
 narc_status narc_check_arcs(const narc_arc *arcs, size_t count, narc_outline *out_outline, narc_circle *out_bound,
                             narc_error *error) {
     narc_status status;

@@ -163,12 +163,30 @@ static void test_drifted_rotations(void **state) {
     assert_true(isinf(separation_of_boxes(0, 0, 0.6f * 0.999f, 0.8f * 0.999f)));
 }
 
+/* The kernels take a drifted rotation as the rotation it was, and so must the box that a broad phase uses. */
+static void test_box_of_drifted_rotation(void **state) {
+    (void)state;
+    struct fixture f;
+    set_up(&f);
+    narc_aabb box;
+    for (float length = 0.9998f; length < 1.0003f; length += 0.0001f) {
+        assert_true(narc_get_aabb(f.shapes, 0, 0.6f * length, 0.8f * length, 0.5f, &box));
+        assert_true(box.min_x <= -1 && box.min_y <= -1 && box.max_x >= 1 && box.max_y >= 1);
+        assert_true(box.min_x > -1.0001 && box.max_y < 1.0001);
+    }
+    assert_false(narc_get_aabb(f.shapes, 0, 0, 0, 1, &box));
+    assert_false(narc_get_aabb(f.shapes, 0, NAN, 0, 1, &box));
+    assert_false(narc_get_aabb(f.shapes, 1, 1, 0, 1, &box));
+    narc_destroy_shapes(f.shapes);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_good_bodies),
         cmocka_unit_test(test_bad_numbers),
         cmocka_unit_test(test_bad_arguments),
         cmocka_unit_test(test_drifted_rotations),
+        cmocka_unit_test(test_box_of_drifted_rotation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
