@@ -44,13 +44,13 @@ fails() {
     "$narc" "$@" >out.txt 2>err.txt
     status=$?
     if [ $status -eq 2 ] && [ "$(wc -l <err.txt)" -eq 1 ] && grep -q "^$pattern" err.txt && [ ! -s out.txt ] &&
-        [ -z "$(find . -name 'new*')" ]; then
+        [ -z "$(find . -name 'new*' -o -name '.narc-*')" ]; then
         pass "$name"
     else
         miss "$name (status $status, expected: $pattern)"
         sed 's/^/      /' err.txt out.txt
-        find . -name 'new*' | sed 's/^/      left behind: /'
-        rm -f new*
+        find . -name 'new*' -o -name '.narc-*' | sed 's/^/      left behind: /'
+        rm -f new* .narc-*
     fi
 }
 # contact FILE LINE VALUES: the first seven columns of a row of a contacts file are these numbers, within 2e-7.
@@ -127,6 +127,7 @@ check "disc under a triangle" contact known.csv 6 "12 13 -0.25 0 -1 62 0.125"
 check "side against side" contact known.csv 7 "14 15 -0.25 1 0 70.875 0"
 check "report: shapes" reports shapes 8
 check "report: bodies" reports bodies 18
+check "report: threads are an upper bound" grep -q "^threads *at most [0-9]" out.txt
 check "report: colliding" reports "colliding pairs" 6
 for word in "candidate pairs" "instruction set" threads "broad phase" "narrow phase" "million pairs per second"; do
     check "report tells $word" grep -q "$word" out.txt
@@ -195,16 +196,38 @@ check "neighbours and the giant collide" test "$(wc -l <found.csv)" -gt 400
 
 works "PNG" collide --shapes shapes.json --bodies few.csv --picture few.png --out few.txt
 check "PNG signature" begins_with few.png XPNG
+printf 'shape,x,y,angle\ndisc,-1e300,0,0\ndisc,1e300,0,0\n' >wide.csv
+works "bodies far apart" collide --shapes shapes.json --bodies wide.csv
+for kind in png svg; do
+    fails "too far apart to draw, $kind" "narc: new.$kind: .*too far apart" collide --shapes shapes.json \
+        --bodies wide.csv --picture new.$kind --out new.csv
+done
+works "very many bodies" scene --shapes shapes.json --bodies 200001 --density 0.1 --seed 1 --out many.csv
+fails "too many for an SVG" "narc: new.svg: 200001 .*200000.*png" collide --shapes shapes.json --bodies many.csv \
+    --picture new.svg
+rm many.csv
 works "SVG" collide --shapes shapes.json --bodies few.csv --picture few.svg --margin 1
 check "SVG beginning" begins_with few.svg "<?xml"
 check "SVG end" grep -q "</svg>" few.svg
+
+# Progress is for terminals: `script` gives the command one, where it is installed and is that of util-linux.
+awk 'BEGIN { print "shape,x,y,angle"; for (i = 0; i < 3000; i++) print "disc,0,0,0" }' >pile.csv
+works "a pile of bodies" collide --shapes shapes.json --bodies pile.csv
+check "all of them collide" reports "colliding pairs" 4498500
+check "no progress line in a file" test ! -s err.txt
+if command -v script >/dev/null && script -qec true /dev/null >script.txt 2>&1 </dev/null; then
+    script -qec "'$narc' collide --shapes shapes.json --bodies pile.csv" /dev/null >script.txt 2>&1 </dev/null
+    check "progress on a terminal" grep -q "narrow phase, 4498500 pairs" script.txt
+else
+    echo "skipped: progress on a terminal (no script command)"
+fi
 
 # ------------------------------------------------------------------------------------------- glyphs
 if [ -n "$font" ]; then
     works "glyphs" shapes "$font" "👻🏠🚀🌳️👻aZ7" --arcs 8 --out glyphs.json --picture glyphs.svg
     check "one shape for each character, once" test "$(grep -c '"name"' glyphs.json)" -eq 7
     check "names" test "$(grep -o '"name": "[^"]*"' glyphs.json | cut -d'"' -f4 | tr '\n' ' ')" = \
-        "U+1F47B U+1F3E0 U+1F680 U+1F333 a Z 7 "
+        "U+1F47B U+1F3E0 U+1F680 U+1F333 a Z U+0037 "
     check "eight arcs each" test "$(grep -c '"center"' glyphs.json)" -eq 56
     check "a table is printed" grep -q "U+1F680 *8 " out.txt
     check "picture of the glyphs" begins_with glyphs.svg "<?xml"
@@ -257,17 +280,17 @@ for threads in 0 1025 -1 2x 99999999999999999999; do
     fails "threads '$threads'" "narc: --threads .*'$threads'" collide $known \
         --threads "$threads" --out new.csv
 done
-fails "unknown instruction set" "narc: .*sse9" collide $known --isa sse9 --out new.csv
+fails "unknown instruction set" "narc: --isa: .*'sse9'" collide $known --isa sse9 --out new.csv
 for isa in neon avx2 avx512; do
     case " $(echo $isas) " in
     *" $isa "*) ;;
-    *) fails "unsupported $isa" "narc: .*$isa" collide $known --isa $isa --out new.csv ;;
+    *) fails "unsupported $isa" "narc: --isa: .*'$isa'" collide $known --isa $isa --out new.csv ;;
     esac
 done
 NARC_ISA=sse9
 export NARC_ISA
-fails "NARC_ISA unknown" "narc: .*sse9" collide $known --out new.csv
-fails "NARC_ISA unknown to info" "narc: NARC_ISA" info
+fails "NARC_ISA unknown" "narc: NARC_ISA: .*'sse9'" collide $known --out new.csv
+fails "NARC_ISA unknown to info" "narc: NARC_ISA: .*'sse9'" info
 unset NARC_ISA
 fails "picture of another kind" "narc: .*new.gif" collide --shapes absent.json --bodies bodies.csv --picture new.gif
 for density in 0 -1 10.5 nan x; do
@@ -292,6 +315,49 @@ fails "output is a folder" "narc: full.csv: " collide $known --out full.csv
 fails "picture in no folder, contacts given up" "narc: absent/few.png: " collide $known \
     --out new.csv --picture absent/few.png
 fails "one file for both outputs" "narc: .*same" collide $known --out few.svg --picture few.svg
+mkdir inside
+fails "one new file for both outputs" "narc: .*same" collide $known --out new.svg --picture ./new.svg
+fails "one new file, another way to its folder" "narc: .*same" collide $known --out new.svg --picture inside/../new.svg
+works "the same name in two folders" collide $known --out few.svg --picture inside/few.svg
+check "are two files" sh -c 'cmp few.svg known.csv && ! cmp -s few.svg inside/few.svg'
+
+# An input stays what it is, whatever name an output gives it.
+printf 'a,b\n0,1\n' >pair.csv
+cp shapes.json kept.json && cp bodies.csv kept.txt && ln pair.csv hard.csv && ln -s bodies.csv soft.csv
+for output in shapes.json ./bodies.csv soft.csv hard.csv; do
+    fails "output $output is an input" "narc: $output: .*input" collide $known --pairs pair.csv --out $output
+done
+fails "a scene's output is its input" "narc: shapes.json: .*input" scene $five --density 1 --seed 1 --out shapes.json
+check "inputs are unchanged" sh -c 'cmp shapes.json kept.json && cmp bodies.csv kept.txt && [ -L soft.csv ]'
+
+# The longest name that a file system allows has no room for a suffix.
+long=$(printf '%0250d' 0)
+works "a long name" collide $known --out $long
+check "a long name: the contacts" cmp $long known.csv
+rm $long
+
+# closed STREAM NAME ARGUMENTS...: with that standard stream closed narc fails and leaves no file behind.
+closed() {
+    stream=$1 name=$2
+    shift 2
+    case $stream in
+    1) "$narc" "$@" >&- 2>err.txt ;;
+    2) "$narc" "$@" 2>&- >out.txt ;;
+    esac
+    status=$?
+    check "closed stream $stream: $name" test $status -eq 2 -a -z "$(find . -name 'new*' -o -name '.narc-*')"
+    rm -f new* .narc-*
+}
+closed 1 "contacts and a picture" collide $known --out - --picture new.png
+check "closed stream 1 is told" grep -q "^narc: standard output: " err.txt
+closed 1 "a report that cannot be printed" collide $known --out new.csv --picture new.png
+closed 1 "a scene" scene $five --density 1 --seed 1
+closed 1 "a scene's report" scene $five --density 1 --seed 1 --out new.csv
+closed 1 "help" --help
+closed 2 "a report beside contacts" collide $known --out - --picture new.png
+"$narc" collide $known --out few.txt --picture few.png <&- >out.txt 2>err.txt
+check "closed stream 0 is not needed" sh -c "[ $? -eq 0 ] && cmp few.txt known.csv"
+check "and no picture" begins_with few.png XPNG
 if [ "$(id -u)" -ne 0 ]; then
     mkdir locked && chmod 555 locked
     fails "unwritable folder" "narc: locked/new.csv: " collide $known --out locked/new.csv
@@ -302,6 +368,8 @@ if [ -c /dev/full ]; then
     ln -s /dev/full full.png
     fails "full disk, picture" "narc: full.png: " collide --shapes shapes.json --bodies few.csv --out new.csv \
         --picture full.png
+    "$narc" collide $known --out new.csv --picture new.png >/dev/full 2>err.txt
+    check "full disk for the report" test $? -eq 2 -a -z "$(find . -name 'new*' -o -name '.narc-*')"
     "$narc" --help >/dev/full 2>err.txt
     check "full standard output" test $? -eq 2
 fi
@@ -347,6 +415,8 @@ bodies "scale 0" "bad.csv:2: scale .*'0'" "${scaled}disc,0,0,0,0\n"
 bodies "negative scale" "bad.csv:3: scale .*'-1'" "${scaled}disc,0,0,0,1\ndisc,0,0,0,-1\n"
 bodies "too small" "bad.csv:2: scale .*'1e-10'" "${scaled}disc,0,0,0,1e-10\n"
 bodies "too large" "bad.csv:2: scale .*'1e10'" "${scaled}disc,0,0,0,1e10\n"
+bodies "numbers that differ look different" "bad.csv:2: scale .* 1.00000001e+09, .*'1000000010'" \
+    "${scaled}disc,0,0,0,1000000010\n"
 bodies "NUL byte" "bad.csv:2: " "${head}disc\\000,0,0,0\n"
 bodies "control characters stay on one line" "bad.csv:2: .*'a?b'" "${head}a\\001b,0,0,0\n"
 pairs "wrong header" "bad.csv:1: .*'b,a'" 'b,a\n0,1\n'
@@ -384,10 +454,27 @@ json "no list of shapes" "bad.json:1: .*missing" '{}'
 json "shapes is no list" "bad.json:1: .*not a list" '{"shapes": 1}'
 json "no shape" "bad.json:1: .*empty" '{"shapes": []}'
 json "unknown key" "bad.json:1: .*'Shapes'" '{"shapes": [{"name": "a", "circle": 1}], "Shapes": []}'
-shape "no object" "bad.json:3: shape 1: " '7'
+json "the file's value begins on line 3" "bad.json:3: shapes is missing" '
+
+  {}'
+json "shapes is a word" "bad.json:2: shapes is not a list '\"many\"'" '
+{"shapes": "many"}'
+json "NUL in a name" "bad.json:2: a NUL .*u0000" '{"shapes": [
+  {"name": "a\u0000b", "circle": 1}]}'
+json "NUL in a key" "bad.json:1: a NUL" '{"shapes": [{"name": "a", "circle\u0000": 1}]}'
+json "a backslash before u0000 is no NUL" "bad.json:1: shape .*radius is missing" \
+    '{"shapes": [{"name": "a\\u0000", "capsule": {"length": 1}}]}'
+shape "no object" "bad.json:3: shape 1: it is not an object '7'" '7'
 shape "no name" "bad.json:3: shape 1: name is missing" '{"circle": 1}'
-shape "name is a number" "bad.json:3: shape 1: name" '{"name": 1, "circle": 1}'
+shape "name is a number" "bad.json:3: shape 1: name is not a string '1'" '{"name": 1, "circle": 1}'
 shape "name with a comma" "bad.json:3: shape 1: .*'a,b'" '{"name": "a,b", "circle": 1}'
+shape "name is another's index" "bad.json:3: shape 1: .*index.*'0'" '{"name": "0", "circle": 1}'
+shape "name of digits" "bad.json:3: shape 1: .*index.*'99999999999999999999'" \
+    '{"name": "99999999999999999999", "circle": 1}'
+printf '{"shapes": [{"name": "0", "circle": 1}, {"name": "1", "circle": 2}]}\n' >digits.json
+printf 'shape,x,y,angle\n0,0,0,0\n1,2.5,0,0\n' >digits.csv
+works "names that are their own index" collide --shapes digits.json --bodies digits.csv --out digits.txt
+check "mean what the index means" contact digits.txt 2 "0 1 -0.5 1 0 0.75 0"
 shape "empty name" "bad.json:3: shape 1: " '{"name": "", "circle": 1}'
 shape "name twice" "bad.json:3: .*'first'" '{"name": "first", "circle": 2}'
 shape "no form" "bad.json:3: shape 'a': " '{"name": "a"}'
@@ -396,27 +483,62 @@ shape "unknown key" "bad.json:3: shape 'a': unknown key 'color'" '{"name": "a", 
 shape "key twice" "bad.json:3: shape 'a': key 'circle'" '{"name": "a", "circle": 1, "circle": 1}'
 shape "radius beside circle" "bad.json:3: shape 'a': .*'radius'" '{"name": "a", "circle": 1, "radius": 1}'
 shape "negative circle" "bad.json:3: shape 'a': .*-1" '{"name": "a", "circle": -1}'
-shape "circle is a word" "bad.json:3: shape 'a': circle is not a number" '{"name": "a", "circle": "1"}'
-shape "overflow" "bad.json:3: shape 'a': circle is not finite" '{"name": "a", "circle": 1e999}'
+shape "circle is a word" "bad.json:3: shape 'a': circle is not a number '\"1\"'" '{"name": "a", "circle": "1"}'
+shape "a long value is cut" "bad.json:3: shape 'a': circle .*'\\[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,'\\.\\.\\.\$" \
+    '{"name": "a", "circle": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18]}'
+shape "no half characters" "bad.json:3: shape 'a': circle is not a number '\"aé\\(é\\)*'\\.\\.\\.\$" \
+    '{"name": "a", "circle": "aéééééééééééééééééééééééé"}'
+check "the message is valid UTF-8" iconv -f UTF-8 -t UTF-8 err.txt
+shape "overflow" "bad.json:3: shape 'a': circle is not finite 'inf'" '{"name": "a", "circle": 1e999}'
 shape "no arcs" "bad.json:3: shape 'a': arcs is an empty list" '{"name": "a", "arcs": []}'
-shape "arcs is a number" "bad.json:3: shape 'a': arcs is not a list" '{"name": "a", "arcs": 3}'
-shape "arc is a number" "bad.json:3: shape 'a': arc 1: " "{\"name\": \"a\", \"arcs\": [$arc, 5]}"
+shape "arcs is a number" "bad.json:3: shape 'a': arcs is not a list '3'" '{"name": "a", "arcs": 3}'
+shape "arc is a number" "bad.json:3: shape 'a': arc 1: it is not an object '5'" "{\"name\": \"a\", \"arcs\": [$arc, 5]}"
 shape "arc without radius" "bad.json:3: shape 'a': arc 0: radius is missing" \
     '{"name": "a", "arcs": [{"center": [0, 0], "start": 0, "end": 1}]}'
-shape "arc with one coordinate" "bad.json:3: shape 'a': arc 0: center" \
+shape "arc with one coordinate" "bad.json:3: shape 'a': arc 0: center .*'\\[0]'" \
     '{"name": "a", "arcs": [{"center": [0], "radius": 1, "start": 0, "end": 1}]}'
 shape "arc with an unknown key" "bad.json:3: shape 'a': arc 0: unknown key 'r'" \
     '{"name": "a", "arcs": [{"center": [0, 0], "r": 1, "start": 0, "end": 1}]}'
 shape "half a circle" "bad.json:3: shape 'a': " "{\"name\": \"a\", \"arcs\": [$arc]}"
 other='{"center": [0, 0], "radius": -1, "start": 3.141592653589793, "end": 6.283185307179586}'
 shape "negative radius" "bad.json:3: shape 'a': arc 1.*-1" "{\"name\": \"a\", \"arcs\": [$arc, $other]}"
+# Errors of one arc or point tell its own line: element k stands on line 4 + k. Text in between must not confuse.
+shape "line of an arc that cannot be read" "bad.json:5: shape 'a': arc 1: radius is not a number 'null'" \
+    "{\"name\": \"a\", \"arcs\": [
+    $arc,
+    {\"center\": [0, 0], \"radius\": null}]}"
+shape "line of an arc that cannot be" "bad.json:5: shape 'a': arc 1.*-1" "{\"name\": \"a\", \"arcs\": [
+    $arc,
+    $other]}"
+shape "line of arc 0" "bad.json:5: shape 'a': arc 0.*-1" "{\"arcs\":
+  [
+    $other, $arc], \"name\": \"a\"}"
+shape "line of a point" "bad.json:6: shape 'a': point 2 .*'\\[1]'" '{"name": "a", "points": [
+    [0, 0],
+    [1, 0],
+    [1],
+    [0, 1]]}'
+shape "line of a corner that turns right" "bad.json:6: shape 'a': point 2: " '{"name": "a", "polygon": [
+    [0, 0],
+    [4, 0],
+    [1, 1],
+    [0, 4]]}'
+shape "line of a shape with points that do not suit" "bad.json:3: shape 'a': the exterior" '{"name": "a", "points": [
+    [0, 0],
+    [4, 0],
+    [4, 1],
+    [0, 3]]}'
+json "brackets in strings" "bad.json:4: shape 1: " '{"shapes": [
+  {"name": "]\\}[{:", "circle"
+     : 1 } ,
+  7]}'
 shape "two points" "bad.json:3: shape 'a': " '{"name": "a", "points": [[0, 0], [1, 0]]}'
-shape "point is a number" "bad.json:3: shape 'a': point 1 " '{"name": "a", "points": [[0, 0], 1, [0, 1]]}'
+shape "point is a number" "bad.json:3: shape 'a': point 1 .*'1'" '{"name": "a", "points": [[0, 0], 1, [0, 1]]}'
 shape "polygon that turns right" "bad.json:3: shape 'a': " '{"name": "a", "polygon": [[0, 0], [0, 1], [1, 0]]}'
 shape "corner radius too large" "bad.json:3: shape 'a': " \
     '{"name": "a", "polygon": [[0, 0], [1, 0], [0, 1]], "radius": 5}'
 shape "capsule without length" "bad.json:3: shape 'a': length is missing" '{"name": "a", "capsule": {"radius": 1}}'
-shape "capsule is a number" "bad.json:3: shape 'a': capsule is not an object" '{"name": "a", "capsule": 1}'
+shape "capsule is a number" "bad.json:3: shape 'a': capsule is not an object '1'" '{"name": "a", "capsule": 1}'
 shape "box with an unknown key" "bad.json:3: shape 'a': unknown key 'depth'" \
     '{"name": "a", "box": {"width": 1, "height": 1, "depth": 1}}'
 shape "box rounder than wide" "bad.json:3: shape 'a': " '{"name": "a", "box": {"width": 1, "height": 1, "radius": 1}}'

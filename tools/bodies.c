@@ -12,8 +12,7 @@
 #include "progress.h"
 #include "table.h"
 #include "text.h"
-
-static const double FULL_TURN = 6.283185307179586476925;
+#include "turn.h"
 
 /* The scale of the current row. The kernels ignore a body that is too small or too large; a file must not have one. */
 static float read_scale(const table *rows, const shape *of) {
@@ -23,8 +22,8 @@ static float read_scale(const table *rows, const shape *of) {
         fail_at(rows->path, rows->line, "scale must be more than 0 '%s'", rows->fields[4]);
     }
     if (!(size >= NARC_MIN_SIZE && size <= NARC_MAX_SIZE)) {
-        fail_at(rows->path, rows->line, "scale makes the body's radius %g, outside %g to %g '%s'", size, NARC_MIN_SIZE,
-                NARC_MAX_SIZE, rows->fields[4]);
+        fail_at(rows->path, rows->line, "scale makes the body's radius %.9g, outside %.9g to %.9g '%s'", size,
+                NARC_MIN_SIZE, NARC_MAX_SIZE, rows->fields[4]);
     }
     return (float)scale;
 }

@@ -20,6 +20,8 @@
  * most 3/2 of them. So all lists that live at one time hold at most 1 + 3/4 + (3/4)^2 + ... = 4 entries per box. */
 enum { SHORT_LIST = 48 };
 
+enum { REPORT_EVERY = 4096 }; /* steps of a long sweep between two reports */
+
 typedef struct item {
     uint32_t body;
     uint32_t x_last; /* the item's x_first is its place in the list */
@@ -35,6 +37,8 @@ typedef struct search {
     size_t count;
     size_t *cursor; /* for each body a, moved on by one for each pair (a, b) */
     pair *pairs;    /* where cursor points to; NULL: pairs are only counted */
+    uint64_t found; /* pairs */
+    uint64_t steps; /* pairs looked at */
     double covered; /* ranks squared that were swept, for the progress line */
 } search;
 
@@ -74,6 +78,7 @@ static item *rank_boxes(const narc_aabb *boxes, size_t count) {
     }
     qsort(sides, count, sizeof *sides, compare_sides);
     for (size_t k = 0; k < count; k++) {
+        show_progress("broad phase, sorting", k, 2 * count);
         const uint32_t box = sides[k].box;
         items[k].body = box;
         items[k].x_last = last_not_above(sides, count, boxes[box].max_x);
@@ -84,6 +89,7 @@ static item *rank_boxes(const narc_aabb *boxes, size_t count) {
     }
     qsort(sides, count, sizeof *sides, compare_sides);
     for (size_t k = 0; k < count; k++) {
+        show_progress("broad phase, sorting", count + k, 2 * count);
         const uint32_t box = sides[k].box;
         items[place[box]].y_first = (uint32_t)k;
         items[place[box]].y_last = last_not_above(sides, count, boxes[box].max_y);
@@ -95,11 +101,23 @@ static item *rank_boxes(const narc_aabb *boxes, size_t count) {
 
 /* ---------------------------------------------------------------------------- regions */
 
+/* Tells how far the search is when the fraction `part` of a region has been swept. */
+static void report(const search *in, region where, double part) {
+    const double area =
+        ((double)(where.x_last - where.x_first) + 1) * ((double)(where.y_last - where.y_first) + 1) * part;
+    const double all = (double)in->count * (double)in->count;
+    show_progress(in->pairs ? "broad phase, pairs" : "broad phase, counting",
+                  (size_t)(1e6 * (in->covered + area) / all), 1000000);
+}
+
 static void sweep(search *in, const uint32_t *list, size_t count, region where) {
     for (size_t p = 0; p < count; p++) {
         const item *first = &in->items[list[p]];
         for (size_t q = p + 1; q < count && list[q] <= first->x_last; q++) {
             const item *second = &in->items[list[q]];
+            if (++in->steps % REPORT_EVERY == 0) {
+                report(in, where, (double)p / (double)count);
+            }
             const uint32_t x = list[q], y = first->y_first > second->y_first ? first->y_first : second->y_first;
             if (y > first->y_last || y > second->y_last || x < where.x_first || x > where.x_last || y < where.y_first ||
                 y > where.y_last) {
@@ -111,12 +129,13 @@ static void sweep(search *in, const uint32_t *list, size_t count, region where) 
                 in->pairs[in->cursor[a]] = (pair){a, b};
             }
             in->cursor[a]++;
+            if (++in->found > UINT32_MAX) {
+                fail("more than %u candidate pairs", UINT32_MAX);
+            }
         }
     }
+    report(in, where, 1);
     in->covered += ((double)(where.x_last - where.x_first) + 1) * ((double)(where.y_last - where.y_first) + 1);
-    const double all = (double)in->count * (double)in->count;
-    show_progress(in->pairs ? "broad phase, pairs" : "broad phase, counting", (size_t)(1e6 * in->covered / all),
-                  1000000);
 }
 
 /* A cut: ranks below `at` lie on the low side. */
@@ -205,6 +224,7 @@ void find_candidates(const narc_aabb *boxes, size_t count, pair_list *out_pairs)
     if (count < 2) {
         return;
     }
+    show_stage("broad phase", count, "bodies", false);
     item *items = rank_boxes(boxes, count);
     uint32_t *list = allocate(count, sizeof *list);
     size_t *cursor = allocate(count, sizeof *cursor);
@@ -223,14 +243,12 @@ void find_candidates(const narc_aabb *boxes, size_t count, pair_list *out_pairs)
         cursor[a] = total;
         total += own;
     }
-    if (total > UINT32_MAX) {
-        fail("%zu candidate pairs, at most %u are possible", total, UINT32_MAX);
-    }
     pair *pairs = out_pairs->items = grow(out_pairs->items, &out_pairs->capacity, total, sizeof *pairs);
     in = (search){.items = items, .count = count, .cursor = cursor, .pairs = pairs};
     search_region(&in, list, count, whole);
     for (size_t a = 0, start = 0; a < count; start = cursor[a++]) {
         qsort(pairs + start, cursor[a] - start, sizeof *pairs, compare_partners);
+        show_progress("broad phase, order", a, count);
     }
     out_pairs->count = total;
     free(items);

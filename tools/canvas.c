@@ -9,8 +9,7 @@
 #include <string.h>
 
 #include "fail.h"
-
-static const double FULL_TURN = 6.283185307179586476925;
+#include "turn.h"
 
 picture_kind picture_kind_of(const char *path) {
     if (!path) {

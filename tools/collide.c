@@ -6,6 +6,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "broad_phase.h"
 #include "canvas.h"
@@ -34,7 +35,8 @@ static const char HELP[] =
     "                  a,b,separation,normal_x,normal_y,point_x,point_y,arc_a,arc_b\n"
     "                  -: standard output, and the report goes to standard error\n"
     "  --margin M      report pairs whose separation is less than M; default 0, those that collide\n"
-    "  --all           report every pair, whatever its separation\n"
+    "  --all           report every pair, whatever its separation: those of --pairs, and without\n"
+    "                  it every candidate; then --margin only widens the search for candidates\n"
     "  --picture FILE  a .png or .svg picture of bodies, contact points and normals\n"
     "  --isa NAME      the instruction set: scalar, neon, avx2 or avx512 (see narc info)\n"
     "  --threads N     1 to 1024; left out: one for each processor\n"
@@ -55,6 +57,9 @@ enum { LARGEST_THREADS = 1024 };
 /* One batch call is repeated until this much time has been measured, or this often. */
 static const double MEASURED_SECONDS = 0.2;
 enum { MOST_RUNS = 9 };
+
+/* A batch call with more pairs may take a second on one thread without vector instructions. */
+enum { MANY_PAIRS = 4000000 };
 
 typedef struct settings {
     const char *shapes, *bodies, *pairs, *out, *picture, *isa;
@@ -174,6 +179,7 @@ static void run_narrow_phase(job *work, const settings *chosen) {
     const narc_pairs pairs = view_pairs(&work->pairs);
     double seconds[MOST_RUNS], total = 0;
     allocate_contacts(&work->contacts, work->pairs.count);
+    show_stage("narrow phase", work->pairs.count, "pairs", work->pairs.count > MANY_PAIRS);
     work->runs = 0;
     while (work->runs < MOST_RUNS && total < MEASURED_SECONDS) {
         narc_error error;
@@ -237,7 +243,7 @@ static void write_contacts(FILE *file, const job *work) {
 
 static void print_threads(FILE *file, unsigned chosen) {
 #ifdef NARC_TOOL_OPENMP
-    fprintf(file, "threads             %u\n", chosen ? chosen : narc_default_threads());
+    fprintf(file, "threads             at most %u\n", chosen ? chosen : narc_default_threads());
 #else
     (void)chosen;
     fprintf(file, "threads             1 (built without OpenMP)\n");
@@ -269,11 +275,13 @@ static void run(int argc, char **argv) {
     const settings chosen = read_settings(argc, argv);
     job work = {0};
     narc_error error;
-    if (chosen.isa) {
-        check(narc_set_isa(chosen.isa, &error), &error);
+    if (chosen.isa && narc_set_isa(chosen.isa, &error) != NARC_OK) {
+        /* The message begins with the library's function; the user knows the option. */
+        fail("--isa%s", error.message + strcspn(error.message, ":"));
     }
     read_shapes(chosen.shapes, &work.shapes);
     read_bodies(chosen.bodies, &work.shapes, &work.bodies);
+    check_picture_size(chosen.picture, work.bodies.count);
     bound_bodies(&work);
     if (chosen.pairs) {
         read_pairs(chosen.pairs, work.bodies.count, &work.pairs);
@@ -296,9 +304,12 @@ static void run(int argc, char **argv) {
                                   &work.pairs,  &work.contacts, work.contact_count};
         draw_bodies(chosen.picture, picture, &scene);
     }
-    commit_outputs();
+    finish_outputs();
     hide_progress();
-    print_report(is_standard_output(chosen.out) ? stderr : stdout, &work, &chosen);
+    FILE *report = is_standard_output(chosen.out) ? stderr : stdout;
+    print_report(report, &work, &chosen);
+    finish_report(report);
+    commit_outputs();
 
     free_contacts(&work.contacts);
     free(work.colliding);

@@ -14,6 +14,7 @@
 #include FT_OUTLINE_H
 
 #include "fail.h"
+#include "output.h"
 #include "polygon.h"
 
 /* Curves are flattened so that no chord is further than this from its curve, in em: a tenth of a unit of the usual grid
@@ -31,6 +32,7 @@ font *open_font(const char *path) {
     if (!file) {
         fail("%s: %s", path, strerror(errno));
     }
+    protect_input(file);
     fclose(file);
     font *opened = allocate(1, sizeof *opened);
     opened->path = path;
@@ -164,8 +166,7 @@ static void center_glyph(glyph *made) {
 
 void make_glyph(font *from, uint32_t character, size_t arc_count, glyph *out_glyph) {
     *out_glyph = (glyph){.arc_count = arc_count};
-    const bool plain = (character >= '0' && character <= '9') || (character >= 'A' && character <= 'Z') ||
-                       (character >= 'a' && character <= 'z');
+    const bool plain = (character >= 'A' && character <= 'Z') || (character >= 'a' && character <= 'z');
     snprintf(out_glyph->name, sizeof out_glyph->name, plain ? "%c" : "U+%04X", (unsigned)character);
     load_outline(from, character, out_glyph);
 

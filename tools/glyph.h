@@ -10,13 +10,13 @@
 #include "narc_shapes.h"
 
 typedef struct glyph {
-    char name[12];       /* "A", or "U+1F47B" for all but ASCII letters and digits */
+    char name[12];       /* "A", or "U+1F47B" for all but ASCII letters */
     narc_point *outline; /* curves flattened, contour after contour */
     size_t outline_count, outline_capacity;
     size_t *ends; /* for each contour, the index in `outline` behind its last point */
     size_t end_count, end_capacity;
     double hull_area;
-    narc_point polygon[NARC_MAX_ARCS]; /* the polygon around the hull; as many corners as arcs */
+    narc_point polygon[NARC_MAX_ARCS]; /* see set_side_count(); as many corners as arcs */
     narc_arc arcs[NARC_MAX_ARCS];
     size_t arc_count;
     double area;

@@ -3,6 +3,8 @@
  * info.c - narc info: what runs here.
  */
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "commands.h"
 #include "fail.h"
@@ -19,7 +21,10 @@ static void run(int argc, char **argv) {
     parse_options(argc, argv, NULL, 0, NULL, 0, NULL);
     const char *chosen = narc_get_isa();
     if (!chosen) {
-        fail("NARC_ISA names an instruction set that is unknown or cannot run here");
+        /* The library's reason, which begins with the function that gives it. */
+        narc_error error = {0};
+        narc_set_isa(getenv("NARC_ISA"), &error);
+        fail("NARC_ISA%s", error.message + strcspn(error.message, ":"));
     }
     const char *features = narc_cpu_features();
     printf("narc %s\n\n", narc_version());

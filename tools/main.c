@@ -2,14 +2,18 @@
  *
  * main.c - the narc command: finds the command that is asked for and runs it.
  */
+#define _POSIX_C_SOURCE 200809L
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "commands.h"
 #include "fail.h"
 #include "narc.h"
 #include "output.h"
+#include "progress.h"
 
 static const command *const commands[] = {&shapes_command, &scene_command, &collide_command, &info_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
@@ -24,7 +28,8 @@ static void print_help(void) {
            "  --help      this text; behind a command, the command's\n"
            "  --version   the version\n"
            "\n"
-           "Errors are one line on standard error, with exit status 2; then no output is written.\n");
+           "Errors are one line on standard error, with exit status 2; then no output file appears or\n"
+           "changes.\n");
 }
 
 static bool is_help(const char *argument) { return strcmp(argument, "--help") == 0 || strcmp(argument, "-h") == 0; }
@@ -48,7 +53,19 @@ static const command *find_command(const char *name) {
     fail("%s '%s'; see narc --help", name[0] == '-' ? "unknown option" : "unknown command", name);
 }
 
+/* A file that is opened while a standard stream is closed takes its place: a picture would hold what was printed. So
+ * something takes it that can only be read: then writing fails, and that is reported. */
+static void occupy_standard_streams(void) {
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++) {
+        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDONLY) != stream) {
+            fail("a standard stream is closed, and /dev/null cannot stand in for it");
+        }
+    }
+}
+
 int main(int argc, char **argv) {
+    occupy_standard_streams();
+    start_progress();
     if (argc < 2) {
         fail("a command is missing; see narc --help");
     }
@@ -59,8 +76,6 @@ int main(int argc, char **argv) {
     } else {
         run_command(find_command(argv[1]), argc - 2, argv + 2);
     }
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        fail("standard output: it cannot be written");
-    }
+    finish_report(stdout);
     return 0;
 }

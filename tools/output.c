@@ -14,17 +14,26 @@
 
 #include "fail.h"
 
-enum { MAX_OUTPUTS = 4 };
+enum { MAX_INPUTS = 4, MAX_OUTPUTS = 4 };
+
+/* Which file, whatever it is called. */
+typedef struct identity {
+    dev_t device;
+    ino_t number;
+} identity;
 
 typedef struct output {
     const char *path;         /* as the user gave it */
     char *target;             /* the file to replace, symbolic links followed; NULL: written directly */
+    identity folder;          /* of the target */
     char *volatile temporary; /* NULL: nothing to remove. The signal handler reads it. */
     FILE *file;
 } output;
 
 static output outputs[MAX_OUTPUTS];
 static size_t output_count;
+static identity inputs[MAX_INPUTS];
+static size_t input_count;
 
 void discard_outputs(void) {
     for (size_t i = 0; i < MAX_OUTPUTS; i++) {
@@ -61,13 +70,53 @@ static mode_t output_mode(const struct stat *old) {
     return 0666 & ~mask;
 }
 
-/* Opens a temporary file beside out->target. */
+static identity identify(const struct stat *state) { return (identity){state->st_dev, state->st_ino}; }
+
+static bool is_same(identity a, identity b) { return a.device == b.device && a.number == b.number; }
+
+void protect_input(FILE *file) {
+    struct stat state;
+    if (fstat(fileno(file), &state) != 0 || !S_ISREG(state.st_mode)) {
+        return;
+    }
+    if (input_count == MAX_INPUTS) {
+        fail("too many inputs");
+    }
+    inputs[input_count++] = identify(&state);
+}
+
+/* The length of the part of a path that names its folder: up to the last slash, or 0. */
+static size_t folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* Finds the target's folder. A file that does not exist yet is told from others by its folder and its name there. */
+static void identify_folder(output *out) {
+    const size_t length = folder_length(out->target);
+    char *folder = allocate(length + sizeof ".", 1);
+    memcpy(folder, out->target, length);
+    strcpy(folder + length, ".");
+    struct stat state;
+    if (stat(folder, &state) != 0) {
+        fail("%s: %s", out->path, strerror(errno));
+    }
+    free(folder);
+    out->folder = identify(&state);
+}
+
+static bool is_same_target(const output *a, const output *b) {
+    return a->target && b->target && is_same(a->folder, b->folder) &&
+           strcmp(a->target + folder_length(a->target), b->target + folder_length(b->target)) == 0;
+}
+
+/* Opens a temporary file beside out->target. Its name is short: the target's may be as long as names can be. */
 static void open_temporary(output *out, const struct stat *old) {
-    static const char suffix[] = ".XXXXXX";
-    const size_t length = strlen(out->target);
-    char *name = allocate(length + sizeof suffix, 1);
+    static const char own[] = ".narc-XXXXXX";
+    const size_t length = folder_length(out->target);
+    char *name = allocate(length + sizeof own, 1);
     memcpy(name, out->target, length);
-    memcpy(name + length, suffix, sizeof suffix);
+    memcpy(name + length, own, sizeof own);
     const int descriptor = mkstemp(name);
     if (descriptor < 0) {
         fail("%s: %s", out->path, strerror(errno));
@@ -100,9 +149,15 @@ FILE *open_output(const char *path) {
         if (!out->target) {
             fail("%s: %s", path, strerror(errno));
         }
+        for (size_t i = 0; exists && i < input_count; i++) {
+            if (is_same(identify(&state), inputs[i])) {
+                fail("%s: this output is one of the inputs", path);
+            }
+        }
+        identify_folder(out);
         for (size_t i = 0; i + 1 < output_count; i++) {
-            if (outputs[i].target && strcmp(outputs[i].target, out->target) == 0) {
-                fail("%s: two outputs have the same name", path);
+            if (is_same_target(&outputs[i], out)) {
+                fail("%s: two outputs are the same file", path);
             }
         }
         open_temporary(out, exists ? &state : NULL);
@@ -115,7 +170,7 @@ FILE *open_output(const char *path) {
 
 bool is_standard_output(const char *path) { return path && strcmp(path, "-") == 0; }
 
-void commit_outputs(void) {
+void finish_outputs(void) {
     for (size_t i = 0; i < output_count; i++) {
         const bool written = !ferror(outputs[i].file) && fflush(outputs[i].file) == 0;
         const int reason = errno;
@@ -124,6 +179,17 @@ void commit_outputs(void) {
             fail("%s: %s", outputs[i].path, strerror(written ? errno : reason));
         }
     }
+}
+
+void finish_report(FILE *file) {
+    errno = 0;
+    if (fflush(file) != 0 || ferror(file)) {
+        fail("%s: %s", file == stdout ? "standard output" : "standard error",
+             errno ? strerror(errno) : "it cannot be written");
+    }
+}
+
+void commit_outputs(void) {
     for (size_t i = 0; i < output_count; i++) {
         if (outputs[i].temporary) {
             if (rename(outputs[i].temporary, outputs[i].target) != 0) {

@@ -11,13 +11,23 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* Opens an output; "-" is standard output. Two outputs cannot be the same file. */
+/* Remembers a file that the command reads: no output may replace it. Files without a name, such as pipes, are not. */
+void protect_input(FILE *file);
+
+/* Opens an output; "-" is standard output. Two outputs cannot be the same file, and none can be an input. */
 FILE *open_output(const char *path);
 
 /* Is this path standard output? NULL, an option that was not given, is not. */
 bool is_standard_output(const char *path);
 
-/* Writes everything out, checks it, and gives the files their names. */
+/* Writes everything out and checks it. The files have no names yet, so that a report that cannot be printed leaves no
+ * outputs either. */
+void finish_outputs(void);
+
+/* Writes out what was printed to standard output or standard error, and checks it. */
+void finish_report(FILE *file);
+
+/* Gives the finished files their names. */
 void commit_outputs(void);
 
 /* Removes what was not committed. */

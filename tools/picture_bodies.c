@@ -24,6 +24,9 @@ static const color FREE_FILL = {0.83, 0.88, 0.93, 0.9}, FREE_LINE = {0.42, 0.53,
 static const color HIT_FILL = {0.99, 0.80, 0.60, 0.8}, HIT_LINE = {0.83, 0.40, 0.12, 1};
 static const color CONTACT = {0.10, 0.10, 0.28, 1}, NEAR_CONTACT = {0.35, 0.55, 0.42, 1};
 
+/* An SVG file grows by a kilobyte or more with each body: this many are 200 megabytes, too many for viewers. */
+enum { MOST_SVG_BODIES = 200000 };
+
 typedef struct view {
     double middle_x, middle_y; /* in the world */
     double page_x, page_y;     /* the same on the page */
@@ -46,7 +49,7 @@ static view choose_view(const char *path, const body_scene *scene, double *out_w
         sizes += box_size(box);
     }
     const double size = box_size(world), mean = count ? sizes / (double)count : size;
-    if (!(size > 0 && isfinite(size))) {
+    if (!(size > 0 && size <= NARC_MAX_DISTANCE)) {
         fail("%s: the bodies are too far apart to draw", path);
     }
     const double side = clamp(GOOD_BODY * size / mean, SMALLEST_PAGE, LARGEST_PAGE) - 2 * MARGIN;
@@ -98,6 +101,13 @@ static void draw_contact(canvas *page, const view *seen, const body_scene *scene
                   p.y - length * (double)contacts->normal_y[k]);
     cairo_stroke(page->pen);
     draw_dot(page, p, clamp(DOT * size, 0.8 * THINNEST, 2 * THICKEST));
+}
+
+void check_picture_size(const char *path, size_t body_count) {
+    if (picture_kind_of(path) == PICTURE_SVG && body_count > MOST_SVG_BODIES) {
+        fail("%s: %zu bodies, an .svg picture has at most %d; a .png picture can have more", path, body_count,
+             MOST_SVG_BODIES);
+    }
 }
 
 void draw_bodies(const char *path, FILE *file, const body_scene *scene) {

@@ -19,6 +19,9 @@ typedef struct body_scene {
     size_t contact_count;
 } body_scene;
 
+/* A picture that would have too many bodies is an error; `path` may be NULL, no picture. */
+void check_picture_size(const char *path, size_t body_count);
+
 /* `file` is an open output for `path`, whose suffix tells the kind. */
 void draw_bodies(const char *path, FILE *file, const body_scene *scene);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * picture_glyphs.c - one cell for each glyph: its outline filled, the polygon around it dashed, the n-arc on top with
- * arcs in two tones and dots at its junctions; a legend below.
+ * picture_glyphs.c - one cell for each glyph: its outline filled, the polygon dashed (around the glyph, if the glyph's
+ * hull has enough corners), the n-arc on top with arcs in two tones and dots at its junctions; a legend below.
  */
 #include "picture_glyphs.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * picture_glyphs.h - a picture of glyphs, the polygons around them and their n-arcs.
+ * picture_glyphs.h - a picture of glyphs, their polygons and their n-arcs.
  */
 #ifndef NARC_TOOL_PICTURE_GLYPHS_H
 #define NARC_TOOL_PICTURE_GLYPHS_H

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * progress.c - the progress line. The second of patience counts from the first report of the whole command.
+ * progress.c - the progress line.
  */
 #define _POSIX_C_SOURCE 200809L
 #include "progress.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <time.h>
 #include <unistd.h>
@@ -13,8 +12,8 @@
 enum { LOOK_EVERY = 256 }; /* reports between two looks at the clock */
 static const double PATIENCE = 1.0, REFRESH = 0.1;
 
-static double first_time = -1, last_time = -1;
-static bool shown;
+static double start_time, last_time;
+static bool terminal, shown;
 
 double seconds_now(void) {
     struct timespec time;
@@ -22,26 +21,32 @@ double seconds_now(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
+void start_progress(void) {
+    start_time = seconds_now();
+    terminal = isatty(STDERR_FILENO);
+}
+
 void show_progress(const char *what, size_t done, size_t total) {
-    static int terminal = -1;
     static unsigned reports;
-    if (terminal < 0) {
-        terminal = isatty(STDERR_FILENO);
-    }
     if (!terminal || reports++ % LOOK_EVERY) {
         return;
     }
     const double now = seconds_now();
-    if (first_time < 0) {
-        first_time = now;
-    }
-    if (now - first_time < PATIENCE || (shown && now - last_time < REFRESH)) {
+    if (now - start_time < PATIENCE || (shown && now - last_time < REFRESH)) {
         return;
     }
     last_time = now;
     shown = true;
     fprintf(stderr, "\r\033[K%s: %.0f %%", what, total ? 100.0 * (double)done / (double)total : 100.0);
     fflush(stderr);
+}
+
+void show_stage(const char *what, size_t count, const char *items, bool is_long) {
+    if (terminal && (is_long || seconds_now() - start_time >= PATIENCE)) {
+        shown = true;
+        fprintf(stderr, "\r\033[K%s, %zu %s", what, count, items);
+        fflush(stderr);
+    }
 }
 
 void hide_progress(void) {

@@ -12,6 +12,7 @@
 #include "output.h"
 #include "progress.h"
 #include "shapes_json.h"
+#include "turn.h"
 
 static const char HELP[] =
     "usage: narc scene --shapes shapes.json --bodies N --density D --seed S [--out bodies.csv]\n"
@@ -25,7 +26,7 @@ static const char HELP[] =
     "  --seed S        a whole number; the same seed gives the same file\n"
     "  --out FILE      the bodies file to write; left out or -: standard output\n";
 
-static const double LARGEST_DENSITY = 10, FULL_TURN = 6.283185307179586476925;
+static const double LARGEST_DENSITY = 10;
 
 /* SplitMix64: a counter in steps of the golden ratio, its bits mixed by two multiplications. */
 static uint64_t next_random(uint64_t *state) {
@@ -63,6 +64,7 @@ static void run(int argc, char **argv) {
     double area = 0;
     for (uint64_t i = 0; i < count; i++) {
         area += shapes.items[next_index(&state, shapes.count)].area;
+        show_progress("measuring shapes", (size_t)i, (size_t)count);
     }
     /* Rounded to single precision: areas come from sines, whose last bit differs from one C library to the next. */
     const double side = (double)(float)sqrt(area / density);
@@ -82,10 +84,12 @@ static void run(int argc, char **argv) {
         fprintf(file, "%s,%.17g,%.17g,%.17g\n", name, x, y, angle);
         show_progress("writing bodies", (size_t)i, (size_t)count);
     }
-    commit_outputs();
+    finish_outputs();
     hide_progress();
-    fprintf(is_standard_output(out) ? stderr : stdout, "%" PRIu64 " bodies of %zu shapes in a square of side %g\n",
-            count, shapes.count, side);
+    FILE *report = is_standard_output(out) ? stderr : stdout;
+    fprintf(report, "%" PRIu64 " bodies of %zu shapes in a square of side %g\n", count, shapes.count, side);
+    finish_report(report);
+    commit_outputs();
     free_shapes(&shapes);
 }
 

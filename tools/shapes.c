@@ -19,7 +19,8 @@
 static const char HELP[] = "usage: narc shapes FONT CHARACTERS --arcs N [--out shapes.json] [--picture FILE]\n"
                            "\n"
                            "Makes an n-arc of each character: the glyph's outline, its convex hull, a polygon with N\n"
-                           "sides around that, and the n-arc that follows the polygon.\n"
+                           "sides, and the n-arc that follows the polygon. The polygon stands around the hull if\n"
+                           "the hull has at least N corners; of a hull with fewer the sharpest corners are cut off.\n"
                            "\n"
                            "  FONT            a font file that FreeType reads\n"
                            "  CHARACTERS      UTF-8 text; each character is one shape (variation selectors and\n"
@@ -28,9 +29,9 @@ static const char HELP[] = "usage: narc shapes FONT CHARACTERS --arcs N [--out s
                            "  --out FILE      the shapes file to write; left out or -: standard output\n"
                            "  --picture FILE  a .png or .svg picture of glyphs, polygons and n-arcs\n"
                            "\n"
-                           "A shape is named by its character if that is an ASCII letter or digit, and otherwise by\n"
-                           "its code point, such as U+1F47B. Lengths are in em (font units divided by units per em),\n"
-                           "and the shape's centroid is its origin.\n";
+                           "A shape is named by its character if that is an ASCII letter, and otherwise by its code\n"
+                           "point, such as U+1F47B or U+0037 (a name 7 would be taken for an index). Lengths are in\n"
+                           "em (font units divided by units per em), and the shape's centroid is its origin.\n";
 
 enum { SMALLEST_ARCS = 3 };
 
@@ -102,7 +103,7 @@ static void run(int argc, char **argv) {
     if (picture) {
         draw_glyphs(picture, open_output(picture), glyphs, count);
     }
-    commit_outputs();
+    finish_outputs();
     hide_progress();
 
     FILE *report = is_standard_output(out) ? stderr : stdout;
@@ -112,6 +113,8 @@ static void run(int argc, char **argv) {
         print_row(report, &glyphs[i]);
         free_glyph(&glyphs[i]);
     }
+    finish_report(report);
+    commit_outputs();
     free(glyphs);
     free(codes);
     free_shapes(&shapes);

@@ -12,14 +12,30 @@
 #include <string.h>
 
 #include "fail.h"
+#include "json_position.h"
 #include "text.h"
 
+enum { NOWHERE = -1 };
+
 typedef struct reader {
-    const char *path;
-    size_t line;      /* where the current shape begins */
+    const char *path, *text;
+    long shape;       /* the current one, or NOWHERE */
+    const char *list; /* the current shape's arcs, points or polygon, if that is what is read */
+    long element;     /* the current one of that list, or NOWHERE */
     char where[256];  /* "shape 'lens': arc 2: ", for messages */
     size_t where_end; /* length of the part that names the shape */
 } reader;
+
+/* The line on which what is read now begins: the element, else the shape, else the file's value. */
+static size_t find_line(const reader *at) {
+    const char *place = find_root(at->text);
+    const char *inner = at->shape == NOWHERE ? NULL : find_member(place, "shapes");
+    inner = inner ? find_element(inner, (size_t)at->shape) : NULL;
+    place = inner ? inner : place;
+    inner = inner && at->list && at->element != NOWHERE ? find_member(inner, at->list) : NULL;
+    inner = inner ? find_element(inner, (size_t)at->element) : NULL;
+    return line_of(at->text, inner ? inner : place);
+}
 
 PRINTF_LIKE(2, 3) static _Noreturn void fail_shape(const reader *at, const char *format, ...) {
     char message[512];
@@ -27,52 +43,29 @@ PRINTF_LIKE(2, 3) static _Noreturn void fail_shape(const reader *at, const char 
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    fail_at(at->path, at->line, "%s%s", at->where, message);
+    fail_at(at->path, find_line(at), "%s%s", at->where, message);
 }
 
-/* ---------------------------------------------------------------------------- where shapes begin */
-
-/* The end of a string that begins at its opening quote: behind the closing one. */
-static const char *skip_string(const char *c) {
-    for (c++; *c && *c != '"'; c++) {
-        c += *c == '\\' && c[1];
+/* How much of a text a message shows: not all of a long one, and no part of a character. */
+static int shown_length(const char *text, size_t length) {
+    enum { LONGEST = 40 };
+    if (length <= LONGEST) {
+        return (int)length;
     }
-    return *c ? c + 1 : c;
+    for (length = LONGEST; length > 0 && ((unsigned char)text[length] & 0xc0) == 0x80;) {
+        length--;
+    }
+    return (int)length;
 }
 
-/* The lines on which the elements of the array "shapes" of the root object begin. cJSON has already accepted the text,
- * so this only follows strings and nesting. Lines that are not found stay 1. */
-static size_t *find_shape_lines(const char *text, size_t count) {
-    static const char key[] = "\"shapes\"";
-    size_t *lines = allocate(count, sizeof *lines);
-    for (size_t i = 0; i < count; i++) {
-        lines[i] = 1;
+/* "what is not a number 'value'", the value as JSON. */
+static _Noreturn void fail_value(const reader *at, const cJSON *item, const char *what, const char *problem) {
+    char *value = cJSON_PrintUnformatted(item);
+    if (!value) {
+        fail_shape(at, "%s %s", what, problem);
     }
-    size_t line = 1, depth = 0, found = 0;
-    bool is_key = false, inside = false, expected = false; /* inside the array; an element may begin here */
-    for (const char *c = text; *c;) {
-        const char *next = *c == '"' ? skip_string(c) : c + 1;
-        if (expected && !strchr(" \t\r\n]", *c) && found < count) {
-            lines[found++] = line;
-            expected = false;
-        }
-        line += *c == '\n';
-        if (*c == '"' && depth == 1) {
-            is_key = strncmp(c, key, sizeof key - 1) == 0;
-        } else if (*c == '{' || *c == '[') {
-            if (*c == '[' && depth == 1 && is_key) {
-                inside = expected = true;
-            }
-            depth++;
-        } else if (*c == '}' || *c == ']') {
-            depth--;
-            inside = inside && depth >= 2;
-        } else if (*c == ',' && inside && depth == 2) {
-            expected = true;
-        }
-        c = next;
-    }
-    return lines;
+    const int shown = shown_length(value, strlen(value));
+    fail_shape(at, "%s %s '%.*s'%s", what, problem, shown, value, value[shown] ? "..." : "");
 }
 
 /* ---------------------------------------------------------------------------- checked access */
@@ -97,11 +90,14 @@ static void check_keys(const reader *at, const cJSON *object, const char *const 
 }
 
 static double as_number(const reader *at, const cJSON *item, const char *what) {
+    if (!item) {
+        fail_shape(at, "%s is missing", what);
+    }
     if (!cJSON_IsNumber(item)) {
-        fail_shape(at, item ? "%s is not a number" : "%s is missing", what);
+        fail_value(at, item, what, "is not a number");
     }
     if (!isfinite(item->valuedouble)) {
-        fail_shape(at, "%s is not finite", what);
+        fail_shape(at, "%s is not finite '%g'", what, item->valuedouble);
     }
     return item->valuedouble;
 }
@@ -120,7 +116,7 @@ static narc_point as_point(const reader *at, const cJSON *item, const char *what
         fail_shape(at, "%s is missing", what);
     }
     if (!cJSON_IsArray(item) || cJSON_GetArraySize(item) != 2) {
-        fail_shape(at, "%s is not a list of two numbers", what);
+        fail_value(at, item, what, "is not a list of two numbers");
     }
     return (narc_point){as_number(at, item->child, what), as_number(at, item->child->next, what)};
 }
@@ -128,7 +124,7 @@ static narc_point as_point(const reader *at, const cJSON *item, const char *what
 /* The length of a list that must have between 1 and NARC_MAX_ARCS items. */
 static size_t check_list(const reader *at, const cJSON *list, const char *key) {
     if (!cJSON_IsArray(list)) {
-        fail_shape(at, "%s is not a list", key);
+        fail_value(at, list, key, "is not a list");
     }
     const size_t count = (size_t)cJSON_GetArraySize(list);
     if (count == 0) {
@@ -140,20 +136,23 @@ static size_t check_list(const reader *at, const cJSON *list, const char *key) {
     return count;
 }
 
-static size_t get_points(const reader *at, const cJSON *list, const char *key, narc_point *out_points) {
+static size_t get_points(reader *at, const cJSON *list, const char *key, narc_point *out_points) {
     const size_t count = check_list(at, list, key);
     const cJSON *item = list->child;
+    at->list = key;
     for (size_t i = 0; i < count; i++, item = item->next) {
         char what[32];
-        snprintf(what, sizeof what, "%s %zu", strcmp(key, "points") == 0 ? "point" : "corner", i);
+        snprintf(what, sizeof what, "point %zu", i);
+        at->element = (long)i;
         out_points[i] = as_point(at, item, what);
     }
+    at->element = NOWHERE;
     return count;
 }
 
 static void check_object(const reader *at, const cJSON *item, const char *what, const char *const *keys) {
     if (!cJSON_IsObject(item)) {
-        fail_shape(at, "%s is not an object", what);
+        fail_value(at, item, what, "is not an object");
     }
     check_keys(at, item, keys);
 }
@@ -169,14 +168,17 @@ static narc_status build_arcs(reader *at, const cJSON *item, double radius, narc
     (void)radius;
     const size_t count = check_list(at, item, "arcs");
     const cJSON *arc = item->child;
+    at->list = "arcs";
     for (size_t i = 0; i < count; i++, arc = arc->next) {
         snprintf(at->where + at->where_end, sizeof at->where - at->where_end, "arc %zu: ", i);
+        at->element = (long)i;
         check_object(at, arc, "it", keys);
         const narc_point center = as_point(at, cJSON_GetObjectItemCaseSensitive(arc, "center"), "center");
         out_arcs[i] = (narc_arc){center.x, center.y, get_number(at, arc, "radius"), get_number(at, arc, "start"),
                                  get_number(at, arc, "end")};
     }
     at->where[at->where_end] = 0;
+    at->element = NOWHERE;
     *out_count = count;
     return narc_validate_arcs(out_arcs, count, error);
 }
@@ -248,22 +250,46 @@ static size_t find_form(const reader *at, const cJSON *object) {
     return found;
 }
 
-static void read_shape(reader *at, const cJSON *object, size_t index, shape_list *shapes) {
-    snprintf(at->where, sizeof at->where, "shape %zu: ", index);
-    if (!cJSON_IsObject(object)) {
-        fail_shape(at, "it is not an object");
+/* The name of shape number `index`. */
+static const char *get_name(const reader *at, const cJSON *object, size_t index) {
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, "name");
+    if (!item) {
+        fail_shape(at, "name is missing");
     }
-    const cJSON *name = cJSON_GetObjectItemCaseSensitive(object, "name");
-    if (!cJSON_IsString(name)) {
-        fail_shape(at, name ? "name is not a string" : "name is missing");
+    if (!cJSON_IsString(item)) {
+        fail_value(at, item, "name", "is not a string");
     }
-    if (!is_shape_name(name->valuestring)) {
+    const char *name = item->valuestring;
+    if (!is_shape_name(name)) {
         fail_shape(at,
                    "a name cannot be empty, begin or end with a blank, or hold commas, quotes, control characters "
                    "or invalid UTF-8 '%s'",
-                   name->valuestring);
+                   name);
     }
-    snprintf(at->where, sizeof at->where, "shape '%.100s': ", name->valuestring);
+    uint64_t number;
+    if (!name[strspn(name, "0123456789")] && !(parse_whole(name, index, &number) && number == index)) {
+        fail_shape(at, "a name of digits would be taken for the index of another shape '%s'", name);
+    }
+    return name;
+}
+
+/* Is the builder's error about one arc, point or side? Number 0 may also mean none; but then the message does not begin
+ * like "arc 0: ". */
+static bool names_element(const narc_error *error) {
+    size_t number;
+    return error->index > 0 || (sscanf(error->message, "%*[a-z] %zu:", &number) == 1 && number == 0);
+}
+
+static void read_shape(reader *at, const cJSON *object, size_t index, shape_list *shapes) {
+    at->shape = (long)index;
+    at->list = NULL;
+    at->element = NOWHERE;
+    snprintf(at->where, sizeof at->where, "shape %zu: ", index);
+    if (!cJSON_IsObject(object)) {
+        fail_value(at, object, "it", "is not an object");
+    }
+    const char *name = get_name(at, object, index);
+    snprintf(at->where, sizeof at->where, "shape '%.100s': ", name);
     at->where_end = strlen(at->where);
     static const char *const keys[] = {"name", "arcs", "points", "polygon", "circle", "capsule", "box", "radius", NULL};
     check_keys(at, object, keys);
@@ -276,7 +302,8 @@ static void read_shape(reader *at, const cJSON *object, size_t index, shape_list
     narc_error error;
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, forms[form].key);
     if (forms[form].build(at, item, get_number_or_zero(at, object, "radius"), arcs, &count, &error) != NARC_OK ||
-        add_shape(shapes, name->valuestring, arcs, count, &error) != NARC_OK) {
+        add_shape(shapes, name, arcs, count, &error) != NARC_OK) {
+        at->element = names_element(&error) ? (long)error.index : NOWHERE;
         fail_shape(at, "%s", error.message);
     }
 }
@@ -288,14 +315,23 @@ static _Noreturn void fail_syntax(const char *path, const char *text, const char
     if (!*position) {
         fail_at(path, line, "not valid JSON: it ends too early");
     }
-    fail_at(path, line, "not valid JSON here '%.*s'", (int)(rest < 40 ? rest : 40), position);
+    fail_at(path, line, "not valid JSON here '%.*s'", shown_length(position, rest), position);
+}
+
+/* cJSON ends a string at a NUL character, and so would cut it without a word. */
+static void refuse_nul(const char *path, const char *text) {
+    for (const char *c = text; (c = strchr(c, '\\')); c += 2) {
+        if (strncmp(c + 1, "u0000", 5) == 0) {
+            fail_at(path, line_of(text, c), "a NUL character '\\u0000'");
+        }
+    }
 }
 
 void read_shapes(const char *path, shape_list *out_shapes) {
     *out_shapes = (shape_list){0};
-    reader at = {.path = path, .line = 1};
     size_t size;
     char *text = read_text(path, &size);
+    reader at = {.path = path, .text = text, .shape = NOWHERE, .element = NOWHERE};
     if (!text[strspn(text, " \t\r\n")]) {
         fail_at(path, 1, "the file is empty");
     }
@@ -304,27 +340,29 @@ void read_shapes(const char *path, shape_list *out_shapes) {
     if (!root) {
         fail_syntax(path, text, end);
     }
+    refuse_nul(path, text);
     static const char *const keys[] = {"shapes", NULL};
     check_object(&at, root, "the file's value", keys);
     const cJSON *list = cJSON_GetObjectItemCaseSensitive(root, "shapes");
+    if (!list) {
+        fail_shape(&at, "shapes is missing");
+    }
     if (!cJSON_IsArray(list)) {
-        fail_at(path, 1, list ? "shapes is not a list" : "shapes is missing");
+        fail_value(&at, list, "shapes", "is not a list");
     }
     if (!list->child) {
-        fail_at(path, 1, "shapes is an empty list");
+        fail_shape(&at, "shapes is an empty list");
     }
-    size_t *lines = find_shape_lines(text, (size_t)cJSON_GetArraySize(list));
     const cJSON *item;
     size_t index = 0;
-    cJSON_ArrayForEach(item, list) {
-        at.line = lines[index];
-        read_shape(&at, item, index++, out_shapes);
-    }
+    cJSON_ArrayForEach(item, list) { read_shape(&at, item, index++, out_shapes); }
     const size_t duplicate = index_shapes(out_shapes);
     if (duplicate < out_shapes->count) {
-        fail_at(path, lines[duplicate], "another shape has that name '%s'", out_shapes->items[duplicate].name);
+        at.shape = (long)duplicate;
+        at.element = NOWHERE;
+        at.where[0] = 0;
+        fail_shape(&at, "another shape has that name '%s'", out_shapes->items[duplicate].name);
     }
-    free(lines);
     cJSON_Delete(root);
     free(text);
 }

@@ -11,12 +11,14 @@
 #include <string.h>
 
 #include "fail.h"
+#include "output.h"
 
 char *read_text(const char *path, size_t *out_size) {
     FILE *file = fopen(path, "rb");
     if (!file) {
         fail("%s: %s", path, strerror(errno));
     }
+    protect_input(file);
     char *text = NULL;
     size_t size = 0, capacity = 0, got;
     do {
