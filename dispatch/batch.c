@@ -114,8 +114,8 @@ size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *bat
         return total;
     }
     /* Chunks are handed out in the order of the pairs and run at once; only the reservation of their place in the list
-     * waits for its turn. It gives up the processor while it waits: OpenMP's own `ordered` spins, which on a busy machine
-     * keeps the thread that it waits for from running. */
+     * waits for its turn. It gives up the processor while it waits: OpenMP's own `ordered` spins, which on a busy
+     * machine keeps the thread that it waits for from running. */
     atomic_size_t turn = 0;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(monotonic : dynamic) num_threads(team)

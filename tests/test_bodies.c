@@ -150,7 +150,8 @@ static float separation_of_boxes(float x, float y, float cosine, float sine) {
     return separation[0];
 }
 
-/* A rotation that has drifted from the unit circle is taken as the rotation it was; one that is far off has no answer. */
+/* A rotation that has drifted from the unit circle is taken as the rotation it was; one that is far off has no
+ * answer. */
 static void test_drifted_rotations(void **state) {
     (void)state;
     const float exact = separation_of_boxes(1.5f, 0.75f, 0.6f, 0.8f);

@@ -183,8 +183,8 @@ static void test_half_turns(void **state) {
     }
 }
 
-/* The first junctions of A and B, counter-clockwise from A's x axis, agree up to rounding, and the normal is theirs: the
- * interval that ends with them must end with the one that the first interval began with. */
+/* The first junctions of A and B, counter-clockwise from A's x axis, agree up to rounding, and the normal is theirs:
+ * the interval that ends with them must end with the one that the first interval began with. */
 static void test_last_interval_meets_first(void **state) {
     (void)state;
     struct shape lens,

@@ -227,6 +227,7 @@ static void count_collisions(job *work, const settings *chosen) {
     free(bits);
 }
 
+/* Adding 0 makes a negative zero a plain one. */
 static void write_contacts(FILE *file, const job *work) {
     const narc_contacts *found = &work->contacts;
     fprintf(file, "a,b,separation,normal_x,normal_y,point_x,point_y,arc_a,arc_b\n");
@@ -234,9 +235,9 @@ static void write_contacts(FILE *file, const job *work) {
         const pair of = work->pairs.items[found->pair[k]];
         const body *a = &work->bodies.items[of.a];
         fprintf(file, "%" PRIu32 ",%" PRIu32 ",%.9g,%.9g,%.9g,%.9g,%.9g,%u,%u\n", of.a, of.b,
-                (double)found->separation[k], (double)found->normal_x[k], (double)found->normal_y[k],
-                a->x + (double)found->point_x[k], a->y + (double)found->point_y[k], (unsigned)found->arc_a[k],
-                (unsigned)found->arc_b[k]);
+                0 + (double)found->separation[k], 0 + (double)found->normal_x[k], 0 + (double)found->normal_y[k],
+                0 + (a->x + (double)found->point_x[k]), 0 + (a->y + (double)found->point_y[k]),
+                (unsigned)found->arc_a[k], (unsigned)found->arc_b[k]);
         show_progress("writing contacts", k, work->contact_count);
     }
 }
