@@ -92,8 +92,8 @@ NARC_API narc_status narc_find_overlaps_range(const narc_shapes *shapes, const n
  *   out_contacts  arrays of out_contacts->capacity items, overlapping none of the inputs
  *   out_count     the number of contacts found, which may be more than the capacity: then the first `capacity` of
  *                 them are written and NARC_ERROR_CAPACITY is returned.
- * Other errors and `threads` as narc_find_overlaps(). A pair is reported with margin 0 exactly if its bit there is set.
- *  */
+ * Other errors and `threads` as narc_find_overlaps(). With margin 0 a pair is reported exactly if its bit there is
+ * set. */
 NARC_API narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                         float margin, unsigned threads, const narc_contacts *out_contacts,
                                         size_t *out_count, narc_error *error);
@@ -116,8 +116,8 @@ NARC_API narc_status narc_compute_poses(const float *angles, size_t count, float
  * one. NARC_ERROR_ISA_UNKNOWN, NARC_ERROR_ISA_UNSUPPORTED; the choice is unchanged then. */
 NARC_API narc_status narc_set_isa(const char *name, narc_error *error);
 
-/* The name of the instruction set in use (chosen now if it was not yet); NULL if NARC_ISA names one that can't be had.
- *  */
+/* The name of the instruction set in use (chosen now if it was not yet); NULL if NARC_ISA names one that can't be
+ * had. */
 NARC_API const char *narc_get_isa(void);
 
 /* The instruction sets this library knows, best first: name number `index`, NULL behind the last. */

@@ -86,9 +86,9 @@ static void load_pairs(const narc_batch *batch, size_t first, size_t count, stru
     }
 }
 
-/* The length of a rotation that is off by little: one step of Newton's method for the inverse root of the square,
- * from 1. It leaves 3/8 of the square's error squared, 1.5 e at most. In lanes where it is off by more, `out_valid`
- * is false. */
+/* One over the length of a rotation that is nearly 1: one step of Newton's method for the inverse root of the square,
+ * from 1, which leaves 3/8 of the square's error squared, 1.5 e at most. In lanes where the square is off by more than
+ * NARC_ROTATION_TOLERANCE, `out_valid` is false. */
 static inline vf inverse_length(vf c, vf s, vm *out_valid) {
     const vf off = v_sub(v_add(v_mul(c, c), v_mul(s, s)), v_set(1));
     *out_valid = v_le(v_abs(off), v_set((float)NARC_ROTATION_TOLERANCE));

@@ -59,8 +59,8 @@ extern "C" {
 #define NARC_MAX_SHAPES 0x7fffffffu
 
 /* A shape's bounding radius, times a body's scale, must lie in this range (with the room for rounding that the kernels
- * add to it, 6e-6 of the largest |centre| + radius of its arcs): then every product in the kernels stays far
- * from overflow and underflow in single precision. Shapes outside it are refused, and those that reach further than
+ * add to it, 6e-6 of the largest |centre| + radius of its arcs): then every product in the kernels stays far from
+ * overflow and underflow in single precision. Shapes outside it are refused, and those that reach further than
  * NARC_MAX_SIZE from their own origin; a body whose scale takes it outside never collides. */
 #define NARC_MIN_SIZE 1e-9
 #define NARC_MAX_SIZE 1e9
@@ -126,8 +126,8 @@ typedef struct narc_arc {
 
 /* Is a list of arcs a valid arc shape? Checks, in this order: the count (1 .. NARC_MAX_ARCS), that all is finite, that
  * no radius is negative, each sweep, that normals join and make one turn, that edges run forwards and have their
- * normal (closed, convex), the size, and the largest radius. The message names the arc and the quantity. Thread-safe.
- *  */
+ * normal (closed, convex), the size, and the largest radius. The message names the arc and the quantity.
+ * Thread-safe. */
 NARC_API narc_status narc_validate_arcs(const narc_arc *arcs, size_t count, narc_error *error);
 
 /* Every builder below writes at most NARC_MAX_ARCS arcs to `out_arcs` (the caller's array of that size) and their
@@ -198,8 +198,7 @@ NARC_API narc_status narc_find_radius_range(const narc_point *points, size_t cou
 NARC_API narc_status narc_adjust_polygon(const narc_point *polygon, size_t count, narc_point *out_points,
                                          narc_error *error);
 
-/* ------------------------------------------------------------------------------------------------ derived quantities
- *  */
+/* ----------------------------------------------------------------------------------------- derived quantities */
 
 /* All of these take a valid list of arcs (see narc_validate_arcs()), compute in double precision from closed forms, and
  * are pure and thread-safe. They return false, outputs untouched, for NULL, a count of 0 or more than NARC_MAX_ARCS. */
