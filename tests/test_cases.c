@@ -122,6 +122,46 @@ static void test_faces_share_a_stretch(void **state) {
     }
 }
 
+/* The same with both turned, B's shape by another angle than B: then rounding leaves the normals of the sides apart. */
+static void test_turned_faces_share_a_stretch(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("turned faces");
+    struct shape wide = box_of(4, 1, 0), narrow;
+    for (size_t trial = 0; trial < test_trials(2000); trial++) {
+        double angle = random_between(&random, -pi, pi), c = cos(angle), s = sin(angle);
+        double own = random_between(&random, -pi, pi), oc = 0.5 * cos(own), os = 0.5 * sin(own);
+        const narc_point corners[4] = {
+            {oc - os, os + oc}, {-oc - os, oc - os}, {os - oc, -os - oc}, {oc + os, os - oc}};
+        assert_int_equal(narc_build_polygon(corners, 4, 0.25, narrow.arcs, &narrow.count, NULL), NARC_OK);
+        double x = random_between(&random, -1.5, 1.5), y = random_between(&random, 0.6, 1.5);
+        struct body at_b = turned_body(angle - own, 1);
+        at_b.x = c * x - s * y;
+        at_b.y = s * x + c * y;
+        struct answer up = ask_bodies(&wide, turned_body(angle, 1), &narrow, at_b);
+        double middle = (0.5 + (y - 0.5)) / 2; /* between A's top and B's bottom */
+        double off_x = (double)up.point_x - (c * x - s * middle), off_y = (double)up.point_y - (s * x + c * middle);
+        if (hypot(off_x, off_y) > 1e-5) {
+            fail_msg("angle %.17g, B at (%.17g, %.17g): point off by (%.3g, %.3g)", angle, x, y, off_x, off_y);
+        }
+    }
+}
+
+/* A circle in another, its three arcs off by a rounding or two so that the gap grows along each of them and falls back
+ * where the next begins: no local maximum is to be seen anywhere, and the gap is the same in all directions but for
+ * that. */
+static void test_gap_rises_all_around(void **state) {
+    (void)state;
+    struct shape spiral = {.count = 3}, circle = circle_of(1.5);
+    for (size_t k = 0; k < 3; k++) {
+        double start = 0.1 + 2 * pi / 3 * (double)k, end = start + 2 * pi / 3, ahead = end + 0.5;
+        spiral.arcs[k] = (narc_arc){-2e-7 * cos(ahead), -2e-7 * sin(ahead), 1, start, end};
+    }
+    for (double angle = -3; angle < 3; angle += 0.01) {
+        struct answer answer = ask_turned(&spiral, angle, &circle, 0, 0);
+        assert_true(answer.overlap && fabsf(answer.separation + 2.5f) < 1e-6f);
+    }
+}
+
 static void test_coincident_circles(void **state) {
     (void)state;
     struct shape one = circle_of(1), two = circle_of(2);
@@ -223,6 +263,8 @@ int main(void) {
         cmocka_unit_test(test_circles_touch),
         cmocka_unit_test(test_boxes_touch),
         cmocka_unit_test(test_faces_share_a_stretch),
+        cmocka_unit_test(test_turned_faces_share_a_stretch),
+        cmocka_unit_test(test_gap_rises_all_around),
         cmocka_unit_test(test_coincident_circles),
         cmocka_unit_test(test_just_beyond_an_edge),
         cmocka_unit_test(test_just_beyond_a_junction),
