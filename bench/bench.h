@@ -5,19 +5,38 @@
 #ifndef NARC_BENCH_H
 #define NARC_BENCH_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* Registers a benchmark: `run(argument)` is timed as a whole and counts as `items` items. */
-void bench_add(const char *name, void (*run)(void *argument), void *argument, size_t items);
+enum { BENCH_NAME = 96 };
+
+/* A row of the benchmark: `run` is timed as a whole and answers for `pairs` pairs. */
+struct bench_row {
+    char name[BENCH_NAME];
+    size_t pairs;
+    void (*prepare)(struct bench_row *row); /* before every repetition, outside the time; makes the scene, checks */
+    void (*run)(struct bench_row *row);
+    void *context;      /* of these two functions */
+    bool must_be_right; /* wrong answers of this row fail the program */
+    double colliding;   /* set by prepare: the fraction of pairs said to collide */
+    double wrong;       /* set by prepare: the number of wrong answers */
+    double ns;          /* set when the row has run: nanoseconds per pair, the median of the repetitions; else 0 */
+};
+
+/* Registers a row, which must outlive bench_run(). */
+void bench_add(struct bench_row *row);
 
 /* Registers one that cannot run here, so that it shows as skipped with the reason instead of being absent. */
 void bench_skip(const char *name, const char *reason);
 
-/* Parses Google Benchmark's options and runs what was registered; the exit status. */
+/* A line of the report's head, such as the compiler. */
+void bench_describe(const char *key, const char *value);
+
+/* Parses Google Benchmark's options and runs the rows; the exit status. */
 int bench_run(int argc, char **argv);
 
 #ifdef __cplusplus

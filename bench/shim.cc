@@ -5,33 +5,73 @@
 
 #include <benchmark/benchmark.h>
 
+#include <map>
 #include <string>
+#include <vector>
 
-void bench_add(const char *name, void (*run)(void *argument), void *argument, size_t items) {
-    benchmark::RegisterBenchmark(name,
-                                 [=](benchmark::State &state) {
+namespace {
+
+std::map<std::string, bench_row *> rows;
+
+// Google Benchmark's console, but of several repetitions it shows the median alone, which becomes the row's result.
+class Console : public benchmark::ConsoleReporter {
+    void ReportRuns(const std::vector<Run> &runs) override {
+        std::vector<Run> shown;
+        for (const Run &run : runs) {
+            if (run.run_type == Run::RT_Iteration ? run.repetitions > 1 : run.aggregate_name != "median")
+                continue;
+            shown.push_back(run);
+            const auto row = rows.find(run.run_name.function_name);
+            const auto time = run.counters.find("per_pair");
+            if (row != rows.end() && time != run.counters.end())
+                row->second->ns = time->second * 1e9;
+        }
+        if (!shown.empty())
+            ConsoleReporter::ReportRuns(shown);
+    }
+
+  public:
+    Console() : ConsoleReporter(OO_Tabular) {}
+};
+
+} // namespace
+
+void bench_add(bench_row *row) {
+    rows[row->name] = row;
+    benchmark::RegisterBenchmark(row->name,
+                                 [row](benchmark::State &state) {
+                                     row->prepare(row);
                                      for (auto _ : state)
-                                         run(argument);
-                                     state.SetItemsProcessed(static_cast<int64_t>(state.iterations() * items));
+                                         row->run(row);
+                                     using benchmark::Counter;
+                                     // The reciprocal of a rate of pairs: seconds, shown as nanoseconds.
+                                     state.counters["per_pair"] =
+                                         Counter(static_cast<double>(row->pairs),
+                                                 Counter::kIsIterationInvariantRate | Counter::kInvert);
+                                     state.counters["colliding"] = row->colliding;
+                                     state.counters["wrong"] = row->wrong;
                                  })
         ->UseRealTime()
-        ->Unit(benchmark::kMillisecond);
+        ->Unit(benchmark::kMicrosecond);
 }
 
 void bench_skip(const char *name, const char *reason) {
     const std::string why = reason;
-    benchmark::RegisterBenchmark(name, [=](benchmark::State &state) {
+    benchmark::RegisterBenchmark(name, [why](benchmark::State &state) {
         state.SkipWithError(why.c_str());
         for (auto _ : state) {
         }
     });
 }
 
+void bench_describe(const char *key, const char *value) { benchmark::AddCustomContext(key, value); }
+
 int bench_run(int argc, char **argv) {
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv))
         return 2;
-    benchmark::RunSpecifiedBenchmarks();
+    Console console;
+    benchmark::RunSpecifiedBenchmarks(&console);
     benchmark::Shutdown();
     return 0;
 }

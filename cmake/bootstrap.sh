@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# From a machine with a shell and apt to a picture (run) or to all tests (test).
+# From a machine with a shell and apt to a picture (run), to all tests (test) or to all benchmarks (bench).
 # shellcheck disable=SC2086 # lists of packages and commands are split into words on purpose
 set -eu
 
@@ -8,6 +8,9 @@ usage() {
     cat <<'EOF'
 usage: sh cmake/bootstrap.sh run     install what is missing, build, collide 20,000 bodies; results in out/
        sh cmake/bootstrap.sh test    install what is missing, build in every way, run all tests
+       sh cmake/bootstrap.sh bench [OPTION ...]
+                                     install what is missing, build, run the benchmarks; results in out/. Options
+                                     are Google Benchmark's and those of bench/README.md
 
 Installs Debian and Ubuntu packages with apt-get, as root or through sudo, and nothing if all are there.
 EOF
@@ -24,10 +27,12 @@ jobs=$(nproc 2>/dev/null || echo 2)
 export CMAKE_BUILD_PARALLEL_LEVEL="$jobs" CTEST_PARALLEL_LEVEL="$jobs"
 
 # ---------------------------------------------------------------------------- packages
-build_packages="gcc libc6-dev make cmake pkg-config libsleef-dev libfreetype-dev libcjson-dev libcairo2-dev \
-    libcmocka-dev"
+library_packages="gcc libc6-dev make cmake pkg-config libsleef-dev"
+build_packages="$library_packages libfreetype-dev libcjson-dev libcairo2-dev libcmocka-dev"
 run_packages="$build_packages fonts-symbola"
-test_packages="$run_packages g++ binutils clang libomp-dev libbenchmark-dev"
+peer_packages="g++ libbenchmark-dev libbox2d-dev libchipmunk-dev libccd-dev"
+test_packages="$run_packages $peer_packages binutils clang libomp-dev"
+bench_packages="$library_packages $peer_packages gnuplot-nox"
 arm64_tools="gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
 arm64_libraries="libsleef-dev libsleef3 libcmocka-dev libcmocka0"
 
@@ -112,6 +117,21 @@ run() {
     ls -l out/shapes.json out/shapes.png out/bodies.csv out/contacts.csv out/collisions.png
 }
 
+# Each row several times, in random order with all others, so that what else the machine does hits them all alike.
+bench() {
+    require_packages $bench_packages
+    build bench bench_narc
+    mkdir -p out
+    rm -f out/bench.json out/bench.md out/arcs.dat out/batches.dat out/bench-arcs.svg out/bench-batches.svg
+    say "benchmarks"
+    build/bench/bench/bench_narc --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true \
+        --benchmark_min_time=0.1 --benchmark_out=out/bench.json --benchmark_out_format=json --out=out "$@"
+    say "plots"
+    gnuplot -e "folder='out'" bench/plots.gp
+    say "written"
+    ls -l out/bench* out/*.dat
+}
+
 test_all() {
     require_packages $test_packages
     check ci
@@ -140,6 +160,10 @@ test_all() {
 case ${1:-} in
 run) run ;;
 test) test_all ;;
+bench)
+    shift
+    bench "$@"
+    ;;
 *)
     usage
     case ${1:-} in -h | --help | help) exit 0 ;; *) exit 2 ;; esac

@@ -134,6 +134,29 @@ size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *bat
     return total;
 }
 
+/* The largest index of items first .. last - 1 of a column. */
+static uint32_t find_largest(narc_column column, size_t first, size_t last) {
+    uint32_t even = 0, odd = 0; /* two chains of comparisons, because one would wait for each */
+    size_t k = first;
+    for (; k + 2 <= last; k += 2) {
+        const uint32_t one = narc_index_at(column, k), two = narc_index_at(column, k + 1);
+        even = one > even ? one : even;
+        odd = two > odd ? two : odd;
+    }
+    if (k < last && narc_index_at(column, k) > even)
+        even = narc_index_at(column, k);
+    return even > odd ? even : odd;
+}
+
+/* Is it certain that no pair of the sub-range is bad? Reads columns from front to back, so it is much faster than
+ * looking at every pair's bodies; it pays if there are not many more bodies than pairs. */
+static bool all_in_range(const narc_batch *batch, size_t first, size_t count) {
+    const narc_bodies *bodies = batch->bodies;
+    return bodies->count / 4 <= count && find_largest(batch->pairs->a, first, first + count) < bodies->count &&
+           find_largest(batch->pairs->b, first, first + count) < bodies->count &&
+           find_largest(bodies->shape, 0, bodies->count) < batch->shapes->count;
+}
+
 /* The first of pairs first .. last - 1 that names a body or a shape that does not exist; last if none. */
 static size_t find_bad_pair(const narc_batch *batch, size_t first, size_t last) {
     const narc_bodies *bodies = batch->bodies;
@@ -150,6 +173,8 @@ static size_t find_bad_pair(const narc_batch *batch, size_t first, size_t last) 
 size_t narc_find_bad_pair(const narc_batch *batch, size_t first, size_t count, unsigned threads) {
     const size_t chunks = (count + CHUNK - 1) / CHUNK;
     const int team = thread_count(threads, chunks);
+    if (all_in_range(batch, first, count))
+        return first + count;
     if (team <= 1)
         return find_bad_pair(batch, first, first + count);
     size_t bad = first + count;

@@ -16,7 +16,7 @@ static unsigned long long read_xcr0(void) {
 
 unsigned narc_detect_cpu(void) {
     const unsigned osxsave_and_avx = 1u << 27 | 1u << 28;              /* leaf 1, ecx */
-    const unsigned avx2 = 1u << 5;                                     /* leaf 7, ebx */
+    const unsigned avx2_and_bmi2 = 1u << 5 | 1u << 8;                  /* leaf 7, ebx */
     const unsigned avx512 = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31; /* leaf 7, ebx: F, DQ, BW, VL */
     const unsigned long long ymm_saved = 0x06, zmm_saved = 0xe6;
     unsigned a, b, c, d, found = 0;
@@ -28,7 +28,7 @@ unsigned narc_detect_cpu(void) {
     found |= NARC_CPU_AVX;
     if (!__get_cpuid_count(7, 0, &a, &b, &c, &d))
         return found;
-    if (b & avx2)
+    if ((b & avx2_and_bmi2) == avx2_and_bmi2)
         found |= NARC_CPU_AVX2;
     if ((b & avx512) == avx512 && (saved & zmm_saved) == zmm_saved)
         found |= NARC_CPU_AVX512;

@@ -12,6 +12,11 @@
  * rotated normal, 6 * 2^-24, below any angle between two normals of a shape. */
 #define PARALLEL 0x1p-20f
 
+/* The number of a slot from its place in the list, a multiple of SLOT. */
+static inline vi slot_number(vi place) {
+    return vi_truncate(v_add(v_mul(v_of_int(place), v_set(1.0f / SLOT)), v_set(0.5f)));
+}
+
 /* Where one shape touches its support line: its position across n, the stretch along it, and the slot of the arc; of an
  * edge, the arc at its counter-clockwise end. */
 struct touch {
@@ -47,79 +52,256 @@ static inline struct touch touch_of(const struct overlay *o, struct cursor c, vi
     return t;
 }
 
-/* One contact for each lane, in memory. */
-struct contact_lanes {
-    float separation[V_WIDTH], normal_x[V_WIDTH], normal_y[V_WIDTH], point_x[V_WIDTH], point_y[V_WIDTH];
-    int32_t arc_a[V_WIDTH], arc_b[V_WIDTH];
+/* A contact while its place in the list is not known yet: a row for each pair of a group, found by the pair's number. */
+enum { SEPARATION, CONTACT_NORMAL_X, CONTACT_NORMAL_Y, POINT_X, POINT_Y, ARCS, ROW = 8 };
+
+enum { GROUP = 1024 };
+
+struct results {
+    uint64_t keep[GROUP / 64];
+    float row[GROUP + 1][ROW]; /* the last is for lanes that are of no use */
 };
 
+/* The caller's number of an arc, from its place in the block; a circle's two halves are both arc 0. */
+static inline vi arc_number(vi place, vi bytes) {
+    const vi number = vi_add(place, head_first(bytes)), count = head_count(bytes);
+    const vi wrapped = vi_select(vi_lt(number, count), number, vi_sub(number, count));
+    return vi_select(head_is(bytes, NARC_SHAPE_CIRCLE), vi_set(0), wrapped);
+}
+
 /* From A's frame to world axes. */
-static inline void turn_back(const struct pair_block *p, vi lanes, vf x, vf y, float *out_x, float *out_y) {
-    const vf c = v_gather(p->cosine_a, lanes), s = v_gather(p->sine_a, lanes);
-    v_store(out_x, v_sub(v_mul(c, x), v_mul(s, y)));
-    v_store(out_y, v_add(v_mul(s, x), v_mul(c, y)));
+static inline void turn_back(const struct queue *q, int k, vf x, vf y, vf *out_x, vf *out_y) {
+    const vf c = get(q, COSINE_A, k), s = get(q, SINE_A, k);
+    *out_x = v_sub(v_mul(c, x), v_mul(s, y));
+    *out_y = v_add(v_mul(s, x), v_mul(c, y));
 }
 
-static inline void describe_contacts(const struct overlay *o, const struct pair_block *p, vi lanes, struct cursor a,
-                                     struct cursor b, const struct gap *gap, struct contact_lanes *out) {
-    const vf n_x = v_div(gap->n_x, gap->n_length), n_y = v_div(gap->n_y, gap->n_length);
-    const struct touch on_a = touch_of(o, a, gap->arc_a, n_x, n_y, 1), on_b = touch_of(o, b, gap->arc_b, n_x, n_y, -1);
+/* Files the contacts of the pairs k ... of a queue, those lanes that `keep` says. `arc` of the touches is the place in
+ * the block. */
+static inline void file_contacts(const struct queue *q, int k, vm keep, vf separation, vf n_x, vf n_y,
+                                 const struct touch *on_a, const struct touch *on_b, struct results *out) {
     const vf half = v_set(0.5f);
-    const vf across = v_mul(half, v_add(on_a.across, on_b.across));
-    const vf along = v_mul(half, v_add(v_max(on_a.along_min, on_b.along_min), v_min(on_a.along_max, on_b.along_max)));
-    v_store(out->separation, gap->separation);
-    turn_back(p, lanes, n_x, n_y, out->normal_x, out->normal_y);
-    turn_back(p, lanes, v_sub(v_mul(n_x, across), v_mul(n_y, along)), v_add(v_mul(n_y, across), v_mul(n_x, along)),
-              out->point_x, out->point_y);
-    vi_store(out->arc_a, on_a.arc);
-    vi_store(out->arc_b, on_b.arc);
+    const vf across = v_mul(half, v_add(on_a->across, on_b->across));
+    const vf along =
+        v_mul(half, v_add(v_max(on_a->along_min, on_b->along_min), v_min(on_a->along_max, on_b->along_max)));
+    vf row[ROW];
+    row[SEPARATION] = separation;
+    turn_back(q, k, n_x, n_y, &row[CONTACT_NORMAL_X], &row[CONTACT_NORMAL_Y]);
+    turn_back(q, k, v_sub(v_mul(n_x, across), v_mul(n_y, along)), v_add(v_mul(n_y, across), v_mul(n_x, along)),
+              &row[POINT_X], &row[POINT_Y]);
+    const vi arc_a = arc_number(on_a->arc, get_bits(q, BYTES_A, k));
+    const vi arc_b = arc_number(on_b->arc, get_bits(q, BYTES_B, k));
+    row[ARCS] = v_of_bits(vi_add(arc_a, vi_shift_left(arc_b, 8)));
+    row[6] = row[7] = v_set(0);
+    const vi pair = get_bits(q, PAIR, k);
+    int32_t place[V_WIDTH];
+    vi_store(place, vi_select(keep, pair, vi_set(GROUP)));
+    v_put_rows(out->row, sizeof out->row[0], place, row);
+    v_put_rows(&out->row[0][4], sizeof out->row[0], place, row + 4);
+    for (uint32_t bits = vm_bits(keep); bits; bits &= bits - 1) {
+        const uint32_t number = (uint32_t)place[__builtin_ctz(bits)];
+        out->keep[number / 64] |= (uint64_t)1 << number % 64;
+    }
 }
 
-/* The number of an arc from its slot; a circle's two halves are both arc 0. */
-static inline uint8_t arc_number(int32_t slot, int first_slot, bool is_circle) {
-    return (uint8_t)(is_circle ? 0 : slot / SLOT - first_slot);
+/* Finds the contacts of the last `count` pairs of a queue by the formula and takes them out. */
+static void decide_contacts(const narc_shapes *shapes, struct queue *rest, int count, float margin,
+                            struct results *out) {
+    struct overlay overlay;
+    rest->count -= count;
+    for (int i = 0; i < count; i += V_WIDTH) {
+        const int k = rest->count + i;
+        const vm live = vm_first(count - i);
+        struct cursor a, b;
+        vi steps;
+        place_pairs(&overlay, shapes, rest, k, &a, &b, &steps);
+        const struct gap gap = overlay_gap(&overlay, a, b, steps, live, true);
+        const vm keep = margin == INFINITY ? live : v_lt(gap.separation, v_set(margin));
+        if (!vm_any(keep))
+            continue;
+        const vf n_x = v_div(gap.n_x, gap.n_length), n_y = v_div(gap.n_y, gap.n_length);
+        struct touch on_a = touch_of(&overlay, a, gap.arc_a, n_x, n_y, 1);
+        struct touch on_b = touch_of(&overlay, b, gap.arc_b, n_x, n_y, -1);
+        on_a.arc = slot_number(vi_sub(on_a.arc, a.begin));
+        on_b.arc = slot_number(vi_sub(on_b.arc, b.begin));
+        file_contacts(rest, k, keep, gap.separation, n_x, n_y, &on_a, &on_b, out);
+    }
+}
+
+/* Where a shape touches, from the arcs after and before the normal. */
+static inline struct touch touch_at(const struct arcs *after, const struct arcs *before, vf n_x, vf n_y, float sign, vi arc) {
+    const vf reach = v_mul(v_set(sign), after->radius), old_reach = v_mul(v_set(sign), before->radius);
+    const vf p_x = v_add(after->x, v_mul(reach, n_x)), p_y = v_add(after->y, v_mul(reach, n_y));
+    const vf old_x = v_add(before->x, v_mul(old_reach, n_x)), old_y = v_add(before->y, v_mul(old_reach, n_y));
+    const vf along = cross(n_x, n_y, p_x, p_y), old = cross(n_x, n_y, old_x, old_y);
+    return (struct touch){dot(n_x, n_y, p_x, p_y), v_min(along, old), v_max(along, old), arc};
+}
+
+/* Is a side clear */
+static inline vm side_is_clear(vf edge, const struct couple *c, vf sine_a, vf sine_b, vf depth, vf chord, vf cosine, vf slack, vm kink) {
+    const vf near = v_min(sine_a, sine_b);
+    const vf sum = v_add(v_mul(edge, cosine), v_add(v_mul(c->a.radius, v_min(chord, sine_a)), v_mul(c->b.radius, v_min(chord, sine_b))));
+    const vf drop = v_mul(v_sub(sum, v_mul(depth, chord)), v_mul(near, near));
+    const vm clear = vm_and(v_le(v_set(0x1p-12f), near), v_lt(v_mul(v_mul(v_set(2), slack), chord), drop));
+    const vm edge_is_clear = vm_or(vm_and_not(vm_first(V_WIDTH), kink), v_lt(slack, edge));
+    return vm_and(clear, edge_is_clear);
+}
+
+/* Contacts by climbing; those undecided go to `rest`. */
+static inline void settle_contacts(const narc_shapes *shapes, struct queue *q, int first, float margin, struct queue *rest, struct results *out) {
+    look_up(shapes, q, first, DIRECTION_X);
+    for (int k = first; k < q->count; k += V_WIDTH) {
+        const vm live = vm_first(q->count - k);
+        const struct peak peak = climb(shapes, q, k, live);
+        const vf slack = get(q, SLACK, k);
+        const vf u_x = v_sub(peak.after.b.x, peak.after.a.x), u_y = v_sub(peak.after.b.y, peak.after.a.y);
+        const vf radii = v_add(peak.after.a.radius, peak.after.b.radius);
+        const vf length = v_sqrt(dot(u_x, u_y, u_x, u_y));
+        const vf separation = v_sub(v_select(peak.kink, dot(u_x, u_y, peak.n_x, peak.n_y), length), radii);
+        const vf one = v_set(1), n_length = v_select(peak.kink, one, length);
+        const vf n_x = v_div(peak.n_x, n_length), n_y = v_div(peak.n_y, n_length);
+
+        const vm circle_a = head_is(get_bits(q, BYTES_A, k), NARC_SHAPE_CIRCLE), circle_b = head_is(get_bits(q, BYTES_B, k), NARC_SHAPE_CIRCLE);
+        const vf end_a = sine_to(n_x, n_y, peak.after.a.end_x, peak.after.a.end_y, circle_a);
+        const vf end_b = sine_to(n_x, n_y, peak.after.b.end_x, peak.after.b.end_y, circle_b);
+        const vf start_a = sine_to(n_x, v_neg(n_y), peak.before.a.start_x, v_neg(peak.before.a.start_y), circle_a);
+        const vf start_b = sine_to(n_x, v_neg(n_y), peak.before.b.start_x, v_neg(peak.before.b.start_y), circle_b);
+        const vm holds = v_le(v_set(0), v_min(v_min(start_a, end_a), v_min(start_b, end_b)));
+        const vm found = vm_and(peak.found, holds);
+        const vm apart = vm_and(found, v_le(v_add(v_set(margin), slack), separation));
+
+        /* fan */
+        const vf axis_x = get(q, AXIS_X, k), axis_y = get(q, AXIS_Y, k), core = get(q, CORE, k);
+        const vf axis2 = dot(axis_x, axis_y, axis_x, axis_y), axis_length = v_sqrt(axis2);
+        const vf fan = v_min(axis_length, v_sub(v_add(core, separation), slack));
+        const vf fan_across = v_sqrt(v_max(v_set(0), v_sub(axis2, v_mul(fan, fan))));
+        const vf along = dot(axis_x, axis_y, n_x, n_y), across = v_abs(cross(axis_x, axis_y, n_x, n_y));
+        const vf cosine = v_div(v_sub(v_mul(fan, along), v_mul(fan_across, across)), axis2);
+        vm narrow = vm_and(v_lt(v_set(0), along), v_le(v_mul(v_set(-0.5f), axis_length), fan));
+        narrow = vm_and(narrow, v_le(v_set(-0.49f), cosine));
+        const vf chord2 = v_sub(v_set(2.0001f), v_add(cosine, cosine)), chord = v_sqrt(v_max(chord2, v_set(0)));
+        const vf half_cosine = v_sub(v_set(1.999f), v_mul(v_set(0.5f), chord2));
+        const vf depth = v_neg(separation);
+        const vf before_x = v_sub(peak.before.b.x, peak.before.a.x), before_y = v_sub(peak.before.b.y, peak.before.a.y);
+        const vf edge_after = v_select(peak.kink, cross(u_x, u_y, n_x, n_y), v_set(0));
+        const vf edge_before = v_select(peak.kink, cross(n_x, n_y, before_x, before_y), v_set(0));
+        vm sure = vm_and(found, narrow);
+        sure = vm_and(sure, side_is_clear(edge_after, &peak.after, end_a, end_b, depth, chord, half_cosine, slack, peak.kink));
+        sure = vm_and(sure, side_is_clear(edge_before, &peak.before, start_a, start_b, depth, chord, half_cosine, slack, peak.kink));
+        sure = vm_and_not(sure, apart);
+
+        const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
+        if (vm_any(keep)) {
+            const vi first_a = first_record(get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k));
+            const vi first_b = first_record(get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k));
+            const vi arc_a = vi_sub(vi_sub(peak.record_a, first_a), vi_set(1)), arc_b = vi_sub(vi_sub(peak.record_b, first_b), vi_set(1));
+            const struct touch on_a = touch_at(&peak.after.a, &peak.before.a, n_x, n_y, 1, arc_a);
+            const struct touch on_b = touch_at(&peak.after.b, &peak.before.b, n_x, n_y, -1, arc_b);
+            file_contacts(q, k, keep, separation, n_x, n_y, &on_a, &on_b, out);
+        }
+        const vm left = vm_and_not(live, vm_or(apart, sure));
+        if (vm_any(left)) {
+            vf item[FIELDS];
+            get_item(q, k, item);
+            push(rest, left, item, SINE_A + 1);
+        }
+    }
+    q->count = first;
+}
+
+/* One look along the axis. */
+static inline void look_along_axis(const narc_shapes *shapes, struct queue *q, float margin, struct queue *near) {
+    look_up(shapes, q, 0, AXIS_X);
+    for (int k = 0; k < q->count; k += V_WIDTH) {
+        const vm live = vm_first(q->count - k);
+        const struct verdict v = glance(shapes, q, k, AXIS_X, margin, true);
+        const vm left = vm_and_not(live, v.apart);
+        if (vm_any(left)) {
+            vf item[FIELDS];
+            get_item(q, k, item);
+            const vm smooth = head_is(vi_and(get_bits(q, BYTES_A, k), get_bits(q, BYTES_B, k)), NARC_SHAPE_SMOOTH);
+            item[DIRECTION_X] = v_select(smooth, v.u_x, item[AXIS_X]);
+            item[DIRECTION_Y] = v_select(smooth, v.u_y, item[AXIS_Y]);
+            push(near, left, item, DIRECTION_Y + 1);
+        }
+    }
+    q->count = 0;
+}
+
+/* Writes the kept contacts of a group in their order, from item `at` on; returns how many. `first` is the number of the
+ * group's first pair in the batch. */
+static size_t list_contacts(const struct results *results, int count, size_t first, const narc_contacts *out,
+                            size_t at) {
+    int32_t pair[GROUP + V_WIDTH];
+    int n = 0;
+    for (int word = 0; word < (count + 63) / 64; word++)
+        for (uint64_t bits = results->keep[word]; bits; bits &= bits - 1)
+            pair[n++] = 64 * word + __builtin_ctzll(bits);
+    for (int k = 0; k < V_WIDTH; k++)
+        pair[n + k] = GROUP;
+    for (int k = 0; k < n; k += V_WIDTH) {
+        vf row[ROW];
+        v_rows(results->row, sizeof results->row[0], pair + k, row);
+        v_rows(&results->row[0][4], sizeof results->row[0], pair + k, row + 4);
+        float rest[ROW][V_WIDTH];
+        const bool whole = k + V_WIDTH <= n;
+        v_store(whole ? out->separation + at + k : rest[SEPARATION], row[SEPARATION]);
+        v_store(whole ? out->normal_x + at + k : rest[CONTACT_NORMAL_X], row[CONTACT_NORMAL_X]);
+        v_store(whole ? out->normal_y + at + k : rest[CONTACT_NORMAL_Y], row[CONTACT_NORMAL_Y]);
+        v_store(whole ? out->point_x + at + k : rest[POINT_X], row[POINT_X]);
+        v_store(whole ? out->point_y + at + k : rest[POINT_Y], row[POINT_Y]);
+        int32_t arcs[V_WIDTH];
+        vi_store(arcs, vi_bits(row[ARCS]));
+        const int lanes = whole ? V_WIDTH : n - k;
+        for (int lane = 0; lane < lanes; lane++) {
+            out->pair[at + (size_t)(k + lane)] = (uint32_t)(first + (size_t)pair[k + lane]);
+            out->arc_a[at + (size_t)(k + lane)] = (uint8_t)arcs[lane];
+            out->arc_b[at + (size_t)(k + lane)] = (uint8_t)(arcs[lane] >> 8);
+        }
+        if (!whole) {
+            float *const to[] = {out->separation, out->normal_x, out->normal_y, out->point_x, out->point_y};
+            for (int f = 0; f < 5; f++)
+                memcpy(to[f] + at + k, rest[f], (size_t)lanes * sizeof(float));
+        }
+    }
+    return (size_t)n;
 }
 
 static size_t contact(const narc_batch *batch, size_t first, size_t count, float margin, const narc_contacts *out) {
-    struct pair_block block;
-    struct overlay overlay;
-    struct contact_lanes found;
+    const bool rows = poses_are_rows(batch->bodies), every = margin == INFINITY;
+    struct queue fresh, near, rest;
+    struct results results;
     size_t total = 0;
-    const bool every = margin == INFINITY;
-    for (size_t done = 0; done < count; done += BLOCK) {
-        const size_t n = count - done < BLOCK ? count - done : BLOCK;
-        load_pairs(batch, first + done, n, &block);
-        const struct pair_masks masks = classify(&block, n, margin);
-
-        int32_t lanes[BLOCK + V_WIDTH];
-        const int left = list_lanes(every ? ~(uint64_t)0 >> (BLOCK - n) : masks.valid & ~masks.apart, lanes);
-        for (int k = 0; k < left; k += V_WIDTH) {
-            const vi in = vi_load(lanes + k);
-            const vm live = vi_lt(vi_lanes(), vi_set(left - k));
-            struct cursor a, b;
-            vi steps;
-            place_pairs(&overlay, batch->shapes, &block, in, &a, &b, &steps);
-            const struct gap gap = overlay_gap(&overlay, a, b, steps, live, true);
-            const uint32_t keep = vm_bits(every ? live : v_lt(gap.separation, v_set(margin)));
-            if (!keep)
-                continue;
-            describe_contacts(&overlay, &block, in, a, b, &gap, &found);
-            int32_t slot_b[V_WIDTH];
-            vi_store(slot_b, b.begin);
-            for (uint32_t bits = keep; bits; bits &= bits - 1, total++) {
-                const int lane = __builtin_ctz(bits), pair = lanes[k + lane];
-                const bool valid = masks.valid >> pair & 1;
-                out->pair[total] = (uint32_t)(first + done + (size_t)pair);
-                out->separation[total] = valid ? found.separation[lane] : INFINITY;
-                out->normal_x[total] = valid ? found.normal_x[lane] : 0;
-                out->normal_y[total] = valid ? found.normal_y[lane] : 0;
-                out->point_x[total] = valid ? found.point_x[lane] : 0;
-                out->point_y[total] = valid ? found.point_y[lane] : 0;
-                out->arc_a[total] = valid ? arc_number(found.arc_a[lane], 0, block.a.is_circle[pair]) : 0;
-                out->arc_b[total] =
-                    valid ? arc_number(found.arc_b[lane], slot_b[lane] / SLOT, block.b.is_circle[pair]) : 0;
+    fresh.count = near.count = rest.count = 0;
+    for (size_t done = 0; done < count; done += GROUP) {
+        const int in_group = (int)(count - done < GROUP ? count - done : GROUP);
+        memset(results.keep, 0, sizeof results.keep);
+        for (int start = 0; start < in_group; start += V_WIDTH) {
+            const int n = in_group - start < V_WIDTH ? in_group - start : V_WIDTH;
+            vf item[FIELDS];
+            const struct filter f = load_pairs(batch, first + done + (size_t)start, n, rows, margin, start, item);
+            for (uint32_t bits = every ? ~vm_bits(f.valid) & vm_bits(vm_first(n)) : 0; bits; bits &= bits - 1) {
+                const int number = start + __builtin_ctz(bits);
+                const float none[ROW] = {[SEPARATION] = INFINITY};
+                memcpy(results.row[number], none, sizeof none);
+                results.keep[number / 64] |= (uint64_t)1 << number % 64;
+            }
+            const vm left = vm_and_not(f.valid, f.apart);
+            push(&fresh, left, item, SINE_A + 1);
+            if (fresh.count >= BLOCK || start + V_WIDTH >= in_group) {
+                pad(&fresh);
+                look_along_axis(batch->shapes, &fresh, margin, &near);
+                if (near.count >= FLUSH)
+                    settle_contacts(batch->shapes, &near, near.count % V_WIDTH, margin, &rest, &results);
+                if (rest.count >= FLUSH)
+                    decide_contacts(batch->shapes, &rest, rest.count / V_WIDTH * V_WIDTH, margin, &results);
             }
         }
+        pad(&near);
+        settle_contacts(batch->shapes, &near, 0, margin, &rest, &results);
+        pad(&rest);
+        decide_contacts(batch->shapes, &rest, rest.count, margin, &results);
+        total += list_contacts(&results, in_group, first + done, out, total);
     }
     return total;
 }

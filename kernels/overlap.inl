@@ -1,31 +1,73 @@
 /* SPDX-License-Identifier: MIT
  *
  * overlap.inl - the overlap kernel: one bit per pair, set where the separation is below 0.
- *
- * Blocks of 64 pairs, so that each block owns one word of the answer: circles first (relative.inl), then the pairs that
- * these leave, packed densely, through the deciding formula (overlay.inl).
  */
 
-static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
-    struct pair_block block;
+/* Decides the last `count` pairs of a queue by the formula and takes them out. */
+static void decide_overlaps(const narc_shapes *shapes, struct queue *rest, int count, uint64_t *out_bits) {
     struct overlay overlay;
-    for (size_t done = 0; done < count; done += BLOCK) {
-        const size_t n = count - done < BLOCK ? count - done : BLOCK;
-        load_pairs(batch, first + done, n, &block);
-        const struct pair_masks masks = classify(&block, n, 0);
-        uint64_t hits = masks.valid & masks.deep;
-
-        int32_t lanes[BLOCK + V_WIDTH];
-        const int left = list_lanes(masks.valid & ~masks.apart & ~masks.deep, lanes);
-        for (int k = 0; k < left; k += V_WIDTH) {
-            const vm live = vi_lt(vi_lanes(), vi_set(left - k));
-            struct cursor a, b;
-            vi steps;
-            place_pairs(&overlay, batch->shapes, &block, vi_load(lanes + k), &a, &b, &steps);
-            const struct gap gap = overlay_gap(&overlay, a, b, steps, live, false);
-            for (uint32_t bits = vm_bits(v_lt(gap.separation, v_set(0))); bits; bits &= bits - 1)
-                hits |= (uint64_t)1 << lanes[k + __builtin_ctz(bits)];
-        }
-        out_bits[done / BLOCK] = hits;
+    rest->count -= count;
+    for (int i = 0; i < count; i += V_WIDTH) {
+        const int k = rest->count + i;
+        const vm live = vm_first(count - i);
+        struct cursor a, b;
+        vi steps;
+        place_pairs(&overlay, shapes, rest, k, &a, &b, &steps);
+        const struct gap gap = overlay_gap(&overlay, a, b, steps, live, false);
+        mark(get_bits(rest, PAIR, k), v_lt(gap.separation, v_set(0)), out_bits);
     }
+}
+
+/* Looks at the last pairs of a queue along a direction; those undecided go to `rest`, the others out. */
+static inline void settle(const narc_shapes *shapes, struct queue *q, int first, int x, struct queue *rest, uint64_t *out_bits) {
+    look_up(shapes, q, first, x);
+    for (int k = first; k < q->count; k += V_WIDTH) {
+        const vm live = vm_first(q->count - k);
+        const struct verdict v = glance(shapes, q, k, x, 0, false);
+        mark(get_bits(q, PAIR, k), vm_and(live, v.hit), out_bits);
+        const vm left = vm_and_not(live, vm_or(v.apart, v.hit));
+        if (vm_any(left)) {
+            vf item[FIELDS];
+            get_item(q, k, item);
+            item[DIRECTION_X] = v.u_x;
+            item[DIRECTION_Y] = v.u_y;
+            push(rest, left, item, DIRECTION_Y + 1);
+        }
+    }
+    q->count = first;
+}
+
+enum { LOOKS = 3 };
+
+static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
+    const bool rows = poses_are_rows(batch->bodies);
+    struct queue fresh, near[LOOKS];
+    struct queue *const rest = &near[LOOKS - 1];
+    for (int k = 0; k < LOOKS; k++)
+        near[k].count = 0;
+    memset(out_bits, 0, (count + 63) / 64 * sizeof *out_bits);
+    for (size_t block = 0; block < count; block += BLOCK) {
+        const size_t end = count - block < BLOCK ? count : block + BLOCK;
+        fresh.count = 0;
+        for (size_t done = block; done < end; done += V_WIDTH) {
+            const int n = (int)(end - done < V_WIDTH ? end - done : V_WIDTH);
+            vf item[FIELDS];
+            const struct filter f = load_pairs(batch, first + done, n, rows, 0, (int32_t)(uint32_t)done, item);
+            push(&fresh, vm_and_not(f.valid, vm_or(f.apart, f.deep)), item, PAIR + 1);
+            out_bits[done / 64] |= (uint64_t)vm_bits(vm_and(f.valid, f.deep)) << done % 64;
+        }
+        pad(&fresh);
+        settle(batch->shapes, &fresh, 0, AXIS_X, &near[0], out_bits);
+        for (int k = 0; k < LOOKS - 1; k++)
+            if (near[k].count >= FLUSH)
+                settle(batch->shapes, &near[k], near[k].count % V_WIDTH, DIRECTION_X, &near[k + 1], out_bits);
+        if (rest->count >= FLUSH)
+            decide_overlaps(batch->shapes, rest, rest->count / V_WIDTH * V_WIDTH, out_bits);
+    }
+    for (int k = 0; k < LOOKS - 1; k++) {
+        pad(&near[k]);
+        settle(batch->shapes, &near[k], 0, DIRECTION_X, &near[k + 1], out_bits);
+    }
+    pad(rest);
+    decide_overlaps(batch->shapes, rest, rest->count, out_bits);
 }

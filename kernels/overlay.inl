@@ -88,50 +88,58 @@ static inline int max_lane(vi counts) {
     return most;
 }
 
-/* A placed shape in each lane: the block of its arcs, and its pose in A's frame (for A itself: only the scale). */
-struct placed {
-    vi arcs, stride, count;
-    vf scale;
-    vf t_x, t_y, q_c, q_s;
+/* An arc in each lane, in A's frame at world scale, normals from A to B: those of B point the other way. */
+struct arcs {
+    vf x, y, radius;
+    vf start_x, start_y, end_x, end_y;
 };
 
-/* Writes a shape's slots from number `slot` on; the cursor stands at its first junction counter-clockwise from +x. */
-static inline struct cursor place_shape(struct overlay *o, int slot, const float *arcs, const struct placed *s,
-                                        bool is_b, int most) {
-    const vi begin = vi_add(vi_set(slot * SLOT), vi_lanes());
-    struct cursor c = {begin, begin, begin};
-    vf first_turn = v_set(INFINITY);
-    vi at = begin;
-    for (int k = 0; k < most; k++, at = vi_add(at, vi_set(SLOT))) {
-        const vm exists = vi_lt(vi_set(k), s->count);
-        vi index = vi_add(s->arcs, vi_select(exists, vi_set(k), vi_set(0)));
-        vf plane[NARC_PLANES];
-        for (int f = 0; f < NARC_PLANES; f++, index = vi_add(index, s->stride))
-            plane[f] = v_gather(arcs, index);
-        vf x = plane[0], y = plane[1], n_x = plane[3], n_y = plane[4];
-        if (is_b) {
-            x = v_sub(v_mul(s->q_c, plane[0]), v_mul(s->q_s, plane[1]));
-            y = v_add(v_mul(s->q_s, plane[0]), v_mul(s->q_c, plane[1]));
-            n_x = v_sub(v_mul(s->q_s, plane[4]), v_mul(s->q_c, plane[3]));
-            n_y = v_neg(v_add(v_mul(s->q_s, plane[3]), v_mul(s->q_c, plane[4])));
-        }
-        x = v_mul(x, s->scale);
-        y = v_mul(y, s->scale);
-        float *out = o->slots + (slot + k) * SLOT;
-        const vf turn = turn_of(n_x, n_y);
-        v_store(out + TURN * V_WIDTH, turn);
-        v_store(out + NORMAL_X * V_WIDTH, n_x);
-        v_store(out + NORMAL_Y * V_WIDTH, n_y);
-        v_store(out + CENTER_X * V_WIDTH, is_b ? v_add(s->t_x, x) : x);
-        v_store(out + CENTER_Y * V_WIDTH, is_b ? v_add(s->t_y, y) : y);
-        v_store(out + RADIUS * V_WIDTH, v_mul(plane[2], s->scale));
+/* The arcs of A in records `index`; `out_turn` is what the record says. */
+static inline struct arcs load_arcs_a(const narc_record *records, vi index, vf scale, vf *out_turn) {
+    int32_t record[V_WIDTH];
+    vf row[8];
+    vi_store(record, index);
+    v_rows(records, sizeof *records, record, row);
+    v_rows(&records->start_x, sizeof *records, record, row + 4);
+    *out_turn = row[3];
+    return (struct arcs){v_mul(row[0], scale), v_mul(row[1], scale), v_mul(row[2], scale), row[4], row[5], row[6],
+                         row[7]};
+}
 
-        const vm earlier = vm_and(exists, v_lt(turn, first_turn));
-        first_turn = v_select(earlier, turn, first_turn);
-        c.at = vi_select(earlier, at, c.at);
-        c.end = vi_select(exists, vi_add(at, vi_set(SLOT)), c.end);
-    }
-    return c;
+/* B's pose in A's frame. */
+struct pose {
+    vf t_x, t_y, q_c, q_s, scale;
+};
+
+static inline struct pose get_pose(const struct queue *q, int k) {
+    return (struct pose){get(q, T_X, k), get(q, T_Y, k), get(q, Q_C, k), get(q, Q_S, k), get(q, SCALE_B, k)};
+}
+
+static inline struct arcs load_arcs_b(const narc_record *records, vi index, const struct pose *p) {
+    int32_t record[V_WIDTH];
+    vf row[8];
+    vi_store(record, index);
+    v_rows(records, sizeof *records, record, row);
+    v_rows(&records->start_x, sizeof *records, record, row + 4);
+    const vf x = v_sub(v_mul(p->q_c, row[0]), v_mul(p->q_s, row[1]));
+    const vf y = v_add(v_mul(p->q_s, row[0]), v_mul(p->q_c, row[1]));
+    return (struct arcs){v_add(p->t_x, v_mul(x, p->scale)),
+                         v_add(p->t_y, v_mul(y, p->scale)),
+                         v_mul(row[2], p->scale),
+                         v_sub(v_mul(p->q_s, row[5]), v_mul(p->q_c, row[4])),
+                         v_neg(v_add(v_mul(p->q_s, row[4]), v_mul(p->q_c, row[5]))),
+                         v_sub(v_mul(p->q_s, row[7]), v_mul(p->q_c, row[6])),
+                         v_neg(v_add(v_mul(p->q_s, row[6]), v_mul(p->q_c, row[7])))};
+}
+
+static inline void put_slot(struct overlay *o, int slot, const struct arcs *arcs, vf turn) {
+    float *out = o->slots + slot * SLOT;
+    v_store(out + TURN * V_WIDTH, turn);
+    v_store(out + NORMAL_X * V_WIDTH, arcs->start_x);
+    v_store(out + NORMAL_Y * V_WIDTH, arcs->start_y);
+    v_store(out + CENTER_X * V_WIDTH, arcs->x);
+    v_store(out + CENTER_Y * V_WIDTH, arcs->y);
+    v_store(out + RADIUS * V_WIDTH, arcs->radius);
 }
 
 /* The best candidate of each lane so far. */
@@ -240,23 +248,42 @@ static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, s
     return best;
 }
 
-/* Loads the pairs `lanes` of a block into an overlay. */
-static inline void place_pairs(struct overlay *o, const narc_shapes *shapes, const struct pair_block *p, vi lanes,
+/* Lays out the pairs k ... of a queue; the cursors stand at the first junctions counter-clockwise from +x. */
+static inline void place_pairs(struct overlay *o, const narc_shapes *shapes, const struct queue *q, int k,
                                struct cursor *out_a, struct cursor *out_b, vi *out_steps) {
-    const struct placed a = {.arcs = vi_gather(p->a.arcs, lanes),
-                             .stride = vi_gather(p->a.stride, lanes),
-                             .count = vi_gather(p->a.count, lanes),
-                             .scale = v_gather(p->scale_a, lanes)};
-    const struct placed b = {.arcs = vi_gather(p->b.arcs, lanes),
-                             .stride = vi_gather(p->b.stride, lanes),
-                             .count = vi_gather(p->b.count, lanes),
-                             .scale = v_gather(p->scale_b, lanes),
-                             .t_x = v_gather(p->t_x, lanes),
-                             .t_y = v_gather(p->t_y, lanes),
-                             .q_c = v_gather(p->q_c, lanes),
-                             .q_s = v_gather(p->q_s, lanes)};
-    const int most_a = max_lane(a.count);
-    *out_a = place_shape(o, 0, shapes->arcs, &a, false, most_a);
-    *out_b = place_shape(o, most_a, shapes->arcs, &b, true, max_lane(b.count));
-    *out_steps = vi_add(a.count, b.count);
+    const vi count_a = head_count(get_bits(q, BYTES_A, k)), count_b = head_count(get_bits(q, BYTES_B, k));
+    const vi record_a = vi_add(first_record(get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k)), vi_set(1));
+    const vi record_b = vi_add(first_record(get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k)), vi_set(1));
+    const vf scale_a = get(q, SCALE_A, k);
+    const struct pose pose = get_pose(q, k);
+    const int most_a = max_lane(count_a), most_b = max_lane(count_b);
+    vi at = vi_lanes(), end = at;
+    for (int i = 0; i < most_a; i++) {
+        const vm exists = vi_lt(vi_set(i), count_a);
+        vf turn;
+        const struct arcs arcs = load_arcs_a(shapes->records, vi_add(record_a, vi_select(exists, vi_set(i), vi_set(0))),
+                                             scale_a, &turn);
+        put_slot(o, i, &arcs, turn);
+        at = vi_add(at, vi_set(SLOT));
+        end = vi_select(exists, at, end);
+    }
+    *out_a = (struct cursor){vi_lanes(), vi_lanes(), end};
+
+    at = vi_add(vi_set(most_a * SLOT), vi_lanes());
+    struct cursor c = {at, at, at};
+    vf first_turn = v_set(INFINITY);
+    for (int i = 0; i < most_b; i++) {
+        const vm exists = vi_lt(vi_set(i), count_b);
+        const struct arcs arcs =
+            load_arcs_b(shapes->records, vi_add(record_b, vi_select(exists, vi_set(i), vi_set(0))), &pose);
+        const vf turn = turn_of(arcs.start_x, arcs.start_y);
+        put_slot(o, most_a + i, &arcs, turn);
+        const vm earlier = vm_and(exists, v_lt(turn, first_turn));
+        first_turn = v_select(earlier, turn, first_turn);
+        c.at = vi_select(earlier, at, c.at);
+        at = vi_add(at, vi_set(SLOT));
+        c.end = vi_select(exists, at, c.end);
+    }
+    *out_b = c;
+    *out_steps = vi_add(count_a, count_b);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * relative.inl - stage 1: 64 pairs from the caller's columns to B's pose in A's frame, and a first filter by circles.
+ * relative.inl - stage 1: a block of pairs from the caller's columns to B's pose in A's frame, and a first filter by
+ * circles. The pairs that it leaves are packed densely into a queue, which the later stages read.
  *
  * With d = position B - position A and rotations as complex numbers, B's frame in A's is
  *     t = d / rotation A,   q = rotation B / rotation A,
@@ -19,31 +20,62 @@
  * What is left over covers the rounding of s itself.
  */
 
-enum { BLOCK = 64 };
+/* Pairs in a block: enough to fill vectors after most pairs are settled, few enough for all stages to stay in the
+ * first cache. */
+#ifndef BLOCK_
+#define BLOCK_ 128
+#endif
+enum { BLOCK = BLOCK_, FLUSH = 64, CAPACITY = BLOCK + FLUSH + 2 * V_WIDTH };
 
-/* One circle for each pair, in its shape's own coordinates. */
-struct circles {
-    float x[BLOCK], y[BLOCK], radius[BLOCK];
+/* Pairs between stages, dense, structure of arrays. Integers are kept as their bits. */
+enum {
+    T_X, T_Y, Q_C, Q_S, /* B's pose in A's frame */
+    SCALE_A, SCALE_B,
+    AXIS_X, AXIS_Y, /* from the centre of A's inscribed circle to that of B's */
+    CORE,           /* the sum of both inscribed radii */
+    SLACK,          /* see slack_of() */
+    BLOCK_A, BLOCK_B, /* store.h: heads' first two words */
+    BYTES_A, BYTES_B,
+    PAIR, /* counted from the first of the call */
+    COSINE_A, SINE_A,
+    DIRECTION_X, DIRECTION_Y,
+    RECORD_A, RECORD_B,
+    FIELDS
 };
 
-struct pair_block {
-    /* B's pose in A's frame (before classify(): the difference of positions and B's own rotation) */
-    float t_x[BLOCK], t_y[BLOCK], q_c[BLOCK], q_s[BLOCK];
-    float cosine_a[BLOCK], sine_a[BLOCK];
-    float scale_a[BLOCK], scale_b[BLOCK];
-    struct loaded_shape {
-        struct circles bound, inner;
-        int32_t arcs[BLOCK], stride[BLOCK], count[BLOCK]; /* where its arcs are, see store.h */
-        bool is_circle[BLOCK];
-    } a, b;
+struct queue {
+    int count;
+    float item[FIELDS][CAPACITY];
 };
 
-/* What stage 1 knows of its pairs, one bit each. */
-struct pair_masks {
-    uint64_t valid; /* all numbers in range: the pair has an answer */
-    uint64_t apart; /* separation above the margin, for certain */
-    uint64_t deep;  /* colliding, for certain */
-};
+static inline vf get(const struct queue *q, int field, int k) { return v_load(q->item[field] + k); }
+
+static inline vi get_bits(const struct queue *q, int field, int k) { return vi_bits(get(q, field, k)); }
+
+/* Appends the lanes `keep` of `item`. The vector's other lanes go behind them, so that whole vectors may be read. */
+static inline void push(struct queue *q, vm keep, const vf *item, int fields) {
+    const vp packing = vm_packing(keep);
+    UNROLL
+    for (int f = 0; f < fields; f++)
+        v_store(q->item[f] + q->count, v_pack(packing, item[f]));
+    q->count += __builtin_popcount(vm_bits(keep));
+}
+
+/* The last vector of a queue may have lanes behind the last pair: harmless ones, shape 0 at the origin. */
+static void pad(struct queue *q) {
+    for (int f = 0; f < FIELDS; f++)
+        v_store(q->item[f] + q->count, v_set(0));
+}
+
+/* How the bodies' columns lie: if x, y, cosine and sine follow each other, four floats are read at once. */
+static bool poses_are_rows(const narc_bodies *bodies) {
+    const char *x = bodies->x.base;
+    const size_t stride = bodies->x.stride;
+    return bodies->position_precision == NARC_FLOAT32 && bodies->y.base == (const void *)(x + sizeof(float)) &&
+           bodies->cosine.base == (const void *)(x + 2 * sizeof(float)) &&
+           bodies->sine.base == (const void *)(x + 3 * sizeof(float)) && bodies->y.stride == stride &&
+           bodies->cosine.stride == stride && bodies->sine.stride == stride;
+}
 
 /* Position of b minus position of a, rounded once. */
 static inline float difference(narc_precision precision, narc_column column, size_t a, size_t b) {
@@ -52,37 +84,76 @@ static inline float difference(narc_precision precision, narc_column column, siz
     return narc_float_at(column, b) - narc_float_at(column, a);
 }
 
-static inline void load_shape(const narc_head *head, size_t k, struct loaded_shape *out) {
-    out->bound.x[k] = head->bound_x;
-    out->bound.y[k] = head->bound_y;
-    out->bound.radius[k] = head->bound_radius;
-    out->inner.x[k] = head->inner_x;
-    out->inner.y[k] = head->inner_y;
-    out->inner.radius[k] = head->inner_radius;
-    out->arcs[k] = (int32_t)head->block;
-    out->stride[k] = head->stride;
-    out->count[k] = head->count;
-    out->is_circle[k] = (head->flags & NARC_SHAPE_CIRCLE) != 0;
+static inline vf column_lanes(narc_column column, const int32_t *index) {
+    float lane[V_WIDTH];
+    for (int k = 0; k < V_WIDTH; k++)
+        lane[k] = narc_float_at(column, (uint32_t)index[k]);
+    return v_load(lane);
 }
 
-/* Loads `count` (1 .. 64) pairs; the rest of the last vector repeats the first of them. */
-static void load_pairs(const narc_batch *batch, size_t first, size_t count, struct pair_block *p) {
-    const narc_bodies *bodies = batch->bodies;
-    for (size_t k = 0; k < BLOCK; k++) {
-        if (k >= count && k % V_WIDTH == 0)
-            break;
-        const size_t pair = first + (k < count ? k : 0);
-        const uint32_t a = narc_index_at(batch->pairs->a, pair), b = narc_index_at(batch->pairs->b, pair);
-        p->t_x[k] = difference(bodies->position_precision, bodies->x, a, b);
-        p->t_y[k] = difference(bodies->position_precision, bodies->y, a, b);
-        p->cosine_a[k] = narc_float_at(bodies->cosine, a);
-        p->sine_a[k] = narc_float_at(bodies->sine, a);
-        p->q_c[k] = narc_float_at(bodies->cosine, b);
-        p->q_s[k] = narc_float_at(bodies->sine, b);
-        p->scale_a[k] = bodies->scale.base ? narc_float_at(bodies->scale, a) : 1.0f;
-        p->scale_b[k] = bodies->scale.base ? narc_float_at(bodies->scale, b) : 1.0f;
-        load_shape(&batch->shapes->heads[narc_index_at(bodies->shape, a)], k, &p->a);
-        load_shape(&batch->shapes->heads[narc_index_at(bodies->shape, b)], k, &p->b);
+/* Two bodies in each lane: the difference of their positions, and their rotations. */
+struct poses {
+    vf d_x, d_y, c_a, s_a, c_b, s_b;
+};
+
+static inline struct poses load_poses(const narc_bodies *bodies, bool rows, const int32_t *a, const int32_t *b) {
+    if (rows) {
+        vf of_a[4], of_b[4];
+        v_rows(bodies->x.base, bodies->x.stride, a, of_a);
+        v_rows(bodies->x.base, bodies->x.stride, b, of_b);
+        return (struct poses){v_sub(of_b[0], of_a[0]), v_sub(of_b[1], of_a[1]), of_a[2], of_a[3], of_b[2], of_b[3]};
+    }
+    float d_x[V_WIDTH], d_y[V_WIDTH];
+    for (int k = 0; k < V_WIDTH; k++) {
+        d_x[k] = difference(bodies->position_precision, bodies->x, (uint32_t)a[k], (uint32_t)b[k]);
+        d_y[k] = difference(bodies->position_precision, bodies->y, (uint32_t)a[k], (uint32_t)b[k]);
+    }
+    return (struct poses){v_load(d_x),
+                          v_load(d_y),
+                          column_lanes(bodies->cosine, a),
+                          column_lanes(bodies->sine, a),
+                          column_lanes(bodies->cosine, b),
+                          column_lanes(bodies->sine, b)};
+}
+
+/* The heads of a shape in each lane, but for the turns. */
+struct heads {
+    vi block, bytes;
+    vf bound_x, bound_y, bound_radius, inner_x, inner_y, inner_radius;
+};
+
+static inline struct heads load_heads(const narc_head *heads, const int32_t *shape) {
+    vf row[8];
+    v_rows(heads, sizeof *heads, shape, row);
+    v_rows(&heads->bound_radius, sizeof *heads, shape, row + 4);
+    return (struct heads){vi_bits(row[0]), vi_bits(row[1]), row[2], row[3], row[4], row[5], row[6], row[7]};
+}
+
+static inline vi head_count(vi bytes) { return vi_and(bytes, vi_set(0xff)); }
+
+/* The record in front of the first arc, see store.h. */
+static inline vi first_record(vi block, vi bytes) {
+    return vi_add(block, vi_shift_right(vi_add(head_count(bytes), vi_set(NARC_TURNS - 1)), 4));
+}
+
+static inline vi head_first(vi bytes) { return vi_and(vi_shift_right(bytes, 8), vi_set(0xff)); }
+
+static inline vm head_is(vi bytes, int flag) { return vi_lt(vi_set(0), vi_and(bytes, vi_set(flag << 16))); }
+
+/* The bodies and shapes of a pair in each lane. Lanes from `count` on repeat the first. */
+struct pair_indices {
+    int32_t a[V_WIDTH], b[V_WIDTH], shape_a[V_WIDTH], shape_b[V_WIDTH];
+};
+
+static inline void load_indices(const narc_batch *batch, size_t first, int count, struct pair_indices *out) {
+    const narc_column column_a = batch->pairs->a, column_b = batch->pairs->b, shape = batch->bodies->shape;
+    for (int k = 0; k < V_WIDTH; k++) {
+        const size_t pair = first + (size_t)(k < count ? k : 0);
+        const uint32_t a = narc_index_at(column_a, pair), b = narc_index_at(column_b, pair);
+        out->a[k] = (int32_t)a;
+        out->b[k] = (int32_t)b;
+        out->shape_a[k] = (int32_t)narc_index_at(shape, a);
+        out->shape_b[k] = (int32_t)narc_index_at(shape, b);
     }
 }
 
@@ -98,71 +169,81 @@ static inline vf inverse_length(vf c, vf s, vm *out_valid) {
 static inline vm within(vf value, float limit) { return v_le(v_abs(value), v_set(limit)); }
 
 /* The bounding radius has 96 e of the extent in it, so this keeps scaled coordinates below 2e14, too. */
-static inline vm size_in_range(vf scale, const struct circles *bound, int k) {
-    const vf size = v_mul(scale, v_load(bound->radius + k));
+static inline vm size_in_range(vf size) {
     return vm_and(v_le(v_set((float)NARC_MIN_SIZE), size), v_le(size, v_set((float)NARC_HEAD_MAX_RADIUS)));
 }
 
-/* Squared distance between the centres of the circles of A and B, and the sum of their radii, for lanes k ... */
-static inline vf circle_distance2(const struct pair_block *p, const struct circles *a, const struct circles *b, int k,
-                                  vf *out_radii) {
-    const vf q_c = v_load(p->q_c + k), q_s = v_load(p->q_s + k);
-    const vf scale_a = v_load(p->scale_a + k), scale_b = v_load(p->scale_b + k);
-    const vf b_x = v_load(b->x + k), b_y = v_load(b->y + k);
-    const vf x = v_sub(v_mul(q_c, b_x), v_mul(q_s, b_y)), y = v_add(v_mul(q_s, b_x), v_mul(q_c, b_y));
-    const vf s_x = v_sub(v_add(v_load(p->t_x + k), v_mul(scale_b, x)), v_mul(scale_a, v_load(a->x + k)));
-    const vf s_y = v_sub(v_add(v_load(p->t_y + k), v_mul(scale_b, y)), v_mul(scale_a, v_load(a->y + k)));
-    *out_radii = v_add(v_mul(scale_a, v_load(a->radius + k)), v_mul(scale_b, v_load(b->radius + k)));
-    return v_add(v_mul(s_x, s_x), v_mul(s_y, s_y));
+/* 128 e (D + E_a + E_b), four times what the deciding formula can be off by: what a value from the same arithmetic must
+ * be clear of, before it can stand for the formula's. Infinite where an extent is not known. */
+static inline vf slack_of(vf t_x, vf t_y, vi bytes_a, vi bytes_b, vf size_a, vf size_b) {
+    const vi unknown = vi_set(255), reach_a = vi_shift_right(bytes_a, 24), reach_b = vi_shift_right(bytes_b, 24);
+    const vf extents = v_add(v_mul(size_a, v_of_int(reach_a)), v_mul(size_b, v_of_int(reach_b)));
+    const vf slack = v_mul(v_set(0x1p-17f), v_add(v_add(v_abs(t_x), v_abs(t_y)), extents));
+    return v_select(vm_and(vi_lt(reach_a, unknown), vi_lt(reach_b, unknown)), slack, v_set(INFINITY));
 }
 
-/* Turns the loaded poses into relative ones and sorts the pairs into masks. */
-static struct pair_masks classify(struct pair_block *p, size_t count, float margin) {
+/* What stage 1 knows of its pairs. */
+struct filter {
+    vm valid; /* all numbers in range: the pair has an answer */
+    vm apart; /* separation above the margin, for certain */
+    vm deep;  /* colliding, for certain */
+};
+
+/* Loads `count` pairs, at most a vector, and compares their circles; fills item[0 .. PAIR]. */
+static inline struct filter load_pairs(const narc_batch *batch, size_t first, int count, bool rows, float margin,
+                                       int32_t number, vf item[FIELDS]) {
     const float shrink = 1.0f - 0x1p-16f, grow = 1.0f + 0x1p-16f; /* of a square: 2^-17 of the distance */
-    struct pair_masks masks = {0, 0, 0};
-    for (int k = 0; k < (int)count; k += V_WIDTH) {
-        const vf d_x = v_load(p->t_x + k), d_y = v_load(p->t_y + k);
-        vm valid_a, valid_b;
-        vf c_a = v_load(p->cosine_a + k), s_a = v_load(p->sine_a + k);
-        vf c_b = v_load(p->q_c + k), s_b = v_load(p->q_s + k);
-        const vf shrink_a = inverse_length(c_a, s_a, &valid_a), shrink_b = inverse_length(c_b, s_b, &valid_b);
-        c_a = v_mul(c_a, shrink_a);
-        s_a = v_mul(s_a, shrink_a);
-        c_b = v_mul(c_b, shrink_b);
-        s_b = v_mul(s_b, shrink_b);
-        v_store(p->cosine_a + k, c_a);
-        v_store(p->sine_a + k, s_a);
-        const vf scale_a = v_load(p->scale_a + k), scale_b = v_load(p->scale_b + k);
-        vm valid = vm_and(within(d_x, (float)NARC_MAX_DISTANCE), within(d_y, (float)NARC_MAX_DISTANCE));
-        valid = vm_and(valid, vm_and(valid_a, valid_b));
-        valid = vm_and(valid, vm_and(size_in_range(scale_a, &p->a.bound, k), size_in_range(scale_b, &p->b.bound, k)));
+    const narc_column scale = batch->bodies->scale;
+    struct pair_indices in;
+    load_indices(batch, first, count, &in);
+    const struct poses p = load_poses(batch->bodies, rows, in.a, in.b);
+    const struct heads a = load_heads(batch->shapes->heads, in.shape_a);
+    const struct heads b = load_heads(batch->shapes->heads, in.shape_b);
+    const vf scale_a = scale.base ? column_lanes(scale, in.a) : v_set(1);
+    const vf scale_b = scale.base ? column_lanes(scale, in.b) : v_set(1);
+    struct filter filter;
+    vm valid_a, valid_b;
+    const vf shrink_a = inverse_length(p.c_a, p.s_a, &valid_a), shrink_b = inverse_length(p.c_b, p.s_b, &valid_b);
+    const vf c_a = v_mul(p.c_a, shrink_a), s_a = v_mul(p.s_a, shrink_a);
+    const vf c_b = v_mul(p.c_b, shrink_b), s_b = v_mul(p.s_b, shrink_b);
+    const vf size_a = v_mul(scale_a, a.bound_radius), size_b = v_mul(scale_b, b.bound_radius);
+    const vm near = vm_and(within(p.d_x, (float)NARC_MAX_DISTANCE), within(p.d_y, (float)NARC_MAX_DISTANCE));
+    const vm sizes = vm_and(size_in_range(size_a), size_in_range(size_b));
+    filter.valid = vm_and(vm_and(vm_first(count), near), vm_and(vm_and(valid_a, valid_b), sizes));
 
-        v_store(p->t_x + k, v_add(v_mul(c_a, d_x), v_mul(s_a, d_y)));
-        v_store(p->t_y + k, v_sub(v_mul(c_a, d_y), v_mul(s_a, d_x)));
-        v_store(p->q_c + k, v_add(v_mul(c_a, c_b), v_mul(s_a, s_b)));
-        v_store(p->q_s + k, v_sub(v_mul(c_a, s_b), v_mul(s_a, c_b)));
+    const vf t_x = v_add(v_mul(c_a, p.d_x), v_mul(s_a, p.d_y)), t_y = v_sub(v_mul(c_a, p.d_y), v_mul(s_a, p.d_x));
+    const vf q_c = v_add(v_mul(c_a, c_b), v_mul(s_a, s_b)), q_s = v_sub(v_mul(c_a, s_b), v_mul(s_a, c_b));
+    const vf bound_x = v_sub(v_mul(q_c, b.bound_x), v_mul(q_s, b.bound_y));
+    const vf bound_y = v_add(v_mul(q_s, b.bound_x), v_mul(q_c, b.bound_y));
+    const vf far_x = v_sub(v_add(t_x, v_mul(scale_b, bound_x)), v_mul(scale_a, a.bound_x));
+    const vf far_y = v_sub(v_add(t_y, v_mul(scale_b, bound_y)), v_mul(scale_a, a.bound_y));
+    const vf inner_x = v_sub(v_mul(q_c, b.inner_x), v_mul(q_s, b.inner_y));
+    const vf inner_y = v_add(v_mul(q_s, b.inner_x), v_mul(q_c, b.inner_y));
+    const vf axis_x = v_sub(v_add(t_x, v_mul(scale_b, inner_x)), v_mul(scale_a, a.inner_x));
+    const vf axis_y = v_sub(v_add(t_y, v_mul(scale_b, inner_y)), v_mul(scale_a, a.inner_y));
 
-        vf radii;
-        const vf bound2 = circle_distance2(p, &p->a.bound, &p->b.bound, k, &radii);
-        const vf reach = v_add(radii, v_set(margin));
-        const vm apart = vm_or(v_lt(reach, v_set(0)), v_lt(v_mul(reach, reach), v_mul(bound2, v_set(shrink))));
-        const vf inner2 = circle_distance2(p, &p->a.inner, &p->b.inner, k, &radii);
-        const vm deep = v_lt(v_mul(inner2, v_set(grow)), v_mul(radii, radii));
-        masks.valid |= (uint64_t)vm_bits(valid) << k;
-        masks.apart |= (uint64_t)vm_bits(apart) << k;
-        masks.deep |= (uint64_t)vm_bits(deep) << k;
-    }
-    masks.valid &= ~(uint64_t)0 >> (BLOCK - count);
-    return masks;
-}
-
-/* The positions of the bits of `mask` to `out_lanes`, filled up to a whole vector with the first; returns how many
- * bits. */
-static int list_lanes(uint64_t mask, int32_t out_lanes[BLOCK + V_WIDTH]) {
-    int n = 0;
-    for (; mask; mask &= mask - 1)
-        out_lanes[n++] = __builtin_ctzll(mask);
-    for (int k = 0; n && k < V_WIDTH; k++)
-        out_lanes[n + k] = out_lanes[0];
-    return n;
+    const vf reach = v_add(v_add(size_a, size_b), v_set(margin));
+    const vf far2 = v_add(v_mul(far_x, far_x), v_mul(far_y, far_y));
+    const vf core = v_add(v_mul(scale_a, a.inner_radius), v_mul(scale_b, b.inner_radius));
+    const vf axis2 = v_add(v_mul(axis_x, axis_x), v_mul(axis_y, axis_y));
+    filter.apart = vm_or(v_lt(reach, v_set(0)), v_lt(v_mul(reach, reach), v_mul(far2, v_set(shrink))));
+    filter.deep = v_lt(v_mul(axis2, v_set(grow)), v_mul(core, core));
+    item[T_X] = t_x;
+    item[T_Y] = t_y;
+    item[Q_C] = q_c;
+    item[Q_S] = q_s;
+    item[SCALE_A] = scale_a;
+    item[SCALE_B] = scale_b;
+    item[COSINE_A] = c_a;
+    item[SINE_A] = s_a;
+    item[AXIS_X] = axis_x;
+    item[AXIS_Y] = axis_y;
+    item[CORE] = core;
+    item[SLACK] = slack_of(t_x, t_y, a.bytes, b.bytes, size_a, size_b);
+    item[BLOCK_A] = v_of_bits(a.block);
+    item[BLOCK_B] = v_of_bits(b.block);
+    item[BYTES_A] = v_of_bits(a.bytes);
+    item[BYTES_B] = v_of_bits(b.bytes);
+    item[PAIR] = v_of_bits(vi_add(vi_lanes(), vi_set(number)));
+    return filter;
 }

@@ -14,6 +14,8 @@
 
 #include "overlay.inl"
 
+#include "search.inl"
+
 #include "contact.inl"
 #include "overlap.inl"
 #include "pose.inl"

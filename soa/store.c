@@ -11,8 +11,8 @@
 #include "error.h"
 #include "outline.h"
 
-/* Block indices are 32-bit, and half of that keeps every sum of one with an offset in range. */
-#define MAX_FLOATS ((size_t)1 << 31)
+/* The promised 2^31 floats. */
+#define MAX_RECORDS (((size_t)1 << 31) * sizeof(float) / sizeof(narc_record))
 
 /* How far outside, relative to the size, an arc's centre may be found and still count as inside: a few dozen
  * roundings of the largest coordinate that validation lets through, NARC_MAX_RADIUS_RATIO times the size. */
@@ -51,8 +51,8 @@ void narc_destroy_shapes(narc_shapes *shapes) {
     if (!shapes)
         return;
     narc_allocator allocator = shapes->allocator;
-    release(shapes, shapes->heads);
-    release(shapes, shapes->arcs_memory);
+    release(shapes, shapes->heads_memory);
+    release(shapes, shapes->records_memory);
     allocator.release(shapes, allocator.context);
 }
 
@@ -64,67 +64,63 @@ static size_t choose_capacity(size_t capacity, size_t needed, size_t smallest, s
     return chosen < needed ? needed : chosen;
 }
 
+/* Moves `used` bytes at `*array` to a new place of `capacity` bytes that begins at a cache line. */
+static bool grow(const narc_shapes *shapes, void **memory, void *array, size_t used, size_t capacity, void **out_array) {
+    char *grown = shapes->allocator.allocate(capacity + NARC_CACHE_LINE, shapes->allocator.context);
+    if (!grown)
+        return false;
+    *out_array = grown + (NARC_CACHE_LINE - (uintptr_t)grown % NARC_CACHE_LINE);
+    if (used)
+        memcpy(*out_array, array, used);
+    release(shapes, *memory);
+    *memory = grown;
+    return true;
+}
+
 static bool grow_heads(narc_shapes *shapes, size_t capacity) {
-    if (capacity > SIZE_MAX / sizeof(narc_head))
+    void *heads = NULL;
+    if (capacity > (SIZE_MAX - NARC_CACHE_LINE) / sizeof(narc_head) ||
+        !grow(shapes, &shapes->heads_memory, shapes->heads, shapes->count * sizeof(narc_head),
+              capacity * sizeof(narc_head), &heads))
         return false;
-    narc_head *heads = shapes->allocator.allocate(capacity * sizeof *heads, shapes->allocator.context);
-    if (!heads)
-        return false;
-    if (shapes->count)
-        memcpy(heads, shapes->heads, shapes->count * sizeof *heads);
-    release(shapes, shapes->heads);
     shapes->heads = heads;
     shapes->capacity = capacity;
     return true;
 }
 
-static bool grow_arcs(narc_shapes *shapes, size_t capacity) {
-    if (capacity > (SIZE_MAX - NARC_BLOCK_ALIGNMENT) / sizeof(float))
+static bool grow_records(narc_shapes *shapes, size_t capacity) {
+    void *records = NULL;
+    if (capacity > (SIZE_MAX - NARC_CACHE_LINE) / sizeof(narc_record) ||
+        !grow(shapes, &shapes->records_memory, shapes->records, shapes->record_count * sizeof(narc_record),
+              capacity * sizeof(narc_record), &records))
         return false;
-    size_t size = capacity * sizeof(float) + NARC_BLOCK_ALIGNMENT;
-    char *memory = shapes->allocator.allocate(size, shapes->allocator.context);
-    if (!memory)
-        return false;
-    float *arcs = (float *)(void *)(memory + (NARC_BLOCK_ALIGNMENT - (uintptr_t)memory % NARC_BLOCK_ALIGNMENT));
-    if (shapes->float_count)
-        memcpy(arcs, shapes->arcs, shapes->float_count * sizeof *arcs);
-    release(shapes, shapes->arcs_memory);
-    shapes->arcs_memory = memory;
-    shapes->arcs = arcs;
-    shapes->float_capacity = capacity;
+    shapes->records = records;
+    shapes->record_capacity = capacity;
     return true;
 }
 
-/* Room for so many heads and floats in all. If the second allocation fails the first stays, unseen and unused. */
-static narc_status make_room(narc_shapes *shapes, size_t heads, size_t floats) {
-    if (heads > NARC_MAX_SHAPES || floats > MAX_FLOATS)
+/* Room for so many heads and records in all. If the second allocation fails the first stays, unseen and unused. */
+static narc_status make_room(narc_shapes *shapes, size_t heads, size_t records) {
+    if (heads > NARC_MAX_SHAPES || records > MAX_RECORDS)
         return NARC_ERROR_COUNT;
     if (heads > shapes->capacity && !grow_heads(shapes, choose_capacity(shapes->capacity, heads, 16, NARC_MAX_SHAPES)))
         return NARC_ERROR_MEMORY;
-    if (floats > shapes->float_capacity &&
-        !grow_arcs(shapes, choose_capacity(shapes->float_capacity, floats, 512, MAX_FLOATS)))
+    if (records > shapes->record_capacity &&
+        !grow_records(shapes, choose_capacity(shapes->record_capacity, records, 64, MAX_RECORDS)))
         return NARC_ERROR_MEMORY;
     return NARC_OK;
 }
 
-/* Floats in a plane, and floats in a block with what it takes to begin the next one aligned. */
-static size_t find_stride(size_t count) {
-    return (count + NARC_STRIDE_MULTIPLE - 1) / NARC_STRIDE_MULTIPLE * NARC_STRIDE_MULTIPLE;
-}
-
-static size_t find_block_size(size_t count) {
-    size_t multiple = NARC_BLOCK_ALIGNMENT / sizeof(float);
-    return (NARC_PLANES * find_stride(count) + multiple - 1) / multiple * multiple;
-}
+static size_t find_block_size(size_t count) { return narc_turn_records(count) + 1 + count; }
 
 narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t arc_count) {
     if (!shapes)
         return NARC_ERROR_ARGUMENT;
-    if (shape_count > NARC_MAX_SHAPES || arc_count > MAX_FLOATS / NARC_PLANES)
+    if (shape_count > NARC_MAX_SHAPES || arc_count > MAX_RECORDS)
         return NARC_ERROR_COUNT;
-    /* A block has 5 floats an arc, and a shape wastes most with one arc (a circle): 24 - 5 floats. */
+    /* A record for each arc and one for 16 arcs' turns; for each shape one more of both, and a circle's second half. */
     return make_room(shapes, shapes->count + shape_count,
-                     shapes->float_count + NARC_PLANES * arc_count + (find_block_size(1) - NARC_PLANES) * shape_count);
+                     shapes->record_count + arc_count + arc_count / NARC_TURNS + 3 * shape_count);
 }
 
 /* ------------------------------------------------------------------------------------------------ adding */
@@ -139,7 +135,7 @@ static float round_down(double value) {
     return (double)rounded > value ? nextafterf(rounded, -INFINITY) : rounded;
 }
 
-static uint16_t find_flags(const narc_outline *o, size_t count, double size) {
+static uint8_t find_flags(const narc_outline *o, size_t count, double size) {
     bool smooth = true, polygon = true, inside = true;
     for (size_t i = 0; i < o->count; i++) {
         narc_point from = narc_find_end(o, i ? i - 1 : o->count - 1), to = narc_find_start(o, i);
@@ -148,8 +144,8 @@ static uint16_t find_flags(const narc_outline *o, size_t count, double size) {
         inside = inside &&
                  (o->radius[i] == 0 || narc_find_gap(o, o->center_x[i], o->center_y[i], NULL) <= CENTER_SLACK * size);
     }
-    return (uint16_t)((smooth ? NARC_SHAPE_SMOOTH : 0) | (count == 1 ? NARC_SHAPE_CIRCLE : 0) |
-                      (polygon ? NARC_SHAPE_POLYGON : 0) | (inside ? NARC_SHAPE_CENTERS_INSIDE : 0));
+    return (uint8_t)((smooth ? NARC_SHAPE_SMOOTH : 0) | (count == 1 ? NARC_SHAPE_CIRCLE : 0) |
+                     (polygon ? NARC_SHAPE_POLYGON : 0) | (inside ? NARC_SHAPE_CENTERS_INSIDE : 0));
 }
 
 static narc_head make_head(const narc_outline *o, size_t count, narc_circle bound, double extent) {
@@ -157,7 +153,7 @@ static narc_head make_head(const narc_outline *o, size_t count, narc_circle boun
     narc_inscribe_outline(o, &inner);
     inner.x += o->origin_x;
     inner.y += o->origin_y;
-    narc_head head = {.count = (uint8_t)o->count, .stride = (uint8_t)find_stride(o->count)};
+    narc_head head = {.count = (uint8_t)o->count};
     head.flags = find_flags(o, count, bound.radius);
     head.bound_x = (float)bound.x;
     head.bound_y = (float)bound.y;
@@ -167,18 +163,43 @@ static narc_head make_head(const narc_outline *o, size_t count, narc_circle boun
     head.inner_y = (float)inner.y;
     moved = hypot((double)head.inner_x - inner.x, (double)head.inner_y - inner.y);
     head.inner_radius = round_down(fmax(0, inner.radius - moved - NARC_HEAD_SLACK * extent));
+    /* One part in a million for the rounding of what is stored. */
+    head.reach = (uint8_t)fmin(UINT8_MAX, ceil(extent * (1 + 1e-6) / (double)head.bound_radius));
     return head;
 }
 
-static void write_block(const narc_outline *o, float *block) {
-    size_t stride = find_stride(o->count);
-    for (size_t k = 0; k < stride; k++) {
-        size_t i = k < o->count ? k : o->count - 1;
-        block[k] = (float)(o->center_x[i] + o->origin_x);
-        block[stride + k] = (float)(o->center_y[i] + o->origin_y);
-        block[2 * stride + k] = (float)o->radius[i];
-        block[3 * stride + k] = (float)o->normal_x[i];
-        block[4 * stride + k] = (float)o->normal_y[i];
+/* The diamond angle of a normal, as the kernels compute it. */
+static float find_turn(float x, float y) {
+    float p = x / (fabsf(x) + fabsf(y));
+    return 0 <= y ? 1 - p : 3 + p;
+}
+
+static void write_block(const narc_outline *o, narc_head *head, narc_record *block) {
+    size_t count = o->count, first = 0;
+    float turns[NARC_MAX_ARCS];
+    for (size_t i = 0; i < count; i++) {
+        turns[i] = find_turn((float)o->normal_x[i], (float)o->normal_y[i]);
+        first = turns[i] < turns[first] ? i : first;
+    }
+    head->first = (uint8_t)first;
+    narc_turns *list = (narc_turns *)(void *)block;
+    for (size_t k = 0; k < NARC_TURNS * narc_turn_records(count); k++) {
+        int16_t turn = NARC_TURN_NONE;
+        if (k < count)
+            turn = (int16_t)(turns[(first + k) % count] * NARC_TURN_SCALE - NARC_TURN_OFFSET);
+        list[k / NARC_TURNS].turn[k % NARC_TURNS] = turn;
+    }
+    block += narc_turn_records(count);
+    for (size_t k = 0; k <= count; k++) {
+        size_t i = (first + k + count - 1) % count;
+        block[k] = (narc_record){.center_x = (float)(o->center_x[i] + o->origin_x),
+                                 .center_y = (float)(o->center_y[i] + o->origin_y),
+                                 .radius = (float)o->radius[i],
+                                 .turn = turns[i],
+                                 .start_x = (float)o->normal_x[i],
+                                 .start_y = (float)o->normal_y[i],
+                                 .end_x = (float)o->normal_x[i + 1],
+                                 .end_y = (float)o->normal_y[i + 1]};
     }
 }
 
@@ -191,7 +212,7 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
     narc_status status = narc_check_arcs(arcs, count, &outline, &bound, error);
     if (status != NARC_OK)
         return status;
-    size_t block = shapes->float_count, block_size = find_block_size(outline.count);
+    size_t block = shapes->record_count, block_size = find_block_size(outline.count);
     status = make_room(shapes, shapes->count + 1, block + block_size);
     if (status == NARC_ERROR_COUNT)
         return narc_fail(error, status, shapes->count, (double)shapes->count, "the store is full, it has %zu shapes",
@@ -207,12 +228,11 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
                          "the shape's bounding radius is %.9g, with room for rounding %.9g, more than %g", bound.radius,
                          (double)head.bound_radius, NARC_MAX_SIZE);
     head.block = (uint32_t)block;
-    memset(shapes->arcs + block, 0, block_size * sizeof(float)); /* what is behind the planes is never read */
-    write_block(&outline, shapes->arcs + block);
+    write_block(&outline, &head, shapes->records + block);
     if (out_shape)
         *out_shape = (uint32_t)shapes->count;
     shapes->heads[shapes->count++] = head;
-    shapes->float_count += block_size;
+    shapes->record_count += block_size;
     return NARC_OK;
 }
 
@@ -228,29 +248,27 @@ size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_ar
     if (shape >= narc_count_shapes(shapes))
         return 0;
     narc_head head = shapes->heads[shape];
-    size_t stride = head.stride, count = head.flags & NARC_SHAPE_CIRCLE ? 1 : head.count;
-    const float *block = shapes->arcs + head.block;
+    size_t count = head.flags & NARC_SHAPE_CIRCLE ? 1 : head.count;
     for (size_t i = 0; out_arcs && i < count; i++) {
-        size_t next = (i + 1) % count;
-        double start = atan2((double)block[4 * stride + i], (double)block[3 * stride + i]);
-        double end = atan2((double)block[4 * stride + next], (double)block[3 * stride + next]);
+        const narc_record *r = &shapes->records[head.block + narc_turn_records(head.count) + 1 + (i + head.count - head.first) % head.count];
+        double start = atan2((double)r->start_y, (double)r->start_x), end = atan2((double)r->end_y, (double)r->end_x);
+        if (count == 1)
+            end = start;
         if (end <= start)
             end += 2 * NARC_PI;
-        out_arcs[i] =
-            (narc_arc){(double)block[i], (double)block[stride + i], (double)block[2 * stride + i], start, end};
+        out_arcs[i] = (narc_arc){(double)r->center_x, (double)r->center_y, (double)r->radius, start, end};
     }
     return count;
 }
 
 /* The support function of the stored arcs: the furthest of all arc ends, or a point inside the arc that has the
  * direction. */
-static double find_stored_height(const float *block, size_t count, size_t stride, double x, double y) {
+static double find_stored_height(const narc_record *arcs, size_t count, double x, double y) {
     double best = -INFINITY;
     for (size_t i = 0; i < count; i++) {
-        size_t next = i + 1 < count ? i + 1 : 0;
-        double ax = (double)block[3 * stride + i], ay = (double)block[4 * stride + i];
-        double bx = (double)block[3 * stride + next], by = (double)block[4 * stride + next];
-        double center = (double)block[i] * x + (double)block[stride + i] * y, radius = (double)block[2 * stride + i];
+        double ax = (double)arcs[i].start_x, ay = (double)arcs[i].start_y;
+        double bx = (double)arcs[i].end_x, by = (double)arcs[i].end_y;
+        double center = (double)arcs[i].center_x * x + (double)arcs[i].center_y * y, radius = (double)arcs[i].radius;
         if (ax * y - ay * x >= 0 && x * by - y * bx >= 0)
             best = fmax(best, center + radius * sqrt(x * x + y * y));
         else
@@ -264,19 +282,19 @@ bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, floa
     if (!out_aabb || shape >= narc_count_shapes(shapes))
         return false;
     narc_head head = shapes->heads[shape];
-    const float *block = shapes->arcs + head.block;
-    size_t count = head.count, stride = head.stride;
+    const narc_record *arcs = &shapes->records[head.block + narc_turn_records(head.count) + 1];
+    size_t count = head.count;
     double length = hypot((double)cosine, (double)sine), c = (double)cosine / length, s = (double)sine / length;
     double extent = 0;
     if (!(length > 0) || !isfinite(length))
         return false;
     for (size_t i = 0; i < count; i++)
-        extent = fmax(extent, fabs((double)block[i]) + fabs((double)block[stride + i]) + (double)block[2 * stride + i]);
+        extent = fmax(extent, fabs((double)arcs[i].center_x) + fabs((double)arcs[i].center_y) + (double)arcs[i].radius);
     /* The world's x axis is (c, -s) in the shape's axes, its y axis (s, c). */
     double slack = NARC_HEAD_SLACK * extent, factor = (double)scale;
-    *out_aabb = (narc_aabb){.min_x = factor * -(find_stored_height(block, count, stride, -c, s) + slack),
-                            .min_y = factor * -(find_stored_height(block, count, stride, -s, -c) + slack),
-                            .max_x = factor * (find_stored_height(block, count, stride, c, -s) + slack),
-                            .max_y = factor * (find_stored_height(block, count, stride, s, c) + slack)};
+    *out_aabb = (narc_aabb){.min_x = factor * -(find_stored_height(arcs, count, -c, s) + slack),
+                            .min_y = factor * -(find_stored_height(arcs, count, -s, -c) + slack),
+                            .max_x = factor * (find_stored_height(arcs, count, c, -s) + slack),
+                            .max_y = factor * (find_stored_height(arcs, count, s, c) + slack)};
     return true;
 }

@@ -2,15 +2,17 @@
  *
  * store.h - the layout of a shape store, as the kernels read it. Internal.
  *
- * Each shape has a HEAD of 32 bytes, all that a filter needs, and a BLOCK with its arcs. A block is
- * structure-of-arrays: five planes of `stride` floats (count rounded up to a multiple of 4, the rest filled with copies
- * of the last arc),
+ * Each shape has a HEAD, half a cache line with all that the comparison of circles needs, and a BLOCK of RECORDS, also
+ * half a cache line each: first the angles of its junctions, 16 to a record, then its arcs, one record with all that is
+ * known of each. A batch meets shapes in any order, and so touches one line for a shape that the circles settle, and two
+ * more for most others, however many arcs they have.
  *
- *     center_x[stride] center_y[stride] radius[stride] normal_x[stride] normal_y[stride]
+ * Arcs lie in the order of their junctions' angle, the first junction counter-clockwise from +x first; the caller's
+ * first arc is somewhere among them (`first` says where). In front of them there is a copy of the last: so a direction
+ * belongs to the arc whose number, counted from that copy, is the number of junctions before the direction.
  *
- * where normal k is the unit outward normal at the start of arc k. Planes of one shape lie together, not those of all
- * shapes: a batch meets shapes in any order, and so touches 3 cache lines for the 160 bytes of an 8-arc shape instead
- * of 5. Blocks begin at multiples of 32 bytes.
+ * Angles are diamond angles: monotonic in the true one, 0 along +x, 1 along +y, at most 4. In the list they are rounded
+ * to 16 bits, in the order of signed numbers.
  *
  * A full circle is stored as two half circles, because the kernels want sweeps of at most half a turn;
  * NARC_SHAPE_CIRCLE tells them to report arc 0 for both.
@@ -20,19 +22,40 @@
 
 #include "narc_shapes.h"
 
-enum { NARC_PLANES = 5, NARC_STRIDE_MULTIPLE = 4, NARC_BLOCK_ALIGNMENT = 32 };
+enum { NARC_CACHE_LINE = 64, NARC_TURNS = 16 };
+
+/* A diamond angle in 16 bits: (int)(angle * NARC_TURN_SCALE - NARC_TURN_OFFSET), and what fills up the list: no
+ * direction is beyond it. */
+#define NARC_TURN_SCALE  16383.75f
+#define NARC_TURN_OFFSET 32768.0f
+#define NARC_TURN_NONE   INT16_MAX
 
 typedef struct narc_head {
-    uint32_t block; /* index of the block's first float in narc_shapes.arcs */
+    uint32_t block; /* the block's first record, counted from narc_shapes.records */
     uint8_t count;  /* arcs as stored, 2 .. NARC_MAX_ARCS */
-    uint8_t stride; /* floats in a plane */
-    uint16_t flags; /* NARC_SHAPE_... */
-    /* A circle around the shape and one inside it. Both leave room (NARC_HEAD_SLACK times the extent, the largest
-     * |centre| + radius) for the rounding of the kernels, so that a filter that uses them never contradicts the
-     * deciding formula. The inner radius is 0 where that leaves nothing. */
+    uint8_t first;  /* the caller's arc that is arc 0 here */
+    uint8_t flags;  /* NARC_SHAPE_... */
+    uint8_t reach;  /* extent (the largest |centre| + radius) at most this times bound_radius; 255: unknown */
+    /* A circle around the shape and one inside it. Both leave room (NARC_HEAD_SLACK times the extent) for the rounding
+     * of the kernels, so that a filter that uses them never contradicts the deciding formula. The inner radius is 0
+     * where that leaves nothing. */
     float bound_x, bound_y, bound_radius;
     float inner_x, inner_y, inner_radius;
 } narc_head;
+
+/* An arc: its circle, and the unit outward normals where it starts and ends, counter-clockwise. `turn` is the diamond
+ * angle of the first. */
+typedef struct narc_record {
+    float center_x, center_y, radius, turn;
+    float start_x, start_y, end_x, end_y;
+} narc_record;
+
+typedef struct narc_turns {
+    int16_t turn[NARC_TURNS];
+} narc_turns;
+
+/* Records of turns in a block; the copy of the last arc follows, and then the arcs. */
+static inline size_t narc_turn_records(size_t count) { return (count + NARC_TURNS - 1) / NARC_TURNS; }
 
 /* 96 roundings, so that the circles stay clear of the deciding formula's error: that is 32 roundings (NARC_ERROR_BOUND)
  * of the distance between the positions plus both extents, and that distance is at most the sum of the extents more
@@ -44,11 +67,11 @@ typedef struct narc_head {
 
 struct narc_shapes {
     narc_head *heads;
-    float *arcs;
-    size_t count, capacity;             /* heads */
-    size_t float_count, float_capacity; /* floats in arcs */
+    narc_record *records;
+    size_t count, capacity;               /* heads */
+    size_t record_count, record_capacity; /* records */
     narc_allocator allocator;
-    void *arcs_memory; /* what the allocator returned; arcs is the aligned address in it */
+    void *heads_memory, *records_memory; /* what the allocator returned; heads and records begin at cache lines in it */
 };
 
 #endif

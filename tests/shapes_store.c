@@ -77,24 +77,38 @@ static void lays_out_blocks(void **state) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL), NARC_OK);
         narc_head head = shapes->heads[k];
-        size_t stride = head.stride, count = shape.count == 1 ? 2 : shape.count;
-        const float *block = shapes->arcs + head.block;
-        assert_int_equal((uintptr_t)block % NARC_BLOCK_ALIGNMENT, 0);
+        size_t count = shape.count == 1 ? 2 : shape.count;
+        const narc_turns *turns = (const narc_turns *)(const void *)(shapes->records + head.block);
+        const size_t turn_records = narc_turn_records(count);
+        const narc_record *block = shapes->records + head.block + turn_records;
+        assert_int_equal(sizeof *turns, sizeof *block);
+        assert_int_equal((uintptr_t)shapes->heads % NARC_CACHE_LINE, 0);
+        assert_int_equal((uintptr_t)shapes->records % NARC_CACHE_LINE, 0);
         assert_int_equal(head.count, count);
-        assert_true(stride >= count && stride < count + 4 && stride % 4 == 0);
-        assert_true(head.block + 5 * stride <= shapes->float_count && shapes->float_count <= shapes->float_capacity);
-        for (size_t plane = 0; plane < 5; plane++) {
-            for (size_t i = count; i < stride; i++) {
-                assert_true(block[plane * stride + i] == block[plane * stride + count - 1]);
-            }
-        }
-        for (size_t i = 0; i < count; i++) {
-            size_t next = (i + 1) % count;
-            double ax = (double)block[3 * stride + i], ay = (double)block[4 * stride + i];
-            double bx = (double)block[3 * stride + next], by = (double)block[4 * stride + next];
+        assert_true(head.first < count);
+        assert_true(head.block + turn_records + 1 + count <= shapes->record_count);
+        assert_memory_equal(&block[0], &block[count], sizeof block[0]);
+        for (size_t i = 1; i <= count; i++) {
+            double ax = (double)block[i].start_x, ay = (double)block[i].start_y;
+            double bx = (double)block[i].end_x, by = (double)block[i].end_y;
             expect_near(hypot(ax, ay), 1, ulp, "length of a normal");
             assert_true(ax * by - ay * bx > 0 || (ax == -bx && ay == -by)); /* in order, or exactly opposite */
+            assert_true(block[i].end_x == block[i % count + 1].start_x && block[i].end_y == block[i % count + 1].start_y);
+            assert_true(i == 1 || block[i].turn > block[i - 1].turn);
+            double turn = ay >= 0 ? 1 - ax / (fabs(ax) + fabs(ay)) : 3 + ax / (fabs(ax) + fabs(ay));
+            expect_near((double)block[i].turn, turn, 4 * ulp, "diamond angle");
+            int16_t rounded = turns[(i - 1) / NARC_TURNS].turn[(i - 1) % NARC_TURNS];
+            expect_near((double)rounded, (double)NARC_TURN_SCALE * turn - (double)NARC_TURN_OFFSET, 1.01, "its 16 bits");
         }
+        for (size_t i = count; i < NARC_TURNS * turn_records; i++) {
+            assert_int_equal(turns[i / NARC_TURNS].turn[i % NARC_TURNS], NARC_TURN_NONE);
+        }
+        double extent = 0;
+        for (size_t i = 0; i < shape.count; i++) {
+            extent = fmax(extent, hypot(shape.arcs[i].center_x, shape.arcs[i].center_y) + shape.arcs[i].radius);
+        }
+        assert_true(head.reach == 255 || head.reach * (double)head.bound_radius >= extent);
+        assert_true((head.reach - 1) * (double)head.bound_radius <= extent * 1.001);
     }
     narc_destroy_shapes(shapes);
 }
@@ -118,8 +132,9 @@ static void stores_exact_quarter_turns(void **state) {
         }
         assert_int_equal(narc_add_shape(shapes, turned, 4, &index, NULL), NARC_OK);
         for (size_t i = 0; i < 4; i++) {
-            const float *block = shapes->arcs + shapes->heads[index].block;
-            assert_true(block[12 + i] == x[i] && block[16 + i] == y[i]);
+            const narc_head *head = &shapes->heads[index];
+            const narc_record *record = &shapes->records[head->block + 2 + (i + 4 - head->first) % 4];
+            assert_true(record->start_x == x[i] && record->start_y == y[i]);
         }
     }
     narc_destroy_shapes(shapes);
