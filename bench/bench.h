@@ -36,7 +36,7 @@ void bench_skip(const char *name, const char *reason);
 /* A line of the report's head, such as the compiler. */
 void bench_describe(const char *key, const char *value);
 
-/* Parses Google Benchmark's options and runs the rows; the exit status. */
+/* Parses Google Benchmark's options and runs the rows; the exit status, 1 if there was none to run. */
 int bench_run(int argc, char **argv);
 
 #ifdef __cplusplus

@@ -248,7 +248,6 @@ int main(int argc, char **argv) {
     if (status != 0)
         return status;
     const struct report report = {rows, row_count, cpu_model(), COMPILER, BENCH_FLAGS, best, packing_count};
-    putchar('\n');
     print_report(&report, stdout);
     if (options.folder && !write_report(&report, options.folder))
         return 1;

@@ -2,8 +2,8 @@
  *
  * peer_chipmunk.c - Chipmunk's contacts of two polygons.
  *
- * Chipmunk keeps each body's vertices in world axes and renews them once per step, not once per pair: that is not in the
- * time.
+ * Chipmunk keeps each body's vertices in world axes and renews them once per step, not once per pair: that is outside
+ * the time.
  */
 #include <chipmunk/chipmunk.h>
 

@@ -25,7 +25,7 @@ void print_report(const struct report *report, FILE *out);
  * it ran. False if one can't be written. */
 bool write_report(const struct report *report, const char *folder);
 
-/* Lists the rows that must not be wrong and were, and fails as well if no row ran. */
+/* Lists the rows that must not be wrong and were; true if there are none. */
 bool is_all_right(const struct report *report, FILE *out);
 
 #endif

@@ -124,7 +124,7 @@ static int compare_left(const void *left, const void *right) {
     return (l->box.min_x > r->box.min_x) - (l->box.min_x < r->box.min_x);
 }
 
-/* Sort and sweep; pairs behind the first `capacity` are chosen against earlier ones, so that all have the same chance. */
+/* Sort and sweep; a pair behind the first `capacity` may replace an earlier one, so that all have the same chance. */
 static size_t sweep(struct by_left *boxes, size_t count, struct pair *pairs, size_t capacity, uint64_t *random) {
     size_t found = 0;
     qsort(boxes, count, sizeof *boxes, compare_left);

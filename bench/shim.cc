@@ -71,7 +71,7 @@ int bench_run(int argc, char **argv) {
     if (benchmark::ReportUnrecognizedArguments(argc, argv))
         return 2;
     Console console;
-    benchmark::RunSpecifiedBenchmarks(&console);
+    const size_t found = benchmark::RunSpecifiedBenchmarks(&console);
     benchmark::Shutdown();
-    return 0;
+    return found > 0 ? 0 : 1;
 }

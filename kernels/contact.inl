@@ -139,10 +139,14 @@ static inline struct touch touch_at(const struct arcs *after, const struct arcs 
 
 /* Is a side clear */
 static inline vm side_is_clear(vf edge, const struct couple *c, vf sine_a, vf sine_b, vf depth, vf chord, vf cosine, vf slack, vm kink) {
-    const vf near = v_min(sine_a, sine_b);
-    const vf sum = v_add(v_mul(edge, cosine), v_add(v_mul(c->a.radius, v_min(chord, sine_a)), v_mul(c->b.radius, v_min(chord, sine_b))));
-    const vf drop = v_mul(v_sub(sum, v_mul(depth, chord)), v_mul(near, near));
-    const vm clear = vm_and(v_le(v_set(0x1p-12f), near), v_lt(v_mul(v_mul(v_set(2), slack), chord), drop));
+    const vm rolls = v_le(chord, v_set(1));
+    const vf roll_a = v_select(rolls, c->a.roll, v_set(0)), roll_b = v_select(rolls, c->b.roll, v_set(0));
+    const vf near = v_min(sine_a, sine_b), roll = v_add(roll_a, roll_b);
+    const vf extra = v_add(v_mul(v_sub(c->a.radius, roll_a), v_min(chord, sine_a)), v_mul(v_sub(c->b.radius, roll_b), v_min(chord, sine_b)));
+    const vf sum = v_add(v_add(v_mul(edge, cosine), v_mul(v_sub(roll, depth), chord)), extra);
+    const vm square = v_lt(v_mul(v_mul(v_set(2), slack), chord), v_mul(sum, v_mul(near, near)));
+    const vm linear = v_lt(slack, v_mul(v_sub(roll, depth), near));
+    const vm clear = vm_and(vm_and(v_le(v_set(0x1p-12f), near), vm_or(square, linear)), v_lt(v_mul(v_mul(v_set(4), slack), chord), sum));
     const vm edge_is_clear = vm_or(vm_and_not(vm_first(V_WIDTH), kink), v_lt(slack, edge));
     return vm_and(clear, edge_is_clear);
 }

@@ -90,20 +90,19 @@ static inline int max_lane(vi counts) {
 
 /* An arc in each lane, in A's frame at world scale, normals from A to B: those of B point the other way. */
 struct arcs {
-    vf x, y, radius;
+    vf x, y, radius, roll;
     vf start_x, start_y, end_x, end_y;
 };
 
-/* The arcs of A in records `index`; `out_turn` is what the record says. */
-static inline struct arcs load_arcs_a(const narc_record *records, vi index, vf scale, vf *out_turn) {
+/* The arcs of A in records `index`. */
+static inline struct arcs load_arcs_a(const narc_record *records, vi index, vf scale) {
     int32_t record[V_WIDTH];
     vf row[8];
     vi_store(record, index);
     v_rows(records, sizeof *records, record, row);
     v_rows(&records->start_x, sizeof *records, record, row + 4);
-    *out_turn = row[3];
-    return (struct arcs){v_mul(row[0], scale), v_mul(row[1], scale), v_mul(row[2], scale), row[4], row[5], row[6],
-                         row[7]};
+    return (struct arcs){v_mul(row[0], scale), v_mul(row[1], scale), v_mul(row[2], scale), v_mul(row[3], scale), row[4],
+                         row[5],               row[6],               row[7]};
 }
 
 /* B's pose in A's frame. */
@@ -126,6 +125,7 @@ static inline struct arcs load_arcs_b(const narc_record *records, vi index, cons
     return (struct arcs){v_add(p->t_x, v_mul(x, p->scale)),
                          v_add(p->t_y, v_mul(y, p->scale)),
                          v_mul(row[2], p->scale),
+                         v_mul(row[3], p->scale),
                          v_sub(v_mul(p->q_s, row[5]), v_mul(p->q_c, row[4])),
                          v_neg(v_add(v_mul(p->q_s, row[4]), v_mul(p->q_c, row[5]))),
                          v_sub(v_mul(p->q_s, row[7]), v_mul(p->q_c, row[6])),
@@ -260,10 +260,9 @@ static inline void place_pairs(struct overlay *o, const narc_shapes *shapes, con
     vi at = vi_lanes(), end = at;
     for (int i = 0; i < most_a; i++) {
         const vm exists = vi_lt(vi_set(i), count_a);
-        vf turn;
-        const struct arcs arcs = load_arcs_a(shapes->records, vi_add(record_a, vi_select(exists, vi_set(i), vi_set(0))),
-                                             scale_a, &turn);
-        put_slot(o, i, &arcs, turn);
+        const struct arcs arcs =
+            load_arcs_a(shapes->records, vi_add(record_a, vi_select(exists, vi_set(i), vi_set(0))), scale_a);
+        put_slot(o, i, &arcs, turn_of(arcs.start_x, arcs.start_y));
         at = vi_add(at, vi_set(SLOT));
         end = vi_select(exists, at, end);
     }

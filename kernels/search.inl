@@ -126,6 +126,7 @@ static inline struct arcs select_arcs(vm m, const struct arcs *a, const struct a
     return (struct arcs){v_select(m, a->x, b->x),
                          v_select(m, a->y, b->y),
                          v_select(m, a->radius, b->radius),
+                         v_select(m, a->roll, b->roll),
                          v_select(m, a->start_x, b->start_x),
                          v_select(m, a->start_y, b->start_y),
                          v_select(m, a->end_x, b->end_x),
@@ -158,8 +159,7 @@ static inline struct peak climb(const narc_shapes *shapes, const struct queue *q
     struct peak peak;
     for (int step = 0;; step++) {
         struct couple now;
-        vf turn;
-        now.a = load_arcs_a(shapes->records, record_a, scale_a, &turn);
+        now.a = load_arcs_a(shapes->records, record_a, scale_a);
         now.b = load_arcs_b(shapes->records, record_b, &pose);
         if (step == 0)
             last = now;

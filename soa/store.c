@@ -174,6 +174,20 @@ static float find_turn(float x, float y) {
     return 0 <= y ? 1 - p : 3 + p;
 }
 
+/* See narc_record. Arcs that begin just outside the window count, too, against rounding. */
+static float find_roll(const narc_outline *o, size_t arc) {
+    double roll = o->radius[arc];
+    for (int side = 0; side < 2; side++) {
+        double angle = 0;
+        for (size_t k = 1; k < o->count && angle <= NARC_ROLL_WINDOW + NARC_TOLERANCE; k++) {
+            size_t i = (side ? arc + k : arc + o->count - k) % o->count;
+            roll = fmin(roll, o->radius[i]);
+            angle += o->sweep[i];
+        }
+    }
+    return (float)roll;
+}
+
 static void write_block(const narc_outline *o, narc_head *head, narc_record *block) {
     size_t count = o->count, first = 0;
     float turns[NARC_MAX_ARCS];
@@ -195,7 +209,7 @@ static void write_block(const narc_outline *o, narc_head *head, narc_record *blo
         block[k] = (narc_record){.center_x = (float)(o->center_x[i] + o->origin_x),
                                  .center_y = (float)(o->center_y[i] + o->origin_y),
                                  .radius = (float)o->radius[i],
-                                 .turn = turns[i],
+                                 .roll = find_roll(o, i),
                                  .start_x = (float)o->normal_x[i],
                                  .start_y = (float)o->normal_y[i],
                                  .end_x = (float)o->normal_x[i + 1],

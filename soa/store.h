@@ -43,10 +43,14 @@ typedef struct narc_head {
     float inner_x, inner_y, inner_radius;
 } narc_head;
 
-/* An arc: its circle, and the unit outward normals where it starts and ends, counter-clockwise. `turn` is the diamond
- * angle of the first. */
+/* 60 degrees. */
+#define NARC_ROLL_WINDOW 1.0471975511965976
+
+/* An arc: its circle, and the unit outward normals where it starts and ends, counter-clockwise. `roll` is the smallest
+ * radius of all arcs that hold a direction within NARC_ROLL_WINDOW of one of this arc's: a circle of that radius can
+ * roll along the inside of the outline there. */
 typedef struct narc_record {
-    float center_x, center_y, radius, turn;
+    float center_x, center_y, radius, roll;
     float start_x, start_y, end_x, end_y;
 } narc_record;
 
