@@ -128,6 +128,12 @@ static void decide_contacts(const narc_shapes *shapes, struct queue *rest, int c
     }
 }
 
+/* The place in its block of the arc in a record: the copy of the last arc counts as the last. */
+static inline vi arc_of(vi record, vi block, vi bytes) {
+    const vi place = vi_sub(vi_sub(record, first_record(block, bytes)), vi_set(1));
+    return vi_select(vi_lt(place, vi_set(0)), vi_sub(head_count(bytes), vi_set(1)), place);
+}
+
 /* Where a shape touches, from the arcs after and before the normal. */
 static inline struct touch touch_at(const struct arcs *after, const struct arcs *before, vf n_x, vf n_y, float sign, vi arc) {
     const vf reach = v_mul(v_set(sign), after->radius), old_reach = v_mul(v_set(sign), before->radius);
@@ -156,7 +162,7 @@ static inline void settle_contacts(const narc_shapes *shapes, struct queue *q, i
     look_up(shapes, q, first, DIRECTION_X);
     for (int k = first; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
-        const struct peak peak = climb(shapes, q, k, live);
+        const struct peak peak = climb(shapes, q, k, live, STEPS);
         const vf slack = get(q, SLACK, k);
         const vf u_x = v_sub(peak.after.b.x, peak.after.a.x), u_y = v_sub(peak.after.b.y, peak.after.a.y);
         const vf radii = v_add(peak.after.a.radius, peak.after.b.radius);
@@ -196,9 +202,8 @@ static inline void settle_contacts(const narc_shapes *shapes, struct queue *q, i
 
         const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
         if (vm_any(keep)) {
-            const vi first_a = first_record(get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k));
-            const vi first_b = first_record(get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k));
-            const vi arc_a = vi_sub(vi_sub(peak.record_a, first_a), vi_set(1)), arc_b = vi_sub(vi_sub(peak.record_b, first_b), vi_set(1));
+            const vi arc_a = arc_of(peak.record_a, get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k));
+            const vi arc_b = arc_of(peak.record_b, get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k));
             const struct touch on_a = touch_at(&peak.after.a, &peak.before.a, n_x, n_y, 1, arc_a);
             const struct touch on_b = touch_at(&peak.after.b, &peak.before.b, n_x, n_y, -1, arc_b);
             file_contacts(q, k, keep, separation, n_x, n_y, &on_a, &on_b, out);
@@ -213,19 +218,56 @@ static inline void settle_contacts(const narc_shapes *shapes, struct queue *q, i
     q->count = first;
 }
 
-/* One look along the axis. */
-static inline void look_along_axis(const narc_shapes *shapes, struct queue *q, float margin, struct queue *near) {
+/* Contacts that the arcs along the axis tell at once; the others, but for those that are apart, go to `near` with the
+ * direction to search on in. */
+static inline void look_along_axis(const narc_shapes *shapes, struct queue *q, float margin, struct queue *near, struct results *out) {
     look_up(shapes, q, 0, AXIS_X);
     for (int k = 0; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
-        const struct verdict v = glance(shapes, q, k, AXIS_X, margin, true);
-        const vm left = vm_and_not(live, v.apart);
+        const struct pose pose = get_pose(q, k);
+        const vi bytes_a = get_bits(q, BYTES_A, k), bytes_b = get_bits(q, BYTES_B, k);
+        const vi record_a = get_bits(q, RECORD_A, k), record_b = get_bits(q, RECORD_B, k);
+        const struct arcs a = load_arcs_a(shapes->records, record_a, get(q, SCALE_A, k));
+        const struct arcs b = load_arcs_b(shapes->records, record_b, &pose);
+        const vf axis_x = get(q, AXIS_X, k), axis_y = get(q, AXIS_Y, k), slack = get(q, SLACK, k);
+        const vf u_x = v_sub(b.x, a.x), u_y = v_sub(b.y, a.y), radii = v_add(a.radius, b.radius);
+        const vf along = dot(u_x, u_y, axis_x, axis_y), across = cross(u_x, u_y, axis_x, axis_y);
+        const vf length = v_sqrt(dot(u_x, u_y, u_x, u_y)), axis2 = dot(axis_x, axis_y, axis_x, axis_y);
+        const vm smooth = head_is(vi_and(bytes_a, bytes_b), NARC_SHAPE_SMOOTH);
+
+        /* Between the ends? */
+        const vm circle_a = head_is(bytes_a, NARC_SHAPE_CIRCLE), circle_b = head_is(bytes_b, NARC_SHAPE_CIRCLE);
+        const vf in_a = v_select(circle_a, length, v_min(cross(a.start_x, a.start_y, u_x, u_y), cross(u_x, u_y, a.end_x, a.end_y)));
+        const vf in_b = v_select(circle_b, length, v_min(cross(b.start_x, b.start_y, u_x, u_y), cross(u_x, u_y, b.end_x, b.end_y)));
+        const vf in = v_min(in_a, in_b);
+        const vf separation = v_sub(length, radii), limit = v_add(v_set(margin), slack);
+        const vf least = v_mul(v_set(0x1p-12f), length);
+        vm inside = v_lt(least, in);
+        /* g along the axis, times its length: squares */
+        const vf reach = v_add(v_add(radii, limit), v_mul(v_select(smooth, v_set(0), v_set(63)), slack));
+        const vm apart = vm_or(vm_and(inside, v_le(limit, separation)),
+                               vm_and(vm_and(v_lt(v_set(0), along), v_lt(v_set(0), reach)), v_lt(v_mul(v_mul(reach, reach), axis2), v_mul(along, along))));
+        const vf core = v_sub(v_add(get(q, CORE, k), separation), slack);
+        const vf core_across = v_sqrt(v_sub(axis2, v_mul(core, core)));
+        const vm narrow = v_lt(v_mul(v_mul(v_set(0.5001f), axis2), length), v_sub(v_mul(core, along), v_mul(core_across, v_abs(across))));
+        const vf roll = v_add(v_add(a.roll, b.roll), separation);
+        const vm rolls = vm_and(v_lt(v_mul(v_set(4), slack), roll), v_lt(v_mul(slack, length), v_mul(roll, in)));
+        const vm sure = vm_and_not(vm_and(vm_and(live, inside), vm_and(narrow, rolls)), apart);
+
+        const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
+        if (vm_any(keep)) {
+            const vf n_x = v_div(u_x, length), n_y = v_div(u_y, length);
+            const vi arc_a = arc_of(record_a, get_bits(q, BLOCK_A, k), bytes_a), arc_b = arc_of(record_b, get_bits(q, BLOCK_B, k), bytes_b);
+            const struct touch on_a = touch_at(&a, &a, n_x, n_y, 1, arc_a);
+            const struct touch on_b = touch_at(&b, &b, n_x, n_y, -1, arc_b);
+            file_contacts(q, k, keep, separation, n_x, n_y, &on_a, &on_b, out);
+        }
+        const vm left = vm_and_not(live, vm_or(apart, sure));
         if (vm_any(left)) {
             vf item[FIELDS];
             get_item(q, k, item);
-            const vm smooth = head_is(vi_and(get_bits(q, BYTES_A, k), get_bits(q, BYTES_B, k)), NARC_SHAPE_SMOOTH);
-            item[DIRECTION_X] = v_select(smooth, v.u_x, item[AXIS_X]);
-            item[DIRECTION_Y] = v_select(smooth, v.u_y, item[AXIS_Y]);
+            item[DIRECTION_X] = v_select(smooth, u_x, axis_x);
+            item[DIRECTION_Y] = v_select(smooth, u_y, axis_y);
             push(near, left, item, DIRECTION_Y + 1);
         }
     }
@@ -294,7 +336,7 @@ static size_t contact(const narc_batch *batch, size_t first, size_t count, float
             push(&fresh, left, item, SINE_A + 1);
             if (fresh.count >= BLOCK || start + V_WIDTH >= in_group) {
                 pad(&fresh);
-                look_along_axis(batch->shapes, &fresh, margin, &near);
+                look_along_axis(batch->shapes, &fresh, margin, &near, &results);
                 if (near.count >= FLUSH)
                     settle_contacts(batch->shapes, &near, near.count % V_WIDTH, margin, &rest, &results);
                 if (rest.count >= FLUSH)

@@ -144,7 +144,7 @@ static inline vi step_record(vi record, vi step, vi first, vi count) {
     return vi_select(vi_lt(last, low), vi_add(first, vi_set(1)), low);
 }
 
-static inline struct peak climb(const narc_shapes *shapes, const struct queue *q, int k, vm live) {
+static inline struct peak climb(const narc_shapes *shapes, const struct queue *q, int k, vm live, int steps) {
     const vf zero = v_set(0), tiny = v_set(0x1p-126f), scale_a = get(q, SCALE_A, k);
     const struct pose pose = get_pose(q, k);
     const vi bytes_a = get_bits(q, BYTES_A, k), bytes_b = get_bits(q, BYTES_B, k);
@@ -191,7 +191,7 @@ static inline struct peak climb(const narc_shapes *shapes, const struct queue *q
         const vm here = vm_and(open, vm_or(inside, vm_or(at_lo, at_hi)));
         peak.found = vm_or(peak.found, here);
         open = vm_and_not(open, here);
-        if (step + 1 == STEPS || !vm_any(open))
+        if (step + 1 == steps || !vm_any(open))
             break;
         last = now;
         old_a = record_a;
