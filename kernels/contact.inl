@@ -78,7 +78,7 @@ static inline void turn_back(const struct queue *q, int k, vf x, vf y, vf *out_x
 
 /* Files the contacts of the pairs k ... of a queue, those lanes that `keep` says. `arc` of the touches is the place in
  * the block. */
-static inline void file_contacts(const struct queue *q, int k, vm keep, vf separation, vf n_x, vf n_y,
+INLINE void file_contacts(const struct queue *q, int k, vm keep, vf separation, vf n_x, vf n_y,
                                  const struct touch *on_a, const struct touch *on_b, struct results *out) {
     const vf half = v_set(0.5f);
     const vf across = v_mul(half, v_add(on_a->across, on_b->across));
@@ -218,11 +218,11 @@ static inline void settle_contacts(const narc_shapes *shapes, struct queue *q, i
     q->count = first;
 }
 
-/* Contacts that the arcs along the axis tell at once; the others, but for those that are apart, go to `near` with the
+/* Contacts that the arcs along a direction tell at once; the others, but for those that are apart, go to `near` with the
  * direction to search on in. */
-static inline void look_along_axis(const narc_shapes *shapes, struct queue *q, float margin, struct queue *near, struct results *out) {
-    look_up(shapes, q, 0, AXIS_X);
-    for (int k = 0; k < q->count; k += V_WIDTH) {
+INLINE void look(const narc_shapes *shapes, struct queue *q, int first, int x, float margin, struct queue *near, struct results *out) {
+    look_up(shapes, q, first, x);
+    for (int k = first; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
         const struct pose pose = get_pose(q, k);
         const vi bytes_a = get_bits(q, BYTES_A, k), bytes_b = get_bits(q, BYTES_B, k);
@@ -231,6 +231,7 @@ static inline void look_along_axis(const narc_shapes *shapes, struct queue *q, f
         const struct arcs b = load_arcs_b(shapes->records, record_b, &pose);
         const vf axis_x = get(q, AXIS_X, k), axis_y = get(q, AXIS_Y, k), slack = get(q, SLACK, k);
         const vf u_x = v_sub(b.x, a.x), u_y = v_sub(b.y, a.y), radii = v_add(a.radius, b.radius);
+        const vf d_x = get(q, x, k), d_y = get(q, x + 1, k), gap = dot(u_x, u_y, d_x, d_y), d2 = dot(d_x, d_y, d_x, d_y);
         const vf along = dot(u_x, u_y, axis_x, axis_y), across = cross(u_x, u_y, axis_x, axis_y);
         const vf length = v_sqrt(dot(u_x, u_y, u_x, u_y)), axis2 = dot(axis_x, axis_y, axis_x, axis_y);
         const vm smooth = head_is(vi_and(bytes_a, bytes_b), NARC_SHAPE_SMOOTH);
@@ -246,7 +247,7 @@ static inline void look_along_axis(const narc_shapes *shapes, struct queue *q, f
         /* g along the axis, times its length: squares */
         const vf reach = v_add(v_add(radii, limit), v_mul(v_select(smooth, v_set(0), v_set(63)), slack));
         const vm apart = vm_or(vm_and(inside, v_le(limit, separation)),
-                               vm_and(vm_and(v_lt(v_set(0), along), v_lt(v_set(0), reach)), v_lt(v_mul(v_mul(reach, reach), axis2), v_mul(along, along))));
+                               vm_and(vm_and(v_lt(v_set(0), gap), v_lt(v_set(0), reach)), v_lt(v_mul(v_mul(reach, reach), d2), v_mul(gap, gap))));
         const vf core = v_sub(v_add(get(q, CORE, k), separation), slack);
         const vf core_across = v_sqrt(v_sub(axis2, v_mul(core, core)));
         const vm narrow = v_lt(v_mul(v_mul(v_set(0.5001f), axis2), length), v_sub(v_mul(core, along), v_mul(core_across, v_abs(across))));
@@ -271,7 +272,7 @@ static inline void look_along_axis(const narc_shapes *shapes, struct queue *q, f
             push(near, left, item, DIRECTION_Y + 1);
         }
     }
-    q->count = 0;
+    q->count = first;
 }
 
 /* Writes the kept contacts of a group in their order, from item `at` on; returns how many. `first` is the number of the
@@ -315,10 +316,10 @@ static size_t list_contacts(const struct results *results, int count, size_t fir
 
 static size_t contact(const narc_batch *batch, size_t first, size_t count, float margin, const narc_contacts *out) {
     const bool rows = poses_are_rows(batch->bodies), every = margin == INFINITY;
-    struct queue fresh, near, rest;
+    struct queue fresh, again, near, rest;
     struct results results;
     size_t total = 0;
-    fresh.count = near.count = rest.count = 0;
+    fresh.count = again.count = near.count = rest.count = 0;
     for (size_t done = 0; done < count; done += GROUP) {
         const int in_group = (int)(count - done < GROUP ? count - done : GROUP);
         memset(results.keep, 0, sizeof results.keep);
@@ -336,13 +337,17 @@ static size_t contact(const narc_batch *batch, size_t first, size_t count, float
             push(&fresh, left, item, SINE_A + 1);
             if (fresh.count >= BLOCK || start + V_WIDTH >= in_group) {
                 pad(&fresh);
-                look_along_axis(batch->shapes, &fresh, margin, &near, &results);
+                look(batch->shapes, &fresh, 0, AXIS_X, margin, &again, &results);
+                if (again.count >= FLUSH)
+                    look(batch->shapes, &again, again.count % V_WIDTH, DIRECTION_X, margin, &near, &results);
                 if (near.count >= FLUSH)
                     settle_contacts(batch->shapes, &near, near.count % V_WIDTH, margin, &rest, &results);
                 if (rest.count >= FLUSH)
                     decide_contacts(batch->shapes, &rest, rest.count / V_WIDTH * V_WIDTH, margin, &results);
             }
         }
+        pad(&again);
+        look(batch->shapes, &again, 0, DIRECTION_X, margin, &near, &results);
         pad(&near);
         settle_contacts(batch->shapes, &near, 0, margin, &rest, &results);
         pad(&rest);

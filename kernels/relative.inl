@@ -53,12 +53,13 @@ static inline vf get(const struct queue *q, int field, int k) { return v_load(q-
 static inline vi get_bits(const struct queue *q, int field, int k) { return vi_bits(get(q, field, k)); }
 
 /* Appends the lanes `keep` of `item`. The vector's other lanes go behind them, so that whole vectors may be read. */
-static inline void push(struct queue *q, vm keep, const vf *item, int fields) {
+INLINE void push(struct queue *q, vm keep, const vf *item, int fields) {
     const vp packing = vm_packing(keep);
+    const int at = q->count;
     UNROLL
     for (int f = 0; f < fields; f++)
-        v_store(q->item[f] + q->count, v_pack(packing, item[f]));
-    q->count += __builtin_popcount(vm_bits(keep));
+        v_store(q->item[f] + at, v_pack(packing, item[f]));
+    q->count = at + __builtin_popcount(vm_bits(keep));
 }
 
 /* The last vector of a queue may have lanes behind the last pair: harmless ones, shape 0 at the origin. */
@@ -190,7 +191,7 @@ struct filter {
 };
 
 /* Loads `count` pairs, at most a vector, and compares their circles; fills item[0 .. PAIR]. */
-static inline struct filter load_pairs(const narc_batch *batch, size_t first, int count, bool rows, float margin,
+INLINE struct filter load_pairs(const narc_batch *batch, size_t first, int count, bool rows, float margin,
                                        int32_t number, vf item[FIELDS]) {
     const float shrink = 1.0f - 0x1p-16f, grow = 1.0f + 0x1p-16f; /* of a square: 2^-17 of the distance */
     const narc_column scale = batch->bodies->scale;

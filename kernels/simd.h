@@ -43,6 +43,9 @@
 #include <stdint.h>
 #include <string.h>
 
+/* For steps of the inner loops that are written once and used more than once. */
+#define INLINE static inline __attribute__((always_inline))
+
 /* Before a loop over the fields of something, all of which is wanted in registers. */
 #ifdef __clang__
 #define UNROLL _Pragma("unroll")
