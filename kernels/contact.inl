@@ -13,7 +13,7 @@
 #define PARALLEL 0x1p-20f
 
 /* The number of a slot from its place in the list, a multiple of SLOT. */
-static inline vi slot_number(vi place) {
+INLINE vi slot_number(vi place) {
     return vi_truncate(v_add(v_mul(v_of_int(place), v_set(1.0f / SLOT)), v_set(0.5f)));
 }
 
@@ -26,7 +26,7 @@ struct touch {
 
 /* Widens a stretch by the end of a neighbouring arc, in lanes where n is the normal of the junction between them;
  * returns those lanes. */
-static inline vm widen(const struct overlay *o, struct touch *t, vi junction, vi arc, vf n_x, vf n_y, vf reach) {
+INLINE vm widen(const struct overlay *o, struct touch *t, vi junction, vi arc, vf n_x, vf n_y, vf reach) {
     const vf j_x = field(o, NORMAL_X, junction), j_y = field(o, NORMAL_Y, junction);
     const vf off = v_abs(cross(j_x, j_y, n_x, n_y));
     const vm meets = vm_and(v_le(off, v_set(PARALLEL)), v_lt(v_set(0), dot(j_x, j_y, n_x, n_y)));
@@ -39,7 +39,7 @@ static inline vm widen(const struct overlay *o, struct touch *t, vi junction, vi
 }
 
 /* `sign` is 1 for A, which is touched on its side n, and -1 for B, touched on -n. */
-static inline struct touch touch_of(const struct overlay *o, struct cursor c, vi arc, vf n_x, vf n_y, float sign) {
+INLINE struct touch touch_of(const struct overlay *o, struct cursor c, vi arc, vf n_x, vf n_y, float sign) {
     const vi previous = previous_slot(c, arc), next = next_slot(c, arc);
     const vf reach = v_mul(v_set(sign), field(o, RADIUS, arc));
     const vf p_x = v_add(field(o, CENTER_X, arc), v_mul(reach, n_x)),
@@ -63,14 +63,14 @@ struct results {
 };
 
 /* The caller's number of an arc, from its place in the block; a circle's two halves are both arc 0. */
-static inline vi arc_number(vi place, vi bytes) {
+INLINE vi arc_number(vi place, vi bytes) {
     const vi number = vi_add(place, head_first(bytes)), count = head_count(bytes);
     const vi wrapped = vi_select(vi_lt(number, count), number, vi_sub(number, count));
     return vi_select(head_is(bytes, NARC_SHAPE_CIRCLE), vi_set(0), wrapped);
 }
 
 /* From A's frame to world axes. */
-static inline void turn_back(const struct queue *q, int k, vf x, vf y, vf *out_x, vf *out_y) {
+INLINE void turn_back(const struct queue *q, int k, vf x, vf y, vf *out_x, vf *out_y) {
     const vf c = get(q, COSINE_A, k), s = get(q, SINE_A, k);
     *out_x = v_sub(v_mul(c, x), v_mul(s, y));
     *out_y = v_add(v_mul(s, x), v_mul(c, y));
@@ -129,13 +129,13 @@ static void decide_contacts(const narc_shapes *shapes, struct queue *rest, int c
 }
 
 /* The place in its block of the arc in a record: the copy of the last arc counts as the last. */
-static inline vi arc_of(vi record, vi block, vi bytes) {
+INLINE vi arc_of(vi record, vi block, vi bytes) {
     const vi place = vi_sub(vi_sub(record, first_record(block, bytes)), vi_set(1));
     return vi_select(vi_lt(place, vi_set(0)), vi_sub(head_count(bytes), vi_set(1)), place);
 }
 
 /* Where a shape touches, from the arcs after and before the normal. */
-static inline struct touch touch_at(const struct arcs *after, const struct arcs *before, vf n_x, vf n_y, float sign, vi arc) {
+INLINE struct touch touch_at(const struct arcs *after, const struct arcs *before, vf n_x, vf n_y, float sign, vi arc) {
     const vf reach = v_mul(v_set(sign), after->radius), old_reach = v_mul(v_set(sign), before->radius);
     const vf p_x = v_add(after->x, v_mul(reach, n_x)), p_y = v_add(after->y, v_mul(reach, n_y));
     const vf old_x = v_add(before->x, v_mul(old_reach, n_x)), old_y = v_add(before->y, v_mul(old_reach, n_y));
@@ -144,21 +144,20 @@ static inline struct touch touch_at(const struct arcs *after, const struct arcs 
 }
 
 /* Is a side clear */
-static inline vm side_is_clear(vf edge, const struct couple *c, vf sine_a, vf sine_b, vf depth, vf chord, vf cosine, vf slack, vm kink) {
-    const vm rolls = v_le(chord, v_set(1));
-    const vf roll_a = v_select(rolls, c->a.roll, v_set(0)), roll_b = v_select(rolls, c->b.roll, v_set(0));
-    const vf near = v_min(sine_a, sine_b), roll = v_add(roll_a, roll_b);
-    const vf extra = v_add(v_mul(v_sub(c->a.radius, roll_a), v_min(chord, sine_a)), v_mul(v_sub(c->b.radius, roll_b), v_min(chord, sine_b)));
-    const vf sum = v_add(v_add(v_mul(edge, cosine), v_mul(v_sub(roll, depth), chord)), extra);
+INLINE vm side_is_clear(vf edge, const struct couple *c, vf sine_a, vf sine_b, vf depth, vf chord, vf cosine, vf slack, vm kink) {
+    const vf near = v_min(sine_a, sine_b), inner = v_add(c->a.inner, c->b.inner);
+    const vf sum_a = v_max(v_mul(c->a.inner, chord), v_mul(c->a.radius, v_min(chord, sine_a)));
+    const vf sum_b = v_max(v_mul(c->b.inner, chord), v_mul(c->b.radius, v_min(chord, sine_b)));
+    const vf sum = v_sub(v_add(v_mul(edge, cosine), v_add(sum_a, sum_b)), v_mul(depth, chord));
     const vm square = v_lt(v_mul(v_mul(v_set(2), slack), chord), v_mul(sum, v_mul(near, near)));
-    const vm linear = v_lt(slack, v_mul(v_sub(roll, depth), near));
-    const vm clear = vm_and(vm_and(v_le(v_set(0x1p-12f), near), vm_or(square, linear)), v_lt(v_mul(v_mul(v_set(4), slack), chord), sum));
+    const vm linear = vm_and(v_lt(slack, v_mul(v_sub(inner, depth), near)), v_lt(v_mul(v_mul(v_set(256), slack), chord), sum));
+    const vm clear = vm_and(v_le(v_set(0x1p-12f), near), vm_or(square, linear));
     const vm edge_is_clear = vm_or(vm_and_not(vm_first(V_WIDTH), kink), v_lt(slack, edge));
     return vm_and(clear, edge_is_clear);
 }
 
 /* Contacts by climbing; those undecided go to `rest`. */
-static inline void settle_contacts(const narc_shapes *shapes, struct queue *q, int first, float margin, struct queue *rest, struct results *out) {
+static void settle_contacts(const narc_shapes *shapes, struct queue *q, int first, float margin, struct queue *rest, struct results *out) {
     look_up(shapes, q, first, DIRECTION_X);
     for (int k = first; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
@@ -195,9 +194,13 @@ static inline void settle_contacts(const narc_shapes *shapes, struct queue *q, i
         const vf before_x = v_sub(peak.before.b.x, peak.before.a.x), before_y = v_sub(peak.before.b.y, peak.before.a.y);
         const vf edge_after = v_select(peak.kink, cross(u_x, u_y, n_x, n_y), v_set(0));
         const vf edge_before = v_select(peak.kink, cross(n_x, n_y, before_x, before_y), v_set(0));
+        const vf inner = v_add(v_add(peak.after.a.inner, peak.after.b.inner), separation);
+        const vf in = v_min(v_min(start_a, end_a), v_min(start_b, end_b));
+        const vm round = vm_and(vm_and(v_lt(v_mul(v_set(256), slack), inner), v_lt(slack, v_mul(inner, in))), v_le(v_set(0x1p-12f), in));
         vm sure = vm_and(found, narrow);
         sure = vm_and(sure, side_is_clear(edge_after, &peak.after, end_a, end_b, depth, chord, half_cosine, slack, peak.kink));
         sure = vm_and(sure, side_is_clear(edge_before, &peak.before, start_a, start_b, depth, chord, half_cosine, slack, peak.kink));
+        sure = vm_or(sure, vm_and(found, vm_and_not(round, peak.kink)));
         sure = vm_and_not(sure, apart);
 
         const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
@@ -232,8 +235,7 @@ INLINE void look(const narc_shapes *shapes, struct queue *q, int first, int x, f
         const vf axis_x = get(q, AXIS_X, k), axis_y = get(q, AXIS_Y, k), slack = get(q, SLACK, k);
         const vf u_x = v_sub(b.x, a.x), u_y = v_sub(b.y, a.y), radii = v_add(a.radius, b.radius);
         const vf d_x = get(q, x, k), d_y = get(q, x + 1, k), gap = dot(u_x, u_y, d_x, d_y), d2 = dot(d_x, d_y, d_x, d_y);
-        const vf along = dot(u_x, u_y, axis_x, axis_y), across = cross(u_x, u_y, axis_x, axis_y);
-        const vf length = v_sqrt(dot(u_x, u_y, u_x, u_y)), axis2 = dot(axis_x, axis_y, axis_x, axis_y);
+        const vf length = v_sqrt(dot(u_x, u_y, u_x, u_y));
         const vm smooth = head_is(vi_and(bytes_a, bytes_b), NARC_SHAPE_SMOOTH);
 
         /* Between the ends? */
@@ -248,12 +250,9 @@ INLINE void look(const narc_shapes *shapes, struct queue *q, int first, int x, f
         const vf reach = v_add(v_add(radii, limit), v_mul(v_select(smooth, v_set(0), v_set(63)), slack));
         const vm apart = vm_or(vm_and(inside, v_le(limit, separation)),
                                vm_and(vm_and(v_lt(v_set(0), gap), v_lt(v_set(0), reach)), v_lt(v_mul(v_mul(reach, reach), d2), v_mul(gap, gap))));
-        const vf core = v_sub(v_add(get(q, CORE, k), separation), slack);
-        const vf core_across = v_sqrt(v_sub(axis2, v_mul(core, core)));
-        const vm narrow = v_lt(v_mul(v_mul(v_set(0.5001f), axis2), length), v_sub(v_mul(core, along), v_mul(core_across, v_abs(across))));
-        const vf roll = v_add(v_add(a.roll, b.roll), separation);
-        const vm rolls = vm_and(v_lt(v_mul(v_set(4), slack), roll), v_lt(v_mul(slack, length), v_mul(roll, in)));
-        const vm sure = vm_and_not(vm_and(vm_and(live, inside), vm_and(narrow, rolls)), apart);
+        const vf inner = v_add(v_add(a.inner, b.inner), separation);
+        const vm clear = vm_and(v_lt(v_mul(v_set(256), slack), inner), v_lt(v_mul(slack, length), v_mul(inner, in)));
+        const vm sure = vm_and_not(vm_and(vm_and(live, inside), clear), apart);
 
         const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
         if (vm_any(keep)) {
@@ -316,6 +315,7 @@ static size_t list_contacts(const struct results *results, int count, size_t fir
 
 static size_t contact(const narc_batch *batch, size_t first, size_t count, float margin, const narc_contacts *out) {
     const bool rows = poses_are_rows(batch->bodies), every = margin == INFINITY;
+    struct pair_indices indices;
     struct queue fresh, again, near, rest;
     struct results results;
     size_t total = 0;
@@ -323,28 +323,29 @@ static size_t contact(const narc_batch *batch, size_t first, size_t count, float
     for (size_t done = 0; done < count; done += GROUP) {
         const int in_group = (int)(count - done < GROUP ? count - done : GROUP);
         memset(results.keep, 0, sizeof results.keep);
-        for (int start = 0; start < in_group; start += V_WIDTH) {
-            const int n = in_group - start < V_WIDTH ? in_group - start : V_WIDTH;
-            vf item[FIELDS];
-            const struct filter f = load_pairs(batch, first + done + (size_t)start, n, rows, margin, start, item);
-            for (uint32_t bits = every ? ~vm_bits(f.valid) & vm_bits(vm_first(n)) : 0; bits; bits &= bits - 1) {
-                const int number = start + __builtin_ctz(bits);
-                const float none[ROW] = {[SEPARATION] = INFINITY};
-                memcpy(results.row[number], none, sizeof none);
-                results.keep[number / 64] |= (uint64_t)1 << number % 64;
+        for (int start = 0; start < in_group; start += BLOCK) {
+            const int n = in_group - start < BLOCK ? in_group - start : BLOCK;
+            load_indices(batch, first + done + (size_t)start, n, &indices);
+            fresh.count = 0;
+            for (int k = 0; k < n; k += V_WIDTH) {
+                vf item[FIELDS];
+                const struct filter f = load_pairs(batch, &indices, k, n, rows, margin, start, item);
+                for (uint32_t bits = every ? ~vm_bits(f.valid) & vm_bits(vm_first(n - k)) : 0; bits; bits &= bits - 1) {
+                    const int number = start + k + __builtin_ctz(bits);
+                    const float none[ROW] = {[SEPARATION] = INFINITY};
+                    memcpy(results.row[number], none, sizeof none);
+                    results.keep[number / 64] |= (uint64_t)1 << number % 64;
+                }
+                push(&fresh, vm_and_not(f.valid, f.apart), item, SINE_A + 1);
             }
-            const vm left = vm_and_not(f.valid, f.apart);
-            push(&fresh, left, item, SINE_A + 1);
-            if (fresh.count >= BLOCK || start + V_WIDTH >= in_group) {
-                pad(&fresh);
-                look(batch->shapes, &fresh, 0, AXIS_X, margin, &again, &results);
-                if (again.count >= FLUSH)
-                    look(batch->shapes, &again, again.count % V_WIDTH, DIRECTION_X, margin, &near, &results);
-                if (near.count >= FLUSH)
-                    settle_contacts(batch->shapes, &near, near.count % V_WIDTH, margin, &rest, &results);
-                if (rest.count >= FLUSH)
-                    decide_contacts(batch->shapes, &rest, rest.count / V_WIDTH * V_WIDTH, margin, &results);
-            }
+            pad(&fresh);
+            look(batch->shapes, &fresh, 0, AXIS_X, margin, &again, &results);
+            if (again.count >= FLUSH)
+                look(batch->shapes, &again, again.count % V_WIDTH, DIRECTION_X, margin, &near, &results);
+            if (near.count >= FLUSH)
+                settle_contacts(batch->shapes, &near, near.count % V_WIDTH, margin, &rest, &results);
+            if (rest.count >= FLUSH)
+                decide_contacts(batch->shapes, &rest, rest.count / V_WIDTH * V_WIDTH, margin, &results);
         }
         pad(&again);
         look(batch->shapes, &again, 0, DIRECTION_X, margin, &near, &results);

@@ -19,7 +19,7 @@ static void decide_overlaps(const narc_shapes *shapes, struct queue *rest, int c
 }
 
 /* Looks at the last pairs of a queue along a direction; those undecided go to `rest`, the others out. */
-static inline void settle(const narc_shapes *shapes, struct queue *q, int first, int x, struct queue *rest, uint64_t *out_bits) {
+INLINE void settle(const narc_shapes *shapes, struct queue *q, int first, int x, struct queue *rest, uint64_t *out_bits) {
     look_up(shapes, q, first, x);
     for (int k = first; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
@@ -41,20 +41,21 @@ enum { LOOKS = 3 };
 
 static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
     const bool rows = poses_are_rows(batch->bodies);
+    struct pair_indices indices;
     struct queue fresh, near[LOOKS];
     struct queue *const rest = &near[LOOKS - 1];
     for (int k = 0; k < LOOKS; k++)
         near[k].count = 0;
     memset(out_bits, 0, (count + 63) / 64 * sizeof *out_bits);
     for (size_t block = 0; block < count; block += BLOCK) {
-        const size_t end = count - block < BLOCK ? count : block + BLOCK;
+        const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
+        load_indices(batch, first + block, n, &indices);
         fresh.count = 0;
-        for (size_t done = block; done < end; done += V_WIDTH) {
-            const int n = (int)(end - done < V_WIDTH ? end - done : V_WIDTH);
+        for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
-            const struct filter f = load_pairs(batch, first + done, n, rows, 0, (int32_t)(uint32_t)done, item);
+            const struct filter f = load_pairs(batch, &indices, k, n, rows, 0, (int32_t)(uint32_t)block, item);
             push(&fresh, vm_and_not(f.valid, vm_or(f.apart, f.deep)), item, PAIR + 1);
-            out_bits[done / 64] |= (uint64_t)vm_bits(vm_and(f.valid, f.deep)) << done % 64;
+            out_bits[(block + (size_t)k) / 64] |= (uint64_t)vm_bits(vm_and(f.valid, f.deep)) << (block + (size_t)k) % 64;
         }
         pad(&fresh);
         settle(batch->shapes, &fresh, 0, AXIS_X, &near[0], out_bits);

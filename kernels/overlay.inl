@@ -57,29 +57,29 @@ struct cursor {
     vi at, begin, end;
 };
 
-static inline vf field(const struct overlay *o, int which, vi at) { return v_gather(o->slots + which * V_WIDTH, at); }
+INLINE vf field(const struct overlay *o, int which, vi at) { return v_gather(o->slots + which * V_WIDTH, at); }
 
-static inline vi next_slot(struct cursor c, vi at) {
+INLINE vi next_slot(struct cursor c, vi at) {
     const vi next = vi_add(at, vi_set(SLOT));
     return vi_select(vi_lt(next, c.end), next, c.begin);
 }
 
-static inline vi previous_slot(struct cursor c, vi at) {
+INLINE vi previous_slot(struct cursor c, vi at) {
     return vi_add(vi_select(vi_lt(c.begin, at), at, c.end), vi_set(-SLOT));
 }
 
 /* The diamond angle of a direction of any length. */
-static inline vf turn_of(vf x, vf y) {
+INLINE vf turn_of(vf x, vf y) {
     const vf p = v_div(x, v_add(v_abs(x), v_abs(y)));
     return v_select(v_le(v_set(0), y), v_sub(v_set(1), p), v_add(v_set(3), p));
 }
 
-static inline vf cross(vf a_x, vf a_y, vf b_x, vf b_y) { return v_sub(v_mul(a_x, b_y), v_mul(a_y, b_x)); }
+INLINE vf cross(vf a_x, vf a_y, vf b_x, vf b_y) { return v_sub(v_mul(a_x, b_y), v_mul(a_y, b_x)); }
 
-static inline vf dot(vf a_x, vf a_y, vf b_x, vf b_y) { return v_add(v_mul(a_x, b_x), v_mul(a_y, b_y)); }
+INLINE vf dot(vf a_x, vf a_y, vf b_x, vf b_y) { return v_add(v_mul(a_x, b_x), v_mul(a_y, b_y)); }
 
 /* The largest of the lanes' counts. */
-static inline int max_lane(vi counts) {
+INLINE int max_lane(vi counts) {
     int32_t lane[V_WIDTH];
     int most = 0;
     vi_store(lane, counts);
@@ -90,12 +90,12 @@ static inline int max_lane(vi counts) {
 
 /* An arc in each lane, in A's frame at world scale, normals from A to B: those of B point the other way. */
 struct arcs {
-    vf x, y, radius, roll;
+    vf x, y, radius, inner;
     vf start_x, start_y, end_x, end_y;
 };
 
 /* The arcs of A in records `index`. */
-static inline struct arcs load_arcs_a(const narc_record *records, vi index, vf scale) {
+INLINE struct arcs load_arcs_a(const narc_record *records, vi index, vf scale) {
     int32_t record[V_WIDTH];
     vf row[8];
     vi_store(record, index);
@@ -110,11 +110,11 @@ struct pose {
     vf t_x, t_y, q_c, q_s, scale;
 };
 
-static inline struct pose get_pose(const struct queue *q, int k) {
+INLINE struct pose get_pose(const struct queue *q, int k) {
     return (struct pose){get(q, T_X, k), get(q, T_Y, k), get(q, Q_C, k), get(q, Q_S, k), get(q, SCALE_B, k)};
 }
 
-static inline struct arcs load_arcs_b(const narc_record *records, vi index, const struct pose *p) {
+INLINE struct arcs load_arcs_b(const narc_record *records, vi index, const struct pose *p) {
     int32_t record[V_WIDTH];
     vf row[8];
     vi_store(record, index);
@@ -132,7 +132,7 @@ static inline struct arcs load_arcs_b(const narc_record *records, vi index, cons
                          v_neg(v_add(v_mul(p->q_s, row[6]), v_mul(p->q_c, row[7])))};
 }
 
-static inline void put_slot(struct overlay *o, int slot, const struct arcs *arcs, vf turn) {
+INLINE void put_slot(struct overlay *o, int slot, const struct arcs *arcs, vf turn) {
     float *out = o->slots + slot * SLOT;
     v_store(out + TURN * V_WIDTH, turn);
     v_store(out + NORMAL_X * V_WIDTH, arcs->start_x);
@@ -249,7 +249,7 @@ static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, s
 }
 
 /* Lays out the pairs k ... of a queue; the cursors stand at the first junctions counter-clockwise from +x. */
-static inline void place_pairs(struct overlay *o, const narc_shapes *shapes, const struct queue *q, int k,
+static void place_pairs(struct overlay *o, const narc_shapes *shapes, const struct queue *q, int k,
                                struct cursor *out_a, struct cursor *out_b, vi *out_steps) {
     const vi count_a = head_count(get_bits(q, BYTES_A, k)), count_b = head_count(get_bits(q, BYTES_B, k));
     const vi record_a = vi_add(first_record(get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k)), vi_set(1));

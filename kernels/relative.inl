@@ -48,9 +48,9 @@ struct queue {
     float item[FIELDS][CAPACITY];
 };
 
-static inline vf get(const struct queue *q, int field, int k) { return v_load(q->item[field] + k); }
+INLINE vf get(const struct queue *q, int field, int k) { return v_load(q->item[field] + k); }
 
-static inline vi get_bits(const struct queue *q, int field, int k) { return vi_bits(get(q, field, k)); }
+INLINE vi get_bits(const struct queue *q, int field, int k) { return vi_bits(get(q, field, k)); }
 
 /* Appends the lanes `keep` of `item`. The vector's other lanes go behind them, so that whole vectors may be read. */
 INLINE void push(struct queue *q, vm keep, const vf *item, int fields) {
@@ -79,13 +79,13 @@ static bool poses_are_rows(const narc_bodies *bodies) {
 }
 
 /* Position of b minus position of a, rounded once. */
-static inline float difference(narc_precision precision, narc_column column, size_t a, size_t b) {
+INLINE float difference(narc_precision precision, narc_column column, size_t a, size_t b) {
     if (precision == NARC_FLOAT64)
         return (float)(narc_double_at(column, b) - narc_double_at(column, a));
     return narc_float_at(column, b) - narc_float_at(column, a);
 }
 
-static inline vf column_lanes(narc_column column, const int32_t *index) {
+INLINE vf column_lanes(narc_column column, const int32_t *index) {
     float lane[V_WIDTH];
     for (int k = 0; k < V_WIDTH; k++)
         lane[k] = narc_float_at(column, (uint32_t)index[k]);
@@ -97,7 +97,7 @@ struct poses {
     vf d_x, d_y, c_a, s_a, c_b, s_b;
 };
 
-static inline struct poses load_poses(const narc_bodies *bodies, bool rows, const int32_t *a, const int32_t *b) {
+INLINE struct poses load_poses(const narc_bodies *bodies, bool rows, const int32_t *a, const int32_t *b) {
     if (rows) {
         vf of_a[4], of_b[4];
         v_rows(bodies->x.base, bodies->x.stride, a, of_a);
@@ -123,60 +123,66 @@ struct heads {
     vf bound_x, bound_y, bound_radius, inner_x, inner_y, inner_radius;
 };
 
-static inline struct heads load_heads(const narc_head *heads, const int32_t *shape) {
+INLINE struct heads load_heads(const narc_head *heads, const int32_t *shape) {
     vf row[8];
     v_rows(heads, sizeof *heads, shape, row);
     v_rows(&heads->bound_radius, sizeof *heads, shape, row + 4);
     return (struct heads){vi_bits(row[0]), vi_bits(row[1]), row[2], row[3], row[4], row[5], row[6], row[7]};
 }
 
-static inline vi head_count(vi bytes) { return vi_and(bytes, vi_set(0xff)); }
+INLINE vi head_count(vi bytes) { return vi_and(bytes, vi_set(0xff)); }
 
 /* The record in front of the first arc, see store.h. */
-static inline vi first_record(vi block, vi bytes) {
+INLINE vi first_record(vi block, vi bytes) {
     return vi_add(block, vi_shift_right(vi_add(head_count(bytes), vi_set(NARC_TURNS - 1)), 4));
 }
 
-static inline vi head_first(vi bytes) { return vi_and(vi_shift_right(bytes, 8), vi_set(0xff)); }
+INLINE vi head_first(vi bytes) { return vi_and(vi_shift_right(bytes, 8), vi_set(0xff)); }
 
-static inline vm head_is(vi bytes, int flag) { return vi_lt(vi_set(0), vi_and(bytes, vi_set(flag << 16))); }
+INLINE vm head_is(vi bytes, int flag) { return vi_lt(vi_set(0), vi_and(bytes, vi_set(flag << 16))); }
 
 /* The bodies and shapes of a pair in each lane. Lanes from `count` on repeat the first. */
 struct pair_indices {
-    int32_t a[V_WIDTH], b[V_WIDTH], shape_a[V_WIDTH], shape_b[V_WIDTH];
+    int32_t a[BLOCK], b[BLOCK], shape_a[BLOCK], shape_b[BLOCK];
 };
 
-static inline void load_indices(const narc_batch *batch, size_t first, int count, struct pair_indices *out) {
+INLINE void load_indices(const narc_batch *batch, size_t first, int count, struct pair_indices *out) {
     const narc_column column_a = batch->pairs->a, column_b = batch->pairs->b, shape = batch->bodies->shape;
-    for (int k = 0; k < V_WIDTH; k++) {
-        const size_t pair = first + (size_t)(k < count ? k : 0);
-        const uint32_t a = narc_index_at(column_a, pair), b = narc_index_at(column_b, pair);
+    for (int k = 0; k < count; k++) {
+        const uint32_t a = narc_index_at(column_a, first + (size_t)k), b = narc_index_at(column_b, first + (size_t)k);
+        const uint32_t shape_a = narc_index_at(shape, a), shape_b = narc_index_at(shape, b);
         out->a[k] = (int32_t)a;
         out->b[k] = (int32_t)b;
-        out->shape_a[k] = (int32_t)narc_index_at(shape, a);
-        out->shape_b[k] = (int32_t)narc_index_at(shape, b);
+        out->shape_a[k] = (int32_t)shape_a;
+        out->shape_b[k] = (int32_t)shape_b;
+    }
+    for (int k = count; k % V_WIDTH != 0; k++) {
+        out->a[k] = out->a[0];
+        out->b[k] = out->b[0];
+        out->shape_a[k] = out->shape_a[0];
+        out->shape_b[k] = out->shape_b[0];
     }
 }
 
 /* One over the length of a rotation that is nearly 1: one step of Newton's method for the inverse root of the square,
  * from 1, which leaves 3/8 of the square's error squared, 1.5 e at most. In lanes where the square is off by more than
  * NARC_ROTATION_TOLERANCE, `out_valid` is false. */
-static inline vf inverse_length(vf c, vf s, vm *out_valid) {
+INLINE vf inverse_length(vf c, vf s, vm *out_valid) {
     const vf off = v_sub(v_add(v_mul(c, c), v_mul(s, s)), v_set(1));
     *out_valid = v_le(v_abs(off), v_set((float)NARC_ROTATION_TOLERANCE));
     return v_sub(v_set(1), v_mul(v_set(0.5f), off));
 }
 
-static inline vm within(vf value, float limit) { return v_le(v_abs(value), v_set(limit)); }
+INLINE vm within(vf value, float limit) { return v_le(v_abs(value), v_set(limit)); }
 
 /* The bounding radius has 96 e of the extent in it, so this keeps scaled coordinates below 2e14, too. */
-static inline vm size_in_range(vf size) {
+INLINE vm size_in_range(vf size) {
     return vm_and(v_le(v_set((float)NARC_MIN_SIZE), size), v_le(size, v_set((float)NARC_HEAD_MAX_RADIUS)));
 }
 
 /* 128 e (D + E_a + E_b), four times what the deciding formula can be off by: what a value from the same arithmetic must
  * be clear of, before it can stand for the formula's. Infinite where an extent is not known. */
-static inline vf slack_of(vf t_x, vf t_y, vi bytes_a, vi bytes_b, vf size_a, vf size_b) {
+INLINE vf slack_of(vf t_x, vf t_y, vi bytes_a, vi bytes_b, vf size_a, vf size_b) {
     const vi unknown = vi_set(255), reach_a = vi_shift_right(bytes_a, 24), reach_b = vi_shift_right(bytes_b, 24);
     const vf extents = v_add(v_mul(size_a, v_of_int(reach_a)), v_mul(size_b, v_of_int(reach_b)));
     const vf slack = v_mul(v_set(0x1p-17f), v_add(v_add(v_abs(t_x), v_abs(t_y)), extents));
@@ -191,17 +197,15 @@ struct filter {
 };
 
 /* Loads `count` pairs, at most a vector, and compares their circles; fills item[0 .. PAIR]. */
-INLINE struct filter load_pairs(const narc_batch *batch, size_t first, int count, bool rows, float margin,
-                                       int32_t number, vf item[FIELDS]) {
+INLINE struct filter load_pairs(const narc_batch *batch, const struct pair_indices *in, int k, int count, bool rows, float margin,
+                                int32_t number, vf item[FIELDS]) {
     const float shrink = 1.0f - 0x1p-16f, grow = 1.0f + 0x1p-16f; /* of a square: 2^-17 of the distance */
     const narc_column scale = batch->bodies->scale;
-    struct pair_indices in;
-    load_indices(batch, first, count, &in);
-    const struct poses p = load_poses(batch->bodies, rows, in.a, in.b);
-    const struct heads a = load_heads(batch->shapes->heads, in.shape_a);
-    const struct heads b = load_heads(batch->shapes->heads, in.shape_b);
-    const vf scale_a = scale.base ? column_lanes(scale, in.a) : v_set(1);
-    const vf scale_b = scale.base ? column_lanes(scale, in.b) : v_set(1);
+    const struct poses p = load_poses(batch->bodies, rows, in->a + k, in->b + k);
+    const struct heads a = load_heads(batch->shapes->heads, in->shape_a + k);
+    const struct heads b = load_heads(batch->shapes->heads, in->shape_b + k);
+    const vf scale_a = scale.base ? column_lanes(scale, in->a + k) : v_set(1);
+    const vf scale_b = scale.base ? column_lanes(scale, in->b + k) : v_set(1);
     struct filter filter;
     vm valid_a, valid_b;
     const vf shrink_a = inverse_length(p.c_a, p.s_a, &valid_a), shrink_b = inverse_length(p.c_b, p.s_b, &valid_b);
@@ -210,7 +214,7 @@ INLINE struct filter load_pairs(const narc_batch *batch, size_t first, int count
     const vf size_a = v_mul(scale_a, a.bound_radius), size_b = v_mul(scale_b, b.bound_radius);
     const vm near = vm_and(within(p.d_x, (float)NARC_MAX_DISTANCE), within(p.d_y, (float)NARC_MAX_DISTANCE));
     const vm sizes = vm_and(size_in_range(size_a), size_in_range(size_b));
-    filter.valid = vm_and(vm_and(vm_first(count), near), vm_and(vm_and(valid_a, valid_b), sizes));
+    filter.valid = vm_and(vm_and(vm_first(count - k), near), vm_and(vm_and(valid_a, valid_b), sizes));
 
     const vf t_x = v_add(v_mul(c_a, p.d_x), v_mul(s_a, p.d_y)), t_y = v_sub(v_mul(c_a, p.d_y), v_mul(s_a, p.d_x));
     const vf q_c = v_add(v_mul(c_a, c_b), v_mul(s_a, s_b)), q_s = v_sub(v_mul(c_a, s_b), v_mul(s_a, c_b));
@@ -245,6 +249,6 @@ INLINE struct filter load_pairs(const narc_batch *batch, size_t first, int count
     item[BLOCK_B] = v_of_bits(b.block);
     item[BYTES_A] = v_of_bits(a.bytes);
     item[BYTES_B] = v_of_bits(b.bytes);
-    item[PAIR] = v_of_bits(vi_add(vi_lanes(), vi_set(number)));
+    item[PAIR] = v_of_bits(vi_add(vi_lanes(), vi_set(number + k)));
     return filter;
 }

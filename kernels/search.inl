@@ -4,7 +4,7 @@
  */
 
 /* How many junctions of its shape come before a direction, in each lane. */
-static inline vi count_before(const narc_shapes *shapes, vi block, vi count, vf x, vf y) {
+INLINE vi count_before(const narc_shapes *shapes, vi block, vi count, vf x, vf y) {
     const vi turn = vi_truncate(v_sub(v_mul(turn_of(x, y), v_set(NARC_TURN_SCALE)), v_set(NARC_TURN_OFFSET)));
     vi twice = vi_add(vi_and(turn, vi_set(0xffff)), vi_shift_left(turn, 16)), before = vi_set(0);
     int32_t record[V_WIDTH];
@@ -29,19 +29,19 @@ static inline vi count_before(const narc_shapes *shapes, vi block, vi count, vf 
 }
 
 /* The record of the arc that holds a direction, in each lane. */
-static inline vi find_records(const narc_shapes *shapes, vi block, vi bytes, vf x, vf y) {
+INLINE vi find_records(const narc_shapes *shapes, vi block, vi bytes, vf x, vf y) {
     const vi count = head_count(bytes);
     return vi_add(first_record(block, bytes), count_before(shapes, block, count, x, y));
 }
 
-static inline void load_circles(const narc_record *records, vi index, vf out[4]) {
+INLINE void load_circles(const narc_record *records, vi index, vf out[4]) {
     int32_t record[V_WIDTH];
     vi_store(record, index);
     v_rows(records, sizeof *records, record, out);
 }
 
 /* Sets the bits of the pairs k ... of a queue that `hits` says. */
-static inline void mark(vi pairs, vm hits, uint64_t *out_bits) {
+INLINE void mark(vi pairs, vm hits, uint64_t *out_bits) {
     int32_t pair[V_WIDTH];
     vi_store(pair, pairs);
     for (uint32_t bits = vm_bits(hits); bits; bits &= bits - 1) {
@@ -51,7 +51,7 @@ static inline void mark(vi pairs, vm hits, uint64_t *out_bits) {
 }
 
 /* The records of the arcs that hold a direction (fields `x` and x + 1), for the pairs first ... of a queue. */
-static inline void look_up(const narc_shapes *shapes, struct queue *q, int first, int x) {
+INLINE void look_up(const narc_shapes *shapes, struct queue *q, int first, int x) {
     for (int k = first; k < q->count; k += V_WIDTH) {
         const vf q_c = get(q, Q_C, k), q_s = get(q, Q_S, k), n_x = get(q, x, k), n_y = get(q, x + 1, k);
         const vi record_a = find_records(shapes, get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k), n_x, n_y);
@@ -66,7 +66,7 @@ static inline void look_up(const narc_shapes *shapes, struct queue *q, int first
 struct verdict { vm apart, hit; vf u_x, u_y; };
 
 /* One look along a direction (any length) */
-static inline struct verdict glance(const narc_shapes *shapes, const struct queue *q, int k, int x, float margin, bool contact) {
+INLINE struct verdict glance(const narc_shapes *shapes, const struct queue *q, int k, int x, float margin, bool contact) {
     const struct pose p = get_pose(q, k);
     const vf scale_a = get(q, SCALE_A, k), n_x = get(q, x, k), n_y = get(q, x + 1, k);
     vf a[4], b[4];
@@ -95,7 +95,7 @@ static inline struct verdict glance(const narc_shapes *shapes, const struct queu
     return v;
 }
 
-static inline void get_item(const struct queue *q, int k, vf item[FIELDS]) {
+INLINE void get_item(const struct queue *q, int k, vf item[FIELDS]) {
     UNROLL
     for (int f = 0; f < FIELDS; f++)
         item[f] = get(q, f, k);
@@ -122,29 +122,29 @@ struct peak {
     vi record_a, record_b;    /* of the arcs after it */
 };
 
-static inline struct arcs select_arcs(vm m, const struct arcs *a, const struct arcs *b) {
+INLINE struct arcs select_arcs(vm m, const struct arcs *a, const struct arcs *b) {
     return (struct arcs){v_select(m, a->x, b->x),
                          v_select(m, a->y, b->y),
                          v_select(m, a->radius, b->radius),
-                         v_select(m, a->roll, b->roll),
+                         v_select(m, a->inner, b->inner),
                          v_select(m, a->start_x, b->start_x),
                          v_select(m, a->start_y, b->start_y),
                          v_select(m, a->end_x, b->end_x),
                          v_select(m, a->end_y, b->end_y)};
 }
 
-static inline struct couple select_couple(vm m, const struct couple *a, const struct couple *b) {
+INLINE struct couple select_couple(vm m, const struct couple *a, const struct couple *b) {
     return (struct couple){select_arcs(m, &a->a, &b->a), select_arcs(m, &a->b, &b->b)};
 }
 
 /* The number of a record after a step of -1, 0 or 1 along the ring of its shape's arcs. */
-static inline vi step_record(vi record, vi step, vi first, vi count) {
+INLINE vi step_record(vi record, vi step, vi first, vi count) {
     const vi last = vi_add(first, count), next = vi_add(record, step);
     const vi low = vi_select(vi_lt(first, next), next, last);
     return vi_select(vi_lt(last, low), vi_add(first, vi_set(1)), low);
 }
 
-static inline struct peak climb(const narc_shapes *shapes, const struct queue *q, int k, vm live, int steps) {
+INLINE struct peak climb(const narc_shapes *shapes, const struct queue *q, int k, vm live, int steps) {
     const vf zero = v_set(0), tiny = v_set(0x1p-126f), scale_a = get(q, SCALE_A, k);
     const struct pose pose = get_pose(q, k);
     const vi bytes_a = get_bits(q, BYTES_A, k), bytes_b = get_bits(q, BYTES_B, k);
@@ -207,7 +207,7 @@ static inline struct peak climb(const narc_shapes *shapes, const struct queue *q
 }
 
 /* The sine of the angle from a direction to the end of an arc, both unit; above a right angle 1. */
-static inline vf sine_to(vf n_x, vf n_y, vf end_x, vf end_y, vm is_circle) {
+INLINE vf sine_to(vf n_x, vf n_y, vf end_x, vf end_y, vm is_circle) {
     const vf sine = cross(n_x, n_y, end_x, end_y);
     const vm far = vm_or(is_circle, vm_and(v_le(v_set(0), sine), v_lt(dot(n_x, n_y, end_x, end_y), v_set(0))));
     return v_select(far, v_set(1), sine);

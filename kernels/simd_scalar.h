@@ -14,56 +14,56 @@ typedef int32_t vi;
 typedef int vm;
 typedef int vp;
 
-static inline vf v_set(float a) { return a; }
-static inline vf v_load(const float *p) { return *p; }
-static inline void v_store(float *p, vf a) { *p = a; }
-static inline vf v_gather(const float *base, vi index) { return base[index]; }
-static inline void v_rows(const void *base, size_t stride, const int32_t *index, vf out[4]) {
+INLINE vf v_set(float a) { return a; }
+INLINE vf v_load(const float *p) { return *p; }
+INLINE void v_store(float *p, vf a) { *p = a; }
+INLINE vf v_gather(const float *base, vi index) { return base[index]; }
+INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out[4]) {
     memcpy(out, (const char *)base + (size_t)(uint32_t)*index * stride, 4 * sizeof(float));
 }
-static inline void v_put_rows(void *base, size_t stride, const int32_t *index, const vf in[4]) {
+INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf in[4]) {
     memcpy((char *)base + (size_t)(uint32_t)*index * stride, in, 4 * sizeof(float));
 }
-static inline vf v_add(vf a, vf b) { return a + b; }
-static inline vf v_sub(vf a, vf b) { return a - b; }
-static inline vf v_mul(vf a, vf b) { return a * b; }
-static inline vf v_div(vf a, vf b) { return a / b; }
-static inline vf v_sqrt(vf a) { return sqrtf(a); }
-static inline vf v_abs(vf a) { return fabsf(a); }
-static inline vf v_neg(vf a) { return -a; }
-static inline vf v_min(vf a, vf b) { return a < b ? a : b; }
-static inline vf v_max(vf a, vf b) { return a > b ? a : b; }
-static inline vm v_lt(vf a, vf b) { return a < b; }
-static inline vm v_le(vf a, vf b) { return a <= b; }
-static inline vf v_select(vm m, vf a, vf b) { return m ? a : b; }
-static inline vf v_pack(vp p, vf a) {
+INLINE vf v_add(vf a, vf b) { return a + b; }
+INLINE vf v_sub(vf a, vf b) { return a - b; }
+INLINE vf v_mul(vf a, vf b) { return a * b; }
+INLINE vf v_div(vf a, vf b) { return a / b; }
+INLINE vf v_sqrt(vf a) { return sqrtf(a); }
+INLINE vf v_abs(vf a) { return fabsf(a); }
+INLINE vf v_neg(vf a) { return -a; }
+INLINE vf v_min(vf a, vf b) { return a < b ? a : b; }
+INLINE vf v_max(vf a, vf b) { return a > b ? a : b; }
+INLINE vm v_lt(vf a, vf b) { return a < b; }
+INLINE vm v_le(vf a, vf b) { return a <= b; }
+INLINE vf v_select(vm m, vf a, vf b) { return m ? a : b; }
+INLINE vf v_pack(vp p, vf a) {
     (void)p;
     return a;
 }
-static inline vi vi_set(int32_t a) { return a; }
-static inline vi vi_load(const int32_t *p) { return *p; }
-static inline void vi_store(int32_t *p, vi a) { *p = a; }
-static inline vi vi_gather(const int32_t *base, vi index) { return base[index]; }
-static inline vi vi_add(vi a, vi b) { return (int32_t)((uint32_t)a + (uint32_t)b); }
-static inline vi vi_sub(vi a, vi b) { return (int32_t)((uint32_t)a - (uint32_t)b); }
-static inline vm vi_lt(vi a, vi b) { return a < b; }
-static inline vi vi_select(vm m, vi a, vi b) { return m ? a : b; }
-static inline vi vi_and(vi a, vi b) { return a & b; }
-static inline vi vi_shift_left(vi a, int n) { return (int32_t)((uint32_t)a << n); }
-static inline vi vi_shift_right(vi a, int n) { return (int32_t)((uint32_t)a >> n); }
-static inline vi vi_bits(vf a) {
+INLINE vi vi_set(int32_t a) { return a; }
+INLINE vi vi_load(const int32_t *p) { return *p; }
+INLINE void vi_store(int32_t *p, vi a) { *p = a; }
+INLINE vi vi_gather(const int32_t *base, vi index) { return base[index]; }
+INLINE vi vi_add(vi a, vi b) { return (int32_t)((uint32_t)a + (uint32_t)b); }
+INLINE vi vi_sub(vi a, vi b) { return (int32_t)((uint32_t)a - (uint32_t)b); }
+INLINE vm vi_lt(vi a, vi b) { return a < b; }
+INLINE vi vi_select(vm m, vi a, vi b) { return m ? a : b; }
+INLINE vi vi_and(vi a, vi b) { return a & b; }
+INLINE vi vi_shift_left(vi a, int n) { return (int32_t)((uint32_t)a << n); }
+INLINE vi vi_shift_right(vi a, int n) { return (int32_t)((uint32_t)a >> n); }
+INLINE vi vi_bits(vf a) {
     int32_t bits;
     memcpy(&bits, &a, sizeof bits);
     return bits;
 }
-static inline vf v_of_bits(vi a) {
+INLINE vf v_of_bits(vi a) {
     float value;
     memcpy(&value, &a, sizeof value);
     return value;
 }
-static inline vf v_of_int(vi a) { return (float)a; }
-static inline vi vi_truncate(vf a) { return fabsf(a) < 0x1p31f ? (int32_t)a : INT32_MIN; }
-static inline vi vi_count16(vi counts, vi below, vi values) {
+INLINE vf v_of_int(vi a) { return (float)a; }
+INLINE vi vi_truncate(vf a) { return fabsf(a) < 0x1p31f ? (int32_t)a : INT32_MIN; }
+INLINE vi vi_count16(vi counts, vi below, vi values) {
     int16_t limit[2], value[2], count[2];
     memcpy(limit, &below, sizeof below);
     memcpy(value, &values, sizeof values);
@@ -73,11 +73,11 @@ static inline vi vi_count16(vi counts, vi below, vi values) {
     memcpy(&counts, count, sizeof counts);
     return counts;
 }
-static inline vi vi_lanes(void) { return 0; }
-static inline vm vm_and(vm a, vm b) { return a & b; }
-static inline vm vm_or(vm a, vm b) { return a | b; }
-static inline vm vm_and_not(vm a, vm b) { return a & !b; }
-static inline vm vm_first(int n) { return n > 0; }
-static inline vp vm_packing(vm a) { return a; }
-static inline uint32_t vm_bits(vm a) { return (uint32_t)a; }
-static inline int vm_any(vm a) { return a; }
+INLINE vi vi_lanes(void) { return 0; }
+INLINE vm vm_and(vm a, vm b) { return a & b; }
+INLINE vm vm_or(vm a, vm b) { return a | b; }
+INLINE vm vm_and_not(vm a, vm b) { return a & !b; }
+INLINE vm vm_first(int n) { return n > 0; }
+INLINE vp vm_packing(vm a) { return a; }
+INLINE uint32_t vm_bits(vm a) { return (uint32_t)a; }
+INLINE int vm_any(vm a) { return a; }

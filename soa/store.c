@@ -174,18 +174,51 @@ static float find_turn(float x, float y) {
     return 0 <= y ? 1 - p : 3 + p;
 }
 
-/* See narc_record. Arcs that begin just outside the window count, too, against rounding. */
-static float find_roll(const narc_outline *o, size_t arc) {
-    double roll = o->radius[arc];
+/* The smallest radius of the arcs around arc `arc`, see narc_record. Those that begin just outside the window count,
+ * too, against rounding. */
+static double find_least_radius(const narc_outline *o, size_t arc) {
+    double least = o->radius[arc];
     for (int side = 0; side < 2; side++) {
         double angle = 0;
-        for (size_t k = 1; k < o->count && angle <= NARC_ROLL_WINDOW + NARC_TOLERANCE; k++) {
+        for (size_t k = 1; k < o->count && angle <= NARC_INNER_WINDOW + NARC_TOLERANCE; k++) {
             size_t i = (side ? arc + k : arc + o->count - k) % o->count;
-            roll = fmin(roll, o->radius[i]);
+            least = fmin(least, o->radius[i]);
             angle += o->sweep[i];
         }
     }
-    return (float)roll;
+    return least;
+}
+
+/* The largest radius of a circle in the shape that touches its outline at the point p with the normal n, not more than
+ * `limit`. Such a circle of radius t reaches p.m + t (1 - n.m) in the direction m, so t is at most
+ * (h(m) - p.m) / (1 - n.m) for every m. With m in the sector of arc j, h(m) - p.m = r - w.m where w = p - its centre;
+ * the quotient is least at an end of the sector or where the circle touches that arc. */
+static double find_inner_radius(const narc_outline *o, narc_point p, double n_x, double n_y, double limit) {
+    double least = limit;
+    for (size_t j = 0; j < o->count; j++) {
+        double w_x = p.x - o->center_x[j], w_y = p.y - o->center_y[j], r = o->radius[j];
+        for (size_t end = j; end <= j + 1; end++) {
+            double m_x = o->normal_x[end], m_y = o->normal_y[end], width = 1 - (n_x * m_x + n_y * m_y);
+            if (width > NARC_TOLERANCE * NARC_TOLERANCE) /* else the arc touches p, and is one of the neighbours */
+                least = fmin(least, (r - (w_x * m_x + w_y * m_y)) / width);
+        }
+        double fall = r - (w_x * n_x + w_y * n_y);
+        if (fall > 0) {
+            double touching = (r * r - (w_x * w_x + w_y * w_y)) / (2 * fall);
+            if (narc_in_sector(o, j, w_x - touching * n_x, w_y - touching * n_y))
+                least = fmin(least, touching);
+        }
+    }
+    return fmax(0, least);
+}
+
+/* Of all circles that touch an arc from inside, those at its ends are the first to leave the shape: by how much the
+ * arc's circle exceeds the shape in a direction m does not depend on the point, and it counts most from the nearest. */
+static float find_arc_inner(const narc_outline *o, size_t arc) {
+    double inner = find_least_radius(o, arc);
+    inner = find_inner_radius(o, narc_find_start(o, arc), o->normal_x[arc], o->normal_y[arc], inner);
+    inner = find_inner_radius(o, narc_find_end(o, arc), o->normal_x[arc + 1], o->normal_y[arc + 1], inner);
+    return (float)(inner * (1 - 1e-6)); /* clear of the rounding of what is stored */
 }
 
 static void write_block(const narc_outline *o, narc_head *head, narc_record *block) {
@@ -209,7 +242,7 @@ static void write_block(const narc_outline *o, narc_head *head, narc_record *blo
         block[k] = (narc_record){.center_x = (float)(o->center_x[i] + o->origin_x),
                                  .center_y = (float)(o->center_y[i] + o->origin_y),
                                  .radius = (float)o->radius[i],
-                                 .roll = find_roll(o, i),
+                                 .inner = find_arc_inner(o, i),
                                  .start_x = (float)o->normal_x[i],
                                  .start_y = (float)o->normal_y[i],
                                  .end_x = (float)o->normal_x[i + 1],

@@ -43,14 +43,13 @@ typedef struct narc_head {
     float inner_x, inner_y, inner_radius;
 } narc_head;
 
-/* 60 degrees. */
-#define NARC_ROLL_WINDOW 1.0471975511965976
+/* An arc: its circle, and the unit outward normals where it starts and ends, counter-clockwise. A circle of radius
+ * `inner` that touches the arc from inside, anywhere on it, lies in the shape; and no arc with a direction within
+ * NARC_INNER_WINDOW of one of this arc's has a smaller radius. */
+#define NARC_INNER_WINDOW 0.1
 
-/* An arc: its circle, and the unit outward normals where it starts and ends, counter-clockwise. `roll` is the smallest
- * radius of all arcs that hold a direction within NARC_ROLL_WINDOW of one of this arc's: a circle of that radius can
- * roll along the inside of the outline there. */
 typedef struct narc_record {
-    float center_x, center_y, radius, roll;
+    float center_x, center_y, radius, inner;
     float start_x, start_y, end_x, end_y;
 } narc_record;
 
