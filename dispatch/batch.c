@@ -134,26 +134,46 @@ size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *bat
     return total;
 }
 
-/* The largest index of items first .. last - 1 of a column. */
+static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
+
+/* The largest index of items first .. last - 1 of a column. Four at a time, because one comparison would wait for the
+ * other; a plain array in a loop that compilers turn into vectors. */
 static uint32_t find_largest(narc_column column, size_t first, size_t last) {
-    uint32_t even = 0, odd = 0; /* two chains of comparisons, because one would wait for each */
+    uint32_t largest[4] = {0};
     size_t k = first;
-    for (; k + 2 <= last; k += 2) {
-        const uint32_t one = narc_index_at(column, k), two = narc_index_at(column, k + 1);
-        even = one > even ? one : even;
-        odd = two > odd ? two : odd;
+    if (column.stride == sizeof(uint32_t)) {
+        const uint32_t *index = column.base;
+        for (; k < last; k++)
+            largest[0] = larger(largest[0], index[k]);
     }
-    if (k < last && narc_index_at(column, k) > even)
-        even = narc_index_at(column, k);
-    return even > odd ? even : odd;
+    for (; k + 4 <= last; k += 4) {
+        const char *item = narc_at(column, k);
+        largest[0] = larger(largest[0], *(const uint32_t *)(const void *)item);
+        largest[1] = larger(largest[1], *(const uint32_t *)(const void *)(item + column.stride));
+        largest[2] = larger(largest[2], *(const uint32_t *)(const void *)(item + 2 * column.stride));
+        largest[3] = larger(largest[3], *(const uint32_t *)(const void *)(item + 3 * column.stride));
+    }
+    for (; k < last; k++)
+        largest[0] = larger(largest[0], narc_index_at(column, k));
+    return larger(larger(largest[0], largest[1]), larger(largest[2], largest[3]));
 }
 
 /* Is it certain that no pair of the sub-range is bad? Reads columns from front to back, so it is much faster than
  * looking at every pair's bodies; it pays if there are not many more bodies than pairs. */
 static bool all_in_range(const narc_batch *batch, size_t first, size_t count) {
     const narc_bodies *bodies = batch->bodies;
-    return bodies->count / 4 <= count && find_largest(batch->pairs->a, first, first + count) < bodies->count &&
-           find_largest(batch->pairs->b, first, first + count) < bodies->count &&
+    narc_column a = batch->pairs->a, b = batch->pairs->b;
+    size_t last = first + count;
+    if (bodies->count / 4 > count)
+        return false;
+    if (a.stride == 2 * sizeof(uint32_t) && b.stride == a.stride && (const char *)b.base == (const char *)a.base + 4) {
+        a.stride = sizeof(uint32_t); /* both columns are one */
+        first *= 2;
+        last *= 2;
+        b = a;
+    }
+    return find_largest(a, first, last) < bodies->count &&
+           (b.stride == sizeof(uint32_t) && b.base == a.base ? true : find_largest(b, first, last) < bodies->count) &&
            find_largest(bodies->shape, 0, bodies->count) < batch->shapes->count;
 }
 

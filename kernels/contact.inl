@@ -128,12 +128,6 @@ static void decide_contacts(const narc_shapes *shapes, struct queue *rest, int c
     }
 }
 
-/* The place in its block of the arc in a record: the copy of the last arc counts as the last. */
-INLINE vi arc_of(vi record, vi block, vi bytes) {
-    const vi place = vi_sub(vi_sub(record, first_record(block, bytes)), vi_set(1));
-    return vi_select(vi_lt(place, vi_set(0)), vi_sub(head_count(bytes), vi_set(1)), place);
-}
-
 /* Where a shape touches, from the arcs after and before the normal. */
 INLINE struct touch touch_at(const struct arcs *after, const struct arcs *before, vf n_x, vf n_y, float sign, vi arc) {
     const vf reach = v_mul(v_set(sign), after->radius), old_reach = v_mul(v_set(sign), before->radius);
@@ -205,8 +199,8 @@ static void settle_contacts(const narc_shapes *shapes, struct queue *q, int firs
 
         const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
         if (vm_any(keep)) {
-            const vi arc_a = arc_of(peak.record_a, get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k));
-            const vi arc_b = arc_of(peak.record_b, get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k));
+            const vi arc_a = vi_sub(peak.record_a, first_record(get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k)));
+            const vi arc_b = vi_sub(peak.record_b, first_record(get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k)));
             const struct touch on_a = touch_at(&peak.after.a, &peak.before.a, n_x, n_y, 1, arc_a);
             const struct touch on_b = touch_at(&peak.after.b, &peak.before.b, n_x, n_y, -1, arc_b);
             file_contacts(q, k, keep, separation, n_x, n_y, &on_a, &on_b, out);
@@ -257,7 +251,7 @@ INLINE void look(const narc_shapes *shapes, struct queue *q, int first, int x, f
         const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
         if (vm_any(keep)) {
             const vf n_x = v_div(u_x, length), n_y = v_div(u_y, length);
-            const vi arc_a = arc_of(record_a, get_bits(q, BLOCK_A, k), bytes_a), arc_b = arc_of(record_b, get_bits(q, BLOCK_B, k), bytes_b);
+            const vi arc_a = vi_sub(record_a, first_record(get_bits(q, BLOCK_A, k), bytes_a)), arc_b = vi_sub(record_b, first_record(get_bits(q, BLOCK_B, k), bytes_b));
             const struct touch on_a = touch_at(&a, &a, n_x, n_y, 1, arc_a);
             const struct touch on_b = touch_at(&b, &b, n_x, n_y, -1, arc_b);
             file_contacts(q, k, keep, separation, n_x, n_y, &on_a, &on_b, out);

@@ -100,7 +100,7 @@ INLINE struct arcs load_arcs_a(const narc_record *records, vi index, vf scale) {
     vf row[8];
     vi_store(record, index);
     v_rows(records, sizeof *records, record, row);
-    v_rows(&records->start_x, sizeof *records, record, row + 4);
+    v_rows(&records->arc.start_x, sizeof *records, record, row + 4);
     return (struct arcs){v_mul(row[0], scale), v_mul(row[1], scale), v_mul(row[2], scale), v_mul(row[3], scale), row[4],
                          row[5],               row[6],               row[7]};
 }
@@ -119,7 +119,7 @@ INLINE struct arcs load_arcs_b(const narc_record *records, vi index, const struc
     vf row[8];
     vi_store(record, index);
     v_rows(records, sizeof *records, record, row);
-    v_rows(&records->start_x, sizeof *records, record, row + 4);
+    v_rows(&records->arc.start_x, sizeof *records, record, row + 4);
     const vf x = v_sub(v_mul(p->q_c, row[0]), v_mul(p->q_s, row[1]));
     const vf y = v_add(v_mul(p->q_s, row[0]), v_mul(p->q_c, row[1]));
     return (struct arcs){v_add(p->t_x, v_mul(x, p->scale)),
@@ -252,8 +252,8 @@ static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, s
 static void place_pairs(struct overlay *o, const narc_shapes *shapes, const struct queue *q, int k,
                                struct cursor *out_a, struct cursor *out_b, vi *out_steps) {
     const vi count_a = head_count(get_bits(q, BYTES_A, k)), count_b = head_count(get_bits(q, BYTES_B, k));
-    const vi record_a = vi_add(first_record(get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k)), vi_set(1));
-    const vi record_b = vi_add(first_record(get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k)), vi_set(1));
+    const vi record_a = first_record(get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k));
+    const vi record_b = first_record(get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k));
     const vf scale_a = get(q, SCALE_A, k);
     const struct pose pose = get_pose(q, k);
     const int most_a = max_lane(count_a), most_b = max_lane(count_b);

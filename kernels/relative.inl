@@ -34,7 +34,7 @@ enum {
     AXIS_X, AXIS_Y, /* from the centre of A's inscribed circle to that of B's */
     CORE,           /* the sum of both inscribed radii */
     SLACK,          /* see slack_of() */
-    BLOCK_A, BLOCK_B, /* store.h: heads' first two words */
+    BLOCK_A, BLOCK_B, /* the first two words of the shapes' heads (store.h) */
     BYTES_A, BYTES_B,
     PAIR, /* counted from the first of the call */
     COSINE_A, SINE_A,
@@ -117,7 +117,7 @@ INLINE struct poses load_poses(const narc_bodies *bodies, bool rows, const int32
                           column_lanes(bodies->sine, b)};
 }
 
-/* The heads of a shape in each lane, but for the turns. */
+/* The head of a shape in each lane. */
 struct heads {
     vi block, bytes;
     vf bound_x, bound_y, bound_radius, inner_x, inner_y, inner_radius;
@@ -132,7 +132,7 @@ INLINE struct heads load_heads(const narc_head *heads, const int32_t *shape) {
 
 INLINE vi head_count(vi bytes) { return vi_and(bytes, vi_set(0xff)); }
 
-/* The record in front of the first arc, see store.h. */
+/* The record of the first arc, see store.h. */
 INLINE vi first_record(vi block, vi bytes) {
     return vi_add(block, vi_shift_right(vi_add(head_count(bytes), vi_set(NARC_TURNS - 1)), 4));
 }
@@ -150,11 +150,10 @@ INLINE void load_indices(const narc_batch *batch, size_t first, int count, struc
     const narc_column column_a = batch->pairs->a, column_b = batch->pairs->b, shape = batch->bodies->shape;
     for (int k = 0; k < count; k++) {
         const uint32_t a = narc_index_at(column_a, first + (size_t)k), b = narc_index_at(column_b, first + (size_t)k);
-        const uint32_t shape_a = narc_index_at(shape, a), shape_b = narc_index_at(shape, b);
         out->a[k] = (int32_t)a;
         out->b[k] = (int32_t)b;
-        out->shape_a[k] = (int32_t)shape_a;
-        out->shape_b[k] = (int32_t)shape_b;
+        out->shape_a[k] = (int32_t)narc_index_at(shape, a);
+        out->shape_b[k] = (int32_t)narc_index_at(shape, b);
     }
     for (int k = count; k % V_WIDTH != 0; k++) {
         out->a[k] = out->a[0];

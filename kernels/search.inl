@@ -11,11 +11,11 @@ INLINE vi count_before(const narc_shapes *shapes, vi block, vi count, vf x, vf y
     vf row[4];
     for (int done = 0;; done += NARC_TURNS) {
         vi_store(record, block);
-        v_rows(shapes->records, sizeof(narc_record), record, row);
+        v_rows(shapes->records->turns, sizeof(narc_record), record, row);
         for (int k = 0; k < 4; k++)
             before = vi_count16(before, twice, vi_bits(row[k]));
         if (vm_any(vi_lt(vi_set(done + 8), count))) {
-            v_rows(&shapes->records->start_x, sizeof(narc_record), record, row);
+            v_rows(&shapes->records->turns[8], sizeof(narc_record), record, row);
             for (int k = 0; k < 4; k++)
                 before = vi_count16(before, twice, vi_bits(row[k]));
         }
@@ -30,8 +30,9 @@ INLINE vi count_before(const narc_shapes *shapes, vi block, vi count, vf x, vf y
 
 /* The record of the arc that holds a direction, in each lane. */
 INLINE vi find_records(const narc_shapes *shapes, vi block, vi bytes, vf x, vf y) {
-    const vi count = head_count(bytes);
-    return vi_add(first_record(block, bytes), count_before(shapes, block, count, x, y));
+    const vi count = head_count(bytes), before = count_before(shapes, block, count, x, y);
+    const vi place = vi_sub(vi_select(vi_lt(vi_set(0), before), before, count), vi_set(1));
+    return vi_add(first_record(block, bytes), place);
 }
 
 INLINE void load_circles(const narc_record *records, vi index, vf out[4]) {
@@ -139,9 +140,9 @@ INLINE struct couple select_couple(vm m, const struct couple *a, const struct co
 
 /* The number of a record after a step of -1, 0 or 1 along the ring of its shape's arcs. */
 INLINE vi step_record(vi record, vi step, vi first, vi count) {
-    const vi last = vi_add(first, count), next = vi_add(record, step);
-    const vi low = vi_select(vi_lt(first, next), next, last);
-    return vi_select(vi_lt(last, low), vi_add(first, vi_set(1)), low);
+    const vi end = vi_add(first, count), next = vi_add(record, step);
+    const vi low = vi_select(vi_lt(next, first), vi_sub(end, vi_set(1)), next);
+    return vi_select(vi_lt(low, end), low, first);
 }
 
 INLINE struct peak climb(const narc_shapes *shapes, const struct queue *q, int k, vm live, int steps) {
@@ -151,8 +152,8 @@ INLINE struct peak climb(const narc_shapes *shapes, const struct queue *q, int k
     const vi first_a = first_record(get_bits(q, BLOCK_A, k), bytes_a), count_a = head_count(bytes_a);
     const vi first_b = first_record(get_bits(q, BLOCK_B, k), bytes_b), count_b = head_count(bytes_b);
     const vm none = vm_first(0);
-    vi record_a = step_record(get_bits(q, RECORD_A, k), vi_set(0), first_a, count_a);
-    vi record_b = step_record(get_bits(q, RECORD_B, k), vi_set(0), first_b, count_b);
+    vi record_a = get_bits(q, RECORD_A, k);
+    vi record_b = get_bits(q, RECORD_B, k);
     vi old_a = record_a, old_b = record_b;
     vm was_up = none, was_down = none, moved_a = none, open = live;
     struct couple last;

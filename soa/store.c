@@ -64,9 +64,12 @@ static size_t choose_capacity(size_t capacity, size_t needed, size_t smallest, s
     return chosen < needed ? needed : chosen;
 }
 
-/* Moves `used` bytes at `*array` to a new place of `capacity` bytes that begins at a cache line. */
-static bool grow(const narc_shapes *shapes, void **memory, void *array, size_t used, size_t capacity, void **out_array) {
-    char *grown = shapes->allocator.allocate(capacity + NARC_CACHE_LINE, shapes->allocator.context);
+/* Moves `used` bytes at `array` to a new place for `count` items, in memory of its own that begins at a cache line. */
+static bool grow(const narc_shapes *shapes, void **memory, const void *array, size_t used, size_t count, size_t item,
+                 void **out_array) {
+    if (count > (SIZE_MAX - NARC_CACHE_LINE) / item)
+        return false;
+    char *grown = shapes->allocator.allocate(count * item + NARC_CACHE_LINE, shapes->allocator.context);
     if (!grown)
         return false;
     *out_array = grown + (NARC_CACHE_LINE - (uintptr_t)grown % NARC_CACHE_LINE);
@@ -79,9 +82,8 @@ static bool grow(const narc_shapes *shapes, void **memory, void *array, size_t u
 
 static bool grow_heads(narc_shapes *shapes, size_t capacity) {
     void *heads = NULL;
-    if (capacity > (SIZE_MAX - NARC_CACHE_LINE) / sizeof(narc_head) ||
-        !grow(shapes, &shapes->heads_memory, shapes->heads, shapes->count * sizeof(narc_head),
-              capacity * sizeof(narc_head), &heads))
+    if (!grow(shapes, &shapes->heads_memory, shapes->heads, shapes->count * sizeof(narc_head), capacity,
+              sizeof(narc_head), &heads))
         return false;
     shapes->heads = heads;
     shapes->capacity = capacity;
@@ -90,20 +92,19 @@ static bool grow_heads(narc_shapes *shapes, size_t capacity) {
 
 static bool grow_records(narc_shapes *shapes, size_t capacity) {
     void *records = NULL;
-    if (capacity > (SIZE_MAX - NARC_CACHE_LINE) / sizeof(narc_record) ||
-        !grow(shapes, &shapes->records_memory, shapes->records, shapes->record_count * sizeof(narc_record),
-              capacity * sizeof(narc_record), &records))
+    if (!grow(shapes, &shapes->records_memory, shapes->records, shapes->record_count * sizeof(narc_record), capacity,
+              sizeof(narc_record), &records))
         return false;
     shapes->records = records;
     shapes->record_capacity = capacity;
     return true;
 }
 
-/* Room for so many heads and records in all. If the second allocation fails the first stays, unseen and unused. */
-static narc_status make_room(narc_shapes *shapes, size_t heads, size_t records) {
-    if (heads > NARC_MAX_SHAPES || records > MAX_RECORDS)
+/* Room for so many shapes and records in all. If the second allocation fails the first stays, unseen and unused. */
+static narc_status make_room(narc_shapes *shapes, size_t count, size_t records) {
+    if (count > NARC_MAX_SHAPES || records > MAX_RECORDS)
         return NARC_ERROR_COUNT;
-    if (heads > shapes->capacity && !grow_heads(shapes, choose_capacity(shapes->capacity, heads, 16, NARC_MAX_SHAPES)))
+    if (count > shapes->capacity && !grow_heads(shapes, choose_capacity(shapes->capacity, count, 16, NARC_MAX_SHAPES)))
         return NARC_ERROR_MEMORY;
     if (records > shapes->record_capacity &&
         !grow_records(shapes, choose_capacity(shapes->record_capacity, records, 64, MAX_RECORDS)))
@@ -111,16 +112,17 @@ static narc_status make_room(narc_shapes *shapes, size_t heads, size_t records) 
     return NARC_OK;
 }
 
-static size_t find_block_size(size_t count) { return narc_turn_records(count) + 1 + count; }
+static size_t find_block_size(size_t count) { return narc_first_arc(count) + count; }
 
 narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t arc_count) {
     if (!shapes)
         return NARC_ERROR_ARGUMENT;
     if (shape_count > NARC_MAX_SHAPES || arc_count > MAX_RECORDS)
         return NARC_ERROR_COUNT;
-    /* A record for each arc and one for 16 arcs' turns; for each shape one more of both, and a circle's second half. */
+    /* A record for each arc and one for 16 arcs' turns; for each shape turns that do not fill their record, and a circle's
+     * second half. */
     return make_room(shapes, shapes->count + shape_count,
-                     shapes->record_count + arc_count + arc_count / NARC_TURNS + 3 * shape_count);
+                     shapes->record_count + arc_count + arc_count / NARC_TURNS + 2 * shape_count);
 }
 
 /* ------------------------------------------------------------------------------------------------ adding */
@@ -222,31 +224,29 @@ static float find_arc_inner(const narc_outline *o, size_t arc) {
 }
 
 static void write_block(const narc_outline *o, narc_head *head, narc_record *block) {
-    size_t count = o->count, first = 0;
+    size_t count = o->count, first = 0, first_arc = narc_first_arc(count);
     float turns[NARC_MAX_ARCS];
     for (size_t i = 0; i < count; i++) {
         turns[i] = find_turn((float)o->normal_x[i], (float)o->normal_y[i]);
         first = turns[i] < turns[first] ? i : first;
     }
     head->first = (uint8_t)first;
-    narc_turns *list = (narc_turns *)(void *)block;
-    for (size_t k = 0; k < NARC_TURNS * narc_turn_records(count); k++) {
+    for (size_t k = 0; k < NARC_TURNS * first_arc; k++) {
         int16_t turn = NARC_TURN_NONE;
         if (k < count)
             turn = (int16_t)(turns[(first + k) % count] * NARC_TURN_SCALE - NARC_TURN_OFFSET);
-        list[k / NARC_TURNS].turn[k % NARC_TURNS] = turn;
+        block[k / NARC_TURNS].turns[k % NARC_TURNS] = turn;
     }
-    block += narc_turn_records(count);
-    for (size_t k = 0; k <= count; k++) {
-        size_t i = (first + k + count - 1) % count;
-        block[k] = (narc_record){.center_x = (float)(o->center_x[i] + o->origin_x),
-                                 .center_y = (float)(o->center_y[i] + o->origin_y),
-                                 .radius = (float)o->radius[i],
-                                 .inner = find_arc_inner(o, i),
-                                 .start_x = (float)o->normal_x[i],
-                                 .start_y = (float)o->normal_y[i],
-                                 .end_x = (float)o->normal_x[i + 1],
-                                 .end_y = (float)o->normal_y[i + 1]};
+    for (size_t k = 0; k < count; k++) {
+        size_t i = (first + k) % count;
+        block[first_arc + k].arc = (narc_stored_arc){.center_x = (float)(o->center_x[i] + o->origin_x),
+                                                     .center_y = (float)(o->center_y[i] + o->origin_y),
+                                                     .radius = (float)o->radius[i],
+                                                     .inner = find_arc_inner(o, i),
+                                                     .start_x = (float)o->normal_x[i],
+                                                     .start_y = (float)o->normal_y[i],
+                                                     .end_x = (float)o->normal_x[i + 1],
+                                                     .end_y = (float)o->normal_y[i + 1]};
     }
 }
 
@@ -295,9 +295,10 @@ size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_ar
     if (shape >= narc_count_shapes(shapes))
         return 0;
     narc_head head = shapes->heads[shape];
+    const narc_record *arcs = narc_arcs_of(shapes, &head);
     size_t count = head.flags & NARC_SHAPE_CIRCLE ? 1 : head.count;
     for (size_t i = 0; out_arcs && i < count; i++) {
-        const narc_record *r = &shapes->records[head.block + narc_turn_records(head.count) + 1 + (i + head.count - head.first) % head.count];
+        const narc_stored_arc *r = &arcs[(i + head.count - head.first) % head.count].arc;
         double start = atan2((double)r->start_y, (double)r->start_x), end = atan2((double)r->end_y, (double)r->end_x);
         if (count == 1)
             end = start;
@@ -313,9 +314,9 @@ size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_ar
 static double find_stored_height(const narc_record *arcs, size_t count, double x, double y) {
     double best = -INFINITY;
     for (size_t i = 0; i < count; i++) {
-        double ax = (double)arcs[i].start_x, ay = (double)arcs[i].start_y;
-        double bx = (double)arcs[i].end_x, by = (double)arcs[i].end_y;
-        double center = (double)arcs[i].center_x * x + (double)arcs[i].center_y * y, radius = (double)arcs[i].radius;
+        double ax = (double)arcs[i].arc.start_x, ay = (double)arcs[i].arc.start_y;
+        double bx = (double)arcs[i].arc.end_x, by = (double)arcs[i].arc.end_y;
+        double center = (double)arcs[i].arc.center_x * x + (double)arcs[i].arc.center_y * y, radius = (double)arcs[i].arc.radius;
         if (ax * y - ay * x >= 0 && x * by - y * bx >= 0)
             best = fmax(best, center + radius * sqrt(x * x + y * y));
         else
@@ -328,15 +329,14 @@ bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, floa
                    narc_aabb *out_aabb) {
     if (!out_aabb || shape >= narc_count_shapes(shapes))
         return false;
-    narc_head head = shapes->heads[shape];
-    const narc_record *arcs = &shapes->records[head.block + narc_turn_records(head.count) + 1];
-    size_t count = head.count;
+    const narc_record *arcs = narc_arcs_of(shapes, &shapes->heads[shape]);
+    size_t count = shapes->heads[shape].count;
     double length = hypot((double)cosine, (double)sine), c = (double)cosine / length, s = (double)sine / length;
     double extent = 0;
     if (!(length > 0) || !isfinite(length))
         return false;
     for (size_t i = 0; i < count; i++)
-        extent = fmax(extent, fabs((double)arcs[i].center_x) + fabs((double)arcs[i].center_y) + (double)arcs[i].radius);
+        extent = fmax(extent, fabs((double)arcs[i].arc.center_x) + fabs((double)arcs[i].arc.center_y) + (double)arcs[i].arc.radius);
     /* The world's x axis is (c, -s) in the shape's axes, its y axis (s, c). */
     double slack = NARC_HEAD_SLACK * extent, factor = (double)scale;
     *out_aabb = (narc_aabb){.min_x = factor * -(find_stored_height(arcs, count, -c, s) + slack),

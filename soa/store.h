@@ -3,13 +3,13 @@
  * store.h - the layout of a shape store, as the kernels read it. Internal.
  *
  * Each shape has a HEAD, half a cache line with all that the comparison of circles needs, and a BLOCK of RECORDS, also
- * half a cache line each: first the angles of its junctions, 16 to a record, then its arcs, one record with all that is
+ * half a cache line each: the angles of its junctions (TURNS), 16 to a record, and its ARCS, one record with all that is
  * known of each. A batch meets shapes in any order, and so touches one line for a shape that the circles settle, and two
- * more for most others, however many arcs they have.
+ * more for most others, however many arcs they have; heads of their own lie so densely that thousands stay in the cache.
  *
  * Arcs lie in the order of their junctions' angle, the first junction counter-clockwise from +x first; the caller's
- * first arc is somewhere among them (`first` says where). In front of them there is a copy of the last: so a direction
- * belongs to the arc whose number, counted from that copy, is the number of junctions before the direction.
+ * first arc is somewhere among them (`first` says where). So a direction belongs to the arc before the first whose
+ * junction has a larger angle, to the last arc if that is the first.
  *
  * Angles are diamond angles: monotonic in the true one, 0 along +x, 1 along +y, at most 4. In the list they are rounded
  * to 16 bits, in the order of signed numbers.
@@ -48,17 +48,18 @@ typedef struct narc_head {
  * NARC_INNER_WINDOW of one of this arc's has a smaller radius. */
 #define NARC_INNER_WINDOW 0.1
 
-typedef struct narc_record {
+typedef struct narc_stored_arc {
     float center_x, center_y, radius, inner;
     float start_x, start_y, end_x, end_y;
+} narc_stored_arc;
+
+typedef union narc_record {
+    int16_t turns[NARC_TURNS];
+    narc_stored_arc arc;
 } narc_record;
 
-typedef struct narc_turns {
-    int16_t turn[NARC_TURNS];
-} narc_turns;
-
-/* Records of turns in a block; the copy of the last arc follows, and then the arcs. */
-static inline size_t narc_turn_records(size_t count) { return (count + NARC_TURNS - 1) / NARC_TURNS; }
+/* Where the arcs begin in a block: how many records the turns take. */
+static inline size_t narc_first_arc(size_t count) { return (count + NARC_TURNS - 1) / NARC_TURNS; }
 
 /* 96 roundings, so that the circles stay clear of the deciding formula's error: that is 32 roundings (NARC_ERROR_BOUND)
  * of the distance between the positions plus both extents, and that distance is at most the sum of the extents more
@@ -76,5 +77,10 @@ struct narc_shapes {
     narc_allocator allocator;
     void *heads_memory, *records_memory; /* what the allocator returned; heads and records begin at cache lines in it */
 };
+
+/* The arcs of a shape, narc_head.count of them. */
+static inline const narc_record *narc_arcs_of(const narc_shapes *shapes, const narc_head *head) {
+    return &shapes->records[head->block + narc_first_arc(head->count)];
+}
 
 #endif

@@ -77,30 +77,27 @@ static void lays_out_blocks(void **state) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL), NARC_OK);
         narc_head head = shapes->heads[k];
-        size_t count = shape.count == 1 ? 2 : shape.count;
-        const narc_turns *turns = (const narc_turns *)(const void *)(shapes->records + head.block);
-        const size_t turn_records = narc_turn_records(count);
-        const narc_record *block = shapes->records + head.block + turn_records;
-        assert_int_equal(sizeof *turns, sizeof *block);
+        size_t count = shape.count == 1 ? 2 : shape.count, turn_records = narc_first_arc(count);
+        const narc_record *block = &shapes->records[head.block], *arcs = narc_arcs_of(shapes, &head);
         assert_int_equal((uintptr_t)shapes->heads % NARC_CACHE_LINE, 0);
         assert_int_equal((uintptr_t)shapes->records % NARC_CACHE_LINE, 0);
         assert_int_equal(head.count, count);
         assert_true(head.first < count);
-        assert_true(head.block + turn_records + 1 + count <= shapes->record_count);
-        assert_memory_equal(&block[0], &block[count], sizeof block[0]);
-        for (size_t i = 1; i <= count; i++) {
-            double ax = (double)block[i].start_x, ay = (double)block[i].start_y;
-            double bx = (double)block[i].end_x, by = (double)block[i].end_y;
+        assert_true((size_t)(arcs - shapes->records) + count <= shapes->record_count);
+        assert_ptr_equal(arcs, block + turn_records);
+        for (size_t i = 0; i < count; i++) {
+            const narc_stored_arc *arc = &arcs[i].arc, *next = &arcs[(i + 1) % count].arc;
+            double ax = (double)arc->start_x, ay = (double)arc->start_y, bx = (double)arc->end_x, by = (double)arc->end_y;
             expect_near(hypot(ax, ay), 1, ulp, "length of a normal");
             assert_true(ax * by - ay * bx > 0 || (ax == -bx && ay == -by)); /* in order, or exactly opposite */
-            assert_true(block[i].end_x == block[i % count + 1].start_x && block[i].end_y == block[i % count + 1].start_y);
+            assert_true(arc->end_x == next->start_x && arc->end_y == next->start_y);
             double turn = ay >= 0 ? 1 - ax / (fabs(ax) + fabs(ay)) : 3 + ax / (fabs(ax) + fabs(ay));
-            int16_t rounded = turns[(i - 1) / NARC_TURNS].turn[(i - 1) % NARC_TURNS];
+            int16_t rounded = block[i / NARC_TURNS].turns[i % NARC_TURNS];
             expect_near((double)rounded, (double)NARC_TURN_SCALE * turn - (double)NARC_TURN_OFFSET, 1.01, "its 16 bits");
-            assert_true(i == 1 || rounded >= turns[(i - 2) / NARC_TURNS].turn[(i - 2) % NARC_TURNS]);
+            assert_true(i == 0 || rounded >= block[(i - 1) / NARC_TURNS].turns[(i - 1) % NARC_TURNS]);
         }
         for (size_t i = count; i < NARC_TURNS * turn_records; i++) {
-            assert_int_equal(turns[i / NARC_TURNS].turn[i % NARC_TURNS], NARC_TURN_NONE);
+            assert_int_equal(block[i / NARC_TURNS].turns[i % NARC_TURNS], NARC_TURN_NONE);
         }
         double extent = 0;
         for (size_t i = 0; i < shape.count; i++) {
@@ -132,8 +129,8 @@ static void stores_exact_quarter_turns(void **state) {
         assert_int_equal(narc_add_shape(shapes, turned, 4, &index, NULL), NARC_OK);
         for (size_t i = 0; i < 4; i++) {
             const narc_head *head = &shapes->heads[index];
-            const narc_record *record = &shapes->records[head->block + 2 + (i + 4 - head->first) % 4];
-            assert_true(record->start_x == x[i] && record->start_y == y[i]);
+            const narc_stored_arc *arc = &narc_arcs_of(shapes, head)[(i + 4 - head->first) % 4].arc;
+            assert_true(arc->start_x == x[i] && arc->start_y == y[i]);
         }
     }
     narc_destroy_shapes(shapes);
