@@ -223,9 +223,9 @@ INLINE void look(const narc_shapes *shapes, struct queue *q, int first, int x, f
         const vm live = vm_first(q->count - k);
         const struct pose pose = get_pose(q, k);
         const vi bytes_a = get_bits(q, BYTES_A, k), bytes_b = get_bits(q, BYTES_B, k);
-        const vi record_a = get_bits(q, RECORD_A, k), record_b = get_bits(q, RECORD_B, k);
-        const struct arcs a = load_arcs_a(shapes->records, record_a, get(q, SCALE_A, k));
-        const struct arcs b = load_arcs_b(shapes->records, record_b, &pose);
+        const vi record_a = vi_load(q->record_a + k), record_b = vi_load(q->record_b + k);
+        const struct arcs a = load_arcs_a(shapes->records, q->record_a + k, get(q, SCALE_A, k));
+        const struct arcs b = load_arcs_b(shapes->records, q->record_b + k, &pose);
         const vf axis_x = get(q, AXIS_X, k), axis_y = get(q, AXIS_Y, k), slack = get(q, SLACK, k);
         const vf u_x = v_sub(b.x, a.x), u_y = v_sub(b.y, a.y), radii = v_add(a.radius, b.radius);
         const vf d_x = get(q, x, k), d_y = get(q, x + 1, k), gap = dot(u_x, u_y, d_x, d_y), d2 = dot(d_x, d_y, d_x, d_y);

@@ -94,11 +94,9 @@ struct arcs {
     vf start_x, start_y, end_x, end_y;
 };
 
-/* The arcs of A in records `index`. */
-INLINE struct arcs load_arcs_a(const narc_record *records, vi index, vf scale) {
-    int32_t record[V_WIDTH];
+/* The arc of A in each lane's record. */
+INLINE struct arcs load_arcs_a(const narc_record *records, const int32_t *record, vf scale) {
     vf row[8];
-    vi_store(record, index);
     v_rows(records, sizeof *records, record, row);
     v_rows(&records->arc.start_x, sizeof *records, record, row + 4);
     return (struct arcs){v_mul(row[0], scale), v_mul(row[1], scale), v_mul(row[2], scale), v_mul(row[3], scale), row[4],
@@ -114,10 +112,8 @@ INLINE struct pose get_pose(const struct queue *q, int k) {
     return (struct pose){get(q, T_X, k), get(q, T_Y, k), get(q, Q_C, k), get(q, Q_S, k), get(q, SCALE_B, k)};
 }
 
-INLINE struct arcs load_arcs_b(const narc_record *records, vi index, const struct pose *p) {
-    int32_t record[V_WIDTH];
+INLINE struct arcs load_arcs_b(const narc_record *records, const int32_t *record, const struct pose *p) {
     vf row[8];
-    vi_store(record, index);
     v_rows(records, sizeof *records, record, row);
     v_rows(&records->arc.start_x, sizeof *records, record, row + 4);
     const vf x = v_sub(v_mul(p->q_c, row[0]), v_mul(p->q_s, row[1]));
@@ -260,8 +256,9 @@ static void place_pairs(struct overlay *o, const narc_shapes *shapes, const stru
     vi at = vi_lanes(), end = at;
     for (int i = 0; i < most_a; i++) {
         const vm exists = vi_lt(vi_set(i), count_a);
-        const struct arcs arcs =
-            load_arcs_a(shapes->records, vi_add(record_a, vi_select(exists, vi_set(i), vi_set(0))), scale_a);
+        int32_t record[V_WIDTH];
+        vi_store(record, vi_add(record_a, vi_select(exists, vi_set(i), vi_set(0))));
+        const struct arcs arcs = load_arcs_a(shapes->records, record, scale_a);
         put_slot(o, i, &arcs, turn_of(arcs.start_x, arcs.start_y));
         at = vi_add(at, vi_set(SLOT));
         end = vi_select(exists, at, end);
@@ -273,8 +270,9 @@ static void place_pairs(struct overlay *o, const narc_shapes *shapes, const stru
     vf first_turn = v_set(INFINITY);
     for (int i = 0; i < most_b; i++) {
         const vm exists = vi_lt(vi_set(i), count_b);
-        const struct arcs arcs =
-            load_arcs_b(shapes->records, vi_add(record_b, vi_select(exists, vi_set(i), vi_set(0))), &pose);
+        int32_t record[V_WIDTH];
+        vi_store(record, vi_add(record_b, vi_select(exists, vi_set(i), vi_set(0))));
+        const struct arcs arcs = load_arcs_b(shapes->records, record, &pose);
         const vf turn = turn_of(arcs.start_x, arcs.start_y);
         put_slot(o, most_a + i, &arcs, turn);
         const vm earlier = vm_and(exists, v_lt(turn, first_turn));

@@ -39,13 +39,13 @@ enum {
     PAIR, /* counted from the first of the call */
     COSINE_A, SINE_A,
     DIRECTION_X, DIRECTION_Y,
-    RECORD_A, RECORD_B,
     FIELDS
 };
 
 struct queue {
     int count;
     float item[FIELDS][CAPACITY];
+    int32_t record_a[CAPACITY], record_b[CAPACITY];
 };
 
 INLINE vf get(const struct queue *q, int field, int k) { return v_load(q->item[field] + k); }

@@ -35,9 +35,7 @@ INLINE vi find_records(const narc_shapes *shapes, vi block, vi bytes, vf x, vf y
     return vi_add(first_record(block, bytes), place);
 }
 
-INLINE void load_circles(const narc_record *records, vi index, vf out[4]) {
-    int32_t record[V_WIDTH];
-    vi_store(record, index);
+INLINE void load_circles(const narc_record *records, const int32_t *record, vf out[4]) {
     v_rows(records, sizeof *records, record, out);
 }
 
@@ -59,8 +57,8 @@ INLINE void look_up(const narc_shapes *shapes, struct queue *q, int first, int x
         const vi record_b = find_records(shapes, get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k),
                                          v_neg(v_add(v_mul(q_c, n_x), v_mul(q_s, n_y))),
                                          v_sub(v_mul(q_s, n_x), v_mul(q_c, n_y)));
-        v_store(q->item[RECORD_A] + k, v_of_bits(record_a));
-        v_store(q->item[RECORD_B] + k, v_of_bits(record_b));
+        vi_store(q->record_a + k, record_a);
+        vi_store(q->record_b + k, record_b);
     }
 }
 
@@ -71,8 +69,8 @@ INLINE struct verdict glance(const narc_shapes *shapes, const struct queue *q, i
     const struct pose p = get_pose(q, k);
     const vf scale_a = get(q, SCALE_A, k), n_x = get(q, x, k), n_y = get(q, x + 1, k);
     vf a[4], b[4];
-    load_circles(shapes->records, get_bits(q, RECORD_A, k), a);
-    load_circles(shapes->records, get_bits(q, RECORD_B, k), b);
+    load_circles(shapes->records, q->record_a + k, a);
+    load_circles(shapes->records, q->record_b + k, b);
     const vf b_x = v_sub(v_mul(p.q_c, b[0]), v_mul(p.q_s, b[1])), b_y = v_add(v_mul(p.q_s, b[0]), v_mul(p.q_c, b[1]));
     struct verdict v;
     v.u_x = v_sub(v_add(p.t_x, v_mul(p.scale, b_x)), v_mul(scale_a, a[0]));
@@ -152,16 +150,19 @@ INLINE struct peak climb(const narc_shapes *shapes, const struct queue *q, int k
     const vi first_a = first_record(get_bits(q, BLOCK_A, k), bytes_a), count_a = head_count(bytes_a);
     const vi first_b = first_record(get_bits(q, BLOCK_B, k), bytes_b), count_b = head_count(bytes_b);
     const vm none = vm_first(0);
-    vi record_a = get_bits(q, RECORD_A, k);
-    vi record_b = get_bits(q, RECORD_B, k);
+    vi record_a = vi_load(q->record_a + k);
+    vi record_b = vi_load(q->record_b + k);
     vi old_a = record_a, old_b = record_b;
     vm was_up = none, was_down = none, moved_a = none, open = live;
     struct couple last;
     struct peak peak;
     for (int step = 0;; step++) {
         struct couple now;
-        now.a = load_arcs_a(shapes->records, record_a, scale_a);
-        now.b = load_arcs_b(shapes->records, record_b, &pose);
+        int32_t lanes_a[V_WIDTH], lanes_b[V_WIDTH];
+        vi_store(lanes_a, record_a);
+        vi_store(lanes_b, record_b);
+        now.a = load_arcs_a(shapes->records, lanes_a, scale_a);
+        now.b = load_arcs_b(shapes->records, lanes_b, &pose);
         if (step == 0)
             last = now;
         const vf u_x = v_sub(now.b.x, now.a.x), u_y = v_sub(now.b.y, now.a.y);
