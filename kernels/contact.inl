@@ -12,43 +12,50 @@
  * rotated normal, 6 * 2^-24, below any angle between two normals of a shape. */
 #define PARALLEL 0x1p-20f
 
-/* The number of a slot from its place in the list, a multiple of SLOT. */
-INLINE vi slot_number(vi place) {
-    return vi_truncate(v_add(v_mul(v_of_int(place), v_set(1.0f / SLOT)), v_set(0.5f)));
-}
-
-/* Where one shape touches its support line: its position across n, the stretch along it, and the slot of the arc; of an
- * edge, the arc at its counter-clockwise end. */
+/* Where one shape touches its support line: its position across n, the stretch along it, and the record of the arc; of
+ * an edge, the arc at its counter-clockwise end. */
 struct touch {
     vf across, along_min, along_max;
     vi arc;
 };
 
-/* Widens a stretch by the end of a neighbouring arc, in lanes where n is the normal of the junction between them;
- * returns those lanes. */
-INLINE vm widen(const struct overlay *o, struct touch *t, vi junction, vi arc, vf n_x, vf n_y, vf reach) {
-    const vf j_x = field(o, NORMAL_X, junction), j_y = field(o, NORMAL_Y, junction);
-    const vf off = v_abs(cross(j_x, j_y, n_x, n_y));
-    const vm meets = vm_and(v_le(off, v_set(PARALLEL)), v_lt(v_set(0), dot(j_x, j_y, n_x, n_y)));
-    const vf p_x = v_add(field(o, CENTER_X, arc), v_mul(reach, n_x)),
-             p_y = v_add(field(o, CENTER_Y, arc), v_mul(reach, n_y));
-    const vf along = cross(n_x, n_y, p_x, p_y);
-    t->along_min = v_select(meets, v_min(t->along_min, along), t->along_min);
-    t->along_max = v_select(meets, v_max(t->along_max, along), t->along_max);
-    return meets;
+/* The position along a support line of the point of an arc with the normal n; `sign` is 1 for A, which is touched on its
+ * side n, and -1 for B, touched on -n. `out_across` may be NULL. */
+INLINE vf find_point(const struct arcs *arc, vf n_x, vf n_y, float sign, vf *out_across) {
+    const vf reach = v_mul(v_set(sign), arc->radius);
+    const vf p_x = v_add(arc->x, v_mul(reach, n_x)), p_y = v_add(arc->y, v_mul(reach, n_y));
+    if (out_across)
+        *out_across = dot(n_x, n_y, p_x, p_y);
+    return cross(n_x, n_y, p_x, p_y);
 }
 
-/* `sign` is 1 for A, which is touched on its side n, and -1 for B, touched on -n. */
-INLINE struct touch touch_of(const struct overlay *o, struct cursor c, vi arc, vf n_x, vf n_y, float sign) {
-    const vi previous = previous_slot(c, arc), next = next_slot(c, arc);
-    const vf reach = v_mul(v_set(sign), field(o, RADIUS, arc));
-    const vf p_x = v_add(field(o, CENTER_X, arc), v_mul(reach, n_x)),
-             p_y = v_add(field(o, CENTER_Y, arc), v_mul(reach, n_y));
-    const vf along = cross(n_x, n_y, p_x, p_y);
-    struct touch t = {dot(n_x, n_y, p_x, p_y), along, along, arc};
-    widen(o, &t, arc, previous, n_x, n_y, v_mul(v_set(sign), field(o, RADIUS, previous)));
-    const vm ends = widen(o, &t, next, next, n_x, n_y, v_mul(v_set(sign), field(o, RADIUS, next)));
-    t.arc = vi_select(ends, next, arc);
+/* Is n the normal of this junction? */
+INLINE vm meets(vf j_x, vf j_y, vf n_x, vf n_y) {
+    return vm_and(v_le(v_abs(cross(j_x, j_y, n_x, n_y)), v_set(PARALLEL)), v_lt(v_set(0), dot(j_x, j_y, n_x, n_y)));
+}
+
+/* The touch of the shape with the arc in `record`: a point, or up to the end of a neighbouring arc where n is the normal
+ * of the junction with it. */
+INLINE struct touch touch_of(const narc_record *records, struct ring ring, vi record, const struct pose *pose, vf n_x,
+                             vf n_y, bool is_b) {
+    const vi next = step_record(ring, record, vi_set(1));
+    int32_t lanes[3][V_WIDTH];
+    vi_store(lanes[0], step_record(ring, record, vi_set(-1)));
+    vi_store(lanes[1], record);
+    vi_store(lanes[2], next);
+    struct arcs arc[3];
+    for (int k = 0; k < 3; k++)
+        arc[k] = is_b ? load_arcs_b(records, lanes[k], pose) : load_arcs_a(records, lanes[k], pose);
+    const float sign = is_b ? -1.0f : 1.0f;
+    struct touch t;
+    t.along_min = t.along_max = find_point(&arc[1], n_x, n_y, sign, &t.across);
+    const vm starts = meets(arc[1].start_x, arc[1].start_y, n_x, n_y), ends = meets(arc[1].end_x, arc[1].end_y, n_x, n_y);
+    const vf before = find_point(&arc[0], n_x, n_y, sign, NULL), after = find_point(&arc[2], n_x, n_y, sign, NULL);
+    t.along_min = v_select(starts, v_min(t.along_min, before), t.along_min);
+    t.along_max = v_select(starts, v_max(t.along_max, before), t.along_max);
+    t.along_min = v_select(ends, v_min(t.along_min, after), t.along_min);
+    t.along_max = v_select(ends, v_max(t.along_max, after), t.along_max);
+    t.arc = vi_select(ends, next, record);
     return t;
 }
 
@@ -58,12 +65,13 @@ enum { SEPARATION, CONTACT_NORMAL_X, CONTACT_NORMAL_Y, POINT_X, POINT_Y, ARCS, R
 enum { GROUP = 1024 };
 
 struct results {
-    uint64_t keep[GROUP / 64];
+    uint8_t keep[GROUP + 1];
     float row[GROUP + 1][ROW]; /* the last is for lanes that are of no use */
 };
 
-/* The caller's number of an arc, from its place in the block; a circle's two halves are both arc 0. */
-INLINE vi arc_number(vi place, vi bytes) {
+/* The caller's number of an arc from its record; a circle's two halves are both arc 0. */
+INLINE vi arc_number(vi record, vi block, vi bytes) {
+    const vi place = vi_sub(record, first_record(block, bytes));
     const vi number = vi_add(place, head_first(bytes)), count = head_count(bytes);
     const vi wrapped = vi_select(vi_lt(number, count), number, vi_sub(number, count));
     return vi_select(head_is(bytes, NARC_SHAPE_CIRCLE), vi_set(0), wrapped);
@@ -76,8 +84,7 @@ INLINE void turn_back(const struct queue *q, int k, vf x, vf y, vf *out_x, vf *o
     *out_y = v_add(v_mul(s, x), v_mul(c, y));
 }
 
-/* Files the contacts of the pairs k ... of a queue, those lanes that `keep` says. `arc` of the touches is the place in
- * the block. */
+/* Files the contacts of the pairs k ... of a queue, those lanes that `keep` says. */
 INLINE void file_contacts(const struct queue *q, int k, vm keep, vf separation, vf n_x, vf n_y,
                                  const struct touch *on_a, const struct touch *on_b, struct results *out) {
     const vf half = v_set(0.5f);
@@ -89,8 +96,8 @@ INLINE void file_contacts(const struct queue *q, int k, vm keep, vf separation, 
     turn_back(q, k, n_x, n_y, &row[CONTACT_NORMAL_X], &row[CONTACT_NORMAL_Y]);
     turn_back(q, k, v_sub(v_mul(n_x, across), v_mul(n_y, along)), v_add(v_mul(n_y, across), v_mul(n_x, along)),
               &row[POINT_X], &row[POINT_Y]);
-    const vi arc_a = arc_number(on_a->arc, get_bits(q, BYTES_A, k));
-    const vi arc_b = arc_number(on_b->arc, get_bits(q, BYTES_B, k));
+    const vi arc_a = arc_number(on_a->arc, get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k));
+    const vi arc_b = arc_number(on_b->arc, get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k));
     row[ARCS] = v_of_bits(vi_add(arc_a, vi_shift_left(arc_b, 8)));
     row[6] = row[7] = v_set(0);
     const vi pair = get_bits(q, PAIR, k);
@@ -98,43 +105,35 @@ INLINE void file_contacts(const struct queue *q, int k, vm keep, vf separation, 
     vi_store(place, vi_select(keep, pair, vi_set(GROUP)));
     v_put_rows(out->row, sizeof out->row[0], place, row);
     v_put_rows(&out->row[0][4], sizeof out->row[0], place, row + 4);
-    for (uint32_t bits = vm_bits(keep); bits; bits &= bits - 1) {
-        const uint32_t number = (uint32_t)place[__builtin_ctz(bits)];
-        out->keep[number / 64] |= (uint64_t)1 << number % 64;
-    }
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        out->keep[place[lane]] = 1;
 }
 
 /* Finds the contacts of the last `count` pairs of a queue by the formula and takes them out. */
 static void decide_contacts(const narc_shapes *shapes, struct queue *rest, int count, float margin,
                             struct results *out) {
-    struct overlay overlay;
     rest->count -= count;
     for (int i = 0; i < count; i += V_WIDTH) {
         const int k = rest->count + i;
         const vm live = vm_first(count - i);
-        struct cursor a, b;
-        vi steps;
-        place_pairs(&overlay, shapes, rest, k, &a, &b, &steps);
-        const struct gap gap = overlay_gap(&overlay, a, b, steps, live, true);
+        const struct gap gap = overlay_gap(shapes, rest, k, live, true);
         const vm keep = margin == INFINITY ? live : v_lt(gap.separation, v_set(margin));
         if (!vm_any(keep))
             continue;
         const vf n_x = v_div(gap.n_x, gap.n_length), n_y = v_div(gap.n_y, gap.n_length);
-        struct touch on_a = touch_of(&overlay, a, gap.arc_a, n_x, n_y, 1);
-        struct touch on_b = touch_of(&overlay, b, gap.arc_b, n_x, n_y, -1);
-        on_a.arc = slot_number(vi_sub(on_a.arc, a.begin));
-        on_b.arc = slot_number(vi_sub(on_b.arc, b.begin));
+        const struct pose pose = get_pose(rest, k);
+        const struct ring ring_a = get_ring(rest, k, BLOCK_A, BYTES_A), ring_b = get_ring(rest, k, BLOCK_B, BYTES_B);
+        const struct touch on_a = touch_of(shapes->records, ring_a, gap.record_a, &pose, n_x, n_y, false);
+        const struct touch on_b = touch_of(shapes->records, ring_b, gap.record_b, &pose, n_x, n_y, true);
         file_contacts(rest, k, keep, gap.separation, n_x, n_y, &on_a, &on_b, out);
     }
 }
 
-/* Where a shape touches, from the arcs after and before the normal. */
-INLINE struct touch touch_at(const struct arcs *after, const struct arcs *before, vf n_x, vf n_y, float sign, vi arc) {
-    const vf reach = v_mul(v_set(sign), after->radius), old_reach = v_mul(v_set(sign), before->radius);
-    const vf p_x = v_add(after->x, v_mul(reach, n_x)), p_y = v_add(after->y, v_mul(reach, n_y));
-    const vf old_x = v_add(before->x, v_mul(old_reach, n_x)), old_y = v_add(before->y, v_mul(old_reach, n_y));
-    const vf along = cross(n_x, n_y, p_x, p_y), old = cross(n_x, n_y, old_x, old_y);
-    return (struct touch){dot(n_x, n_y, p_x, p_y), v_min(along, old), v_max(along, old), arc};
+/* The same from the arcs after and before n, one and the same unless n is their junction's normal. */
+INLINE struct touch touch_at(const struct arcs *after, const struct arcs *before, vf n_x, vf n_y, float sign, vi record) {
+    vf across;
+    const vf along = find_point(after, n_x, n_y, sign, &across), old = find_point(before, n_x, n_y, sign, NULL);
+    return (struct touch){across, v_min(along, old), v_max(along, old), record};
 }
 
 /* Is a side clear */
@@ -199,10 +198,8 @@ static void settle_contacts(const narc_shapes *shapes, struct queue *q, int firs
 
         const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
         if (vm_any(keep)) {
-            const vi arc_a = vi_sub(peak.record_a, first_record(get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k)));
-            const vi arc_b = vi_sub(peak.record_b, first_record(get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k)));
-            const struct touch on_a = touch_at(&peak.after.a, &peak.before.a, n_x, n_y, 1, arc_a);
-            const struct touch on_b = touch_at(&peak.after.b, &peak.before.b, n_x, n_y, -1, arc_b);
+            const struct touch on_a = touch_at(&peak.after.a, &peak.before.a, n_x, n_y, 1, peak.record_a);
+            const struct touch on_b = touch_at(&peak.after.b, &peak.before.b, n_x, n_y, -1, peak.record_b);
             file_contacts(q, k, keep, separation, n_x, n_y, &on_a, &on_b, out);
         }
         const vm left = vm_and_not(live, vm_or(apart, sure));
@@ -223,8 +220,7 @@ INLINE void look(const narc_shapes *shapes, struct queue *q, int first, int x, f
         const vm live = vm_first(q->count - k);
         const struct pose pose = get_pose(q, k);
         const vi bytes_a = get_bits(q, BYTES_A, k), bytes_b = get_bits(q, BYTES_B, k);
-        const vi record_a = vi_load(q->record_a + k), record_b = vi_load(q->record_b + k);
-        const struct arcs a = load_arcs_a(shapes->records, q->record_a + k, get(q, SCALE_A, k));
+        const struct arcs a = load_arcs_a(shapes->records, q->record_a + k, &pose);
         const struct arcs b = load_arcs_b(shapes->records, q->record_b + k, &pose);
         const vf axis_x = get(q, AXIS_X, k), axis_y = get(q, AXIS_Y, k), slack = get(q, SLACK, k);
         const vf u_x = v_sub(b.x, a.x), u_y = v_sub(b.y, a.y), radii = v_add(a.radius, b.radius);
@@ -251,9 +247,8 @@ INLINE void look(const narc_shapes *shapes, struct queue *q, int first, int x, f
         const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
         if (vm_any(keep)) {
             const vf n_x = v_div(u_x, length), n_y = v_div(u_y, length);
-            const vi arc_a = vi_sub(record_a, first_record(get_bits(q, BLOCK_A, k), bytes_a)), arc_b = vi_sub(record_b, first_record(get_bits(q, BLOCK_B, k), bytes_b));
-            const struct touch on_a = touch_at(&a, &a, n_x, n_y, 1, arc_a);
-            const struct touch on_b = touch_at(&b, &b, n_x, n_y, -1, arc_b);
+            const struct touch on_a = touch_at(&a, &a, n_x, n_y, 1, vi_load(q->record_a + k));
+            const struct touch on_b = touch_at(&b, &b, n_x, n_y, -1, vi_load(q->record_b + k));
             file_contacts(q, k, keep, separation, n_x, n_y, &on_a, &on_b, out);
         }
         const vm left = vm_and_not(live, vm_or(apart, sure));
@@ -274,9 +269,10 @@ static size_t list_contacts(const struct results *results, int count, size_t fir
                             size_t at) {
     int32_t pair[GROUP + V_WIDTH];
     int n = 0;
-    for (int word = 0; word < (count + 63) / 64; word++)
-        for (uint64_t bits = results->keep[word]; bits; bits &= bits - 1)
-            pair[n++] = 64 * word + __builtin_ctzll(bits);
+    for (int k = 0; k < count; k++) {
+        pair[n] = k;
+        n += results->keep[k];
+    }
     for (int k = 0; k < V_WIDTH; k++)
         pair[n + k] = GROUP;
     for (int k = 0; k < n; k += V_WIDTH) {
@@ -328,7 +324,7 @@ static size_t contact(const narc_batch *batch, size_t first, size_t count, float
                     const int number = start + k + __builtin_ctz(bits);
                     const float none[ROW] = {[SEPARATION] = INFINITY};
                     memcpy(results.row[number], none, sizeof none);
-                    results.keep[number / 64] |= (uint64_t)1 << number % 64;
+                    results.keep[number] = 1;
                 }
                 push(&fresh, vm_and_not(f.valid, f.apart), item, SINE_A + 1);
             }

@@ -5,15 +5,11 @@
 
 /* Decides the last `count` pairs of a queue by the formula and takes them out. */
 static void decide_overlaps(const narc_shapes *shapes, struct queue *rest, int count, uint64_t *out_bits) {
-    struct overlay overlay;
     rest->count -= count;
     for (int i = 0; i < count; i += V_WIDTH) {
         const int k = rest->count + i;
         const vm live = vm_first(count - i);
-        struct cursor a, b;
-        vi steps;
-        place_pairs(&overlay, shapes, rest, k, &a, &b, &steps);
-        const struct gap gap = overlay_gap(&overlay, a, b, steps, live, false);
+        const struct gap gap = overlay_gap(shapes, rest, k, live, false);
         mark(get_bits(rest, PAIR, k), v_lt(gap.separation, v_set(0)), out_bits);
     }
 }

@@ -43,31 +43,6 @@
  * never swap: their normals differ by more than NARC_TOLERANCE.
  */
 
-/* One junction and the arc that starts there, for all lanes. */
-enum { TURN, NORMAL_X, NORMAL_Y, CENTER_X, CENTER_Y, RADIUS, SLOT_FIELDS };
-enum { SLOT = SLOT_FIELDS * V_WIDTH };
-
-/* Both shapes of each lane in A's frame at world scale: A's slots, then B's with negated normals. */
-struct overlay {
-    float slots[2 * NARC_MAX_ARCS * SLOT];
-};
-
-/* A position in the slots of one shape, a float index for each lane, and where that shape begins and ends. */
-struct cursor {
-    vi at, begin, end;
-};
-
-INLINE vf field(const struct overlay *o, int which, vi at) { return v_gather(o->slots + which * V_WIDTH, at); }
-
-INLINE vi next_slot(struct cursor c, vi at) {
-    const vi next = vi_add(at, vi_set(SLOT));
-    return vi_select(vi_lt(next, c.end), next, c.begin);
-}
-
-INLINE vi previous_slot(struct cursor c, vi at) {
-    return vi_add(vi_select(vi_lt(c.begin, at), at, c.end), vi_set(-SLOT));
-}
-
 /* The diamond angle of a direction of any length. */
 INLINE vf turn_of(vf x, vf y) {
     const vf p = v_div(x, v_add(v_abs(x), v_abs(y)));
@@ -78,95 +53,139 @@ INLINE vf cross(vf a_x, vf a_y, vf b_x, vf b_y) { return v_sub(v_mul(a_x, b_y), 
 
 INLINE vf dot(vf a_x, vf a_y, vf b_x, vf b_y) { return v_add(v_mul(a_x, b_x), v_mul(a_y, b_y)); }
 
-/* The largest of the lanes' counts. */
-INLINE int max_lane(vi counts) {
-    int32_t lane[V_WIDTH];
-    int most = 0;
-    vi_store(lane, counts);
-    for (int k = 0; k < V_WIDTH; k++)
-        most = lane[k] > most ? lane[k] : most;
-    return most;
-}
-
 /* An arc in each lane, in A's frame at world scale, normals from A to B: those of B point the other way. */
 struct arcs {
     vf x, y, radius, inner;
     vf start_x, start_y, end_x, end_y;
 };
 
-/* The arc of A in each lane's record. */
-INLINE struct arcs load_arcs_a(const narc_record *records, const int32_t *record, vf scale) {
-    vf row[8];
-    v_rows(records, sizeof *records, record, row);
-    v_rows(&records->arc.start_x, sizeof *records, record, row + 4);
-    return (struct arcs){v_mul(row[0], scale), v_mul(row[1], scale), v_mul(row[2], scale), v_mul(row[3], scale), row[4],
-                         row[5],               row[6],               row[7]};
-}
-
-/* B's pose in A's frame. */
+/* B's pose in A's frame, and A's scale. */
 struct pose {
-    vf t_x, t_y, q_c, q_s, scale;
+    vf t_x, t_y, q_c, q_s, scale_b, scale_a;
 };
 
 INLINE struct pose get_pose(const struct queue *q, int k) {
-    return (struct pose){get(q, T_X, k), get(q, T_Y, k), get(q, Q_C, k), get(q, Q_S, k), get(q, SCALE_B, k)};
+    return (struct pose){get(q, T_X, k), get(q, T_Y, k),     get(q, Q_C, k),
+                         get(q, Q_S, k), get(q, SCALE_B, k), get(q, SCALE_A, k)};
 }
 
-INLINE struct arcs load_arcs_b(const narc_record *records, const int32_t *record, const struct pose *p) {
-    vf row[8];
+INLINE void load_records(const narc_record *records, const int32_t *record, vf row[8]) {
     v_rows(records, sizeof *records, record, row);
     v_rows(&records->arc.start_x, sizeof *records, record, row + 4);
+}
+
+INLINE struct arcs place_a(const vf row[8], const struct pose *p) {
+    return (struct arcs){v_mul(row[0], p->scale_a), v_mul(row[1], p->scale_a), v_mul(row[2], p->scale_a),
+                         v_mul(row[3], p->scale_a), row[4], row[5], row[6], row[7]};
+}
+
+INLINE struct arcs place_b(const vf row[8], const struct pose *p) {
     const vf x = v_sub(v_mul(p->q_c, row[0]), v_mul(p->q_s, row[1]));
     const vf y = v_add(v_mul(p->q_s, row[0]), v_mul(p->q_c, row[1]));
-    return (struct arcs){v_add(p->t_x, v_mul(x, p->scale)),
-                         v_add(p->t_y, v_mul(y, p->scale)),
-                         v_mul(row[2], p->scale),
-                         v_mul(row[3], p->scale),
+    return (struct arcs){v_add(p->t_x, v_mul(x, p->scale_b)),
+                         v_add(p->t_y, v_mul(y, p->scale_b)),
+                         v_mul(row[2], p->scale_b),
+                         v_mul(row[3], p->scale_b),
                          v_sub(v_mul(p->q_s, row[5]), v_mul(p->q_c, row[4])),
                          v_neg(v_add(v_mul(p->q_s, row[4]), v_mul(p->q_c, row[5]))),
                          v_sub(v_mul(p->q_s, row[7]), v_mul(p->q_c, row[6])),
                          v_neg(v_add(v_mul(p->q_s, row[6]), v_mul(p->q_c, row[7])))};
 }
 
-INLINE void put_slot(struct overlay *o, int slot, const struct arcs *arcs, vf turn) {
-    float *out = o->slots + slot * SLOT;
-    v_store(out + TURN * V_WIDTH, turn);
-    v_store(out + NORMAL_X * V_WIDTH, arcs->start_x);
-    v_store(out + NORMAL_Y * V_WIDTH, arcs->start_y);
-    v_store(out + CENTER_X * V_WIDTH, arcs->x);
-    v_store(out + CENTER_Y * V_WIDTH, arcs->y);
-    v_store(out + RADIUS * V_WIDTH, arcs->radius);
+/* The arcs of A, and of B, in each lane's record. */
+INLINE struct arcs load_arcs_a(const narc_record *records, const int32_t *record, const struct pose *p) {
+    vf row[8];
+    load_records(records, record, row);
+    return place_a(row, p);
 }
 
-/* The best candidate of each lane so far. */
+INLINE struct arcs load_arcs_b(const narc_record *records, const int32_t *record, const struct pose *p) {
+    vf row[8];
+    load_records(records, record, row);
+    return place_b(row, p);
+}
+
+INLINE struct arcs select_arcs(vm m, const struct arcs *a, const struct arcs *b) {
+    return (struct arcs){v_select(m, a->x, b->x),
+                         v_select(m, a->y, b->y),
+                         v_select(m, a->radius, b->radius),
+                         v_select(m, a->inner, b->inner),
+                         v_select(m, a->start_x, b->start_x),
+                         v_select(m, a->start_y, b->start_y),
+                         v_select(m, a->end_x, b->end_x),
+                         v_select(m, a->end_y, b->end_y)};
+}
+
+/* The records of a shape's arcs in each lane. */
+struct ring {
+    vi first, count;
+};
+
+INLINE struct ring get_ring(const struct queue *q, int k, int block, int bytes) {
+    return (struct ring){first_record(get_bits(q, block, k), get_bits(q, bytes, k)), head_count(get_bits(q, bytes, k))};
+}
+
+/* A record after a step of -1, 0 or 1 along the ring. */
+INLINE vi step_record(struct ring ring, vi record, vi step) {
+    const vi end = vi_add(ring.first, ring.count), next = vi_add(record, step);
+    const vi low = vi_select(vi_lt(next, ring.first), vi_sub(end, vi_set(1)), next);
+    return vi_select(vi_lt(low, end), low, ring.first);
+}
+
+/* The arc of B whose junction, negated and in A's frame, is the first counter-clockwise from +x: the one with the
+ * smallest turn, all others' being larger than those of the arcs before them. */
+INLINE vi first_of_b(const narc_record *records, struct ring ring, const struct pose *p) {
+    vi record = ring.first, first = record;
+    vf least = v_set(INFINITY);
+    for (int i = 0; vm_any(vi_lt(vi_set(i), ring.count)); i++, record = vi_add(record, vi_set(1))) {
+        const vm exists = vi_lt(vi_set(i), ring.count);
+        int32_t lanes[V_WIDTH];
+        vf row[4];
+        vi_store(lanes, vi_select(exists, record, ring.first));
+        v_rows(&records->arc.start_x, sizeof *records, lanes, row);
+        const vf x = v_sub(v_mul(p->q_s, row[1]), v_mul(p->q_c, row[0]));
+        const vf y = v_neg(v_add(v_mul(p->q_s, row[0]), v_mul(p->q_c, row[1])));
+        const vf turn = turn_of(x, y);
+        const vm earlier = vm_and(exists, v_lt(turn, least));
+        least = v_select(earlier, turn, least);
+        first = vi_select(earlier, record, first);
+    }
+    return first;
+}
+
+/* The best candidate of each lane. */
 struct gap {
     vf separation;
     vf n_x, n_y, n_length; /* the normal, not yet divided by its length */
-    vi arc_a, arc_b;       /* slots */
+    vi record_a, record_b;
 };
 
-/* The separation of each lane for which `live` holds (elsewhere +infinity). Without `contact` only separation is set,
- * and the walk ends as soon as every lane is known not to collide: then it is some value >= 0. */
-static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, struct cursor b, vi steps, vm live,
-                                     bool contact) {
+/* The separation of the pairs k ... of a queue, of those lanes for which `live` holds (elsewhere +infinity). Without
+ * `contact` only separation is set, and the walk ends as soon as every lane is known not to collide: then it is some
+ * value >= 0. */
+static inline struct gap overlay_gap(const narc_shapes *shapes, const struct queue *q, int k, vm live, bool contact) {
     const vf tiny = v_set(0x1p-126f); /* the least normal float: a smaller |u|^2 has lost its digits */
-    const vf start = v_select(live, v_set(-INFINITY), v_set(INFINITY));
-    struct gap best = {start, v_set(0), v_set(0), v_set(1), a.begin, b.begin};
-    vi arc_a = previous_slot(a, a.at), arc_b = previous_slot(b, b.at);
-    vf a_x = field(o, CENTER_X, arc_a), a_y = field(o, CENTER_Y, arc_a), a_r = field(o, RADIUS, arc_a);
-    vf b_x = field(o, CENTER_X, arc_b), b_y = field(o, CENTER_Y, arc_b), b_r = field(o, RADIUS, arc_b);
+    const narc_record *records = shapes->records;
+    const struct pose pose = get_pose(q, k);
+    const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
+    const vi steps = vi_add(ring_a.count, ring_b.count), forward_one = vi_set(1);
+    vi record_a = step_record(ring_a, ring_a.first, vi_set(-1));
+    vi record_b = step_record(ring_b, first_of_b(records, ring_b, &pose), vi_set(-1));
+    int32_t lanes[V_WIDTH];
+    vi_store(lanes, record_a);
+    struct arcs a = load_arcs_a(records, lanes, &pose);
+    vi_store(lanes, record_b);
+    struct arcs b = load_arcs_b(records, lanes, &pose);
+    struct gap best = {v_select(live, v_set(-INFINITY), v_set(INFINITY)), v_set(0), v_set(0), v_set(1), record_a, record_b};
     /* Angles of at least 0 have the order of their bits, as integers. Those of this turn, 0 to 4, are moved down so
      * that all of the next turn follow them; exactly, so that the last interval ends where the first one began. */
     const vi this_turn = vi_set(-0x40800001); /* the bits of 4.0f, and one more */
-    vi a_turn = vi_add(vi_bits(field(o, TURN, a.at)), this_turn);
-    vi b_turn = vi_add(vi_bits(field(o, TURN, b.at)), this_turn);
-    vf a_nx = field(o, NORMAL_X, a.at), a_ny = field(o, NORMAL_Y, a.at);
-    vf b_nx = field(o, NORMAL_X, b.at), b_ny = field(o, NORMAL_Y, b.at);
+    vi a_turn = vi_add(vi_bits(turn_of(a.end_x, a.end_y)), this_turn);
+    vi b_turn = vi_add(vi_bits(turn_of(b.end_x, b.end_y)), this_turn);
     /* Does g rise towards the first junction, at the end of the interval before it? */
-    const vm first_is_a = vi_lt(a_turn, b_turn);
-    vm rises = v_lt(
-        cross(v_sub(b_x, a_x), v_sub(b_y, a_y), v_select(first_is_a, a_nx, b_nx), v_select(first_is_a, a_ny, b_ny)),
-        v_set(0));
+    vm is_a = vi_lt(a_turn, b_turn);
+    vf lo_x = v_select(is_a, a.end_x, b.end_x), lo_y = v_select(is_a, a.end_y, b.end_y);
+    vm rises = v_lt(cross(v_sub(b.x, a.x), v_sub(b.y, a.y), lo_x, lo_y), v_set(0));
     vf first_value = v_set(0);
     for (int step = 0;; step++) {
         vm active = vm_and(live, vi_lt(vi_set(step), steps));
@@ -175,39 +194,27 @@ static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, s
         if (!vm_any(active))
             break;
 
-        /* Pass the nearer of the two junctions ahead: it is lo, and its arc takes over. */
-        const vm is_a = vi_lt(a_turn, b_turn);
-        const vf lo_x = v_select(is_a, a_nx, b_nx), lo_y = v_select(is_a, a_ny, b_ny);
-        const vi passed = vi_select(is_a, a.at, b.at);
-        const vf x = field(o, CENTER_X, passed), y = field(o, CENTER_Y, passed), r = field(o, RADIUS, passed);
-        a_x = v_select(is_a, x, a_x);
-        a_y = v_select(is_a, y, a_y);
-        a_r = v_select(is_a, r, a_r);
-        b_x = v_select(is_a, b_x, x);
-        b_y = v_select(is_a, b_y, y);
-        b_r = v_select(is_a, b_r, r);
-        arc_a = vi_select(is_a, passed, arc_a);
-        arc_b = vi_select(is_a, arc_b, passed);
-
-        /* The junction ahead of it on that shape, a turn later where the list begins anew. */
-        const vi next_a = next_slot(a, a.at), next_b = next_slot(b, b.at);
-        const vi ahead = vi_select(is_a, next_a, next_b);
-        const vf n_x = field(o, NORMAL_X, ahead), n_y = field(o, NORMAL_Y, ahead);
-        const vi next_turn = vi_bits(field(o, TURN, ahead)), turn = vi_add(next_turn, this_turn);
+        /* Pass the nearer of the two junctions ahead, lo: the arc that starts there takes over. The junction ahead of it
+         * on that shape comes a turn later where the list begins anew. */
+        const vi passed = vi_select(is_a, step_record(ring_a, record_a, forward_one), step_record(ring_b, record_b, forward_one));
+        vf row[8];
+        vi_store(lanes, passed);
+        load_records(records, lanes, row);
+        const struct arcs new_a = place_a(row, &pose), new_b = place_b(row, &pose);
+        a = select_arcs(is_a, &new_a, &a);
+        b = select_arcs(is_a, &b, &new_b);
+        record_a = vi_select(is_a, passed, record_a);
+        record_b = vi_select(is_a, record_b, passed);
+        const vi next_turn = vi_bits(turn_of(v_select(is_a, a.end_x, b.end_x), v_select(is_a, a.end_y, b.end_y)));
+        const vi turn = vi_add(next_turn, this_turn);
         const vi later = vi_select(vi_lt(turn, vi_select(is_a, a_turn, b_turn)), next_turn, turn);
-        a.at = vi_select(is_a, ahead, a.at);
-        b.at = vi_select(is_a, b.at, ahead);
         a_turn = vi_select(is_a, later, a_turn);
-        a_nx = v_select(is_a, n_x, a_nx);
-        a_ny = v_select(is_a, n_y, a_ny);
         b_turn = vi_select(is_a, b_turn, later);
-        b_nx = v_select(is_a, b_nx, n_x);
-        b_ny = v_select(is_a, b_ny, n_y);
-        const vm hi_is_a = vi_lt(a_turn, b_turn);
-        const vf hi_x = v_select(hi_is_a, a_nx, b_nx), hi_y = v_select(hi_is_a, a_ny, b_ny);
+        is_a = vi_lt(a_turn, b_turn);
+        const vf hi_x = v_select(is_a, a.end_x, b.end_x), hi_y = v_select(is_a, a.end_y, b.end_y);
 
         /* The largest g at lo or between lo and hi, if there is a local maximum. */
-        const vf u_x = v_sub(b_x, a_x), u_y = v_sub(b_y, a_y);
+        const vf u_x = v_sub(b.x, a.x), u_y = v_sub(b.y, a.y);
         const vf u2 = dot(u_x, u_y, u_x, u_y);
         const vf after_lo = cross(lo_x, lo_y, u_x, u_y), before_hi = cross(u_x, u_y, hi_x, hi_y);
         const vf along_lo = dot(u_x, u_y, lo_x, lo_y), along_hi = dot(u_x, u_y, hi_x, hi_y);
@@ -219,68 +226,29 @@ static inline struct gap overlay_gap(const struct overlay *o, struct cursor a, s
         const vm kink = vm_and(rises, v_lt(after_lo, v_set(0)));
         const vm forward = vm_or(wide, v_lt(v_set(0), v_add(along_lo, along_hi)));
         const vm inside = vm_and(between, vm_and(forward, v_le(tiny, u2)));
-        const vf length = v_sqrt(u2);
-        const vf value = v_sub(v_select(inside, length, along_lo), v_add(a_r, b_r));
+        const vf length = v_sqrt(u2), radii = v_add(a.radius, b.radius);
+        const vf value = v_sub(v_select(inside, length, along_lo), radii);
         const vm better = vm_and(vm_and(active, vm_or(between, kink)), v_lt(best.separation, value));
         rises = v_lt(before_hi, v_set(0));
         if (step == 0) {
-            first_value = v_sub(along_lo, v_add(a_r, b_r));
+            first_value = v_sub(along_lo, radii);
             best.n_x = lo_x;
             best.n_y = lo_y;
-            best.arc_a = arc_a;
-            best.arc_b = arc_b;
+            best.record_a = record_a;
+            best.record_b = record_b;
         }
         best.separation = v_select(better, value, best.separation);
         if (contact) {
             best.n_x = v_select(better, v_select(inside, u_x, lo_x), best.n_x);
             best.n_y = v_select(better, v_select(inside, u_y, lo_y), best.n_y);
             best.n_length = v_select(better, v_select(inside, length, v_set(1)), best.n_length);
-            best.arc_a = vi_select(better, arc_a, best.arc_a);
-            best.arc_b = vi_select(better, arc_b, best.arc_b);
+            best.record_a = vi_select(better, record_a, best.record_a);
+            best.record_b = vi_select(better, record_b, best.record_b);
         }
+        lo_x = hi_x;
+        lo_y = hi_y;
     }
     const vm none = v_lt(best.separation, v_set(-FLT_MAX));
     best.separation = v_select(none, first_value, best.separation);
     return best;
-}
-
-/* Lays out the pairs k ... of a queue; the cursors stand at the first junctions counter-clockwise from +x. */
-static void place_pairs(struct overlay *o, const narc_shapes *shapes, const struct queue *q, int k,
-                               struct cursor *out_a, struct cursor *out_b, vi *out_steps) {
-    const vi count_a = head_count(get_bits(q, BYTES_A, k)), count_b = head_count(get_bits(q, BYTES_B, k));
-    const vi record_a = first_record(get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k));
-    const vi record_b = first_record(get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k));
-    const vf scale_a = get(q, SCALE_A, k);
-    const struct pose pose = get_pose(q, k);
-    const int most_a = max_lane(count_a), most_b = max_lane(count_b);
-    vi at = vi_lanes(), end = at;
-    for (int i = 0; i < most_a; i++) {
-        const vm exists = vi_lt(vi_set(i), count_a);
-        int32_t record[V_WIDTH];
-        vi_store(record, vi_add(record_a, vi_select(exists, vi_set(i), vi_set(0))));
-        const struct arcs arcs = load_arcs_a(shapes->records, record, scale_a);
-        put_slot(o, i, &arcs, turn_of(arcs.start_x, arcs.start_y));
-        at = vi_add(at, vi_set(SLOT));
-        end = vi_select(exists, at, end);
-    }
-    *out_a = (struct cursor){vi_lanes(), vi_lanes(), end};
-
-    at = vi_add(vi_set(most_a * SLOT), vi_lanes());
-    struct cursor c = {at, at, at};
-    vf first_turn = v_set(INFINITY);
-    for (int i = 0; i < most_b; i++) {
-        const vm exists = vi_lt(vi_set(i), count_b);
-        int32_t record[V_WIDTH];
-        vi_store(record, vi_add(record_b, vi_select(exists, vi_set(i), vi_set(0))));
-        const struct arcs arcs = load_arcs_b(shapes->records, record, &pose);
-        const vf turn = turn_of(arcs.start_x, arcs.start_y);
-        put_slot(o, most_a + i, &arcs, turn);
-        const vm earlier = vm_and(exists, v_lt(turn, first_turn));
-        first_turn = v_select(earlier, turn, first_turn);
-        c.at = vi_select(earlier, at, c.at);
-        at = vi_add(at, vi_set(SLOT));
-        c.end = vi_select(exists, at, c.end);
-    }
-    *out_b = c;
-    *out_steps = vi_add(count_a, count_b);
 }

@@ -62,10 +62,12 @@ INLINE void push(struct queue *q, vm keep, const vf *item, int fields) {
     q->count = at + __builtin_popcount(vm_bits(keep));
 }
 
-/* The last vector of a queue may have lanes behind the last pair: harmless ones, shape 0 at the origin. */
+/* The last vector of a queue may have lanes behind the last pair: harmless ones, with one arc, the first of all. */
 static void pad(struct queue *q) {
     for (int f = 0; f < FIELDS; f++)
         v_store(q->item[f] + q->count, v_set(0));
+    v_store(q->item[BYTES_A] + q->count, v_of_bits(vi_set(1)));
+    v_store(q->item[BYTES_B] + q->count, v_of_bits(vi_set(1)));
 }
 
 /* How the bodies' columns lie: if x, y, cosine and sine follow each other, four floats are read at once. */

@@ -67,15 +67,15 @@ struct verdict { vm apart, hit; vf u_x, u_y; };
 /* One look along a direction (any length) */
 INLINE struct verdict glance(const narc_shapes *shapes, const struct queue *q, int k, int x, float margin, bool contact) {
     const struct pose p = get_pose(q, k);
-    const vf scale_a = get(q, SCALE_A, k), n_x = get(q, x, k), n_y = get(q, x + 1, k);
+    const vf scale_a = p.scale_a, n_x = get(q, x, k), n_y = get(q, x + 1, k);
     vf a[4], b[4];
     load_circles(shapes->records, q->record_a + k, a);
     load_circles(shapes->records, q->record_b + k, b);
     const vf b_x = v_sub(v_mul(p.q_c, b[0]), v_mul(p.q_s, b[1])), b_y = v_add(v_mul(p.q_s, b[0]), v_mul(p.q_c, b[1]));
     struct verdict v;
-    v.u_x = v_sub(v_add(p.t_x, v_mul(p.scale, b_x)), v_mul(scale_a, a[0]));
-    v.u_y = v_sub(v_add(p.t_y, v_mul(p.scale, b_y)), v_mul(scale_a, a[1]));
-    const vf radii = v_add(v_mul(scale_a, a[2]), v_mul(p.scale, b[2]));
+    v.u_x = v_sub(v_add(p.t_x, v_mul(p.scale_b, b_x)), v_mul(scale_a, a[0]));
+    v.u_y = v_sub(v_add(p.t_y, v_mul(p.scale_b, b_y)), v_mul(scale_a, a[1]));
+    const vf radii = v_add(v_mul(scale_a, a[2]), v_mul(p.scale_b, b[2]));
     const vf length = v_sqrt(dot(n_x, n_y, n_x, n_y));
     const vf slack = get(q, SLACK, k);
     /* All times length. */
@@ -121,34 +121,14 @@ struct peak {
     vi record_a, record_b;    /* of the arcs after it */
 };
 
-INLINE struct arcs select_arcs(vm m, const struct arcs *a, const struct arcs *b) {
-    return (struct arcs){v_select(m, a->x, b->x),
-                         v_select(m, a->y, b->y),
-                         v_select(m, a->radius, b->radius),
-                         v_select(m, a->inner, b->inner),
-                         v_select(m, a->start_x, b->start_x),
-                         v_select(m, a->start_y, b->start_y),
-                         v_select(m, a->end_x, b->end_x),
-                         v_select(m, a->end_y, b->end_y)};
-}
-
 INLINE struct couple select_couple(vm m, const struct couple *a, const struct couple *b) {
     return (struct couple){select_arcs(m, &a->a, &b->a), select_arcs(m, &a->b, &b->b)};
 }
 
-/* The number of a record after a step of -1, 0 or 1 along the ring of its shape's arcs. */
-INLINE vi step_record(vi record, vi step, vi first, vi count) {
-    const vi end = vi_add(first, count), next = vi_add(record, step);
-    const vi low = vi_select(vi_lt(next, first), vi_sub(end, vi_set(1)), next);
-    return vi_select(vi_lt(low, end), low, first);
-}
-
 INLINE struct peak climb(const narc_shapes *shapes, const struct queue *q, int k, vm live, int steps) {
-    const vf zero = v_set(0), tiny = v_set(0x1p-126f), scale_a = get(q, SCALE_A, k);
+    const vf zero = v_set(0), tiny = v_set(0x1p-126f);
     const struct pose pose = get_pose(q, k);
-    const vi bytes_a = get_bits(q, BYTES_A, k), bytes_b = get_bits(q, BYTES_B, k);
-    const vi first_a = first_record(get_bits(q, BLOCK_A, k), bytes_a), count_a = head_count(bytes_a);
-    const vi first_b = first_record(get_bits(q, BLOCK_B, k), bytes_b), count_b = head_count(bytes_b);
+    const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
     const vm none = vm_first(0);
     vi record_a = vi_load(q->record_a + k);
     vi record_b = vi_load(q->record_b + k);
@@ -161,7 +141,7 @@ INLINE struct peak climb(const narc_shapes *shapes, const struct queue *q, int k
         int32_t lanes_a[V_WIDTH], lanes_b[V_WIDTH];
         vi_store(lanes_a, record_a);
         vi_store(lanes_b, record_b);
-        now.a = load_arcs_a(shapes->records, lanes_a, scale_a);
+        now.a = load_arcs_a(shapes->records, lanes_a, &pose);
         now.b = load_arcs_b(shapes->records, lanes_b, &pose);
         if (step == 0)
             last = now;
@@ -202,8 +182,8 @@ INLINE struct peak climb(const narc_shapes *shapes, const struct queue *q, int k
         was_down = vm_and_not(down, up);
         moved_a = vm_or(vm_and(was_up, hi_is_a), vm_and(was_down, lo_is_a));
         const vi step_by = vi_select(was_up, vi_set(1), vi_select(was_down, vi_set(-1), vi_set(0)));
-        record_a = step_record(record_a, vi_select(moved_a, step_by, vi_set(0)), first_a, count_a);
-        record_b = step_record(record_b, vi_select(moved_a, vi_set(0), step_by), first_b, count_b);
+        record_a = step_record(ring_a, record_a, vi_select(moved_a, step_by, vi_set(0)));
+        record_b = step_record(ring_b, record_b, vi_select(moved_a, vi_set(0), step_by));
     }
     return peak;
 }
