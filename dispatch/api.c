@@ -74,7 +74,7 @@ static narc_status check_batch(const narc_batch *batch, size_t first, size_t cou
 
 narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                unsigned threads, uint64_t *out_bits, narc_error *error) {
-    const narc_batch batch = {shapes, bodies, pairs};
+    const narc_batch batch = {shapes, bodies, pairs, NULL};
     const narc_kernel_table *kernels = NULL;
     const narc_status status = check_batch(&batch, 0, pairs ? pairs->count : 0, threads, &kernels, error);
     if (status != NARC_OK)
@@ -87,7 +87,7 @@ narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bod
 
 narc_status narc_find_overlaps_range(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                      size_t first, size_t count, uint64_t *out_bits, narc_error *error) {
-    const narc_batch batch = {shapes, bodies, pairs};
+    const narc_batch batch = {shapes, bodies, pairs, NULL};
     const narc_kernel_table *kernels = NULL;
     const narc_status status = check_batch(&batch, first, count, 1, &kernels, error);
     if (status != NARC_OK)
@@ -123,14 +123,23 @@ static narc_status find_contacts(const narc_batch *batch, size_t first, size_t c
 narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                float margin, unsigned threads, const narc_contacts *out_contacts, size_t *out_count,
                                narc_error *error) {
-    const narc_batch batch = {shapes, bodies, pairs};
+    const narc_batch batch = {shapes, bodies, pairs, NULL};
+    return find_contacts(&batch, 0, pairs ? pairs->count : 0, margin, threads, out_contacts, out_count, error);
+}
+
+narc_status narc_find_contacts_hinted(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                      float margin, unsigned threads, uint32_t *hints,
+                                      const narc_contacts *out_contacts, size_t *out_count, narc_error *error) {
+    const narc_batch batch = {shapes, bodies, pairs, hints};
+    if (!hints && pairs && pairs->count > 0)
+        return missing(error, "hints");
     return find_contacts(&batch, 0, pairs ? pairs->count : 0, margin, threads, out_contacts, out_count, error);
 }
 
 narc_status narc_find_contacts_range(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                      size_t first, size_t count, float margin, const narc_contacts *out_contacts,
                                      size_t *out_count, narc_error *error) {
-    const narc_batch batch = {shapes, bodies, pairs};
+    const narc_batch batch = {shapes, bodies, pairs, NULL};
     return find_contacts(&batch, first, count, margin, 1, out_contacts, out_count, error);
 }
 

@@ -64,10 +64,24 @@ enum { SEPARATION, CONTACT_NORMAL_X, CONTACT_NORMAL_Y, POINT_X, POINT_Y, ARCS, R
 
 enum { GROUP = 1024 };
 
+/* The last of each array is for lanes that are of no use. */
 struct results {
     uint8_t keep[GROUP + 1];
-    float row[GROUP + 1][ROW]; /* the last is for lanes that are of no use */
+    float row[GROUP + 1][ROW];
+    bool hinted; /* are hints wanted? */
+    uint32_t hint[GROUP + 1];
 };
+
+/* Leaves a hint for the pairs k ... of a queue, of those lanes that `ended` says. */
+INLINE void leave_hints(const struct queue *q, int k, vm ended, vi record_a, vi record_b, struct results *out) {
+    int32_t place[V_WIDTH], hint[V_WIDTH];
+    if (!out->hinted)
+        return;
+    vi_store(place, vi_select(ended, get_bits(q, PAIR, k), vi_set(GROUP)));
+    vi_store(hint, hint_of(q, k, record_a, record_b));
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        out->hint[place[lane]] = (uint32_t)hint[lane];
+}
 
 /* The caller's number of an arc from its record; a circle's two halves are both arc 0. */
 INLINE vi arc_number(vi record, vi block, vi bytes) {
@@ -117,6 +131,7 @@ static void decide_contacts(const narc_shapes *shapes, struct queue *rest, int c
         const int k = rest->count + i;
         const vm live = vm_first(count - i);
         const struct gap gap = overlay_gap(shapes, rest, k, live, true);
+        leave_hints(rest, k, live, gap.record_a, gap.record_b, out);
         const vm keep = margin == INFINITY ? live : v_lt(gap.separation, v_set(margin));
         if (!vm_any(keep))
             continue;
@@ -151,7 +166,7 @@ INLINE vm side_is_clear(vf edge, const struct couple *c, vf sine_a, vf sine_b, v
 
 /* Contacts by climbing; those undecided go to `rest`. */
 static void settle_contacts(const narc_shapes *shapes, struct queue *q, int first, float margin, struct queue *rest, struct results *out) {
-    look_up(shapes, q, first, DIRECTION_X);
+    look_up(shapes, q, first, DIRECTION_X, false);
     for (int k = first; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
         const struct peak peak = climb(shapes, q, k, live, STEPS);
@@ -196,6 +211,7 @@ static void settle_contacts(const narc_shapes *shapes, struct queue *q, int firs
         sure = vm_or(sure, vm_and(found, vm_and_not(round, peak.kink)));
         sure = vm_and_not(sure, apart);
 
+        leave_hints(q, k, vm_and(live, vm_or(apart, sure)), peak.record_a, peak.record_b, out);
         const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
         if (vm_any(keep)) {
             const struct touch on_a = touch_at(&peak.after.a, &peak.before.a, n_x, n_y, 1, peak.record_a);
@@ -214,8 +230,10 @@ static void settle_contacts(const narc_shapes *shapes, struct queue *q, int firs
 
 /* Contacts that the arcs along a direction tell at once; the others, but for those that are apart, go to `near` with the
  * direction to search on in. */
-INLINE void look(const narc_shapes *shapes, struct queue *q, int first, int x, float margin, struct queue *near, struct results *out) {
-    look_up(shapes, q, first, x);
+INLINE void look(const narc_shapes *shapes, struct queue *q, int first, int x, bool hints, float margin, struct queue *near, struct results *out) {
+    if (hints)
+        look_up_hints(q, out->hint);
+    look_up(shapes, q, first, x, hints);
     for (int k = first; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
         const struct pose pose = get_pose(q, k);
@@ -238,12 +256,15 @@ INLINE void look(const narc_shapes *shapes, struct queue *q, int first, int x, f
         vm inside = v_lt(least, in);
         /* g along the axis, times its length: squares */
         const vf reach = v_add(v_add(radii, limit), v_mul(v_select(smooth, v_set(0), v_set(63)), slack));
-        const vm apart = vm_or(vm_and(inside, v_le(limit, separation)),
-                               vm_and(vm_and(v_lt(v_set(0), gap), v_lt(v_set(0), reach)), v_lt(v_mul(v_mul(reach, reach), d2), v_mul(gap, gap))));
+        vm beyond = vm_and(vm_and(v_lt(v_set(0), gap), v_lt(v_set(0), reach)), v_lt(v_mul(v_mul(reach, reach), d2), v_mul(gap, gap)));
+        if (hints)
+            beyond = vm_and_not(beyond, vi_lt(vi_set(0), vi_load(q->hinted + k)));
+        const vm far = vm_and(inside, v_le(limit, separation)), apart = vm_or(far, beyond);
         const vf inner = v_add(v_add(a.inner, b.inner), separation);
         const vm clear = vm_and(v_lt(v_mul(v_set(256), slack), inner), v_lt(v_mul(slack, length), v_mul(inner, in)));
         const vm sure = vm_and_not(vm_and(vm_and(live, inside), clear), apart);
 
+        leave_hints(q, k, vm_and(live, vm_or(far, sure)), vi_load(q->record_a + k), vi_load(q->record_b + k), out);
         const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
         if (vm_any(keep)) {
             const vf n_x = v_div(u_x, length), n_y = v_div(u_y, length);
@@ -304,6 +325,7 @@ static size_t list_contacts(const struct results *results, int count, size_t fir
 }
 
 static size_t contact(const narc_batch *batch, size_t first, size_t count, float margin, const narc_contacts *out) {
+    uint32_t *const hints = batch->hints;
     const bool rows = poses_are_rows(batch->bodies), every = margin == INFINITY;
     struct pair_indices indices;
     struct queue fresh, again, near, rest;
@@ -313,6 +335,9 @@ static size_t contact(const narc_batch *batch, size_t first, size_t count, float
     for (size_t done = 0; done < count; done += GROUP) {
         const int in_group = (int)(count - done < GROUP ? count - done : GROUP);
         memset(results.keep, 0, sizeof results.keep);
+        results.hinted = hints != NULL;
+        if (hints)
+            memcpy(results.hint, hints + first + done, (size_t)in_group * sizeof *hints);
         for (int start = 0; start < in_group; start += BLOCK) {
             const int n = in_group - start < BLOCK ? in_group - start : BLOCK;
             load_indices(batch, first + done + (size_t)start, n, &indices);
@@ -329,20 +354,25 @@ static size_t contact(const narc_batch *batch, size_t first, size_t count, float
                 push(&fresh, vm_and_not(f.valid, f.apart), item, SINE_A + 1);
             }
             pad(&fresh);
-            look(batch->shapes, &fresh, 0, AXIS_X, margin, &again, &results);
+            if (hints)
+                look(batch->shapes, &fresh, 0, AXIS_X, true, margin, &again, &results);
+            else
+                look(batch->shapes, &fresh, 0, AXIS_X, false, margin, &again, &results);
             if (again.count >= FLUSH)
-                look(batch->shapes, &again, again.count % V_WIDTH, DIRECTION_X, margin, &near, &results);
+                look(batch->shapes, &again, again.count % V_WIDTH, DIRECTION_X, false, margin, &near, &results);
             if (near.count >= FLUSH)
                 settle_contacts(batch->shapes, &near, near.count % V_WIDTH, margin, &rest, &results);
             if (rest.count >= FLUSH)
                 decide_contacts(batch->shapes, &rest, rest.count / V_WIDTH * V_WIDTH, margin, &results);
         }
         pad(&again);
-        look(batch->shapes, &again, 0, DIRECTION_X, margin, &near, &results);
+        look(batch->shapes, &again, 0, DIRECTION_X, false, margin, &near, &results);
         pad(&near);
         settle_contacts(batch->shapes, &near, 0, margin, &rest, &results);
         pad(&rest);
         decide_contacts(batch->shapes, &rest, rest.count, margin, &results);
+        if (hints)
+            memcpy(hints + first + done, results.hint, (size_t)in_group * sizeof *hints);
         total += list_contacts(&results, in_group, first + done, out, total);
     }
     return total;

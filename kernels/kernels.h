@@ -14,6 +14,7 @@ typedef struct narc_batch {
     const narc_shapes *shapes;
     const narc_bodies *bodies;
     const narc_pairs *pairs;
+    uint32_t *hints; /* one for each pair, in and out; may be NULL */
 } narc_batch;
 
 typedef struct narc_kernel_table {

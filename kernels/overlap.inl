@@ -16,7 +16,7 @@ static void decide_overlaps(const narc_shapes *shapes, struct queue *rest, int c
 
 /* Looks at the last pairs of a queue along a direction; those undecided go to `rest`, the others out. */
 INLINE void settle(const narc_shapes *shapes, struct queue *q, int first, int x, struct queue *rest, uint64_t *out_bits) {
-    look_up(shapes, q, first, x);
+    look_up(shapes, q, first, x, false);
     for (int k = first; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
         const struct verdict v = glance(shapes, q, k, x, 0, false);

@@ -45,7 +45,8 @@ enum {
 struct queue {
     int count;
     float item[FIELDS][CAPACITY];
-    int32_t record_a[CAPACITY], record_b[CAPACITY];
+    int32_t record_a[CAPACITY], record_b[CAPACITY]; /* not packed: written and read while the queue stands still */
+    int32_t hinted[CAPACITY];
 };
 
 INLINE vf get(const struct queue *q, int field, int k) { return v_load(q->item[field] + k); }

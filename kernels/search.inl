@@ -50,15 +50,44 @@ INLINE void mark(vi pairs, vm hits, uint64_t *out_bits) {
 }
 
 /* The records of the arcs that hold a direction (fields `x` and x + 1), for the pairs first ... of a queue. */
-INLINE void look_up(const narc_shapes *shapes, struct queue *q, int first, int x) {
+INLINE void look_up(const narc_shapes *shapes, struct queue *q, int first, int x, bool hints) {
     for (int k = first; k < q->count; k += V_WIDTH) {
+        const vm hinted = hints ? vi_lt(vi_set(0), vi_load(q->hinted + k)) : vm_first(0);
+        if (hints && vm_bits(hinted) == vm_bits(vm_first(V_WIDTH)))
+            continue;
         const vf q_c = get(q, Q_C, k), q_s = get(q, Q_S, k), n_x = get(q, x, k), n_y = get(q, x + 1, k);
         const vi record_a = find_records(shapes, get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k), n_x, n_y);
         const vi record_b = find_records(shapes, get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k),
                                          v_neg(v_add(v_mul(q_c, n_x), v_mul(q_s, n_y))),
                                          v_sub(v_mul(q_s, n_x), v_mul(q_c, n_y)));
-        vi_store(q->record_a + k, record_a);
-        vi_store(q->record_b + k, record_b);
+        vi_store(q->record_a + k, hints ? vi_select(hinted, vi_load(q->record_a + k), record_a) : record_a);
+        vi_store(q->record_b + k, hints ? vi_select(hinted, vi_load(q->record_b + k), record_b) : record_b);
+    }
+}
+
+/* A hint for the next call: the arcs of A and B at which the last one ended, counted from 1 in the order of the store. Any
+ * other value means none. */
+INLINE vi hint_of(const struct queue *q, int k, vi record_a, vi record_b) {
+    const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
+    const vi a = vi_sub(record_a, ring_a.first), b = vi_sub(record_b, ring_b.first), one = vi_set(1);
+    return vi_add(vi_add(a, one), vi_shift_left(vi_add(b, one), 8));
+}
+
+/* Replaces what look_up() found by what the hints say, in lanes where they name arcs that exist. */
+INLINE void look_up_hints(struct queue *q, const uint32_t *hints) {
+    for (int k = 0; k < q->count; k += V_WIDTH) {
+        const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
+        int32_t pair[V_WIDTH], lane[V_WIDTH];
+        vi_store(pair, get_bits(q, PAIR, k));
+        for (int l = 0; l < V_WIDTH; l++)
+            lane[l] = (int32_t)hints[pair[l]];
+        const vi hint = vi_load(lane), low = vi_set(0xff);
+        const vi a = vi_sub(vi_and(hint, low), vi_set(1)), b = vi_sub(vi_shift_right(hint, 8), vi_set(1));
+        const vi none = vi_set(-1);
+        const vm exists = vm_and(vm_and(vi_lt(none, a), vi_lt(a, ring_a.count)), vm_and(vi_lt(none, b), vi_lt(b, ring_b.count)));
+        vi_store(q->record_a + k, vi_add(ring_a.first, vi_select(exists, a, vi_set(0))));
+        vi_store(q->record_b + k, vi_add(ring_b.first, vi_select(exists, b, vi_set(0))));
+        vi_store(q->hinted + k, vi_select(exists, vi_set(1), vi_set(0)));
     }
 }
 
