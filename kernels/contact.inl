@@ -152,14 +152,17 @@ INLINE struct touch touch_at(const struct arcs *after, const struct arcs *before
 }
 
 /* Is a side clear */
-INLINE vm side_is_clear(vf edge, const struct couple *c, vf sine_a, vf sine_b, vf depth, vf chord, vf cosine, vf slack, vm kink) {
+INLINE vm side_is_clear(vf edge, const struct couple *c, vf sine_a, vf sine_b, vf depth, vf cosine, vf slack, vm kink) {
+    const vf chord2 = v_sub(v_set(2.0001f), v_add(cosine, cosine)), chord = v_sqrt(v_max(chord2, v_set(0)));
     const vf near = v_min(sine_a, sine_b), inner = v_add(c->a.inner, c->b.inner);
-    const vf sum_a = v_max(v_mul(c->a.inner, chord), v_mul(c->a.radius, v_min(chord, sine_a)));
-    const vf sum_b = v_max(v_mul(c->b.inner, chord), v_mul(c->b.radius, v_min(chord, sine_b)));
-    const vf sum = v_sub(v_add(v_mul(edge, cosine), v_add(sum_a, sum_b)), v_mul(depth, chord));
+    const vm in_window = v_le(chord2, v_set(1));
+    const vf near_a = v_select(in_window, c->a.near, v_set(0)), near_b = v_select(in_window, c->b.near, v_set(0));
+    const vf sum_a = v_max(v_mul(c->a.inner, chord), v_add(v_mul(near_a, chord), v_mul(v_sub(c->a.radius, near_a), v_min(chord, sine_a))));
+    const vf sum_b = v_max(v_mul(c->b.inner, chord), v_add(v_mul(near_b, chord), v_mul(v_sub(c->b.radius, near_b), v_min(chord, sine_b))));
+    const vf sum = v_sub(v_add(v_mul(edge, v_sub(v_set(1.999f), v_mul(v_set(0.5f), chord2))), v_add(sum_a, sum_b)), v_mul(depth, chord));
     const vm square = v_lt(v_mul(v_mul(v_set(2), slack), chord), v_mul(sum, v_mul(near, near)));
     const vm linear = vm_and(v_lt(slack, v_mul(v_sub(inner, depth), near)), v_lt(v_mul(v_mul(v_set(256), slack), chord), sum));
-    const vm clear = vm_and(v_le(v_set(0x1p-12f), near), vm_or(square, linear));
+    const vm clear = vm_and(vm_and(v_le(v_set(-0.49f), cosine), v_le(v_set(0x1p-12f), near)), vm_or(square, linear));
     const vm edge_is_clear = vm_or(vm_and_not(vm_first(V_WIDTH), kink), v_lt(slack, edge));
     return vm_and(clear, edge_is_clear);
 }
@@ -192,12 +195,10 @@ static void settle_contacts(const narc_shapes *shapes, struct queue *q, int firs
         const vf axis2 = dot(axis_x, axis_y, axis_x, axis_y), axis_length = v_sqrt(axis2);
         const vf fan = v_min(axis_length, v_sub(v_add(core, separation), slack));
         const vf fan_across = v_sqrt(v_max(v_set(0), v_sub(axis2, v_mul(fan, fan))));
-        const vf along = dot(axis_x, axis_y, n_x, n_y), across = v_abs(cross(axis_x, axis_y, n_x, n_y));
-        const vf cosine = v_div(v_sub(v_mul(fan, along), v_mul(fan_across, across)), axis2);
-        vm narrow = vm_and(v_lt(v_set(0), along), v_le(v_mul(v_set(-0.5f), axis_length), fan));
-        narrow = vm_and(narrow, v_le(v_set(-0.49f), cosine));
-        const vf chord2 = v_sub(v_set(2.0001f), v_add(cosine, cosine)), chord = v_sqrt(v_max(chord2, v_set(0)));
-        const vf half_cosine = v_sub(v_set(1.999f), v_mul(v_set(0.5f), chord2));
+        const vf along = dot(axis_x, axis_y, n_x, n_y), across = cross(axis_x, axis_y, n_x, n_y);
+        const vf even = v_mul(fan, along), odd = v_mul(fan_across, across);
+        const vm narrow = vm_and(v_lt(v_set(0), along), v_le(v_mul(v_set(-0.5f), axis_length), fan));
+        const vf cosine_after = v_div(v_add(even, odd), axis2), cosine_before = v_div(v_sub(even, odd), axis2);
         const vf depth = v_neg(separation);
         const vf before_x = v_sub(peak.before.b.x, peak.before.a.x), before_y = v_sub(peak.before.b.y, peak.before.a.y);
         const vf edge_after = v_select(peak.kink, cross(u_x, u_y, n_x, n_y), v_set(0));
@@ -206,8 +207,8 @@ static void settle_contacts(const narc_shapes *shapes, struct queue *q, int firs
         const vf in = v_min(v_min(start_a, end_a), v_min(start_b, end_b));
         const vm round = vm_and(vm_and(v_lt(v_mul(v_set(256), slack), inner), v_lt(slack, v_mul(inner, in))), v_le(v_set(0x1p-12f), in));
         vm sure = vm_and(found, narrow);
-        sure = vm_and(sure, side_is_clear(edge_after, &peak.after, end_a, end_b, depth, chord, half_cosine, slack, peak.kink));
-        sure = vm_and(sure, side_is_clear(edge_before, &peak.before, start_a, start_b, depth, chord, half_cosine, slack, peak.kink));
+        sure = vm_and(sure, side_is_clear(edge_after, &peak.after, end_a, end_b, depth, cosine_after, slack, peak.kink));
+        sure = vm_and(sure, side_is_clear(edge_before, &peak.before, start_a, start_b, depth, cosine_before, slack, peak.kink));
         sure = vm_or(sure, vm_and(found, vm_and_not(round, peak.kink)));
         sure = vm_and_not(sure, apart);
 

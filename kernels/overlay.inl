@@ -55,7 +55,7 @@ INLINE vf dot(vf a_x, vf a_y, vf b_x, vf b_y) { return v_add(v_mul(a_x, b_x), v_
 
 /* An arc in each lane, in A's frame at world scale, normals from A to B: those of B point the other way. */
 struct arcs {
-    vf x, y, radius, inner;
+    vf x, y, radius, inner, near; /* the last two: store.h */
     vf start_x, start_y, end_x, end_y;
 };
 
@@ -74,9 +74,14 @@ INLINE void load_records(const narc_record *records, const int32_t *record, vf r
     v_rows(&records->arc.start_x, sizeof *records, record, row + 4);
 }
 
+/* Two floats that lack their lower halves, in one. */
+INLINE vf upper_half(vf two) { return v_of_bits(vi_and(vi_bits(two), vi_set((int32_t)0xffff0000u))); }
+
+INLINE vf lower_half(vf two) { return v_of_bits(vi_shift_left(vi_bits(two), 16)); }
+
 INLINE struct arcs place_a(const vf row[8], const struct pose *p) {
     return (struct arcs){v_mul(row[0], p->scale_a), v_mul(row[1], p->scale_a), v_mul(row[2], p->scale_a),
-                         v_mul(row[3], p->scale_a), row[4], row[5], row[6], row[7]};
+                         v_mul(upper_half(row[3]), p->scale_a), v_mul(lower_half(row[3]), p->scale_a), row[4], row[5], row[6], row[7]};
 }
 
 INLINE struct arcs place_b(const vf row[8], const struct pose *p) {
@@ -85,7 +90,8 @@ INLINE struct arcs place_b(const vf row[8], const struct pose *p) {
     return (struct arcs){v_add(p->t_x, v_mul(x, p->scale_b)),
                          v_add(p->t_y, v_mul(y, p->scale_b)),
                          v_mul(row[2], p->scale_b),
-                         v_mul(row[3], p->scale_b),
+                         v_mul(upper_half(row[3]), p->scale_b),
+                         v_mul(lower_half(row[3]), p->scale_b),
                          v_sub(v_mul(p->q_s, row[5]), v_mul(p->q_c, row[4])),
                          v_neg(v_add(v_mul(p->q_s, row[4]), v_mul(p->q_c, row[5]))),
                          v_sub(v_mul(p->q_s, row[7]), v_mul(p->q_c, row[6])),
@@ -110,6 +116,7 @@ INLINE struct arcs select_arcs(vm m, const struct arcs *a, const struct arcs *b)
                          v_select(m, a->y, b->y),
                          v_select(m, a->radius, b->radius),
                          v_select(m, a->inner, b->inner),
+                         v_select(m, a->near, b->near),
                          v_select(m, a->start_x, b->start_x),
                          v_select(m, a->start_y, b->start_y),
                          v_select(m, a->end_x, b->end_x),

@@ -133,7 +133,7 @@ INLINE void get_item(const struct queue *q, int k, vf item[FIELDS]) {
 /* ---------------------------------------------------------------------------------------------- local maxima */
 
 /* Steps of a climb */
-enum { STEPS = 5 };
+enum { STEPS = 8 };
 
 /* An arc of A and one of B in each lane. */
 struct couple {

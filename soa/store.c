@@ -176,13 +176,13 @@ static float find_turn(float x, float y) {
     return 0 <= y ? 1 - p : 3 + p;
 }
 
-/* The smallest radius of the arcs around arc `arc`, see narc_record. Those that begin just outside the window count,
- * too, against rounding. */
-static double find_least_radius(const narc_outline *o, size_t arc) {
+/* The smallest radius of the arcs that hold a direction within `window` of one of arc `arc`. Those that begin just
+ * outside the window count, too, against rounding. */
+static double find_least_radius(const narc_outline *o, size_t arc, double window) {
     double least = o->radius[arc];
     for (int side = 0; side < 2; side++) {
         double angle = 0;
-        for (size_t k = 1; k < o->count && angle <= NARC_INNER_WINDOW + NARC_TOLERANCE; k++) {
+        for (size_t k = 1; k < o->count && angle <= window + NARC_TOLERANCE; k++) {
             size_t i = (side ? arc + k : arc + o->count - k) % o->count;
             least = fmin(least, o->radius[i]);
             angle += o->sweep[i];
@@ -216,11 +216,18 @@ static double find_inner_radius(const narc_outline *o, narc_point p, double n_x,
 
 /* Of all circles that touch an arc from inside, those at its ends are the first to leave the shape: by how much the
  * arc's circle exceeds the shape in a direction m does not depend on the point, and it counts most from the nearest. */
-static float find_arc_inner(const narc_outline *o, size_t arc) {
-    double inner = find_least_radius(o, arc);
+static double find_arc_inner(const narc_outline *o, size_t arc) {
+    double inner = find_least_radius(o, arc, NARC_INNER_WINDOW);
     inner = find_inner_radius(o, narc_find_start(o, arc), o->normal_x[arc], o->normal_y[arc], inner);
-    inner = find_inner_radius(o, narc_find_end(o, arc), o->normal_x[arc + 1], o->normal_y[arc + 1], inner);
-    return (float)(inner * (1 - 1e-6)); /* clear of the rounding of what is stored */
+    return find_inner_radius(o, narc_find_end(o, arc), o->normal_x[arc + 1], o->normal_y[arc + 1], inner);
+}
+
+/* The upper half of a float that is at most a value, less a part in a million for the rounding of what is stored. */
+static uint32_t find_upper_half(double value) {
+    float rounded = (float)(value * (1 - 1e-6));
+    uint32_t bits;
+    memcpy(&bits, &rounded, sizeof bits);
+    return bits >> 16;
 }
 
 static void write_block(const narc_outline *o, narc_head *head, narc_record *block) {
@@ -242,7 +249,8 @@ static void write_block(const narc_outline *o, narc_head *head, narc_record *blo
         block[first_arc + k].arc = (narc_stored_arc){.center_x = (float)(o->center_x[i] + o->origin_x),
                                                      .center_y = (float)(o->center_y[i] + o->origin_y),
                                                      .radius = (float)o->radius[i],
-                                                     .inner = find_arc_inner(o, i),
+                                                     .rolls = find_upper_half(find_arc_inner(o, i)) << 16 |
+                                                              find_upper_half(find_least_radius(o, i, NARC_NEAR_WINDOW)),
                                                      .start_x = (float)o->normal_x[i],
                                                      .start_y = (float)o->normal_y[i],
                                                      .end_x = (float)o->normal_x[i + 1],

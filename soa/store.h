@@ -43,13 +43,18 @@ typedef struct narc_head {
     float inner_x, inner_y, inner_radius;
 } narc_head;
 
-/* An arc: its circle, and the unit outward normals where it starts and ends, counter-clockwise. A circle of radius
- * `inner` that touches the arc from inside, anywhere on it, lies in the shape; and no arc with a direction within
- * NARC_INNER_WINDOW of one of this arc's has a smaller radius. */
+/* An arc: its circle, and the unit outward normals where it starts and ends, counter-clockwise. `rolls` is two radii
+ * that tell how much shape there is behind the arc, rounded down to the upper halves of floats:
+ *   inner, the upper half   A circle of that radius that touches the arc from inside, anywhere on it, lies in the shape;
+ *                           and no arc with a direction within NARC_INNER_WINDOW of one of this arc's has a smaller
+ *                           radius.
+ *   near, the lower half    No arc with a direction within NARC_NEAR_WINDOW has a smaller radius. */
 #define NARC_INNER_WINDOW 0.1
+#define NARC_NEAR_WINDOW  1.0471975511965976 /* 60 degrees */
 
 typedef struct narc_stored_arc {
-    float center_x, center_y, radius, inner;
+    float center_x, center_y, radius;
+    uint32_t rolls;
     float start_x, start_y, end_x, end_y;
 } narc_stored_arc;
 
