@@ -66,8 +66,8 @@ enum { GROUP = 1024 };
 
 /* The last of each array is for lanes that are of no use. */
 struct results {
+    _Alignas(64) float row[GROUP + 1][ROW];
     uint8_t keep[GROUP + 1];
-    float row[GROUP + 1][ROW];
     bool hinted; /* are hints wanted? */
     uint32_t hint[GROUP + 1];
 };

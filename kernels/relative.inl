@@ -43,10 +43,10 @@ enum {
 };
 
 struct queue {
-    int count;
-    float item[FIELDS][CAPACITY];
+    _Alignas(64) float item[FIELDS][CAPACITY]; /* so that whole vectors do not lie across cache lines */
     int32_t record_a[CAPACITY], record_b[CAPACITY]; /* not packed: written and read while the queue stands still */
     int32_t hinted[CAPACITY];
+    int count;
 };
 
 INLINE vf get(const struct queue *q, int field, int k) { return v_load(q->item[field] + k); }
@@ -146,7 +146,7 @@ INLINE vm head_is(vi bytes, int flag) { return vi_lt(vi_set(0), vi_and(bytes, vi
 
 /* The bodies and shapes of a pair in each lane. Lanes from `count` on repeat the first. */
 struct pair_indices {
-    int32_t a[BLOCK], b[BLOCK], shape_a[BLOCK], shape_b[BLOCK];
+    _Alignas(64) int32_t a[BLOCK], b[BLOCK], shape_a[BLOCK], shape_b[BLOCK];
 };
 
 INLINE void load_indices(const narc_batch *batch, size_t first, int count, struct pair_indices *out) {
