@@ -16,9 +16,13 @@
 #include <sched.h>
 #endif
 
-/* Pairs in a chunk: some 50 microseconds of work, against about one for handing it out; a multiple of 64. For contacts
- * also the size of each thread's buffer on its stack, 27 KB. */
+/* Pairs in a chunk of contacts: some 25 microseconds of work, against about one for handing it out, and the size of each
+ * thread's buffer on its stack, 27 KB. */
 enum { CHUNK = 1024 };
+
+/* Pairs in a chunk of overlaps, multiples of 64: as many as possible, because at the end of a chunk the kernel decides
+ * the rest of its pairs in vectors that are not full, but several for each thread, so that all end together. */
+enum { MOST_OVERLAPS = 16384, LEAST_OVERLAPS = 1024, CHUNKS_PER_THREAD = 4 };
 
 unsigned narc_default_threads(void) {
 #ifdef _OPENMP
@@ -31,29 +35,32 @@ unsigned narc_default_threads(void) {
 /* OpenMP ends the process if it cannot start as many threads as it was asked for. */
 enum { MOST_THREADS = 256 };
 
-/* How many threads to ask for, given how many chunks there are. */
-static int thread_count(unsigned threads, size_t chunks) {
+int narc_team_size(unsigned threads, size_t parts) {
     const unsigned asked = threads ? threads : narc_default_threads(),
                    wanted = asked < MOST_THREADS ? asked : MOST_THREADS;
-    return (int)(wanted < chunks ? wanted : chunks);
+    return (int)(wanted < parts ? wanted : parts);
 }
-
-static size_t chunk_size(size_t count, size_t start) { return count - start < CHUNK ? count - start : CHUNK; }
 
 void narc_run_overlaps(const narc_kernel_table *kernels, const narc_batch *batch, unsigned threads,
                        uint64_t *out_bits) {
-    const size_t count = batch->pairs->count, chunks = (count + CHUNK - 1) / CHUNK;
-    const int team = thread_count(threads, chunks);
+    const size_t count = batch->pairs->count;
+    const int team = narc_team_size(threads, (count + LEAST_OVERLAPS - 1) / LEAST_OVERLAPS);
     if (team <= 1) {
         kernels->overlap(batch, 0, count, out_bits);
         return;
     }
+    size_t chunk_size = count / ((size_t)team * CHUNKS_PER_THREAD) / 64 * 64;
+    if (chunk_size < LEAST_OVERLAPS)
+        chunk_size = LEAST_OVERLAPS;
+    if (chunk_size > MOST_OVERLAPS)
+        chunk_size = MOST_OVERLAPS;
+    const size_t chunks = (count + chunk_size - 1) / chunk_size;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic) num_threads(team)
 #endif
     for (size_t chunk = 0; chunk < chunks; chunk++) {
-        const size_t start = chunk * CHUNK;
-        kernels->overlap(batch, start, chunk_size(count, start), out_bits + start / 64);
+        const size_t start = chunk * chunk_size, left = count - start;
+        kernels->overlap(batch, start, left < chunk_size ? left : chunk_size, out_bits + start / 64);
     }
 }
 
@@ -101,12 +108,12 @@ static size_t fill_buffer(const narc_kernel_table *kernels, const narc_batch *ba
 size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *batch, size_t first, size_t count,
                          float margin, unsigned threads, const narc_contacts *out_contacts) {
     const size_t chunks = (count + CHUNK - 1) / CHUNK;
-    const int team = thread_count(threads, chunks);
+    const int team = narc_team_size(threads, chunks);
     size_t total = 0;
     if (team <= 1) {
         for (size_t start = 0; start < count; start += CHUNK) {
             struct buffer buffer;
-            const size_t size = chunk_size(count, start);
+            const size_t size = count - start < CHUNK ? count - start : CHUNK;
             const size_t found = fill_buffer(kernels, batch, first + start, size, margin, &buffer);
             copy_contacts(&buffer, found, total, out_contacts);
             total += found;
@@ -122,7 +129,7 @@ size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *bat
 #endif
     for (size_t chunk = 0; chunk < chunks; chunk++) {
         struct buffer buffer;
-        const size_t start = chunk * CHUNK, size = chunk_size(count, start);
+        const size_t start = chunk * CHUNK, size = count - start < CHUNK ? count - start : CHUNK;
         const size_t found = fill_buffer(kernels, batch, first + start, size, margin, &buffer);
         while (atomic_load_explicit(&turn, memory_order_acquire) != chunk)
             give_way();
@@ -132,80 +139,4 @@ size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *bat
         copy_contacts(&buffer, found, offset, out_contacts);
     }
     return total;
-}
-
-static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
-
-/* The largest index of items first .. last - 1 of a column. Four at a time, because one comparison would wait for the
- * other; a plain array in a loop that compilers turn into vectors. */
-static uint32_t find_largest(narc_column column, size_t first, size_t last) {
-    uint32_t largest[4] = {0};
-    size_t k = first;
-    if (column.stride == sizeof(uint32_t)) {
-        const uint32_t *index = column.base;
-        for (; k < last; k++)
-            largest[0] = larger(largest[0], index[k]);
-    }
-    for (; k + 4 <= last; k += 4) {
-        const char *item = narc_at(column, k);
-        largest[0] = larger(largest[0], *(const uint32_t *)(const void *)item);
-        largest[1] = larger(largest[1], *(const uint32_t *)(const void *)(item + column.stride));
-        largest[2] = larger(largest[2], *(const uint32_t *)(const void *)(item + 2 * column.stride));
-        largest[3] = larger(largest[3], *(const uint32_t *)(const void *)(item + 3 * column.stride));
-    }
-    for (; k < last; k++)
-        largest[0] = larger(largest[0], narc_index_at(column, k));
-    return larger(larger(largest[0], largest[1]), larger(largest[2], largest[3]));
-}
-
-/* Is it certain that no pair of the sub-range is bad? Reads columns from front to back, so it is much faster than
- * looking at every pair's bodies; it pays if there are not many more bodies than pairs. */
-static bool all_in_range(const narc_batch *batch, size_t first, size_t count) {
-    const narc_bodies *bodies = batch->bodies;
-    narc_column a = batch->pairs->a, b = batch->pairs->b;
-    size_t last = first + count;
-    if (bodies->count / 4 > count)
-        return false;
-    if (a.stride == 2 * sizeof(uint32_t) && b.stride == a.stride && (const char *)b.base == (const char *)a.base + 4) {
-        a.stride = sizeof(uint32_t); /* both columns are one */
-        first *= 2;
-        last *= 2;
-        b = a;
-    }
-    return find_largest(a, first, last) < bodies->count &&
-           (b.stride == sizeof(uint32_t) && b.base == a.base ? true : find_largest(b, first, last) < bodies->count) &&
-           find_largest(bodies->shape, 0, bodies->count) < batch->shapes->count;
-}
-
-/* The first of pairs first .. last - 1 that names a body or a shape that does not exist; last if none. */
-static size_t find_bad_pair(const narc_batch *batch, size_t first, size_t last) {
-    const narc_bodies *bodies = batch->bodies;
-    for (size_t pair = first; pair < last; pair++) {
-        const uint32_t a = narc_index_at(batch->pairs->a, pair);
-        const uint32_t b = narc_index_at(batch->pairs->b, pair);
-        if (a >= bodies->count || b >= bodies->count || narc_index_at(bodies->shape, a) >= batch->shapes->count ||
-            narc_index_at(bodies->shape, b) >= batch->shapes->count)
-            return pair;
-    }
-    return last;
-}
-
-size_t narc_find_bad_pair(const narc_batch *batch, size_t first, size_t count, unsigned threads) {
-    const size_t chunks = (count + CHUNK - 1) / CHUNK;
-    const int team = thread_count(threads, chunks);
-    if (all_in_range(batch, first, count))
-        return first + count;
-    if (team <= 1)
-        return find_bad_pair(batch, first, first + count);
-    size_t bad = first + count;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) reduction(min : bad)
-#endif
-    for (size_t chunk = 0; chunk < chunks; chunk++) {
-        const size_t start = first + chunk * CHUNK, last = start + chunk_size(count, chunk * CHUNK);
-        const size_t found = find_bad_pair(batch, start, last);
-        if (found < last && found < bad)
-            bad = found;
-    }
-    return bad;
 }

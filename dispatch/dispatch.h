@@ -15,6 +15,9 @@ unsigned narc_detect_cpu(void);
 /* The table in use, chosen at the first call; NULL if NARC_ISA asks for what can't be had (`*out_status` says why). */
 const narc_kernel_table *narc_kernels(narc_status *out_status, narc_error *error);
 
+/* How many threads to use for so many parts of work; `threads` as the caller gave it. */
+int narc_team_size(unsigned threads, size_t parts);
+
 /* Spread a checked batch over threads (0: as many as OpenMP would use). */
 void narc_run_overlaps(const narc_kernel_table *kernels, const narc_batch *batch, unsigned threads, uint64_t *out_bits);
 size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *batch, size_t first, size_t count,

@@ -352,7 +352,8 @@ static size_t contact(const narc_batch *batch, size_t first, size_t count, float
                     memcpy(results.row[number], none, sizeof none);
                     results.keep[number] = 1;
                 }
-                push(&fresh, vm_and_not(f.valid, f.apart), item, SINE_A + 1);
+                push(NARC_SHORTCUTS ? &fresh : &rest, NARC_SHORTCUTS ? vm_and_not(f.valid, f.apart) : f.valid, item,
+                     SINE_A + 1);
             }
             pad(&fresh);
             if (hints)

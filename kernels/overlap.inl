@@ -50,6 +50,10 @@ static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
             const struct filter f = load_pairs(batch, &indices, k, n, rows, 0, (int32_t)(uint32_t)block, item);
+            if (!NARC_SHORTCUTS) {
+                push(rest, f.valid, item, PAIR + 1);
+                continue;
+            }
             push(&fresh, vm_and_not(f.valid, vm_or(f.apart, f.deep)), item, PAIR + 1);
             out_bits[(block + (size_t)k) / 64] |= (uint64_t)vm_bits(vm_and(f.valid, f.deep)) << (block + (size_t)k) % 64;
         }
