@@ -105,9 +105,8 @@ NARC_API narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bo
  *              pair's, costs time and changes no bit of the answer.
  * On an error other than NARC_ERROR_CAPACITY hints are untouched. */
 NARC_API narc_status narc_find_contacts_hinted(const narc_shapes *shapes, const narc_bodies *bodies,
-                                               const narc_pairs *pairs, float margin, unsigned threads,
-                                               uint32_t *hints, const narc_contacts *out_contacts, size_t *out_count,
-                                               narc_error *error);
+                                               const narc_pairs *pairs, float margin, unsigned threads, uint32_t *hints,
+                                               const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
 
 /* narc_find_contacts() for pairs first .. first + count - 1 (any first and count), in the calling thread. The list starts at item 0
  * of out_contacts; `pair` still counts from the start of the batch. */

@@ -3,7 +3,11 @@
  * contact.inl - the contact kernel: separation, normal, point and arcs of the pairs closer than a margin, in their
  * order.
  *
- * The normal n and the arcs come from the deciding formula (overlay.inl). The contact point lies halfway between the
+ * Pairs pass through stages until one of them knows the answer that the deciding formula (overlay.inl) would give, to
+ * the last bit: circles, a look along the axis (or at last call's arcs), another along u, a climb to a local maximum, and
+ * the formula itself. A group's contacts are filed by the number of their pair as they come, and then listed.
+ *
+ * The normal n and the arcs are those of the highest local maximum of the gap. The contact point lies halfway between the
  * two support lines across n. Along them, A touches its line in a point or, where n is the normal of an edge, in a
  * stretch, and so does B: the point is the middle of what the two have in common.
  */
@@ -49,7 +53,8 @@ INLINE struct touch touch_of(const narc_record *records, struct ring ring, vi re
     const float sign = is_b ? -1.0f : 1.0f;
     struct touch t;
     t.along_min = t.along_max = find_point(&arc[1], n_x, n_y, sign, &t.across);
-    const vm starts = meets(arc[1].start_x, arc[1].start_y, n_x, n_y), ends = meets(arc[1].end_x, arc[1].end_y, n_x, n_y);
+    const vm starts = meets(arc[1].start_x, arc[1].start_y, n_x, n_y),
+             ends = meets(arc[1].end_x, arc[1].end_y, n_x, n_y);
     const vf before = find_point(&arc[0], n_x, n_y, sign, NULL), after = find_point(&arc[2], n_x, n_y, sign, NULL);
     t.along_min = v_select(starts, v_min(t.along_min, before), t.along_min);
     t.along_max = v_select(starts, v_max(t.along_max, before), t.along_max);
@@ -57,6 +62,14 @@ INLINE struct touch touch_of(const narc_record *records, struct ring ring, vi re
     t.along_max = v_select(ends, v_max(t.along_max, after), t.along_max);
     t.arc = vi_select(ends, next, record);
     return t;
+}
+
+/* The same from the arcs after and before n, one and the same unless n is their junction's normal. */
+INLINE struct touch touch_at(const struct arcs *after, const struct arcs *before, vf n_x, vf n_y, float sign,
+                             vi record) {
+    vf across;
+    const vf along = find_point(after, n_x, n_y, sign, &across), old = find_point(before, n_x, n_y, sign, NULL);
+    return (struct touch){across, v_min(along, old), v_max(along, old), record};
 }
 
 /* A contact while its place in the list is not known yet: a row for each pair of a group, found by the pair's number. */
@@ -100,7 +113,7 @@ INLINE void turn_back(const struct queue *q, int k, vf x, vf y, vf *out_x, vf *o
 
 /* Files the contacts of the pairs k ... of a queue, those lanes that `keep` says. */
 INLINE void file_contacts(const struct queue *q, int k, vm keep, vf separation, vf n_x, vf n_y,
-                                 const struct touch *on_a, const struct touch *on_b, struct results *out) {
+                          const struct touch *on_a, const struct touch *on_b, struct results *out) {
     const vf half = v_set(0.5f);
     const vf across = v_mul(half, v_add(on_a->across, on_b->across));
     const vf along =
@@ -123,97 +136,49 @@ INLINE void file_contacts(const struct queue *q, int k, vm keep, vf separation, 
         out->keep[place[lane]] = 1;
 }
 
-/* Finds the contacts of the last `count` pairs of a queue by the formula and takes them out. */
-static void decide_contacts(const narc_shapes *shapes, struct queue *rest, int count, float margin,
-                            struct results *out) {
-    rest->count -= count;
-    for (int i = 0; i < count; i += V_WIDTH) {
-        const int k = rest->count + i;
-        const vm live = vm_first(count - i);
-        const struct gap gap = overlay_gap(shapes, rest, k, live, true);
-        leave_hints(rest, k, live, gap.record_a, gap.record_b, out);
-        const vm keep = margin == INFINITY ? live : v_lt(gap.separation, v_set(margin));
+INLINE vm closer_than(vf separation, float margin) {
+    return margin == INFINITY ? vm_first(V_WIDTH) : v_lt(separation, v_set(margin));
+}
+
+/* Finds the contacts of the pairs first ... of a queue by the formula and takes them out. */
+static void decide_contacts(const narc_shapes *shapes, struct queue *q, int first, float margin, struct results *out) {
+    for (int k = first; k < q->count; k += V_WIDTH) {
+        const vm live = vm_first(q->count - k);
+        const struct gap gap = overlay_gap(shapes, q, k, live, true);
+        leave_hints(q, k, live, gap.record_a, gap.record_b, out);
+        const vm keep = vm_and(live, closer_than(gap.separation, margin));
         if (!vm_any(keep))
             continue;
         const vf n_x = v_div(gap.n_x, gap.n_length), n_y = v_div(gap.n_y, gap.n_length);
-        const struct pose pose = get_pose(rest, k);
-        const struct ring ring_a = get_ring(rest, k, BLOCK_A, BYTES_A), ring_b = get_ring(rest, k, BLOCK_B, BYTES_B);
+        const struct pose pose = get_pose(q, k);
+        const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
         const struct touch on_a = touch_of(shapes->records, ring_a, gap.record_a, &pose, n_x, n_y, false);
         const struct touch on_b = touch_of(shapes->records, ring_b, gap.record_b, &pose, n_x, n_y, true);
-        file_contacts(rest, k, keep, gap.separation, n_x, n_y, &on_a, &on_b, out);
+        file_contacts(q, k, keep, gap.separation, n_x, n_y, &on_a, &on_b, out);
     }
+    q->count = first;
 }
 
-/* The same from the arcs after and before n, one and the same unless n is their junction's normal. */
-INLINE struct touch touch_at(const struct arcs *after, const struct arcs *before, vf n_x, vf n_y, float sign, vi record) {
-    vf across;
-    const vf along = find_point(after, n_x, n_y, sign, &across), old = find_point(before, n_x, n_y, sign, NULL);
-    return (struct touch){across, v_min(along, old), v_max(along, old), record};
-}
-
-/* Is a side clear */
-INLINE vm side_is_clear(vf edge, const struct couple *c, vf sine_a, vf sine_b, vf depth, vf cosine, vf slack, vm kink) {
-    const vf chord2 = v_sub(v_set(2.0001f), v_add(cosine, cosine)), chord = v_sqrt(v_max(chord2, v_set(0)));
-    const vf near = v_min(sine_a, sine_b), inner = v_add(c->a.inner, c->b.inner);
-    const vm in_window = v_le(chord2, v_set(1));
-    const vf near_a = v_select(in_window, c->a.near, v_set(0)), near_b = v_select(in_window, c->b.near, v_set(0));
-    const vf sum_a = v_max(v_mul(c->a.inner, chord), v_add(v_mul(near_a, chord), v_mul(v_sub(c->a.radius, near_a), v_min(chord, sine_a))));
-    const vf sum_b = v_max(v_mul(c->b.inner, chord), v_add(v_mul(near_b, chord), v_mul(v_sub(c->b.radius, near_b), v_min(chord, sine_b))));
-    const vf sum = v_sub(v_add(v_mul(edge, v_sub(v_set(1.999f), v_mul(v_set(0.5f), chord2))), v_add(sum_a, sum_b)), v_mul(depth, chord));
-    const vm square = v_lt(v_mul(v_mul(v_set(2), slack), chord), v_mul(sum, v_mul(near, near)));
-    const vm linear = vm_and(v_lt(slack, v_mul(v_sub(inner, depth), near)), v_lt(v_mul(v_mul(v_set(256), slack), chord), sum));
-    const vm clear = vm_and(vm_and(v_le(v_set(-0.49f), cosine), v_le(v_set(0x1p-12f), near)), vm_or(square, linear));
-    const vm edge_is_clear = vm_or(vm_and_not(vm_first(V_WIDTH), kink), v_lt(slack, edge));
-    return vm_and(clear, edge_is_clear);
-}
-
-/* Contacts by climbing; those undecided go to `rest`. */
-static void settle_contacts(const narc_shapes *shapes, struct queue *q, int first, float margin, struct queue *rest, struct results *out) {
-    look_up(shapes, q, first, DIRECTION_X, false);
+/* Climbs with the pairs first ... of a queue, along DIRECTION, and takes them out; those whose peak is not known to be the
+ * highest go to `undecided`. */
+static void climb_to_contacts(const narc_shapes *shapes, struct queue *q, int first, float margin,
+                              struct queue *undecided, struct results *out) {
+    look_up(shapes, q, first, false);
     for (int k = first; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
-        const struct peak peak = climb(shapes, q, k, live, STEPS);
-        const vf slack = get(q, SLACK, k);
+        const struct peak peak = climb(shapes, q, k, live);
         const vf u_x = v_sub(peak.after.b.x, peak.after.a.x), u_y = v_sub(peak.after.b.y, peak.after.a.y);
-        const vf radii = v_add(peak.after.a.radius, peak.after.b.radius);
-        const vf length = v_sqrt(dot(u_x, u_y, u_x, u_y));
-        const vf separation = v_sub(v_select(peak.kink, dot(u_x, u_y, peak.n_x, peak.n_y), length), radii);
-        const vf one = v_set(1), n_length = v_select(peak.kink, one, length);
+        const vf radii = v_add(peak.after.a.radius, peak.after.b.radius), length = v_sqrt(dot(u_x, u_y, u_x, u_y));
+        const vf value = v_select(peak.kink, dot(u_x, u_y, peak.n_x, peak.n_y), length);
+        const vf separation = v_sub(value, radii), n_length = v_select(peak.kink, v_set(1), length);
         const vf n_x = v_div(peak.n_x, n_length), n_y = v_div(peak.n_y, n_length);
 
-        const vm circle_a = head_is(get_bits(q, BYTES_A, k), NARC_SHAPE_CIRCLE), circle_b = head_is(get_bits(q, BYTES_B, k), NARC_SHAPE_CIRCLE);
-        const vf end_a = sine_to(n_x, n_y, peak.after.a.end_x, peak.after.a.end_y, circle_a);
-        const vf end_b = sine_to(n_x, n_y, peak.after.b.end_x, peak.after.b.end_y, circle_b);
-        const vf start_a = sine_to(n_x, v_neg(n_y), peak.before.a.start_x, v_neg(peak.before.a.start_y), circle_a);
-        const vf start_b = sine_to(n_x, v_neg(n_y), peak.before.b.start_x, v_neg(peak.before.b.start_y), circle_b);
-        const vm holds = v_le(v_set(0), v_min(v_min(start_a, end_a), v_min(start_b, end_b)));
-        const vm found = vm_and(peak.found, holds);
-        const vm apart = vm_and(found, v_le(v_add(v_set(margin), slack), separation));
-
-        /* fan */
-        const vf axis_x = get(q, AXIS_X, k), axis_y = get(q, AXIS_Y, k), core = get(q, CORE, k);
-        const vf axis2 = dot(axis_x, axis_y, axis_x, axis_y), axis_length = v_sqrt(axis2);
-        const vf fan = v_min(axis_length, v_sub(v_add(core, separation), slack));
-        const vf fan_across = v_sqrt(v_max(v_set(0), v_sub(axis2, v_mul(fan, fan))));
-        const vf along = dot(axis_x, axis_y, n_x, n_y), across = cross(axis_x, axis_y, n_x, n_y);
-        const vf even = v_mul(fan, along), odd = v_mul(fan_across, across);
-        const vm narrow = vm_and(v_lt(v_set(0), along), v_le(v_mul(v_set(-0.5f), axis_length), fan));
-        const vf cosine_after = v_div(v_add(even, odd), axis2), cosine_before = v_div(v_sub(even, odd), axis2);
-        const vf depth = v_neg(separation);
-        const vf before_x = v_sub(peak.before.b.x, peak.before.a.x), before_y = v_sub(peak.before.b.y, peak.before.a.y);
-        const vf edge_after = v_select(peak.kink, cross(u_x, u_y, n_x, n_y), v_set(0));
-        const vf edge_before = v_select(peak.kink, cross(n_x, n_y, before_x, before_y), v_set(0));
-        const vf inner = v_add(v_add(peak.after.a.inner, peak.after.b.inner), separation);
-        const vf in = v_min(v_min(start_a, end_a), v_min(start_b, end_b));
-        const vm round = vm_and(vm_and(v_lt(v_mul(v_set(256), slack), inner), v_lt(slack, v_mul(inner, in))), v_le(v_set(0x1p-12f), in));
-        vm sure = vm_and(found, narrow);
-        sure = vm_and(sure, side_is_clear(edge_after, &peak.after, end_a, end_b, depth, cosine_after, slack, peak.kink));
-        sure = vm_and(sure, side_is_clear(edge_before, &peak.before, start_a, start_b, depth, cosine_before, slack, peak.kink));
-        sure = vm_or(sure, vm_and(found, vm_and_not(round, peak.kink)));
-        sure = vm_and_not(sure, apart);
-
-        leave_hints(q, k, vm_and(live, vm_or(apart, sure)), peak.record_a, peak.record_b, out);
-        const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
+        const struct sines sines = find_sines(q, k, &peak, n_x, n_y);
+        const vm found = vm_and(vm_and(live, peak.found), v_le(v_set(0), sines.least));
+        const vm apart = vm_and(found, v_lt(v_add(v_set(margin), get(q, SLACK, k)), separation));
+        const vm sure = vm_and(vm_and_not(found, apart), is_highest(q, k, &peak, &sines, n_x, n_y, separation));
+        leave_hints(q, k, vm_or(apart, sure), peak.record_a, peak.record_b, out);
+        const vm keep = vm_and(sure, closer_than(separation, margin));
         if (vm_any(keep)) {
             const struct touch on_a = touch_at(&peak.after.a, &peak.before.a, n_x, n_y, 1, peak.record_a);
             const struct touch on_b = touch_at(&peak.after.b, &peak.before.b, n_x, n_y, -1, peak.record_b);
@@ -223,50 +188,44 @@ static void settle_contacts(const narc_shapes *shapes, struct queue *q, int firs
         if (vm_any(left)) {
             vf item[FIELDS];
             get_item(q, k, item);
-            push(rest, left, item, SINE_A + 1);
+            push(undecided, left, item, FIELDS);
         }
     }
     q->count = first;
 }
 
-/* Contacts that the arcs along a direction tell at once; the others, but for those that are apart, go to `near` with the
- * direction to search on in. */
-INLINE void look(const narc_shapes *shapes, struct queue *q, int first, int x, bool hints, float margin, struct queue *near, struct results *out) {
+/* Looks at the pairs first ... of a queue along DIRECTION, or at the arcs of their hints, and takes them
+ * out. If u of these arcs lies between their junctions it is the direction of a local maximum, mostly the highest. The
+ * others, unless they are apart, go to `undecided`: with u to search along, or the axis where there are edges, near which
+ * u leads astray. */
+INLINE void look_for_contacts(const narc_shapes *shapes, struct queue *q, int first, bool hints, float margin,
+                              struct queue *undecided, struct results *out) {
     if (hints)
-        look_up_hints(q, out->hint);
-    look_up(shapes, q, first, x, hints);
+        read_hints(q, out->hint);
+    look_up(shapes, q, first, hints);
     for (int k = first; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
         const struct pose pose = get_pose(q, k);
         const vi bytes_a = get_bits(q, BYTES_A, k), bytes_b = get_bits(q, BYTES_B, k);
         const struct arcs a = load_arcs_a(shapes->records, q->record_a + k, &pose);
         const struct arcs b = load_arcs_b(shapes->records, q->record_b + k, &pose);
-        const vf axis_x = get(q, AXIS_X, k), axis_y = get(q, AXIS_Y, k), slack = get(q, SLACK, k);
-        const vf u_x = v_sub(b.x, a.x), u_y = v_sub(b.y, a.y), radii = v_add(a.radius, b.radius);
-        const vf d_x = get(q, x, k), d_y = get(q, x + 1, k), gap = dot(u_x, u_y, d_x, d_y), d2 = dot(d_x, d_y, d_x, d_y);
-        const vf length = v_sqrt(dot(u_x, u_y, u_x, u_y));
-        const vm smooth = head_is(vi_and(bytes_a, bytes_b), NARC_SHAPE_SMOOTH);
-
-        /* Between the ends? */
-        const vm circle_a = head_is(bytes_a, NARC_SHAPE_CIRCLE), circle_b = head_is(bytes_b, NARC_SHAPE_CIRCLE);
-        const vf in_a = v_select(circle_a, length, v_min(cross(a.start_x, a.start_y, u_x, u_y), cross(u_x, u_y, a.end_x, a.end_y)));
-        const vf in_b = v_select(circle_b, length, v_min(cross(b.start_x, b.start_y, u_x, u_y), cross(u_x, u_y, b.end_x, b.end_y)));
-        const vf in = v_min(in_a, in_b);
-        const vf separation = v_sub(length, radii), limit = v_add(v_set(margin), slack);
-        const vf least = v_mul(v_set(0x1p-12f), length);
-        vm inside = v_lt(least, in);
-        /* g along the axis, times its length: squares */
-        const vf reach = v_add(v_add(radii, limit), v_mul(v_select(smooth, v_set(0), v_set(63)), slack));
-        vm beyond = vm_and(vm_and(v_lt(v_set(0), gap), v_lt(v_set(0), reach)), v_lt(v_mul(v_mul(reach, reach), d2), v_mul(gap, gap)));
-        if (hints)
-            beyond = vm_and_not(beyond, vi_lt(vi_set(0), vi_load(q->hinted + k)));
-        const vm far = vm_and(inside, v_le(limit, separation)), apart = vm_or(far, beyond);
-        const vf inner = v_add(v_add(a.inner, b.inner), separation);
-        const vm clear = vm_and(v_lt(v_mul(v_set(256), slack), inner), v_lt(v_mul(slack, length), v_mul(inner, in)));
-        const vm sure = vm_and_not(vm_and(vm_and(live, inside), clear), apart);
-
-        leave_hints(q, k, vm_and(live, vm_or(far, sure)), vi_load(q->record_a + k), vi_load(q->record_b + k), out);
-        const vm keep = margin == INFINITY ? sure : vm_and(sure, v_lt(separation, v_set(margin)));
+        const vf u_x = v_sub(b.x, a.x), u_y = v_sub(b.y, a.y), length = v_sqrt(dot(u_x, u_y, u_x, u_y));
+        const vf radii = v_add(a.radius, b.radius), separation = v_sub(length, radii), slack = get(q, SLACK, k);
+        /* The sine of the angle from u to the nearest junction, times the length. */
+        const vf from_a = v_min(cross(a.start_x, a.start_y, u_x, u_y), cross(u_x, u_y, a.end_x, a.end_y));
+        const vf from_b = v_min(cross(b.start_x, b.start_y, u_x, u_y), cross(u_x, u_y, b.end_x, b.end_y));
+        const vf least = v_min(v_select(head_is(bytes_a, NARC_SHAPE_CIRCLE), length, from_a),
+                               v_select(head_is(bytes_b, NARC_SHAPE_CIRCLE), length, from_b));
+        const vm inside = vm_and(live, v_lt(v_set(0), least));
+        const vm far = vm_and(inside, v_lt(v_add(v_set(margin), slack), separation));
+        vm apart = vm_or(far, is_above(u_x, u_y, radii, get(q, DIRECTION_X, k), get(q, DIRECTION_Y, k),
+                                       v_add(v_set(margin), apart_slack(q, k))));
+        if (hints) /* whose arcs may not hold that direction */
+            apart = vm_and_not(apart, vm_and_not(vi_lt(vi_set(0), vi_load(q->hinted + k)), far));
+        const vm only = is_only_peak(v_add(a.inner, b.inner), separation, least, length, slack);
+        const vm sure = vm_and_not(vm_and(inside, only), apart);
+        leave_hints(q, k, vm_or(far, sure), vi_load(q->record_a + k), vi_load(q->record_b + k), out);
+        const vm keep = vm_and(sure, closer_than(separation, margin));
         if (vm_any(keep)) {
             const vf n_x = v_div(u_x, length), n_y = v_div(u_y, length);
             const struct touch on_a = touch_at(&a, &a, n_x, n_y, 1, vi_load(q->record_a + k));
@@ -275,14 +234,38 @@ INLINE void look(const narc_shapes *shapes, struct queue *q, int first, int x, b
         }
         const vm left = vm_and_not(live, vm_or(apart, sure));
         if (vm_any(left)) {
+            const vm smooth = head_is(vi_and(bytes_a, bytes_b), NARC_SHAPE_SMOOTH);
             vf item[FIELDS];
             get_item(q, k, item);
-            item[DIRECTION_X] = v_select(smooth, u_x, axis_x);
-            item[DIRECTION_Y] = v_select(smooth, u_y, axis_y);
-            push(near, left, item, DIRECTION_Y + 1);
+            item[DIRECTION_X] = v_select(smooth, u_x, item[AXIS_X]);
+            item[DIRECTION_Y] = v_select(smooth, u_y, item[AXIS_Y]);
+            push(undecided, left, item, FIELDS);
         }
     }
     q->count = first;
+}
+
+/* Where pairs wait for a stage. */
+struct stages {
+    struct queue again, climb, decide;
+};
+
+/* Passes what waits through the stages after the first look: whole vectors of the queues that are long enough, or all. */
+static void drain_contacts(const narc_shapes *shapes, struct stages *s, bool all, float margin, struct results *out) {
+    struct queue *const queues[] = {&s->again, &s->climb, &s->decide};
+    for (int k = 0; k < 3; k++) {
+        const int first = all ? 0 : queues[k]->count % V_WIDTH;
+        if (!all && queues[k]->count < FLUSH)
+            continue;
+        if (all)
+            pad(queues[k]);
+        if (k == 0)
+            look_for_contacts(shapes, &s->again, first, false, margin, &s->climb, out);
+        else if (k == 1)
+            climb_to_contacts(shapes, &s->climb, first, margin, &s->decide, out);
+        else
+            decide_contacts(shapes, &s->decide, first, margin, out);
+    }
 }
 
 /* Writes the kept contacts of a group in their order, from item `at` on; returns how many. `first` is the number of the
@@ -325,57 +308,53 @@ static size_t list_contacts(const struct results *results, int count, size_t fir
     return (size_t)n;
 }
 
+/* Pairs without an answer, where every pair is to have one: lanes `invalid` of the pairs `number` ... */
+INLINE void file_invalid(vm invalid, int number, struct results *out) {
+    for (uint32_t bits = vm_bits(invalid); bits; bits &= bits - 1) {
+        const int pair = number + __builtin_ctz(bits);
+        const float none[ROW] = {[SEPARATION] = INFINITY};
+        memcpy(out->row[pair], none, sizeof none);
+        out->keep[pair] = 1;
+    }
+}
+
 static size_t contact(const narc_batch *batch, size_t first, size_t count, float margin, const narc_contacts *out) {
-    uint32_t *const hints = batch->hints;
-    const bool rows = poses_are_rows(batch->bodies), every = margin == INFINITY;
+    const bool rows = poses_are_rows(batch->bodies);
     struct pair_indices indices;
-    struct queue fresh, again, near, rest;
-    struct results results;
+    struct queue fresh;
+    struct stages stages;
+    struct results results = {.hinted = batch->hints != NULL};
     size_t total = 0;
-    fresh.count = again.count = near.count = rest.count = 0;
-    for (size_t done = 0; done < count; done += GROUP) {
-        const int in_group = (int)(count - done < GROUP ? count - done : GROUP);
+    stages.again.count = stages.climb.count = stages.decide.count = 0;
+    for (size_t group = 0; group < count; group += GROUP) {
+        const int in_group = (int)(count - group < GROUP ? count - group : GROUP);
         memset(results.keep, 0, sizeof results.keep);
-        results.hinted = hints != NULL;
-        if (hints)
-            memcpy(results.hint, hints + first + done, (size_t)in_group * sizeof *hints);
-        for (int start = 0; start < in_group; start += BLOCK) {
-            const int n = in_group - start < BLOCK ? in_group - start : BLOCK;
-            load_indices(batch, first + done + (size_t)start, n, &indices);
+        if (batch->hints)
+            memcpy(results.hint, batch->hints + first + group, (size_t)in_group * sizeof *results.hint);
+        for (int block = 0; block < in_group; block += BLOCK) {
+            const int n = in_group - block < BLOCK ? in_group - block : BLOCK;
+            load_indices(batch, first + group + (size_t)block, n, &indices);
             fresh.count = 0;
             for (int k = 0; k < n; k += V_WIDTH) {
                 vf item[FIELDS];
-                const struct filter f = load_pairs(batch, &indices, k, n, rows, margin, start, item);
-                for (uint32_t bits = every ? ~vm_bits(f.valid) & vm_bits(vm_first(n - k)) : 0; bits; bits &= bits - 1) {
-                    const int number = start + k + __builtin_ctz(bits);
-                    const float none[ROW] = {[SEPARATION] = INFINITY};
-                    memcpy(results.row[number], none, sizeof none);
-                    results.keep[number] = 1;
-                }
-                push(NARC_SHORTCUTS ? &fresh : &rest, NARC_SHORTCUTS ? vm_and_not(f.valid, f.apart) : f.valid, item,
-                     SINE_A + 1);
+                const struct filter f = load_pairs(batch, &indices, k, n, rows, margin, block, item);
+                if (margin == INFINITY)
+                    file_invalid(vm_and_not(vm_first(n - k), f.valid), block + k, &results);
+                push(&fresh, NARC_SHORTCUTS ? vm_and_not(f.valid, f.apart) : f.valid, item, FIELDS);
             }
             pad(&fresh);
-            if (hints)
-                look(batch->shapes, &fresh, 0, AXIS_X, true, margin, &again, &results);
+            if (!NARC_SHORTCUTS)
+                decide_contacts(batch->shapes, &fresh, 0, margin, &results);
+            else if (batch->hints)
+                look_for_contacts(batch->shapes, &fresh, 0, true, margin, &stages.again, &results);
             else
-                look(batch->shapes, &fresh, 0, AXIS_X, false, margin, &again, &results);
-            if (again.count >= FLUSH)
-                look(batch->shapes, &again, again.count % V_WIDTH, DIRECTION_X, false, margin, &near, &results);
-            if (near.count >= FLUSH)
-                settle_contacts(batch->shapes, &near, near.count % V_WIDTH, margin, &rest, &results);
-            if (rest.count >= FLUSH)
-                decide_contacts(batch->shapes, &rest, rest.count / V_WIDTH * V_WIDTH, margin, &results);
+                look_for_contacts(batch->shapes, &fresh, 0, false, margin, &stages.again, &results);
+            drain_contacts(batch->shapes, &stages, false, margin, &results);
         }
-        pad(&again);
-        look(batch->shapes, &again, 0, DIRECTION_X, false, margin, &near, &results);
-        pad(&near);
-        settle_contacts(batch->shapes, &near, 0, margin, &rest, &results);
-        pad(&rest);
-        decide_contacts(batch->shapes, &rest, rest.count, margin, &results);
-        if (hints)
-            memcpy(hints + first + done, results.hint, (size_t)in_group * sizeof *hints);
-        total += list_contacts(&results, in_group, first + done, out, total);
+        drain_contacts(batch->shapes, &stages, true, margin, &results);
+        if (batch->hints)
+            memcpy(batch->hints + first + group, results.hint, (size_t)in_group * sizeof *results.hint);
+        total += list_contacts(&results, in_group, first + group, out, total);
     }
     return total;
 }

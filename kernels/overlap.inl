@@ -1,74 +1,110 @@
 /* SPDX-License-Identifier: MIT
  *
  * overlap.inl - the overlap kernel: one bit per pair, set where the separation is below 0.
+ *
+ * Circles settle some pairs, LOOKS looks most others: each along a direction, the first along the axis between the
+ * inscribed circles, the next along u of the arcs that the last one found. A look ends with a proof (proof.inl) that the
+ * bodies are apart or have a common point, or passes the pair on. What is left goes to the deciding formula.
  */
 
-/* Decides the last `count` pairs of a queue by the formula and takes them out. */
-static void decide_overlaps(const narc_shapes *shapes, struct queue *rest, int count, uint64_t *out_bits) {
-    rest->count -= count;
-    for (int i = 0; i < count; i += V_WIDTH) {
-        const int k = rest->count + i;
-        const vm live = vm_first(count - i);
-        const struct gap gap = overlay_gap(shapes, rest, k, live, false);
-        mark(get_bits(rest, PAIR, k), v_lt(gap.separation, v_set(0)), out_bits);
+enum { LOOKS = 3 };
+
+/* Sets the bits of the pairs k ... of a queue that `hits` says. */
+INLINE void mark(const struct queue *q, int k, vm hits, uint64_t *out_bits) {
+    int32_t pair[V_WIDTH];
+    vi_store(pair, get_bits(q, PAIR, k));
+    for (uint32_t bits = vm_bits(hits); bits; bits &= bits - 1) {
+        const uint32_t number = (uint32_t)pair[__builtin_ctz(bits)];
+        out_bits[number / 64] |= (uint64_t)1 << number % 64;
     }
 }
 
-/* Looks at the last pairs of a queue along a direction; those undecided go to `rest`, the others out. */
-INLINE void settle(const narc_shapes *shapes, struct queue *q, int first, int x, struct queue *rest, uint64_t *out_bits) {
-    look_up(shapes, q, first, x, false);
+/* Looks at the pairs first ... of a queue along DIRECTION and takes them out; those that it does not
+ * settle go to `undecided`, with the direction to look along next. */
+INLINE void look_for_overlaps(const narc_shapes *shapes, struct queue *q, int first, struct queue *undecided,
+                              uint64_t *out_bits) {
+    look_up(shapes, q, first, false);
     for (int k = first; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
-        const struct verdict v = glance(shapes, q, k, x, 0, false);
-        mark(get_bits(q, PAIR, k), vm_and(live, v.hit), out_bits);
-        const vm left = vm_and_not(live, vm_or(v.apart, v.hit));
+        const struct pose p = get_pose(q, k);
+        vf a[4], b[4]; /* centres and radii */
+        v_rows(shapes->records, sizeof(narc_record), q->record_a + k, a);
+        v_rows(shapes->records, sizeof(narc_record), q->record_b + k, b);
+        const vf b_x = v_sub(v_mul(p.q_c, b[0]), v_mul(p.q_s, b[1]));
+        const vf b_y = v_add(v_mul(p.q_s, b[0]), v_mul(p.q_c, b[1]));
+        const vf u_x = v_sub(v_add(p.t_x, v_mul(p.scale_b, b_x)), v_mul(p.scale_a, a[0]));
+        const vf u_y = v_sub(v_add(p.t_y, v_mul(p.scale_b, b_y)), v_mul(p.scale_a, a[1]));
+        const vf radii = v_add(v_mul(p.scale_a, a[2]), v_mul(p.scale_b, b[2]));
+        const vf n_x = get(q, DIRECTION_X, k), n_y = get(q, DIRECTION_Y, k), length = v_sqrt(dot(n_x, n_y, n_x, n_y));
+        const vm apart = is_above(u_x, u_y, radii, n_x, n_y, apart_slack(q, k));
+        /* The difference of the support points, times the direction's length. */
+        const vf p_x = v_sub(v_mul(radii, n_x), v_mul(length, u_x));
+        const vf p_y = v_sub(v_mul(radii, n_y), v_mul(length, u_y));
+        const vm hit = has_common_point(q, k, p_x, p_y, length);
+        mark(q, k, vm_and(live, hit), out_bits);
+        const vm left = vm_and_not(live, vm_or(apart, hit));
         if (vm_any(left)) {
             vf item[FIELDS];
             get_item(q, k, item);
-            item[DIRECTION_X] = v.u_x;
-            item[DIRECTION_Y] = v.u_y;
-            push(rest, left, item, DIRECTION_Y + 1);
+            item[DIRECTION_X] = u_x;
+            item[DIRECTION_Y] = u_y;
+            push(undecided, left, item, OVERLAP_FIELDS);
         }
     }
     q->count = first;
 }
 
-enum { LOOKS = 3 };
+/* Decides the pairs first ... of a queue by the formula and takes them out. */
+static void decide_overlaps(const narc_shapes *shapes, struct queue *q, int first, uint64_t *out_bits) {
+    for (int k = first; k < q->count; k += V_WIDTH) {
+        const struct gap gap = overlay_gap(shapes, q, k, vm_first(q->count - k), false);
+        mark(q, k, v_lt(gap.separation, v_set(0)), out_bits);
+    }
+    q->count = first;
+}
+
+/* Passes what waits through the stages after the first look: whole vectors of the queues that are long enough, or all. */
+static void drain_overlaps(const narc_shapes *shapes, struct queue waiting[LOOKS], bool all, uint64_t *out_bits) {
+    for (int k = 0; k < LOOKS; k++) {
+        struct queue *q = &waiting[k];
+        const int first = all ? 0 : q->count % V_WIDTH;
+        if (!all && q->count < FLUSH)
+            continue;
+        if (all)
+            pad(q);
+        if (k + 1 < LOOKS)
+            look_for_overlaps(shapes, q, first, &waiting[k + 1], out_bits);
+        else
+            decide_overlaps(shapes, q, first, out_bits);
+    }
+}
 
 static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
     const bool rows = poses_are_rows(batch->bodies);
     struct pair_indices indices;
-    struct queue fresh, near[LOOKS];
-    struct queue *const rest = &near[LOOKS - 1];
+    struct queue fresh, waiting[LOOKS]; /* for the second look and so on; the last one for the formula */
     for (int k = 0; k < LOOKS; k++)
-        near[k].count = 0;
+        waiting[k].count = 0;
     memset(out_bits, 0, (count + 63) / 64 * sizeof *out_bits);
     for (size_t block = 0; block < count; block += BLOCK) {
         const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
         load_indices(batch, first + block, n, &indices);
         fresh.count = 0;
         for (int k = 0; k < n; k += V_WIDTH) {
+            const size_t pair = block + (size_t)k;
             vf item[FIELDS];
-            const struct filter f = load_pairs(batch, &indices, k, n, rows, 0, (int32_t)(uint32_t)block, item);
-            if (!NARC_SHORTCUTS) {
-                push(rest, f.valid, item, PAIR + 1);
-                continue;
-            }
-            push(&fresh, vm_and_not(f.valid, vm_or(f.apart, f.deep)), item, PAIR + 1);
-            out_bits[(block + (size_t)k) / 64] |= (uint64_t)vm_bits(vm_and(f.valid, f.deep)) << (block + (size_t)k) % 64;
+            struct filter f = load_pairs(batch, &indices, k, n, rows, 0, (int32_t)(uint32_t)block, item);
+            if (!NARC_SHORTCUTS)
+                f.apart = f.deep = vm_first(0);
+            push(&fresh, vm_and_not(f.valid, vm_or(f.apart, f.deep)), item, OVERLAP_FIELDS);
+            out_bits[pair / 64] |= (uint64_t)vm_bits(vm_and(f.valid, f.deep)) << pair % 64;
         }
         pad(&fresh);
-        settle(batch->shapes, &fresh, 0, AXIS_X, &near[0], out_bits);
-        for (int k = 0; k < LOOKS - 1; k++)
-            if (near[k].count >= FLUSH)
-                settle(batch->shapes, &near[k], near[k].count % V_WIDTH, DIRECTION_X, &near[k + 1], out_bits);
-        if (rest->count >= FLUSH)
-            decide_overlaps(batch->shapes, rest, rest->count / V_WIDTH * V_WIDTH, out_bits);
+        if (NARC_SHORTCUTS)
+            look_for_overlaps(batch->shapes, &fresh, 0, &waiting[0], out_bits);
+        else
+            decide_overlaps(batch->shapes, &fresh, 0, out_bits);
+        drain_overlaps(batch->shapes, waiting, false, out_bits);
     }
-    for (int k = 0; k < LOOKS - 1; k++) {
-        pad(&near[k]);
-        settle(batch->shapes, &near[k], 0, DIRECTION_X, &near[k + 1], out_bits);
-    }
-    pad(rest);
-    decide_overlaps(batch->shapes, rest, rest->count, out_bits);
+    drain_overlaps(batch->shapes, waiting, true, out_bits);
 }

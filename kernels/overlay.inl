@@ -80,8 +80,15 @@ INLINE vf upper_half(vf two) { return v_of_bits(vi_and(vi_bits(two), vi_set((int
 INLINE vf lower_half(vf two) { return v_of_bits(vi_shift_left(vi_bits(two), 16)); }
 
 INLINE struct arcs place_a(const vf row[8], const struct pose *p) {
-    return (struct arcs){v_mul(row[0], p->scale_a), v_mul(row[1], p->scale_a), v_mul(row[2], p->scale_a),
-                         v_mul(upper_half(row[3]), p->scale_a), v_mul(lower_half(row[3]), p->scale_a), row[4], row[5], row[6], row[7]};
+    return (struct arcs){v_mul(row[0], p->scale_a),
+                         v_mul(row[1], p->scale_a),
+                         v_mul(row[2], p->scale_a),
+                         v_mul(upper_half(row[3]), p->scale_a),
+                         v_mul(lower_half(row[3]), p->scale_a),
+                         row[4],
+                         row[5],
+                         row[6],
+                         row[7]};
 }
 
 INLINE struct arcs place_b(const vf row[8], const struct pose *p) {
@@ -183,7 +190,8 @@ static inline struct gap overlay_gap(const narc_shapes *shapes, const struct que
     struct arcs a = load_arcs_a(records, lanes, &pose);
     vi_store(lanes, record_b);
     struct arcs b = load_arcs_b(records, lanes, &pose);
-    struct gap best = {v_select(live, v_set(-INFINITY), v_set(INFINITY)), v_set(0), v_set(0), v_set(1), record_a, record_b};
+    struct gap best = {
+        v_select(live, v_set(-INFINITY), v_set(INFINITY)), v_set(0), v_set(0), v_set(1), record_a, record_b};
     /* Angles of at least 0 have the order of their bits, as integers. Those of this turn, 0 to 4, are moved down so
      * that all of the next turn follow them; exactly, so that the last interval ends where the first one began. */
     const vi this_turn = vi_set(-0x40800001); /* the bits of 4.0f, and one more */
@@ -203,7 +211,8 @@ static inline struct gap overlay_gap(const narc_shapes *shapes, const struct que
 
         /* Pass the nearer of the two junctions ahead, lo: the arc that starts there takes over. The junction ahead of it
          * on that shape comes a turn later where the list begins anew. */
-        const vi passed = vi_select(is_a, step_record(ring_a, record_a, forward_one), step_record(ring_b, record_b, forward_one));
+        const vi passed =
+            vi_select(is_a, step_record(ring_a, record_a, forward_one), step_record(ring_b, record_b, forward_one));
         vf row[8];
         vi_store(lanes, passed);
         load_records(records, lanes, row);

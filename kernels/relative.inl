@@ -20,30 +20,37 @@
  * What is left over covers the rounding of s itself.
  */
 
-/* Pairs in a block: enough to fill vectors after most pairs are settled, few enough for all stages to stay in the
- * first cache. */
-#ifndef BLOCK_
-#define BLOCK_ 128
-#endif
-enum { BLOCK = BLOCK_, FLUSH = 64, CAPACITY = BLOCK + FLUSH + 2 * V_WIDTH };
+/* Pairs in a block: enough to fill vectors after most pairs are settled, few enough for all stages to stay in the first
+ * cache. Stages that few pairs reach wait for FLUSH of them. */
+enum { BLOCK = 128, FLUSH = 64, CAPACITY = BLOCK + FLUSH + 2 * V_WIDTH };
 
 /* Pairs between stages, dense, structure of arrays. Integers are kept as their bits. */
 enum {
-    T_X, T_Y, Q_C, Q_S, /* B's pose in A's frame */
-    SCALE_A, SCALE_B,
-    AXIS_X, AXIS_Y, /* from the centre of A's inscribed circle to that of B's */
-    CORE,           /* the sum of both inscribed radii */
-    SLACK,          /* see slack_of() */
-    BLOCK_A, BLOCK_B, /* the first two words of the shapes' heads (store.h) */
-    BYTES_A, BYTES_B,
-    PAIR, /* counted from the first of the call */
-    COSINE_A, SINE_A,
-    DIRECTION_X, DIRECTION_Y,
-    FIELDS
+    T_X, /* B's pose in A's frame */
+    T_Y,
+    Q_C,
+    Q_S,
+    SCALE_A,
+    SCALE_B,
+    AXIS_X, /* from the centre of A's inscribed circle to that of B's */
+    AXIS_Y,
+    CORE,    /* the sum of both inscribed radii */
+    SLACK,   /* see slack_of() */
+    BLOCK_A, /* the first two words of the shapes' heads (store.h) */
+    BLOCK_B,
+    BYTES_A,
+    BYTES_B,
+    PAIR,        /* counted from the first of the call, or of a group */
+    DIRECTION_X, /* where to look next, at first along the axis */
+    DIRECTION_Y,
+    COSINE_A, /* A's rotation */
+    SINE_A,
+    FIELDS,
+    OVERLAP_FIELDS = COSINE_A /* who wants no contact needs no rotation */
 };
 
 struct queue {
-    _Alignas(64) float item[FIELDS][CAPACITY]; /* so that whole vectors do not lie across cache lines */
+    _Alignas(64) float item[FIELDS][CAPACITY];      /* so that whole vectors do not lie across cache lines */
     int32_t record_a[CAPACITY], record_b[CAPACITY]; /* not packed: written and read while the queue stands still */
     int32_t hinted[CAPACITY];
     int count;
@@ -52,6 +59,12 @@ struct queue {
 INLINE vf get(const struct queue *q, int field, int k) { return v_load(q->item[field] + k); }
 
 INLINE vi get_bits(const struct queue *q, int field, int k) { return vi_bits(get(q, field, k)); }
+
+INLINE void get_item(const struct queue *q, int k, vf item[FIELDS]) {
+    UNROLL
+    for (int f = 0; f < FIELDS; f++)
+        item[f] = get(q, f, k);
+}
 
 /* Appends the lanes `keep` of `item`. The vector's other lanes go behind them, so that whole vectors may be read. */
 INLINE void push(struct queue *q, vm keep, const vf *item, int fields) {
@@ -198,9 +211,9 @@ struct filter {
     vm deep;  /* colliding, for certain */
 };
 
-/* Loads `count` pairs, at most a vector, and compares their circles; fills item[0 .. PAIR]. */
-INLINE struct filter load_pairs(const narc_batch *batch, const struct pair_indices *in, int k, int count, bool rows, float margin,
-                                int32_t number, vf item[FIELDS]) {
+/* Loads `count` pairs, at most a vector, and compares their circles; fills `item`. */
+INLINE struct filter load_pairs(const narc_batch *batch, const struct pair_indices *in, int k, int count, bool rows,
+                                float margin, int32_t number, vf item[FIELDS]) {
     const float shrink = 1.0f - 0x1p-16f, grow = 1.0f + 0x1p-16f; /* of a square: 2^-17 of the distance */
     const narc_column scale = batch->bodies->scale;
     const struct poses p = load_poses(batch->bodies, rows, in->a + k, in->b + k);
@@ -243,6 +256,8 @@ INLINE struct filter load_pairs(const narc_batch *batch, const struct pair_indic
     item[SCALE_B] = scale_b;
     item[COSINE_A] = c_a;
     item[SINE_A] = s_a;
+    item[DIRECTION_X] = axis_x;
+    item[DIRECTION_Y] = axis_y;
     item[AXIS_X] = axis_x;
     item[AXIS_Y] = axis_y;
     item[CORE] = core;

@@ -29,7 +29,7 @@
  *   vi_count16(vi counts, vi below, vi values)                  adds 1 to each 16-bit half of counts where that half of
  *                                                               values is less than that of below, both signed
  *   vi_lanes()                                                  0, 1, 2 ...
- *   vm_and vm_or vm_and_not(a, b)                               the last: a and not b
+ *   vm_and vm_or vm_xor vm_not vm_and_not(a, b)                               the last: a and not b
  *   vm_first(int)                                               true in that many lanes
  *   vm_packing(vm)                                              the vp of a predicate
  *   vm_bits(vm)                                                 bit k is lane k

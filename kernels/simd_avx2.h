@@ -27,8 +27,10 @@ INLINE __m256 v_two_rows(const char *base, size_t stride, const int32_t *index) 
 INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out[4]) {
     const __m256 a = v_two_rows(base, stride, index), b = v_two_rows(base, stride, index + 1);
     const __m256 c = v_two_rows(base, stride, index + 2), d = v_two_rows(base, stride, index + 3);
-    const __m256d ab_low = _mm256_castps_pd(_mm256_unpacklo_ps(a, b)), ab_high = _mm256_castps_pd(_mm256_unpackhi_ps(a, b));
-    const __m256d cd_low = _mm256_castps_pd(_mm256_unpacklo_ps(c, d)), cd_high = _mm256_castps_pd(_mm256_unpackhi_ps(c, d));
+    const __m256d ab_low = _mm256_castps_pd(_mm256_unpacklo_ps(a, b)),
+                  ab_high = _mm256_castps_pd(_mm256_unpackhi_ps(a, b));
+    const __m256d cd_low = _mm256_castps_pd(_mm256_unpacklo_ps(c, d)),
+                  cd_high = _mm256_castps_pd(_mm256_unpackhi_ps(c, d));
     out[0] = _mm256_castpd_ps(_mm256_unpacklo_pd(ab_low, cd_low));
     out[1] = _mm256_castpd_ps(_mm256_unpackhi_pd(ab_low, cd_low));
     out[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(ab_high, cd_high));
@@ -80,6 +82,8 @@ INLINE vi vi_count16(vi counts, vi below, vi values) {
 INLINE vi vi_lanes(void) { return _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7); }
 INLINE vm vm_and(vm a, vm b) { return _mm256_and_ps(a, b); }
 INLINE vm vm_or(vm a, vm b) { return _mm256_or_ps(a, b); }
+INLINE vm vm_xor(vm a, vm b) { return _mm256_xor_ps(a, b); }
+INLINE vm vm_not(vm a) { return _mm256_xor_ps(a, _mm256_castsi256_ps(_mm256_set1_epi32(-1))); }
 INLINE vm vm_and_not(vm a, vm b) { return _mm256_andnot_ps(b, a); }
 INLINE vm vm_first(int n) { return vi_lt(vi_lanes(), vi_set(n)); }
 INLINE vp vm_packing(vm a) {

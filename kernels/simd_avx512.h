@@ -31,8 +31,10 @@ INLINE __m512 v_four_rows(const char *base, size_t stride, const int32_t *index)
 INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out[4]) {
     const __m512 a = v_four_rows(base, stride, index), b = v_four_rows(base, stride, index + 1);
     const __m512 c = v_four_rows(base, stride, index + 2), d = v_four_rows(base, stride, index + 3);
-    const __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(a, b)), ab_high = _mm512_castps_pd(_mm512_unpackhi_ps(a, b));
-    const __m512d cd_low = _mm512_castps_pd(_mm512_unpacklo_ps(c, d)), cd_high = _mm512_castps_pd(_mm512_unpackhi_ps(c, d));
+    const __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(a, b)),
+                  ab_high = _mm512_castps_pd(_mm512_unpackhi_ps(a, b));
+    const __m512d cd_low = _mm512_castps_pd(_mm512_unpacklo_ps(c, d)),
+                  cd_high = _mm512_castps_pd(_mm512_unpackhi_ps(c, d));
     out[0] = _mm512_castpd_ps(_mm512_unpacklo_pd(ab_low, cd_low));
     out[1] = _mm512_castpd_ps(_mm512_unpackhi_pd(ab_low, cd_low));
     out[2] = _mm512_castpd_ps(_mm512_unpacklo_pd(ab_high, cd_high));
@@ -86,6 +88,8 @@ INLINE vi vi_count16(vi counts, vi below, vi values) {
 INLINE vi vi_lanes(void) { return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15); }
 INLINE vm vm_and(vm a, vm b) { return _kand_mask16(a, b); }
 INLINE vm vm_or(vm a, vm b) { return _kor_mask16(a, b); }
+INLINE vm vm_xor(vm a, vm b) { return _kxor_mask16(a, b); }
+INLINE vm vm_not(vm a) { return _knot_mask16(a); }
 INLINE vm vm_and_not(vm a, vm b) { return _kandn_mask16(b, a); }
 INLINE vm vm_first(int n) { return vi_lt(vi_lanes(), vi_set(n)); }
 INLINE vp vm_packing(vm a) { return a; }

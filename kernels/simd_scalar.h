@@ -76,6 +76,8 @@ INLINE vi vi_count16(vi counts, vi below, vi values) {
 INLINE vi vi_lanes(void) { return 0; }
 INLINE vm vm_and(vm a, vm b) { return a & b; }
 INLINE vm vm_or(vm a, vm b) { return a | b; }
+INLINE vm vm_xor(vm a, vm b) { return a ^ b; }
+INLINE vm vm_not(vm a) { return !a; }
 INLINE vm vm_and_not(vm a, vm b) { return a & !b; }
 INLINE vm vm_first(int n) { return n > 0; }
 INLINE vp vm_packing(vm a) { return a; }

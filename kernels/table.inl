@@ -21,6 +21,8 @@
 
 #include "search.inl"
 
+#include "proof.inl"
+
 #include "contact.inl"
 #include "overlap.inl"
 #include "pose.inl"

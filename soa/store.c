@@ -246,15 +246,16 @@ static void write_block(const narc_outline *o, narc_head *head, narc_record *blo
     }
     for (size_t k = 0; k < count; k++) {
         size_t i = (first + k) % count;
-        block[first_arc + k].arc = (narc_stored_arc){.center_x = (float)(o->center_x[i] + o->origin_x),
-                                                     .center_y = (float)(o->center_y[i] + o->origin_y),
-                                                     .radius = (float)o->radius[i],
-                                                     .rolls = find_upper_half(find_arc_inner(o, i)) << 16 |
-                                                              find_upper_half(find_least_radius(o, i, NARC_NEAR_WINDOW)),
-                                                     .start_x = (float)o->normal_x[i],
-                                                     .start_y = (float)o->normal_y[i],
-                                                     .end_x = (float)o->normal_x[i + 1],
-                                                     .end_y = (float)o->normal_y[i + 1]};
+        block[first_arc + k].arc =
+            (narc_stored_arc){.center_x = (float)(o->center_x[i] + o->origin_x),
+                              .center_y = (float)(o->center_y[i] + o->origin_y),
+                              .radius = (float)o->radius[i],
+                              .rolls = find_upper_half(find_arc_inner(o, i)) << 16 |
+                                       find_upper_half(find_least_radius(o, i, NARC_NEAR_WINDOW)),
+                              .start_x = (float)o->normal_x[i],
+                              .start_y = (float)o->normal_y[i],
+                              .end_x = (float)o->normal_x[i + 1],
+                              .end_y = (float)o->normal_y[i + 1]};
     }
 }
 
@@ -324,7 +325,8 @@ static double find_stored_height(const narc_record *arcs, size_t count, double x
     for (size_t i = 0; i < count; i++) {
         double ax = (double)arcs[i].arc.start_x, ay = (double)arcs[i].arc.start_y;
         double bx = (double)arcs[i].arc.end_x, by = (double)arcs[i].arc.end_y;
-        double center = (double)arcs[i].arc.center_x * x + (double)arcs[i].arc.center_y * y, radius = (double)arcs[i].arc.radius;
+        double center = (double)arcs[i].arc.center_x * x + (double)arcs[i].arc.center_y * y,
+               radius = (double)arcs[i].arc.radius;
         if (ax * y - ay * x >= 0 && x * by - y * bx >= 0)
             best = fmax(best, center + radius * sqrt(x * x + y * y));
         else
@@ -344,7 +346,8 @@ bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, floa
     if (!(length > 0) || !isfinite(length))
         return false;
     for (size_t i = 0; i < count; i++)
-        extent = fmax(extent, fabs((double)arcs[i].arc.center_x) + fabs((double)arcs[i].arc.center_y) + (double)arcs[i].arc.radius);
+        extent = fmax(extent, fabs((double)arcs[i].arc.center_x) + fabs((double)arcs[i].arc.center_y) +
+                                  (double)arcs[i].arc.radius);
     /* The world's x axis is (c, -s) in the shape's axes, its y axis (s, c). */
     double slack = NARC_HEAD_SLACK * extent, factor = (double)scale;
     *out_aabb = (narc_aabb){.min_x = factor * -(find_stored_height(arcs, count, -c, s) + slack),
