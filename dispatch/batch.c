@@ -16,8 +16,8 @@
 #include <sched.h>
 #endif
 
-/* Pairs in a chunk of contacts: some 25 microseconds of work, against about one for handing it out, and the size of each
- * thread's buffer on its stack, 27 KB. */
+/* Pairs in a chunk of contacts: some 25 microseconds of work, against about one for handing it out, and the size of
+ * each thread's buffer on its stack, 27 KB. */
 enum { CHUNK = 1024 };
 
 /* Pairs in a chunk of overlaps, multiples of 64: as many as possible, because at the end of a chunk the kernel decides

@@ -98,8 +98,8 @@ NARC_API narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bo
                                         float margin, unsigned threads, const narc_contacts *out_contacts,
                                         size_t *out_count, narc_error *error);
 
-/* The same, faster where bodies have moved little since the last call: each pair leaves a hint that the next call starts
- * from.
+/* The same, faster where bodies have moved little since the last call: each pair leaves a hint that the next call
+ * starts from.
  *   hints      pairs->count values, hint k that of pair k, in and out, overlapping nothing else; zeros at first. What
  *              they mean is the library's business. Any value is safe: a hint that is stale, or made up, or another
  *              pair's, costs time and changes no bit of the answer.
@@ -108,8 +108,8 @@ NARC_API narc_status narc_find_contacts_hinted(const narc_shapes *shapes, const 
                                                const narc_pairs *pairs, float margin, unsigned threads, uint32_t *hints,
                                                const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
 
-/* narc_find_contacts() for pairs first .. first + count - 1 (any first and count), in the calling thread. The list starts at item 0
- * of out_contacts; `pair` still counts from the start of the batch. */
+/* narc_find_contacts() for pairs first .. first + count - 1 (any first and count), in the calling thread. The list
+ * starts at item 0 of out_contacts; `pair` still counts from the start of the batch. */
 NARC_API narc_status narc_find_contacts_range(const narc_shapes *shapes, const narc_bodies *bodies,
                                               const narc_pairs *pairs, size_t first, size_t count, float margin,
                                               const narc_contacts *out_contacts, size_t *out_count, narc_error *error);

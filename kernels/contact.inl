@@ -4,11 +4,11 @@
  * order.
  *
  * Pairs pass through stages until one of them knows the answer that the deciding formula (overlay.inl) would give, to
- * the last bit: circles, a look along the axis (or at last call's arcs), another along u, a climb to a local maximum, and
- * the formula itself. A group's contacts are filed by the number of their pair as they come, and then listed.
+ * the last bit: circles, a look along the axis (or at last call's arcs), another along u, a climb to a local maximum,
+ * and the formula itself. A group's contacts are filed by the number of their pair as they come, and then listed.
  *
- * The normal n and the arcs are those of the highest local maximum of the gap. The contact point lies halfway between the
- * two support lines across n. Along them, A touches its line in a point or, where n is the normal of an edge, in a
+ * The normal n and the arcs are those of the highest local maximum of the gap. The contact point lies halfway between
+ * the two support lines across n. Along them, A touches its line in a point or, where n is the normal of an edge, in a
  * stretch, and so does B: the point is the middle of what the two have in common.
  */
 
@@ -23,8 +23,8 @@ struct touch {
     vi arc;
 };
 
-/* The position along a support line of the point of an arc with the normal n; `sign` is 1 for A, which is touched on its
- * side n, and -1 for B, touched on -n. `out_across` may be NULL. */
+/* The position along a support line of the point of an arc with the normal n; `sign` is 1 for A, which is touched on
+ * its side n, and -1 for B, touched on -n. `out_across` may be NULL. */
 INLINE vf find_point(const struct arcs *arc, vf n_x, vf n_y, float sign, vf *out_across) {
     const vf reach = v_mul(v_set(sign), arc->radius);
     const vf p_x = v_add(arc->x, v_mul(reach, n_x)), p_y = v_add(arc->y, v_mul(reach, n_y));
@@ -38,8 +38,8 @@ INLINE vm meets(vf j_x, vf j_y, vf n_x, vf n_y) {
     return vm_and(v_le(v_abs(cross(j_x, j_y, n_x, n_y)), v_set(PARALLEL)), v_lt(v_set(0), dot(j_x, j_y, n_x, n_y)));
 }
 
-/* The touch of the shape with the arc in `record`: a point, or up to the end of a neighbouring arc where n is the normal
- * of the junction with it. */
+/* The touch of the shape with the arc in `record`: a point, or up to the end of a neighbouring arc where n is the
+ * normal of the junction with it. */
 INLINE struct touch touch_of(const narc_record *records, struct ring ring, vi record, const struct pose *pose, vf n_x,
                              vf n_y, bool is_b) {
     const vi next = step_record(ring, record, vi_set(1));
@@ -72,7 +72,7 @@ INLINE struct touch touch_at(const struct arcs *after, const struct arcs *before
     return (struct touch){across, v_min(along, old), v_max(along, old), record};
 }
 
-/* A contact while its place in the list is not known yet: a row for each pair of a group, found by the pair's number. */
+/* Contacts while their places in the list are not known yet: a row for each pair of a group. */
 enum { SEPARATION, CONTACT_NORMAL_X, CONTACT_NORMAL_Y, POINT_X, POINT_Y, ARCS, ROW = 8 };
 
 enum { GROUP = 1024 };
@@ -159,8 +159,8 @@ static void decide_contacts(const narc_shapes *shapes, struct queue *q, int firs
     q->count = first;
 }
 
-/* Climbs with the pairs first ... of a queue, along DIRECTION, and takes them out; those whose peak is not known to be the
- * highest go to `undecided`. */
+/* Climbs with the pairs first ... of a queue, along DIRECTION, and takes them out; those whose peak is not known to be
+ * the highest go to `undecided`. */
 static void climb_to_contacts(const narc_shapes *shapes, struct queue *q, int first, float margin,
                               struct queue *undecided, struct results *out) {
     look_up(shapes, q, first, false);
@@ -196,8 +196,8 @@ static void climb_to_contacts(const narc_shapes *shapes, struct queue *q, int fi
 
 /* Looks at the pairs first ... of a queue along DIRECTION, or at the arcs of their hints, and takes them
  * out. If u of these arcs lies between their junctions it is the direction of a local maximum, mostly the highest. The
- * others, unless they are apart, go to `undecided`: with u to search along, or the axis where there are edges, near which
- * u leads astray. */
+ * others, unless they are apart, go to `undecided`: with u to search along, or the axis where there are edges, near
+ * which u leads astray. */
 INLINE void look_for_contacts(const narc_shapes *shapes, struct queue *q, int first, bool hints, float margin,
                               struct queue *undecided, struct results *out) {
     if (hints)
@@ -250,7 +250,7 @@ struct stages {
     struct queue again, climb, decide;
 };
 
-/* Passes what waits through the stages after the first look: whole vectors of the queues that are long enough, or all. */
+/* Passes what waits on through the stages: whole vectors of the queues that are long enough, or all. */
 static void drain_contacts(const narc_shapes *shapes, struct stages *s, bool all, float margin, struct results *out) {
     struct queue *const queues[] = {&s->again, &s->climb, &s->decide};
     for (int k = 0; k < 3; k++) {

@@ -3,8 +3,8 @@
  * overlap.inl - the overlap kernel: one bit per pair, set where the separation is below 0.
  *
  * Circles settle some pairs, LOOKS looks most others: each along a direction, the first along the axis between the
- * inscribed circles, the next along u of the arcs that the last one found. A look ends with a proof (proof.inl) that the
- * bodies are apart or have a common point, or passes the pair on. What is left goes to the deciding formula.
+ * inscribed circles, the next along u of the arcs that the last one found. A look ends with a proof (proof.inl) that
+ * the bodies are apart or have a common point, or passes the pair on. What is left goes to the deciding formula.
  */
 
 enum { LOOKS = 3 };
@@ -63,7 +63,7 @@ static void decide_overlaps(const narc_shapes *shapes, struct queue *q, int firs
     q->count = first;
 }
 
-/* Passes what waits through the stages after the first look: whole vectors of the queues that are long enough, or all. */
+/* Passes what waits on through the stages: whole vectors of the queues that are long enough, or all. */
 static void drain_overlaps(const narc_shapes *shapes, struct queue waiting[LOOKS], bool all, uint64_t *out_bits) {
     for (int k = 0; k < LOOKS; k++) {
         struct queue *q = &waiting[k];

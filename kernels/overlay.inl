@@ -38,9 +38,9 @@
  *     most |u|, or lets a neighbour answer beyond its end              6 D + 6 E_a + 6 E_b
  * Together at most 22 D + 16 E_a + 31 E_b: NARC_ERROR_BOUND, 32 (D + E_a + E_b), covers it.
  *
- * The angle that orders the junctions is the diamond angle, monotonic in the true one: 0 along +x, 1 along +y, at most 4.
- * It may swap junctions that agree up to rounding, which the line on junction normals covers. Junctions of one shape
- * never swap: their normals differ by more than NARC_TOLERANCE.
+ * The angle that orders the junctions is the diamond angle, monotonic in the true one: 0 along +x, 1 along +y, at most
+ * 4. It may swap junctions that agree up to rounding, which the line on junction normals covers. Junctions of one
+ * shape never swap: their normals differ by more than NARC_TOLERANCE.
  */
 
 /* The diamond angle of a direction of any length. */
@@ -209,8 +209,8 @@ static inline struct gap overlay_gap(const narc_shapes *shapes, const struct que
         if (!vm_any(active))
             break;
 
-        /* Pass the nearer of the two junctions ahead, lo: the arc that starts there takes over. The junction ahead of it
-         * on that shape comes a turn later where the list begins anew. */
+        /* Pass the nearer of the two junctions ahead, lo: the arc that starts there takes over. The junction ahead of
+         * it on that shape comes a turn later where the list begins anew. */
         const vi passed =
             vi_select(is_a, step_record(ring_a, record_a, forward_one), step_record(ring_b, record_b, forward_one));
         vf row[8];

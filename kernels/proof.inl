@@ -7,40 +7,41 @@
  * the radius `core`, the sums of the two inscribed circles. Each arc of A and B that holds n gives a point of K on its
  * support line there.
  *
- * Rounding. e = 2^-24, S = D + E_a + E_b as in overlay.inl; every value here comes from the same arithmetic as there, and
- * is within 32 e S of exact, as the formula is. `slack` is 128 e S, twice what both together can be off by.
+ * Rounding. e = 2^-24, S = D + E_a + E_b as in overlay.inl; every value here comes from the same arithmetic as there,
+ * and is within 32 e S of exact, as the formula is. `slack` is 128 e S, twice what both together can be off by.
  *
  * 1. Apart. If g(n) > margin + slack for one n, then the formula's separation is above the margin. A direction's arcs
- *    are looked up by 16-bit angles, so that they may be those behind a junction that is 2^-13 ahead at most, in diamond
- *    angle, 2^-12 in radians. At a junction without an edge this changes h by 2^-25 of a radius, less than the rounding;
- *    at an edge by 2^-12 of its length, that is of at most twice a bounding radius: LOOSE slacks, 2^-11 S, cover it.
+ *    are looked up by 16-bit angles, so that they may be those behind a junction that is up to 2^-14 away in diamond
+ *    angle, 2^-13 in radians. At a junction without an edge this changes h by 2^-27 of a radius, less than the
+ *    rounding; at an edge by 2^-13 of its length, that is of at most twice a bounding radius. LOOSE slacks, 2^-11 S,
+ *    cover that and the rounding.
  *
  * 2. Collision, by a point p of K that lies opposite to the circle: a ray from p through the origin hits the circle. If
- *    it passes the centre within 7/8 of the core, K holds a circle of core / 8 around the foot of the centre on the ray,
- *    at the distance a behind the origin, and so one of core / 8 * |p| / (|p| + a) around the origin. Where this exceeds
- *    slack / 2 = 64 e S, the formula is below 0.
+ *    it passes the centre within 7/8 of the core, K holds a circle of core / 8 around the foot of the centre on the
+ *    ray, at the distance a behind the origin, and so one of core / 8 * |p| / (|p| + a) around the origin. Where this
+ *    exceeds slack / 2 = 64 e S, the formula is below 0.
  *
- * 3. Depth, by circles inside the arcs that touch. Let n be a local maximum of g between junctions, -d its value. Circles
- *    of radius `inner` (store.h) that touch the arcs from inside at the support points lie in the shapes, so K holds one
- *    of radius t, the sum, that touches K's outline at d n. For the direction at an angle x from n this gives
+ * 3. Depth, by circles inside the arcs that touch. Let n be a local maximum of g between junctions, -d its value. The
+ *    circles of radius `inner` (store.h) that touch the arcs from inside at the support points lie in the shapes, so K
+ *    holds one of radius t, their sum, that touches K's outline at d n. In the direction at an angle x from n this gives
  *        h >= d + (t - d) (1 - cos x),
- *    so if t > d, n is the only place with the least h: no other candidate of the formula counts, provided that rounding
- *    cannot make one of about the same value. Beyond an angle of NARC_INNER_WINDOW the inequality keeps values apart if
- *    t - d > CLEAR slacks, because 1 - cos 0.1 > 1 / CLEAR. Up to there no radius of curvature of K is below t, so that
- *    |g'| >= (t - d) sin x: with n at an angle of y from the nearest junction, all signs that the formula sees at
- *    junctions are right if (t - d) sin y > slack, and then it has no candidate there but this one. Last, y > 2^-12, so
- *    that n is no junction's normal up to rounding (contact.inl's PARALLEL).
+ *    so if t > d, n is the only place with the least h: no other candidate of the formula counts, provided that
+ *    rounding cannot make one of about the same value. Beyond an angle of NARC_INNER_WINDOW the inequality keeps
+ *    values apart if t - d > CLEAR slacks, because 1 - cos 0.1 > 1 / CLEAR. Up to there no radius of curvature of K is
+ *    below t, so that |g'| >= (t - d) sin x: with n at an angle of y from the nearest junction, all signs that the
+ *    formula sees at junctions are right if (t - d) sin y > slack, and then it has no candidate there but this one.
+ *    Last, y > 2^-12, so that n is no junction's normal up to rounding (contact.inl's PARALLEL).
  *
- * 4. Depth, for kinks, and where t is too small. Directions outside a fan around the axis are out of the question, because
- *    the circle in K reaches further there: h >= core - |axis| cos(their angle to the axis). On each side of n, up to the
+ * 4. Depth, for kinks, and where t is too small. Directions outside a fan around the axis are out of the question: the
+ *    circle in K reaches further there, h >= core - |axis| cos(their angle to the axis). On each side of n, up to the
  *    fan's end at an angle f < 120 degrees from n, let each shape's arc of that side end at an angle y_a, y_b, with
  *    radius r, and let the edge at n (of a kink) reach l beyond the foot of n. With c = 2 sin(f / 2), the chord,
  *        h >= d + (s - d) (1 - cos x),   s = l cot(f / 2) + s_a + s_b,
  *        s_a = the larger of inner_a and near_a + (r_a - near_a) min(1, sin y_a / c)   (near_a: only up to 60 degrees),
- *    because an arc of radius r that ends at y adds r (1 - cos x) up to y, and beyond it r (cos(x - y) - cos x), which is
- *    at least r (1 - cos x) sin(y / 2) / sin(x / 2); and sin y <= 2 sin(y / 2), the chord. So s > d proves this side.
- *    Rounding: as in 3, or, if (s - d) (1 - cos y) > slack for the nearer end, by values alone. At a kink the edges must
- *    reach l > slack to both sides, so that the signs next to it are right.
+ *    because an arc of radius r that ends at y adds r (1 - cos x) up to y, and beyond it r (cos(x - y) - cos x), which
+ *    is at least r (1 - cos x) sin(y / 2) / sin(x / 2); and sin y <= 2 sin(y / 2), the chord. So s > d proves this
+ *    side. Rounding: as in 3, or, if (s - d) (1 - cos y) > slack for the nearer end, by values alone. At a kink the
+ *    edges must reach l > slack to both sides, so that the signs next to it are right.
  */
 
 /* Slacks. */
@@ -50,8 +51,8 @@
 /* The least angle from a junction, or its sine. */
 #define LEAST_ANGLE 0x1p-12f
 
-/* Is g(d) above `limit`, for a direction d of any length with u and the sum of radii of its arcs? In squares, so that it
- * takes no root; what overflows or underflows proves nothing. */
+/* Is g(d) above `limit`, for a direction d of any length with u and the sum of radii of its arcs? In squares, so that
+ * it takes no root; what overflows or underflows proves nothing. */
 INLINE vm is_above(vf u_x, vf u_y, vf radii, vf d_x, vf d_y, vf limit) {
     const vf along = dot(u_x, u_y, d_x, d_y), reach = v_add(radii, limit), d2 = dot(d_x, d_y, d_x, d_y);
     const vm positive = vm_and(v_lt(v_set(0), along), v_lt(v_set(0), reach));

@@ -111,10 +111,11 @@ struct peak {
 };
 
 /* Climbs from the arcs in record_a and record_b to a local maximum. Each step looks at one interval of directions, the
- * common part of the two arcs' sectors, from lo to hi, with u from the centre of A's arc to that of B's (overlay.inl). If
- * u lies in it, that is the maximum. Else the gap rises beyond hi, or beyond lo, and the search crosses that junction; if
- * it would cross back the one it has just come over, that junction is the maximum. Where the sectors have no common part
- * (a hint that is stale) steps lead anywhere: who uses the result checks that the arcs hold its direction. */
+ * common part of the two arcs' sectors, from lo to hi, with u from the centre of A's arc to that of B's (overlay.inl).
+ * If u lies in it, that is the maximum. Else the gap rises beyond hi, or beyond lo, and the search crosses that
+ * junction; if it would cross back the one it has just come over, that junction is the maximum. Where the sectors have
+ * no common part (a hint that is stale) steps lead anywhere: who uses the result checks that the arcs hold its
+ * direction. */
 INLINE struct peak climb(const narc_shapes *shapes, const struct queue *q, int k, vm live) {
     const vf zero = v_set(0), tiny = v_set(0x1p-126f);
     const struct pose pose = get_pose(q, k);

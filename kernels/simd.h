@@ -4,11 +4,11 @@
  * order.
  *
  * Types: vf, V_WIDTH floats; vi, as many int32; vm, a predicate for each lane, opaque (a vector, a mask register or an
- * int); vp, how to pack the lanes of a predicate. V_WIDTH divides 64. Every operation is lane by lane and correctly rounded where it rounds, so that a kernel
- * written with them gives the same bits whatever the width. There is no fused multiply-add and no estimate on purpose.
+ * int); vp, how to pack the lanes of a predicate. V_WIDTH divides 64. Every operation is lane by lane and correctly
+ * rounded where it rounds, so that a kernel written with them gives the same bits whatever the width. There is no fused
+ * multiply-add and no estimate on purpose.
  *
  *   v_set(float)  v_load(float *)  v_store(float *, vf)         any alignment
- *   v_gather(float *base, vi index)                             base[index[lane]]
  *   v_rows(void *base, size_t stride, int32_t *index, vf out[4])
  *                                                               four floats from byte index[lane] * stride of base
  *   v_put_rows(void *base, size_t stride, int32_t *index, vf in[4])
@@ -20,8 +20,7 @@
  *   v_pack(vp, vf)                                              the lanes of the predicate, in order, in front; the
  *                                                               other lanes are of no use, but none is made up: each is
  *                                                               0 or a lane of the vector
- *   vi_set vi_load vi_store vi_gather vi_add vi_sub vi_lt vi_select
- *                                                               the same for int32; sums wrap
+ *   vi_set vi_load vi_store vi_add vi_sub vi_lt vi_select        the same for int32; sums wrap
  *   vi_and vi_shift_left(vi, int) vi_shift_right(vi, int)       shifts fill up with zeros
  *   vi_bits(vf) v_of_bits(vi)                                   the bits of a float, and back
  *   v_of_int(vi)                                                to the nearest float
@@ -29,7 +28,7 @@
  *   vi_count16(vi counts, vi below, vi values)                  adds 1 to each 16-bit half of counts where that half of
  *                                                               values is less than that of below, both signed
  *   vi_lanes()                                                  0, 1, 2 ...
- *   vm_and vm_or vm_xor vm_not vm_and_not(a, b)                               the last: a and not b
+ *   vm_and vm_or vm_xor vm_not vm_and_not(a, b)                 the last: a and not b
  *   vm_first(int)                                               true in that many lanes
  *   vm_packing(vm)                                              the vp of a predicate
  *   vm_bits(vm)                                                 bit k is lane k

@@ -18,7 +18,6 @@ typedef __m256i vp;
 INLINE vf v_set(float a) { return _mm256_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm256_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm256_storeu_ps(p, a); }
-INLINE vf v_gather(const float *base, vi index) { return _mm256_i32gather_ps(base, index, 4); }
 INLINE __m256 v_two_rows(const char *base, size_t stride, const int32_t *index) {
     const __m128 low = _mm_loadu_ps((const float *)(const void *)(base + (size_t)(uint32_t)index[0] * stride));
     const __m128 high = _mm_loadu_ps((const float *)(const void *)(base + (size_t)(uint32_t)index[4] * stride));
@@ -64,7 +63,6 @@ INLINE vf v_pack(vp p, vf a) { return _mm256_permutevar8x32_ps(a, p); }
 INLINE vi vi_set(int32_t a) { return _mm256_set1_epi32(a); }
 INLINE vi vi_load(const int32_t *p) { return _mm256_loadu_si256((const __m256i *)p); }
 INLINE void vi_store(int32_t *p, vi a) { _mm256_storeu_si256((__m256i *)p, a); }
-INLINE vi vi_gather(const int32_t *base, vi index) { return _mm256_i32gather_epi32(base, index, 4); }
 INLINE vi vi_add(vi a, vi b) { return _mm256_add_epi32(a, b); }
 INLINE vi vi_sub(vi a, vi b) { return _mm256_sub_epi32(a, b); }
 INLINE vm vi_lt(vi a, vi b) { return _mm256_castsi256_ps(_mm256_cmpgt_epi32(b, a)); }

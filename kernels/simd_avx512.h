@@ -18,7 +18,6 @@ typedef __mmask16 vp;
 INLINE vf v_set(float a) { return _mm512_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm512_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm512_storeu_ps(p, a); }
-INLINE vf v_gather(const float *base, vi index) { return _mm512_i32gather_ps(index, base, 4); }
 INLINE __m128 v_row(const char *base, size_t stride, int32_t index) {
     return _mm_loadu_ps((const float *)(const void *)(base + (size_t)(uint32_t)index * stride));
 }
@@ -70,7 +69,6 @@ INLINE vf v_pack(vp p, vf a) { return _mm512_maskz_compress_ps(p, a); }
 INLINE vi vi_set(int32_t a) { return _mm512_set1_epi32(a); }
 INLINE vi vi_load(const int32_t *p) { return _mm512_loadu_si512(p); }
 INLINE void vi_store(int32_t *p, vi a) { _mm512_storeu_si512(p, a); }
-INLINE vi vi_gather(const int32_t *base, vi index) { return _mm512_i32gather_epi32(index, base, 4); }
 INLINE vi vi_add(vi a, vi b) { return _mm512_add_epi32(a, b); }
 INLINE vi vi_sub(vi a, vi b) { return _mm512_sub_epi32(a, b); }
 INLINE vm vi_lt(vi a, vi b) { return _mm512_cmplt_epi32_mask(a, b); }

@@ -18,12 +18,6 @@ typedef uint8x16_t vp;
 INLINE vf v_set(float a) { return vdupq_n_f32(a); }
 INLINE vf v_load(const float *p) { return vld1q_f32(p); }
 INLINE void v_store(float *p, vf a) { vst1q_f32(p, a); }
-INLINE vf v_gather(const float *base, vi index) {
-    vf a = vdupq_n_f32(base[vgetq_lane_s32(index, 0)]);
-    a = vld1q_lane_f32(base + vgetq_lane_s32(index, 1), a, 1);
-    a = vld1q_lane_f32(base + vgetq_lane_s32(index, 2), a, 2);
-    return vld1q_lane_f32(base + vgetq_lane_s32(index, 3), a, 3);
-}
 INLINE vf v_row(const void *base, size_t stride, int32_t index) {
     return vld1q_f32((const float *)(const void *)((const char *)base + (size_t)(uint32_t)index * stride));
 }
@@ -64,12 +58,6 @@ INLINE vf v_pack(vp p, vf a) { return vreinterpretq_f32_u8(vqtbl1q_u8(vreinterpr
 INLINE vi vi_set(int32_t a) { return vdupq_n_s32(a); }
 INLINE vi vi_load(const int32_t *p) { return vld1q_s32(p); }
 INLINE void vi_store(int32_t *p, vi a) { vst1q_s32(p, a); }
-INLINE vi vi_gather(const int32_t *base, vi index) {
-    vi a = vdupq_n_s32(base[vgetq_lane_s32(index, 0)]);
-    a = vld1q_lane_s32(base + vgetq_lane_s32(index, 1), a, 1);
-    a = vld1q_lane_s32(base + vgetq_lane_s32(index, 2), a, 2);
-    return vld1q_lane_s32(base + vgetq_lane_s32(index, 3), a, 3);
-}
 INLINE vi vi_add(vi a, vi b) { return vaddq_s32(a, b); }
 INLINE vi vi_sub(vi a, vi b) { return vsubq_s32(a, b); }
 INLINE vm vi_lt(vi a, vi b) { return vcltq_s32(a, b); }

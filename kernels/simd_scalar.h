@@ -17,7 +17,6 @@ typedef int vp;
 INLINE vf v_set(float a) { return a; }
 INLINE vf v_load(const float *p) { return *p; }
 INLINE void v_store(float *p, vf a) { *p = a; }
-INLINE vf v_gather(const float *base, vi index) { return base[index]; }
 INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out[4]) {
     memcpy(out, (const char *)base + (size_t)(uint32_t)*index * stride, 4 * sizeof(float));
 }
@@ -43,7 +42,6 @@ INLINE vf v_pack(vp p, vf a) {
 INLINE vi vi_set(int32_t a) { return a; }
 INLINE vi vi_load(const int32_t *p) { return *p; }
 INLINE void vi_store(int32_t *p, vi a) { *p = a; }
-INLINE vi vi_gather(const int32_t *base, vi index) { return base[index]; }
 INLINE vi vi_add(vi a, vi b) { return (int32_t)((uint32_t)a + (uint32_t)b); }
 INLINE vi vi_sub(vi a, vi b) { return (int32_t)((uint32_t)a - (uint32_t)b); }
 INLINE vm vi_lt(vi a, vi b) { return a < b; }

@@ -119,8 +119,8 @@ narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t 
         return NARC_ERROR_ARGUMENT;
     if (shape_count > NARC_MAX_SHAPES || arc_count > MAX_RECORDS)
         return NARC_ERROR_COUNT;
-    /* A record for each arc and one for 16 arcs' turns; for each shape turns that do not fill their record, and a circle's
-     * second half. */
+    /* A record for each arc and one for 16 arcs' turns; for each shape turns that do not fill their record, and a
+     * circle's second half. */
     return make_room(shapes, shapes->count + shape_count,
                      shapes->record_count + arc_count + arc_count / NARC_TURNS + 2 * shape_count);
 }

@@ -3,9 +3,10 @@
  * store.h - the layout of a shape store, as the kernels read it. Internal.
  *
  * Each shape has a HEAD, half a cache line with all that the comparison of circles needs, and a BLOCK of RECORDS, also
- * half a cache line each: the angles of its junctions (TURNS), 16 to a record, and its ARCS, one record with all that is
- * known of each. A batch meets shapes in any order, and so touches one line for a shape that the circles settle, and two
- * more for most others, however many arcs they have; heads of their own lie so densely that thousands stay in the cache.
+ * half a cache line each: the angles of its junctions (TURNS), 16 to a record, and its ARCS, one record with all that
+ * is known of each. A batch meets shapes in any order, and so touches one line for a shape that the circles settle,
+ * and two more for most others, however many arcs they have; heads of their own lie so densely that thousands stay in
+ * the cache.
  *
  * Arcs lie in the order of their junctions' angle, the first junction counter-clockwise from +x first; the caller's
  * first arc is somewhere among them (`first` says where). So a direction belongs to the arc before the first whose
@@ -45,7 +46,8 @@ typedef struct narc_head {
 
 /* An arc: its circle, and the unit outward normals where it starts and ends, counter-clockwise. `rolls` is two radii
  * that tell how much shape there is behind the arc, rounded down to the upper halves of floats:
- *   inner, the upper half   A circle of that radius that touches the arc from inside, anywhere on it, lies in the shape;
+ *   inner, the upper half   A circle of that radius that touches the arc from inside, anywhere on it, lies in the
+ *   shape;
  *                           and no arc with a direction within NARC_INNER_WINDOW of one of this arc's has a smaller
  *                           radius.
  *   near, the lower half    No arc with a direction within NARC_NEAR_WINDOW has a smaller radius. */
