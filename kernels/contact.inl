@@ -323,8 +323,9 @@ static size_t contact(const narc_batch *batch, size_t first, size_t count, float
     struct pair_indices indices;
     struct queue fresh;
     struct stages stages;
-    struct results results = {.hinted = batch->hints != NULL};
+    struct results results;
     size_t total = 0;
+    results.hinted = batch->hints != NULL;
     stages.again.count = stages.climb.count = stages.decide.count = 0;
     for (size_t group = 0; group < count; group += GROUP) {
         const int in_group = (int)(count - group < GROUP ? count - group : GROUP);

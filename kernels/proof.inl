@@ -23,7 +23,7 @@
  *
  * 3. Depth, by circles inside the arcs that touch. Let n be a local maximum of g between junctions, -d its value. The
  *    circles of radius `inner` (store.h) that touch the arcs from inside at the support points lie in the shapes, so K
- *    holds one of radius t, their sum, that touches K's outline at d n. In the direction at an angle x from n this gives
+ *    holds one of radius t, their sum, that touches K's outline at d n. In a direction at an angle x from n this gives
  *        h >= d + (t - d) (1 - cos x),
  *    so if t > d, n is the only place with the least h: no other candidate of the formula counts, provided that
  *    rounding cannot make one of about the same value. Beyond an angle of NARC_INNER_WINDOW the inequality keeps
