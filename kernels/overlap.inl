@@ -85,10 +85,11 @@ static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_
     struct queue fresh, waiting[LOOKS]; /* for the second look and so on; the last one for the formula */
     for (int k = 0; k < LOOKS; k++)
         waiting[k].count = 0;
-    memset(out_bits, 0, (count + 63) / 64 * sizeof *out_bits);
     for (size_t block = 0; block < count; block += BLOCK) {
         const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
         load_indices(batch, first + block, n, &indices);
+        for (int k = 0; k < n; k += 64)
+            out_bits[(block + (size_t)k) / 64] = 0;
         fresh.count = 0;
         for (int k = 0; k < n; k += V_WIDTH) {
             const size_t pair = block + (size_t)k;
