@@ -143,6 +143,16 @@ narc_status narc_find_contacts_range(const narc_shapes *shapes, const narc_bodie
     return find_contacts(&batch, first, count, margin, 1, out_contacts, out_count, error);
 }
 
+narc_status narc_find_contacts_hinted_range(const narc_shapes *shapes, const narc_bodies *bodies,
+                                            const narc_pairs *pairs, size_t first, size_t count, float margin,
+                                            uint32_t *hints, const narc_contacts *out_contacts, size_t *out_count,
+                                            narc_error *error) {
+    const narc_batch batch = {shapes, bodies, pairs, hints};
+    if (!hints && count > 0)
+        return missing(error, "hints");
+    return find_contacts(&batch, first, count, margin, 1, out_contacts, out_count, error);
+}
+
 narc_status narc_compute_poses(const float *angles, size_t count, float *out_cosines, float *out_sines,
                                narc_error *error) {
     narc_status status = NARC_OK;

@@ -18,7 +18,7 @@
 
 /* Pairs in a chunk of contacts: some 25 microseconds of work, against about one for handing it out, and the size of
  * each thread's buffer on its stack, 27 KB. */
-enum { CHUNK = 1024 };
+enum { CHUNK = NARC_CONTACT_GROUP };
 
 /* Pairs in a chunk of overlaps, multiples of 64: as many as possible, because at the end of a chunk the kernel decides
  * the rest of its pairs in vectors that are not full, but several for each thread, so that all end together. */

@@ -36,7 +36,7 @@
  *     narc_pairs pairs = {5000, NARC_COLUMN(pair, a), NARC_COLUMN(pair, b)};
  *     narc_find_overlaps(shapes, &bodies, &pairs, 0, hits, NULL);
  *
- * Every function here may be called from any number of threads at once.
+ * Every function here may be called from any number of threads at once. Queries need up to 256 KB of stack.
  */
 #ifndef NARC_H
 #define NARC_H
@@ -113,6 +113,13 @@ NARC_API narc_status narc_find_contacts_hinted(const narc_shapes *shapes, const 
 NARC_API narc_status narc_find_contacts_range(const narc_shapes *shapes, const narc_bodies *bodies,
                                               const narc_pairs *pairs, size_t first, size_t count, float margin,
                                               const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
+
+/* narc_find_contacts_hinted() for a sub-range, as narc_find_contacts_range(). `hints` is that of the whole batch; only
+ * those of the sub-range are read and written. */
+NARC_API narc_status narc_find_contacts_hinted_range(const narc_shapes *shapes, const narc_bodies *bodies,
+                                                     const narc_pairs *pairs, size_t first, size_t count, float margin,
+                                                     uint32_t *hints, const narc_contacts *out_contacts,
+                                                     size_t *out_count, narc_error *error);
 
 /* Cosines and sines of `count` angles, in radians, within 1 ulp of exact, in the calling thread. Outputs may be
  * the input's array, not otherwise overlap it or each other. An angle that is not finite gives NaN, and so a body that

@@ -75,7 +75,7 @@ INLINE struct touch touch_at(const struct arcs *after, const struct arcs *before
 /* Contacts while their places in the list are not known yet: a row for each pair of a group. */
 enum { SEPARATION, CONTACT_NORMAL_X, CONTACT_NORMAL_Y, POINT_X, POINT_Y, ARCS, ROW = 8 };
 
-enum { GROUP = 1024 };
+enum { GROUP = NARC_CONTACT_GROUP };
 
 /* The last of each array is for lanes that are of no use. */
 struct results {
@@ -187,7 +187,7 @@ static void climb_to_contacts(const narc_shapes *shapes, struct queue *q, int fi
         const vm left = vm_and_not(live, vm_or(apart, sure));
         if (vm_any(left)) {
             vf item[FIELDS];
-            get_item(q, k, item);
+            get_item(q, k, item, FIELDS);
             push(undecided, left, item, FIELDS);
         }
     }
@@ -216,7 +216,7 @@ INLINE void look_for_contacts(const narc_shapes *shapes, struct queue *q, int fi
         const vf from_b = v_min(cross(b.start_x, b.start_y, u_x, u_y), cross(u_x, u_y, b.end_x, b.end_y));
         const vf least = v_min(v_select(head_is(bytes_a, NARC_SHAPE_CIRCLE), length, from_a),
                                v_select(head_is(bytes_b, NARC_SHAPE_CIRCLE), length, from_b));
-        const vm inside = vm_and(live, v_lt(v_set(0), least));
+        const vm inside = vm_and(live, v_lt(v_set(0), least)); /* u is long enough for the formula if is_only_peak() */
         const vm far = vm_and(inside, v_lt(v_add(v_set(margin), slack), separation));
         vm apart = vm_or(far, is_above(u_x, u_y, radii, get(q, DIRECTION_X, k), get(q, DIRECTION_Y, k),
                                        v_add(v_set(margin), apart_slack(q, k))));
@@ -236,7 +236,7 @@ INLINE void look_for_contacts(const narc_shapes *shapes, struct queue *q, int fi
         if (vm_any(left)) {
             const vm smooth = head_is(vi_and(bytes_a, bytes_b), NARC_SHAPE_SMOOTH);
             vf item[FIELDS];
-            get_item(q, k, item);
+            get_item(q, k, item, FIELDS);
             item[DIRECTION_X] = v_select(smooth, u_x, item[AXIS_X]);
             item[DIRECTION_Y] = v_select(smooth, u_y, item[AXIS_Y]);
             push(undecided, left, item, FIELDS);
@@ -249,6 +249,7 @@ INLINE void look_for_contacts(const narc_shapes *shapes, struct queue *q, int fi
 struct stages {
     struct queue again, climb, decide;
 };
+_Static_assert(1 + sizeof(struct stages) / sizeof(struct queue) <= STAGES, "queues are too short");
 
 /* Passes what waits on through the stages: whole vectors of the queues that are long enough, or all. */
 static void drain_contacts(const narc_shapes *shapes, struct stages *s, bool all, float margin, struct results *out) {

@@ -17,6 +17,9 @@ typedef struct narc_batch {
     uint32_t *hints; /* one for each pair, in and out; may be NULL */
 } narc_batch;
 
+/* Pairs whose contacts a kernel collects before it lists them; more are as good as several calls. */
+enum { NARC_CONTACT_GROUP = 1024 };
+
 typedef struct narc_kernel_table {
     const char *isa;
 #define NARC_KERNEL(type, name, parameters) type(*name) parameters;

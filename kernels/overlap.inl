@@ -8,6 +8,7 @@
  */
 
 enum { LOOKS = 3 };
+_Static_assert(1 + LOOKS <= STAGES, "queues are too short");
 
 /* Sets the bits of the pairs k ... of a queue that `hits` says. */
 INLINE void mark(const struct queue *q, int k, vm hits, uint64_t *out_bits) {
@@ -45,7 +46,7 @@ INLINE void look_for_overlaps(const narc_shapes *shapes, struct queue *q, int fi
         const vm left = vm_and_not(live, vm_or(apart, hit));
         if (vm_any(left)) {
             vf item[FIELDS];
-            get_item(q, k, item);
+            get_item(q, k, item, OVERLAP_FIELDS);
             item[DIRECTION_X] = u_x;
             item[DIRECTION_Y] = u_y;
             push(undecided, left, item, OVERLAP_FIELDS);

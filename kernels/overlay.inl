@@ -182,7 +182,7 @@ static inline struct gap overlay_gap(const narc_shapes *shapes, const struct que
     const narc_record *records = shapes->records;
     const struct pose pose = get_pose(q, k);
     const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
-    const vi steps = vi_add(ring_a.count, ring_b.count), forward_one = vi_set(1);
+    const vi steps = vi_add(ring_a.count, ring_b.count);
     vi record_a = step_record(ring_a, ring_a.first, vi_set(-1));
     vi record_b = step_record(ring_b, first_of_b(records, ring_b, &pose), vi_set(-1));
     int32_t lanes[V_WIDTH];
@@ -212,7 +212,7 @@ static inline struct gap overlay_gap(const narc_shapes *shapes, const struct que
         /* Pass the nearer of the two junctions ahead, lo: the arc that starts there takes over. The junction ahead of
          * it on that shape comes a turn later where the list begins anew. */
         const vi passed =
-            vi_select(is_a, step_record(ring_a, record_a, forward_one), step_record(ring_b, record_b, forward_one));
+            vi_select(is_a, step_record(ring_a, record_a, vi_set(1)), step_record(ring_b, record_b, vi_set(1)));
         vf row[8];
         vi_store(lanes, passed);
         load_records(records, lanes, row);

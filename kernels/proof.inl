@@ -10,11 +10,15 @@
  * Rounding. e = 2^-24, S = D + E_a + E_b as in overlay.inl; every value here comes from the same arithmetic as there,
  * and is within 32 e S of exact, as the formula is. `slack` is 128 e S, twice what both together can be off by.
  *
+ * All this is about outlines that are closed and convex. Where a caller's arcs do not join up to 32 e of the extent, in
+ * all, slack is infinite, and nothing is proved (store.h, `reach`); what is less than that, slack covers, too.
+ *
  * 1. Apart. If g(n) > margin + slack for one n, then the formula's separation is above the margin. A direction's arcs
- *    are looked up by 16-bit angles, so that they may be those behind a junction that is up to 2^-14 away in diamond
- *    angle, 2^-13 in radians. At a junction without an edge this changes h by 2^-27 of a radius, less than the
- *    rounding; at an edge by 2^-13 of its length, that is of at most twice a bounding radius. LOOSE slacks, 2^-11 S,
- *    cover that and the rounding.
+ *    are looked up by 16-bit angles, so that they may be those behind junctions that are a little over 2^-13 radians
+ *    away (diamond angles change by half a radian or more in a radian; the bin at -x is twice as wide as the others,
+ *    but there they change by one). At a junction without an edge this changes h by some 2^-27 of a radius, less than
+ *    the rounding; at an edge by 2^-13 of its length, that is of at most twice a bounding radius. LOOSE slacks, 2^-11
+ *    S, cover that and the rounding.
  *
  * 2. Collision, by a point p of K that lies opposite to the circle: a ray from p through the origin hits the circle. If
  *    it passes the centre within 7/8 of the core, K holds a circle of core / 8 around the foot of the centre on the
@@ -52,11 +56,11 @@
 #define LEAST_ANGLE 0x1p-12f
 
 /* Is g(d) above `limit`, for a direction d of any length with u and the sum of radii of its arcs? In squares, so that
- * it takes no root; what overflows or underflows proves nothing. */
+ * it takes no root; what overflows proves nothing, nor does a direction too short to keep its digits. */
 INLINE vm is_above(vf u_x, vf u_y, vf radii, vf d_x, vf d_y, vf limit) {
     const vf along = dot(u_x, u_y, d_x, d_y), reach = v_add(radii, limit), d2 = dot(d_x, d_y, d_x, d_y);
-    const vm positive = vm_and(v_lt(v_set(0), along), v_lt(v_set(0), reach));
-    return vm_and(positive, v_lt(v_mul(v_mul(reach, reach), d2), v_mul(along, along)));
+    const vm in_range = vm_and(v_le(v_set(0x1p-126f), d2), vm_and(v_lt(v_set(0), along), v_lt(v_set(0), reach)));
+    return vm_and(in_range, v_lt(v_mul(v_mul(reach, reach), d2), v_mul(along, along)));
 }
 
 /* What g must exceed the margin by, with arcs that were looked up. */

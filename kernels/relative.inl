@@ -22,7 +22,12 @@
 
 /* Pairs in a block: enough to fill vectors after most pairs are settled, few enough for all stages to stay in the first
  * cache. Stages that few pairs reach wait for FLUSH of them. */
-enum { BLOCK = 128, FLUSH = 64, CAPACITY = BLOCK + FLUSH + 2 * V_WIDTH };
+enum { BLOCK = 128, FLUSH = 32, STAGES = 4 };
+
+/* Draining a queue leaves less than FLUSH pairs in it, and adds at most all that it held to the next one: so the first
+ * of STAGES queues holds up to BLOCK pairs, and each one after it up to FLUSH more. Behind the last pair there may be
+ * two vectors, of what push() and pad() write. */
+enum { CAPACITY = BLOCK + (STAGES - 1) * FLUSH + 2 * V_WIDTH };
 
 /* Pairs between stages, dense, structure of arrays. Integers are kept as their bits. */
 enum {
@@ -60,13 +65,13 @@ INLINE vf get(const struct queue *q, int field, int k) { return v_load(q->item[f
 
 INLINE vi get_bits(const struct queue *q, int field, int k) { return vi_bits(get(q, field, k)); }
 
-INLINE void get_item(const struct queue *q, int k, vf item[FIELDS]) {
+INLINE void get_item(const struct queue *q, int k, vf *item, int fields) {
     UNROLL
-    for (int f = 0; f < FIELDS; f++)
+    for (int f = 0; f < fields; f++)
         item[f] = get(q, f, k);
 }
 
-/* Appends the lanes `keep` of `item`. The vector's other lanes go behind them, so that whole vectors may be read. */
+/* Appends the lanes `keep` of `item`. */
 INLINE void push(struct queue *q, vm keep, const vf *item, int fields) {
     const vp packing = vm_packing(keep);
     const int at = q->count;

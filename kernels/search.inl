@@ -63,8 +63,8 @@ INLINE void look_up(const narc_shapes *shapes, struct queue *q, int first, bool 
 /* A hint for the next call: the arcs of A and B at which this one ends, counted from 1 in the order of the store. Any
  * other value means none. */
 INLINE vi hint_of(const struct queue *q, int k, vi record_a, vi record_b) {
-    const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
-    const vi a = vi_sub(record_a, ring_a.first), b = vi_sub(record_b, ring_b.first), one = vi_set(1);
+    const vi a = vi_sub(record_a, first_record(get_bits(q, BLOCK_A, k), get_bits(q, BYTES_A, k))), one = vi_set(1);
+    const vi b = vi_sub(record_b, first_record(get_bits(q, BLOCK_B, k), get_bits(q, BYTES_B, k)));
     return vi_add(vi_add(a, one), vi_shift_left(vi_add(b, one), 8));
 }
 
@@ -144,6 +144,7 @@ INLINE struct peak climb(const narc_shapes *shapes, const struct queue *q, int k
         const vm inside = vm_and(v_le(zero, least), v_le(tiny, dot(u_x, u_y, u_x, u_y)));
         const vm down = v_lt(v_select(lo_is_a, start_a, start_b), zero);
         const vm up = v_lt(v_select(hi_is_a, end_a, end_b), zero);
+        /* Back over the junction that the last step crossed: the one at this end, and of the shape that moved. */
         const vm at_lo = vm_and_not(vm_and_not(vm_and(was_up, down), vm_xor(lo_is_a, moved_a)), inside);
         const vm at_hi = vm_and_not(vm_and_not(vm_and(was_down, up), vm_xor(hi_is_a, moved_a)), inside);
         if (step == 0) {

@@ -18,13 +18,12 @@
  *   v_lt v_le                                                   false where an operand is NaN
  *   v_select(vm, vf a, vf b)                                    a where true, b elsewhere
  *   v_pack(vp, vf)                                              the lanes of the predicate, in order, in front; the
- *                                                               other lanes are of no use, but none is made up: each is
- *                                                               0 or a lane of the vector
+ *                                                               other lanes are of no use
  *   vi_set vi_load vi_store vi_add vi_sub vi_lt vi_select        the same for int32; sums wrap
  *   vi_and vi_shift_left(vi, int) vi_shift_right(vi, int)       shifts fill up with zeros
  *   vi_bits(vf) v_of_bits(vi)                                   the bits of a float, and back
  *   v_of_int(vi)                                                to the nearest float
- *   vi_truncate(vf)                                             to int32, towards 0; some value if out of range or NaN
+ *   vi_truncate(vf)                                             to int32, towards 0; out of range or NaN: any value
  *   vi_count16(vi counts, vi below, vi values)                  adds 1 to each 16-bit half of counts where that half of
  *                                                               values is less than that of below, both signed
  *   vi_lanes()                                                  0, 1, 2 ...

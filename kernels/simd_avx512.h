@@ -4,7 +4,7 @@
  */
 #include "simd.h"
 
-#if !defined(__AVX512F__) || !defined(__AVX512DQ__) || !defined(__AVX512BW__)
+#if !defined(__AVX512F__) || !defined(__AVX512DQ__) || !defined(__AVX512BW__) || !defined(__AVX512VL__)
 #error "compile with -mavx512f -mavx512dq -mavx512bw -mavx512vl"
 #endif
 #include <immintrin.h>

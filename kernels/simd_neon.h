@@ -78,11 +78,11 @@ INLINE vi vi_count16(vi counts, vi below, vi values) {
 INLINE vi vi_lanes(void) { return vld1q_s32((const int32_t[4]){0, 1, 2, 3}); }
 INLINE vm vm_and(vm a, vm b) { return vandq_u32(a, b); }
 INLINE vm vm_or(vm a, vm b) { return vorrq_u32(a, b); }
-INLINE uint32_t vm_bits(vm a) { return vaddvq_u32(vandq_u32(a, vld1q_u32((const uint32_t[4]){1, 2, 4, 8}))); }
 INLINE vm vm_xor(vm a, vm b) { return veorq_u32(a, b); }
 INLINE vm vm_not(vm a) { return vmvnq_u32(a); }
 INLINE vm vm_and_not(vm a, vm b) { return vbicq_u32(a, b); }
 INLINE vm vm_first(int n) { return vi_lt(vi_lanes(), vi_set(n)); }
+INLINE uint32_t vm_bits(vm a) { return vaddvq_u32(vandq_u32(a, vld1q_u32((const uint32_t[4]){1, 2, 4, 8}))); }
 INLINE vp vm_packing(vm a) {
     /* For each set of lanes, the bytes of those lanes; then lane 0 again. */
     static const uint8_t bytes[16][16] = {

@@ -150,9 +150,22 @@ static uint8_t find_flags(const narc_outline *o, size_t count, double size) {
                      (polygon ? NARC_SHAPE_POLYGON : 0) | (inside ? NARC_SHAPE_CENTERS_INSIDE : 0));
 }
 
+/* By how much the arcs fail to make a closed convex outline, in all: distances across the normal of a junction, and
+ * along an edge that runs backwards. */
+static double find_misfit(const narc_outline *o) {
+    double misfit = 0;
+    for (size_t i = 0; i < o->count; i++) {
+        narc_point from = narc_find_end(o, i ? i - 1 : o->count - 1), to = narc_find_start(o, i);
+        double x = to.x - from.x, y = to.y - from.y, n_x = o->normal_x[i], n_y = o->normal_y[i];
+        misfit += fabs(x * n_x + y * n_y) + fmax(0, x * n_y - y * n_x);
+    }
+    return misfit;
+}
+
 static narc_head make_head(const narc_outline *o, size_t count, narc_circle bound, double extent) {
     narc_circle inner;
     narc_inscribe_outline(o, &inner);
+    double misfit = find_misfit(o), room = NARC_HEAD_SLACK * extent + misfit;
     inner.x += o->origin_x;
     inner.y += o->origin_y;
     narc_head head = {.count = (uint8_t)o->count};
@@ -160,13 +173,15 @@ static narc_head make_head(const narc_outline *o, size_t count, narc_circle boun
     head.bound_x = (float)bound.x;
     head.bound_y = (float)bound.y;
     double moved = hypot((double)head.bound_x - bound.x, (double)head.bound_y - bound.y);
-    head.bound_radius = round_up(bound.radius + moved + NARC_HEAD_SLACK * extent);
+    head.bound_radius = round_up(bound.radius + moved + room);
     head.inner_x = (float)inner.x;
     head.inner_y = (float)inner.y;
     moved = hypot((double)head.inner_x - inner.x, (double)head.inner_y - inner.y);
-    head.inner_radius = round_down(fmax(0, inner.radius - moved - NARC_HEAD_SLACK * extent));
+    head.inner_radius = round_down(fmax(0, inner.radius - moved - room));
     /* One part in a million for the rounding of what is stored. */
-    head.reach = (uint8_t)fmin(UINT8_MAX, ceil(extent * (1 + 1e-6) / (double)head.bound_radius));
+    head.reach = UINT8_MAX;
+    if (misfit <= NARC_HEAD_MISFIT * extent)
+        head.reach = (uint8_t)fmin(UINT8_MAX, ceil(extent * (1 + 1e-6) / (double)head.bound_radius));
     return head;
 }
 

@@ -36,7 +36,8 @@ typedef struct narc_head {
     uint8_t count;  /* arcs as stored, 2 .. NARC_MAX_ARCS */
     uint8_t first;  /* the caller's arc that is arc 0 here */
     uint8_t flags;  /* NARC_SHAPE_... */
-    uint8_t reach;  /* extent (the largest |centre| + radius) at most this times bound_radius; 255: unknown */
+    uint8_t reach;  /* extent (the largest |centre| + radius) at most this times bound_radius; 255: more than that, or
+                     * arcs join worse than NARC_HEAD_MISFIT: kernels prove nothing then, but go by their formula */
     /* A circle around the shape and one inside it. Both leave room (NARC_HEAD_SLACK times the extent) for the rounding
      * of the kernels, so that a filter that uses them never contradicts the deciding formula. The inner radius is 0
      * where that leaves nothing. */
@@ -54,6 +55,7 @@ typedef struct narc_head {
 #define NARC_INNER_WINDOW 0.1
 #define NARC_NEAR_WINDOW  1.0471975511965976 /* 60 degrees */
 
+/* The end of an arc and the start of the next have the same bits: a junction has one normal. */
 typedef struct narc_stored_arc {
     float center_x, center_y, radius;
     uint32_t rolls;
@@ -72,6 +74,10 @@ static inline size_t narc_first_arc(size_t count) { return (count + NARC_TURNS -
  * of the distance between the positions plus both extents, and that distance is at most the sum of the extents more
  * than the distance between the circles' centres. See kernels/relative.inl. */
 #define NARC_HEAD_SLACK (96.0 / 16777216.0)
+
+/* What the joins of all arcs together may be off by, relative to the extent, for the kernels' proofs to hold: what
+ * their slack has to spare (kernels/proof.inl). Coordinates with 7 digits pass, where they are of the extent's size. */
+#define NARC_HEAD_MISFIT (32.0 / 16777216.0)
 
 /* The largest bound_radius, scaled: a centred shape of NARC_MAX_SIZE passes with its room for rounding. */
 #define NARC_HEAD_MAX_RADIUS (NARC_MAX_SIZE * (1 + NARC_TOLERANCE))
