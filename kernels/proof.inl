@@ -22,8 +22,10 @@
  *
  * 2. Collision, by a point p of K that lies opposite to the circle: a ray from p through the origin hits the circle. If
  *    it passes the centre within 7/8 of the core, K holds a circle of core / 8 around the foot of the centre on the
- *    ray, at the distance a behind the origin, and so one of core / 8 * |p| / (|p| + a) around the origin. Where this
- *    exceeds slack / 2 = 64 e S, the formula is below 0.
+ *    ray, at the distance a behind the origin, and so one of core / 8 * |p| / (|p| + a) around the origin. The arcs
+ *    were looked up, so where a junction is a sharp corner p may lie beyond the shape, by 2^-13 of both radii or 16
+ *    slacks; with the rounding, 16.5 slacks are what that circle must exceed for the formula to be below 0. CORNER / 8
+ *    is 20.
  *
  * 3. Depth, by circles inside the arcs that touch. Let n be a local maximum of g between junctions, -d its value. The
  *    circles of radius `inner` (store.h) that touch the arcs from inside at the support points lie in the shapes, so K
@@ -49,8 +51,9 @@
  */
 
 /* Slacks. */
-#define LOOSE 64.0f
-#define CLEAR 256.0f
+#define LOOSE  64.0f
+#define CLEAR  256.0f
+#define CORNER 160.0f
 
 /* The least angle from a junction, or its sine. */
 #define LEAST_ANGLE 0x1p-12f
@@ -75,8 +78,8 @@ INLINE vm has_common_point(const struct queue *q, int k, vf p_x, vf p_y, vf leng
     const vf along = dot(axis_x, axis_y, p_x, p_y), across = cross(axis_x, axis_y, p_x, p_y);
     const vf p2 = dot(p_x, p_y, p_x, p_y), reach = v_mul(v_set(0.875f), core);
     const vm meets = vm_and(v_lt(v_set(0), along), v_lt(v_mul(across, across), v_mul(v_mul(reach, reach), p2)));
-    /* |p| core / 8 > slack / 2 (|p| + a), a = along / |p| */
-    return vm_and(meets, v_lt(v_mul(v_mul(v_set(4), slack), v_add(p2, v_mul(length, along))), v_mul(p2, core)));
+    /* |p| core / 8 > CORNER / 8 slack (|p| + a), a = along / |p| */
+    return vm_and(meets, v_lt(v_mul(v_mul(v_set(CORNER), slack), v_add(p2, v_mul(length, along))), v_mul(p2, core)));
 }
 
 /* Proof 3: `least` is the sine of the angle to the nearest junction, times `length`. */

@@ -211,16 +211,18 @@ static double find_least_radius(const narc_outline *o, size_t arc, double window
  * (h(m) - p.m) / (1 - n.m) for every m. With m in the sector of arc j, h(m) - p.m = r - w.m where w = p - its centre;
  * the quotient is least at an end of the sector or where the circle touches that arc. */
 static double find_inner_radius(const narc_outline *o, narc_point p, double n_x, double n_y, double limit) {
+    /* Arcs that touch p, or hold directions as near to n as that, are neighbours: `limit` knows their radii. */
+    const double nothing = NARC_TOLERANCE * NARC_TOLERANCE;
     double least = limit;
     for (size_t j = 0; j < o->count; j++) {
         double w_x = p.x - o->center_x[j], w_y = p.y - o->center_y[j], r = o->radius[j];
         for (size_t end = j; end <= j + 1; end++) {
             double m_x = o->normal_x[end], m_y = o->normal_y[end], width = 1 - (n_x * m_x + n_y * m_y);
-            if (width > NARC_TOLERANCE * NARC_TOLERANCE) /* else the arc touches p, and is one of the neighbours */
+            if (width > nothing)
                 least = fmin(least, (r - (w_x * m_x + w_y * m_y)) / width);
         }
         double fall = r - (w_x * n_x + w_y * n_y);
-        if (fall > 0) {
+        if (fall > nothing * r) {
             double touching = (r * r - (w_x * w_x + w_y * w_y)) / (2 * fall);
             if (narc_in_sector(o, j, w_x - touching * n_x, w_y - touching * n_y))
                 least = fmin(least, touching);

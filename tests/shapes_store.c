@@ -87,13 +87,15 @@ static void lays_out_blocks(void **state) {
         assert_ptr_equal(arcs, block + turn_records);
         for (size_t i = 0; i < count; i++) {
             const narc_stored_arc *arc = &arcs[i].arc, *next = &arcs[(i + 1) % count].arc;
-            double ax = (double)arc->start_x, ay = (double)arc->start_y, bx = (double)arc->end_x, by = (double)arc->end_y;
+            double ax = (double)arc->start_x, ay = (double)arc->start_y, bx = (double)arc->end_x,
+                   by = (double)arc->end_y;
             expect_near(hypot(ax, ay), 1, ulp, "length of a normal");
             assert_true(ax * by - ay * bx > 0 || (ax == -bx && ay == -by)); /* in order, or exactly opposite */
             assert_true(arc->end_x == next->start_x && arc->end_y == next->start_y);
             double turn = ay >= 0 ? 1 - ax / (fabs(ax) + fabs(ay)) : 3 + ax / (fabs(ax) + fabs(ay));
             int16_t rounded = block[i / NARC_TURNS].turns[i % NARC_TURNS];
-            expect_near((double)rounded, (double)NARC_TURN_SCALE * turn - (double)NARC_TURN_OFFSET, 1.01, "its 16 bits");
+            expect_near((double)rounded, (double)NARC_TURN_SCALE * turn - (double)NARC_TURN_OFFSET, 1.01,
+                        "its 16 bits");
             assert_true(i == 0 || rounded >= block[(i - 1) / NARC_TURNS].turns[(i - 1) % NARC_TURNS]);
         }
         for (size_t i = count; i < NARC_TURNS * turn_records; i++) {

@@ -12,6 +12,7 @@ int test_builders(void);
 int test_junctions(void);
 int test_derived(void);
 int test_store(void);
+int test_rolls(void);
 
 /* Fails unless `status` is `expected` and the message has `words` in it. */
 void expect_error(narc_status status, narc_status expected, const narc_error *error, const char *words);

@@ -40,5 +40,5 @@ int main(void) {
     if (!test_begin()) {
         return TEST_SKIPPED;
     }
-    return test_validation() + test_builders() + test_junctions() + test_derived() + test_store() != 0;
+    return test_validation() + test_builders() + test_junctions() + test_derived() + test_store() + test_rolls() != 0;
 }

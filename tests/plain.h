@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * plain.h - whatever settles a pair, the answer must be that of the deciding formula, to the last bit.
+ */
+#ifndef NARC_TEST_PLAIN_H
+#define NARC_TEST_PLAIN_H
+
+#include "scene.h"
+
+/* What the deciding formula says of every pair of a batch: contact k is that of pair k. Checks on the way that its
+ * overlaps are the contacts with a separation below 0. */
+struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs);
+
+/* A batch with the answers that are right for it. The scene is that of the same pairs, to print one that is wrong. */
+struct plain_batch {
+    const narc_shapes *shapes;
+    const narc_bodies *bodies;
+    const narc_pairs *pairs;
+    const narc_contacts *right;
+    const struct scene *scene;
+    const char *name;
+};
+
+/* Fail, with the pair, unless the instruction set under test says the same. `hints` may be NULL: a call without. */
+void check_plain_overlaps(const struct plain_batch *batch, unsigned threads);
+void check_plain_contacts(const struct plain_batch *batch, float margin, unsigned threads, uint32_t *hints);
+
+#endif
