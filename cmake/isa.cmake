@@ -20,6 +20,10 @@ function(narc_add_isa name)
   # No LTO, whoever asks for it: inlining must not carry these instructions across the processor check.
   set_target_properties(narc_isa_${name} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
   target_compile_options(narc_isa_${name} PRIVATE ${ISA_FLAGS} -fno-lto)
+  # Clang 14 crashes over variables in the debug information of optimised AVX-512 kernels (in LLVM's salvageDebugInfo):
+  # lines, but no variables.
+  target_compile_options(narc_isa_${name} PRIVATE
+    $<$<AND:$<C_COMPILER_ID:Clang>,$<VERSION_LESS:$<C_COMPILER_VERSION>,16>>:-gline-tables-only>)
   target_link_libraries(narc_isa_${name} PRIVATE narc_flags)
   if(NARC_SLEEF)
     target_link_libraries(narc_isa_${name} PRIVATE PkgConfig::SLEEF)
