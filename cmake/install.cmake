@@ -2,7 +2,8 @@
 # What cmake --install writes: headers, both libraries, the CMake package and the pkg-config file.
 include(CMakePackageConfigHelpers)
 
-install(FILES soa/narc_export.h soa/narc_shapes.h dispatch/narc.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+install(FILES soa/narc_export.h soa/narc_shapes.h dispatch/narc.h dispatch/narc_methods.h
+  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 
 # Two export files, because only those who ask for the static library need its dependencies.
 set(package_directory "${CMAKE_INSTALL_LIBDIR}/cmake/narc")

@@ -15,7 +15,7 @@ const char *narc_version(void) {
     return TEXT(NARC_VERSION_MAJOR) "." TEXT(NARC_VERSION_MINOR) "." TEXT(NARC_VERSION_PATCH);
 }
 
-static narc_status missing(narc_error *error, const char *name) {
+narc_status narc_fail_missing(narc_error *error, const char *name) {
     return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", name);
 }
 
@@ -36,13 +36,12 @@ static narc_status describe_bad_pair(const narc_batch *batch, size_t pair, narc_
     return NARC_OK;
 }
 
-/* The checks that all batch calls share: for pairs first .. first + count - 1. */
-static narc_status check_batch(const narc_batch *batch, size_t first, size_t count, unsigned threads,
-                               const narc_kernel_table **out_kernels, narc_error *error) {
+narc_status narc_check_batch(const narc_batch *batch, size_t first, size_t count, unsigned threads,
+                             const narc_kernel_table **out_kernels, narc_error *error) {
     const narc_pairs *pairs = batch->pairs;
     const narc_bodies *bodies = batch->bodies;
     if (!batch->shapes || !bodies || !pairs)
-        return missing(error, !batch->shapes ? "shapes" : !bodies ? "bodies" : "pairs");
+        return narc_fail_missing(error, !batch->shapes ? "shapes" : !bodies ? "bodies" : "pairs");
     if (pairs->count > UINT32_MAX)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)pairs->count, "%zu pairs in one batch, at most %lu",
                          pairs->count, (unsigned long)UINT32_MAX);
@@ -54,14 +53,14 @@ static narc_status check_batch(const narc_batch *batch, size_t first, size_t cou
                          "bodies.position_precision is %d", (int)bodies->position_precision);
     if (count > 0) {
         if (!pairs->a.base || !pairs->b.base)
-            return missing(error, !pairs->a.base ? "pairs.a" : "pairs.b");
+            return narc_fail_missing(error, !pairs->a.base ? "pairs.a" : "pairs.b");
         if (bodies->count > 0) {
             if (!bodies->x.base || !bodies->y.base)
-                return missing(error, !bodies->x.base ? "bodies.x" : "bodies.y");
+                return narc_fail_missing(error, !bodies->x.base ? "bodies.x" : "bodies.y");
             if (!bodies->cosine.base || !bodies->sine.base)
-                return missing(error, !bodies->cosine.base ? "bodies.cosine" : "bodies.sine");
+                return narc_fail_missing(error, !bodies->cosine.base ? "bodies.cosine" : "bodies.sine");
             if (!bodies->shape.base)
-                return missing(error, "bodies.shape");
+                return narc_fail_missing(error, "bodies.shape");
         }
         const size_t bad = narc_find_bad_pair(batch, first, count, threads);
         if (bad < first + count)
@@ -74,45 +73,42 @@ static narc_status check_batch(const narc_batch *batch, size_t first, size_t cou
 
 narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                unsigned threads, uint64_t *out_bits, narc_error *error) {
-    const narc_batch batch = {shapes, bodies, pairs, NULL};
+    const narc_batch batch = {.shapes = shapes, .bodies = bodies, .pairs = pairs};
     const narc_kernel_table *kernels = NULL;
-    const narc_status status = check_batch(&batch, 0, pairs ? pairs->count : 0, threads, &kernels, error);
+    const narc_status status = narc_check_batch(&batch, 0, pairs ? pairs->count : 0, threads, &kernels, error);
     if (status != NARC_OK)
         return status;
     if (pairs->count > 0 && !out_bits)
-        return missing(error, "out_bits");
-    narc_run_overlaps(kernels, &batch, threads, out_bits);
+        return narc_fail_missing(error, "out_bits");
+    narc_run_overlaps(kernels->overlap, &batch, threads, out_bits);
     return NARC_OK;
 }
 
 narc_status narc_find_overlaps_range(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                      size_t first, size_t count, uint64_t *out_bits, narc_error *error) {
-    const narc_batch batch = {shapes, bodies, pairs, NULL};
+    const narc_batch batch = {.shapes = shapes, .bodies = bodies, .pairs = pairs};
     const narc_kernel_table *kernels = NULL;
-    const narc_status status = check_batch(&batch, first, count, 1, &kernels, error);
+    const narc_status status = narc_check_batch(&batch, first, count, 1, &kernels, error);
     if (status != NARC_OK)
         return status;
     if (first % 64 != 0 || (count % 64 != 0 && first + count != pairs->count))
         return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)count,
                          "pairs %zu and the %zu from there on do not begin and end at multiples of 64", first, count);
     if (count > 0 && !out_bits)
-        return missing(error, "out_bits");
+        return narc_fail_missing(error, "out_bits");
     if (count > 0)
         kernels->overlap(&batch, first, count, out_bits + first / 64);
     return NARC_OK;
 }
 
-static narc_status find_contacts(const narc_batch *batch, size_t first, size_t count, float margin, unsigned threads,
-                                 const narc_contacts *out_contacts, size_t *out_count, narc_error *error) {
-    const narc_kernel_table *kernels = NULL;
-    const narc_status status = check_batch(batch, first, count, threads, &kernels, error);
-    if (status != NARC_OK)
-        return status;
+narc_status narc_list_contacts(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count,
+                               float margin, unsigned threads, const narc_contacts *out_contacts, size_t *out_count,
+                               narc_error *error) {
     if (!out_contacts || !out_count)
-        return missing(error, !out_contacts ? "out_contacts" : "out_count");
+        return narc_fail_missing(error, !out_contacts ? "out_contacts" : "out_count");
     if (isnan(margin))
         return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)margin, "margin is not a number");
-    const size_t found = narc_run_contacts(kernels, batch, first, count, margin, threads, out_contacts);
+    const size_t found = narc_run_contacts(kernel, batch, first, count, margin, threads, out_contacts);
     *out_count = found;
     if (found > out_contacts->capacity)
         return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu contacts, but there is room for %zu", found,
@@ -120,26 +116,35 @@ static narc_status find_contacts(const narc_batch *batch, size_t first, size_t c
     return NARC_OK;
 }
 
+static narc_status find_contacts(const narc_batch *batch, size_t first, size_t count, float margin, unsigned threads,
+                                 const narc_contacts *out_contacts, size_t *out_count, narc_error *error) {
+    const narc_kernel_table *kernels = NULL;
+    const narc_status status = narc_check_batch(batch, first, count, threads, &kernels, error);
+    if (status != NARC_OK)
+        return status;
+    return narc_list_contacts(kernels->contact, batch, first, count, margin, threads, out_contacts, out_count, error);
+}
+
 narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                float margin, unsigned threads, const narc_contacts *out_contacts, size_t *out_count,
                                narc_error *error) {
-    const narc_batch batch = {shapes, bodies, pairs, NULL};
+    const narc_batch batch = {.shapes = shapes, .bodies = bodies, .pairs = pairs};
     return find_contacts(&batch, 0, pairs ? pairs->count : 0, margin, threads, out_contacts, out_count, error);
 }
 
 narc_status narc_find_contacts_hinted(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                       float margin, unsigned threads, uint32_t *hints,
                                       const narc_contacts *out_contacts, size_t *out_count, narc_error *error) {
-    const narc_batch batch = {shapes, bodies, pairs, hints};
+    const narc_batch batch = {.shapes = shapes, .bodies = bodies, .pairs = pairs, .hints = hints};
     if (!hints && pairs && pairs->count > 0)
-        return missing(error, "hints");
+        return narc_fail_missing(error, "hints");
     return find_contacts(&batch, 0, pairs ? pairs->count : 0, margin, threads, out_contacts, out_count, error);
 }
 
 narc_status narc_find_contacts_range(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                      size_t first, size_t count, float margin, const narc_contacts *out_contacts,
                                      size_t *out_count, narc_error *error) {
-    const narc_batch batch = {shapes, bodies, pairs, NULL};
+    const narc_batch batch = {.shapes = shapes, .bodies = bodies, .pairs = pairs};
     return find_contacts(&batch, first, count, margin, 1, out_contacts, out_count, error);
 }
 
@@ -147,9 +152,9 @@ narc_status narc_find_contacts_hinted_range(const narc_shapes *shapes, const nar
                                             const narc_pairs *pairs, size_t first, size_t count, float margin,
                                             uint32_t *hints, const narc_contacts *out_contacts, size_t *out_count,
                                             narc_error *error) {
-    const narc_batch batch = {shapes, bodies, pairs, hints};
+    const narc_batch batch = {.shapes = shapes, .bodies = bodies, .pairs = pairs, .hints = hints};
     if (!hints && count > 0)
-        return missing(error, "hints");
+        return narc_fail_missing(error, "hints");
     return find_contacts(&batch, first, count, margin, 1, out_contacts, out_count, error);
 }
 
@@ -160,7 +165,7 @@ narc_status narc_compute_poses(const float *angles, size_t count, float *out_cos
     if (!kernels)
         return status;
     if (count > 0 && (!angles || !out_cosines || !out_sines))
-        return missing(error, !angles ? "angles" : !out_cosines ? "out_cosines" : "out_sines");
+        return narc_fail_missing(error, !angles ? "angles" : !out_cosines ? "out_cosines" : "out_sines");
     kernels->pose(angles, count, out_cosines, out_sines);
     return NARC_OK;
 }

@@ -41,12 +41,18 @@ int narc_team_size(unsigned threads, size_t parts) {
     return (int)(wanted < parts ? wanted : parts);
 }
 
-void narc_run_overlaps(const narc_kernel_table *kernels, const narc_batch *batch, unsigned threads,
-                       uint64_t *out_bits) {
+/* Kernels write only the outcomes of pairs that did not end well. */
+static void clear_outcomes(const narc_batch *batch, size_t first, size_t count) {
+    if (batch->outcomes && count > 0)
+        memset(batch->outcomes + first, 0, count); /* NARC_OUTCOME_DONE */
+}
+
+void narc_run_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, unsigned threads, uint64_t *out_bits) {
     const size_t count = batch->pairs->count;
+    clear_outcomes(batch, 0, count);
     const int team = narc_team_size(threads, (count + LEAST_OVERLAPS - 1) / LEAST_OVERLAPS);
     if (team <= 1) {
-        kernels->overlap(batch, 0, count, out_bits);
+        kernel(batch, 0, count, out_bits);
         return;
     }
     size_t chunk_size = count / ((size_t)team * CHUNKS_PER_THREAD) / 64 * 64;
@@ -60,7 +66,7 @@ void narc_run_overlaps(const narc_kernel_table *kernels, const narc_batch *batch
 #endif
     for (size_t chunk = 0; chunk < chunks; chunk++) {
         const size_t start = chunk * chunk_size, left = count - start;
-        kernels->overlap(batch, start, left < chunk_size ? left : chunk_size, out_bits + start / 64);
+        kernel(batch, start, left < chunk_size ? left : chunk_size, out_bits + start / 64);
     }
 }
 
@@ -98,15 +104,16 @@ static void give_way(void) {
 }
 
 /* The contacts of one chunk, to the buffer; returns how many. */
-static size_t fill_buffer(const narc_kernel_table *kernels, const narc_batch *batch, size_t first, size_t count,
+static size_t fill_buffer(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count,
                           float margin, struct buffer *b) {
     const narc_contacts list = {CHUNK,      b->pair,    b->separation, b->normal_x, b->normal_y,
                                 b->point_x, b->point_y, b->arc_a,      b->arc_b};
-    return kernels->contact(batch, first, count, margin, &list);
+    return kernel(batch, first, count, margin, &list);
 }
 
-size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *batch, size_t first, size_t count,
-                         float margin, unsigned threads, const narc_contacts *out_contacts) {
+size_t narc_run_contacts(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count, float margin,
+                         unsigned threads, const narc_contacts *out_contacts) {
+    clear_outcomes(batch, first, count);
     const size_t chunks = (count + CHUNK - 1) / CHUNK;
     const int team = narc_team_size(threads, chunks);
     size_t total = 0;
@@ -114,7 +121,7 @@ size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *bat
         for (size_t start = 0; start < count; start += CHUNK) {
             struct buffer buffer;
             const size_t size = count - start < CHUNK ? count - start : CHUNK;
-            const size_t found = fill_buffer(kernels, batch, first + start, size, margin, &buffer);
+            const size_t found = fill_buffer(kernel, batch, first + start, size, margin, &buffer);
             copy_contacts(&buffer, found, total, out_contacts);
             total += found;
         }
@@ -130,7 +137,7 @@ size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *bat
     for (size_t chunk = 0; chunk < chunks; chunk++) {
         struct buffer buffer;
         const size_t start = chunk * CHUNK, size = count - start < CHUNK ? count - start : CHUNK;
-        const size_t found = fill_buffer(kernels, batch, first + start, size, margin, &buffer);
+        const size_t found = fill_buffer(kernel, batch, first + start, size, margin, &buffer);
         while (atomic_load_explicit(&turn, memory_order_acquire) != chunk)
             give_way();
         const size_t offset = total;

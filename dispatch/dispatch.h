@@ -18,10 +18,22 @@ const narc_kernel_table *narc_kernels(narc_status *out_status, narc_error *error
 /* How many threads to use for so many parts of work; `threads` as the caller gave it. */
 int narc_team_size(unsigned threads, size_t parts);
 
+/* "`name` is NULL". */
+narc_status narc_fail_missing(narc_error *error, const char *name);
+
+/* The checks that all batch calls share: for pairs first .. first + count - 1. */
+narc_status narc_check_batch(const narc_batch *batch, size_t first, size_t count, unsigned threads,
+                             const narc_kernel_table **out_kernels, narc_error *error);
+
+/* The rest of a call for contacts, after narc_check_batch(): checks the outputs, runs the kernel. */
+narc_status narc_list_contacts(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count,
+                               float margin, unsigned threads, const narc_contacts *out_contacts, size_t *out_count,
+                               narc_error *error);
+
 /* Spread a checked batch over threads (0: as many as OpenMP would use). */
-void narc_run_overlaps(const narc_kernel_table *kernels, const narc_batch *batch, unsigned threads, uint64_t *out_bits);
-size_t narc_run_contacts(const narc_kernel_table *kernels, const narc_batch *batch, size_t first, size_t count,
-                         float margin, unsigned threads, const narc_contacts *out_contacts);
+void narc_run_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, unsigned threads, uint64_t *out_bits);
+size_t narc_run_contacts(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count, float margin,
+                         unsigned threads, const narc_contacts *out_contacts);
 
 /* The first of pairs first .. first + count - 1 that names a body or a shape that does not exist; first + count if
  * none. */

@@ -33,15 +33,15 @@ INLINE vf find_point(const struct arcs *arc, vf n_x, vf n_y, float sign, vf *out
     return cross(n_x, n_y, p_x, p_y);
 }
 
-/* Is n the normal of this junction? */
-INLINE vm meets(vf j_x, vf j_y, vf n_x, vf n_y) {
-    return vm_and(v_le(v_abs(cross(j_x, j_y, n_x, n_y)), v_set(PARALLEL)), v_lt(v_set(0), dot(j_x, j_y, n_x, n_y)));
+/* Is n the normal of this junction, but for an angle of `parallel`? */
+INLINE vm meets(vf j_x, vf j_y, vf n_x, vf n_y, float parallel) {
+    return vm_and(v_le(v_abs(cross(j_x, j_y, n_x, n_y)), v_set(parallel)), v_lt(v_set(0), dot(j_x, j_y, n_x, n_y)));
 }
 
 /* The touch of the shape with the arc in `record`: a point, or up to the end of a neighbouring arc where n is the
  * normal of the junction with it. */
 INLINE struct touch touch_of(const narc_record *records, struct ring ring, vi record, const struct pose *pose, vf n_x,
-                             vf n_y, bool is_b) {
+                             vf n_y, bool is_b, float parallel) {
     const vi next = step_record(ring, record, vi_set(1));
     int32_t lanes[3][V_WIDTH];
     vi_store(lanes[0], step_record(ring, record, vi_set(-1)));
@@ -53,8 +53,8 @@ INLINE struct touch touch_of(const narc_record *records, struct ring ring, vi re
     const float sign = is_b ? -1.0f : 1.0f;
     struct touch t;
     t.along_min = t.along_max = find_point(&arc[1], n_x, n_y, sign, &t.across);
-    const vm starts = meets(arc[1].start_x, arc[1].start_y, n_x, n_y),
-             ends = meets(arc[1].end_x, arc[1].end_y, n_x, n_y);
+    const vm starts = meets(arc[1].start_x, arc[1].start_y, n_x, n_y, parallel),
+             ends = meets(arc[1].end_x, arc[1].end_y, n_x, n_y, parallel);
     const vf before = find_point(&arc[0], n_x, n_y, sign, NULL), after = find_point(&arc[2], n_x, n_y, sign, NULL);
     t.along_min = v_select(starts, v_min(t.along_min, before), t.along_min);
     t.along_max = v_select(starts, v_max(t.along_max, before), t.along_max);
@@ -140,21 +140,27 @@ INLINE vm closer_than(vf separation, float margin) {
     return margin == INFINITY ? vm_first(V_WIDTH) : v_lt(separation, v_set(margin));
 }
 
+/* Files the contacts that `gap` says, of the pairs k ... of a queue, where it is less than the margin. */
+static void file_gap(const narc_shapes *shapes, const struct queue *q, int k, vm live, const struct gap *gap,
+                     float margin, float parallel, struct results *out) {
+    const vm keep = vm_and(live, closer_than(gap->separation, margin));
+    if (!vm_any(keep))
+        return;
+    const vf n_x = v_div(gap->n_x, gap->n_length), n_y = v_div(gap->n_y, gap->n_length);
+    const struct pose pose = get_pose(q, k);
+    const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
+    const struct touch on_a = touch_of(shapes->records, ring_a, gap->record_a, &pose, n_x, n_y, false, parallel);
+    const struct touch on_b = touch_of(shapes->records, ring_b, gap->record_b, &pose, n_x, n_y, true, parallel);
+    file_contacts(q, k, keep, gap->separation, n_x, n_y, &on_a, &on_b, out);
+}
+
 /* Finds the contacts of the pairs first ... of a queue by the formula and takes them out. */
 static void decide_contacts(const narc_shapes *shapes, struct queue *q, int first, float margin, struct results *out) {
     for (int k = first; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
         const struct gap gap = overlay_gap(shapes, q, k, live, true);
         leave_hints(q, k, live, gap.record_a, gap.record_b, out);
-        const vm keep = vm_and(live, closer_than(gap.separation, margin));
-        if (!vm_any(keep))
-            continue;
-        const vf n_x = v_div(gap.n_x, gap.n_length), n_y = v_div(gap.n_y, gap.n_length);
-        const struct pose pose = get_pose(q, k);
-        const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
-        const struct touch on_a = touch_of(shapes->records, ring_a, gap.record_a, &pose, n_x, n_y, false);
-        const struct touch on_b = touch_of(shapes->records, ring_b, gap.record_b, &pose, n_x, n_y, true);
-        file_contacts(q, k, keep, gap.separation, n_x, n_y, &on_a, &on_b, out);
+        file_gap(shapes, q, k, live, &gap, margin, PARALLEL, out);
     }
     q->count = first;
 }
@@ -187,8 +193,8 @@ static void climb_to_contacts(const narc_shapes *shapes, struct queue *q, int fi
         const vm left = vm_and_not(live, vm_or(apart, sure));
         if (vm_any(left)) {
             vf item[FIELDS];
-            get_item(q, k, item, FIELDS);
-            push(undecided, left, item, FIELDS);
+            get_item(q, k, item, CONTACT_FIELDS);
+            push(undecided, left, item, CONTACT_FIELDS);
         }
     }
     q->count = first;
@@ -236,10 +242,10 @@ INLINE void look_for_contacts(const narc_shapes *shapes, struct queue *q, int fi
         if (vm_any(left)) {
             const vm smooth = head_is(vi_and(bytes_a, bytes_b), NARC_SHAPE_SMOOTH);
             vf item[FIELDS];
-            get_item(q, k, item, FIELDS);
+            get_item(q, k, item, CONTACT_FIELDS);
             item[DIRECTION_X] = v_select(smooth, u_x, item[AXIS_X]);
             item[DIRECTION_Y] = v_select(smooth, u_y, item[AXIS_Y]);
-            push(undecided, left, item, FIELDS);
+            push(undecided, left, item, CONTACT_FIELDS);
         }
     }
     q->count = first;
@@ -309,17 +315,61 @@ static size_t list_contacts(const struct results *results, int count, size_t fir
     return (size_t)n;
 }
 
-/* Pairs without an answer, where every pair is to have one: lanes `invalid` of the pairs `number` ... */
+/* Pairs without an answer, where every pair is to have one. */
+static void file_none(int pair, struct results *out) {
+    const float none[ROW] = {[SEPARATION] = INFINITY};
+    memcpy(out->row[pair], none, sizeof none);
+    out->keep[pair] = 1;
+}
+
+/* The lanes `invalid` of the pairs `number` ... */
 INLINE void file_invalid(vm invalid, int number, struct results *out) {
-    for (uint32_t bits = vm_bits(invalid); bits; bits &= bits - 1) {
-        const int pair = number + __builtin_ctz(bits);
-        const float none[ROW] = {[SEPARATION] = INFINITY};
-        memcpy(out->row[pair], none, sizeof none);
-        out->keep[pair] = 1;
+    for (uint32_t bits = vm_bits(invalid); bits; bits &= bits - 1)
+        file_none(number + __builtin_ctz(bits), out);
+}
+
+/* How a method finds contacts: those of the pairs of a queue, whose numbers count from `first` of the batch. */
+typedef void contact_method(const narc_batch *batch, size_t first, struct queue *q, float margin, struct results *out);
+
+/* A contact kernel that goes about all pairs alike. */
+static size_t contact_by(contact_method *find, const narc_batch *batch, size_t first, size_t count, float margin,
+                         const narc_contacts *out) {
+    const bool rows = poses_are_rows(batch->bodies);
+    struct pair_indices indices;
+    struct queue q;
+    struct results results;
+    size_t total = 0;
+    results.hinted = false;
+    for (size_t group = 0; group < count; group += GROUP) {
+        const int in_group = (int)(count - group < GROUP ? count - group : GROUP);
+        memset(results.keep, 0, sizeof results.keep);
+        for (int block = 0; block < in_group; block += BLOCK) {
+            const int n = in_group - block < BLOCK ? in_group - block : BLOCK;
+            load_indices(batch, first + group + (size_t)block, n, &indices);
+            q.count = 0;
+            for (int k = 0; k < n; k += V_WIDTH) {
+                vf item[FIELDS];
+                const struct filter f = load_pairs(batch, &indices, k, n, rows, margin, block, item);
+                if (margin == INFINITY)
+                    file_invalid(vm_and_not(vm_first(n - k), f.valid), block + k, &results);
+                push(&q, f.valid, item, FIELDS);
+            }
+            pad(&q);
+            find(batch, first + group, &q, margin, &results);
+        }
+        total += list_contacts(&results, in_group, first + group, out, total);
     }
+    return total;
+}
+
+static void find_plain(const narc_batch *batch, size_t first, struct queue *q, float margin, struct results *out) {
+    (void)first;
+    decide_contacts(batch->shapes, q, 0, margin, out);
 }
 
 static size_t contact(const narc_batch *batch, size_t first, size_t count, float margin, const narc_contacts *out) {
+    if (!NARC_SHORTCUTS)
+        return contact_by(find_plain, batch, first, count, margin, out);
     const bool rows = poses_are_rows(batch->bodies);
     struct pair_indices indices;
     struct queue fresh;
@@ -342,12 +392,10 @@ static size_t contact(const narc_batch *batch, size_t first, size_t count, float
                 const struct filter f = load_pairs(batch, &indices, k, n, rows, margin, block, item);
                 if (margin == INFINITY)
                     file_invalid(vm_and_not(vm_first(n - k), f.valid), block + k, &results);
-                push(&fresh, NARC_SHORTCUTS ? vm_and_not(f.valid, f.apart) : f.valid, item, FIELDS);
+                push(&fresh, vm_and_not(f.valid, f.apart), item, CONTACT_FIELDS);
             }
             pad(&fresh);
-            if (!NARC_SHORTCUTS)
-                decide_contacts(batch->shapes, &fresh, 0, margin, &results);
-            else if (batch->hints)
+            if (batch->hints)
                 look_for_contacts(batch->shapes, &fresh, 0, true, margin, &stages.again, &results);
             else
                 look_for_contacts(batch->shapes, &fresh, 0, false, margin, &stages.again, &results);

@@ -14,7 +14,10 @@ typedef struct narc_batch {
     const narc_shapes *shapes;
     const narc_bodies *bodies;
     const narc_pairs *pairs;
-    uint32_t *hints; /* one for each pair, in and out; may be NULL */
+    uint32_t *hints;   /* one for each pair, in and out; may be NULL */
+    uint8_t *outcomes; /* one for each pair, out; may be NULL. Only methods that can fail write them. */
+    float tolerance;   /* of gjk, relative to the sum of both bounding radii */
+    int iterations;    /* of gjk, 1 .. NARC_ITERATIONS */
 } narc_batch;
 
 /* Pairs whose contacts a kernel collects before it lists them; more are as good as several calls. */
@@ -26,6 +29,14 @@ typedef struct narc_kernel_table {
 #include "kernels.def"
 #undef NARC_KERNEL
 } narc_kernel_table;
+
+/* The most support points of a phase of gjk: NARC_MAX_ITERATIONS. */
+enum { NARC_ITERATIONS = 128 };
+
+/* What the kernels called overlap... and contact... have in common. */
+typedef void narc_overlap_kernel(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits);
+typedef size_t narc_contact_kernel(const narc_batch *batch, size_t first, size_t count, float margin,
+                                   const narc_contacts *out);
 
 extern const narc_kernel_table narc_kernels_scalar;
 extern const narc_kernel_table narc_kernels_neon;

@@ -80,7 +80,40 @@ static void drain_overlaps(const narc_shapes *shapes, struct queue waiting[LOOKS
     }
 }
 
+/* How a method finds overlaps: those of the pairs of a queue, whose numbers count from `first` of the batch; sets their
+ * bits. */
+typedef void overlap_method(const narc_batch *batch, size_t first, struct queue *q, uint64_t *out_bits);
+
+/* An overlap kernel that goes about all pairs alike. */
+static void overlap_by(overlap_method *find, const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
+    const bool rows = poses_are_rows(batch->bodies);
+    struct pair_indices indices;
+    struct queue q;
+    memset(out_bits, 0, (count + 63) / 64 * sizeof *out_bits);
+    for (size_t block = 0; block < count; block += BLOCK) {
+        const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
+        load_indices(batch, first + block, n, &indices);
+        q.count = 0;
+        for (int k = 0; k < n; k += V_WIDTH) {
+            vf item[FIELDS];
+            const struct filter f = load_pairs(batch, &indices, k, n, rows, 0, (int32_t)(uint32_t)block, item);
+            push(&q, f.valid, item, FIELDS);
+        }
+        pad(&q);
+        find(batch, first, &q, out_bits);
+    }
+}
+
+static void mark_plain(const narc_batch *batch, size_t first, struct queue *q, uint64_t *out_bits) {
+    (void)first;
+    decide_overlaps(batch->shapes, q, 0, out_bits);
+}
+
 static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
+    if (!NARC_SHORTCUTS) {
+        overlap_by(mark_plain, batch, first, count, out_bits);
+        return;
+    }
     const bool rows = poses_are_rows(batch->bodies);
     struct pair_indices indices;
     struct queue fresh, waiting[LOOKS]; /* for the second look and so on; the last one for the formula */
@@ -95,17 +128,12 @@ static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_
         for (int k = 0; k < n; k += V_WIDTH) {
             const size_t pair = block + (size_t)k;
             vf item[FIELDS];
-            struct filter f = load_pairs(batch, &indices, k, n, rows, 0, (int32_t)(uint32_t)block, item);
-            if (!NARC_SHORTCUTS)
-                f.apart = f.deep = vm_first(0);
+            const struct filter f = load_pairs(batch, &indices, k, n, rows, 0, (int32_t)(uint32_t)block, item);
             push(&fresh, vm_and_not(f.valid, vm_or(f.apart, f.deep)), item, OVERLAP_FIELDS);
             out_bits[pair / 64] |= (uint64_t)vm_bits(vm_and(f.valid, f.deep)) << pair % 64;
         }
         pad(&fresh);
-        if (NARC_SHORTCUTS)
-            look_for_overlaps(batch->shapes, &fresh, 0, &waiting[0], out_bits);
-        else
-            decide_overlaps(batch->shapes, &fresh, 0, out_bits);
+        look_for_overlaps(batch->shapes, &fresh, 0, &waiting[0], out_bits);
         drain_overlaps(batch->shapes, waiting, false, out_bits);
     }
     drain_overlaps(batch->shapes, waiting, true, out_bits);

@@ -50,8 +50,10 @@ enum {
     DIRECTION_Y,
     COSINE_A, /* A's rotation */
     SINE_A,
+    SIZE, /* the sum of both bounding radii */
     FIELDS,
-    OVERLAP_FIELDS = COSINE_A /* who wants no contact needs no rotation */
+    OVERLAP_FIELDS = COSINE_A, /* who wants no contact needs no rotation */
+    CONTACT_FIELDS = SIZE
 };
 
 struct queue {
@@ -247,7 +249,7 @@ INLINE struct filter load_pairs(const narc_batch *batch, const struct pair_indic
     const vf axis_x = v_sub(v_add(t_x, v_mul(scale_b, inner_x)), v_mul(scale_a, a.inner_x));
     const vf axis_y = v_sub(v_add(t_y, v_mul(scale_b, inner_y)), v_mul(scale_a, a.inner_y));
 
-    const vf reach = v_add(v_add(size_a, size_b), v_set(margin));
+    const vf size = v_add(size_a, size_b), reach = v_add(size, v_set(margin));
     const vf far2 = v_add(v_mul(far_x, far_x), v_mul(far_y, far_y));
     const vf core = v_add(v_mul(scale_a, a.inner_radius), v_mul(scale_b, b.inner_radius));
     const vf axis2 = v_add(v_mul(axis_x, axis_x), v_mul(axis_y, axis_y));
@@ -266,6 +268,7 @@ INLINE struct filter load_pairs(const narc_batch *batch, const struct pair_indic
     item[AXIS_X] = axis_x;
     item[AXIS_Y] = axis_y;
     item[CORE] = core;
+    item[SIZE] = size;
     item[SLACK] = slack_of(t_x, t_y, a.bytes, b.bytes, size_a, size_b);
     item[BLOCK_A] = v_of_bits(a.block);
     item[BLOCK_B] = v_of_bits(b.block);

@@ -25,6 +25,15 @@
 
 #include "contact.inl"
 #include "overlap.inl"
+
+#include "boxes.inl"
+
+#include "first.inl"
+
+#include "polygon.inl"
+
+#include "gjk.inl"
+
 #include "pose.inl"
 
 #define NARC_JOIN_(a, b) a##b

@@ -353,6 +353,14 @@ typedef struct narc_contacts {
     uint8_t *arc_a, *arc_b;
 } narc_contacts;
 
+/* How a method came to a pair's answer (see narc_methods.h; the exact one always ends well). */
+typedef enum narc_outcome {
+    NARC_OUTCOME_DONE = 0,     /* the method ended as it should */
+    NARC_OUTCOME_LIMIT = 1,    /* gjk: iterations ran out; the best that was found, "not colliding" if nothing was */
+    NARC_OUTCOME_ROUNDING = 2, /* gjk: rounding left no way on before the tolerance was reached; the best found */
+    NARC_OUTCOME_NONE = 3      /* sat-first: no pair of arcs passes the test */
+} narc_outcome;
+
 #ifdef __cplusplus
 }
 #endif

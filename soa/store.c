@@ -112,17 +112,17 @@ static narc_status make_room(narc_shapes *shapes, size_t count, size_t records) 
     return NARC_OK;
 }
 
-static size_t find_block_size(size_t count) { return narc_first_arc(count) + count; }
+static size_t find_block_size(size_t count) { return narc_first_arc(count) + count + 1; }
 
 narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t arc_count) {
     if (!shapes)
         return NARC_ERROR_ARGUMENT;
     if (shape_count > NARC_MAX_SHAPES || arc_count > MAX_RECORDS)
         return NARC_ERROR_COUNT;
-    /* A record for each arc and one for 16 arcs' turns; for each shape turns that do not fill their record, and a
-     * circle's second half. */
+    /* A record for each arc and one for 16 arcs' turns; for each shape turns that do not fill their record, a circle's
+     * second half, and the box. */
     return make_room(shapes, shapes->count + shape_count,
-                     shapes->record_count + arc_count + arc_count / NARC_TURNS + 2 * shape_count);
+                     shapes->record_count + arc_count + arc_count / NARC_TURNS + 3 * shape_count);
 }
 
 /* ------------------------------------------------------------------------------------------------ adding */
@@ -183,6 +183,34 @@ static narc_head make_head(const narc_outline *o, size_t count, narc_circle boun
     if (misfit <= NARC_HEAD_MISFIT * extent)
         head.reach = (uint8_t)fmin(UINT8_MAX, ceil(extent * (1 + 1e-6) / (double)head.bound_radius));
     return head;
+}
+
+/* The smallest of the boxes along the junctions' normals: of a polygon, the smallest of all, which lies along an edge.
+ * Its numbers are rounded to single precision, which NARC_HEAD_SLACK has room for. */
+static narc_box make_box(const narc_outline *o, const narc_arc *arcs, size_t count, double room) {
+    double least = INFINITY;
+    narc_box box = {0};
+    for (size_t i = 0; i < o->count; i++) {
+        double x = o->normal_x[i], y = o->normal_y[i];
+        double front = narc_find_height(o, x, y), back = narc_find_height(o, -x, -y);
+        double left = narc_find_height(o, -y, x), right = narc_find_height(o, y, -x);
+        double half_x = (front + back) / 2, half_y = (left + right) / 2;
+        if (half_x * half_y < least) {
+            double along = (front - back) / 2, across = (left - right) / 2;
+            least = half_x * half_y;
+            box.center_x = (float)(o->origin_x + along * x - across * y);
+            box.center_y = (float)(o->origin_y + along * y + across * x);
+            box.half_x = round_up(half_x + room);
+            box.half_y = round_up(half_y + room);
+            box.axis_x = (float)x;
+            box.axis_y = (float)y;
+        }
+    }
+    narc_mass mass = {0};
+    narc_compute_mass(arcs, count, &mass);
+    box.centroid_x = (float)mass.centroid_x;
+    box.centroid_y = (float)mass.centroid_y;
+    return box;
 }
 
 /* The diamond angle of a normal, as the kernels compute it. */
@@ -302,6 +330,8 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
                          (double)head.bound_radius, NARC_MAX_SIZE);
     head.block = (uint32_t)block;
     write_block(&outline, &head, shapes->records + block);
+    shapes->records[block + block_size - 1].box =
+        make_box(&outline, arcs, count, NARC_HEAD_SLACK * extent + find_misfit(&outline));
     if (out_shape)
         *out_shape = (uint32_t)shapes->count;
     shapes->heads[shapes->count++] = head;

@@ -3,8 +3,8 @@
  * store.h - the layout of a shape store, as the kernels read it. Internal.
  *
  * Each shape has a HEAD, half a cache line with all that the comparison of circles needs, and a BLOCK of RECORDS, also
- * half a cache line each: the angles of its junctions (TURNS), 16 to a record, and its ARCS, one record with all that
- * is known of each. A batch meets shapes in any order, and so touches one line for a shape that the circles settle,
+ * half a cache line each: the angles of its junctions (TURNS), 16 to a record, its ARCS, one record with all that is
+ * known of each, and last its BOX. A batch meets shapes in any order, and so touches one line for a shape that the circles settle,
  * and two more for most others, however many arcs they have; heads of their own lie so densely that thousands stay in
  * the cache.
  *
@@ -62,9 +62,18 @@ typedef struct narc_stored_arc {
     float start_x, start_y, end_x, end_y;
 } narc_stored_arc;
 
+/* What only methods other than the exact one ask of a shape, behind its arcs: a box around it and its centroid. The half sides have room for
+ * the kernels' rounding, NARC_HEAD_SLACK times the extent. */
+typedef struct narc_box {
+    float center_x, center_y, half_x, half_y;
+    float axis_x, axis_y; /* the direction of the side half_x, unit */
+    float centroid_x, centroid_y;
+} narc_box;
+
 typedef union narc_record {
     int16_t turns[NARC_TURNS];
     narc_stored_arc arc;
+    narc_box box;
 } narc_record;
 
 /* Where the arcs begin in a block: how many records the turns take. */

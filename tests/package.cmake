@@ -7,7 +7,7 @@ foreach(isa IN LISTS NARC_ISA_NAMES)
     -DEXPECTED=narc_kernels_${isa} -P "${PROJECT_SOURCE_DIR}/tests/test_symbols.cmake")
 endforeach()
 add_test(NAME symbols_library COMMAND ${CMAKE_COMMAND} "-DNM=${CMAKE_NM}" "-DLIBRARY=$<TARGET_FILE:narc>"
-  "-DHEADERS=${PROJECT_SOURCE_DIR}/soa/narc_shapes.h;${PROJECT_SOURCE_DIR}/dispatch/narc.h"
+  "-DHEADERS=${PROJECT_SOURCE_DIR}/soa/narc_shapes.h;${PROJECT_SOURCE_DIR}/dispatch/narc.h;${PROJECT_SOURCE_DIR}/dispatch/narc_methods.h"
   -P "${PROJECT_SOURCE_DIR}/tests/test_symbols.cmake")
 
 # What runs before the processor check has no instruction that needs it; AVX registers are ymm and zmm, and the 128-bit

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * narc_methods.h - other ways to answer: published algorithms for comparison, and simple shapes as filters.
+ *
+ * The mental model
+ *
+ *   narc.h answers exactly, by the method "sat". The methods here work on the same store, bodies and pairs, and give
+ *   answers of the same form; each has limits, which are part of its description. They run on every instruction set
+ *   and any number of threads, with the same bits, as those of narc.h do. None of them looks at circles first: what
+ *   is measured is the algorithm.
+ *
+ *   "The paper" is "Using Piecewise Circular Curves as a 2D Collision Primitive".
+ *
+ * Example
+ *
+ *     narc_query query = {.method = NARC_METHOD_GJK, .tolerance = 1e-3f};
+ *     narc_query_contacts(shapes, &bodies, &pairs, &query, 0, 0, &contacts, &found, NULL);
+ *
+ * Every function here may be called from any number of threads at once. Queries need up to 256 KB of stack.
+ */
+#ifndef NARC_METHODS_H
+#define NARC_METHODS_H
+
+#include "narc.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum narc_method {
+    /* Exact: what narc.h does. The largest gap over all directions (separating axis theorem for arcs), found by a
+     * directed search with proofs, and by walking both normal fans where there is none. No known failures. `tolerance`
+     * and `iterations` mean nothing to it. */
+    NARC_METHOD_SAT = 0,
+
+    /* The paper's Algorithm 2 as its text reads: for all pairs of arcs in their order, is either centre in the cone of
+     * the other arc, and does the vector between them point along the vector between the centroids (dot product)? The
+     * first pair that passes decides: separation |u| - (r_i + r_j), normal u / |u|. O(m n).
+     *   Wrong where several pairs pass, or none: separated shapes are called colliding (mostly flat and thin ones with
+     *   centres far outside), depths are not the smallest, and a normal on a junction can fall between all cones. If no
+     *   pair passes it answers "not colliding", separation +INFINITY, outcome NARC_OUTCOME_NONE. Straight edges have no
+     *   arcs, so shapes with edges often end there. */
+    NARC_METHOD_SAT_FIRST = 1,
+
+    /* Polygons only (NARC_SHAPE_POLYGON): the separating axis test over the edge normals of both (the paper's Algorithm
+     * 3, its indices put right), each against all vertices of the other, with early exit at the first gap that is
+     * large enough (0 for overlaps, the margin for contacts). O(m n). Depth and normal are exact up to rounding. Of
+     * polygons that are apart the separation is the largest gap along an edge normal: less than the distance where two
+     * vertices are closest, and only a bound if the search ended early. A pair with another shape is an error. */
+    NARC_METHOD_POLYGON_SAT = 2,
+
+    /* Gilbert, Johnson and Keerthi's algorithm on support functions (the paper's Algorithm 4), for any two shapes:
+     * boolean for overlaps; distance and closest points for contacts, and where bodies collide the expanding polytope
+     * algorithm (EPA) after it for depth, normal and point. Ends when the separation is known within `tolerance`; the
+     * separation told is the gap along the normal told, never more than the exact one. The normal of curved shapes is
+     * within about the root of the tolerance, in radians. The closest points are half the separation from the contact
+     * point, along the normal.
+     *   Fails to find the least depth, within the tolerance, where `iterations` run out (NARC_OUTCOME_LIMIT: many local
+     *   minima, as of shapes that are round and in one place, and a small tolerance), and pairs within some roundings
+     *   of touching can go either way. */
+    NARC_METHOD_GJK = 3,
+
+    /* Do the shapes' bounding circles, axis-aligned boxes, or oriented boxes overlap? As filters: they never say no
+     * where the shapes collide. The oriented box is the smallest of those along a junction's normal; the axis-aligned
+     * one is the box around that one as the body is turned, in world axes. Circles and boxes have room for rounding, a
+     * few millionths of their size. Overlaps only. */
+    NARC_METHOD_CIRCLE = 4,
+    NARC_METHOD_AABB = 5,
+    NARC_METHOD_OBB = 6
+} narc_method;
+
+/* The method's name, as "sat", "sat-first", "polygon-sat", "gjk", "circle", "aabb", "obb"; NULL for any other value. */
+NARC_API const char *narc_method_name(narc_method method);
+
+#define NARC_DEFAULT_TOLERANCE 1e-4f
+#define NARC_MAX_ITERATIONS    128
+
+typedef struct narc_query {
+    narc_method method;
+    /* gjk: the largest error of a separation, relative to the sum of both bounding radii; for EPA the paper's
+     * termination threshold. 0: NARC_DEFAULT_TOLERANCE. Rounding sets the limit below about 4e-6. */
+    float tolerance;
+    unsigned iterations; /* gjk: most support points of each phase; 0, or more than that: NARC_MAX_ITERATIONS */
+    /* One value for each pair, in and out, or NULL; zeros at first. sat: see narc_find_contacts_hinted() (contacts
+     * only). gjk: last call's simplex, to start from (a warm start); answers then differ from a cold start's, within
+     * the tolerance. Any value is safe. Other methods leave them alone. A hint belongs to one method. */
+    uint32_t *hints;
+    uint8_t *out_outcomes; /* pairs->count values of narc_outcome, or NULL */
+} narc_query;
+
+/* narc_find_overlaps() by a method of choice. Further errors: NARC_ERROR_ARGUMENT (no such method, a negative
+ * tolerance, polygon-sat and a pair whose shape is not a polygon: `error` names them), NARC_ERROR_NOT_FINITE
+ * (tolerance). */
+NARC_API narc_status narc_query_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                         const narc_query *query, unsigned threads, uint64_t *out_bits,
+                                         narc_error *error);
+
+/* narc_find_contacts() by a method of choice: the contacts of all pairs whose separation, as the method finds it, is
+ * less than `margin`. The arcs are those that the method ended at. Further errors as narc_query_overlaps(), and
+ * NARC_ERROR_ARGUMENT for a method that answers overlaps only. (For a sub-range, move the bases of the pairs' columns.)
+ * With margin 0 and any one method, a pair is reported exactly if its bit there is set. */
+NARC_API narc_status narc_query_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                         const narc_query *query, float margin, unsigned threads,
+                                         const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * query.c - the batch calls of narc_methods.h: which kernel a method means, its settings, and their checks.
+ */
+#include "column.h"
+#include "dispatch.h"
+#include "error.h"
+#include "narc_methods.h"
+
+#include <math.h>
+
+/* A method's kernels in one table. */
+struct kernels {
+    narc_overlap_kernel *overlap;
+    narc_contact_kernel *contact; /* NULL: it has none */
+};
+
+_Static_assert(NARC_MAX_ITERATIONS == NARC_ITERATIONS, "the kernels know another limit");
+
+enum { METHOD_COUNT = NARC_METHOD_OBB + 1 };
+
+static const char *const method_names[METHOD_COUNT] = {"sat",    "sat-first", "polygon-sat", "gjk",
+                                                       "circle", "aabb",      "obb"};
+
+static struct kernels kernels_of(const narc_kernel_table *table, narc_method method) {
+    const struct kernels all[METHOD_COUNT] = {
+        [NARC_METHOD_SAT] = {table->overlap, table->contact},
+        [NARC_METHOD_SAT_FIRST] = {table->overlap_first, table->contact_first},
+        [NARC_METHOD_POLYGON_SAT] = {table->overlap_polygon, table->contact_polygon},
+        [NARC_METHOD_GJK] = {table->overlap_gjk, table->contact_gjk},
+        [NARC_METHOD_CIRCLE] = {table->overlap_circle, NULL},
+        [NARC_METHOD_AABB] = {table->overlap_aabb, NULL},
+        [NARC_METHOD_OBB] = {table->overlap_obb, NULL},
+    };
+    return all[method];
+}
+
+const char *narc_method_name(narc_method method) {
+    return (unsigned)method < METHOD_COUNT ? method_names[method] : NULL;
+}
+
+/* Are all shapes of all pairs polygons? */
+static narc_status check_polygons(const narc_batch *batch, narc_error *error) {
+    const narc_column columns[2] = {batch->pairs->a, batch->pairs->b};
+    for (size_t pair = 0; pair < batch->pairs->count; pair++) {
+        for (int k = 0; k < 2; k++) {
+            const uint32_t body = narc_index_at(columns[k], pair), shape = narc_index_at(batch->bodies->shape, body);
+            if (!(narc_shape_flags(batch->shapes, shape) & NARC_SHAPE_POLYGON))
+                return narc_fail(error, NARC_ERROR_ARGUMENT, pair, shape,
+                                 "pair %zu: polygon-sat needs polygons, but shape %lu of body %lu has arcs", pair,
+                                 (unsigned long)shape, (unsigned long)body);
+        }
+    }
+    return NARC_OK;
+}
+
+/* Checks batch and query, and puts the query's settings into the batch. */
+static narc_status check_query(narc_batch *batch, const narc_query *query, unsigned threads,
+                               struct kernels *out_kernels, narc_error *error) {
+    const narc_kernel_table *table = NULL;
+    if (!query)
+        return narc_fail_missing(error, "query");
+    if ((unsigned)query->method >= METHOD_COUNT)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)query->method, "query.method is %d",
+                         (int)query->method);
+    if (!isfinite(query->tolerance))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)query->tolerance, "query.tolerance is %g",
+                         (double)query->tolerance);
+    if (query->tolerance < 0)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)query->tolerance, "query.tolerance is %g, less than 0",
+                         (double)query->tolerance);
+    const narc_status status =
+        narc_check_batch(batch, 0, batch->pairs ? batch->pairs->count : 0, threads, &table, error);
+    if (status != NARC_OK)
+        return status;
+    if (query->method == NARC_METHOD_POLYGON_SAT && check_polygons(batch, error) != NARC_OK)
+        return NARC_ERROR_ARGUMENT;
+    const unsigned iterations = query->iterations;
+    batch->hints = query->hints;
+    batch->outcomes = query->out_outcomes;
+    batch->tolerance = query->tolerance > 0 ? query->tolerance : NARC_DEFAULT_TOLERANCE;
+    batch->iterations = iterations > 0 && iterations < NARC_MAX_ITERATIONS ? (int)iterations : NARC_MAX_ITERATIONS;
+    *out_kernels = kernels_of(table, query->method);
+    return NARC_OK;
+}
+
+narc_status narc_query_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                const narc_query *query, unsigned threads, uint64_t *out_bits, narc_error *error) {
+    narc_batch batch = {.shapes = shapes, .bodies = bodies, .pairs = pairs};
+    struct kernels kernels = {NULL, NULL};
+    const narc_status status = check_query(&batch, query, threads, &kernels, error);
+    if (status != NARC_OK)
+        return status;
+    if (pairs->count > 0 && !out_bits)
+        return narc_fail_missing(error, "out_bits");
+    narc_run_overlaps(kernels.overlap, &batch, threads, out_bits);
+    return NARC_OK;
+}
+
+narc_status narc_query_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                const narc_query *query, float margin, unsigned threads,
+                                const narc_contacts *out_contacts, size_t *out_count, narc_error *error) {
+    narc_batch batch = {.shapes = shapes, .bodies = bodies, .pairs = pairs};
+    struct kernels kernels = {NULL, NULL};
+    const narc_status status = check_query(&batch, query, threads, &kernels, error);
+    if (status != NARC_OK)
+        return status;
+    if (!kernels.contact)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)query->method, "%s answers overlaps only",
+                         narc_method_name(query->method));
+    return narc_list_contacts(kernels.contact, &batch, 0, pairs->count, margin, threads, out_contacts, out_count,
+                              error);
+}
