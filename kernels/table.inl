@@ -32,6 +32,10 @@
 
 #include "polygon.inl"
 
+#include "support.inl"
+
+#include "epa.inl"
+
 #include "gjk.inl"
 
 #include "pose.inl"
