@@ -241,10 +241,10 @@ static void pass_on(const struct lanes *lanes, const struct search *s, vm collid
     }
 }
 
-/* Searches with all pairs of a queue. For overlaps, sets their bits. For contacts, files those that are apart, and leaves
- * those that collide in `colliding`. */
+/* Searches with all pairs of a queue. For overlaps, sets their bits. For contacts, those that are apart go to `finished`, and
+ * those that collide to `colliding`. */
 INLINE void search_all(const narc_batch *batch, size_t first, const struct queue *q, float enough, uint64_t *out_bits,
-                       struct queue *colliding, struct results *out) {
+                       struct queue *colliding, struct queue *finished) {
     struct lanes lanes;
     struct search s = start_search();
     int32_t hint[V_WIDTH] = {0};
@@ -260,14 +260,13 @@ INLINE void search_all(const narc_batch *batch, size_t first, const struct queue
         note_outcome(batch, first, &lanes.pair, 0, verdict.stuck, NARC_OUTCOME_ROUNDING);
         if (batch->hints)
             leave_simplex(batch->hints + first, &lanes, &s, verdict.collides, is_done(&verdict));
-        if (!out) {
+        if (!finished) {
             mark(&lanes.pair, 0, verdict.collides, out_bits);
             continue;
         }
         struct gap gap = s.best;
         gap.separation = v_max(gap.separation, v_set(0));
-        file_gap(batch->shapes, &lanes.pair, 0, vm_or(verdict.separate, verdict.limit), &gap, enough, NEARLY_PARALLEL,
-                 out);
+        finish(&lanes, vm_or(verdict.separate, verdict.limit), &gap, finished);
         pass_on(&lanes, &s, verdict.collides, colliding);
     }
 }
@@ -277,11 +276,12 @@ static void mark_gjk(const narc_batch *batch, size_t first, struct queue *q, uin
 }
 
 static void find_gjk(const narc_batch *batch, size_t first, struct queue *q, float margin, struct results *out) {
-    struct queue colliding;
-    colliding.count = 0;
-    search_all(batch, first, q, margin, NULL, &colliding, out);
-    pad(&colliding);
-    expand_all(batch, first, &colliding, margin, out);
+    struct queue colliding, finished;
+    colliding.count = finished.count = 0;
+    search_all(batch, first, q, margin, NULL, &colliding, &finished);
+    expand_all(batch, first, &colliding, margin, &finished);
+    pad(&finished);
+    file_finished(batch->shapes, &finished, margin, out);
 }
 
 static void overlap_gjk(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {

@@ -147,6 +147,47 @@ INLINE void end_step(struct lanes *lanes, vm done) {
     vi_store(lanes->age, vi_select(vm_or(done, vi_lt(age, vi_set(0))), idle, vi_add(age, vi_set(1))));
 }
 
+/* Fields of a pair that a search has no more use for: what it has found. The arcs go to record_a and record_b. */
+enum { FOUND_SEPARATION = CORE, FOUND_X = DIRECTION_X, FOUND_Y = DIRECTION_Y };
+
+/* Appends the pairs of the lanes `which`, with what was found of them, to a queue. */
+static void finish(const struct lanes *lanes, vm which, const struct gap *gap, struct queue *finished) {
+    float value[3][V_WIDTH];
+    int32_t record[2][V_WIDTH];
+    v_store(value[0], gap->separation);
+    v_store(value[1], gap->n_x);
+    v_store(value[2], gap->n_y);
+    vi_store(record[0], gap->record_a);
+    vi_store(record[1], gap->record_b);
+    for (uint32_t bits = vm_bits(which); bits; bits &= bits - 1) {
+        const int lane = __builtin_ctz(bits), k = finished->count++;
+        copy_item(&lanes->pair, lane, finished, k);
+        finished->item[FOUND_SEPARATION][k] = value[0][lane];
+        finished->item[FOUND_X][k] = value[1][lane];
+        finished->item[FOUND_Y][k] = value[2][lane];
+        finished->record_a[k] = record[0][lane];
+        finished->record_b[k] = record[1][lane];
+    }
+}
+
+/* A normal is that of an edge if it is this close (radians): the normals that GJK and EPA compute are off by the
+ * rounding of support points, over an edge's length. */
+#define NEARLY_PARALLEL 0x1p-12f
+
+static void file_finished(const narc_shapes *shapes, const struct queue *q, float margin, struct results *out) {
+    for (int k = 0; k < q->count; k += V_WIDTH) {
+        const vm live = vm_first(q->count - k);
+        const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
+        const struct gap gap = {get(q, FOUND_SEPARATION, k),
+                                get(q, FOUND_X, k),
+                                get(q, FOUND_Y, k),
+                                v_set(1),
+                                vi_select(live, vi_load(q->record_a + k), ring_a.first),
+                                vi_select(live, vi_load(q->record_b + k), ring_b.first)};
+        file_gap(shapes, q, k, live, &gap, margin, NEARLY_PARALLEL, out);
+    }
+}
+
 /* What a step finds, in each lane. */
 struct verdict {
     vm collides, separate; /* the search has ended well, or as well as it can */
