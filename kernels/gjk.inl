@@ -79,21 +79,22 @@ static void leave_simplex(uint32_t *hints, const struct lanes *lanes, const stru
 
 INLINE vm all_positive(vf a, vf b, vf c) { return v_lt(v_set(0), v_min(a, v_min(b, c))); }
 
-/* The directions of the first steps: along a hint if there is one, else along the axis between the inscribed circles. */
-INLINE void choose_seed(struct search *s, const struct lanes *lanes, vi hint, vi age) {
+/* Where to look: along a hint's directions first, or else along the axis between the inscribed circles, and then where
+ * the search says. */
+INLINE void choose_direction(const struct search *s, const struct lanes *lanes, vi hint, vi age, vf *out_x, vf *out_y) {
     const vi length = hint_length(hint);
-    const vm cold = vi_lt(length, vi_set(1)), fresh = vi_lt(age, vi_set(1));
-    s->m_x = v_select(vm_and(fresh, cold), get(&lanes->pair, AXIS_X, 0), s->m_x);
-    s->m_y = v_select(vm_and(fresh, cold), get(&lanes->pair, AXIS_Y, 0), s->m_y);
+    const vm fresh = vi_lt(age, vi_set(1));
+    *out_x = v_select(fresh, get(&lanes->pair, AXIS_X, 0), s->m_x);
+    *out_y = v_select(fresh, get(&lanes->pair, AXIS_Y, 0), s->m_y);
     for (int point = 0; point < 3; point++) {
         vf x, y;
-        const vm here =
-            vm_and(vi_lt(vi_set(point), length), vm_and(vi_lt(vi_set(point - 1), age), vi_lt(age, vi_set(point + 1))));
+        const vm at = vm_and_not(vi_lt(age, vi_set(point + 1)), vi_lt(age, vi_set(point)));
+        const vm here = vm_and(at, vi_lt(vi_set(point), length));
         if (!vm_any(here))
             continue;
         read_hint(hint, point, &x, &y);
-        s->m_x = v_select(here, x, s->m_x);
-        s->m_y = v_select(here, y, s->m_y);
+        *out_x = v_select(here, x, *out_x);
+        *out_y = v_select(here, y, *out_y);
     }
 }
 
@@ -166,8 +167,9 @@ static inline struct verdict step_search(const narc_batch *batch, const struct l
     const vf zero = v_set(0);
     const vi age = vi_load(lanes->age), seeds = hint_length(hint);
     const vm busy = vi_lt(vi_set(-1), age), fresh = vi_lt(age, vi_set(1));
-    choose_seed(s, lanes, hint, age);
-    const struct support w = find_support(batch->shapes, &lanes->pair, 0, s->m_x, s->m_y);
+    vf m_x, m_y;
+    choose_direction(s, lanes, hint, age, &m_x, &m_y);
+    const struct support w = find_support(batch->shapes, &lanes->pair, 0, m_x, m_y);
     const vf w_turn = batch->hints ? turn_of(w.m_x, w.m_y) : zero;
     const vm raised = v_lt(s->best.separation, w.gap);
     keep_best(&s->best, &w, fresh);
