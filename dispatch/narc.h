@@ -11,6 +11,8 @@
  *       narc_find_overlaps()   one bit per pair
  *       narc_find_contacts()   a compacted list: separation, normal, point and arcs of the pairs that collide
  *
+ *   Other algorithms, such as GJK and the paper's own, and filters by circles and boxes: narc_methods.h.
+ *
  *   Which instruction set runs is chosen at the first call: the best that this build and this processor have. The
  *   environment variable NARC_ISA or narc_set_isa() choose another. The answer is the same to the last bit on
  *   every instruction set, with any number of threads and for any split of a batch.

@@ -12,8 +12,8 @@
  * Where the segment passes through the origin, but for rounding, its normal has no sign: both sides are looked at. If
  * the difference goes on beyond the segment on both, the bodies collide; if it ends there on one, they touch.
  *
- * Every step but these two brings the segment nearer to the origin, or is the last: the search ends, and batch->iterations
- * steps are the most.
+ * Every step but these two brings the segment nearer to the origin, or raises the lower bound with a segment that is as
+ * near, or is the last: so the search ends. It never takes more than batch->iterations steps.
  */
 
 /* The state of the search in each lane. */
@@ -98,10 +98,10 @@ INLINE void choose_direction(const struct search *s, const struct lanes *lanes, 
     }
 }
 
-/* Makes the side of the triangle pqw that is nearest to the origin the next segment, in the lanes `open`. Returns those
- * where that leads nowhere: it is no nearer than the last, but for rounding, and the last one was not either, or is
- * that one. (Beside a long edge a point's direction may be off by much more than its distance.) `raised`: has this step
- * found a larger gap? */
+/* Makes the side of the triangle pqw that is nearest to the origin the next segment, in the lanes `open`. Beside a long
+ * edge the direction of a point may be off by much more than its distance: so a side is also taken that is as near, but
+ * for rounding, if this step has raised the lower bound (`raised`) or the one before was nearer. Returns the lanes
+ * without such a side. */
 INLINE vm take_nearest(struct search *s, const struct support *w, vf w_turn, vm open, vm raised) {
     const struct nearest by_p = nearest_of(s->p_x, s->p_y, w->w_x, w->w_y);
     const struct nearest by_q = nearest_of(s->q_x, s->q_y, w->w_x, w->w_y);

@@ -108,10 +108,9 @@ INLINE struct nearest nearest_of(vf p_x, vf p_y, vf q_x, vf q_y) {
 /* Pairs need different numbers of steps. Each lane of a vector works on one pair, and takes the next of a queue when it
  * is done: so all lanes are busy until the queue is empty. */
 struct lanes {
-    struct queue pair;     /* the first V_WIDTH items */
-    int32_t age[V_WIDTH];  /* steps done; -1: the lane is idle */
-    int32_t from[V_WIDTH]; /* the place in the queue */
-    int next;              /* the first pair of the queue that no lane has taken */
+    struct queue pair;    /* the first V_WIDTH items */
+    int32_t age[V_WIDTH]; /* steps done; -1: the lane is idle */
+    int next;             /* the first pair of the queue that no lane has taken */
 };
 
 static void copy_item(const struct queue *from, int i, struct queue *to, int k) {
@@ -132,7 +131,6 @@ static bool fill_lanes(struct lanes *lanes, const struct queue *q) {
     bool busy = false;
     for (int lane = 0; lane < V_WIDTH; lane++) {
         if (lanes->age[lane] < 0 && lanes->next < q->count) {
-            lanes->from[lane] = lanes->next;
             copy_item(q, lanes->next++, &lanes->pair, lane);
             lanes->age[lane] = 0;
         }
