@@ -52,8 +52,9 @@ typedef enum narc_method {
     /* Gilbert, Johnson and Keerthi's algorithm on support functions (the paper's Algorithm 4), for any two shapes:
      * boolean for overlaps; distance and closest points for contacts, and where bodies collide the expanding polytope
      * algorithm (EPA) after it for depth, normal and point. Ends when the separation is known within `tolerance`; the
-     * separation told is the gap along the normal told, never more than the exact one. The normal of curved shapes is
-     * within about the root of the tolerance, in radians. The closest points are half the separation from the contact
+     * separation told is the gap along the normal told, never more than the exact one (but 0 if it is below that by
+     * roundings only and the bodies do not collide). The normal of curved shapes is within about the root of the
+     * tolerance, in radians. The closest points are half the separation from the contact
      * point, along the normal.
      *   Fails to find the least depth, within the tolerance, where `iterations` run out (NARC_OUTCOME_LIMIT: many local
      *   minima, as of shapes that are round and in one place, and a small tolerance), and pairs within some roundings

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * epa.inl - how deep two bodies are in each other: the expanding polytope algorithm (van den Bergen 2001), which section
- * II of "Using Piecewise Circular Curves as a 2D Collision Primitive" puts behind GJK.
+ * epa.inl - how deep two bodies are in each other: the expanding polytope algorithm (van den Bergen 2001), which
+ * section II of "Using Piecewise Circular Curves as a 2D Collision Primitive" puts behind GJK.
  *
- * A polygon inside the difference that holds the origin: how far its nearest edge is from the origin is a lower bound of
- * the depth. The support point along that edge's normal gives an upper bound, the depth along that normal, and splits
- * the edge in two. A curved difference has no last edge: the search ends when the bounds agree within the tolerance,
- * when the nearest edge is one of the difference itself, or after batch->iterations steps.
+ * A polygon inside the difference that holds the origin: how far its nearest edge is from the origin is a lower bound
+ * of the depth. The support point along that edge's normal gives an upper bound, the depth along that normal, and
+ * splits the edge in two. A curved difference has no last edge: the search ends when the bounds agree within the
+ * tolerance, when the nearest edge is one of the difference itself, or after batch->iterations steps.
  *
  * Edges lie in no order; what each needs is its distance.
  */
@@ -66,9 +66,9 @@ INLINE void start_polytope(struct polytope *p, const struct queue *pair, vm fres
 
 INLINE vm is_number(vi number, int k) { return vm_and_not(vi_lt(number, vi_set(k + 1)), vi_lt(number, vi_set(k))); }
 
-/* Splits edge `slot` of the lanes `splits` at w; finds the edge that is nearest to the origin in each lane, the first of
- * equals. Both in one pass over the distances, because a vector that is read after single lanes of it were written is
- * slow. */
+/* Splits edge `slot` of the lanes `splits` at w; finds the edge that is nearest to the origin in each lane, the first
+ * of equals. Both in one pass over the distances, because a vector that is read after single lanes of it were written
+ * is slow. */
 INLINE vi split_edge(struct polytope *p, vi slot, vm splits, const vf edge[4], vf w_x, vf w_y, vf *out_distance) {
     const vi old_count = vi_load(p->count), spare = vi_set(EDGES);
     const vi changed = vi_select(splits, slot, spare), added = vi_select(splits, old_count, spare);

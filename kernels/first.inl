@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * first.inl - Algorithm 2 of "Using Piecewise Circular Curves as a 2D Collision Primitive", as its text reads: the first
- * pair of arcs that passes the test decides.
+ * first.inl - Algorithm 2 of "Using Piecewise Circular Curves as a 2D Collision Primitive", as its text reads: the
+ * first pair of arcs that passes the test decides.
  *
  * With u from the centre of arc i of A to that of arc j of B: u must lie in the cone of arc i, -u in that of arc j,
  * each closed at its start and open at its end, and u must point along the vector between the centroids. Pairs are

@@ -31,8 +31,8 @@ struct search {
 
 /* ------------------------------------------------------------------------------------------------ hints */
 
-/* A hint is a number of 30 bits and, in the lowest two, what it is: 1, the direction of the largest gap; 3, those of the
- * three points of a triangle around the origin, in 10 bits each. Directions are diamond angles in A's frame. */
+/* A hint is a number of 30 bits and, in the lowest two, what it is: 1, the direction of the largest gap; 3, those of
+ * the three points of a triangle around the origin, in 10 bits each. Directions are diamond angles in A's frame. */
 enum { HINT_AXIS = 1, HINT_TRIANGLE = 3 };
 
 INLINE void direction_of(vf turn, vf *out_x, vf *out_y) {
@@ -175,7 +175,8 @@ static inline struct verdict step_search(const narc_batch *batch, const struct l
     keep_best(&s->best, &w, fresh);
     const vm apart = v_le(v_set(enough), s->best.separation);
 
-    /* What the step was for: a first point, a hint's second one, a side of a segment through the origin, or the rule. */
+    /* What the step was for: a first point, a hint's second one, a side of a segment through the origin, or the rule.
+     * */
     const vm seeded = vi_lt(age, seeds), second = vm_and_not(vm_and(seeded, vi_lt(age, vi_set(2))), fresh);
     const vm looked = vm_and_not(vi_lt(vi_set(0), s->side), fresh);
     const vm rule = vm_and_not(busy, vm_or(looked, vm_or(fresh, second)));
@@ -243,8 +244,8 @@ static void pass_on(const struct lanes *lanes, const struct search *s, vm collid
     }
 }
 
-/* Searches with all pairs of a queue. For overlaps, sets their bits. For contacts, those that are apart go to `finished`, and
- * those that collide to `colliding`. */
+/* Searches with all pairs of a queue. For overlaps, sets their bits. For contacts, those that are apart go to
+ * `finished`, and those that collide to `colliding`. */
 INLINE void search_all(const narc_batch *batch, size_t first, const struct queue *q, float enough, uint64_t *out_bits,
                        struct queue *colliding, struct queue *finished) {
     struct lanes lanes;

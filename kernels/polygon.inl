@@ -8,48 +8,36 @@
  * The separation is the largest of all gaps. A lane is done when one reaches `enough`.
  */
 
-/* The gap along edge normal i of one polygon against all vertices of the other; `sign` is 1 where the edge is A's. The
- * number of the vertex that is closest goes to `out_vertex`. */
-INLINE vf gap_of_edge(const struct arc_lists *own, const struct arc_lists *other, int i, float sign, vi *out_vertex) {
-    const vf n_x = v_load(own->start_x[i]), n_y = v_load(own->start_y[i]);
-    const vf signed_x = v_mul(v_set(sign), n_x), signed_y = v_mul(v_set(sign), n_y);
-    const vf from = dot(v_load(own->x[i]), v_load(own->y[i]), signed_x, signed_y);
+/* The gap along edge normal i of one polygon against all vertices of the other; `sign` is 1 where the edge is A's. */
+INLINE vf gap_of_edge(const struct arc_lists *own, const struct arc_lists *other, int i, float sign) {
+    const vf n_x = v_mul(v_set(sign), v_load(own->start_x[i])), n_y = v_mul(v_set(sign), v_load(own->start_y[i]));
     vf least = v_set(INFINITY);
-    *out_vertex = vi_set(0);
     for (int j = 0; j < other->most; j++) {
-        const vf height = v_sub(dot(v_load(other->x[j]), v_load(other->y[j]), signed_x, signed_y), from);
-        const vm closer = vm_and(vi_lt(vi_set(j), other->count), v_lt(height, least));
-        least = v_select(closer, height, least);
-        *out_vertex = vi_select(closer, vi_set(j), *out_vertex);
+        const vf height = dot(v_load(other->x[j]), v_load(other->y[j]), n_x, n_y);
+        least = v_select(vi_lt(vi_set(j), other->count), v_min(least, height), least);
     }
-    return least;
+    return v_sub(least, dot(v_load(own->x[i]), v_load(own->y[i]), n_x, n_y));
 }
 
-/* The largest gap of the pairs k ... of a queue, or one that is at least `enough`. */
+/* The largest gap of the pairs k ... of a queue, or one that is at least `enough`; the arcs are not set. */
 static struct gap polygon_gap(const narc_shapes *shapes, const struct queue *q, int k, vm live, float enough,
                               struct arc_lists *a, struct arc_lists *b) {
     struct gap best = {v_set(-INFINITY), v_set(1), v_set(0), v_set(1), vi_set(0), vi_set(0)};
     list_arcs(shapes, q, k, false, a);
     list_arcs(shapes, q, k, true, b);
     for (int side = 0; side < 2; side++) {
-        struct arc_lists *own = side ? b : a, *other = side ? a : b;
+        const struct arc_lists *own = side ? b : a, *other = side ? a : b;
         for (int i = 0; i < own->most; i++) {
             const vm open = vm_and(live, v_lt(best.separation, v_set(enough)));
             if (!vm_any(open))
                 break;
-            vi vertex;
-            const vf gap = gap_of_edge(own, other, i, side ? -1 : 1, &vertex);
-            const vm exists = vi_lt(vi_set(i), own->count);
-            const vm better = vm_and(vm_and(open, exists), v_lt(best.separation, gap));
+            const vf gap = gap_of_edge(own, other, i, side ? -1 : 1);
+            const vm better = vm_and(vm_and(open, vi_lt(vi_set(i), own->count)), v_lt(best.separation, gap));
             best.separation = v_select(better, gap, best.separation);
             best.n_x = v_select(better, v_load(own->start_x[i]), best.n_x);
             best.n_y = v_select(better, v_load(own->start_y[i]), best.n_y);
-            best.record_a = vi_select(better, side ? vertex : vi_set(i), best.record_a);
-            best.record_b = vi_select(better, side ? vi_set(i) : vertex, best.record_b);
         }
     }
-    best.record_a = record_of(a, best.record_a);
-    best.record_b = record_of(b, best.record_b);
     return best;
 }
 
@@ -68,7 +56,11 @@ static void find_polygons(const narc_batch *batch, size_t first, struct queue *q
     (void)first;
     for (int k = 0; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
-        const struct gap gap = polygon_gap(batch->shapes, q, k, live, margin, &a, &b);
+        struct gap gap = polygon_gap(batch->shapes, q, k, live, margin, &a, &b);
+        /* Of an edge that is parallel but for rounding either end may be the closest vertex: the cones say which. */
+        const struct support support = find_support(batch->shapes, q, k, gap.n_x, gap.n_y);
+        gap.record_a = support.record_a;
+        gap.record_b = support.record_b;
         file_gap(batch->shapes, q, k, live, &gap, margin, PARALLEL, out);
     }
 }

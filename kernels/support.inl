@@ -28,8 +28,8 @@ INLINE vi step_to(const struct arcs *arc, vf x, vf y) {
     return vi_select(before, vi_set(-1), vi_select(behind, vi_set(1), vi_set(0)));
 }
 
-/* The support points of the pairs k ... of a queue along m, of any length. The look-up is right but for junctions within
- * 16 bits of m; where these matter, at edges, a few steps along the ring mend that. */
+/* The support points of the pairs k ... of a queue along m, of any length. The look-up is right but for junctions
+ * within 16 bits of m; where these matter, at edges, a few steps along the ring mend that. */
 static inline struct support find_support(const narc_shapes *shapes, const struct queue *q, int k, vf m_x, vf m_y) {
     const narc_record *records = shapes->records;
     const struct pose pose = get_pose(q, k);

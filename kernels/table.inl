@@ -28,11 +28,11 @@
 
 #include "boxes.inl"
 
+#include "support.inl"
+
 #include "first.inl"
 
 #include "polygon.inl"
-
-#include "support.inl"
 
 #include "epa.inl"
 

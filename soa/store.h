@@ -4,9 +4,9 @@
  *
  * Each shape has a HEAD, half a cache line with all that the comparison of circles needs, and a BLOCK of RECORDS, also
  * half a cache line each: the angles of its junctions (TURNS), 16 to a record, its ARCS, one record with all that is
- * known of each, and last its BOX. A batch meets shapes in any order, and so touches one line for a shape that the circles settle,
- * and two more for most others, however many arcs they have; heads of their own lie so densely that thousands stay in
- * the cache.
+ * known of each, and last its BOX. A batch meets shapes in any order, and so touches one line for a shape that the
+ * circles settle, and two more for most others, however many arcs they have; heads of their own lie so densely that
+ * thousands stay in the cache.
  *
  * Arcs lie in the order of their junctions' angle, the first junction counter-clockwise from +x first; the caller's
  * first arc is somewhere among them (`first` says where). So a direction belongs to the arc before the first whose
@@ -62,8 +62,8 @@ typedef struct narc_stored_arc {
     float start_x, start_y, end_x, end_y;
 } narc_stored_arc;
 
-/* What only methods other than the exact one ask of a shape, behind its arcs: a box around it and its centroid. The half sides have room for
- * the kernels' rounding, NARC_HEAD_SLACK times the extent. */
+/* What only methods other than the exact one ask of a shape, behind its arcs: a box around it and its centroid. The
+ * half sides have room for the kernels' rounding, NARC_HEAD_SLACK times the extent. */
 typedef struct narc_box {
     float center_x, center_y, half_x, half_y;
     float axis_x, axis_y; /* the direction of the side half_x, unit */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * collide.c - narc collide: bodies of a file against each other.
+ * collide.c - narc collide: bodies of a file against each other, by a method of choice.
  */
 #include <float.h>
 #include <inttypes.h>
@@ -12,7 +12,7 @@
 #include "canvas.h"
 #include "commands.h"
 #include "fail.h"
-#include "narc.h"
+#include "narrow_phase.h"
 #include "options.h"
 #include "output.h"
 #include "picture_bodies.h"
@@ -22,9 +22,10 @@
 static const char HELP[] =
     "usage: narc collide --shapes shapes.json --bodies bodies.csv [--pairs pairs.csv]\n"
     "                    [--out contacts.csv] [--all] [--margin M] [--picture FILE]\n"
-    "                    [--isa NAME] [--threads N]\n"
+    "                    [--method NAME] [--tolerance T] [--iterations N] [--isa NAME] [--threads N]\n"
     "\n"
-    "Tests bodies for collision, exactly, and prints a short report.\n"
+    "Tests bodies for collision, exactly unless another method is asked for, and prints a short\n"
+    "report.\n"
     "\n"
     "  --shapes FILE   the shapes file\n"
     "  --bodies FILE   CSV, header shape,x,y,angle or shape,x,y,angle,scale; a shape is given by\n"
@@ -34,14 +35,27 @@ static const char HELP[] =
     "  --out FILE      the contacts: CSV, header\n"
     "                  a,b,separation,normal_x,normal_y,point_x,point_y,arc_a,arc_b\n"
     "                  -: standard output, and the report goes to standard error\n"
+    "                  With circle, aabb and obb: the pairs that pass, header a,b, as --pairs takes\n"
     "  --margin M      report pairs whose separation is less than M; default 0, those that collide\n"
     "  --all           report every pair, whatever its separation: those of --pairs, and without\n"
     "                  it every candidate; then --margin only widens the search for candidates\n"
     "  --picture FILE  a .png or .svg picture of bodies, contact points and normals\n"
+    "  --method NAME   how pairs are tested:\n"
+    "                  sat          exact, the default\n"
+    "                  sat-first    the first pair of arcs that passes decides; can be wrong\n"
+    "                  polygon-sat  edge normals against vertices; polygons without rounding only\n"
+    "                  gjk          GJK, and EPA where bodies collide; exact within the tolerance\n"
+    "                  circle, aabb, obb\n"
+    "                               filters: do bounding circles, axis-aligned boxes or oriented\n"
+    "                               boxes overlap? No contacts, and neither --margin nor --all\n"
+    "                  With any but sat the report also tells how many answers differ from sat's.\n"
+    "  --tolerance T   gjk: the largest error of a separation, as a part of the sum of both bounding\n"
+    "                  radii; 1e-9 to 1, default 0.0001\n"
+    "  --iterations N  gjk: most steps of GJK, and of EPA; 1 to 128, the default\n"
     "  --isa NAME      the instruction set: scalar, neon, avx2 or avx512 (see narc info)\n"
     "  --threads N     1 to 1024; left out: one for each processor\n"
     "\n"
-    "The narrow phase's time is that of the batch call narc_find_contacts() alone; it is repeated\n"
+    "The narrow phase's time is that of the batch call alone, which the report names; it is repeated\n"
     "and the median taken where one call is too short to measure.\n"
     "\n"
     "The shapes file: {\"shapes\": [SHAPE, ...]}, where a SHAPE is one of\n"
@@ -54,18 +68,13 @@ static const char HELP[] =
 
 enum { LARGEST_THREADS = 1024 };
 
-/* One batch call is repeated until this much time has been measured, or this often. */
-static const double MEASURED_SECONDS = 0.2;
-enum { MOST_RUNS = 9 };
-
-/* A batch call with more pairs may take a second on one thread without vector instructions. */
-enum { MANY_PAIRS = 4000000 };
+/* Far below what single precision can reach, and far above what it rounds to 0, which would mean the default. */
+static const double LEAST_TOLERANCE = 1e-9;
 
 typedef struct settings {
     const char *shapes, *bodies, *pairs, *out, *picture, *isa;
-    float margin;         /* +infinity: every pair */
     double search_margin; /* bounding boxes closer than this are candidates */
-    unsigned threads;     /* 0: the library's choice */
+    narrow_settings narrow;
 } settings;
 
 typedef struct job {
@@ -73,18 +82,58 @@ typedef struct job {
     body_list bodies;
     narc_aabb *boxes;
     pair_list pairs;
-    narc_contacts contacts;
-    size_t contact_count, colliding_count;
+    narrow_result narrow;
     bool *colliding; /* bodies */
-    double broad_seconds, narrow_seconds;
-    int runs;
+    double broad_seconds;
 } job;
 
+enum { SHAPES, BODIES, PAIRS, OUT, ALL, MARGIN, PICTURE, METHOD, TOLERANCE, ITERATIONS, ISA, THREADS, OPTIONS };
+
+static void refuse_option(const option *given, const char *method, const char *reason) {
+    if (given->value) {
+        fail("%s is not for method '%s', %s", given->name, method, reason);
+    }
+}
+
+/* Method, tolerance and iterations; options of other methods are errors. */
+static void read_method(const option *options, narrow_settings *out_chosen) {
+    const narc_method method = options[METHOD].value ? find_method(options[METHOD].value) : NARC_METHOD_SAT;
+    const char *name = narc_method_name(method);
+    *out_chosen =
+        (narrow_settings){.method = method, .tolerance = NARC_DEFAULT_TOLERANCE, .iterations = NARC_MAX_ITERATIONS};
+    if (method != NARC_METHOD_GJK) {
+        refuse_option(&options[TOLERANCE], name, "only for 'gjk'");
+        refuse_option(&options[ITERATIONS], name, "only for 'gjk'");
+    }
+    if (is_filter(method)) {
+        refuse_option(&options[MARGIN], name, "which finds no contacts");
+        refuse_option(&options[ALL], name, "which finds no contacts");
+    }
+    if (options[TOLERANCE].value) {
+        const double tolerance = number_option(&options[TOLERANCE]);
+        if (!(tolerance >= LEAST_TOLERANCE && tolerance <= 1)) {
+            fail("--tolerance must be a number from %g to 1, not '%s'", LEAST_TOLERANCE, options[TOLERANCE].value);
+        }
+        out_chosen->tolerance = (float)tolerance;
+    }
+    if (options[ITERATIONS].value) {
+        out_chosen->iterations = (unsigned)whole_option(&options[ITERATIONS], 1, NARC_MAX_ITERATIONS);
+    }
+}
+
 static settings read_settings(int argc, char **argv) {
-    enum { SHAPES, BODIES, PAIRS, OUT, ALL, MARGIN, PICTURE, ISA, THREADS, OPTIONS };
-    option options[OPTIONS] = {{"--shapes", true, NULL},  {"--bodies", true, NULL}, {"--pairs", true, NULL},
-                               {"--out", true, NULL},     {"--all", false, NULL},   {"--margin", true, NULL},
-                               {"--picture", true, NULL}, {"--isa", true, NULL},    {"--threads", true, NULL}};
+    option options[OPTIONS] = {[SHAPES] = {"--shapes", true, NULL},
+                               [BODIES] = {"--bodies", true, NULL},
+                               [PAIRS] = {"--pairs", true, NULL},
+                               [OUT] = {"--out", true, NULL},
+                               [ALL] = {"--all", false, NULL},
+                               [MARGIN] = {"--margin", true, NULL},
+                               [PICTURE] = {"--picture", true, NULL},
+                               [METHOD] = {"--method", true, NULL},
+                               [TOLERANCE] = {"--tolerance", true, NULL},
+                               [ITERATIONS] = {"--iterations", true, NULL},
+                               [ISA] = {"--isa", true, NULL},
+                               [THREADS] = {"--threads", true, NULL}};
     parse_options(argc, argv, options, OPTIONS, NULL, 0, NULL);
     settings chosen = {.shapes = required_option(&options[SHAPES]),
                        .bodies = required_option(&options[BODIES]),
@@ -93,27 +142,22 @@ static settings read_settings(int argc, char **argv) {
                        .picture = options[PICTURE].value,
                        .isa = options[ISA].value};
     picture_kind_of(chosen.picture);
+    read_method(options, &chosen.narrow);
     if (options[MARGIN].value) {
         const double margin = number_option(&options[MARGIN]);
         if (fabs(margin) > (double)FLT_MAX) {
             fail("--margin is too large '%s'", options[MARGIN].value);
         }
-        chosen.margin = (float)margin;
+        chosen.narrow.margin = (float)margin;
         chosen.search_margin = fmax(margin, 0);
     }
     if (options[ALL].value) {
-        chosen.margin = INFINITY;
+        chosen.narrow.margin = INFINITY;
     }
     if (options[THREADS].value) {
-        chosen.threads = (unsigned)whole_option(&options[THREADS], 1, LARGEST_THREADS);
+        chosen.narrow.threads = (unsigned)whole_option(&options[THREADS], 1, LARGEST_THREADS);
     }
     return chosen;
-}
-
-static void check(narc_status status, const narc_error *error) {
-    if (status != NARC_OK) {
-        fail("%s", error->message);
-    }
 }
 
 /* The bodies' bounding boxes in the world, rounded outwards: the kernels subtract positions exactly, a box must not
@@ -145,100 +189,57 @@ static void find_pairs(job *work, double margin) {
     free(widened);
 }
 
-static void allocate_contacts(narc_contacts *contacts, size_t capacity) {
-    *contacts = (narc_contacts){.capacity = capacity,
-                                .pair = allocate(capacity, sizeof(uint32_t)),
-                                .separation = allocate(capacity, sizeof(float)),
-                                .normal_x = allocate(capacity, sizeof(float)),
-                                .normal_y = allocate(capacity, sizeof(float)),
-                                .point_x = allocate(capacity, sizeof(float)),
-                                .point_y = allocate(capacity, sizeof(float)),
-                                .arc_a = allocate(capacity, 1),
-                                .arc_b = allocate(capacity, 1)};
-}
-
-static void free_contacts(narc_contacts *contacts) {
-    free(contacts->pair);
-    free(contacts->separation);
-    free(contacts->normal_x);
-    free(contacts->normal_y);
-    free(contacts->point_x);
-    free(contacts->point_y);
-    free(contacts->arc_a);
-    free(contacts->arc_b);
-}
-
-static int compare_numbers(const void *left, const void *right) {
-    const double *a = left, *b = right;
-    return (*a > *b) - (*a < *b);
-}
-
-/* The batch call, timed. */
-static void run_narrow_phase(job *work, const settings *chosen) {
-    const narc_bodies bodies = view_bodies(&work->bodies);
-    const narc_pairs pairs = view_pairs(&work->pairs);
-    double seconds[MOST_RUNS], total = 0;
-    allocate_contacts(&work->contacts, work->pairs.count);
-    show_stage("narrow phase", work->pairs.count, "pairs", work->pairs.count > MANY_PAIRS);
-    work->runs = 0;
-    while (work->runs < MOST_RUNS && total < MEASURED_SECONDS) {
-        narc_error error;
-        const double start = seconds_now();
-        const narc_status status = narc_find_contacts(work->shapes.store, &bodies, &pairs, chosen->margin,
-                                                      chosen->threads, &work->contacts, &work->contact_count, &error);
-        seconds[work->runs] = seconds_now() - start;
-        check(status, &error);
-        total += seconds[work->runs++];
-    }
-    qsort(seconds, (size_t)work->runs, sizeof *seconds, compare_numbers);
-    work->narrow_seconds = seconds[work->runs / 2];
-}
-
-static void mark_pair(job *work, size_t index) {
-    const pair hit = work->pairs.items[index];
-    work->colliding[hit.a] = work->colliding[hit.b] = true;
-    work->colliding_count++;
-}
-
-/* Counts the colliding pairs and marks their bodies. With a margin below 0 they are not all among the contacts. */
-static void count_collisions(job *work, const settings *chosen) {
-    work->colliding = allocate(work->bodies.count, sizeof *work->colliding);
-    for (size_t i = 0; i < work->bodies.count; i++) {
-        work->colliding[i] = false;
-    }
-    if (chosen->margin >= 0) {
-        for (size_t k = 0; k < work->contact_count; k++) {
-            if (work->contacts.separation[k] < 0) {
-                mark_pair(work, work->contacts.pair[k]);
+/* The library would name pair and shape; the user knows the line of a body. A row of the file is a line, the first is
+ * the header. */
+static void check_polygons(const job *work, const char *path) {
+    for (size_t k = 0; k < work->pairs.count; k++) {
+        const uint32_t both[2] = {work->pairs.items[k].a, work->pairs.items[k].b};
+        for (int side = 0; side < 2; side++) {
+            const uint32_t used = work->bodies.items[both[side]].shape;
+            if (!(narc_shape_flags(work->shapes.store, used) & NARC_SHAPE_POLYGON)) {
+                fail_at(path, (size_t)both[side] + 2,
+                        "method 'polygon-sat' needs polygons without rounding, but this body's shape has arcs '%s'",
+                        work->shapes.items[used].name);
             }
         }
-        return;
     }
-    const narc_bodies bodies = view_bodies(&work->bodies);
-    const narc_pairs pairs = view_pairs(&work->pairs);
-    uint64_t *bits = allocate(NARC_BIT_WORDS(work->pairs.count), sizeof *bits);
-    narc_error error;
-    check(narc_find_overlaps(work->shapes.store, &bodies, &pairs, chosen->threads, bits, &error), &error);
+}
+
+static void mark_bodies(job *work) {
+    work->colliding = allocate(work->bodies.count, sizeof *work->colliding);
+    memset(work->colliding, 0, work->bodies.count * sizeof *work->colliding);
     for (size_t k = 0; k < work->pairs.count; k++) {
-        if (bits[k / 64] >> k % 64 & 1) {
-            mark_pair(work, k);
+        if (pair_collides(&work->narrow, k)) {
+            const pair hit = work->pairs.items[k];
+            work->colliding[hit.a] = work->colliding[hit.b] = true;
         }
     }
-    free(bits);
+}
+
+/* What a filter lets pass, in the form of a pairs file. */
+static void write_passing(FILE *file, const job *work) {
+    fprintf(file, "a,b\n");
+    for (size_t k = 0; k < work->pairs.count && !ferror(file); k++) {
+        const pair of = work->pairs.items[k];
+        if (pair_collides(&work->narrow, k)) {
+            fprintf(file, "%" PRIu32 ",%" PRIu32 "\n", of.a, of.b);
+        }
+        show_progress("writing pairs", k, work->pairs.count);
+    }
 }
 
 /* Adding 0 makes a negative zero a plain one. */
 static void write_contacts(FILE *file, const job *work) {
-    const narc_contacts *found = &work->contacts;
+    const narc_contacts *found = &work->narrow.contacts;
     fprintf(file, "a,b,separation,normal_x,normal_y,point_x,point_y,arc_a,arc_b\n");
-    for (size_t k = 0; k < work->contact_count && !ferror(file); k++) {
+    for (size_t k = 0; k < work->narrow.contact_count && !ferror(file); k++) {
         const pair of = work->pairs.items[found->pair[k]];
         const body *a = &work->bodies.items[of.a];
         fprintf(file, "%" PRIu32 ",%" PRIu32 ",%.9g,%.9g,%.9g,%.9g,%.9g,%u,%u\n", of.a, of.b,
                 0 + (double)found->separation[k], 0 + (double)found->normal_x[k], 0 + (double)found->normal_y[k],
                 0 + (a->x + (double)found->point_x[k]), 0 + (a->y + (double)found->point_y[k]),
                 (unsigned)found->arc_a[k], (unsigned)found->arc_b[k]);
-        show_progress("writing contacts", k, work->contact_count);
+        show_progress("writing contacts", k, work->narrow.contact_count);
     }
 }
 
@@ -251,24 +252,57 @@ static void print_threads(FILE *file, unsigned chosen) {
 #endif
 }
 
+static void print_method(FILE *file, const narrow_settings *chosen) {
+    fprintf(file, "method              %s", narc_method_name(chosen->method));
+    if (chosen->method == NARC_METHOD_GJK) {
+        fprintf(file, ", tolerance %g, at most %u iterations", (double)chosen->tolerance, chosen->iterations);
+    }
+    fprintf(file, "\n");
+}
+
+/* What the method found, and how far that can be trusted. */
+static void print_answers(FILE *file, const narrow_result *found, narc_method method) {
+    static const char *const outcomes[OUTCOME_COUNT] = {
+        [NARC_OUTCOME_LIMIT] = "limit", [NARC_OUTCOME_ROUNDING] = "rounding", [NARC_OUTCOME_NONE] = "none"};
+    static const char *const reasons[OUTCOME_COUNT] = {[NARC_OUTCOME_LIMIT] = "iterations ran out",
+                                                       [NARC_OUTCOME_ROUNDING] = "stopped short of the tolerance",
+                                                       [NARC_OUTCOME_NONE] = "no two arcs pass the test"};
+    if (is_filter(method)) {
+        fprintf(file, "passing pairs       %zu\n", found->colliding_count);
+    } else {
+        fprintf(file, "colliding pairs     %zu\n", found->colliding_count);
+        fprintf(file, "reported contacts   %zu\n", found->contact_count);
+    }
+    for (int k = NARC_OUTCOME_LIMIT; k < OUTCOME_COUNT; k++) {
+        if (found->outcomes[k]) {
+            fprintf(file, "outcome %-11s %zu pairs: %s\n", outcomes[k], found->outcomes[k], reasons[k]);
+        }
+    }
+    if (method != NARC_METHOD_SAT) {
+        fprintf(file, "differs from sat    %zu pairs: %zu missed, %zu extra\n", found->missed + found->extra,
+                found->missed, found->extra);
+    }
+}
+
 static void print_report(FILE *file, const job *work, const settings *chosen) {
+    const narrow_result *found = &work->narrow;
     fprintf(file, "shapes              %zu\n", work->shapes.count);
     fprintf(file, "bodies              %zu\n", work->bodies.count);
     fprintf(file, "candidate pairs     %zu%s\n", work->pairs.count, chosen->pairs ? " (from the file)" : "");
-    fprintf(file, "colliding pairs     %zu\n", work->colliding_count);
-    fprintf(file, "reported contacts   %zu\n", work->contact_count);
+    print_method(file, &chosen->narrow);
+    print_answers(file, found, chosen->narrow.method);
     fprintf(file, "instruction set     %s\n", narc_get_isa());
-    print_threads(file, chosen->threads);
+    print_threads(file, chosen->narrow.threads);
     if (!chosen->pairs) {
         fprintf(file, "broad phase         %.3f ms\n", 1e3 * work->broad_seconds);
     }
-    fprintf(file, "narrow phase        %.3f ms (narc_find_contacts, ", 1e3 * work->narrow_seconds);
-    if (work->runs == 1) {
+    fprintf(file, "narrow phase        %.3f ms (%s, ", 1e3 * found->seconds, found->call);
+    if (found->runs == 1) {
         fprintf(file, "one run)\n");
     } else {
-        fprintf(file, "median of %d runs)\n", work->runs);
+        fprintf(file, "median of %d runs)\n", found->runs);
     }
-    const double speed = work->narrow_seconds > 0 ? 1e-6 * (double)work->pairs.count / work->narrow_seconds : 0;
+    const double speed = found->seconds > 0 ? 1e-6 * (double)work->pairs.count / found->seconds : 0;
     fprintf(file, "speed               %.2f million pairs per second\n", speed);
 }
 
@@ -295,14 +329,24 @@ static void run(int argc, char **argv) {
         find_pairs(&work, chosen.search_margin);
         work.broad_seconds = seconds_now() - start;
     }
-    run_narrow_phase(&work, &chosen);
-    count_collisions(&work, &chosen);
-    if (out) {
+    if (chosen.narrow.method == NARC_METHOD_POLYGON_SAT) {
+        check_polygons(&work, chosen.bodies);
+    }
+    run_narrow_phase(&chosen.narrow, &work.shapes, &work.bodies, &work.pairs, &work.narrow);
+    mark_bodies(&work);
+    if (out && is_filter(chosen.narrow.method)) {
+        write_passing(out, &work);
+    } else if (out) {
         write_contacts(out, &work);
     }
     if (picture) {
-        const body_scene scene = {&work.shapes, &work.bodies,   work.boxes,        work.colliding,
-                                  &work.pairs,  &work.contacts, work.contact_count};
+        const body_scene scene = {&work.shapes,
+                                  &work.bodies,
+                                  work.boxes,
+                                  work.colliding,
+                                  &work.pairs,
+                                  &work.narrow.contacts,
+                                  work.narrow.contact_count};
         draw_bodies(chosen.picture, picture, &scene);
     }
     finish_outputs();
@@ -312,7 +356,7 @@ static void run(int argc, char **argv) {
     finish_report(report);
     commit_outputs();
 
-    free_contacts(&work.contacts);
+    free_narrow_result(&work.narrow);
     free(work.colliding);
     free(work.pairs.items);
     free(work.boxes);
