@@ -10,11 +10,16 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "narc_methods.h"
 #include "scene.h"
 
 /* One number for both precisions: the double positions are the single ones, 2^30 away, and as exact. */
 static const uint64_t golden_answers = 0x9467dc252df3f63fu;
+/* Those of the other methods, in their order. */
+static const uint64_t golden_methods[] = {0xeaebcc6c1f67ac61u, 0x0a11e446be3b25f5u, 0xfbfa9d3746c5dde8u,
+                                          0x656376e9cda0e835u, 0xcee7633dc589d41du, 0xb137543756f0dd25u};
 #ifdef NARC_TEST_POSES
 /* Of SLEEF 3.5.1. */
 static const uint64_t golden_poses = 0x8b6998bde9bc55d9u;
@@ -141,6 +146,70 @@ static void test_double_positions(void **state) {
     check_scene("double positions", NARC_FLOAT64, golden_answers);
 }
 
+/* Answers by one of the methods of narc_methods.h; by GJK twice, the second time from the first one's hints. */
+static uint64_t hash_method(const struct scene *scene, const narc_bodies *bodies, const narc_pairs *pairs,
+                            narc_method method) {
+    static uint64_t bits[NARC_BIT_WORDS(PAIRS)];
+    static uint8_t outcomes[PAIRS];
+    static uint32_t hints[PAIRS];
+    const bool lists = method <= NARC_METHOD_GJK;
+    const narc_query query = {.method = method, .hints = hints, .out_outcomes = outcomes};
+    uint64_t hash = TEST_HASH_START;
+    memset(hints, 0, sizeof hints);
+    for (int round = 0; round < 2; round++) {
+        struct contacts found = create_contacts(PAIRS);
+        assert_int_equal(narc_query_overlaps(scene->store, bodies, pairs, &query, 1, bits, NULL), NARC_OK);
+        if (lists) {
+            assert_int_equal(
+                narc_query_contacts(scene->store, bodies, pairs, &query, INFINITY, 1, &found.view, &found.count, NULL),
+                NARC_OK);
+        }
+        assert_true(!lists || found.count == pairs->count);
+        const size_t count = lists ? found.count : 0;
+        hash = test_hash(hash, bits, NARC_BIT_WORDS(pairs->count) * sizeof(uint64_t));
+        hash = test_hash(hash, outcomes, pairs->count);
+        hash = test_hash(hash, hints, sizeof hints);
+        hash = test_hash(hash, found.view.separation, count * sizeof(float));
+        hash = test_hash(hash, found.view.normal_x, count * sizeof(float));
+        hash = test_hash(hash, found.view.normal_y, count * sizeof(float));
+        hash = test_hash(hash, found.view.point_x, count * sizeof(float));
+        hash = test_hash(hash, found.view.point_y, count * sizeof(float));
+        hash = test_hash(hash, found.view.arc_a, count);
+        hash = test_hash(hash, found.view.arc_b, count);
+        destroy_contacts(&found);
+    }
+    return hash;
+}
+
+static bool is_polygon(const struct scene *scene, uint32_t body) {
+    return narc_shape_flags(scene->store, scene->bodies[body].shape) & NARC_SHAPE_POLYGON;
+}
+
+static void test_methods(void **state) {
+    (void)state;
+    struct scene scene = make_scene(NARC_FLOAT32);
+    const narc_bodies bodies = scene_bodies(&scene);
+    struct pair *polygons = malloc(PAIRS * sizeof *polygons);
+    size_t count = 0;
+    assert_non_null(polygons);
+    for (size_t k = 0; k < PAIRS; k++) {
+        if (is_polygon(&scene, scene.pairs[k].a) && is_polygon(&scene, scene.pairs[k].b)) {
+            polygons[count++] = scene.pairs[k];
+        }
+    }
+    assert_true(count > PAIRS / 40);
+    const narc_pairs all = scene_pairs(&scene), some = {count, NARC_COLUMN(polygons, a), NARC_COLUMN(polygons, b)};
+    bool right = true;
+    for (narc_method method = NARC_METHOD_SAT_FIRST; narc_method_name(method); method++) {
+        const uint64_t hash = hash_method(&scene, &bodies, method == NARC_METHOD_POLYGON_SAT ? &some : &all, method);
+        printf("  %s: 0x%016" PRIx64 "\n", narc_method_name(method), hash);
+        right = right && hash == golden_methods[method - NARC_METHOD_SAT_FIRST];
+    }
+    assert_true(right);
+    free(polygons);
+    destroy_scene(&scene);
+}
+
 #ifdef NARC_TEST_POSES
 static void test_poses(void **state) {
     (void)state;
@@ -160,6 +229,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_single_positions),
         cmocka_unit_test(test_double_positions),
+        cmocka_unit_test(test_methods),
 #ifdef NARC_TEST_POSES
         cmocka_unit_test(test_poses),
 #endif
