@@ -52,13 +52,12 @@ typedef enum narc_method {
     /* Gilbert, Johnson and Keerthi's algorithm on support functions (the paper's Algorithm 4), for any two shapes:
      * boolean for overlaps; distance and closest points for contacts, and where bodies collide the expanding polytope
      * algorithm (EPA) after it for depth, normal and point. Ends when the separation is known within `tolerance`; the
-     * separation told is the gap along the normal told, never more than the exact one (but 0 if it is below that by
-     * roundings only and the bodies do not collide). The normal of curved shapes is within about the root of the
-     * tolerance, in radians. The closest points are half the separation from the contact
-     * point, along the normal.
-     *   Fails to find the least depth, within the tolerance, where `iterations` run out (NARC_OUTCOME_LIMIT: many local
-     *   minima, as of shapes that are round and in one place, and a small tolerance), and pairs within some roundings
-     *   of touching can go either way. */
+     * separation told is the gap along the normal told, never more than the exact one. The normal of curved shapes is
+     * within about the root of the tolerance, in radians. The closest points, half the separation from the contact
+     * point along the normal, lie within the tolerance of both outlines.
+     *   Pairs within some roundings of touching can go either way. Where `iterations` run out (NARC_OUTCOME_LIMIT) the
+     *   depth may be too large: EPA needs many for shapes that are round and in one place. If they run out, or rounding
+     *   ends the search, before a gap is found or a collision is known, the answer is "not colliding", separation 0. */
     NARC_METHOD_GJK = 3,
 
     /* Do the shapes' bounding circles, axis-aligned boxes, or oriented boxes overlap? As filters: they never say no

@@ -33,15 +33,15 @@ INLINE vf find_point(const struct arcs *arc, vf n_x, vf n_y, float sign, vf *out
     return cross(n_x, n_y, p_x, p_y);
 }
 
-/* Is n the normal of this junction, but for an angle of `parallel`? */
-INLINE vm meets(vf j_x, vf j_y, vf n_x, vf n_y, float parallel) {
-    return vm_and(v_le(v_abs(cross(j_x, j_y, n_x, n_y)), v_set(parallel)), v_lt(v_set(0), dot(j_x, j_y, n_x, n_y)));
+/* Is n the normal of this junction? */
+INLINE vm meets(vf j_x, vf j_y, vf n_x, vf n_y) {
+    return vm_and(v_le(v_abs(cross(j_x, j_y, n_x, n_y)), v_set(PARALLEL)), v_lt(v_set(0), dot(j_x, j_y, n_x, n_y)));
 }
 
 /* The touch of the shape with the arc in `record`: a point, or up to the end of a neighbouring arc where n is the
  * normal of the junction with it. */
 INLINE struct touch touch_of(const narc_record *records, struct ring ring, vi record, const struct pose *pose, vf n_x,
-                             vf n_y, bool is_b, float parallel) {
+                             vf n_y, bool is_b) {
     const vi next = step_record(ring, record, vi_set(1));
     int32_t lanes[3][V_WIDTH];
     vi_store(lanes[0], step_record(ring, record, vi_set(-1)));
@@ -53,8 +53,8 @@ INLINE struct touch touch_of(const narc_record *records, struct ring ring, vi re
     const float sign = is_b ? -1.0f : 1.0f;
     struct touch t;
     t.along_min = t.along_max = find_point(&arc[1], n_x, n_y, sign, &t.across);
-    const vm starts = meets(arc[1].start_x, arc[1].start_y, n_x, n_y, parallel),
-             ends = meets(arc[1].end_x, arc[1].end_y, n_x, n_y, parallel);
+    const vm starts = meets(arc[1].start_x, arc[1].start_y, n_x, n_y),
+             ends = meets(arc[1].end_x, arc[1].end_y, n_x, n_y);
     const vf before = find_point(&arc[0], n_x, n_y, sign, NULL), after = find_point(&arc[2], n_x, n_y, sign, NULL);
     t.along_min = v_select(starts, v_min(t.along_min, before), t.along_min);
     t.along_max = v_select(starts, v_max(t.along_max, before), t.along_max);
@@ -142,15 +142,15 @@ INLINE vm closer_than(vf separation, float margin) {
 
 /* Files the contacts that `gap` says, of the pairs k ... of a queue, where it is less than the margin. */
 static void file_gap(const narc_shapes *shapes, const struct queue *q, int k, vm live, const struct gap *gap,
-                     float margin, float parallel, struct results *out) {
+                     float margin, struct results *out) {
     const vm keep = vm_and(live, closer_than(gap->separation, margin));
     if (!vm_any(keep))
         return;
     const vf n_x = v_div(gap->n_x, gap->n_length), n_y = v_div(gap->n_y, gap->n_length);
     const struct pose pose = get_pose(q, k);
     const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
-    const struct touch on_a = touch_of(shapes->records, ring_a, gap->record_a, &pose, n_x, n_y, false, parallel);
-    const struct touch on_b = touch_of(shapes->records, ring_b, gap->record_b, &pose, n_x, n_y, true, parallel);
+    const struct touch on_a = touch_of(shapes->records, ring_a, gap->record_a, &pose, n_x, n_y, false);
+    const struct touch on_b = touch_of(shapes->records, ring_b, gap->record_b, &pose, n_x, n_y, true);
     file_contacts(q, k, keep, gap->separation, n_x, n_y, &on_a, &on_b, out);
 }
 
@@ -160,7 +160,7 @@ static void decide_contacts(const narc_shapes *shapes, struct queue *q, int firs
         const vm live = vm_first(q->count - k);
         const struct gap gap = overlay_gap(shapes, q, k, live, true);
         leave_hints(q, k, live, gap.record_a, gap.record_b, out);
-        file_gap(shapes, q, k, live, &gap, margin, PARALLEL, out);
+        file_gap(shapes, q, k, live, &gap, margin, out);
     }
     q->count = first;
 }

@@ -131,7 +131,7 @@ static void find_first(const narc_batch *batch, size_t first, struct queue *q, f
         vm found;
         const vm live = vm_first(q->count - k);
         const struct gap gap = first_gap(batch->shapes, q, k, live, &a, &b, &found);
-        file_gap(batch->shapes, q, k, found, &gap, margin, PARALLEL, out);
+        file_gap(batch->shapes, q, k, found, &gap, margin, out);
         note_outcome(batch, first, q, k, vm_and_not(live, found), NARC_OUTCOME_NONE);
         if (margin == INFINITY)
             file_without(q, k, vm_and_not(live, found), out);

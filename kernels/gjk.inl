@@ -284,7 +284,7 @@ static void find_gjk(const narc_batch *batch, size_t first, struct queue *q, flo
     search_all(batch, first, q, margin, NULL, &colliding, &finished);
     expand_all(batch, first, &colliding, margin, &finished);
     pad(&finished);
-    file_finished(batch->shapes, &finished, margin, out);
+    file_finished(batch, &finished, margin, out);
 }
 
 static void overlap_gjk(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {

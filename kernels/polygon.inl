@@ -61,7 +61,7 @@ static void find_polygons(const narc_batch *batch, size_t first, struct queue *q
         const struct support support = find_support(batch->shapes, q, k, gap.n_x, gap.n_y);
         gap.record_a = support.record_a;
         gap.record_b = support.record_b;
-        file_gap(batch->shapes, q, k, live, &gap, margin, PARALLEL, out);
+        file_gap(batch->shapes, q, k, live, &gap, margin, out);
     }
 }
 

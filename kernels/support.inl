@@ -168,21 +168,77 @@ static void finish(const struct lanes *lanes, vm which, const struct gap *gap, s
     }
 }
 
-/* A normal is that of an edge if it is this close (radians): the normals that GJK and EPA compute are off by the
- * rounding of support points, over an edge's length. */
-#define NEARLY_PARALLEL 0x1p-12f
+/* How far a shape's outline goes on beside its support point, along the edges there, and the angles of these edges with
+ * the support line: `low` towards smaller positions along that line, `high` towards larger ones. */
+struct slopes {
+    vf low, high, low_angle, high_angle;
+};
 
-static void file_finished(const narc_shapes *shapes, const struct queue *q, float margin, struct results *out) {
+/* The sine of the angle between two directions; 1 if that is more than a right one. */
+INLINE vf angle_to(vf j_x, vf j_y, vf n_x, vf n_y) {
+    return v_select(v_lt(v_set(0), dot(j_x, j_y, n_x, n_y)), v_abs(cross(j_x, j_y, n_x, n_y)), v_set(1));
+}
+
+INLINE vf length_beside(const struct arcs *arc, const struct arcs *neighbour, vf j_x, vf j_y, vf angle) {
+    const vf edge = cross(j_x, j_y, v_sub(neighbour->x, arc->x), v_sub(neighbour->y, arc->y));
+    return v_add(v_abs(edge), v_mul(arc->radius, angle));
+}
+
+INLINE struct slopes slopes_of(const narc_record *records, struct ring ring, vi record, const struct pose *pose, vf n_x,
+                               vf n_y, bool is_b) {
+    struct arcs arc[3];
+    for (int k = 0; k < 3; k++) {
+        int32_t lanes[V_WIDTH];
+        vi_store(lanes, step_record(ring, record, vi_set(k - 1)));
+        arc[k] = is_b ? load_arcs_b(records, lanes, pose) : load_arcs_a(records, lanes, pose);
+    }
+    const vf start_angle = angle_to(arc[1].start_x, arc[1].start_y, n_x, n_y);
+    const vf end_angle = angle_to(arc[1].end_x, arc[1].end_y, n_x, n_y);
+    const vf start = length_beside(&arc[1], &arc[0], arc[1].start_x, arc[1].start_y, start_angle);
+    const vf end = length_beside(&arc[1], &arc[2], arc[1].end_x, arc[1].end_y, end_angle);
+    return is_b ? (struct slopes){end, start, end_angle, start_angle}
+                : (struct slopes){start, end, start_angle, end_angle};
+}
+
+/* By how much a stretch may grow towards another one, `gap` away: as far as its edge goes on and stays within `loose`
+ * of the support line. */
+INLINE vf growth(const struct touch *touch, vf gap, vf length, vf angle, vf loose) {
+    const vf rest = v_sub(length, v_sub(touch->along_max, touch->along_min));
+    const vf near = v_div(loose, v_max(angle, v_set(PARALLEL)));
+    return v_max(v_min(gap, v_min(rest, near)), v_set(0));
+}
+
+/* The contacts of what GJK and EPA have found. Their normals are off as far as the tolerance allows. Where one is off
+ * an edge's, the support points of A and B may be at far ends of what touches: each stretch then grows towards the
+ * other, as far as the tolerance allows. */
+static void file_finished(const narc_batch *batch, const struct queue *q, float margin, struct results *out) {
+    const narc_record *records = batch->shapes->records;
     for (int k = 0; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
+        const vf separation = get(q, FOUND_SEPARATION, k), n_x = get(q, FOUND_X, k), n_y = get(q, FOUND_Y, k);
+        const vm keep = vm_and(live, closer_than(separation, margin));
+        if (!vm_any(keep))
+            continue;
+        const struct pose pose = get_pose(q, k);
         const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
-        const struct gap gap = {get(q, FOUND_SEPARATION, k),
-                                get(q, FOUND_X, k),
-                                get(q, FOUND_Y, k),
-                                v_set(1),
-                                vi_select(live, vi_load(q->record_a + k), ring_a.first),
-                                vi_select(live, vi_load(q->record_b + k), ring_b.first)};
-        file_gap(shapes, q, k, live, &gap, margin, NEARLY_PARALLEL, out);
+        const vi record_a = vi_select(live, vi_load(q->record_a + k), ring_a.first);
+        const vi record_b = vi_select(live, vi_load(q->record_b + k), ring_b.first);
+        struct touch on_a = touch_of(records, ring_a, record_a, &pose, n_x, n_y, false);
+        struct touch on_b = touch_of(records, ring_b, record_b, &pose, n_x, n_y, true);
+        const struct slopes a = slopes_of(records, ring_a, record_a, &pose, n_x, n_y, false);
+        const struct slopes b = slopes_of(records, ring_b, record_b, &pose, n_x, n_y, true);
+        const vf rounding = v_add(v_add(v_abs(pose.t_x), v_abs(pose.t_y)), get(q, SIZE, k));
+        const vf loose = v_max(v_mul(v_set(batch->tolerance), get(q, SIZE, k)), v_mul(v_set(0x1p-18f), rounding));
+        const vf b_above = v_sub(on_b.along_min, on_a.along_max), a_above = v_sub(on_a.along_min, on_b.along_max);
+        const vf a_up = growth(&on_a, b_above, a.high, a.high_angle, loose);
+        const vf a_down = growth(&on_a, a_above, a.low, a.low_angle, loose);
+        const vf b_up = growth(&on_b, a_above, b.high, b.high_angle, loose);
+        const vf b_down = growth(&on_b, b_above, b.low, b.low_angle, loose);
+        on_a.along_max = v_add(on_a.along_max, a_up);
+        on_a.along_min = v_sub(on_a.along_min, a_down);
+        on_b.along_max = v_add(on_b.along_max, b_up);
+        on_b.along_min = v_sub(on_b.along_min, b_down);
+        file_contacts(q, k, keep, separation, n_x, n_y, &on_a, &on_b, out);
     }
 }
 
