@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# From a machine with a shell and apt to a picture (run), to all tests (test) or to all benchmarks (bench).
+# From a machine with a shell and apt to a picture (run), to all tests (test), to all benchmarks (bench) or to the
+# paper's evaluation (paper).
 # shellcheck disable=SC2086 # lists of packages and commands are split into words on purpose
 set -eu
 
@@ -11,6 +12,9 @@ usage: sh cmake/bootstrap.sh run     install what is missing, build, collide 20,
        sh cmake/bootstrap.sh bench [OPTION ...]
                                      install what is missing, build, run the benchmarks; results in out/. Options
                                      are Google Benchmark's and those of bench/README.md
+       sh cmake/bootstrap.sh paper [OPTION ...]
+                                     install what is missing, build, do the evaluation of the paper again; results in
+                                     out/. Options are those of bench/paper/README.md
 
 Installs Debian and Ubuntu packages with apt-get, as root or through sudo, and nothing if all are there.
 EOF
@@ -132,6 +136,19 @@ bench() {
     ls -l out/bench* out/*.dat
 }
 
+paper() {
+    require_packages $bench_packages
+    build bench bench_paper
+    mkdir -p out
+    rm -f out/paper*
+    say "the paper's evaluation"
+    build/bench/bench/paper/bench_paper --out=out "$@"
+    say "plots"
+    gnuplot -e "folder='out'" bench/paper/plots.gp
+    say "written"
+    ls -l out/paper*
+}
+
 test_all() {
     require_packages $test_packages
     check ci
@@ -163,6 +180,10 @@ test) test_all ;;
 bench)
     shift
     bench "$@"
+    ;;
+paper)
+    shift
+    paper "$@"
     ;;
 *)
     usage

@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * answers.c - how often the methods are wrong: random pairs of several families of shapes, against the exact answer
+ * (method sat).
+ *
+ * The second body of a pair is anywhere where the axis-aligned boxes of both overlap, all places equally likely: what a
+ * broad phase hands on.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "../random.h"
+#include "families.h"
+#include "paper.h"
+#include "store.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { SHAPES = 512, METHODS = 3 };
+
+static const narc_method methods[METHODS] = {NARC_METHOD_SAT_FIRST, NARC_METHOD_GJK, NARC_METHOD_POLYGON_SAT};
+
+/* A separation further than this from the exact one, in parts of the sum of both bounding radii, is wrong. */
+static const double much = 1e-3;
+
+/* A normal further than this from the exact one, in radians, is another one. */
+static const double another_normal = 0.1;
+
+struct tally {
+    size_t false_hits, missed;
+    size_t outcomes[4];                 /* of overlaps */
+    size_t distance_wrong, depth_wrong; /* by more than `much` */
+    double distance_worst, depth_worst; /* the largest error */
+    size_t normal_wrong;                /* of pairs that collide, and for the method too */
+    size_t contact_outcomes[4], broken; /* answers that are not what narc_methods.h promises */
+};
+
+struct counts {
+    size_t pairs, apart, colliding, near;
+    struct tally tallies[METHODS];
+};
+
+struct family_shapes {
+    narc_shapes *shapes;
+    struct bound bounds[SHAPES];
+};
+
+/* A chunk of pairs and all that is known of it. */
+struct chunk {
+    size_t count;
+    struct pose *poses;
+    uint64_t *bits;
+    uint8_t *outcomes;
+    narc_contacts exact, found;
+};
+
+/* ------------------------------------------------------------------------------------------------ pairs */
+
+static struct family_shapes make_shapes(enum family family, uint64_t *random) {
+    struct family_shapes made = {NULL, {{0, 0, 0, 0}}};
+    if (narc_create_shapes(NULL, &made.shapes) != NARC_OK)
+        fail("out of memory");
+    for (size_t k = 0; k < SHAPES; k++) {
+        narc_arc arcs[NARC_MAX_ARCS];
+        narc_error error;
+        const size_t count = make_shape(family, random, arcs);
+        must(narc_add_shape(made.shapes, arcs, count, NULL, &error), &error);
+        made.bounds[k] = bound_of(arcs, count);
+    }
+    return made;
+}
+
+static narc_aabb box_of(const narc_shapes *shapes, const struct pose *pose) {
+    narc_aabb box;
+    if (!narc_get_aabb(shapes, pose->shape[0], pose->cosine, pose->sine, 1, &box))
+        fail("a body without a box");
+    return box;
+}
+
+static void place_pairs(const struct family_shapes *made, struct chunk *chunk, uint64_t *random) {
+    for (size_t k = 0; k < chunk->count; k++) {
+        struct pose *a = &chunk->poses[2 * k], *b = a + 1;
+        for (struct pose *pose = a; pose <= b; pose++) {
+            const double angle = random_between(random, -pi, pi);
+            *pose = (struct pose){0, 0, (float)cos(angle), (float)sin(angle), {(uint32_t)random_below(random, SHAPES)}};
+        }
+        const narc_aabb box_a = box_of(made->shapes, a), box_b = box_of(made->shapes, b);
+        b->x = (float)random_between(random, box_a.min_x - box_b.max_x, box_a.max_x - box_b.min_x);
+        b->y = (float)random_between(random, box_a.min_y - box_b.max_y, box_a.max_y - box_b.min_y);
+    }
+}
+
+static struct chunk make_chunk(size_t count) {
+    return (struct chunk){.count = count,
+                          .poses = allocate(2 * count, sizeof(struct pose)),
+                          .bits = allocate(NARC_BIT_WORDS(count), sizeof(uint64_t)),
+                          .outcomes = allocate(count, 1),
+                          .exact = allocate_contacts(count),
+                          .found = allocate_contacts(count)};
+}
+
+static void free_chunk(struct chunk *chunk) {
+    free(chunk->poses);
+    free(chunk->bits);
+    free(chunk->outcomes);
+    free_contacts(&chunk->exact);
+    free_contacts(&chunk->found);
+}
+
+/* ------------------------------------------------------------------------------------------------ counting */
+
+/* What rounding may change of a separation, the unit of errors, and what the store adds to that. */
+struct scales {
+    double rounding, size, slack;
+};
+
+static struct scales scales_of(const struct family_shapes *made, const struct pose *pair) {
+    const struct bound *a = &made->bounds[pair[0].shape[0]], *b = &made->bounds[pair[1].shape[0]];
+    return (struct scales){rounding_of(made->bounds, pair, KIND_ARC), size_of(made->bounds, pair, KIND_ARC),
+                           NARC_HEAD_SLACK * (a->extent + b->extent)};
+}
+
+static void tally_overlap(const struct chunk *chunk, size_t k, const struct scales *scales, struct tally *tally) {
+    const double separation = chunk->exact.separation[k];
+    const bool hit = chunk->bits[k / 64] >> k % 64 & 1;
+    tally->outcomes[chunk->outcomes[k]]++;
+    if (fabs(separation) <= scales->rounding)
+        return;
+    tally->false_hits += hit && separation > 0;
+    tally->missed += !hit && separation < 0;
+}
+
+/* Is the separation told what narc_methods.h says of it? GJK: the gap along the normal, so at most the exact one, and
+ * if it ended well at least that less the tolerance; the library's bounding radii have their slack on top. Polygons'
+ * SAT: exact if they collide, else positive and at most exact. All but for the rounding of both. */
+static bool is_as_promised(narc_method method, double exact, double told, uint8_t outcome,
+                           const struct scales *scales) {
+    const double rounding = 2 * scales->rounding;
+    const double tolerance = (double)NARC_DEFAULT_TOLERANCE * (scales->size + scales->slack);
+    switch (method) {
+    case NARC_METHOD_GJK:
+        return told <= exact + rounding && (outcome != NARC_OUTCOME_DONE || told >= exact - tolerance - rounding);
+    case NARC_METHOD_POLYGON_SAT:
+        return told <= exact + rounding && told >= fmin(exact, 0) - rounding;
+    default:
+        return true;
+    }
+}
+
+/* The separation of a pair, and the normal if both answers are that it collides. */
+static void tally_contact(const struct chunk *chunk, size_t k, narc_method method, const struct scales *scales,
+                          struct tally *tally) {
+    const double exact = chunk->exact.separation[k], told = chunk->found.separation[k];
+    const double error = fabs(told - exact) / scales->size;
+    const uint8_t outcome = chunk->outcomes[k];
+    tally->contact_outcomes[outcome]++;
+    tally->broken += !is_as_promised(method, exact, told, outcome, scales);
+    if (isinf(told)) /* no answer: counted as such */
+        return;
+    if (exact > 0) {
+        tally->distance_wrong += error > much;
+        tally->distance_worst = fmax(tally->distance_worst, error);
+        return;
+    }
+    tally->depth_wrong += error > much;
+    tally->depth_worst = fmax(tally->depth_worst, error);
+    if (told >= 0)
+        return;
+    const double dot = (double)chunk->exact.normal_x[k] * chunk->found.normal_x[k] +
+                       (double)chunk->exact.normal_y[k] * chunk->found.normal_y[k];
+    tally->normal_wrong += dot < cos(another_normal);
+}
+
+static void ask_method(const struct family_shapes *made, struct chunk *chunk, narc_method method, struct tally *tally) {
+    const narc_bodies bodies = bodies_of(chunk->poses, 2 * chunk->count, KIND_ARC);
+    const narc_pairs pairs = neighbours(chunk->count);
+    const narc_query query = {.method = method, .out_outcomes = chunk->outcomes};
+    size_t found;
+    narc_error error;
+    must(narc_query_overlaps(made->shapes, &bodies, &pairs, &query, 0, chunk->bits, &error), &error);
+    for (size_t k = 0; k < chunk->count; k++) {
+        const struct scales scales = scales_of(made, &chunk->poses[2 * k]);
+        tally_overlap(chunk, k, &scales, tally);
+    }
+    must(narc_query_contacts(made->shapes, &bodies, &pairs, &query, INFINITY, 0, &chunk->found, &found, &error),
+         &error);
+    for (size_t k = 0; k < chunk->count; k++) {
+        const struct scales scales = scales_of(made, &chunk->poses[2 * k]);
+        tally_contact(chunk, k, method, &scales, tally);
+    }
+}
+
+/* Straight edges have no arcs for sat-first; polygon-sat takes nothing else. */
+static bool takes(narc_method method, enum family family) {
+    return method == NARC_METHOD_GJK || (method == NARC_METHOD_POLYGON_SAT) == (family == FAMILY_POLYGON);
+}
+
+static struct counts count_family(const struct settings *settings, enum family family, uint64_t *random) {
+    struct family_shapes made = make_shapes(family, random);
+    struct counts counts = {0};
+    for (size_t left = settings->answer_pairs; left > 0;) {
+        struct chunk chunk = make_chunk(left < settings->chunk ? left : settings->chunk);
+        place_pairs(&made, &chunk, random);
+        separate(made.shapes, chunk.poses, chunk.count, KIND_ARC, &chunk.exact);
+        for (size_t k = 0; k < chunk.count; k++) {
+            const struct scales scales = scales_of(&made, &chunk.poses[2 * k]);
+            const bool near = fabs((double)chunk.exact.separation[k]) <= scales.rounding;
+            counts.near += near;
+            counts.colliding += !near && chunk.exact.separation[k] < 0;
+            counts.apart += !near && chunk.exact.separation[k] > 0;
+        }
+        for (size_t method = 0; method < METHODS; method++)
+            if (takes(methods[method], family))
+                ask_method(&made, &chunk, methods[method], &counts.tallies[method]);
+        counts.pairs += chunk.count;
+        left -= chunk.count;
+        free_chunk(&chunk);
+    }
+    narc_destroy_shapes(made.shapes);
+    return counts;
+}
+
+/* ------------------------------------------------------------------------------------------------ tables */
+
+static void print_part(FILE *out, size_t count, size_t of) {
+    fprintf(out, " %zu", count);
+    if (count > 0 && of > 0)
+        fprintf(out, " (%.2g %%)", 100 * (double)count / (double)of);
+    fprintf(out, " |");
+}
+
+static void print_overlaps(const struct counts *counts, FILE *out) {
+    fprintf(out,
+            "\n### Wrong booleans\n\n| family | pairs | apart | colliding | not counted | method | false collisions | "
+            "missed collisions | NONE | LIMIT | ROUNDING |\n"
+            "| --- | ---: | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: |\n");
+    for (enum family family = 0; family < FAMILIES; family++)
+        for (size_t method = 0; method < METHODS; method++) {
+            const struct counts *c = &counts[family];
+            const struct tally *tally = &c->tallies[method];
+            if (!takes(methods[method], family))
+                continue;
+            fprintf(out, "| %s | %zu | %zu | %zu | %zu | %s |", family_name(family), c->pairs, c->apart, c->colliding,
+                    c->near, narc_method_name(methods[method]));
+            print_part(out, tally->false_hits, c->apart);
+            print_part(out, tally->missed, c->colliding);
+            fprintf(out, " %zu | %zu | %zu |\n", tally->outcomes[NARC_OUTCOME_NONE],
+                    tally->outcomes[NARC_OUTCOME_LIMIT], tally->outcomes[NARC_OUTCOME_ROUNDING]);
+        }
+}
+
+static void print_contacts(const struct counts *counts, FILE *out) {
+    fprintf(out, "\n### Wrong separations and normals; errors in parts of the sum of both bounding radii\n\n"
+                 "| family | method | distance wrong | largest error | depth wrong | largest error | another normal | "
+                 "NONE | LIMIT | ROUNDING |\n"
+                 "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+    for (enum family family = 0; family < FAMILIES; family++)
+        for (size_t method = 0; method < METHODS; method++) {
+            const struct counts *c = &counts[family];
+            const struct tally *tally = &c->tallies[method];
+            if (!takes(methods[method], family))
+                continue;
+            fprintf(out, "| %s | %s |", family_name(family), narc_method_name(methods[method]));
+            print_part(out, tally->distance_wrong, c->apart);
+            fprintf(out, " %.2g |", tally->distance_worst);
+            print_part(out, tally->depth_wrong, c->colliding);
+            fprintf(out, " %.2g |", tally->depth_worst);
+            print_part(out, tally->normal_wrong, c->colliding);
+            fprintf(out, " %zu | %zu | %zu |\n", tally->contact_outcomes[NARC_OUTCOME_NONE],
+                    tally->contact_outcomes[NARC_OUTCOME_LIMIT], tally->contact_outcomes[NARC_OUTCOME_ROUNDING]);
+        }
+}
+
+size_t print_answers(const struct settings *settings, uint64_t *random, FILE *out) {
+    struct counts counts[FAMILIES];
+    size_t broken = 0;
+    for (enum family family = 0; family < FAMILIES; family++) {
+        char what[64];
+        snprintf(what, sizeof what, "wrong answers: %s", family_name(family));
+        begin_step(what);
+        counts[family] = count_family(settings, family, random);
+        for (size_t method = 0; method < METHODS; method++)
+            broken += counts[family].tallies[method].broken;
+    }
+    print_overlaps(counts, out);
+    print_contacts(counts, out);
+    fprintf(out, "\nAnswers that break what `narc_methods.h` promises of gjk and polygon-sat: %zu\n", broken);
+    return broken;
+}
