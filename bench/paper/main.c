@@ -146,6 +146,7 @@ int main(int argc, char **argv) {
     static struct paper paper;
     static struct figures figures;
     static struct epa epa;
+    static struct lanes lanes;
     static struct frames frames;
     uint64_t random = 1;
     if (!take_options(argc, argv, &paper.settings)) {
@@ -161,12 +162,14 @@ int main(int argc, char **argv) {
     begin_step("errors of depths");
     add_figures(&paper, &figures);
     add_epa(&paper, &epa);
+    add_lanes(&paper, &lanes);
     begin_step("moving scenes");
     add_frames(&paper, &frames, &random);
     time_rows(&paper.rows, paper.settings.repetitions, paper.settings.least_time, &random);
     print_noise(&paper, out);
     print_claims(&paper, &figures, &epa, &frames, out);
     print_figures(&paper, &figures, out);
+    print_lanes(&paper, &lanes, out);
     print_epa(&paper, &epa, out);
     choose_isas(&paper);
     begin_step("steps of GJK and EPA");

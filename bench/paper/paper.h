@@ -103,6 +103,20 @@ void add_frames(struct paper *paper, struct frames *frames, uint64_t *random);
 void print_frames(const struct paper *paper, const struct frames *frames, FILE *out);
 void write_frames(const struct paper *paper, const struct frames *frames);
 
+/* ------------------------------------------------------------------------------------------------ vectors */
+
+enum { LANE_ROWS = 8, MAX_LANE_ISAS = 4 };
+
+struct lanes {
+    size_t size; /* index of n = 8 */
+    const char *isas[MAX_LANE_ISAS];
+    size_t isa_count;
+    size_t rows[QUESTIONS][LANE_ROWS][MAX_LANE_ISAS];
+};
+
+void add_lanes(struct paper *paper, struct lanes *lanes);
+void print_lanes(const struct paper *paper, const struct lanes *lanes, FILE *out);
+
 /* ------------------------------------------------------------------------------------------------ wrong answers */
 
 /* Asks all methods about random pairs of several families of shapes, and prints the tables. Returns the number of
