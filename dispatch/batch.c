@@ -43,12 +43,14 @@ int narc_team_size(unsigned threads, size_t parts) {
 
 /* Kernels write only the outcomes of pairs that did not end well. */
 static void clear_outcomes(const narc_batch *batch, size_t first, size_t count) {
-    if (batch->outcomes && count > 0)
+    if (batch->outcomes && count > 0)              /* memset() wants a pointer even for nothing */
         memset(batch->outcomes + first, 0, count); /* NARC_OUTCOME_DONE */
 }
 
 void narc_run_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, unsigned threads, uint64_t *out_bits) {
     const size_t count = batch->pairs->count;
+    if (count == 0)
+        return;
     clear_outcomes(batch, 0, count);
     const int team = narc_team_size(threads, (count + LEAST_OVERLAPS - 1) / LEAST_OVERLAPS);
     if (team <= 1) {

@@ -172,25 +172,16 @@ static void climb_to_contacts(const narc_shapes *shapes, struct queue *q, int fi
     look_up(shapes, q, first, false);
     for (int k = first; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
-        const struct peak peak = climb(shapes, q, k, live);
-        const vf u_x = v_sub(peak.after.b.x, peak.after.a.x), u_y = v_sub(peak.after.b.y, peak.after.a.y);
-        const vf radii = v_add(peak.after.a.radius, peak.after.b.radius), length = v_sqrt(dot(u_x, u_y, u_x, u_y));
-        const vf value = v_select(peak.kink, dot(u_x, u_y, peak.n_x, peak.n_y), length);
-        const vf separation = v_sub(value, radii), n_length = v_select(peak.kink, v_set(1), length);
-        const vf n_x = v_div(peak.n_x, n_length), n_y = v_div(peak.n_y, n_length);
-
-        const struct sines sines = find_sines(q, k, &peak, n_x, n_y);
-        const vm found = vm_and(vm_and(live, peak.found), v_le(v_set(0), sines.least));
-        const vm apart = vm_and(found, v_lt(v_add(v_set(margin), get(q, SLACK, k)), separation));
-        const vm sure = vm_and(vm_and_not(found, apart), is_highest(q, k, &peak, &sines, n_x, n_y, separation));
-        leave_hints(q, k, vm_or(apart, sure), peak.record_a, peak.record_b, out);
-        const vm keep = vm_and(sure, closer_than(separation, margin));
+        const struct top top = climb_to_top(shapes, q, k, live, margin);
+        const struct peak *peak = &top.peak;
+        leave_hints(q, k, vm_or(top.apart, top.sure), peak->record_a, peak->record_b, out);
+        const vm keep = vm_and(top.sure, closer_than(top.separation, margin));
         if (vm_any(keep)) {
-            const struct touch on_a = touch_at(&peak.after.a, &peak.before.a, n_x, n_y, 1, peak.record_a);
-            const struct touch on_b = touch_at(&peak.after.b, &peak.before.b, n_x, n_y, -1, peak.record_b);
-            file_contacts(q, k, keep, separation, n_x, n_y, &on_a, &on_b, out);
+            const struct touch on_a = touch_at(&peak->after.a, &peak->before.a, top.n_x, top.n_y, 1, peak->record_a);
+            const struct touch on_b = touch_at(&peak->after.b, &peak->before.b, top.n_x, top.n_y, -1, peak->record_b);
+            file_contacts(q, k, keep, top.separation, top.n_x, top.n_y, &on_a, &on_b, out);
         }
-        const vm left = vm_and_not(live, vm_or(apart, sure));
+        const vm left = vm_and_not(live, vm_or(top.apart, top.sure));
         if (vm_any(left)) {
             vf item[FIELDS];
             get_item(q, k, item, CONTACT_FIELDS);

@@ -27,6 +27,7 @@ struct polytope {
 struct expansion {
     vi slot;     /* of the nearest edge */
     vf distance; /* of that from the origin: the depth is at least that */
+    vf noise;    /* of the last support point */
     struct gap best;
 };
 
@@ -111,6 +112,7 @@ INLINE struct verdict step_expansion(const narc_batch *batch, const struct lanes
     const vf m_x = v_sub(edge[1], edge[3]), m_y = v_sub(edge[2], edge[0]);
     const struct support w = find_support(batch->shapes, &lanes->pair, 0, m_x, m_y);
     keep_best(&e->best, &w, fresh);
+    e->noise = w.noise;
     const vm final =
         vm_or(is_near(w.w_x, w.w_y, edge[0], edge[1], w.noise), is_near(w.w_x, w.w_y, edge[2], edge[3], w.noise));
     e->slot = split_edge(p, e->slot, vm_and_not(busy, final), edge, w.w_x, w.w_y, &e->distance);
@@ -132,8 +134,8 @@ static void expand_all(const narc_batch *batch, size_t first, const struct queue
                        struct queue *finished) {
     struct lanes lanes;
     struct polytope polytope;
-    const vf zero = v_set(0);
-    struct expansion e = {vi_set(0), zero, {zero, zero, zero, v_set(1), vi_set(0), vi_set(0)}};
+    struct expansion e;
+    memset(&e, 0, sizeof e);
     memset(polytope.count, 0, sizeof polytope.count);
     start_lanes(&lanes);
     while (fill_lanes(&lanes, q)) {
@@ -148,6 +150,6 @@ static void expand_all(const narc_batch *batch, size_t first, const struct queue
         note_outcome(batch, first, &lanes.pair, 0, verdict.stuck, NARC_OUTCOME_ROUNDING);
         struct gap gap = e.best;
         gap.separation = v_min(gap.separation, v_set(-FLT_MIN)); /* GJK decides whether, EPA how deep */
-        finish(&lanes, done, &gap, finished);
+        finish(&lanes, done, &gap, e.noise, finished);
     }
 }

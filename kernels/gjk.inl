@@ -26,6 +26,7 @@ struct search {
     vf p_turn, q_turn, r_turn, third_turn; /* the directions of the points' search, for hints */
     vi as_near;                            /* is the segment as near as the one before, but no nearer? */
     vi side;                               /* 0; 1 and 2: on which side of such a segment the search looks */
+    vf noise;                              /* of the last support point */
     struct gap best;                       /* the largest gap of all directions */
 };
 
@@ -173,6 +174,7 @@ static inline struct verdict step_search(const narc_batch *batch, const struct l
     const vf w_turn = batch->hints ? turn_of(w.m_x, w.m_y) : zero;
     const vm raised = v_lt(s->best.separation, w.gap);
     keep_best(&s->best, &w, fresh);
+    s->noise = w.noise;
     const vm apart = v_le(v_set(enough), s->best.separation);
 
     /* What the step was for: a first point, a hint's second one, a side of a segment through the origin, or the rule.
@@ -220,11 +222,14 @@ INLINE void read_hints_of(const narc_batch *batch, size_t first, const struct la
             hint[lane] = (int32_t)batch->hints[first + (uint32_t)pair[lane]];
 }
 
-static struct search start_search(void) {
-    const vf zero = v_set(0);
-    const struct gap none = {zero, zero, zero, v_set(1), vi_set(0), vi_set(0)};
-    return (struct search){zero, zero, zero, zero, zero, zero, zero,      zero,      zero,
-                           zero, zero, zero, zero, zero, zero, vi_set(0), vi_set(0), none};
+/* A search that rounding has ended may go better without the hint that it began with. */
+static void begin_again(struct lanes *lanes, int32_t *hint, struct verdict *verdict) {
+    const vi old = vi_load(hint), none = vi_set(0);
+    const vm again = vm_and(verdict->stuck, vi_lt(none, hint_length(old)));
+    vi_store(hint, vi_select(again, none, old));
+    vi_store(lanes->age, vi_select(again, none, vi_load(lanes->age)));
+    verdict->separate = vm_and_not(verdict->separate, again);
+    verdict->stuck = vm_and_not(verdict->stuck, again);
 }
 
 /* Passes the pairs that collide on to EPA, each with the triangle that holds the origin. */
@@ -249,8 +254,9 @@ static void pass_on(const struct lanes *lanes, const struct search *s, vm collid
 INLINE void search_all(const narc_batch *batch, size_t first, const struct queue *q, float enough, uint64_t *out_bits,
                        struct queue *colliding, struct queue *finished) {
     struct lanes lanes;
-    struct search s = start_search();
+    struct search s;
     int32_t hint[V_WIDTH] = {0};
+    memset(&s, 0, sizeof s);
     start_lanes(&lanes);
     while (fill_lanes(&lanes, q)) {
         struct verdict verdict;
@@ -258,6 +264,8 @@ INLINE void search_all(const narc_batch *batch, size_t first, const struct queue
         do {
             verdict = step_search(batch, &lanes, &s, vi_load(hint), enough);
             end_step(&lanes, is_done(&verdict));
+            if (vm_any(verdict.stuck))
+                begin_again(&lanes, hint, &verdict);
         } while (!vm_any(is_done(&verdict)));
         note_outcome(batch, first, &lanes.pair, 0, verdict.limit, NARC_OUTCOME_LIMIT);
         note_outcome(batch, first, &lanes.pair, 0, verdict.stuck, NARC_OUTCOME_ROUNDING);
@@ -269,7 +277,7 @@ INLINE void search_all(const narc_batch *batch, size_t first, const struct queue
         }
         struct gap gap = s.best;
         gap.separation = v_max(gap.separation, v_set(0));
-        finish(&lanes, vm_or(verdict.separate, verdict.limit), &gap, finished);
+        finish(&lanes, vm_or(verdict.separate, verdict.limit), &gap, s.noise, finished);
         pass_on(&lanes, &s, verdict.collides, colliding);
     }
 }

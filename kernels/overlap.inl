@@ -2,13 +2,11 @@
  *
  * overlap.inl - the overlap kernel: one bit per pair, set where the separation is below 0.
  *
- * Circles settle some pairs, LOOKS looks most others: each along a direction, the first along the axis between the
- * inscribed circles, the next along u of the arcs that the last one found. A look ends with a proof (proof.inl) that
- * the bodies are apart or have a common point, or passes the pair on. What is left goes to the deciding formula.
+ * Circles settle some pairs, two looks most others: one along the axis between the inscribed circles, and one along u
+ * of the arcs that the first one found. A look ends with a proof (proof.inl) that the bodies are apart or have a common
+ * point, or passes the pair on. The rest climb to a local maximum of the gap. What is left then goes to the deciding
+ * formula.
  */
-
-enum { LOOKS = 3 };
-_Static_assert(1 + LOOKS <= STAGES, "queues are too short");
 
 /* Sets the bits of the pairs k ... of a queue that `hits` says. */
 INLINE void mark(const struct queue *q, int k, vm hits, uint64_t *out_bits) {
@@ -55,6 +53,25 @@ INLINE void look_for_overlaps(const narc_shapes *shapes, struct queue *q, int fi
     q->count = first;
 }
 
+/* Climbs with the pairs first ... of a queue, along DIRECTION, and takes them out; those whose maximum is not known to
+ * be the highest go to `undecided`. */
+static void climb_to_overlaps(const narc_shapes *shapes, struct queue *q, int first, struct queue *undecided,
+                              uint64_t *out_bits) {
+    look_up(shapes, q, first, false);
+    for (int k = first; k < q->count; k += V_WIDTH) {
+        const vm live = vm_first(q->count - k);
+        const struct top top = climb_to_top(shapes, q, k, live, 0);
+        mark(q, k, vm_and(top.sure, v_lt(top.separation, v_set(0))), out_bits);
+        const vm left = vm_and_not(live, vm_or(top.apart, top.sure));
+        if (vm_any(left)) {
+            vf item[FIELDS];
+            get_item(q, k, item, OVERLAP_FIELDS);
+            push(undecided, left, item, OVERLAP_FIELDS);
+        }
+    }
+    q->count = first;
+}
+
 /* Decides the pairs first ... of a queue by the formula and takes them out. */
 static void decide_overlaps(const narc_shapes *shapes, struct queue *q, int first, uint64_t *out_bits) {
     for (int k = first; k < q->count; k += V_WIDTH) {
@@ -65,18 +82,20 @@ static void decide_overlaps(const narc_shapes *shapes, struct queue *q, int firs
 }
 
 /* Passes what waits on through the stages: whole vectors of the queues that are long enough, or all. */
-static void drain_overlaps(const narc_shapes *shapes, struct queue waiting[LOOKS], bool all, uint64_t *out_bits) {
-    for (int k = 0; k < LOOKS; k++) {
-        struct queue *q = &waiting[k];
-        const int first = all ? 0 : q->count % V_WIDTH;
-        if (!all && q->count < FLUSH)
+static void drain_overlaps(const narc_shapes *shapes, struct stages *s, bool all, uint64_t *out_bits) {
+    struct queue *const queues[] = {&s->again, &s->climb, &s->decide};
+    for (int k = 0; k < 3; k++) {
+        const int first = all ? 0 : queues[k]->count % V_WIDTH;
+        if (!all && queues[k]->count < FLUSH)
             continue;
         if (all)
-            pad(q);
-        if (k + 1 < LOOKS)
-            look_for_overlaps(shapes, q, first, &waiting[k + 1], out_bits);
+            pad(queues[k]);
+        if (k == 0)
+            look_for_overlaps(shapes, &s->again, first, &s->climb, out_bits);
+        else if (k == 1)
+            climb_to_overlaps(shapes, &s->climb, first, &s->decide, out_bits);
         else
-            decide_overlaps(shapes, q, first, out_bits);
+            decide_overlaps(shapes, &s->decide, first, out_bits);
     }
 }
 
@@ -116,9 +135,9 @@ static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_
     }
     const bool rows = poses_are_rows(batch->bodies);
     struct pair_indices indices;
-    struct queue fresh, waiting[LOOKS]; /* for the second look and so on; the last one for the formula */
-    for (int k = 0; k < LOOKS; k++)
-        waiting[k].count = 0;
+    struct queue fresh;
+    struct stages stages;
+    stages.again.count = stages.climb.count = stages.decide.count = 0;
     for (size_t block = 0; block < count; block += BLOCK) {
         const int n = (int)(count - block < BLOCK ? count - block : BLOCK);
         load_indices(batch, first + block, n, &indices);
@@ -133,8 +152,8 @@ static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_
             out_bits[pair / 64] |= (uint64_t)vm_bits(vm_and(f.valid, f.deep)) << pair % 64;
         }
         pad(&fresh);
-        look_for_overlaps(batch->shapes, &fresh, 0, &waiting[0], out_bits);
-        drain_overlaps(batch->shapes, waiting, false, out_bits);
+        look_for_overlaps(batch->shapes, &fresh, 0, &stages.again, out_bits);
+        drain_overlaps(batch->shapes, &stages, false, out_bits);
     }
-    drain_overlaps(batch->shapes, waiting, true, out_bits);
+    drain_overlaps(batch->shapes, &stages, true, out_bits);
 }

@@ -57,11 +57,13 @@ static void find_polygons(const narc_batch *batch, size_t first, struct queue *q
     for (int k = 0; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
         struct gap gap = polygon_gap(batch->shapes, q, k, live, margin, &a, &b);
-        /* Of an edge that is parallel but for rounding either end may be the closest vertex: the cones say which. */
+        /* The cones say which vertices lie on the support lines; of edges that are parallel but for rounding either
+         * end may, hence file_loosely(). */
         const struct support support = find_support(batch->shapes, q, k, gap.n_x, gap.n_y);
         gap.record_a = support.record_a;
         gap.record_b = support.record_b;
-        file_gap(batch->shapes, q, k, live, &gap, margin, out);
+        const vf loose = v_mul(v_set(NOISE_OF_EDGES), support.noise);
+        file_loosely(batch->shapes, q, k, live, &gap, margin, loose, out);
     }
 }
 

@@ -164,3 +164,28 @@ INLINE vm is_highest(const struct queue *q, int k, const struct peak *p, const s
     const vm only = vm_and_not(is_only_peak(inner, separation, s->least, one, slack), p->kink);
     return vm_or(only, vm_and(narrow, vm_and(after, before)));
 }
+
+/* The local maximum near DIRECTION of the pairs k ... of a queue, climbed to from the arcs in record_a and record_b,
+ * and what it proves: that the separation is above the margin, or that it is this. */
+struct top {
+    struct peak peak;
+    vf separation, n_x, n_y;
+    vm apart, sure;
+};
+
+INLINE struct top climb_to_top(const narc_shapes *shapes, const struct queue *q, int k, vm live, float margin) {
+    struct top top;
+    const struct peak peak = top.peak = climb(shapes, q, k, live);
+    const vf u_x = v_sub(peak.after.b.x, peak.after.a.x), u_y = v_sub(peak.after.b.y, peak.after.a.y);
+    const vf radii = v_add(peak.after.a.radius, peak.after.b.radius), length = v_sqrt(dot(u_x, u_y, u_x, u_y));
+    const vf value = v_select(peak.kink, dot(u_x, u_y, peak.n_x, peak.n_y), length);
+    const vf n_length = v_select(peak.kink, v_set(1), length);
+    top.separation = v_sub(value, radii);
+    top.n_x = v_div(peak.n_x, n_length);
+    top.n_y = v_div(peak.n_y, n_length);
+    const struct sines sines = find_sines(q, k, &peak, top.n_x, top.n_y);
+    const vm found = vm_and(vm_and(live, peak.found), v_le(v_set(0), sines.least));
+    top.apart = vm_and(found, v_lt(v_add(v_set(margin), get(q, SLACK, k)), top.separation));
+    top.sure = vm_and(vm_and_not(found, top.apart), is_highest(q, k, &peak, &sines, top.n_x, top.n_y, top.separation));
+    return top;
+}

@@ -14,6 +14,10 @@
  * and for the extents the arcs' own |centre| + radius, comes to 53 roundings of the sum below. */
 #define SUPPORT_NOISE 0x1p-20f
 
+/* How far the ends of an edge that touches may seem to be off the support line by rounding, in terms of that: as a gap
+ * may, at either end. */
+#define NOISE_OF_EDGES 4
+
 struct support {
     vf m_x, m_y; /* unit */
     vf w_x, w_y, gap;
@@ -146,15 +150,16 @@ INLINE void end_step(struct lanes *lanes, vm done) {
 }
 
 /* Fields of a pair that a search has no more use for: what it has found. The arcs go to record_a and record_b. */
-enum { FOUND_SEPARATION = CORE, FOUND_X = DIRECTION_X, FOUND_Y = DIRECTION_Y };
+enum { FOUND_SEPARATION = CORE, FOUND_NOISE = SLACK, FOUND_X = DIRECTION_X, FOUND_Y = DIRECTION_Y };
 
 /* Appends the pairs of the lanes `which`, with what was found of them, to a queue. */
-static void finish(const struct lanes *lanes, vm which, const struct gap *gap, struct queue *finished) {
-    float value[3][V_WIDTH];
+static void finish(const struct lanes *lanes, vm which, const struct gap *gap, vf noise, struct queue *finished) {
+    float value[4][V_WIDTH];
     int32_t record[2][V_WIDTH];
     v_store(value[0], gap->separation);
     v_store(value[1], gap->n_x);
     v_store(value[2], gap->n_y);
+    v_store(value[3], noise);
     vi_store(record[0], gap->record_a);
     vi_store(record[1], gap->record_b);
     for (uint32_t bits = vm_bits(which); bits; bits &= bits - 1) {
@@ -163,6 +168,7 @@ static void finish(const struct lanes *lanes, vm which, const struct gap *gap, s
         finished->item[FOUND_SEPARATION][k] = value[0][lane];
         finished->item[FOUND_X][k] = value[1][lane];
         finished->item[FOUND_Y][k] = value[2][lane];
+        finished->item[FOUND_NOISE][k] = value[3][lane];
         finished->record_a[k] = record[0][lane];
         finished->record_b[k] = record[1][lane];
     }
@@ -208,37 +214,48 @@ INLINE vf growth(const struct touch *touch, vf gap, vf length, vf angle, vf loos
     return v_max(v_min(gap, v_min(rest, near)), v_set(0));
 }
 
-/* The contacts of what GJK and EPA have found. Their normals are off as far as the tolerance allows. Where one is off
- * an edge's, the support points of A and B may be at far ends of what touches: each stretch then grows towards the
- * other, as far as the tolerance allows. */
+/* Files contacts as file_gap() does, but where normals are off so far that an edge's ends are off the support line by
+ * up to `loose`, the support points of A and B may be at far ends of what touches. So each stretch grows towards the
+ * other, as far as that allows. */
+static void file_loosely(const narc_shapes *shapes, const struct queue *q, int k, vm live, const struct gap *gap,
+                         float margin, vf loose, struct results *out) {
+    const narc_record *records = shapes->records;
+    const vf n_x = gap->n_x, n_y = gap->n_y;
+    const vm keep = vm_and(live, closer_than(gap->separation, margin));
+    if (!vm_any(keep))
+        return;
+    const struct pose pose = get_pose(q, k);
+    const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
+    struct touch on_a = touch_of(records, ring_a, gap->record_a, &pose, n_x, n_y, false);
+    struct touch on_b = touch_of(records, ring_b, gap->record_b, &pose, n_x, n_y, true);
+    const struct slopes a = slopes_of(records, ring_a, gap->record_a, &pose, n_x, n_y, false);
+    const struct slopes b = slopes_of(records, ring_b, gap->record_b, &pose, n_x, n_y, true);
+    const vf b_above = v_sub(on_b.along_min, on_a.along_max), a_above = v_sub(on_a.along_min, on_b.along_max);
+    const vf a_up = growth(&on_a, b_above, a.high, a.high_angle, loose);
+    const vf a_down = growth(&on_a, a_above, a.low, a.low_angle, loose);
+    const vf b_up = growth(&on_b, a_above, b.high, b.high_angle, loose);
+    const vf b_down = growth(&on_b, b_above, b.low, b.low_angle, loose);
+    on_a.along_max = v_add(on_a.along_max, a_up);
+    on_a.along_min = v_sub(on_a.along_min, a_down);
+    on_b.along_max = v_add(on_b.along_max, b_up);
+    on_b.along_min = v_sub(on_b.along_min, b_down);
+    file_contacts(q, k, keep, gap->separation, n_x, n_y, &on_a, &on_b, out);
+}
+
+/* The contacts of what GJK and EPA have found: their normals are off as far as the tolerance allows. */
 static void file_finished(const narc_batch *batch, const struct queue *q, float margin, struct results *out) {
-    const narc_record *records = batch->shapes->records;
     for (int k = 0; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
-        const vf separation = get(q, FOUND_SEPARATION, k), n_x = get(q, FOUND_X, k), n_y = get(q, FOUND_Y, k);
-        const vm keep = vm_and(live, closer_than(separation, margin));
-        if (!vm_any(keep))
-            continue;
-        const struct pose pose = get_pose(q, k);
         const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
-        const vi record_a = vi_select(live, vi_load(q->record_a + k), ring_a.first);
-        const vi record_b = vi_select(live, vi_load(q->record_b + k), ring_b.first);
-        struct touch on_a = touch_of(records, ring_a, record_a, &pose, n_x, n_y, false);
-        struct touch on_b = touch_of(records, ring_b, record_b, &pose, n_x, n_y, true);
-        const struct slopes a = slopes_of(records, ring_a, record_a, &pose, n_x, n_y, false);
-        const struct slopes b = slopes_of(records, ring_b, record_b, &pose, n_x, n_y, true);
-        const vf rounding = v_add(v_add(v_abs(pose.t_x), v_abs(pose.t_y)), get(q, SIZE, k));
-        const vf loose = v_max(v_mul(v_set(batch->tolerance), get(q, SIZE, k)), v_mul(v_set(0x1p-18f), rounding));
-        const vf b_above = v_sub(on_b.along_min, on_a.along_max), a_above = v_sub(on_a.along_min, on_b.along_max);
-        const vf a_up = growth(&on_a, b_above, a.high, a.high_angle, loose);
-        const vf a_down = growth(&on_a, a_above, a.low, a.low_angle, loose);
-        const vf b_up = growth(&on_b, a_above, b.high, b.high_angle, loose);
-        const vf b_down = growth(&on_b, b_above, b.low, b.low_angle, loose);
-        on_a.along_max = v_add(on_a.along_max, a_up);
-        on_a.along_min = v_sub(on_a.along_min, a_down);
-        on_b.along_max = v_add(on_b.along_max, b_up);
-        on_b.along_min = v_sub(on_b.along_min, b_down);
-        file_contacts(q, k, keep, separation, n_x, n_y, &on_a, &on_b, out);
+        const struct gap gap = {get(q, FOUND_SEPARATION, k),
+                                get(q, FOUND_X, k),
+                                get(q, FOUND_Y, k),
+                                v_set(1),
+                                vi_select(live, vi_load(q->record_a + k), ring_a.first),
+                                vi_select(live, vi_load(q->record_b + k), ring_b.first)};
+        const vf tolerance = v_mul(v_set(batch->tolerance), get(q, SIZE, k));
+        const vf loose = v_max(tolerance, v_mul(v_set(NOISE_OF_EDGES), get(q, FOUND_NOISE, k)));
+        file_loosely(batch->shapes, q, k, live, &gap, margin, loose, out);
     }
 }
 
