@@ -13,13 +13,18 @@
 
 enum { EDGES = 3 + NARC_ITERATIONS };
 
-/* Where a pair brings its triangle: fields that GJK is done with. */
-static const int corner_fields[6] = {AXIS_X, AXIS_Y, CORE, SLACK, DIRECTION_X, DIRECTION_Y};
+/* Pairs that collide, and for each a triangle of three vertices that holds the origin: x, y and the middle. */
+struct collisions {
+    struct queue pairs;
+    float corner[BLOCK][3][4];
+};
 
-/* The polygon of each lane: edges from p to q, counter-clockwise. The last one is for lanes that write none. */
+/* The polygon of each lane, vertices and edges between two of them, counter-clockwise; as many of the one as of the
+ * other. The last vertex is for lanes that write none. */
 struct polytope {
-    _Alignas(64) float edge[EDGES + 1][V_WIDTH][4];
+    _Alignas(64) float vertex[EDGES + 1][V_WIDTH][4];
     _Alignas(64) float distance[EDGES][V_WIDTH];
+    uint8_t from[EDGES][V_WIDTH], to[EDGES][V_WIDTH];
     int32_t count[V_WIDTH];
 };
 
@@ -27,57 +32,78 @@ struct polytope {
 struct expansion {
     vi slot;     /* of the nearest edge */
     vf distance; /* of that from the origin: the depth is at least that */
-    vf noise;    /* of the last support point */
-    struct gap best;
+    struct best best;
 };
 
-/* The rows of edges number `slot` of each lane. */
-INLINE void rows_of(vi slot, int32_t *out_row) {
-    vi_store(out_row, slot);
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        out_row[lane] = out_row[lane] * V_WIDTH + lane;
+/* The ends of edge number `slot` of each lane. */
+INLINE void get_edge(const struct polytope *p, vi slot, struct vertex out_ends[2]) {
+    int32_t edge[V_WIDTH], row[2][V_WIDTH];
+    vi_store(edge, slot);
+    for (int lane = 0; lane < V_WIDTH; lane++) {
+        row[0][lane] = p->from[edge[lane]][lane] * V_WIDTH + lane;
+        row[1][lane] = p->to[edge[lane]][lane] * V_WIDTH + lane;
+    }
+    for (int end = 0; end < 2; end++) {
+        vf field[4];
+        v_rows(p->vertex, sizeof p->vertex[0][0], row[end], field);
+        out_ends[end] = (struct vertex){field[0], field[1], field[2], field[3], v_set(0)};
+    }
 }
 
-INLINE void put_edge(struct polytope *p, vi slot, vf p_x, vf p_y, vf q_x, vf q_y) {
-    const vf row[4] = {p_x, p_y, q_x, q_y};
-    int32_t place[V_WIDTH];
-    rows_of(slot, place);
-    v_put_rows(p->edge, sizeof p->edge[0][0], place, row);
-}
-
-/* In the lanes `fresh`: the triangle that a pair brings. */
-INLINE void start_polytope(struct polytope *p, const struct queue *pair, vm fresh, struct expansion *e) {
-    const vf p_x = get(pair, corner_fields[0], 0), p_y = get(pair, corner_fields[1], 0);
-    const vf a_x = get(pair, corner_fields[2], 0), a_y = get(pair, corner_fields[3], 0);
-    const vf b_x = get(pair, corner_fields[4], 0), b_y = get(pair, corner_fields[5], 0);
-    const vm left = v_le(v_set(0), cross(v_sub(a_x, p_x), v_sub(a_y, p_y), v_sub(b_x, p_x), v_sub(b_y, p_y)));
-    const vf x[4] = {p_x, v_select(left, a_x, b_x), v_select(left, b_x, a_x), p_x};
-    const vf y[4] = {p_y, v_select(left, a_y, b_y), v_select(left, b_y, a_y), p_y};
+/* In the lanes that begin: the triangles of their pairs. */
+static void start_polytopes(struct polytope *p, const struct lanes *lanes, const struct collisions *q,
+                            struct expansion *e) {
+    const vm fresh = vm_and_not(vi_lt(vi_load(lanes->age), vi_set(1)), vi_lt(vi_load(lanes->age), vi_set(0)));
+    for (int lane = 0; lane < V_WIDTH; lane++) {
+        if (lanes->age[lane] != 0)
+            continue;
+        const float(*const corner)[4] = q->corner[lanes->from[lane]];
+        const bool left = (corner[1][0] - corner[0][0]) * (corner[2][1] - corner[0][1]) >=
+                          (corner[1][1] - corner[0][1]) * (corner[2][0] - corner[0][0]);
+        for (int k = 0; k < 3; k++) {
+            memcpy(p->vertex[k][lane], corner[left ? k : 2 - k], sizeof corner[k]);
+            p->from[k][lane] = (uint8_t)k;
+            p->to[k][lane] = (uint8_t)((k + 1) % 3);
+        }
+        p->count[lane] = 3;
+    }
     e->distance = v_select(fresh, v_set(INFINITY), e->distance);
     for (int k = 0; k < 3; k++) {
-        const vf distance = nearest_of(x[k], y[k], x[k + 1], y[k + 1]).distance;
+        struct vertex ends[2];
+        get_edge(p, vi_set(k), ends);
+        const vf distance = nearest_of(&ends[0], &ends[1]).distance;
         const vm nearer = vm_and(fresh, v_lt(distance, e->distance));
         v_store(p->distance[k], v_select(fresh, distance, v_load(p->distance[k])));
-        put_edge(p, vi_select(fresh, vi_set(k), vi_set(EDGES)), x[k], y[k], x[k + 1], y[k + 1]);
         e->slot = vi_select(nearer, vi_set(k), e->slot);
         e->distance = v_select(nearer, distance, e->distance);
     }
-    vi_store(p->count, vi_select(fresh, vi_set(3), vi_load(p->count)));
 }
 
 INLINE vm is_number(vi number, int k) { return vm_and_not(vi_lt(number, vi_set(k + 1)), vi_lt(number, vi_set(k))); }
 
-/* Splits edge `slot` of the lanes `splits` at w; finds the edge that is nearest to the origin in each lane, the first
- * of equals. Both in one pass over the distances, because a vector that is read after single lanes of it were written
- * is slow. */
-INLINE vi split_edge(struct polytope *p, vi slot, vm splits, const vf edge[4], vf w_x, vf w_y, vf *out_distance) {
+/* Splits edge `slot`, between `ends`, of the lanes `splits` at w; finds the edge that is nearest to the origin in each
+ * lane, the first of equals. Both in one pass over the distances, because a vector that is read after single lanes of
+ * it were written is slow. */
+INLINE vi split_edge(struct polytope *p, vi slot, vm splits, const struct vertex ends[2], const struct vertex *w,
+                     vf *out_distance) {
     const vi old_count = vi_load(p->count), spare = vi_set(EDGES);
     const vi changed = vi_select(splits, slot, spare), added = vi_select(splits, old_count, spare);
     const vi count = vi_select(splits, vi_add(old_count, vi_set(1)), old_count);
-    const vf before = nearest_of(edge[0], edge[1], w_x, w_y).distance;
-    const vf behind = nearest_of(w_x, w_y, edge[2], edge[3]).distance;
-    put_edge(p, changed, edge[0], edge[1], w_x, w_y);
-    put_edge(p, added, w_x, w_y, edge[2], edge[3]);
+    const vf before = nearest_of(&ends[0], w).distance, behind = nearest_of(w, &ends[1]).distance;
+    const vf row[4] = {w->x, w->y, w->middle_x, w->middle_y};
+    int32_t edge[V_WIDTH], vertex[V_WIDTH];
+    vi_store(edge, changed);
+    vi_store(vertex, added);
+    for (int lane = 0; lane < V_WIDTH; lane++) {
+        const int split = edge[lane], fresh = vertex[lane];
+        vertex[lane] = fresh * V_WIDTH + lane;
+        if (split == EDGES)
+            continue;
+        p->from[fresh][lane] = (uint8_t)fresh;
+        p->to[fresh][lane] = p->to[split][lane];
+        p->to[split][lane] = (uint8_t)fresh;
+    }
+    v_put_rows(p->vertex, sizeof p->vertex[0][0], vertex, row);
     vi_store(p->count, count);
     vf least = v_set(INFINITY);
     vi nearest = vi_set(0);
@@ -93,54 +119,53 @@ INLINE vi split_edge(struct polytope *p, vi slot, vm splits, const vf edge[4], v
     return nearest;
 }
 
-INLINE vm is_near(vf a_x, vf a_y, vf b_x, vf b_y, vf distance) {
-    return vm_and(v_le(v_abs(v_sub(a_x, b_x)), distance), v_le(v_abs(v_sub(a_y, b_y)), distance));
+INLINE vm is_near(const struct vertex *a, const struct vertex *b, vf distance) {
+    return vm_and(v_le(v_abs(v_sub(a->x, b->x)), distance), v_le(v_abs(v_sub(a->y, b->y)), distance));
 }
 
-/* One step in every lane: splits the nearest edge. `stuck`: bad reasons to end. */
+/* One step in every lane: the support point beyond the nearest edge ends the search or splits it. */
 INLINE struct verdict step_expansion(const narc_batch *batch, const struct lanes *lanes, struct polytope *p,
                                      struct expansion *e, float enough) {
     const vi age = vi_load(lanes->age);
-    const vm busy = vi_lt(vi_set(-1), age), fresh = vm_and(busy, vi_lt(age, vi_set(1)));
-    int32_t place[V_WIDTH];
-    vf edge[4];
-    if (vm_any(fresh))
-        start_polytope(p, &lanes->pair, fresh, e);
-    rows_of(e->slot, place);
-    v_rows(p->edge, sizeof p->edge[0][0], place, edge);
+    const vm busy = vi_lt(vi_set(-1), age), fresh = vi_lt(age, vi_set(1));
+    struct vertex ends[2];
+    get_edge(p, e->slot, ends);
     /* The outward normal is (d_y, -d_x); from A to B is the other way. */
-    const vf m_x = v_sub(edge[1], edge[3]), m_y = v_sub(edge[2], edge[0]);
-    const struct support w = find_support(batch->shapes, &lanes->pair, 0, m_x, m_y);
-    keep_best(&e->best, &w, fresh);
-    e->noise = w.noise;
-    const vm final =
-        vm_or(is_near(w.w_x, w.w_y, edge[0], edge[1], w.noise), is_near(w.w_x, w.w_y, edge[2], edge[3], w.noise));
-    e->slot = split_edge(p, e->slot, vm_and_not(busy, final), edge, w.w_x, w.w_y, &e->distance);
-
-    const vf left = v_sub(v_neg(e->best.separation), e->distance);
-    const vf tolerance = v_max(v_mul(v_set(batch->tolerance), get(&lanes->pair, SIZE, 0)), w.noise);
-    const vm known = vm_or(v_le(left, tolerance), v_le(v_set(enough), e->best.separation));
+    const vf m_x = v_sub(ends[0].y, ends[1].y), m_y = v_sub(ends[1].x, ends[0].x);
+    const struct support found = find_support(batch->shapes, &lanes->pair, 0, busy, m_x, m_y);
+    const struct vertex w = {found.w_x, found.w_y, found.middle_x, found.middle_y, v_set(0)};
+    const struct nearest at = nearest_of(&ends[0], &ends[1]);
+    const vf left = v_sub(v_neg(found.gap), e->distance);
+    const vf tolerance = v_max(v_mul(v_set(batch->tolerance), get(&lanes->pair, SIZE, 0)), found.noise);
+    const vm known = v_le(left, tolerance);
+    keep_best(&e->best, &found, at.middle_x, at.middle_y, vm_or(fresh, known));
+    const vm enough_known = vm_or(known, v_le(v_set(enough), e->best.separation));
+    const vm final = vm_or(is_near(&w, &ends[0], found.noise), is_near(&w, &ends[1], found.noise));
     const vm old = vm_and_not(busy, vi_lt(age, vi_set(batch->iterations - 1)));
     struct verdict verdict;
-    verdict.collides = vm_and(busy, vm_or(known, final));
+    verdict.collides = vm_and(busy, vm_or(enough_known, final));
     verdict.separate = vm_first(0);
     verdict.limit = vm_and_not(old, verdict.collides);
-    verdict.stuck = vm_and_not(verdict.collides, known);
+    verdict.stuck = vm_and_not(verdict.collides, enough_known);
+    e->slot = split_edge(p, e->slot, vm_and_not(busy, verdict.collides), ends, &w, &e->distance);
     return verdict;
 }
 
-/* The contacts of all pairs of a queue that GJK found to collide. */
-static void expand_all(const narc_batch *batch, size_t first, const struct queue *q, float margin,
+/* The contacts of all pairs that GJK found to collide. */
+static void expand_all(const narc_batch *batch, size_t first, const struct collisions *q, float margin,
                        struct queue *finished) {
     struct lanes lanes;
     struct polytope polytope;
     struct expansion e;
     memset(&e, 0, sizeof e);
     memset(polytope.count, 0, sizeof polytope.count);
+    memset(polytope.from, 0, 3 * sizeof polytope.from[0]); /* lanes that never begin look at edges, too */
+    memset(polytope.to, 0, 3 * sizeof polytope.to[0]);
     start_lanes(&lanes);
-    while (fill_lanes(&lanes, q)) {
+    while (fill_lanes(&lanes, &q->pairs)) {
         struct verdict verdict;
         vm done;
+        start_polytopes(&polytope, &lanes, q, &e);
         do {
             verdict = step_expansion(batch, &lanes, &polytope, &e, margin);
             done = vm_or(verdict.collides, verdict.limit);
@@ -148,8 +173,8 @@ static void expand_all(const narc_batch *batch, size_t first, const struct queue
         } while (!vm_any(done));
         note_outcome(batch, first, &lanes.pair, 0, verdict.limit, NARC_OUTCOME_LIMIT);
         note_outcome(batch, first, &lanes.pair, 0, verdict.stuck, NARC_OUTCOME_ROUNDING);
-        struct gap gap = e.best;
-        gap.separation = v_min(gap.separation, v_set(-FLT_MIN)); /* GJK decides whether, EPA how deep */
-        finish(&lanes, done, &gap, e.noise, finished);
+        struct best best = e.best;
+        best.separation = v_min(best.separation, v_set(-FLT_MIN)); /* GJK decides whether, EPA how deep */
+        finish(&lanes, done, &best, finished);
     }
 }

@@ -18,16 +18,15 @@
 
 /* The state of the search in each lane. */
 struct search {
-    vf m_x, m_y;                           /* where to look next */
-    vf p_x, p_y, q_x, q_y;                 /* the segment; a point at first */
-    vf distance;                           /* of the segment from the origin */
-    vf r_x, r_y;                           /* what lies on the first side of a segment through the origin */
-    vf third_x, third_y;                   /* when it is known that they collide: what makes a triangle of p and q */
-    vf p_turn, q_turn, r_turn, third_turn; /* the directions of the points' search, for hints */
-    vi as_near;                            /* is the segment as near as the one before, but no nearer? */
-    vi side;                               /* 0; 1 and 2: on which side of such a segment the search looks */
-    vf noise;                              /* of the last support point */
-    struct gap best;                       /* the largest gap of all directions */
+    vf m_x, m_y;            /* where to look next */
+    vf at_x, at_y;          /* the point between the bodies that goes with it */
+    struct vertex p, q;     /* the segment; a point at first */
+    vf distance;            /* of the segment from the origin */
+    struct vertex one_side; /* what lies on the first side of a segment through the origin */
+    struct vertex third;    /* when it is known that they collide: makes a triangle of p and q */
+    vi as_near;             /* is the segment as near as the one before, but no nearer? */
+    vi side;                /* 0; 1 and 2: on which side of such a segment the search looks */
+    struct best best;
 };
 
 /* ------------------------------------------------------------------------------------------------ hints */
@@ -62,8 +61,8 @@ INLINE vi hint_length(vi hint) {
 }
 
 static void leave_simplex(uint32_t *hints, const struct lanes *lanes, const struct search *s, vm collides, vm done) {
-    const vi triangle = vi_add(ten_bits(s->p_turn), vi_add(vi_shift_left(ten_bits(s->q_turn), 10),
-                                                           vi_shift_left(ten_bits(s->third_turn), 20)));
+    const vi triangle = vi_add(ten_bits(s->p.turn), vi_add(vi_shift_left(ten_bits(s->q.turn), 10),
+                                                           vi_shift_left(ten_bits(s->third.turn), 20)));
     const vf axis = v_min(v_mul(turn_of(s->best.n_x, s->best.n_y), v_set(0x1p28f)), v_set(0x1p30f - 64));
     const vi hint = vi_select(collides, vi_add(vi_shift_left(triangle, 2), vi_set(HINT_TRIANGLE)),
                               vi_add(vi_shift_left(vi_truncate(axis), 2), vi_set(HINT_AXIS)));
@@ -99,67 +98,64 @@ INLINE void choose_direction(const struct search *s, const struct lanes *lanes, 
     }
 }
 
+INLINE void aim(struct search *s, vm here, const struct nearest *at) {
+    s->m_x = v_select(here, at->m_x, s->m_x);
+    s->m_y = v_select(here, at->m_y, s->m_y);
+    s->at_x = v_select(here, at->middle_x, s->at_x);
+    s->at_y = v_select(here, at->middle_y, s->at_y);
+}
+
 /* Makes the side of the triangle pqw that is nearest to the origin the next segment, in the lanes `open`. Beside a long
  * edge the direction of a point may be off by much more than its distance: so a side is also taken that is as near, but
- * for rounding, if this step has raised the lower bound (`raised`) or the one before was nearer. Returns the lanes
+ * for `noise`, if this step has raised the lower bound (`raised`) or the one before was nearer. Returns the lanes
  * without such a side. */
-INLINE vm take_nearest(struct search *s, const struct support *w, vf w_turn, vm open, vm raised) {
-    const struct nearest by_p = nearest_of(s->p_x, s->p_y, w->w_x, w->w_y);
-    const struct nearest by_q = nearest_of(s->q_x, s->q_y, w->w_x, w->w_y);
+INLINE vm take_nearest(struct search *s, const struct vertex *w, vf noise, vm open, vm raised) {
+    const struct nearest by_p = nearest_of(&s->p, w), by_q = nearest_of(&s->q, w);
     const vm use_p = v_le(by_p.distance, by_q.distance);
     const vf distance = v_select(use_p, by_p.distance, by_q.distance);
     const vm closer = v_lt(distance, s->distance), kept = vm_or(vm_and(use_p, by_p.is_p), vm_and_not(by_q.is_p, use_p));
-    const vm another = vm_and_not(v_le(distance, v_add(s->distance, w->noise)), kept);
+    const vm another = vm_and_not(v_le(distance, v_add(s->distance, noise)), kept);
     const vm may = vm_or(raised, vi_lt(s->as_near, vi_set(1)));
     const vm nearer = vm_and(open, vm_or(closer, vm_and(another, may)));
-    s->as_near = vi_select(vm_and_not(nearer, closer), vi_set(1), vi_set(0));
     const vm at_w = vm_or(vm_and(use_p, by_p.is_q), vm_and_not(by_q.is_q, use_p));
-    const vf p_x = v_select(use_p, s->p_x, s->q_x), p_y = v_select(use_p, s->p_y, s->q_y);
-    const vf p_turn = v_select(use_p, s->p_turn, s->q_turn);
-    s->p_x = v_select(nearer, v_select(at_w, w->w_x, p_x), s->p_x);
-    s->p_y = v_select(nearer, v_select(at_w, w->w_y, p_y), s->p_y);
-    s->p_turn = v_select(nearer, v_select(at_w, w_turn, p_turn), s->p_turn);
-    s->q_x = v_select(nearer, w->w_x, s->q_x);
-    s->q_y = v_select(nearer, w->w_y, s->q_y);
-    s->q_turn = v_select(nearer, w_turn, s->q_turn);
+    const struct vertex other = select_vertex(use_p, &s->p, &s->q), p = select_vertex(at_w, w, &other);
+    s->as_near = vi_select(vm_and_not(nearer, closer), vi_set(1), vi_set(0));
+    s->p = select_vertex(nearer, &p, &s->p);
+    s->q = select_vertex(nearer, w, &s->q);
     s->distance = v_select(nearer, v_min(distance, s->distance), s->distance);
-    s->m_x = v_select(nearer, v_select(use_p, by_p.m_x, by_q.m_x), s->m_x);
-    s->m_y = v_select(nearer, v_select(use_p, by_p.m_y, by_q.m_y), s->m_y);
+    aim(s, vm_and(nearer, use_p), &by_p);
+    aim(s, vm_and_not(nearer, use_p), &by_q);
     return vm_and_not(open, nearer);
 }
 
 /* A first point, or the second one of a hint's triangle. */
-INLINE void take_point(struct search *s, const struct support *w, vf w_turn, vm first, vm second) {
-    const struct nearest between = nearest_of(s->p_x, s->p_y, w->w_x, w->w_y);
-    const vm either = vm_or(first, second);
-    s->p_x = v_select(first, w->w_x, s->p_x);
-    s->p_y = v_select(first, w->w_y, s->p_y);
-    s->p_turn = v_select(first, w_turn, s->p_turn);
-    s->q_x = v_select(either, w->w_x, s->q_x);
-    s->q_y = v_select(either, w->w_y, s->q_y);
-    s->q_turn = v_select(either, w_turn, s->q_turn);
-    const vf length = v_sqrt(dot(w->w_x, w->w_y, w->w_x, w->w_y));
-    s->distance = v_select(first, length, v_select(second, between.distance, s->distance));
-    s->m_x = v_select(first, w->w_x, v_select(second, between.m_x, s->m_x));
-    s->m_y = v_select(first, w->w_y, v_select(second, between.m_y, s->m_y));
+INLINE void take_point(struct search *s, const struct vertex *w, vm first, vm second) {
+    s->p = select_vertex(first, w, &s->p);
+    s->q = select_vertex(vm_or(first, second), w, &s->q);
     s->side = vi_select(first, vi_set(0), s->side);
+    const struct nearest between = nearest_of(&s->p, w); /* of a first point: that */
+    s->distance = v_select(vm_or(first, second), between.distance, s->distance);
+    aim(s, vm_or(first, second), &between);
 }
 
 /* A segment through the origin, but for rounding: looks on its one side, then on the other. Returns the lanes where the
  * difference ends there: the bodies touch. */
-INLINE vm take_side(struct search *s, const struct support *w, vf w_turn, vm through) {
+INLINE vm take_side(struct search *s, const struct vertex *w, const struct support *support, vm through) {
     const vi zero = vi_set(0), one = vi_set(1), two = vi_set(2);
-    const vf d_x = v_sub(s->q_x, s->p_x), d_y = v_sub(s->q_y, s->p_y), length2 = dot(d_x, d_y, d_x, d_y);
+    const vf d_x = v_sub(s->q.x, s->p.x), d_y = v_sub(s->q.y, s->p.y), length2 = dot(d_x, d_y, d_x, d_y);
     const vm looked = vi_lt(zero, s->side), first = vm_and(looked, vi_lt(s->side, two));
-    const vm ends = vm_and(looked, v_le(v_set(0), w->gap));
-    const vm is_point = vm_and(through, v_le(length2, v_mul(w->noise, w->noise)));
-    s->r_x = v_select(first, w->w_x, s->r_x);
-    s->r_y = v_select(first, w->w_y, s->r_y);
-    s->r_turn = v_select(first, w_turn, s->r_turn);
+    const vm ends = vm_and(looked, v_le(v_set(0), support->gap));
+    const vm is_point = vm_and(through, v_le(length2, v_mul(support->noise, support->noise)));
+    s->one_side = select_vertex(first, w, &s->one_side);
     s->m_x = v_select(first, d_y, v_select(through, v_neg(d_y), s->m_x));
     s->m_y = v_select(first, v_neg(d_x), v_select(through, d_x, s->m_y));
     s->side = vi_select(looked, vi_add(s->side, one), vi_select(through, one, zero));
     return vm_or(ends, is_point);
+}
+
+INLINE vm is_around(const struct vertex *p, const struct vertex *q, const struct vertex *w) {
+    const vf pq = cross(p->x, p->y, q->x, q->y), qw = cross(q->x, q->y, w->x, w->y), wp = cross(w->x, w->y, p->x, p->y);
+    return vm_or(all_positive(pq, qw, wp), all_positive(v_neg(pq), v_neg(qw), v_neg(wp)));
 }
 
 /* One step in every lane. `enough`: a separation of that much need not be known better. */
@@ -170,42 +166,48 @@ static inline struct verdict step_search(const narc_batch *batch, const struct l
     const vm busy = vi_lt(vi_set(-1), age), fresh = vi_lt(age, vi_set(1));
     vf m_x, m_y;
     choose_direction(s, lanes, hint, age, &m_x, &m_y);
-    const struct support w = find_support(batch->shapes, &lanes->pair, 0, m_x, m_y);
-    const vf w_turn = batch->hints ? turn_of(w.m_x, w.m_y) : zero;
-    const vm raised = v_lt(s->best.separation, w.gap);
-    keep_best(&s->best, &w, fresh);
-    s->noise = w.noise;
-    const vm apart = v_le(v_set(enough), s->best.separation);
+    const struct support found = find_support(batch->shapes, &lanes->pair, 0, busy, m_x, m_y);
+    const struct vertex w = {found.w_x, found.w_y, found.middle_x, found.middle_y,
+                             batch->hints ? turn_of(found.m_x, found.m_y) : zero};
 
     /* What the step was for: a first point, a hint's second one, a side of a segment through the origin, or the rule.
      * */
     const vm seeded = vi_lt(age, seeds), second = vm_and_not(vm_and(seeded, vi_lt(age, vi_set(2))), fresh);
     const vm looked = vm_and_not(vi_lt(vi_set(0), s->side), fresh);
     const vm rule = vm_and_not(busy, vm_or(looked, vm_or(fresh, second)));
-    const vf pq = cross(s->p_x, s->p_y, s->q_x, s->q_y), qw = cross(s->q_x, s->q_y, w.w_x, w.w_y);
-    const vf wp = cross(w.w_x, w.w_y, s->p_x, s->p_y);
-    const vm around = vm_or(all_positive(pq, qw, wp), all_positive(v_neg(pq), v_neg(qw), v_neg(wp)));
-    const vm inside = vm_and(vm_and(rule, around), v_lt(s->best.separation, zero));
+
+    /* Known is the separation where the gap along m is as large as the distance of the point that m was the direction
+     * of: not where m was the axis or a hint's. */
+    const vf tolerance = v_max(v_mul(v_set(batch->tolerance), get(&lanes->pair, SIZE, 0)), found.noise);
+    const vm reached = vm_and(v_le(zero, found.gap), v_le(v_sub(s->distance, found.gap), tolerance));
+    const vm known = vm_and_not(reached, vm_or(fresh, seeded));
+    const vm raised = v_lt(s->best.separation, found.gap);
+    keep_best(&s->best, &found, s->at_x, s->at_y, vm_or(fresh, known));
+    const vm apart = v_le(v_set(enough), s->best.separation);
+
+    const vm inside = vm_and(vm_and(rule, is_around(&s->p, &s->q, &w)), v_lt(s->best.separation, zero));
     const vm both_sides = vm_and(looked, vi_lt(vi_set(1), s->side));
-    s->third_x = v_select(both_sides, s->r_x, w.w_x);
-    s->third_y = v_select(both_sides, s->r_y, w.w_y);
-    s->third_turn = v_select(both_sides, s->r_turn, w_turn);
+    s->third = select_vertex(both_sides, &s->one_side, &w);
+    take_point(s, &w, fresh, second);
+    const vm stayed = vm_and_not(take_nearest(s, &w, found.noise, vm_and_not(rule, inside), raised), seeded);
+    const vm through = vm_and_not(vm_and(busy, v_le(s->distance, found.noise)), vm_or(looked, vm_or(second, inside)));
+    const vm touches = take_side(s, &w, &found, through);
 
-    take_point(s, &w, w_turn, fresh, second);
-    const vm stayed = vm_and_not(take_nearest(s, &w, w_turn, vm_and_not(rule, inside), raised), seeded);
-    const vm through = vm_and_not(vm_and(busy, v_le(s->distance, w.noise)), vm_or(looked, vm_or(second, inside)));
-    const vm touches = take_side(s, &w, w_turn, through);
-
+    /* Where the best direction is an older one, the last segment tells the point. */
+    s->best.along = v_select(known, s->best.along, cross(s->best.n_x, s->best.n_y, s->at_x, s->at_y));
     const vf left = v_sub(s->distance, v_max(s->best.separation, zero));
-    const vf tolerance = v_max(v_mul(v_set(batch->tolerance), get(&lanes->pair, SIZE, 0)), w.noise);
-    const vm known = vm_and(v_le(zero, s->best.separation), v_le(left, tolerance));
-    const vm ends = vm_and(busy, vm_or(vm_or(apart, known), vm_or(touches, stayed)));
+    const vm positive = v_le(zero, s->best.separation);
+    const vm doubtful = v_lt(s->best.separation, v_mul(v_set(-4), found.noise)); /* that they only touch */
+    const vm meets_none = vm_and(positive, v_le(s->distance, found.noise));
+    const vm well = vm_or(vm_or(apart, known), vm_or(meets_none, vm_and_not(touches, doubtful)));
+    const vm ends = vm_and(busy, vm_or(well, vm_or(touches, stayed)));
     const vm old = vm_and_not(busy, vi_lt(age, vi_set(batch->iterations - 1)));
     struct verdict verdict;
-    verdict.collides = vm_and_not(vm_or(inside, both_sides), vm_or(apart, touches));
+    verdict.collides = vm_and_not(vm_or(inside, both_sides), well);
     verdict.separate = vm_and_not(ends, verdict.collides);
     verdict.limit = vm_and_not(old, vm_or(ends, verdict.collides));
-    verdict.stuck = vm_and_not(vm_and_not(verdict.separate, vm_or(vm_or(apart, known), touches)), v_le(left, w.noise));
+    const vm close = vm_and_not(v_le(left, v_select(positive, tolerance, found.noise)), doubtful);
+    verdict.stuck = vm_and_not(vm_and_not(verdict.separate, well), close);
     return verdict;
 }
 
@@ -233,26 +235,28 @@ static void begin_again(struct lanes *lanes, int32_t *hint, struct verdict *verd
 }
 
 /* Passes the pairs that collide on to EPA, each with the triangle that holds the origin. */
-static void pass_on(const struct lanes *lanes, const struct search *s, vm collides, struct queue *to) {
-    float corner[6][V_WIDTH];
-    v_store(corner[0], s->p_x);
-    v_store(corner[1], s->p_y);
-    v_store(corner[2], s->q_x);
-    v_store(corner[3], s->q_y);
-    v_store(corner[4], s->third_x);
-    v_store(corner[5], s->third_y);
+static void pass_on(const struct lanes *lanes, const struct search *s, vm collides, struct collisions *to) {
+    const struct vertex *const corners[] = {&s->p, &s->q, &s->third};
+    float corner[3][4][V_WIDTH];
+    for (int c = 0; c < 3; c++) {
+        v_store(corner[c][0], corners[c]->x);
+        v_store(corner[c][1], corners[c]->y);
+        v_store(corner[c][2], corners[c]->middle_x);
+        v_store(corner[c][3], corners[c]->middle_y);
+    }
     for (uint32_t bits = vm_bits(collides); bits; bits &= bits - 1) {
-        const int lane = __builtin_ctz(bits), k = to->count++;
-        copy_item(&lanes->pair, lane, to, k);
-        for (int c = 0; c < 6; c++)
-            to->item[corner_fields[c]][k] = corner[c][lane];
+        const int lane = __builtin_ctz(bits), k = to->pairs.count++;
+        copy_item(&lanes->pair, lane, &to->pairs, k);
+        for (int c = 0; c < 3; c++)
+            for (int f = 0; f < 4; f++)
+                to->corner[k][c][f] = corner[c][f][lane];
     }
 }
 
 /* Searches with all pairs of a queue. For overlaps, sets their bits. For contacts, those that are apart go to
  * `finished`, and those that collide to `colliding`. */
 INLINE void search_all(const narc_batch *batch, size_t first, const struct queue *q, float enough, uint64_t *out_bits,
-                       struct queue *colliding, struct queue *finished) {
+                       struct collisions *colliding, struct queue *finished) {
     struct lanes lanes;
     struct search s;
     int32_t hint[V_WIDTH] = {0};
@@ -275,9 +279,9 @@ INLINE void search_all(const narc_batch *batch, size_t first, const struct queue
             mark(&lanes.pair, 0, verdict.collides, out_bits);
             continue;
         }
-        struct gap gap = s.best;
-        gap.separation = v_max(gap.separation, v_set(0));
-        finish(&lanes, vm_or(verdict.separate, verdict.limit), &gap, s.noise, finished);
+        struct best best = s.best;
+        best.separation = v_max(best.separation, v_set(0));
+        finish(&lanes, vm_or(verdict.separate, verdict.limit), &best, finished);
         pass_on(&lanes, &s, verdict.collides, colliding);
     }
 }
@@ -287,12 +291,13 @@ static void mark_gjk(const narc_batch *batch, size_t first, struct queue *q, uin
 }
 
 static void find_gjk(const narc_batch *batch, size_t first, struct queue *q, float margin, struct results *out) {
-    struct queue colliding, finished;
-    colliding.count = finished.count = 0;
+    struct collisions colliding;
+    struct queue finished;
+    colliding.pairs.count = finished.count = 0;
     search_all(batch, first, q, margin, NULL, &colliding, &finished);
     expand_all(batch, first, &colliding, margin, &finished);
     pad(&finished);
-    file_finished(batch, &finished, margin, out);
+    file_finished(&finished, margin, out);
 }
 
 static void overlap_gjk(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {

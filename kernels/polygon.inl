@@ -19,7 +19,7 @@ INLINE vf gap_of_edge(const struct arc_lists *own, const struct arc_lists *other
     return v_sub(least, dot(v_load(own->x[i]), v_load(own->y[i]), n_x, n_y));
 }
 
-/* The largest gap of the pairs k ... of a queue, or one that is at least `enough`; the arcs are not set. */
+/* The largest gap of the pairs k ... of a queue, or one that is at least `enough`; its arcs are not looked for. */
 static struct gap polygon_gap(const narc_shapes *shapes, const struct queue *q, int k, vm live, float enough,
                               struct arc_lists *a, struct arc_lists *b) {
     struct gap best = {v_set(-INFINITY), v_set(1), v_set(0), v_set(1), vi_set(0), vi_set(0)};
@@ -41,6 +41,19 @@ static struct gap polygon_gap(const narc_shapes *shapes, const struct queue *q, 
     return best;
 }
 
+/* Of two edges that are parallel but for rounding, the support vertex of one may be its far end, beside the other. Then
+ * they touch at the end of the longer stretch. */
+INLINE void move_together(struct touch *a, struct touch *b) {
+    const vm a_longer = v_lt(v_sub(b->along_max, b->along_min), v_sub(a->along_max, a->along_min));
+    const vm b_above = v_lt(a->along_max, b->along_min), a_above = v_lt(b->along_max, a->along_min);
+    const vf low = v_select(a_longer, a->along_max, b->along_min),
+             high = v_select(a_longer, a->along_min, b->along_max);
+    a->along_max = v_select(b_above, low, a->along_max);
+    b->along_min = v_select(b_above, low, b->along_min);
+    a->along_min = v_select(a_above, high, a->along_min);
+    b->along_max = v_select(a_above, high, b->along_max);
+}
+
 static void mark_polygons(const narc_batch *batch, size_t first, struct queue *q, uint64_t *out_bits) {
     struct arc_lists a, b;
     (void)first;
@@ -52,18 +65,21 @@ static void mark_polygons(const narc_batch *batch, size_t first, struct queue *q
 }
 
 static void find_polygons(const narc_batch *batch, size_t first, struct queue *q, float margin, struct results *out) {
+    const narc_record *records = batch->shapes->records;
     struct arc_lists a, b;
     (void)first;
     for (int k = 0; k < q->count; k += V_WIDTH) {
         const vm live = vm_first(q->count - k);
-        struct gap gap = polygon_gap(batch->shapes, q, k, live, margin, &a, &b);
-        /* The cones say which vertices lie on the support lines; of edges that are parallel but for rounding either
-         * end may, hence file_loosely(). */
-        const struct support support = find_support(batch->shapes, q, k, gap.n_x, gap.n_y);
-        gap.record_a = support.record_a;
-        gap.record_b = support.record_b;
-        const vf loose = v_mul(v_set(NOISE_OF_EDGES), support.noise);
-        file_loosely(batch->shapes, q, k, live, &gap, margin, loose, out);
+        const struct gap gap = polygon_gap(batch->shapes, q, k, live, margin, &a, &b);
+        const vm keep = vm_and(live, closer_than(gap.separation, margin));
+        if (!vm_any(keep))
+            continue;
+        const struct support s = find_support(batch->shapes, q, k, live, gap.n_x, gap.n_y);
+        const struct pose pose = get_pose(q, k);
+        struct touch on_a = touch_of(records, a.ring, s.record_a, &pose, gap.n_x, gap.n_y, false);
+        struct touch on_b = touch_of(records, b.ring, s.record_b, &pose, gap.n_x, gap.n_y, true);
+        move_together(&on_a, &on_b);
+        file_contacts(q, k, keep, gap.separation, gap.n_x, gap.n_y, &on_a, &on_b, out);
     }
 }
 

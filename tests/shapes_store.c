@@ -67,6 +67,51 @@ static void keeps_many_shapes(void **state) {
     free(kinds);
 }
 
+static double height_of(const struct shape *shape, double x, double y) {
+    narc_point p;
+    assert_true(narc_find_support(shape->arcs, shape->count, x, y, &p, NULL));
+    return p.x * x + p.y * y;
+}
+
+/* Half the sides of the box whose first side lies along a unit vector. */
+static void find_half_sides(const struct shape *shape, double x, double y, double *out_half_x, double *out_half_y) {
+    *out_half_x = (height_of(shape, x, y) + height_of(shape, -x, -y)) / 2;
+    *out_half_y = (height_of(shape, -y, x) + height_of(shape, y, -x)) / 2;
+}
+
+/* The box behind the arcs: along a junction's normal, of a polygon an edge's; none along another junction's is smaller;
+ * it holds the shape with the room that is promised, but for the rounding of its numbers, and hardly more. */
+static void expect_box(const struct shape *shape, const narc_head *head, const narc_record *arcs, double extent) {
+    const narc_box *box = &arcs[head->count].box;
+    const double x = (double)box->axis_x, y = (double)box->axis_y;
+    const double least = (NARC_HEAD_SLACK - 8 * ulp) * extent, most = (NARC_HEAD_SLACK + 8 * ulp) * extent;
+    double half_x, half_y, area = INFINITY, least_area = INFINITY;
+    narc_mass mass;
+    assert_true(narc_compute_mass(shape->arcs, shape->count, &mass));
+    expect_near((double)box->centroid_x, mass.centroid_x, ulp * extent, "centroid x");
+    expect_near((double)box->centroid_y, mass.centroid_y, ulp * extent, "centroid y");
+    for (size_t i = 0; i < head->count; i++) {
+        const double start = shape->count == 1 ? shape->arcs[0].start + pi * (double)i
+                                               : shape->arcs[(i + head->first) % head->count].start;
+        find_half_sides(shape, cos(start), sin(start), &half_x, &half_y);
+        if (box->axis_x == arcs[i].arc.start_x && box->axis_y == arcs[i].arc.start_y) {
+            area = half_x * half_y;
+        }
+        least_area = fmin(least_area, half_x * half_y);
+    }
+    /* That much is rounding in double precision; infinite: along no junction's normal. */
+    assert_true(area <= least_area * (1 + 1e-9));
+    const double from_x = (double)box->center_x * x + (double)box->center_y * y,
+                 from_y = (double)box->center_y * x - (double)box->center_x * y;
+    const double room[4] = {(double)box->half_x - (height_of(shape, x, y) - from_x),
+                            (double)box->half_x - (height_of(shape, -x, -y) + from_x),
+                            (double)box->half_y - (height_of(shape, -y, x) - from_y),
+                            (double)box->half_y - (height_of(shape, y, -x) + from_y)};
+    for (int k = 0; k < 4; k++) {
+        assert_true(room[k] >= least && room[k] <= most);
+    }
+}
+
 /* The layout that the kernels rely on. */
 static void lays_out_blocks(void **state) {
     (void)state;
@@ -83,7 +128,7 @@ static void lays_out_blocks(void **state) {
         assert_int_equal((uintptr_t)shapes->records % NARC_CACHE_LINE, 0);
         assert_int_equal(head.count, count);
         assert_true(head.first < count);
-        assert_true((size_t)(arcs - shapes->records) + count <= shapes->record_count);
+        assert_true((size_t)(arcs - shapes->records) + count + 1 <= shapes->record_count);
         assert_ptr_equal(arcs, block + turn_records);
         for (size_t i = 0; i < count; i++) {
             const narc_stored_arc *arc = &arcs[i].arc, *next = &arcs[(i + 1) % count].arc;
@@ -107,6 +152,7 @@ static void lays_out_blocks(void **state) {
         }
         assert_true(head.reach == 255 || head.reach * (double)head.bound_radius >= extent);
         assert_true((head.reach - 1) * (double)head.bound_radius <= extent * 1.001);
+        expect_box(&shape, &head, arcs, extent);
     }
     narc_destroy_shapes(shapes);
 }
