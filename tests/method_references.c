@@ -87,7 +87,7 @@ static struct polygon make_polygon(const struct reference_body *body, const stru
     for (size_t i = 0; i < body->count; i++) {
         assert_true(body->arcs[i].radius == 0);
         const struct vector v = turn(body, body->arcs[i].center_x, body->arcs[i].center_y);
-        out.vertex[i] = (struct vector){v.x + body->x - origin->x, v.y + body->y - origin->y};
+        out.vertex[i] = (struct vector){v.x + (body->x - origin->x), v.y + (body->y - origin->y)};
     }
     return out;
 }

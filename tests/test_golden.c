@@ -18,7 +18,7 @@
 /* One number for both precisions: the double positions are the single ones, 2^30 away, and as exact. */
 static const uint64_t golden_answers = 0x9467dc252df3f63fu;
 /* Those of the other methods, in their order. */
-static const uint64_t golden_methods[] = {0xeaebcc6c1f67ac61u, 0x469709209b9d0885u, 0x5c31f2d61ce197abu,
+static const uint64_t golden_methods[] = {0xf375815933dd3045u, 0xde05f3d86d13b145u, 0xb72adc1892a6c4b6u,
                                           0x656376e9cda0e835u, 0xcee7633dc589d41du, 0xb137543756f0dd25u};
 #ifdef NARC_TEST_POSES
 /* Of SLEEF 3.5.1. */
