@@ -51,19 +51,21 @@ typedef enum narc_method {
 
     /* Gilbert, Johnson and Keerthi's algorithm on support functions (the paper's Algorithm 4), for any two shapes:
      * boolean for overlaps; distance and closest points for contacts, and where bodies collide the expanding polytope
-     * algorithm (EPA) after it for depth, normal and point. Ends when the separation is known within `tolerance`; the
-     * separation told is the gap along the normal told, never more than the exact one. The normal of curved shapes is
-     * within about the root of the tolerance, in radians. The closest points, half the separation from the contact
-     * point along the normal, lie within the tolerance of both outlines.
+     * algorithm (EPA, van den Bergen 2001) after it for depth, normal and point. Ends when the separation is known
+     * within `tolerance`; the separation told is the gap along the normal told, never more than the exact one. The
+     * normal of curved shapes is within about the root of the tolerance, in radians. The closest points, half the
+     * separation from the contact point along the normal, lie within the tolerance of both outlines.
      *   Pairs within some roundings of touching can go either way. Where `iterations` run out (NARC_OUTCOME_LIMIT) the
      *   depth may be too large: EPA needs many for shapes that are round and in one place. If they run out, or rounding
      *   ends the search, before a gap is found or a collision is known, the answer is "not colliding", separation 0. */
     NARC_METHOD_GJK = 3,
 
-    /* Do the shapes' bounding circles, axis-aligned boxes, or oriented boxes overlap? As filters: they never say no
-     * where the shapes collide. The oriented box is the smallest of those along a junction's normal; the axis-aligned
-     * one is the box around that one as the body is turned, in world axes. Circles and boxes have room for rounding, a
-     * few millionths of their size. Overlaps only. */
+    /* Do the shapes' bounding circles, axis-aligned boxes, or oriented boxes overlap (the paper's figure 2; boxes by
+     * their separating axes, Gottschalk, Lin and Manocha 1996)? As filters: they never say no where the shapes collide.
+     * The oriented box is the smallest of those along a junction's normal; the axis-aligned one is the box around that
+     * one as the body is turned, in world axes. It is wider than the shape's own, and only worth its price where shapes
+     * are long and mostly lie along the axes. Circles and boxes have room for rounding, a few millionths of their size.
+     * Overlaps only. */
     NARC_METHOD_CIRCLE = 4,
     NARC_METHOD_AABB = 5,
     NARC_METHOD_OBB = 6
@@ -73,14 +75,16 @@ typedef enum narc_method {
 NARC_API const char *narc_method_name(narc_method method);
 
 #define NARC_DEFAULT_TOLERANCE 1e-4f
-#define NARC_MAX_ITERATIONS    128
 
 typedef struct narc_query {
     narc_method method;
-    /* gjk: the largest error of a separation, relative to the sum of both bounding radii; for EPA the paper's
-     * termination threshold. 0: NARC_DEFAULT_TOLERANCE. Rounding sets the limit below about 4e-6. */
+    /* gjk: the largest error of a separation, relative to the sum of both bounding radii, but for rounding, which is up
+     * to 2 * NARC_ERROR_BOUND * (D + E_a + E_b) (narc.h); for EPA the paper's termination threshold. 0:
+     * NARC_DEFAULT_TOLERANCE. */
     float tolerance;
-    unsigned iterations; /* gjk: most support points of each phase; 0, or more than that: NARC_MAX_ITERATIONS */
+    /* gjk: most support points of each phase, GJK and EPA; 0, or more than that: NARC_MAX_ITERATIONS. A search that a
+     * hint has led astray begins again without it. */
+    unsigned iterations;
     /* One value for each pair, in and out, or NULL; zeros at first. sat: see narc_find_contacts_hinted() (contacts
      * only). gjk: last call's simplex, to start from (a warm start); answers then differ from a cold start's, within
      * the tolerance. Any value is safe. Other methods leave them alone. A hint belongs to one method. */
@@ -98,7 +102,8 @@ NARC_API narc_status narc_query_overlaps(const narc_shapes *shapes, const narc_b
 /* narc_find_contacts() by a method of choice: the contacts of all pairs whose separation, as the method finds it, is
  * less than `margin`. The arcs are those that the method ended at. Further errors as narc_query_overlaps(), and
  * NARC_ERROR_ARGUMENT for a method that answers overlaps only. (For a sub-range, move the bases of the pairs' columns.)
- * With margin 0 and any one method, a pair is reported exactly if its bit there is set. */
+ * With margin 0, a pair is reported exactly if narc_query_overlaps() by the same query sets its bit; with hints, if
+ * both start from the same. */
 NARC_API narc_status narc_query_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                          const narc_query *query, float margin, unsigned threads,
                                          const narc_contacts *out_contacts, size_t *out_count, narc_error *error);

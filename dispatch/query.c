@@ -15,8 +15,6 @@ struct kernels {
     narc_contact_kernel *contact; /* NULL: it has none */
 };
 
-_Static_assert(NARC_MAX_ITERATIONS == NARC_ITERATIONS, "the kernels know another limit");
-
 enum { METHOD_COUNT = NARC_METHOD_OBB + 1 };
 
 static const char *const method_names[METHOD_COUNT] = {"sat",    "sat-first", "polygon-sat", "gjk",
@@ -41,6 +39,8 @@ const char *narc_method_name(narc_method method) {
 
 /* Are all shapes of all pairs polygons? */
 static narc_status check_polygons(const narc_batch *batch, narc_error *error) {
+    if (batch->shapes->polygon_count == batch->shapes->count)
+        return NARC_OK;
     const narc_column columns[2] = {batch->pairs->a, batch->pairs->b};
     for (size_t pair = 0; pair < batch->pairs->count; pair++) {
         for (int k = 0; k < 2; k++) {

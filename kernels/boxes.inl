@@ -36,10 +36,14 @@ struct boxes {
     struct box a, b;
 };
 
-INLINE struct boxes load_boxes(const narc_shapes *shapes, const struct queue *q, int k) {
-    const struct pose p = get_pose(q, k);
-    struct boxes both = {load_box(shapes->records, get_ring(q, k, BLOCK_A, BYTES_A), p.scale_a),
-                         load_box(shapes->records, get_ring(q, k, BLOCK_B, BYTES_B), p.scale_b)};
+INLINE struct ring item_ring(vf block, vf bytes) {
+    return (struct ring){first_record(vi_bits(block), vi_bits(bytes)), head_count(vi_bits(bytes))};
+}
+
+INLINE struct boxes load_boxes(const narc_shapes *shapes, const vf item[FIELDS]) {
+    const struct pose p = {item[T_X], item[T_Y], item[Q_C], item[Q_S], item[SCALE_B], item[SCALE_A]};
+    struct boxes both = {load_box(shapes->records, item_ring(item[BLOCK_A], item[BYTES_A]), p.scale_a),
+                         load_box(shapes->records, item_ring(item[BLOCK_B], item[BYTES_B]), p.scale_b)};
     turn_by(p.q_c, p.q_s, &both.b.x, &both.b.y);
     turn_by(p.q_c, p.q_s, &both.b.axis_x, &both.b.axis_y);
     turn_by(p.q_c, p.q_s, &both.b.centroid_x, &both.b.centroid_y);
@@ -61,39 +65,36 @@ INLINE vm apart_along(const struct boxes *both, vf x, vf y) {
     return v_lt(reach, v_abs(dot(v_sub(both->b.x, both->a.x), v_sub(both->b.y, both->a.y), x, y)));
 }
 
-static void mark_obbs(const narc_batch *batch, size_t first, struct queue *q, uint64_t *out_bits) {
-    (void)first;
-    for (int k = 0; k < q->count; k += V_WIDTH) {
-        const struct boxes both = load_boxes(batch->shapes, q, k);
-        const vm apart_a = vm_or(apart_along(&both, both.a.axis_x, both.a.axis_y),
-                                 apart_along(&both, v_neg(both.a.axis_y), both.a.axis_x));
-        const vm apart_b = vm_or(apart_along(&both, both.b.axis_x, both.b.axis_y),
-                                 apart_along(&both, v_neg(both.b.axis_y), both.b.axis_x));
-        mark(q, k, vm_and_not(vm_first(q->count - k), vm_or(apart_a, apart_b)), out_bits);
-    }
+INLINE vm obbs_apart(const narc_shapes *shapes, const struct filter *circles, const vf item[FIELDS]) {
+    (void)circles;
+    const struct boxes both = load_boxes(shapes, item);
+    const vm along_a = vm_or(apart_along(&both, both.a.axis_x, both.a.axis_y),
+                             apart_along(&both, v_neg(both.a.axis_y), both.a.axis_x));
+    const vm along_b = vm_or(apart_along(&both, both.b.axis_x, both.b.axis_y),
+                             apart_along(&both, v_neg(both.b.axis_y), both.b.axis_x));
+    return vm_or(along_a, along_b);
 }
 
 /* The world's x axis in A's frame is (c, -s), its y axis (s, c). */
-static void mark_aabbs(const narc_batch *batch, size_t first, struct queue *q, uint64_t *out_bits) {
-    (void)first;
-    for (int k = 0; k < q->count; k += V_WIDTH) {
-        const vf c = get(q, COSINE_A, k), s = get(q, SINE_A, k);
-        const struct boxes both = load_boxes(batch->shapes, q, k);
-        const vm apart = vm_or(apart_along(&both, c, v_neg(s)), apart_along(&both, s, c));
-        mark(q, k, vm_and_not(vm_first(q->count - k), apart), out_bits);
-    }
+INLINE vm aabbs_apart(const narc_shapes *shapes, const struct filter *circles, const vf item[FIELDS]) {
+    (void)circles;
+    const vf c = item[COSINE_A], s = item[SINE_A];
+    const struct boxes both = load_boxes(shapes, item);
+    return vm_or(apart_along(&both, c, v_neg(s)), apart_along(&both, s, c));
 }
 
-static void overlap_aabb(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
-    overlap_by(mark_aabbs, batch, first, count, out_bits);
+/* Circles are what all kernels begin with. */
+INLINE vm circles_apart(const narc_shapes *shapes, const struct filter *circles, const vf item[FIELDS]) {
+    (void)shapes;
+    (void)item;
+    return circles->apart;
 }
 
-static void overlap_obb(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
-    overlap_by(mark_obbs, batch, first, count, out_bits);
-}
+/* Are the pairs of a vector apart, in each lane? */
+typedef vm apart_test(const narc_shapes *shapes, const struct filter *circles, const vf item[FIELDS]);
 
-/* The first filter of all kernels, alone. */
-static void overlap_circle(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
+/* A filter kernel: sets the bits of all pairs but those that are apart. */
+INLINE void filter_by(apart_test *apart, const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
     const bool rows = poses_are_rows(batch->bodies);
     struct pair_indices indices;
     memset(out_bits, 0, (count + 63) / 64 * sizeof *out_bits);
@@ -104,7 +105,20 @@ static void overlap_circle(const narc_batch *batch, size_t first, size_t count, 
             vf item[FIELDS];
             const struct filter f = load_pairs(batch, &indices, k, n, rows, 0, 0, item);
             const size_t pair = block + (size_t)k;
-            out_bits[pair / 64] |= (uint64_t)vm_bits(vm_and_not(f.valid, f.apart)) << pair % 64;
+            const vm passes = vm_and_not(f.valid, apart(batch->shapes, &f, item));
+            out_bits[pair / 64] |= (uint64_t)vm_bits(passes) << pair % 64;
         }
     }
+}
+
+static void overlap_circle(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
+    filter_by(circles_apart, batch, first, count, out_bits);
+}
+
+static void overlap_aabb(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
+    filter_by(aabbs_apart, batch, first, count, out_bits);
+}
+
+static void overlap_obb(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
+    filter_by(obbs_apart, batch, first, count, out_bits);
 }

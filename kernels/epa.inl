@@ -11,7 +11,8 @@
  * Edges lie in no order; what each needs is its distance.
  */
 
-enum { EDGES = 3 + NARC_ITERATIONS };
+enum { EDGES = 3 + NARC_MAX_ITERATIONS };
+_Static_assert(EDGES <= UINT8_MAX, "the numbers of vertices are bytes");
 
 /* Pairs that collide, and for each a triangle of three vertices that holds the origin: x, y and the middle. */
 struct collisions {
@@ -55,7 +56,7 @@ static void start_polytopes(struct polytope *p, const struct lanes *lanes, const
                             struct expansion *e) {
     const vm fresh = vm_and_not(vi_lt(vi_load(lanes->age), vi_set(1)), vi_lt(vi_load(lanes->age), vi_set(0)));
     for (int lane = 0; lane < V_WIDTH; lane++) {
-        if (lanes->age[lane] != 0)
+        if (!lanes->begins[lane])
             continue;
         const float(*const corner)[4] = q->corner[lanes->from[lane]];
         const bool left = (corner[1][0] - corner[0][0]) * (corner[2][1] - corner[0][1]) >=
@@ -123,9 +124,15 @@ INLINE vm is_near(const struct vertex *a, const struct vertex *b, vf distance) {
     return vm_and(v_le(v_abs(v_sub(a->x, b->x)), distance), v_le(v_abs(v_sub(a->y, b->y)), distance));
 }
 
+/* The lanes whose search has ended, those of them where rounding left no way on, and those that have had enough steps.
+ * */
+struct ending {
+    vm done, stuck, limit;
+};
+
 /* One step in every lane: the support point beyond the nearest edge ends the search or splits it. */
-INLINE struct verdict step_expansion(const narc_batch *batch, const struct lanes *lanes, struct polytope *p,
-                                     struct expansion *e, float enough) {
+INLINE struct ending step_expansion(const narc_batch *batch, const struct lanes *lanes, struct polytope *p,
+                                    struct expansion *e, float enough) {
     const vi age = vi_load(lanes->age);
     const vm busy = vi_lt(vi_set(-1), age), fresh = vi_lt(age, vi_set(1));
     struct vertex ends[2];
@@ -142,13 +149,9 @@ INLINE struct verdict step_expansion(const narc_batch *batch, const struct lanes
     const vm enough_known = vm_or(known, v_le(v_set(enough), e->best.separation));
     const vm final = vm_or(is_near(&w, &ends[0], found.noise), is_near(&w, &ends[1], found.noise));
     const vm old = vm_and_not(busy, vi_lt(age, vi_set(batch->iterations - 1)));
-    struct verdict verdict;
-    verdict.collides = vm_and(busy, vm_or(enough_known, final));
-    verdict.separate = vm_first(0);
-    verdict.limit = vm_and_not(old, verdict.collides);
-    verdict.stuck = vm_and_not(verdict.collides, enough_known);
-    e->slot = split_edge(p, e->slot, vm_and_not(busy, verdict.collides), ends, &w, &e->distance);
-    return verdict;
+    const vm done = vm_and(busy, vm_or(enough_known, final));
+    e->slot = split_edge(p, e->slot, vm_and_not(busy, done), ends, &w, &e->distance);
+    return (struct ending){done, vm_and_not(done, enough_known), vm_and_not(old, done)};
 }
 
 /* The contacts of all pairs that GJK found to collide. */
@@ -163,16 +166,16 @@ static void expand_all(const narc_batch *batch, size_t first, const struct colli
     memset(polytope.to, 0, 3 * sizeof polytope.to[0]);
     start_lanes(&lanes);
     while (fill_lanes(&lanes, &q->pairs)) {
-        struct verdict verdict;
+        struct ending ending;
         vm done;
         start_polytopes(&polytope, &lanes, q, &e);
         do {
-            verdict = step_expansion(batch, &lanes, &polytope, &e, margin);
-            done = vm_or(verdict.collides, verdict.limit);
+            ending = step_expansion(batch, &lanes, &polytope, &e, margin);
+            done = vm_or(ending.done, ending.limit);
             end_step(&lanes, done);
         } while (!vm_any(done));
-        note_outcome(batch, first, &lanes.pair, 0, verdict.limit, NARC_OUTCOME_LIMIT);
-        note_outcome(batch, first, &lanes.pair, 0, verdict.stuck, NARC_OUTCOME_ROUNDING);
+        note_outcome(batch, first, &lanes.pair, 0, ending.limit, NARC_OUTCOME_LIMIT);
+        note_outcome(batch, first, &lanes.pair, 0, ending.stuck, NARC_OUTCOME_ROUNDING);
         struct best best = e.best;
         best.separation = v_min(best.separation, v_set(-FLT_MIN)); /* GJK decides whether, EPA how deep */
         finish(&lanes, done, &best, finished);

@@ -9,48 +9,6 @@
  * told in narc_methods.h.
  */
 
-/* All arcs of a shape in each lane, in the caller's order, as struct arcs has them; arc number `count` is the first. */
-struct arc_lists {
-    _Alignas(64) float x[NARC_MAX_ARCS][V_WIDTH], y[NARC_MAX_ARCS][V_WIDTH], radius[NARC_MAX_ARCS][V_WIDTH];
-    float start_x[NARC_MAX_ARCS + 1][V_WIDTH], start_y[NARC_MAX_ARCS + 1][V_WIDTH];
-    int most;         /* arcs in any lane */
-    vi count, record; /* arcs in each lane, and the record of the first */
-    struct ring ring;
-};
-
-static void list_arcs(const narc_shapes *shapes, const struct queue *q, int k, bool is_b, struct arc_lists *out) {
-    const struct pose pose = get_pose(q, k);
-    const vi bytes = get_bits(q, is_b ? BYTES_B : BYTES_A, k), one = vi_set(1);
-    out->ring = is_b ? get_ring(q, k, BLOCK_B, BYTES_B) : get_ring(q, k, BLOCK_A, BYTES_A);
-    out->count = out->ring.count;
-    /* Arc 0 of the caller lies `first` places before the end of the list. */
-    const vi first = head_first(bytes);
-    vi record = vi_add(out->ring.first, vi_sub(out->count, first));
-    record = vi_select(vi_lt(vi_set(0), first), record, out->ring.first);
-    out->record = record;
-    for (int i = 0; i <= NARC_MAX_ARCS; i++) {
-        int32_t lanes[V_WIDTH];
-        vi_store(lanes, record);
-        const struct arcs arc =
-            is_b ? load_arcs_b(shapes->records, lanes, &pose) : load_arcs_a(shapes->records, lanes, &pose);
-        v_store(out->start_x[i], arc.start_x);
-        v_store(out->start_y[i], arc.start_y);
-        out->most = i;
-        if (!vm_any(vi_lt(vi_set(i), out->count)))
-            break;
-        v_store(out->x[i], arc.x);
-        v_store(out->y[i], arc.y);
-        v_store(out->radius[i], arc.radius);
-        record = step_record(out->ring, record, one);
-    }
-}
-
-/* The record of arc number `arc` of the caller. */
-INLINE vi record_of(const struct arc_lists *list, vi arc) {
-    const vi record = vi_add(list->record, arc), end = vi_add(list->ring.first, list->count);
-    return vi_select(vi_lt(record, end), record, vi_sub(record, list->count));
-}
-
 /* Does u lie in the cone from start to end, with its start and without its end? In one of half a turn, both are on one
  * line. */
 INLINE vm in_cone(vf start_x, vf start_y, vf end_x, vf end_y, vf u_x, vf u_y) {
@@ -67,7 +25,9 @@ INLINE vm in_cone(vf start_x, vf start_y, vf end_x, vf end_y, vf u_x, vf u_y) {
 static struct gap first_gap(const narc_shapes *shapes, const struct queue *q, int k, vm live, struct arc_lists *a,
                             struct arc_lists *b, vm *out_found) {
     const vf zero = v_set(0), tiny = v_set(0x1p-126f);
-    const struct boxes boxes = load_boxes(shapes, q, k);
+    vf item[FIELDS];
+    get_item(q, k, item, FIELDS);
+    const struct boxes boxes = load_boxes(shapes, item);
     const vf c_x = v_sub(boxes.b.centroid_x, boxes.a.centroid_x), c_y = v_sub(boxes.b.centroid_y, boxes.a.centroid_y);
     struct gap best = {v_set(INFINITY), v_set(1), zero, v_set(1), vi_set(0), vi_set(0)};
     vi arc_a = vi_set(0), arc_b = vi_set(0);
@@ -104,16 +64,6 @@ static struct gap first_gap(const narc_shapes *shapes, const struct queue *q, in
     best.record_b = record_of(b, arc_b);
     *out_found = vm_and_not(live, open);
     return best;
-}
-
-/* Notes an outcome of the pairs k ... of a queue, in those lanes that `which` says. */
-INLINE void note_outcome(const narc_batch *batch, size_t first, const struct queue *q, int k, vm which, int outcome) {
-    int32_t pair[V_WIDTH];
-    if (!batch->outcomes || !vm_any(which))
-        return;
-    vi_store(pair, get_bits(q, PAIR, k));
-    for (uint32_t bits = vm_bits(which); bits; bits &= bits - 1)
-        batch->outcomes[first + (uint32_t)pair[__builtin_ctz(bits)]] = (uint8_t)outcome;
 }
 
 static void mark_first(const narc_batch *batch, size_t first, struct queue *q, uint64_t *out_bits) {

@@ -16,6 +16,13 @@
  * near, or is the last: so the search ends. It never takes more than batch->iterations steps.
  */
 
+/* What a step finds, in each lane. */
+struct verdict {
+    vm collides, separate; /* the search has ended well, or as well as it can */
+    vm stuck;              /* ... and rounding left no way on */
+    vm limit;              /* it has ended because there were enough steps */
+};
+
 /* The state of the search in each lane. */
 struct search {
     vf m_x, m_y;            /* where to look next */
@@ -220,7 +227,7 @@ INLINE void read_hints_of(const narc_batch *batch, size_t first, const struct la
     int32_t pair[V_WIDTH];
     vi_store(pair, get_bits(&lanes->pair, PAIR, 0));
     for (int lane = 0; lane < V_WIDTH; lane++)
-        if (batch->hints && lanes->age[lane] == 0)
+        if (batch->hints && lanes->begins[lane])
             hint[lane] = (int32_t)batch->hints[first + (uint32_t)pair[lane]];
 }
 

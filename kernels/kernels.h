@@ -17,7 +17,7 @@ typedef struct narc_batch {
     uint32_t *hints;   /* one for each pair, in and out; may be NULL */
     uint8_t *outcomes; /* one for each pair, out; may be NULL. Only methods that can fail write them. */
     float tolerance;   /* of gjk, relative to the sum of both bounding radii */
-    int iterations;    /* of gjk, 1 .. NARC_ITERATIONS */
+    int iterations;    /* of gjk, 1 .. NARC_MAX_ITERATIONS */
 } narc_batch;
 
 /* Pairs whose contacts a kernel collects before it lists them; more are as good as several calls. */
@@ -29,9 +29,6 @@ typedef struct narc_kernel_table {
 #include "kernels.def"
 #undef NARC_KERNEL
 } narc_kernel_table;
-
-/* The most support points of a phase of gjk: NARC_MAX_ITERATIONS. */
-enum { NARC_ITERATIONS = 128 };
 
 /* What the kernels called overlap... and contact... have in common. */
 typedef void narc_overlap_kernel(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits);

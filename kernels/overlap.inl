@@ -18,6 +18,16 @@ INLINE void mark(const struct queue *q, int k, vm hits, uint64_t *out_bits) {
     }
 }
 
+/* Notes an outcome of the pairs k ... of a queue, in those lanes that `which` says. */
+INLINE void note_outcome(const narc_batch *batch, size_t first, const struct queue *q, int k, vm which, int outcome) {
+    int32_t pair[V_WIDTH];
+    if (!batch->outcomes || !vm_any(which))
+        return;
+    vi_store(pair, get_bits(q, PAIR, k));
+    for (uint32_t bits = vm_bits(which); bits; bits &= bits - 1)
+        batch->outcomes[first + (uint32_t)pair[__builtin_ctz(bits)]] = (uint8_t)outcome;
+}
+
 /* Looks at the pairs first ... of a queue along DIRECTION and takes them out; those that it does not
  * settle go to `undecided`, with the direction to look along next. */
 INLINE void look_for_overlaps(const narc_shapes *shapes, struct queue *q, int first, struct queue *undecided,

@@ -141,6 +141,7 @@ struct lanes {
     struct queue pair;    /* the first V_WIDTH items */
     int32_t age[V_WIDTH]; /* steps done; -1: the lane is idle */
     int from[V_WIDTH];    /* the place in the queue */
+    bool begins[V_WIDTH]; /* has the lane just taken a pair? */
     int next;             /* the first pair of the queue that no lane has taken */
 };
 
@@ -161,7 +162,8 @@ static void start_lanes(struct lanes *lanes) {
 static bool fill_lanes(struct lanes *lanes, const struct queue *q) {
     bool busy = false;
     for (int lane = 0; lane < V_WIDTH; lane++) {
-        if (lanes->age[lane] < 0 && lanes->next < q->count) {
+        lanes->begins[lane] = lanes->age[lane] < 0 && lanes->next < q->count;
+        if (lanes->begins[lane]) {
             lanes->from[lane] = lanes->next;
             copy_item(q, lanes->next++, &lanes->pair, lane);
             lanes->age[lane] = 0;
@@ -218,10 +220,3 @@ static void file_finished(const struct queue *q, float margin, struct results *o
         file_contacts(q, k, keep, separation, n_x, n_y, &on_a, &on_b, out);
     }
 }
-
-/* What a step finds, in each lane. */
-struct verdict {
-    vm collides, separate; /* the search has ended well, or as well as it can */
-    vm stuck;              /* ... and rounding left no way on */
-    vm limit;              /* it has ended because there were enough steps */
-};

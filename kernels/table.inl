@@ -28,6 +28,8 @@
 
 #include "boxes.inl"
 
+#include "lists.inl"
+
 #include "support.inl"
 
 #include "first.inl"

@@ -361,6 +361,9 @@ typedef enum narc_outcome {
     NARC_OUTCOME_NONE = 3      /* sat-first: no pair of arcs passes the test */
 } narc_outcome;
 
+/* Most support points in one phase of gjk (see narc_methods.h). */
+#define NARC_MAX_ITERATIONS 128
+
 #ifdef __cplusplus
 }
 #endif

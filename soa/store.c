@@ -185,8 +185,9 @@ static narc_head make_head(const narc_outline *o, size_t count, narc_circle boun
     return head;
 }
 
-/* The smallest of the boxes along the junctions' normals: of a polygon, the smallest of all, which lies along an edge.
- * Its numbers are rounded to single precision, which NARC_HEAD_SLACK has room for. */
+/* The smallest of the boxes along the junctions' normals: of a polygon, whose junctions are at both ends of every edge
+ * and have its normal, the smallest of all, which lies along an edge. Its numbers are rounded to single precision,
+ * which NARC_HEAD_SLACK has room for. */
 static narc_box make_box(const narc_outline *o, const narc_arc *arcs, size_t count, double room) {
     double least = INFINITY;
     narc_box box = {0};
@@ -335,6 +336,7 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
     if (out_shape)
         *out_shape = (uint32_t)shapes->count;
     shapes->heads[shapes->count++] = head;
+    shapes->polygon_count += (head.flags & NARC_SHAPE_POLYGON) != 0;
     shapes->record_count += block_size;
     return NARC_OK;
 }

@@ -95,6 +95,7 @@ struct narc_shapes {
     narc_head *heads;
     narc_record *records;
     size_t count, capacity;               /* heads */
+    size_t polygon_count;                 /* of them, those with NARC_SHAPE_POLYGON */
     size_t record_count, record_capacity; /* records */
     narc_allocator allocator;
     void *heads_memory, *records_memory; /* what the allocator returned; heads and records begin at cache lines in it */
