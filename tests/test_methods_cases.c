@@ -419,6 +419,34 @@ static void test_distances(void **state) {
                 false);
 }
 
+/* A circle is two cones of half a turn, and the vector between the centres lies on the line where they meet: sat-first
+ * must find it in one of them. */
+static void test_first_at_the_seam(void **state) {
+    (void)state;
+    static const float turns[][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {0.6f, 0.8f}};
+    const struct shape disc = circle(1);
+    for (size_t k = 0; k < sizeof turns / sizeof *turns; k++) {
+        for (int side = -1; side <= 1; side += 2) {
+            struct scene scene = create_scene(NARC_FLOAT64, 1, 2, 1);
+            scene_add_shape(&scene, &disc);
+            struct body a = {.cosine = turns[k][0], .sine = turns[k][1], .scale = 1}, b = a;
+            b.x = side * (double)a.cosine;
+            b.y = side * (double)a.sine;
+            const uint32_t first = scene_add_body(&scene, a);
+            scene_add_pair(&scene, first, scene_add_body(&scene, b));
+            uint8_t outcome = 0xa5;
+            const narc_query query = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = &outcome};
+            struct contacts found = query_contacts(&scene, &query, INFINITY, 1);
+            assert_int_equal(outcome, NARC_OUTCOME_DONE);
+            assert_true(fabs((double)found.view.separation[0] + 1) < 1e-6);
+            assert_true(fabs((double)found.view.normal_x[0] - b.x) < 1e-6);
+            assert_true(fabs((double)found.view.normal_y[0] - b.y) < 1e-6);
+            destroy_contacts(&found);
+            destroy_scene(&scene);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_nearly_touching),
@@ -433,6 +461,7 @@ int main(void) {
         cmocka_unit_test(test_box2d),
         cmocka_unit_test(test_libccd),
         cmocka_unit_test(test_distances),
+        cmocka_unit_test(test_first_at_the_seam),
     };
     return test_begin() ? cmocka_run_group_tests_name("methods_cases", tests, NULL, NULL) : TEST_SKIPPED;
 }
