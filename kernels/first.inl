@@ -9,15 +9,12 @@
  * told in narc_methods.h.
  */
 
-/* Does u lie in the cone from start to end, with its start and without its end? In one of half a turn, both are on one
- * line. */
+/* Does u, which lies in the closed cone from start to end, lie in the one without its end? In a cone of half a turn
+ * both are on one line. */
 INLINE vm in_cone(vf start_x, vf start_y, vf end_x, vf end_y, vf u_x, vf u_y) {
-    const vf zero = v_set(0), after = cross(start_x, start_y, u_x, u_y), before = cross(u_x, u_y, end_x, end_y);
-    const vm inside = vm_and(v_le(zero, after), v_lt(zero, before));
-    const vm on_line = vm_and(v_le(v_abs(after), zero), v_le(zero, before));
-    if (!vm_any(on_line))
-        return inside;
-    return vm_or(inside, vm_and(on_line, v_lt(zero, dot(start_x, start_y, u_x, u_y))));
+    const vf zero = v_set(0), after = cross(start_x, start_y, u_x, u_y);
+    const vm at_start = vm_and(v_le(after, zero), v_lt(zero, dot(start_x, start_y, u_x, u_y)));
+    return vm_or(v_lt(zero, cross(u_x, u_y, end_x, end_y)), at_start);
 }
 
 /* The separation of the pairs k ... of a queue by the first pair of arcs that passes; +infinity, and `out_found` false,
@@ -40,14 +37,19 @@ static struct gap first_gap(const narc_shapes *shapes, const struct queue *q, in
         const vf end_x = v_load(a->start_x[i + 1]), end_y = v_load(a->start_y[i + 1]);
         for (int j = 0; j < b->most; j++) {
             const vf u_x = v_sub(v_load(b->x[j]), a_x), u_y = v_sub(v_load(b->y[j]), a_y);
-            const vm in_a = in_cone(start_x, start_y, end_x, end_y, u_x, u_y);
-            const vm in_b = in_cone(v_load(b->start_x[j]), v_load(b->start_y[j]), v_load(b->start_x[j + 1]),
-                                    v_load(b->start_y[j + 1]), u_x, u_y);
+            const vm in_a =
+                vm_and(v_le(zero, cross(start_x, start_y, u_x, u_y)), v_le(zero, cross(u_x, u_y, end_x, end_y)));
+            const vf b_start_x = v_load(b->start_x[j]), b_start_y = v_load(b->start_y[j]);
+            const vf b_end_x = v_load(b->start_x[j + 1]), b_end_y = v_load(b->start_y[j + 1]);
+            const vm in_b = vm_and(v_le(zero, cross(b_start_x, b_start_y, u_x, u_y)),
+                                   v_le(zero, cross(u_x, u_y, b_end_x, b_end_y)));
             const vm facing = v_lt(zero, dot(u_x, u_y, c_x, c_y));
             const vm exists = vm_and(vi_lt(vi_set(i), a->count), vi_lt(vi_set(j), b->count));
-            const vm passes = vm_and(vm_and(open, exists), vm_and(vm_and(in_a, in_b), facing));
-            if (!vm_any(passes))
+            const vm may = vm_and(vm_and(open, exists), vm_and(vm_and(in_a, in_b), facing));
+            if (!vm_any(may))
                 continue;
+            const vm passes = vm_and(may, vm_and(in_cone(start_x, start_y, end_x, end_y, u_x, u_y),
+                                                 in_cone(b_start_x, b_start_y, b_end_x, b_end_y, u_x, u_y)));
             const vf u2 = dot(u_x, u_y, u_x, u_y), length = v_sqrt(v_max(u2, tiny));
             best.separation = v_select(passes, v_sub(length, v_add(radius, v_load(b->radius[j]))), best.separation);
             best.n_x = v_select(passes, u_x, best.n_x);
