@@ -52,7 +52,7 @@ INLINE void get_edge(const struct polytope *p, vi slot, struct vertex out_ends[2
 }
 
 /* In the lanes that begin: the triangles of their pairs. */
-static void start_polytopes(struct polytope *p, const struct lanes *lanes, const struct collisions *q,
+INLINE void start_polytopes(struct polytope *p, const struct lanes *lanes, const struct collisions *q,
                             struct expansion *e) {
     const vm fresh = vm_and_not(vi_lt(vi_load(lanes->age), vi_set(1)), vi_lt(vi_load(lanes->age), vi_set(0)));
     for (int lane = 0; lane < V_WIDTH; lane++) {

@@ -19,7 +19,7 @@ INLINE vm in_cone(vf start_x, vf start_y, vf end_x, vf end_y, vf u_x, vf u_y) {
 
 /* The separation of the pairs k ... of a queue by the first pair of arcs that passes; +infinity, and `out_found` false,
  * where none does. */
-static struct gap first_gap(const narc_shapes *shapes, const struct queue *q, int k, vm live, struct arc_lists *a,
+INLINE struct gap first_gap(const narc_shapes *shapes, const struct queue *q, int k, vm live, struct arc_lists *a,
                             struct arc_lists *b, vm *out_found) {
     const vf zero = v_set(0), tiny = v_set(0x1p-126f);
     vf item[FIELDS];
@@ -80,7 +80,7 @@ static void mark_first(const narc_batch *batch, size_t first, struct queue *q, u
 }
 
 /* Where every pair is to have an item: those of the pairs k ... of a queue that have no answer. */
-static void file_without(const struct queue *q, int k, vm none, struct results *out) {
+INLINE void file_without(const struct queue *q, int k, vm none, struct results *out) {
     int32_t pair[V_WIDTH];
     vi_store(pair, get_bits(q, PAIR, k));
     for (uint32_t bits = vm_bits(none); bits; bits &= bits - 1)

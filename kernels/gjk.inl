@@ -67,7 +67,7 @@ INLINE vi hint_length(vi hint) {
     return vi_select(odd, tag, vi_set(0));
 }
 
-static void leave_simplex(uint32_t *hints, const struct lanes *lanes, const struct search *s, vm collides, vm done) {
+INLINE void leave_simplex(uint32_t *hints, const struct lanes *lanes, const struct search *s, vm collides, vm done) {
     const vi triangle = vi_add(ten_bits(s->p.turn), vi_add(vi_shift_left(ten_bits(s->q.turn), 10),
                                                            vi_shift_left(ten_bits(s->third.turn), 20)));
     const vf axis = v_min(v_mul(turn_of(s->best.n_x, s->best.n_y), v_set(0x1p28f)), v_set(0x1p30f - 64));
@@ -166,8 +166,8 @@ INLINE vm is_around(const struct vertex *p, const struct vertex *q, const struct
 }
 
 /* One step in every lane. `enough`: a separation of that much need not be known better. */
-static inline struct verdict step_search(const narc_batch *batch, const struct lanes *lanes, struct search *s, vi hint,
-                                         float enough) {
+INLINE struct verdict step_search(const narc_batch *batch, const struct lanes *lanes, struct search *s, vi hint,
+                                  float enough) {
     const vf zero = v_set(0);
     const vi age = vi_load(lanes->age), seeds = hint_length(hint);
     const vm busy = vi_lt(vi_set(-1), age), fresh = vi_lt(age, vi_set(1));
@@ -232,7 +232,7 @@ INLINE void read_hints_of(const narc_batch *batch, size_t first, const struct la
 }
 
 /* A search that rounding has ended may go better without the hint that it began with. */
-static void begin_again(struct lanes *lanes, int32_t *hint, struct verdict *verdict) {
+INLINE void begin_again(struct lanes *lanes, int32_t *hint, struct verdict *verdict) {
     const vi old = vi_load(hint), none = vi_set(0);
     const vm again = vm_and(verdict->stuck, vi_lt(none, hint_length(old)));
     vi_store(hint, vi_select(again, none, old));
@@ -242,7 +242,7 @@ static void begin_again(struct lanes *lanes, int32_t *hint, struct verdict *verd
 }
 
 /* Passes the pairs that collide on to EPA, each with the triangle that holds the origin. */
-static void pass_on(const struct lanes *lanes, const struct search *s, vm collides, struct collisions *to) {
+INLINE void pass_on(const struct lanes *lanes, const struct search *s, vm collides, struct collisions *to) {
     const struct vertex *const corners[] = {&s->p, &s->q, &s->third};
     float corner[3][4][V_WIDTH];
     for (int c = 0; c < 3; c++) {

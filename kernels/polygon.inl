@@ -20,7 +20,7 @@ INLINE vf gap_of_edge(const struct arc_lists *own, const struct arc_lists *other
 }
 
 /* The largest gap of the pairs k ... of a queue, or one that is at least `enough`; its arcs are not looked for. */
-static struct gap polygon_gap(const narc_shapes *shapes, const struct queue *q, int k, vm live, float enough,
+INLINE struct gap polygon_gap(const narc_shapes *shapes, const struct queue *q, int k, vm live, float enough,
                               struct arc_lists *a, struct arc_lists *b) {
     struct gap best = {v_set(-INFINITY), v_set(1), v_set(0), v_set(1), vi_set(0), vi_set(0)};
     list_arcs(shapes, q, k, false, a);

@@ -32,8 +32,7 @@ INLINE vi step_to(const struct arcs *arc, vf x, vf y) {
 
 /* The support points of the pairs k ... of a queue along m, of any length, in the lanes `live`. The look-up is right
  * but for junctions within 16 bits of m; where these matter, at edges, a few steps along the ring mend that. */
-static inline struct support find_support(const narc_shapes *shapes, const struct queue *q, int k, vm live, vf m_x,
-                                          vf m_y) {
+INLINE struct support find_support(const narc_shapes *shapes, const struct queue *q, int k, vm live, vf m_x, vf m_y) {
     const narc_record *records = shapes->records;
     const struct pose pose = get_pose(q, k);
     const struct ring ring_a = get_ring(q, k, BLOCK_A, BYTES_A), ring_b = get_ring(q, k, BLOCK_B, BYTES_B);
@@ -189,7 +188,7 @@ enum {
 };
 
 /* Appends the pairs of the lanes `which`, with what was found of them, to a queue. */
-static void finish(const struct lanes *lanes, vm which, const struct best *best, struct queue *finished) {
+INLINE void finish(const struct lanes *lanes, vm which, const struct best *best, struct queue *finished) {
     static const int fields[] = {FOUND_SEPARATION, FOUND_X, FOUND_Y, FOUND_ACROSS, FOUND_ALONG};
     const vf found[] = {best->separation, best->n_x, best->n_y, best->across, best->along};
     enum { COUNT = sizeof fields / sizeof fields[0] };
