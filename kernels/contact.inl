@@ -131,7 +131,7 @@ INLINE void file_contacts(const struct queue *q, int k, vm keep, vf separation, 
     int32_t place[V_WIDTH];
     vi_store(place, vi_select(keep, pair, vi_set(GROUP)));
     v_put_rows(out->row, sizeof out->row[0], place, row);
-    v_put_rows(&out->row[0][4], sizeof out->row[0], place, row + 4);
+    v_put_rows((float *)out->row + 4, sizeof out->row[0], place, row + 4);
     for (int lane = 0; lane < V_WIDTH; lane++)
         out->keep[place[lane]] = 1;
 }
@@ -281,7 +281,7 @@ static size_t list_contacts(const struct results *results, int count, size_t fir
     for (int k = 0; k < n; k += V_WIDTH) {
         vf row[ROW];
         v_rows(results->row, sizeof results->row[0], pair + k, row);
-        v_rows(&results->row[0][4], sizeof results->row[0], pair + k, row + 4);
+        v_rows((const float *)results->row + 4, sizeof results->row[0], pair + k, row + 4);
         float rest[ROW][V_WIDTH];
         const bool whole = k + V_WIDTH <= n;
         v_store(whole ? out->separation + at + k : rest[SEPARATION], row[SEPARATION]);

@@ -124,8 +124,7 @@ INLINE vm is_near(const struct vertex *a, const struct vertex *b, vf distance) {
     return vm_and(v_le(v_abs(v_sub(a->x, b->x)), distance), v_le(v_abs(v_sub(a->y, b->y)), distance));
 }
 
-/* The lanes whose search has ended, those of them where rounding left no way on, and those that have had enough steps.
- * */
+/* The lanes whose search has ended, those of them where rounding left no way on, and those that have had enough. */
 struct ending {
     vm done, stuck, limit;
 };

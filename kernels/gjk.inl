@@ -177,8 +177,7 @@ INLINE struct verdict step_search(const narc_batch *batch, const struct lanes *l
     const struct vertex w = {found.w_x, found.w_y, found.middle_x, found.middle_y,
                              batch->hints ? turn_of(found.m_x, found.m_y) : zero};
 
-    /* What the step was for: a first point, a hint's second one, a side of a segment through the origin, or the rule.
-     * */
+    /* What the step was for: a first point, a hint's second, a side of a segment through the origin, or the rule. */
     const vm seeded = vi_lt(age, seeds), second = vm_and_not(vm_and(seeded, vi_lt(age, vi_set(2))), fresh);
     const vm looked = vm_and_not(vi_lt(vi_set(0), s->side), fresh);
     const vm rule = vm_and_not(busy, vm_or(looked, vm_or(fresh, second)));
