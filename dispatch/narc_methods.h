@@ -33,7 +33,7 @@ typedef enum narc_method {
      * and `iterations` mean nothing to it. */
     NARC_METHOD_SAT = 0,
 
-    /* The paper's Algorithm 2 as its text reads: for all pairs of arcs in their order, is either centre in the cone of
+    /* The paper's Algorithm 2 as its text reads: for all pairs of arcs in their order, is each centre in the cone of
      * the other arc, and does the vector between them point along the vector between the centroids (dot product)? The
      * first pair that passes decides: separation |u| - (r_i + r_j), normal u / |u|. O(m n).
      *   Wrong where several pairs pass, or none: separated shapes are called colliding (mostly flat and thin ones with
