@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * error.c - names of status codes, and the one place that fills a narc_error.
+ * error.c - names of status codes.
  */
-#include "error.h"
-
-#include <stdarg.h>
-#include <stdio.h>
+#include "narc_shapes.h"
 
 const char *narc_status_name(narc_status status) {
     switch (status) {
@@ -41,19 +38,10 @@ const char *narc_status_name(narc_status status) {
         return "NARC_ERROR_ISA_UNKNOWN";
     case NARC_ERROR_ISA_UNSUPPORTED:
         return "NARC_ERROR_ISA_UNSUPPORTED";
+    case NARC_ERROR_FORMAT:
+        return "NARC_ERROR_FORMAT";
+    case NARC_ERROR_CANCELLED:
+        return "NARC_ERROR_CANCELLED";
     }
     return "unknown status";
-}
-
-narc_status narc_fail(narc_error *error, narc_status status, size_t index, double value, const char *format, ...) {
-    if (error) {
-        error->status = status;
-        error->index = index;
-        error->value = value;
-        va_list arguments;
-        va_start(arguments, format);
-        vsnprintf(error->message, sizeof error->message, format, arguments);
-        va_end(arguments);
-    }
-    return status;
 }

@@ -95,7 +95,9 @@ typedef enum narc_status {
     NARC_ERROR_NOT_SIMPLE = 12,     /* a polygon crosses itself or encloses no area */
     NARC_ERROR_NO_SOLUTION = 13,    /* no n-arc has these junctions */
     NARC_ERROR_ISA_UNKNOWN = 14,    /* no instruction set has that name */
-    NARC_ERROR_ISA_UNSUPPORTED = 15 /* known, but this build or this processor does not have it */
+    NARC_ERROR_ISA_UNSUPPORTED = 15, /* known, but this build or this processor does not have it */
+    NARC_ERROR_FORMAT = 16,          /* data that is not in the format it should be in, or damaged */
+    NARC_ERROR_CANCELLED = 17        /* the caller's progress function ended the work */
 } narc_status;
 
 /* The name of a status, such as "NARC_ERROR_INDEX"; "unknown status" for any other value. Static storage. */

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * narc_fit.h - from outlines (glyphs, SVG, PNG, points, Beziers) to arc shapes that bound or approximate them.
+ *
+ * The mental model
+ *
+ *   An outline is a PATH: closed contours made of lines and Bezier curves. A fit looks at its convex hull alone, so
+ *   holes, several contours and contours that overlap are fine. A FIT is an arc shape (see narc_shapes.h) that bounds
+ *   the path (it contains every point of it, curves included) or approximates it, and is the best one that was found for
+ *   what is asked:
+ *
+ *       family      n-arc: arcs with continuous tangents   edges: arcs, straight edges between them where they help
+ *                   polygon: straight edges only           paper: Algorithm 1 on a polygon, enlarged until it bounds
+ *       goal        what is least: area, perimeter, largest distance to the hull, area between shape and hull
+ *       arc count   given, or the fewest for a given largest distance
+ *
+ *   The distance of two convex shapes is the largest difference of their support functions. This is the Hausdorff
+ *   distance: every point of one is that close to the other, and the same holds of the outlines.
+ *
+ *   With fixed normals at the junctions everything is linear in the radii and the edges' lengths (support function,
+ *   closure, perimeter); the fits are sequences of linear programmes in radii, lengths and small turns of the normals,
+ *   from several starts. See fit/README.md for the algorithms and what they were measured to reach.
+ *
+ * This library is meant for tools and load time, not for the inner loop of a game. It allocates memory, keeps no
+ * globals, and prints nothing. All functions may be called from several threads, each with paths of its own. On
+ * error outputs are untouched. Units and directions are those of narc_shapes.h: y points up, counter-clockwise.
+ *
+ * Example
+ *
+ *     narc_path *path = NULL;
+ *     narc_fit_result fit;
+ *     narc_create_path(&path);
+ *     narc_read_svg(text, size, path, &error);
+ *     narc_fit_path(path, &(narc_fit_request){.arc_count = 8, .goal = NARC_FIT_BOUND_AREA}, &fit, &error);
+ *     narc_add_shape(shapes, fit.arcs, fit.arc_count, &shape, &error);
+ */
+#ifndef NARC_FIT_H
+#define NARC_FIT_H
+
+#include "narc_shapes.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ------------------------------------------------------------------------------------------------ paths */
+
+/* The largest absolute coordinate of a path. */
+#define NARC_MAX_COORDINATE 1e9
+
+/* How far a chord may be from its curve if nothing else is asked for, relative to the path's extent (the larger side
+ * of its bounding box). */
+#define NARC_FLATNESS 2e-5
+
+typedef struct narc_path narc_path;
+
+/* An empty path. NARC_ERROR_MEMORY. */
+NARC_API narc_status narc_create_path(narc_path **out_path);
+
+/* Frees a path; NULL is fine. */
+NARC_API void narc_destroy_path(narc_path *path);
+
+/* The pen: move_to begins a contour, the others draw a line or a Bezier curve from where the pen is. A contour closes
+ * by itself with a line to its start. Errors: NARC_ERROR_ARGUMENT (no contour was begun), NARC_ERROR_NOT_FINITE,
+ * NARC_ERROR_SIZE (beyond NARC_MAX_COORDINATE), NARC_ERROR_MEMORY. */
+NARC_API narc_status narc_move_to(narc_path *path, narc_point to, narc_error *error);
+NARC_API narc_status narc_line_to(narc_path *path, narc_point to, narc_error *error);
+NARC_API narc_status narc_quadratic_to(narc_path *path, narc_point control, narc_point to, narc_error *error);
+NARC_API narc_status narc_cubic_to(narc_path *path, narc_point control_1, narc_point control_2, narc_point to,
+                                   narc_error *error);
+
+/* Does each contour, closed and flattened, go round without crossing or touching itself? Different contours may cross.
+ * NARC_ERROR_NOT_SIMPLE names the contour and the place. Fits do not ask for it: they see the hull only. It finds points
+ * in the wrong order. */
+NARC_API narc_status narc_check_simple(const narc_path *path, narc_error *error);
+
+/* Contours flattened to polygons: contour k has points[ends[k - 1] .. ends[k] - 1] (0 for ends[-1]), the first not
+ * repeated at the end. No curve is further than `flatness` from its chords. */
+typedef struct narc_contours {
+    narc_point *points;
+    size_t point_count;
+    size_t *ends;
+    size_t count;
+    double flatness; /* a length; 0 if there are no curves */
+} narc_contours;
+
+/* Flattens a path; `flatness` is a length > 0, or 0 for NARC_FLATNESS. Free the result with
+ * narc_release_contours(). NARC_ERROR_MEMORY, NARC_ERROR_SIZE (negative or NaN). */
+NARC_API narc_status narc_flatten_path(const narc_path *path, double flatness, narc_contours *out_contours,
+                                       narc_error *error);
+NARC_API void narc_release_contours(narc_contours *contours);
+
+/* ------------------------------------------------------------------------------------------------ readers */
+
+/* Each adds what it reads to a path; on error the path is as before. They read from memory, so that nothing
+ * depends on files. For text formats error->index is the line, from 1 (0: no particular one); messages name line and
+ * value. Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_FORMAT (not in that format, damaged, or without an outline),
+ * NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE, NARC_ERROR_MEMORY. Inputs may come from strangers: any bytes end in a
+ * path or an error. */
+
+/* A font that FreeType reads (TrueType, OpenType, Type 1 ...). The data must stay until it is closed. */
+typedef struct narc_font narc_font;
+NARC_API narc_status narc_open_font(const void *data, size_t size, narc_font **out_font, narc_error *error);
+NARC_API void narc_close_font(narc_font *font);
+
+/* The glyph of a Unicode character; lengths in em (font units / units per em). NARC_ERROR_INDEX: the font has no glyph
+ * for it. A blank (a space) is NARC_ERROR_FORMAT, since it has no outline. */
+NARC_API narc_status narc_read_glyph(narc_font *font, uint32_t character, narc_path *path, narc_error *error);
+
+/* The characters a font has glyphs for: the first of them above `after` (start with 0; character 0 is never told).
+ * 0: no more. */
+NARC_API uint32_t narc_next_character(narc_font *font, uint32_t after);
+
+/* An SVG file (XML, UTF-8 or as its header says): paths, rectangles, circles, ellipses, polygons, polylines and lines,
+ * with their transforms, also through groups and `use`. What is not drawn (display: none, inside defs, clip paths,
+ * masks, patterns, markers or symbols that no `use` shows) is left out; strokes have no width; text and images are not
+ * read. Units are the SVG's user units, y turned up. */
+NARC_API narc_status narc_read_svg(const void *data, size_t size, narc_path *path, narc_error *error);
+
+/* The silhouette in a PNG image: contours at `threshold` (between 0 and 1) of the alpha channel, interpolated between
+ * the centres of pixels, so that antialiased edges keep their place. An image without alpha, or one that is opaque
+ * throughout, is taken by its darkness (1 - luminance) instead, or by lightness if its corners are dark. Units are
+ * pixels, y up, the origin at the lower left corner of the image. Threshold 0 means 0.5. */
+NARC_API narc_status narc_read_png(const void *data, size_t size, double threshold, narc_path *path,
+                                   narc_error *error);
+
+/* Points: CSV, one "x,y" a line, an optional header line "x,y", blank lines between contours. JSON: [[x, y], ...], or a
+ * list of such lists (contours), or an object whose key "points" or "contours" has that. */
+NARC_API narc_status narc_read_csv(const void *data, size_t size, narc_path *path, narc_error *error);
+NARC_API narc_status narc_read_json(const void *data, size_t size, narc_path *path, narc_error *error);
+
+/* ------------------------------------------------------------------------------------------------ fits */
+
+typedef enum narc_fit_family {
+    NARC_FIT_N_ARC = 0,   /* arcs with continuous tangents; an arc of radius 0 is a corner */
+    NARC_FIT_EDGES = 1,   /* arcs, with straight edges between them where they help */
+    NARC_FIT_POLYGON = 2, /* straight edges only: corners are arcs of radius 0 */
+    NARC_FIT_PAPER = 3    /* yardstick: the least-area bounding polygon, Algorithm 1, enlarged until it bounds */
+} narc_fit_family;
+
+typedef enum narc_fit_goal {
+    NARC_FIT_BOUND_AREA = 0,      /* bounds; least area */
+    NARC_FIT_BOUND_PERIMETER = 1, /* bounds; least perimeter */
+    NARC_FIT_BOUND_DISTANCE = 2,  /* bounds; least largest distance from the hull */
+    NARC_FIT_DISTANCE = 3,        /* least largest distance from the hull, to either side */
+    NARC_FIT_DIFFERENCE = 4       /* least area of the symmetric difference with the hull */
+} narc_fit_goal;
+
+/* Most arcs of a fit. */
+#define NARC_MAX_FIT_ARCS 32
+
+typedef struct narc_fit_request {
+    size_t arc_count; /* at most that many arcs, 1 .. NARC_MAX_FIT_ARCS (polygons: from 3); 0: the fewest that keep
+                         `tolerance`. Arcs that would be one circle are merged, so fewer may come out: an n-arc with up
+                         to 3 arcs is a circle. */
+    double tolerance; /* with arc_count 0: the largest distance from the hull that is allowed */
+    narc_fit_family family;
+    narc_fit_goal goal; /* with arc_count 0: of the BOUND goals any makes the fit bound; the others do not */
+    double flatness;    /* of curves, as in narc_flatten_path(); 0: NARC_FLATNESS */
+    unsigned starts;    /* of the local search; 0: the usual number. More can only find better */
+    /* Called now and then with the work done and in all, if not NULL; returning false ends the fit with the best so
+     * far, or NARC_ERROR_CANCELLED if there is none. */
+    bool (*progress)(size_t done, size_t total, void *context);
+    void *context;
+} narc_fit_request;
+
+typedef struct narc_fit_result {
+    narc_arc arcs[NARC_MAX_ARCS]; /* centres relative to `origin`; centres and radii are single-precision numbers */
+    size_t arc_count;
+    size_t edge_count; /* straight edges with a length */
+    narc_point origin; /* where the shape's origin, its centroid, is in the path's coordinates */
+    double area, perimeter;
+    double hull_area, hull_perimeter; /* of the path's convex hull */
+    double max_distance;    /* to the hull: the largest difference of the support functions */
+    double mean_distance;   /* mean over the shape's outline of the distance to the hull's outline */
+    double difference_area; /* of the symmetric difference with the hull */
+    double clearance;       /* BOUND goals: the least of (support function - hull's), certified >= 0 for the shape as the
+                               store keeps it, in single precision, with the flatness of curves counted */
+    double flatness;        /* what the curves were flattened to, a length */
+    double seconds;         /* time the fit took */
+} narc_fit_result;
+
+/* Fits an arc shape. Deterministic: equal input gives equal bits on one machine (but for `seconds`). The shape passes
+ * narc_add_shape(). Errors: NARC_ERROR_ARGUMENT (NULL; a family or goal that does not exist; a polygon or the paper's
+ * route with a goal that is not BOUND_AREA and the like), NARC_ERROR_COUNT (arc_count; a path without points),
+ * NARC_ERROR_NOT_CONVEX (all points on a line: no area), NARC_ERROR_SIZE (tolerance not positive, path too small or
+ * too large), NARC_ERROR_NO_SOLUTION (the tolerance is not reached with NARC_MAX_FIT_ARCS arcs; the message tells what
+ * was), NARC_ERROR_MEMORY, NARC_ERROR_CANCELLED. */
+NARC_API narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request,
+                                      narc_fit_result *out_result, narc_error *error);
+
+/* ------------------------------------------------------------------------------------------------ biarcs */
+
+/* One piece of an open, tangent-continuous arc spline. */
+typedef struct narc_curve_arc {
+    narc_point start, end;
+    narc_point center; /* of its circle; of no meaning for a line */
+    double radius;     /* infinity: a straight line */
+    double turn;       /* signed angle from the tangent at the start to that at the end, counter-clockwise positive;
+                          0 for a line */
+} narc_curve_arc;
+
+/* A Bezier curve of degree 1 to 3, `controls[0 .. degree]`, as arcs that join with a common tangent and have the curve's
+ * end points and end tangents: biarcs (Bolton 1975; Riskus 2006), as long as the tolerance lets them be. `out_distance`
+ * is a bound, not a sample, of the distance of any point of the curve from the arcs and of the arcs from the curve; it
+ * is at most `tolerance`. A cusp or a doubling back is a corner: there the tangent may jump, as that of the curve does.
+ * With out_arcs NULL and capacity 0 only the count and the distance are told.
+ * NARC_ERROR_ARGUMENT (NULL, degree), NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE (tolerance not positive, or below 1e-9 of
+ * the curve's extent; coordinates beyond NARC_MAX_COORDINATE), NARC_ERROR_CAPACITY (`out_count` is set to the number
+ * needed). A curve that is a point has no arcs. */
+NARC_API narc_status narc_fit_bezier(const narc_point *controls, size_t degree, double tolerance,
+                                     narc_curve_arc *out_arcs, size_t capacity, size_t *out_count,
+                                     double *out_distance, narc_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

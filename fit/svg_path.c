@@ -1,0 +1,6 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * svg_path.c - stub
+ */
+
+typedef int stub_unit;

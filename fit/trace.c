@@ -1,0 +1,6 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * trace.c - stub
+ */
+
+typedef int stub_unit;
