@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * difference.h - the area of the symmetric difference of a chain and a hull. Internal.
+ */
+#ifndef NARC_FIT_DIFFERENCE_H
+#define NARC_FIT_DIFFERENCE_H
+
+#include "chain.h"
+#include "hull.h"
+
+/* The area in one of both but not in the other, of a placed chain and the hull without its inflation. Unless NULL,
+ * `derivatives` gets those by all variables, in the order of narc_layout_of(). */
+double narc_difference_area(const chain *of, const hull *around, double *derivatives);
+
+/* Is a point inside a placed chain or on its outline? */
+bool narc_is_in_chain(const chain *of, narc_point x);
+
+/* Is a point inside a hull, inflation aside, or on its outline? */
+bool narc_is_in_hull(const hull *around, narc_point x);
+
+#endif

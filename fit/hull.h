@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * hull.h - the convex hull of an outline: a polygon whose support function can be asked. Internal.
+ */
+#ifndef NARC_FIT_HULL_H
+#define NARC_FIT_HULL_H
+
+#include "narc_fit.h"
+
+/* A convex polygon, counter-clockwise, no three corners in line. Corner k is the support point of the directions between
+ * the normals of the sides k - 1 and k. */
+typedef struct hull {
+    size_t count;
+    narc_point *corners;
+    narc_point *normals; /* unit, outward: normals[k] is that of side k, from corner k to corner k + 1 */
+    double *angles;      /* of the normals, rising, in one turn */
+    double inflation;    /* the body to be fitted holds all points within this distance of the polygon */
+    double area, perimeter;
+} hull;
+
+/* The hull of `points`. NARC_ERROR_COUNT: no points. NARC_ERROR_NOT_CONVEX: no area. NARC_ERROR_MEMORY. */
+narc_status narc_make_hull(const narc_point *points, size_t count, hull *out_hull, narc_error *error);
+
+/* A hull from corners that are convex and counter-clockwise already. */
+narc_status narc_adopt_corners(const narc_point *corners, size_t count, hull *out_hull, narc_error *error);
+
+void narc_release_hull(hull *of);
+
+/* The corner that lies furthest in the direction of an angle. */
+size_t narc_find_corner(const hull *of, double angle);
+
+#endif

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * paper.c - Algorithm 1 on a polygon, enlarged until it bounds.
+ */
+#include "paper.h"
+
+#include <string.h>
+
+#include "chain.h"
+#include "error.h"
+#include "vector.h"
+
+/* How many values of the free radius are tried, evenly in its logarithm. */
+enum { RADII = 64 };
+
+/* The factor by which arcs must be scaled about a point inside to bound the hull: the largest ratio of the hull's corners
+ * as seen from there, found by bisection of "all corners are inside". */
+static bool bounds_scaled(const narc_arc *arcs, size_t count, const hull *around, narc_point center, double factor) {
+    for (size_t k = 0; k < around->count; k++) {
+        const narc_point p = around->corners[k];
+        const narc_point back = {center.x + (p.x - center.x) / factor, center.y + (p.y - center.y) / factor};
+        double distance;
+        if (!narc_compute_distance(arcs, count, back, &distance) || distance * factor > -around->inflation) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool enlarge(narc_arc *arcs, size_t count, const hull *around, double *out_area) {
+    narc_mass mass;
+    if (!narc_compute_mass(arcs, count, &mass)) {
+        return false;
+    }
+    const narc_point center = {mass.centroid_x, mass.centroid_y};
+    double low = 0.25, high = 8;
+    if (!bounds_scaled(arcs, count, around, center, high)) {
+        return false;
+    }
+    while (high - low > 1e-9 * high) {
+        const double middle = 0.5 * (low + high);
+        if (bounds_scaled(arcs, count, around, center, middle)) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    for (size_t i = 0; i < count; i++) {
+        arcs[i].center_x = center.x + high * (arcs[i].center_x - center.x);
+        arcs[i].center_y = center.y + high * (arcs[i].center_y - center.y);
+        arcs[i].radius *= high;
+    }
+    *out_area = high * high * mass.area;
+    return true;
+}
+
+/* The sharpest corner loses this part of the shorter of its two sides: near the 0.293 that makes a regular octagon of a
+ * square, and less than half, so that both ends of a side can be cut. */
+static const double CUT = 0.29;
+
+static size_t find_sharpest(const narc_point *points, size_t count) {
+    double largest = -1;
+    size_t sharpest = 0;
+    for (size_t k = 0; k < count; k++) {
+        const narc_point in = minus(points[k], points[(k + count - 1) % count]);
+        const narc_point out = minus(points[(k + 1) % count], points[k]);
+        const double turn = atan2(cross(in, out), dot(in, out));
+        if (turn > largest + 1e-9) {
+            largest = turn;
+            sharpest = k;
+        }
+    }
+    return sharpest;
+}
+
+/* Cuts off corners until there are `wanted`. */
+static void cut_corners(narc_point *points, size_t count, size_t wanted) {
+    for (; count < wanted; count++) {
+        const size_t k = find_sharpest(points, count);
+        const narc_point at = points[k], back = minus(points[(k + count - 1) % count], at);
+        const narc_point ahead = minus(points[(k + 1) % count], at);
+        const double cut = CUT * fmin(length(back), length(ahead));
+        memmove(points + k + 1, points + k, (count - k) * sizeof *points);
+        points[k] = along(at, cut / length(back), back);
+        points[k + 1] = along(at, cut / length(ahead), ahead);
+    }
+}
+
+narc_status narc_follow_paper(const narc_point *polygon, size_t sides, size_t count, const hull *around,
+                              narc_arc *out_arcs, size_t *out_count, narc_error *error) {
+    narc_point corners[NARC_MAX_ARCS], junctions[NARC_MAX_ARCS];
+    memcpy(corners, polygon, sides * sizeof *corners);
+    cut_corners(corners, sides, count);
+    double smallest, largest, chosen;
+    narc_status status = narc_adjust_polygon(corners, count, junctions, error);
+    if (status == NARC_OK) {
+        status = narc_find_radius_range(junctions, count, &smallest, &largest, &chosen, error);
+    }
+    if (status != NARC_OK) {
+        return status;
+    }
+    double best = INFINITY;
+    /* Odd counts have one radius. Of even counts radii reach from one end of the range to the other, as far as arcs may
+     * be flat; the first try is the most even one. */
+    const double low = fmax(smallest, 1e-3), high = fmin(largest, 64);
+    for (unsigned k = 0; k <= (count % 2 ? 0 : RADII); k++) {
+        const double radius = k == 0 ? 0 : low * pow(high / low, (k - 0.5) / RADII);
+        narc_arc arcs[NARC_MAX_ARCS];
+        size_t made;
+        double area;
+        if (narc_build_points(junctions, count, radius, arcs, &made, NULL) == NARC_OK &&
+            enlarge(arcs, made, around, &area) && area < best) {
+            best = area;
+            *out_count = made;
+            memcpy(out_arcs, arcs, made * sizeof *arcs);
+        }
+    }
+    return isfinite(best) ? NARC_OK
+                          : narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, 0,
+                                      "Algorithm 1 gives no n-arc with %zu arcs that bounds the outline", count);
+}

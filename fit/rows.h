@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * rows.h - what a fit has to keep, as a finite list of conditions that are smooth in its variables. Internal.
+ *
+ * Lower rows keep the hull inside (or, where the goal is a distance t to either side, within t of it), upper rows keep
+ * the shape within t of the hull:
+ *
+ *     lower   h(u) - h_K(u) [+ t] >= 0         for a fixed direction u
+ *     kink    d.(a - p) + r [+ t] >= 0         corner p inside the line of the edge before an arc, also when d turns
+ *     upper   h_K(u) - h(u) + t >= 0           for a fixed direction u
+ *
+ * A list is made for a chain: the directions where it has least room. When the chain has moved it may need more.
+ */
+#ifndef NARC_FIT_ROWS_H
+#define NARC_FIT_ROWS_H
+
+#include "chain.h"
+#include "hull.h"
+#include "profile.h"
+
+typedef enum row_kind { ROW_LOWER, ROW_KINK, ROW_UPPER } row_kind;
+
+typedef struct row {
+    row_kind kind;
+    size_t arc;           /* of a kink: the arc behind the edge */
+    narc_point direction; /* of the others */
+    narc_point corner;    /* of the hull, the support point in that direction */
+} row;
+
+enum { MAX_ROWS = 1400 };
+
+typedef struct row_list {
+    size_t count;
+    row items[MAX_ROWS];
+} row_list;
+
+/* What is fitted to what. */
+typedef struct problem {
+    const hull *around;
+    narc_fit_family family;
+    narc_fit_goal goal;
+    size_t count; /* arcs */
+    double max_radius;
+} problem;
+
+static inline bool narc_must_bound(const problem *of) { return of->goal <= NARC_FIT_BOUND_DISTANCE; }
+
+/* Is the goal a largest distance (which the symmetric difference starts from)? */
+static inline bool narc_is_distance(const problem *of) { return of->goal >= NARC_FIT_BOUND_DISTANCE; }
+
+/* How far an arc may turn; polygons need sides that meet. */
+static inline double narc_widest_sweep(const problem *of) {
+    return of->family == NARC_FIT_POLYGON ? 3.08 : 3.14159265358979323846;
+}
+
+/* The rows for a chain whose normals may turn by up to `turns`. `intervals` is room for its profile. */
+void narc_list_rows(const problem *of, const chain *at, const double *turns, interval *intervals, row_list *out_rows);
+
+/* Adds rows where a chain with a profile of `count` intervals goes too far by more than `slack`, at most 100 or so.
+ * Returns how many. */
+size_t narc_add_violated(const problem *of, const interval *intervals, size_t count, double slack, row_list *rows);
+
+/* The left side of a row for a placed chain, without t; adds its derivatives (in the order of narc_layout_of(), t
+ * included) to `derivatives`, which is NULL or zeros. */
+double narc_evaluate_row(const problem *of, const chain *at, const row *which, double *derivatives);
+
+#endif

@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * starts.c - normals to start from: on flush polygons, spread evenly, and spread by length and turning of the hull.
+ *
+ * An arc fits a corner or a side of the hull best if its sector is just the corner's or, flat, straddles the side's
+ * normal. So half as many sides as there are arcs give pairs of normals, one on either side of each side's normal; where
+ * straight edges are allowed the sides' normals are those of edges. Smooth hulls want normals spread evenly in a mixture
+ * of turning and length.
+ */
+#include "starts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "flush.h"
+#include "vector.h"
+
+static int compare_numbers(const void *left, const void *right) {
+    const double a = *(const double *)left, b = *(const double *)right;
+    return (a > b) - (a < b);
+}
+
+/* The widest sector of a list of normals, by the normal it begins with. */
+static size_t find_widest(const double *angles, size_t count, double *out_sweep) {
+    size_t widest = 0;
+    *out_sweep = 0;
+    for (size_t k = 0; k < count; k++) {
+        const double next = k + 1 < count ? angles[k + 1] : angles[0] + 2 * PI;
+        if (next - angles[k] > *out_sweep) {
+            *out_sweep = next - angles[k];
+            widest = k;
+        }
+    }
+    return widest;
+}
+
+/* Sorts `count` normals, at least one, within a turn of each other; halves the widest sectors until there are `wanted`;
+ * draws them a little towards an even spread, so that none coincide; and adds the set unless a sector is too wide. */
+static void add_set(start_list *to, const double *given, size_t count, size_t wanted) {
+    static const double EVEN = 0.02;
+    if (to->count == MAX_STARTS || count == 0 || count > wanted) {
+        return;
+    }
+    double *angles = to->angles[to->count];
+    memcpy(angles, given, count * sizeof *angles);
+    qsort(angles, count, sizeof *angles, compare_numbers);
+    double sweep;
+    for (; count < wanted; count++) {
+        const size_t k = find_widest(angles, count, &sweep);
+        memmove(angles + k + 2, angles + k + 1, (count - k - 1) * sizeof *angles);
+        angles[k + 1] = angles[k] + sweep / 2;
+    }
+    const double first = angles[0];
+    for (size_t k = 0; k < count; k++) {
+        const double even = first + 2 * PI * (double)k / (double)count;
+        angles[k] += EVEN * (even - angles[k]);
+    }
+    find_widest(angles, count, &sweep);
+    to->count += sweep <= to->widest;
+}
+
+static void add_even(start_list *to, size_t count, double phase) {
+    double angles[MAX_CHAIN];
+    for (size_t k = 0; k < count; k++) {
+        angles[k] = 2 * PI * ((double)k + phase) / (double)count;
+    }
+    add_set(to, angles, count, count);
+}
+
+/* Normals at even steps of a measure of the hull's outline: `turning` parts of its turning and the rest of its length,
+ * both as parts of the whole. The first is at `phase` steps. */
+static void add_measured(start_list *to, const hull *of, size_t count, double turning, double phase) {
+    double angles[MAX_CHAIN], measure = 0;
+    size_t next = 0;
+    for (size_t k = 0; k < of->count && next < count; k++) {
+        const narc_point from = of->corners[k], until = of->corners[(k + 1) % of->count];
+        const double side = (1 - turning) * length(minus(until, from)) / of->perimeter;
+        const double end = k + 1 < of->count ? of->angles[k + 1] : of->angles[0] + 2 * PI;
+        const double turn = turning * (end - of->angles[k]) / (2 * PI);
+        double target = ((double)next + phase) / (double)count;
+        for (; next < count && target < measure + side; target = ((double)++next + phase) / (double)count) {
+            angles[next] = of->angles[k];
+        }
+        measure += side;
+        for (; next < count && target < measure + turn; target = ((double)++next + phase) / (double)count) {
+            angles[next] = of->angles[k] + (end - of->angles[k]) * (target - measure) / turn;
+        }
+        measure += turn;
+    }
+    add_set(to, angles, next, count);
+}
+
+/* Two normals at each side of a flush polygon, `apart` to either side of the side's own. */
+static void add_pairs(start_list *to, const hull *of, size_t count, size_t sides, double apart) {
+    double flush[MAX_CHAIN], angles[MAX_CHAIN];
+    const size_t found = narc_find_flush_polygon(of, sides, flush);
+    for (size_t k = 0; k < found; k++) {
+        angles[2 * k] = flush[k] - apart;
+        angles[2 * k + 1] = flush[k] + apart;
+    }
+    add_set(to, angles, 2 * found, count);
+}
+
+static void add_flush(start_list *to, const hull *of, size_t count, size_t sides) {
+    double flush[MAX_CHAIN];
+    const size_t found = narc_find_flush_polygon(of, sides, flush);
+    add_set(to, flush, found, count);
+}
+
+void narc_list_starts(const problem *of, start_list *out_starts) {
+    const size_t n = of->count;
+    out_starts->count = 0;
+    out_starts->widest = narc_widest_sweep(of) + 1e-9;
+    if (of->family != NARC_FIT_N_ARC) {
+        add_flush(out_starts, of->around, n, n);
+        add_flush(out_starts, of->around, n, n - 1);
+    }
+    if (of->family != NARC_FIT_POLYGON) {
+        add_pairs(out_starts, of->around, n, n / 2, 0.03);
+        add_pairs(out_starts, of->around, n, n / 2, 0.12);
+        add_pairs(out_starts, of->around, n, n / 2 - (n > 7), 0.05);
+        add_pairs(out_starts, of->around, n, n / 3, 0.05);
+    }
+    for (unsigned k = 0; k < 4; k++) {
+        const double phase = (double)k / 4;
+        add_measured(out_starts, of->around, n, 0.5, phase);
+        add_measured(out_starts, of->around, n, k % 2 ? 0.2 : 0.8, phase);
+        add_even(out_starts, n, phase);
+    }
+}
