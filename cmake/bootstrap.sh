@@ -32,7 +32,8 @@ export CMAKE_BUILD_PARALLEL_LEVEL="$jobs" CTEST_PARALLEL_LEVEL="$jobs"
 
 # ---------------------------------------------------------------------------- packages
 library_packages="gcc libc6-dev make cmake pkg-config libsleef-dev"
-build_packages="$library_packages libfreetype-dev libcjson-dev libcairo2-dev libcmocka-dev"
+fit_packages="libfreetype-dev libxml2-dev libpng-dev libcjson-dev coinor-libclp-dev libnlopt-dev"
+build_packages="$library_packages $fit_packages libcairo2-dev libcmocka-dev"
 run_packages="$build_packages fonts-symbola"
 peer_packages="g++ libbenchmark-dev libbox2d-dev libchipmunk-dev libccd-dev"
 test_packages="$run_packages $peer_packages binutils clang libomp-dev"
@@ -112,7 +113,7 @@ run() {
     font=$(dpkg -L fonts-symbola | grep -i -m 1 '\.[ot]tf$') || fail "fonts-symbola has no font file"
     mkdir -p out
     say "shapes"
-    "$narc" shapes "$font" '👻🏠🚀🌳' --arcs 8 --out out/shapes.json --picture out/shapes.png
+    "$narc" fit "$font" --characters '👻🏠🚀🌳' --arcs 8 --out out/shapes.json --picture out/shapes.png
     say "scene"
     "$narc" scene --shapes out/shapes.json --bodies 20000 --density 0.25 --seed 1 --out out/bodies.csv
     say "collide"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# What cmake --install writes: headers, both libraries, the CMake package and the pkg-config file.
+# What cmake --install writes: headers, the libraries, the CMake package and the pkg-config files.
 include(CMakePackageConfigHelpers)
 
 install(FILES soa/narc_export.h soa/narc_shapes.h dispatch/narc.h dispatch/narc_methods.h
@@ -11,6 +11,13 @@ install(TARGETS narc EXPORT narc_shared INCLUDES DESTINATION "${CMAKE_INSTALL_IN
 install(TARGETS narc_static EXPORT narc_static INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(EXPORT narc_shared NAMESPACE narc:: FILE narcShared.cmake DESTINATION "${package_directory}")
 install(EXPORT narc_static NAMESPACE narc:: FILE narcStatic.cmake DESTINATION "${package_directory}")
+# The fitting library, where it is built. What it links itself, its users need not find.
+if(TARGET narc_fit)
+  install(FILES fit/narc_fit.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  set_target_properties(narc_fit PROPERTIES EXPORT_NAME fit)
+  install(TARGETS narc_fit EXPORT narc_fit INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  install(EXPORT narc_fit NAMESPACE narc:: FILE narcFit.cmake DESTINATION "${package_directory}")
+endif()
 
 configure_package_config_file(cmake/narcConfig.cmake.in narcConfig.cmake INSTALL_DESTINATION "${package_directory}")
 write_basic_package_version_file(narcConfigVersion.cmake COMPATIBILITY SameMinorVersion)
@@ -30,3 +37,7 @@ endif()
 list(JOIN SLEEF_LDFLAGS " " pc_sleef)
 configure_file(cmake/narc.pc.in narc.pc @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/narc.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+if(TARGET narc_fit)
+  configure_file(cmake/narc-fit.pc.in narc-fit.pc @ONLY)
+  install(FILES "${PROJECT_BINARY_DIR}/narc-fit.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+endif()

@@ -11,8 +11,9 @@
 #include "starts.h"
 #include "vector.h"
 
-/* Rounds of quadratic programming: a few from each start, more for the best at the end. */
-enum { START_ROUNDS = 6, LAST_ROUNDS = 12 };
+/* Rounds of quadratic programming: more for the best at the end; from each start fewer the more they cost. */
+enum { LAST_ROUNDS = 12 };
+static unsigned count_rounds(const problem *of) { return 1 + 12 / (unsigned)of->count; }
 
 /* An exchange tries all pairs of so many junctions that seem needed least and arcs that seem to need another most, and
  * goes on from the best few. */
@@ -126,7 +127,7 @@ static bool try_exchanges(search *with, candidate *best, progress *work) {
     const double value = best->value;
     for (size_t k = 0; k < EXCHANGE_SEARCHES; k++) {
         if (k < promising.count) {
-            narc_refine(with, &promising.items[k], START_ROUNDS);
+            narc_refine(with, &promising.items[k], count_rounds(&with->of));
             take_better(best, &promising.items[k]);
         }
         if (!narc_advance(work)) {
@@ -154,7 +155,7 @@ static void try_known(search *with, const chain *known, size_t count, candidate 
         candidate next = {.form = known[k]};
         narc_place_chain(&next.form);
         next.value = narc_settle(with, &next.form, &intervals);
-        narc_refine(with, &next, START_ROUNDS);
+        narc_refine(with, &next, count_rounds(&with->of));
         take_better(best, &next);
     }
 }
@@ -172,7 +173,7 @@ narc_status narc_find_best(const problem *of, unsigned starts, const chain *know
     try_known(&with, known, known_count, &best);
     bool going = true;
     for (size_t k = 0; k < promising.count && going; k++) {
-        narc_refine(&with, &promising.items[k], START_ROUNDS);
+        narc_refine(&with, &promising.items[k], count_rounds(of));
         take_better(&best, &promising.items[k]);
         going = narc_advance(work);
     }

@@ -1,10 +1,210 @@
 /* SPDX-License-Identifier: MIT
  *
- * bezier.c - stub
+ * bezier.c - Bezier curves to arcs: checks, the frame in which the curve is about 1 large, and the output.
  */
-#include "narc_fit.h"
-#include "error.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
 
-narc_status narc_fit_bezier(const narc_point *controls, size_t degree, double tolerance, narc_curve_arc *out_arcs, size_t capacity, size_t *out_count, double *out_distance, narc_error *error) { (void)controls; (void)degree; (void)tolerance; (void)out_arcs; (void)capacity; (void)out_count; (void)out_distance;
-    return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, 0, "stub");
+#include "biarc.h"
+#include "error.h"
+#include "narc_fit.h"
+
+/* Least tolerance, relative to the extent. */
+static const double LEAST_TOLERANCE = 1e-9;
+
+/* Points in the frame are (p - middle) / 2^exponent. */
+typedef struct frame {
+    narc_point middle;
+    int exponent;
+    double extent;   /* larger side of the controls' bounding box */
+    double rounding; /* of points of the curve, in the frame */
+} frame;
+
+static narc_status check_controls(const narc_point *controls, size_t degree, double tolerance, narc_error *error) {
+    for (size_t k = 0; k <= degree; k++) {
+        const narc_point p = controls[k];
+        const double value = isfinite(p.x) ? p.y : p.x;
+        if (!isfinite(p.x) || !isfinite(p.y)) {
+            return narc_fail(error, NARC_ERROR_NOT_FINITE, k, value, "control point %zu is not finite: (%g, %g)", k,
+                             p.x, p.y);
+        }
+        const double largest = fmax(fabs(p.x), fabs(p.y));
+        if (largest > NARC_MAX_COORDINATE) {
+            return narc_fail(error, NARC_ERROR_SIZE, k, largest,
+                             "control point %zu has a coordinate of %g, at most %g is allowed", k, largest,
+                             NARC_MAX_COORDINATE);
+        }
+    }
+    if (isnan(tolerance)) {
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, tolerance, "tolerance is not a number");
+    }
+    if (!(tolerance > 0)) {
+        return narc_fail(error, NARC_ERROR_SIZE, 0, tolerance, "tolerance is %g, it must be positive", tolerance);
+    }
+    return NARC_OK;
+}
+
+static frame find_frame(const narc_point *controls, size_t degree) {
+    narc_point low = controls[0], high = controls[0];
+    double largest = 0;
+    for (size_t k = 0; k <= degree; k++) {
+        low = (narc_point){fmin(low.x, controls[k].x), fmin(low.y, controls[k].y)};
+        high = (narc_point){fmax(high.x, controls[k].x), fmax(high.y, controls[k].y)};
+        largest = fmax(largest, fmax(fabs(controls[k].x), fabs(controls[k].y)));
+    }
+    frame f = {.middle = {(low.x + high.x) / 2, (low.y + high.y) / 2}};
+    f.extent = fmax(high.x - low.x, high.y - low.y);
+    if (f.extent > 0) {
+        frexp(f.extent, &f.exponent);
+        /* Moving to the frame and back rounds each coordinate by half an epsilon of the largest, twice; what is done
+         * in the frame, where all is below 1, takes some tens of roundings. */
+        f.rounding = 2 * DBL_EPSILON * ldexp(largest, -f.exponent) + 16 * DBL_EPSILON;
+    }
+    return f;
+}
+
+static narc_point to_frame(const frame *f, narc_point p) {
+    return (narc_point){ldexp(p.x - f->middle.x, -f->exponent), ldexp(p.y - f->middle.y, -f->exponent)};
+}
+
+static narc_point from_frame(const frame *f, narc_point p) {
+    return (narc_point){ldexp(p.x, f->exponent) + f->middle.x, ldexp(p.y, f->exponent) + f->middle.y};
+}
+
+/* The curve as a cubic. */
+static narc_cubic raise_degree(const narc_point *c, size_t degree) {
+    if (degree == 1) {
+        return (narc_cubic){
+            {c[0], along(c[0], 1. / 3, minus(c[1], c[0])), along(c[1], 1. / 3, minus(c[0], c[1])), c[1]}};
+    }
+    if (degree == 2) {
+        return (narc_cubic){
+            {c[0], along(c[0], 2. / 3, minus(c[1], c[0])), along(c[2], 2. / 3, minus(c[1], c[2])), c[2]}};
+    }
+    return (narc_cubic){{c[0], c[1], c[2], c[3]}};
+}
+
+static void reverse_spline(narc_spline *spline) {
+    for (size_t i = 0, j = spline->count; i < j; i++) {
+        j--;
+        const narc_spline_arc arcs[2] = {spline->arcs[i], spline->arcs[j]};
+        for (int k = 0; k < 2; k++) {
+            const narc_spline_arc a = arcs[k];
+            spline->arcs[k ? i : j] = (narc_spline_arc){
+                .start = a.end,
+                .end = a.start,
+                .start_tangent = {-a.end_tangent.x, -a.end_tangent.y},
+                .end_tangent = {-a.start_tangent.x, -a.start_tangent.y},
+                .curvature = -a.curvature,
+                .turn = -a.turn,
+            };
+        }
+    }
+}
+
+/* Cuts are sought from both ends: the better of both splines, so that the direction of the curve makes no
+ * difference. */
+static narc_status fit_both_ways(const narc_cubic *curve, double tolerance, double rounding, narc_spline *spline,
+                                 narc_error *error) {
+    const narc_cubic reversed = narc_reverse_cubic(curve);
+    narc_spline other = {0};
+    narc_status status = narc_fit_spline(curve, tolerance, rounding, spline, error);
+    if (status == NARC_OK) {
+        status = narc_fit_spline(&reversed, tolerance, rounding, &other, error);
+    }
+    if (status == NARC_OK &&
+        (other.count < spline->count || (other.count == spline->count && other.distance < spline->distance))) {
+        const narc_spline better = other;
+        other = *spline;
+        *spline = better;
+        reverse_spline(spline);
+    }
+    free(other.arcs);
+    return status;
+}
+
+static narc_curve_arc describe_arc(const frame *f, const narc_spline_arc *arc) {
+    narc_curve_arc out = {.start = from_frame(f, arc->start), .end = from_frame(f, arc->end)};
+    if (arc->curvature == 0) {
+        out.center = out.start;
+        out.radius = INFINITY;
+        return out;
+    }
+    const double radius = 1 / arc->curvature;
+    out.center = from_frame(f, along(arc->start, radius, turned(arc->start_tangent)));
+    out.radius = ldexp(fabs(radius), f->exponent);
+    out.turn = arc->turn;
+    return out;
+}
+
+static narc_status write_arcs(const frame *f, const narc_spline *spline, narc_point first, narc_point last,
+                              narc_curve_arc *out_arcs, size_t capacity, narc_error *error) {
+    for (size_t k = 0; k < spline->count && k < capacity; k++) {
+        out_arcs[k] = describe_arc(f, &spline->arcs[k]);
+        if (k == 0) {
+            out_arcs[k].start = first;
+        }
+        if (k + 1 == spline->count) {
+            out_arcs[k].end = last;
+        }
+    }
+    if (out_arcs && capacity < spline->count) {
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)spline->count, "room for %zu arcs, but there are %zu",
+                         capacity, spline->count);
+    }
+    return NARC_OK;
+}
+
+static narc_status fit_curve(const narc_point *controls, size_t degree, double tolerance, const frame *f,
+                             narc_spline *spline, narc_error *error) {
+    const double in_frame = ldexp(tolerance, -f->exponent), extent = ldexp(f->extent, -f->exponent);
+    const double least = fmax(LEAST_TOLERANCE * extent, 16 * f->rounding);
+    if (in_frame < least) {
+        return narc_fail(error, NARC_ERROR_SIZE, 0, tolerance, "tolerance is %g, at least %g is needed for this curve",
+                         tolerance, ldexp(least, f->exponent));
+    }
+    narc_point local[4];
+    for (size_t k = 0; k <= degree; k++) {
+        local[k] = to_frame(f, controls[k]);
+    }
+    const narc_cubic curve = raise_degree(local, degree);
+    /* A tolerance of many times the curve means no more than that of a few times. */
+    const double limit = fmin(in_frame, 16 * extent) - 2 * f->rounding;
+    const narc_status status = fit_both_ways(&curve, limit, f->rounding, spline, error);
+    /* The sum of what was subtracted above may be a rounding more. */
+    spline->distance = fmin(ldexp(spline->distance + 2 * f->rounding, f->exponent), tolerance);
+    return status;
+}
+
+narc_status narc_fit_bezier(const narc_point *controls, size_t degree, double tolerance, narc_curve_arc *out_arcs,
+                            size_t capacity, size_t *out_count, double *out_distance, narc_error *error) {
+    if (!controls || !out_count || !out_distance || (!out_arcs && capacity > 0)) {
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL",
+                         !controls       ? "controls"
+                         : !out_count    ? "out_count"
+                         : !out_distance ? "out_distance"
+                                         : "out_arcs");
+    }
+    if (degree < 1 || degree > 3) {
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)degree, "degree is %zu, it must be 1 to 3", degree);
+    }
+    narc_status status = check_controls(controls, degree, tolerance, error);
+    if (status != NARC_OK) {
+        return status;
+    }
+    const frame f = find_frame(controls, degree);
+    narc_spline spline = {0};
+    if (f.extent > 0) {
+        status = fit_curve(controls, degree, tolerance, &f, &spline, error);
+    }
+    if (status == NARC_OK) {
+        status = write_arcs(&f, &spline, controls[0], controls[degree], out_arcs, capacity, error);
+        *out_count = spline.count;
+    }
+    if (status == NARC_OK) {
+        *out_distance = spline.distance;
+    }
+    free(spline.arcs);
+    return status;
 }

@@ -17,6 +17,10 @@
  * more is for cuts that rounding finds on both sides of a junction. An arc may weave through all sides. */
 enum { SIDE_CUTS = 8 };
 
+/* Outlines nearer than this, in parts of the hull's perimeter, coincide: straight edges often lie on sides. Well above
+ * the roundings of a distance, and far below what would show in an area. */
+static const double COINCIDENT = 1e-12;
+
 typedef struct cuts {
     size_t count, room;
     double *at;
@@ -34,43 +38,55 @@ static void add_cut(cuts *to, double at) {
     to->count++;
 }
 
-bool narc_is_in_chain(const chain *of, narc_point x) {
+/* How far inside the chain a point is, at most `enough`; negative outside. */
+static double depth_in_chain(const chain *of, narc_point x, double enough) {
+    double least = enough;
     for (size_t i = 0; i < of->count; i++) {
         const narc_point q = minus(x, of->center[i]), u = of->normal[i], v = of->normal[i + 1];
-        if (dot(q, u) > of->radius[i]) {
-            return false;
-        }
-        if (cross(u, q) > 0 && cross(q, v) > 0 && dot(q, q) > of->radius[i] * of->radius[i]) {
-            return false;
+        least = fmin(least, of->radius[i] - dot(q, u));
+        if (cross(u, q) > 0 && cross(q, v) > 0) {
+            least = fmin(least, of->radius[i] - length(q));
         }
     }
-    return true;
+    return least;
 }
 
-/* Binary search in the fan of triangles around corner 0. */
-bool narc_is_in_hull(const hull *around, narc_point x) {
+static double depth_in_side(const hull *around, size_t k, narc_point x) {
+    return -dot(minus(x, around->corners[k]), around->normals[k]);
+}
+
+/* The same for the hull: binary search in the fan of triangles around corner 0 finds the side that matters, besides the
+ * two at that corner. */
+static double depth_in_hull(const hull *around, narc_point x) {
     const narc_point *p = around->corners;
-    const narc_point q = minus(x, p[0]);
     size_t low = 1, high = around->count - 1;
-    if (cross(minus(p[low], p[0]), q) < 0 || cross(minus(p[high], p[0]), q) > 0) {
-        return false;
-    }
     while (high - low > 1) {
         const size_t middle = (low + high) / 2;
-        if (cross(minus(p[middle], p[0]), q) >= 0) {
+        if (cross(minus(p[middle], p[0]), minus(x, p[0])) >= 0) {
             low = middle;
         } else {
             high = middle;
         }
     }
-    return cross(minus(p[high], p[low]), minus(x, p[low])) >= 0;
+    return fmin(depth_in_side(around, low, x),
+                fmin(depth_in_side(around, 0, x), depth_in_side(around, around->count - 1, x)));
 }
 
-/* The part of a side, from 0 to 1, at which it is cut at point x of the circle or line through it; false if beyond. */
+/* Parts of a side, edge or arc a little beyond its ends count as the ends: so a crossing at a corner is found by at least
+ * one of two neighbours, and found twice it makes a piece of no length. */
+static const double END = 1e-9;
+
+static bool clamp_part(double *part) {
+    const bool near = *part >= -END && *part <= 1 + END;
+    *part = fmin(fmax(*part, 0), 1);
+    return near;
+}
+
+/* The part of a side of the hull, from 0 to 1, where a point of its line is; false if beyond. */
 static bool find_part(const hull *around, size_t side, narc_point x, double *out) {
     const narc_point p = around->corners[side], e = minus(around->corners[(side + 1) % around->count], p);
     *out = dot(minus(x, p), e) / dot(e, e);
-    return *out >= 0 && *out < 1;
+    return clamp_part(out);
 }
 
 typedef struct work {
@@ -81,6 +97,7 @@ typedef struct work {
     narc_point force[MAX_CHAIN]; /* derivatives by the centres */
     double push[MAX_CHAIN];      /* by the radii, centres aside */
     double common;               /* twice the area in both */
+    double margin;               /* what lies this near the other outline is on it: then the chain's piece counts */
 } work;
 
 static void cut_arc(work *in, size_t i, double from, double to, cuts *out) {
@@ -93,11 +110,12 @@ static void cut_arc(work *in, size_t i, double from, double to, cuts *out) {
         }
         const double half = acos(c);
         for (int sign = -1; sign <= 1; sign += 2) {
-            double angle = in->around->angles[k] + sign * half, part;
-            angle -= 2 * PI * floor((angle - from) / (2 * PI));
-            if (angle < to && find_part(in->around, k, along(a, r, unit_at(angle)), &part)) {
-                add_cut(out, angle);
-                add_cut(&in->sides[k], part);
+            double angle = in->around->angles[k] + sign * half, on_side;
+            angle -= 2 * PI * floor((angle - from + END) / (2 * PI));
+            double on_arc = (angle - from) / (to - from);
+            if (clamp_part(&on_arc) && find_part(in->around, k, along(a, r, unit_at(angle)), &on_side)) {
+                add_cut(out, from + on_arc * (to - from));
+                add_cut(&in->sides[k], on_side);
             }
         }
     }
@@ -112,7 +130,7 @@ static void sum_arc(work *in, size_t i) {
     cut_arc(in, i, from, end, &in->pieces);
     for (size_t k = 0; k < in->pieces.count; k++) {
         const double to = in->pieces.at[k];
-        const bool inside = narc_is_in_hull(in->around, along(a, r, unit_at(0.5 * (from + to))));
+        const bool inside = depth_in_hull(in->around, along(a, r, unit_at(0.5 * (from + to)))) > -in->margin;
         const narc_point sum = {sin(to) - sin(from), cos(from) - cos(to)};
         const double sign = inside ? -r : r;
         in->force[i] = along(in->force[i], sign, sum);
@@ -126,13 +144,10 @@ static void cut_edge(work *in, narc_point p, narc_point e, cuts *out) {
     for (size_t k = 0; k < in->around->count; k++) {
         const narc_point normal = in->around->normals[k];
         const double slope = dot(e, normal), height = dot(minus(in->around->corners[k], p), normal);
-        double part;
-        if (slope == 0 || !(height / slope >= 0 && height / slope < 1)) {
-            continue;
-        }
-        if (find_part(in->around, k, along(p, height / slope, e), &part)) {
-            add_cut(out, height / slope);
-            add_cut(&in->sides[k], part);
+        double on_edge = height / slope, on_side;
+        if (slope != 0 && clamp_part(&on_edge) && find_part(in->around, k, along(p, height / slope, e), &on_side)) {
+            add_cut(out, on_edge);
+            add_cut(&in->sides[k], on_side);
         }
     }
     add_cut(out, 1);
@@ -148,7 +163,7 @@ static void sum_edge(work *in, size_t i) {
     double from = 0;
     for (size_t k = 0; k < in->pieces.count; k++) {
         const double to = in->pieces.at[k];
-        const bool inside = narc_is_in_hull(in->around, along(p, 0.5 * (from + to), e));
+        const bool inside = depth_in_hull(in->around, along(p, 0.5 * (from + to), e)) > -in->margin;
         /* The edge's end moves with arc i, its start with the arc before, what is between by parts. */
         const double sign = inside ? -of->edge[i] : of->edge[i];
         const double at_end = sign * 0.5 * (to * to - from * from), at_start = sign * (to - from) - at_end;
@@ -168,7 +183,7 @@ static void sum_sides(work *in) {
         add_cut(&in->sides[k], 1);
         for (size_t c = 0; c < in->sides[k].count; c++) {
             const double to = in->sides[k].at[c];
-            if (narc_is_in_chain(in->of, along(p, 0.5 * (from + to), e))) {
+            if (depth_in_chain(in->of, along(p, 0.5 * (from + to), e), 2 * in->margin) > in->margin) {
                 in->common += (to - from) * cross(p, e);
             }
             from = to;
@@ -192,7 +207,7 @@ static void close_work(work *in) {
 }
 
 double narc_difference_area(const chain *of, const hull *around, double *derivatives) {
-    work in = {.of = of, .around = around};
+    work in = {.of = of, .around = around, .margin = COINCIDENT * around->perimeter};
     if (!open_work(&in)) {
         close_work(&in);
         return INFINITY;

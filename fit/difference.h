@@ -12,10 +12,4 @@
  * `derivatives` gets those by all variables, in the order of narc_layout_of(). */
 double narc_difference_area(const chain *of, const hull *around, double *derivatives);
 
-/* Is a point inside a placed chain or on its outline? */
-bool narc_is_in_chain(const chain *of, narc_point x);
-
-/* Is a point inside a hull, inflation aside, or on its outline? */
-bool narc_is_in_hull(const hull *around, narc_point x);
-
 #endif

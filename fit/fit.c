@@ -23,9 +23,13 @@ static const double LEAST_RADIUS = 4 * NARC_MIN_SIZE, LARGEST_RADIUS = 0.1 * NAR
  * tells apart. */
 static const double LEAST_AREA = 1e-5;
 
-/* The largest radius in units of the hull's; the shape's own bounding radius, which is the limit's measure, is no
- * smaller. */
-static const double MAX_RADIUS = 0.95 * NARC_MAX_RADIUS_RATIO;
+/* The largest radius is this part of what the store takes, which rounding must not exceed. */
+static const double RADIUS_ROOM = 0.99;
+
+/* Hulls with more corners are thinned, by twice this (in parts of the radius), or four times ..., until they have fewer.
+ * A circle has some 1500 corners at 2e-6. */
+static const double LEAST_THINNING = 1e-6;
+enum { MOST_CORNERS = 2000 };
 
 /* With a tolerance, curves are flattened to this part of it at least. */
 static const double FLATNESS_OF_TOLERANCE = 0.02;
@@ -35,7 +39,7 @@ typedef struct job {
     const narc_fit_request *request;
     hull around; /* scaled: within 1 of the origin */
     scale at;
-    double flatness;
+    double flatness, max_radius;
     unsigned starts;
     progress work;
 } job;
@@ -112,6 +116,21 @@ static narc_status scale_hull(const narc_contours *contours, job *to, narc_error
     return status;
 }
 
+/* Half of the hull's largest width among some directions: no circle around it, or around a shape that holds it, is
+ * smaller. */
+static double find_least_radius(const hull *of) {
+    enum { DIRECTIONS = 64 };
+    double widest = 0;
+    for (unsigned k = 0; k < DIRECTIONS; k++) {
+        const double angle = PI * k / DIRECTIONS;
+        const narc_point u = unit_at(angle);
+        const narc_point ahead = of->corners[narc_find_corner(of, angle)];
+        const narc_point behind = of->corners[narc_find_corner(of, angle + PI)];
+        widest = fmax(widest, dot(minus(ahead, behind), u));
+    }
+    return 0.5 * widest;
+}
+
 static narc_status prepare(const narc_path *path, job *to, narc_error *error) {
     const narc_fit_request *request = to->request;
     narc_contours contours;
@@ -130,12 +149,18 @@ static narc_status prepare(const narc_path *path, job *to, narc_error *error) {
         return status;
     }
     to->around.inflation = to->flatness / to->at.radius;
+    for (double tolerance = LEAST_THINNING; status == NARC_OK && to->around.count > MOST_CORNERS;) {
+        tolerance *= 2;
+        status = narc_thin_hull(&to->around, tolerance, error);
+    }
+    to->flatness = to->at.radius * to->around.inflation;
+    to->max_radius = RADIUS_ROOM * NARC_MAX_RADIUS_RATIO * find_least_radius(&to->around);
     if (to->around.area < LEAST_AREA) {
         narc_release_hull(&to->around);
         return narc_fail(error, NARC_ERROR_NOT_CONVEX, 0, to->around.area,
                          "the outline is as thin as a line, single precision can't tell its sides apart");
     }
-    return NARC_OK;
+    return status;
 }
 
 /* ---------------------------------------------------------------------------- one count of arcs */
@@ -173,7 +198,7 @@ static narc_status find_known(job *in, const problem *of, known_chains *out, nar
 
 static narc_status find_chain(job *in, narc_fit_family family, narc_fit_goal goal, size_t count, candidate *out_best,
                               narc_error *error) {
-    problem of = {.around = &in->around, .family = family, .goal = goal, .count = count, .max_radius = MAX_RADIUS};
+    problem of = {.around = &in->around, .family = family, .goal = goal, .count = count, .max_radius = in->max_radius};
     /* Closed chains of up to three arcs without edges are circles. */
     const bool circle = family == NARC_FIT_N_ARC ? count < 3 : count < 2;
     if (circle) {

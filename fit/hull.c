@@ -100,6 +100,48 @@ narc_status narc_make_hull(const narc_point *points, size_t count, hull *out_hul
     return status;
 }
 
+/* Are the corners between `from` and `to` within the tolerance of the line between these two? */
+static bool is_flat_run(const hull *of, size_t from, size_t to, double tolerance) {
+    const narc_point a = of->corners[from], side = minus(of->corners[to % of->count], a);
+    for (size_t k = from + 1; k < to; k++) {
+        if (fabs(cross(side, minus(of->corners[k], a))) > tolerance * length(side)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Each run is as long as it can be, by doubling its length and then halving the doubt. */
+narc_status narc_thin_hull(hull *of, double tolerance, narc_error *error) {
+    narc_point *kept = malloc(of->count * sizeof *kept);
+    if (!kept) {
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for a hull of %zu corners", of->count);
+    }
+    size_t count = 0;
+    for (size_t from = 0; from < of->count;) {
+        kept[count++] = of->corners[from];
+        size_t step = 1;
+        while (from + 2 * step <= of->count && is_flat_run(of, from, from + 2 * step, tolerance)) {
+            step *= 2;
+        }
+        for (size_t more = step / 2; more > 0; more /= 2) {
+            if (from + step + more <= of->count && is_flat_run(of, from, from + step + more, tolerance)) {
+                step += more;
+            }
+        }
+        from += step;
+    }
+    hull thinned;
+    const narc_status status = count < 3 ? NARC_OK : narc_adopt_corners(kept, count, &thinned, error);
+    free(kept);
+    if (status == NARC_OK && count >= 3) {
+        thinned.inflation = of->inflation + tolerance;
+        narc_release_hull(of);
+        *of = thinned;
+    }
+    return status;
+}
+
 void narc_release_hull(hull *of) {
     free(of->corners);
     free(of->normals);

@@ -15,7 +15,7 @@
 
 /* One round ends when the variables change by less than this, or after so many evaluations. */
 static const double STEP_TOLERANCE = 1e-7;
-enum { EVALUATIONS = 50 };
+enum { EVALUATIONS = 100 };
 
 /* Rows with more room than this, in units of the hull's radius, are left to the next round. */
 static const double NEAR = 0.08;

@@ -6,9 +6,9 @@
 
 #include "vector.h"
 
-/* Of many directions the one with least room in each bin is listed, and all where the room is locally least. Bins are
- * dense enough that what goes too far between two of them is caught by a few rows more. */
-enum { BINS = 120 };
+/* Of many directions the one with least room in each bin is listed, and all where the room is locally least. Some seven
+ * bins an arc are dense enough that what goes too far between two of them is caught by a few rows more. */
+static size_t count_bins(const problem *of) { return 40 + 2 * of->count; }
 
 /* An interval wider than this (the cosine of its angle) with less room than this, in units of the hull's radius, is
  * listed at FAN + 1 directions: where a corner of the chain meets a corner of the hull, all are as near to touching. */
@@ -38,10 +38,11 @@ static bool is_extreme(const interval *all, size_t count, size_t k, bool upper) 
 }
 
 static void add_directions(const problem *of, const interval *all, size_t count, bool upper, row_list *rows) {
+    const size_t bins = count_bins(of);
     size_t best = 0;
     for (size_t k = 0; k < count; k++) {
         best = read_room(&all[k], upper) < read_room(&all[best], upper) ? k : best;
-        const bool ends_bin = k + 1 == count || k * BINS / count != (k + 1) * BINS / count;
+        const bool ends_bin = k + 1 == count || k * bins / count != (k + 1) * bins / count;
         const bool local = is_extreme(all, count, k, upper);
         if (local) {
             add_extreme(of, rows, &all[k], upper);

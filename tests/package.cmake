@@ -9,6 +9,10 @@ endforeach()
 add_test(NAME symbols_library COMMAND ${CMAKE_COMMAND} "-DNM=${CMAKE_NM}" "-DLIBRARY=$<TARGET_FILE:narc>"
   "-DHEADERS=${PROJECT_SOURCE_DIR}/soa/narc_shapes.h;${PROJECT_SOURCE_DIR}/dispatch/narc.h;${PROJECT_SOURCE_DIR}/dispatch/narc_methods.h"
   -P "${PROJECT_SOURCE_DIR}/tests/test_symbols.cmake")
+if(TARGET narc_fit)
+  add_test(NAME symbols_fit COMMAND ${CMAKE_COMMAND} "-DNM=${CMAKE_NM}" "-DLIBRARY=$<TARGET_FILE:narc_fit>"
+    "-DHEADERS=${PROJECT_SOURCE_DIR}/fit/narc_fit.h" -P "${PROJECT_SOURCE_DIR}/tests/test_symbols.cmake")
+endif()
 
 # What runs before the processor check has no instruction that needs it; AVX registers are ymm and zmm, and the 128-bit
 # forms of AVX instructions begin with v. (Objects for link-time optimisation hold no instructions yet.)
@@ -44,7 +48,11 @@ endfunction()
 
 add_package_test(install)
 set_tests_properties(package_install PROPERTIES FIXTURES_REQUIRED "" FIXTURES_SETUP narc_installed)
-foreach(kind shared static)
+set(kinds shared static)
+if(TARGET narc_fit)
+  list(APPEND kinds fit)
+endif()
+foreach(kind IN LISTS kinds)
   foreach(language c cxx)
     add_package_test(cmake_${kind}_${language} -DKIND=${kind} -DLANGUAGE=${language})
     add_package_test(pkgconfig_${kind}_${language} -DKIND=${kind} -DLANGUAGE=${language})

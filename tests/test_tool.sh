@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 #
 # test_tool.sh NARC [FONT] - the narc command from outside: files in, files, reports and errors out.
-# FONT is a font with the ghost, house, rocket and tree; without one the checks of `narc shapes` on glyphs are skipped.
+# FONT is a font with the ghost, house, rocket and tree; without one the checks of glyphs are skipped.
 set -u
 unset NARC_ISA
 
@@ -64,7 +64,7 @@ reports() { [ "$(awk -v key="$1" 'index($0, key) == 1 { print $NF }' out.txt)" =
 begins_with() { [ "$(head -c "${#2}" "$1" | tr '\211' 'X')" = "$2" ]; }
 
 # ------------------------------------------------------------------------------------------- help
-for command in "" shapes collide scene info; do
+for command in "" fit collide scene info; do
     works "help $command" $command --help
     check "help $command says how to call it" grep -q "^usage: narc" out.txt
 done
@@ -365,43 +365,260 @@ check "no bodies, gjk: only the header" lines none.txt 1
 works "no bodies, obb" collide --shapes shapes.json --bodies none.csv --method obb --out none.txt --picture none.png
 check "no bodies, obb: only the header" test "$(cat none.txt)" = "a,b"
 
-# ------------------------------------------------------------------------------------------- glyphs
+# ------------------------------------------------------------------------------------------- fits
+# value SHAPE COLUMN: a number of the printed table. is SHAPE COLUMN NUMBER: it is this, within 1 %: enough to tell one
+# objective from another. Columns: 2 arcs, 3 edges, 4 area, 5 hull area, 6 ratio, 7 perimeter, 8 max, 9 mean distance.
+value() { awk -v shape="$1" -v column="$2" '$1 == shape { print $column }' out.txt; }
+is() { less "$(product "$3" 0.99)" "$(value "$1" "$2")" && less "$(value "$1" "$2")" "$(product "$3" 1.01)"; }
+less() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && b != "" && a + 0 < b + 0) }'; }
+product() { awk -v a="$1" -v b="$2" 'BEGIN { print a * b }'; }
+names() { [ "$(grep -o '"name": "[^"]*"' "$1" | cut -d'"' -f4 | tr '\n' ' ')" = "$2" ]; }
+
+# One outline in every format: a square with side 2. A polygon's arcs are its corners.
+mkdir fits fits/more
+printf '1,1\n3,1\n3,3\n1,3\n' >fits/square.csv
+printf '\357\273\277x,y\r\n1,1\r\n1,3\r\n3,3\r\n3,1\r\n' >fits/header.csv
+echo '[[1, 1], [3, 1], [3, 3], [1, 3]]' >fits/list.json
+echo '{"points": [[1, 1], [3, 1], [3, 3], [1, 3]]}' >fits/object.json
+cat >fits/rectangle.svg <<'EOT'
+<?xml version="1.0"?>
+<svg xmlns="http://www.w3.org/2000/svg" width="10" height="10">
+  <g transform="translate(1 1)"><rect width="1" height="1" transform="scale(2)"/></g>
+</svg>
+EOT
+cat >fits/circle.svg <<'EOT'
+<svg xmlns="http://www.w3.org/2000/svg"><circle cx="5" cy="5" r="2"/></svg>
+EOT
+squares="fits/square.csv fits/header.csv fits/list.json fits/object.json fits/rectangle.svg"
+
+works "fit" fit $squares --arcs 4 --out fits.json --picture fits.svg
+check "a shape for each file, named after it" names fits.json "square header list object rectangle "
+check "picture of the fits" begins_with fits.svg "<?xml"
+check "its end" grep -q "</svg>" fits.svg
+for one in square header list object rectangle; do
+    check "$one: area of the hull" is $one 5 4
+    check "$one: larger than the hull" less 0.99999 "$(value $one 6)"
+    check "$one: at most 4 arcs" less "$(value $one 2)" 5
+    check "$one: no edges" test "$(value $one 3)" = 0
+done
+works "fit to standard output" fit $squares --arcs=4 --bound --objective area
+check "the same shapes: --bound and area are the defaults" cmp out.txt fits.json
+check "the table is on standard error" grep -q "^square " err.txt
+works "scene of fits" scene --shapes fits.json --bodies 300 --density 0.5 --seed 1 --out fits.csv
+works "collide fits" collide --shapes fits.json --bodies fits.csv --out fits.txt --picture fits.png
+check "fits touch" test "$(wc -l <fits.txt)" -gt 50
+
+# A circle is the n-arc of a single arc. Around the square its radius is sqrt(2). Nearest to the square by distance it
+# has the mean of 1 and sqrt(2); by area, half of it lies inside: 1 / cos(pi / 8). Centroids are origins.
+works "circle around a square" fit fits/square.csv --arcs 1 --out one.json
+check "circle: one arc" test "$(value square 2)" = 1
+check "circle: area" is square 4 6.283185
+check "circle: ratio" is square 6 1.570796
+check "circle: perimeter" is square 7 8.885766
+check "circle: distance" is square 8 0.414214
+check "circle: it is around the origin" sh -c 'grep -o "center.: \[[^]]*" one.json | cut -d[ -f2 |
+    awk -F, "{ exit !(\$1 * \$1 < 1e-12 && \$2 * \$2 < 1e-12) }"'
+works "circle, least perimeter" fit fits/square.csv --arcs 1 --bound --objective perimeter --out one.json
+check "circle, least perimeter: it bounds" is square 7 8.885766
+works "circle, least distance" fit fits/square.csv --arcs 1 --bound --objective distance --out one.json
+check "circle, least distance: it bounds" is square 8 0.414214
+works "circle near a square" fit fits/square.csv --arcs 1 --approximate --out one.json
+check "circle near a square: distance" is square 8 0.207107
+check "circle near a square: area" is square 4 4.577643
+works "circle near a square, by name" fit fits/square.csv --arcs 1 --approximate --objective distance
+check "circle near a square, by name: the same" cmp out.txt one.json
+works "circle near a square by area" fit fits/square.csv --arcs 1 --approximate --objective area --out one.json
+check "circle near a square by area: area" is square 4 3.680578
+
+# More arcs do better, and no objective is worse, by its own measure, than another. (1.001: the searches are local.)
+works "least area" fit fits/square.csv --arcs 8 --objective area --out eight.json
+area=$(value square 4) perimeter=$(value square 7) distance=$(value square 8)
+check "8 arcs are better than 1" less "$area" 6
+works "least perimeter" fit fits/square.csv --arcs 8 --objective perimeter --out eight.json
+check "not longer than that of least area" less "$(value square 7)" "$(product "$perimeter" 1.001)"
+works "least distance" fit fits/square.csv --arcs 8 --objective distance --out eight.json
+check "not further than that of least area" less "$(value square 8)" "$(product "$distance" 1.001)"
+works "nearest" fit fits/square.csv --arcs 8 --approximate --out eight.json
+check "nearer than all that bound" less "$(value square 8)" "$(product "$distance" 0.9)"
+works "starts" fit fits/square.csv --arcs 5 --starts 3 --out five.json
+works "starts again" fit fits/square.csv --arcs 5 --starts 3
+check "the same bits" cmp out.txt five.json
+
+# Straight edges: the square itself, but for single precision.
+for family in edges polygon; do
+    works "$family" fit fits/square.csv --arcs 4 --$family --out edges.json --picture edges.png
+    check "$family: four edges" test "$(value square 3)" = 4
+    check "$family: area" is square 4 4
+    check "$family: nothing else" less "$(value square 8)" 1e-4
+    check "$family: picture" begins_with edges.png XPNG
+    works "$family: collide" collide --shapes edges.json --bodies none.csv
+done
+works "polygon for polygons only" scene --shapes edges.json --bodies 50 --density 1 --seed 1 --out edges.csv
+works "a polygon is one" collide --shapes edges.json --bodies edges.csv --method polygon-sat
+works "triangle" fit fits/square.csv --arcs 3 --polygon --out edges.json
+check "triangle: twice the area" is square 4 8
+works "the paper's route" fit fits/square.csv --arcs 4 --paper --out paper.json
+check "the paper's route: not smaller" less "$(product "$area" 0.99)" "$(value square 4)"
+
+# The distance of the circle around the square is 0.414, of the nearest 0.207.
+works "tolerance for a circle" fit fits/square.csv --tolerance 0.42 --out one.json
+check "tolerance for a circle: one arc" test "$(value square 2)" = 1
+works "tolerance for the nearest circle" fit fits/square.csv --tolerance 0.21 --approximate --out one.json
+check "tolerance for the nearest circle: one arc" test "$(value square 2)" = 1
+check "tolerance for the nearest circle: kept" less "$(value square 8)" 0.21
+works "a circle is not enough" fit fits/square.csv --tolerance 0.1 --out some.json
+check "a circle is not enough: arcs" less 3 "$(value square 2)"
+check "a circle is not enough: kept" less "$(value square 8)" 0.1
+works "tolerance with edges" fit fits/square.csv --tolerance 1e-3 --edges --out some.json
+check "tolerance with edges: kept" less "$(value square 8)" 1e-3
+# A polygon with 32 sides around a circle of radius 2 has corners that are 2 / cos(pi / 32) - 2 = 0.0097 away.
+fails "tolerance beyond reach" "narc: fits/circle.svg: .*0\\.009.*0\\.005" fit fits/circle.svg --tolerance 0.005 \
+    --polygon --starts 1 --out new.json
+
+# Curves: a circle's chords are as near as asked for.
+works "circle" fit fits/circle.svg --arcs 1 --out one.json
+check "circle: it bounds" less 0.99999 "$(value circle 6)"
+check "circle: closely" less "$(value circle 6)" 1.001
+fine=$(value circle 8)
+works "circle of few chords" fit fits/circle.svg --arcs 1 --flatness 0.01 --out one.json
+check "circle of few chords: wider" less "$fine" "$(value circle 8)"
+
+# Images: what narc draws.
+printf 'shape,x,y,angle\ndisc,0,0,0\n' >disc.csv
+works "an image of a disc" collide --shapes shapes.json --bodies disc.csv --picture fits/disc.png
+works "from an image" fit fits/disc.png --arcs 1 --threshold 0.05 --out one.json --picture disc.svg
+check "from an image: a disc" less "$(value disc 6)" 1.01
+check "from an image: pixels" less 100000 "$(value disc 4)"
+works "an image of fits" fit fits/square.csv --arcs 6 --out six.json --picture fits/drawn.png
+works "from an image by darkness" fit fits/drawn.png --arcs 6 --out six.json
+check "from an image by darkness: named after it" names six.json "drawn "
+
+# Points in no order.
+printf '1,1\n3,3\n3,1\n1,3\n2,2\n2.5,1.5\n' >fits/cloud.csv
+works "a cloud" fit fits/cloud.csv --arcs 4 --polygon --cloud --out cloud.json --picture cloud.svg
+check "a cloud: its hull" is cloud 4 4
+fails "a cloud without the option" "narc: fits/cloud.csv: .*(2, 2).*--cloud" fit fits/cloud.csv --arcs 4 --out new.json
+echo '[[1, 1], [3, 3], [3, 1], [1, 3]]' >fits/cloud.json
+fails "another" "narc: fits/cloud.json: .*(2, 2).*--cloud" fit fits/cloud.json --arcs 4 --out new.json
+works "a cloud of JSON" fit fits/cloud.json --arcs 4 --polygon --cloud --out cloud.json
+check "a cloud of JSON: its hull" is cloud 4 4
+
+# Names, and kinds told by content.
+cp fits/square.csv fits/more/square.csv && cp fits/square.csv fits/7.csv && cp fits/square.csv "fits/ a,b\"c.tar.csv"
+cp fits/rectangle.svg fits/kind.csv && cp fits/list.json fits/kind && cp fits/square.csv fits/.csv
+works "names" fit fits/square.csv fits/more/square.csv fits/7.csv "fits/ a,b\"c.tar.csv" fits/kind.csv fits/kind \
+    fits/.csv fits/square.csv --arcs 3 --out named.json
+check "names are made fit and unlike" names named.json "square square-2 shape-7 a_b_c.tar kind kind-2 .csv square-3 "
+works "they can be read" collide --shapes named.json --bodies none.csv
+
 if [ -n "$font" ]; then
-    works "glyphs" shapes "$font" "👻🏠🚀🌳️👻aZ7" --arcs 8 --out glyphs.json --picture glyphs.svg
-    check "one shape for each character, once" test "$(grep -c '"name"' glyphs.json)" -eq 7
-    check "names" test "$(grep -o '"name": "[^"]*"' glyphs.json | cut -d'"' -f4 | tr '\n' ' ')" = \
-        "U+1F47B U+1F3E0 U+1F680 U+1F333 a Z U+0037 "
-    check "eight arcs each" test "$(grep -c '"center"' glyphs.json)" -eq 56
-    check "a table is printed" grep -q "U+1F680 *8 " out.txt
+    works "glyphs" fit "$font" --characters "👻🏠🚀🌳️👻aZ7" --arcs 8 --out glyphs.json --picture glyphs.svg
+    check "one shape for each character, once" names glyphs.json "U+1F47B U+1F3E0 U+1F680 U+1F333 a Z U+0037 "
+    check "a table is printed" grep -q "^U+1F680  *[1-8] " out.txt
     check "picture of the glyphs" begins_with glyphs.svg "<?xml"
-    works "glyphs on standard output" shapes "$font" "👻🏠🚀🌳aZ7" --arcs=8
-    check "the same" cmp out.txt glyphs.json
-    for arcs in 3 4 5 6 7 9 12 16; do
-        works "ghost and tree of $arcs arcs" shapes "$font" "👻🌳" --arcs $arcs --out "glyphs$arcs.json"
-        works "they can be read" collide --shapes "glyphs$arcs.json" --bodies none.csv
-    done
+    works "a font beside other files" fit "$font" fits/square.csv "$font" --characters a --arcs=3
+    cp out.txt mixed.json
+    check "a font beside other files: names" names mixed.json "a square a-2 "
     works "scene of glyphs" scene --shapes glyphs.json --bodies 2000 --density 0.5 --seed 1 --out glyphs.csv
     works "collide glyphs" collide --shapes glyphs.json --bodies glyphs.csv --out glyphs.txt --picture glyphs.png
     check "glyphs touch" test "$(wc -l <glyphs.txt)" -gt 500
     check "picture of the scene" begins_with glyphs.png XPNG
 
-    fails "no glyph" "narc: .*U+10FFFD" shapes "$font" "$(printf '\364\217\277\275')" --arcs 8 --out new.json
-    fails "a blank has no outline" "narc: .*U+0020" shapes "$font" " " --arcs 8 --out new.json
-    fails "invalid UTF-8" "narc: .*UTF-8" shapes "$font" "$(printf 'a\300\200')" --arcs 8 --out new.json
-    fails "no characters" "narc: CHARACTERS is empty" shapes "$font" "" --arcs 8 --out new.json
-    for arcs in 2 65 8.5 x -1 ""; do
-        fails "arcs '$arcs'" "narc: --arcs" shapes "$font" a --arcs "$arcs" --out new.json
-    done
-    fails "no --arcs" "narc: --arcs is missing" shapes "$font" a --out new.json
-    fails "no characters given" "narc: CHARACTERS is missing" shapes "$font" --arcs 8
-    fails "glyph picture of another kind" "narc: .*new.jpg" shapes "$font" a --arcs 8 --out new.json --picture new.jpg
-    fails "glyph picture in no folder" "narc: absent/new.png" shapes "$font" a --arcs 8 --out new.json \
-        --picture absent/new.png
+    fails "no glyph" "narc: .*U+10FFFD" fit "$font" --characters "$(printf '\364\217\277\275')" --arcs 8 \
+        --out new.json
+    fails "a blank has no outline" "narc: .*U+0020" fit "$font" --characters " " --arcs 8 --out new.json
+    fails "invalid UTF-8" "narc: --characters .*UTF-8" fit "$font" --characters "$(printf 'a\300\200')" --arcs 8 \
+        --out new.json
+    fails "selectors only" "narc: --characters" fit "$font" --characters "$(printf '\357\270\217')" --arcs 8 \
+        --out new.json
+    fails "a font without --characters" "narc: $font: .*--characters" fit "$font" --arcs 8 --out new.json
+    head -c 3000 "$font" >fits/cut.ttf
+    fails "a font cut off" "narc: fits/cut.ttf: " fit fits/cut.ttf --characters a --arcs 8 --out new.json
+    fails "output is the font" "narc: .*input" fit "$font" --characters a --arcs 8 --out "$font"
 else
     echo "skipped: glyphs (no font given)"
 fi
-fails "no font" "narc: absent.ttf: " shapes absent.ttf a --arcs 8 --out new.json
-fails "not a font" "narc: shapes.json: " shapes shapes.json a --arcs 8 --out new.json
+
+# ------------------------------------------------------------------------------------------- fits that cannot be
+# nofit NAME PATTERN ARGUMENTS...: a square and these options are refused.
+nofit() {
+    name=$1 pattern=$2
+    shift 2
+    fails "fit: $name" "$pattern" fit fits/square.csv "$@" --out new.json --picture new.png
+}
+fails "fit: no input" "narc: INPUT is missing" fit --arcs 8 --out new.json
+nofit "neither arcs nor tolerance" "narc: --arcs or --tolerance is missing"
+nofit "arcs and tolerance" "narc: --arcs and --tolerance exclude" --arcs 4 --tolerance 0.1
+for arcs in 0 33 8.5 x -1 ""; do
+    nofit "arcs '$arcs'" "narc: --arcs .*" --arcs "$arcs"
+done
+nofit "a polygon of two corners" "narc: --arcs .* 3 to 32, not '2'" --arcs 2 --polygon
+nofit "the paper's route from two corners" "narc: --arcs .* 3 to 32, not '2'" --arcs 2 --paper
+for tolerance in 0 -0.1 nan x ""; do
+    nofit "tolerance '$tolerance'" "narc: --tolerance " --tolerance "$tolerance"
+done
+for flatness in 0 -1 0.2 1e-10 nan x ""; do
+    nofit "flatness '$flatness'" "narc: --flatness " --arcs 4 --flatness "$flatness"
+done
+for threshold in 0 1 -0.5 nan x ""; do
+    fails "fit: threshold '$threshold'" "narc: --threshold " fit fits/disc.png --arcs 4 --threshold "$threshold" \
+        --out new.json
+done
+for starts in 0 -1 10001 x ""; do
+    nofit "starts '$starts'" "narc: --starts " --arcs 4 --starts "$starts"
+done
+for objective in length Area ""; do
+    nofit "objective '$objective'" "narc: --objective " --arcs 4 --objective "$objective"
+done
+nofit "bound and approximate" "narc: --bound and --approximate exclude" --arcs 4 --bound --approximate
+nofit "approximate perimeter" "narc: --objective perimeter is for --bound" --arcs 4 --approximate --objective perimeter
+nofit "tolerance and objective" "narc: --tolerance and --objective exclude" --tolerance 1 --objective distance
+nofit "edges and polygon" "narc: --edges and --polygon exclude" --arcs 4 --edges --polygon
+nofit "edges and paper" "narc: --edges and --paper exclude" --arcs 4 --paper --edges
+nofit "polygon and paper" "narc: --polygon and --paper exclude" --arcs 4 --paper --polygon
+for family in polygon paper; do
+    nofit "$family approximates" "narc: --$family and --approximate exclude" --arcs 4 --$family --approximate
+    nofit "$family of least distance" "narc: --$family .*'distance'" --arcs 4 --$family --objective distance
+done
+nofit "characters without a font" "narc: --characters is for fonts" --arcs 4 --characters a
+nofit "threshold without an image" "narc: --threshold is for PNG" --arcs 4 --threshold 0.4
+fails "fit: a cloud of an image" "narc: --cloud is for points" fit fits/drawn.png --arcs 4 --cloud --out new.json
+fails "fit: picture of another kind" "narc: .*new.jpg" fit fits/square.csv --arcs 4 --out new.json --picture new.jpg
+fails "fit: picture in no folder" "narc: absent/new.png" fit fits/square.csv --arcs 4 --out new.json \
+    --picture absent/new.png
+fails "fit: output is an input" "narc: fits/square.csv: .*input" fit fits/square.csv --arcs 4 --out fits/square.csv
+fails "fit: no such font" "narc: absent.ttf: " fit absent.ttf --characters a --arcs 8 --out new.json
+fails "fit: one missing file of two" "narc: absent.csv: " fit fits/square.csv absent.csv --arcs 8 --out new.json
+fails "fit: a folder" "narc: fits: " fit fits --arcs 8 --out new.json
+fails "fit: a shapes file" "\(narc: \)*shapes.json:" fit shapes.json --arcs 8 --out new.json
+
+# damaged SUFFIX NAME PATTERN TEXT: a file with this text (printf's notation) is refused.
+damaged() {
+    printf "$4" >"bad.$1"
+    fails "fit: $1, $2" "$3" fit fits/square.csv "bad.$1" --arcs 4 --out new.json --picture new.png
+}
+damaged csv "empty" "narc: bad.csv: " ''
+damaged csv "word for a number" "bad.csv:3: .*'up'" '0,0\n1,0\n1,up\n'
+damaged csv "three columns" "bad.csv:2: .*'1,0,5'" '0,0\n1,0,5\n1,1\n'
+damaged csv "NaN" "bad.csv:4: .*'nan'" 'x,y\n0,0\n1,0\nnan,1\n'
+damaged csv "too large" "bad.csv:2: .*'2e9'" '0,0\n2e9,0\n1,1\n'
+damaged csv "NUL byte" "bad.csv:2: " '0,0\n1,0\000\n1,1\n'
+damaged csv "two points" "narc: bad.csv: " '0,0\n1,0\n'
+damaged csv "points on a line" "narc: bad.csv: " '0,0\n1,0\n2,0\n'
+damaged json "cut off" "bad.json:2: .*JSON" '[[0, 0],\n [1, 0'
+damaged json "no point" "bad.json:2: .*'7'" '[[0, 0],\n 7, [1, 1]]\n'
+damaged json "one coordinate" "bad.json:3: .*'\[1]'" '[[0, 0],\n [1, 0],\n [1]]\n'
+damaged svg "empty" "narc: bad.svg: " ''
+damaged svg "not closed" "bad.svg:[23]: " '<svg xmlns="http://www.w3.org/2000/svg">\n<path d="M0 0H1V1z"/>\n'
+damaged svg "no outline" "\(narc: \)*bad.svg:" '<svg xmlns="http://www.w3.org/2000/svg"><text>a</text></svg>\n'
+damaged svg "wrong path data" "bad.svg:2: " '<svg xmlns="http://www.w3.org/2000/svg">\n<path d="M0 0 L1 x"/></svg>\n'
+damaged svg "no SVG" "\(narc: \)*bad.svg:" '<html><body/></html>\n'
+damaged ttf "no font" "narc: bad.ttf: .*--characters" 'hello\n'
+damaged dat "no known kind" "narc: bad.dat: .*SVG" 'hello\n'
+head -c 200 fits/disc.png >bad.png
+fails "fit: png, cut off" "narc: bad.png: " fit bad.png --arcs 4 --out new.json
+printf '0,0\n1,1\n2,2\n' >flat.csv
+fails "fit: a cloud on a line" "narc: flat.csv: .*line" fit flat.csv --cloud --arcs 4 --out new.json
 
 # ------------------------------------------------------------------------------------------- wrong command lines
 fails "no command" "narc: "

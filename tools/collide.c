@@ -134,7 +134,7 @@ static settings read_settings(int argc, char **argv) {
                                [ITERATIONS] = {"--iterations", true, NULL},
                                [ISA] = {"--isa", true, NULL},
                                [THREADS] = {"--threads", true, NULL}};
-    parse_options(argc, argv, options, OPTIONS, NULL, 0, NULL);
+    parse_options(argc, argv, options, OPTIONS, NULL, NULL);
     settings chosen = {.shapes = required_option(&options[SHAPES]),
                        .bodies = required_option(&options[BODIES]),
                        .pairs = options[PAIRS].value,

@@ -18,7 +18,7 @@ static const char HELP[] = "usage: narc info\n"
                            "variable NARC_ISA chooses another instruction set.\n";
 
 static void run(int argc, char **argv) {
-    parse_options(argc, argv, NULL, 0, NULL, 0, NULL);
+    parse_options(argc, argv, NULL, 0, NULL, NULL);
     const char *chosen = narc_get_isa();
     if (!chosen) {
         /* The library's reason, which begins with the function that gives it. */

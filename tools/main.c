@@ -15,7 +15,7 @@
 #include "output.h"
 #include "progress.h"
 
-static const command *const commands[] = {&shapes_command, &scene_command, &collide_command, &info_command};
+static const command *const commands[] = {&fit_command, &scene_command, &collide_command, &info_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static void print_help(void) {

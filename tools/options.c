@@ -49,8 +49,8 @@ static int parse_option(int argc, char **argv, option *options, size_t count) {
     return equals ? 1 : 2;
 }
 
-void parse_options(int argc, char **argv, option *options, size_t option_count, const char *const *operand_names,
-                   size_t operand_count, const char **operands) {
+size_t parse_options(int argc, char **argv, option *options, size_t option_count, const char *operand_name,
+                     const char **operands) {
     size_t found = 0;
     bool only_operands = false;
     for (int i = 0; i < argc;) {
@@ -59,15 +59,16 @@ void parse_options(int argc, char **argv, option *options, size_t option_count, 
             i++;
         } else if (!only_operands && argv[i][0] == '-' && argv[i][1]) {
             i += parse_option(argc - i, argv + i, options, option_count);
-        } else if (found < operand_count) {
+        } else if (operand_name) {
             operands[found++] = argv[i++];
         } else {
             fail("unexpected argument '%s'", argv[i]);
         }
     }
-    if (found < operand_count) {
-        fail("%s is missing", operand_names[found]);
+    if (operand_name && found == 0) {
+        fail("%s is missing", operand_name);
     }
+    return found;
 }
 
 const char *required_option(const option *given) {

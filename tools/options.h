@@ -15,9 +15,10 @@ typedef struct option {
     const char *value; /* NULL: not given; "" for a flag that was */
 } option;
 
-/* Fills in the options and the operands, exactly `operand_count` of them, named for messages by `operand_names`. */
-void parse_options(int argc, char **argv, option *options, size_t option_count, const char *const *operand_names,
-                   size_t operand_count, const char **operands);
+/* Fills in the options, and the operands if there is a name for them: one or more, in order, into `operands` with room
+ * for `argc`. Returns their number. Without a name an operand is an error. */
+size_t parse_options(int argc, char **argv, option *options, size_t option_count, const char *operand_name,
+                     const char **operands);
 
 /* The value of an option that must be given. */
 const char *required_option(const option *given);

@@ -14,7 +14,7 @@
 
 #include "fail.h"
 
-enum { MAX_INPUTS = 4, MAX_OUTPUTS = 4 };
+enum { MAX_OUTPUTS = 4 };
 
 /* Which file, whatever it is called. */
 typedef struct identity {
@@ -32,8 +32,8 @@ typedef struct output {
 
 static output outputs[MAX_OUTPUTS];
 static size_t output_count;
-static identity inputs[MAX_INPUTS];
-static size_t input_count;
+static identity *inputs;
+static size_t input_count, input_capacity;
 
 void discard_outputs(void) {
     for (size_t i = 0; i < MAX_OUTPUTS; i++) {
@@ -79,9 +79,7 @@ void protect_input(FILE *file) {
     if (fstat(fileno(file), &state) != 0 || !S_ISREG(state.st_mode)) {
         return;
     }
-    if (input_count == MAX_INPUTS) {
-        fail("too many inputs");
-    }
+    inputs = grow(inputs, &input_capacity, input_count + 1, sizeof *inputs);
     inputs[input_count++] = identify(&state);
 }
 

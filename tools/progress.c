@@ -26,9 +26,8 @@ void start_progress(void) {
     terminal = isatty(STDERR_FILENO);
 }
 
-void show_progress(const char *what, size_t done, size_t total) {
-    static unsigned reports;
-    if (!terminal || reports++ % LOOK_EVERY) {
+void show_share(const char *what, double share) {
+    if (!terminal) {
         return;
     }
     const double now = seconds_now();
@@ -37,8 +36,15 @@ void show_progress(const char *what, size_t done, size_t total) {
     }
     last_time = now;
     shown = true;
-    fprintf(stderr, "\r\033[K%s: %.0f %%", what, total ? 100.0 * (double)done / (double)total : 100.0);
+    fprintf(stderr, "\r\033[K%s: %.0f %%", what, 100 * share);
     fflush(stderr);
+}
+
+void show_progress(const char *what, size_t done, size_t total) {
+    static unsigned reports;
+    if (terminal && reports++ % LOOK_EVERY == 0) {
+        show_share(what, total ? (double)done / (double)total : 1);
+    }
 }
 
 void show_stage(const char *what, size_t count, const char *items, bool is_long) {

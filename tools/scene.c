@@ -49,7 +49,7 @@ static void run(int argc, char **argv) {
                                {"--density", true, NULL},
                                {"--seed", true, NULL},
                                {"--out", true, NULL}};
-    parse_options(argc, argv, options, OPTIONS, NULL, 0, NULL);
+    parse_options(argc, argv, options, OPTIONS, NULL, NULL);
     const char *path = required_option(&options[SHAPES]), *out = options[OUT].value ? options[OUT].value : "-";
     const uint64_t count = whole_option(&options[BODIES], 1, UINT32_MAX);
     const double density = number_option(&options[DENSITY]);

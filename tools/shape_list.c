@@ -79,16 +79,49 @@ void free_shapes(shape_list *shapes) {
     *shapes = (shape_list){0};
 }
 
+/* Moves on over a character; false if a name cannot have it. */
+static bool next_of_name(const char **text) {
+    uint32_t code;
+    return next_code_point(text, &code) && code >= 0x20 && code != 0x7f && code != ',' && code != '"';
+}
+
 bool is_shape_name(const char *name) {
     const size_t length = strlen(name);
     if (length == 0 || name[0] == ' ' || name[length - 1] == ' ') {
         return false;
     }
     while (*name) {
-        uint32_t code;
-        if (!next_code_point(&name, &code) || code < 0x20 || code == 0x7f || code == ',' || code == '"') {
+        if (!next_of_name(&name)) {
             return false;
         }
     }
     return true;
+}
+
+char *make_shape_name(const char *text, size_t length) {
+    static const char prefix[] = "shape-";
+    for (; length && text[0] == ' '; length--) {
+        text++;
+    }
+    while (length && text[length - 1] == ' ') {
+        length--;
+    }
+    char *name = allocate(length + sizeof prefix, 1);
+    memcpy(name, text, length);
+    name[length] = 0;
+    for (char *c = name; *c;) {
+        const char *next = c;
+        if (next_of_name(&next)) {
+            c += next - c;
+        } else {
+            *c++ = '_';
+        }
+    }
+    if (length == 0) {
+        strcpy(name, "shape");
+    } else if (!name[strspn(name, "0123456789")]) {
+        memmove(name + strlen(prefix), name, length + 1);
+        memcpy(name, prefix, strlen(prefix));
+    }
+    return name;
 }

@@ -43,4 +43,8 @@ void free_shapes(shape_list *shapes);
  * blank at either end. */
 bool is_shape_name(const char *name);
 
+/* A name made of the first `length` bytes of any text: what cannot be in a name becomes '_', blanks at the ends go, and
+ * digits alone, which would be an index, get "shape-" in front; of nothing it makes "shape". To be freed. */
+char *make_shape_name(const char *text, size_t length);
+
 #endif

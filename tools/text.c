@@ -13,25 +13,32 @@
 #include "fail.h"
 #include "output.h"
 
-char *read_text(const char *path, size_t *out_size) {
+char *read_bytes(const char *path, size_t *out_size) {
     FILE *file = fopen(path, "rb");
     if (!file) {
         fail("%s: %s", path, strerror(errno));
     }
     protect_input(file);
-    char *text = NULL;
+    char *bytes = NULL;
     size_t size = 0, capacity = 0, got;
     do {
         /* Doubling the room asked for keeps the number of copies small. */
-        text = grow(text, &capacity, size + 65536, 1);
-        got = fread(text + size, 1, capacity - size - 1, file);
+        bytes = grow(bytes, &capacity, size + 65536, 1);
+        got = fread(bytes + size, 1, capacity - size - 1, file);
         size += got;
     } while (got);
     if (ferror(file)) {
         fail("%s: %s", path, strerror(errno));
     }
     fclose(file);
-    text[size] = 0;
+    bytes[size] = 0;
+    *out_size = size;
+    return bytes;
+}
+
+char *read_text(const char *path, size_t *out_size) {
+    size_t size;
+    char *text = read_bytes(path, &size);
     if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) {
         size -= 3;
         memmove(text, text + 3, size + 1);

@@ -9,8 +9,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The text of a file, NUL-terminated, without a UTF-8 byte order mark. A NUL byte in the file is an error. From now on
- * no output may replace the file. */
+/* The bytes of a file, with a NUL behind them that does not count. From now on no output may replace the file. */
+char *read_bytes(const char *path, size_t *out_size);
+
+/* The text of a file, NUL-terminated, without a UTF-8 byte order mark. A NUL byte in the file is an error. From
+ * now on no output may replace the file. */
 char *read_text(const char *path, size_t *out_size);
 
 /* The number of the line that holds `position`, the first being 1. */

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * fit.c - narc fit: outlines from files of any kind to arc shapes.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "canvas.h"
+#include "commands.h"
+#include "fail.h"
+#include "fit_inputs.h"
+#include "options.h"
+#include "output.h"
+#include "picture_fits.h"
+#include "progress.h"
+#include "shapes_json.h"
+
+static const char HELP[] =
+    "usage: narc fit INPUT... --arcs N|--tolerance T [--bound|--approximate] [--objective NAME]\n"
+    "                [--edges|--polygon|--paper] [--characters TEXT] [--cloud] [--threshold X]\n"
+    "                [--flatness F] [--starts N] [--out shapes.json] [--picture FILE]\n"
+    "\n"
+    "Makes an arc shape of each input: the best that is found of those that bound the outline, or of\n"
+    "those that come close to it. Of an outline only the convex hull counts.\n"
+    "\n"
+    "  INPUT           files; the first bytes tell their kind, or else the suffix:\n"
+    "                  fonts         with --characters: each of these is one shape; lengths in em\n"
+    "                  SVG           all that is drawn, as one shape; strokes have no width\n"
+    "                  PNG           the silhouette: what is not transparent, or if all is opaque,\n"
+    "                                what is dark, or light if the corners are dark; lengths in pixels\n"
+    "                  CSV           points, one x,y a line; a blank line begins another contour\n"
+    "                  JSON          points, [[x, y], ...], or a list of such lists\n"
+    "  --arcs N        at most N arcs a shape, 1 to 32\n"
+    "  --tolerance T   instead: as few arcs as stay within the distance T of the hull, in the\n"
+    "                  input's unit of length\n"
+    "  --bound         the shape contains the outline; the default\n"
+    "  --approximate   it may also lie inside\n"
+    "  --objective NAME\n"
+    "                  with --arcs: what is least\n"
+    "                  area          with --bound, where it is the default: the shape's area;\n"
+    "                                with --approximate: the area between shape and hull\n"
+    "                  perimeter     with --bound only: the shape's perimeter\n"
+    "                  distance      the largest distance of shape and hull; the default with\n"
+    "                                --approximate\n"
+    "  --edges         straight edges may stand between arcs; without it tangents are continuous\n"
+    "  --polygon       to compare: a bounding polygon of least area, its corners arcs of radius 0\n"
+    "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1,\n"
+    "                  enlarged until it bounds\n"
+    "  --characters TEXT\n"
+    "                  which glyphs of fonts, UTF-8; repeated characters are skipped\n"
+    "  --cloud         the points of CSV and JSON files are in no order; without it they must go\n"
+    "                  round without crossing\n"
+    "  --threshold X   the alpha, or darkness, at which the edges of a PNG silhouette lie; more than 0\n"
+    "                  and less than 1, default 0.5\n"
+    "  --flatness F    how far chords may be from curves, as a part of the larger side of the\n"
+    "                  outline's bounding box; 1e-9 to 0.1, default 2e-5\n"
+    "  --starts N      where the search starts from, 1 to 10000; more can only find better shapes\n"
+    "  --out FILE      the shapes file to write; left out or -: standard output\n"
+    "  --picture FILE  a .png or .svg picture of outlines, hulls and shapes\n"
+    "\n"
+    "A shape is named by its file, without the suffix. A glyph is named by its character if that is an\n"
+    "ASCII letter, and otherwise by its code point, such as U+1F47B. Names that are taken get -2, -3 and\n"
+    "so on. A shape's centroid is its origin.\n"
+    "\n"
+    "The table has areas of shape and hull and their ratio, and how far the shape is from the hull:\n"
+    "at most, and in the mean along the shape.\n";
+
+enum {
+    ARCS,
+    TOLERANCE,
+    BOUND,
+    APPROXIMATE,
+    OBJECTIVE,
+    EDGES,
+    POLYGON,
+    PAPER,
+    CHARACTERS,
+    CLOUD,
+    THRESHOLD,
+    FLATNESS,
+    STARTS,
+    OUT,
+    PICTURE,
+    OPTIONS
+};
+
+/* ---------------------------------------------------------------------------- options */
+
+static void exclude(const option *a, const option *b, const char *why) {
+    if (a->value && b->value) {
+        fail("%s and %s exclude each other: %s", a->name, b->name, why);
+    }
+}
+
+static void check_combinations(const option *options) {
+    static const char families[] = "each asks for shapes of its own kind";
+    exclude(&options[ARCS], &options[TOLERANCE], "one gives the number of arcs, the other lets it be found");
+    exclude(&options[BOUND], &options[APPROXIMATE], "a shape that bounds lies nowhere inside");
+    exclude(&options[EDGES], &options[POLYGON], families);
+    exclude(&options[EDGES], &options[PAPER], families);
+    exclude(&options[POLYGON], &options[PAPER], families);
+    exclude(&options[TOLERANCE], &options[OBJECTIVE], "the least number of arcs is looked for");
+    for (int family = POLYGON; family <= PAPER; family++) {
+        exclude(&options[family], &options[APPROXIMATE], "it bounds");
+    }
+    if (!options[ARCS].value && !options[TOLERANCE].value) {
+        fail("--arcs or --tolerance is missing");
+    }
+}
+
+static narc_fit_goal choose_goal(const option *options) {
+    const char *objective = options[OBJECTIVE].value;
+    const bool approximate = options[APPROXIMATE].value;
+    if (!objective) {
+        return approximate ? NARC_FIT_DISTANCE : NARC_FIT_BOUND_AREA;
+    }
+    for (int family = POLYGON; family <= PAPER; family++) {
+        if (options[family].value && strcmp(objective, "area") != 0) {
+            fail("%s makes the area least: --objective cannot be '%s'", options[family].name, objective);
+        }
+    }
+    if (strcmp(objective, "area") == 0) {
+        return approximate ? NARC_FIT_DIFFERENCE : NARC_FIT_BOUND_AREA;
+    }
+    if (strcmp(objective, "distance") == 0) {
+        return approximate ? NARC_FIT_DISTANCE : NARC_FIT_BOUND_DISTANCE;
+    }
+    if (strcmp(objective, "perimeter") != 0) {
+        fail("--objective must be one of area, perimeter, distance, not '%s'", objective);
+    }
+    if (approximate) {
+        fail("--objective perimeter is for --bound: what may lie inside has the least perimeter as a point");
+    }
+    return NARC_FIT_BOUND_PERIMETER;
+}
+
+/* A number between limits; 0 if the option is not given. */
+static double number_between(const option *given, double low, double high, const char *range) {
+    if (!given->value) {
+        return 0;
+    }
+    const double value = number_option(given);
+    if (!(value >= low && value <= high)) {
+        fail("%s must be %s, not '%s'", given->name, range, given->value);
+    }
+    return value;
+}
+
+static narc_fit_request make_request(const option *options) {
+    static const narc_fit_family families[] = {
+        [EDGES] = NARC_FIT_EDGES, [POLYGON] = NARC_FIT_POLYGON, [PAPER] = NARC_FIT_PAPER};
+    check_combinations(options);
+    narc_fit_request request = {.goal = choose_goal(options), .family = NARC_FIT_N_ARC};
+    for (int k = EDGES; k <= PAPER; k++) {
+        request.family = options[k].value ? families[k] : request.family;
+    }
+    if (options[ARCS].value) {
+        const bool has_corners = request.family == NARC_FIT_POLYGON || request.family == NARC_FIT_PAPER;
+        request.arc_count = (size_t)whole_option(&options[ARCS], has_corners ? 3 : 1, NARC_MAX_FIT_ARCS);
+    }
+    request.tolerance = number_between(&options[TOLERANCE], DBL_MIN, DBL_MAX, "more than 0");
+    if (options[STARTS].value) {
+        request.starts = (unsigned)whole_option(&options[STARTS], 1, 10000);
+    }
+    return request;
+}
+
+/* ---------------------------------------------------------------------------- fits */
+
+typedef struct stage {
+    size_t done, total; /* outlines */
+} stage;
+
+static bool tell_progress(size_t done, size_t total, void *context) {
+    const stage *at = context;
+    const double part = total ? (double)done / (double)total : 0;
+    show_share("fitting", ((double)at->done + part) / (double)at->total);
+    return true;
+}
+
+/* The larger side of an outline's bounding box. */
+static double measure_extent(const outline *of) {
+    narc_contours contours;
+    narc_error error;
+    if (narc_flatten_path(of->path, 0, &contours, &error) != NARC_OK) {
+        fail_outline(of, error.message);
+    }
+    narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < contours.point_count; i++) {
+        const narc_point p = contours.points[i];
+        box = (narc_aabb){fmin(box.min_x, p.x), fmin(box.min_y, p.y), fmax(box.max_x, p.x), fmax(box.max_y, p.y)};
+    }
+    narc_release_contours(&contours);
+    return fmax(box.max_x - box.min_x, box.max_y - box.min_y);
+}
+
+/* `flatness` is relative to an outline's extent; 0: the usual one. */
+static narc_fit_result *fit_outlines(const outline_list *outlines, narc_fit_request request, double flatness) {
+    narc_fit_result *fits = allocate(outlines->count, sizeof *fits);
+    stage at = {0, outlines->count};
+    request.progress = tell_progress;
+    request.context = &at;
+    for (; at.done < at.total; at.done++) {
+        const outline *of = &outlines->items[at.done];
+        narc_error error;
+        request.flatness = flatness > 0 ? flatness * measure_extent(of) : 0;
+        if (narc_fit_path(of->path, &request, &fits[at.done], &error) != NARC_OK) {
+            fail_outline(of, error.message);
+        }
+    }
+    return fits;
+}
+
+static shape_list list_shapes(const outline_list *outlines, const narc_fit_result *fits) {
+    shape_list shapes = {0};
+    for (size_t i = 0; i < outlines->count; i++) {
+        narc_error error;
+        if (add_shape(&shapes, outlines->items[i].name, fits[i].arcs, fits[i].arc_count, &error) != NARC_OK) {
+            fail_outline(&outlines->items[i], error.message);
+        }
+    }
+    return shapes;
+}
+
+/* ---------------------------------------------------------------------------- the table */
+
+/* The characters of a name: bytes that continue one begin with the bits 10. */
+static size_t name_length(const char *name) {
+    size_t length = 0;
+    for (; *name; name++) {
+        length += ((unsigned char)*name & 0xc0) != 0x80;
+    }
+    return length;
+}
+
+static void print_table(FILE *file, const outline_list *outlines, const narc_fit_result *fits) {
+    size_t width = strlen("shape");
+    for (size_t i = 0; i < outlines->count; i++) {
+        const size_t length = name_length(outlines->items[i].name);
+        width = length > width ? length : width;
+    }
+    fprintf(file, "%-*s %5s %5s %11s %11s %8s %11s %12s %13s %8s\n", (int)width, "shape", "arcs", "edges", "area",
+            "hull area", "ratio", "perimeter", "max distance", "mean distance", "seconds");
+    for (size_t i = 0; i < outlines->count; i++) {
+        const char *name = outlines->items[i].name;
+        const narc_fit_result *f = &fits[i];
+        fprintf(file, "%s%*s %5zu %5zu %11.6g %11.6g %8.5f %11.6g %12.4g %13.4g %8.2f\n", name,
+                (int)(width - name_length(name)), "", f->arc_count, f->edge_count, f->area, f->hull_area,
+                f->area / f->hull_area, f->perimeter, f->max_distance, f->mean_distance, f->seconds);
+    }
+}
+
+static void run(int argc, char **argv) {
+    option options[OPTIONS] = {[ARCS] = {"--arcs", true, NULL},
+                               [TOLERANCE] = {"--tolerance", true, NULL},
+                               [BOUND] = {"--bound", false, NULL},
+                               [APPROXIMATE] = {"--approximate", false, NULL},
+                               [OBJECTIVE] = {"--objective", true, NULL},
+                               [EDGES] = {"--edges", false, NULL},
+                               [POLYGON] = {"--polygon", false, NULL},
+                               [PAPER] = {"--paper", false, NULL},
+                               [CHARACTERS] = {"--characters", true, NULL},
+                               [CLOUD] = {"--cloud", false, NULL},
+                               [THRESHOLD] = {"--threshold", true, NULL},
+                               [FLATNESS] = {"--flatness", true, NULL},
+                               [STARTS] = {"--starts", true, NULL},
+                               [OUT] = {"--out", true, NULL},
+                               [PICTURE] = {"--picture", true, NULL}};
+    const char **files = allocate((size_t)argc, sizeof *files);
+    const size_t file_count = parse_options(argc, argv, options, OPTIONS, "INPUT", files);
+    const narc_fit_request request = make_request(options);
+    const double flatness = number_between(&options[FLATNESS], 1e-9, 0.1, "from 1e-9 to 0.1");
+    const reading how = {
+        .characters = options[CHARACTERS].value,
+        .threshold = number_between(&options[THRESHOLD], DBL_MIN, 1 - DBL_EPSILON / 2, "more than 0 and less than 1"),
+        .cloud = options[CLOUD].value};
+    const char *picture = options[PICTURE].value, *out = options[OUT].value ? options[OUT].value : "-";
+    picture_kind_of(picture);
+
+    outline_list outlines = {0};
+    read_outlines(files, file_count, &how, &outlines);
+    FILE *shapes_file = open_output(out), *picture_file = picture ? open_output(picture) : NULL;
+    narc_fit_result *fits = fit_outlines(&outlines, request, flatness);
+    shape_list shapes = list_shapes(&outlines, fits);
+    write_shapes(shapes_file, &shapes);
+    if (picture) {
+        draw_fits(picture, picture_file, &outlines, fits);
+    }
+    finish_outputs();
+    hide_progress();
+
+    FILE *report = is_standard_output(out) ? stderr : stdout;
+    print_table(report, &outlines, fits);
+    finish_report(report);
+    commit_outputs();
+    free_shapes(&shapes);
+    free(fits);
+    free_outlines(&outlines);
+    free(files);
+}
+
+const command fit_command = {"fit", "outlines of glyphs, drawings, images or points to shapes", HELP, run};

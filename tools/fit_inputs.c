@@ -1,0 +1,290 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * fit_inputs.c - files of any kind: which kind, which reader, which names.
+ */
+#include "fit_inputs.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fail.h"
+#include "shape_list.h"
+#include "text.h"
+
+/* ---------------------------------------------------------------------------- kinds of files */
+
+typedef enum file_kind { FONT, SVG, PNG, CSV, JSON, KIND_COUNT, UNKNOWN = KIND_COUNT } file_kind;
+
+/* How files begin. Fonts: TrueType, OpenType, Apple's two, collections, WOFF, Type 1 as text and in segments. XML may
+ * be in UTF-16. */
+static const struct {
+    const char *bytes;
+    size_t length;
+    file_kind kind;
+} beginnings[] = {
+    {"\x89PNG\r\n\x1a\n", 8, PNG},
+    {"\0\1\0\0", 4, FONT},
+    {"OTTO", 4, FONT},
+    {"true", 4, FONT},
+    {"typ1", 4, FONT},
+    {"ttcf", 4, FONT},
+    {"wOFF", 4, FONT},
+    {"wOF2", 4, FONT},
+    {"%!PS-AdobeFont", 14, FONT},
+    {"%!FontType1", 11, FONT},
+    {"\x80\1", 2, FONT},
+    {"\xff\xfe<\0", 4, SVG},
+    {"\xfe\xff\0<", 4, SVG},
+};
+enum { BEGINNING_COUNT = sizeof beginnings / sizeof beginnings[0] };
+
+static const struct {
+    const char *suffix;
+    file_kind kind;
+} suffixes[] = {
+    {".svg", SVG},   {".xml", SVG},  {".png", PNG},  {".csv", CSV},   {".txt", CSV},
+    {".json", JSON}, {".ttf", FONT}, {".otf", FONT}, {".ttc", FONT},  {".otc", FONT},
+    {".pfb", FONT},  {".pfa", FONT}, {".cff", FONT}, {".woff", FONT}, {".woff2", FONT},
+};
+enum { SUFFIX_COUNT = sizeof suffixes / sizeof suffixes[0] };
+
+/* The part of a path that names the file, and how much of that stands before its suffix; a first dot begins none. */
+static const char *base_name(const char *path, size_t *out_stem) {
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
+    *out_stem = dot && dot != base ? (size_t)(dot - base) : strlen(base);
+    return base;
+}
+
+static bool is_suffix(const char *text, const char *suffix) {
+    for (; *text && *suffix; text++, suffix++) {
+        const char lower = *text >= 'A' && *text <= 'Z' ? (char)(*text - 'A' + 'a') : *text;
+        if (lower != *suffix) {
+            return false;
+        }
+    }
+    return !*text && !*suffix;
+}
+
+static file_kind kind_of(const char *file, const char *bytes, size_t size) {
+    for (size_t i = 0; i < BEGINNING_COUNT; i++) {
+        if (size >= beginnings[i].length && memcmp(bytes, beginnings[i].bytes, beginnings[i].length) == 0) {
+            return beginnings[i].kind;
+        }
+    }
+    const char *text = bytes + (strncmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0);
+    text += strspn(text, " \t\r\n");
+    if (*text == '<') {
+        return SVG;
+    }
+    if (*text == '[' || *text == '{') {
+        return JSON;
+    }
+    if (*text && strchr("+-.0123456789", *text)) {
+        return CSV;
+    }
+    size_t stem;
+    const char *base = base_name(file, &stem);
+    for (size_t i = 0; i < SUFFIX_COUNT; i++) {
+        if (is_suffix(base + stem, suffixes[i].suffix)) {
+            return suffixes[i].kind;
+        }
+    }
+    return UNKNOWN;
+}
+
+/* ---------------------------------------------------------------------------- outlines */
+
+static bool is_name_taken(const outline_list *outlines, const char *name) {
+    for (size_t i = 0; i < outlines->count; i++) {
+        if (strcmp(outlines->items[i].name, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Takes `name`, or a copy with -2, -3 ... behind it if another outline has it. */
+static char *choose_name(const outline_list *outlines, char *name) {
+    enum { DIGITS = 24 };
+    const size_t size = strlen(name) + DIGITS;
+    char *chosen = strcpy(allocate(size, 1), name);
+    for (size_t number = 2; is_name_taken(outlines, chosen); number++) {
+        snprintf(chosen, size, "%s-%zu", name, number);
+    }
+    free(name);
+    return chosen;
+}
+
+/* Adds an empty outline; takes `name`. */
+static outline *add_outline(outline_list *outlines, const char *file, uint32_t character, char *name) {
+    outlines->items = grow(outlines->items, &outlines->capacity, outlines->count + 1, sizeof *outlines->items);
+    outline *added = &outlines->items[outlines->count];
+    *added = (outline){.name = choose_name(outlines, name), .file = file, .character = character};
+    if (narc_create_path(&added->path) != NARC_OK) {
+        fail("not enough memory for an outline");
+    }
+    outlines->count++;
+    return added;
+}
+
+_Noreturn void fail_outline(const outline *at, const char *message) {
+    if (at->character) {
+        fail("%s: U+%04X: %s", at->file, (unsigned)at->character, message);
+    }
+    fail("%s: %s", at->file, message);
+}
+
+void free_outlines(outline_list *outlines) {
+    for (size_t i = 0; i < outlines->count; i++) {
+        free(outlines->items[i].name);
+        narc_destroy_path(outlines->items[i].path);
+    }
+    free(outlines->items);
+    *outlines = (outline_list){0};
+}
+
+/* ---------------------------------------------------------------------------- fonts */
+
+/* Variation selectors choose between glyphs of the character before them; they are none themselves. */
+static bool is_selector(uint32_t code) {
+    return (code >= 0xfe00 && code <= 0xfe0f) || (code >= 0xe0100 && code <= 0xe01ef);
+}
+
+/* The characters to use, each once, in order. */
+static uint32_t *list_characters(const char *text, size_t *out_count) {
+    uint32_t *codes = allocate(strlen(text), sizeof *codes);
+    enum { CODES = 0x110000 };
+    unsigned char *seen = allocate(CODES, 1);
+    memset(seen, 0, CODES);
+    size_t count = 0;
+    for (const char *c = text; *c;) {
+        uint32_t code;
+        if (!next_code_point(&c, &code)) {
+            fail("--characters is not valid UTF-8 at byte %td", c - text);
+        }
+        if (!is_selector(code) && !seen[code]) {
+            seen[code] = 1;
+            codes[count++] = code;
+        }
+    }
+    free(seen);
+    if (count == 0) {
+        fail("--characters has variation selectors only");
+    }
+    *out_count = count;
+    return codes;
+}
+
+/* ASCII letters name themselves. Others are named by their code points: not every program shows them, and a digit would
+ * be taken for an index. */
+static char *glyph_name(uint32_t code) {
+    const bool plain = (code >= 'A' && code <= 'Z') || (code >= 'a' && code <= 'z');
+    enum { SIZE = 16 };
+    char *name = allocate(SIZE, 1);
+    snprintf(name, SIZE, plain ? "%c" : "U+%04X", (unsigned)code);
+    return name;
+}
+
+static void read_glyphs(const char *file, const char *bytes, size_t size, const char *characters,
+                        outline_list *outlines) {
+    narc_error error;
+    narc_font *font;
+    if (!characters) {
+        fail("%s: a font: --characters must tell which of its glyphs to fit", file);
+    }
+    size_t count;
+    uint32_t *codes = list_characters(characters, &count);
+    if (narc_open_font(bytes, size, &font, &error) != NARC_OK) {
+        fail("%s: %s", file, error.message);
+    }
+    for (size_t i = 0; i < count; i++) {
+        outline *added = add_outline(outlines, file, codes[i], glyph_name(codes[i]));
+        if (narc_read_glyph(font, codes[i], added->path, &error) != NARC_OK) {
+            fail("%s: %s", file, error.message);
+        }
+    }
+    narc_close_font(font);
+    free(codes);
+}
+
+/* ---------------------------------------------------------------------------- other files */
+
+static narc_status call_reader(file_kind kind, const char *bytes, size_t size, double threshold, narc_path *path,
+                               narc_error *error) {
+    switch (kind) {
+    case SVG:
+        return narc_read_svg(bytes, size, path, error);
+    case PNG:
+        return narc_read_png(bytes, size, threshold, path, error);
+    case CSV:
+        return narc_read_csv(bytes, size, path, error);
+    default:
+        return narc_read_json(bytes, size, path, error);
+    }
+}
+
+/* The index of an error in a text is its line, which the message may begin with. */
+static _Noreturn void fail_reading(const outline *read, file_kind kind, const narc_error *error) {
+    if (kind == PNG || error->index == 0) {
+        fail_outline(read, error->message);
+    }
+    char line[32];
+    snprintf(line, sizeof line, "line %zu: ", error->index);
+    const bool repeats = strncmp(error->message, line, strlen(line)) == 0;
+    fail_at(read->file, error->index, "%s", error->message + (repeats ? strlen(line) : 0));
+}
+
+static void check_order(const outline *read) {
+    narc_error error;
+    const narc_status status = narc_check_simple(read->path, &error);
+    if (status == NARC_ERROR_NOT_SIMPLE) {
+        fail("%s: %s; if the points are in no order, give --cloud", read->file, error.message);
+    }
+    if (status != NARC_OK) {
+        fail_outline(read, error.message);
+    }
+}
+
+static void read_outline(const char *file, file_kind kind, const char *bytes, size_t size, const reading *how,
+                         outline_list *outlines) {
+    size_t stem;
+    const char *base = base_name(file, &stem);
+    outline *added = add_outline(outlines, file, 0, make_shape_name(base, stem));
+    narc_error error;
+    if (call_reader(kind, bytes, size, how->threshold, added->path, &error) != NARC_OK) {
+        fail_reading(added, kind, &error);
+    }
+    added->cloud = how->cloud && (kind == CSV || kind == JSON);
+    if ((kind == CSV || kind == JSON) && !how->cloud) {
+        check_order(added);
+    }
+}
+
+void read_outlines(const char *const *files, size_t count, const reading *how, outline_list *out_outlines) {
+    bool met[KIND_COUNT] = {false};
+    for (size_t i = 0; i < count; i++) {
+        size_t size;
+        char *bytes = read_bytes(files[i], &size);
+        const file_kind kind = kind_of(files[i], bytes, size);
+        if (kind == UNKNOWN) {
+            fail("%s: neither its beginning nor its suffix is that of a font, or of SVG, PNG, CSV or JSON", files[i]);
+        }
+        met[kind] = true;
+        if (kind == FONT) {
+            read_glyphs(files[i], bytes, size, how->characters, out_outlines);
+        } else {
+            read_outline(files[i], kind, bytes, size, how, out_outlines);
+        }
+        free(bytes);
+    }
+    if (how->characters && !met[FONT]) {
+        fail("--characters is for fonts, and none is given");
+    }
+    if (how->threshold > 0 && !met[PNG]) {
+        fail("--threshold is for PNG images, and none is given");
+    }
+    if (how->cloud && !met[CSV] && !met[JSON]) {
+        fail("--cloud is for points in CSV or JSON files, and none are given");
+    }
+}

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * fit_inputs.h - from files of any kind to named outlines.
+ */
+#ifndef NARC_TOOL_FIT_INPUTS_H
+#define NARC_TOOL_FIT_INPUTS_H
+
+#include "narc_fit.h"
+
+typedef struct outline {
+    char *name; /* a shape name, other than all before it */
+    const char *file;
+    uint32_t character; /* of a glyph; 0: the outline of a whole file */
+    bool cloud;         /* its points are in no order */
+    narc_path *path;
+} outline;
+
+typedef struct outline_list {
+    outline *items;
+    size_t count, capacity;
+} outline_list;
+
+typedef struct reading {
+    const char *characters; /* which glyphs of fonts; NULL: none */
+    double threshold;       /* of images, see narc_read_png(); 0: the usual one */
+    bool cloud;             /* the points of CSV and JSON files are in no order */
+} reading;
+
+/* Reads files: each font gives an outline for each character (once, without variation selectors), each other file gives
+ * one. What a file is, its first bytes tell, and its suffix where they do not. It is an error if a setting has no file
+ * to apply to. */
+void read_outlines(const char *const *files, size_t count, const reading *how, outline_list *out_outlines);
+
+/* Ends the command with a message about an outline. */
+_Noreturn void fail_outline(const outline *at, const char *message);
+
+void free_outlines(outline_list *outlines);
+
+#endif
