@@ -5,6 +5,7 @@
  */
 #include "best.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
@@ -31,7 +32,7 @@ size_t narc_count_work(unsigned starts) { return starts + (size_t)EXCHANGE_SEARC
 
 typedef struct finalists {
     size_t count, room;
-    candidate items[MAX_STARTS];
+    candidate *items;
 } finalists;
 
 /* Keeps the best candidates, sorted. */
@@ -114,7 +115,8 @@ static bool try_exchanges(search *with, candidate *best, progress *work) {
     mark_places(with, &best->form, needs, wants);
     const size_t goers = pick_least(needs, with->of.count, EXCHANGED, gone);
     const size_t splits = pick_least(wants, with->of.count, EXCHANGED, split);
-    finalists promising = {.room = EXCHANGE_SEARCHES};
+    candidate room[EXCHANGE_SEARCHES];
+    finalists promising = {.room = EXCHANGE_SEARCHES, .items = room};
     for (size_t g = 0; g < goers; g++) {
         for (size_t s = 0; s < splits; s++) {
             candidate next;
@@ -137,8 +139,13 @@ static bool try_exchanges(search *with, candidate *best, progress *work) {
     return best->value < value * (1 - 1e-5);
 }
 
-static void enter_starts(search *with, finalists *in) {
-    start_list starts;
+/* A linear programme for each of twice as many sets of normals as there may be finalists. */
+static bool enter_starts(search *with, finalists *in) {
+    start_list starts = {.room = 2 * in->room + 12};
+    starts.angles = malloc(starts.room * sizeof *starts.angles);
+    if (!starts.angles) {
+        return false;
+    }
     narc_list_starts(&with->of, &starts);
     for (size_t k = 0; k < starts.count; k++) {
         candidate next;
@@ -146,6 +153,8 @@ static void enter_starts(search *with, finalists *in) {
             enter(in, &next);
         }
     }
+    free(starts.angles);
+    return true;
 }
 
 /* Chains that were found otherwise count as they are, and after the local search. */
@@ -167,8 +176,12 @@ narc_status narc_find_best(const problem *of, unsigned starts, const chain *know
     if (status != NARC_OK) {
         return status;
     }
-    finalists promising = {.room = starts < MAX_STARTS ? starts : MAX_STARTS};
-    enter_starts(&with, &promising);
+    finalists promising = {.room = starts, .items = malloc(starts * sizeof *promising.items)};
+    if (!promising.items || !enter_starts(&with, &promising)) {
+        free(promising.items);
+        narc_close_search(&with);
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for %u starts", starts);
+    }
     candidate best = {.value = INFINITY};
     try_known(&with, known, known_count, &best);
     bool going = true;
@@ -183,6 +196,7 @@ narc_status narc_find_best(const problem *of, unsigned starts, const chain *know
     if (isfinite(best.value) && !work->cancelled) {
         narc_refine(&with, &best, LAST_ROUNDS);
     }
+    free(promising.items);
     narc_close_search(&with);
     if (!isfinite(best.value)) {
         return work->cancelled

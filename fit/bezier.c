@@ -103,24 +103,53 @@ static void reverse_spline(narc_spline *spline) {
     }
 }
 
-/* Cuts are sought from both ends: the better of both splines, so that the direction of the curve makes no
- * difference. */
-static narc_status fit_both_ways(const narc_cubic *curve, double tolerance, double rounding, narc_spline *spline,
+/* Takes over `other` if it has fewer arcs, or as many and they are closer; frees the one that is not kept. */
+static void keep_better(narc_spline *best, narc_spline *other) {
+    const bool better = best->count == 0 || other->count < best->count ||
+                        (other->count == best->count && other->distance < best->distance);
+    free(better ? best->arcs : other->arcs);
+    *best = better ? *other : *best;
+}
+
+/* Cuts are sought from both ends, so that the direction of the curve makes no difference. */
+static narc_status fit_both_ways(const narc_cubic *curve, double tolerance, double rounding, narc_spline *best,
                                  narc_error *error) {
     const narc_cubic reversed = narc_reverse_cubic(curve);
-    narc_spline other = {0};
-    narc_status status = narc_fit_spline(curve, tolerance, rounding, spline, error);
-    if (status == NARC_OK) {
-        status = narc_fit_spline(&reversed, tolerance, rounding, &other, error);
+    narc_status status = NARC_OK;
+    for (int way = 0; way < 2 && status == NARC_OK; way++) {
+        narc_spline made = {0};
+        status = narc_fit_spline(way ? &reversed : curve, tolerance, rounding, &made, error);
+        if (status != NARC_OK) {
+            free(made.arcs);
+        } else {
+            if (way) {
+                reverse_spline(&made);
+            }
+            keep_better(best, &made);
+        }
     }
-    if (status == NARC_OK &&
-        (other.count < spline->count || (other.count == spline->count && other.distance < spline->distance))) {
-        const narc_spline better = other;
-        other = *spline;
-        *spline = better;
-        reverse_spline(spline);
+    return status;
+}
+
+/* The furthest cuts are not always the best: where a curve turns sharply, less tolerance may lead to cuts that need
+ * fewer arcs, and it often leads to as many that are closer. It is tried while the arcs are few. */
+static narc_status fit_best(const narc_cubic *curve, double tolerance, double rounding, narc_spline *best,
+                            narc_error *error) {
+    enum { TRIES = 5, FEW_ARCS = 24 };
+    narc_status status = fit_both_ways(curve, tolerance, rounding, best, error);
+    for (int k = 0; k < TRIES && status == NARC_OK && best->count <= FEW_ARCS; k++) {
+        narc_spline closer = {0};
+        tolerance *= 0.65;
+        if (tolerance < 1e-9 || fit_both_ways(curve, tolerance, rounding, &closer, NULL) != NARC_OK) {
+            free(closer.arcs);
+            break;
+        }
+        const bool too_many = closer.count > best->count;
+        keep_better(best, &closer);
+        if (too_many) {
+            break;
+        }
     }
-    free(other.arcs);
     return status;
 }
 
@@ -171,7 +200,7 @@ static narc_status fit_curve(const narc_point *controls, size_t degree, double t
     const narc_cubic curve = raise_degree(local, degree);
     /* A tolerance of many times the curve means no more than that of a few times. */
     const double limit = fmin(in_frame, 16 * extent) - 2 * f->rounding;
-    const narc_status status = fit_both_ways(&curve, limit, f->rounding, spline, error);
+    const narc_status status = fit_best(&curve, limit, f->rounding, spline, error);
     /* The sum of what was subtracted above may be a rounding more. */
     spline->distance = fmin(ldexp(spline->distance + 2 * f->rounding, f->exponent), tolerance);
     return status;

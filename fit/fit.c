@@ -14,7 +14,7 @@
 #include "vector.h"
 
 /* Starts of the local search where the caller names no number: of a fit, and of each try of a count of arcs. */
-enum { USUAL_STARTS = 10, TRIAL_STARTS = 6 };
+enum { USUAL_STARTS = 12, TRIAL_STARTS = 6 };
 
 /* A radius of the hull below this, or above, would leave no room for the shape in the store's range. */
 static const double LEAST_RADIUS = 4 * NARC_MIN_SIZE, LARGEST_RADIUS = 0.1 * NARC_MAX_SIZE;
@@ -139,6 +139,10 @@ static narc_status prepare(const narc_path *path, job *to, narc_error *error) {
         flatness = FLATNESS_OF_TOLERANCE * request->tolerance;
     }
     narc_status status = narc_flatten_path(path, flatness, &contours, error);
+    if (status == NARC_ERROR_SIZE &&
+        request->flatness == 0) { /* finer than numbers are: such a tolerance is not reached */
+        status = narc_flatten_path(path, 0, &contours, error);
+    }
     if (status != NARC_OK) {
         return status;
     }

@@ -112,9 +112,10 @@ NARC_API narc_status narc_read_glyph(narc_font *font, uint32_t character, narc_p
 NARC_API uint32_t narc_next_character(narc_font *font, uint32_t after);
 
 /* An SVG file (XML, UTF-8 or as its header says): paths, rectangles, circles, ellipses, polygons, polylines and lines,
- * with their transforms, also through groups and `use`. What is not drawn (display: none, inside defs, clip paths,
- * masks, patterns, markers or symbols that no `use` shows) is left out; strokes have no width; text and images are not
- * read. Units are the SVG's user units, y turned up. */
+ * with their transforms, also through groups and `use`. What is not seen (display: none, neither fill nor stroke, a
+ * contour on one line without a stroke, inside defs, clip paths, masks, patterns, markers or symbols that no `use` shows)
+ * is left out; strokes have no width; nothing is clipped; text and images are not read. Units are the SVG's user units, y
+ * turned up. */
 NARC_API narc_status narc_read_svg(const void *data, size_t size, narc_path *path, narc_error *error);
 
 /* The silhouette in a PNG image: contours at `threshold` (between 0 and 1) of the alpha channel, interpolated between

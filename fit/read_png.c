@@ -200,6 +200,9 @@ narc_status narc_read_png(const void *data, size_t size, double threshold, narc_
         return narc_fail(error, isnan(threshold) ? NARC_ERROR_NOT_FINITE : NARC_ERROR_SIZE, 0, threshold,
                          "threshold is %g; it must be between 0 and 1", threshold);
     }
+    if (size == 0) {
+        return narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "the PNG file is empty");
+    }
     const struct source source = {data, size, error};
     png_image image;
     void *samples = NULL;

@@ -48,6 +48,10 @@ static inline bool narc_must_bound(const problem *of) { return of->goal <= NARC_
 /* Is the goal a largest distance (which the symmetric difference starts from)? */
 static inline bool narc_is_distance(const problem *of) { return of->goal >= NARC_FIT_BOUND_DISTANCE; }
 
+/* An arc turns at least by this: wide enough that normals stay apart in single precision, and no arc that is shorter
+ * would matter. */
+#define LEAST_SWEEP 1e-3
+
 /* How far an arc may turn; polygons need sides that meet. */
 static inline double narc_widest_sweep(const problem *of) {
     return of->family == NARC_FIT_POLYGON ? 3.08 : 3.14159265358979323846;

@@ -45,8 +45,4 @@ static inline double narc_radius_limit(const problem *of) {
 }
 static inline double narc_edge_limit(const problem *of) { return of->family == NARC_FIT_N_ARC ? 0 : 100; }
 
-/* An arc turns at least by this: wide enough that normals stay apart in single precision, and no arc that is shorter
- * would matter. */
-#define LEAST_SWEEP 1e-3
-
 #endif

@@ -26,8 +26,9 @@
  *     shares 0, 0.2, 0.35 ... 0.8, 0.9 (8)    4.5    6.9   12.4   24.1
  *     the five, and from the other end too    4.5    6.8   12.3   24.3
  *
- * The last is what narc_fit_bezier() does. Where a pair's arcs meet is a choice too: on the curve, if possible.
- * Trying nine places near there makes the arcs 1.3, 0.4, 0.2 and 0.2 per cent fewer, for twice the time.
+ * The last is what narc_fit_bezier() does, with less tolerance too (see bezier.c). Where a pair's arcs meet is a
+ * choice too: on the curve, if possible. Trying nine places near there makes the arcs 1.3, 0.4, 0.2 and 0.2 per cent
+ * fewer, for twice the time.
  */
 #include <float.h>
 #include <math.h>

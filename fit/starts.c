@@ -34,11 +34,24 @@ static size_t find_widest(const double *angles, size_t count, double *out_sweep)
     return widest;
 }
 
-/* Sorts `count` normals, at least one, within a turn of each other; halves the widest sectors until there are `wanted`;
- * draws them a little towards an even spread, so that none coincide; and adds the set unless a sector is too wide. */
-static void add_set(start_list *to, const double *given, size_t count, size_t wanted) {
+/* Draws normals towards an even spread by as much as keeps any two of them apart. */
+static void spread_normals(double *angles, size_t count) {
     static const double EVEN = 0.02;
-    if (to->count == MAX_STARTS || count == 0 || count > wanted) {
+    double least = INFINITY;
+    for (size_t k = 0; k + 1 < count; k++) {
+        least = fmin(least, angles[k + 1] - angles[k]);
+    }
+    if (least < 2 * LEAST_SWEEP) {
+        for (size_t k = 0; k < count; k++) {
+            angles[k] += EVEN * (angles[0] + 2 * PI * (double)k / (double)count - angles[k]);
+        }
+    }
+}
+
+/* Sorts `count` normals, at least one, within a turn of each other; halves the widest sectors until there are `wanted`;
+ * and adds the set unless a sector is too wide. */
+static void add_set(start_list *to, const double *given, size_t count, size_t wanted) {
+    if (to->count == to->room || count == 0 || count > wanted) {
         return;
     }
     double *angles = to->angles[to->count];
@@ -50,11 +63,7 @@ static void add_set(start_list *to, const double *given, size_t count, size_t wa
         memmove(angles + k + 2, angles + k + 1, (count - k - 1) * sizeof *angles);
         angles[k + 1] = angles[k] + sweep / 2;
     }
-    const double first = angles[0];
-    for (size_t k = 0; k < count; k++) {
-        const double even = first + 2 * PI * (double)k / (double)count;
-        angles[k] += EVEN * (even - angles[k]);
-    }
+    spread_normals(angles, count);
     find_widest(angles, count, &sweep);
     to->count += sweep <= to->widest;
 }
@@ -67,9 +76,9 @@ static void add_even(start_list *to, size_t count, double phase) {
     add_set(to, angles, count, count);
 }
 
-/* Normals at even steps of a measure of the hull's outline: `turning` parts of its turning and the rest of its length,
- * both as parts of the whole. The first is at `phase` steps. */
-static void add_measured(start_list *to, const hull *of, size_t count, double turning, double phase) {
+/* The normals at which a measure of the hull's outline, from 0 to 1, reaches `targets`, which rise: `turning` parts of
+ * its turning and the rest of its length, both as parts of the whole. */
+static void add_measured(start_list *to, const hull *of, size_t count, double turning, const double *targets) {
     double angles[MAX_CHAIN], measure = 0;
     size_t next = 0;
     for (size_t k = 0; k < of->count && next < count; k++) {
@@ -77,17 +86,41 @@ static void add_measured(start_list *to, const hull *of, size_t count, double tu
         const double side = (1 - turning) * length(minus(until, from)) / of->perimeter;
         const double end = k + 1 < of->count ? of->angles[k + 1] : of->angles[0] + 2 * PI;
         const double turn = turning * (end - of->angles[k]) / (2 * PI);
-        double target = ((double)next + phase) / (double)count;
-        for (; next < count && target < measure + side; target = ((double)++next + phase) / (double)count) {
+        for (; next < count && targets[next] < measure + side; next++) {
             angles[next] = of->angles[k];
         }
         measure += side;
-        for (; next < count && target < measure + turn; target = ((double)++next + phase) / (double)count) {
-            angles[next] = of->angles[k] + (end - of->angles[k]) * (target - measure) / turn;
+        for (; next < count && targets[next] < measure + turn; next++) {
+            angles[next] = of->angles[k] + (end - of->angles[k]) * (targets[next] - measure) / turn;
         }
         measure += turn;
     }
     add_set(to, angles, next, count);
+}
+
+static void add_regular(start_list *to, const hull *of, size_t count, double turning, double phase) {
+    double targets[MAX_CHAIN];
+    for (size_t k = 0; k < count; k++) {
+        targets[k] = ((double)k + phase) / (double)count;
+    }
+    add_measured(to, of, count, turning, targets);
+}
+
+/* Numbers from 0 to 1 that look random and are the same each time: a counter put through Steele's SplitMix64. */
+static double next_random(uint64_t *state) {
+    uint64_t x = *state += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return (double)((x ^ (x >> 31)) >> 11) * 0x1p-53;
+}
+
+static void add_random(start_list *to, const hull *of, size_t count, uint64_t *state) {
+    double targets[MAX_CHAIN];
+    for (size_t k = 0; k < count; k++) {
+        targets[k] = next_random(state);
+    }
+    qsort(targets, count, sizeof *targets, compare_numbers);
+    add_measured(to, of, count, 0.2 + 0.6 * next_random(state), targets);
 }
 
 /* Two normals at each side of a flush polygon, `apart` to either side of the side's own. */
@@ -116,15 +149,19 @@ void narc_list_starts(const problem *of, start_list *out_starts) {
         add_flush(out_starts, of->around, n, n - 1);
     }
     if (of->family != NARC_FIT_POLYGON) {
-        add_pairs(out_starts, of->around, n, n / 2, 0.03);
+        add_pairs(out_starts, of->around, n, n / 2, 0.015);
         add_pairs(out_starts, of->around, n, n / 2, 0.12);
-        add_pairs(out_starts, of->around, n, n / 2 - (n > 7), 0.05);
+        add_pairs(out_starts, of->around, n, (n - 1) / 2, 0.03);
         add_pairs(out_starts, of->around, n, n / 3, 0.05);
     }
     for (unsigned k = 0; k < 4; k++) {
         const double phase = (double)k / 4;
-        add_measured(out_starts, of->around, n, 0.5, phase);
-        add_measured(out_starts, of->around, n, k % 2 ? 0.2 : 0.8, phase);
+        add_regular(out_starts, of->around, n, 0.5, phase);
+        add_regular(out_starts, of->around, n, k % 2 ? 0.2 : 0.8, phase);
         add_even(out_starts, n, phase);
+    }
+    uint64_t state = 1;
+    for (size_t k = 0; k < out_starts->room && out_starts->count < out_starts->room; k++) {
+        add_random(out_starts, of->around, n, &state);
     }
 }

@@ -7,15 +7,13 @@
 
 #include "rows.h"
 
-/* The most sets that narc_list_starts() makes. */
-enum { MAX_STARTS = 24 };
-
 typedef struct start_list {
-    size_t count;
+    size_t count, room;
     double widest; /* sets with a wider sector are left out */
-    double angles[MAX_STARTS][MAX_CHAIN];
+    double (*angles)[MAX_CHAIN];
 } start_list;
 
+/* Fills `room` sets: the reasonable ones first, then random ones. */
 void narc_list_starts(const problem *of, start_list *out_starts);
 
 #endif

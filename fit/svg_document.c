@@ -22,8 +22,8 @@ static void declare_entity(void *context, const xmlChar *name, int type, const x
     }
 }
 
-/* Keeps the line on which each element's tag begins: the tree itself keeps 16 bits of that on which it ends. In a tag '<'
- * stands at the beginning only; of a very long tag the parser may have let go of that. */
+/* Keeps the line on which each element's tag begins: the tree itself keeps 16 bits of that on which it ends. In a tag
+ * '<' stands at the beginning only; of a very long tag the parser may have let go of that. */
 static void start_element(void *context, const xmlChar *name, const xmlChar *prefix, const xmlChar *uri,
                           int namespace_count, const xmlChar **namespaces, int attribute_count, int defaulted_count,
                           const xmlChar **attributes) {
@@ -47,7 +47,13 @@ struct xml_error {
     char message[128];
 };
 
-static void keep_error(void *context, xmlError *error) {
+#if LIBXML_VERSION >= 21200
+typedef const xmlError parser_error;
+#else
+typedef xmlError parser_error;
+#endif
+
+static void keep_error(void *context, parser_error *error) {
     struct xml_error *first = ((xmlParserCtxt *)context)->_private;
     if (error->level == XML_ERR_FATAL && !first->code) {
         first->code = error->code;

@@ -43,8 +43,11 @@ static const char *skip_sign(const char *text) { return text + (*text == '+' || 
 
 /* Behind an exponent, if it has digits. */
 static const char *skip_exponent(const char *text) {
+    if (*text != 'e' && *text != 'E') {
+        return text;
+    }
     const char *digits = skip_sign(text + 1);
-    return (*text == 'e' || *text == 'E') && is_digit(*digits) ? skip_digits(digits) : text;
+    return is_digit(*digits) ? skip_digits(digits) : text;
 }
 
 bool narc_take_number(const char **text, double *out_number) {

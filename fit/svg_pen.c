@@ -24,8 +24,8 @@ static narc_status map_point(const narc_svg_pen *pen, narc_point point, narc_poi
     return NARC_OK;
 }
 
-/* Are the points at one place, or on one line? Up to rounding: a coordinate that was mapped is known to some DBL_EPSILON
- * of the largest one. Control points on a line mean a curve on it. */
+/* Are the points at one place, or on one line? Up to rounding: a coordinate that was mapped is known to some
+ * DBL_EPSILON of the largest one. Control points on a line mean a curve on it. */
 static bool is_flat(const narc_point *points, size_t count, bool one_place) {
     const narc_point first = points[0];
     narc_point far = {0, 0};
@@ -105,9 +105,9 @@ narc_status narc_pen_cubic(narc_svg_pen *pen, const narc_point controls[2], narc
 /* A path's contours close by themselves; what is drawn next begins another one at the same place. */
 void narc_pen_close(narc_svg_pen *pen) { narc_pen_move(pen, pen->start); }
 
-/* The point and the tangent's control vector of a turning pen at an angle. Points are reckoned from the first one by the
- * chord to it, p(b) - p(a) = 2 sin((b - a)/2) (-sin m, cos m) with m = (a + b)/2, not from the centre: a nearly straight
- * arc has a centre so far away that its coordinates say nothing about the arc. */
+/* The point and the tangent's control vector of a turning pen at an angle. Points are reckoned from the first one by
+ * the chord to it, p(b) - p(a) = 2 sin((b - a)/2) (-sin m, cos m) with m = (a + b)/2, not from the centre: a nearly
+ * straight arc has a centre so far away that its coordinates say nothing about the arc. */
 static narc_point turn_chord(const narc_affine *map, double a, double b) {
     const double length = 2 * sin((b - a) / 2), m = (a + b) / 2;
     return narc_apply_affine(map, (narc_point){-length * sin(m), length * cos(m)});
@@ -142,8 +142,8 @@ narc_status narc_pen_turn(narc_svg_pen *pen, const narc_ellipse *ellipse, double
 }
 
 /* In the frame where the ellipse is a unit circle, the chord from the pen to `to` is 2d (ux, uy) with d <= 1, and the
- * centre is sqrt(1 - d^2) from its middle, at right angles to it: on the side to which x turned towards y points if just
- * one of large and sweep is set, else on the other. Half the arc's angle is asin(d), or pi less that. */
+ * centre is sqrt(1 - d^2) from its middle, at right angles to it: on the side to which x turned towards y points if
+ * just one of large and sweep is set, else on the other. Half the arc's angle is asin(d), or pi less that. */
 narc_status narc_pen_arc(narc_svg_pen *pen, const narc_svg_arc *arc, narc_point to, narc_svg_fault *fault) {
     const double dx = (to.x - pen->at.x) / 2, dy = (to.y - pen->at.y) / 2;
     const double tilt = fmod(arc->tilt, 360) * (PI / 180), c = cos(tilt), s = sin(tilt);

@@ -18,9 +18,9 @@ typedef struct narc_svg_pen {
     size_t budget;        /* lines and curves it may yet draw: what is used again and again comes to an end */
 } narc_svg_pen;
 
-/* A move, or the end of a contour, takes back the contour before it if that is not seen: on one line or at one point, and
- * not stroked. Drawing programs leave such specks behind, often far from everything else.
- * Errors: NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE (coordinates, or the budget), NARC_ERROR_MEMORY. A fault has no `at`. */
+/* A move, or the end of a contour, takes back the contour before it if that is not seen: on one line or at one point,
+ * and not stroked. Drawing programs leave such specks behind, often far from everything else. Errors:
+ * NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE (coordinates, or the budget), NARC_ERROR_MEMORY. A fault has no `at`. */
 void narc_pen_move(narc_svg_pen *pen, narc_point to);
 void narc_pen_close(narc_svg_pen *pen);
 narc_status narc_pen_line(narc_svg_pen *pen, narc_point to, narc_svg_fault *fault);
@@ -36,8 +36,8 @@ typedef struct narc_ellipse {
 /* From where the pen is, which is the ellipse's point at angle `from`, by the angle `turn` (in the frame where the
  * ellipse is the unit circle), to the point `to`. In pieces of at most 30 degrees: cubics that share the circle's ends
  * and tangents and touch it in the middle. Between, they are outside the circle by at most 2/27 sin(a/4)^6 / cos(a/4)^2
- * of the radius for a piece of angle a, which is 3.8e-7; any affine map makes that at most 3.8e-7 of the longer half axis
- * of the ellipse it becomes. */
+ * of the radius for a piece of angle a, which is 3.8e-7; any affine map makes that at most 3.8e-7 of the longer half
+ * axis of the ellipse it becomes. */
 narc_status narc_pen_turn(narc_svg_pen *pen, const narc_ellipse *ellipse, double from, double turn, narc_point to,
                           narc_svg_fault *fault);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * svg_shapes.h - the elements of an SVG file that have an outline, and those that open a new coordinate system. Internal.
+ * svg_shapes.h - the elements of an SVG file that have an outline or a coordinate system of their own. Internal.
  */
 #ifndef NARC_SVG_SHAPES_H
 #define NARC_SVG_SHAPES_H

@@ -52,8 +52,8 @@ typedef struct narc_svg_values {
 /* Adds what "name: value; name: value" declares; the last of a name counts. */
 void narc_add_declarations(narc_span text, narc_svg_values *values);
 
-/* The rules of all `style` elements whose selector is one name, class, id or '*'. All others, and whatever stands inside
- * @media and the like, are left out. */
+/* The rules of all `style` elements whose selector is one name, class, id or '*'. All others, and whatever stands
+ * inside @media and the like, are left out. */
 typedef struct narc_svg_sheet {
     char *text;
     xmlHashTable *rules; /* by the selector as it is written, such as ".a" */

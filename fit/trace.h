@@ -14,9 +14,9 @@ typedef struct narc_image {
 } narc_image;
 
 /* Adds the contours where the image, bilinear between samples and surrounded by pixels of value 0, passes `level`:
- * polygons with a point on each line between two neighbouring samples of which one is above. Round what is above they go
- * counter-clockwise, round holes clockwise; none crosses itself or another. Samples must not be equal to the level, and
- * it must be above 0. NARC_ERROR_MEMORY; then the path may have some of them. */
+ * polygons with a point on each line between two neighbouring samples of which one is above. Round what is above they
+ * go counter-clockwise, round holes clockwise; none crosses itself or another. Samples must not be equal to the level,
+ * and it must be above 0. NARC_ERROR_MEMORY; then the path may have some of them. */
 narc_status narc_trace_image(const narc_image *image, double level, narc_path *path, narc_error *error);
 
 #endif

@@ -18,13 +18,15 @@ struct png_file {
     size_t size;
 };
 
-/* A file whose pixels are, in all formats: gray (and red, green and blue) of value gray[k], and alpha[k], both 0 .. 65535
- * and rounded to what the format has. A palette has 16 grays, or 16 alphas with black; 8 bits. Formats without alpha drop
- * it. To be freed by the caller. */
+/* A file whose pixels are, in all formats: gray (and red, green and blue) of value gray[k], and alpha[k], both 0 ..
+ * 65535 and rounded to what the format has. A palette has 16 grays, or 16 alphas with black; 8 bits. Formats without
+ * alpha drop it. To be freed by the caller. */
 struct png_file write_png(struct png_format format, size_t width, size_t height, const uint16_t *gray,
                           const uint16_t *alpha);
 
 /* The contours in such a file at a threshold. */
 narc_contours read_png(struct png_file file, double threshold);
+
+int test_png_damage(void);
 
 #endif

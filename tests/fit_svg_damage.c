@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * fit_svg_damage.c - SVG files that are wrong, and what is left of right ones when bytes change: an error or an outline.
+ * fit_svg_damage.c - SVG files that are wrong, and right ones with changed bytes: an error or an outline.
  */
 #include <math.h>
 #include <stdio.h>
@@ -156,7 +156,8 @@ static void ends_repeated_use(void **state) {
     }
 }
 
-/* Each group is inside the one before by a use: no element is deep inside another in the file, but all are when shown. */
+/* Each group is inside the one before by a use: no element is deep inside another in the file, but all are when
+ * shown. */
 static void ends_deep_use(void **state) {
     (void)state;
     enum { LEVELS = 2000 };

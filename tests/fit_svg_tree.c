@@ -29,8 +29,8 @@ static struct matrix multiply(const struct matrix *a, const struct matrix *b) {
     return c;
 }
 
-/* One random function as text and as a matrix. */
-static struct matrix random_function(struct test_random *random, char *text, size_t size) {
+/* One random function as text and as a matrix; *moves: it turns about a point, so that its own matrix is a product. */
+static struct matrix random_function(struct test_random *random, char *text, size_t size, bool *moves) {
     double n[6];
     for (int k = 0; k < 6; k++) {
         n[k] = random_between(random, -2, 2);
@@ -40,7 +40,9 @@ static struct matrix random_function(struct test_random *random, char *text, siz
     const struct matrix back = {{{1, 0, -n[0]}, {0, 1, -n[1]}, {0, 0, 1}}};
     const struct matrix turn = {{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
     struct matrix turned;
-    switch (random_below(random, 9)) {
+    const size_t kind = random_below(random, 9);
+    *moves = kind == 6;
+    switch (kind) {
     case 0:
         snprintf(text, size, "matrix(%.17g,%.17g %.17g %.17g , %.17g %.17g)", n[0], n[1], n[2], n[3], n[4], n[5]);
         return (struct matrix){{{n[0], n[2], n[4]}, {n[1], n[3], n[5]}, {0, 0, 1}}};
@@ -72,9 +74,9 @@ static struct matrix random_function(struct test_random *random, char *text, siz
     }
 }
 
-/* Lists of up to 3 functions on 3 elements inside each other: at most 9 matrices whose norms are below 6, with some
- * roundings each. Both ways round, so the outcome differs by a few DBL_EPSILON times the product of the norms; the latter
- * is bounded with that of the absolute values of the matrices. */
+/* Lists of up to 3 functions on 3 elements inside each other: at most 9 matrices, each with 3 terms in an entry. Both
+ * ways round, so the outcome differs by some DBL_EPSILON times the product of the matrices of absolute values. For a
+ * turn about a point, whose terms may cancel, 10 is above all terms: |x| + c |x| + s |y| with |x|, |y| <= 2. */
 static void multiplies_transforms(void **state) {
     (void)state;
     static const narc_point corners[3] = {{1, 2}, {3, -1}, {-2, 1}};
@@ -87,10 +89,12 @@ static void multiplies_transforms(void **state) {
                                                "<a style='fill:red;transform:", "<polygon transform=\""};
             strcat(body, tags[level]);
             for (size_t k = random_below(&random, 4); k > 0; k--) {
-                struct matrix next = random_function(&random, text, sizeof(text));
+                bool moves;
+                struct matrix next = random_function(&random, text, sizeof(text), &moves);
                 all = multiply(&all, &next);
                 for (int i = 0; i < 9; i++) {
-                    next.m[i / 3][i % 3] = fabs(next.m[i / 3][i % 3]);
+                    const bool product = moves && i % 3 == 2 && i < 6;
+                    next.m[i / 3][i % 3] = product ? 10 : fabs(next.m[i / 3][i % 3]);
                 }
                 size = multiply(&size, &next);
                 strcat(strcat(body, text), random_below(&random, 2) ? "," : " \n");
@@ -107,7 +111,8 @@ static void multiplies_transforms(void **state) {
                 scale = fmax(scale, size.m[i][0] * 3 + size.m[i][1] * 2 + size.m[i][2]);
             }
         }
-        /* 10 products of matrices, each entry of 3 terms with 3 roundings, on both sides; angles to 2 roundings. */
+        /* 9 products of matrices and that with the point, each with 3 roundings in an entry, and 2 more in the
+         * functions' own entries; on both sides. */
         expect_outline_near(body, ops, 2 * 10 * 5 * 0x1p-53 * scale);
     }
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * test_fit_png.c - silhouettes in PNG images: formats, which channel counts, where contours are, damaged files.
+ * test_fit_png.c - silhouettes in PNG images: where contours are, formats, which channel counts.
  */
 #include <math.h>
 #include <png.h>
@@ -11,7 +11,6 @@
 
 enum { FULL = 65535 };
 
-static const struct png_format gray_8 = {8, PNG_COLOR_TYPE_GRAY, false};
 static const struct png_format gray_alpha_8 = {8, PNG_COLOR_TYPE_GRAY_ALPHA, false};
 static const struct png_format gray_alpha_16 = {16, PNG_COLOR_TYPE_GRAY_ALPHA, false};
 
@@ -32,8 +31,9 @@ static void expect_points(struct png_file file, double threshold, const narc_poi
 
 /* ---------------------------------------------------------------------------- where contours are */
 
-/* Values between two samples are linear: from `value` at a pixel's centre to 0 at its neighbour's, a threshold is passed
- * (value - threshold) / value behind the centre. The level is between two of 65535 steps, at most half of one off. */
+/* Values between two samples are linear: from `value` at a pixel's centre to 0 at its neighbour's, a threshold is
+ * passed (value - threshold) / value behind the centre. The level is between two of 65535 steps, at most half of one
+ * off. */
 static void passes_between_centres(void **state) {
     (void)state;
     static const struct {
@@ -73,9 +73,10 @@ static double cover_half_plane(double angle, double s) {
 }
 
 /* How far from a straight edge the contour is, for pixels that are covered exactly: the crossing on a line of pixels
- * that meets the edge at `angle`. For an edge across the line and a pixel whose centre is a <= 1/2 inside, the two values are
- * 1/2 + a and 0, so the crossing is a / (1/2 + a) from that centre instead of a. The difference a (1/2 - a) / (1/2 + a) is
- * largest at a = (sqrt 2 - 1) / 2: 3/2 - sqrt 2. That other angles have no more is tried here, on a fine grid. */
+ * that meets the edge at `angle`. For an edge across the line and a pixel whose centre is a <= 1/2 inside, the two
+ * values are 1/2 + a and 0, so the crossing is a / (1/2 + a) from that centre instead of a. The difference a (1/2 - a)
+ * / (1/2 + a) is largest at a = (sqrt 2 - 1) / 2: 3/2 - sqrt 2. That other angles have no more is tried here, on a fine
+ * grid. */
 static const double EDGE_ERROR = 1.5 - 1.4142135623730951;
 
 static void knows_its_error_at_straight_edges(void **state) {
@@ -89,8 +90,10 @@ static void knows_its_error_at_straight_edges(void **state) {
             most = fmax(most, fabs(s - part * step));
         }
     }
-    assert_true(most <= EDGE_ERROR + 1e-6); /* strips: each has an error of its own width squared, 2.5e-7, at most */
-    assert_true(most > EDGE_ERROR - 1e-3);  /* and the bound is reached, up to the grid */
+    /* Heights are straight but for two kinks: strips of width w are off there by w^2 / 8 times the slope cos / sin,
+     * which over the least slope 1/2 and times the step, sin, is below 2 (1 / 2000)^2 / 4: 1.3e-7. */
+    assert_true(most <= EDGE_ERROR + 1.3e-7);
+    assert_true(most > EDGE_ERROR - 1e-3); /* and the bound is reached, up to the grid */
 }
 
 /* The part of a pixel that a disc covers, in strips: each of exact height in its middle. */
@@ -105,11 +108,12 @@ static double cover_disc(double x, double y, double radius) {
     return sum / STRIPS;
 }
 
-/* A disc is between two half planes near its outline: that of the tangent at the nearest point, and the same moved in by
- * d^2 / (2 R), d being how far points of the two pixels in question can be from there: hypot(3/2, 1/2) and the error
- * itself, 1.67. Coverage grows with what is covered, so the crossing is between those of the half planes.
- * Values are rounded to `step`, half of it at most, which the slope of 1/2 or more turns into as much of a pixel as a
- * step is; and strips are wrong by less than 1/256 of a strip's height range, 2 / 256 ^ 2 at a steep outline. */
+/* A disc is between two half planes near its outline: that of the tangent at the nearest point, and the same moved in
+ * by d^2 / (2 R), d being how far points of the two pixels in question can be from there: hypot(3/2, 1/2) and the error
+ * itself, 1.67. Coverage grows with what is covered, so the crossing is between those of the half planes. Values are
+ * rounded to `step`, half of it at most, which the slope of 1/2 or more turns into as much of a pixel as a step is. A
+ * sum over 256 strips is off by at most half a strip's width times how much the heights vary, which is 1 at each of two
+ * sides: 1/256, and twice that of a pixel. */
 static void keeps_the_place_of_discs(void **state) {
     (void)state;
     enum { SIZE = 64 };
@@ -307,8 +311,9 @@ static void expect_same(const narc_contours *expected, struct png_file file, dou
     free(file.bytes);
 }
 
-/* The same blob in all formats: as alpha, dark on light, and light on dark. Grays of 16 bits are known to 11 bits; where
- * neighbouring values differ by 1/15 or more, as on both sides of the threshold, that is up to 15 / 2^11 of a pixel. */
+/* The same blob in all formats: as alpha, dark on light, and light on dark. Grays of 16 bits are known to 11 bits;
+ * where neighbouring values differ by 1/15 or more, as on both sides of the threshold, that is up to 15 / 2^11 of a
+ * pixel. */
 static void reads_all_formats(void **state) {
     (void)state;
     enum { WIDTH = 13, HEIGHT = 11, COUNT = WIDTH * HEIGHT };
@@ -348,165 +353,6 @@ static void reads_all_formats(void **state) {
     }
 }
 
-/* ---------------------------------------------------------------------------- errors */
-
-static void expect_png_error(const void *bytes, size_t size, double threshold, narc_status status, const char *words) {
-    narc_path *path = make_occupied_path();
-    narc_error error = {.message = "?"};
-    unsigned char *copy = malloc(size ? size : 1); /* the address sanitizer sees every read behind it */
-    assert_non_null(copy);
-    memcpy(copy, bytes, size);
-    expect_fit_error(narc_read_png(copy, size, threshold, path, &error), status, &error, words);
-    assert_int_equal(narc_read_png(copy, size, threshold, path, NULL), status);
-    expect_unchanged(path);
-    free(copy);
-    narc_destroy_path(path);
-}
-
-static struct png_file write_square(struct png_format format) {
-    uint16_t alpha[64] = {0}, gray[64];
-    for (size_t k = 0; k < 64; k++) {
-        alpha[k] = k % 8 >= 2 && k % 8 < 6 && k >= 16 && k < 48 ? FULL : 0;
-        gray[k] = (uint16_t)(FULL - alpha[k]);
-    }
-    return write_png(format, 8, 8, gray, alpha);
-}
-
-/* The chunks behind the signature of 8 bytes: IHDR has 13 bytes of data from byte 16 on. */
-static void refuses_damaged_files(void **state) {
-    (void)state;
-    struct png_file file = write_square(gray_8);
-    expect_png_error("", 0, 0, NARC_ERROR_FORMAT, "not PNG, or damaged");
-    expect_png_error("GIF89a_____________________________", 35, 0, NARC_ERROR_FORMAT, "not PNG, or damaged");
-    for (size_t size = 0; size < file.size - 12; size++) { /* without its end, IEND, a file may pass */
-        expect_png_error(file.bytes, size, 0, NARC_ERROR_FORMAT, "not PNG, or damaged");
-    }
-    for (size_t k = 0; k < 8 + 25; k++) { /* signature and header; their checksum */
-        file.bytes[k] ^= 4;
-        expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "not PNG, or damaged");
-        file.bytes[k] ^= 4;
-    }
-    size_t data = 33; /* the image's data: its checksum stands in front of IEND, which has 12 bytes */
-    assert_memory_equal(file.bytes + data + 4, "IDAT", 4);
-    file.bytes[file.size - 13] ^= 1;
-    expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "CRC");
-    file.bytes[file.size - 13] ^= 1;
-    file.bytes[data + 10] ^= 0x55;
-    expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "damaged");
-    free(file.bytes);
-}
-
-static unsigned long checksum(const unsigned char *bytes, size_t size) {
-    unsigned long crc = 0xffffffff;
-    for (size_t k = 0; k < size; k++) {
-        crc ^= bytes[k];
-        for (int bit = 0; bit < 8; bit++) {
-            crc = crc & 1 ? crc >> 1 ^ 0xedb88320 : crc >> 1;
-        }
-    }
-    return crc ^ 0xffffffff;
-}
-
-static void put_word(unsigned char *bytes, unsigned long word) {
-    for (int k = 0; k < 4; k++) {
-        bytes[k] = (unsigned char)(word >> (24 - 8 * k));
-    }
-}
-
-/* A header that tells a huge image, with the right checksum. */
-static void refuses_huge_images(void **state) {
-    (void)state;
-    static const struct {
-        unsigned long width, height;
-        narc_status status;
-        const char *words;
-    } cases[] = {
-        {20001, 1, NARC_ERROR_SIZE, "20001 x 1 pixels; at most 20000 a side"},
-        {1, 20001, NARC_ERROR_SIZE, "1 x 20001 pixels"},
-        {20000, 5001, NARC_ERROR_SIZE, "100000000 in all"},
-        {1000000, 1000000, NARC_ERROR_SIZE, "1000000 x 1000000 pixels"},
-        {0x7fffffff, 0x7fffffff, NARC_ERROR_FORMAT, "IHDR"},
-        {0xffffffff, 1, NARC_ERROR_FORMAT, "damaged"},
-        {0, 8, NARC_ERROR_FORMAT, "damaged"},
-        {20000, 5000, NARC_ERROR_FORMAT, "damaged"}, /* as large as can be, but there is not so much data */
-    };
-    struct png_file file = write_square(gray_8);
-    for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
-        put_word(file.bytes + 16, cases[k].width);
-        put_word(file.bytes + 20, cases[k].height);
-        put_word(file.bytes + 29, checksum(file.bytes + 12, 17));
-        expect_png_error(file.bytes, file.size, 0, cases[k].status, cases[k].words);
-    }
-    free(file.bytes);
-}
-
-static void refuses_what_has_no_outline(void **state) {
-    (void)state;
-    uint16_t none[4] = {0}, some[4] = {30000, 0, 0, 0}, full[4] = {FULL, FULL, FULL, FULL};
-    struct png_file file = write_png(gray_alpha_8, 2, 2, full, none);
-    expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "no pixel of the image reaches the threshold");
-    free(file.bytes);
-    file = write_png(gray_8, 2, 2, full, NULL);
-    expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "no pixel");
-    free(file.bytes);
-    file = write_png(gray_alpha_8, 2, 2, full, some);
-    expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "no pixel");
-    expect_png_error(file.bytes, file.size, 1, NARC_ERROR_SIZE, "threshold is 1;");
-    expect_png_error(file.bytes, file.size, -0.5, NARC_ERROR_SIZE, "threshold is -0.5;");
-    expect_png_error(file.bytes, file.size, NAN, NARC_ERROR_NOT_FINITE, "threshold is");
-    narc_path *path = make_path();
-    narc_error error;
-    expect_fit_error(narc_read_png(NULL, 5, 0, path, &error), NARC_ERROR_ARGUMENT, &error, "data is NULL");
-    expect_fit_error(narc_read_png(file.bytes, file.size, 0, NULL, &error), NARC_ERROR_ARGUMENT, &error,
-                     "path is NULL");
-    narc_destroy_path(path);
-    free(file.bytes);
-}
-
-/* Changed bytes, with checksums set right now and then so that more than these are tried. */
-static void survives_changed_bytes(void **state) {
-    (void)state;
-    static const struct png_format formats[4] = {{8, PNG_COLOR_TYPE_GRAY, false},
-                                                 {16, PNG_COLOR_TYPE_RGB_ALPHA, true},
-                                                 {8, PNG_COLOR_TYPE_PALETTE, false},
-                                                 {2, PNG_COLOR_TYPE_GRAY, true}};
-    struct test_random random = test_random_named("png bytes");
-    size_t read = 0, trials = test_trials(8000);
-    for (size_t trial = 0; trial < trials; trial++) {
-        struct png_file file = write_square(formats[trial % 4]);
-        for (size_t count = 1 + random_below(&random, 3); count > 0; count--) {
-            file.bytes[random_below(&random, file.size)] ^= (unsigned char)(1u << random_below(&random, 8));
-        }
-        for (size_t at = 8; random_below(&random, 4) && at + 12 <= file.size;) {
-            const unsigned char *c = file.bytes + at;
-            const size_t length = (size_t)c[0] << 24 | (size_t)c[1] << 16 | (size_t)c[2] << 8 | c[3];
-            if (length > file.size - at - 12) {
-                break;
-            }
-            put_word(file.bytes + at + 8 + length, checksum(c + 4, length + 4));
-            at += length + 12;
-        }
-        file.size = random_below(&random, 10) ? file.size : random_below(&random, file.size);
-        file.bytes = realloc(file.bytes, file.size ? file.size : 1);
-        narc_path *path = make_occupied_path();
-        narc_error error = {.message = ""};
-        const narc_status status = narc_read_png(file.bytes, file.size, 0, path, &error);
-        if (status) {
-            assert_true(status == NARC_ERROR_FORMAT || status == NARC_ERROR_SIZE);
-            expect_fit_error(status, status, &error, "");
-            expect_unchanged(path);
-        } else {
-            narc_contours contours = flatten(path);
-            assert_true(contours.count > 1);
-            narc_release_contours(&contours);
-            read++;
-        }
-        narc_destroy_path(path);
-        free(file.bytes);
-    }
-    assert_true(read > 0 && read < trials);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(passes_between_centres),
@@ -516,13 +362,10 @@ int main(void) {
         cmocka_unit_test(turns_round_holes_the_other_way),
         cmocka_unit_test(draws_simple_contours),
         cmocka_unit_test(reads_all_formats),
-        cmocka_unit_test(refuses_damaged_files),
-        cmocka_unit_test(refuses_huge_images),
-        cmocka_unit_test(refuses_what_has_no_outline),
-        cmocka_unit_test(survives_changed_bytes),
     };
     if (!test_begin()) {
         return TEST_SKIPPED;
     }
-    return cmocka_run_group_tests_name("PNG", tests, NULL, NULL);
+    const int failures = cmocka_run_group_tests_name("PNG", tests, NULL, NULL);
+    return failures + test_png_damage();
 }

@@ -93,8 +93,8 @@ static void reads_numbers_without_separators(void **state) {
 /* What pieces of 30 degrees can be off, of the radius, always outwards; and a little rounding. */
 static double arc_bound(void) { return 2.0 / 27 * pow(sin(PI / 24), 6) / pow(cos(PI / 24), 2); }
 
-/* The chord from (0, 0) to (10, 0) in circles of radius 13 round (5, -12) or (5, 12). With y down and `sweep`, angles grow
- * from x to y: the small arc bulges to y = -1 from the centre (5, 12). */
+/* The chord from (0, 0) to (10, 0) in circles of radius 13 round (5, -12) or (5, 12). With y down and `sweep`, angles
+ * grow from x to y: the small arc bulges to y = -1 from the centre (5, 12). */
 static void draws_each_of_four_arcs(void **state) {
     (void)state;
     static const char *const flags[] = {"0 0", "0 1", "1 0", "1 1", "00", "01", "10", "11"};
@@ -156,11 +156,11 @@ static struct ellipse_arc random_arc(struct test_random *random) {
     return e;
 }
 
-/* How well an arc is known from its end points. These are off by some 1e-13 (rounding of coordinates up to 150), which is
- * as much in the unit circle's frame, since radii are at least 1. The chord's direction is then off by that over half its
- * length, sin(0.05 / 2): 4e-12; the centre by it over the cosine of half the angle, at least 0.005: 2e-11. The test's way
- * back through the matrix enlarges the rounding of coordinates up to 4 * 150 by 4 / 0.2: 20 * 600 * 4 DBL_EPSILON is
- * 1e-11. */
+/* How well an arc is known from its end points. These are off by some 1e-13 (rounding of coordinates up to 150), which
+ * is as much in the unit circle's frame, since radii are at least 1. The chord's direction is then off by that over
+ * half its length, sin(0.05 / 2): 4e-12; the centre by it over the cosine of half the angle, at least 0.005: 2e-11. The
+ * test's way back through the matrix enlarges the rounding of coordinates up to 4 * 150 by 4 / 0.2: 20 * 600 * 4
+ * DBL_EPSILON is 1e-11. */
 static const double ARC_ROUNDING = 1e-10;
 
 static void draws_arcs_of_random_ellipses(void **state) {

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * numbers.h - order statistics.
+ */
+#ifndef NARC_STUDY_NUMBERS_H
+#define NARC_STUDY_NUMBERS_H
+
+#include "study.h"
+
+typedef struct numbers {
+    size_t count;
+    double values[128]; /* more than there are subjects */
+} numbers;
+
+/* NAN is left out. */
+void add_number(numbers *to, double value);
+
+/* The value below which a part of all lies, between two values by interpolation; sorts them. NAN if there are none. */
+double find_quantile(numbers *of, double part);
+
+/* Spearman's: the correlation of ranks. */
+double correlate_ranks(const numbers *x, const numbers *y);
+
+#endif
