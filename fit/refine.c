@@ -20,7 +20,7 @@ enum { EVALUATIONS = 100 };
 /* Rows with more room than this, in units of the hull's radius, are left to the next round. */
 static const double NEAR = 0.08;
 
-static const double BOX_TURN = 0.3, BOX_RADIUS = 2, SMALL_RADIUS = 0.3;
+static const double BOX_TURN = 0.3, BOX_LENGTH = 1;
 
 /* A round that gains less than this part of the value is the last. */
 static const double LEAST_GAIN = 1e-6;
@@ -29,13 +29,18 @@ typedef struct frame {
     search *with;
     chain form;
     double distance, widest;
+    double sweep[MAX_CHAIN];
     double gradient[3 * MAX_CHAIN + 3];
 } frame;
 
-/* The variables as NLopt has them: those of narc_layout_of(), angles in place of turns. */
+/* The variables as NLopt has them: those of narc_layout_of(), with angles in place of turns, and lengths of arcs in place
+ * of radii. A flat arc is much like an edge: its length matters, and how it is made up of radius and sweep does not, so
+ * that with lengths the problem is far less curved. */
 static void write_variables(const chain *from, double distance, double *x) {
     const layout columns = narc_layout_of(from->count);
-    memcpy(x + columns.radius, from->radius, from->count * sizeof *x);
+    for (size_t i = 0; i < from->count; i++) {
+        x[columns.radius + i] = from->radius[i] * (narc_end_angle(from, i) - from->angle[i]);
+    }
     memcpy(x + columns.edge, from->edge, from->count * sizeof *x);
     memcpy(x + columns.angle, from->angle, from->count * sizeof *x);
     x[columns.start] = from->start.x;
@@ -43,46 +48,73 @@ static void write_variables(const chain *from, double distance, double *x) {
     x[columns.distance] = distance;
 }
 
-static void read_variables(const double *x, chain *out_form, double *out_distance) {
-    const layout columns = narc_layout_of(out_form->count);
-    memcpy(out_form->radius, x + columns.radius, out_form->count * sizeof *x);
-    memcpy(out_form->edge, x + columns.edge, out_form->count * sizeof *x);
-    memcpy(out_form->angle, x + columns.angle, out_form->count * sizeof *x);
-    out_form->start = (narc_point){x[columns.start], x[columns.start + 1]};
-    *out_distance = x[columns.distance];
-    narc_place_chain(out_form);
+static void move_to(frame *in, const double *x) {
+    chain *form = &in->form;
+    const layout columns = narc_layout_of(form->count);
+    memcpy(form->edge, x + columns.edge, form->count * sizeof *x);
+    memcpy(form->angle, x + columns.angle, form->count * sizeof *x);
+    for (size_t i = 0; i < form->count; i++) {
+        in->sweep[i] = fmax(0.1 * LEAST_SWEEP, narc_end_angle(form, i) - form->angle[i]);
+        form->radius[i] = x[columns.radius + i] / in->sweep[i];
+    }
+    form->start = (narc_point){x[columns.start], x[columns.start + 1]};
+    in->distance = x[columns.distance];
+    narc_place_chain(form);
+}
+
+/* From derivatives by radii and normals to those by lengths and normals: r = s / (end - start). */
+static void convert_gradient(const frame *in, double *gradient) {
+    const size_t n = in->form.count;
+    const layout columns = narc_layout_of(n);
+    for (size_t i = 0; i < n; i++) {
+        const double by_length = gradient[columns.radius + i] / in->sweep[i];
+        gradient[columns.radius + i] = by_length;
+        gradient[columns.angle + i] += by_length * in->form.radius[i];
+        gradient[columns.angle + (i + 1) % n] -= by_length * in->form.radius[i];
+    }
+}
+
+static double measure(const problem *of, const chain *form, double distance, double *gradient) {
+    if (of->goal == NARC_FIT_DIFFERENCE) {
+        return narc_difference_area(form, of->around, gradient);
+    }
+    if (narc_is_distance(of)) {
+        const layout columns = narc_layout_of(of->count);
+        if (gradient) {
+            memset(gradient, 0, columns.count * sizeof *gradient);
+            gradient[columns.distance] = 1;
+        }
+        return distance;
+    }
+    const bool perimeter = of->goal == NARC_FIT_BOUND_PERIMETER;
+    if (gradient) {
+        (perimeter ? narc_derive_perimeter : narc_derive_area)(form, gradient);
+    }
+    return perimeter ? narc_chain_perimeter(form) : narc_chain_area(form);
 }
 
 static double objective(unsigned count, const double *x, double *gradient, void *context) {
     frame *in = context;
-    const problem *of = &in->with->of;
-    read_variables(x, &in->form, &in->distance);
-    if (of->goal == NARC_FIT_DIFFERENCE) {
-        return narc_difference_area(&in->form, of->around, gradient);
-    }
-    if (narc_is_distance(of)) {
-        if (gradient) {
-            memset(gradient, 0, count * sizeof *gradient);
-            gradient[narc_layout_of(of->count).distance] = 1;
-        }
-        return in->distance;
-    }
-    const bool perimeter = of->goal == NARC_FIT_BOUND_PERIMETER;
+    (void)count;
+    move_to(in, x);
+    const double value = measure(&in->with->of, &in->form, in->distance, gradient);
     if (gradient) {
-        (perimeter ? narc_derive_perimeter : narc_derive_area)(&in->form, gradient);
+        convert_gradient(in, gradient);
     }
-    return perimeter ? narc_chain_perimeter(&in->form) : narc_chain_area(&in->form);
+    return value;
 }
 
 static void closure(unsigned rows, double *result, unsigned count, const double *x, double *gradient, void *context) {
     frame *in = context;
-    read_variables(x, &in->form, &in->distance);
+    move_to(in, x);
     const narc_point gap = minus(in->form.center[in->form.count], in->form.center[0]);
     result[0] = gap.x;
     result[1] = gap.y;
     if (gradient) {
         memset(gradient, 0, (size_t)rows * count * sizeof *gradient);
         narc_derive_gap(&in->form, gradient, gradient + count);
+        convert_gradient(in, gradient);
+        convert_gradient(in, gradient + count);
     }
 }
 
@@ -91,36 +123,40 @@ static void conditions(unsigned rows, double *result, unsigned count, const doub
     frame *in = context;
     const problem *of = &in->with->of;
     const layout columns = narc_layout_of(of->count);
-    read_variables(x, &in->form, &in->distance);
+    move_to(in, x);
     for (unsigned k = 0; k < rows; k++) {
         double *of_row = in->gradient;
         memset(of_row, 0, count * sizeof *of_row);
         const double value = narc_evaluate_row(of, &in->form, &in->with->rows->items[k], of_row);
         result[k] = -value - of_row[columns.distance] * in->distance;
+        convert_gradient(in, of_row);
         for (unsigned c = 0; c < count && gradient; c++) {
             gradient[(size_t)k * count + c] = -of_row[c];
         }
     }
 }
 
-/* Each arc turns by more than nothing and by at most half a turn. */
+/* Each arc turns by more than nothing and not by too much, and its radius has a limit. */
 static void sweeps(unsigned rows, double *result, unsigned count, const double *x, double *gradient, void *context) {
     const frame *in = context;
-    const size_t n = rows / 2;
+    const size_t n = rows / 3;
     const layout columns = narc_layout_of(n);
+    const double limit = narc_radius_limit(&in->with->of);
     if (gradient) {
         memset(gradient, 0, (size_t)rows * count * sizeof *gradient);
     }
     for (size_t k = 0; k < n; k++) {
         const size_t next = (k + 1) % n;
         const double sweep = x[columns.angle + next] - x[columns.angle + k] + (next ? 0 : 2 * PI);
+        const double factors[] = {-1, 1, -limit};
         result[k] = LEAST_SWEEP - sweep;
         result[n + k] = sweep - in->widest;
-        if (gradient) {
-            gradient[k * count + columns.angle + next] -= 1;
-            gradient[k * count + columns.angle + k] += 1;
-            gradient[(n + k) * count + columns.angle + next] += 1;
-            gradient[(n + k) * count + columns.angle + k] -= 1;
+        result[2 * n + k] = x[columns.radius + k] - limit * sweep;
+        for (size_t which = 0; which < 3 && gradient; which++) {
+            double *entries = gradient + (which * n + k) * count;
+            entries[columns.angle + next] += factors[which];
+            entries[columns.angle + k] -= factors[which];
+            entries[columns.radius + k] += which == 2 ? 1 : 0;
         }
     }
 }
@@ -141,9 +177,8 @@ static void set_bounds(nlopt_opt solver, const problem *of, const layout *column
     for (unsigned c = 0; c < columns->count; c++) {
         double lower = -HUGE_VAL, upper = HUGE_VAL;
         if (c < columns->edge) {
-            const double reach = BOX_RADIUS * (x[c] + SMALL_RADIUS);
-            lower = fmax(0, x[c] - reach);
-            upper = fmin(narc_radius_limit(of), x[c] + reach);
+            lower = 0;
+            upper = of->family == NARC_FIT_POLYGON ? 0 : x[c] + BOX_LENGTH;
         } else if (c < columns->start) {
             lower = 0;
             upper = narc_edge_limit(of);
@@ -158,9 +193,44 @@ static void set_bounds(nlopt_opt solver, const problem *of, const layout *column
     }
 }
 
+static void run_solver(frame *in, const layout *columns, double box, double *x) {
+    const unsigned count = (unsigned)columns->count, arcs = (unsigned)in->form.count;
+    double least;
+    nlopt_opt solver = nlopt_create(NLOPT_LD_SLSQP, count);
+    if (!solver) {
+        return;
+    }
+    set_bounds(solver, &in->with->of, columns, box, x);
+    nlopt_set_min_objective(solver, objective, in);
+    nlopt_add_equality_mconstraint(solver, 2, closure, in, NULL);
+    nlopt_add_inequality_mconstraint(solver, 3 * arcs, sweeps, in, NULL);
+    if (in->with->rows->count) {
+        nlopt_add_inequality_mconstraint(solver, (unsigned)in->with->rows->count, conditions, in, NULL);
+    }
+    nlopt_set_xtol_abs1(solver, STEP_TOLERANCE);
+    nlopt_set_maxeval(solver, EVALUATIONS);
+    nlopt_optimize(solver, x, &least);
+    nlopt_destroy(solver);
+}
+
+/* False if the sectors are out of order or the chain can't be closed. */
+static bool take_chain(search *with, const chain *form, candidate *out_next) {
+    out_next->form = *form;
+    for (size_t k = 0; k < form->count; k++) {
+        if (!(narc_end_angle(form, k) - form->angle[k] > 0.5 * LEAST_SWEEP)) {
+            return false;
+        }
+    }
+    if (!narc_close_chain(&out_next->form)) {
+        return false;
+    }
+    size_t intervals;
+    out_next->value = narc_settle(with, &out_next->form, &intervals);
+    return isfinite(out_next->value);
+}
+
 static bool solve_round(search *with, const candidate *from, double box, candidate *out_next) {
     const layout columns = narc_layout_of(with->of.count);
-    const unsigned count = (unsigned)columns.count, arcs = (unsigned)with->of.count;
     const double no_turns[MAX_CHAIN] = {0};
     with->rows->count = 0;
     if (with->of.goal != NARC_FIT_DIFFERENCE) {
@@ -168,37 +238,11 @@ static bool solve_round(search *with, const candidate *from, double box, candida
         keep_near(&with->of, &from->form, from->value, with->rows);
     }
     frame in = {.with = with, .form = from->form, .widest = narc_widest_sweep(&with->of)};
-    double x[3 * MAX_CHAIN + 3], least = 0;
+    double x[3 * MAX_CHAIN + 3];
     write_variables(&from->form, narc_is_distance(&with->of) ? from->value : 0, x);
-    nlopt_opt solver = nlopt_create(NLOPT_LD_SLSQP, count);
-    if (!solver) {
-        return false;
-    }
-    set_bounds(solver, &with->of, &columns, box, x);
-    nlopt_set_min_objective(solver, objective, &in);
-    nlopt_add_equality_mconstraint(solver, 2, closure, &in, NULL);
-    nlopt_add_inequality_mconstraint(solver, 2 * arcs, sweeps, &in, NULL);
-    if (with->rows->count) {
-        nlopt_add_inequality_mconstraint(solver, (unsigned)with->rows->count, conditions, &in, NULL);
-    }
-    nlopt_set_xtol_abs1(solver, STEP_TOLERANCE);
-    nlopt_set_maxeval(solver, EVALUATIONS);
-    nlopt_optimize(solver, x, &least);
-    nlopt_destroy(solver);
-    out_next->form.count = with->of.count;
-    read_variables(x, &out_next->form, &least);
-    for (size_t k = 0; k < with->of.count; k++) {
-        if (!isfinite(x[columns.angle + k]) ||
-            narc_end_angle(&out_next->form, k) - out_next->form.angle[k] < 0.5 * LEAST_SWEEP) {
-            return false;
-        }
-    }
-    size_t intervals;
-    if (!narc_close_chain(&out_next->form)) {
-        return false;
-    }
-    out_next->value = narc_settle(with, &out_next->form, &intervals);
-    return isfinite(out_next->value);
+    run_solver(&in, &columns, box, x);
+    move_to(&in, x);
+    return take_chain(with, &in.form, out_next);
 }
 
 void narc_refine(search *with, candidate *best, unsigned rounds) {

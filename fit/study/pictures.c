@@ -3,10 +3,8 @@
  * pictures.c - pictures in the form of the paper's figures 6 to 9, and one with the other outlines.
  */
 #include <math.h>
-#include <string.h>
 
 #include "../../tools/canvas.h"
-#include "../../tools/fail.h"
 #include "../../tools/output.h"
 #include "study.h"
 
@@ -22,13 +20,15 @@ typedef struct style {
 
 /* ---------------------------------------------------------------------------- one shape */
 
+static const narc_aabb NOWHERE = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+
 static narc_aabb join_boxes(narc_aabb a, narc_aabb b) {
     return (narc_aabb){fmin(a.min_x, b.min_x), fmin(a.min_y, b.min_y), fmax(a.max_x, b.max_x), fmax(a.max_y, b.max_y)};
 }
 
 /* The box of a fit in the outline's coordinates. */
 static narc_aabb bound_fit(const fit *of) {
-    narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    narc_aabb box = NOWHERE;
     if (of->found) {
         narc_compute_aabb(of->made.arcs, of->made.arc_count, 0, &box);
         const narc_point at = of->made.origin;
@@ -126,7 +126,20 @@ static void open_picture(canvas *page, const char *path, double width, double he
     cairo_select_font_face(page->pen, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
 }
 
+/* Fewer shades, 16 of each primary colour: the file is much smaller, and nobody sees it. */
+static void thin_shades(cairo_surface_t *image) {
+    enum { STEP = 17 };
+    cairo_surface_flush(image);
+    unsigned char *bytes = cairo_image_surface_get_data(image);
+    const int stride = cairo_image_surface_get_stride(image), height = cairo_image_surface_get_height(image);
+    for (int k = 0; k < stride * height; k++) {
+        bytes[k] = (unsigned char)((bytes[k] + STEP / 2) / STEP * STEP);
+    }
+    cairo_surface_mark_dirty(image);
+}
+
 static void finish_picture(canvas *page) {
+    thin_shades(page->surface);
     finish_canvas(page);
     finish_outputs();
     commit_outputs();
@@ -134,30 +147,53 @@ static void finish_picture(canvas *page) {
 
 /* ---------------------------------------------------------------------------- figures 6 to 9 */
 
-void draw_subject(const subject *of, const char *path) {
-    static const family rows[] = {N_ARC, N_GON};
-    enum { ROWS = sizeof rows / sizeof rows[0] };
+/* A row of the grid: the box around its three shapes, and its height. */
+typedef struct grid_row {
+    family which;
+    narc_aabb box;
+    double top, height;
+} grid_row;
+
+static void draw_row(canvas *page, const subject *of, const grid_row *row, double cell, double margin) {
     static const style look = {.line = 3, .thin_line = 1, .dot = 4.5, .text = 18};
-    const double cell = 290, margin = 16, caption = 42;
-    narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    for (size_t k = 0; k < ROWS * SIZES; k++) {
-        box = join_boxes(box, bound_fit(&of->fits[rows[k / SIZES]][k % SIZES]));
-    }
-    const double aspect = (box.max_y - box.min_y) / (box.max_x - box.min_x);
-    const double height = cell * fmin(fmax(aspect, 0.6), 1.2), row = margin + height + caption;
-    canvas page;
-    open_picture(&page, path, SIZES * (cell + 2 * margin), ROWS * row);
-    for (size_t k = 0; k < ROWS * SIZES; k++) {
-        const size_t size = k % SIZES;
-        const double left = (double)size * (cell + 2 * margin) + margin, top = (double)(k / SIZES) * row + margin;
-        const narc_fit_result *made = &of->fits[rows[k / SIZES]][size].made;
-        const placement where = place_box(box, left, top, cell, height);
-        draw_outline(&page, &where, &of->contours, &look);
-        draw_shape(&page, &where, made, &look);
+    for (size_t size = 0; size < SIZES; size++) {
+        const narc_fit_result *made = &of->fits[row->which][size].made;
+        const double left = (double)size * (cell + 2 * margin) + margin;
+        const placement where = place_box(row->box, left, row->top, cell, row->height);
+        draw_outline(page, &where, &of->contours, &look);
+        draw_shape(page, &where, made, &look);
         char text[64];
-        snprintf(text, sizeof text, "%zu-%s: %.4f", sizes[size], rows[k / SIZES] == N_ARC ? "arc" : "gon",
+        snprintf(text, sizeof text, "%zu-%s: %.4f", sizes[size], row->which == N_ARC ? "arc" : "gon",
                  made->area / made->hull_area);
-        draw_text(&page, text, left + cell / 2, top + height + 0.62 * caption, look.text);
+        draw_text(page, text, left + cell / 2, row->top + row->height + 1.5 * look.text, look.text);
+    }
+}
+
+void draw_subject(const subject *of, const char *path) {
+    const double cell = 290, margin = 16, caption = 44;
+    grid_row rows[] = {{.which = N_ARC}, {.which = N_GON}};
+    enum { ROWS = sizeof rows / sizeof rows[0] };
+    narc_aabb all = NOWHERE;
+    for (size_t k = 0; k < ROWS; k++) {
+        rows[k].box = NOWHERE;
+        for (size_t size = 0; size < SIZES; size++) {
+            rows[k].box = join_boxes(rows[k].box, bound_fit(&of->fits[rows[k].which][size]));
+        }
+        all = join_boxes(all, rows[k].box);
+    }
+    /* Both rows have the same scale and the outline at the same places across. */
+    double height = 0;
+    for (size_t k = 0; k < ROWS; k++) {
+        rows[k].box.min_x = all.min_x;
+        rows[k].box.max_x = all.max_x;
+        rows[k].top = height + margin;
+        rows[k].height = cell * (rows[k].box.max_y - rows[k].box.min_y) / (all.max_x - all.min_x);
+        height += margin + rows[k].height + caption;
+    }
+    canvas page;
+    open_picture(&page, path, SIZES * (cell + 2 * margin), height);
+    for (size_t k = 0; k < ROWS; k++) {
+        draw_row(&page, of, &rows[k], cell, margin);
     }
     finish_picture(&page);
 }
@@ -186,7 +222,7 @@ static void draw_pair(canvas *page, const subject *of, double left, double top, 
 
 void draw_others(const study *all, const char *path) {
     enum { PAIRS_IN_ROW = 5 };
-    const double cell = 108, gap = 22, row = cell + 44;
+    const double cell = 102, gap = 22, row = cell + 44;
     size_t count = 0;
     for (size_t i = PAPER_SUBJECTS; i < all->count; i++) {
         count += all->subjects[i].of != IMAGE;

@@ -84,7 +84,7 @@ static void print_families(const subject *const *some, size_t count, FILE *out) 
     fputc('\n', out);
 }
 
-/* How often one shape is smaller than another, as a sentence. */
+/* How often one shape is smaller than another. */
 static void print_contest(const subject *const *some, size_t count, const char *what, family one, size_t one_size,
                           family other, size_t other_size, FILE *out) {
     numbers ratios = {0};
@@ -183,28 +183,31 @@ static void print_correlations(const subject *const *some, size_t count, FILE *o
             fprintf(out, "%s %.2f", size ? "," : "", correlate_ranks(&shares, &ratios));
         }
     }
-    fprintf(out, ".\n");
+    fprintf(out, ".\n\n");
 }
 
 /* Up to which straight part every n-arc is smaller, and from which on none is. */
 static void print_limits(const subject *const *sorted, size_t count, size_t size, FILE *out) {
-    size_t first_loss = 0, last_win = count;
-    while (first_loss < count && ratio_of(sorted[first_loss], size) < 1) {
-        first_loss++;
+    size_t wins = 0, last_win = count;
+    while (wins < count && ratio_of(sorted[wins], size) < 1) {
+        wins++;
     }
     while (last_win > 0 && !(ratio_of(sorted[last_win - 1], size) < 1)) {
         last_win--;
     }
-    fprintf(
-        out,
-        "With %zu arcs the n-arc is smaller on all of the %zu outlines with the least straight part, and on none of "
-        "the %zu with the most.",
-        sizes[size], first_loss, count - last_win);
-    if (first_loss < count) {
-        fprintf(out, " The first it loses is the %s, with %.0f %%.", sorted[first_loss]->name,
-                100 * sorted[first_loss]->straight_share);
+    fprintf(out, "| %zu |", sizes[size]);
+    if (wins > 0) {
+        fprintf(out, " %.0f %% (%zu outlines) |", 100 * sorted[wins - 1]->straight_share, wins);
+    } else {
+        fprintf(out, " - |");
     }
-    fputc('\n', out);
+    if (last_win > 0) {
+        const subject *last = sorted[last_win - 1];
+        fprintf(out, " the %s, %.0f %% (%zu outlines above) |\n", last->name, 100 * last->straight_share,
+                count - last_win);
+    } else {
+        fprintf(out, " - |\n");
+    }
 }
 
 void print_relation(const study *all, FILE *out) {
@@ -212,10 +215,14 @@ void print_relation(const study *all, FILE *out) {
     const size_t count = pick(all, KINDS, some);
     qsort(some, count, sizeof *some, compare_straight);
     print_groups(some, count, out);
-    print_correlations(some, count, out);
+    fprintf(
+        out,
+        "| n | the n-arc is smaller on all outlines with a straight part up to | the straightest outline on which it "
+        "is smaller |\n| --- | ---: | ---: |\n");
     for (size_t size = 0; size < SIZES; size++) {
         print_limits(some, count, size, out);
     }
     fputc('\n', out);
+    print_correlations(some, count, out);
     free(some);
 }
