@@ -14,11 +14,11 @@
 
 /* Rounds of quadratic programming: more for the best at the end; from each start fewer the more they cost. */
 enum { LAST_ROUNDS = 12 };
-static unsigned count_rounds(const problem *of) { return 1 + 12 / (unsigned)of->count; }
+static unsigned count_rounds(const problem *of) { return 1 + 16 / (unsigned)of->count; }
 
 /* An exchange tries all pairs of so many junctions that seem needed least and arcs that seem to need another most, and
- * goes on from the best few. */
-enum { EXCHANGED = 5, EXCHANGE_SEARCHES = 2 };
+ * goes on from the best few. That is done with the best few finalists, as long as it helps. */
+enum { EXCHANGED = 5, EXCHANGE_SEARCHES = 2, EXCHANGERS = 3 };
 
 bool narc_advance(progress *of) {
     of->done += of->done < of->total;
@@ -26,9 +26,11 @@ bool narc_advance(progress *of) {
     return !of->cancelled;
 }
 
-static unsigned count_exchanges(unsigned starts) { return starts / 3; }
+static unsigned count_exchanges(unsigned starts) { return starts / 4; }
 
-size_t narc_count_work(unsigned starts) { return starts + (size_t)EXCHANGE_SEARCHES * count_exchanges(starts) + 1; }
+size_t narc_count_work(unsigned starts) {
+    return starts + (size_t)EXCHANGE_SEARCHES * EXCHANGERS * count_exchanges(starts) + 1;
+}
 
 typedef struct finalists {
     size_t count, room;
@@ -53,6 +55,11 @@ static void take_better(candidate *best, const candidate *other) {
     if (other->value < best->value) {
         *best = *other;
     }
+}
+
+static int compare_candidates(const void *left, const void *right) {
+    const candidate *a = left, *b = right;
+    return (a->value > b->value) - (a->value < b->value);
 }
 
 /* The places with the least (or, negated, largest) marks. */
@@ -187,11 +194,18 @@ narc_status narc_find_best(const problem *of, unsigned starts, const chain *know
     bool going = true;
     for (size_t k = 0; k < promising.count && going; k++) {
         narc_refine(&with, &promising.items[k], count_rounds(of));
-        take_better(&best, &promising.items[k]);
         going = narc_advance(work);
     }
-    for (unsigned k = 0; k < count_exchanges(starts) && going && of->count > 3; k++) {
-        going = isfinite(best.value) && try_exchanges(&with, &best, work) && !work->cancelled;
+    if (promising.count) {
+        qsort(promising.items, promising.count, sizeof *promising.items, compare_candidates);
+    }
+    for (size_t k = 0; k < promising.count && k < EXCHANGERS; k++) {
+        candidate *item = &promising.items[k];
+        for (unsigned round = 0; round < count_exchanges(starts) && going && of->count > 3; round++) {
+            going = try_exchanges(&with, item, work) && !work->cancelled;
+        }
+        going = !work->cancelled;
+        take_better(&best, item);
     }
     if (isfinite(best.value) && !work->cancelled) {
         narc_refine(&with, &best, LAST_ROUNDS);

@@ -104,23 +104,26 @@ static int begin_contour(const FT_Vector *to, void *context) {
     glyph_pen *pen = context;
     end_contour(pen);
     pen->contour = narc_mark_path(pen->path);
-    return pen->status = narc_move_to(pen->path, to_em(pen, to), pen->error);
+    pen->status = narc_move_to(pen->path, to_em(pen, to), pen->error);
+    return pen->status != NARC_OK;
 }
 
 static int draw_line(const FT_Vector *to, void *context) {
     glyph_pen *pen = context;
-    return pen->status = narc_line_to(pen->path, to_em(pen, to), pen->error);
+    pen->status = narc_line_to(pen->path, to_em(pen, to), pen->error);
+    return pen->status != NARC_OK;
 }
 
 static int draw_quadratic(const FT_Vector *control, const FT_Vector *to, void *context) {
     glyph_pen *pen = context;
-    return pen->status = narc_quadratic_to(pen->path, to_em(pen, control), to_em(pen, to), pen->error);
+    pen->status = narc_quadratic_to(pen->path, to_em(pen, control), to_em(pen, to), pen->error);
+    return pen->status != NARC_OK;
 }
 
 static int draw_cubic(const FT_Vector *control_1, const FT_Vector *control_2, const FT_Vector *to, void *context) {
     glyph_pen *pen = context;
-    return pen->status =
-               narc_cubic_to(pen->path, to_em(pen, control_1), to_em(pen, control_2), to_em(pen, to), pen->error);
+    pen->status = narc_cubic_to(pen->path, to_em(pen, control_1), to_em(pen, control_2), to_em(pen, to), pen->error);
+    return pen->status != NARC_OK;
 }
 
 static narc_status load_glyph(narc_font *font, uint32_t character, narc_error *error) {

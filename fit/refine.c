@@ -15,10 +15,10 @@
 
 /* One round ends when the variables change by less than this, or after so many evaluations. */
 static const double STEP_TOLERANCE = 1e-7;
-enum { EVALUATIONS = 100 };
+enum { EVALUATIONS = 40 };
 
 /* Rows with more room than this, in units of the hull's radius, are left to the next round. */
-static const double NEAR = 0.08;
+static const double NEAR = 0.2;
 
 static const double BOX_TURN = 0.3, BOX_LENGTH = 1;
 

@@ -85,7 +85,7 @@ void print_csv(const study *all, FILE *out) {
 /* A block for each kind, two empty lines between. */
 void print_points(const study *all, FILE *out) {
     for (kind which = PAPER; which < IMAGE; which++) {
-        fprintf(out, "%s\"%s\"\n", which == PAPER ? "" : "\n\n", kind_names[which]);
+        fprintf(out, "%s\"%s\"\tcorners\tstraight\t4\t6\t8\n", which == PAPER ? "" : "\n\n", kind_names[which]);
         for (size_t i = 0; i < all->count; i++) {
             const subject *of = &all->subjects[i];
             if (of->of == which) {

@@ -8,7 +8,7 @@
 #include "../../tools/output.h"
 #include "study.h"
 
-static const color OUTLINE_FILL = {0.87, 0.89, 0.91, 1}, OUTLINE_LINE = {0.66, 0.69, 0.74, 1};
+static const color OUTLINE_FILL = {0.867, 0.867, 0.867, 1}, OUTLINE_LINE = {0.667, 0.667, 0.667, 1};
 static const color TONES[2] = {{0.09, 0.34, 0.66, 1}, {0.90, 0.42, 0.08, 1}}, EDGE_LINE = {0.10, 0.55, 0.36, 1};
 static const color INK = {0.12, 0.14, 0.18, 1}, WHITE = {1, 1, 1, 1};
 
@@ -165,12 +165,12 @@ static void draw_row(canvas *page, const subject *of, const grid_row *row, doubl
         char text[64];
         snprintf(text, sizeof text, "%zu-%s: %.4f", sizes[size], row->which == N_ARC ? "arc" : "gon",
                  made->area / made->hull_area);
-        draw_text(page, text, left + cell / 2, row->top + row->height + 1.5 * look.text, look.text);
+        draw_text(page, text, left + cell / 2, row->top + row->height + 1.7 * look.text, look.text);
     }
 }
 
 void draw_subject(const subject *of, const char *path) {
-    const double cell = 290, margin = 16, caption = 44;
+    const double cell = 290, margin = 16, caption = 48;
     grid_row rows[] = {{.which = N_ARC}, {.which = N_GON}};
     enum { ROWS = sizeof rows / sizeof rows[0] };
     narc_aabb all = NOWHERE;

@@ -75,7 +75,7 @@ static void read_drawing(const subject *of, const char *folder) {
     }
     FILE *there = fopen(file, "rb");
     if (!there) {
-        fail("%s is missing; it belongs to the package openclipart-svg, version 0.18", file);
+        fail("%s is missing; it belongs to the package openclipart-svg of Debian 12", file);
     }
     fclose(there);
     size_t size;
