@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# From a machine with a shell and apt to a picture (run), to all tests (test), to all benchmarks (bench) or to the
-# paper's evaluation (paper).
+# From a machine with a shell and apt to a picture (run), to all tests (test), to all benchmarks (bench), to the paper's
+# evaluation (paper) or to its study of goodness of fit (fit-study).
 # shellcheck disable=SC2086 # lists of packages and commands are split into words on purpose
 set -eu
 
@@ -15,6 +15,9 @@ usage: sh cmake/bootstrap.sh run     install what is missing, build, collide 20,
        sh cmake/bootstrap.sh paper [OPTION ...]
                                      install what is missing, build, do the evaluation of the paper again; results in
                                      out/. Options are those of bench/paper/README.md
+       sh cmake/bootstrap.sh fit-study
+                                     install what is missing, build, do the paper's study of goodness of fit again;
+                                     results in out/
 
 Installs Debian and Ubuntu packages with apt-get, as root or through sudo, and nothing if all are there.
 EOF
@@ -38,6 +41,7 @@ run_packages="$build_packages fonts-symbola"
 peer_packages="g++ libbenchmark-dev libbox2d-dev libchipmunk-dev libccd-dev"
 test_packages="$run_packages $peer_packages binutils clang libomp-dev"
 bench_packages="$library_packages $peer_packages gnuplot-nox"
+study_packages="$run_packages openclipart-svg gnuplot-nox"
 arm64_tools="gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
 arm64_libraries="libsleef-dev libsleef3 libcmocka-dev libcmocka0"
 
@@ -150,6 +154,21 @@ paper() {
     ls -l out/paper*
 }
 
+fit_study() {
+    require_packages $study_packages
+    build release fit_study
+    font=$(dpkg -L fonts-symbola | grep -i -m 1 '\.[ot]tf$') || fail "fonts-symbola has no font file"
+    drawings=$(dpkg -L openclipart-svg | grep -m 1 '/svg$') || fail "openclipart-svg has no folder svg"
+    mkdir -p out
+    rm -f out/fit-*
+    say "the paper's study of goodness of fit"
+    build/release/fit/study/fit_study --font="$font" --drawings="$drawings" --out=out
+    say "plot"
+    gnuplot -e "folder='out'" fit/study/plots.gp
+    say "written"
+    ls -l out/fit-*
+}
+
 test_all() {
     require_packages $test_packages
     check ci
@@ -186,6 +205,7 @@ paper)
     shift
     paper "$@"
     ;;
+fit-study) fit_study ;;
 *)
     usage
     case ${1:-} in -h | --help | help) exit 0 ;; *) exit 2 ;; esac

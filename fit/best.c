@@ -80,14 +80,19 @@ static size_t pick_least(const double *marks, size_t count, size_t wanted, size_
 }
 
 /* A junction is needed little if the radii on both sides of it are alike, and no edge lies there. An arc wants another
- * junction if much of the space between shape and hull is in its sector. */
+ * junction if much of the space between shape and hull is in its sector, or where distance counts the largest. */
 static void mark_places(search *with, const chain *at, double *out_needs, double *out_wants) {
     const size_t n = at->count, count = narc_make_profile(at, with->of.around, 0, with->intervals);
     memset(out_wants, 0, n * sizeof *out_wants);
     for (size_t k = 0; k < count; k++) {
         const interval *in = &with->intervals[k];
-        const double width = length(minus(in->to, in->from));
-        out_wants[in->arc] -= width * fabs(in->least.difference + in->largest.difference) * (at->radius[in->arc] + 0.1);
+        const double farthest = fmax(fabs(in->least.difference), fabs(in->largest.difference));
+        const double width = length(minus(in->to, in->from)) * (at->radius[in->arc] + 0.1);
+        if (narc_is_distance(&with->of)) {
+            out_wants[in->arc] = fmin(out_wants[in->arc], -farthest);
+        } else {
+            out_wants[in->arc] -= width * fabs(in->least.difference + in->largest.difference);
+        }
     }
     for (size_t i = 0; i < n; i++) {
         const size_t before = (i + n - 1) % n;

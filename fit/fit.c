@@ -219,7 +219,8 @@ static narc_status find_chain(job *in, narc_fit_family family, narc_fit_goal goa
     if (status != NARC_OK) {
         return status;
     }
-    return narc_find_best(&of, in->starts, known.items, known.count, &in->work, out_best, error);
+    const unsigned starts = known.count > 1 ? (in->starts + 1) / 2 : in->starts; /* two good ones are known */
+    return narc_find_best(&of, starts, known.items, known.count, &in->work, out_best, error);
 }
 
 static narc_status fit_paper(job *in, size_t count, narc_fit_result *out_result, narc_error *error) {

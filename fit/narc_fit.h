@@ -158,7 +158,7 @@ typedef struct narc_fit_request {
     narc_fit_family family;
     narc_fit_goal goal; /* with arc_count 0: of the BOUND goals any makes the fit bound; the others do not */
     double flatness;    /* of curves, as in narc_flatten_path(); 0: NARC_FLATNESS */
-    unsigned starts;    /* of the local search; 0: the usual number. More can only find better */
+    unsigned starts;    /* of the local search; 0: the usual number. More take longer and often find better */
     /* Called now and then with the work done and in all, if not NULL; returning false ends the fit with the best so
      * far, or NARC_ERROR_CANCELLED if there is none. */
     bool (*progress)(size_t done, size_t total, void *context);
@@ -177,16 +177,18 @@ typedef struct narc_fit_result {
     double difference_area; /* of the symmetric difference with the hull */
     double clearance;       /* BOUND goals: the least of (support function - hull's), certified >= 0 for the shape as the
                                store keeps it, in single precision, with the flatness of curves counted */
-    double flatness;        /* what the curves were flattened to, a length */
+    double flatness;        /* how far the outline may be from the hull that was fitted to, a length: that of the curves,
+                               and of the corners left out of hulls with thousands of them */
     double seconds;         /* time the fit took */
 } narc_fit_result;
 
 /* Fits an arc shape. Deterministic: equal input gives equal bits on one machine (but for `seconds`). The shape passes
- * narc_add_shape(). Errors: NARC_ERROR_ARGUMENT (NULL; a family or goal that does not exist; a polygon or the paper's
- * route with a goal that is not BOUND_AREA and the like), NARC_ERROR_COUNT (arc_count; a path without points),
- * NARC_ERROR_NOT_CONVEX (all points on a line: no area), NARC_ERROR_SIZE (tolerance not positive, path too small or
- * too large), NARC_ERROR_NO_SOLUTION (the tolerance is not reached with NARC_MAX_FIT_ARCS arcs; the message tells what
- * was), NARC_ERROR_MEMORY, NARC_ERROR_CANCELLED. */
+ * narc_add_shape(). With arc_count 0 the fit is that of least largest distance, bounding or not, and what is compared
+ * with the tolerance is max_distance + flatness. Errors: NARC_ERROR_ARGUMENT (NULL; a family or goal that does not
+ * exist; the paper's route with another goal than BOUND_AREA), NARC_ERROR_COUNT (arc_count; an outline without points),
+ * NARC_ERROR_NOT_CONVEX (all points on a line, or nearly: no area), NARC_ERROR_SIZE (tolerance not positive, outline too
+ * small or too large), NARC_ERROR_NO_SOLUTION (the tolerance is not reached with NARC_MAX_FIT_ARCS arcs; the message tells
+ * what was), NARC_ERROR_MEMORY, NARC_ERROR_CANCELLED. */
 NARC_API narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request,
                                       narc_fit_result *out_result, narc_error *error);
 

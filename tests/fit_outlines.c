@@ -279,6 +279,8 @@ void check_fit_result(const struct outline *of, const narc_fit_request *request,
     expect_fit_ok(narc_flatten_path(of->path, request->flatness, &contours, &error), &error);
     struct reference_hull hull = reference_wrap(contours.points, contours.point_count, fit->origin);
     const double rounding = rounding_of(fit, hull.radius), size = hull.radius;
+    /* Centres and radii in single precision: the arcs of a list don't quite meet, and what is between is anybody's. */
+    const double closure = (double)fit->arc_count * 0x1p-23 * rounding / (32 * 0x1p-52) * size;
     assert_true(fit->seconds >= 0);
     expect_near(name, "flatness", fit->flatness, contours.flatness, 1e-3 * contours.flatness);
     assert_true(of->curved || fit->flatness == 0);
@@ -303,11 +305,11 @@ void check_fit_result(const struct outline *of, const narc_fit_request *request,
         expect_near(name, "clearance", fit->clearance, least, 2 * 0x1p-21 * 4 * size + rounding);
         /* Nothing of the hull is outside. */
         expect_near(name, "difference of a bound", fit->difference_area, fit->area - fit->hull_area,
-                    1e-9 * fit->area + hull.perimeter * (fit->flatness + rounding));
+                    closure + hull.perimeter * (fit->flatness + rounding));
     } else {
         const double difference = reference_difference(fit->arcs, fit->arc_count, &hull, 4000);
         expect_near(name, "difference", fit->difference_area, difference,
-                    2e-3 * difference + 1e-6 * hull.area + hull.perimeter * fit->flatness);
+                    2e-3 * difference + 1e-6 * hull.area + closure + hull.perimeter * fit->flatness);
     }
     free(hull.corners);
     narc_release_contours(&contours);

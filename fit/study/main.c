@@ -48,7 +48,9 @@ static void draw_pictures(const study *all, const char *folder) {
         snprintf(name, sizeof name, "fit-%s.png", all->subjects[i].name);
         draw_subject(&all->subjects[i], in_folder(folder, name, path));
     }
-    draw_others(all, in_folder(folder, "fit-others.png", path));
+    if (all->count > PAPER_SUBJECTS) {
+        draw_others(all, in_folder(folder, "fit-others.png", path));
+    }
 }
 
 int main(int argc, char **argv) {

@@ -53,7 +53,7 @@ double area_of(const subject *of, family which, size_t size);
 /* Area of the n-arc over that of the n-gon. */
 double ratio_of(const subject *of, size_t size);
 
-/* ---- subjects.c. `drawings` NULL: only the glyphs that the font has. */
+/* ---- subjects.c. `drawings` NULL: only the paper's four. */
 study load_subjects(const char *font, const char *drawings);
 void free_subjects(study *all);
 

@@ -201,7 +201,7 @@ study load_subjects(const char *font, const char *drawings) {
         fail("%s: %s", font, error.message);
     }
     for (size_t i = 0; i < CHOSEN; i++) {
-        if (drawings || chosen[i].character) {
+        if (drawings || chosen[i].of == PAPER) {
             add_subject(&all, &chosen[i], font, opened, drawings);
         }
     }

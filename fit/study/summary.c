@@ -197,14 +197,14 @@ static void print_limits(const subject *const *sorted, size_t count, size_t size
     }
     fprintf(out, "| %zu |", sizes[size]);
     if (wins > 0) {
-        fprintf(out, " %.0f %% (%zu outlines) |", 100 * sorted[wins - 1]->straight_share, wins);
+        fprintf(out, " %.0f %% (%zu of %zu) |", 100 * sorted[wins - 1]->straight_share, wins, count);
     } else {
         fprintf(out, " - |");
     }
     if (last_win > 0) {
         const subject *last = sorted[last_win - 1];
-        fprintf(out, " the %s, %.0f %% (%zu outlines above) |\n", last->name, 100 * last->straight_share,
-                count - last_win);
+        fprintf(out, " the %s, %.0f %% (%zu of %zu are straighter) |\n", last->name, 100 * last->straight_share,
+                count - last_win, count);
     } else {
         fprintf(out, " - |\n");
     }
