@@ -12,9 +12,11 @@
 #include "starts.h"
 #include "vector.h"
 
-/* Rounds of quadratic programming: more for the best at the end; from each start fewer the more they cost. */
+/* Rounds of quadratic programming: from each start fewer the more they cost, for the few best as many as help. */
 enum { LAST_ROUNDS = 12 };
-static unsigned count_rounds(const problem *of) { return 1 + 16 / (unsigned)of->count; }
+static unsigned count_rounds(const problem *of) {
+    return 1 + (of->family == NARC_FIT_POLYGON ? 64 : 16) / (unsigned)of->count;
+}
 
 /* An exchange tries all pairs of so many junctions that seem needed least and arcs that seem to need another most, and
  * goes on from the best few. That is done with the best few finalists, as long as it helps. */
@@ -210,6 +212,9 @@ narc_status narc_find_best(const problem *of, unsigned starts, const chain *know
             going = try_exchanges(&with, item, work) && !work->cancelled;
         }
         going = !work->cancelled;
+        if (going) {
+            narc_refine(&with, item, LAST_ROUNDS);
+        }
         take_better(&best, item);
     }
     if (isfinite(best.value) && !work->cancelled) {

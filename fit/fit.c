@@ -14,7 +14,7 @@
 #include "vector.h"
 
 /* Starts of the local search where the caller names no number: of a fit, and of each try of a count of arcs. */
-enum { USUAL_STARTS = 10, TRIAL_STARTS = 6 };
+enum { USUAL_STARTS = 8, TRIAL_STARTS = 6 };
 
 /* A radius of the hull below this, or above, would leave no room for the shape in the store's range. */
 static const double LEAST_RADIUS = 4 * NARC_MIN_SIZE, LARGEST_RADIUS = 0.1 * NARC_MAX_SIZE;
