@@ -205,8 +205,8 @@ static struct polygon_measure measure_polygon(const narc_arc *arcs, size_t count
     return sum;
 }
 
-/* Chords of 1 / m of an arc lose a share of 1 / m^2 of area and length, and of 1 / m^4 after extrapolation: with m = 256
- * and half a turn, (pi / 256)^4 / 100 = 2e-10. */
+/* Chords of 1 / m of an arc lose a share of 1 / m^2 of area and length, and of 1 / m^4 after extrapolation: with m =
+ * 256 and half a turn, (pi / 256)^4 / 100 = 2e-10. */
 enum { CHORDS = 256 };
 
 double reference_area(const narc_arc *arcs, size_t count) {

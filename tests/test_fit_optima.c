@@ -127,9 +127,9 @@ static void test_reuleaux(void **state) {
 
 /* ---------------------------------------------------------------------------- an ellipse by four arcs */
 
-/* Four arcs, symmetric about both axes: the right one around (c, 0) with normals up to angle f, the upper around (0, -d).
- * They have a common tangent at angle f if c = s cos f and d = s sin f, s being the difference of the radii. For given f
- * and s, the radii are the least that hold the points. */
+/* Four arcs, symmetric about both axes: the right one around (c, 0) with normals up to angle f, the upper around (0,
+ * -d). They have a common tangent at angle f if c = s cos f and d = s sin f, s being the difference of the radii.
+ * For given f and s, the radii are the least that hold the points. */
 enum { AREA, PERIMETER, DISTANCE };
 
 static double measure_four_arcs(const struct reference_hull *hull, int what, double f, double s) {
@@ -191,7 +191,7 @@ static void test_four_arcs(void **state) {
 
 /* ---------------------------------------------------------------------------- order */
 
-enum { FIRST = 4, LAST = 7, FAMILIES = 3, GOALS = 5 };
+enum { FIRST = 4, LAST = 5, FAMILIES = 3, GOALS = 5 };
 
 /* All fits of an outline. */
 struct fits {
@@ -251,10 +251,10 @@ static size_t check_order(const struct outline *of) {
 static void test_order(void **state) {
     (void)state;
     struct test_random random = test_random_named("order");
-    struct outline of = make_regular("ellipse", 24, 0, 0.6);
+    struct outline of = make_regular("ellipse", 14, 0, 0.6);
     size_t failures = check_order(&of);
     free_outline(&of);
-    for (size_t trial = 0, trials = test_trials(2); trial < trials; trial++) {
+    for (size_t trial = 0, trials = test_trials(1); trial < trials; trial++) {
         of = make_random_points(&random, 9);
         failures += check_order(&of);
         free_outline(&of);
@@ -280,17 +280,14 @@ static void test_starts(void **state) {
 
 /* ---------------------------------------------------------------------------- what must not matter */
 
-/* Areas of the same outline elsewhere, another size or turned: local optima are found from starts that depend on where
- * the outline lies, so that values may differ by what is between neighbouring optima; the best is found on the plain
- * outlines here. */
-static void check_moved(const struct outline *of, double scale, double angle, bool mirror, narc_point by,
-                        double close) {
+/* Areas of the same outline elsewhere, in another size or turned: both within CLOSE of the optimum. */
+static void check_moved(const struct outline *of, double scale, double angle, bool mirror, narc_point by) {
     struct outline moved = make_moved(of, scale, angle, mirror, by);
     for (int family = NARC_FIT_N_ARC; family <= NARC_FIT_POLYGON; family++) {
-        const narc_fit_result a = fit_shape(of, (narc_fit_family)family, NARC_FIT_BOUND_AREA, 5);
-        const narc_fit_result b = fit_shape(&moved, (narc_fit_family)family, NARC_FIT_BOUND_AREA, 5);
+        const narc_fit_result a = fit_shape(of, (narc_fit_family)family, NARC_FIT_BOUND_AREA, 4);
+        const narc_fit_result b = fit_shape(&moved, (narc_fit_family)family, NARC_FIT_BOUND_AREA, 4);
         const double ratio = b.area / (scale * scale) / a.area;
-        if (!(fabs(ratio - 1) <= close)) {
+        if (!(fabs(ratio - 1) <= 2 * CLOSE)) {
             fail_msg("%s, family %d: scaled by %g, turned by %g, mirrored %d, moved by %g: area times %.9g", of->name,
                      family, scale, angle, mirror, by.x, ratio);
         }
@@ -305,15 +302,14 @@ static void test_invariance(void **state) {
     struct outline outlines[] = {make_regular("ellipse", 20, 0.1, 0.6), make_random_points(&random, 8)};
     for (size_t k = 0; k < 2; k++) {
         const struct outline *of = &outlines[k];
-        check_moved(of, 1, 1, false, (narc_point){0, 0}, CLOSE);
-        check_moved(of, 1, -2.5, false, (narc_point){0, 0}, CLOSE);
-        check_moved(of, 1, 0, true, (narc_point){0, 0}, CLOSE);
-        check_moved(of, 1, 0, false, (narc_point){3, -8}, CLOSE);
+        check_moved(of, 1, 1, false, (narc_point){0, 0});
+        check_moved(of, 1, -2.5, false, (narc_point){0, 0});
+        check_moved(of, 1, 0, true, (narc_point){0, 0});
+        check_moved(of, 1, 0, false, (narc_point){3, -8});
         /* There, coordinates are rounded to 2^-53 of 1e6 sizes. */
-        check_moved(of, 1, 0, false, (narc_point){1e6, -2e6}, CLOSE);
-        for (double scale = 1e-6; scale < 2e6; scale *= 1e3) {
-            check_moved(of, scale, 0, false, (narc_point){0, 0}, CLOSE);
-        }
+        check_moved(of, 1, 0, false, (narc_point){1e6, -2e6});
+        check_moved(of, 1e-6, 0, false, (narc_point){0, 0});
+        check_moved(of, 1e6, 0, false, (narc_point){0, 0});
         free_outline(&outlines[k]);
     }
 }
