@@ -174,10 +174,9 @@ static bool enter_starts(search *with, finalists *in) {
 /* Chains that were found otherwise count as they are, and after the local search. */
 static void try_known(search *with, const chain *known, size_t count, candidate *best) {
     for (size_t k = 0; k < count; k++) {
-        size_t intervals;
         candidate next = {.form = known[k]};
         narc_place_chain(&next.form);
-        next.value = narc_settle(with, &next.form, &intervals);
+        next.value = narc_settle(with, &next.form);
         narc_refine(with, &next, count_rounds(&with->of));
         take_better(best, &next);
     }

@@ -44,7 +44,8 @@ static double depth_in_chain(const chain *of, narc_point x, double enough) {
     for (size_t i = 0; i < of->count; i++) {
         const narc_point q = minus(x, of->center[i]), u = of->normal[i], v = of->normal[i + 1];
         least = fmin(least, of->radius[i] - dot(q, u));
-        if (cross(u, q) > 0 && cross(q, v) > 0) {
+        const bool whole = of->count == 1; /* a circle: its sector is all directions */
+        if (whole || (cross(u, q) > 0 && cross(q, v) > 0)) {
             least = fmin(least, of->radius[i] - length(q));
         }
     }

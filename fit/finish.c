@@ -75,12 +75,18 @@ static size_t list_arcs(const chain *of, narc_arc *out_arcs) {
 
 /* ---------------------------------------------------------------------------- single precision */
 
+/* GCC 12 drops the rounding of a pair of neighbours when it makes vector code of it; not through a volatile. */
+static double to_single(double x) {
+    volatile float rounded = (float)x;
+    return rounded;
+}
+
 static void round_arcs(const narc_arc *from, size_t count, double factor, narc_arc *out_arcs) {
     for (size_t i = 0; i < count; i++) {
         out_arcs[i] = from[i];
-        out_arcs[i].center_x = (float)(factor * from[i].center_x);
-        out_arcs[i].center_y = (float)(factor * from[i].center_y);
-        out_arcs[i].radius = (float)(factor * from[i].radius);
+        out_arcs[i].center_x = to_single(factor * from[i].center_x);
+        out_arcs[i].center_y = to_single(factor * from[i].center_y);
+        out_arcs[i].radius = to_single(factor * from[i].radius);
     }
 }
 
@@ -133,7 +139,7 @@ static bool find_range(const chain *of, const hull *around, double slop, double 
 
 /* Rounds the arcs, larger by as little as makes them bound the hull as the store keeps them. */
 static narc_status round_and_certify(narc_arc *arcs, size_t count, const hull *around, bool bound,
-                                     double *out_clearance, narc_error *error) {
+                                     double *out_clearance, double *out_factor, narc_error *error) {
     double factor = 1, inner = 0;
     for (unsigned round = 0; round < CERTIFY_ROUNDS; round++) {
         narc_arc rounded[NARC_MAX_ARCS];
@@ -150,6 +156,7 @@ static narc_status round_and_certify(narc_arc *arcs, size_t count, const hull *a
         }
         if (!bound || least >= 0) {
             *out_clearance = least;
+            *out_factor = factor;
             memcpy(arcs, rounded, count * sizeof *arcs);
             return NARC_OK;
         }
@@ -200,6 +207,20 @@ static double mean_distance(const chain *of, const hull *around) {
     return sum / perimeter;
 }
 
+/* The area of the symmetric difference is that of the shape before it was rounded: rounding leaves gaps between arcs, and
+ * edges that are not quite square to their normals, which matter more than the difference does where edges lie on sides
+ * of the hull. */
+static double measure_difference(const narc_arc *arcs, size_t count, double factor, const hull *around) {
+    narc_arc scaled[NARC_MAX_ARCS];
+    for (size_t i = 0; i < count; i++) {
+        scaled[i] = (narc_arc){factor * arcs[i].center_x, factor * arcs[i].center_y, factor * arcs[i].radius,
+                               arcs[i].start, arcs[i].end};
+    }
+    chain form;
+    chain_arcs(scaled, count, &form);
+    return fmax(0, narc_difference_area(&form, around, NULL));
+}
+
 static bool measure(const hull *around, narc_fit_result *of) {
     chain form;
     chain_arcs(of->arcs, of->arc_count, &form);
@@ -217,7 +238,6 @@ static bool measure(const hull *around, narc_fit_result *of) {
     of->hull_perimeter = around->perimeter;
     of->max_distance = fmax(-least, largest);
     of->mean_distance = mean_distance(&form, around);
-    of->difference_area = narc_difference_area(&form, around, NULL);
     of->edge_count = 0;
     for (size_t i = 0; i < form.count; i++) {
         of->edge_count += form.edge[i] > SHORT_EDGE * around->perimeter;
@@ -262,11 +282,15 @@ narc_status narc_finish_arcs(const narc_arc *arcs, size_t count, const hull *aro
     if (status != NARC_OK) {
         return status;
     }
-    status = round_and_certify(made.arcs, count, &placed, bound, &made.clearance, error);
+    narc_arc exact[NARC_MAX_ARCS];
+    double factor = 1;
+    memcpy(exact, made.arcs, count * sizeof *exact);
+    status = round_and_certify(made.arcs, count, &placed, bound, &made.clearance, &factor, error);
     if (status == NARC_OK && !measure(&placed, &made)) {
         status =
             narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for a hull of %zu corners", around->count);
     }
+    made.difference_area = measure_difference(exact, count, factor, &placed);
     narc_release_hull(&placed);
     if (status == NARC_OK) {
         *out_result = made;

@@ -13,8 +13,10 @@
 #include "paper.h"
 #include "vector.h"
 
-/* Starts of the local search where the caller names no number: of a fit, and of each try of a count of arcs. */
-enum { USUAL_STARTS = 8, TRIAL_STARTS = 6 };
+/* Starts of the local search where the caller names no number: of a fit, fewer of many arcs, whose searches take long; and
+ * of each try of a count of arcs. */
+enum { USUAL_STARTS = 8, TRIAL_STARTS = 5 };
+static unsigned count_starts(size_t arcs) { return arcs <= 12 ? USUAL_STARTS : USUAL_STARTS * 12 / (unsigned)arcs; }
 
 /* A radius of the hull below this, or above, would leave no room for the shape in the store's range. */
 static const double LEAST_RADIUS = 4 * NARC_MIN_SIZE, LARGEST_RADIUS = 0.1 * NARC_MAX_SIZE;
@@ -24,7 +26,8 @@ static const double LEAST_RADIUS = 4 * NARC_MIN_SIZE, LARGEST_RADIUS = 0.1 * NAR
 static const double LEAST_AREA = 1e-5;
 
 /* The largest radius is this part of what the store takes, which rounding must not exceed. */
-static const double RADIUS_ROOM = 0.99;
+static const double RADIUS_ROOM = 0.99, LESS_RADIUS = 0.8;
+enum { MOST_RADII = 12 };
 
 /* Hulls with more corners are thinned, by twice this (in parts of the radius), or four times ..., until they have fewer.
  * A circle has some 1500 corners at 2e-6. */
@@ -170,10 +173,11 @@ static narc_status prepare(const narc_path *path, job *to, narc_error *error) {
 /* ---------------------------------------------------------------------------- one count of arcs */
 
 /* Chains to start from besides those that the search finds by itself: an offset of the closest shape that need not bound
- * bounds, and arcs with edges may be arcs without or edges alone. */
+ * bounds, the closest shape differs little, the smallest polygons are good in other respects, and arcs with edges may be
+ * arcs without or edges alone. */
 typedef struct known_chains {
     size_t count;
-    chain items[2];
+    chain items[3];
 } known_chains;
 
 static narc_status find_chain(job *in, narc_fit_family family, narc_fit_goal goal, size_t count, candidate *out_best,
@@ -182,16 +186,22 @@ static narc_status find_chain(job *in, narc_fit_family family, narc_fit_goal goa
 static narc_status find_known(job *in, const problem *of, known_chains *out, narc_error *error) {
     out->count = 0;
     candidate found;
-    if (of->goal == NARC_FIT_BOUND_DISTANCE) {
-        const narc_status status = find_chain(in, of->family, NARC_FIT_DISTANCE, of->count, &found, error);
-        if (status != NARC_OK) {
-            return status;
+    if (of->goal == NARC_FIT_BOUND_DISTANCE || of->goal == NARC_FIT_DIFFERENCE) {
+        if (find_chain(in, of->family, NARC_FIT_DISTANCE, of->count, &found, NULL) == NARC_OK) {
+            if (of->goal == NARC_FIT_BOUND_DISTANCE) {
+                narc_offset_chain(&found.form, found.value, of->family == NARC_FIT_POLYGON);
+            }
+            out->items[out->count++] = found.form;
         }
-        narc_offset_chain(&found.form, found.value, of->family == NARC_FIT_POLYGON);
-        out->items[out->count++] = found.form;
-    } else if (of->family == NARC_FIT_EDGES && of->count > 2) {
+    }
+    for (narc_fit_goal goal = NARC_FIT_BOUND_AREA; of->family == NARC_FIT_POLYGON && goal < of->goal; goal++) {
+        if (goal < NARC_FIT_BOUND_DISTANCE && find_chain(in, of->family, goal, of->count, &found, NULL) == NARC_OK) {
+            out->items[out->count++] = found.form;
+        }
+    }
+    if (of->family == NARC_FIT_EDGES && of->count > 2) {
         static const narc_fit_family narrower[] = {NARC_FIT_N_ARC, NARC_FIT_POLYGON};
-        for (size_t k = 0; k < 2; k++) {
+        for (size_t k = 0; k < 2 && of->goal != NARC_FIT_BOUND_DISTANCE; k++) {
             if (find_chain(in, narrower[k], of->goal, of->count, &found, NULL) == NARC_OK) {
                 out->items[out->count++] = found.form;
             }
@@ -248,10 +258,20 @@ static narc_status fit_count(job *in, narc_fit_goal goal, size_t count, narc_fit
     if (in->request->family == NARC_FIT_PAPER) {
         return fit_paper(in, count, out_result, error);
     }
-    candidate best;
-    const narc_status status = find_chain(in, in->request->family, goal, count, &best, error);
     const bool bound = goal <= NARC_FIT_BOUND_DISTANCE;
-    return status != NARC_OK ? status : narc_finish_fit(&best.form, &in->around, &in->at, bound, out_result, error);
+    const double max_radius = in->max_radius;
+    narc_status status = NARC_ERROR_RADIUS;
+    /* A shape that need not bound may be smaller than the hull, and then so are the largest radii that it may have. */
+    for (unsigned round = 0; round < MOST_RADII && status == NARC_ERROR_RADIUS; round++) {
+        candidate best;
+        status = find_chain(in, in->request->family, goal, count, &best, error);
+        if (status == NARC_OK) {
+            status = narc_finish_fit(&best.form, &in->around, &in->at, bound, out_result, error);
+        }
+        in->max_radius *= LESS_RADIUS;
+    }
+    in->max_radius = max_radius;
+    return status;
 }
 
 /* ---------------------------------------------------------------------------- the fewest arcs */
@@ -318,7 +338,7 @@ narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request
         return status;
     }
     const bool fewest = request->arc_count == 0;
-    in.starts = request->starts ? request->starts : fewest ? TRIAL_STARTS : USUAL_STARTS;
+    in.starts = request->starts ? request->starts : fewest ? TRIAL_STARTS : count_starts(request->arc_count);
     in.work = (progress){.tell = request->progress, .context = request->context};
     const size_t searches = request->family == NARC_FIT_EDGES ? 3 : 1;
     in.work.total = narc_count_work(in.starts) * searches * (fewest ? 12 : 1) *

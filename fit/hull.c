@@ -21,7 +21,8 @@ static int compare_points(const void *left, const void *right) {
 
 static bool turns_left(narc_point a, narc_point b, narc_point c) {
     const narc_point in = minus(b, a), out = minus(c, b);
-    return cross(in, out) > STRAIGHT * length(in) * length(out);
+    const bool turns_back = dot(in, out) < 0; /* a reversal is no straight line, its sine is as small */
+    return cross(in, out) > (turns_back ? 0 : STRAIGHT * length(in) * length(out));
 }
 
 /* Adds p to a chain of corners that all turn left; those that no longer do are dropped, but none below `keep`. */

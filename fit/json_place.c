@@ -10,15 +10,14 @@
 /* What cJSON takes for a blank. */
 static bool is_blank(char c) { return (unsigned char)c <= ' ' && c; }
 
-static const char *skip_blanks(const char *at) {
+const char *narc_skip_json_blanks(const char *at) {
     while (is_blank(*at)) {
         at++;
     }
     return at;
 }
 
-/* From the opening quote of a string to behind the closing one. */
-static const char *skip_string(const char *at) {
+const char *narc_skip_json_string(const char *at) {
     for (at++; *at && *at != '"'; at++) {
         at += *at == '\\' && at[1];
     }
@@ -35,7 +34,7 @@ size_t narc_measure_json_value(const char *value) {
         }
         depth += opens;
         depth -= closes;
-        at = *at == '"' ? skip_string(at) : at + 1;
+        at = *at == '"' ? narc_skip_json_string(at) : at + 1;
         if (depth == 0 && closes) {
             break;
         }
@@ -48,8 +47,8 @@ static const char *skip_key(const char *at, bool is_object) {
     if (!is_object || *at != '"') {
         return at;
     }
-    at = skip_blanks(skip_string(at));
-    return *at == ':' ? skip_blanks(at + 1) : at;
+    at = narc_skip_json_blanks(narc_skip_json_string(at));
+    return *at == ':' ? narc_skip_json_blanks(at + 1) : at;
 }
 
 static const char *find_child(const char *parent, size_t step) {
@@ -57,19 +56,19 @@ static const char *find_child(const char *parent, size_t step) {
     if (!is_object && *parent != '[') {
         return parent;
     }
-    const char *at = skip_key(skip_blanks(parent + 1), is_object);
+    const char *at = skip_key(narc_skip_json_blanks(parent + 1), is_object);
     for (; step > 0; step--) {
-        at = skip_blanks(at + narc_measure_json_value(at));
+        at = narc_skip_json_blanks(at + narc_measure_json_value(at));
         if (*at != ',') {
             return parent;
         }
-        at = skip_key(skip_blanks(at + 1), is_object);
+        at = skip_key(narc_skip_json_blanks(at + 1), is_object);
     }
     return *at == ']' || *at == '}' ? parent : at;
 }
 
 const char *narc_find_json_value(const char *text, const size_t *steps, size_t count) {
-    const char *at = skip_blanks(text);
+    const char *at = narc_skip_json_blanks(text);
     for (size_t k = 0; k < count; k++) {
         const char *child = find_child(at, steps[k]);
         if (child == at) {

@@ -12,6 +12,10 @@
  * text. */
 const char *narc_find_json_value(const char *text, const size_t *steps, size_t count);
 
+/* Steps over blanks; from the opening quote of a string to behind the closing one. */
+const char *narc_skip_json_blanks(const char *at);
+const char *narc_skip_json_string(const char *at);
+
 /* The number of bytes of the value that begins here. */
 size_t narc_measure_json_value(const char *value);
 

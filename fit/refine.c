@@ -23,7 +23,7 @@ static const double NEAR = 0.2;
 static const double BOX_TURN = 0.3, BOX_LENGTH = 1;
 
 /* A round that gains less than this part of the value is the last. */
-static const double LEAST_GAIN = 1e-6;
+static const double LEAST_GAIN = 1e-7;
 
 typedef struct frame {
     search *with;
@@ -224,8 +224,7 @@ static bool take_chain(search *with, const chain *form, candidate *out_next) {
     if (!narc_close_chain(&out_next->form)) {
         return false;
     }
-    size_t intervals;
-    out_next->value = narc_settle(with, &out_next->form, &intervals);
+    out_next->value = narc_settle(with, &out_next->form);
     return isfinite(out_next->value);
 }
 

@@ -19,6 +19,9 @@
 static const double SLACK = 1e-7;
 enum { ROUNDS = 5 };
 
+/* A shape with less than this part of the hull's area fits nothing. */
+static const double LEAST_AREA = 0.25;
+
 narc_status narc_open_search(search *made, const problem *of, narc_error *error) {
     *made = (search){.of = *of};
     made->intervals = malloc(narc_count_intervals(of->count, of->around->count) * sizeof *made->intervals);
@@ -87,25 +90,24 @@ static bool take_solution(const search *with, const chain *from, chain *out_form
     return narc_close_chain(out_form);
 }
 
-double narc_settle(search *with, chain *form, size_t *out_intervals) {
-    const size_t count = narc_make_profile(form, with->of.around, 0, with->intervals);
-    double least = narc_least_difference(with->intervals, count);
-    double largest = narc_largest_difference(with->intervals, count);
-    *out_intervals = count;
+double narc_settle(search *with, chain *form) {
+    size_t count = narc_make_profile(form, with->of.around, 0, with->intervals);
+    const double least = narc_least_difference(with->intervals, count);
     if (narc_must_bound(&with->of) && least < 0) {
         narc_offset_chain(form, -least, with->of.family == NARC_FIT_POLYGON);
-        largest -= least;
-        least = 0;
+        count = narc_make_profile(form, with->of.around, 0, with->intervals);
     }
     switch (with->of.goal) {
     case NARC_FIT_BOUND_AREA:
         return narc_chain_area(form);
     case NARC_FIT_BOUND_PERIMETER:
         return narc_chain_perimeter(form);
-    case NARC_FIT_DIFFERENCE:
-        return narc_difference_area(form, with->of.around, NULL);
+    case NARC_FIT_DIFFERENCE: /* no shape at all may differ by less than any n-arc, but that is no fit */
+        return narc_chain_area(form) < LEAST_AREA * with->of.around->area
+                   ? INFINITY
+                   : narc_difference_area(form, with->of.around, NULL);
     default:
-        return fmax(-least, largest);
+        return fmax(-narc_least_difference(with->intervals, count), narc_largest_difference(with->intervals, count));
     }
 }
 
@@ -126,14 +128,14 @@ static bool make_step(search *with, const chain *from, candidate *out_next) {
         if (!narc_solve_programme(&with->lp) || !take_solution(with, from, &next.form)) {
             return found;
         }
-        size_t count;
-        next.value = narc_settle(with, &next.form, &count);
+        const size_t count = narc_make_profile(&next.form, with->of.around, 0, with->intervals);
+        const double distance = with->lp.solution[narc_layout_of(from->count).distance];
+        narc_add_violated(&with->of, with->intervals, count, distance + SLACK, with->rows);
+        next.value = narc_settle(with, &next.form);
         if (!found || next.value < out_next->value) {
             *out_next = next;
         }
-        found = isfinite(next.value);
-        const double distance = with->lp.solution[narc_layout_of(from->count).distance];
-        narc_add_violated(&with->of, with->intervals, count, distance + SLACK, with->rows);
+        found = found || isfinite(next.value);
     }
     return found;
 }

@@ -35,9 +35,8 @@ bool narc_fit_normals(search *with, const double *angles, candidate *out_best);
 /* Goes on from a chain, with its normals too, by sequential quadratic programming. */
 void narc_refine(search *with, candidate *best, unsigned rounds);
 
-/* What a placed chain is worth after it was made to bound, if it must; leaves its profile in with->intervals, of
- * `*out_intervals` intervals, as it was before. */
-double narc_settle(search *with, chain *form, size_t *out_intervals);
+/* What a placed chain is worth after it was made to bound, if it must. */
+double narc_settle(search *with, chain *form);
 
 /* Bounds on a variable, the same in all steps. */
 static inline double narc_radius_limit(const problem *of) {

@@ -91,10 +91,10 @@ static narc_path *draw_curve(const struct curve *c) {
     narc_path *path = make_path();
     narc_error error;
     const narc_point *p = c->controls;
-    expect_fit_ok(narc_move_to(path, p[0], &error), &error);
-    expect_fit_ok(c->degree == 2 ? narc_quadratic_to(path, p[1], p[2], &error)
-                                 : narc_cubic_to(path, p[1], p[2], p[3], &error),
-                  &error);
+    expect_ok(narc_move_to(path, p[0], &error), &error);
+    expect_ok(c->degree == 2 ? narc_quadratic_to(path, p[1], p[2], &error)
+                             : narc_cubic_to(path, p[1], p[2], p[3], &error),
+              &error);
     return path;
 }
 
@@ -174,7 +174,7 @@ static void stays_within_flatness(void **state) {
                 round ? fmax(random_log_between(&random, 1e-6, 0.1) * find_speed(&c), 1e-12 * find_largest(&c)) : 0;
             narc_contours flat;
             narc_error error;
-            expect_fit_ok(narc_flatten_path(path, asked, &flat, &error), &error);
+            expect_ok(narc_flatten_path(path, asked, &flat, &error), &error);
             assert_true(round ? flat.flatness == asked : flat.flatness > 0);
             assert_int_equal(flat.count, 1);
             assert_int_equal(flat.ends[0], flat.point_count);
@@ -237,10 +237,10 @@ static void refuses_wrong_flatness(void **state) {
     memset(&out, 0x5a, sizeof out);
     untouched = out;
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
-        expect_fit_error(narc_flatten_path(path, wrong[k], &out, &error), NARC_ERROR_SIZE, &error, "flatness");
+        expect_error(narc_flatten_path(path, wrong[k], &out, &error), NARC_ERROR_SIZE, &error, "flatness");
     }
-    expect_fit_error(narc_flatten_path(NULL, 0, &out, &error), NARC_ERROR_ARGUMENT, &error, "path");
-    expect_fit_error(narc_flatten_path(path, 0, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_contours");
+    expect_error(narc_flatten_path(NULL, 0, &out, &error), NARC_ERROR_ARGUMENT, &error, "path");
+    expect_error(narc_flatten_path(path, 0, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_contours");
     assert_memory_equal(&out, &untouched, sizeof out);
     narc_destroy_path(path);
 }
@@ -256,12 +256,12 @@ static void names_the_least_flatness(void **state) {
         narc_error error;
         memset(&out, 0x5a, sizeof out);
         untouched = out;
-        expect_fit_error(narc_flatten_path(path, 1e-300, &out, &error), NARC_ERROR_SIZE, &error,
-                         "flatness 1e-300 is too small for a curve of contour 0: at least ");
+        expect_error(narc_flatten_path(path, 1e-300, &out, &error), NARC_ERROR_SIZE, &error,
+                     "flatness 1e-300 is too small for a curve of contour 0: at least ");
         assert_memory_equal(&out, &untouched, sizeof out);
         const double least = strtod(strstr(error.message, "at least ") + 9, NULL);
-        expect_fit_error(narc_flatten_path(path, least * 0.99998, &out, &error), NARC_ERROR_SIZE, &error, "too small");
-        expect_fit_ok(narc_flatten_path(path, least, &out, &error), &error);
+        expect_error(narc_flatten_path(path, least * 0.99998, &out, &error), NARC_ERROR_SIZE, &error, "too small");
+        expect_ok(narc_flatten_path(path, least, &out, &error), &error);
         assert_in_range(out.point_count, 2, 20001);
         narc_release_contours(&out);
         narc_destroy_path(path);
@@ -274,8 +274,8 @@ static void flattens_mixed_contours(void **state) {
     narc_path *path = make_path();
     narc_error error;
     draw_polygon(path, (narc_point[]){{10, 0}, {10, 5}}, 2);
-    expect_fit_ok(narc_cubic_to(path, (narc_point){10, 8}, (narc_point){7, 9}, (narc_point){5, 9}, &error), &error);
-    expect_fit_ok(narc_quadratic_to(path, (narc_point){0, 9}, (narc_point){10, 0}, &error), &error);
+    expect_ok(narc_cubic_to(path, (narc_point){10, 8}, (narc_point){7, 9}, (narc_point){5, 9}, &error), &error);
+    expect_ok(narc_quadratic_to(path, (narc_point){0, 9}, (narc_point){10, 0}, &error), &error);
     draw_polygon(path, (narc_point[]){{1, 1}, {2, 1}, {1, 2}}, 3);
     narc_contours flat = flatten(path);
     assert_int_equal(flat.count, 2);

@@ -43,10 +43,10 @@ void add_cubic(struct outline *to, const narc_point c[4]) {
     narc_error error;
     const narc_point *last = to->count ? &to->points[to->count - 1] : NULL;
     if (!last || last->x != c[0].x || last->y != c[0].y) {
-        expect_fit_ok(narc_move_to(to->path, c[0], &error), &error);
+        expect_ok(narc_move_to(to->path, c[0], &error), &error);
         remember(to, c[0]);
     }
-    expect_fit_ok(narc_cubic_to(to->path, c[1], c[2], c[3], &error), &error);
+    expect_ok(narc_cubic_to(to->path, c[1], c[2], c[3], &error), &error);
     for (int k = 1; k < SAMPLES; k++) {
         const double t = (double)k / SAMPLES, s = 1 - t;
         const double a = s * s * s, b = 3 * s * s * t, d = 3 * s * t * t, e = t * t * t;
@@ -194,7 +194,7 @@ static size_t store(const narc_fit_result *fit, narc_arc out_arcs[NARC_MAX_ARCS]
     narc_shapes *shapes = NULL;
     narc_error error = {0};
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    expect_fit_ok(narc_add_shape(shapes, fit->arcs, fit->arc_count, NULL, &error), &error);
+    expect_ok(narc_add_shape(shapes, fit->arcs, fit->arc_count, NULL, &error), &error);
     const size_t count = narc_get_arcs(shapes, 0, out_arcs);
     assert_int_equal(count, fit->arc_count);
     narc_destroy_shapes(shapes);
@@ -238,7 +238,7 @@ static bool is_single(double value) {
 
 static void check_family(const struct outline *of, const narc_fit_request *request, const narc_fit_result *fit) {
     narc_error error = {0};
-    expect_fit_ok(narc_validate_arcs(fit->arcs, fit->arc_count, &error), &error);
+    expect_ok(narc_validate_arcs(fit->arcs, fit->arc_count, &error), &error);
     assert_true(fit->arc_count >= 1);
     assert_true(request->arc_count == 0 || fit->arc_count <= request->arc_count);
     /* Rounding of centres to single precision leaves steps of 2^-24 of the size at junctions: no edges. */
@@ -286,7 +286,7 @@ void check_fit_result(const struct outline *of, const narc_fit_request *request,
     /* The hull is that of the flattened curves, which are off by up to the flatness told. */
     narc_contours contours;
     narc_error error = {0};
-    expect_fit_ok(narc_flatten_path(of->path, request->flatness, &contours, &error), &error);
+    expect_ok(narc_flatten_path(of->path, request->flatness, &contours, &error), &error);
     struct reference_hull hull = reference_wrap(contours.points, contours.point_count, fit->origin);
     const double rounding = rounding_of(fit, hull.radius), size = hull.radius;
     const double miss = miss_of(fit, size), closure = miss * hull.perimeter;

@@ -99,7 +99,7 @@ struct png_file write_png(struct png_format format, size_t width, size_t height,
 narc_contours read_png(struct png_file file, double threshold) {
     narc_path *path = make_path();
     narc_error error = {.message = ""};
-    expect_fit_ok(narc_read_png(file.bytes, file.size, threshold, path, &error), &error);
+    expect_ok(narc_read_png(file.bytes, file.size, threshold, path, &error), &error);
     const narc_contours contours = flatten(path);
     narc_destroy_path(path);
     return contours;

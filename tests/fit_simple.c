@@ -25,12 +25,12 @@ static narc_status check(const narc_point *points, size_t count, narc_error *err
 
 static void expect_simple(const narc_point *points, size_t count) {
     narc_error error;
-    expect_fit_ok(check(points, count, &error), &error);
+    expect_ok(check(points, count, &error), &error);
 }
 
 static void expect_hit(const narc_point *points, size_t count, const char *words) {
     narc_error error;
-    expect_fit_error(check(points, count, &error), NARC_ERROR_NOT_SIMPLE, &error, words);
+    expect_error(check(points, count, &error), NARC_ERROR_NOT_SIMPLE, &error, words);
 }
 
 /* ---------------------------------------------------------------------------- small ones, by hand */
@@ -67,18 +67,18 @@ static void names_the_contour(void **state) {
     (void)state;
     narc_path *path = make_path();
     narc_error error;
-    expect_fit_ok(narc_check_simple(path, &error), &error); /* nothing drawn, nothing wrong */
+    expect_ok(narc_check_simple(path, &error), &error); /* nothing drawn, nothing wrong */
     draw_polygon(path, (narc_point[]){{0, 0}, {4, 0}, {4, 4}, {0, 4}}, 4);
     draw_polygon(path, (narc_point[]){{2, 2}, {6, 2}, {6, 6}, {2, 6}}, 4);
     draw_polygon(path, (narc_point[]){{0, 0}, {4, 0}, {4, 4}, {0, 4}}, 4);
-    expect_fit_ok(narc_check_simple(path, &error), &error);
+    expect_ok(narc_check_simple(path, &error), &error);
     draw_polygon(path, (narc_point[]){{10, 10}, {20, 20}, {20, 10}, {10, 20}}, 4);
-    expect_fit_error(narc_check_simple(path, &error), NARC_ERROR_NOT_SIMPLE, &error,
-                     "contour 3 crosses or touches itself at (15, 15)");
+    expect_error(narc_check_simple(path, &error), NARC_ERROR_NOT_SIMPLE, &error,
+                 "contour 3 crosses or touches itself at (15, 15)");
     assert_int_equal(error.index, 3);
     assert_int_equal(narc_check_simple(path, NULL), NARC_ERROR_NOT_SIMPLE);
     narc_destroy_path(path);
-    expect_fit_error(narc_check_simple(NULL, &error), NARC_ERROR_ARGUMENT, &error, "path");
+    expect_error(narc_check_simple(NULL, &error), NARC_ERROR_ARGUMENT, &error, "path");
 }
 
 /* From (-1, 0) to (1, 0) with the control points (r, 8) and (-r, 8): with s = 1 - t and u = t - s,
@@ -91,16 +91,16 @@ static void checks_curves(void **state) {
         narc_path *path = make_path();
         narc_error error;
         const double r = loop ? 8 : 1;
-        expect_fit_ok(narc_move_to(path, (narc_point){-1, 0}, &error), &error);
-        expect_fit_ok(narc_cubic_to(path, (narc_point){r, 8}, (narc_point){-r, 8}, (narc_point){1, 0}, &error), &error);
+        expect_ok(narc_move_to(path, (narc_point){-1, 0}, &error), &error);
+        expect_ok(narc_cubic_to(path, (narc_point){r, 8}, (narc_point){-r, 8}, (narc_point){1, 0}, &error), &error);
         const narc_status status = narc_check_simple(path, &error);
         if (loop) {
             double x, y;
-            expect_fit_error(status, NARC_ERROR_NOT_SIMPLE, &error, "at (");
+            expect_error(status, NARC_ERROR_NOT_SIMPLE, &error, "at (");
             assert_int_equal(sscanf(strstr(error.message, "at ("), "at (%lf, %lf)", &x, &y), 2);
             assert_true(hypot(x, y - 0.96) <= 2 * 6 * NARC_FLATNESS + 1e-6); /* six digits are told */
         } else {
-            expect_fit_ok(status, &error);
+            expect_ok(status, &error);
         }
         narc_destroy_path(path);
     }

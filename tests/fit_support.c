@@ -6,31 +6,11 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const narc_point triangle[] = {{0.25, 0.5}, {3, 0.125}, {1, 2}};
-
-void expect_fit_error(narc_status status, narc_status expected, const narc_error *error, const char *words) {
-    if (status != expected) {
-        fail_msg("got %s, expected %s (%s)", narc_status_name(status), narc_status_name(expected), words);
-    }
-    if (error->status != expected) {
-        fail_msg("the error says %s, not %s", narc_status_name(error->status), narc_status_name(expected));
-    }
-    if (!strstr(error->message, words)) {
-        fail_msg("the message is \"%s\", it should mention \"%s\"", error->message, words);
-    }
-    const size_t length = strlen(error->message);
-    if (length == 0 || strchr(error->message, '\n') || error->message[length - 1] == '.') {
-        fail_msg("not one line without a full stop: \"%s\"", error->message);
-    }
-}
-
-void expect_fit_ok(narc_status status, const narc_error *error) {
-    if (status != NARC_OK) {
-        fail_msg("%s: %s", narc_status_name(status), error->message);
-    }
-}
 
 narc_path *make_path(void) {
     narc_path *path = NULL;
@@ -41,16 +21,16 @@ narc_path *make_path(void) {
 
 void draw_polygon(narc_path *path, const narc_point *points, size_t count) {
     narc_error error;
-    expect_fit_ok(narc_move_to(path, points[0], &error), &error);
+    expect_ok(narc_move_to(path, points[0], &error), &error);
     for (size_t i = 1; i < count; i++) {
-        expect_fit_ok(narc_line_to(path, points[i], &error), &error);
+        expect_ok(narc_line_to(path, points[i], &error), &error);
     }
 }
 
 narc_contours flatten(const narc_path *path) {
     narc_contours contours;
     narc_error error;
-    expect_fit_ok(narc_flatten_path(path, 0, &contours, &error), &error);
+    expect_ok(narc_flatten_path(path, 0, &contours, &error), &error);
     return contours;
 }
 
@@ -67,6 +47,59 @@ void expect_unchanged(const narc_path *occupied) {
     assert_int_equal(contours.point_count, 3);
     assert_memory_equal(contours.points, triangle, sizeof triangle);
     narc_release_contours(&contours);
+}
+
+bool finish_any_bytes(narc_status status, const narc_error *error, unsigned allowed, size_t most, narc_path *occupied) {
+    if (status) {
+        expect_error(status, error->status, error, "");
+        if (!(allowed >> status & 1)) {
+            fail_msg("%s is none of the errors of damaged data: %s", narc_status_name(status), error->message);
+        }
+        expect_unchanged(occupied);
+    } else {
+        narc_contours contours = flatten(occupied);
+        assert_true(contours.count > 1 && contours.count <= most);
+        narc_release_contours(&contours);
+    }
+    narc_destroy_path(occupied);
+    return status == NARC_OK;
+}
+
+narc_status read_exactly(reader *read, const char *text, size_t size, narc_path *path, narc_error *error) {
+    char *data = malloc(size ? size : 1);
+    assert_non_null(data);
+    memcpy(data, text, size);
+    const narc_status status = read(data, size, path, error);
+    free(data);
+    return status;
+}
+
+void expect_wrong_text(reader *read, const char *text, size_t size, narc_status status, size_t line,
+                       const char *words) {
+    narc_path *path = make_occupied_path();
+    narc_error error = {.message = "?"};
+    char beginning[32];
+    expect_error(read_exactly(read, text, size, path, &error), status, &error, words);
+    if (error.index != line) {
+        fail_msg("line %zu, not %zu: %s", error.index, line, error.message);
+    }
+    snprintf(beginning, sizeof beginning, "line %zu", line);
+    const size_t length = strlen(beginning);
+    assert_true(line == 0 || (strncmp(error.message, beginning, length) == 0 && strchr(":,", error.message[length])));
+    expect_unchanged(path);
+    assert_int_equal(read_exactly(read, text, size, path, NULL), status);
+    expect_unchanged(path);
+    narc_destroy_path(path);
+}
+
+double measure_area(const narc_contours *contours, size_t k) {
+    const size_t first = k ? contours->ends[k - 1] : 0, end = contours->ends[k];
+    double sum = 0;
+    for (size_t i = first; i < end; i++) {
+        const narc_point a = contours->points[i], b = contours->points[i + 1 < end ? i + 1 : first];
+        sum += a.x * b.y - b.x * a.y;
+    }
+    return sum / 2;
 }
 
 int find_whole_orientation(narc_point a, narc_point b, narc_point c) {

@@ -66,32 +66,3 @@ void expect_outline_near(const char *body, const struct op *ops, double toleranc
 }
 
 void expect_outline(const char *body, const struct op *ops) { expect_outline_near(body, ops, 0); }
-
-void expect_svg_error(const char *text, size_t size, narc_status status, size_t line, const char *words) {
-    narc_path *path = make_occupied_path();
-    narc_error error = {.message = "?"};
-    /* A copy of its own size: the address sanitizer sees every read behind it. */
-    char *copy = malloc(size + 1);
-    assert_non_null(copy);
-    copy = realloc(copy, size ? size : 1);
-    assert_non_null(copy);
-    memcpy(copy, text, size);
-    expect_fit_error(narc_read_svg(copy, size, path, &error), status, &error, words);
-    if (error.index != line) {
-        fail_msg("%s: line %zu, not %zu", error.message, error.index, line);
-    }
-    assert_int_equal(narc_read_svg(copy, size, path, NULL), status);
-    expect_unchanged(path);
-    free(copy);
-    narc_destroy_path(path);
-}
-
-double measure_area(const narc_contours *contours, size_t k) {
-    const size_t first = k ? contours->ends[k - 1] : 0, end = contours->ends[k];
-    double sum = 0;
-    for (size_t i = first; i < end; i++) {
-        const narc_point a = contours->points[i], b = contours->points[i + 1 < end ? i + 1 : first];
-        sum += a.x * b.y - b.x * a.y;
-    }
-    return sum / 2;
-}

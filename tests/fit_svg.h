@@ -25,12 +25,6 @@ void expect_outline(const char *body, const struct op *ops);
 /* The same up to `tolerance` in each coordinate; for outlines without curves. */
 void expect_outline_near(const char *body, const struct op *ops, double tolerance);
 
-/* Reading this text ends with the error, which names line and words, and leaves the path as it was. */
-void expect_svg_error(const char *text, size_t size, narc_status status, size_t line, const char *words);
-
-/* The signed area of contour k, counter-clockwise positive. */
-double measure_area(const narc_contours *contours, size_t k);
-
 int test_svg_tree(void);
 int test_svg_damage(void);
 

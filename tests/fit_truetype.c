@@ -161,7 +161,7 @@ static void draw_contour(const outline *from, size_t first, size_t end, double u
             status = narc_quadratic_to(path, p[i], middle(p[i], p[i + 1]), &error);
         }
     }
-    expect_fit_ok(status, &error);
+    expect_ok(status, &error);
 }
 
 /* Is a contour but one point? */

@@ -121,7 +121,7 @@ static void test_tolerances(void **state) {
     narc_error error = {0};
     /* A polygon of 32 sides around a circle is off by 1 / cos(pi / 32) - 1 = 0.0048 at its corners. */
     const narc_status status = narc_fit_path(circle.path, &polygon, &fit, &error);
-    expect_fit_error(status, NARC_ERROR_NO_SOLUTION, &error, "tolerance");
+    expect_error(status, NARC_ERROR_NO_SOLUTION, &error, "tolerance");
     free_outline(&circle);
 }
 
@@ -132,7 +132,7 @@ static void refuse(const narc_path *path, narc_fit_request request, narc_status 
     narc_error error = {0};
     memset(&fit, 0x5a, sizeof fit);
     memset(&junk, 0x5a, sizeof junk);
-    expect_fit_error(narc_fit_path(path, &request, &fit, &error), expected, &error, words);
+    expect_error(narc_fit_path(path, &request, &fit, &error), expected, &error, words);
     assert_memory_equal(&fit, &junk, sizeof fit);
     assert_int_equal(narc_fit_path(path, &request, &fit, NULL), expected);
 }

@@ -35,7 +35,7 @@ static void read_file(const char *name) {
 static narc_font *open_bytes(const void *data, size_t size) {
     narc_font *font = NULL;
     narc_error error;
-    expect_fit_ok(narc_open_font(data, size, &font, &error), &error);
+    expect_ok(narc_open_font(data, size, &font, &error), &error);
     assert_non_null(font);
     return font;
 }
@@ -69,7 +69,7 @@ static narc_path *draw_type1_glyph(void) {
                      : *letter == 'l' ? narc_line_to(path, p[0], &error)
                                       : narc_cubic_to(path, p[0], p[1], p[2], &error);
         }
-        expect_fit_ok(status, &error);
+        expect_ok(status, &error);
     }
     return path;
 }
@@ -93,7 +93,7 @@ static void reads_cubic_curves(void **state) {
     narc_font *font = open_bytes(data, size);
     narc_path *path = make_path(), *expected = draw_type1_glyph();
     narc_error error;
-    expect_fit_ok(narc_read_glyph(font, 'A', path, &error), &error);
+    expect_ok(narc_read_glyph(font, 'A', path, &error), &error);
     expect_same_contours(path, expected);
     assert_int_equal(narc_next_character(font, 0), ' ');
     assert_int_equal(narc_next_character(font, ' '), 'A');
@@ -110,14 +110,12 @@ static void names_what_is_wrong_with_a_glyph(void **state) {
     narc_font *font = open_bytes(data, size);
     narc_path *path = make_occupied_path();
     narc_error error;
-    expect_fit_error(narc_read_glyph(font, ' ', path, &error), NARC_ERROR_FORMAT, &error,
-                     "no outline: U+0020 is blank");
-    expect_fit_error(narc_read_glyph(font, 'A', path, &error), NARC_ERROR_FORMAT, &error,
-                     "no outline: U+0041 is blank");
-    expect_fit_error(narc_read_glyph(font, 0x1f600, path, &error), NARC_ERROR_INDEX, &error, "no glyph for U+1F600");
-    expect_fit_error(narc_read_glyph(font, UINT32_MAX, path, &error), NARC_ERROR_INDEX, &error, "U+FFFFFFFF");
-    expect_fit_error(narc_read_glyph(NULL, 'A', path, &error), NARC_ERROR_ARGUMENT, &error, "font is NULL");
-    expect_fit_error(narc_read_glyph(font, 'A', NULL, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
+    expect_error(narc_read_glyph(font, ' ', path, &error), NARC_ERROR_FORMAT, &error, "no outline: U+0020 is blank");
+    expect_error(narc_read_glyph(font, 'A', path, &error), NARC_ERROR_FORMAT, &error, "no outline: U+0041 is blank");
+    expect_error(narc_read_glyph(font, 0x1f600, path, &error), NARC_ERROR_INDEX, &error, "no glyph for U+1F600");
+    expect_error(narc_read_glyph(font, UINT32_MAX, path, &error), NARC_ERROR_INDEX, &error, "U+FFFFFFFF");
+    expect_error(narc_read_glyph(NULL, 'A', path, &error), NARC_ERROR_ARGUMENT, &error, "font is NULL");
+    expect_error(narc_read_glyph(font, 'A', NULL, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
     expect_unchanged(path);
     assert_int_equal(narc_next_character(NULL, 0), 0);
     assert_int_equal(narc_next_character(font, UINT32_MAX), 0);
@@ -138,7 +136,7 @@ static const char bitmap_font[] =
 static void expect_no_font(const void *data, size_t size, narc_status expected, const char *words) {
     narc_font *font = (narc_font *)&font, *const untouched = font;
     narc_error error;
-    expect_fit_error(narc_open_font(data, size, &font, &error), expected, &error, words);
+    expect_error(narc_open_font(data, size, &font, &error), expected, &error, words);
     assert_ptr_equal(font, untouched);
     assert_int_equal(narc_open_font(data, size, &font, NULL), expected);
 }
@@ -150,7 +148,7 @@ static void refuses_what_is_no_font(void **state) {
     expect_no_font("glyphs", 6, NARC_ERROR_FORMAT, "not a font");
     expect_no_font("glyphs", SIZE_MAX, NARC_ERROR_FORMAT, "not a font");
     expect_no_font(NULL, 6, NARC_ERROR_ARGUMENT, "data is NULL");
-    expect_fit_error(narc_open_font("", 0, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_font is NULL");
+    expect_error(narc_open_font("", 0, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_font is NULL");
     expect_no_font(bitmap_font, sizeof bitmap_font - 1, NARC_ERROR_FORMAT, "a font of bitmaps");
 }
 
@@ -215,7 +213,7 @@ static void agrees_with_the_format(void **state) {
             narc_path *path = make_path(), *expected = make_path();
             if (draw_truetype_glyph(files[k].data, c, expected)) {
                 narc_error error;
-                expect_fit_ok(narc_read_glyph(font, c, path, &error), &error);
+                expect_ok(narc_read_glyph(font, c, path, &error), &error);
                 expect_same_contours(path, expected);
                 compared++;
             }
@@ -246,7 +244,7 @@ static void reads_every_character(void **state) {
                 reached |= check_glyph(&files[k], c, &contours);
                 read++;
             } else {
-                expect_fit_error(status, NARC_ERROR_FORMAT, &error, "no outline");
+                expect_error(status, NARC_ERROR_FORMAT, &error, "no outline");
                 assert_int_equal(contours.count, 0);
                 blank++;
             }

@@ -34,7 +34,7 @@ static struct font_file open_font(const char *name) {
     assert_int_equal(fread(file.data, 1, file.size, stream), file.size);
     fclose(stream);
     narc_error error;
-    expect_fit_ok(narc_open_font(file.data, file.size, &file.font, &error), &error);
+    expect_ok(narc_open_font(file.data, file.size, &file.font, &error), &error);
     return file;
 }
 
@@ -57,7 +57,7 @@ static bool read_glyph(narc_font *font, uint32_t character, struct outline *out)
         return false;
     }
     narc_contours contours;
-    expect_fit_ok(narc_flatten_path(out->path, 1e-4, &contours, &error), &error);
+    expect_ok(narc_flatten_path(out->path, 1e-4, &contours, &error), &error);
     out->count = out->capacity = contours.point_count;
     out->points = malloc(out->count * sizeof *out->points);
     assert_non_null(out->points);

@@ -29,9 +29,9 @@ static void refuses_to_draw_without_contour(void **state) {
     narc_path *path = make_path();
     for (unsigned degree = 0; degree <= 3; degree++) {
         narc_error error;
-        expect_fit_error(draw(NULL, degree, points, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
+        expect_error(draw(NULL, degree, points, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
         if (degree > 0) {
-            expect_fit_error(draw(path, degree, points, &error), NARC_ERROR_ARGUMENT, &error, "no contour was begun");
+            expect_error(draw(path, degree, points, &error), NARC_ERROR_ARGUMENT, &error, "no contour was begun");
             assert_int_equal(draw(path, degree, points, NULL), NARC_ERROR_ARGUMENT);
         }
     }
@@ -68,7 +68,7 @@ static void refuses_wrong_coordinates(void **state) {
                 narc_error error;
                 numbers[place] = wrong[k].value;
                 memcpy(points, numbers, sizeof points);
-                expect_fit_error(draw(path, degree, points, &error), wrong[k].status, &error, wrong[k].words);
+                expect_error(draw(path, degree, points, &error), wrong[k].status, &error, wrong[k].words);
                 assert_non_null(strstr(error.message, place % 2 ? ": y is" : ": x is"));
                 assert_int_equal(strncmp(error.message, "control point 1", 15) == 0, degree > 1 && place < 2);
                 assert_memory_equal(&error.value, &wrong[k].value, sizeof error.value);
@@ -116,7 +116,7 @@ static void closes_contours(void **state) {
     assert_null(contours.ends);
 
     /* The pen goes on from the last contour. */
-    expect_fit_ok(narc_line_to(path, (narc_point){1, 1}, &error), &error);
+    expect_ok(narc_line_to(path, (narc_point){1, 1}, &error), &error);
     contours = flatten(path);
     assert_int_equal(contours.count, 4);
     assert_int_equal(contours.point_count, 9);

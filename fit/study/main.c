@@ -3,8 +3,8 @@
  * main.c - the goodness of fit of n-arcs, arcs with edges and n-gons on real outlines: the study of section 3.2 of "Using
  * Piecewise Circular Curves as a 2D Collision Primitive", done again. README.md beside this file says what is measured.
  *
- *     fit_study --font=FILE --drawings=FOLDER [--out=FOLDER]
- *     fit_study --quick --font=FILE [--out=FOLDER]
+ *     fit_study --font=FILE --drawings=FOLDER [--grains=FOLDER] [--out=FOLDER]
+ *     fit_study --quick --font=FILE [--grains=FOLDER] [--out=FOLDER]
  */
 #include <string.h>
 
@@ -31,6 +31,7 @@ static void print_results(const study *all, FILE *out) {
     print_paper_tables(all, out);
     print_summary(all, out);
     print_relation(all, out);
+    print_grains(all, out);
     print_all(all, out);
     print_shortfalls(all, out);
 }
@@ -48,24 +49,25 @@ static void draw_pictures(const study *all, const char *folder) {
         snprintf(name, sizeof name, "fit-%s.png", all->subjects[i].name);
         draw_subject(&all->subjects[i], in_folder(folder, name, path));
     }
-    if (all->count > PAPER_SUBJECTS) {
+    if (count_others(all) > 0) {
         draw_others(all, in_folder(folder, "fit-others.png", path));
+    }
+    if (all->subjects[all->count - 1].of == GRAINS) {
+        draw_grains(all, in_folder(folder, "fit-grains.png", path));
     }
 }
 
 int main(int argc, char **argv) {
-    enum { FONT, DRAWINGS, OUT, QUICK, OPTIONS };
+    enum { FONT, DRAWINGS, SAND, OUT, QUICK, OPTIONS };
     option options[OPTIONS] = {
-        [FONT] = {"--font", true, NULL},
-        [DRAWINGS] = {"--drawings", true, NULL},
-        [OUT] = {"--out", true, NULL},
-        [QUICK] = {"--quick", false, NULL},
+        [FONT] = {"--font", true, NULL}, [DRAWINGS] = {"--drawings", true, NULL}, [SAND] = {"--grains", true, NULL},
+        [OUT] = {"--out", true, NULL},   [QUICK] = {"--quick", false, NULL},
     };
     parse_options(argc - 1, argv + 1, options, OPTIONS, NULL, NULL);
     const char *folder = options[OUT].value ? options[OUT].value : "out";
     const double begin = seconds_now();
     study all = load_subjects(required_option(&options[FONT]),
-                              options[QUICK].value ? NULL : required_option(&options[DRAWINGS]));
+                              options[QUICK].value ? NULL : required_option(&options[DRAWINGS]), options[SAND].value);
     find_fits(&all, options[QUICK].value ? QUICK_STARTS : 0);
     fprintf(stderr, "pictures and tables\n");
     draw_pictures(&all, folder);

@@ -30,6 +30,11 @@ double find_quantile(numbers *of, double part) {
     return of->values[low] + (at - (double)low) * (of->values[high] - of->values[low]);
 }
 
+void print_range(numbers *of, int decimals, FILE *out) {
+    fprintf(out, " %.*f (%.*f to %.*f)", decimals, find_quantile(of, 0.5), decimals, find_quantile(of, 0), decimals,
+            find_quantile(of, 1));
+}
+
 /* The place of a value among others, from 0; equal values share the mean of theirs. */
 static double rank_of(const numbers *of, double value) {
     double below = 0, equal = 0;
@@ -63,7 +68,11 @@ void print_csv(const study *all, FILE *out) {
             for (size_t size = 0; size < SIZES; size++) {
                 const fit *at = &of->fits[way][size];
                 fprintf(out, "\"%s\",%s,", of->name, kind_names[of->of]);
-                if (of->character) {
+                if (of->sand) {
+                    char file[32];
+                    name_grain_file(of, file, sizeof file);
+                    fputs(file, out);
+                } else if (of->character) {
                     fprintf(out, "U+%04X", (unsigned)of->character);
                 } else {
                     fputs(of->file ? of->file : "pixels", out);

@@ -9,7 +9,7 @@
 
 typedef struct numbers {
     size_t count;
-    double values[128]; /* more than there are subjects */
+    double values[MOST_SUBJECTS];
 } numbers;
 
 /* NAN is left out. */
@@ -17,6 +17,9 @@ void add_number(numbers *to, double value);
 
 /* The value below which a part of all lies, between two values by interpolation; sorts them. NAN if there are none. */
 double find_quantile(numbers *of, double part);
+
+/* " median (least to largest)". */
+void print_range(numbers *of, int decimals, FILE *out);
 
 /* Spearman's: the correlation of ranks. */
 double correlate_ranks(const numbers *x, const numbers *y);

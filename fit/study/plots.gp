@@ -10,8 +10,8 @@ set xrange [-4:104]
 set xlabel "straight part of the hull's perimeter, %"
 
 # Okabe and Ito's colours.
-array colors[6] = ["#000000", "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00"]
-array shapes[6] = [7, 5, 9, 11, 13, 15]
+array colors[7] = ["#000000", "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
+array shapes[7] = [7, 5, 9, 11, 13, 15, 1]
 
 set multiplot layout 1,3 margins 0.05,0.99,0.25,0.92 spacing 0.045
 do for [c = 4:6] {
@@ -26,7 +26,7 @@ do for [c = 4:6] {
         unset key
     }
     plot 1 with lines notitle lw 1.5 lc rgb "#666666", \
-        for [k = 0:5] folder."/fit-study.dat" index k using (100 * column(3)):(column(c)) with points \
+        for [k = 0:6] folder."/fit-study.dat" index k using (100 * column(3)):(column(c)) with points \
             title columnheader(1) pt shapes[k + 1] ps 1.2 lc rgb colors[k + 1]
 }
 unset multiplot

@@ -17,7 +17,7 @@ typedef enum family { N_ARC, ARCS_AND_EDGES, N_GON, ROUTE, FAMILIES } family;
 extern const char *const family_names[FAMILIES];
 extern const narc_fit_family family_requests[FAMILIES];
 
-typedef enum kind { PAPER, LETTERS, ANIMALS, PLANTS, TOOLS, SIGNS, IMAGE, KINDS } kind;
+typedef enum kind { PAPER, LETTERS, ANIMALS, PLANTS, TOOLS, SIGNS, GRAINS, IMAGE, KINDS } kind;
 extern const char *const kind_names[KINDS];
 
 typedef struct fit {
@@ -30,7 +30,10 @@ typedef struct subject {
     kind of;
     uint32_t character; /* a glyph of the font, */
     const char *file;   /* or a drawing of the folder, */
-    const char *image;  /* or pixels made of the subject with this name */
+    const char *image;  /* or pixels made of the subject with this name, */
+    const char *sand;   /* or a grain of this sand: */
+    unsigned number;    /* its number, from 1, */
+    char label[24];     /* and its name */
     narc_path *path;
     narc_contours contours;
     hull around;
@@ -45,7 +48,10 @@ typedef struct study {
     subject *subjects; /* the paper's four come first */
     size_t count;
 } study;
-enum { PAPER_SUBJECTS = 4 };
+enum { PAPER_SUBJECTS = 4, MOST_SUBJECTS = 128 };
+
+/* Grains are many: the first of each sand stand for them in the picture and in the table of all outlines. */
+enum { SHOWN_GRAINS = 6 };
 
 /* Relative to the hull's area; NAN if there is no such fit. */
 double area_of(const subject *of, family which, size_t size);
@@ -53,9 +59,26 @@ double area_of(const subject *of, family which, size_t size);
 /* Area of the n-arc over that of the n-gon. */
 double ratio_of(const subject *of, size_t size);
 
-/* ---- subjects.c. `drawings` NULL: only the paper's four. */
-study load_subjects(const char *font, const char *drawings);
+typedef enum quantity { AREA, LARGEST, MEAN, SECONDS, QUANTITIES } quantity;
+
+/* Area as area_of(), distances in percent of the extent; NAN if there is no such fit. */
+double value_of(const subject *of, family which, size_t size, quantity what);
+
+/* ---- subjects.c. `drawings` NULL: only the paper's four. `grains` NULL: without them. */
+study load_subjects(const char *font, const char *drawings, const char *grains);
 void free_subjects(study *all);
+
+/* The bytes of a file in a folder, NULL if there is none. */
+char *read_from(const char *folder, const char *name, size_t *out_size);
+narc_path *make_path(void);
+
+/* Hull and properties of a subject whose path was read. */
+void measure_subject(subject *of);
+
+/* ---- grains.c. Adds river-01.csv, river-02.csv ... and sea-01.csv ... of a folder. */
+void add_grains(study *all, const char *folder);
+void name_grain_file(const subject *of, char *out_name, size_t size);
+void print_grains(const study *all, FILE *out);
 
 /* ---- corners.c */
 void measure_corners(subject *of);
@@ -79,6 +102,8 @@ void print_points(const study *all, FILE *out); /* for plots.gp */
 
 /* ---- pictures.c */
 void draw_subject(const subject *of, const char *path);
+size_t count_others(const study *all); /* neither the paper's, nor grains, nor images */
 void draw_others(const study *all, const char *path);
+void draw_grains(const study *all, const char *path);
 
 #endif

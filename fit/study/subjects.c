@@ -14,8 +14,8 @@
 const size_t sizes[SIZES] = {4, 6, 8};
 const char *const family_names[FAMILIES] = {"n-arc", "arcs + edges", "n-gon", "paper's route"};
 const narc_fit_family family_requests[FAMILIES] = {NARC_FIT_N_ARC, NARC_FIT_EDGES, NARC_FIT_POLYGON, NARC_FIT_PAPER};
-const char *const kind_names[KINDS] = {"the paper's four",   "letters and digits", "animals", "plants and fruit",
-                                       "tools and vehicles", "plain signs",        "pixels"};
+const char *const kind_names[KINDS] = {"the paper's four",   "letters and digits", "animals",     "plants and fruit",
+                                       "tools and vehicles", "plain signs",        "sand grains", "pixels"};
 
 static const subject chosen[] = {
     {.name = "ghost", .of = PAPER, .character = 0x1f47b},
@@ -61,28 +61,42 @@ double area_of(const subject *of, family which, size_t size) {
     return made->found ? made->made.area / made->made.hull_area : NAN;
 }
 
+double value_of(const subject *of, family which, size_t size, quantity what) {
+    const fit *at = &of->fits[which][size];
+    const double values[QUANTITIES] = {at->made.area / at->made.hull_area, 100 * at->made.max_distance / of->extent,
+                                       100 * at->made.mean_distance / of->extent, at->made.seconds};
+    return at->found ? values[what] : NAN;
+}
+
 double ratio_of(const subject *of, size_t size) {
     return of->fits[N_ARC][size].made.area / of->fits[N_GON][size].made.area;
 }
 
 /* ---------------------------------------------------------------------------- readers */
 
-static void read_drawing(const subject *of, const char *folder) {
+char *read_from(const char *folder, const char *name, size_t *out_size) {
     enum { LONGEST = 4096 };
     char file[LONGEST];
-    if (snprintf(file, sizeof file, "%s/%s", folder, of->file) >= LONGEST) {
+    if (snprintf(file, sizeof file, "%s/%s", folder, name) >= LONGEST) {
         fail("%s: the name is too long", folder);
     }
     FILE *there = fopen(file, "rb");
     if (!there) {
-        fail("%s is missing; it belongs to the package openclipart-svg of Debian 12", file);
+        return NULL;
     }
     fclose(there);
+    return read_bytes(file, out_size);
+}
+
+static void read_drawing(const subject *of, const char *folder) {
     size_t size;
-    char *bytes = read_bytes(file, &size);
+    char *bytes = read_from(folder, of->file, &size);
+    if (!bytes) {
+        fail("%s/%s is missing; it belongs to the package openclipart-svg of Debian 12", folder, of->file);
+    }
     narc_error error;
     if (narc_read_svg(bytes, size, of->path, &error) != NARC_OK) {
-        fail("%s: %s", file, error.message);
+        fail("%s/%s: %s", folder, of->file, error.message);
     }
     free(bytes);
 }
@@ -151,6 +165,14 @@ static void read_pixels(const study *all, const subject *of) {
 
 /* ---------------------------------------------------------------------------- all */
 
+narc_path *make_path(void) {
+    narc_path *path;
+    if (narc_create_path(&path) != NARC_OK) {
+        fail("not enough memory for an outline");
+    }
+    return path;
+}
+
 static void find_extent(subject *of) {
     narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     for (size_t k = 0; k < of->around.count; k++) {
@@ -160,7 +182,7 @@ static void find_extent(subject *of) {
     of->extent = fmax(box.max_x - box.min_x, box.max_y - box.min_y);
 }
 
-static void measure_subject(subject *of) {
+void measure_subject(subject *of) {
     narc_error error;
     if (narc_flatten_path(of->path, 0, &of->contours, &error) != NARC_OK ||
         narc_make_hull(of->contours.points, of->contours.point_count, &of->around, &error) != NARC_OK) {
@@ -176,10 +198,8 @@ static void measure_subject(subject *of) {
 static void add_subject(study *all, const subject *from, const char *file, narc_font *font, const char *drawings) {
     subject *of = &all->subjects[all->count];
     *of = *from;
+    of->path = make_path();
     narc_error error;
-    if (narc_create_path(&of->path) != NARC_OK) {
-        fail("not enough memory for an outline");
-    }
     if (of->file) {
         read_drawing(of, drawings);
     } else if (of->image) {
@@ -191,8 +211,9 @@ static void add_subject(study *all, const subject *from, const char *file, narc_
     all->count++;
 }
 
-study load_subjects(const char *font, const char *drawings) {
-    study all = {.subjects = allocate(CHOSEN, sizeof *all.subjects)};
+study load_subjects(const char *font, const char *drawings, const char *grains) {
+    _Static_assert((int)CHOSEN <= (int)MOST_SUBJECTS, "there is room for the chosen");
+    study all = {.subjects = allocate(MOST_SUBJECTS, sizeof *all.subjects)};
     size_t size;
     char *bytes = read_bytes(font, &size);
     narc_font *opened;
@@ -207,6 +228,9 @@ study load_subjects(const char *font, const char *drawings) {
     }
     narc_close_font(opened);
     free(bytes);
+    if (grains) {
+        add_grains(&all, grains);
+    }
     return all;
 }
 

@@ -19,16 +19,17 @@ static void print_ratios(const subject *const *some, size_t count, size_t size, 
         add_number(&ratios, ratio_of(some[i], size));
         wins += ratio_of(some[i], size) < 1 ? 1 : 0;
     }
-    fprintf(out, " %.3f (%.3f to %.3f) | %zu of %zu |", find_quantile(&ratios, 0.5), find_quantile(&ratios, 0),
-            find_quantile(&ratios, 1), wins, count);
+    print_range(&ratios, 3, out);
+    fprintf(out, " | %zu of %zu |", wins, count);
 }
 
-/* Those of a kind, or for KINDS all but the image, which is another subject once more. */
+/* Those of a kind, or for KINDS all but the image, which is another subject once more, and the grains, which are more
+ * than all others. */
 static size_t pick(const study *all, kind which, const subject **out_some) {
     size_t count = 0;
     for (size_t i = 0; i < all->count; i++) {
         const subject *of = &all->subjects[i];
-        if (which == KINDS ? of->of != IMAGE : of->of == which) {
+        if (which == KINDS ? of->of != IMAGE && of->of != GRAINS : of->of == which) {
             out_some[count++] = of;
         }
     }
@@ -38,12 +39,13 @@ static size_t pick(const study *all, kind which, const subject **out_some) {
 static void print_kinds(const study *all, const subject **some, FILE *out) {
     fprintf(out, "### n-arc / n-gon by kind: median (least to largest), and how often the n-arc is smaller\n\n"
                  "| | n = 4 | | 6 | | 8 | |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n");
-    for (int which = PAPER; which <= KINDS; which++) {
-        const size_t count = pick(all, (kind)which, some);
-        if (which == IMAGE || count == 0) {
+    static const kind order[] = {PAPER, LETTERS, ANIMALS, PLANTS, TOOLS, SIGNS, KINDS, GRAINS};
+    for (size_t k = 0; k < sizeof order / sizeof order[0]; k++) {
+        const size_t count = pick(all, order[k], some);
+        if (count == 0) {
             continue;
         }
-        fprintf(out, "| %s |", which == KINDS ? "**all**" : kind_names[which]);
+        fprintf(out, "| %s |", order[k] == KINDS ? "**all of these**" : kind_names[order[k]]);
         for (size_t size = 0; size < SIZES; size++) {
             print_ratios(some, count, size, out);
         }
@@ -53,15 +55,6 @@ static void print_kinds(const study *all, const subject **some, FILE *out) {
 }
 
 /* ---------------------------------------------------------------------------- by family */
-
-typedef enum quantity { AREA, LARGEST, MEAN, SECONDS, QUANTITIES } quantity;
-
-static double value_of(const subject *of, family which, size_t size, quantity what) {
-    const fit *at = &of->fits[which][size];
-    const double values[QUANTITIES] = {at->made.area / at->made.hull_area, 100 * at->made.max_distance / of->extent,
-                                       100 * at->made.mean_distance / of->extent, at->made.seconds};
-    return at->found ? values[what] : NAN;
-}
 
 static void print_families(const subject *const *some, size_t count, FILE *out) {
     static const char *const formats[QUANTITIES] = {" %.4f |", " %.2f |", " %.2f |", " %.2f |"};
@@ -94,8 +87,9 @@ static void print_contest(const subject *const *some, size_t count, const char *
         add_number(&ratios, ratio);
         wins += ratio < 1 ? 1 : 0;
     }
-    fprintf(out, "| %s | %.3f (%.3f to %.3f) | %zu of %zu |\n", what, find_quantile(&ratios, 0.5),
-            find_quantile(&ratios, 0), find_quantile(&ratios, 1), wins, ratios.count);
+    fprintf(out, "| %s |", what);
+    print_range(&ratios, 3, out);
+    fprintf(out, " | %zu of %zu |\n", wins, ratios.count);
 }
 
 static void print_contests(const subject *const *some, size_t count, FILE *out) {

@@ -162,6 +162,9 @@ void print_all(const study *all, FILE *out) {
     fputc('\n', out);
     for (size_t i = 0; i < all->count; i++) {
         const subject *of = &all->subjects[i];
+        if (of->of == GRAINS && of->number > SHOWN_GRAINS) {
+            continue;
+        }
         fprintf(out, "| %s |", of->name);
         for (int cell = 0; cell < FAMILIES * SIZES; cell++) {
             print_cell(out, "%.4f", area_of(of, (family)(cell / SIZES), (size_t)cell % SIZES));
