@@ -41,7 +41,7 @@ run_packages="$build_packages fonts-symbola"
 peer_packages="g++ libbenchmark-dev libbox2d-dev libchipmunk-dev libccd-dev"
 test_packages="$run_packages $peer_packages binutils clang libomp-dev"
 bench_packages="$library_packages $peer_packages gnuplot-nox"
-study_packages="$run_packages openclipart-svg gnuplot-nox"
+study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
 arm64_tools="gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
 arm64_libraries="libsleef-dev libsleef3 libcmocka-dev libcmocka0"
 
@@ -159,10 +159,14 @@ fit_study() {
     build release fit_study
     font=$(dpkg -L fonts-symbola | grep -i -m 1 '\.[ot]tf$') || fail "fonts-symbola has no font file"
     drawings=$(dpkg -L openclipart-svg | grep -m 1 '/svg$') || fail "openclipart-svg has no folder svg"
-    mkdir -p out
-    rm -f out/fit-*
+    sand=$(dpkg -L r-cran-shapes | grep -m 1 '/sand\.rda$') || fail "r-cran-shapes has no file sand.rda"
+    rm -rf out/fit-* out/grains
+    mkdir -p out/grains
+    say "sand grains"
+    Rscript --vanilla fit/study/grains.R "$sand" out/grains
     say "the paper's study of goodness of fit"
-    build/release/fit/study/fit_study --font="$font" --drawings="$drawings" --out=out
+    build/release/fit/study/fit_study --font="$font" --drawings="$drawings" \
+        --grains=out/grains --out=out
     say "plot"
     gnuplot -e "folder='out'" fit/study/plots.gp
     say "written"

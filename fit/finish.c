@@ -211,7 +211,7 @@ static double mean_distance(const chain *of, const hull *around) {
  * edges that are not quite square to their normals, which matter more than the difference does where edges lie on sides
  * of the hull. */
 static double measure_difference(const narc_arc *arcs, size_t count, double factor, const hull *around) {
-    narc_arc scaled[NARC_MAX_ARCS];
+    narc_arc scaled[NARC_MAX_ARCS] = {0};
     for (size_t i = 0; i < count; i++) {
         scaled[i] = (narc_arc){factor * arcs[i].center_x, factor * arcs[i].center_y, factor * arcs[i].radius,
                                arcs[i].start, arcs[i].end};
@@ -247,6 +247,13 @@ static bool measure(const hull *around, narc_fit_result *of) {
 
 /* ---------------------------------------------------------------------------- all of it */
 
+/* A point of the scaled hull's plane as seen from `origin` there, in the outline's units and directions. */
+static narc_point place_point(const scale *at, narc_point origin, narc_point p) {
+    const narc_point from = minus(p, origin);
+    const narc_point x = unit_at(at->angle), y = turned(x);
+    return (narc_point){at->radius * (from.x * x.x + from.y * y.x), at->radius * (from.x * x.y + from.y * y.y)};
+}
+
 /* The hull in the outline's units, seen from the shape's origin. */
 static narc_status place_hull(const hull *around, const scale *at, narc_point origin, hull *out, narc_error *error) {
     narc_point *corners = malloc(around->count * sizeof *corners);
@@ -254,8 +261,7 @@ static narc_status place_hull(const hull *around, const scale *at, narc_point or
         return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for a hull of %zu corners", around->count);
     }
     for (size_t k = 0; k < around->count; k++) {
-        corners[k] = (narc_point){at->radius * (around->corners[k].x - origin.x),
-                                  at->radius * (around->corners[k].y - origin.y)};
+        corners[k] = place_point(at, origin, around->corners[k]);
     }
     const narc_status status = narc_adopt_corners(corners, around->count, out, error);
     if (status == NARC_OK) {
@@ -272,11 +278,11 @@ narc_status narc_finish_arcs(const narc_arc *arcs, size_t count, const hull *aro
     narc_compute_mass(arcs, count, &mass);
     const narc_point origin = {mass.centroid_x, mass.centroid_y};
     for (size_t i = 0; i < count; i++) {
-        made.arcs[i] =
-            (narc_arc){at->radius * (arcs[i].center_x - origin.x), at->radius * (arcs[i].center_y - origin.y),
-                       at->radius * arcs[i].radius, arcs[i].start, arcs[i].end};
+        const narc_point center = place_point(at, origin, (narc_point){arcs[i].center_x, arcs[i].center_y});
+        made.arcs[i] = (narc_arc){center.x, center.y, at->radius * arcs[i].radius, arcs[i].start + at->angle,
+                                  arcs[i].end + at->angle};
     }
-    made.origin = along(at->middle, at->radius, origin);
+    made.origin = plus(at->middle, place_point(at, (narc_point){0, 0}, origin));
     hull placed;
     narc_status status = place_hull(around, at, origin, &placed, error);
     if (status != NARC_OK) {

@@ -8,10 +8,10 @@
 #include "chain.h"
 #include "hull.h"
 
-/* Where the scaled hull that fits work on is in the outline: point = middle + radius * scaled point. */
+/* Where the hull that fits work on is in the outline: point = middle + radius * (the hull's point, turned by `angle`). */
 typedef struct scale {
     narc_point middle;
-    double radius;
+    double radius, angle;
 } scale;
 
 /* Fills in arcs, origin and every measure but `flatness` and `seconds`. `around` is scaled, as the chain. With `bound`,

@@ -119,6 +119,49 @@ static narc_status scale_hull(const narc_contours *contours, job *to, narc_error
     return status;
 }
 
+/* Puts the hull where it does not matter how the outline lay: its centroid at the origin, its furthest corner 1 away, its
+ * longest side below. So outlines that were moved, scaled or turned get the same fit, but for roundings. */
+static narc_status settle_hull(job *of, narc_error *error) {
+    const hull *old = &of->around;
+    narc_point centroid = {0, 0};
+    size_t longest = 0;
+    double side = 0, radius = 0;
+    for (size_t k = 0; k < old->count; k++) {
+        const narc_point p = old->corners[k], q = old->corners[(k + 1) % old->count];
+        const double part = cross(p, q) / (6 * old->area);
+        centroid = along(centroid, part, plus(p, q));
+        if (length(minus(q, p)) > side * (1 + 1e-9)) {
+            side = length(minus(q, p));
+            longest = k;
+        }
+    }
+    const double angle = old->angles[longest] + PI / 2;
+    narc_point *corners = malloc(old->count * sizeof *corners);
+    if (!corners) {
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for a hull of %zu corners", old->count);
+    }
+    const narc_point x = unit_at(angle);
+    for (size_t k = 0; k < old->count; k++) {
+        const narc_point p = minus(old->corners[(longest + k) % old->count], centroid);
+        corners[k] = (narc_point){dot(p, x), cross(x, p)};
+        radius = fmax(radius, length(p));
+    }
+    for (size_t k = 0; k < old->count; k++) {
+        corners[k] = (narc_point){corners[k].x / radius, corners[k].y / radius};
+    }
+    hull made;
+    const narc_status status = narc_adopt_corners(corners, old->count, &made, error);
+    free(corners);
+    if (status == NARC_OK) {
+        narc_release_hull(&of->around);
+        of->around = made;
+        of->at.middle = along(of->at.middle, of->at.radius, centroid);
+        of->at.radius *= radius;
+        of->at.angle = angle;
+    }
+    return status;
+}
+
 /* Half of the hull's largest width among some directions: no circle around it, or around a shape that holds it, is
  * smaller. */
 static double find_least_radius(const hull *of) {
@@ -155,6 +198,12 @@ static narc_status prepare(const narc_path *path, job *to, narc_error *error) {
     if (status != NARC_OK) {
         return status;
     }
+    if (to->around.area < LEAST_AREA) {
+        narc_release_hull(&to->around);
+        return narc_fail(error, NARC_ERROR_NOT_CONVEX, 0, to->around.area,
+                         "the outline is as thin as a line, single precision can't tell its sides apart");
+    }
+    status = settle_hull(to, error);
     to->around.inflation = to->flatness / to->at.radius;
     for (double tolerance = LEAST_THINNING; status == NARC_OK && to->around.count > MOST_CORNERS;) {
         tolerance *= 2;
@@ -162,10 +211,8 @@ static narc_status prepare(const narc_path *path, job *to, narc_error *error) {
     }
     to->flatness = to->at.radius * to->around.inflation;
     to->max_radius = RADIUS_ROOM * NARC_MAX_RADIUS_RATIO * find_least_radius(&to->around);
-    if (to->around.area < LEAST_AREA) {
+    if (status != NARC_OK) {
         narc_release_hull(&to->around);
-        return narc_fail(error, NARC_ERROR_NOT_CONVEX, 0, to->around.area,
-                         "the outline is as thin as a line, single precision can't tell its sides apart");
     }
     return status;
 }

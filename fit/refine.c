@@ -17,13 +17,17 @@
 static const double STEP_TOLERANCE = 1e-7;
 enum { EVALUATIONS = 40 };
 
+/* A round that makes nothing better for lack of rows gets more, so many times in all. */
+enum { ATTEMPTS = 2 };
+
 /* Rows with more room than this, in units of the hull's radius, are left to the next round. */
 static const double NEAR = 0.2;
 
 static const double BOX_TURN = 0.3, BOX_LENGTH = 1;
 
-/* A round that gains less than this part of the value is the last. */
+/* So many rounds in a row that gain less than this part of the value, in smaller and smaller boxes, are the last. */
 static const double LEAST_GAIN = 1e-7;
+enum { PATIENCE = 3 };
 
 typedef struct frame {
     search *with;
@@ -228,6 +232,13 @@ static bool take_chain(search *with, const chain *form, candidate *out_next) {
     return isfinite(out_next->value);
 }
 
+/* Adds rows where a chain goes too far for lack of them. */
+static size_t add_missing(search *with, const chain *form, double distance) {
+    const size_t count = narc_make_profile(form, with->of.around, 0, with->intervals);
+    const double slack = STEP_TOLERANCE + (narc_is_distance(&with->of) ? distance : 0);
+    return narc_add_violated(&with->of, with->intervals, count, slack, with->rows);
+}
+
 static bool solve_round(search *with, const candidate *from, double box, candidate *out_next) {
     const layout columns = narc_layout_of(with->of.count);
     const double no_turns[MAX_CHAIN] = {0};
@@ -236,26 +247,40 @@ static bool solve_round(search *with, const candidate *from, double box, candida
         narc_list_rows(&with->of, &from->form, no_turns, with->intervals, with->rows);
         keep_near(&with->of, &from->form, from->value, with->rows);
     }
-    frame in = {.with = with, .form = from->form, .widest = narc_widest_sweep(&with->of)};
-    double x[3 * MAX_CHAIN + 3];
-    write_variables(&from->form, narc_is_distance(&with->of) ? from->value : 0, x);
-    run_solver(&in, &columns, box, x);
-    move_to(&in, x);
-    return take_chain(with, &in.form, out_next);
+    bool found = false;
+    for (unsigned attempt = 0; attempt < ATTEMPTS; attempt++) {
+        frame in = {.with = with, .form = from->form, .widest = narc_widest_sweep(&with->of)};
+        double x[3 * MAX_CHAIN + 3];
+        write_variables(&from->form, narc_is_distance(&with->of) ? from->value : 0, x);
+        run_solver(&in, &columns, box, x);
+        move_to(&in, x);
+        candidate next;
+        if (!take_chain(with, &in.form, &next)) {
+            break;
+        }
+        if (!found || next.value < out_next->value) {
+            *out_next = next;
+        }
+        found = true;
+        if (next.value < from->value || with->of.goal == NARC_FIT_DIFFERENCE ||
+            add_missing(with, &in.form, in.distance) == 0) {
+            break;
+        }
+    }
+    return found;
 }
 
 void narc_refine(search *with, candidate *best, unsigned rounds) {
     double box = BOX_TURN;
-    for (unsigned round = 0; round < rounds; round++) {
+    unsigned idle = 0;
+    for (unsigned round = 0; round < rounds && idle < PATIENCE; round++) {
         candidate next;
-        if (!solve_round(with, best, box, &next) || !(next.value < best->value)) {
-            box *= 0.3;
-            continue;
-        }
-        const bool done = next.value > best->value * (1 - LEAST_GAIN);
-        *best = next;
-        if (done) {
-            break;
+        const bool better = solve_round(with, best, box, &next) && next.value < best->value;
+        const bool gains = better && next.value < best->value * (1 - LEAST_GAIN);
+        idle = gains ? 0 : idle + 1;
+        box *= gains ? 1 : 0.3;
+        if (better) {
+            *best = next;
         }
     }
 }

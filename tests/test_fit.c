@@ -57,11 +57,14 @@ static void test_random_outlines(void **state) {
     }
 }
 
-/* Every count, each family in turn; goals that bound in turn. */
+/* Every count, each family and goal in turn; of the large counts, which take seconds, some unless there is more time. */
 static void test_counts(void **state) {
     (void)state;
     struct outline of = make_regular("pentagon", 5, 0.1, 0.8);
     for (size_t arcs = 1; arcs <= NARC_MAX_FIT_ARCS; arcs++) {
+        if (arcs > 12 && arcs % 5 != 2 && test_trials(1) == 1) {
+            continue;
+        }
         const narc_fit_family family = arcs < 3 ? (narc_fit_family)(arcs % 2) : (narc_fit_family)(arcs % 4);
         check(&of, family, family == NARC_FIT_PAPER ? NARC_FIT_BOUND_AREA : (narc_fit_goal)(arcs % 5), arcs);
     }

@@ -67,6 +67,21 @@ void set_color(canvas *page, color paint) {
     cairo_set_source_rgba(page->pen, paint.red, paint.green, paint.blue, paint.alpha);
 }
 
+const color INK = {0.12, 0.14, 0.18, 1};
+
+void draw_text(canvas *page, const char *text, double x, double y, double size, double widest) {
+    cairo_text_extents_t extents;
+    set_color(page, INK);
+    cairo_set_font_size(page->pen, size);
+    cairo_text_extents(page->pen, text, &extents);
+    if (extents.x_advance > widest) {
+        cairo_set_font_size(page->pen, size * widest / extents.x_advance);
+        cairo_text_extents(page->pen, text, &extents);
+    }
+    cairo_move_to(page->pen, x - extents.x_advance / 2, y);
+    cairo_show_text(page->pen, text);
+}
+
 narc_point place_point(const placement *where, narc_point p) {
     return (narc_point){where->origin_x + where->cosine * p.x - where->sine * p.y,
                         where->origin_y - where->sine * p.x - where->cosine * p.y};
@@ -89,12 +104,16 @@ void trace_arcs(canvas *page, const placement *where, const narc_arc *arcs, size
     cairo_restore(page->pen);
 }
 
+void stroke_path(canvas *page, color line, double width) {
+    set_color(page, line);
+    cairo_set_line_width(page->pen, width);
+    cairo_stroke(page->pen);
+}
+
 void paint_path(canvas *page, color fill, color line, double line_width) {
     set_color(page, fill);
     cairo_fill_preserve(page->pen);
-    set_color(page, line);
-    cairo_set_line_width(page->pen, line_width);
-    cairo_stroke(page->pen);
+    stroke_path(page, line, line_width);
 }
 
 void draw_dot(canvas *page, narc_point center, double radius) {

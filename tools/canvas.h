@@ -36,6 +36,12 @@ void finish_canvas(canvas *page);
 
 void set_color(canvas *page, color paint);
 
+/* Text and fine marks. */
+extern const color INK;
+
+/* Text with its middle at x and its baseline at y, made smaller if it is wider than `widest`. */
+void draw_text(canvas *page, const char *text, double x, double y, double size, double widest);
+
 /* Where a shape's own coordinates are on the page: x = origin_x + cosine x - sine y, y = origin_y - sine x - cosine y,
  * with the size on the page in cosine and sine. The page's y points down. */
 typedef struct placement {
@@ -47,7 +53,8 @@ narc_point place_point(const placement *where, narc_point p);
 /* Adds a shape to the path: true arcs, joined by straight edges. */
 void trace_arcs(canvas *page, const placement *where, const narc_arc *arcs, size_t count);
 
-/* Fills and outlines the path. */
+/* Outlines the path, or fills it and outlines it. */
+void stroke_path(canvas *page, color line, double width);
 void paint_path(canvas *page, color fill, color line, double line_width);
 
 void draw_dot(canvas *page, narc_point center, double radius);

@@ -56,7 +56,7 @@ static const char HELP[] =
     "                  and less than 1, default 0.5\n"
     "  --flatness F    how far chords may be from curves, as a part of the larger side of the\n"
     "                  outline's bounding box; 1e-9 to 0.1, default 2e-5\n"
-    "  --starts N      where the search starts from, 1 to 10000; more can only find better shapes\n"
+    "  --starts N      how many places the search starts from, 1 to 10000; more often find better\n"
     "  --out FILE      the shapes file to write; left out or -: standard output\n"
     "  --picture FILE  a .png or .svg picture of outlines, hulls and shapes\n"
     "\n"

@@ -5,56 +5,27 @@
  */
 #include "json_position.h"
 
-#include <stdbool.h>
 #include <string.h>
 
-/* What cJSON takes for a blank. */
-static bool is_blank(char c) { return (unsigned char)c <= ' '; }
+#include "../fit/json_place.h"
 
-static const char *skip_blanks(const char *c) {
-    while (*c && is_blank(*c)) {
-        c++;
-    }
-    return c;
-}
-
-/* From the opening quote of a string to behind the closing one. */
-static const char *skip_string(const char *c) {
-    for (c++; *c && *c != '"'; c++) {
-        c += *c == '\\' && c[1];
-    }
-    return *c ? c + 1 : c;
-}
-
-static const char *skip_value(const char *c) {
-    size_t depth = 0;
-    while (*c) {
-        const bool opens = *c == '[' || *c == '{', closes = *c == ']' || *c == '}';
-        if (depth == 0 && (closes || *c == ',' || *c == ':' || is_blank(*c))) {
-            break;
-        }
-        depth += opens;
-        depth -= closes;
-        c = *c == '"' ? skip_string(c) : c + 1;
-    }
-    return c;
-}
+static const char *skip_value(const char *c) { return c + narc_measure_json_value(c); }
 
 /* From behind a value to the next one, over the comma or colon between them. */
 static const char *next_value(const char *c) {
-    c = skip_blanks(c);
-    return *c == ',' || *c == ':' ? skip_blanks(c + 1) : c;
+    c = narc_skip_json_blanks(c);
+    return *c == ',' || *c == ':' ? narc_skip_json_blanks(c + 1) : c;
 }
 
-const char *find_root(const char *text) { return skip_blanks(text); }
+const char *find_root(const char *text) { return narc_skip_json_blanks(text); }
 
 const char *find_member(const char *object, const char *key) {
     const size_t length = strlen(key);
     if (*object != '{') {
         return NULL;
     }
-    for (const char *c = skip_blanks(object + 1); *c == '"';) {
-        const char *end = skip_string(c), *value = next_value(end);
+    for (const char *c = narc_skip_json_blanks(object + 1); *c == '"';) {
+        const char *end = narc_skip_json_string(c), *value = next_value(end);
         if ((size_t)(end - c) == length + 2 && memcmp(c + 1, key, length) == 0) {
             return value;
         }
@@ -67,7 +38,7 @@ const char *find_element(const char *list, size_t index) {
     if (*list != '[') {
         return NULL;
     }
-    const char *c = skip_blanks(list + 1);
+    const char *c = narc_skip_json_blanks(list + 1);
     for (; index > 0 && *c && *c != ']'; index--) {
         c = next_value(skip_value(c));
     }

@@ -21,7 +21,7 @@ do for [c = 4:6] {
     set yrange [*<0.95:1.05<*]
     set offsets 0, 0, graph 0.05, graph 0.05
     if (c == 5) {
-        set key at screen 0.52, screen 0.06 center maxrows 1 samplen 1 width 2 Left reverse
+        set key at screen 0.52, screen 0.06 center maxrows 1 samplen 1 width -2 Left reverse
     } else {
         unset key
     }

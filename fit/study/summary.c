@@ -58,7 +58,7 @@ static void print_kinds(const study *all, const subject **some, FILE *out) {
 
 static void print_families(const subject *const *some, size_t count, FILE *out) {
     static const char *const formats[QUANTITIES] = {" %.4f |", " %.2f |", " %.2f |", " %.2f |"};
-    fprintf(out, "### Medians over all outlines\n\n"
+    fprintf(out, "### Medians over all outlines but the grains\n\n"
                  "| | area, hull = 1: 4 | 6 | 8 | largest distance, %%: 4 | 6 | 8 | mean distance, %%: 4 | 6 | 8 | "
                  "seconds: 4 | 6 | 8 |\n"
                  "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
@@ -93,8 +93,10 @@ static void print_contest(const subject *const *some, size_t count, const char *
 }
 
 static void print_contests(const subject *const *some, size_t count, FILE *out) {
-    fprintf(out, "### Other ratios of areas, all outlines: median (least to largest), and how often below 1\n\n"
-                 "| | | |\n| --- | ---: | ---: |\n");
+    fprintf(
+        out,
+        "### Other ratios of areas, all outlines but the grains: median (least to largest), and how often below 1\n\n"
+        "| | | |\n| --- | ---: | ---: |\n");
     print_contest(some, count, "8-arc / 8-arc of the paper's route", N_ARC, 2, ROUTE, 2, out);
     print_contest(some, count, "8 arcs + edges / 8-gon", ARCS_AND_EDGES, 2, N_GON, 2, out);
     print_contest(some, count, "4 arcs + edges / 6-gon: 12 numbers each", ARCS_AND_EDGES, 0, N_GON, 1, out);
