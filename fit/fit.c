@@ -31,7 +31,7 @@ enum { MOST_RADII = 12 };
 
 /* Hulls with more corners are thinned, by twice this (in parts of the radius), or four times ..., until they have fewer.
  * A circle has some 1500 corners at 2e-6. */
-static const double LEAST_THINNING = 1e-6;
+static const double LEAST_THINNING = 1e-6, MOST_THINNING = 1e-3;
 enum { MOST_CORNERS = 2000 };
 
 /* With a tolerance, curves are flattened to this part of it at least. */
@@ -205,7 +205,8 @@ static narc_status prepare(const narc_path *path, job *to, narc_error *error) {
     }
     status = settle_hull(to, error);
     to->around.inflation = to->flatness / to->at.radius;
-    for (double tolerance = LEAST_THINNING; status == NARC_OK && to->around.count > MOST_CORNERS;) {
+    for (double tolerance = LEAST_THINNING;
+         status == NARC_OK && to->around.count > MOST_CORNERS && tolerance < MOST_THINNING;) {
         tolerance *= 2;
         status = narc_thin_hull(&to->around, tolerance, error);
     }

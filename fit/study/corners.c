@@ -11,8 +11,8 @@
 #include "../vector.h"
 #include "study.h"
 
-/* A corner: a stretch of the hull's outline no longer than this part of its perimeter that turns by at least this angle.
- * So a corner that is rounded a little is one too, and so is one that pixels or curves cut into several. */
+/* A corner: a stretch of the hull's outline no longer than this part of its perimeter that turns by at least this
+ * angle. So a corner that is rounded a little is one too, and so is one that pixels or curves cut into several. */
 static const double CORNER_LENGTH = 0.01, CORNER_TURN = PI / 6;
 
 /* A long side, as a part of the perimeter. */

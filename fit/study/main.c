@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * main.c - the goodness of fit of n-arcs, arcs with edges and n-gons on real outlines: the study of section 3.2 of "Using
- * Piecewise Circular Curves as a 2D Collision Primitive", done again. README.md beside this file says what is measured.
+ * main.c - the goodness of fit of n-arcs, arcs with edges and n-gons on real outlines: the study of section 3.2 of
+ * "Using Piecewise Circular Curves as a 2D Collision Primitive", done again. README.md beside this file says what is
+ * measured.
  *
  *     fit_study --font=FILE --drawings=FOLDER [--grains=FOLDER] [--out=FOLDER]
  *     fit_study --quick --font=FILE [--grains=FOLDER] [--out=FOLDER]
