@@ -247,6 +247,12 @@ static narc_status find_known(job *in, const problem *of, known_chains *out, nar
             out->items[out->count++] = found.form;
         }
     }
+    if (of->family == NARC_FIT_EDGES && of->count == 2 &&
+        find_chain(in, NARC_FIT_N_ARC, of->goal, 1, &found, NULL) == NARC_OK) {
+        const double radius = found.form.radius[0]; /* a circle is two arcs as well */
+        out->items[out->count++] =
+            (chain){.count = 2, .start = found.form.start, .angle = {0, PI}, .radius = {radius, radius}};
+    }
     if (of->family == NARC_FIT_EDGES && of->count > 2) {
         static const narc_fit_family narrower[] = {NARC_FIT_N_ARC, NARC_FIT_POLYGON};
         for (size_t k = 0; k < 2 && of->goal != NARC_FIT_BOUND_DISTANCE; k++) {
