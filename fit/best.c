@@ -172,13 +172,16 @@ static bool enter_starts(search *with, finalists *in) {
 }
 
 /* Chains that were found otherwise count as they are, and after the local search. */
-static void try_known(search *with, const chain *known, size_t count, candidate *best) {
+static void try_known(search *with, const chain *known, size_t count, const progress *work, candidate *best) {
     for (size_t k = 0; k < count; k++) {
         candidate next = {.form = known[k]};
         narc_place_chain(&next.form);
         next.value = narc_settle(with, &next.form);
-        narc_refine(with, &next, count_rounds(&with->of));
         take_better(best, &next);
+        if (!work->cancelled) {
+            narc_refine(with, &next, count_rounds(&with->of));
+            take_better(best, &next);
+        }
     }
 }
 
@@ -190,14 +193,14 @@ narc_status narc_find_best(const problem *of, unsigned starts, const chain *know
         return status;
     }
     finalists promising = {.room = starts, .items = malloc(starts * sizeof *promising.items)};
-    if (!promising.items || !enter_starts(&with, &promising)) {
+    if (!promising.items || !(work->cancelled || enter_starts(&with, &promising))) {
         free(promising.items);
         narc_close_search(&with);
         return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for %u starts", starts);
     }
     candidate best = {.value = INFINITY};
-    try_known(&with, known, known_count, &best);
-    bool going = true;
+    try_known(&with, known, known_count, work, &best);
+    bool going = !work->cancelled;
     for (size_t k = 0; k < promising.count && going; k++) {
         narc_refine(&with, &promising.items[k], count_rounds(of));
         going = narc_advance(work);

@@ -2,225 +2,173 @@
  *
  * difference.c - the area of the symmetric difference of a chain and a hull.
  *
- * Both outlines are cut where they cross. The pieces of either that lie in the other bound what both have in common, and
- * Green's theorem tells its area. When the chain moves a little, the difference grows by the integral of the motion's
- * outward part along the pieces of the chain outside the hull, and shrinks by that along those inside.
+ * Seen from a point inside both, either outline is a function of the direction, a and k, and the area is half the
+ * integral of |a^2 - k^2|. Between the directions of corners and junctions both are smooth. Nothing depends on where
+ * exactly the outlines cross, which rounding can't tell where edges lie on sides of the hull. When the chain moves a
+ * little, a changes by the outward part of the motion over the cosine between normal and direction.
  */
 #include "difference.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "vector.h"
 
-/* Where an arc, edge or side is cut, sorted. A side of the hull is a line, which a convex outline crosses twice; some room
- * more is for cuts that rounding finds on both sides of a junction. An arc may weave through all sides. */
-enum { SIDE_CUTS = 8 };
+/* The widest step of the quadrature, in radians; each has two points (Gauss). */
+static const double STEP = 0.02;
+static const double GAUSS = 0.577350269189625764509; /* 1 / sqrt(3) */
 
-/* Outlines nearer than this, in parts of the hull's perimeter, coincide: straight edges often lie on sides. Well above
- * the roundings of a distance, and far below what would show in an area. */
-static const double COINCIDENT = 1e-12;
+enum { MAX_PIECES = 2 * MAX_CHAIN };
 
-typedef struct cuts {
-    size_t count, room;
-    double *at;
-} cuts;
-
-static void add_cut(cuts *to, double at) {
-    size_t place = to->count;
-    if (to->count == to->room) {
-        return;
-    }
-    for (; place > 0 && to->at[place - 1] > at; place--) {
-        to->at[place] = to->at[place - 1];
-    }
-    to->at[place] = at;
-    to->count++;
-}
-
-/* How far inside the chain a point is, at most `enough`; negative outside. */
-static double depth_in_chain(const chain *of, narc_point x, double enough) {
-    double least = enough;
-    for (size_t i = 0; i < of->count; i++) {
-        const narc_point q = minus(x, of->center[i]), u = of->normal[i], v = of->normal[i + 1];
-        least = fmin(least, of->radius[i] - dot(q, u));
-        const bool whole = of->count == 1; /* a circle: its sector is all directions */
-        if (whole || (cross(u, q) > 0 && cross(q, v) > 0)) {
-            least = fmin(least, of->radius[i] - length(q));
-        }
-    }
-    return least;
-}
-
-static double depth_in_side(const hull *around, size_t k, narc_point x) {
-    return -dot(minus(x, around->corners[k]), around->normals[k]);
-}
-
-/* The same for the hull: binary search in the fan of triangles around corner 0 finds the side that matters, besides the
- * two at that corner. */
-static double depth_in_hull(const hull *around, narc_point x) {
-    const narc_point *p = around->corners;
-    size_t low = 1, high = around->count - 1;
-    while (high - low > 1) {
-        const size_t middle = (low + high) / 2;
-        if (cross(minus(p[middle], p[0]), minus(x, p[0])) >= 0) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return fmin(depth_in_side(around, low, x),
-                fmin(depth_in_side(around, 0, x), depth_in_side(around, around->count - 1, x)));
-}
-
-/* Parts of a side, edge or arc a little beyond its ends count as the ends: so a crossing at a corner is found by at least
- * one of two neighbours, and found twice it makes a piece of no length. */
-static const double END = 1e-9;
-
-static bool clamp_part(double *part) {
-    const bool near = *part >= -END && *part <= 1 + END;
-    *part = fmin(fmax(*part, 0), 1);
-    return near;
-}
-
-/* The part of a side of the hull, from 0 to 1, where a point of its line is; false if beyond. */
-static bool find_part(const hull *around, size_t side, narc_point x, double *out) {
-    const narc_point p = around->corners[side], e = minus(around->corners[(side + 1) % around->count], p);
-    *out = dot(minus(x, p), e) / dot(e, e);
-    return clamp_part(out);
-}
+/* An arc or an edge of the chain, up to a direction; the points are seen from the middle. */
+typedef struct piece {
+    bool is_edge;
+    size_t arc; /* of an edge: the one behind it */
+    narc_point start, end;
+} piece;
 
 typedef struct work {
     const chain *of;
     const hull *around;
-    cuts *sides;                 /* of each side of the hull */
-    cuts pieces;                 /* of the arc or edge at hand */
+    narc_point middle;
+    size_t pieces;
+    piece piece[MAX_PIECES];
     narc_point force[MAX_CHAIN]; /* derivatives by the centres */
     double push[MAX_CHAIN];      /* by the radii, centres aside */
-    double common;               /* twice the area in both */
-    double margin;               /* what lies this near the other outline is on it: then the chain's piece counts */
 } work;
 
-static void cut_arc(work *in, size_t i, double from, double to, cuts *out) {
-    const narc_point a = in->of->center[i];
-    const double r = in->of->radius[i];
-    for (size_t k = 0; k < in->around->count && r > 0; k++) {
-        const double c = dot(minus(in->around->corners[k], a), in->around->normals[k]) / r;
-        if (!(fabs(c) < 1)) {
-            continue;
-        }
-        const double half = acos(c);
-        for (int sign = -1; sign <= 1; sign += 2) {
-            double angle = in->around->angles[k] + sign * half, on_side;
-            angle -= 2 * PI * floor((angle - from + END) / (2 * PI));
-            double on_arc = (angle - from) / (to - from);
-            if (clamp_part(&on_arc) && find_part(in->around, k, along(a, r, unit_at(angle)), &on_side)) {
-                add_cut(out, from + on_arc * (to - from));
-                add_cut(&in->sides[k], on_side);
-            }
-        }
-    }
-    add_cut(out, to);
-}
-
-static void sum_arc(work *in, size_t i) {
-    const narc_point a = in->of->center[i];
-    const double r = in->of->radius[i], end = narc_end_angle(in->of, i);
-    double from = in->of->angle[i];
-    in->pieces.count = 0;
-    cut_arc(in, i, from, end, &in->pieces);
-    for (size_t k = 0; k < in->pieces.count; k++) {
-        const double to = in->pieces.at[k];
-        const bool inside = depth_in_hull(in->around, along(a, r, unit_at(0.5 * (from + to)))) > -in->margin;
-        const narc_point sum = {sin(to) - sin(from), cos(from) - cos(to)};
-        const double sign = inside ? -r : r;
-        in->force[i] = along(in->force[i], sign, sum);
-        in->push[i] += sign * (to - from);
-        in->common += inside ? r * (dot(a, sum) + r * (to - from)) : 0;
-        from = to;
-    }
-}
-
-static void cut_edge(work *in, narc_point p, narc_point e, cuts *out) {
-    for (size_t k = 0; k < in->around->count; k++) {
-        const narc_point normal = in->around->normals[k];
-        const double slope = dot(e, normal), height = dot(minus(in->around->corners[k], p), normal);
-        double on_edge = height / slope, on_side;
-        if (slope != 0 && clamp_part(&on_edge) && find_part(in->around, k, along(p, height / slope, e), &on_side)) {
-            add_cut(out, on_edge);
-            add_cut(&in->sides[k], on_side);
-        }
-    }
-    add_cut(out, 1);
-}
-
-static void sum_edge(work *in, size_t i) {
+/* Edges come before their arcs. Pieces without length are left out. */
+static void list_pieces(work *in) {
     const chain *of = in->of;
-    const size_t before = (i + of->count - 1) % of->count;
-    const narc_point d = of->normal[i], p = along(of->center[before], of->radius[before], d);
-    const narc_point e = {of->edge[i] * -d.y, of->edge[i] * d.x};
-    in->pieces.count = 0;
-    cut_edge(in, p, e, &in->pieces);
-    double from = 0;
-    for (size_t k = 0; k < in->pieces.count; k++) {
-        const double to = in->pieces.at[k];
-        const bool inside = depth_in_hull(in->around, along(p, 0.5 * (from + to), e)) > -in->margin;
-        /* The edge's end moves with arc i, its start with the arc before, what is between by parts. */
-        const double sign = inside ? -of->edge[i] : of->edge[i];
-        const double at_end = sign * 0.5 * (to * to - from * from), at_start = sign * (to - from) - at_end;
-        in->force[i] = along(in->force[i], at_end, d);
-        in->push[i] += at_end;
-        in->force[before] = along(in->force[before], at_start, d);
-        in->push[before] += at_start;
-        in->common += inside ? (to - from) * cross(p, e) : 0;
-        from = to;
-    }
-}
-
-static void sum_sides(work *in) {
-    for (size_t k = 0; k < in->around->count; k++) {
-        const narc_point p = in->around->corners[k], e = minus(in->around->corners[(k + 1) % in->around->count], p);
-        double from = 0;
-        add_cut(&in->sides[k], 1);
-        for (size_t c = 0; c < in->sides[k].count; c++) {
-            const double to = in->sides[k].at[c];
-            if (depth_in_chain(in->of, along(p, 0.5 * (from + to), e), 2 * in->margin) > in->margin) {
-                in->common += (to - from) * cross(p, e);
-            }
-            from = to;
+    for (size_t i = 0; i < of->count; i++) {
+        const size_t before = (i + of->count - 1) % of->count;
+        const narc_point d = of->normal[i];
+        const narc_point p = minus(along(of->center[before], of->radius[before], d), in->middle);
+        const narc_point q = minus(along(of->center[i], of->radius[i], d), in->middle);
+        const narc_point r = minus(along(of->center[i], of->radius[i], of->normal[i + 1]), in->middle);
+        if (of->edge[i] > 0) {
+            in->piece[in->pieces++] = (piece){true, i, p, q};
+        }
+        if (of->radius[i] > 0) {
+            in->piece[in->pieces++] = (piece){false, i, q, r};
         }
     }
 }
 
-static bool open_work(work *in) {
-    const size_t sides = in->around->count, room = 2 * sides + 1;
-    in->sides = malloc(sides * sizeof *in->sides);
-    in->pieces = (cuts){.room = room, .at = malloc((room + sides * SIDE_CUTS) * sizeof(double))};
-    for (size_t k = 0; k < sides && in->sides && in->pieces.at; k++) {
-        in->sides[k] = (cuts){.room = SIDE_CUTS, .at = in->pieces.at + room + k * SIDE_CUTS};
+/* Both outlines go round the middle: it is on the inner side of every piece and side. */
+static bool is_middle_inside(const work *in) {
+    bool inside = in->pieces > 0;
+    for (size_t k = 0; k < in->pieces; k++) {
+        const piece *at = &in->piece[k];
+        inside = inside && dot(at->start, in->of->normal[at->arc]) > 0;
     }
-    return in->sides && in->pieces.at;
+    for (size_t k = 0; k < in->around->count; k++) {
+        inside = inside && dot(minus(in->around->corners[k], in->middle), in->around->normals[k]) > 0;
+    }
+    return inside;
 }
 
-static void close_work(work *in) {
-    free(in->sides);
-    free(in->pieces.at);
+/* How far a piece is in direction e. */
+static double reach_piece(const work *in, const piece *at, narc_point e) {
+    const narc_point d = in->of->normal[at->arc];
+    if (at->is_edge) {
+        return dot(at->start, d) / dot(e, d);
+    }
+    const narc_point a = minus(in->of->center[at->arc], in->middle);
+    const double forward = dot(a, e), sideways = cross(a, e), r = in->of->radius[at->arc];
+    return forward + sqrt(fmax(0, r * r - sideways * sideways));
 }
 
-double narc_difference_area(const chain *of, const hull *around, double *derivatives) {
-    work in = {.of = of, .around = around, .margin = COINCIDENT * around->perimeter};
-    if (!open_work(&in)) {
-        close_work(&in);
+/* Adds what a motion of the chain does at the point at distance `reach` in direction e, times `weight`. */
+static void add_force(work *in, const piece *at, narc_point e, double reach, double weight) {
+    const size_t i = at->arc;
+    if (at->is_edge) {
+        /* The edge's end moves with its arc, its start with the arc before, what is between by parts. */
+        const narc_point d = in->of->normal[i], side = minus(at->end, at->start);
+        const size_t before = (i + in->of->count - 1) % in->of->count;
+        const double part = dot(minus((narc_point){reach * e.x, reach * e.y}, at->start), side) / dot(side, side);
+        const double whole = weight / dot(e, d);
+        in->force[i] = along(in->force[i], part * whole, d);
+        in->push[i] += part * whole;
+        in->force[before] = along(in->force[before], (1 - part) * whole, d);
+        in->push[before] += (1 - part) * whole;
+        return;
+    }
+    const narc_point from =
+        minus((narc_point){in->middle.x + reach * e.x, in->middle.y + reach * e.y}, in->of->center[i]);
+    const narc_point u = {from.x / in->of->radius[i], from.y / in->of->radius[i]};
+    const double whole = weight / fmax(dot(e, u), 1e-9);
+    in->force[i] = along(in->force[i], whole, u);
+    in->push[i] += whole;
+}
+
+/* The integral over directions that belong to one piece and one side of the hull. */
+static double sum_interval(work *in, const piece *at, size_t side, double from, double to) {
+    const narc_point corner = minus(in->around->corners[side], in->middle), normal = in->around->normals[side];
+    const unsigned steps = (unsigned)ceil((to - from) / STEP);
+    double sum = 0;
+    for (unsigned k = 0; k < 2 * steps; k++) {
+        const double half = 0.5 * (to - from) / steps;
+        const double angle = from + half * ((k / 2) * 2 + 1 + (k % 2 ? GAUSS : -GAUSS));
+        const narc_point e = unit_at(angle);
+        const double mine = reach_piece(in, at, e), other = dot(corner, normal) / dot(e, normal);
+        const double difference = mine * mine - other * other;
+        sum += 0.5 * half * fabs(difference);
+        add_force(in, at, e, mine, difference > 0 ? half * mine : -half * mine);
+    }
+    return sum;
+}
+
+static double angle_of(narc_point p) { return atan2(p.y, p.x); }
+
+/* How far it is from one angle to another, counter-clockwise; nearly a whole turn is taken for a rounding below 0. */
+static double turn_to(double from, double to) {
+    const double turn = to - from - 2 * PI * floor((to - from) / (2 * PI));
+    return turn > 2 * PI - 1e-9 ? 0 : turn;
+}
+
+/* The side of the hull in a direction from the middle. */
+static size_t find_side(const work *in, double angle) {
+    size_t best = 0;
+    double least = INFINITY;
+    for (size_t k = 0; k < in->around->count; k++) {
+        const double turn = turn_to(angle_of(minus(in->around->corners[k], in->middle)), angle);
+        if (turn < least) {
+            least = turn;
+            best = k;
+        }
+    }
+    return best;
+}
+
+/* Walks one piece, side by side. A circle alone goes all the way round. */
+static double sum_piece(work *in, const piece *at, size_t *side) {
+    const double from = angle_of(at->start);
+    const double whole = in->pieces == 1 ? 2 * PI : turn_to(from, angle_of(at->end));
+    double sum = 0, done = 0;
+    for (size_t step = 0; step <= in->around->count && done < whole; step++) {
+        const narc_point corner = minus(in->around->corners[(*side + 1) % in->around->count], in->middle);
+        const double left = turn_to(from + done, angle_of(corner));
+        const double until = fmin(whole, done + left);
+        if (until > done) {
+            sum += sum_interval(in, at, *side, from + done, from + until);
+        }
+        done = until;
+        *side = done < whole ? (*side + 1) % in->around->count : *side;
+    }
+    return sum;
+}
+
+double narc_difference_area(const chain *of, const hull *around, narc_point middle, double *derivatives) {
+    work in = {.of = of, .around = around, .middle = middle};
+    list_pieces(&in);
+    if (!is_middle_inside(&in)) {
         return INFINITY;
     }
-    for (size_t i = 0; i < of->count; i++) {
-        sum_arc(&in, i);
-        if (of->edge[i] > 0) {
-            sum_edge(&in, i);
-        }
+    double sum = 0;
+    size_t side = find_side(&in, angle_of(in.piece[0].start));
+    for (size_t k = 0; k < in.pieces; k++) {
+        sum += sum_piece(&in, &in.piece[k], &side);
     }
-    sum_sides(&in);
-    close_work(&in);
     if (derivatives) {
         const layout columns = narc_layout_of(of->count);
         memset(derivatives, 0, columns.count * sizeof *derivatives);
@@ -229,5 +177,5 @@ double narc_difference_area(const chain *of, const hull *around, double *derivat
             derivatives[columns.radius + i] += in.push[i];
         }
     }
-    return narc_chain_area(of) + around->area - in.common;
+    return sum;
 }

@@ -23,6 +23,9 @@ static const double NORMAL_SLOP = 1.0 / (1 << 21);
 /* An edge shorter than this part of the radius is not counted as one. */
 static const double SHORT_EDGE = 1e-5;
 
+/* What is bounded has this much room, in parts of the perimeter, for the roundings of checks in double precision. */
+static const double DOUBLE_ROOM = 1e-14;
+
 enum { CERTIFY_ROUNDS = 40, SAMPLES = 1000 };
 
 /* ---------------------------------------------------------------------------- from a chain to arcs */
@@ -154,7 +157,7 @@ static narc_status round_and_certify(narc_arc *arcs, size_t count, const hull *a
             return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for a hull of %zu corners",
                              around->count);
         }
-        if (!bound || least >= 0) {
+        if (!bound || least > DOUBLE_ROOM * around->perimeter) {
             *out_clearance = least;
             *out_factor = factor;
             memcpy(arcs, rounded, count * sizeof *arcs);
@@ -164,7 +167,7 @@ static narc_status round_and_certify(narc_arc *arcs, size_t count, const hull *a
             narc_compute_distance(rounded, count, (narc_point){0, 0}, &inner);
         }
         /* The origin is inside by -inner: scaling moves the outline out by that times the factor's growth, or more. */
-        factor *= 1 + (round + 1) * (least / fmin(inner, -1e-300) + 1e-9);
+        factor *= 1 + (round + 1) * (fmin(least, 0) / fmin(inner, -1e-300) + 1e-9);
     }
     return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, 0, "the outline is too thin for single precision");
 }
@@ -218,7 +221,8 @@ static double measure_difference(const narc_arc *arcs, size_t count, double fact
     }
     chain form;
     chain_arcs(scaled, count, &form);
-    return fmax(0, narc_difference_area(&form, around, NULL));
+    const double area = narc_difference_area(&form, around, (narc_point){0, 0}, NULL);
+    return isfinite(area) ? area : narc_chain_area(&form) + around->area; /* the shape's centroid is outside the hull */
 }
 
 static bool measure(const hull *around, narc_fit_result *of) {
@@ -255,13 +259,14 @@ static narc_point place_point(const scale *at, narc_point origin, narc_point p) 
 }
 
 /* The hull in the outline's units, seen from the shape's origin. */
-static narc_status place_hull(const hull *around, const scale *at, narc_point origin, hull *out, narc_error *error) {
+static narc_status place_hull(const hull *around, const scale *at, narc_point origin, narc_point rounding, hull *out,
+                              narc_error *error) {
     narc_point *corners = malloc(around->count * sizeof *corners);
     if (!corners) {
         return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for a hull of %zu corners", around->count);
     }
     for (size_t k = 0; k < around->count; k++) {
-        corners[k] = place_point(at, origin, around->corners[k]);
+        corners[k] = plus(place_point(at, origin, around->corners[k]), rounding);
     }
     const narc_status status = narc_adopt_corners(corners, around->count, out, error);
     if (status == NARC_OK) {
@@ -282,9 +287,12 @@ narc_status narc_finish_arcs(const narc_arc *arcs, size_t count, const hull *aro
         made.arcs[i] = (narc_arc){center.x, center.y, at->radius * arcs[i].radius, arcs[i].start + at->angle,
                                   arcs[i].end + at->angle};
     }
-    made.origin = plus(at->middle, place_point(at, (narc_point){0, 0}, origin));
+    const narc_point step = place_point(at, (narc_point){0, 0}, origin);
+    made.origin = plus(at->middle, step);
+    /* The origin is rounded, a lot where the outline is far away: the hull is placed as it is seen from there. */
+    const narc_point rounding = minus(step, minus(made.origin, at->middle));
     hull placed;
-    narc_status status = place_hull(around, at, origin, &placed, error);
+    narc_status status = place_hull(around, at, origin, rounding, &placed, error);
     if (status != NARC_OK) {
         return status;
     }

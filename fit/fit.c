@@ -15,7 +15,7 @@
 
 /* Starts of the local search where the caller names no number: of a fit, fewer of many arcs, whose searches take long; and
  * of each try of a count of arcs. */
-enum { USUAL_STARTS = 8, TRIAL_STARTS = 5 };
+enum { USUAL_STARTS = 8, TRIAL_STARTS = 5, MOST_STARTS = 100000 };
 static unsigned count_starts(size_t arcs) { return arcs <= 12 ? USUAL_STARTS : USUAL_STARTS * 12 / (unsigned)arcs; }
 
 /* A radius of the hull below this, or above, would leave no room for the shape in the store's range. */
@@ -78,6 +78,10 @@ static narc_status check_request(const narc_path *path, const narc_fit_request *
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)of->arc_count, "%zu arcs, but a fit has %zu to %d",
                          of->arc_count, least, NARC_MAX_FIT_ARCS);
     }
+    if (of->starts > MOST_STARTS) {
+        return narc_fail(error, NARC_ERROR_COUNT, 0, of->starts, "%u starts, but the most is %d", of->starts,
+                         MOST_STARTS);
+    }
     if (of->arc_count == 0 && !(of->tolerance > 0 && isfinite(of->tolerance))) {
         return narc_fail(error, NARC_ERROR_SIZE, 0, of->tolerance, "the tolerance %g is not a positive length",
                          of->tolerance);
@@ -135,6 +139,10 @@ static narc_status settle_hull(job *of, narc_error *error) {
             longest = k;
         }
     }
+    /* The middle is rounded, a lot where the outline is far away: what the hull moves by is what is left of it. */
+    const narc_point middle = along(of->at.middle, of->at.radius, centroid);
+    const narc_point moved = minus(middle, of->at.middle);
+    centroid = (narc_point){moved.x / of->at.radius, moved.y / of->at.radius};
     const double angle = old->angles[longest] + PI / 2;
     narc_point *corners = malloc(old->count * sizeof *corners);
     if (!corners) {
@@ -155,7 +163,7 @@ static narc_status settle_hull(job *of, narc_error *error) {
     if (status == NARC_OK) {
         narc_release_hull(&of->around);
         of->around = made;
-        of->at.middle = along(of->at.middle, of->at.radius, centroid);
+        of->at.middle = middle;
         of->at.radius *= radius;
         of->at.angle = angle;
     }
@@ -231,7 +239,7 @@ typedef struct known_chains {
 static narc_status find_chain(job *in, narc_fit_family family, narc_fit_goal goal, size_t count, candidate *out_best,
                               narc_error *error);
 
-static narc_status find_known(job *in, const problem *of, known_chains *out, narc_error *error) {
+static void find_known(job *in, const problem *of, known_chains *out) {
     out->count = 0;
     candidate found;
     if (of->goal == NARC_FIT_BOUND_DISTANCE || of->goal == NARC_FIT_DIFFERENCE) {
@@ -261,7 +269,6 @@ static narc_status find_known(job *in, const problem *of, known_chains *out, nar
             }
         }
     }
-    return in->work.cancelled ? narc_fail(error, NARC_ERROR_CANCELLED, 0, 0, "the fit was ended") : NARC_OK;
 }
 
 static narc_status find_chain(job *in, narc_fit_family family, narc_fit_goal goal, size_t count, candidate *out_best,
@@ -279,10 +286,7 @@ static narc_status find_chain(job *in, narc_fit_family family, narc_fit_goal goa
         of.around = &bare;
     }
     known_chains known;
-    const narc_status status = find_known(in, &of, &known, error);
-    if (status != NARC_OK) {
-        return status;
-    }
+    find_known(in, &of, &known);
     const unsigned starts = known.count > 1 ? (in->starts + 1) / 2 : in->starts; /* two good ones are known */
     return narc_find_best(&of, starts, known.items, known.count, &in->work, out_best, error);
 }
@@ -316,15 +320,19 @@ static narc_status fit_count(job *in, narc_fit_goal goal, size_t count, narc_fit
     const double max_radius = in->max_radius;
     narc_status status = NARC_ERROR_RADIUS;
     /* A shape that need not bound may be smaller than the hull, and then so are the largest radii that it may have. */
+    narc_error last;
     for (unsigned round = 0; round < MOST_RADII && status == NARC_ERROR_RADIUS; round++) {
         candidate best;
-        status = find_chain(in, in->request->family, goal, count, &best, error);
+        status = find_chain(in, in->request->family, goal, count, &best, &last);
         if (status == NARC_OK) {
-            status = narc_finish_fit(&best.form, &in->around, &in->at, bound, out_result, error);
+            status = narc_finish_fit(&best.form, &in->around, &in->at, bound, out_result, &last);
         }
         in->max_radius *= LESS_RADIUS;
     }
     in->max_radius = max_radius;
+    if (status != NARC_OK && error) {
+        *error = last;
+    }
     return status;
 }
 
@@ -355,9 +363,12 @@ static narc_status fit_fewest(job *in, narc_fit_result *out_result, narc_error *
     size_t below = corners ? 2 : 0, count = below + 1;
     double distance;
     narc_status status;
-    while (!keeps_tolerance(in, count, out_result, &distance, &status, error)) {
+    narc_error last;
+    while (!keeps_tolerance(in, count, out_result, &distance, &status, &last)) {
         if (in->work.cancelled || status == NARC_ERROR_MEMORY) {
-            return status != NARC_OK ? status : narc_fail(error, NARC_ERROR_CANCELLED, 0, 0, "the fit was ended");
+            return status == NARC_ERROR_MEMORY
+                       ? narc_fail(error, status, 0, 0, "%s", last.message)
+                       : narc_fail(error, NARC_ERROR_CANCELLED, 0, 0, "the search for the fewest arcs was ended");
         }
         if (count == NARC_MAX_FIT_ARCS) {
             return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, distance,

@@ -104,6 +104,9 @@ narc_status narc_make_hull(const narc_point *points, size_t count, hull *out_hul
 /* Are the corners between `from` and `to` within the tolerance of the segment between these two? */
 static bool is_flat_run(const hull *of, size_t from, size_t to, double tolerance) {
     const narc_point a = of->corners[from], side = minus(of->corners[to % of->count], a);
+    if (to - from >= of->count) {
+        return false;
+    }
     for (size_t k = from + 1; k < to; k++) {
         const narc_point p = minus(of->corners[k], a);
         const double part = dot(p, side);

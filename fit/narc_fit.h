@@ -18,8 +18,8 @@
  *   distance: every point of one is that close to the other, and the same holds of the outlines.
  *
  *   With fixed normals at the junctions everything is linear in the radii and the edges' lengths (support function,
- *   closure, perimeter); the fits are sequences of linear programmes in radii, lengths and small turns of the normals,
- *   from several starts. See fit/README.md for the algorithms and what they were measured to reach.
+ *   closure, perimeter): the best shape with given normals is a linear programme. From many such shapes a search by
+ *   quadratic programming goes on in all variables. See fit/README.md for the algorithms and how good they are.
  *
  * This library is meant for tools and load time, not for the inner loop of a game. It allocates memory, keeps no
  * globals, and prints nothing. All functions may be called from several threads, each with paths of its own. On

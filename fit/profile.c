@@ -48,6 +48,7 @@ static size_t walk_sector(const chain *of, const hull *around, size_t arc, doubl
     /* How far it is from `from` to the normal at which the corner ends. */
     double next = around->angles[corner] - from;
     next -= 2 * PI * floor(next / (2 * PI));
+    next = next > 2 * PI - 1e-9 ? 0 : next; /* a rounding below 0 */
     for (size_t steps = 0; steps <= around->count && next < left; steps++) {
         const narc_point until = around->normals[corner];
         out_intervals[count++] = make_interval(of, around, arc, corner, at, until);

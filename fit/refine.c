@@ -80,7 +80,8 @@ static void convert_gradient(const frame *in, double *gradient) {
 
 static double measure(const problem *of, const chain *form, double distance, double *gradient) {
     if (of->goal == NARC_FIT_DIFFERENCE) {
-        return narc_difference_area(form, of->around, gradient);
+        const double area = narc_difference_area(form, of->around, (narc_point){0, 0}, gradient);
+        return isfinite(area) ? area : 1e3; /* far off: more than any area here */
     }
     if (narc_is_distance(of)) {
         const layout columns = narc_layout_of(of->count);
@@ -241,10 +242,9 @@ static size_t add_missing(search *with, const chain *form, double distance) {
 
 static bool solve_round(search *with, const candidate *from, double box, candidate *out_next) {
     const layout columns = narc_layout_of(with->of.count);
-    const double no_turns[MAX_CHAIN] = {0};
     with->rows->count = 0;
     if (with->of.goal != NARC_FIT_DIFFERENCE) {
-        narc_list_rows(&with->of, &from->form, no_turns, with->intervals, with->rows);
+        narc_list_rows(&with->of, &from->form, with->intervals, with->rows);
         keep_near(&with->of, &from->form, from->value, with->rows);
     }
     bool found = false;

@@ -8,6 +8,7 @@
 
 /* Of many directions the one with least room in each bin is listed, and all where the room is locally least. Some seven
  * bins an arc are dense enough that what goes too far between two of them is caught by a few rows more. */
+enum { FEW_INTERVALS = 400 };
 static size_t count_bins(const problem *of) { return 40 + 2 * of->count; }
 
 /* An interval wider than this (the cosine of its angle) with less room than this, in units of the hull's radius, is
@@ -38,16 +39,18 @@ static bool is_extreme(const interval *all, size_t count, size_t k, bool upper) 
 }
 
 static void add_directions(const problem *of, const interval *all, size_t count, bool upper, row_list *rows) {
-    const size_t bins = count_bins(of);
+    /* Roundings make many local extremes of fine hulls: there the bins have to do. */
+    const size_t bins = count_bins(of) * (count > FEW_INTERVALS ? 2 : 1);
+    const bool few = count <= FEW_INTERVALS;
     size_t best = 0;
     for (size_t k = 0; k < count; k++) {
         best = read_room(&all[k], upper) < read_room(&all[best], upper) ? k : best;
         const bool ends_bin = k + 1 == count || k * bins / count != (k + 1) * bins / count;
         const bool local = is_extreme(all, count, k, upper);
-        if (local) {
+        if (local && few) {
             add_extreme(of, rows, &all[k], upper);
         }
-        if (ends_bin && !(local && best == k)) {
+        if (ends_bin && !(local && few && best == k)) {
             add_extreme(of, rows, &all[best], upper);
         }
         best = ends_bin ? k + 1 : best;
@@ -71,30 +74,21 @@ static void add_fans(const problem *of, const interval *all, size_t count, row_l
     }
 }
 
-/* Corners that an edge's line may touch when it turns within its limit. */
-static void add_kinks(const problem *of, const chain *at, size_t j, double limit, row_list *rows) {
-    static const double places[] = {-1, -0.5, -0.2, -0.05, 0, 0.05, 0.2, 0.5, 1};
+/* The corner that an edge's line is to touch, and its neighbours: so a line may lie on either of its sides. */
+static void add_kinks(const problem *of, const chain *at, size_t j, row_list *rows) {
     const hull *around = of->around;
     const size_t m = around->count, middle = narc_find_corner(around, at->angle[j]);
-    const size_t neighbours[] = {(middle + m - 1) % m, (middle + 1) % m};
-    for (size_t k = 0; k < 2; k++) {
-        add(rows, (row){.kind = ROW_KINK, .arc = j, .corner = around->corners[neighbours[k]]});
-    }
-    size_t last = m;
-    for (size_t k = 0; k < sizeof places / sizeof places[0]; k++) {
-        const size_t corner = narc_find_corner(around, at->angle[j] + places[k] * limit);
-        if (corner != last && corner != neighbours[0] && corner != neighbours[1]) {
-            add(rows, (row){.kind = ROW_KINK, .arc = j, .corner = around->corners[corner]});
-        }
-        last = corner;
+    const size_t corners[] = {(middle + m - 1) % m, middle, (middle + 1) % m};
+    for (size_t k = 0; k < 3; k++) {
+        add(rows, (row){.kind = ROW_KINK, .arc = j, .corner = around->corners[corners[k]]});
     }
 }
 
-void narc_list_rows(const problem *of, const chain *at, const double *turns, interval *intervals, row_list *out_rows) {
+void narc_list_rows(const problem *of, const chain *at, interval *intervals, row_list *out_rows) {
     const size_t count = narc_make_profile(at, of->around, 0, intervals);
     out_rows->count = 0;
     for (size_t j = 0; j < of->count && of->family != NARC_FIT_N_ARC; j++) {
-        add_kinks(of, at, j, turns[j], out_rows);
+        add_kinks(of, at, j, out_rows);
     }
     if (of->family != NARC_FIT_POLYGON) {
         add_directions(of, intervals, count, false, out_rows);

@@ -57,8 +57,8 @@ static inline double narc_widest_sweep(const problem *of) {
     return of->family == NARC_FIT_POLYGON ? 3.08 : 3.14159265358979323846;
 }
 
-/* The rows for a chain whose normals may turn by up to `turns`. `intervals` is room for its profile. */
-void narc_list_rows(const problem *of, const chain *at, const double *turns, interval *intervals, row_list *out_rows);
+/* The rows for a chain. `intervals` is room for its profile. */
+void narc_list_rows(const problem *of, const chain *at, interval *intervals, row_list *out_rows);
 
 /* Adds rows where a chain with a profile of `count` intervals goes too far by more than `slack`, at most 100 or so.
  * Returns how many. */

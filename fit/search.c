@@ -105,7 +105,7 @@ double narc_settle(search *with, chain *form) {
     case NARC_FIT_DIFFERENCE: /* no shape at all may differ by less than any n-arc, but that is no fit */
         return narc_chain_area(form) < LEAST_AREA * with->of.around->area
                    ? INFINITY
-                   : narc_difference_area(form, with->of.around, NULL);
+                   : narc_difference_area(form, with->of.around, (narc_point){0, 0}, NULL);
     default:
         return fmax(-narc_least_difference(with->intervals, count), narc_largest_difference(with->intervals, count));
     }
@@ -113,11 +113,10 @@ double narc_settle(search *with, chain *form) {
 
 /* One step from a chain: the programme, again with more rows where its solution goes too far for lack of them. */
 static bool make_step(search *with, const chain *from, candidate *out_next) {
-    const double no_turns[MAX_CHAIN] = {0};
     set_columns(with, from);
     double *x = narc_add_row(&with->lp, 0, 0), *y = narc_add_row(&with->lp, 0, 0);
     narc_derive_gap(from, x, y);
-    narc_list_rows(&with->of, from, no_turns, with->intervals, with->rows);
+    narc_list_rows(&with->of, from, with->intervals, with->rows);
     size_t built = 0;
     bool found = false;
     for (unsigned round = 0; round < ROUNDS && built < with->rows->count; round++) {

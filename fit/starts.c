@@ -65,7 +65,8 @@ static void add_set(start_list *to, const double *given, size_t count, size_t wa
     }
     spread_normals(angles, count);
     find_widest(angles, count, &sweep);
-    to->count += sweep <= to->widest;
+    const double last = angles[0] + 2 * PI - angles[count - 1]; /* pairs may reach beyond a turn */
+    to->count += sweep <= to->widest && (count == 1 || last >= LEAST_SWEEP);
 }
 
 static void add_even(start_list *to, size_t count, double phase) {
