@@ -13,14 +13,14 @@
 #include "vector.h"
 
 /* Rounds of quadratic programming: from each start fewer the more they cost, for the few best as many as help. */
-enum { LAST_ROUNDS = 12 };
+enum { LAST_ROUNDS = 10 };
 static unsigned count_rounds(const problem *of) {
     return 1 + (of->family == NARC_FIT_POLYGON ? 64 : 16) / (unsigned)of->count;
 }
 
 /* An exchange tries all pairs of so many junctions that seem needed least and arcs that seem to need another most, and
  * goes on from the best few. That is done with the best few finalists, as long as it helps. */
-enum { EXCHANGED = 5, EXCHANGE_SEARCHES = 2, EXCHANGERS = 3 };
+enum { EXCHANGED = 5, EXCHANGE_SEARCHES = 2, EXCHANGERS = 2 };
 
 bool narc_advance(progress *of) {
     of->done += of->done < of->total;
@@ -28,7 +28,7 @@ bool narc_advance(progress *of) {
     return !of->cancelled;
 }
 
-static unsigned count_exchanges(unsigned starts) { return starts / 4; }
+static unsigned count_exchanges(unsigned starts) { return starts / 3; }
 
 size_t narc_count_work(unsigned starts) {
     return starts + (size_t)EXCHANGE_SEARCHES * EXCHANGERS * count_exchanges(starts) + 1;

@@ -15,7 +15,7 @@
 
 /* Starts of the local search where the caller names no number: of a fit, fewer of many arcs, whose searches take long; and
  * of each try of a count of arcs. */
-enum { USUAL_STARTS = 8, TRIAL_STARTS = 5, MOST_STARTS = 100000 };
+enum { USUAL_STARTS = 6, TRIAL_STARTS = 5, MOST_STARTS = 100000 };
 static unsigned count_starts(size_t arcs) { return arcs <= 12 ? USUAL_STARTS : USUAL_STARTS * 12 / (unsigned)arcs; }
 
 /* A radius of the hull below this, or above, would leave no room for the shape in the store's range. */
@@ -263,11 +263,14 @@ static void find_known(job *in, const problem *of, known_chains *out) {
     }
     if (of->family == NARC_FIT_EDGES && of->count > 2) {
         static const narc_fit_family narrower[] = {NARC_FIT_N_ARC, NARC_FIT_POLYGON};
+        const unsigned starts = in->starts;
+        in->starts = (starts + 1) / 2; /* they are starts themselves */
         for (size_t k = 0; k < 2 && of->goal != NARC_FIT_BOUND_DISTANCE; k++) {
             if (find_chain(in, narrower[k], of->goal, of->count, &found, NULL) == NARC_OK) {
                 out->items[out->count++] = found.form;
             }
         }
+        in->starts = starts;
     }
 }
 

@@ -6,10 +6,10 @@
 
 #include "vector.h"
 
-/* Of many directions the one with least room in each bin is listed, and all where the room is locally least. Some seven
+/* Of many directions the one with least room in each bin is listed, and all where the room is locally least. Some six
  * bins an arc are dense enough that what goes too far between two of them is caught by a few rows more. */
 enum { FEW_INTERVALS = 400 };
-static size_t count_bins(const problem *of) { return 40 + 2 * of->count; }
+static size_t count_bins(const problem *of) { return 32 + 2 * of->count; }
 
 /* An interval wider than this (the cosine of its angle) with less room than this, in units of the hull's radius, is
  * listed at FAN + 1 directions: where a corner of the chain meets a corner of the hull, all are as near to touching. */
