@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * best.c - from many starts to the best chain: a linear programme for each set of normals, the local search from the most
- * promising ones, and then exchanges, in which one junction goes and another comes somewhere else.
+ * best.c - from many starts to the best chain: a linear programme for each set of normals, the local search from the
+ * most promising ones, and then exchanges, in which one junction goes and another comes somewhere else.
  */
 #include "best.h"
 

@@ -7,9 +7,9 @@
  *
  *     a_i = a_{i-1} + (r_{i-1} - r_i) d_i + l_i t_i,        and the chain closes if this holds for i = 0 too.
  *
- * For fixed normals everything is linear in a_0, r and l: the support function h(u) = a_i.u + r_i in the sector of arc i,
- * closure and perimeter. If d_k turns by a small angle e_k, the centres from a_k on move by e_k c_k, with
- * c_k = (r_{k-1} - r_k) t_k - l_k d_k. These are the derivatives that the search works with.
+ * For fixed normals everything is linear in a_0, r and l: the support function h(u) = a_i.u + r_i in the sector of arc
+ * i, closure and perimeter. If d_k turns by a small angle e_k, the centres from a_k on move by e_k c_k, with c_k =
+ * (r_{k-1} - r_k) t_k - l_k d_k. These are the derivatives that the search works with.
  */
 #ifndef NARC_FIT_CHAIN_H
 #define NARC_FIT_CHAIN_H
@@ -45,7 +45,8 @@ double narc_end_angle(const chain *of, size_t i);
  * negative unless the gap is large), and places it. False if that can't be done. */
 bool narc_close_chain(chain *of);
 
-/* Moves the outline outward by `distance`, everywhere: the arcs grow, or, if `polygon`, the edges move and meet again. */
+/* Moves the outline outward by `distance`, everywhere: the arcs grow, or, if `polygon`, the edges move and meet again.
+ * */
 void narc_offset_chain(chain *of, double distance, bool polygon);
 
 double narc_chain_area(const chain *of);
@@ -56,7 +57,8 @@ double narc_chain_perimeter(const chain *of);
 void narc_derive_area(const chain *of, double *out);
 void narc_derive_perimeter(const chain *of, double *out);
 
-/* Derivatives of the gap between the last centre and a_0, which is 0 where the chain closes; rows of zeros are filled. */
+/* Derivatives of the gap between the last centre and a_0, which is 0 where the chain closes; rows of zeros are filled.
+ * */
 void narc_derive_gap(const chain *of, double *out_x, double *out_y);
 
 /* Adds `factor` times the derivatives of a_i.u (u fixed) by all variables. */

@@ -210,9 +210,9 @@ static double mean_distance(const chain *of, const hull *around) {
     return sum / perimeter;
 }
 
-/* The area of the symmetric difference is that of the shape before it was rounded: rounding leaves gaps between arcs, and
- * edges that are not quite square to their normals, which matter more than the difference does where edges lie on sides
- * of the hull. */
+/* The area of the symmetric difference is that of the shape before it was rounded: rounding leaves gaps between arcs,
+ * and edges that are not quite square to their normals, which matter more than the difference does where edges lie on
+ * sides of the hull. */
 static double measure_difference(const narc_arc *arcs, size_t count, double factor, const hull *around) {
     narc_arc scaled[NARC_MAX_ARCS] = {0};
     for (size_t i = 0; i < count; i++) {

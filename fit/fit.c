@@ -13,8 +13,8 @@
 #include "paper.h"
 #include "vector.h"
 
-/* Starts of the local search where the caller names no number: of a fit, fewer of many arcs, whose searches take long; and
- * of each try of a count of arcs. */
+/* Starts of the local search where the caller names no number: of a fit, fewer of many arcs, whose searches take long;
+ * and of each try of a count of arcs. */
 enum { USUAL_STARTS = 6, TRIAL_STARTS = 5, MOST_STARTS = 100000 };
 static unsigned count_starts(size_t arcs) { return arcs <= 12 ? USUAL_STARTS : USUAL_STARTS * 12 / (unsigned)arcs; }
 
@@ -29,8 +29,8 @@ static const double LEAST_AREA = 1e-5;
 static const double RADIUS_ROOM = 0.99, LESS_RADIUS = 0.8;
 enum { MOST_RADII = 12 };
 
-/* Hulls with more corners are thinned, by twice this (in parts of the radius), or four times ..., until they have fewer.
- * A circle has some 1500 corners at 2e-6. */
+/* Hulls with more corners are thinned, by twice this (in parts of the radius), or four times ..., until they have
+ * fewer. A circle has some 1500 corners at 2e-6. */
 static const double LEAST_THINNING = 1e-6, MOST_THINNING = 1e-3;
 enum { MOST_CORNERS = 2000 };
 
@@ -123,8 +123,8 @@ static narc_status scale_hull(const narc_contours *contours, job *to, narc_error
     return status;
 }
 
-/* Puts the hull where it does not matter how the outline lay: its centroid at the origin, its furthest corner 1 away, its
- * longest side below. So outlines that were moved, scaled or turned get the same fit, but for roundings. */
+/* Puts the hull where it does not matter how the outline lay: its centroid at the origin, its furthest corner 1 away,
+ * its longest side below. So outlines that were moved, scaled or turned get the same fit, but for roundings. */
 static narc_status settle_hull(job *of, narc_error *error) {
     const hull *old = &of->around;
     narc_point centroid = {0, 0};
@@ -228,9 +228,9 @@ static narc_status prepare(const narc_path *path, job *to, narc_error *error) {
 
 /* ---------------------------------------------------------------------------- one count of arcs */
 
-/* Chains to start from besides those that the search finds by itself: an offset of the closest shape that need not bound
- * bounds, the closest shape differs little, the smallest polygons are good in other respects, and arcs with edges may be
- * arcs without or edges alone. */
+/* Chains to start from besides those that the search finds by itself: an offset of the closest shape that need not
+ * bound bounds, the closest shape differs little, the smallest polygons are good in other respects, and arcs with edges
+ * may be arcs without or edges alone. */
 typedef struct known_chains {
     size_t count;
     chain items[3];

@@ -7,8 +7,8 @@
 
 #include "narc_fit.h"
 
-/* A convex polygon, counter-clockwise, no three corners in line. Corner k is the support point of the directions between
- * the normals of the sides k - 1 and k. */
+/* A convex polygon, counter-clockwise, no three corners in line. Corner k is the support point of the directions
+ * between the normals of the sides k - 1 and k. */
 typedef struct hull {
     size_t count;
     narc_point *corners;
@@ -24,8 +24,8 @@ narc_status narc_make_hull(const narc_point *points, size_t count, hull *out_hul
 /* A hull from corners that are convex and counter-clockwise already. */
 narc_status narc_adopt_corners(const narc_point *corners, size_t count, hull *out_hull, narc_error *error);
 
-/* Drops corners that lie within `tolerance` of the line between two that stay, and adds it to the inflation, so that the
- * body to be fitted still holds all of them. No memory: NARC_ERROR_MEMORY, and the hull is as before. */
+/* Drops corners that lie within `tolerance` of the line between two that stay, and adds it to the inflation, so that
+ * the body to be fitted still holds all of them. No memory: NARC_ERROR_MEMORY, and the hull is as before. */
 narc_status narc_thin_hull(hull *of, double tolerance, narc_error *error);
 
 void narc_release_hull(hull *of);

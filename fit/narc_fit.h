@@ -6,7 +6,7 @@
  *
  *   An outline is a PATH: closed contours made of lines and Bezier curves. A fit looks at its convex hull alone, so
  *   holes, several contours and contours that overlap are fine. A FIT is an arc shape (see narc_shapes.h) that bounds
- *   the path (it contains every point of it, curves included) or approximates it, and is the best one that was found for
+ * the path (it contains every point of it, curves included) or approximates it, and is the best one that was found for
  *   what is asked:
  *
  *       family      n-arc: arcs with continuous tangents   edges: arcs, straight edges between them where they help
@@ -70,8 +70,8 @@ NARC_API narc_status narc_cubic_to(narc_path *path, narc_point control_1, narc_p
                                    narc_error *error);
 
 /* Does each contour, closed and flattened, go round without crossing or touching itself? Different contours may cross.
- * NARC_ERROR_NOT_SIMPLE names the contour and the place. Fits do not ask for it: they see the hull only. It finds points
- * in the wrong order. */
+ * NARC_ERROR_NOT_SIMPLE names the contour and the place. Fits do not ask for it: they see the hull only. It finds
+ * points in the wrong order. */
 NARC_API narc_status narc_check_simple(const narc_path *path, narc_error *error);
 
 /* Contours flattened to polygons: contour k has points[ends[k - 1] .. ends[k] - 1] (0 for ends[-1]), the first not
@@ -113,9 +113,9 @@ NARC_API uint32_t narc_next_character(narc_font *font, uint32_t after);
 
 /* An SVG file (XML, UTF-8 or as its header says): paths, rectangles, circles, ellipses, polygons, polylines and lines,
  * with their transforms, also through groups and `use`. What is not seen (display: none, neither fill nor stroke, a
- * contour on one line without a stroke, inside defs, clip paths, masks, patterns, markers or symbols that no `use` shows)
- * is left out; strokes have no width; nothing is clipped; text and images are not read. Units are the SVG's user units, y
- * turned up. */
+ * contour on one line without a stroke, inside defs, clip paths, masks, patterns, markers or symbols that no `use`
+ * shows) is left out; strokes have no width; nothing is clipped; text and images are not read. Units are the SVG's user
+ * units, y turned up. */
 NARC_API narc_status narc_read_svg(const void *data, size_t size, narc_path *path, narc_error *error);
 
 /* The silhouette in a PNG image: contours at `threshold` (between 0 and 1) of the alpha channel, interpolated between
@@ -175,10 +175,10 @@ typedef struct narc_fit_result {
     double max_distance;    /* to the hull: the largest difference of the support functions */
     double mean_distance;   /* mean over the shape's outline of the distance to the hull's outline */
     double difference_area; /* of the symmetric difference with the hull */
-    double clearance;       /* BOUND goals: the least of (support function - hull's), certified >= 0 for the shape as the
-                               store keeps it, in single precision, with the flatness of curves counted */
-    double flatness;        /* how far the outline may be from the hull that was fitted to, a length: that of the curves,
-                               and of the corners left out of hulls with thousands of them */
+    double clearance;       /* BOUND goals: the least of (support function - hull's), certified > 0 for the shape as
+                               the store keeps it, in single precision, with the flatness of curves counted */
+    double flatness;        /* how far the outline may be from the hull that was fitted to, a length: that of the
+                               curves, and of the corners left out of hulls with thousands of them */
     double seconds;         /* time the fit took */
 } narc_fit_result;
 
@@ -186,9 +186,9 @@ typedef struct narc_fit_result {
  * narc_add_shape(). With arc_count 0 the fit is that of least largest distance, bounding or not, and what is compared
  * with the tolerance is max_distance + flatness. Errors: NARC_ERROR_ARGUMENT (NULL; a family or goal that does not
  * exist; the paper's route with another goal than BOUND_AREA), NARC_ERROR_COUNT (arc_count; an outline without points),
- * NARC_ERROR_NOT_CONVEX (all points on a line, or nearly: no area), NARC_ERROR_SIZE (tolerance not positive, outline too
- * small or too large), NARC_ERROR_NO_SOLUTION (the tolerance is not reached with NARC_MAX_FIT_ARCS arcs; the message tells
- * what was), NARC_ERROR_MEMORY, NARC_ERROR_CANCELLED. */
+ * NARC_ERROR_NOT_CONVEX (all points on a line, or nearly: no area), NARC_ERROR_SIZE (tolerance not positive, outline
+ * too small or too large), NARC_ERROR_NO_SOLUTION (the tolerance is not reached with NARC_MAX_FIT_ARCS arcs; the
+ * message tells what was), NARC_ERROR_MEMORY, NARC_ERROR_CANCELLED. */
 NARC_API narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request,
                                       narc_fit_result *out_result, narc_error *error);
 
@@ -203,14 +203,14 @@ typedef struct narc_curve_arc {
                           0 for a line */
 } narc_curve_arc;
 
-/* A Bezier curve of degree 1 to 3, `controls[0 .. degree]`, as arcs that join with a common tangent and have the curve's
- * end points and end tangents: biarcs (Bolton 1975; Riskus 2006), as long as the tolerance lets them be. `out_distance`
- * is a bound, not a sample, of the distance of any point of the curve from the arcs and of the arcs from the curve; it
- * is at most `tolerance`. A cusp or a doubling back is a corner: there the tangent may jump, as that of the curve does.
- * With out_arcs NULL and capacity 0 only the count and the distance are told.
- * NARC_ERROR_ARGUMENT (NULL, degree), NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE (tolerance not positive, or below 1e-9 of
- * the curve's extent; coordinates beyond NARC_MAX_COORDINATE), NARC_ERROR_CAPACITY (`out_count` is set to the number
- * needed). A curve that is a point has no arcs. */
+/* A Bezier curve of degree 1 to 3, `controls[0 .. degree]`, as arcs that join with a common tangent and have the
+ * curve's end points and end tangents: biarcs (Bolton 1975; Riskus 2006), as long as the tolerance lets them be.
+ * `out_distance` is a bound, not a sample, of the distance of any point of the curve from the arcs and of the arcs from
+ * the curve; it is at most `tolerance`. A cusp or a doubling back is a corner: there the tangent may jump, as that of
+ * the curve does. With out_arcs NULL and capacity 0 only the count and the distance are told. NARC_ERROR_ARGUMENT
+ * (NULL, degree), NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE (tolerance not positive, or below 1e-9 of the curve's extent;
+ * coordinates beyond NARC_MAX_COORDINATE), NARC_ERROR_CAPACITY (`out_count` is set to the number needed). A curve that
+ * is a point has no arcs. */
 NARC_API narc_status narc_fit_bezier(const narc_point *controls, size_t degree, double tolerance,
                                      narc_curve_arc *out_arcs, size_t capacity, size_t *out_count,
                                      double *out_distance, narc_error *error);

@@ -13,8 +13,8 @@
 /* How many values of the free radius are tried, evenly in its logarithm. */
 enum { RADII = 64 };
 
-/* The factor by which arcs must be scaled about a point inside to bound the hull: the largest ratio of the hull's corners
- * as seen from there, found by bisection of "all corners are inside". */
+/* The factor by which arcs must be scaled about a point inside to bound the hull: the largest ratio of the hull's
+ * corners as seen from there, found by bisection of "all corners are inside". */
 static bool bounds_scaled(const narc_arc *arcs, size_t count, const hull *around, narc_point center, double factor) {
     for (size_t k = 0; k < around->count; k++) {
         const narc_point p = around->corners[k];

@@ -2,8 +2,8 @@
  *
  * refine.c - the last steps of the local search: Kraft's sequential quadratic programming, from NLopt.
  *
- * It works on all variables at once, with the rows of the chain that it starts from, which are smooth, and closure as an
- * equation. Then the rows are listed anew.
+ * It works on all variables at once, with the rows of the chain that it starts from, which are smooth, and closure as
+ * an equation. Then the rows are listed anew.
  */
 #include <nlopt.h>
 #include <stdlib.h>
@@ -37,9 +37,9 @@ typedef struct frame {
     double gradient[3 * MAX_CHAIN + 3];
 } frame;
 
-/* The variables as NLopt has them: those of narc_layout_of(), with angles in place of turns, and lengths of arcs in place
- * of radii. A flat arc is much like an edge: its length matters, and how it is made up of radius and sweep does not, so
- * that with lengths the problem is far less curved. */
+/* The variables as NLopt has them: those of narc_layout_of(), with angles in place of turns, and lengths of arcs in
+ * place of radii. A flat arc is much like an edge: its length matters, and how it is made up of radius and sweep does
+ * not, so that with lengths the problem is far less curved. */
 static void write_variables(const chain *from, double distance, double *x) {
     const layout columns = narc_layout_of(from->count);
     for (size_t i = 0; i < from->count; i++) {

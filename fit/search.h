@@ -28,8 +28,8 @@ typedef struct candidate {
     double value;
 } candidate;
 
-/* The best chain with exactly these normals (angles, rising, less than a turn in all), by one linear programme, or a few
- * with more rows. False if there is none. */
+/* The best chain with exactly these normals (angles, rising, less than a turn in all), by one linear programme, or a
+ * few with more rows. False if there is none. */
 bool narc_fit_normals(search *with, const double *angles, candidate *out_best);
 
 /* Goes on from a chain, with its normals too, by sequential quadratic programming. */

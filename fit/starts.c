@@ -3,9 +3,9 @@
  * starts.c - normals to start from: on flush polygons, spread evenly, and spread by length and turning of the hull.
  *
  * An arc fits a corner or a side of the hull best if its sector is just the corner's or, flat, straddles the side's
- * normal. So half as many sides as there are arcs give pairs of normals, one on either side of each side's normal; where
- * straight edges are allowed the sides' normals are those of edges. Smooth hulls want normals spread evenly in a mixture
- * of turning and length.
+ * normal. So half as many sides as there are arcs give pairs of normals, one on either side of each side's normal;
+ * where straight edges are allowed the sides' normals are those of edges. Smooth hulls want normals spread evenly in a
+ * mixture of turning and length.
  */
 #include "starts.h"
 
