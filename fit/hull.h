@@ -24,7 +24,7 @@ narc_status narc_make_hull(const narc_point *points, size_t count, hull *out_hul
 /* A hull from corners that are convex and counter-clockwise already. */
 narc_status narc_adopt_corners(const narc_point *corners, size_t count, hull *out_hull, narc_error *error);
 
-/* Drops corners that lie within `tolerance` of the line between two that stay, and adds it to the inflation, so that
+/* Drops corners that lie within `tolerance` of the segment between two that stay, and adds it to the inflation, so that
  * the body to be fitted still holds all of them. No memory: NARC_ERROR_MEMORY, and the hull is as before. */
 narc_status narc_thin_hull(hull *of, double tolerance, narc_error *error);
 

@@ -13,8 +13,7 @@
 /* How many values of the free radius are tried, evenly in its logarithm. */
 enum { RADII = 64 };
 
-/* The factor by which arcs must be scaled about a point inside to bound the hull: the largest ratio of the hull's
- * corners as seen from there, found by bisection of "all corners are inside". */
+/* Is the hull inside the arcs when they are scaled about a point? */
 static bool bounds_scaled(const narc_arc *arcs, size_t count, const hull *around, narc_point center, double factor) {
     for (size_t k = 0; k < around->count; k++) {
         const narc_point p = around->corners[k];
@@ -27,6 +26,7 @@ static bool bounds_scaled(const narc_arc *arcs, size_t count, const hull *around
     return true;
 }
 
+/* Scales arcs about their centroid by the least factor that makes them bound the hull, found by bisection. */
 static bool enlarge(narc_arc *arcs, size_t count, const hull *around, double *out_area) {
     narc_mass mass;
     if (!narc_compute_mass(arcs, count, &mass)) {
