@@ -16,7 +16,9 @@
 /* Starts of the local search where the caller names no number: of a fit, fewer of many arcs, whose searches take long;
  * and of each try of a count of arcs. */
 enum { USUAL_STARTS = 6, TRIAL_STARTS = 5, MOST_STARTS = 100000 };
-static unsigned count_starts(size_t arcs) { return arcs <= 12 ? USUAL_STARTS : USUAL_STARTS * 12 / (unsigned)arcs; }
+static unsigned count_starts(size_t arcs) {
+    return arcs <= 6 ? 2 * USUAL_STARTS : arcs <= 12 ? USUAL_STARTS : USUAL_STARTS * 12 / (unsigned)arcs;
+}
 
 /* A radius of the hull below this, or above, would leave no room for the shape in the store's range. */
 static const double LEAST_RADIUS = 4 * NARC_MIN_SIZE, LARGEST_RADIUS = 0.1 * NARC_MAX_SIZE;
@@ -290,7 +292,7 @@ static narc_status find_chain(job *in, narc_fit_family family, narc_fit_goal goa
     }
     known_chains known;
     find_known(in, &of, &known);
-    const unsigned starts = known.count > 1 ? (in->starts + 1) / 2 : in->starts; /* two good ones are known */
+    const unsigned starts = known.count > 1 && count > 6 ? (in->starts + 1) / 2 : in->starts; /* two are known */
     return narc_find_best(&of, starts, known.items, known.count, &in->work, out_best, error);
 }
 

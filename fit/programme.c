@@ -35,6 +35,8 @@ bool narc_open_programme(programme *made, size_t columns, size_t row_capacity) {
     }
     Clp_setLogLevel(made->model, 0);
     Clp_setPrimalTolerance(made->model, FEASIBLE);
+    /* All lengths are near 1. With its own scaling CLP may end at what is an optimum of the scaled problem only. */
+    Clp_scaling(made->model, 0);
     narc_clear_programme(made);
     return true;
 }
