@@ -15,8 +15,7 @@
 #include "error.h"
 #include "vector.h"
 
-/* A solution that goes too far by more than the slack (in units of the hull's radius) gets more rows, that many times.
- * */
+/* A solution that goes too far by more than the slack, in units of the hull's radius, gets more rows, so many times. */
 static const double SLACK = 1e-7;
 enum { ROUNDS = 5 };
 
