@@ -45,8 +45,8 @@ double narc_end_angle(const chain *of, size_t i);
  * negative unless the gap is large), and places it. False if that can't be done. */
 bool narc_close_chain(chain *of);
 
-/* Moves the outline outward by `distance`, everywhere: the arcs grow, or, if `polygon`, the edges move and meet again.
- * */
+/* Moves the outline outward by `distance`, everywhere: the arcs grow, or, if `polygon`, the edges move and meet
+ * again. */
 void narc_offset_chain(chain *of, double distance, bool polygon);
 
 double narc_chain_area(const chain *of);
@@ -57,8 +57,8 @@ double narc_chain_perimeter(const chain *of);
 void narc_derive_area(const chain *of, double *out);
 void narc_derive_perimeter(const chain *of, double *out);
 
-/* Derivatives of the gap between the last centre and a_0, which is 0 where the chain closes; rows of zeros are filled.
- * */
+/* Derivatives of the gap between the last centre and a_0, which is 0 where the chain closes; rows of zeros are
+ * filled. */
 void narc_derive_gap(const chain *of, double *out_x, double *out_y);
 
 /* Adds `factor` times the derivatives of a_i.u (u fixed) by all variables. */

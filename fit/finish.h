@@ -8,8 +8,8 @@
 #include "chain.h"
 #include "hull.h"
 
-/* Where the hull that fits work on is in the outline: point = middle + radius * (the hull's point, turned by `angle`).
- * */
+/* Where the hull that fits work on is in the outline: point = middle + radius * (the hull's point, turned by
+ * `angle`). */
 typedef struct scale {
     narc_point middle;
     double radius, angle;

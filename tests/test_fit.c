@@ -57,8 +57,8 @@ static void test_random_outlines(void **state) {
     }
 }
 
-/* Every count, each family and goal in turn; of the large counts, which take seconds, some unless there is more time.
- * */
+/* Every count, each family and goal in turn; of the large counts, which take seconds, some unless there is more
+ * time. */
 static void test_counts(void **state) {
     (void)state;
     struct outline of = make_regular("pentagon", 5, 0.1, 0.8);
