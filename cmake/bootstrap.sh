@@ -1,24 +1,23 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# From a machine with a shell and apt to a picture (run), to all tests (test), to all benchmarks (bench), to the paper's
-# evaluation (paper) or to its study of goodness of fit (fit-study).
+# From a machine with a shell and apt to whatever the project makes: see usage().
 # shellcheck disable=SC2086 # lists of packages and commands are split into words on purpose
 set -eu
 
 usage() {
     cat <<'EOF'
-usage: sh cmake/bootstrap.sh run     install what is missing, build, collide 20,000 bodies; results in out/
-       sh cmake/bootstrap.sh test    install what is missing, build in every way, run all tests
-       sh cmake/bootstrap.sh bench [OPTION ...]
-                                     install what is missing, build, run the benchmarks; results in out/. Options
-                                     are Google Benchmark's and those of bench/README.md
-       sh cmake/bootstrap.sh paper [OPTION ...]
-                                     install what is missing, build, do the evaluation of the paper again; results in
-                                     out/. Options are those of bench/paper/README.md
-       sh cmake/bootstrap.sh fit-study
-                                     install what is missing, build, do the paper's study of goodness of fit again;
-                                     results in out/
+usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
 
+  run        collide 20,000 bodies; shapes, contacts and pictures go to out/
+  test       one build and its tests, minutes
+  gate       what a change must pass besides: style, long tests, without dependencies, sanitizers, NEON under qemu
+  bench      the benchmarks beside Box2D, Chipmunk and libccd; tables and plots go to out/. Options are Google
+             Benchmark's and those of bench/README.md
+  paper      the paper's evaluation; tables and plots go to out/. Options are those of bench/paper/README.md
+  fit-study  the paper's study of goodness of fit; tables and pictures go to out/
+  docs       the reference of the public headers, out/api/index.html
+
+Each command installs what is missing and builds what it needs.
 Installs Debian and Ubuntu packages with apt-get, as root or through sudo, and nothing if all are there.
 EOF
 }
@@ -35,11 +34,12 @@ export CMAKE_BUILD_PARALLEL_LEVEL="$jobs" CTEST_PARALLEL_LEVEL="$jobs"
 
 # ---------------------------------------------------------------------------- packages
 library_packages="gcc libc6-dev make cmake pkg-config libsleef-dev"
-fit_packages="libfreetype-dev libxml2-dev libpng-dev libcjson-dev coinor-libclp-dev libnlopt-dev"
+fit_packages="libfreetype-dev librsvg2-dev libpng-dev libcjson-dev coinor-libclp-dev libnlopt-dev"
 build_packages="$library_packages $fit_packages libcairo2-dev libcmocka-dev"
 run_packages="$build_packages fonts-symbola"
 peer_packages="g++ libbenchmark-dev libbox2d-dev libchipmunk-dev libccd-dev"
-test_packages="$run_packages $peer_packages binutils clang libomp-dev"
+test_packages="$run_packages g++ binutils"
+gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang-tidy"
 bench_packages="$library_packages $peer_packages gnuplot-nox"
 study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
 arm64_tools="gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
@@ -133,10 +133,10 @@ bench() {
     mkdir -p out
     rm -f out/bench.json out/bench.md out/arcs.dat out/batches.dat out/bench-arcs.svg out/bench-batches.svg
     say "benchmarks"
-    build/bench/bench/bench_narc --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true \
+    build/bench/bench/micro/bench_narc --benchmark_repetitions=9 --benchmark_enable_random_interleaving=true \
         --benchmark_min_time=0.1 --benchmark_out=out/bench.json --benchmark_out_format=json --out=out "$@"
     say "plots"
-    gnuplot -e "folder='out'" bench/plots.gp
+    gnuplot -e "folder='out'" bench/micro/plots.gp
     say "written"
     ls -l out/bench* out/*.dat
 }
@@ -163,19 +163,37 @@ fit_study() {
     rm -rf out/fit-* out/grains
     mkdir -p out/grains
     say "sand grains"
-    Rscript --vanilla fit/study/grains.R "$sand" out/grains
+    Rscript --vanilla bench/fit_study/grains.R "$sand" out/grains
     say "the paper's study of goodness of fit"
-    build/release/fit/study/fit_study --font="$font" --drawings="$drawings" \
+    build/release/bench/fit_study/fit_study --font="$font" --drawings="$drawings" \
         --grains=out/grains --out=out
     say "plot"
-    gnuplot -e "folder='out'" fit/study/plots.gp
+    gnuplot -e "folder='out'" bench/fit_study/plots.gp
     say "written"
     ls -l out/fit-*
 }
 
-test_all() {
+# One build, the one that users have, and what answers in minutes; the gate has the rest.
+test_release() {
     require_packages $test_packages
+    build release all
+    ctest --preset release -LE slow || fail "tests failed in build/release"
+}
+
+check_style() {
+    say "style"
+    git ls-files '*.c' '*.h' '*.inl' '*.cc' '*.cpp' | xargs clang-format --dry-run -Werror || fail "run clang-format"
+    # The compilation database of the build with everything in it.
+    git ls-files 'soa/*.c' 'dispatch/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'bench/*.c' |
+        xargs clang-tidy --quiet -p build/ci || fail "clang-tidy has something to say"
+}
+
+gate() {
+    require_packages $gate_packages
     check ci
+    check_style
+    build release all
+    ctest --preset release -L slow || fail "tests failed in build/release"
     check bare
     check asan
     # Some releases pack clang's sanitizers apart from clang.
@@ -198,9 +216,19 @@ test_all() {
     say "all tests passed$skipped"
 }
 
+reference() {
+    require_packages doxygen
+    rm -rf out/api
+    mkdir -p out
+    doxygen docs/Doxyfile || fail "doxygen has something to say"
+    say "written: out/api/index.html"
+}
+
 case ${1:-} in
 run) run ;;
-test) test_all ;;
+test) test_release ;;
+gate) gate ;;
+docs) reference ;;
 bench)
     shift
     bench "$@"

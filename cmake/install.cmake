@@ -2,7 +2,7 @@
 # What cmake --install writes: headers, the libraries, the CMake package and the pkg-config files.
 include(CMakePackageConfigHelpers)
 
-install(FILES soa/narc_export.h soa/narc_shapes.h dispatch/narc.h dispatch/narc_methods.h
+install(FILES soa/narc_export.h soa/narc_shapes.h dispatch/narc.h dispatch/narc_methods.h dispatch/narc_broad_phase.h
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 
 # Two export files, because only those who ask for the static library need its dependencies.
@@ -35,9 +35,17 @@ else()
   set(pc_libdir "\${prefix}/${CMAKE_INSTALL_LIBDIR}")
 endif()
 list(JOIN SLEEF_LDFLAGS " " pc_sleef)
-configure_file(cmake/narc.pc.in narc.pc @ONLY)
-install(FILES "${PROJECT_BINARY_DIR}/narc.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+set(packages narc narc-static)
 if(TARGET narc_fit)
-  configure_file(cmake/narc-fit.pc.in narc-fit.pc @ONLY)
-  install(FILES "${PROJECT_BINARY_DIR}/narc-fit.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+  list(APPEND packages narc-fit)
 endif()
+foreach(package IN LISTS packages)
+  configure_file(cmake/${package}.pc.in ${package}.pc @ONLY)
+  install(FILES "${PROJECT_BINARY_DIR}/${package}.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+endforeach()
+
+# What a reader wants beside the library.
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" FILES_MATCHING
+  PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
+install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" FILES_MATCHING PATTERN "*.[ch]")

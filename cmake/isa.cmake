@@ -1,25 +1,21 @@
 # SPDX-License-Identifier: MIT
-# narc_add_isa(NAME [FLAGS ...]): one object library with the kernels compiled for one instruction set, from
-# kernels/isa_<name>.c. Skipped (with a message) if the compiler does not take the flags. Appends to
-#   NARC_ISA_NAMES        the name
-#   NARC_ISA_OBJECTS      the objects
-#   NARC_ISA_DEFINITIONS  NARC_HAVE_<NAME>=1, for the dispatcher
-# tests/package.cmake tests the symbols of every name.
+# The instruction sets of kernels/isa.def: for each that this processor's kind can have and the compiler takes the flags
+# of, one object library narc_isa_<name> with the kernels compiled for it. Sets
+#   NARC_ISA_LIST         all names, best first
+#   NARC_ISA_NAMES        those that are built
+#   NARC_ISA_OBJECTS      their objects
+#   NARC_ISA_DEFINITIONS  NARC_BUILT_<name>=1 or 0, for the dispatcher
+# tests/kernels/CMakeLists.txt makes tests of every name, tests/package/CMakeLists.txt tests the symbols of what is built.
 include(CheckCSourceCompiles)
 
-function(narc_add_isa name)
-  cmake_parse_arguments(ISA "" "" "FLAGS" ${ARGN})
-  string(TOUPPER "${name}" upper)
-  list(JOIN ISA_FLAGS " " CMAKE_REQUIRED_FLAGS)
-  check_c_source_compiles("int main(void) { return 0; }" NARC_COMPILES_${upper})
-  if(NOT NARC_COMPILES_${upper})
-    message(STATUS "narc: no ${name} kernels, the compiler does not take ${CMAKE_REQUIRED_FLAGS}")
-    return()
-  endif()
-  add_library(narc_isa_${name} OBJECT "${PROJECT_SOURCE_DIR}/kernels/isa_${name}.c")
+function(narc_add_isa name flags)
+  add_library(narc_isa_${name} OBJECT
+    "${PROJECT_SOURCE_DIR}/kernels/exact.c" "${PROJECT_SOURCE_DIR}/kernels/methods.c")
+  target_compile_definitions(narc_isa_${name} PRIVATE NARC_ISA_NAME=${name} NARC_SIMD="simd/${name}.h")
   # No LTO, whoever asks for it: inlining must not carry these instructions across the processor check.
   set_target_properties(narc_isa_${name} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
-  target_compile_options(narc_isa_${name} PRIVATE ${ISA_FLAGS} -fno-lto)
+  separate_arguments(flag_list UNIX_COMMAND "${flags}")
+  target_compile_options(narc_isa_${name} PRIVATE ${flag_list} -fno-lto)
   # Clang 14 crashes over variables in the debug information of optimised AVX-512 kernels (in LLVM's salvageDebugInfo):
   # lines, but no variables.
   target_compile_options(narc_isa_${name} PRIVATE
@@ -29,7 +25,31 @@ function(narc_add_isa name)
     target_link_libraries(narc_isa_${name} PRIVATE PkgConfig::SLEEF)
     target_compile_definitions(narc_isa_${name} PRIVATE NARC_WITH_SLEEF=1)
   endif()
-  set(NARC_ISA_NAMES ${NARC_ISA_NAMES} ${name} PARENT_SCOPE)
-  set(NARC_ISA_OBJECTS ${NARC_ISA_OBJECTS} $<TARGET_OBJECTS:narc_isa_${name}> PARENT_SCOPE)
-  set(NARC_ISA_DEFINITIONS ${NARC_ISA_DEFINITIONS} NARC_HAVE_${upper}=1 PARENT_SCOPE)
 endfunction()
+
+set(isa_file "${PROJECT_SOURCE_DIR}/kernels/isa.def")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${isa_file}")
+file(STRINGS "${isa_file}" isa_lines REGEX "^NARC_ISA\\(")
+foreach(line IN LISTS isa_lines)
+  if(NOT line MATCHES "^NARC_ISA\\(([a-z0-9_]+), [A-Z0-9_ |]+, \"([^\"]+)\", \"([^\"]*)\"\\)$")
+    message(FATAL_ERROR "narc: ${isa_file}: not understood: ${line}")
+  endif()
+  set(name "${CMAKE_MATCH_1}")
+  set(processors "${CMAKE_MATCH_2}")
+  set(CMAKE_REQUIRED_FLAGS "${CMAKE_MATCH_3}")
+  list(APPEND NARC_ISA_LIST ${name})
+  set(built 0)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(${processors})$")
+    check_c_source_compiles("int main(void) { return 0; }" NARC_COMPILES_${name})
+    if(NARC_COMPILES_${name})
+      narc_add_isa(${name} "${CMAKE_REQUIRED_FLAGS}")
+      list(APPEND NARC_ISA_NAMES ${name})
+      list(APPEND NARC_ISA_OBJECTS $<TARGET_OBJECTS:narc_isa_${name}>)
+      set(built 1)
+    else()
+      message(STATUS "narc: no ${name} kernels, the compiler does not take ${CMAKE_REQUIRED_FLAGS}")
+    endif()
+  endif()
+  list(APPEND NARC_ISA_DEFINITIONS NARC_BUILT_${name}=${built})
+endforeach()
+set(CMAKE_REQUIRED_FLAGS)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * batch.c - spreads a batch over threads. The only place that knows OpenMP.
+ * batch.c - spreads a batch over threads.
  *
  * Chunks are fixed ranges of pairs whatever the number of threads, and each pair's answer depends on that pair alone,
  * so the bytes of the result are the same for any split.
@@ -9,6 +9,7 @@
 #include "dispatch.h"
 
 #include <stdatomic.h>
+#include <stdbool.h>
 #include <string.h>
 
 #ifdef _OPENMP
@@ -16,9 +17,9 @@
 #include <sched.h>
 #endif
 
-/* Pairs in a chunk of contacts: some 25 microseconds of work, against about one for handing it out, and the size of
- * each thread's buffer on its stack, 27 KB. */
-enum { CHUNK = NARC_CONTACT_GROUP };
+/* A chunk of contacts has NARC_CONTACT_GROUP pairs, one of manifolds half of that: some 25 microseconds of work,
+ * against about one for handing it out. Each thread has a buffer for it on its stack. */
+enum { BUFFER = 30 * NARC_CONTACT_GROUP };
 
 /* Pairs in a chunk of overlaps, multiples of 64: as many as possible, because at the end of a chunk the kernel decides
  * the rest of its pairs in vectors that are not full, but several for each thread, so that all end together. */
@@ -47,6 +48,13 @@ static void clear_outcomes(const narc_batch *batch, size_t first, size_t count) 
         memset(batch->outcomes + first, 0, count); /* NARC_OUTCOME_DONE */
 }
 
+/* The same batch with a counter of the calling thread's own. */
+static narc_batch count_apart(const narc_batch *batch, size_t *skipped) {
+    narc_batch part = *batch;
+    part.skipped = batch->skipped ? skipped : NULL;
+    return part;
+}
+
 void narc_run_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, unsigned threads, uint64_t *out_bits) {
     const size_t count = batch->pairs->count;
     if (count == 0)
@@ -63,40 +71,46 @@ void narc_run_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, uns
     if (chunk_size > MOST_OVERLAPS)
         chunk_size = MOST_OVERLAPS;
     const size_t chunks = (count + chunk_size - 1) / chunk_size;
+    size_t skipped = 0;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic) num_threads(team)
+#pragma omp parallel for schedule(dynamic) num_threads(team) reduction(+ : skipped)
 #endif
     for (size_t chunk = 0; chunk < chunks; chunk++) {
+        const narc_batch part = count_apart(batch, &skipped);
         const size_t start = chunk * chunk_size, left = count - start;
-        kernel(batch, start, left < chunk_size ? left : chunk_size, out_bits + start / 64);
+        kernel(&part, start, left < chunk_size ? left : chunk_size, out_bits + start / 64);
     }
+    if (batch->skipped)
+        *batch->skipped += skipped;
 }
 
-/* A chunk's contacts, before it is known where in the list they belong. */
-struct buffer {
-    uint32_t pair[CHUNK];
-    float separation[CHUNK], normal_x[CHUNK], normal_y[CHUNK], point_x[CHUNK], point_y[CHUNK];
-    uint8_t arc_a[CHUNK], arc_b[CHUNK];
-};
-
-static void copy_array(void *to, const void *from, size_t offset, size_t count, size_t item) {
-    if (to)
-        memcpy((char *)to + offset * item, from, count * item);
+/* A list's columns in a buffer, without gaps, for `count` items; those that are not wanted are not wanted there. */
+static narc_list divide_buffer(const narc_list *list, size_t count, char *buffer) {
+    narc_list part = *list;
+    part.capacity = count;
+    for (size_t c = 0; c < list->columns; c++) {
+        part.array[c] = list->array[c] ? buffer : NULL;
+        buffer += count * list->item[c];
+    }
+    return part;
 }
 
-/* Copies `found` contacts to items offset ... of the caller's list, as far as they fit. */
-static void copy_contacts(const struct buffer *from, size_t found, size_t offset, const narc_contacts *to) {
+/* The same list from item `offset` on. */
+static narc_list skip_items(const narc_list *list, size_t offset) {
+    narc_list rest = *list;
+    rest.capacity -= offset;
+    for (size_t c = 0; c < list->columns; c++)
+        if (list->array[c])
+            rest.array[c] = (char *)list->array[c] + offset * list->item[c];
+    return rest;
+}
+
+/* Copies `found` items to items offset ... of the caller's list, as far as they fit. */
+static void copy_items(const narc_list *from, size_t found, size_t offset, const narc_list *to) {
     const size_t room = offset < to->capacity ? to->capacity - offset : 0, count = found < room ? found : room;
-    if (count == 0)
-        return;
-    copy_array(to->pair, from->pair, offset, count, sizeof *to->pair);
-    copy_array(to->separation, from->separation, offset, count, sizeof *to->separation);
-    copy_array(to->normal_x, from->normal_x, offset, count, sizeof *to->normal_x);
-    copy_array(to->normal_y, from->normal_y, offset, count, sizeof *to->normal_y);
-    copy_array(to->point_x, from->point_x, offset, count, sizeof *to->point_x);
-    copy_array(to->point_y, from->point_y, offset, count, sizeof *to->point_y);
-    copy_array(to->arc_a, from->arc_a, offset, count, sizeof *to->arc_a);
-    copy_array(to->arc_b, from->arc_b, offset, count, sizeof *to->arc_b);
+    for (size_t c = 0; c < to->columns && count > 0; c++)
+        if (to->array[c])
+            memcpy((char *)to->array[c] + offset * to->item[c], from->array[c], count * to->item[c]);
 }
 
 static void give_way(void) {
@@ -105,47 +119,74 @@ static void give_way(void) {
 #endif
 }
 
-/* The contacts of one chunk, to the buffer; returns how many. */
-static size_t fill_buffer(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count,
-                          float margin, struct buffer *b) {
-    const narc_contacts list = {CHUNK,      b->pair,    b->separation, b->normal_x, b->normal_y,
-                                b->point_x, b->point_y, b->arc_a,      b->arc_b};
-    return kernel(batch, first, count, margin, &list);
+/* One chunk after the other, straight to the caller's list while it has room for as many answers as a chunk has
+ * pairs. */
+static size_t list_in_order(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count,
+                            const narc_list *list) {
+    size_t total = 0;
+    for (size_t start = 0; start < count; start += lister->chunk) {
+        _Alignas(16) char buffer[BUFFER];
+        const size_t size = count - start < lister->chunk ? count - start : lister->chunk;
+        const bool fits = total <= list->capacity && list->capacity - total >= size;
+        const narc_list part = fits ? skip_items(list, total) : divide_buffer(list, lister->chunk, buffer);
+        const size_t found = lister->find(lister, batch, first + start, size, &part);
+        if (!fits)
+            copy_items(&part, found, total, list);
+        total += found;
+    }
+    return total;
 }
 
-size_t narc_run_contacts(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count, float margin,
-                         unsigned threads, const narc_contacts *out_contacts) {
+size_t narc_run_list(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count, unsigned threads,
+                     const narc_list *list) {
     clear_outcomes(batch, first, count);
-    const size_t chunks = (count + CHUNK - 1) / CHUNK;
+    const size_t chunks = (count + lister->chunk - 1) / lister->chunk;
     const int team = narc_team_size(threads, chunks);
-    size_t total = 0;
-    if (team <= 1) {
-        for (size_t start = 0; start < count; start += CHUNK) {
-            struct buffer buffer;
-            const size_t size = count - start < CHUNK ? count - start : CHUNK;
-            const size_t found = fill_buffer(kernel, batch, first + start, size, margin, &buffer);
-            copy_contacts(&buffer, found, total, out_contacts);
-            total += found;
-        }
-        return total;
-    }
+    if (team <= 1)
+        return list_in_order(lister, batch, first, count, list);
     /* Chunks are handed out in the order of the pairs and run at once; only the reservation of their place in the list
      * waits for its turn. It gives up the processor while it waits: OpenMP's own `ordered` spins, which on a busy
      * machine keeps the thread that it waits for from running. */
     atomic_size_t turn = 0;
+    size_t skipped = 0, total = 0;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(monotonic : dynamic) num_threads(team)
+#pragma omp parallel for schedule(monotonic : dynamic) num_threads(team) reduction(+ : skipped)
 #endif
     for (size_t chunk = 0; chunk < chunks; chunk++) {
-        struct buffer buffer;
-        const size_t start = chunk * CHUNK, size = count - start < CHUNK ? count - start : CHUNK;
-        const size_t found = fill_buffer(kernel, batch, first + start, size, margin, &buffer);
+        const narc_batch own = count_apart(batch, &skipped);
+        _Alignas(16) char buffer[BUFFER];
+        const narc_list part = divide_buffer(list, lister->chunk, buffer);
+        const size_t start = chunk * lister->chunk, left = count - start;
+        const size_t found =
+            lister->find(lister, &own, first + start, left < lister->chunk ? left : lister->chunk, &part);
         while (atomic_load_explicit(&turn, memory_order_acquire) != chunk)
             give_way();
         const size_t offset = total;
         total += found;
         atomic_store_explicit(&turn, chunk + 1, memory_order_release);
-        copy_contacts(&buffer, found, offset, out_contacts);
+        copy_items(&part, found, offset, list);
     }
+    if (batch->skipped)
+        *batch->skipped += skipped;
     return total;
+}
+
+static size_t find_contacts(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count,
+                            const narc_list *list) {
+    void *const *array = list->array;
+    const narc_contacts out = {list->capacity, array[0], array[1], array[2], array[3],
+                               array[4],       array[5], array[6], array[7]};
+    return lister->contact(batch, first, count, lister->margin, &out);
+}
+
+size_t narc_run_contacts(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count, float margin,
+                         unsigned threads, const narc_contacts *out_contacts) {
+    const narc_contacts *out = out_contacts;
+    const narc_lister lister = {find_contacts, NARC_CONTACT_GROUP, margin, .contact = kernel};
+    const narc_list list = {.capacity = out->capacity,
+                            .columns = 8,
+                            .item = {4, 4, 4, 4, 4, 4, 1, 1},
+                            .array = {out->pair, out->separation, out->normal_x, out->normal_y, out->point_x,
+                                      out->point_y, out->arc_a, out->arc_b}};
+    return narc_run_list(&lister, batch, first, count, threads, &list);
 }

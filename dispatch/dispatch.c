@@ -10,34 +10,29 @@
 
 #include "error.h"
 
-#ifdef NARC_HAVE_AVX512
-#define AVX512_TABLE &narc_kernels_avx512
-#else
-#define AVX512_TABLE NULL
-#endif
-#ifdef NARC_HAVE_AVX2
-#define AVX2_TABLE &narc_kernels_avx2
-#else
-#define AVX2_TABLE NULL
-#endif
-#ifdef NARC_HAVE_NEON
-#define NEON_TABLE &narc_kernels_neon
-#else
-#define NEON_TABLE NULL
-#endif
+/* The table of an instruction set, NULL if this build does not have it: cmake/isa.cmake defines NARC_BUILT_<name> as 1
+ * or 0 for each. */
+#define TABLE(built, name)    TABLE_IF(built, name)
+#define TABLE_IF(built, name) TABLE_IF_##built(name)
+#define TABLE_IF_1(name)      &narc_kernels_##name
+#define TABLE_IF_0(name)      NULL
 
-/* Best first. A table that this build does not have is NULL. */
+/* Best first. */
 static const struct isa {
     const char *name;
     const narc_kernel_table *table;
     unsigned needs;
 } isas[] = {
-    {"avx512", AVX512_TABLE, NARC_CPU_AVX512},
-    {"avx2", AVX2_TABLE, NARC_CPU_AVX2},
-    {"neon", NEON_TABLE, NARC_CPU_NEON},
-    {"scalar", &narc_kernels_scalar, 0},
+#define NARC_ISA(name, needs, processors, flags) {#name, TABLE(NARC_BUILT_##name, name), needs},
+#include "isa.def"
 };
 enum { ISA_COUNT = sizeof isas / sizeof isas[0] };
+
+/* All names, each behind a comma. */
+static const char isa_names[] =
+#define NARC_ISA(name, needs, processors, flags) ", " #name
+#include "isa.def"
+    ;
 
 static _Atomic(const narc_kernel_table *) active;
 
@@ -62,8 +57,8 @@ static const narc_kernel_table *table_by_name(const char *name, const char *orig
                                               narc_error *error) {
     const struct isa *isa = find_isa(name);
     if (!isa) {
-        *out_status = narc_fail(error, NARC_ERROR_ISA_UNKNOWN, 0, 0,
-                                "%s: no instruction set is called '%.40s' (avx512, avx2, neon, scalar)", origin, name);
+        *out_status = narc_fail(error, NARC_ERROR_ISA_UNKNOWN, 0, 0, "%s: no instruction set is called '%.40s' (%s)",
+                                origin, name, isa_names + 2);
         return NULL;
     }
     if (!is_supported(isa)) {
@@ -111,9 +106,9 @@ bool narc_isa_supported(const char *name) {
 }
 
 static const char *const kernel_names[] = {
-#define NARC_KERNEL(type, name, parameters) #name,
+#define NARC_KERNEL(type, name, parameters)        #name,
+#define NARC_METHOD_KERNEL(type, name, parameters) #name,
 #include "kernels.def"
-#undef NARC_KERNEL
 };
 enum { KERNEL_COUNT = sizeof kernel_names / sizeof kernel_names[0] };
 

@@ -30,7 +30,29 @@ narc_status narc_list_contacts(narc_contact_kernel *kernel, const narc_batch *ba
                                float margin, unsigned threads, const narc_contacts *out_contacts, size_t *out_count,
                                narc_error *error);
 
-/* Spread a checked batch over threads (0: as many as OpenMP would use). */
+/* A list of answers in the caller's memory, contacts or manifolds, as columns. */
+enum { NARC_LIST_COLUMNS = 16 };
+typedef struct narc_list {
+    size_t capacity, columns;
+    size_t item[NARC_LIST_COLUMNS]; /* bytes */
+    void *array[NARC_LIST_COLUMNS]; /* NULL: not wanted */
+} narc_list;
+
+/* What finds the answers to some pairs: a kernel, and how to call it. */
+typedef struct narc_lister {
+    /* Those to at most `chunk` pairs, to the front of a list with room for as many; returns how many. */
+    size_t (*find)(const struct narc_lister *lister, const narc_batch *batch, size_t first, size_t count,
+                   const narc_list *list);
+    size_t chunk;
+    float margin;
+    narc_contact_kernel *contact; /* one of both */
+    narc_manifold_kernel *manifold;
+} narc_lister;
+
+/* Spread a checked batch over threads (0: as many as OpenMP would use). Lists come in the order of the pairs; what has
+ * no room is left out, and counted. */
+size_t narc_run_list(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count, unsigned threads,
+                     const narc_list *list);
 void narc_run_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, unsigned threads, uint64_t *out_bits);
 size_t narc_run_contacts(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count, float margin,
                          unsigned threads, const narc_contacts *out_contacts);

@@ -6,10 +6,11 @@
  *
  *   narc_shapes.h says what shapes, bodies and pairs are. A batch call takes all three, and answers for every pair,
  *   exactly: the shapes collide when no direction separates them, and the separation is the largest gap over all
- *   directions. There is no approximation and no iteration tolerance. Two forms of answer:
+ *   directions. There is no approximation and no iteration tolerance. Three forms of answer:
  *
  *       narc_find_overlaps()   one bit per pair
  *       narc_find_contacts()   a compacted list: separation, normal, point and arcs of the pairs that collide
+ *       narc_find_manifolds()  the same for solvers: one or two points a pair, with ids that carry impulses over
  *
  *   Other algorithms, such as GJK and the paper's own, and filters by circles and boxes: narc_methods.h.
  *
@@ -17,14 +18,28 @@
  *   environment variable NARC_ISA or narc_set_isa() choose another. The answer is the same to the last bit on
  *   every instruction set, with any number of threads and for any split of a batch.
  *
+ * Broken bodies
+ *
+ *   A body with a NaN, or with cosine and sine that are no rotation, collides with nothing (see narc_bodies): it would
+ *   fall through the floor without a word. Two checks find it:
+ *     - narc_validate_bodies() when a scene is loaded, and in debug builds each step: names the body and the number
+ *     - narc_query.out_skipped each step: how many pairs the query had no answer for, at no cost. Normally 0; if not, let
+ *       narc_validate_bodies() say why. (narc_methods.h: narc_query_contacts() with query {.out_skipped = &skipped} is
+ *       narc_find_contacts(); for a sub-range move the bases of the pairs' columns.)
+ *
  * Precision
  *
  *   Positions are subtracted first, in double precision if they are double; everything else is single precision. With
  *   the extent E of a body = its largest |centre| + radius over its arcs, times its scale, and D the distance between
  *   the two positions, a separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the exact one, and `overlap` can be
- *   wrong only for pairs whose exact separation is closer to 0 than that. `overlap` and `contact` agree always. (Where
- *   a shape's arcs were given a little apart, see NARC_TOLERANCE, that much more is uncertain. Kernels expect the
- *   processor's usual state: rounding to nearest, denormal numbers not flushed to zero.)
+ *   wrong only for pairs whose exact separation is closer to 0 than that. (Where a shape's arcs were given a little
+ *   apart, see NARC_TOLERANCE, that much more is uncertain. Kernels expect the processor's usual state: rounding to
+ *   nearest, denormal numbers not flushed to zero.)
+ *
+ *   E counts from the body's position, so of a shape that lies far from its own origin the bound leaves little: 1e5
+ *   times its bounding radius away it is 0.4 of that radius, and at 2e7 times single precision knows no form any more.
+ *   What does not depend on that: whatever a store accepts, `overlap` and `contact` agree on every pair, and the bits
+ *   are the same everywhere.
  *
  * Example
  *
@@ -35,7 +50,7 @@
  *     narc_bodies bodies = {.count = 1000,
  *         .x = NARC_COLUMN(body, x), .y = NARC_COLUMN(body, y),
  *         .cosine = NARC_COLUMN(body, c), .sine = NARC_COLUMN(body, s), .shape = NARC_COLUMN(body, shape)};
- *     narc_pairs pairs = {5000, NARC_COLUMN(pair, a), NARC_COLUMN(pair, b)};
+ *     narc_pairs pairs = {.count = 5000, .a = NARC_COLUMN(pair, a), .b = NARC_COLUMN(pair, b)};
  *     narc_find_overlaps(shapes, &bodies, &pairs, 0, hits, NULL);
  *
  * Every function here may be called from any number of threads at once. Queries need up to 256 KB of stack.
@@ -50,22 +65,32 @@ extern "C" {
 #endif
 
 #define NARC_VERSION_MAJOR 0
-#define NARC_VERSION_MINOR 1
+#define NARC_VERSION_MINOR 2
 #define NARC_VERSION_PATCH 0
 
-/* "0.1.0". */
+/* "0.2.0". */
 NARC_API const char *narc_version(void);
 
-/* A column over one field of an array of structures, and over a plain array. */
-#define NARC_COLUMN(array, field)                                                                                      \
+/* A narc_column over one field of an array of structures, and over a plain array: values, to initialise, to assign or to
+ * pass. */
+#ifdef __cplusplus
+#define NARC_COLUMN(array, field) (narc_column NARC_COLUMN_INIT(array, field))
+#define NARC_ARRAY(array)         (narc_column NARC_ARRAY_INIT(array))
+#else
+#define NARC_COLUMN(array, field) ((narc_column)NARC_COLUMN_INIT(array, field))
+#define NARC_ARRAY(array)         ((narc_column)NARC_ARRAY_INIT(array))
+#endif
+
+/* The same as bare initialisers: for objects of static storage duration, where C wants constants. */
+#define NARC_COLUMN_INIT(array, field)                                                                                 \
     { &(array)[0].field, sizeof((array)[0]) }
-#define NARC_ARRAY(array)                                                                                              \
+#define NARC_ARRAY_INIT(array)                                                                                         \
     { (array), sizeof((array)[0]) }
 
 /* The number of 64-bit words that hold `count` bits. */
 #define NARC_BIT_WORDS(count) (((count) + 63) / 64)
 
-/* See "Precision" above; derived in kernels/overlay.inl. */
+/* See "Precision" above; derived in kernels/sat/normal_fan.inl. */
 #define NARC_ERROR_BOUND (32.0 / 16777216.0)
 
 /* ------------------------------------------------------------------------------------------------ batches */
@@ -123,6 +148,56 @@ NARC_API narc_status narc_find_contacts_hinted_range(const narc_shapes *shapes, 
                                                      uint32_t *hints, const narc_contacts *out_contacts,
                                                      size_t *out_count, narc_error *error);
 
+/* ------------------------------------------------------------------------------------------------ manifolds */
+
+/* The flat angle, in radians, if a call names none: 26 degrees. With it piles of boxes and rounded boxes come to rest,
+ * and with less than a degree they do not. */
+#define NARC_FLAT_ANGLE 0.45f
+
+/* The largest flat angle, in radians. An edge that is nearly along the normal has no height across it. */
+#define NARC_MAX_FLAT_ANGLE 1.5f
+
+/* How narc_find_manifolds() answers; what is 0 or NULL has its default, as all has for {0}.
+ *   margin       as in narc_find_contacts(), of every point
+ *   flat_angle   how far an edge's normal may be from the contact's for the edge to count as facing the other body; 0:
+ *                NARC_FLAT_ANGLE; below 0: never a second point; at most NARC_MAX_FLAT_ANGLE
+ *   hints        as in narc_find_contacts_hinted(), which may take them from here and the other way round; NULL: none
+ *   out_skipped  how many pairs had no answer; NULL: nobody asks */
+typedef struct narc_manifold_options {
+    float margin;
+    float flat_angle;
+    uint32_t *hints;
+    size_t *out_skipped;
+} narc_manifold_options;
+
+/* The contact manifolds of all pairs whose separation is less than the margin, in the order of the pairs: what a solver
+ * wants. One point is the deepest: its normal and separation are those of narc_find_contacts() to the last bit, and so
+ * is its place unless two edges touch along a stretch. There is a second point where both bodies have a straight edge
+ * that faces the other one: at the other end of the edges' common stretch, with its own separation along the normal, if
+ * that is less than the margin. Swapping A and B turns the normal, the order of the points, and the bytes of a feature
+ * id, and nothing else but roundings.
+ *   options         NULL: defaults
+ *   out_manifolds   arrays of out_manifolds->capacity items, overlapping none of the inputs
+ *   out_count       as in narc_find_contacts()
+ * Feature ids tell which features touch, and nothing of who is larger or was found first; so of the same pair at the
+ * next step, the same id means the same point (a solver's warm start). Two edges that face each other keep their two
+ * ids whichever of their corners limit the stretch between them. docs/algorithm.md, section 11, derives all this.
+ * Errors and `threads` as narc_find_contacts(), and NARC_ERROR_ARGUMENT and NARC_ERROR_NOT_FINITE for options out of
+ * range. Allocates nothing. Thread-safe. */
+NARC_API narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                         const narc_manifold_options *options, unsigned threads,
+                                         const narc_manifolds *out_manifolds, size_t *out_count, narc_error *error);
+
+/* The same for pairs first .. first + count - 1 (any first and count), in the calling thread, as
+ * narc_find_contacts_range(); options->hints is that of the whole batch. */
+NARC_API narc_status narc_find_manifolds_range(const narc_shapes *shapes, const narc_bodies *bodies,
+                                               const narc_pairs *pairs, size_t first, size_t count,
+                                               const narc_manifold_options *options,
+                                               const narc_manifolds *out_manifolds, size_t *out_count,
+                                               narc_error *error);
+
+/* ------------------------------------------------------------------------------------------------ poses */
+
 /* Cosines and sines of `count` angles, in radians, within 1 ulp of exact, in the calling thread. Outputs may be
  * the input's array, not otherwise overlap it or each other. An angle that is not finite gives NaN, and so a body that
  * collides with nothing. Uses SLEEF's deterministic functions; in a build without SLEEF, the C library's. */
@@ -131,8 +206,8 @@ NARC_API narc_status narc_compute_poses(const float *angles, size_t count, float
 
 /* ------------------------------------------------------------------------------------------------ instruction sets */
 
-/* Chooses the instruction set for all later calls in the process: "scalar", "neon", "avx2" or "avx512"; NULL: the best
- * one. NARC_ERROR_ISA_UNKNOWN, NARC_ERROR_ISA_UNSUPPORTED; the choice is unchanged then. */
+/* Chooses the instruction set for all later calls in the process by its narc_isa_name(), such as "avx2" or "scalar";
+ * NULL: the best one. NARC_ERROR_ISA_UNKNOWN, NARC_ERROR_ISA_UNSUPPORTED; the choice is unchanged then. */
 NARC_API narc_status narc_set_isa(const char *name, narc_error *error);
 
 /* The name of the instruction set in use (chosen now if it was not yet); NULL if NARC_ISA names one that can't be

@@ -16,6 +16,8 @@
  *     narc_query query = {.method = NARC_METHOD_GJK, .tolerance = 1e-3f};
  *     narc_query_contacts(shapes, &bodies, &pairs, &query, 0, 0, &contacts, &found, NULL);
  *
+ *   A query of zeros is the exact method without extras: the calls of narc.h are short forms of it.
+ *
  * Every function here may be called from any number of threads at once. Queries need up to 256 KB of stack.
  */
 #ifndef NARC_METHODS_H
@@ -90,6 +92,8 @@ typedef struct narc_query {
      * the tolerance. Any value is safe. Other methods leave them alone. A hint belongs to one method. */
     uint32_t *hints;
     uint8_t *out_outcomes; /* pairs->count values of narc_outcome, or NULL */
+    /* How many pairs have no answer (see narc_bodies), by any method; or NULL. Set where out_bits or out_count are. */
+    size_t *out_skipped;
 } narc_query;
 
 /* narc_find_overlaps() by a method of choice. Further errors: NARC_ERROR_ARGUMENT (no such method, a negative

@@ -15,20 +15,23 @@ struct kernels {
     narc_contact_kernel *contact; /* NULL: it has none */
 };
 
-enum { METHOD_COUNT = NARC_METHOD_OBB + 1 };
-
-static const char *const method_names[METHOD_COUNT] = {"sat",    "sat-first", "polygon-sat", "gjk",
-                                                       "circle", "aabb",      "obb"};
+static const char *const method_names[] = {
+    [NARC_METHOD_SAT] = "sat", [NARC_METHOD_SAT_FIRST] = "sat-first", [NARC_METHOD_POLYGON_SAT] = "polygon-sat",
+    [NARC_METHOD_GJK] = "gjk", [NARC_METHOD_CIRCLE] = "circle",       [NARC_METHOD_AABB] = "aabb",
+    [NARC_METHOD_OBB] = "obb",
+};
+enum { METHOD_COUNT = sizeof method_names / sizeof *method_names };
 
 static struct kernels kernels_of(const narc_kernel_table *table, narc_method method) {
+    const narc_method_table *methods = table->methods;
     const struct kernels all[METHOD_COUNT] = {
         [NARC_METHOD_SAT] = {table->overlap, table->contact},
-        [NARC_METHOD_SAT_FIRST] = {table->overlap_first, table->contact_first},
-        [NARC_METHOD_POLYGON_SAT] = {table->overlap_polygon, table->contact_polygon},
-        [NARC_METHOD_GJK] = {table->overlap_gjk, table->contact_gjk},
-        [NARC_METHOD_CIRCLE] = {table->overlap_circle, NULL},
-        [NARC_METHOD_AABB] = {table->overlap_aabb, NULL},
-        [NARC_METHOD_OBB] = {table->overlap_obb, NULL},
+        [NARC_METHOD_SAT_FIRST] = {methods->overlap_first, methods->contact_first},
+        [NARC_METHOD_POLYGON_SAT] = {methods->overlap_polygon, methods->contact_polygon},
+        [NARC_METHOD_GJK] = {methods->overlap_gjk, methods->contact_gjk},
+        [NARC_METHOD_CIRCLE] = {methods->overlap_circle, NULL},
+        [NARC_METHOD_AABB] = {methods->overlap_aabb, NULL},
+        [NARC_METHOD_OBB] = {methods->overlap_obb, NULL},
     };
     return all[method];
 }
@@ -93,6 +96,9 @@ narc_status narc_query_overlaps(const narc_shapes *shapes, const narc_bodies *bo
         return status;
     if (pairs->count > 0 && !out_bits)
         return narc_fail_missing(error, "out_bits");
+    if (query->out_skipped)
+        *query->out_skipped = 0;
+    batch.skipped = query->out_skipped;
     narc_run_overlaps(kernels.overlap, &batch, threads, out_bits);
     return NARC_OK;
 }
@@ -102,12 +108,17 @@ narc_status narc_query_contacts(const narc_shapes *shapes, const narc_bodies *bo
                                 const narc_contacts *out_contacts, size_t *out_count, narc_error *error) {
     narc_batch batch = {.shapes = shapes, .bodies = bodies, .pairs = pairs};
     struct kernels kernels = {NULL, NULL};
-    const narc_status status = check_query(&batch, query, threads, &kernels, error);
+    narc_status status = check_query(&batch, query, threads, &kernels, error);
     if (status != NARC_OK)
         return status;
     if (!kernels.contact)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)query->method, "%s answers overlaps only",
                          narc_method_name(query->method));
-    return narc_list_contacts(kernels.contact, &batch, 0, pairs->count, margin, threads, out_contacts, out_count,
-                              error);
+    size_t skipped = 0;
+    batch.skipped = query->out_skipped ? &skipped : NULL;
+    status =
+        narc_list_contacts(kernels.contact, &batch, 0, pairs->count, margin, threads, out_contacts, out_count, error);
+    if (query->out_skipped && (status == NARC_OK || status == NARC_ERROR_CAPACITY))
+        *query->out_skipped = skipped;
+    return status;
 }

@@ -3,22 +3,18 @@
  * fit.c - the call for a fit: checks, scaling, families, and the fewest arcs for a tolerance.
  */
 #define _POSIX_C_SOURCE 199309L
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "best.h"
 #include "error.h"
-#include "finish.h"
-#include "paper.h"
-#include "vector.h"
+#include "outline/vector.h"
+#include "result/finish.h"
+#include "result/paper.h"
+#include "solve/ladder.h"
 
-/* Starts of the local search where the caller names no number: of a fit, fewer of many arcs, whose searches take long;
- * and of each try of a count of arcs. */
-enum { USUAL_STARTS = 6, TRIAL_STARTS = 5, MOST_STARTS = 100000 };
-static unsigned count_starts(size_t arcs) {
-    return arcs <= 6 ? 2 * USUAL_STARTS : arcs <= 12 ? USUAL_STARTS : USUAL_STARTS * 12 / (unsigned)arcs;
-}
+enum { MOST_STARTS = 100000 };
 
 /* A radius of the hull below this, or above, would leave no room for the shape in the store's range. */
 static const double LEAST_RADIUS = 4 * NARC_MIN_SIZE, LARGEST_RADIUS = 0.1 * NARC_MAX_SIZE;
@@ -31,6 +27,14 @@ static const double LEAST_AREA = 1e-5;
 static const double RADIUS_ROOM = 0.99, LESS_RADIUS = 0.8;
 enum { MOST_RADII = 12 };
 
+/* The search keeps radii above the least one by this part of it, which rounding does not exceed. In parts of the
+ * outline's radius, less than single precision would tell from 0, and more than programmes are good for, are not worked
+ * with. */
+static const double LEAST_ROOM = 1e-5, SMALLEST_LEAST = 4e-7, LARGEST_LEAST = 16;
+
+/* A third moment of the hull that roundings may have made. */
+static const double SYMMETRIC = 1e-9;
+
 /* Hulls with more corners are thinned, by twice this (in parts of the radius), or four times ..., until they have
  * fewer. A circle has some 1500 corners at 2e-6. */
 static const double LEAST_THINNING = 1e-6, MOST_THINNING = 1e-3;
@@ -40,14 +44,16 @@ enum { MOST_CORNERS = 2000 };
 static const double FLATNESS_OF_TOLERANCE = 0.02;
 
 /* A fit under way. */
-typedef struct job {
+struct job {
     const narc_fit_request *request;
-    hull around; /* scaled: within 1 of the origin */
-    scale at;
+    narc_hull hull; /* scaled: within 1 of the origin */
+    narc_frame frame;
+    narc_contours outline; /* flattened */
     double flatness, max_radius;
-    unsigned starts;
-    progress work;
-} job;
+    narc_hull mirrored; /* what is searched, if that is the hull in a mirror; otherwise empty */
+    narc_ladder ladder;
+    narc_progress progress;
+};
 
 static double seconds_now(void) {
     struct timespec now;
@@ -57,78 +63,83 @@ static double seconds_now(void) {
 
 /* ---------------------------------------------------------------------------- preparation */
 
-static narc_status check_request(const narc_path *path, const narc_fit_request *of, const narc_fit_result *out,
+static narc_status check_request(const narc_path *path, const narc_fit_request *request, const narc_fit_result *out,
                                  narc_error *error) {
-    if (!path || !of || !out) {
+    if (!path || !request || !out) {
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL",
-                         !path ? "the path"
-                         : !of ? "the request"
-                               : "the result");
+                         !path      ? "the path"
+                         : !request ? "the request"
+                                    : "the result");
     }
-    if ((unsigned)of->family > NARC_FIT_PAPER) {
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, of->family, "there is no family %d", (int)of->family);
-    }
-    if ((unsigned)of->goal > NARC_FIT_DIFFERENCE) {
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, of->goal, "there is no goal %d", (int)of->goal);
-    }
-    if (of->family == NARC_FIT_PAPER && of->goal != NARC_FIT_BOUND_AREA) {
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, of->goal, "the paper's route has no goal but to bound");
-    }
-    const bool corners = of->family == NARC_FIT_POLYGON || of->family == NARC_FIT_PAPER;
+    if ((unsigned)request->family > NARC_FIT_PAPER)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, request->family, "there is no family %d", (int)request->family);
+    if ((unsigned)request->goal > NARC_FIT_DIFFERENCE)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, request->goal, "there is no goal %d", (int)request->goal);
+    if (request->family == NARC_FIT_PAPER && request->goal != NARC_FIT_BOUND_AREA)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, request->goal, "the paper's route has no goal but to bound");
+    const bool corners = request->family == NARC_FIT_POLYGON || request->family == NARC_FIT_PAPER;
     const size_t least = corners ? 3 : 1;
-    if (of->arc_count > NARC_MAX_FIT_ARCS || (of->arc_count && of->arc_count < least)) {
-        return narc_fail(error, NARC_ERROR_COUNT, 0, (double)of->arc_count, "%zu arcs, but a fit has %zu to %d",
-                         of->arc_count, least, NARC_MAX_FIT_ARCS);
+    if (request->arc_count > NARC_MAX_FIT_ARCS || (request->arc_count && request->arc_count < least)) {
+        return narc_fail(error, NARC_ERROR_COUNT, 0, (double)request->arc_count, "%zu arcs, but a fit has %zu to %d",
+                         request->arc_count, least, NARC_MAX_FIT_ARCS);
     }
-    if (of->starts > MOST_STARTS) {
-        return narc_fail(error, NARC_ERROR_COUNT, 0, of->starts, "%u starts, but the most is %d", of->starts,
+    if (request->starts > MOST_STARTS) {
+        return narc_fail(error, NARC_ERROR_COUNT, 0, request->starts, "%u starts, but the most is %d", request->starts,
                          MOST_STARTS);
     }
-    if (of->arc_count == 0 && !(of->tolerance > 0 && isfinite(of->tolerance))) {
-        return narc_fail(error, NARC_ERROR_SIZE, 0, of->tolerance, "the tolerance %g is not a positive length",
-                         of->tolerance);
+    if (!(request->min_radius >= 0 && isfinite(request->min_radius))) {
+        return narc_fail(error, NARC_ERROR_SIZE, 0, request->min_radius, "the least radius %g is not a length",
+                         request->min_radius);
+    }
+    if (request->min_radius > 0 && corners) {
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, request->min_radius,
+                         "a least radius of %g, but polygons, and the paper's route from them, have corners",
+                         request->min_radius);
+    }
+    if (request->arc_count == 0 && !(request->tolerance > 0 && isfinite(request->tolerance))) {
+        return narc_fail(error, NARC_ERROR_SIZE, 0, request->tolerance, "the tolerance %g is not a positive length",
+                         request->tolerance);
     }
     return NARC_OK;
 }
 
 /* The hull of the flattened contours, moved and scaled to fit in the unit circle. */
-static narc_status scale_hull(const narc_contours *contours, job *to, narc_error *error) {
+static narc_status scale_hull(const narc_contours *contours, struct job *job, narc_error *error) {
     narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     for (size_t k = 0; k < contours->point_count; k++) {
         const narc_point p = contours->points[k];
         box = (narc_aabb){fmin(box.min_x, p.x), fmin(box.min_y, p.y), fmax(box.max_x, p.x), fmax(box.max_y, p.y)};
     }
-    to->at.middle = (narc_point){0.5 * (box.min_x + box.max_x), 0.5 * (box.min_y + box.max_y)};
-    to->at.radius = 0;
-    for (size_t k = 0; k < contours->point_count; k++) {
-        to->at.radius = fmax(to->at.radius, length(minus(contours->points[k], to->at.middle)));
-    }
-    if (contours->point_count == 0) {
+    job->frame.middle = (narc_point){0.5 * (box.min_x + box.max_x), 0.5 * (box.min_y + box.max_y)};
+    job->frame.radius = 0;
+    for (size_t k = 0; k < contours->point_count; k++)
+        job->frame.radius = fmax(job->frame.radius, length(minus(contours->points[k], job->frame.middle)));
+    if (contours->point_count == 0)
         return narc_fail(error, NARC_ERROR_COUNT, 0, 0, "the outline has no points");
-    }
-    if (to->at.radius > 0 && !(to->at.radius >= LEAST_RADIUS && to->at.radius <= LARGEST_RADIUS)) {
-        return narc_fail(error, NARC_ERROR_SIZE, 0, to->at.radius, "the outline's radius %g is not within %g and %g",
-                         to->at.radius, LEAST_RADIUS, LARGEST_RADIUS);
+    if (job->frame.radius > 0 && !(job->frame.radius >= LEAST_RADIUS && job->frame.radius <= LARGEST_RADIUS)) {
+        return narc_fail(error, NARC_ERROR_SIZE, 0, job->frame.radius,
+                         "the outline's radius %g is not within %g and %g", job->frame.radius, LEAST_RADIUS,
+                         LARGEST_RADIUS);
     }
     narc_point *scaled = malloc(contours->point_count * sizeof *scaled);
-    if (!scaled) {
+    if (!scaled)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for %zu points", contours->point_count);
+    for (size_t k = 0; k < contours->point_count && job->frame.radius > 0; k++) {
+        const narc_point p = minus(contours->points[k], job->frame.middle);
+        scaled[k] = (narc_point){p.x / job->frame.radius, p.y / job->frame.radius};
     }
-    for (size_t k = 0; k < contours->point_count && to->at.radius > 0; k++) {
-        const narc_point p = minus(contours->points[k], to->at.middle);
-        scaled[k] = (narc_point){p.x / to->at.radius, p.y / to->at.radius};
-    }
-    const size_t count = to->at.radius > 0 ? contours->point_count : 1;
-    scaled[0] = to->at.radius > 0 ? scaled[0] : (narc_point){0, 0};
-    const narc_status status = narc_make_hull(scaled, count, &to->around, error);
+    const size_t count = job->frame.radius > 0 ? contours->point_count : 1;
+    scaled[0] = job->frame.radius > 0 ? scaled[0] : (narc_point){0, 0};
+    const narc_status status = narc_make_hull(scaled, count, &job->hull, error);
     free(scaled);
     return status;
 }
 
 /* Puts the hull where it does not matter how the outline lay: its centroid at the origin, its furthest corner 1 away,
- * its longest side below. So outlines that were moved, scaled or turned get the same fit, but for roundings. */
-static narc_status settle_hull(job *of, narc_error *error) {
-    const hull *old = &of->around;
+ * its longest side below. So the search sees the same hull of an outline that was moved, scaled or turned, apart from
+ * rounding and the choice among sides of one length. */
+static narc_status settle_hull(struct job *job, narc_error *error) {
+    const narc_hull *old = &job->hull;
     narc_point centroid = {0, 0};
     size_t longest = 0;
     double side = 0, radius = 0;
@@ -142,284 +153,307 @@ static narc_status settle_hull(job *of, narc_error *error) {
         }
     }
     /* The middle is rounded, a lot where the outline is far away: what the hull moves by is what is left of it. */
-    const narc_point middle = along(of->at.middle, of->at.radius, centroid);
-    const narc_point moved = minus(middle, of->at.middle);
-    centroid = (narc_point){moved.x / of->at.radius, moved.y / of->at.radius};
+    const narc_point middle = along(job->frame.middle, job->frame.radius, centroid);
+    const narc_point moved = minus(middle, job->frame.middle);
+    centroid = (narc_point){moved.x / job->frame.radius, moved.y / job->frame.radius};
     const double angle = old->angles[longest] + PI / 2;
     narc_point *corners = malloc(old->count * sizeof *corners);
-    if (!corners) {
+    if (!corners)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for a hull of %zu corners", old->count);
-    }
     const narc_point x = unit_at(angle);
     for (size_t k = 0; k < old->count; k++) {
         const narc_point p = minus(old->corners[(longest + k) % old->count], centroid);
         corners[k] = (narc_point){dot(p, x), cross(x, p)};
         radius = fmax(radius, length(p));
     }
-    for (size_t k = 0; k < old->count; k++) {
+    for (size_t k = 0; k < old->count; k++)
         corners[k] = (narc_point){corners[k].x / radius, corners[k].y / radius};
-    }
-    hull made;
-    const narc_status status = narc_adopt_corners(corners, old->count, &made, error);
+    narc_hull hull;
+    const narc_status status = narc_adopt_corners(corners, old->count, &hull, error);
     free(corners);
     if (status == NARC_OK) {
-        narc_release_hull(&of->around);
-        of->around = made;
-        of->at.middle = middle;
-        of->at.radius *= radius;
-        of->at.angle = angle;
+        narc_release_hull(&job->hull);
+        job->hull = hull;
+        job->frame.middle = middle;
+        job->frame.radius *= radius;
+        job->frame.angle = angle;
     }
+    return status;
+}
+
+/* Which of two mirror images the search sees: the one that reaches further to the right, by the third moment of its
+ * outline about the centroid. */
+static narc_status choose_mirror(struct job *job, narc_error *error) {
+    const narc_hull *seen = &job->hull;
+    double moment = 0;
+    for (size_t k = 0; k < seen->count; k++) {
+        const narc_point p = seen->corners[k], q = seen->corners[(k + 1) % seen->count];
+        const double middle = 0.5 * (p.x + q.x);
+        moment += length(minus(q, p)) * middle * middle * middle;
+    }
+    if (moment > -SYMMETRIC)
+        return NARC_OK;
+    narc_point *corners = malloc(seen->count * sizeof *corners);
+    if (!corners)
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for a hull of %zu corners", seen->count);
+    for (size_t k = 0; k < seen->count; k++) { /* the longest side stays the first */
+        const narc_point p = seen->corners[(seen->count + 1 - k) % seen->count];
+        corners[k] = (narc_point){-p.x, p.y};
+    }
+    const narc_status status = narc_adopt_corners(corners, seen->count, &job->mirrored, error);
+    job->mirrored.inflation = seen->inflation;
+    free(corners);
     return status;
 }
 
 /* Half of the hull's largest width among some directions: no circle around it, or around a shape that holds it, is
  * smaller. */
-static double find_least_radius(const hull *of) {
+static double find_least_radius(const narc_hull *hull) {
     enum { DIRECTIONS = 64 };
     double widest = 0;
     for (unsigned k = 0; k < DIRECTIONS; k++) {
         const double angle = PI * k / DIRECTIONS;
         const narc_point u = unit_at(angle);
-        const narc_point ahead = of->corners[narc_find_corner(of, angle)];
-        const narc_point behind = of->corners[narc_find_corner(of, angle + PI)];
+        const narc_point ahead = hull->corners[narc_find_corner(hull, angle)];
+        const narc_point behind = hull->corners[narc_find_corner(hull, angle + PI)];
         widest = fmax(widest, dot(minus(ahead, behind), u));
     }
     return 0.5 * widest;
 }
 
-static narc_status prepare(const narc_path *path, job *to, narc_error *error) {
-    const narc_fit_request *request = to->request;
-    narc_contours contours;
+/* The least and the largest radius of arcs, in units of the hull's. */
+static narc_status limit_radii(struct job *job, narc_error *error) {
+    const double least = job->request->min_radius / job->frame.radius;
+    if (least > LARGEST_LEAST) {
+        return narc_fail(error, NARC_ERROR_SIZE, 0, job->request->min_radius,
+                         "the least radius %g is more than %g times the outline's, %g", job->request->min_radius,
+                         LARGEST_LEAST, job->frame.radius);
+    }
+    job->ladder.min_radius = least > 0 ? fmax(SMALLEST_LEAST, least * (1 + LEAST_ROOM)) : 0;
+    job->max_radius = RADIUS_ROOM * NARC_MAX_RADIUS_RATIO * fmax(find_least_radius(&job->hull), job->ladder.min_radius);
+    return NARC_OK;
+}
+
+static narc_status prepare(const narc_path *path, struct job *job, narc_error *error) {
+    const narc_fit_request *request = job->request;
     double flatness = request->flatness;
-    if (flatness == 0 && request->arc_count == 0) {
+    if (flatness == 0 && request->arc_count == 0)
         flatness = FLATNESS_OF_TOLERANCE * request->tolerance;
-    }
-    narc_status status = narc_flatten_path(path, flatness, &contours, error);
+    narc_status status = narc_flatten_path(path, flatness, &job->outline, error);
     if (status == NARC_ERROR_SIZE &&
-        request->flatness == 0) { /* finer than numbers are: such a tolerance is not reached */
-        status = narc_flatten_path(path, 0, &contours, error);
-    }
-    if (status != NARC_OK) {
+        request->flatness == 0) /* finer than numbers are: such a tolerance is not reached */
+        status = narc_flatten_path(path, 0, &job->outline, error);
+    if (status != NARC_OK)
         return status;
-    }
-    status = scale_hull(&contours, to, error);
-    to->flatness = contours.flatness;
-    narc_release_contours(&contours);
-    if (status != NARC_OK) {
+    job->frame.outline = &job->outline;
+    status = scale_hull(&job->outline, job, error);
+    job->flatness = job->outline.flatness;
+    if (status != NARC_OK)
         return status;
-    }
-    if (to->around.area < LEAST_AREA) {
-        narc_release_hull(&to->around);
-        return narc_fail(error, NARC_ERROR_NOT_CONVEX, 0, to->around.area,
+    if (!(job->hull.area >= LEAST_AREA)) {
+        narc_release_hull(&job->hull);
+        return narc_fail(error, NARC_ERROR_NOT_CONVEX, 0, job->hull.area,
                          "the outline is as thin as a line, single precision can't tell its sides apart");
     }
-    status = settle_hull(to, error);
-    to->around.inflation = to->flatness / to->at.radius;
+    status = settle_hull(job, error);
+    job->hull.inflation = job->flatness / job->frame.radius;
     for (double tolerance = LEAST_THINNING;
-         status == NARC_OK && to->around.count > MOST_CORNERS && tolerance < MOST_THINNING;) {
+         status == NARC_OK && job->hull.count > MOST_CORNERS && tolerance < MOST_THINNING;) {
         tolerance *= 2;
-        status = narc_thin_hull(&to->around, tolerance, error);
+        status = narc_thin_hull(&job->hull, tolerance, error);
     }
-    to->flatness = to->at.radius * to->around.inflation;
-    to->max_radius = RADIUS_ROOM * NARC_MAX_RADIUS_RATIO * find_least_radius(&to->around);
-    if (status != NARC_OK) {
-        narc_release_hull(&to->around);
-    }
+    job->flatness = job->frame.radius * job->hull.inflation;
+    if (status == NARC_OK)
+        status = limit_radii(job, error);
+    if (status == NARC_OK)
+        status = choose_mirror(job, error);
+    if (status != NARC_OK)
+        narc_release_hull(&job->hull);
     return status;
 }
 
 /* ---------------------------------------------------------------------------- one count of arcs */
 
-/* Chains to start from besides those that the search finds by itself: an offset of the closest shape that need not
- * bound bounds, the closest shape differs little, the smallest polygons are good in other respects, and arcs with edges
- * may be arcs without or edges alone. */
-typedef struct known_chains {
-    size_t count;
-    chain items[3];
-} known_chains;
-
-static narc_status find_chain(job *in, narc_fit_family family, narc_fit_goal goal, size_t count, candidate *out_best,
-                              narc_error *error);
-
-static void find_known(job *in, const problem *of, known_chains *out) {
-    out->count = 0;
-    candidate found;
-    if (of->goal == NARC_FIT_BOUND_DISTANCE || of->goal == NARC_FIT_DIFFERENCE) {
-        if (find_chain(in, of->family, NARC_FIT_DISTANCE, of->count, &found, NULL) == NARC_OK) {
-            if (of->goal == NARC_FIT_BOUND_DISTANCE) {
-                narc_offset_chain(&found.form, found.value, of->family == NARC_FIT_POLYGON);
-            }
-            out->items[out->count++] = found.form;
-        }
-    }
-    for (narc_fit_goal goal = NARC_FIT_BOUND_AREA; of->family == NARC_FIT_POLYGON && goal < of->goal; goal++) {
-        if (goal < NARC_FIT_BOUND_DISTANCE && find_chain(in, of->family, goal, of->count, &found, NULL) == NARC_OK) {
-            out->items[out->count++] = found.form;
-        }
-    }
-    if (of->family == NARC_FIT_EDGES && of->count == 2 &&
-        find_chain(in, NARC_FIT_N_ARC, of->goal, 1, &found, NULL) == NARC_OK) {
-        const double radius = found.form.radius[0]; /* a circle is two arcs as well */
-        out->items[out->count++] =
-            (chain){.count = 2, .start = found.form.start, .angle = {0, PI}, .radius = {radius, radius}};
-    }
-    if (of->family == NARC_FIT_EDGES && of->count > 2) {
-        static const narc_fit_family narrower[] = {NARC_FIT_N_ARC, NARC_FIT_POLYGON};
-        const unsigned starts = in->starts;
-        in->starts = (starts + 1) / 2; /* they are starts themselves */
-        for (size_t k = 0; k < 2 && of->goal != NARC_FIT_BOUND_DISTANCE; k++) {
-            if (find_chain(in, narrower[k], of->goal, of->count, &found, NULL) == NARC_OK) {
-                out->items[out->count++] = found.form;
-            }
-        }
-        in->starts = starts;
-    }
-}
-
-static narc_status find_chain(job *in, narc_fit_family family, narc_fit_goal goal, size_t count, candidate *out_best,
-                              narc_error *error) {
-    problem of = {.around = &in->around, .family = family, .goal = goal, .count = count, .max_radius = in->max_radius};
+static narc_status find_chains(struct job *job, narc_fit_family family, narc_fit_goal goal, size_t count,
+                               const narc_ranking **out_best, narc_error *error) {
+    narc_rung wanted = {family, goal, count};
     /* Closed chains of up to three arcs without edges are circles. */
-    const bool circle = family == NARC_FIT_N_ARC ? count < 3 : count < 2;
-    if (circle) {
-        of.family = NARC_FIT_N_ARC;
-        of.count = 3;
+    if (family == NARC_FIT_N_ARC ? count < 3 : count < 2) {
+        wanted.family = NARC_FIT_N_ARC;
+        wanted.count = 3;
     }
-    hull bare = in->around;
-    if (!narc_must_bound(&of)) {
-        bare.inflation = 0;
-        of.around = &bare;
-    }
-    known_chains known;
-    find_known(in, &of, &known);
-    const unsigned starts = known.count > 1 && count > 6 ? (in->starts + 1) / 2 : in->starts; /* two are known */
-    return narc_find_best(&of, starts, known.items, known.count, &in->work, out_best, error);
+    job->ladder.hull = job->mirrored.count ? &job->mirrored : &job->hull;
+    job->ladder.progress = &job->progress;
+    job->ladder.max_radius = job->max_radius;
+    return narc_climb(&job->ladder, &wanted, out_best, error);
 }
 
-static narc_status fit_paper(job *in, size_t count, narc_fit_result *out_result, narc_error *error) {
-    candidate best;
-    narc_status status = find_chain(in, NARC_FIT_POLYGON, NARC_FIT_BOUND_AREA, count, &best, error);
-    if (status != NARC_OK) {
+/* A chain as the outline has it. */
+static narc_chain place_found(const struct job *job, const narc_candidate *found) {
+    narc_chain chain = found->chain;
+    if (job->mirrored.count)
+        narc_mirror_chain(&chain);
+    return chain;
+}
+
+static narc_status fit_paper(struct job *job, size_t count, narc_fit_result *out_result, narc_error *error) {
+    const narc_ranking *best;
+    narc_status status = find_chains(job, NARC_FIT_POLYGON, NARC_FIT_BOUND_AREA, count, &best, error);
+    if (status != NARC_OK)
         return status;
-    }
+    const narc_chain polygon = place_found(job, &best->items[0]);
     /* Corners that coincide are one. */
     narc_point corners[MAX_CHAIN];
     size_t sides = 0;
-    for (size_t k = 0; k < best.form.count; k++) {
-        if (best.form.edge[k] > 1e-6) {
-            corners[sides++] = best.form.center[k];
-        }
-    }
+    for (size_t k = 0; k < polygon.count; k++)
+        if (polygon.edge[k] > 1e-6)
+            corners[sides++] = polygon.center[k];
     narc_arc arcs[NARC_MAX_ARCS];
-    size_t made;
-    status = narc_follow_paper(corners, sides, count, &in->around, arcs, &made, error);
-    return status != NARC_OK ? status : narc_finish_arcs(arcs, made, &in->around, &in->at, true, out_result, error);
+    size_t arc_count;
+    status = narc_follow_paper(corners, sides, count, &job->hull, arcs, &arc_count, error);
+    return status != NARC_OK ? status
+                             : narc_finish_arcs(arcs, arc_count, &job->hull, &job->frame, true, out_result, error);
 }
 
-static narc_status fit_count(job *in, narc_fit_goal goal, size_t count, narc_fit_result *out_result,
-                             narc_error *error) {
-    if (in->request->family == NARC_FIT_PAPER) {
-        return fit_paper(in, count, out_result, error);
+/* Rounds the best of the chains that can be. */
+static narc_status finish_best(const struct job *job, const narc_ranking *best, bool bound, narc_fit_result *out_result,
+                               narc_error *error) {
+    narc_status status = NARC_ERROR_NO_SOLUTION;
+    for (size_t k = 0; k < best->count && status == NARC_ERROR_NO_SOLUTION; k++) {
+        const narc_chain chain = place_found(job, &best->items[k]);
+        status = narc_finish_fit(&chain, &job->hull, &job->frame, bound, out_result, error);
+        for (size_t i = 0; status == NARC_OK && i < out_result->arc_count; i++) {
+            const double radius = out_result->arcs[i].radius;
+            if (!(radius >= job->request->min_radius)) {
+                status = narc_fail(error, NARC_ERROR_NO_SOLUTION, i, radius,
+                                   "arc %zu has the radius %g, the least is %g", i, radius, job->request->min_radius);
+            }
+        }
     }
+    return status;
+}
+
+static narc_status fit_count(struct job *job, narc_fit_goal goal, size_t count, narc_fit_result *out_result,
+                             narc_error *error) {
+    if (job->request->family == NARC_FIT_PAPER)
+        return fit_paper(job, count, out_result, error);
     const bool bound = goal <= NARC_FIT_BOUND_DISTANCE;
-    const double max_radius = in->max_radius;
+    const double max_radius = job->max_radius;
     narc_status status = NARC_ERROR_RADIUS;
     /* A shape that need not bound may be smaller than the hull, and then so are the largest radii that it may have. */
     narc_error last;
     for (unsigned round = 0; round < MOST_RADII && status == NARC_ERROR_RADIUS; round++) {
-        candidate best;
-        status = find_chain(in, in->request->family, goal, count, &best, &last);
-        if (status == NARC_OK) {
-            status = narc_finish_fit(&best.form, &in->around, &in->at, bound, out_result, &last);
+        const narc_ranking *best;
+        status = find_chains(job, job->request->family, goal, count, &best, &last);
+        if (status == NARC_OK)
+            status = finish_best(job, best, bound, out_result, &last);
+        if (status == NARC_ERROR_RADIUS) {
+            job->max_radius *= LESS_RADIUS;
+            narc_clear_ladder(&job->ladder);
         }
-        in->max_radius *= LESS_RADIUS;
     }
-    in->max_radius = max_radius;
-    if (status != NARC_OK && error) {
+    if (job->max_radius != max_radius) {
+        narc_clear_ladder(&job->ladder);
+        job->max_radius = max_radius;
+    }
+    if (status != NARC_OK && error)
         *error = last;
-    }
     return status;
 }
 
 /* ---------------------------------------------------------------------------- the fewest arcs */
 
-/* Tries a count; true if it keeps the tolerance, and then the result is taken. */
-static bool keeps_tolerance(job *in, size_t count, narc_fit_result *out_result, double *out_distance,
+/* Tries a count; true if it keeps the tolerance, and then the result is taken. `closest` is the least distance of all
+ * tries. */
+static bool keeps_tolerance(struct job *job, size_t count, narc_fit_result *out_result, double *closest,
                             narc_status *out_status, narc_error *error) {
     const narc_fit_goal goal =
-        in->request->goal <= NARC_FIT_BOUND_DISTANCE ? NARC_FIT_BOUND_DISTANCE : NARC_FIT_DISTANCE;
-    narc_fit_result made;
-    *out_distance = INFINITY;
-    *out_status = fit_count(in, goal, count, &made, error);
-    if (*out_status != NARC_OK) {
+        job->request->goal <= NARC_FIT_BOUND_DISTANCE ? NARC_FIT_BOUND_DISTANCE : NARC_FIT_DISTANCE;
+    narc_fit_result result;
+    *out_status = fit_count(job, goal, count, &result, error);
+    if (*out_status != NARC_OK)
         return false;
-    }
-    *out_distance = made.max_distance + in->flatness;
-    if (!(*out_distance <= in->request->tolerance)) {
+    const double distance = result.max_distance + job->flatness;
+    *closest = fmin(*closest, distance);
+    if (!(distance <= job->request->tolerance))
         return false;
-    }
-    *out_result = made;
+    *out_result = result;
     return true;
 }
 
-/* Counts grow by half until one keeps the tolerance; then the gap to the last that did not is halved. */
-static narc_status fit_fewest(job *in, narc_fit_result *out_result, narc_error *error) {
-    const bool corners = in->request->family == NARC_FIT_POLYGON || in->request->family == NARC_FIT_PAPER;
-    size_t below = corners ? 2 : 0, count = below + 1;
-    double distance;
-    narc_status status;
+/* No count keeps the tolerance: how close they came, or why there is no fit at all. */
+static narc_status fail_fewest(const struct job *job, double closest, narc_status status, const narc_error *last,
+                               narc_error *error) {
+    if (!isfinite(closest))
+        return narc_fail(error, status, 0, last->value, "%s", last->message);
+    char reason[100] = "";
+    if (job->request->min_radius > 0)
+        snprintf(reason, sizeof reason, ": arcs have at least the radius %g", job->request->min_radius);
+    else if (job->request->family == NARC_FIT_N_ARC)
+        snprintf(reason, sizeof reason, ": radii end at 64 times the shape's, straight edges may come closer");
+    return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, closest,
+                     "up to %d arcs come within %g of the outline, not within the tolerance %g%s", NARC_MAX_FIT_ARCS,
+                     closest, job->request->tolerance, reason);
+}
+
+/* More and more arcs, of which each count builds on the one before, until the tolerance is kept. */
+static narc_status fit_fewest(struct job *job, narc_fit_result *out_result, narc_error *error) {
+    const bool corners = job->request->family == NARC_FIT_POLYGON || job->request->family == NARC_FIT_PAPER;
+    double closest = INFINITY;
+    narc_status status = NARC_OK;
     narc_error last;
-    while (!keeps_tolerance(in, count, out_result, &distance, &status, &last)) {
-        if (in->work.cancelled || status == NARC_ERROR_MEMORY) {
-            return status == NARC_ERROR_MEMORY
-                       ? narc_fail(error, status, 0, 0, "%s", last.message)
-                       : narc_fail(error, NARC_ERROR_CANCELLED, 0, 0, "the search for the fewest arcs was ended");
-        }
-        if (count == NARC_MAX_FIT_ARCS) {
-            return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, distance,
-                             "%d arcs come within %g of the outline, not within the tolerance %g", NARC_MAX_FIT_ARCS,
-                             distance, in->request->tolerance);
-        }
-        below = count;
-        count = count < 4 ? count + 1 : count + count / 2;
-        count = count < NARC_MAX_FIT_ARCS ? count : NARC_MAX_FIT_ARCS;
+    for (size_t count = corners ? 3 : 1; count <= NARC_MAX_FIT_ARCS; count++) {
+        if (keeps_tolerance(job, count, out_result, &closest, &status, &last))
+            return NARC_OK;
+        if (status == NARC_ERROR_MEMORY)
+            return narc_fail(error, status, 0, 0, "%s", last.message);
+        if (job->progress.cancelled)
+            return narc_fail(error, NARC_ERROR_CANCELLED, 0, 0, "the search for the fewest arcs was ended");
     }
-    while (count - below > 1 && !in->work.cancelled) {
-        const size_t middle = (below + count) / 2;
-        if (keeps_tolerance(in, middle, out_result, &distance, &status, NULL)) {
-            count = middle;
-        } else {
-            below = middle;
-        }
-    }
-    return NARC_OK;
+    return fail_fewest(job, closest, status, &last, error);
+}
+
+static size_t plan_work(const struct job *job) {
+    const narc_fit_request *request = job->request;
+    const bool paper = request->family == NARC_FIT_PAPER, fewest = request->arc_count == 0;
+    const bool bound = request->goal <= NARC_FIT_BOUND_DISTANCE;
+    const narc_rung last = {.family = paper ? NARC_FIT_POLYGON : request->family,
+                            .goal = !fewest || paper ? request->goal
+                                    : bound          ? NARC_FIT_BOUND_DISTANCE
+                                                     : NARC_FIT_DISTANCE,
+                            .count = fewest                   ? NARC_MAX_FIT_ARCS
+                                     : request->arc_count < 3 ? 3
+                                                              : request->arc_count};
+    return narc_plan_ladder(&job->ladder, &last);
 }
 
 narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request, narc_fit_result *out_result,
                           narc_error *error) {
     const double begin = seconds_now();
     narc_status status = check_request(path, request, out_result, error);
-    if (status != NARC_OK) {
+    if (status != NARC_OK)
         return status;
-    }
-    job in = {.request = request};
-    status = prepare(path, &in, error);
+    struct job job = {.request = request};
+    status = prepare(path, &job, error);
     if (status != NARC_OK) {
+        narc_release_contours(&job.outline);
         return status;
     }
     const bool fewest = request->arc_count == 0;
-    in.starts = request->starts ? request->starts : fewest ? TRIAL_STARTS : count_starts(request->arc_count);
-    in.work = (progress){.tell = request->progress, .context = request->context};
-    const size_t searches = request->family == NARC_FIT_EDGES ? 3 : 1;
-    in.work.total = narc_count_work(in.starts) * searches * (fewest ? 12 : 1) *
-                    (fewest || request->goal == NARC_FIT_BOUND_DISTANCE ? 2 : 1);
-    narc_fit_result made;
-    status = fewest ? fit_fewest(&in, &made, error) : fit_count(&in, request->goal, request->arc_count, &made, error);
-    narc_release_hull(&in.around);
+    job.ladder.starts = request->starts;
+    job.progress = (narc_progress){.tell = request->progress, .context = request->context};
+    job.progress.total = plan_work(&job);
+    narc_fit_result result;
+    status =
+        fewest ? fit_fewest(&job, &result, error) : fit_count(&job, request->goal, request->arc_count, &result, error);
+    narc_clear_ladder(&job.ladder);
+    narc_release_hull(&job.hull);
+    narc_release_hull(&job.mirrored);
+    narc_release_contours(&job.outline);
     if (status == NARC_OK) {
-        made.flatness = in.flatness;
-        made.seconds = seconds_now() - begin;
-        *out_result = made;
+        result.flatness = job.flatness;
+        result.seconds = seconds_now() - begin;
+        *out_result = result;
     }
     return status;
 }

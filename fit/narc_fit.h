@@ -6,8 +6,8 @@
  *
  *   An outline is a PATH: closed contours made of lines and Bezier curves. A fit looks at its convex hull alone, so
  *   holes, several contours and contours that overlap are fine. A FIT is an arc shape (see narc_shapes.h) that bounds
- * the path (it contains every point of it, curves included) or approximates it, and is the best one that was found for
- *   what is asked:
+ *   the path (it contains every point of the path, curves included) or approximates it, and it is the best one that
+ *   was found for what is asked:
  *
  *       family      n-arc: arcs with continuous tangents   edges: arcs, straight edges between them where they help
  *                   polygon: straight edges only           paper: Algorithm 1 on a polygon, enlarged until it bounds
@@ -22,8 +22,8 @@
  *   quadratic programming goes on in all variables. See fit/README.md for the algorithms and how good they are.
  *
  * This library is meant for tools and load time, not for the inner loop of a game. It allocates memory, keeps no
- * globals, and prints nothing. All functions may be called from several threads, each with paths of its own. On
- * error outputs are untouched. Units and directions are those of narc_shapes.h: y points up, counter-clockwise.
+ * globals, and prints nothing. All functions may be called from several threads, each with paths of its own. On an
+ * error the outputs are untouched. Units and directions are those of narc_shapes.h: y points up, counter-clockwise.
  *
  * Example
  *
@@ -63,25 +63,21 @@ NARC_API void narc_destroy_path(narc_path *path);
 /* The pen: move_to begins a contour, the others draw a line or a Bezier curve from where the pen is. A contour closes
  * by itself with a line to its start. Errors: NARC_ERROR_ARGUMENT (no contour was begun), NARC_ERROR_NOT_FINITE,
  * NARC_ERROR_SIZE (beyond NARC_MAX_COORDINATE), NARC_ERROR_MEMORY. */
-NARC_API narc_status narc_move_to(narc_path *path, narc_point to, narc_error *error);
-NARC_API narc_status narc_line_to(narc_path *path, narc_point to, narc_error *error);
-NARC_API narc_status narc_quadratic_to(narc_path *path, narc_point control, narc_point to, narc_error *error);
-NARC_API narc_status narc_cubic_to(narc_path *path, narc_point control_1, narc_point control_2, narc_point to,
+NARC_API narc_status narc_move_to(narc_path *path, narc_point point, narc_error *error);
+NARC_API narc_status narc_line_to(narc_path *path, narc_point point, narc_error *error);
+NARC_API narc_status narc_quadratic_to(narc_path *path, narc_point control, narc_point point, narc_error *error);
+NARC_API narc_status narc_cubic_to(narc_path *path, narc_point control_1, narc_point control_2, narc_point point,
                                    narc_error *error);
 
-/* Does each contour, closed and flattened, go round without crossing or touching itself? Different contours may cross.
- * NARC_ERROR_NOT_SIMPLE names the contour and the place. Fits do not ask for it: they see the hull only. It finds
- * points in the wrong order. */
-NARC_API narc_status narc_check_simple(const narc_path *path, narc_error *error);
-
 /* Contours flattened to polygons: contour k has points[ends[k - 1] .. ends[k] - 1] (0 for ends[-1]), the first not
- * repeated at the end. No curve is further than `flatness` from its chords. */
+ * repeated at the end. No curve is further than `flatness` from its chords, and no drawing from contours that were
+ * traced: those of SVG files add a pixel to it. */
 typedef struct narc_contours {
     narc_point *points;
     size_t point_count;
     size_t *ends;
     size_t count;
-    double flatness; /* a length; 0 if there are no curves */
+    double flatness; /* a length; 0 if there are no curves, and nothing from SVG files */
 } narc_contours;
 
 /* Flattens a path; `flatness` is a length > 0, or 0 for NARC_FLATNESS. Free the result with
@@ -89,6 +85,13 @@ typedef struct narc_contours {
 NARC_API narc_status narc_flatten_path(const narc_path *path, double flatness, narc_contours *out_contours,
                                        narc_error *error);
 NARC_API void narc_release_contours(narc_contours *contours);
+
+/* The convex hull of `points[0 .. count-1]`: its corners, counter-clockwise, no three in line, none twice: of those
+ * closer than 1e-10 of the hull's extent one is taken. `out_corners` has room for `count` points and may be `points`.
+ * Andrew's monotone chain. NARC_ERROR_COUNT: no points. NARC_ERROR_NOT_CONVEX: all points lie on a line.
+ * NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_MEMORY. */
+NARC_API narc_status narc_compute_hull(const narc_point *points, size_t count, narc_point *out_corners,
+                                       size_t *out_count, narc_error *error);
 
 /* ------------------------------------------------------------------------------------------------ readers */
 
@@ -111,19 +114,26 @@ NARC_API narc_status narc_read_glyph(narc_font *font, uint32_t character, narc_p
  * 0: no more. */
 NARC_API uint32_t narc_next_character(narc_font *font, uint32_t after);
 
-/* An SVG file (XML, UTF-8 or as its header says): paths, rectangles, circles, ellipses, polygons, polylines and lines,
- * with their transforms, also through groups and `use`. What is not seen (display: none, neither fill nor stroke, a
- * contour on one line without a stroke, inside defs, clip paths, masks, patterns, markers or symbols that no `use`
- * shows) is left out; strokes have no width; nothing is clipped; text and images are not read. Units are the SVG's user
- * units, y turned up. */
+/* What is seen of an SVG file: librsvg draws it, whatever it uses (strokes, clipping, text, style sheets, filters), and
+ * the outline of all that is not wholly transparent is traced, however faint it is. The ink's longer side is 4096
+ * pixels or more, less only where the page, at 8192 pixels, is more than twice as large as the ink. Outline and ink
+ * are within one pixel of each other; contours tell that as their flatness, and fits count it, so that a bounding fit
+ * bounds the ink. What is thinner than a fifteenth of a pixel may not be seen; tips of needles, below 8 degrees, end
+ * where they become so thin. Circles are librsvg's: too large by up to 2.8e-4 of the radius.
+ *
+ * Units are the SVG's user units, those of the viewBox if there is one, y turned up. The page, which is the viewBox or
+ * else from 0 to width and height, cuts off what is outside, as in any viewer; without either all is drawn (but for
+ * the parts at negative coordinates of groups with opacity, masks or filters), and percentages are of 300 x 150. Text
+ * is drawn with the fonts that are installed. No other file is read, and nothing from a network. Path data and
+ * attributes that are wrong are as in any viewer: a path ends before the first error. It takes a tenth of a second to a
+ * few seconds, and up to 300 MB or, where groups with opacity, masks or filters are inside each other, more. */
 NARC_API narc_status narc_read_svg(const void *data, size_t size, narc_path *path, narc_error *error);
 
 /* The silhouette in a PNG image: contours at `threshold` (between 0 and 1) of the alpha channel, interpolated between
  * the centres of pixels, so that antialiased edges keep their place. An image without alpha, or one that is opaque
  * throughout, is taken by its darkness (1 - luminance) instead, or by lightness if its corners are dark. Units are
  * pixels, y up, the origin at the lower left corner of the image. Threshold 0 means 0.5. */
-NARC_API narc_status narc_read_png(const void *data, size_t size, double threshold, narc_path *path,
-                                   narc_error *error);
+NARC_API narc_status narc_read_png(const void *data, size_t size, double threshold, narc_path *path, narc_error *error);
 
 /* Points: CSV, one "x,y" a line, an optional header line "x,y", blank lines between contours. JSON: [[x, y], ...], or a
  * list of such lists (contours), or an object whose key "points" or "contours" has that. */
@@ -158,6 +168,8 @@ typedef struct narc_fit_request {
     narc_fit_family family;
     narc_fit_goal goal; /* with arc_count 0: of the BOUND goals any makes the fit bound; the others do not */
     double flatness;    /* of curves, as in narc_flatten_path(); 0: NARC_FLATNESS */
+    double min_radius;  /* of every arc, a length in the path's unit, which keeps the outline smooth; 0: none, and a
+                           corner is an arc of radius 0. Not for polygons and the paper's route */
     unsigned starts;    /* of the local search; 0: the usual number. More take longer and often find better */
     /* Called now and then with the work done and in all, if not NULL; returning false ends the fit with the best so
      * far, or NARC_ERROR_CANCELLED if there is none. */
@@ -172,25 +184,28 @@ typedef struct narc_fit_result {
     narc_point origin; /* where the shape's origin, its centroid, is in the path's coordinates */
     double area, perimeter;
     double hull_area, hull_perimeter; /* of the path's convex hull */
-    double max_distance;    /* to the hull: the largest difference of the support functions */
-    double mean_distance;   /* mean over the shape's outline of the distance to the hull's outline */
-    double difference_area; /* of the symmetric difference with the hull */
-    double clearance;       /* BOUND goals: the least of (support function - hull's), certified > 0 for the shape as
-                               the store keeps it, in single precision, with the flatness of curves counted */
-    double flatness;        /* how far the outline may be from the hull that was fitted to, a length: that of the
-                               curves, and of the corners left out of hulls with thousands of them */
-    double seconds;         /* time the fit took */
+    double max_distance;              /* to the hull: the largest difference of the support functions */
+    double mean_distance;             /* mean over the shape's outline of the distance to the hull's outline */
+    double difference_area;           /* of the symmetric difference with the hull */
+    double clearance; /* BOUND goals: the least of (support function - that of the path's flattened points, as
+                               they are), certified > 0 for the shape as the store keeps it, in single precision,
+                               with the flatness counted */
+    double flatness;  /* how far the outline may be from the hull that was fitted to, a length: that of the
+                               curves and of SVG files, and of the corners left out of hulls with thousands of them */
+    double seconds;   /* time the fit took */
 } narc_fit_result;
 
 /* Fits an arc shape. Deterministic: equal input gives equal bits on one machine (but for `seconds`). The shape passes
  * narc_add_shape(). With arc_count 0 the fit is that of least largest distance, bounding or not, and what is compared
  * with the tolerance is max_distance + flatness. Errors: NARC_ERROR_ARGUMENT (NULL; a family or goal that does not
- * exist; the paper's route with another goal than BOUND_AREA), NARC_ERROR_COUNT (arc_count; an outline without points),
- * NARC_ERROR_NOT_CONVEX (all points on a line, or nearly: no area), NARC_ERROR_SIZE (tolerance not positive, outline
- * too small or too large), NARC_ERROR_NO_SOLUTION (the tolerance is not reached with NARC_MAX_FIT_ARCS arcs; the
- * message tells what was), NARC_ERROR_MEMORY, NARC_ERROR_CANCELLED. */
-NARC_API narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request,
-                                      narc_fit_result *out_result, narc_error *error);
+ * exist; the paper's route with another goal than BOUND_AREA; polygons, or that route, with a least radius),
+ * NARC_ERROR_COUNT (arc_count; an outline without points), NARC_ERROR_NOT_CONVEX (all points on a line, or nearly: an
+ * area below 1e-5 of the radius squared), NARC_ERROR_SIZE (tolerance not positive; least radius negative or more than
+ * 16 times the hull's from its centroid; outline too small or too large), NARC_ERROR_NO_SOLUTION (the tolerance is not
+ * reached with NARC_MAX_FIT_ARCS arcs, the message tells what was; or the paper's route finds no n-arc),
+ * NARC_ERROR_MEMORY, NARC_ERROR_CANCELLED. */
+NARC_API narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request, narc_fit_result *out_result,
+                                   narc_error *error);
 
 /* ------------------------------------------------------------------------------------------------ biarcs */
 
@@ -212,8 +227,25 @@ typedef struct narc_curve_arc {
  * coordinates beyond NARC_MAX_COORDINATE), NARC_ERROR_CAPACITY (`out_count` is set to the number needed). A curve that
  * is a point has no arcs. */
 NARC_API narc_status narc_fit_bezier(const narc_point *controls, size_t degree, double tolerance,
-                                     narc_curve_arc *out_arcs, size_t capacity, size_t *out_count,
-                                     double *out_distance, narc_error *error);
+                                     narc_curve_arc *out_arcs, size_t capacity, size_t *out_count, double *out_distance,
+                                     narc_error *error);
+
+/* The contours of a path as closed chains of arcs and lines: chain k has arcs[ends[k - 1] .. ends[k] - 1] (0 for
+ * ends[-1]); each begins where the one before it ends, and the first where the last ends. */
+typedef struct narc_arc_chains {
+    narc_curve_arc *arcs;
+    size_t arc_count;
+    size_t *ends;
+    size_t count;
+    double distance; /* the largest of narc_fit_bezier()'s; at most the tolerance */
+} narc_arc_chains;
+
+/* Each line and curve of a path by narc_fit_bezier(); contours are closed by a line where they are open, and those that
+ * are a point are left out. Free the result with narc_release_chains(). Errors: those of narc_fit_bezier();
+ * NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_COUNT (nothing is drawn), NARC_ERROR_MEMORY. */
+NARC_API narc_status narc_fit_chains(const narc_path *path, double tolerance, narc_arc_chains *out_chains,
+                                     narc_error *error);
+NARC_API void narc_release_chains(narc_arc_chains *chains);
 
 #ifdef __cplusplus
 }

@@ -7,6 +7,7 @@
 #ifndef NARC_KERNELS_H
 #define NARC_KERNELS_H
 
+#include "broad_phase.h"
 #include "store.h"
 
 /* What a batch call works on. */
@@ -16,28 +17,42 @@ typedef struct narc_batch {
     const narc_pairs *pairs;
     uint32_t *hints;   /* one for each pair, in and out; may be NULL */
     uint8_t *outcomes; /* one for each pair, out; may be NULL. Only methods that can fail write them. */
+    size_t *skipped;   /* pairs without an answer are added to it; may be NULL. Two threads may not share one. */
     float tolerance;   /* of gjk, relative to the sum of both bounding radii */
     int iterations;    /* of gjk, 1 .. NARC_MAX_ITERATIONS */
+    float flat_sine;   /* of manifolds: the sine of the flat angle; below 0: no second points */
 } narc_batch;
 
-/* Pairs whose contacts a kernel collects before it lists them; more are as good as several calls. */
+/* The most pairs that one call of a contact kernel takes: it collects their contacts before it lists them. */
 enum { NARC_CONTACT_GROUP = 1024 };
+
+/* The kernels of the methods in narc_methods.h. */
+typedef struct narc_method_table {
+#define NARC_METHOD_KERNEL(type, name, parameters) type(*name) parameters;
+#include "kernels.def"
+} narc_method_table;
 
 typedef struct narc_kernel_table {
     const char *isa;
+    const narc_method_table *methods;
 #define NARC_KERNEL(type, name, parameters) type(*name) parameters;
 #include "kernels.def"
-#undef NARC_KERNEL
 } narc_kernel_table;
 
 /* What the kernels called overlap... and contact... have in common. */
 typedef void narc_overlap_kernel(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits);
 typedef size_t narc_contact_kernel(const narc_batch *batch, size_t first, size_t count, float margin,
                                    const narc_contacts *out);
+typedef size_t narc_manifold_kernel(const narc_batch *batch, size_t first, size_t count, float margin,
+                                    const narc_manifolds *out);
 
-extern const narc_kernel_table narc_kernels_scalar;
-extern const narc_kernel_table narc_kernels_neon;
-extern const narc_kernel_table narc_kernels_avx2;
-extern const narc_kernel_table narc_kernels_avx512;
+#define NARC_ISA(name, needs, processors, flags) extern const narc_kernel_table narc_kernels_##name;
+#include "isa.def"
+
+/* narc_kernels_avx2 from narc_kernels_ and a macro whose value is avx2, and that value in quotes. */
+#define NARC_ISA_SYMBOL(prefix, isa)  NARC_ISA_SYMBOL_(prefix, isa)
+#define NARC_ISA_SYMBOL_(prefix, isa) prefix##isa
+#define NARC_ISA_TEXT(isa)            NARC_ISA_TEXT_(isa)
+#define NARC_ISA_TEXT_(isa)           #isa
 
 #endif

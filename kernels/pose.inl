@@ -5,18 +5,17 @@
  * SLEEF's `cinz` functions promise equal bits on every instruction set and use no fused multiply-add, so that the
  * scalar table runs on any processor. Without SLEEF every table calls the C library, one angle at a time.
  */
+#ifndef NARC_POSE_INL
+#define NARC_POSE_INL
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "simd/simd.h"
 
 #if defined(NARC_WITH_SLEEF)
 #include <sleef.h>
-#if V_WIDTH == 16
-#define V_SINCOS Sleef_cinz_sincosf16_u10avx512fnofma
-#elif V_WIDTH == 8
-#define V_SINCOS Sleef_cinz_sincosf8_u10avx
-#elif V_WIDTH == 4
-#define V_SINCOS Sleef_cinz_sincosf4_u10advsimdnofma
-#else
-#define V_SINCOS Sleef_cinz_sincosf1_u10purec
-#endif
 
 static inline void sincos_lanes(const float *angles, float *out_cosines, float *out_sines) {
     const vf angle = v_load(angles);
@@ -49,5 +48,7 @@ static void pose(const float *angles, size_t count, float *out_cosines, float *o
         out_sines[k] = finite ? sinf(angle) : NAN;
     }
 }
+
+#endif
 
 #endif

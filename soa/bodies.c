@@ -51,8 +51,8 @@ static narc_status check_body(const narc_shapes *shapes, const narc_bodies *bodi
     if (!(fabsf(off) <= (float)NARC_ROTATION_TOLERANCE))
         return narc_fail(error, NARC_ERROR_ARGUMENT, body, hypot(c, s),
                          "body %zu: cosine and sine make a vector of length %.9g, not 1", body, hypot(c, s));
-    const float size = scale * shapes->heads[shape].bound_radius;
-    if (!(size >= (float)NARC_MIN_SIZE && size <= (float)NARC_HEAD_MAX_RADIUS))
+    const float size = scale * shapes->headers[shape].bound_radius;
+    if (!(size >= (float)NARC_MIN_SIZE && size <= (float)NARC_MAX_BOUND_RADIUS))
         return narc_fail(error, NARC_ERROR_SIZE, body, (double)scale,
                          "body %zu: scale is %.9g, its bounding radius is then %.9g, not in %g .. %g", body,
                          (double)scale, (double)size, NARC_MIN_SIZE, NARC_MAX_SIZE);

@@ -36,9 +36,9 @@ static double find_farthest(const narc_outline *o, double x, double y, narc_poin
             }
         }
         if (radius > 0 && narc_in_sector(o, i, dx, dy)) {
-            double distance = sqrt(dx * dx + dy * dy), reach = distance + radius;
-            if (distance > 0 && reach * reach > best) {
-                best = reach * reach;
+            double distance = sqrt(dx * dx + dy * dy), extent = distance + radius;
+            if (distance > 0 && extent * extent > best) {
+                best = extent * extent;
                 *out_point =
                     (narc_point){o->center_x[i] + dx / distance * radius, o->center_y[i] + dy / distance * radius};
             }
@@ -106,12 +106,12 @@ void narc_bound_outline(const narc_outline *outline, narc_circle *out_circle) {
     double bound = 0;
     for (int step = 0; step < MAX_STEPS; step++) {
         narc_point farthest;
-        double reach = find_farthest(outline, circle.center.x, circle.center.y, &farthest);
-        if (reach < out_circle->radius)
-            *out_circle = (narc_circle){circle.center.x, circle.center.y, reach};
+        double extent = find_farthest(outline, circle.center.x, circle.center.y, &farthest);
+        if (extent < out_circle->radius)
+            *out_circle = (narc_circle){circle.center.x, circle.center.y, extent};
         /* The bound from below cannot shrink, unless points are so nearly equal that it is rounding that decides. */
         double radius = sqrt(circle.square);
-        if (reach <= radius * (1 + CLOSE_ENOUGH) || radius < bound * (1 - CLOSE_ENOUGH))
+        if (extent <= radius * (1 + CLOSE_ENOUGH) || radius < bound * (1 - CLOSE_ENOUGH))
             return;
         bound = fmax(bound, radius);
         add_point(&circle, farthest);

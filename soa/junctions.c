@@ -25,7 +25,7 @@
  * NARC_TOLERANCE times the size. */
 #define SUM_TOLERANCE (NARC_TOLERANCE / 2)
 
-typedef struct chain {
+typedef struct chord_ring {
     size_t count;
     narc_point point[NARC_MAX_ARCS];
     double chord[NARC_MAX_ARCS];     /* lengths */
@@ -33,13 +33,13 @@ typedef struct chain {
     double offset[NARC_MAX_ARCS];    /* s */
     double low, high;                /* alpha[0] lies between, both excluded but for a right angle */
     double alpha;                    /* alpha[0]: the one solution, or the choice */
-} chain;
+} chord_ring;
 
-static double find_alpha(const chain *c, size_t arc, double first) {
+static double find_alpha(const chord_ring *c, size_t arc, double first) {
     return arc % 2 ? c->offset[arc] - first : c->offset[arc] + first;
 }
 
-static narc_status measure_chords(const narc_point *points, size_t count, chain *out_chain, double *out_turns,
+static narc_status measure_chords(const narc_point *points, size_t count, chord_ring *out_chain, double *out_turns,
                                   narc_error *error) {
     double sum = 0;
     out_chain->count = count;
@@ -68,7 +68,7 @@ static narc_status measure_chords(const narc_point *points, size_t count, chain 
     return NARC_OK;
 }
 
-static narc_status solve_odd(chain *c, const double *turns, narc_error *error) {
+static narc_status solve_odd(chord_ring *c, const double *turns, narc_error *error) {
     c->low = c->high = c->alpha = (turns[0] - c->offset[c->count - 1]) / 2;
     for (size_t i = 0; i < c->count; i++) {
         double alpha = find_alpha(c, i, c->alpha);
@@ -81,7 +81,7 @@ static narc_status solve_odd(chain *c, const double *turns, narc_error *error) {
 }
 
 /* The range of alpha[0] that keeps every alpha above 0 and at most pi / 2. */
-static narc_status find_range(chain *c, narc_error *error) {
+static narc_status find_range(chord_ring *c, narc_error *error) {
     size_t low_arc = 0, high_arc = 0;
     c->low = 0;
     c->high = NARC_PI / 2;
@@ -105,7 +105,7 @@ static narc_status find_range(chain *c, narc_error *error) {
 }
 
 /* The variance of the logarithms of the radii, chord / (2 sin alpha). */
-static double find_variance(const chain *c, double first) {
+static double find_variance(const chord_ring *c, double first) {
     double sum = 0, squares = 0, count = (double)c->count;
     for (size_t i = 0; i < c->count; i++) {
         double value = log(c->chord[i] / c->chord[0] / sin(find_alpha(c, i, first)));
@@ -116,7 +116,7 @@ static double find_variance(const chain *c, double first) {
 }
 
 /* Samples the range and refines the best sample by golden sections. */
-static double choose_alpha(const chain *c) {
+static double choose_alpha(const chord_ring *c) {
     enum { SAMPLES = 32, SECTIONS = 50 }; /* 0.618^50 of two samples' distance: 1e-12 of the range */
     double step = (c->high - c->low) / (SAMPLES + 1), best = INFINITY, from = c->low, to = c->high;
     for (int k = 1; k <= SAMPLES; k++) {
@@ -147,7 +147,7 @@ static double choose_alpha(const chain *c) {
     return (from + to) / 2;
 }
 
-static narc_status solve_even(chain *c, double *turns, narc_error *error) {
+static narc_status solve_even(chord_ring *c, double *turns, narc_error *error) {
     double apart = 0, odd_sum = 0;
     for (size_t i = 0; i < c->count; i++) {
         apart += i % 2 ? -turns[i] : turns[i];
@@ -170,7 +170,7 @@ static narc_status solve_even(chain *c, double *turns, narc_error *error) {
     return status;
 }
 
-static narc_status solve(const narc_point *points, size_t count, chain *out_chain, narc_error *error) {
+static narc_status solve(const narc_point *points, size_t count, chord_ring *out_chain, narc_error *error) {
     double turns[NARC_MAX_ARCS];
     if (!points)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "points is NULL");
@@ -185,16 +185,16 @@ static narc_status solve(const narc_point *points, size_t count, chain *out_chai
     return count % 2 ? solve_odd(out_chain, turns, error) : solve_even(out_chain, turns, error);
 }
 
-static double find_radius(const chain *c, double alpha) { return c->chord[0] / (2 * sin(alpha)); }
+static double find_radius(const chord_ring *c, double alpha) { return c->chord[0] / (2 * sin(alpha)); }
 
-static void find_radii(const chain *c, double *out_min, double *out_max, double *out_chosen) {
+static void find_radii(const chord_ring *c, double *out_min, double *out_max, double *out_chosen) {
     *out_min = find_radius(c, c->high);
     *out_max = c->low > 0 ? find_radius(c, c->low) : INFINITY;
     *out_chosen = find_radius(c, c->alpha);
 }
 
 /* The first alpha that belongs to the caller's radius. */
-static narc_status choose_radius(chain *c, double radius, narc_error *error) {
+static narc_status choose_radius(chord_ring *c, double radius, narc_error *error) {
     double least, most, chosen;
     find_radii(c, &least, &most, &chosen);
     if (c->count % 2) {
@@ -219,7 +219,7 @@ static narc_status choose_radius(chain *c, double radius, narc_error *error) {
 
 /* Each arc gets the normals it shares with its neighbours (means, where a spread residual left two) and the radius and
  * place that put its ends on its points, so that what little the normals are off moves the ends by little. */
-static void make_arcs(const chain *c, narc_arc *out_arcs) {
+static void make_arcs(const chord_ring *c, narc_arc *out_arcs) {
     double normal[NARC_MAX_ARCS];
     for (size_t i = 0; i < c->count; i++) {
         size_t before = (i + c->count - 1) % c->count;
@@ -242,7 +242,7 @@ static void make_arcs(const chain *c, narc_arc *out_arcs) {
 
 narc_status narc_build_points(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
                               size_t *out_count, narc_error *error) {
-    chain c;
+    chord_ring c;
     narc_arc arcs[NARC_MAX_ARCS];
     if (!out_arcs || !out_count)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "an output is NULL");
@@ -266,7 +266,7 @@ narc_status narc_build_points(const narc_point *points, size_t count, double rad
 
 narc_status narc_find_radius_range(const narc_point *points, size_t count, double *out_min, double *out_max,
                                    double *out_chosen, narc_error *error) {
-    chain c;
+    chord_ring c;
     if (!out_min || !out_max || !out_chosen)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "an output is NULL");
     narc_status status = solve(points, count, &c, error);

@@ -81,20 +81,20 @@ extern "C" {
 
 typedef enum narc_status {
     NARC_OK = 0,
-    NARC_ERROR_ARGUMENT = 1,        /* a NULL pointer, a sub-range that does not fit, a negative count */
-    NARC_ERROR_MEMORY = 2,          /* the allocator returned NULL */
-    NARC_ERROR_INDEX = 3,           /* a body or shape index out of range */
-    NARC_ERROR_CAPACITY = 4,        /* the output list is too short; what fitted was written, the needed size is told */
-    NARC_ERROR_COUNT = 5,           /* too few or too many points, arcs or shapes */
-    NARC_ERROR_NOT_FINITE = 6,      /* NaN or infinity */
-    NARC_ERROR_SIZE = 7,            /* a length is zero or negative, or outside NARC_MIN_SIZE .. NARC_MAX_SIZE */
-    NARC_ERROR_RADIUS = 8,          /* a radius is negative, too large for its shape, or not feasible */
-    NARC_ERROR_SWEEP = 9,           /* an arc turns by nothing or by more than half a turn; not one turn in all */
-    NARC_ERROR_NOT_CLOSED = 10,     /* neighbouring arcs do not meet */
-    NARC_ERROR_NOT_CONVEX = 11,     /* an edge runs backwards; points are not convex and counter-clockwise */
-    NARC_ERROR_NOT_SIMPLE = 12,     /* a polygon crosses itself or encloses no area */
-    NARC_ERROR_NO_SOLUTION = 13,    /* no n-arc has these junctions */
-    NARC_ERROR_ISA_UNKNOWN = 14,    /* no instruction set has that name */
+    NARC_ERROR_ARGUMENT = 1,     /* a NULL pointer, a sub-range that does not fit, a negative count */
+    NARC_ERROR_MEMORY = 2,       /* the allocator returned NULL */
+    NARC_ERROR_INDEX = 3,        /* a body or shape index out of range */
+    NARC_ERROR_CAPACITY = 4,     /* the output list is too short; what fitted was written, the needed size is told */
+    NARC_ERROR_COUNT = 5,        /* too few or too many points, arcs or shapes */
+    NARC_ERROR_NOT_FINITE = 6,   /* NaN or infinity */
+    NARC_ERROR_SIZE = 7,         /* a length is zero or negative, or outside NARC_MIN_SIZE .. NARC_MAX_SIZE */
+    NARC_ERROR_RADIUS = 8,       /* a radius is negative, too large for its shape, or not feasible */
+    NARC_ERROR_SWEEP = 9,        /* an arc turns by nothing or by more than half a turn; not one turn in all */
+    NARC_ERROR_NOT_CLOSED = 10,  /* neighbouring arcs do not meet */
+    NARC_ERROR_NOT_CONVEX = 11,  /* an edge runs backwards; points are not convex and counter-clockwise */
+    NARC_ERROR_NOT_SIMPLE = 12,  /* a polygon crosses itself or encloses no area */
+    NARC_ERROR_NO_SOLUTION = 13, /* no n-arc has these junctions */
+    NARC_ERROR_ISA_UNKNOWN = 14, /* no instruction set has that name */
     NARC_ERROR_ISA_UNSUPPORTED = 15, /* known, but this build or this processor does not have it */
     NARC_ERROR_FORMAT = 16,          /* data that is not in the format it should be in, or damaged */
     NARC_ERROR_CANCELLED = 17        /* the caller's progress function ended the work */
@@ -276,8 +276,9 @@ NARC_API void narc_destroy_shapes(narc_shapes *shapes);
 NARC_API narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t arc_count);
 
 /* Validates a shape and adds it. Its coordinates are kept as they are: a body's position is the place of the shape's
- * origin. Errors: those of narc_validate_arcs(), NARC_ERROR_MEMORY, NARC_ERROR_COUNT (the store is full);
- * the store is unchanged then. `out_shape` may be NULL. */
+ * origin. It should be in the shape, or near it: errors grow with the distance (see "Precision" in narc.h). Errors:
+ * those of narc_validate_arcs(), NARC_ERROR_MEMORY, NARC_ERROR_COUNT (the store is full); the store is unchanged then.
+ * `out_shape` may be NULL. */
 NARC_API narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t count, uint32_t *out_shape,
                                     narc_error *error);
 
@@ -316,7 +317,8 @@ typedef enum narc_precision { NARC_FLOAT32 = 0, NARC_FLOAT64 = 1 } narc_precisio
 /* Bodies: `count` of each column. The place of a shape's point p is (x, y) + scale * [cosine -sine; sine cosine] p.
  * cosine^2 + sine^2 must be 1 within NARC_ROTATION_TOLERANCE; the kernels remove the rest, so that a rotation may
  * drift a little. A body with a NaN or an infinity, with another cosine and sine, or with a scale that is not
- * positive or takes the shape out of NARC_MIN_SIZE .. NARC_MAX_SIZE, collides with nothing. */
+ * positive or takes the shape out of NARC_MIN_SIZE .. NARC_MAX_SIZE, collides with nothing. A pair with such a body, or
+ * with two bodies further apart than NARC_MAX_DISTANCE, has no answer; queries count these (narc_query.out_skipped). */
 typedef struct narc_bodies {
     size_t count;
     narc_precision position_precision; /* of x and y: float or double */
@@ -332,10 +334,16 @@ typedef struct narc_bodies {
  * NARC_ERROR_INDEX, NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE. Thread-safe. */
 NARC_API narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_bodies *bodies, narc_error *error);
 
-/* Pairs of body indices (uint32_t). Both may name the same body (it collides with itself). */
+/* Pairs of body indices (uint32_t). Both may name the same body (it collides with itself). The other columns are left
+ * out with base NULL:
+ *   margin            float; replaces the call's margin for that pair, in contacts and manifolds (overlaps have none)
+ *   shift_x, shift_y  float, world axes; added to the position of B, in double precision: for periodic images
+ * A pair with a NaN in them, or an infinite shift, has no answer, as one with a broken body. */
 typedef struct narc_pairs {
     size_t count; /* at most UINT32_MAX */
     narc_column a, b;
+    narc_column margin;
+    narc_column shift_x, shift_y;
 } narc_pairs;
 
 /* A list of contacts in the caller's memory, one array per property; an array that is NULL is not written. Contact k is
@@ -355,6 +363,33 @@ typedef struct narc_contacts {
     uint8_t *arc_a, *arc_b;
 } narc_contacts;
 
+/* A list of contact manifolds in the caller's memory, one array per property; an array that is NULL is not written.
+ * Manifold k has one or two points, in the order along the normal turned a quarter turn counter-clockwise:
+ *   pair            the index of the pair in the batch
+ *   point_count     1 or 2; of a pair without an answer (see narc_find_contacts()) 0
+ *   normal          unit, from A to B, world axes
+ *   separation[i]   along the normal, at point i. One point is the deepest: its separation is that of the contact.
+ *   point[i]        halfway between both surfaces along the normal, in world axes, relative to the position of body A
+ *   feature[i]      what touches there: A in the low byte, B in the high byte. Bits 0 to 5: an arc in the caller's
+ *                   numbering, or, with NARC_FEATURE_EDGE, an edge: number i is the one before arc i. Of two points on
+ *                   two edges NARC_FEATURE_END marks the edge's counter-clockwise end rather than its start.
+ *   radius_a[i]     radius of curvature of A, scaled: 0 at a corner, INFINITY on an edge; at an edge's end that of the
+ *   radius_b[i]     arc next to it. And of B.
+ * Where there is no point i its items are 0. */
+typedef struct narc_manifolds {
+    size_t capacity; /* items in each array */
+    uint32_t *pair;
+    uint8_t *point_count;
+    float *normal_x, *normal_y;
+    float *separation[2];
+    float *point_x[2], *point_y[2];
+    uint16_t *feature[2];
+    float *radius_a[2], *radius_b[2];
+} narc_manifolds;
+
+#define NARC_FEATURE_EDGE 0x40
+#define NARC_FEATURE_END  0x80
+
 /* How a method came to a pair's answer (see narc_methods.h; the exact one always ends well). */
 typedef enum narc_outcome {
     NARC_OUTCOME_DONE = 0,     /* the method ended as it should */
@@ -365,6 +400,33 @@ typedef enum narc_outcome {
 
 /* Most support points in one phase of gjk (see narc_methods.h). */
 #define NARC_MAX_ITERATIONS 128
+
+/* ------------------------------------------------------------------------------------------------ boxes */
+
+/* An axis-aligned box, borders included. One with a NaN or an infinity in it, or with a minimum above its maximum, is
+ * empty: it overlaps nothing. */
+typedef struct narc_box {
+    float min_x, min_y, max_x, max_y;
+} narc_box;
+
+/* Which boxes may form a pair. Every column may be left out (base NULL); a NULL filter lets all boxes.
+ *   still            uint8_t: not 0 for what does not move (static or asleep). Two of them form no pair.
+ *   category, mask   uint32_t: a and b form a pair only if category a & mask b and category b & mask a are not 0. Left
+ *                    out: all bits set.
+ *   group            uint32_t: two boxes of the same group other than 0 form no pair (the parts of one machine). */
+typedef struct narc_pair_filter {
+    narc_column still, category, mask, group;
+} narc_pair_filter;
+
+/* The memory that finding and matching pairs needs. It grows to what the largest step wants and stays, so that after
+ * some steps nothing is allocated. It holds no state between calls. One object serves one call at a time. */
+typedef struct narc_broad_phase narc_broad_phase;
+
+/* One without memory yet. `allocator` NULL: malloc and free. NARC_ERROR_MEMORY, NARC_ERROR_ARGUMENT. */
+NARC_API narc_status narc_create_broad_phase(const narc_allocator *allocator, narc_broad_phase **out_broad);
+
+/* Frees it; NULL is fine. */
+NARC_API void narc_destroy_broad_phase(narc_broad_phase *broad);
 
 #ifdef __cplusplus
 }

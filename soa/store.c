@@ -5,10 +5,10 @@
 #include "store.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "error.h"
+#include "memory.h"
 #include "outline.h"
 
 /* The promised 2^31 floats. */
@@ -20,23 +20,13 @@
 
 /* ------------------------------------------------------------------------------------------------ memory */
 
-static void *allocate_default(size_t size, void *context) {
-    (void)context;
-    return malloc(size);
-}
-
-static void release_default(void *memory, void *context) {
-    (void)context;
-    free(memory);
-}
-
 static void release(const narc_shapes *shapes, void *memory) {
     if (memory)
         shapes->allocator.release(memory, shapes->allocator.context);
 }
 
 narc_status narc_create_shapes(const narc_allocator *allocator, narc_shapes **out_shapes) {
-    narc_allocator chosen = allocator ? *allocator : (narc_allocator){allocate_default, release_default, NULL};
+    const narc_allocator chosen = narc_choose_allocator(allocator);
     if (!out_shapes || !chosen.allocate || !chosen.release)
         return NARC_ERROR_ARGUMENT;
     narc_shapes *shapes = chosen.allocate(sizeof *shapes, chosen.context);
@@ -51,7 +41,7 @@ void narc_destroy_shapes(narc_shapes *shapes) {
     if (!shapes)
         return;
     narc_allocator allocator = shapes->allocator;
-    release(shapes, shapes->heads_memory);
+    release(shapes, shapes->headers_memory);
     release(shapes, shapes->records_memory);
     allocator.release(shapes, allocator.context);
 }
@@ -81,11 +71,11 @@ static bool grow(const narc_shapes *shapes, void **memory, const void *array, si
 }
 
 static bool grow_heads(narc_shapes *shapes, size_t capacity) {
-    void *heads = NULL;
-    if (!grow(shapes, &shapes->heads_memory, shapes->heads, shapes->count * sizeof(narc_head), capacity,
-              sizeof(narc_head), &heads))
+    void *headers = NULL;
+    if (!grow(shapes, &shapes->headers_memory, shapes->headers, shapes->count * sizeof(narc_shape_header), capacity,
+              sizeof(narc_shape_header), &headers))
         return false;
-    shapes->heads = heads;
+    shapes->headers = headers;
     shapes->capacity = capacity;
     return true;
 }
@@ -112,17 +102,17 @@ static narc_status make_room(narc_shapes *shapes, size_t count, size_t records) 
     return NARC_OK;
 }
 
-static size_t find_block_size(size_t count) { return narc_first_arc(count) + count + 1; }
+static size_t count_records(size_t count) { return narc_angle_records(count) + count + 1; }
 
 narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t arc_count) {
     if (!shapes)
         return NARC_ERROR_ARGUMENT;
     if (shape_count > NARC_MAX_SHAPES || arc_count > MAX_RECORDS)
         return NARC_ERROR_COUNT;
-    /* A record for each arc and one for 16 arcs' turns; for each shape turns that do not fill their record, a circle's
-     * second half, and the box. */
+    /* A record for each arc and one for 16 arcs' angles; for each shape, angles that do not fill their record, a
+     * circle's second half, and the box. */
     return make_room(shapes, shapes->count + shape_count,
-                     shapes->record_count + arc_count + arc_count / NARC_TURNS + 3 * shape_count);
+                     shapes->record_count + arc_count + arc_count / NARC_RECORD_ANGLES + 3 * shape_count);
 }
 
 /* ------------------------------------------------------------------------------------------------ adding */
@@ -162,35 +152,35 @@ static double find_misfit(const narc_outline *o) {
     return misfit;
 }
 
-static narc_head make_head(const narc_outline *o, size_t count, narc_circle bound, double extent) {
+static narc_shape_header make_header(const narc_outline *o, size_t count, narc_circle bound, double extent) {
     narc_circle inner;
     narc_inscribe_outline(o, &inner);
-    double misfit = find_misfit(o), room = NARC_HEAD_SLACK * extent + misfit;
+    double misfit = find_misfit(o), room = NARC_ROUNDING_ROOM * extent + misfit;
     inner.x += o->origin_x;
     inner.y += o->origin_y;
-    narc_head head = {.count = (uint8_t)o->count};
-    head.flags = find_flags(o, count, bound.radius);
-    head.bound_x = (float)bound.x;
-    head.bound_y = (float)bound.y;
-    double moved = hypot((double)head.bound_x - bound.x, (double)head.bound_y - bound.y);
-    head.bound_radius = round_up(bound.radius + moved + room);
-    head.inner_x = (float)inner.x;
-    head.inner_y = (float)inner.y;
-    moved = hypot((double)head.inner_x - inner.x, (double)head.inner_y - inner.y);
-    head.inner_radius = round_down(fmax(0, inner.radius - moved - room));
+    narc_shape_header header = {.count = (uint8_t)o->count};
+    header.flags = find_flags(o, count, bound.radius);
+    header.bound_x = (float)bound.x;
+    header.bound_y = (float)bound.y;
+    double moved = hypot((double)header.bound_x - bound.x, (double)header.bound_y - bound.y);
+    header.bound_radius = round_up(bound.radius + moved + room);
+    header.inner_x = (float)inner.x;
+    header.inner_y = (float)inner.y;
+    moved = hypot((double)header.inner_x - inner.x, (double)header.inner_y - inner.y);
+    header.inner_radius = round_down(inner.radius - moved - room);
     /* One part in a million for the rounding of what is stored. */
-    head.reach = UINT8_MAX;
-    if (misfit <= NARC_HEAD_MISFIT * extent)
-        head.reach = (uint8_t)fmin(UINT8_MAX, ceil(extent * (1 + 1e-6) / (double)head.bound_radius));
-    return head;
+    header.extent_ratio = UINT8_MAX;
+    if (misfit <= NARC_MAX_MISFIT * extent)
+        header.extent_ratio = (uint8_t)fmin(UINT8_MAX, ceil(extent * (1 + 1e-6) / (double)header.bound_radius));
+    return header;
 }
 
 /* The smallest of the boxes along the junctions' normals: of a polygon, whose junctions are at both ends of every edge
  * and have its normal, the smallest of all, which lies along an edge. Its numbers are rounded to single precision,
- * which NARC_HEAD_SLACK has room for. */
-static narc_box make_box(const narc_outline *o, const narc_arc *arcs, size_t count, double room) {
+ * which NARC_ROUNDING_ROOM has room for. */
+static narc_oriented_box make_box(const narc_outline *o, const narc_arc *arcs, size_t count, double room) {
     double least = INFINITY;
-    narc_box box = {0};
+    narc_oriented_box box = {0};
     for (size_t i = 0; i < o->count; i++) {
         double x = o->normal_x[i], y = o->normal_y[i];
         double front = narc_find_height(o, x, y), back = narc_find_height(o, -x, -y);
@@ -215,7 +205,7 @@ static narc_box make_box(const narc_outline *o, const narc_arc *arcs, size_t cou
 }
 
 /* The diamond angle of a normal, as the kernels compute it. */
-static float find_turn(float x, float y) {
+static float find_diamond_angle(float x, float y) {
     float p = x / (fabsf(x) + fabsf(y));
     return 0 <= y ? 1 - p : 3 + p;
 }
@@ -276,28 +266,28 @@ static uint32_t find_upper_half(double value) {
     return bits >> 16;
 }
 
-static void write_block(const narc_outline *o, narc_head *head, narc_record *block) {
-    size_t count = o->count, first = 0, first_arc = narc_first_arc(count);
-    float turns[NARC_MAX_ARCS];
+static void write_records(const narc_outline *o, narc_shape_header *header, narc_record *records) {
+    size_t count = o->count, first = 0, angle_records = narc_angle_records(count);
+    float angles[NARC_MAX_ARCS];
     for (size_t i = 0; i < count; i++) {
-        turns[i] = find_turn((float)o->normal_x[i], (float)o->normal_y[i]);
-        first = turns[i] < turns[first] ? i : first;
+        angles[i] = find_diamond_angle((float)o->normal_x[i], (float)o->normal_y[i]);
+        first = angles[i] < angles[first] ? i : first;
     }
-    head->first = (uint8_t)first;
-    for (size_t k = 0; k < NARC_TURNS * first_arc; k++) {
-        int16_t turn = NARC_TURN_NONE;
+    header->first_arc = (uint8_t)first;
+    for (size_t k = 0; k < NARC_RECORD_ANGLES * angle_records; k++) {
+        int16_t angle = NARC_ANGLE_NONE;
         if (k < count)
-            turn = (int16_t)(turns[(first + k) % count] * NARC_TURN_SCALE - NARC_TURN_OFFSET);
-        block[k / NARC_TURNS].turns[k % NARC_TURNS] = turn;
+            angle = (int16_t)(angles[(first + k) % count] * NARC_ANGLE_SCALE - NARC_ANGLE_OFFSET);
+        records[k / NARC_RECORD_ANGLES].angles[k % NARC_RECORD_ANGLES] = angle;
     }
     for (size_t k = 0; k < count; k++) {
         size_t i = (first + k) % count;
-        block[first_arc + k].arc =
+        records[angle_records + k].arc =
             (narc_stored_arc){.center_x = (float)(o->center_x[i] + o->origin_x),
                               .center_y = (float)(o->center_y[i] + o->origin_y),
                               .radius = (float)o->radius[i],
-                              .rolls = find_upper_half(find_arc_inner(o, i)) << 16 |
-                                       find_upper_half(find_least_radius(o, i, NARC_NEAR_WINDOW)),
+                              .inner_radii = find_upper_half(find_arc_inner(o, i)) << 16 |
+                                             find_upper_half(find_least_radius(o, i, NARC_NEAR_WINDOW)),
                               .start_x = (float)o->normal_x[i],
                               .start_y = (float)o->normal_y[i],
                               .end_x = (float)o->normal_x[i + 1],
@@ -314,8 +304,8 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
     narc_status status = narc_check_arcs(arcs, count, &outline, &bound, error);
     if (status != NARC_OK)
         return status;
-    size_t block = shapes->record_count, block_size = find_block_size(outline.count);
-    status = make_room(shapes, shapes->count + 1, block + block_size);
+    size_t first_record = shapes->record_count, record_count = count_records(outline.count);
+    status = make_room(shapes, shapes->count + 1, first_record + record_count);
     if (status == NARC_ERROR_COUNT)
         return narc_fail(error, status, shapes->count, (double)shapes->count, "the store is full, it has %zu shapes",
                          shapes->count);
@@ -324,20 +314,20 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
     double extent = 0;
     for (size_t i = 0; i < count; i++)
         extent = fmax(extent, hypot(arcs[i].center_x, arcs[i].center_y) + arcs[i].radius);
-    narc_head head = make_head(&outline, count, bound, extent);
-    if ((double)head.bound_radius > NARC_HEAD_MAX_RADIUS)
+    narc_shape_header header = make_header(&outline, count, bound, extent);
+    if ((double)header.bound_radius > NARC_MAX_BOUND_RADIUS)
         return narc_fail(error, NARC_ERROR_SIZE, 0, bound.radius,
                          "the shape's bounding radius is %.9g, with room for rounding %.9g, more than %g", bound.radius,
-                         (double)head.bound_radius, NARC_MAX_SIZE);
-    head.block = (uint32_t)block;
-    write_block(&outline, &head, shapes->records + block);
-    shapes->records[block + block_size - 1].box =
-        make_box(&outline, arcs, count, NARC_HEAD_SLACK * extent + find_misfit(&outline));
+                         (double)header.bound_radius, NARC_MAX_SIZE);
+    header.first_record = (uint32_t)first_record;
+    write_records(&outline, &header, shapes->records + first_record);
+    shapes->records[first_record + record_count - 1].box =
+        make_box(&outline, arcs, count, NARC_ROUNDING_ROOM * extent + find_misfit(&outline));
     if (out_shape)
         *out_shape = (uint32_t)shapes->count;
-    shapes->heads[shapes->count++] = head;
-    shapes->polygon_count += (head.flags & NARC_SHAPE_POLYGON) != 0;
-    shapes->record_count += block_size;
+    shapes->headers[shapes->count++] = header;
+    shapes->polygon_count += (header.flags & NARC_SHAPE_POLYGON) != 0;
+    shapes->record_count += record_count;
     return NARC_OK;
 }
 
@@ -346,17 +336,17 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
 size_t narc_count_shapes(const narc_shapes *shapes) { return shapes ? shapes->count : 0; }
 
 unsigned narc_shape_flags(const narc_shapes *shapes, uint32_t shape) {
-    return shape < narc_count_shapes(shapes) ? shapes->heads[shape].flags : 0;
+    return shape < narc_count_shapes(shapes) ? shapes->headers[shape].flags : 0;
 }
 
 size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_arcs) {
     if (shape >= narc_count_shapes(shapes))
         return 0;
-    narc_head head = shapes->heads[shape];
-    const narc_record *arcs = narc_arcs_of(shapes, &head);
-    size_t count = head.flags & NARC_SHAPE_CIRCLE ? 1 : head.count;
+    narc_shape_header header = shapes->headers[shape];
+    const narc_record *arcs = narc_arcs_of(shapes, &header);
+    size_t count = header.flags & NARC_SHAPE_CIRCLE ? 1 : header.count;
     for (size_t i = 0; out_arcs && i < count; i++) {
-        const narc_stored_arc *r = &arcs[(i + head.count - head.first) % head.count].arc;
+        const narc_stored_arc *r = &arcs[(i + header.count - header.first_arc) % header.count].arc;
         double start = atan2((double)r->start_y, (double)r->start_x), end = atan2((double)r->end_y, (double)r->end_x);
         if (count == 1)
             end = start;
@@ -388,8 +378,8 @@ bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, floa
                    narc_aabb *out_aabb) {
     if (!out_aabb || shape >= narc_count_shapes(shapes))
         return false;
-    const narc_record *arcs = narc_arcs_of(shapes, &shapes->heads[shape]);
-    size_t count = shapes->heads[shape].count;
+    const narc_record *arcs = narc_arcs_of(shapes, &shapes->headers[shape]);
+    size_t count = shapes->headers[shape].count;
     double length = hypot((double)cosine, (double)sine), c = (double)cosine / length, s = (double)sine / length;
     double extent = 0;
     if (!(length > 0) || !isfinite(length))
@@ -398,7 +388,7 @@ bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, floa
         extent = fmax(extent, fabs((double)arcs[i].arc.center_x) + fabs((double)arcs[i].arc.center_y) +
                                   (double)arcs[i].arc.radius);
     /* The world's x axis is (c, -s) in the shape's axes, its y axis (s, c). */
-    double slack = NARC_HEAD_SLACK * extent, factor = (double)scale;
+    double slack = NARC_ROUNDING_ROOM * extent, factor = (double)scale;
     *out_aabb = (narc_aabb){.min_x = factor * -(find_stored_height(arcs, count, -c, s) + slack),
                             .min_y = factor * -(find_stored_height(arcs, count, -s, -c) + slack),
                             .max_x = factor * (find_stored_height(arcs, count, c, -s) + slack),

@@ -2,18 +2,18 @@
  *
  * store.h - the layout of a shape store, as the kernels read it. Internal.
  *
- * Each shape has a HEAD, half a cache line with all that the comparison of circles needs, and a BLOCK of RECORDS, also
- * half a cache line each: the angles of its junctions (TURNS), 16 to a record, its ARCS, one record with all that is
- * known of each, and last its BOX. A batch meets shapes in any order, and so touches one line for a shape that the
- * circles settle, and two more for most others, however many arcs they have; heads of their own lie so densely that
- * thousands stay in the cache.
+ * Each shape has a HEADER, half a cache line with all that the comparison of circles needs, and a run of RECORDS, half
+ * a cache line each: first its junction angles, 16 to a record, then its arcs, one record with all that is known of
+ * each, and last its box. A batch meets shapes in any order. It touches one line for a shape that the circles settle,
+ * and two more for most others, however many arcs they have. The headers lie together, so that thousands stay in the
+ * cache.
  *
- * Arcs lie in the order of their junctions' angle, the first junction counter-clockwise from +x first; the caller's
- * first arc is somewhere among them (`first` says where). So a direction belongs to the arc before the first whose
- * junction has a larger angle, to the last arc if that is the first.
+ * Arcs lie in the order of the angles of the junctions where they start, counter-clockwise from +x; the header's
+ * `first_arc` says which of the caller's arcs is the first one here. A direction belongs to the arc before the first
+ * junction with a larger angle, and to the last arc if that junction is the first one.
  *
- * Angles are diamond angles: monotonic in the true one, 0 along +x, 1 along +y, at most 4. In the list they are rounded
- * to 16 bits, in the order of signed numbers.
+ * Angles are diamond angles: monotonic in the true angle, 0 along +x, 1 along +y, at most 4. The junction angles are
+ * rounded to 16 bits, in the order of signed numbers.
  *
  * A full circle is stored as two half circles, because the kernels want sweeps of at most half a turn;
  * NARC_SHAPE_CIRCLE tells them to report arc 0 for both.
@@ -23,34 +23,35 @@
 
 #include "narc_shapes.h"
 
-enum { NARC_CACHE_LINE = 64, NARC_TURNS = 16 };
+enum { NARC_CACHE_LINE = 64, NARC_RECORD_ANGLES = 16 };
 
-/* A diamond angle in 16 bits: (int)(angle * NARC_TURN_SCALE - NARC_TURN_OFFSET), and what fills up the list: no
- * direction is beyond it. */
-#define NARC_TURN_SCALE  16383.75f
-#define NARC_TURN_OFFSET 32768.0f
-#define NARC_TURN_NONE   INT16_MAX
+/* A diamond angle in 16 bits is (int)(angle * NARC_ANGLE_SCALE - NARC_ANGLE_OFFSET). NARC_ANGLE_NONE, which no
+ * direction exceeds, fills up the last record. */
+#define NARC_ANGLE_SCALE  16383.75f
+#define NARC_ANGLE_OFFSET 32768.0f
+#define NARC_ANGLE_NONE   INT16_MAX
 
-typedef struct narc_head {
-    uint32_t block; /* the block's first record, counted from narc_shapes.records */
-    uint8_t count;  /* arcs as stored, 2 .. NARC_MAX_ARCS */
-    uint8_t first;  /* the caller's arc that is arc 0 here */
-    uint8_t flags;  /* NARC_SHAPE_... */
-    uint8_t reach;  /* extent (the largest |centre| + radius) at most this times bound_radius; 255: more than that, or
-                     * arcs join worse than NARC_HEAD_MISFIT: kernels prove nothing then, but go by their formula */
-    /* A circle around the shape and one inside it. Both leave room (NARC_HEAD_SLACK times the extent) for the rounding
-     * of the kernels, so that a filter that uses them never contradicts the deciding formula. The inner radius is 0
-     * where that leaves nothing. */
+typedef struct narc_shape_header {
+    uint32_t first_record; /* index into narc_shapes.records */
+    uint8_t count;         /* arcs as stored, 2 .. NARC_MAX_ARCS */
+    uint8_t first_arc;     /* the caller's arc that is stored first */
+    uint8_t flags;         /* NARC_SHAPE_... */
+    /* The extent (the largest |centre| + radius) is at most this many bounding radii. 255: it is more, or the arcs join
+     * worse than NARC_MAX_MISFIT; then the kernels prove nothing and go by the deciding formula. */
+    uint8_t extent_ratio;
+    /* A circle around the shape and one inside it. Both leave room (NARC_ROUNDING_ROOM times the extent) for the
+     * rounding of the kernels, so that a filter that uses them never contradicts the deciding formula. The inner radius
+     * is negative where the room is larger than the circle, of shapes far from their own origin: what is missing must
+     * come off the other body's radius. */
     float bound_x, bound_y, bound_radius;
     float inner_x, inner_y, inner_radius;
-} narc_head;
+} narc_shape_header;
 
-/* An arc: its circle, and the unit outward normals where it starts and ends, counter-clockwise. `rolls` is two radii
- * that tell how much shape there is behind the arc, rounded down to the upper halves of floats:
+/* An arc: its circle, and the unit outward normals where it starts and ends, counter-clockwise. `inner_radii` is two
+ * radii that tell how much shape there is behind the arc, each rounded down to the upper half of a float:
  *   inner, the upper half   A circle of that radius that touches the arc from inside, anywhere on it, lies in the
- *   shape;
- *                           and no arc with a direction within NARC_INNER_WINDOW of one of this arc's has a smaller
- *                           radius.
+ *                           shape; and no arc with a direction within NARC_INNER_WINDOW of one of this arc's has a
+ *                           smaller radius.
  *   near, the lower half    No arc with a direction within NARC_NEAR_WINDOW has a smaller radius. */
 #define NARC_INNER_WINDOW 0.1
 #define NARC_NEAR_WINDOW  1.0471975511965976 /* 60 degrees */
@@ -58,52 +59,53 @@ typedef struct narc_head {
 /* The end of an arc and the start of the next have the same bits: a junction has one normal. */
 typedef struct narc_stored_arc {
     float center_x, center_y, radius;
-    uint32_t rolls;
+    uint32_t inner_radii;
     float start_x, start_y, end_x, end_y;
 } narc_stored_arc;
 
-/* What only methods other than the exact one ask of a shape, behind its arcs: a box around it and its centroid. The
- * half sides have room for the kernels' rounding, NARC_HEAD_SLACK times the extent. */
-typedef struct narc_box {
+/* What only methods other than the exact one ask of a shape: a box around it and its centroid. The half sides have room
+ * for the kernels' rounding, NARC_ROUNDING_ROOM times the extent. */
+typedef struct narc_oriented_box {
     float center_x, center_y, half_x, half_y;
     float axis_x, axis_y; /* the direction of the side half_x, unit */
     float centroid_x, centroid_y;
-} narc_box;
+} narc_oriented_box;
 
 typedef union narc_record {
-    int16_t turns[NARC_TURNS];
+    int16_t angles[NARC_RECORD_ANGLES];
     narc_stored_arc arc;
-    narc_box box;
+    narc_oriented_box box;
 } narc_record;
 
-/* Where the arcs begin in a block: how many records the turns take. */
-static inline size_t narc_first_arc(size_t count) { return (count + NARC_TURNS - 1) / NARC_TURNS; }
+/* How many records the junction angles of a shape take: its first arc lies behind them. */
+static inline size_t narc_angle_records(size_t count) { return (count + NARC_RECORD_ANGLES - 1) / NARC_RECORD_ANGLES; }
 
-/* 96 roundings, so that the circles stay clear of the deciding formula's error: that is 32 roundings (NARC_ERROR_BOUND)
- * of the distance between the positions plus both extents, and that distance is at most the sum of the extents more
- * than the distance between the circles' centres. See kernels/relative.inl. */
-#define NARC_HEAD_SLACK (96.0 / 16777216.0)
+/* 96 roundings, so that the circles stay clear of the deciding formula's error. That error is 32 roundings
+ * (NARC_ERROR_BOUND) of the distance between the positions plus both extents, and that distance exceeds the distance
+ * between the circles' centres by at most the sum of the extents. See kernels/base/pair_setup.inl. */
+#define NARC_ROUNDING_ROOM (96.0 / 16777216.0)
 
-/* What the joins of all arcs together may be off by, relative to the extent, for the kernels' proofs to hold: what
- * their slack has to spare (kernels/proof.inl). Coordinates with 7 digits pass, where they are of the extent's size. */
-#define NARC_HEAD_MISFIT (32.0 / 16777216.0)
+/* What the joins of all arcs together may be off by, relative to the extent, for the kernels' certificates to hold:
+ * their slack covers that much (kernels/sat/certificates.inl). Coordinates with 7 digits pass if they are of the
+ * extent's size. */
+#define NARC_MAX_MISFIT (32.0 / 16777216.0)
 
 /* The largest bound_radius, scaled: a centred shape of NARC_MAX_SIZE passes with its room for rounding. */
-#define NARC_HEAD_MAX_RADIUS (NARC_MAX_SIZE * (1 + NARC_TOLERANCE))
+#define NARC_MAX_BOUND_RADIUS (NARC_MAX_SIZE * (1 + NARC_TOLERANCE))
 
 struct narc_shapes {
-    narc_head *heads;
+    narc_shape_header *headers;
     narc_record *records;
-    size_t count, capacity;               /* heads */
+    size_t count, capacity;               /* headers */
     size_t polygon_count;                 /* of them, those with NARC_SHAPE_POLYGON */
     size_t record_count, record_capacity; /* records */
     narc_allocator allocator;
-    void *heads_memory, *records_memory; /* what the allocator returned; heads and records begin at cache lines in it */
+    void *headers_memory, *records_memory; /* what the allocator returned; both arrays begin at cache lines in it */
 };
 
-/* The arcs of a shape, narc_head.count of them. */
-static inline const narc_record *narc_arcs_of(const narc_shapes *shapes, const narc_head *head) {
-    return &shapes->records[head->block + narc_first_arc(head->count)];
+/* The arcs of a shape, header->count of them. */
+static inline const narc_record *narc_arcs_of(const narc_shapes *shapes, const narc_shape_header *header) {
+    return &shapes->records[header->first_record + narc_angle_records(header->count)];
 }
 
 #endif

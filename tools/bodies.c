@@ -9,7 +9,6 @@
 
 #include "fail.h"
 #include "narc.h"
-#include "progress.h"
 #include "table.h"
 #include "text.h"
 #include "turn.h"
@@ -18,12 +17,11 @@
 static float read_scale(const table *rows, const shape *of) {
     const double scale = row_number(rows, 4, "scale");
     const double size = scale * of->bound;
-    if (!(scale > 0)) {
-        fail_at(rows->path, rows->line, "scale must be more than 0 '%s'", rows->fields[4]);
-    }
+    if (!(scale > 0))
+        fail_field(rows, 4, "scale must be more than 0");
     if (!(size >= NARC_MIN_SIZE && size <= NARC_MAX_SIZE)) {
-        fail_at(rows->path, rows->line, "scale makes the body's radius %.9g, outside %.9g to %.9g '%s'", size,
-                NARC_MIN_SIZE, NARC_MAX_SIZE, rows->fields[4]);
+        fail_field(rows, 4, "scale makes the body's radius %.9g, outside %.9g to %.9g,", size, NARC_MIN_SIZE,
+                   NARC_MAX_SIZE);
     }
     return (float)scale;
 }
@@ -33,9 +31,8 @@ static float read_scale(const table *rows, const shape *of) {
 static void compute_poses(body_list *bodies, float *angles) {
     float *sines = allocate(bodies->count, sizeof *sines);
     narc_error error;
-    if (narc_compute_poses(angles, bodies->count, angles, sines, &error) != NARC_OK) {
+    if (narc_compute_poses(angles, bodies->count, angles, sines, &error) != NARC_OK)
         fail("%s", error.message);
-    }
     for (size_t i = 0; i < bodies->count; i++) {
         bodies->items[i].cosine = angles[i];
         bodies->items[i].sine = sines[i];
@@ -51,23 +48,19 @@ void read_bodies(const char *path, const shape_list *shapes, body_list *out_bodi
     bodies.items = grow(NULL, &bodies.capacity, 0, sizeof *bodies.items);
     size_t angle_capacity = 0;
     float *angles = grow(NULL, &angle_capacity, 0, sizeof *angles);
-    while (next_row(&rows)) {
-        if (bodies.count == UINT32_MAX) {
+    while (next_row(&rows, "reading bodies")) {
+        if (bodies.count == UINT32_MAX)
             fail_at(path, rows.line, "more than %u bodies", UINT32_MAX);
-        }
         bodies.items = grow(bodies.items, &bodies.capacity, bodies.count + 1, sizeof *bodies.items);
         angles = grow(angles, &angle_capacity, bodies.count + 1, sizeof *angles);
         const size_t found = find_shape(shapes, rows.fields[0]);
-        if (found == shapes->count) {
-            fail_at(path, rows.line, "no shape has that name or index (there are %zu) '%s'", shapes->count,
-                    rows.fields[0]);
-        }
+        if (found == shapes->count)
+            fail_field(&rows, 0, "no shape has that name or index (there are %zu)", shapes->count);
         angles[bodies.count] = (float)remainder(row_number(&rows, 3, "angle"), FULL_TURN);
         bodies.items[bodies.count++] = (body){.x = row_number(&rows, 1, "x"),
                                               .y = row_number(&rows, 2, "y"),
                                               .scale = scaled ? read_scale(&rows, &shapes->items[found]) : 1.0f,
                                               .shape = (uint32_t)found};
-        show_progress("reading bodies", (size_t)(rows.next - rows.text), (size_t)(rows.end - rows.text));
     }
     compute_poses(&bodies, angles);
     free(angles);
@@ -77,13 +70,10 @@ void read_bodies(const char *path, const shape_list *shapes, body_list *out_bodi
 
 static uint32_t read_index(const table *rows, size_t column, const char *name, size_t body_count) {
     uint64_t index;
-    if (!parse_whole(rows->fields[column], UINT64_MAX, &index)) {
-        fail_at(rows->path, rows->line, "%s is not a whole number '%s'", name, rows->fields[column]);
-    }
-    if (index >= body_count) {
-        fail_at(rows->path, rows->line, "%s is out of range, there are %zu bodies '%s'", name, body_count,
-                rows->fields[column]);
-    }
+    if (!parse_whole(rows->fields[column], UINT64_MAX, &index))
+        fail_field(rows, column, "%s is not a whole number", name);
+    if (index >= body_count)
+        fail_field(rows, column, "%s is out of range, there are %zu bodies", name, body_count);
     return (uint32_t)index;
 }
 
@@ -93,14 +83,12 @@ void read_pairs(const char *path, size_t body_count, pair_list *out_pairs) {
     open_table(&rows, path, headers, 1);
     pair_list pairs = {0};
     pairs.items = grow(NULL, &pairs.capacity, 0, sizeof *pairs.items);
-    while (next_row(&rows)) {
-        if (pairs.count == UINT32_MAX) {
+    while (next_row(&rows, "reading pairs")) {
+        if (pairs.count == UINT32_MAX)
             fail_at(path, rows.line, "more than %u pairs", UINT32_MAX);
-        }
         pairs.items = grow(pairs.items, &pairs.capacity, pairs.count + 1, sizeof *pairs.items);
         pairs.items[pairs.count++] =
             (pair){read_index(&rows, 0, "a", body_count), read_index(&rows, 1, "b", body_count)};
-        show_progress("reading pairs", (size_t)(rows.next - rows.text), (size_t)(rows.end - rows.text));
     }
     close_table(&rows);
     *out_pairs = pairs;

@@ -11,6 +11,8 @@
  */
 #include "broad_phase.h"
 
+#include <assert.h>
+#include <inttypes.h>
 #include <stdlib.h>
 
 #include "fail.h"
@@ -37,7 +39,6 @@ typedef struct search {
     size_t count;
     size_t *cursor; /* for each body a, moved on by one for each pair (a, b) */
     pair *pairs;    /* where cursor points to; NULL: pairs are only counted */
-    uint64_t found; /* pairs */
     uint64_t steps; /* pairs looked at */
     double covered; /* ranks squared that were swept, for the progress line */
 } search;
@@ -59,11 +60,10 @@ static uint32_t last_not_above(const side *sides, size_t count, double value) {
     size_t low = 0, high = count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (sides[middle].value <= value) {
+        if (sides[middle].value <= value)
             low = middle + 1;
-        } else {
+        else
             high = middle;
-        }
     }
     return (uint32_t)(low - 1);
 }
@@ -73,9 +73,8 @@ static item *rank_boxes(const narc_aabb *boxes, size_t count) {
     item *items = allocate(count, sizeof *items);
     uint32_t *place = allocate(count, sizeof *place); /* of each box in `items` */
     side *sides = allocate(count, sizeof *sides);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++)
         sides[i] = (side){boxes[i].min_x, (uint32_t)i};
-    }
     qsort(sides, count, sizeof *sides, compare_sides);
     for (size_t k = 0; k < count; k++) {
         show_progress("broad phase, sorting", k, 2 * count);
@@ -84,9 +83,8 @@ static item *rank_boxes(const narc_aabb *boxes, size_t count) {
         items[k].x_last = last_not_above(sides, count, boxes[box].max_x);
         place[box] = (uint32_t)k;
     }
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++)
         sides[i] = (side){boxes[i].min_y, (uint32_t)i};
-    }
     qsort(sides, count, sizeof *sides, compare_sides);
     for (size_t k = 0; k < count; k++) {
         show_progress("broad phase, sorting", count + k, 2 * count);
@@ -97,6 +95,52 @@ static item *rank_boxes(const narc_aabb *boxes, size_t count) {
     free(place);
     free(sides);
     return items;
+}
+
+/* ---------------------------------------------------------------------------- how many */
+
+/* Fenwick trees of counts: entry i of `tree` (from 1) holds those of the places i - (i & -i) .. i - 1. */
+static void add_at(uint32_t *tree, size_t count, uint32_t place, uint32_t change) {
+    for (size_t i = (size_t)place + 1; i <= count; i += i & (~i + 1))
+        tree[i] += change;
+}
+
+static uint32_t sum_below(const uint32_t *tree, size_t place) {
+    uint32_t sum = 0;
+    for (; place > 0; place &= place - 1)
+        sum += tree[place];
+    return sum;
+}
+
+/* Counts overlapping pairs without looking at them, in n log n steps: a line moves along x over the boxes that it
+ * meets. Of these, the ones that overlap the next box along y have begun at its end and not ended before its
+ * beginning. */
+static uint64_t count_overlaps(const item *items, size_t count) {
+    uint32_t *begun = allocate(count + 1, sizeof *begun), *ended = allocate(count + 1, sizeof *ended);
+    uint32_t *last = allocate(count, sizeof *last),
+             *next = allocate(count, sizeof *next); /* lists of boxes by x_last */
+    for (size_t k = 0; k < count; k++) {
+        begun[k + 1] = ended[k + 1] = 0;
+        last[k] = UINT32_MAX;
+    }
+    uint64_t found = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        const item *box = &items[k];
+        found += sum_below(begun, (size_t)box->y_last + 1) - sum_below(ended, box->y_first);
+        add_at(begun, count, box->y_first, 1);
+        add_at(ended, count, box->y_last, 1);
+        next[k] = last[box->x_last];
+        last[box->x_last] = k;
+        for (uint32_t gone = last[k]; gone != UINT32_MAX; gone = next[gone]) {
+            add_at(begun, count, items[gone].y_first, UINT32_MAX); /* -1 */
+            add_at(ended, count, items[gone].y_last, UINT32_MAX);
+        }
+    }
+    free(begun);
+    free(ended);
+    free(last);
+    free(next);
+    return found;
 }
 
 /* ---------------------------------------------------------------------------- regions */
@@ -115,23 +159,17 @@ static void sweep(search *in, const uint32_t *list, size_t count, region where) 
         const item *first = &in->items[list[p]];
         for (size_t q = p + 1; q < count && list[q] <= first->x_last; q++) {
             const item *second = &in->items[list[q]];
-            if (++in->steps % REPORT_EVERY == 0) {
+            if (++in->steps % REPORT_EVERY == 0)
                 report(in, where, (double)p / (double)count);
-            }
             const uint32_t x = list[q], y = first->y_first > second->y_first ? first->y_first : second->y_first;
             if (y > first->y_last || y > second->y_last || x < where.x_first || x > where.x_last || y < where.y_first ||
-                y > where.y_last) {
+                y > where.y_last)
                 continue;
-            }
             const bool in_order = first->body < second->body;
             const uint32_t a = in_order ? first->body : second->body, b = in_order ? second->body : first->body;
-            if (in->pairs) {
+            if (in->pairs)
                 in->pairs[in->cursor[a]] = (pair){a, b};
-            }
             in->cursor[a]++;
-            if (++in->found > UINT32_MAX) {
-                fail("more than %u candidate pairs", UINT32_MAX);
-            }
         }
     }
     report(in, where, 1);
@@ -195,19 +233,16 @@ static void search_region(search *in, const uint32_t *list, size_t count, region
     uint32_t *part = allocate(best.low > best.high ? best.low : best.high, sizeof *part);
     for (int high = 0; high < 2; high++) {
         size_t length = 0;
-        for (size_t p = 0; p < count; p++) {
-            if (high ? is_high(in, list[p], &best) : is_low(in, list[p], &best)) {
+        for (size_t p = 0; p < count; p++)
+            if (high ? is_high(in, list[p], &best) : is_low(in, list[p], &best))
                 part[length++] = list[p];
-            }
-        }
         region half = where;
         uint32_t *low_end = best.along_y ? &half.y_last : &half.x_last;
         uint32_t *high_begin = best.along_y ? &half.y_first : &half.x_first;
-        if (high) {
+        if (high)
             *high_begin = best.at;
-        } else {
+        else
             *low_end = best.at - 1;
-        }
         search_region(in, part, length, half);
     }
     free(part);
@@ -218,14 +253,19 @@ static int compare_partners(const void *left, const void *right) {
     return (a->b > b->b) - (a->b < b->b);
 }
 
-void find_candidates(const narc_aabb *boxes, size_t count, pair_list *out_pairs) {
+void find_candidates(const char *path, const narc_aabb *boxes, size_t count, uint64_t most, pair_list *out_pairs) {
     *out_pairs = (pair_list){0};
     out_pairs->items = grow(NULL, &out_pairs->capacity, 0, sizeof *out_pairs->items);
-    if (count < 2) {
+    if (count < 2)
         return;
-    }
     show_stage("broad phase", count, "bodies", false);
     item *items = rank_boxes(boxes, count);
+    const uint64_t overlaps = count_overlaps(items, count);
+    if (overlaps > most) {
+        fail_at(path, 0,
+                "%" PRIu64 " candidate pairs, bodies whose bounding boxes overlap: more than --max-pairs %" PRIu64,
+                overlaps, most);
+    }
     uint32_t *list = allocate(count, sizeof *list);
     size_t *cursor = allocate(count, sizeof *cursor);
     for (size_t k = 0; k < count; k++) {
@@ -243,6 +283,7 @@ void find_candidates(const narc_aabb *boxes, size_t count, pair_list *out_pairs)
         cursor[a] = total;
         total += own;
     }
+    assert(total == overlaps);
     pair *pairs = out_pairs->items = grow(out_pairs->items, &out_pairs->capacity, total, sizeof *pairs);
     in = (search){.items = items, .count = count, .cursor = cursor, .pairs = pairs};
     search_region(&in, list, count, whole);

@@ -7,8 +7,9 @@
 
 #include "bodies.h"
 
-/* The pairs of boxes that overlap or touch, a < b, sorted by a and then b. `boxes` holds no NaN. More than UINT32_MAX
- * pairs are an error. Memory grows in proportion to boxes and pairs. */
-void find_candidates(const narc_aabb *boxes, size_t count, pair_list *out_pairs);
+/* The pairs of boxes that overlap or touch, a < b, sorted by a and then b. `boxes` holds no NaN. Memory grows in
+ * proportion to boxes and pairs. More than `most` pairs, UINT32_MAX at most, are counted without looking at each of
+ * them, and are an error, which names `path`. */
+void find_candidates(const char *path, const narc_aabb *boxes, size_t count, uint64_t most, pair_list *out_pairs);
 
 #endif

@@ -20,20 +20,22 @@
 #include "shapes_json.h"
 
 static const char HELP[] =
-    "usage: narc collide --shapes shapes.json --bodies bodies.csv [--pairs pairs.csv]\n"
+    "usage: narc collide --shapes shapes.json --bodies bodies.csv [--pairs pairs.csv|--max-pairs N]\n"
     "                    [--out contacts.csv] [--all] [--margin M] [--picture FILE]\n"
     "                    [--method NAME] [--tolerance T] [--iterations N] [--isa NAME] [--threads N]\n"
     "\n"
     "Tests bodies for collision, exactly unless another method is asked for, and prints a short\n"
-    "report.\n"
+    "report. One of the input files may be -: standard input.\n"
     "\n"
     "  --shapes FILE   the shapes file\n"
     "  --bodies FILE   CSV, header shape,x,y,angle or shape,x,y,angle,scale; a shape is given by\n"
     "                  its name or its index from 0, an angle in radians\n"
     "  --pairs FILE    CSV, header a,b: the pairs to test, body indices from 0; left out: all\n"
     "                  pairs whose bounding boxes overlap (or come closer than the margin)\n"
+    "  --max-pairs N   without --pairs: more candidates than that are an error; default 100000000\n"
     "  --out FILE      the contacts: CSV, header\n"
     "                  a,b,separation,normal_x,normal_y,point_x,point_y,arc_a,arc_b\n"
+    "                  normals point from a to b; points are in world coordinates\n"
     "                  -: standard output, and the report goes to standard error\n"
     "                  With circle, aabb and obb: the pairs that pass, header a,b, as --pairs takes\n"
     "  --margin M      report pairs whose separation is less than M; default 0, those that collide\n"
@@ -52,21 +54,17 @@ static const char HELP[] =
     "  --tolerance T   gjk: the largest error of a separation, as a part of the sum of both bounding\n"
     "                  radii; 1e-9 to 1, default 0.0001\n"
     "  --iterations N  gjk: most steps of GJK, and of EPA; 1 to 128, the default\n"
-    "  --isa NAME      the instruction set: scalar, neon, avx2 or avx512 (see narc info)\n"
+    "  --isa NAME      the instruction set, one of those that narc info lists\n"
     "  --threads N     1 to 1024; left out: one for each processor\n"
+    "\n"
+    "Skipped pairs have no answer, because their bodies are more than 1e17 apart.\n"
     "\n"
     "The narrow phase's time is that of the batch call alone, which the report names; it is repeated\n"
     "and the median taken where one call is too short to measure.\n"
     "\n"
-    "The shapes file: {\"shapes\": [SHAPE, ...]}, where a SHAPE is one of\n"
-    "  {\"name\": \"lens\", \"arcs\": [{\"center\": [x, y], \"radius\": r, \"start\": a, \"end\": b}, ...]}\n"
-    "  {\"name\": \"p\", \"points\": [[x, y], ...], \"radius\": r}     an n-arc's junctions\n"
-    "  {\"name\": \"q\", \"polygon\": [[x, y], ...], \"radius\": r}    corners rounded, 0 if left out\n"
-    "  {\"name\": \"c\", \"circle\": r}\n"
-    "  {\"name\": \"k\", \"capsule\": {\"length\": l, \"radius\": r}}\n"
-    "  {\"name\": \"b\", \"box\": {\"width\": w, \"height\": h, \"radius\": r}}\n";
+    "The manual, narc(1), describes the files.\n";
 
-enum { LARGEST_THREADS = 1024 };
+enum { LARGEST_THREADS = 1024, DEFAULT_MOST_PAIRS = 100000000 };
 
 /* Far below what single precision can reach, and far above what it rounds to 0, which would mean the default. */
 static const double LEAST_TOLERANCE = 1e-9;
@@ -74,6 +72,7 @@ static const double LEAST_TOLERANCE = 1e-9;
 typedef struct settings {
     const char *shapes, *bodies, *pairs, *out, *picture, *isa;
     double search_margin; /* bounding boxes closer than this are candidates */
+    uint64_t most_pairs;  /* of those */
     narrow_settings narrow;
 } settings;
 
@@ -87,20 +86,33 @@ typedef struct job {
     double broad_seconds;
 } job;
 
-enum { SHAPES, BODIES, PAIRS, OUT, ALL, MARGIN, PICTURE, METHOD, TOLERANCE, ITERATIONS, ISA, THREADS, OPTIONS };
+enum {
+    SHAPES,
+    BODIES,
+    PAIRS,
+    MAX_PAIRS,
+    OUT,
+    ALL,
+    MARGIN,
+    PICTURE,
+    METHOD,
+    TOLERANCE,
+    ITERATIONS,
+    ISA,
+    THREADS,
+    OPTIONS
+};
 
 static void refuse_option(const option *given, const char *method, const char *reason) {
-    if (given->value) {
+    if (given->value)
         fail("%s is not for method '%s', %s", given->name, method, reason);
-    }
 }
 
 /* Method, tolerance and iterations; options of other methods are errors. */
 static void read_method(const option *options, narrow_settings *out_chosen) {
     const narc_method method = options[METHOD].value ? find_method(options[METHOD].value) : NARC_METHOD_SAT;
     const char *name = narc_method_name(method);
-    *out_chosen =
-        (narrow_settings){.method = method, .tolerance = NARC_DEFAULT_TOLERANCE, .iterations = NARC_MAX_ITERATIONS};
+    *out_chosen = (narrow_settings){.method = method, .iterations = NARC_MAX_ITERATIONS};
     if (method != NARC_METHOD_GJK) {
         refuse_option(&options[TOLERANCE], name, "only for 'gjk'");
         refuse_option(&options[ITERATIONS], name, "only for 'gjk'");
@@ -109,22 +121,17 @@ static void read_method(const option *options, narrow_settings *out_chosen) {
         refuse_option(&options[MARGIN], name, "which finds no contacts");
         refuse_option(&options[ALL], name, "which finds no contacts");
     }
-    if (options[TOLERANCE].value) {
-        const double tolerance = number_option(&options[TOLERANCE]);
-        if (!(tolerance >= LEAST_TOLERANCE && tolerance <= 1)) {
-            fail("--tolerance must be a number from %g to 1, not '%s'", LEAST_TOLERANCE, options[TOLERANCE].value);
-        }
-        out_chosen->tolerance = (float)tolerance;
-    }
-    if (options[ITERATIONS].value) {
+    out_chosen->tolerance =
+        (float)number_option(&options[TOLERANCE], LEAST_TOLERANCE, 1, "from 1e-9 to 1", (double)NARC_DEFAULT_TOLERANCE);
+    if (options[ITERATIONS].value)
         out_chosen->iterations = (unsigned)whole_option(&options[ITERATIONS], 1, NARC_MAX_ITERATIONS);
-    }
 }
 
 static settings read_settings(int argc, char **argv) {
     option options[OPTIONS] = {[SHAPES] = {"--shapes", true, NULL},
                                [BODIES] = {"--bodies", true, NULL},
                                [PAIRS] = {"--pairs", true, NULL},
+                               [MAX_PAIRS] = {"--max-pairs", true, NULL},
                                [OUT] = {"--out", true, NULL},
                                [ALL] = {"--all", false, NULL},
                                [MARGIN] = {"--margin", true, NULL},
@@ -138,25 +145,24 @@ static settings read_settings(int argc, char **argv) {
     settings chosen = {.shapes = required_option(&options[SHAPES]),
                        .bodies = required_option(&options[BODIES]),
                        .pairs = options[PAIRS].value,
+                       .most_pairs = DEFAULT_MOST_PAIRS,
                        .out = options[OUT].value,
                        .picture = options[PICTURE].value,
                        .isa = options[ISA].value};
     picture_kind_of(chosen.picture);
     read_method(options, &chosen.narrow);
-    if (options[MARGIN].value) {
-        const double margin = number_option(&options[MARGIN]);
-        if (fabs(margin) > (double)FLT_MAX) {
-            fail("--margin is too large '%s'", options[MARGIN].value);
-        }
-        chosen.narrow.margin = (float)margin;
-        chosen.search_margin = fmax(margin, 0);
+    const double margin = number_option(&options[MARGIN], -(double)FLT_MAX, (double)FLT_MAX, "of float's range", 0);
+    chosen.narrow.margin = (float)margin;
+    chosen.search_margin = fmax(margin, 0);
+    if (options[MAX_PAIRS].value) {
+        if (chosen.pairs)
+            fail("--pairs and --max-pairs exclude each other: one gives the pairs, the other lets them be found");
+        chosen.most_pairs = whole_option(&options[MAX_PAIRS], 1, UINT32_MAX);
     }
-    if (options[ALL].value) {
+    if (options[ALL].value)
         chosen.narrow.margin = INFINITY;
-    }
-    if (options[THREADS].value) {
+    if (options[THREADS].value)
         chosen.narrow.threads = (unsigned)whole_option(&options[THREADS], 1, LARGEST_THREADS);
-    }
     return chosen;
 }
 
@@ -173,7 +179,8 @@ static void bound_bodies(job *work) {
     }
 }
 
-static void find_pairs(job *work, double margin) {
+static void find_pairs(job *work, const settings *chosen) {
+    const double margin = chosen->search_margin;
     const size_t count = work->bodies.count;
     narc_aabb *widened = NULL;
     if (margin > 0) {
@@ -185,7 +192,7 @@ static void find_pairs(job *work, double margin) {
                                      nextafter(box.max_x + half, INFINITY), nextafter(box.max_y + half, INFINITY)};
         }
     }
-    find_candidates(widened ? widened : work->boxes, count, &work->pairs);
+    find_candidates(chosen->bodies, widened ? widened : work->boxes, count, chosen->most_pairs, &work->pairs);
     free(widened);
 }
 
@@ -221,14 +228,14 @@ static void write_passing(FILE *file, const job *work) {
     fprintf(file, "a,b\n");
     for (size_t k = 0; k < work->pairs.count && !ferror(file); k++) {
         const pair of = work->pairs.items[k];
-        if (pair_collides(&work->narrow, k)) {
+        if (pair_collides(&work->narrow, k))
             fprintf(file, "%" PRIu32 ",%" PRIu32 "\n", of.a, of.b);
-        }
         show_progress("writing pairs", k, work->pairs.count);
     }
 }
 
-/* Adding 0 makes a negative zero a plain one. */
+/* The library's points are relative to body a, those of the file are in the world. Adding 0 makes a negative zero a
+ * plain one. */
 static void write_contacts(FILE *file, const job *work) {
     const narc_contacts *found = &work->narrow.contacts;
     fprintf(file, "a,b,separation,normal_x,normal_y,point_x,point_y,arc_a,arc_b\n");
@@ -254,9 +261,8 @@ static void print_threads(FILE *file, unsigned chosen) {
 
 static void print_method(FILE *file, const narrow_settings *chosen) {
     fprintf(file, "method              %s", narc_method_name(chosen->method));
-    if (chosen->method == NARC_METHOD_GJK) {
+    if (chosen->method == NARC_METHOD_GJK)
         fprintf(file, ", tolerance %g, at most %u iterations", (double)chosen->tolerance, chosen->iterations);
-    }
     fprintf(file, "\n");
 }
 
@@ -273,11 +279,10 @@ static void print_answers(FILE *file, const narrow_result *found, narc_method me
         fprintf(file, "colliding pairs     %zu\n", found->colliding_count);
         fprintf(file, "reported contacts   %zu\n", found->contact_count);
     }
-    for (int k = NARC_OUTCOME_LIMIT; k < OUTCOME_COUNT; k++) {
-        if (found->outcomes[k]) {
+    fprintf(file, "skipped pairs       %zu\n", found->skipped);
+    for (int k = NARC_OUTCOME_LIMIT; k < OUTCOME_COUNT; k++)
+        if (found->outcomes[k])
             fprintf(file, "outcome %-11s %zu pairs: %s\n", outcomes[k], found->outcomes[k], reasons[k]);
-        }
-    }
     if (method != NARC_METHOD_SAT) {
         fprintf(file, "differs from sat    %zu pairs: %zu missed, %zu extra\n", found->missed + found->extra,
                 found->missed, found->extra);
@@ -293,15 +298,13 @@ static void print_report(FILE *file, const job *work, const settings *chosen) {
     print_answers(file, found, chosen->narrow.method);
     fprintf(file, "instruction set     %s\n", narc_get_isa());
     print_threads(file, chosen->narrow.threads);
-    if (!chosen->pairs) {
+    if (!chosen->pairs)
         fprintf(file, "broad phase         %.3f ms\n", 1e3 * work->broad_seconds);
-    }
     fprintf(file, "narrow phase        %.3f ms (%s, ", 1e3 * found->seconds, found->call);
-    if (found->runs == 1) {
+    if (found->runs == 1)
         fprintf(file, "one run)\n");
-    } else {
+    else
         fprintf(file, "median of %d runs)\n", found->runs);
-    }
     const double speed = found->seconds > 0 ? 1e-6 * (double)work->pairs.count / found->seconds : 0;
     fprintf(file, "speed               %.2f million pairs per second\n", speed);
 }
@@ -318,27 +321,24 @@ static void run(int argc, char **argv) {
     read_bodies(chosen.bodies, &work.shapes, &work.bodies);
     check_picture_size(chosen.picture, work.bodies.count);
     bound_bodies(&work);
-    if (chosen.pairs) {
+    if (chosen.pairs)
         read_pairs(chosen.pairs, work.bodies.count, &work.pairs);
-    }
     /* Outputs that cannot be written are found before the work is done. */
     FILE *out = chosen.out ? open_output(chosen.out) : NULL;
     FILE *picture = chosen.picture ? open_output(chosen.picture) : NULL;
     if (!chosen.pairs) {
         const double start = seconds_now();
-        find_pairs(&work, chosen.search_margin);
+        find_pairs(&work, &chosen);
         work.broad_seconds = seconds_now() - start;
     }
-    if (chosen.narrow.method == NARC_METHOD_POLYGON_SAT) {
+    if (chosen.narrow.method == NARC_METHOD_POLYGON_SAT)
         check_polygons(&work, chosen.bodies);
-    }
     run_narrow_phase(&chosen.narrow, &work.shapes, &work.bodies, &work.pairs, &work.narrow);
     mark_bodies(&work);
-    if (out && is_filter(chosen.narrow.method)) {
+    if (out && is_filter(chosen.narrow.method))
         write_passing(out, &work);
-    } else if (out) {
+    else if (out)
         write_contacts(out, &work);
-    }
     if (picture) {
         const body_scene scene = {&work.shapes,
                                   &work.bodies,
@@ -349,9 +349,7 @@ static void run(int argc, char **argv) {
                                   work.narrow.contact_count};
         draw_bodies(chosen.picture, picture, &scene);
     }
-    finish_outputs();
-    hide_progress();
-    FILE *report = is_standard_output(chosen.out) ? stderr : stdout;
+    FILE *report = finish_outputs();
     print_report(report, &work, &chosen);
     finish_report(report);
     commit_outputs();

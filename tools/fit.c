@@ -16,18 +16,23 @@
 #include "picture_fits.h"
 #include "progress.h"
 #include "shapes_json.h"
+#include "splines.h"
+#include "text.h"
 
 static const char HELP[] =
     "usage: narc fit INPUT... --arcs N|--tolerance T [--bound|--approximate] [--objective NAME]\n"
-    "                [--edges|--polygon|--paper] [--characters TEXT] [--cloud] [--threshold X]\n"
-    "                [--flatness F] [--starts N] [--out shapes.json] [--picture FILE]\n"
+    "                [--edges|--polygon|--paper] [--characters TEXT] [--threshold X]\n"
+    "                [--flatness F] [--min-radius R] [--starts N] [--keep-origin]\n"
+    "                [--out shapes.json] [--picture FILE]\n"
+    "       narc fit INPUT... --spline --tolerance T [--characters TEXT] [--threshold X]\n"
+    "                [--out splines.json] [--picture FILE]\n"
     "\n"
     "Makes an arc shape of each input: the best that is found of those that bound the outline, or of\n"
     "those that come close to it. Of an outline only the convex hull counts.\n"
     "\n"
     "  INPUT           files; the first bytes tell their kind, or else the suffix:\n"
     "                  fonts         with --characters: each of these is one shape; lengths in em\n"
-    "                  SVG           all that is drawn, as one shape; strokes have no width\n"
+    "                  SVG           all that is drawn, as one shape, traced at its edge\n"
     "                  PNG           the silhouette: what is not transparent, or if all is opaque,\n"
     "                                what is dark, or light if the corners are dark; lengths in pixels\n"
     "                  CSV           points, one x,y a line; a blank line begins another contour\n"
@@ -50,22 +55,26 @@ static const char HELP[] =
     "                  enlarged until it bounds\n"
     "  --characters TEXT\n"
     "                  which glyphs of fonts, UTF-8; repeated characters are skipped\n"
-    "  --cloud         the points of CSV and JSON files are in no order; without it they must go\n"
-    "                  round without crossing\n"
     "  --threshold X   the alpha, or darkness, at which the edges of a PNG silhouette lie; more than 0\n"
     "                  and less than 1, default 0.5\n"
     "  --flatness F    how far chords may be from curves, as a part of the larger side of the\n"
     "                  outline's bounding box; 1e-9 to 0.1, default 2e-5\n"
+    "  --min-radius R  no arc has a smaller radius, in the input's unit of length: shapes are smooth\n"
     "  --starts N      how many places the search starts from, 1 to 10000; more often find better\n"
+    "  --keep-origin   the shapes keep the input's coordinates: a body at 0, 0 lies over its outline;\n"
+    "                  far from its origin a shape is rounded more\n"
+    "  --spline        instead of a convex shape: the outline itself as arcs that join with a common\n"
+    "                  tangent, within --tolerance of its curves\n"
     "  --out FILE      the shapes file to write; left out or -: standard output\n"
     "  --picture FILE  a .png or .svg picture of outlines, hulls and shapes\n"
     "\n"
     "A shape is named by its file, without the suffix. A glyph is named by its character if that is an\n"
     "ASCII letter, and otherwise by its code point, such as U+1F47B. Names that are taken get -2, -3 and\n"
-    "so on. A shape's centroid is its origin.\n"
+    "so on. A shape's centroid is its origin; \"origin\" in the shapes file tells where that is in the\n"
+    "input's coordinates. A body at that place lies over its outline.\n"
     "\n"
-    "The table has areas of shape and hull and their ratio, and how far the shape is from the hull:\n"
-    "at most, and in the mean along the shape.\n";
+    "The table has areas of shape and hull and their ratio, how far the shape is from the hull: at\n"
+    "most, and in the mean along the shape, and the origin.\n";
 
 enum {
     ARCS,
@@ -77,10 +86,12 @@ enum {
     POLYGON,
     PAPER,
     CHARACTERS,
-    CLOUD,
     THRESHOLD,
     FLATNESS,
+    MIN_RADIUS,
     STARTS,
+    SPLINE,
+    KEEP_ORIGIN,
     OUT,
     PICTURE,
     OPTIONS
@@ -89,9 +100,8 @@ enum {
 /* ---------------------------------------------------------------------------- options */
 
 static void exclude(const option *a, const option *b, const char *why) {
-    if (a->value && b->value) {
+    if (a->value && b->value)
         fail("%s and %s exclude each other: %s", a->name, b->name, why);
-    }
 }
 
 static void check_combinations(const option *options) {
@@ -102,50 +112,36 @@ static void check_combinations(const option *options) {
     exclude(&options[EDGES], &options[PAPER], families);
     exclude(&options[POLYGON], &options[PAPER], families);
     exclude(&options[TOLERANCE], &options[OBJECTIVE], "the least number of arcs is looked for");
-    for (int family = POLYGON; family <= PAPER; family++) {
+    for (int family = POLYGON; family <= PAPER; family++)
         exclude(&options[family], &options[APPROXIMATE], "it bounds");
-    }
-    if (!options[ARCS].value && !options[TOLERANCE].value) {
+    static const int of_hulls[] = {ARCS,    BOUND, APPROXIMATE, OBJECTIVE, EDGES,
+                                   POLYGON, PAPER, FLATNESS,    STARTS,    KEEP_ORIGIN};
+    for (size_t k = 0; k < sizeof of_hulls / sizeof of_hulls[0]; k++)
+        exclude(&options[SPLINE], &options[of_hulls[k]], "a spline follows the outline itself, within --tolerance");
+    if (!options[ARCS].value && !options[TOLERANCE].value)
         fail("--arcs or --tolerance is missing");
-    }
 }
 
 static narc_fit_goal choose_goal(const option *options) {
     const char *objective = options[OBJECTIVE].value;
     const bool approximate = options[APPROXIMATE].value;
-    if (!objective) {
+    if (!objective)
         return approximate ? NARC_FIT_DISTANCE : NARC_FIT_BOUND_AREA;
-    }
     for (int family = POLYGON; family <= PAPER; family++) {
         if (options[family].value && strcmp(objective, "area") != 0) {
-            fail("%s makes the area least: --objective cannot be '%s'", options[family].name, objective);
+            fail("%s makes the area least: --objective cannot be '%s'", options[family].name,
+                 narc_make_excerpt(objective).text);
         }
     }
-    if (strcmp(objective, "area") == 0) {
+    if (strcmp(objective, "area") == 0)
         return approximate ? NARC_FIT_DIFFERENCE : NARC_FIT_BOUND_AREA;
-    }
-    if (strcmp(objective, "distance") == 0) {
+    if (strcmp(objective, "distance") == 0)
         return approximate ? NARC_FIT_DISTANCE : NARC_FIT_BOUND_DISTANCE;
-    }
-    if (strcmp(objective, "perimeter") != 0) {
-        fail("--objective must be one of area, perimeter, distance, not '%s'", objective);
-    }
-    if (approximate) {
+    if (strcmp(objective, "perimeter") != 0)
+        fail("--objective must be one of area, perimeter, distance, not '%s'", narc_make_excerpt(objective).text);
+    if (approximate)
         fail("--objective perimeter is for --bound: what may lie inside has the least perimeter as a point");
-    }
     return NARC_FIT_BOUND_PERIMETER;
-}
-
-/* A number between limits; 0 if the option is not given. */
-static double number_between(const option *given, double low, double high, const char *range) {
-    if (!given->value) {
-        return 0;
-    }
-    const double value = number_option(given);
-    if (!(value >= low && value <= high)) {
-        fail("%s must be %s, not '%s'", given->name, range, given->value);
-    }
-    return value;
 }
 
 static narc_fit_request make_request(const option *options) {
@@ -153,17 +149,16 @@ static narc_fit_request make_request(const option *options) {
         [EDGES] = NARC_FIT_EDGES, [POLYGON] = NARC_FIT_POLYGON, [PAPER] = NARC_FIT_PAPER};
     check_combinations(options);
     narc_fit_request request = {.goal = choose_goal(options), .family = NARC_FIT_N_ARC};
-    for (int k = EDGES; k <= PAPER; k++) {
+    for (int k = EDGES; k <= PAPER; k++)
         request.family = options[k].value ? families[k] : request.family;
-    }
     if (options[ARCS].value) {
         const bool has_corners = request.family == NARC_FIT_POLYGON || request.family == NARC_FIT_PAPER;
         request.arc_count = (size_t)whole_option(&options[ARCS], has_corners ? 3 : 1, NARC_MAX_FIT_ARCS);
     }
-    request.tolerance = number_between(&options[TOLERANCE], DBL_MIN, DBL_MAX, "more than 0");
-    if (options[STARTS].value) {
+    request.tolerance = number_option(&options[TOLERANCE], DBL_MIN, DBL_MAX, "more than 0", 0);
+    request.min_radius = number_option(&options[MIN_RADIUS], DBL_MIN, DBL_MAX, "more than 0", 0);
+    if (options[STARTS].value)
         request.starts = (unsigned)whole_option(&options[STARTS], 1, 10000);
-    }
     return request;
 }
 
@@ -184,9 +179,8 @@ static bool tell_progress(size_t done, size_t total, void *context) {
 static double measure_extent(const outline *of) {
     narc_contours contours;
     narc_error error;
-    if (narc_flatten_path(of->path, 0, &contours, &error) != NARC_OK) {
+    if (narc_flatten_path(of->path, 0, &contours, &error) != NARC_OK)
         fail_outline(of, error.message);
-    }
     narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < contours.point_count; i++) {
         const narc_point p = contours.points[i];
@@ -206,50 +200,77 @@ static narc_fit_result *fit_outlines(const outline_list *outlines, narc_fit_requ
         const outline *of = &outlines->items[at.done];
         narc_error error;
         request.flatness = flatness > 0 ? flatness * measure_extent(of) : 0;
-        if (narc_fit_path(of->path, &request, &fits[at.done], &error) != NARC_OK) {
+        if (narc_fit_path(of->path, &request, &fits[at.done], &error) != NARC_OK)
             fail_outline(of, error.message);
-        }
     }
     return fits;
 }
 
-static shape_list list_shapes(const outline_list *outlines, const narc_fit_result *fits) {
+/* With `keep_origin` the shapes are moved to where the input has them. */
+static shape_list list_shapes(const outline_list *outlines, const narc_fit_result *fits, bool keep_origin) {
     shape_list shapes = {0};
     for (size_t i = 0; i < outlines->count; i++) {
         narc_error error;
-        if (add_shape(&shapes, outlines->items[i].name, fits[i].arcs, fits[i].arc_count, &error) != NARC_OK) {
-            fail_outline(&outlines->items[i], error.message);
+        narc_fit_result moved = fits[i];
+        if (keep_origin) {
+            for (size_t k = 0; k < moved.arc_count; k++) {
+                moved.arcs[k].center_x += moved.origin.x;
+                moved.arcs[k].center_y += moved.origin.y;
+            }
+            moved.origin = (narc_point){0, 0};
         }
+        if (add_shape(&shapes, outlines->items[i].name, moved.arcs, moved.arc_count, &error) != NARC_OK)
+            fail_outline(&outlines->items[i], error.message);
+        shapes.items[i].origin = moved.origin;
     }
     return shapes;
 }
 
 /* ---------------------------------------------------------------------------- the table */
 
-/* The characters of a name: bytes that continue one begin with the bits 10. */
-static size_t name_length(const char *name) {
-    size_t length = 0;
-    for (; *name; name++) {
-        length += ((unsigned char)*name & 0xc0) != 0x80;
+static void print_table(FILE *file, const outline_list *outlines, const narc_fit_result *fits) {
+    const int width = print_name(file, outlines, "shape", 0);
+    fprintf(file, " %5s %5s %11s %11s %8s %11s %12s %13s %11s %11s %8s\n", "arcs", "edges", "area", "hull area",
+            "ratio", "perimeter", "max distance", "mean distance", "origin x", "origin y", "seconds");
+    for (size_t i = 0; i < outlines->count; i++) {
+        const narc_fit_result *f = &fits[i];
+        print_name(file, outlines, outlines->items[i].name, width);
+        fprintf(file, " %5zu %5zu %11.6g %11.6g %8.5f %11.6g %12.4g %13.4g %11.6g %11.6g %8.2f\n", f->arc_count,
+                f->edge_count, f->area, f->hull_area, f->area / f->hull_area, f->perimeter, f->max_distance,
+                f->mean_distance, f->origin.x, f->origin.y, f->seconds);
     }
-    return length;
 }
 
-static void print_table(FILE *file, const outline_list *outlines, const narc_fit_result *fits) {
-    size_t width = strlen("shape");
-    for (size_t i = 0; i < outlines->count; i++) {
-        const size_t length = name_length(outlines->items[i].name);
-        width = length > width ? length : width;
-    }
-    fprintf(file, "%-*s %5s %5s %11s %11s %8s %11s %12s %13s %8s\n", (int)width, "shape", "arcs", "edges", "area",
-            "hull area", "ratio", "perimeter", "max distance", "mean distance", "seconds");
-    for (size_t i = 0; i < outlines->count; i++) {
-        const char *name = outlines->items[i].name;
-        const narc_fit_result *f = &fits[i];
-        fprintf(file, "%s%*s %5zu %5zu %11.6g %11.6g %8.5f %11.6g %12.4g %13.4g %8.2f\n", name,
-                (int)(width - name_length(name)), "", f->arc_count, f->edge_count, f->area, f->hull_area,
-                f->area / f->hull_area, f->perimeter, f->max_distance, f->mean_distance, f->seconds);
-    }
+/* ---------------------------------------------------------------------------- both kinds of answers */
+
+static void make_shapes(const outline_list *outlines, narc_fit_request request, double flatness, bool keep_origin,
+                        FILE *file, const char *picture, FILE *picture_file) {
+    narc_fit_result *fits = fit_outlines(outlines, request, flatness);
+    shape_list shapes = list_shapes(outlines, fits, keep_origin);
+    write_shapes(file, &shapes);
+    if (picture)
+        draw_fits(picture, picture_file, outlines, fits, NULL);
+    FILE *report = finish_outputs();
+    print_table(report, outlines, fits);
+    finish_report(report);
+    commit_outputs();
+    free_shapes(&shapes);
+    free(fits);
+}
+
+static void make_splines(const outline_list *outlines, double tolerance, FILE *file, const char *picture,
+                         FILE *picture_file) {
+    narc_arc_chains *chains = fit_splines(outlines, tolerance);
+    write_splines(file, outlines, chains);
+    if (picture)
+        draw_fits(picture, picture_file, outlines, NULL, chains);
+    FILE *report = finish_outputs();
+    print_splines(report, outlines, chains);
+    finish_report(report);
+    commit_outputs();
+    for (size_t i = 0; i < outlines->count; i++)
+        narc_release_chains(&chains[i]);
+    free(chains);
 }
 
 static void run(int argc, char **argv) {
@@ -262,41 +283,31 @@ static void run(int argc, char **argv) {
                                [POLYGON] = {"--polygon", false, NULL},
                                [PAPER] = {"--paper", false, NULL},
                                [CHARACTERS] = {"--characters", true, NULL},
-                               [CLOUD] = {"--cloud", false, NULL},
                                [THRESHOLD] = {"--threshold", true, NULL},
                                [FLATNESS] = {"--flatness", true, NULL},
+                               [MIN_RADIUS] = {"--min-radius", true, NULL},
                                [STARTS] = {"--starts", true, NULL},
+                               [SPLINE] = {"--spline", false, NULL},
+                               [KEEP_ORIGIN] = {"--keep-origin", false, NULL},
                                [OUT] = {"--out", true, NULL},
                                [PICTURE] = {"--picture", true, NULL}};
     const char **files = allocate((size_t)argc, sizeof *files);
     const size_t file_count = parse_options(argc, argv, options, OPTIONS, "INPUT", files);
     const narc_fit_request request = make_request(options);
-    const double flatness = number_between(&options[FLATNESS], 1e-9, 0.1, "from 1e-9 to 0.1");
-    const reading how = {
-        .characters = options[CHARACTERS].value,
-        .threshold = number_between(&options[THRESHOLD], DBL_MIN, 1 - DBL_EPSILON / 2, "more than 0 and less than 1"),
-        .cloud = options[CLOUD].value};
+    const double flatness = number_option(&options[FLATNESS], 1e-9, 0.1, "from 1e-9 to 0.1", 0);
+    const reading how = {.characters = options[CHARACTERS].value,
+                         .threshold = number_option(&options[THRESHOLD], DBL_MIN, 1 - DBL_EPSILON / 2,
+                                                    "more than 0 and less than 1", 0)};
     const char *picture = options[PICTURE].value, *out = options[OUT].value ? options[OUT].value : "-";
     picture_kind_of(picture);
 
     outline_list outlines = {0};
     read_outlines(files, file_count, &how, &outlines);
     FILE *shapes_file = open_output(out), *picture_file = picture ? open_output(picture) : NULL;
-    narc_fit_result *fits = fit_outlines(&outlines, request, flatness);
-    shape_list shapes = list_shapes(&outlines, fits);
-    write_shapes(shapes_file, &shapes);
-    if (picture) {
-        draw_fits(picture, picture_file, &outlines, fits);
-    }
-    finish_outputs();
-    hide_progress();
-
-    FILE *report = is_standard_output(out) ? stderr : stdout;
-    print_table(report, &outlines, fits);
-    finish_report(report);
-    commit_outputs();
-    free_shapes(&shapes);
-    free(fits);
+    if (options[SPLINE].value)
+        make_splines(&outlines, request.tolerance, shapes_file, picture, picture_file);
+    else
+        make_shapes(&outlines, request, flatness, options[KEEP_ORIGIN].value, shapes_file, picture, picture_file);
     free_outlines(&outlines);
     free(files);
 }

@@ -51,6 +51,7 @@ enum { SUFFIX_COUNT = sizeof suffixes / sizeof suffixes[0] };
 
 /* The part of a path that names the file, and how much of that stands before its suffix; a first dot begins none. */
 static const char *base_name(const char *path, size_t *out_stem) {
+    path = strcmp(path, "-") == 0 ? "stdin" : path;
     const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
     *out_stem = dot && dot != base ? (size_t)(dot - base) : strlen(base);
     return base;
@@ -59,48 +60,38 @@ static const char *base_name(const char *path, size_t *out_stem) {
 static bool is_suffix(const char *text, const char *suffix) {
     for (; *text && *suffix; text++, suffix++) {
         const char lower = *text >= 'A' && *text <= 'Z' ? (char)(*text - 'A' + 'a') : *text;
-        if (lower != *suffix) {
+        if (lower != *suffix)
             return false;
-        }
     }
     return !*text && !*suffix;
 }
 
 static file_kind kind_of(const char *file, const char *bytes, size_t size) {
-    for (size_t i = 0; i < BEGINNING_COUNT; i++) {
-        if (size >= beginnings[i].length && memcmp(bytes, beginnings[i].bytes, beginnings[i].length) == 0) {
+    for (size_t i = 0; i < BEGINNING_COUNT; i++)
+        if (size >= beginnings[i].length && memcmp(bytes, beginnings[i].bytes, beginnings[i].length) == 0)
             return beginnings[i].kind;
-        }
-    }
     const char *text = bytes + (strncmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0);
     text += strspn(text, " \t\r\n");
-    if (*text == '<') {
+    if (*text == '<')
         return SVG;
-    }
-    if (*text == '[' || *text == '{') {
+    if (*text == '[' || *text == '{')
         return JSON;
-    }
-    if (*text && strchr("+-.0123456789", *text)) {
+    if (*text && strchr("+-.0123456789", *text))
         return CSV;
-    }
     size_t stem;
     const char *base = base_name(file, &stem);
-    for (size_t i = 0; i < SUFFIX_COUNT; i++) {
-        if (is_suffix(base + stem, suffixes[i].suffix)) {
+    for (size_t i = 0; i < SUFFIX_COUNT; i++)
+        if (is_suffix(base + stem, suffixes[i].suffix))
             return suffixes[i].kind;
-        }
-    }
     return UNKNOWN;
 }
 
 /* ---------------------------------------------------------------------------- outlines */
 
 static bool is_name_taken(const outline_list *outlines, const char *name) {
-    for (size_t i = 0; i < outlines->count; i++) {
-        if (strcmp(outlines->items[i].name, name) == 0) {
+    for (size_t i = 0; i < outlines->count; i++)
+        if (strcmp(outlines->items[i].name, name) == 0)
             return true;
-        }
-    }
     return false;
 }
 
@@ -109,9 +100,8 @@ static char *choose_name(const outline_list *outlines, char *name) {
     enum { DIGITS = 24 };
     const size_t size = strlen(name) + DIGITS;
     char *chosen = strcpy(allocate(size, 1), name);
-    for (size_t number = 2; is_name_taken(outlines, chosen); number++) {
+    for (size_t number = 2; is_name_taken(outlines, chosen); number++)
         snprintf(chosen, size, "%s-%zu", name, number);
-    }
     free(name);
     return chosen;
 }
@@ -121,18 +111,36 @@ static outline *add_outline(outline_list *outlines, const char *file, uint32_t c
     outlines->items = grow(outlines->items, &outlines->capacity, outlines->count + 1, sizeof *outlines->items);
     outline *added = &outlines->items[outlines->count];
     *added = (outline){.name = choose_name(outlines, name), .file = file, .character = character};
-    if (narc_create_path(&added->path) != NARC_OK) {
+    if (narc_create_path(&added->path) != NARC_OK)
         fail("not enough memory for an outline");
-    }
     outlines->count++;
     return added;
 }
 
 _Noreturn void fail_outline(const outline *at, const char *message) {
-    if (at->character) {
-        fail("%s: U+%04X: %s", at->file, (unsigned)at->character, message);
+    if (at->character)
+        fail_at(at->file, 0, "U+%04X: %s", (unsigned)at->character, message);
+    fail_at(at->file, 0, "%s", message);
+}
+
+/* The characters of a name: bytes that continue one begin with the bits 10. */
+static size_t name_length(const char *name) {
+    size_t length = 0;
+    for (; *name; name++)
+        length += ((unsigned char)*name & 0xc0) != 0x80;
+    return length;
+}
+
+int print_name(FILE *file, const outline_list *outlines, const char *name, int width) {
+    if (width == 0) {
+        width = (int)name_length(name);
+        for (size_t i = 0; i < outlines->count; i++) {
+            const int length = (int)name_length(outlines->items[i].name);
+            width = length > width ? length : width;
+        }
     }
-    fail("%s: %s", at->file, message);
+    fprintf(file, "%s%*s", name, width - (int)name_length(name), "");
+    return width;
 }
 
 void free_outlines(outline_list *outlines) {
@@ -160,18 +168,16 @@ static uint32_t *list_characters(const char *text, size_t *out_count) {
     size_t count = 0;
     for (const char *c = text; *c;) {
         uint32_t code;
-        if (!next_code_point(&c, &code)) {
+        if (!next_code_point(&c, &code))
             fail("--characters is not valid UTF-8 at byte %td", c - text);
-        }
         if (!is_selector(code) && !seen[code]) {
             seen[code] = 1;
             codes[count++] = code;
         }
     }
     free(seen);
-    if (count == 0) {
+    if (count == 0)
         fail("--characters has variation selectors only");
-    }
     *out_count = count;
     return codes;
 }
@@ -190,19 +196,16 @@ static void read_glyphs(const char *file, const char *bytes, size_t size, const 
                         outline_list *outlines) {
     narc_error error;
     narc_font *font;
-    if (!characters) {
-        fail("%s: a font: --characters must tell which of its glyphs to fit", file);
-    }
+    if (!characters)
+        fail_at(file, 0, "a font: --characters must tell which of its glyphs to fit");
     size_t count;
     uint32_t *codes = list_characters(characters, &count);
-    if (narc_open_font(bytes, size, &font, &error) != NARC_OK) {
-        fail("%s: %s", file, error.message);
-    }
+    if (narc_open_font(bytes, size, &font, &error) != NARC_OK)
+        fail_at(file, 0, "%s", error.message);
     for (size_t i = 0; i < count; i++) {
         outline *added = add_outline(outlines, file, codes[i], glyph_name(codes[i]));
-        if (narc_read_glyph(font, codes[i], added->path, &error) != NARC_OK) {
-            fail("%s: %s", file, error.message);
-        }
+        if (narc_read_glyph(font, codes[i], added->path, &error) != NARC_OK)
+            fail_at(file, 0, "%s", error.message);
     }
     narc_close_font(font);
     free(codes);
@@ -224,41 +227,14 @@ static narc_status call_reader(file_kind kind, const char *bytes, size_t size, d
     }
 }
 
-/* The index of an error in a text is its line, which the message may begin with. */
-static _Noreturn void fail_reading(const outline *read, file_kind kind, const narc_error *error) {
-    if (kind == PNG || error->index == 0) {
-        fail_outline(read, error->message);
-    }
-    char line[32];
-    snprintf(line, sizeof line, "line %zu: ", error->index);
-    const bool repeats = strncmp(error->message, line, strlen(line)) == 0;
-    fail_at(read->file, error->index, "%s", error->message + (repeats ? strlen(line) : 0));
-}
-
-static void check_order(const outline *read) {
-    narc_error error;
-    const narc_status status = narc_check_simple(read->path, &error);
-    if (status == NARC_ERROR_NOT_SIMPLE) {
-        fail("%s: %s; if the points are in no order, give --cloud", read->file, error.message);
-    }
-    if (status != NARC_OK) {
-        fail_outline(read, error.message);
-    }
-}
-
 static void read_outline(const char *file, file_kind kind, const char *bytes, size_t size, const reading *how,
                          outline_list *outlines) {
     size_t stem;
     const char *base = base_name(file, &stem);
     outline *added = add_outline(outlines, file, 0, make_shape_name(base, stem));
     narc_error error;
-    if (call_reader(kind, bytes, size, how->threshold, added->path, &error) != NARC_OK) {
-        fail_reading(added, kind, &error);
-    }
-    added->cloud = how->cloud && (kind == CSV || kind == JSON);
-    if ((kind == CSV || kind == JSON) && !how->cloud) {
-        check_order(added);
-    }
+    if (call_reader(kind, bytes, size, how->threshold, added->path, &error) != NARC_OK)
+        fail_text(file, &error);
 }
 
 void read_outlines(const char *const *files, size_t count, const reading *how, outline_list *out_outlines) {
@@ -267,24 +243,17 @@ void read_outlines(const char *const *files, size_t count, const reading *how, o
         size_t size;
         char *bytes = read_bytes(files[i], &size);
         const file_kind kind = kind_of(files[i], bytes, size);
-        if (kind == UNKNOWN) {
-            fail("%s: neither its beginning nor its suffix is that of a font, or of SVG, PNG, CSV or JSON", files[i]);
-        }
+        if (kind == UNKNOWN)
+            fail_at(files[i], 0, "neither its beginning nor its suffix is that of a font, or of SVG, PNG, CSV or JSON");
         met[kind] = true;
-        if (kind == FONT) {
+        if (kind == FONT)
             read_glyphs(files[i], bytes, size, how->characters, out_outlines);
-        } else {
+        else
             read_outline(files[i], kind, bytes, size, how, out_outlines);
-        }
         free(bytes);
     }
-    if (how->characters && !met[FONT]) {
+    if (how->characters && !met[FONT])
         fail("--characters is for fonts, and none is given");
-    }
-    if (how->threshold > 0 && !met[PNG]) {
+    if (how->threshold > 0 && !met[PNG])
         fail("--threshold is for PNG images, and none is given");
-    }
-    if (how->cloud && !met[CSV] && !met[JSON]) {
-        fail("--cloud is for points in CSV or JSON files, and none are given");
-    }
 }

@@ -5,13 +5,14 @@
 #ifndef NARC_TOOL_FIT_INPUTS_H
 #define NARC_TOOL_FIT_INPUTS_H
 
+#include <stdio.h>
+
 #include "narc_fit.h"
 
 typedef struct outline {
     char *name; /* a shape name, other than all before it */
     const char *file;
     uint32_t character; /* of a glyph; 0: the outline of a whole file */
-    bool cloud;         /* its points are in no order */
     narc_path *path;
 } outline;
 
@@ -23,7 +24,6 @@ typedef struct outline_list {
 typedef struct reading {
     const char *characters; /* which glyphs of fonts; NULL: none */
     double threshold;       /* of images, see narc_read_png(); 0: the usual one */
-    bool cloud;             /* the points of CSV and JSON files are in no order */
 } reading;
 
 /* Reads files: each font gives an outline for each character (once, without variation selectors), each other file gives
@@ -33,6 +33,10 @@ void read_outlines(const char *const *files, size_t count, const reading *how, o
 
 /* Ends the command with a message about an outline. */
 _Noreturn void fail_outline(const outline *at, const char *message);
+
+/* Prints a cell of a table's first column, `width` characters wide; 0: as wide as the longest name and the word itself.
+ * Returns the width. */
+int print_name(FILE *file, const outline_list *outlines, const char *name, int width);
 
 void free_outlines(outline_list *outlines);
 

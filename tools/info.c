@@ -35,9 +35,8 @@ static void run(int argc, char **argv) {
                narc_isa_supported(name) ? "supported" : "not built, or not supported by this processor");
     }
     printf("%-20s %s\n", "in use", chosen);
-    for (size_t i = 0; narc_kernel_name(i); i++) {
+    for (size_t i = 0; narc_kernel_name(i); i++)
         printf("%-20s %-8s %s\n", i ? "" : "kernels", narc_kernel_name(i), narc_kernel_isa(i));
-    }
     printf("%-20s %u\n", "threads", narc_default_threads());
 }
 

@@ -14,6 +14,7 @@
 #include "narc.h"
 #include "output.h"
 #include "progress.h"
+#include "text.h"
 
 static const command *const commands[] = {&fit_command, &scene_command, &collide_command, &info_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
@@ -21,9 +22,8 @@ enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 static void print_help(void) {
     printf("usage: narc COMMAND [ARGUMENTS]\n\n"
            "Batched collision of 2D convex shapes made of circular arcs.\n\n");
-    for (size_t i = 0; i < COMMAND_COUNT; i++) {
+    for (size_t i = 0; i < COMMAND_COUNT; i++)
         printf("  narc %-8s %s\n", commands[i]->name, commands[i]->summary);
-    }
     printf("\n"
            "  --help      this text; behind a command, the command's\n"
            "  --version   the version\n"
@@ -45,37 +45,32 @@ static void run_command(const command *chosen, int argc, char **argv) {
 }
 
 static const command *find_command(const char *name) {
-    for (size_t i = 0; i < COMMAND_COUNT; i++) {
-        if (strcmp(name, commands[i]->name) == 0) {
+    for (size_t i = 0; i < COMMAND_COUNT; i++)
+        if (strcmp(name, commands[i]->name) == 0)
             return commands[i];
-        }
-    }
-    fail("%s '%s'; see narc --help", name[0] == '-' ? "unknown option" : "unknown command", name);
+    fail("%s '%s'; see narc --help", name[0] == '-' ? "unknown option" : "unknown command",
+         narc_make_excerpt(name).text);
 }
 
 /* A file that is opened while a standard stream is closed takes its place: a picture would hold what was printed. So
  * something takes it that can only be read: then writing fails, and that is reported. */
 static void occupy_standard_streams(void) {
-    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++) {
-        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDONLY) != stream) {
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++)
+        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDONLY) != stream)
             fail("a standard stream is closed, and /dev/null cannot stand in for it");
-        }
-    }
 }
 
 int main(int argc, char **argv) {
     occupy_standard_streams();
     start_progress();
-    if (argc < 2) {
+    if (argc < 2)
         fail("a command is missing; see narc --help");
-    }
-    if (is_help(argv[1])) {
+    if (is_help(argv[1]))
         print_help();
-    } else if (strcmp(argv[1], "--version") == 0) {
+    else if (strcmp(argv[1], "--version") == 0)
         printf("narc %s\n", narc_version());
-    } else {
+    else
         run_command(find_command(argv[1]), argc - 2, argv + 2);
-    }
     finish_report(stdout);
     return 0;
 }

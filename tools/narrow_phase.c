@@ -10,6 +10,7 @@
 
 #include "fail.h"
 #include "progress.h"
+#include "text.h"
 
 /* One batch call is repeated until this much time has been measured, or this often. */
 static const double MEASURED_SECONDS = 0.2;
@@ -31,13 +32,12 @@ narc_method find_method(const char *name) {
     char names[256] = "";
     for (int i = 0; narc_method_name((narc_method)i); i++) {
         const char *known = narc_method_name((narc_method)i);
-        if (strcmp(known, name) == 0) {
+        if (strcmp(known, name) == 0)
             return (narc_method)i;
-        }
         const size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", known);
     }
-    fail("--method must be one of %s, not '%s'", names, name);
+    fail("--method must be one of %s, not '%s'", names, narc_make_excerpt(name).text);
 }
 
 bool is_filter(narc_method method) {
@@ -45,9 +45,8 @@ bool is_filter(narc_method method) {
 }
 
 static void check(narc_status status, const narc_error *error) {
-    if (status != NARC_OK) {
+    if (status != NARC_OK)
         fail("%s", error->message);
-    }
 }
 
 static void allocate_contacts(narc_contacts *contacts, size_t capacity) {
@@ -74,7 +73,7 @@ void free_narrow_result(narrow_result *result) {
     free(result->colliding);
 }
 
-/* The call that is timed; the exact method has one of its own. */
+/* The call that is timed. */
 static void call_library(const batch *asked, narrow_result *result) {
     const float margin = asked->chosen->margin;
     const unsigned threads = asked->chosen->threads;
@@ -85,10 +84,6 @@ static void call_library(const batch *asked, narrow_result *result) {
         result->call = "narc_query_overlaps";
         status = narc_query_overlaps(asked->store, &asked->bodies, &asked->pairs, &asked->query, threads,
                                      result->colliding, &error);
-    } else if (asked->query.method == NARC_METHOD_SAT) {
-        result->call = "narc_find_contacts";
-        status = narc_find_contacts(asked->store, &asked->bodies, &asked->pairs, margin, threads, &result->contacts,
-                                    &result->contact_count, &error);
     } else {
         result->call = "narc_query_contacts";
         status = narc_query_contacts(asked->store, &asked->bodies, &asked->pairs, &asked->query, margin, threads,
@@ -117,12 +112,12 @@ static void measure_call(const batch *asked, narrow_result *result) {
 /* Which pairs collide, as the method finds it. With a margin below 0 they are not all among the contacts. */
 static void find_colliding(const batch *asked, narrow_result *result) {
     const float margin = asked->chosen->margin;
-    if (is_filter(asked->query.method)) {
+    if (is_filter(asked->query.method))
         return;
-    }
     if (margin < 0) {
         narc_query again = asked->query;
         again.out_outcomes = NULL;
+        again.out_skipped = NULL;
         narc_error error;
         check(narc_query_overlaps(asked->store, &asked->bodies, &asked->pairs, &again, asked->chosen->threads,
                                   result->colliding, &error),
@@ -143,9 +138,8 @@ static bool bit_at(const uint64_t *bits, size_t index) { return bits[index / 64]
 bool pair_collides(const narrow_result *result, size_t index) { return bit_at(result->colliding, index); }
 
 static void count_colliding(const batch *asked, narrow_result *result) {
-    for (size_t k = 0; k < asked->pairs.count; k++) {
+    for (size_t k = 0; k < asked->pairs.count; k++)
         result->colliding_count += bit_at(result->colliding, k);
-    }
 }
 
 /* Counts the pairs of which the exact method says otherwise. */
@@ -174,20 +168,19 @@ void run_narrow_phase(const narrow_settings *chosen, const shape_list *shapes, c
                          .query = {.method = chosen->method,
                                    .tolerance = chosen->tolerance,
                                    .iterations = chosen->iterations,
-                                   .out_outcomes = chosen->method == NARC_METHOD_SAT ? NULL : outcomes}};
+                                   .out_outcomes = chosen->method == NARC_METHOD_SAT ? NULL : outcomes,
+                                   .out_skipped = &out_result->skipped}};
     *out_result = (narrow_result){.colliding = allocate(NARC_BIT_WORDS(count), sizeof *out_result->colliding)};
-    if (!is_filter(chosen->method)) {
+    if (!is_filter(chosen->method))
         allocate_contacts(&out_result->contacts, count);
-    }
     show_stage("narrow phase", count, "pairs", count > MANY_PAIRS);
     measure_call(&asked, out_result);
     find_colliding(&asked, out_result);
     count_colliding(&asked, out_result);
     if (chosen->method != NARC_METHOD_SAT) {
         compare_with_exact(&asked, out_result);
-        for (size_t k = 0; k < count; k++) {
+        for (size_t k = 0; k < count; k++)
             out_result->outcomes[outcomes[k]]++;
-        }
     }
     free(outcomes);
 }

@@ -49,9 +49,8 @@ static view choose_view(const char *path, const body_scene *scene, double *out_w
         sizes += box_size(box);
     }
     const double size = box_size(world), mean = count ? sizes / (double)count : size;
-    if (!(size > 0 && size <= NARC_MAX_DISTANCE)) {
+    if (!(size > 0 && size <= NARC_MAX_DISTANCE))
         fail("%s: the bodies are too far apart to draw", path);
-    }
     const double side = clamp(GOOD_BODY * size / mean, SMALLEST_PAGE, LARGEST_PAGE) - 2 * MARGIN;
     const double zoom = side / size;
     *out_width = ceil(fmax(zoom * (world.max_x - world.min_x) + 2 * MARGIN, NARROWEST_PAGE));
@@ -117,15 +116,13 @@ void draw_bodies(const char *path, FILE *file, const body_scene *scene) {
     open_canvas(&page, path, file, width, height);
     const size_t count = scene->bodies->count, steps = 2 * count + scene->contact_count;
     for (size_t i = 0; i < 2 * count; i++) {
-        if (scene->colliding[i % count] == (i >= count)) {
+        if (scene->colliding[i % count] == (i >= count))
             draw_body(&page, &seen, scene, i % count);
-        }
         show_progress("drawing", i, steps);
     }
     for (size_t k = 0; k < scene->contact_count; k++) {
-        if (isfinite(scene->contacts->separation[k])) {
+        if (isfinite(scene->contacts->separation[k]))
             draw_contact(&page, &seen, scene, k);
-        }
         show_progress("drawing", 2 * count + k, steps);
     }
     finish_canvas(&page);

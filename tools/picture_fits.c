@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * picture_fits.c - one cell for each fit: the outline filled, its convex hull thin and dashed, the shape on top with
- * arcs in two tones, straight edges in a third and dots at its junctions; a legend below.
+ * picture_fits.c - one cell for each fit: the outline filled, its convex hull thin and dashed, on top the shape or the
+ * chains of arcs, with its junctions and corners; a legend below.
  */
 #include "picture_fits.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
-#include "../fit/hull.h"
 #include "draw_fit.h"
+#include "fail.h"
 #include "progress.h"
+#include "splines.h"
 
 /* In pixels; a page with many fits has smaller cells. */
 static const double CELL = 440, LARGEST_PAGE = 3000;
@@ -18,30 +21,40 @@ static const double CELL = 440, LARGEST_PAGE = 3000;
 static const double PADDING = 0.09, CAPTION_HEIGHT = 0.19, LEGEND_HEIGHT = 0.15, NARROWEST_PAGE = 1.4;
 static const double LINE = 0.009, THIN_LINE = 0.004, DOT = 0.012, TEXT = 0.05, SMALL_TEXT = 0.036;
 
-/* An edge is drawn, and has a dot at each end, if it is longer than this. */
-static const double SHORTEST_EDGE = 1e-3;
+/* Chains have many arcs: their lines and dots are thinner by this. */
+static const double CHAIN_LINES = 0.5;
+
+/* Edges are drawn, and arcs no corners, if they are longer than this. */
+static const double SHORTEST = 1e-3;
 
 static const color OUTLINE_FILL = {0.90, 0.915, 0.93, 1}, OUTLINE_LINE = {0.72, 0.75, 0.79, 1};
-static const color POINT = {0.60, 0.63, 0.68, 1}, HULL_LINE = {0.36, 0.39, 0.44, 1};
+static const color HULL_LINE = {0.36, 0.39, 0.44, 1};
+
+typedef enum sample { OUTLINE, HULL, ARCS, EDGES, CORNERS, SAMPLE_COUNT } sample;
+static const char *const words[SAMPLE_COUNT] = {"outline", "convex hull", "arcs", "straight edges", "corners"};
+
 /* What is drawn of one outline. */
 typedef struct drawing {
     narc_contours contours;
-    hull around;
+    narc_point *corners; /* of the hull */
+    size_t corner_count;
 } drawing;
 
 static drawing make_drawing(const outline *of) {
     drawing made;
     narc_error error;
-    if (narc_flatten_path(of->path, 0, &made.contours, &error) != NARC_OK ||
-        narc_make_hull(made.contours.points, made.contours.point_count, &made.around, &error) != NARC_OK) {
+    if (narc_flatten_path(of->path, 0, &made.contours, &error) != NARC_OK)
         fail_outline(of, error.message);
-    }
+    made.corners = allocate(made.contours.point_count, sizeof *made.corners);
+    if (narc_compute_hull(made.contours.points, made.contours.point_count, made.corners, &made.corner_count, &error) !=
+        NARC_OK)
+        fail_outline(of, error.message);
     return made;
 }
 
 static void free_drawing(drawing *made) {
     narc_release_contours(&made->contours);
-    narc_release_hull(&made->around);
+    free(made->corners);
 }
 
 /* ---------------------------------------------------------------------------- cells */
@@ -53,62 +66,68 @@ static void stroke_hull(canvas *page, double cell) {
     cairo_set_dash(page->pen, NULL, 0, 0);
 }
 
-/* The outline filled; points in no order as dots. */
-static void draw_outline(canvas *page, const placement *where, const outline *of, const narc_contours *contours,
-                         double cell) {
-    if (of->cloud) {
-        set_color(page, POINT);
-        for (size_t i = 0; i < contours->point_count; i++) {
-            draw_dot(page, place_point(where, contours->points[i]), THIN_LINE * cell);
-        }
-        return;
-    }
+static void draw_outline(canvas *page, const placement *where, const narc_contours *contours, double cell) {
     trace_contours(page, where, contours);
     paint_path(page, OUTLINE_FILL, OUTLINE_LINE, THIN_LINE * cell);
 }
 
-static void draw_caption(canvas *page, const char *name, const narc_fit_result *fit, double x, double y, double cell) {
-    char edges[48] = "", text[128];
-    if (fit->edge_count) {
-        snprintf(edges, sizeof edges, ", %zu edge%s", fit->edge_count, fit->edge_count == 1 ? "" : "s");
-    }
-    snprintf(text, sizeof text, "%zu arc%s%s, %.4f of the hull's area", fit->arc_count, fit->arc_count == 1 ? "" : "s",
-             edges, fit->area / fit->hull_area);
+/* "3 arcs", "1 arc"; nothing of none. */
+static void append_count(char *text, size_t size, size_t count, const char *thing) {
+    const size_t used = strlen(text);
+    if (count > 0)
+        snprintf(text + used, size - used, "%s%zu %s%s", used ? ", " : "", count, thing, count == 1 ? "" : "s");
+}
+
+static void draw_caption(canvas *page, const char *name, const char *text, double x, double y, double cell) {
     draw_text(page, name, x, y + 0.35 * CAPTION_HEIGHT * cell, TEXT * cell, 0.95 * cell);
     draw_text(page, text, x, y + 0.65 * CAPTION_HEIGHT * cell, SMALL_TEXT * cell, 0.95 * cell);
 }
 
-static void draw_cell(canvas *page, const outline *of, const narc_fit_result *fit, double left, double top,
-                      double cell) {
-    const fit_look look = {.line = LINE * cell, .dot = DOT * cell, .shortest_edge = SHORTEST_EDGE * cell};
+/* One of `fit` and `chains` is NULL. Notes what the legend has to explain. */
+static void draw_cell(canvas *page, const outline *of, const narc_fit_result *fit, const narc_arc_chains *chains,
+                      double left, double top, double cell, bool *shown) {
+    fit_look look = {.line = LINE * cell, .dot = DOT * cell, .shortest = SHORTEST * cell};
     drawing drawn = make_drawing(of);
-    const narc_aabb box = join_boxes(bound_points(drawn.around.corners, drawn.around.count), bound_fit(fit));
+    const narc_aabb box = join_boxes(bound_points(drawn.corners, drawn.corner_count), fit ? bound_fit(fit) : EMPTY_BOX);
     const double inner = cell * (1 - 2 * PADDING);
     const placement where = place_box(box, left + PADDING * cell, top + PADDING * cell, inner, inner);
-    draw_outline(page, &where, of, &drawn.contours, cell);
-    trace_points(page, &where, drawn.around.corners, drawn.around.count);
-    stroke_hull(page, cell);
-    draw_fit(page, &where, fit, &look);
-    draw_caption(page, of->name, fit, left + cell / 2, top + cell, cell);
+    char text[128] = "";
+    draw_outline(page, &where, &drawn.contours, cell);
+    shown[OUTLINE] = true;
+    if (fit) {
+        trace_points(page, &where, drawn.corners, drawn.corner_count);
+        stroke_hull(page, cell);
+        draw_fit(page, &where, fit, &look);
+        shown[HULL] = true;
+        shown[EDGES] = shown[EDGES] || fit->edge_count > 0;
+        for (size_t k = 0; k < fit->arc_count; k++)
+            shown[is_corner(&where, &fit->arcs[k], &look) ? CORNERS : ARCS] = true;
+        append_count(text, sizeof text, fit->arc_count, "arc");
+        append_count(text, sizeof text, fit->edge_count, "edge");
+        const size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used, ", %.4f of the hull's area", fit->area / fit->hull_area);
+    } else {
+        look.line *= CHAIN_LINES;
+        look.dot *= CHAIN_LINES;
+        draw_chains(page, &where, chains, &look);
+        const size_t curved = count_curved(chains);
+        shown[ARCS] = shown[ARCS] || curved > 0;
+        shown[EDGES] = shown[EDGES] || curved < chains->arc_count;
+        append_count(text, sizeof text, curved, "arc");
+        append_count(text, sizeof text, chains->arc_count - curved, "line");
+    }
+    draw_caption(page, of->name, text, left + cell / 2, top + cell, cell);
     free_drawing(&drawn);
 }
 
 /* ---------------------------------------------------------------------------- legend */
-
-typedef enum sample { OUTLINE, CLOUD, HULL, ARCS, EDGES, SAMPLE_COUNT } sample;
-static const char *const words[SAMPLE_COUNT] = {"outline", "points", "convex hull", "arcs", "straight edges"};
 
 /* In cells: half a sample's width, the gaps behind a sample and behind a word. */
 static const double HALF_SAMPLE = 0.045, SAMPLE_GAP = 0.02, WORD_GAP = 0.07;
 
 static void draw_sample(canvas *page, sample of, double x, double y, double cell) {
     const double half = HALF_SAMPLE * cell;
-    if (of == CLOUD) {
-        set_color(page, POINT);
-        for (int k = -1; k <= 1; k++) {
-            draw_dot(page, (narc_point){x + 0.6 * k * half, y}, THIN_LINE * cell);
-        }
-    } else if (of == OUTLINE) {
+    if (of == OUTLINE) {
         cairo_rectangle(page->pen, x - half, y - 0.4 * half, 2 * half, 0.8 * half);
         paint_path(page, OUTLINE_FILL, OUTLINE_LINE, THIN_LINE * cell);
     } else if (of == ARCS) {
@@ -118,14 +137,15 @@ static void draw_sample(canvas *page, sample of, double x, double y, double cell
             stroke_path(page, ARC_TONES[tone], LINE * cell);
         }
         draw_junction(page, (narc_point){x, y}, DOT * cell);
+    } else if (of == CORNERS) {
+        draw_corner(page, (narc_point){x, y}, DOT * cell);
     } else {
         cairo_move_to(page->pen, x - half, y);
         cairo_line_to(page->pen, x + half, y);
-        if (of == HULL) {
+        if (of == HULL)
             stroke_hull(page, cell);
-        } else {
+        else
             stroke_path(page, EDGE_TONE, LINE * cell);
-        }
     }
 }
 
@@ -150,7 +170,8 @@ static void draw_legend(canvas *page, const bool *shown, double middle, double y
     }
 }
 
-void draw_fits(const char *path, FILE *file, const outline_list *outlines, const narc_fit_result *fits) {
+void draw_fits(const char *path, FILE *file, const outline_list *outlines, const narc_fit_result *fits,
+               const narc_arc_chains *chains) {
     const size_t count = outlines->count, columns = count <= 5 ? count : (size_t)ceil(sqrt(1.5 * (double)count));
     const size_t rows = (count + columns - 1) / columns;
     const double width = fmax((double)columns, NARROWEST_PAGE);
@@ -160,15 +181,11 @@ void draw_fits(const char *path, FILE *file, const outline_list *outlines, const
     canvas page;
     open_canvas(&page, path, file, cell * width, cell * height);
     cairo_select_font_face(page.pen, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-    bool shown[SAMPLE_COUNT] = {[HULL] = true};
+    bool shown[SAMPLE_COUNT] = {false};
     for (size_t i = 0; i < count; i++) {
-        draw_cell(&page, &outlines->items[i], &fits[i], left + cell * (double)(i % columns),
-                  cell * (1 + CAPTION_HEIGHT) * (double)(i / columns), cell);
-        shown[outlines->items[i].cloud ? CLOUD : OUTLINE] = true;
-        shown[EDGES] = shown[EDGES] || fits[i].edge_count > 0;
-        for (size_t k = 0; k < fits[i].arc_count; k++) {
-            shown[ARCS] = shown[ARCS] || fits[i].arcs[k].radius > 0;
-        }
+        draw_cell(&page, &outlines->items[i], fits ? &fits[i] : NULL, chains ? &chains[i] : NULL,
+                  left + cell * (double)(i % columns), cell * (1 + CAPTION_HEIGHT) * (double)(i / columns), cell,
+                  shown);
         show_progress("drawing", i, count);
     }
     draw_legend(&page, shown, cell * width / 2, cell * (height - LEGEND_HEIGHT / 2), cell);

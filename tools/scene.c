@@ -2,6 +2,7 @@
  *
  * scene.c - narc scene: bodies at random places.
  */
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,6 +13,7 @@
 #include "output.h"
 #include "progress.h"
 #include "shapes_json.h"
+#include "text.h"
 #include "turn.h"
 
 static const char HELP[] =
@@ -25,8 +27,6 @@ static const char HELP[] =
     "  --density D     more than 0, at most 10; bodies overlap more the denser they lie\n"
     "  --seed S        a whole number; the same seed gives the same file\n"
     "  --out FILE      the bodies file to write; left out or -: standard output\n";
-
-static const double LARGEST_DENSITY = 10;
 
 /* SplitMix64: a counter in steps of the golden ratio, its bits mixed by two multiplications. */
 static uint64_t next_random(uint64_t *state) {
@@ -52,10 +52,8 @@ static void run(int argc, char **argv) {
     parse_options(argc, argv, options, OPTIONS, NULL, NULL);
     const char *path = required_option(&options[SHAPES]), *out = options[OUT].value ? options[OUT].value : "-";
     const uint64_t count = whole_option(&options[BODIES], 1, UINT32_MAX);
-    const double density = number_option(&options[DENSITY]);
-    if (!(density > 0 && density <= LARGEST_DENSITY)) {
-        fail("--density must be more than 0 and at most %g, not '%s'", LARGEST_DENSITY, options[DENSITY].value);
-    }
+    required_option(&options[DENSITY]);
+    const double density = number_option(&options[DENSITY], DBL_MIN, 10, "more than 0 and at most 10", 0);
     const uint64_t seed = whole_option(&options[SEED], 0, UINT64_MAX);
 
     shape_list shapes;
@@ -69,9 +67,8 @@ static void run(int argc, char **argv) {
     /* Rounded to single precision: areas come from sines, whose last bit differs from one C library to the next. */
     const double side = (double)(float)sqrt(area / density);
 
-    if (!isfinite(side)) {
-        fail("--density is too small '%s'", options[DENSITY].value);
-    }
+    if (!isfinite(side))
+        fail("--density is too small '%s'", narc_make_excerpt(options[DENSITY].value).text);
 
     /* The same shapes once more, from the same seed; places from where that sequence ended. */
     uint64_t shape_state = seed;
@@ -84,9 +81,7 @@ static void run(int argc, char **argv) {
         fprintf(file, "%s,%.17g,%.17g,%.17g\n", name, x, y, angle);
         show_progress("writing bodies", (size_t)i, (size_t)count);
     }
-    finish_outputs();
-    hide_progress();
-    FILE *report = is_standard_output(out) ? stderr : stdout;
+    FILE *report = finish_outputs();
     fprintf(report, "%" PRIu64 " bodies of %zu shapes in a square of side %g\n", count, shapes.count, side);
     finish_report(report);
     commit_outputs();

@@ -11,13 +11,11 @@
 #include "text.h"
 
 narc_status add_shape(shape_list *shapes, const char *name, const narc_arc *arcs, size_t arc_count, narc_error *error) {
-    if (!shapes->store && narc_create_shapes(NULL, &shapes->store) != NARC_OK) {
+    if (!shapes->store && narc_create_shapes(NULL, &shapes->store) != NARC_OK)
         fail("not enough memory for a store of shapes");
-    }
     const narc_status status = narc_add_shape(shapes->store, arcs, arc_count, NULL, error);
-    if (status != NARC_OK) {
+    if (status != NARC_OK)
         return status;
-    }
     narc_circle bound;
     narc_mass mass;
     narc_compute_bounding_circle(arcs, arc_count, &bound);
@@ -41,15 +39,12 @@ static int compare_entries(const void *left, const void *right) {
 
 size_t index_shapes(shape_list *shapes) {
     shapes->by_name = allocate(shapes->count, sizeof *shapes->by_name);
-    for (size_t i = 0; i < shapes->count; i++) {
+    for (size_t i = 0; i < shapes->count; i++)
         shapes->by_name[i] = (name_entry){shapes->items[i].name, (uint32_t)i};
-    }
     qsort(shapes->by_name, shapes->count, sizeof *shapes->by_name, compare_entries);
-    for (size_t i = 1; i < shapes->count; i++) {
-        if (strcmp(shapes->by_name[i - 1].name, shapes->by_name[i].name) == 0) {
+    for (size_t i = 1; i < shapes->count; i++)
+        if (strcmp(shapes->by_name[i - 1].name, shapes->by_name[i].name) == 0)
             return shapes->by_name[i].index;
-        }
-    }
     return shapes->count;
 }
 
@@ -58,9 +53,8 @@ size_t find_shape(const shape_list *shapes, const char *text) {
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
         const int order = strcmp(text, shapes->by_name[middle].name);
-        if (order == 0) {
+        if (order == 0)
             return shapes->by_name[middle].index;
-        }
         low = order > 0 ? middle + 1 : low;
         high = order > 0 ? high : middle;
     }
@@ -87,35 +81,29 @@ static bool next_of_name(const char **text) {
 
 bool is_shape_name(const char *name) {
     const size_t length = strlen(name);
-    if (length == 0 || name[0] == ' ' || name[length - 1] == ' ') {
+    if (length == 0 || name[0] == ' ' || name[length - 1] == ' ')
         return false;
-    }
-    while (*name) {
-        if (!next_of_name(&name)) {
+    while (*name)
+        if (!next_of_name(&name))
             return false;
-        }
-    }
     return true;
 }
 
 char *make_shape_name(const char *text, size_t length) {
     static const char prefix[] = "shape-";
-    for (; length && text[0] == ' '; length--) {
+    for (; length && text[0] == ' '; length--)
         text++;
-    }
-    while (length && text[length - 1] == ' ') {
+    while (length && text[length - 1] == ' ')
         length--;
-    }
     char *name = allocate(length + sizeof prefix, 1);
     memcpy(name, text, length);
     name[length] = 0;
     for (char *c = name; *c;) {
         const char *next = c;
-        if (next_of_name(&next)) {
+        if (next_of_name(&next))
             c += next - c;
-        } else {
+        else
             *c++ = '_';
-        }
     }
     if (length == 0) {
         strcpy(name, "shape");

@@ -11,7 +11,8 @@ typedef struct shape {
     char *name;
     narc_arc *arcs;
     size_t arc_count;
-    double bound; /* radius of the smallest circle around it */
+    narc_point origin; /* of a fit: where the shape's origin is in the outline's coordinates */
+    double bound;      /* radius of the smallest circle around it */
     double area;
 } shape;
 
@@ -27,7 +28,7 @@ typedef struct shape_list {
     narc_shapes *store;  /* shape k of the store is item k */
 } shape_list;
 
-/* Adds a shape, copying name and arcs; errors are those of narc_add_shape(). */
+/* Adds a shape with origin 0, copying name and arcs; errors are those of narc_add_shape(). */
 narc_status add_shape(shape_list *shapes, const char *name, const narc_arc *arcs, size_t arc_count, narc_error *error);
 
 /* Sorts the names, after the last shape was added. Returns the index of a shape whose name another one before it has,

@@ -9,10 +9,13 @@
 
 #include "shape_list.h"
 
-/* Reads a file with at least one shape, and indexes its names. */
+/* Reads a file with at least one shape, and indexes its names. Errors name shape and arc. */
 void read_shapes(const char *path, shape_list *out_shapes);
 
-/* Writes every shape in the "arcs" form, with 17 significant digits, so that reading gives the same numbers. */
+/* Writes every shape in the "arcs" form and its origin, with 17 significant digits, so that reading gives the same numbers. */
 void write_shapes(FILE *file, const shape_list *shapes);
+
+/* Writes a name as a JSON string. */
+void write_name(FILE *file, const char *name);
 
 #endif

@@ -9,12 +9,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../random.h"
 #include "families.h"
 #include "paper.h"
+#include "random.h"
 #include "store.h"
-
-static const double pi = 3.14159265358979323846;
 
 enum { SHAPES = 512, METHODS = 3 };
 
@@ -48,7 +46,7 @@ struct family_shapes {
 /* A chunk of pairs and all that is known of it. */
 struct chunk {
     size_t count;
-    struct pose *poses;
+    struct body *bodies;
     uint64_t *bits;
     uint8_t *outcomes;
     narc_contacts exact, found;
@@ -70,29 +68,18 @@ static struct family_shapes make_shapes(enum family family, uint64_t *random) {
     return made;
 }
 
-static narc_aabb box_of(const narc_shapes *shapes, const struct pose *pose) {
-    narc_aabb box;
-    if (!narc_get_aabb(shapes, pose->shape[0], pose->cosine, pose->sine, 1, &box))
-        fail("a body without a box");
-    return box;
-}
-
 static void place_pairs(const struct family_shapes *made, struct chunk *chunk, uint64_t *random) {
     for (size_t k = 0; k < chunk->count; k++) {
-        struct pose *a = &chunk->poses[2 * k], *b = a + 1;
-        for (struct pose *pose = a; pose <= b; pose++) {
-            const double angle = random_between(random, -pi, pi);
-            *pose = (struct pose){0, 0, (float)cos(angle), (float)sin(angle), {(uint32_t)random_below(random, SHAPES)}};
-        }
-        const narc_aabb box_a = box_of(made->shapes, a), box_b = box_of(made->shapes, b);
-        b->x = (float)random_between(random, box_a.min_x - box_b.max_x, box_a.max_x - box_b.min_x);
-        b->y = (float)random_between(random, box_a.min_y - box_b.max_y, box_a.max_y - box_b.min_y);
+        struct body *pair = &chunk->bodies[2 * k];
+        pair[0] = random_body(random, random_below(random, SHAPES), 0);
+        pair[1] = random_body(random, random_below(random, SHAPES), 0);
+        put_in_boxes(made->shapes, &pair[0], &pair[1], random);
     }
 }
 
 static struct chunk make_chunk(size_t count) {
     return (struct chunk){.count = count,
-                          .poses = allocate(2 * count, sizeof(struct pose)),
+                          .bodies = allocate(2 * count, sizeof(struct body)),
                           .bits = allocate(NARC_BIT_WORDS(count), sizeof(uint64_t)),
                           .outcomes = allocate(count, 1),
                           .exact = allocate_contacts(count),
@@ -100,7 +87,7 @@ static struct chunk make_chunk(size_t count) {
 }
 
 static void free_chunk(struct chunk *chunk) {
-    free(chunk->poses);
+    free(chunk->bodies);
     free(chunk->bits);
     free(chunk->outcomes);
     free_contacts(&chunk->exact);
@@ -114,10 +101,10 @@ struct scales {
     double rounding, size, slack;
 };
 
-static struct scales scales_of(const struct family_shapes *made, const struct pose *pair) {
-    const struct bound *a = &made->bounds[pair[0].shape[0]], *b = &made->bounds[pair[1].shape[0]];
-    return (struct scales){rounding_of(made->bounds, pair, KIND_ARC), size_of(made->bounds, pair, KIND_ARC),
-                           NARC_HEAD_SLACK * (a->extent + b->extent)};
+static struct scales scales_of(const struct family_shapes *made, const struct body *pair) {
+    const struct bound *a = &made->bounds[pair[0].shape], *b = &made->bounds[pair[1].shape];
+    return (struct scales){rounding_of(made->bounds, pair), size_of(made->bounds, pair),
+                           NARC_ROUNDING_ROOM * (a->extent + b->extent)};
 }
 
 static void tally_overlap(const struct chunk *chunk, size_t k, const struct scales *scales, struct tally *tally) {
@@ -172,20 +159,20 @@ static void tally_contact(const struct chunk *chunk, size_t k, narc_method metho
 }
 
 static void ask_method(const struct family_shapes *made, struct chunk *chunk, narc_method method, struct tally *tally) {
-    const narc_bodies bodies = bodies_of(chunk->poses, 2 * chunk->count, KIND_ARC);
+    const narc_bodies bodies = bodies_of(chunk->bodies, 2 * chunk->count);
     const narc_pairs pairs = neighbours(chunk->count);
     const narc_query query = {.method = method, .out_outcomes = chunk->outcomes};
     size_t found;
     narc_error error;
     must(narc_query_overlaps(made->shapes, &bodies, &pairs, &query, 0, chunk->bits, &error), &error);
     for (size_t k = 0; k < chunk->count; k++) {
-        const struct scales scales = scales_of(made, &chunk->poses[2 * k]);
+        const struct scales scales = scales_of(made, &chunk->bodies[2 * k]);
         tally_overlap(chunk, k, &scales, tally);
     }
     must(narc_query_contacts(made->shapes, &bodies, &pairs, &query, INFINITY, 0, &chunk->found, &found, &error),
          &error);
     for (size_t k = 0; k < chunk->count; k++) {
-        const struct scales scales = scales_of(made, &chunk->poses[2 * k]);
+        const struct scales scales = scales_of(made, &chunk->bodies[2 * k]);
         tally_contact(chunk, k, method, &scales, tally);
     }
 }
@@ -201,9 +188,9 @@ static struct counts count_family(const struct settings *settings, enum family f
     for (size_t left = settings->answer_pairs; left > 0;) {
         struct chunk chunk = make_chunk(left < settings->chunk ? left : settings->chunk);
         place_pairs(&made, &chunk, random);
-        separate(made.shapes, chunk.poses, chunk.count, KIND_ARC, &chunk.exact);
+        separate(made.shapes, chunk.bodies, chunk.count, &chunk.exact);
         for (size_t k = 0; k < chunk.count; k++) {
-            const struct scales scales = scales_of(&made, &chunk.poses[2 * k]);
+            const struct scales scales = scales_of(&made, &chunk.bodies[2 * k]);
             const bool near = fabs((double)chunk.exact.separation[k]) <= scales.rounding;
             counts.near += near;
             counts.colliding += !near && chunk.exact.separation[k] < 0;

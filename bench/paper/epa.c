@@ -19,7 +19,7 @@ static struct row row_with(const struct paper *paper, enum kind kind, size_t siz
 static struct depth_error measure(const struct paper *paper, enum kind kind, size_t size, size_t threshold) {
     const struct scene *scene = &paper->scenes[size][COLLIDING];
     const size_t count = scene->pair_count;
-    const narc_bodies bodies = bodies_of(scene->poses, 2 * count, kind);
+    const narc_bodies bodies = bodies_of(scene->bodies, 2 * count);
     const narc_pairs pairs = neighbours(count);
     narc_contacts exact = allocate_contacts(count), found = allocate_contacts(count);
     double *errors = allocate(count, sizeof *errors);
@@ -29,12 +29,12 @@ static struct depth_error measure(const struct paper *paper, enum kind kind, siz
     struct depth_error error = {0, 0, 0, 0, 0};
     size_t found_count;
     narc_error reason;
-    separate(scene->templates->shapes, scene->poses, count, kind, &exact);
-    must(narc_query_contacts(scene->templates->shapes, &bodies, &pairs, &query, INFINITY, 0, &found, &found_count,
+    separate(scene->templates->shapes[kind], scene->bodies, count, &exact);
+    must(narc_query_contacts(scene->templates->shapes[kind], &bodies, &pairs, &query, INFINITY, 0, &found, &found_count,
                              &reason),
          &reason);
     for (size_t k = 0; k < count; k++) {
-        const double size_of_pair = size_of(scene->templates->bounds, &scene->poses[2 * k], kind);
+        const double size_of_pair = size_of(scene->templates->bounds[kind], &scene->bodies[2 * k]);
         errors[k] = fabs((double)found.separation[k] - (double)exact.separation[k]) / size_of_pair;
         error.limit += outcomes[k] == NARC_OUTCOME_LIMIT;
         error.rounding += outcomes[k] == NARC_OUTCOME_ROUNDING;

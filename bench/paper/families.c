@@ -6,10 +6,8 @@
 
 #include <math.h>
 
-#include "../random.h"
 #include "outlines.h"
-
-static const double pi = 3.14159265358979323846;
+#include "random.h"
 
 enum { LEAST_ARCS = 4, MOST_ARCS = 16 };
 

@@ -10,10 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../random.h"
 #include "paper.h"
-
-static const double pi = 3.14159265358979323846;
+#include "random.h"
 
 /* One side of the octagon in parts of half the sum of both bounding radii; the turn in radians. */
 static const double motions[MOTIONS] = {0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3};
@@ -27,19 +25,19 @@ double motion_of(size_t index) { return motions[index]; }
 struct moving {
     const struct templates *templates;
     size_t pair_count;
-    struct pose *frames[MAX_FRAMES];
+    struct body *frames[MAX_FRAMES];
 };
 
 /* The second body of a pair, frame after frame. */
 static void move_second(const struct moving *moving, size_t place, double motion, uint64_t *random) {
-    const struct pose *start = &moving->frames[0][place];
+    const struct body *start = &moving->frames[0][place];
     const double heading = random_between(random, -pi, pi), side = random_unit(random) < 0.5 ? -1 : 1;
-    const double length = motion * size_of(moving->templates->bounds, start - 1, KIND_ARC) / 2;
+    const double length = motion * size_of(moving->templates->bounds[KIND_ARC], start - 1) / 2;
     const double angle = atan2((double)start->sine, (double)start->cosine);
     double x = start->x, y = start->y, turn = 0;
     for (int frame = 1; frame < MAX_FRAMES; frame++) {
         const double direction = heading + side * 2 * pi / MAX_FRAMES * frame;
-        struct pose *pose = &moving->frames[frame][place];
+        struct body *pose = &moving->frames[frame][place];
         x += length * cos(direction);
         y += length * sin(direction);
         turn += frame <= MAX_FRAMES / 2 ? motion : -motion;
@@ -54,9 +52,9 @@ static void move_second(const struct moving *moving, size_t place, double motion
 static struct moving make_moving(const struct paper *paper, size_t size, double motion, uint64_t *random) {
     struct moving moving = {.templates = &paper->templates[size], .pair_count = paper->settings.pair_count / 2};
     for (int frame = 0; frame < MAX_FRAMES; frame++)
-        moving.frames[frame] = allocate(2 * moving.pair_count, sizeof(struct pose));
+        moving.frames[frame] = allocate(2 * moving.pair_count, sizeof(struct body));
     for (size_t k = 0; k < moving.pair_count; k++) {
-        const struct pose *pair = &paper->scenes[size][k % SITUATIONS].poses[2 * k];
+        const struct body *pair = &paper->scenes[size][k % SITUATIONS].bodies[2 * k];
         moving.frames[0][2 * k] = pair[0];
         moving.frames[0][2 * k + 1] = pair[1];
         for (int frame = 1; frame < MAX_FRAMES; frame++)
@@ -70,10 +68,9 @@ static struct moving make_moving(const struct paper *paper, size_t size, double 
 
 static size_t add_moving_row(struct paper *paper, const struct moving *moving, enum question question, enum start start,
                              const char *isa) {
-    struct row row = {.shapes = moving->templates->shapes,
+    struct row row = {.shapes = moving->templates->shapes[KIND_ARC],
                       .frame_count = MAX_FRAMES,
                       .pair_count = moving->pair_count,
-                      .kind = KIND_ARC,
                       .question = question,
                       .query = {.method = start < SAT_COLD ? NARC_METHOD_GJK : NARC_METHOD_SAT},
                       .isa = isa,
@@ -96,14 +93,15 @@ static size_t count_wrong(const struct moving *moving, bool warm) {
     size_t wrong = 0;
     narc_error error;
     for (int frame = 0; frame < 2 * MAX_FRAMES; frame++) {
-        const struct pose *poses = moving->frames[frame % MAX_FRAMES];
-        const narc_bodies bodies = bodies_of(poses, 2 * count, KIND_ARC);
-        must(narc_query_overlaps(moving->templates->shapes, &bodies, &pairs, &query, 0, bits, &error), &error);
-        separate(moving->templates->shapes, poses, count, KIND_ARC, &exact);
+        const struct body *frame_bodies = moving->frames[frame % MAX_FRAMES];
+        const narc_bodies bodies = bodies_of(frame_bodies, 2 * count);
+        must(narc_query_overlaps(moving->templates->shapes[KIND_ARC], &bodies, &pairs, &query, 0, bits, &error),
+             &error);
+        separate(moving->templates->shapes[KIND_ARC], frame_bodies, count, &exact);
         for (size_t k = 0; k < count; k++)
-            wrong +=
-                fabs((double)exact.separation[k]) > rounding_of(moving->templates->bounds, &poses[2 * k], KIND_ARC) &&
-                (exact.separation[k] < 0) != (bits[k / 64] >> k % 64 & 1);
+            wrong += fabs((double)exact.separation[k]) >
+                         rounding_of(moving->templates->bounds[KIND_ARC], &frame_bodies[2 * k]) &&
+                     (exact.separation[k] < 0) != (bits[k / 64] >> k % 64 & 1);
     }
     free_contacts(&exact);
     free(bits);

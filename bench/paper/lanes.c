@@ -9,10 +9,14 @@ static const struct {
     narc_method method;
     const char *title;
 } rows[LANE_ROWS] = {
-    {KIND_ARC, NARC_METHOD_SAT, "n-arc SAT, exact"},    {KIND_ARC, NARC_METHOD_SAT_FIRST, "n-arc SAT, first pair"},
-    {KIND_ARC, NARC_METHOD_GJK, "n-arc GJK"},           {KIND_GON, NARC_METHOD_POLYGON_SAT, "n-gon SAT"},
-    {KIND_GON, NARC_METHOD_GJK, "n-gon GJK"},           {KIND_ARC, NARC_METHOD_CIRCLE, "circles"},
-    {KIND_ARC, NARC_METHOD_AABB, "axis-aligned boxes"}, {KIND_ARC, NARC_METHOD_OBB, "oriented boxes"},
+    [LANE_ARC_SAT] = {KIND_ARC, NARC_METHOD_SAT, "n-arc SAT, exact"},
+    [LANE_ARC_FIRST] = {KIND_ARC, NARC_METHOD_SAT_FIRST, "n-arc SAT, first pair"},
+    [LANE_ARC_GJK] = {KIND_ARC, NARC_METHOD_GJK, "n-arc GJK"},
+    [LANE_GON_SAT] = {KIND_GON, NARC_METHOD_POLYGON_SAT, "n-gon SAT"},
+    [LANE_GON_GJK] = {KIND_GON, NARC_METHOD_GJK, "n-gon GJK"},
+    [LANE_CIRCLE] = {KIND_ARC, NARC_METHOD_CIRCLE, "circles"},
+    [LANE_AABB] = {KIND_ARC, NARC_METHOD_AABB, "axis-aligned boxes"},
+    [LANE_OBB] = {KIND_ARC, NARC_METHOD_OBB, "oriented boxes"},
 };
 
 /* Filters have no contacts. */
@@ -37,6 +41,11 @@ void add_lanes(struct paper *paper, struct lanes *lanes) {
                     row.claim = -1;
                 lanes->rows[question][k][isa] = add_row(&paper->rows, row);
             }
+}
+
+double lane_time(const struct paper *paper, const struct lanes *lanes, enum isa isa, enum lane_row row) {
+    const size_t column = isa == BEST ? 0 : lanes->isa_count - 1;
+    return paper->rows.list[lanes->rows[QUESTION_OVERLAP][row][column]].ns;
 }
 
 void print_lanes(const struct paper *paper, const struct lanes *lanes, FILE *out) {

@@ -10,16 +10,6 @@
 
 #include "paper.h"
 
-#ifndef BENCH_FLAGS
-#define BENCH_FLAGS "unknown"
-#endif
-
-#ifdef __clang__
-#define COMPILER __VERSION__
-#else
-#define COMPILER "GCC " __VERSION__
-#endif
-
 static const struct settings full = {
     .sizes = {4, 6, 8, 10, 12, 16, 24, 32, 48, 64},
     .size_count = 10,
@@ -45,29 +35,11 @@ static const struct settings quick = {
     .chunk = 8192,
 };
 
-static const char *cpu_model(void) {
-    static char line[256];
-    FILE *file = fopen("/proc/cpuinfo", "r");
-    const char *model = "unknown processor";
-    while (file && fgets(line, sizeof line, file)) {
-        char *colon = strchr(line, ':');
-        if (strncmp(line, "model name", 10) == 0 && colon) {
-            line[strcspn(line, "\n")] = 0;
-            model = colon + 2;
-            break;
-        }
-    }
-    if (file)
-        fclose(file);
-    return model;
-}
+static int begun, in_all;
 
-static void choose_isas(struct paper *paper) {
-    narc_error error;
-    must(narc_set_isa(NULL, &error), &error);
-    paper->isas[BEST] = narc_get_isa();
-    paper->isas[SCALAR] = "scalar";
-}
+void set_steps(int count) { in_all = count; }
+
+void begin_step(const char *what) { fprintf(stderr, "%d/%d %s\n", ++begun, in_all, what); }
 
 static void make_scenes(struct paper *paper, uint64_t *random) {
     const struct settings *settings = &paper->settings;
@@ -130,14 +102,13 @@ static void write_plot_settings(const struct paper *paper, const struct frames *
 static bool take_options(int argc, char **argv, struct settings *out) {
     const char *folder = "out";
     *out = full;
-    for (int k = 1; k < argc; k++) {
+    for (int k = 1; k < argc; k++)
         if (strcmp(argv[k], "--quick") == 0)
             *out = quick;
-        else if (strncmp(argv[k], "--out=", 6) == 0)
-            folder = argv[k] + 6;
+        else if (option_value(argv[k], "--out="))
+            folder = option_value(argv[k], "--out=");
         else
             return false;
-    }
     out->folder = folder;
     return true;
 }
@@ -147,17 +118,20 @@ int main(int argc, char **argv) {
     static struct figures figures;
     static struct epa epa;
     static struct lanes lanes;
+    static struct steps steps;
+    static struct perpendiculars perpendiculars;
     static struct frames frames;
     uint64_t random = 1;
     if (!take_options(argc, argv, &paper.settings)) {
         fprintf(stderr, "usage: bench_paper [--out=FOLDER] [--quick]\n");
         return 2;
     }
-    enum { FAMILY_STEPS = 5, OTHER_STEPS = 4 };
+    enum { FAMILY_STEPS = 5, OTHER_STEPS = 5 };
     set_steps((int)paper.settings.size_count + paper.settings.repetitions + FAMILY_STEPS + OTHER_STEPS);
-    choose_isas(&paper);
+    paper.isas[BEST] = choose_best_isa();
+    paper.isas[SCALAR] = "scalar";
     FILE *out = open_result(paper.settings.folder, "paper.md");
-    fprintf(out, "%s, %s, %s. ", cpu_model(), COMPILER, BENCH_FLAGS);
+    fprintf(out, "%s, %s, %s. ", processor_name(), compiler_name, compiler_flags);
     make_scenes(&paper, &random);
     begin_step("errors of depths");
     add_figures(&paper, &figures);
@@ -167,13 +141,16 @@ int main(int argc, char **argv) {
     add_frames(&paper, &frames, &random);
     time_rows(&paper.rows, paper.settings.repetitions, paper.settings.least_time, &random);
     print_noise(&paper, out);
-    print_claims(&paper, &figures, &epa, &frames, out);
+    time_perpendiculars(&paper, &perpendiculars);
+    choose_best_isa();
+    count_steps(&paper, &steps);
+    const struct results results = {&paper, &figures, &epa, &steps, &perpendiculars, &lanes, &frames};
+    print_claims(&results, out);
     print_figures(&paper, &figures, out);
     print_lanes(&paper, &lanes, out);
     print_epa(&paper, &epa, out);
-    choose_isas(&paper);
-    begin_step("steps of GJK and EPA");
-    print_steps(&paper, out);
+    print_steps(&paper, &steps, out);
+    print_perpendiculars(&paper, &perpendiculars, out);
     print_frames(&paper, &frames, out);
     print_storage(&paper, out);
     const size_t broken = print_answers(&paper.settings, &random, out);

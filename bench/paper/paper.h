@@ -79,10 +79,32 @@ void write_epa(const struct paper *paper, const struct epa *epa);
 
 /* ------------------------------------------------------------------------------------------------ steps */
 
-/* Support points (of each body) that GJK asks for, mean of a scene's pairs; for contacts in the longer of its two
- * phases. Threshold 0: the library's. */
-double mean_steps(const struct scene *scene, enum kind kind, enum question question, double threshold);
-void print_steps(const struct paper *paper, FILE *out);
+/* Support points (of each body) that GJK asks for, of a scene's pairs; for contacts in the longer of its two phases. */
+struct step_count {
+    double mean;
+    size_t most;
+};
+
+struct steps {
+    struct step_count overlap[SITUATIONS][KINDS][MAX_SIZES];
+    struct step_count contact[KINDS][THRESHOLDS][MAX_SIZES]; /* colliding pairs */
+};
+
+void count_steps(const struct paper *paper, struct steps *steps);
+void print_steps(const struct paper *paper, const struct steps *steps, FILE *out);
+
+/* ------------------------------------------------------------------------------------------------ perpendiculars */
+
+/* Polygon SAT in plain C, one pair after the other, with a side's unit normal stored, or computed for each pair: for a
+ * yes or no its length does not matter, for a depth it is made 1. */
+enum perpendicular { STORED_YES_NO, COMPUTED_YES_NO, STORED_DEPTH, NORMALISED_DEPTH, PERPENDICULARS };
+
+struct perpendiculars {
+    double ns[PERPENDICULARS][MAX_SIZES]; /* of one check, collision scene */
+};
+
+void time_perpendiculars(const struct paper *paper, struct perpendiculars *times);
+void print_perpendiculars(const struct paper *paper, const struct perpendiculars *times, FILE *out);
 
 /* ------------------------------------------------------------------------------------------------ warm starts */
 
@@ -105,7 +127,18 @@ void write_frames(const struct paper *paper, const struct frames *frames);
 
 /* ------------------------------------------------------------------------------------------------ vectors */
 
-enum { LANE_ROWS = 8, MAX_LANE_ISAS = 4 };
+enum lane_row {
+    LANE_ARC_SAT,
+    LANE_ARC_FIRST,
+    LANE_ARC_GJK,
+    LANE_GON_SAT,
+    LANE_GON_GJK,
+    LANE_CIRCLE,
+    LANE_AABB,
+    LANE_OBB,
+    LANE_ROWS
+};
+enum { MAX_LANE_ISAS = 4 };
 
 struct lanes {
     size_t size; /* index of n = 8 */
@@ -114,6 +147,8 @@ struct lanes {
     size_t rows[QUESTIONS][LANE_ROWS][MAX_LANE_ISAS];
 };
 
+/* ns of a yes or no without collision. */
+double lane_time(const struct paper *paper, const struct lanes *lanes, enum isa isa, enum lane_row row);
 void add_lanes(struct paper *paper, struct lanes *lanes);
 void print_lanes(const struct paper *paper, const struct lanes *lanes, FILE *out);
 
@@ -125,8 +160,22 @@ size_t print_answers(const struct settings *settings, uint64_t *random, FILE *ou
 
 /* ------------------------------------------------------------------------------------------------ claims, storage */
 
-void print_claims(const struct paper *paper, const struct figures *figures, const struct epa *epa,
-                  const struct frames *frames, FILE *out);
+/* All that was measured. */
+struct results {
+    const struct paper *paper;
+    const struct figures *figures;
+    const struct epa *epa;
+    const struct steps *steps;
+    const struct perpendiculars *perpendiculars;
+    const struct lanes *lanes;
+    const struct frames *frames;
+};
+
+void print_claims(const struct results *results, FILE *out);
+
+/* Bytes of single precision that the paper's algorithms read of a shape. */
+size_t arc_bytes(size_t n);
+size_t gon_bytes(size_t n);
 void print_storage(const struct paper *paper, FILE *out);
 
 #endif

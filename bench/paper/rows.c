@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../random.h"
+#include "random.h"
 
 /* Where answers go; large enough for any row. */
 struct answers {
@@ -30,19 +30,18 @@ size_t add_row(struct rows *rows, struct row row) {
 
 struct row row_of(const struct scene *scene, enum kind kind, enum question question, narc_method method,
                   const char *isa) {
-    return (struct row){.shapes = scene->templates->shapes,
-                        .frames = {scene->poses},
+    return (struct row){.shapes = scene->templates->shapes[kind],
+                        .frames = {scene->bodies},
                         .frame_count = 1,
                         .pair_count = scene->pair_count,
-                        .kind = kind,
                         .question = question,
                         .query = {.method = method},
                         .isa = isa,
                         .claim = scene->situation == COLLIDING};
 }
 
-static void ask(const struct row *row, const struct pose *poses, struct answers *out) {
-    const narc_bodies bodies = bodies_of(poses, 2 * row->pair_count, row->kind);
+static void ask(const struct row *row, const struct body *list, struct answers *out) {
+    const narc_bodies bodies = bodies_of(list, 2 * row->pair_count);
     const narc_pairs pairs = neighbours(row->pair_count);
     narc_error error;
     if (row->question == QUESTION_OVERLAP)

@@ -5,7 +5,7 @@
 #ifndef NARC_PAPER_ROWS_H
 #define NARC_PAPER_ROWS_H
 
-#include "scenes.h"
+#include "situations.h"
 
 enum question { QUESTION_OVERLAP, QUESTION_CONTACT, QUESTIONS };
 
@@ -13,9 +13,8 @@ enum { MAX_REPETITIONS = 16, MAX_FRAMES = 8 };
 
 struct row {
     const narc_shapes *shapes;
-    const struct pose *frames[MAX_FRAMES]; /* each is asked about in turn; one frame: a scene that stands still */
+    const struct body *frames[MAX_FRAMES]; /* each is asked about in turn; one frame: a scene that stands still */
     size_t frame_count, pair_count;
-    enum kind kind;
     enum question question;
     narc_query query;
     const char *isa;
@@ -26,6 +25,10 @@ struct row {
     double times[MAX_REPETITIONS];
     double ns, spread; /* of one check: the median, and how far the middle half of the repetitions lies apart */
 };
+
+/* "3/40 what" on stderr; the number of steps is set once. */
+void set_steps(int count);
+void begin_step(const char *what);
 
 struct rows {
     struct row *list;

@@ -10,70 +10,84 @@
 
 #include "paper.h"
 
-double mean_steps(const struct scene *scene, enum kind kind, enum question question, double threshold) {
+static struct step_count count_scene(const struct scene *scene, enum kind kind, enum question question,
+                                     double threshold) {
     const size_t count = scene->pair_count;
-    const narc_bodies bodies = bodies_of(scene->poses, 2 * count, kind);
+    const narc_bodies bodies = bodies_of(scene->bodies, 2 * count);
     const narc_pairs pairs = neighbours(count);
+    const narc_shapes *shapes = scene->templates->shapes[kind];
     uint8_t *outcomes = allocate(count, 1);
     uint64_t *bits = allocate(NARC_BIT_WORDS(count), sizeof *bits);
     narc_contacts contacts = allocate_contacts(count);
     size_t sum = count, more = count, found;
     narc_query query = {.method = NARC_METHOD_GJK, .tolerance = (float)threshold, .out_outcomes = outcomes};
     narc_error error;
+    struct step_count steps = {.most = 1};
     for (query.iterations = 1; query.iterations < NARC_MAX_ITERATIONS && more > 0; query.iterations++) {
         if (question == QUESTION_OVERLAP)
-            must(narc_query_overlaps(scene->templates->shapes, &bodies, &pairs, &query, 0, bits, &error), &error);
+            must(narc_query_overlaps(shapes, &bodies, &pairs, &query, 0, bits, &error), &error);
         else
-            must(
-                narc_query_contacts(scene->templates->shapes, &bodies, &pairs, &query, 0, 0, &contacts, &found, &error),
-                &error);
+            must(narc_query_contacts(shapes, &bodies, &pairs, &query, 0, 0, &contacts, &found, &error), &error);
         more = 0;
         for (size_t k = 0; k < count; k++)
             more += outcomes[k] == NARC_OUTCOME_LIMIT;
         sum += more;
+        if (more > 0)
+            steps.most = query.iterations + 1;
     }
     free_contacts(&contacts);
     free(bits);
     free(outcomes);
-    return (double)sum / (double)count;
+    steps.mean = (double)sum / (double)count;
+    return steps;
+}
+
+void count_steps(const struct paper *paper, struct steps *steps) {
+    begin_step("steps of GJK and EPA");
+    for (size_t size = 0; size < paper->settings.size_count; size++)
+        for (enum kind kind = 0; kind < KINDS; kind++) {
+            const struct scene *scenes = paper->scenes[size];
+            for (enum situation situation = 0; situation < SITUATIONS; situation++)
+                steps->overlap[situation][kind][size] = count_scene(&scenes[situation], kind, QUESTION_OVERLAP, 0);
+            for (size_t threshold = 0; threshold < THRESHOLDS; threshold++)
+                steps->contact[kind][threshold][size] =
+                    count_scene(&scenes[COLLIDING], kind, QUESTION_CONTACT, threshold_of(threshold));
+        }
 }
 
 /* ------------------------------------------------------------------------------------------------ tables */
 
-static void print_sizes(const struct paper *paper, FILE *out) {
-    static const char *const titles[SITUATIONS] = {"no collision", "collision"};
-    fprintf(out, "\n### Support points of each body until GJK knows whether they collide, mean\n\n| |");
+static void print_head(const struct paper *paper, const char *title, FILE *out) {
+    fprintf(out, "\n### %s\n\n| |", title);
     for (size_t size = 0; size < paper->settings.size_count; size++)
         fprintf(out, size ? " %zu |" : " n = %zu |", paper->settings.sizes[size]);
     fprintf(out, "\n| --- |");
     for (size_t size = 0; size < paper->settings.size_count; size++)
         fprintf(out, " ---: |");
-    for (enum situation situation = 0; situation < SITUATIONS; situation++)
-        for (enum kind kind = 0; kind < KINDS; kind++) {
-            fprintf(out, "\n| %s, %s |", kind == KIND_ARC ? "n-arcs" : "n-gons", titles[situation]);
-            for (size_t size = 0; size < paper->settings.size_count; size++)
-                fprintf(out, " %.2f |", mean_steps(&paper->scenes[size][situation], kind, QUESTION_OVERLAP, 0));
-        }
     fputc('\n', out);
 }
 
-static void print_thresholds(const struct paper *paper, FILE *out) {
-    fprintf(out, "\n### Support points in the longer of GJK's and EPA's search, collision scene, mean, by threshold\n\n"
-                 "| shapes |");
-    for (size_t threshold = 0; threshold < THRESHOLDS; threshold++)
-        fprintf(out, " %.0e |", threshold_of(threshold));
-    fprintf(out, "\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n");
-    for (enum kind kind = 0; kind < KINDS; kind++)
-        for (size_t size = 0; size < paper->settings.figure_sizes; size++) {
-            fprintf(out, "| %zu-%s |", paper->settings.sizes[size], kind == KIND_ARC ? "arcs" : "gons");
-            for (size_t threshold = 0; threshold < THRESHOLDS; threshold++)
-                fprintf(out, " %.2f |",
-                        mean_steps(&paper->scenes[size][COLLIDING], kind, QUESTION_CONTACT, threshold_of(threshold)));
-            fputc('\n', out);
-        }
+/* The mean of each scene, and the most of any pair. */
+static void print_row(const struct paper *paper, const char *title, const struct step_count *counts, FILE *out) {
+    fprintf(out, "| %s |", title);
+    for (size_t size = 0; size < paper->settings.size_count; size++)
+        fprintf(out, " %.2f, %zu |", counts[size].mean, counts[size].most);
+    fputc('\n', out);
 }
 
-void print_steps(const struct paper *paper, FILE *out) {
-    print_sizes(paper, out);
-    print_thresholds(paper, out);
+void print_steps(const struct paper *paper, const struct steps *steps, FILE *out) {
+    static const char *const kinds[KINDS] = {"arcs", "gons"};
+    char title[64];
+    print_head(paper, "Support points of each body until GJK knows whether they collide: mean, most", out);
+    for (enum situation situation = 0; situation < SITUATIONS; situation++)
+        for (enum kind kind = 0; kind < KINDS; kind++) {
+            snprintf(title, sizeof title, "n-%s, %s", kinds[kind], situation == APART ? "no collision" : "collision");
+            print_row(paper, title, steps->overlap[situation][kind], out);
+        }
+    print_head(paper, "Support points in the longer of GJK's and EPA's search, collision scene: mean, most", out);
+    for (enum kind kind = 0; kind < KINDS; kind++)
+        for (size_t threshold = 0; threshold < THRESHOLDS; threshold++) {
+            snprintf(title, sizeof title, "n-%s, threshold %.0e", kinds[kind], threshold_of(threshold));
+            print_row(paper, title, steps->contact[kind][threshold], out);
+        }
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# One step of the package tests; tests/package.cmake calls it with STEP and the variables used below.
+# One step of the package tests; installed.cmake calls it with STEP and the variables used below.
 
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
@@ -30,11 +30,11 @@ if(compiler_name MATCHES "^clang(-[0-9]+)?$")
   string(REPLACE "clang" "clang++" CXX_COMPILER "${C_COMPILER}")
 endif()
 
-# Writes the README's first code block in a language to a file.
-function(extract_block language file)
-  file(READ "${SOURCE}/README.md" text)
+# Writes a document's first code block in a language to a file.
+function(extract_block document language file)
+  file(READ "${SOURCE}/${document}" text)
   if(NOT text MATCHES "\n```${language}\n(([^`]|`[^`])*)```\n")
-    message(FATAL_ERROR "README.md has no block of ${language}")
+    message(FATAL_ERROR "${document} has no block of ${language}")
   endif()
   file(WRITE "${file}" "${CMAKE_MATCH_1}")
 endfunction()
@@ -60,7 +60,7 @@ if(STEP STREQUAL "install")
   run(${CMAKE_COMMAND} --install "${BUILD}" --prefix "${prefix}" --config "${CONFIG}")
 
 elseif(STEP MATCHES "^cmake_")
-  build_and_test("${SOURCE}/tests/package")
+  build_and_test("${SOURCE}/tests/package/consumer")
 
 elseif(STEP MATCHES "^pkgconfig_" OR STEP STREQUAL "readme_example")
   if(TOOLCHAIN OR NOT PKG_CONFIG)
@@ -68,10 +68,12 @@ elseif(STEP MATCHES "^pkgconfig_" OR STEP STREQUAL "readme_example")
     return()
   endif()
   set(package narc)
-  set(source "${SOURCE}/tests/package/consumer")
+  set(source "${SOURCE}/tests/package/consumer/consumer")
   if(KIND STREQUAL "fit")
     set(package narc-fit)
-    set(source "${SOURCE}/tests/package/consumer_fit")
+    set(source "${SOURCE}/tests/package/consumer/consumer_fit")
+  elseif(KIND STREQUAL "static")
+    set(package narc-static)
   endif()
   file(GLOB_RECURSE pc_file "${prefix}/${package}.pc")
   get_filename_component(pc_folder "${pc_file}" DIRECTORY)
@@ -80,46 +82,42 @@ elseif(STEP MATCHES "^pkgconfig_" OR STEP STREQUAL "readme_example")
   set(compile "${C_COMPILER}")
   if(STEP STREQUAL "readme_example")
     set(source "${folder}/example.c")
-    extract_block(c "${source}")
+    extract_block(README.md c "${source}")
   elseif(LANGUAGE STREQUAL "cxx")
     string(APPEND source ".cpp")
     set(compile "${CXX_COMPILER}")
   else()
     string(APPEND source ".c")
   endif()
-  set(query --libs)
-  if(KIND STREQUAL "static")
-    list(APPEND query --static)
-  endif()
   execute_process(COMMAND "${PKG_CONFIG}" --cflags ${package} OUTPUT_VARIABLE compile_flags COMMAND_ERROR_IS_FATAL ANY)
-  execute_process(COMMAND "${PKG_CONFIG}" ${query} ${package} OUTPUT_VARIABLE link_flags COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND "${PKG_CONFIG}" --libs ${package} OUTPUT_VARIABLE link_flags COMMAND_ERROR_IS_FATAL ANY)
   separate_arguments(compile_flags UNIX_COMMAND "${compile_flags}")
   separate_arguments(link_flags UNIX_COMMAND "${link_flags}")
-  if(KIND STREQUAL "static")
-    # With both libraries in one folder the linker prefers the shared one.
-    list(TRANSFORM link_flags REPLACE "^-lnarc$" "-l:libnarc.a")
-  else()
+  # Without that path the program runs only if it needs no shared library of narc.
+  if(NOT KIND STREQUAL "static")
     list(APPEND link_flags "-Wl,-rpath,${library_folder}")
   endif()
   run("${compile}" ${flag_list} -Wall -Wextra -Werror -c "${source}" -o "${folder}/program.o" ${compile_flags})
   run("${compile}" ${flag_list} "${folder}/program.o" -o "${folder}/program" ${link_flags})
   run("${folder}/program")
   if(STEP STREQUAL "readme_example")
-    extract_block(text "${folder}/expected.txt")
+    extract_block(README.md text "${folder}/expected.txt")
     execute_process(COMMAND "${folder}/program" OUTPUT_FILE "${folder}/printed.txt")
     run(${CMAKE_COMMAND} -E compare_files "${folder}/expected.txt" "${folder}/printed.txt")
   endif()
 
-elseif(STEP STREQUAL "readme_shapes")
-  # The installed command reads the README's shapes file.
-  extract_block(json "${folder}/shapes.json")
+elseif(STEP STREQUAL "documented_shapes")
+  # The installed command reads the documented shapes file.
+  extract_block(docs/formats.md json "${folder}/shapes.json")
   file(GLOB command "${prefix}/bin/narc")
   set(shapes --shapes "${folder}/shapes.json")
   run("${command}" scene ${shapes} --bodies 200 --density 1 --seed 1 --out "${folder}/bodies.csv")
   run("${command}" collide ${shapes} --bodies "${folder}/bodies.csv")
 
+# The last two build the library anew. What they are about does not depend on optimisation.
 elseif(STEP STREQUAL "subproject")
-  build_and_test("${SOURCE}/tests/package" -DKIND=subproject "-DNARC_SOURCE=${SOURCE}" "-DNARC_SLEEF=${SLEEF}")
+  build_and_test("${SOURCE}/tests/package/consumer" -DKIND=subproject "-DNARC_SOURCE=${SOURCE}" "-DNARC_SLEEF=${SLEEF}"
+    -DCMAKE_BUILD_TYPE=Debug)
   file(GLOB_RECURSE extra "${folder}/narc/fit/*" "${folder}/narc/tests/*" "${folder}/narc/tools/*")
   if(extra)
     message(FATAL_ERROR "a subproject builds more than the library: ${extra}")
@@ -127,9 +125,9 @@ elseif(STEP STREQUAL "subproject")
 
 elseif(STEP STREQUAL "compiler_alone")
   # No pkg-config, no OpenMP, no SLEEF: the library itself must not look for anything.
-  run(${configure} -S "${SOURCE}" -B "${folder}" -DNARC_BUILD_FIT=OFF -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF
+  run(${configure} -S "${SOURCE}" -B "${folder}" -DCMAKE_BUILD_TYPE=Debug -DNARC_BUILD_FIT=OFF -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF
     -DNARC_OPENMP=OFF -DNARC_SLEEF=OFF -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON)
-  run(${CMAKE_COMMAND} --build "${folder}" --config "${CONFIG}")
+  run(${CMAKE_COMMAND} --build "${folder}" --config "${CONFIG}" --target narc_core narc_isa_scalar)
 
 else()
   message(FATAL_ERROR "no such step: ${STEP}")

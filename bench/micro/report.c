@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * report.c - the targets, a table of times, and the data of the plots, from the rows that ran.
+ */
+#include "report.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "common.h"
+#include "layout_rows.h"
+
+/* ------------------------------------------------------------------------------------------------ rows */
+
+/* The time of a row in nanoseconds per pair, NaN if it did not run. "BEST" in the name is the best instruction set. */
+static double time_of(const struct report *report, const char *name) {
+    char full[BENCH_NAME];
+    const char *best = strstr(name, "BEST");
+    if (best)
+        snprintf(full, sizeof full, "%.*s%s%s", (int)(best - name), name, report->best_isa, best + strlen("BEST"));
+    else
+        snprintf(full, sizeof full, "%s", name);
+    for (size_t k = 0; k < report->row_count; k++)
+        if (strcmp(report->rows[k]->name, full) == 0 && report->rows[k]->ns > 0)
+            return report->rows[k]->ns;
+    return NAN;
+}
+
+/* ------------------------------------------------------------------------------------------------ targets */
+
+enum bound { AT_LEAST, AT_MOST, WITHIN /* a factor, either way */ };
+
+/* The time of `above` divided by that of `below`. */
+struct target {
+    const char *what;
+    const char *above, *below;
+    enum bound bound;
+    double limit;
+};
+
+#define BOX2D(n) "contact/n" #n "/mixed/unique/random/box2d-collide"
+
+static const struct target targets[] = {
+    {"overlap, n = 8, against Box2D", BOX2D(8), "overlap/n8/mixed/unique/random/BEST", AT_LEAST, 12},
+    {"overlap, n = 4, against Box2D", BOX2D(4), "overlap/n4/mixed/unique/random/BEST", AT_LEAST, 12},
+    {"contact, n = 8, against Box2D", BOX2D(8), "contact/n8/mixed/unique/random/BEST", AT_LEAST, 8},
+    {"overlap, n = 8, AVX2, against Box2D", BOX2D(8), "overlap/n8/mixed/unique/random/avx2", AT_LEAST, 8},
+    {"overlap, n = 4, AVX2, against Box2D", BOX2D(4), "overlap/n4/mixed/unique/random/avx2", AT_LEAST, 8},
+    {"contact, n = 8, AVX2, against Box2D", BOX2D(8), "contact/n8/mixed/unique/random/avx2", AT_LEAST, 6},
+    {"overlap, n = 8, templates, time against the circle floor", "overlap/n8/mixed/templates/random/BEST",
+     "floor/n8/mixed/templates/random/BEST", AT_MOST, 4},
+    {"contact with hints, templates, time against without", "hinted/n8/mixed/templates/random/BEST",
+     "unhinted/n8/mixed/templates/random/BEST", AT_MOST, 0.5},
+    {"overlap, time of n = 16 against n = 4", "overlap/n16/mixed/unique/random/BEST",
+     "overlap/n4/mixed/unique/random/BEST", AT_MOST, 2.5},
+    {"overlap, n = 8, time of colliding against disjoint", "overlap/n8/colliding/unique/random/BEST",
+     "overlap/n8/disjoint/unique/random/BEST", WITHIN, 1.5},
+    {"overlap, one million pairs, 2 threads against 1", "overlap/n8/packing/unique/sorted/BEST",
+     "overlap/n8/packing/unique/sorted/BEST/2threads", AT_LEAST, 1.85},
+    {"overlap, general pairs, n = 8, time against n-arcs", "overlap/general/mixed/unique/random/BEST",
+     "overlap/n8/mixed/unique/random/BEST", AT_MOST, 2},
+    {"contact, general pairs, n = 8, time against n-arcs", "contact/general/mixed/unique/random/BEST",
+     "contact/n8/mixed/unique/random/BEST", AT_MOST, 2},
+};
+
+static bool is_reached(const struct target *target, double ratio) {
+    switch (target->bound) {
+    case AT_LEAST:
+        return ratio >= target->limit;
+    case AT_MOST:
+        return ratio <= target->limit;
+    default:
+        return ratio <= target->limit && ratio >= 1 / target->limit;
+    }
+}
+
+static void print_targets(const struct report *report, FILE *out) {
+    static const char *const bounds[] = {"at least", "at most", "within a factor of"};
+    bool any = false;
+    for (size_t k = 0; k < sizeof targets / sizeof targets[0]; k++) {
+        const struct target *target = &targets[k];
+        const double above = time_of(report, target->above), below = time_of(report, target->below);
+        if (isnan(above) || isnan(below))
+            continue;
+        if (!any)
+            fprintf(out, "| | target | reached | | ns per pair |\n| --- | --- | --- | --- | --- |\n");
+        any = true;
+        fprintf(out, "| %s | %s %g | %.2f | %s | %.2f / %.2f |\n", target->what, bounds[target->bound], target->limit,
+                above / below, is_reached(target, above / below) ? "yes" : "no", above, below);
+    }
+    if (any)
+        fputc('\n', out);
+}
+
+/* ------------------------------------------------------------------------------------------------ times against n */
+
+static const unsigned arc_counts[] = {4, 6, 8, 12, 16};
+enum { ARC_COUNTS = sizeof arc_counts / sizeof arc_counts[0] };
+
+struct series {
+    const char *title;
+    const char *query, *who;
+};
+
+static const struct series series[] = {
+    {"narc overlap", "overlap", "BEST"},
+    {"narc overlap, AVX2", "overlap", "avx2"},
+    {"narc contact", "contact", "BEST"},
+    {"narc contact, AVX2", "contact", "avx2"},
+    {"Box2D b2CollidePolygons", "contact", "box2d-collide"},
+    {"Box2D b2TestOverlap", "overlap", "box2d-overlap"},
+    {"Chipmunk cpShapesCollide", "contact", "chipmunk"},
+    {"libccd GJK", "overlap", "ccd-gjk"},
+    {"libccd MPR", "overlap", "ccd-mpr"},
+    {"published test, plain loop", "overlap", "plain-paper"},
+    {"exact test, plain loop", "overlap", "plain-exact"},
+};
+enum { SERIES = sizeof series / sizeof series[0] };
+
+static double time_in(const struct report *report, const struct series *of, unsigned n) {
+    char name[BENCH_NAME];
+    snprintf(name, sizeof name, "%s/n%u/mixed/unique/random/%s", of->query, n, of->who);
+    return time_of(report, name);
+}
+
+static bool ran(const struct report *report, const struct series *of) {
+    bool any = false;
+    for (size_t k = 0; k < ARC_COUNTS; k++)
+        any |= !isnan(time_in(report, of, arc_counts[k]));
+    return any;
+}
+
+static void print_times(const struct report *report, FILE *out) {
+    bool any = false;
+    for (size_t s = 0; s < SERIES; s++) {
+        if (!ran(report, &series[s]))
+            continue;
+        if (!any)
+            fprintf(out, "| ns per pair, mixed scene, unique shapes | n = 4 | 6 | 8 | 12 | 16 |\n"
+                         "| --- | ---: | ---: | ---: | ---: | ---: |\n");
+        any = true;
+        fprintf(out, "| %s |", series[s].title);
+        for (size_t k = 0; k < ARC_COUNTS; k++) {
+            const double time = time_in(report, &series[s], arc_counts[k]);
+            if (isnan(time))
+                fprintf(out, " |");
+            else
+                fprintf(out, " %.1f |", time);
+        }
+        fputc('\n', out);
+    }
+    if (any)
+        fputc('\n', out);
+}
+
+/* The first stage of a pair by layout. */
+static void print_layouts(const struct report *report, FILE *out) {
+    static const char *const isas[] = {"avx512", "avx2"}, *const orders[] = {"random", "sorted"};
+    static const char *const varieties[] = {"templates", "unique", "many"};
+    bool any = false;
+    for (size_t isa = 0; isa < 2; isa++)
+        for (size_t layout = 0; layout_name(layout); layout++) {
+            double times[6];
+            bool ran_all = true;
+            for (size_t k = 0; k < 6; k++) {
+                char name[BENCH_NAME];
+                snprintf(name, sizeof name, "layout-%s/n8/mixed/%s/%s/%s", layout_name(layout), varieties[k / 2],
+                         orders[k % 2], isas[isa]);
+                times[k] = time_of(report, name);
+                ran_all &= !isnan(times[k]);
+            }
+            if (!ran_all)
+                continue;
+            if (!any)
+                fprintf(out, "| ns per pair, first stage only | 16 shapes, random | sorted | 4,096, random | sorted | "
+                             "65,536, random | sorted |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n");
+            any = true;
+            fprintf(out, "| %s, %s |", layout_name(layout), isas[isa]);
+            for (size_t k = 0; k < 6; k++)
+                fprintf(out, " %.1f |", times[k]);
+            fputc('\n', out);
+        }
+    if (any)
+        fputc('\n', out);
+}
+
+void print_report(const struct report *report, FILE *out) {
+    bool any = false;
+    for (size_t k = 0; k < report->row_count; k++)
+        any |= report->rows[k]->ns > 0;
+    if (!any)
+        return;
+    fprintf(out, "\n%s, %s, %s; %s unless said otherwise; one thread\n\n", processor_name(), compiler_name,
+            compiler_flags, report->best_isa);
+    print_targets(report, out);
+    print_times(report, out);
+    print_layouts(report, out);
+}
+
+/* ------------------------------------------------------------------------------------------------ plots */
+
+static void print_value(FILE *out, double value) {
+    if (isnan(value))
+        fprintf(out, "\t?");
+    else
+        fprintf(out, "\t%.4g", value);
+}
+
+/* One column for each series, under its title. */
+static void write_arcs(const struct report *report, const char *folder) {
+    bool any = false;
+    for (size_t s = 0; s < SERIES; s++)
+        any |= ran(report, &series[s]);
+    if (!any)
+        return;
+    FILE *file = open_result(folder, "arcs.dat");
+    fprintf(file, "n");
+    for (size_t s = 0; s < SERIES; s++)
+        fprintf(file, "\t\"%s\"", series[s].title);
+    for (size_t k = 0; k < ARC_COUNTS; k++) {
+        fprintf(file, "\n%u", arc_counts[k]);
+        for (size_t s = 0; s < SERIES; s++)
+            print_value(file, time_in(report, &series[s], arc_counts[k]));
+    }
+    fputc('\n', file);
+    close_result(file);
+}
+
+/* Pairs per second against the size of a batch, with 1 and with 2 threads. */
+static void write_batches(const struct report *report, const char *folder) {
+    FILE *file = NULL;
+    for (size_t pairs = 64;; pairs *= 4) {
+        char name[BENCH_NAME], part[32] = "";
+        const bool all = pairs >= report->packing_pairs;
+        if (!all)
+            snprintf(part, sizeof part, "/%zupairs", pairs);
+        snprintf(name, sizeof name, "overlap/n8/packing/unique/sorted/BEST%s", part);
+        const double one = time_of(report, name);
+        snprintf(name, sizeof name, "overlap/n8/packing/unique/sorted/BEST/2threads%s", part);
+        const double two = time_of(report, name);
+        if (!file && !isnan(one) && !isnan(two)) {
+            file = open_result(folder, "batches.dat");
+            fprintf(file, "pairs\t\"1 thread\"\t\"2 threads\"\n");
+        }
+        if (file) {
+            fprintf(file, "%zu", all ? report->packing_pairs : pairs);
+            print_value(file, 1e9 / one);
+            print_value(file, 1e9 / two);
+            fputc('\n', file);
+        }
+        if (all)
+            break;
+    }
+    if (file)
+        close_result(file);
+}
+
+void write_report(const struct report *report, const char *folder) {
+    FILE *file = open_result(folder, "bench.md");
+    print_report(report, file);
+    close_result(file);
+    write_arcs(report, folder);
+    write_batches(report, folder);
+}
+
+/* ------------------------------------------------------------------------------------------------ answers */
+
+bool is_all_right(const struct report *report, FILE *out) {
+    bool right = true;
+    for (size_t k = 0; k < report->row_count; k++) {
+        const struct bench_row *row = report->rows[k];
+        if (row->must_be_right && row->wrong > 0) {
+            fprintf(out, "%s: %.0f wrong answers\n", row->name, row->wrong);
+            right = false;
+        }
+    }
+    return right;
+}

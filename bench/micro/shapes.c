@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * shapes.c - the random shapes of the benchmarks.
+ */
+#include "shapes.h"
+
+#include <math.h>
+
+#include "arcs.h"
+#include "random.h"
+
+static size_t list_arcs(const struct outline *outline, narc_arc *out) {
+    for (size_t k = 0; k < outline->count; k++) {
+        const struct arc *arc = &outline->arcs[k], *next = arc + 1;
+        out[k] = (narc_arc){arc->x, arc->y, arc->radius, atan2(arc->start_y, arc->start_x),
+                            atan2(next->start_y, next->start_x)};
+    }
+    if (outline->count == 1) {
+        out[0].start = 0;
+        out[0].end = 2 * pi;
+    }
+    return outline->count;
+}
+
+/* The junction normals are up to 0.3 of a sector away from equal angles. The radii, as a function of the angle, have a
+ * second and a third harmonic (long shapes and blunt triangles), up to 15 % noise, and what closes the outline. */
+static void try_n_arc(uint64_t *random, size_t n, narc_arc *out) {
+    const double turn = random_between(random, 0, 2 * pi), second = random_between(random, 0, 0.6);
+    const double third = n > 5 ? random_between(random, 0, 0.25) : 0;
+    const double phase2 = random_between(random, 0, 2 * pi), phase3 = random_between(random, 0, 2 * pi);
+    for (size_t k = 0; k < n; k++) {
+        const double middle = turn + 2 * pi / (double)n * ((double)k + 0.5);
+        out[k].start = turn + 2 * pi / (double)n * ((double)k + random_between(random, -0.3, 0.3));
+        out[k].radius = (1 + second * cos(2 * middle + phase2) + third * cos(3 * middle + phase3)) *
+                        random_between(random, 0.85, 1.15);
+    }
+    for (size_t k = 0; k < n; k++)
+        out[k].end = k + 1 < n ? out[k + 1].start : out[0].start + 2 * pi;
+    close_radii(out, n, NULL);
+}
+
+struct outline make_n_arc(uint64_t *random, size_t n) {
+    narc_arc arcs[MAX_EDGES] = {{0}};
+    double least = 0;
+    while (least <= 0.05) {
+        try_n_arc(random, n, arcs);
+        least = INFINITY;
+        for (size_t k = 0; k < n; k++)
+            least = fmin(least, arcs[k].radius);
+    }
+    chain_centers(arcs, n);
+    center(arcs, n);
+    struct outline outline = {.count = n};
+    for (size_t k = 0; k < n; k++)
+        outline.arcs[k] =
+            (struct arc){arcs[k].center_x, arcs[k].center_y, arcs[k].radius, cos(arcs[k].start), sin(arcs[k].start)};
+    outline.arcs[n] = outline.arcs[0];
+    return outline;
+}
+
+struct vector junction_of(const struct outline *outline, size_t k) {
+    const struct arc *arc = &outline->arcs[k];
+    return (struct vector){arc->x + arc->radius * arc->start_x, arc->y + arc->radius * arc->start_y};
+}
+
+/* Vertex k has the normals between those of the edges before and behind it. */
+static void add_edge_normals(struct outline *outline) {
+    for (size_t k = 0; k < outline->count; k++) {
+        const struct arc *before = &outline->arcs[(k + outline->count - 1) % outline->count];
+        struct arc *vertex = &outline->arcs[k];
+        const double x = vertex->x - before->x, y = vertex->y - before->y, length = hypot(x, y);
+        vertex->radius = 0;
+        vertex->start_x = y / length;
+        vertex->start_y = -x / length;
+    }
+    outline->arcs[outline->count] = outline->arcs[0];
+}
+
+struct outline polygon_of(const struct outline *n_arc) {
+    struct outline outline = {.count = n_arc->count};
+    for (size_t k = 0; k < n_arc->count; k++) {
+        const struct vector junction = junction_of(n_arc, k);
+        outline.arcs[k].x = junction.x;
+        outline.arcs[k].y = junction.y;
+    }
+    add_edge_normals(&outline);
+    return outline;
+}
+
+struct outline make_box(uint64_t *random) {
+    const double x = random_between(random, 0.5, 1.2), y = random_between(random, 0.5, 1.2);
+    struct outline outline = {.count = 4, .arcs = {{.x = x, .y = -y}, {.x = x, .y = y}, {.x = -x, .y = y}}};
+    outline.arcs[3] = (struct arc){.x = -x, .y = -y};
+    add_edge_normals(&outline);
+    return outline;
+}
+
+struct outline make_circle(double radius) {
+    return (struct outline){.count = 1, .arcs = {{.radius = radius, .start_x = 1}, {.radius = radius, .start_x = 1}}};
+}
+
+double reach_of(const struct outline *outline) {
+    double reach = 0;
+    for (size_t k = 0; k < outline->count; k++)
+        reach = fmax(reach, hypot(outline->arcs[k].x, outline->arcs[k].y) + outline->arcs[k].radius);
+    return reach;
+}
+
+double bounding_radius(const struct outline *outline) {
+    narc_arc arcs[MAX_EDGES] = {{0}};
+    const size_t count = list_arcs(outline, arcs);
+    narc_circle circle = {0};
+    narc_compute_bounding_circle(arcs, count, &circle);
+    return circle.radius;
+}
+
+void add_outline(narc_shapes *shapes, const struct outline *outline) {
+    narc_arc arcs[MAX_EDGES] = {{0}};
+    const size_t count = list_arcs(outline, arcs);
+    narc_error error;
+    must(narc_add_shape(shapes, arcs, count, NULL, &error), &error);
+}

@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * situations.c - templates of one n, and the two scenes of the paper: pairs that never collide, pairs that always do.
+ *
+ * Both bodies of a pair have random shapes and rotations; the second stands in a random direction from the first. How
+ * far depends on the distance at which the two touch.
+ */
+#include "situations.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "outlines.h"
+#include "random.h"
+
+/* A gap, or the room for one, that is less than this is too close to rounding to be counted on. */
+static const double least_gap = 1e-3;
+
+/* Colliding pairs: t - distance is from this part of t to all of it, equally likely on a logarithmic scale. */
+static const double least_part = 1e-3;
+
+enum { ROUNDS = 100 };
+
+/* ------------------------------------------------------------------------------------------------ templates */
+
+struct bound bound_of(const narc_arc *arcs, size_t count) {
+    narc_circle circle = {0};
+    struct bound bound;
+    if (!narc_compute_bounding_circle(arcs, count, &circle))
+        fail("a shape without a bounding circle");
+    bound = (struct bound){circle.x, circle.y, circle.radius, 0};
+    for (size_t k = 0; k < count; k++)
+        bound.extent = fmax(bound.extent, hypot(arcs[k].center_x, arcs[k].center_y) + arcs[k].radius);
+    return bound;
+}
+
+static void add_template(struct templates *templates, enum kind kind, size_t index, const narc_arc *arcs) {
+    narc_error error;
+    must(narc_add_shape(templates->shapes[kind], arcs, templates->n, NULL, &error), &error);
+    templates->bounds[kind][index] = bound_of(arcs, templates->n);
+}
+
+struct templates make_templates(size_t n, size_t count, uint64_t *random) {
+    struct templates templates = {.n = n, .count = count};
+    for (enum kind kind = 0; kind < KINDS; kind++) {
+        templates.bounds[kind] = allocate(count, sizeof *templates.bounds[kind]);
+        if (narc_create_shapes(NULL, &templates.shapes[kind]) != NARC_OK)
+            fail("out of memory");
+    }
+    for (size_t k = 0; k < count; k++) {
+        const struct smooth outline = random_smooth(random);
+        double junctions[NARC_MAX_ARCS + 1];
+        narc_arc arcs[NARC_MAX_ARCS];
+        do
+            random_junctions(random, n, junctions);
+        while (!fit_n_arc(&outline, junctions, n, arcs));
+        add_template(&templates, KIND_ARC, k, arcs);
+        fit_n_gon(&outline, junctions, n, arcs);
+        add_template(&templates, KIND_GON, k, arcs);
+    }
+    return templates;
+}
+
+/* ------------------------------------------------------------------------------------------------ placing */
+
+/* A pair that is being placed: the direction from A to B, and for either kind the distance at which the two touch and
+ * the one at which their bounding circles do. */
+struct place {
+    struct direction direction;
+    double touch[KINDS], circles[KINDS];
+};
+
+/* With c the vector between the circles' centres when both bodies are in one place: |c + t d| = sum of the radii. */
+static double circles_touch(const struct bound *bounds, const struct body *pair, struct direction d) {
+    const struct bound *a = &bounds[pair[0].shape], *b = &bounds[pair[1].shape];
+    const double x = (double)pair[1].cosine * b->x - (double)pair[1].sine * b->y - (double)pair[0].cosine * a->x +
+                     (double)pair[0].sine * a->y;
+    const double y = (double)pair[1].sine * b->x + (double)pair[1].cosine * b->y - (double)pair[0].sine * a->x -
+                     (double)pair[0].cosine * a->y;
+    const double along = x * d.x + y * d.y, across = x * d.y - y * d.x;
+    const double sum = a->radius + b->radius;
+    return sqrt(sum * sum - across * across) - along;
+}
+
+static void draw(const struct templates *templates, uint64_t *random, struct body *pair, struct place *place) {
+    place->direction = random_direction(random);
+    pair[0] = random_body(random, random_below(random, templates->count), HALF_SQUARE);
+    pair[1] = random_body(random, random_below(random, templates->count), 0);
+    for (enum kind kind = 0; kind < KINDS; kind++)
+        place->circles[kind] = circles_touch(templates->bounds[kind], pair, place->direction);
+}
+
+/* The distances at which the pairs touch, as either kind. */
+static void find_places(const struct templates *templates, struct body *bodies, struct place *places, size_t count) {
+    struct direction *directions = allocate(count, sizeof *directions);
+    double *distances = allocate(count, sizeof *distances);
+    for (enum kind kind = 0; kind < KINDS; kind++) {
+        for (size_t k = 0; k < count; k++) {
+            directions[k] = places[k].direction;
+            distances[k] = places[k].circles[kind] * 1.001;
+        }
+        find_touching(templates->shapes[kind], bodies, directions, count, distances);
+        for (size_t k = 0; k < count; k++)
+            places[k].touch[kind] = distances[k];
+    }
+    free(directions);
+    free(distances);
+}
+
+/* Pairs that are apart: anywhere, equally likely, between where they touch and where the circles of either kind come
+ * apart. False where there is no room for it. */
+static bool put_apart(struct body *pair, const struct place *place, uint64_t *random) {
+    const double from = fmax(place->touch[KIND_ARC], place->touch[KIND_GON]) + least_gap;
+    const double to = fmin(place->circles[KIND_ARC], place->circles[KIND_GON]);
+    if (to < from + least_gap)
+        return false;
+    put_second(pair, place->direction, random_between(random, from, to));
+    return true;
+}
+
+static bool put_colliding(struct body *pair, const struct place *place, uint64_t *random) {
+    const double touch = fmin(place->touch[KIND_ARC], place->touch[KIND_GON]);
+    put_second(pair, place->direction, touch * (1 - pow(least_part, random_unit(random))));
+    return true;
+}
+
+/* Marks in `bad` which of the pairs are not what the scene claims. */
+static void check_claims(const struct scene *scene, const struct body *bodies, size_t count, narc_contacts *contacts,
+                         bool *bad) {
+    for (enum kind kind = 0; kind < KINDS; kind++) {
+        separate(scene->templates->shapes[kind], bodies, count, contacts);
+        for (size_t k = 0; k < count; k++)
+            bad[k] |= (contacts->separation[k] < 0) != (scene->situation == COLLIDING);
+    }
+}
+
+/* Draws `count` pairs, places them, and keeps those that are good, at the front; how many is returned. */
+static size_t place_round(struct scene *scene, struct body *bodies, size_t count, uint64_t *random) {
+    struct place *places = allocate(count, sizeof *places);
+    bool *bad = allocate(count, sizeof *bad);
+    narc_contacts contacts = allocate_contacts(count);
+    size_t kept = 0;
+    for (size_t k = 0; k < count; k++)
+        draw(scene->templates, random, &bodies[2 * k], &places[k]);
+    find_places(scene->templates, bodies, places, count);
+    for (size_t k = 0; k < count; k++) {
+        struct body *pair = &bodies[2 * k];
+        if (scene->situation == APART ? put_apart(pair, &places[k], random) : put_colliding(pair, &places[k], random)) {
+            memmove(&bodies[2 * kept], pair, 2 * sizeof *pair);
+            kept++;
+        }
+    }
+    scene->drawn_again += count - kept;
+    count = kept;
+    check_claims(scene, bodies, count, &contacts, bad);
+    kept = 0;
+    for (size_t k = 0; k < count; k++)
+        if (!bad[k])
+            memmove(&bodies[2 * kept++], &bodies[2 * k], 2 * sizeof *bodies);
+    scene->left_out += count - kept;
+    free_contacts(&contacts);
+    free(bad);
+    free(places);
+    return kept;
+}
+
+struct scene make_scene(const struct templates *templates, enum situation situation, size_t pair_count,
+                        uint64_t *random) {
+    struct scene scene = {templates, situation, pair_count, allocate(2 * pair_count, sizeof(struct body)), 0, 0};
+    size_t count = 0;
+    for (int round = 0; round < ROUNDS && count < pair_count; round++)
+        count += place_round(&scene, &scene.bodies[2 * count], pair_count - count, random);
+    if (count < pair_count)
+        fail("a scene of n = %zu did not fill up", templates->n);
+    return scene;
+}
+
+double rounding_of(const struct bound *bounds, const struct body *pair) {
+    const double distance = hypot((double)pair[1].x - (double)pair[0].x, (double)pair[1].y - (double)pair[0].y);
+    return NARC_ERROR_BOUND * (distance + bounds[pair[0].shape].extent + bounds[pair[1].shape].extent);
+}
+
+double size_of(const struct bound *bounds, const struct body *pair) {
+    return bounds[pair[0].shape].radius + bounds[pair[1].shape].radius;
+}
+
+struct spread spread_of(const struct scene *scene) {
+    const size_t count = scene->pair_count;
+    narc_contacts contacts = allocate_contacts(count);
+    double *sizes = allocate(count, sizeof *sizes);
+    separate(scene->templates->shapes[KIND_ARC], scene->bodies, count, &contacts);
+    for (size_t k = 0; k < count; k++)
+        sizes[k] =
+            fabs((double)contacts.separation[k]) / size_of(scene->templates->bounds[KIND_ARC], &scene->bodies[2 * k]);
+    const struct spread spread = {quantile(sizes, count, 0), quantile(sizes, count, 0.25), quantile(sizes, count, 0.5),
+                                  quantile(sizes, count, 0.75), quantile(sizes, count, 1)};
+    free(sizes);
+    free_contacts(&contacts);
+    return spread;
+}

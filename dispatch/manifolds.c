@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * manifolds.c - narc_find_manifolds(): argument checks, then one call down.
+ */
+#include "dispatch.h"
+#include "error.h"
+
+#include <math.h>
+
+/* The columns of a list of manifolds have the order of narc_manifolds, from here and to there. */
+static size_t find_manifolds(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count,
+                             const narc_list *list) {
+    void *const *array = list->array;
+    const narc_manifolds out = {.capacity = list->capacity,
+                                .pair = array[0],
+                                .point_count = array[1],
+                                .normal_x = array[2],
+                                .normal_y = array[3],
+                                .separation = {array[4], array[5]},
+                                .point_x = {array[6], array[7]},
+                                .point_y = {array[8], array[9]},
+                                .feature = {array[10], array[11]},
+                                .radius_a = {array[12], array[13]},
+                                .radius_b = {array[14], array[15]}};
+    return lister->manifold(batch, first, count, lister->margin, &out);
+}
+
+static narc_list list_columns(const narc_manifolds *out) {
+    return (narc_list){.capacity = out->capacity,
+                       .columns = 16,
+                       .item = {4, 1, 4, 4, 4, 4, 4, 4, 4, 4, 2, 2, 4, 4, 4, 4},
+                       .array = {out->pair, out->point_count, out->normal_x, out->normal_y, out->separation[0],
+                                 out->separation[1], out->point_x[0], out->point_x[1], out->point_y[0], out->point_y[1],
+                                 out->feature[0], out->feature[1], out->radius_a[0], out->radius_a[1], out->radius_b[0],
+                                 out->radius_b[1]}};
+}
+
+static narc_status check_options(const narc_manifold_options *options, narc_error *error) {
+    const float margin = options->margin, angle = options->flat_angle;
+    if (isnan(margin))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)margin, "options.margin is not a number");
+    if (isnan(angle))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)angle, "options.flat_angle is not a number");
+    if (angle > NARC_MAX_FLAT_ANGLE)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)angle, "options.flat_angle is %g, more than %g",
+                         (double)angle, (double)NARC_MAX_FLAT_ANGLE);
+    return NARC_OK;
+}
+
+static narc_status find(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs, size_t first,
+                        size_t count, const narc_manifold_options *options, unsigned threads,
+                        const narc_manifolds *out_manifolds, size_t *out_count, narc_error *error) {
+    static const narc_manifold_options defaults = {0};
+    const narc_manifold_options *o = options ? options : &defaults;
+    const float angle = o->flat_angle == 0 ? NARC_FLAT_ANGLE : o->flat_angle;
+    size_t skipped = 0;
+    const narc_batch batch = {.shapes = shapes,
+                              .bodies = bodies,
+                              .pairs = pairs,
+                              .hints = o->hints,
+                              .skipped = o->out_skipped ? &skipped : NULL,
+                              .flat_sine = angle < 0 ? -1.0f : (float)sin((double)angle)};
+    const narc_kernel_table *kernels = NULL;
+    narc_status status = narc_check_batch(&batch, first, count, threads, &kernels, error);
+    if (status != NARC_OK)
+        return status;
+    if (!out_manifolds || !out_count)
+        return narc_fail_missing(error, !out_manifolds ? "out_manifolds" : "out_count");
+    status = check_options(o, error);
+    if (status != NARC_OK)
+        return status;
+    const narc_lister lister = {find_manifolds, NARC_CONTACT_GROUP / 2, o->margin, .manifold = kernels->manifold};
+    const narc_list list = list_columns(out_manifolds);
+    const size_t found = narc_run_list(&lister, &batch, first, count, threads, &list);
+    if (o->out_skipped)
+        *o->out_skipped = skipped;
+    *out_count = found;
+    if (found > out_manifolds->capacity)
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu manifolds, but there is room for %zu",
+                         found, out_manifolds->capacity);
+    return NARC_OK;
+}
+
+narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                const narc_manifold_options *options, unsigned threads,
+                                const narc_manifolds *out_manifolds, size_t *out_count, narc_error *error) {
+    return find(shapes, bodies, pairs, 0, pairs ? pairs->count : 0, options, threads, out_manifolds, out_count, error);
+}
+
+narc_status narc_find_manifolds_range(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                      size_t first, size_t count, const narc_manifold_options *options,
+                                      const narc_manifolds *out_manifolds, size_t *out_count, narc_error *error) {
+    return find(shapes, bodies, pairs, first, count, options, 1, out_manifolds, out_count, error);
+}

@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * bezier.c - Bezier curves to arcs: checks, the frame in which the curve is about 1 large, and the output.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "biarc/biarc.h"
+#include "error.h"
+#include "narc_fit.h"
+
+/* Least tolerance, relative to the extent. */
+static const double LEAST_TOLERANCE = 1e-9;
+
+/* Points in the frame are (p - middle) / 2^exponent. */
+struct frame {
+    narc_point middle;
+    int exponent;
+    double extent;   /* larger side of the controls' bounding box */
+    double rounding; /* of points of the curve, in the frame */
+};
+
+static narc_status check_controls(const narc_point *controls, size_t degree, double tolerance, narc_error *error) {
+    for (size_t k = 0; k <= degree; k++) {
+        const narc_point p = controls[k];
+        const double value = isfinite(p.x) ? p.y : p.x;
+        if (!isfinite(p.x) || !isfinite(p.y)) {
+            return narc_fail(error, NARC_ERROR_NOT_FINITE, k, value, "control point %zu is not finite: (%g, %g)", k,
+                             p.x, p.y);
+        }
+        const double largest = fmax(fabs(p.x), fabs(p.y));
+        if (largest > NARC_MAX_COORDINATE) {
+            return narc_fail(error, NARC_ERROR_SIZE, k, largest,
+                             "control point %zu has a coordinate of %g, at most %g is allowed", k, largest,
+                             NARC_MAX_COORDINATE);
+        }
+    }
+    if (isnan(tolerance))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, tolerance, "tolerance is not a number");
+    if (!(tolerance > 0))
+        return narc_fail(error, NARC_ERROR_SIZE, 0, tolerance, "tolerance is %g, it must be positive", tolerance);
+    return NARC_OK;
+}
+
+static struct frame find_frame(const narc_point *controls, size_t degree) {
+    narc_point low = controls[0], high = controls[0];
+    double largest = 0;
+    for (size_t k = 0; k <= degree; k++) {
+        low = (narc_point){fmin(low.x, controls[k].x), fmin(low.y, controls[k].y)};
+        high = (narc_point){fmax(high.x, controls[k].x), fmax(high.y, controls[k].y)};
+        largest = fmax(largest, fmax(fabs(controls[k].x), fabs(controls[k].y)));
+    }
+    struct frame frame = {.middle = {(low.x + high.x) / 2, (low.y + high.y) / 2}};
+    frame.extent = fmax(high.x - low.x, high.y - low.y);
+    if (frame.extent > 0) {
+        frexp(frame.extent, &frame.exponent);
+        /* Moving to the frame and back rounds each coordinate by half an epsilon of the largest, twice; what is done
+         * in the frame, where all is below 1, takes some tens of roundings. */
+        frame.rounding = 2 * DBL_EPSILON * ldexp(largest, -frame.exponent) + 16 * DBL_EPSILON;
+    }
+    return frame;
+}
+
+static narc_point to_frame(const struct frame *frame, narc_point p) {
+    return (narc_point){ldexp(p.x - frame->middle.x, -frame->exponent), ldexp(p.y - frame->middle.y, -frame->exponent)};
+}
+
+static narc_point from_frame(const struct frame *frame, narc_point p) {
+    return (narc_point){ldexp(p.x, frame->exponent) + frame->middle.x, ldexp(p.y, frame->exponent) + frame->middle.y};
+}
+
+/* The curve as a cubic. */
+static narc_cubic raise_degree(const narc_point *c, size_t degree) {
+    if (degree == 1) {
+        return (narc_cubic){
+            {c[0], along(c[0], 1. / 3, minus(c[1], c[0])), along(c[1], 1. / 3, minus(c[0], c[1])), c[1]}};
+    }
+    if (degree == 2) {
+        return (narc_cubic){
+            {c[0], along(c[0], 2. / 3, minus(c[1], c[0])), along(c[2], 2. / 3, minus(c[1], c[2])), c[2]}};
+    }
+    return (narc_cubic){{c[0], c[1], c[2], c[3]}};
+}
+
+static void reverse_spline(narc_spline *spline) {
+    for (size_t i = 0, j = spline->count; i < j; i++) {
+        j--;
+        const narc_spline_arc arcs[2] = {spline->arcs[i], spline->arcs[j]};
+        for (int k = 0; k < 2; k++) {
+            const narc_spline_arc a = arcs[k];
+            spline->arcs[k ? i : j] = (narc_spline_arc){
+                .start = a.end,
+                .end = a.start,
+                .start_tangent = {-a.end_tangent.x, -a.end_tangent.y},
+                .end_tangent = {-a.start_tangent.x, -a.start_tangent.y},
+                .curvature = -a.curvature,
+                .turn = -a.turn,
+            };
+        }
+    }
+}
+
+/* Takes over `other` if it has fewer arcs, or as many and they are closer; frees the one that is not kept. */
+static void keep_better(narc_spline *best, narc_spline *other) {
+    const bool better = best->count == 0 || other->count < best->count ||
+                        (other->count == best->count && other->distance < best->distance);
+    free(better ? best->arcs : other->arcs);
+    *best = better ? *other : *best;
+}
+
+/* Cuts are sought from both ends, so that the direction of the curve makes no difference. */
+static narc_status fit_both_ways(const narc_cubic *curve, double tolerance, double rounding, narc_spline *best,
+                                 narc_error *error) {
+    const narc_cubic reversed = narc_reverse_cubic(curve);
+    narc_status status = NARC_OK;
+    for (int way = 0; way < 2 && status == NARC_OK; way++) {
+        narc_spline spline = {0};
+        status = narc_fit_spline(way ? &reversed : curve, tolerance, rounding, &spline, error);
+        if (status != NARC_OK) {
+            free(spline.arcs);
+        } else {
+            if (way)
+                reverse_spline(&spline);
+            keep_better(best, &spline);
+        }
+    }
+    return status;
+}
+
+/* The furthest cuts are not always the best: where a curve turns sharply, less tolerance may lead to cuts that need
+ * fewer arcs, and it often leads to as many that are closer. It is tried while the arcs are few. */
+static narc_status fit_best(const narc_cubic *curve, double tolerance, double rounding, narc_spline *best,
+                            narc_error *error) {
+    enum { TRIES = 5, FEW_ARCS = 24 };
+    narc_status status = fit_both_ways(curve, tolerance, rounding, best, error);
+    for (int k = 0; k < TRIES && status == NARC_OK && best->count <= FEW_ARCS; k++) {
+        narc_spline closer = {0};
+        tolerance *= 0.65;
+        if (tolerance < 1e-9 || fit_both_ways(curve, tolerance, rounding, &closer, NULL) != NARC_OK) {
+            free(closer.arcs);
+            break;
+        }
+        const bool too_many = closer.count > best->count;
+        keep_better(best, &closer);
+        if (too_many)
+            break;
+    }
+    return status;
+}
+
+static narc_curve_arc describe_arc(const struct frame *frame, const narc_spline_arc *arc) {
+    narc_curve_arc out = {.start = from_frame(frame, arc->start), .end = from_frame(frame, arc->end)};
+    if (arc->curvature == 0) {
+        out.center = out.start;
+        out.radius = INFINITY;
+        return out;
+    }
+    const double radius = 1 / arc->curvature;
+    out.center = from_frame(frame, along(arc->start, radius, turned(arc->start_tangent)));
+    out.radius = ldexp(fabs(radius), frame->exponent);
+    out.turn = arc->turn;
+    return out;
+}
+
+static narc_status write_arcs(const struct frame *frame, const narc_spline *spline, narc_point first, narc_point last,
+                              narc_curve_arc *out_arcs, size_t capacity, narc_error *error) {
+    for (size_t k = 0; k < spline->count && k < capacity; k++) {
+        out_arcs[k] = describe_arc(frame, &spline->arcs[k]);
+        if (k == 0)
+            out_arcs[k].start = first;
+        if (k + 1 == spline->count)
+            out_arcs[k].end = last;
+    }
+    if (out_arcs && capacity < spline->count) {
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)spline->count, "room for %zu arcs, but there are %zu",
+                         capacity, spline->count);
+    }
+    return NARC_OK;
+}
+
+static narc_status fit_curve(const narc_point *controls, size_t degree, double tolerance, const struct frame *frame,
+                             narc_spline *spline, narc_error *error) {
+    const double in_frame = ldexp(tolerance, -frame->exponent), extent = ldexp(frame->extent, -frame->exponent);
+    const double least = fmax(LEAST_TOLERANCE * extent, 16 * frame->rounding);
+    if (in_frame < least) {
+        return narc_fail(error, NARC_ERROR_SIZE, 0, tolerance, "tolerance is %g, at least %g is needed for this curve",
+                         tolerance, ldexp(least, frame->exponent));
+    }
+    narc_point local[4];
+    for (size_t k = 0; k <= degree; k++)
+        local[k] = to_frame(frame, controls[k]);
+    const narc_cubic curve = raise_degree(local, degree);
+    /* A tolerance of many times the curve means no more than that of a few times. */
+    const double limit = fmin(in_frame, 16 * extent) - 2 * frame->rounding;
+    const narc_status status = fit_best(&curve, limit, frame->rounding, spline, error);
+    /* The sum of what was subtracted above may be a rounding more. */
+    spline->distance = fmin(ldexp(spline->distance + 2 * frame->rounding, frame->exponent), tolerance);
+    return status;
+}
+
+narc_status narc_fit_bezier(const narc_point *controls, size_t degree, double tolerance, narc_curve_arc *out_arcs,
+                            size_t capacity, size_t *out_count, double *out_distance, narc_error *error) {
+    if (!controls || !out_count || !out_distance || (!out_arcs && capacity > 0)) {
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL",
+                         !controls       ? "controls"
+                         : !out_count    ? "out_count"
+                         : !out_distance ? "out_distance"
+                                         : "out_arcs");
+    }
+    if (degree < 1 || degree > 3)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)degree, "degree is %zu, it must be 1 to 3", degree);
+    narc_status status = check_controls(controls, degree, tolerance, error);
+    if (status != NARC_OK)
+        return status;
+    const struct frame frame = find_frame(controls, degree);
+    narc_spline spline = {0};
+    if (frame.extent > 0)
+        status = fit_curve(controls, degree, tolerance, &frame, &spline, error);
+    if (status == NARC_OK) {
+        status = write_arcs(&frame, &spline, controls[0], controls[degree], out_arcs, capacity, error);
+        *out_count = spline.count;
+    }
+    if (status == NARC_OK)
+        *out_distance = spline.distance;
+    free(spline.arcs);
+    return status;
+}

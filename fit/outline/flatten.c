@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * flatten.c - curves to chords.
+ *
+ * A chord over a parameter step h strays from its curve by at most h^2 / 8 times the largest second derivative, and
+ * that of a Bezier curve of degree d is at most d (d - 1) times the largest second difference D of its control points.
+ * So k even steps stay within d (d - 1) D / (8 k^2), and rounding on top of that.
+ */
+#include "outline/path.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "error.h"
+
+/* Most chords of one curve. The default flatness never needs 1000: with E the larger side of the curve's bounding box,
+ * Markov's inequality bounds the second derivative of a cubic by 48 E in each coordinate, so D by 8 sqrt(2) E. */
+enum { MAX_CHORDS = 20000 };
+
+/* Rounding, in DBL_EPSILON times the curve's largest absolute coordinate M: D takes two roundings in each coordinate,
+ * of sums up to 3 M and 4 M, and hypot(); all together not more than 11, of which d (d - 1) / 8 counts: 8.3. The
+ * division and the root are right to 4 epsilon of at most 0.75 * 4 sqrt(2) M: 17. Both are divided by k^2. A single
+ * chord has exact ends; with more, these are off by 5 in each coordinate (see evaluate_curve()): 7, and their steps are
+ * up to (1 + k epsilon) / k, which makes at most 2 * 4.3 / k more. That is 26 for k = 1, and less for others. */
+static const double ROUNDING = 26;
+
+/* The point of a curve at 0 <= t <= 1, by de Casteljau. Each of up to three rounds of s a + t b rounds s, a product and
+ * the sum, half an epsilon each: each coordinate is within 5 epsilon of the largest absolute coordinate. */
+static narc_point evaluate_curve(const narc_point *controls, unsigned degree, double t) {
+    narc_point p[4];
+    const double s = 1 - t;
+    for (unsigned i = 0; i <= degree; i++)
+        p[i] = controls[i];
+    for (unsigned last = degree; last > 0; last--)
+        for (unsigned i = 0; i < last; i++)
+            p[i] = (narc_point){s * p[i].x + t * p[i + 1].x, s * p[i].y + t * p[i + 1].y};
+    return p[0];
+}
+
+/* ---------------------------------------------------------------------------- how many chords */
+
+/* What one chord for the whole curve may stray, without rounding: divided by k^2 for k chords. */
+static double find_bend(const narc_point *controls, unsigned degree) {
+    double difference = 0;
+    for (unsigned i = 0; i + 2 <= degree; i++) {
+        const narc_point a = controls[i], b = controls[i + 1], c = controls[i + 2];
+        difference = fmax(difference, hypot(a.x - 2 * b.x + c.x, a.y - 2 * b.y + c.y));
+    }
+    return degree * (degree - 1) * difference / 8;
+}
+
+static double find_rounding(const narc_point *controls, unsigned degree) {
+    double largest = 0;
+    for (unsigned i = 0; i <= degree; i++)
+        largest = fmax(largest, fmax(fabs(controls[i].x), fabs(controls[i].y)));
+    return ROUNDING * DBL_EPSILON * largest;
+}
+
+/* The least flatness that a curve can be had with. */
+static double find_least_flatness(const narc_point *controls, unsigned degree) {
+    return find_bend(controls, degree) / ((double)MAX_CHORDS * MAX_CHORDS) + find_rounding(controls, degree);
+}
+
+/* `flatness` is at least the least one. */
+static size_t count_chords(const narc_point *controls, unsigned degree, double flatness) {
+    const double bend = find_bend(controls, degree);
+    if (degree == 1 || bend == 0)
+        return 1;
+    const double chords = ceil(sqrt(bend / (flatness - find_rounding(controls, degree))));
+    return chords < 1 ? 1 : chords < MAX_CHORDS ? (size_t)chords : MAX_CHORDS;
+}
+
+/* ---------------------------------------------------------------------------- a path's extent */
+
+struct box {
+    narc_point low, high;
+};
+
+static void widen_box(struct box *box, narc_point p) {
+    box->low = (narc_point){fmin(box->low.x, p.x), fmin(box->low.y, p.y)};
+    box->high = (narc_point){fmax(box->high.x, p.x), fmax(box->high.y, p.y)};
+}
+
+/* Widens the box by a curve's point at t, if that is on the curve (no root, a division by 0: it is not). */
+static void widen_at(struct box *box, const narc_point *controls, unsigned degree, double t) {
+    if (t > 0 && t < 1)
+        widen_box(box, evaluate_curve(controls, degree, t));
+}
+
+/* Widens the box by the points where one coordinate turns back: c0 .. c3 are that coordinate of the control points.
+ * The derivative is proportional to (1 - t)^2 p + 2 t (1 - t) q + t^2 r with the differences p, q and r. */
+static void widen_by_turns(struct box *box, const narc_point *controls, unsigned degree, const double *c) {
+    if (degree == 2) {
+        widen_at(box, controls, degree, (c[0] - c[1]) / (c[0] - 2 * c[1] + c[2]));
+    } else if (degree == 3) {
+        const double p = c[1] - c[0], q = c[2] - c[1], r = c[3] - c[2];
+        const double root = sqrt(fmax(0, q * q - p * r));
+        /* Of the two ways to write the roots, the one that does not cancel. */
+        const double sum = p - q + (p > q ? root : -root);
+        widen_at(box, controls, degree, sum / (p - 2 * q + r));
+        widen_at(box, controls, degree, p / sum);
+    }
+}
+
+static void widen_by_curve(struct box *box, const narc_point *controls, unsigned degree) {
+    double x[4], y[4];
+    for (unsigned i = 0; i <= degree; i++) {
+        x[i] = controls[i].x;
+        y[i] = controls[i].y;
+    }
+    widen_box(box, controls[0]);
+    widen_box(box, controls[degree]);
+    widen_by_turns(box, controls, degree, x);
+    widen_by_turns(box, controls, degree, y);
+}
+
+/* ---------------------------------------------------------------------------- the walk over the moves */
+
+/* A drawn move: degree 1 to 3, controls[0 .. degree]. */
+struct drawn {
+    const narc_point *controls;
+    unsigned degree;
+    size_t move, point; /* what comes next */
+    size_t contour;     /* number of drawn contours before this one's */
+    bool begins;        /* the first of its contour */
+};
+
+/* The next drawn move; `move` is all 0 before the first. False at the end. */
+static bool next_drawn(const narc_path *path, struct drawn *move) {
+    bool begins = false;
+    while (move->move < path->move_count) {
+        const unsigned degree = path->degrees[move->move++];
+        const size_t point = move->point;
+        move->point += narc_count_move_points(degree);
+        if (degree > 0) {
+            move->contour += begins && move->controls;
+            move->controls = path->points + point - 1;
+            move->degree = degree;
+            move->begins = begins;
+            return true;
+        }
+        begins = true;
+    }
+    return false;
+}
+
+/* What is known of a path before it is flattened. */
+struct survey {
+    struct box extent;
+    size_t contour_count;
+    bool has_curves;
+    double least_flatness; /* of all curves */
+    size_t worst_contour;  /* that of the curve which asks for it */
+};
+
+static struct survey survey_path(const narc_path *path) {
+    struct survey found = {.extent = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}}};
+    for (struct drawn move = {0}; next_drawn(path, &move);) {
+        found.contour_count = move.contour + 1;
+        widen_by_curve(&found.extent, move.controls, move.degree);
+        if (move.degree > 1) {
+            const double least = find_least_flatness(move.controls, move.degree);
+            found.worst_contour = least > found.least_flatness ? move.contour : found.worst_contour;
+            found.least_flatness = fmax(found.least_flatness, least);
+            found.has_curves = true;
+        }
+    }
+    return found;
+}
+
+static narc_status choose_flatness(const struct survey *found, double *flatness, narc_error *error) {
+    if (!(*flatness >= 0) || isinf(*flatness))
+        return narc_fail(error, NARC_ERROR_SIZE, 0, *flatness, "flatness is not a length: %g", *flatness);
+    if (!found->has_curves) {
+        *flatness = 0;
+    } else if (*flatness == 0) {
+        const struct box *box = &found->extent;
+        const double extent = fmax(box->high.x - box->low.x, box->high.y - box->low.y);
+        /* The least one is more only where doubles cannot tell: a speck far from the origin. */
+        *flatness = fmax(NARC_FLATNESS * extent, found->least_flatness);
+    } else if (*flatness < found->least_flatness) {
+        return narc_fail(error, NARC_ERROR_SIZE, found->worst_contour, *flatness,
+                         "flatness %g is too small for a curve of contour %zu: at least %g is fine", *flatness,
+                         found->worst_contour, found->least_flatness * (1 + 1e-5)); /* %g cuts to six digits */
+    }
+    return NARC_OK;
+}
+
+/* ---------------------------------------------------------------------------- the chords */
+
+/* At most that many points come of a path, the closing ones that are left out again included. */
+static size_t count_points(const narc_path *path, double flatness) {
+    size_t count = 0;
+    for (struct drawn move = {0}; next_drawn(path, &move);) {
+        const size_t more = count_chords(move.controls, move.degree, flatness) + move.begins;
+        count = count > SIZE_MAX - more ? SIZE_MAX : count + more;
+    }
+    return count;
+}
+
+/* Ends the last contour; a point that repeats the first one is left out. */
+static void end_contour(narc_contours *contours, size_t first) {
+    const narc_point *points = contours->points;
+    while (contours->point_count > first + 1 && points[contours->point_count - 1].x == points[first].x &&
+           points[contours->point_count - 1].y == points[first].y)
+        contours->point_count--;
+    contours->ends[contours->count++] = contours->point_count;
+}
+
+static void draw_chords(const narc_path *path, narc_contours *contours) {
+    size_t first = 0;
+    for (struct drawn move = {0}; next_drawn(path, &move);) {
+        if (move.begins) {
+            if (contours->point_count > 0)
+                end_contour(contours, first);
+            first = contours->point_count;
+            contours->points[contours->point_count++] = move.controls[0];
+        }
+        const size_t chords = count_chords(move.controls, move.degree, contours->flatness);
+        for (size_t k = 1; k < chords; k++) {
+            contours->points[contours->point_count++] =
+                evaluate_curve(move.controls, move.degree, (double)k / (double)chords);
+        }
+        contours->points[contours->point_count++] = move.controls[move.degree];
+    }
+    if (contours->point_count > 0)
+        end_contour(contours, first);
+}
+
+narc_status narc_flatten_path(const narc_path *path, double flatness, narc_contours *out_contours, narc_error *error) {
+    if (!path || !out_contours)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", path ? "out_contours" : "path");
+    const struct survey found = survey_path(path);
+    const narc_status status = choose_flatness(&found, &flatness, error);
+    if (status)
+        return status;
+    narc_contours flat = {.flatness = flatness};
+    const size_t count = count_points(path, flatness);
+    if (count > 0) {
+        flat.points = count < SIZE_MAX / sizeof *flat.points ? malloc(count * sizeof *flat.points) : NULL;
+        flat.ends = malloc(found.contour_count * sizeof *flat.ends);
+        if (!flat.points || !flat.ends) {
+            narc_release_contours(&flat);
+            return narc_fail(error, NARC_ERROR_MEMORY, 0, flatness, "no memory for %zu points: flatness %g", count,
+                             flatness);
+        }
+        draw_chords(path, &flat);
+    }
+    flat.flatness += path->slack;
+    *out_contours = flat;
+    return NARC_OK;
+}
+
+void narc_release_contours(narc_contours *contours) {
+    if (contours) {
+        free(contours->points);
+        free(contours->ends);
+        *contours = (narc_contours){0};
+    }
+}

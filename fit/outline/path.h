@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * path.h - what a path is inside. Internal.
+ */
+#ifndef NARC_PATH_H
+#define NARC_PATH_H
+
+#include "narc_fit.h"
+
+/* The moves of the pen in their order. Move k has degree 0 (a contour begins), 1 (line), 2 or 3 (Bezier curves), and
+ * max(1, degree) points: the control points, then where the pen is afterwards. A curve's first control point thus
+ * stands right before its own: the last point of the move before. The first move is of degree 0.
+ *
+ * A contour that has only its first move is not drawn: nothing comes of it.
+ *
+ * Contours that were traced in an image may be up to `slack` from what they stand for, and it from them. */
+struct narc_path {
+    narc_point *points;
+    unsigned char *degrees;
+    size_t point_count, point_capacity;
+    size_t move_count, move_capacity;
+    double slack;
+};
+
+/* The points that a move of this degree has. */
+static inline size_t narc_count_move_points(unsigned degree) { return degree ? degree : 1; }
+
+/* A length of a path to return to: a reader marks the path first, and rewinds it on an error. */
+typedef struct narc_path_mark {
+    size_t point_count, move_count;
+} narc_path_mark;
+
+narc_path_mark narc_mark_path(const narc_path *path);
+void narc_rewind_path(narc_path *path, narc_path_mark mark);
+
+/* Is anything drawn since the mark: a line or curve? */
+bool narc_is_drawn_since(const narc_path *path, narc_path_mark mark);
+
+/* Room for `count` items of `size` bytes: `items`, moved if need be, or NULL (then `items` is as before). It grows by
+ * half, so that adding items one by one takes time in proportion to their number. */
+void *narc_grow(void *items, size_t *capacity, size_t count, size_t size);
+
+#endif

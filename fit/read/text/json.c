@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * json.c - JSON by cJSON, with messages.
+ */
+#include "json.h"
+
+#include <string.h>
+
+#include "error.h"
+
+narc_status narc_parse_json(const char *text, cJSON **out_value, narc_error *error) {
+    const char *end = text;
+    cJSON *value = cJSON_ParseWithOpts(text, &end, true);
+    if (!value) {
+        const size_t line = narc_find_line(text, end);
+        return *end ? narc_fail(error, NARC_ERROR_FORMAT, line, 0, "line %zu: not valid JSON here: '%s'", line,
+                                narc_make_excerpt(end).text)
+                    : narc_fail(error, NARC_ERROR_FORMAT, line, 0, "line %zu: not valid JSON: it ends too early", line);
+    }
+    for (const char *c = text; (c = strchr(c, '\\')); c += 2) {
+        if (strncmp(c + 1, "u0000", 5) == 0) {
+            const size_t line = narc_find_line(text, c);
+            cJSON_Delete(value);
+            return narc_fail(error, NARC_ERROR_FORMAT, line, 0, "line %zu: a NUL character '\\u0000'", line);
+        }
+    }
+    *out_value = value;
+    return NARC_OK;
+}
+
+narc_excerpt narc_show_json(const cJSON *value) {
+    char *text = cJSON_PrintUnformatted(value);
+    const narc_excerpt shown = narc_make_excerpt(text ? text : "");
+    cJSON_free(text);
+    return shown;
+}

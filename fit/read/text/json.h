@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * json.h - JSON by cJSON, with messages. Internal.
+ */
+#ifndef NARC_JSON_H
+#define NARC_JSON_H
+
+#include <cjson/cJSON.h>
+
+#include "lines.h"
+
+/* Parses a text as narc_clean_text() leaves it; free the value with cJSON_Delete(). NARC_ERROR_FORMAT, with the line:
+ * the text is not JSON, or has a NUL character in a string, which cJSON would silently cut there. */
+narc_status narc_parse_json(const char *text, cJSON **out_value, narc_error *error);
+
+/* A value as JSON, for messages. */
+narc_excerpt narc_show_json(const cJSON *value);
+
+#endif

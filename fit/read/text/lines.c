@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * lines.c - texts, their lines, the fields of CSV. Texts are cut in place.
+ */
+#include "lines.h"
+
+#include <string.h>
+
+#include "error.h"
+
+static const char BLANKS[] = " \t\r";
+
+narc_excerpt narc_make_excerpt(const char *text) {
+    enum { LONGEST = 40 };
+    narc_excerpt excerpt;
+    size_t shown = strcspn(text, "\n");
+    shown -= shown > 0 && text[shown - 1] == '\r';
+    const bool is_cut = shown > LONGEST;
+    if (is_cut)
+        for (shown = LONGEST; shown > 0 && ((unsigned char)text[shown] & 0xc0) == 0x80;)
+            shown--;
+    for (size_t i = 0; i < shown; i++) {
+        const unsigned char c = (unsigned char)text[i];
+        excerpt.text[i] = c < 0x20 || c == 0x7f ? '?' : text[i];
+    }
+    strcpy(excerpt.text + shown, is_cut ? "..." : "");
+    return excerpt;
+}
+
+size_t narc_find_line(const char *text, const char *place) {
+    size_t line = 1;
+    while ((text = memchr(text, '\n', (size_t)(place - text)))) {
+        line++;
+        text++;
+    }
+    return line;
+}
+
+narc_status narc_clean_text(char *text, size_t size, narc_error *error) {
+    const char *nul = text + strlen(text);
+    if (nul != text + size) {
+        const size_t line = narc_find_line(text, nul);
+        return narc_fail(error, NARC_ERROR_FORMAT, line, 0, "line %zu: a NUL byte", line);
+    }
+    if (strncmp(text, "\xef\xbb\xbf", 3) == 0)
+        memmove(text, text + 3, size - 2);
+    if (!text[strspn(text, " \t\r\n")])
+        return narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "the text is empty");
+    return NARC_OK;
+}
+
+static char *trim(char *field) {
+    field += strspn(field, BLANKS);
+    size_t length = strlen(field);
+    while (length && strchr(BLANKS, field[length - 1]))
+        length--;
+    field[length] = 0;
+    return field;
+}
+
+char *narc_next_line(char **rest) {
+    char *line = *rest, *end = strchr(line, '\n');
+    if (!*line)
+        return NULL;
+    *rest = end ? end + 1 : line + strlen(line);
+    if (end)
+        *end = 0;
+    return trim(line);
+}
+
+size_t narc_split_line(char *line, char **out_fields, size_t capacity) {
+    size_t count = 0;
+    for (char *field = line; field; count++) {
+        char *comma = strchr(field, ',');
+        if (comma)
+            *comma++ = 0;
+        if (count < capacity)
+            out_fields[count] = trim(field);
+        field = comma;
+    }
+    return count;
+}

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * trace.c - contours of an image by marching squares, each followed from cell to cell until it closes.
+ */
+#include "read/trace.h"
+
+#include <stdlib.h>
+
+#include "error.h"
+
+/* The four neighbours counter-clockwise (rows grow downwards): east, north, west, south. */
+enum { EAST, NORTH, WEST, SOUTH };
+static const ptrdiff_t step_column[4] = {1, 0, -1, 0}, step_row[4] = {0, -1, 0, 1};
+
+struct tracer {
+    const narc_image *image;
+    double level;
+    unsigned char *seen; /* a bit for each sample: its crossing to the west belongs to a contour that was followed */
+};
+
+/* Where a contour crosses from one sample, which is above the level, to its neighbour, which is not. */
+struct crossing {
+    ptrdiff_t column, row;
+    int side;
+};
+
+static double sample(const struct tracer *t, ptrdiff_t column, ptrdiff_t row) {
+    const narc_image *image = t->image;
+    const bool inside = column >= 0 && row >= 0 && (size_t)column < image->width && (size_t)row < image->height;
+    return inside ? image->samples[(size_t)row * image->width + (size_t)column] : 0;
+}
+
+static double neighbour(const struct tracer *t, struct crossing crossing, int side) {
+    return sample(t, crossing.column + step_column[side], crossing.row + step_row[side]);
+}
+
+static narc_point locate(const struct tracer *t, struct crossing crossing) {
+    const double high = sample(t, crossing.column, crossing.row), low = neighbour(t, crossing, crossing.side);
+    const double part = (high - t->level) / (high - low);
+    const double x = (double)crossing.column + 0.5 + part * (double)step_column[crossing.side];
+    const double y = (double)t->image->height - (double)crossing.row - 0.5 - part * (double)step_row[crossing.side];
+    return (narc_point){t->image->origin.x + t->image->pixel * x, t->image->origin.y + t->image->pixel * y};
+}
+
+/* The next crossing with what is above on the left. The contour goes on through the cell ahead, whose corners are the
+ * crossing's two samples P (above) and Q, and the next ones in the walking direction, R beside P and S beside Q:
+ *
+ *        R  S      It leaves between P and R if R is low, between R and S if only S is low, else between S and Q.
+ *        P ^ Q     If R is low and S is high, the cell is a saddle: P and S are connected if the middle is high.
+ */
+static struct crossing advance(const struct tracer *t, struct crossing crossing) {
+    const int ahead = (crossing.side + 1) % 4;
+    const struct crossing r = {crossing.column + step_column[ahead], crossing.row + step_row[ahead], crossing.side};
+    const struct crossing s = {r.column + step_column[crossing.side], r.row + step_row[crossing.side], (ahead + 2) % 4};
+    const double r_value = sample(t, r.column, r.row), s_value = sample(t, s.column, s.row);
+    if (r_value > t->level)
+        return s_value > t->level ? s : r;
+    if (s_value > t->level) {
+        const double sum =
+            sample(t, crossing.column, crossing.row) + neighbour(t, crossing, crossing.side) + r_value + s_value;
+        if (sum > 4 * t->level)
+            return s;
+    }
+    return (struct crossing){crossing.column, crossing.row, ahead};
+}
+
+static size_t bit_of(const struct tracer *t, struct crossing crossing) {
+    return (size_t)crossing.row * t->image->width + (size_t)crossing.column;
+}
+
+static narc_status follow(const struct tracer *t, struct crossing start, narc_path *path, narc_error *error) {
+    struct crossing crossing = start;
+    narc_status status = narc_move_to(path, locate(t, start), error);
+    while (!status) {
+        if (crossing.side == WEST) {
+            const size_t bit = bit_of(t, crossing);
+            t->seen[bit / 8] = (unsigned char)(t->seen[bit / 8] | 1u << bit % 8);
+        }
+        crossing = advance(t, crossing);
+        if (crossing.column == start.column && crossing.row == start.row && crossing.side == start.side)
+            return NARC_OK;
+        status = narc_line_to(path, locate(t, crossing), error);
+    }
+    return status;
+}
+
+/* Every contour passes the west side of some sample above the level: of the leftmost that it goes round, or, if it is a
+ * hole, of the one to the right of the hole. */
+narc_status narc_trace_image(const narc_image *image, double level, narc_path *path, narc_error *error) {
+    struct tracer t = {image, level, calloc(image->width * image->height / 8 + 1, 1)};
+    narc_status status =
+        t.seen ? NARC_OK : narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for the outline of the image");
+    for (size_t row = 0; row < image->height && !status; row++) {
+        for (size_t column = 0; column < image->width && !status; column++) {
+            const struct crossing crossing = {(ptrdiff_t)column, (ptrdiff_t)row, WEST};
+            const size_t bit = bit_of(&t, crossing);
+            if (sample(&t, crossing.column, crossing.row) > level && neighbour(&t, crossing, WEST) < level &&
+                !(t.seen[bit / 8] >> bit % 8 & 1))
+                status = follow(&t, crossing, path, error);
+        }
+    }
+    free(t.seen);
+    return status;
+}

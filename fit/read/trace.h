@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * trace.h - contours of an image. Internal.
+ */
+#ifndef NARC_TRACE_H
+#define NARC_TRACE_H
+
+#include "narc_fit.h"
+
+/* Samples at the centres of pixels, the top row first: pixel (column, row) is `pixel` times (column + 1/2, height - row
+ * - 1/2) from `origin`, the image's lower left corner. */
+typedef struct narc_image {
+    const uint16_t *samples;
+    size_t width, height;
+    double pixel;
+    narc_point origin;
+} narc_image;
+
+/* Adds the contours where the image, bilinear between samples and surrounded by pixels of value 0, passes `level`:
+ * polygons with a point on each line between two neighbouring samples of which one is above. Round what is above they
+ * go counter-clockwise, round holes clockwise; none crosses itself or another. Samples must not be equal to the level,
+ * and it must be above 0. NARC_ERROR_MEMORY, NARC_ERROR_SIZE (coordinates); then the path may have some of them. */
+narc_status narc_trace_image(const narc_image *image, double level, narc_path *path, narc_error *error);
+
+#endif

@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * flush.c - least-area bounding polygons with flush sides, by dynamic programming.
+ */
+#include "solve/flush.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/chain.h"
+#include "outline/vector.h"
+
+/* Sides that are left of the hull. The programme takes time in proportion to the cube of this. */
+enum { MOST_SIDES = 56 };
+
+struct line {
+    narc_point normal;
+    double angle, offset; /* normal.x = offset */
+};
+
+/* Where two lines meet, and whether that is outside the sides between them: they turn by less than a half turn. */
+static bool meet(const struct line *a, const struct line *b, narc_point *out) {
+    const double turn = cross(a->normal, b->normal);
+    if (!(turn > 1e-9))
+        return false;
+    *out = (narc_point){(a->offset * b->normal.y - b->offset * a->normal.y) / turn,
+                        (b->offset * a->normal.x - a->offset * b->normal.x) / turn};
+    return true;
+}
+
+/* The area that is added when the line between two others goes. */
+static double price(const struct line *before, const struct line *gone, const struct line *after) {
+    narc_point start, end, tip;
+    if (!meet(before, gone, &start) || !meet(gone, after, &end) || !meet(before, after, &tip))
+        return INFINITY;
+    return 0.5 * fabs(cross(minus(end, start), minus(tip, start)));
+}
+
+/* Again and again the line that costs least goes, until `most` are left or none can go. */
+static size_t thin_lines(struct line *lines, size_t count, size_t most) {
+    while (count > most) {
+        double least = INFINITY;
+        size_t best = 0;
+        for (size_t k = 0; k < count; k++) {
+            const double cost = price(&lines[(k + count - 1) % count], &lines[k], &lines[(k + 1) % count]);
+            if (cost < least) {
+                least = cost;
+                best = k;
+            }
+        }
+        if (!isfinite(least))
+            break;
+        memmove(lines + best, lines + best + 1, (count - best - 1) * sizeof *lines);
+        count--;
+    }
+    return count;
+}
+
+struct pockets {
+    size_t count;
+    struct line lines[MOST_SIDES];
+    double area[MOST_SIDES][MOST_SIDES]; /* between the sides i and j when they are extended until they meet */
+};
+
+static bool fill_pockets(struct pockets *pockets) {
+    const size_t n = pockets->count;
+    narc_point corners[MOST_SIDES]; /* corner k: where lines k - 1 and k meet */
+    for (size_t k = 0; k < n; k++)
+        if (!meet(&pockets->lines[(k + n - 1) % n], &pockets->lines[k], &corners[k]))
+            return false;
+    for (size_t i = 0; i < n; i++) {
+        double outline = 0;
+        for (size_t step = 1; step < n; step++) {
+            const size_t j = (i + step) % n, first = (i + 1) % n;
+            if (step > 1)
+                outline += cross(corners[(j + n - 1) % n], corners[j]);
+            narc_point tip;
+            pockets->area[i][j] = INFINITY;
+            if (meet(&pockets->lines[i], &pockets->lines[j], &tip))
+                pockets->area[i][j] = 0.5 * (cross(corners[first], tip) + cross(tip, corners[j]) - outline);
+        }
+    }
+    return true;
+}
+
+/* The best choice of `count` lines with the first of them given. */
+static double choose_from(const struct pockets *pockets, size_t first, size_t count, size_t *out_chosen) {
+    static const size_t none = MOST_SIDES;
+    double cost[MAX_CHAIN][MOST_SIDES];
+    size_t previous[MAX_CHAIN][MOST_SIDES];
+    for (size_t c = 0; c < count; c++) {
+        for (size_t j = 0; j < pockets->count; j++) {
+            cost[c][j] = c == 0 && j == first ? 0 : INFINITY;
+            previous[c][j] = none;
+            for (size_t i = first; c > 0 && i < j; i++) {
+                const double sum = cost[c - 1][i] + pockets->area[i][j];
+                if (sum < cost[c][j]) {
+                    cost[c][j] = sum;
+                    previous[c][j] = i;
+                }
+            }
+        }
+    }
+    double least = INFINITY;
+    size_t last = none;
+    for (size_t j = first + 1; j < pockets->count; j++) {
+        const double sum = cost[count - 1][j] + pockets->area[j][first];
+        if (sum < least) {
+            least = sum;
+            last = j;
+        }
+    }
+    for (size_t c = count; last != none && c-- > 0; last = previous[c][last])
+        out_chosen[c] = last;
+    return least;
+}
+
+static size_t choose(const struct pockets *pockets, size_t count, double *out_angles) {
+    double least = INFINITY;
+    for (size_t first = 0; first + count <= pockets->count; first++) {
+        size_t chosen[MAX_CHAIN];
+        const double area = choose_from(pockets, first, count, chosen);
+        if (area < least) {
+            least = area;
+            for (size_t c = 0; c < count; c++)
+                out_angles[c] = pockets->lines[chosen[c]].angle;
+        }
+    }
+    return isfinite(least) ? count : 0;
+}
+
+size_t narc_find_flush_polygon(const narc_hull *hull, size_t count, double *out_angles) {
+    struct line *lines = malloc(hull->count * sizeof *lines);
+    struct pockets *pockets = malloc(sizeof *pockets);
+    size_t found = 0;
+    if (lines && pockets && count >= 3) {
+        for (size_t k = 0; k < hull->count; k++) {
+            const narc_point d = hull->normals[k];
+            lines[k] = (struct line){d, hull->angles[k], dot(d, hull->corners[k]) + hull->inflation};
+        }
+        pockets->count = thin_lines(lines, hull->count, MOST_SIDES);
+        if (pockets->count <= MOST_SIDES) {
+            memcpy(pockets->lines, lines, pockets->count * sizeof *lines);
+            found = fill_pockets(pockets) ? choose(pockets, count < pockets->count ? count : pockets->count, out_angles)
+                                          : 0;
+        }
+    }
+    free(lines);
+    free(pockets);
+    return found;
+}

@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ladder.c - fits that build on others: each count of arcs on the one before, so that more arcs are never worse; arcs
+ * with edges on arcs without and on edges alone; what bounds or differs least on what is closest.
+ */
+#include "solve/ladder.h"
+
+#include <stdlib.h>
+
+#include "error.h"
+#include "outline/vector.h"
+
+enum { MOST_NEEDS = 5, MOST_KNOWN = MOST_NEEDS * MOST_RANKED };
+
+/* Closed chains of up to three arcs without edges are circles. */
+static size_t least_count(narc_fit_family family) { return family == NARC_FIT_EDGES ? 2 : 3; }
+
+/* Fewer starts of many arcs, whose searches take long. The first start, on the sides of a bounding polygon, is always
+ * there: chains that only grow from fewer arcs stay behind it. */
+static narc_effort choose_effort(const narc_rung *rung, unsigned starts) {
+    const size_t n = rung->count;
+    if (starts) {
+        const size_t less = n <= 12 ? starts : (starts + 3) / 4;
+        return (narc_effort){.starts = less, .exchanges = less / 3, .kicks = less / 2};
+    }
+    return n <= 6    ? (narc_effort){.starts = 20, .exchanges = 2, .kicks = 10}
+           : n <= 8  ? (narc_effort){.starts = 8, .exchanges = 2, .kicks = 4}
+           : n <= 12 ? (narc_effort){.starts = 2, .exchanges = 1}
+                     : (narc_effort){.starts = 1};
+}
+
+/* The fits that one builds on. */
+static size_t list_needs(const narc_ladder *ladder, const narc_rung *rung, narc_rung *out) {
+    size_t count = 0;
+    if (rung->count > least_count(rung->family))
+        out[count++] = (narc_rung){rung->family, rung->goal, rung->count - 1};
+    if (rung->goal == NARC_FIT_BOUND_DISTANCE || rung->goal == NARC_FIT_DIFFERENCE)
+        out[count++] = (narc_rung){rung->family, NARC_FIT_DISTANCE, rung->count};
+    if (rung->family == NARC_FIT_EDGES) {
+        out[count++] = (narc_rung){NARC_FIT_N_ARC, rung->goal, rung->count < 3 ? 3 : rung->count};
+        if (rung->count >= 3 && ladder->min_radius == 0)
+            out[count++] = (narc_rung){NARC_FIT_POLYGON, rung->goal, rung->count};
+    }
+    return count;
+}
+
+static size_t plan(const narc_ladder *ladder, const narc_rung *rung, bool seen[][LADDER_GOALS][MAX_CHAIN + 1]) {
+    bool *mine = &seen[rung->family][rung->goal][rung->count];
+    if (*mine)
+        return 0;
+    *mine = true;
+    const narc_effort effort = choose_effort(rung, ladder->starts);
+    size_t sum = narc_count_work(&effort) * rung->count;
+    narc_rung needs[MOST_NEEDS];
+    const size_t count = list_needs(ladder, rung, needs);
+    for (size_t k = 0; k < count; k++)
+        sum += plan(ladder, &needs[k], seen);
+    return sum;
+}
+
+size_t narc_plan_ladder(const narc_ladder *ladder, const narc_rung *rung) {
+    bool seen[LADDER_FAMILIES][LADDER_GOALS][MAX_CHAIN + 1] = {0};
+    return plan(ladder, rung, seen);
+}
+
+/* Turns the chains of one fit into starts for another: a circle of three arcs becomes one of two, and the closest shape
+ * is moved out so that it bounds. */
+static size_t adapt(const narc_ranking *ranking, const narc_rung *source, const narc_rung *rung, narc_chain *out) {
+    size_t count = 0;
+    for (size_t k = 0; k < ranking->count; k++) {
+        narc_chain *chain = &out[count++];
+        *chain = ranking->items[k].chain;
+        if (source->count > rung->count) {
+            const double radius = chain->radius[0];
+            *chain = (narc_chain){.count = 2, .start = chain->start, .angle = {0, PI}, .radius = {radius, radius}};
+        }
+        if (source->goal != rung->goal && rung->goal == NARC_FIT_BOUND_DISTANCE)
+            narc_offset_chain(chain, ranking->items[k].value, rung->family == NARC_FIT_POLYGON);
+    }
+    return count;
+}
+
+narc_status narc_climb(narc_ladder *ladder, const narc_rung *rung, const narc_ranking **out_best, narc_error *error) {
+    narc_ranking **mine = &ladder->found[rung->family][rung->goal][rung->count];
+    if (*mine) {
+        *out_best = *mine;
+        return NARC_OK;
+    }
+    narc_rung needs[MOST_NEEDS];
+    narc_chain known[MOST_KNOWN];
+    size_t known_count = 0;
+    const size_t need_count = list_needs(ladder, rung, needs);
+    for (size_t k = 0; k < need_count; k++) {
+        const narc_ranking *other;
+        if (narc_climb(ladder, &needs[k], &other, NULL) == NARC_OK)
+            known_count += adapt(other, &needs[k], rung, known + known_count);
+    }
+    narc_problem problem = {ladder->hull, rung->family,       rung->goal,
+                            rung->count,  ladder->min_radius, ladder->max_radius};
+    narc_hull bare = *ladder->hull;
+    if (!narc_must_bound(&problem)) {
+        bare.inflation = 0;
+        problem.hull = &bare;
+    }
+    const narc_effort effort = choose_effort(rung, ladder->starts);
+    narc_ranking *ranking = malloc(sizeof *ranking);
+    if (!ranking)
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for chains of %zu arcs", rung->count);
+    ladder->progress->limit += narc_count_work(&effort) * rung->count;
+    const narc_status status = narc_find_best(&problem, &effort, known, known_count, ladder->progress, ranking, error);
+    ladder->progress->done = ladder->progress->limit;
+    if (status != NARC_OK) {
+        free(ranking);
+        return status;
+    }
+    *mine = ranking;
+    *out_best = ranking;
+    return NARC_OK;
+}
+
+void narc_clear_ladder(narc_ladder *ladder) {
+    for (int family = 0; family < LADDER_FAMILIES; family++) {
+        for (int goal = 0; goal < LADDER_GOALS; goal++) {
+            for (size_t count = 0; count <= MAX_CHAIN; count++) {
+                free(ladder->found[family][goal][count]);
+                ladder->found[family][goal][count] = NULL;
+            }
+        }
+    }
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ladder.h - fits that build on fits with an arc less, of a narrower family, or for another goal. Internal.
+ */
+#ifndef NARC_FIT_LADDER_H
+#define NARC_FIT_LADDER_H
+
+#include "solve/best.h"
+
+/* What is fitted. */
+typedef struct narc_rung {
+    narc_fit_family family;
+    narc_fit_goal goal;
+    size_t count;
+} narc_rung;
+
+enum { LADDER_FAMILIES = 3, LADDER_GOALS = 5 };
+
+typedef struct narc_ladder {
+    const narc_hull *hull;
+    double min_radius, max_radius; /* of arcs, in units of the hull's radius */
+    unsigned starts;               /* 0: the usual number */
+    narc_progress *progress;
+    narc_ranking *found[LADDER_FAMILIES][LADDER_GOALS][MAX_CHAIN + 1]; /* those that were searched for */
+} narc_ladder;
+
+/* How many pieces of work a fit takes that nothing was done for yet. */
+size_t narc_plan_ladder(const narc_ladder *ladder, const narc_rung *rung);
+
+/* The best chains for a rung, which stay until the ladder is cleared: found[0] is no worse than what the same ladder
+ * finds with fewer arcs, or with a narrower family. Errors: those of narc_find_best(). */
+narc_status narc_climb(narc_ladder *ladder, const narc_rung *rung, const narc_ranking **out_best, narc_error *error);
+
+void narc_clear_ladder(narc_ladder *ladder);
+
+#endif

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * programme.c - linear programmes through the C interface of COIN CLP.
+ */
+#include "solve/programme.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <coin/Clp_C_Interface.h>
+
+/* Rows hold to this, in units of the outline's radius. What is left over is repaired exactly afterwards. */
+static const double FEASIBLE = 1e-9;
+
+bool narc_open_programme(narc_programme *programme, size_t columns, size_t row_capacity) {
+    *programme = (narc_programme){.columns = columns, .row_capacity = row_capacity};
+    double **const arrays[] = {&programme->objective, &programme->lower, &programme->upper, &programme->solution};
+    bool whole = true;
+    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) {
+        *arrays[k] = malloc(columns * sizeof(double));
+        whole = whole && *arrays[k];
+    }
+    programme->row_lower = malloc(row_capacity * sizeof(double));
+    programme->row_upper = malloc(row_capacity * sizeof(double));
+    programme->entries = malloc(row_capacity * columns * sizeof(double));
+    programme->packed = malloc(row_capacity * columns * sizeof(double));
+    programme->packed_index = malloc(row_capacity * columns * sizeof(int));
+    programme->packed_start = malloc((columns + 1) * sizeof(int));
+    programme->model = Clp_newModel();
+    if (!whole || !programme->row_lower || !programme->row_upper || !programme->entries || !programme->packed ||
+        !programme->packed_index || !programme->packed_start || !programme->model) {
+        narc_close_programme(programme);
+        return false;
+    }
+    Clp_setLogLevel(programme->model, 0);
+    Clp_setPrimalTolerance(programme->model, FEASIBLE);
+    /* All lengths are near 1. With its own scaling CLP may end at what is an optimum of the scaled problem only. */
+    Clp_scaling(programme->model, 0);
+    narc_clear_programme(programme);
+    return true;
+}
+
+void narc_close_programme(narc_programme *programme) {
+    free(programme->objective);
+    free(programme->lower);
+    free(programme->upper);
+    free(programme->solution);
+    free(programme->row_lower);
+    free(programme->row_upper);
+    free(programme->entries);
+    free(programme->packed);
+    free(programme->packed_index);
+    free(programme->packed_start);
+    if (programme->model)
+        Clp_deleteModel(programme->model);
+    *programme = (narc_programme){0};
+}
+
+void narc_clear_programme(narc_programme *programme) {
+    programme->rows = 0;
+    for (size_t k = 0; k < programme->columns; k++) {
+        programme->objective[k] = 0;
+        programme->lower[k] = -INFINITY;
+        programme->upper[k] = INFINITY;
+    }
+}
+
+double *narc_add_row(narc_programme *programme, double lower, double upper) {
+    if (programme->rows == programme->row_capacity)
+        return NULL;
+    double *row = programme->entries + programme->rows * programme->columns;
+    memset(row, 0, programme->columns * sizeof *row);
+    programme->row_lower[programme->rows] = lower;
+    programme->row_upper[programme->rows++] = upper;
+    return row;
+}
+
+/* CLP takes its matrix by columns, without zeros. */
+static void pack(narc_programme *programme) {
+    int used = 0;
+    for (size_t column = 0; column < programme->columns; column++) {
+        programme->packed_start[column] = used;
+        for (size_t row = 0; row < programme->rows; row++) {
+            const double entry = programme->entries[row * programme->columns + column];
+            if (entry != 0) {
+                programme->packed[used] = entry;
+                programme->packed_index[used++] = (int)row;
+            }
+        }
+    }
+    programme->packed_start[programme->columns] = used;
+}
+
+bool narc_solve_programme(narc_programme *programme) {
+    Clp_Simplex *model = programme->model;
+    pack(programme);
+    Clp_loadProblem(model, (int)programme->columns, (int)programme->rows, programme->packed_start,
+                    programme->packed_index, programme->packed, programme->lower, programme->upper,
+                    programme->objective, programme->row_lower, programme->row_upper);
+    Clp_dual(model, 0);
+    if (Clp_status(model) != 0)
+        Clp_primal(model, 0);
+    if (Clp_status(model) != 0)
+        return false;
+    memcpy(programme->solution, Clp_primalColumnSolution(model), programme->columns * sizeof *programme->solution);
+    return true;
+}

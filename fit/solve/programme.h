@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * programme.h - a linear programme, solved by COIN CLP. Internal.
+ */
+#ifndef NARC_FIT_PROGRAMME_H
+#define NARC_FIT_PROGRAMME_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Least objective.x with lower <= x <= upper and, for each row, row_lower <= row.x <= row_upper. Bounds may be
+ * infinite. */
+typedef struct narc_programme {
+    size_t columns, rows;
+    double *objective, *lower, *upper;       /* of the columns */
+    double *row_lower, *row_upper, *entries; /* entries[row * columns + column] */
+    size_t row_capacity;
+    double *solution;
+    void *model; /* a Clp_Simplex */
+    int *packed_index, *packed_start;
+    double *packed;
+} narc_programme;
+
+/* Memory for `columns` columns and at most `row_capacity` rows; false if there is none. */
+bool narc_open_programme(narc_programme *programme, size_t columns, size_t row_capacity);
+void narc_close_programme(narc_programme *programme);
+
+/* Removes all rows; bounds of all columns become infinite, the objective 0. */
+void narc_clear_programme(narc_programme *programme);
+
+/* A new row of zeros, to be filled in; NULL if there is no room. */
+double *narc_add_row(narc_programme *programme, double lower, double upper);
+
+/* Fills in `solution`. False if there is none (or no end of it). */
+bool narc_solve_programme(narc_programme *programme);
+
+#endif

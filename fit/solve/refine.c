@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * refine.c - the last steps of the local search: Kraft's sequential quadratic programming, from NLopt.
+ *
+ * It works on all variables at once, with the rows of the chain that it starts from, which are smooth, and closure as
+ * an equation. Then the rows are listed anew.
+ */
+#include <nlopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/difference.h"
+#include "outline/vector.h"
+#include "solve/search.h"
+
+/* One round ends when the variables change by less than this, or after so many evaluations, of
+ * more than 12 arcs half as many. */
+static const double STEP_TOLERANCE = 1e-7;
+enum { EVALUATIONS = 30 };
+
+/* Where a round ends too far for lack of rows it goes on from there with more of them, so many times in all. */
+enum { ATTEMPTS = 4 };
+
+/* Rows with more room than this, in units of the hull's radius, are left out until they are missed: the time of a step
+ * grows with their number. */
+static const double NEAR = 0.1;
+
+static const double BOX_TURN = 0.3, BOX_LENGTH = 1;
+
+/* So many rounds in a row that gain too little, in smaller and smaller boxes, are the last. */
+enum { PATIENCE = 3 };
+
+/* A bound on an arc: it turns by more than nothing, and not by too much, and its radius is neither too large nor too
+ * small. All are linear: factor * (sweep - than) + length_factor * length <= 0. */
+struct limit {
+    size_t arc;
+    double factor, sweep, length_factor;
+};
+
+struct descent {
+    narc_search *search;
+    narc_chain chain;
+    double distance, widest;
+    double sweep[MAX_CHAIN];
+    size_t limit_count;
+    struct limit limits[3 * MAX_CHAIN];
+    double gradient[3 * MAX_CHAIN + 3];
+};
+
+/* The variables as NLopt has them: those of narc_make_layout(), with angles in place of turns, and lengths of arcs in
+ * place of radii. A flat arc is much like an edge: its length matters, and how it is made up of radius and sweep does
+ * not, so that with lengths the problem is far less curved. */
+static void write_variables(const narc_chain *chain, double distance, double *x) {
+    const narc_layout layout = narc_make_layout(chain->count);
+    for (size_t i = 0; i < chain->count; i++)
+        x[layout.radius + i] = chain->radius[i] * (narc_end_angle(chain, i) - chain->angle[i]);
+    memcpy(x + layout.edge, chain->edge, chain->count * sizeof *x);
+    memcpy(x + layout.angle, chain->angle, chain->count * sizeof *x);
+    x[layout.start] = chain->start.x;
+    x[layout.start + 1] = chain->start.y;
+    x[layout.distance] = distance;
+}
+
+static void move_to(struct descent *descent, const double *x) {
+    narc_chain *chain = &descent->chain;
+    const narc_layout layout = narc_make_layout(chain->count);
+    memcpy(chain->edge, x + layout.edge, chain->count * sizeof *x);
+    memcpy(chain->angle, x + layout.angle, chain->count * sizeof *x);
+    for (size_t i = 0; i < chain->count; i++) {
+        descent->sweep[i] = fmax(0.1 * LEAST_SWEEP, narc_end_angle(chain, i) - chain->angle[i]);
+        chain->radius[i] = x[layout.radius + i] / descent->sweep[i];
+    }
+    chain->start = (narc_point){x[layout.start], x[layout.start + 1]};
+    descent->distance = x[layout.distance];
+    narc_place_chain(chain);
+}
+
+/* From derivatives by radii and normals to those by lengths and normals: r = s / (end - start). */
+static void convert_gradient(const struct descent *descent, double *gradient) {
+    const size_t n = descent->chain.count;
+    const narc_layout layout = narc_make_layout(n);
+    for (size_t i = 0; i < n; i++) {
+        const double by_length = gradient[layout.radius + i] / descent->sweep[i];
+        gradient[layout.radius + i] = by_length;
+        gradient[layout.angle + i] += by_length * descent->chain.radius[i];
+        gradient[layout.angle + (i + 1) % n] -= by_length * descent->chain.radius[i];
+    }
+}
+
+static double measure(const narc_problem *problem, const narc_chain *chain, double distance, double *gradient) {
+    if (problem->goal == NARC_FIT_DIFFERENCE) {
+        const double area = narc_difference_area(chain, problem->hull, (narc_point){0, 0}, gradient);
+        return isfinite(area) ? area : 1e3; /* far off: more than any area here */
+    }
+    if (narc_is_distance(problem)) {
+        const narc_layout layout = narc_make_layout(problem->count);
+        if (gradient) {
+            memset(gradient, 0, layout.count * sizeof *gradient);
+            gradient[layout.distance] = 1;
+        }
+        return distance;
+    }
+    const bool perimeter = problem->goal == NARC_FIT_BOUND_PERIMETER;
+    if (gradient)
+        (perimeter ? narc_derive_perimeter : narc_derive_area)(chain, gradient);
+    return perimeter ? narc_chain_perimeter(chain) : narc_chain_area(chain);
+}
+
+static double objective(unsigned count, const double *x, double *gradient, void *context) {
+    struct descent *descent = context;
+    (void)count;
+    move_to(descent, x);
+    const double value = measure(&descent->search->problem, &descent->chain, descent->distance, gradient);
+    if (gradient)
+        convert_gradient(descent, gradient);
+    return value;
+}
+
+static void closure(unsigned rows, double *result, unsigned count, const double *x, double *gradient, void *context) {
+    struct descent *descent = context;
+    move_to(descent, x);
+    const narc_point gap = minus(descent->chain.center[descent->chain.count], descent->chain.center[0]);
+    result[0] = gap.x;
+    result[1] = gap.y;
+    if (gradient) {
+        memset(gradient, 0, (size_t)rows * count * sizeof *gradient);
+        narc_derive_gap(&descent->chain, gradient, gradient + count);
+        convert_gradient(descent, gradient);
+        convert_gradient(descent, gradient + count);
+    }
+}
+
+static void conditions(unsigned rows, double *result, unsigned count, const double *x, double *gradient,
+                       void *context) {
+    struct descent *descent = context;
+    const narc_problem *problem = &descent->search->problem;
+    const narc_layout layout = narc_make_layout(problem->count);
+    move_to(descent, x);
+    for (unsigned k = 0; k < rows; k++) {
+        double *of_row = descent->gradient;
+        memset(of_row, 0, count * sizeof *of_row);
+        const double value = narc_evaluate_row(problem, &descent->chain, &descent->search->rows->items[k], of_row);
+        result[k] = -value - of_row[layout.distance] * descent->distance;
+        convert_gradient(descent, of_row);
+        for (unsigned c = 0; c < count && gradient; c++)
+            gradient[(size_t)k * count + c] = -of_row[c];
+    }
+}
+
+static double read_sweep(const narc_layout *layout, size_t n, size_t arc, const double *x) {
+    const size_t next = (arc + 1) % n;
+    return x[layout->angle + next] - x[layout->angle + arc] + (next ? 0 : 2 * PI);
+}
+
+static void limits(unsigned rows, double *result, unsigned count, const double *x, double *gradient, void *context) {
+    const struct descent *descent = context;
+    const size_t n = descent->chain.count;
+    const narc_layout layout = narc_make_layout(n);
+    if (gradient)
+        memset(gradient, 0, (size_t)rows * count * sizeof *gradient);
+    for (size_t k = 0; k < rows; k++) {
+        const struct limit *limit = &descent->limits[k];
+        result[k] = limit->factor * (read_sweep(&layout, n, limit->arc, x) - limit->sweep) +
+                    limit->length_factor * x[layout.radius + limit->arc];
+        if (gradient) {
+            double *entries = gradient + k * count;
+            entries[layout.angle + (limit->arc + 1) % n] += limit->factor;
+            entries[layout.angle + limit->arc] -= limit->factor;
+            entries[layout.radius + limit->arc] += limit->length_factor;
+        }
+    }
+}
+
+/* The limits that a round may come to within its box. */
+static void list_limits(struct descent *descent, double box, const double *x) {
+    const size_t n = descent->chain.count;
+    const narc_layout layout = narc_make_layout(n);
+    const double most = narc_radius_limit(&descent->search->problem), least = descent->search->problem.min_radius;
+    descent->limit_count = 0;
+    for (size_t k = 0; k < n; k++) {
+        const double sweep = read_sweep(&layout, n, k, x), narrow = fmax(LEAST_SWEEP, sweep - 2 * box);
+        if (narrow == LEAST_SWEEP)
+            descent->limits[descent->limit_count++] = (struct limit){k, -1, LEAST_SWEEP, 0};
+        if (sweep + 2 * box > descent->widest)
+            descent->limits[descent->limit_count++] = (struct limit){k, 1, descent->widest, 0};
+        if (most > 0 && x[layout.radius + k] + BOX_LENGTH > most * narrow)
+            descent->limits[descent->limit_count++] = (struct limit){k, -most, 0, 1};
+        if (least > 0)
+            descent->limits[descent->limit_count++] = (struct limit){k, least, 0, -1};
+    }
+}
+
+/* Keeps only rows with little room. */
+static void keep_near(const narc_problem *problem, const narc_chain *chain, double distance, narc_row_list *rows) {
+    size_t kept = 0;
+    for (size_t k = 0; k < rows->count; k++)
+        if (narc_evaluate_row(problem, chain, &rows->items[k], NULL) + (narc_is_distance(problem) ? distance : 0) <
+            NEAR)
+            rows->items[kept++] = rows->items[k];
+    rows->count = kept;
+}
+
+/* Besides the lasting bounds, a round keeps within a box around where it begins: further away its rows say little. */
+static void set_bounds(nlopt_opt solver, const narc_problem *problem, const narc_layout *layout, double box,
+                       const double *x) {
+    for (unsigned c = 0; c < layout->count; c++) {
+        double lower = -HUGE_VAL, upper = HUGE_VAL;
+        if (c < layout->edge) {
+            lower = 0;
+            upper = problem->family == NARC_FIT_POLYGON ? 0 : HUGE_VAL;
+        } else if (c < layout->start) {
+            lower = 0;
+            upper = narc_edge_limit(problem);
+        } else if (c >= layout->angle && c < layout->distance) {
+            lower = x[c] - box;
+            upper = x[c] + box;
+        } else if (c == layout->distance) {
+            lower = 0;
+            upper = narc_is_distance(problem) ? HUGE_VAL : 0;
+        }
+        nlopt_set_lower_bound(solver, (int)c, lower);
+        nlopt_set_upper_bound(solver, (int)c, upper);
+    }
+}
+
+static void run_solver(struct descent *descent, const narc_layout *layout, double box, double gain, double *x) {
+    const unsigned count = (unsigned)layout->count;
+    double least;
+    nlopt_opt solver = nlopt_create(NLOPT_LD_SLSQP, count);
+    if (!solver)
+        return;
+    set_bounds(solver, &descent->search->problem, layout, box, x);
+    nlopt_set_min_objective(solver, objective, descent);
+    nlopt_add_equality_mconstraint(solver, 2, closure, descent, NULL);
+    list_limits(descent, box, x);
+    if (descent->limit_count)
+        nlopt_add_inequality_mconstraint(solver, (unsigned)descent->limit_count, limits, descent, NULL);
+    if (descent->search->rows->count)
+        nlopt_add_inequality_mconstraint(solver, (unsigned)descent->search->rows->count, conditions, descent, NULL);
+    nlopt_set_xtol_abs1(solver, STEP_TOLERANCE);
+    nlopt_set_ftol_rel(solver, gain);
+    nlopt_set_maxeval(solver, descent->chain.count <= 12 ? EVALUATIONS : EVALUATIONS / 2);
+    nlopt_optimize(solver, x, &least);
+    nlopt_destroy(solver);
+}
+
+/* False if the sectors are out of order or the chain can't be closed. */
+static bool take_chain(narc_search *search, const narc_chain *chain, narc_candidate *out_next) {
+    out_next->chain = *chain;
+    for (size_t k = 0; k < chain->count; k++)
+        if (!(narc_end_angle(chain, k) - chain->angle[k] > 0.5 * LEAST_SWEEP))
+            return false;
+    for (size_t k = 0; k < chain->count; k++)
+        out_next->chain.radius[k] = fmax(search->problem.min_radius, out_next->chain.radius[k]);
+    if (!narc_close_chain(&out_next->chain, search->problem.min_radius))
+        return false;
+    out_next->value = narc_settle(search, &out_next->chain);
+    return isfinite(out_next->value);
+}
+
+/* Adds rows where a chain goes too far for lack of them. */
+static size_t add_missing(narc_search *search, const narc_chain *chain, double distance) {
+    const size_t count = narc_make_profile(chain, search->problem.hull, search->intervals);
+    const double slack = STEP_TOLERANCE + (narc_is_distance(&search->problem) ? distance : 0);
+    return narc_add_violated(&search->problem, search->intervals, count, slack, search->rows);
+}
+
+static bool solve_round(narc_search *search, const narc_candidate *candidate, double box, double gain,
+                        narc_candidate *out_next) {
+    const narc_layout layout = narc_make_layout(search->problem.count);
+    const bool bare = search->problem.goal == NARC_FIT_DIFFERENCE;
+    struct descent descent = {
+        .search = search, .chain = candidate->chain, .widest = narc_widest_sweep(&search->problem)};
+    descent.distance = narc_is_distance(&search->problem) ? candidate->value : 0;
+    search->rows->count = 0;
+    if (!bare) {
+        narc_list_rows(&search->problem, &candidate->chain, ROWS_OF_A_STEP, search->intervals, search->rows);
+        keep_near(&search->problem, &candidate->chain, candidate->value, search->rows);
+    }
+    bool found = false;
+    for (unsigned attempt = 0; attempt < ATTEMPTS; attempt++) {
+        double x[3 * MAX_CHAIN + 3];
+        write_variables(&descent.chain, descent.distance, x);
+        run_solver(&descent, &layout, box, gain, x);
+        move_to(&descent, x);
+        narc_candidate next;
+        if (!take_chain(search, &descent.chain, &next))
+            break;
+        if (!found || next.value < out_next->value)
+            *out_next = next;
+        found = true;
+        if (bare || add_missing(search, &descent.chain, descent.distance) == 0)
+            break;
+    }
+    return found;
+}
+
+void narc_refine(narc_search *search, narc_candidate *best, unsigned rounds, double gain) {
+    double box = BOX_TURN;
+    unsigned idle = 0;
+    for (unsigned round = 0; round < rounds && idle < PATIENCE && narc_advance(search->progress, 0); round++) {
+        narc_candidate next;
+        const bool better = solve_round(search, best, box, 0.1 * gain, &next) && next.value < best->value;
+        const bool gains = better && next.value < best->value * (1 - gain);
+        idle = gains ? 0 : idle + 1;
+        box *= gains ? 1 : 0.3;
+        if (better)
+            *best = next;
+    }
+}

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * call.inl - one call of a kernel, and the answers that are written as single bits and bytes.
+ */
+#ifndef NARC_BASE_CALL_INL
+#define NARC_BASE_CALL_INL
+
+#include <math.h>
+#include <stdint.h>
+
+#include "base/queue.inl"
+#include "column.h"
+#include "kernels.h"
+#include "simd/simd.h"
+
+struct call {
+    const narc_batch *batch;
+    size_t first, count;             /* its pairs in the batch */
+    float margin;                    /* 0 for overlaps */
+    narc_column margins;             /* one for each pair of the batch; base NULL: all are `margin` */
+    uint64_t *bits;                  /* overlap kernels: where the answers go; else NULL */
+    struct contact_rows *rows;       /* contact kernels: the same */
+    struct manifold_rows *manifolds; /* the manifold kernel: `rows` and those of second points */
+    struct queue *edges;             /* the manifold kernel: pairs that may have one */
+};
+
+/* The margin of a pair, counted from the first of the call. */
+INLINE float find_margin(const struct call *call, int32_t pair) {
+    return call->margins.base ? narc_float_at(call->margins, call->first + (uint32_t)pair) : call->margin;
+}
+
+/* The margins of the pairs k ... of a queue. */
+INLINE vf get_margins(const struct call *call, const struct queue *queue, int k) {
+    int32_t pair[V_WIDTH];
+    float lane[V_WIDTH];
+    if (!call->margins.base)
+        return v_set(call->margin);
+    get_pairs(queue, k, pair);
+    for (int l = 0; l < V_WIDTH; l++)
+        lane[l] = find_margin(call, pair[l]);
+    return v_load(lane);
+}
+
+/* With an infinite margin every separation counts, an infinite one too. */
+INLINE vm is_below(vf separation, vf margin) { return vm_or(v_lt(separation, margin), v_le(v_set(INFINITY), margin)); }
+
+/* Sets the bits of the pairs k ... of a queue in the lanes `hits`. */
+INLINE void mark_overlaps(const struct call *call, const struct queue *queue, int k, vm hits) {
+    int32_t pair[V_WIDTH];
+    get_pairs(queue, k, pair);
+    for (uint32_t lanes = vm_bits(hits); lanes; lanes &= lanes - 1) {
+        const uint32_t number = (uint32_t)pair[__builtin_ctz(lanes)];
+        call->bits[number / 64] |= (uint64_t)1 << number % 64;
+    }
+}
+
+/* Notes the outcome of the pairs k ... of a queue in the lanes `which`. */
+INLINE void note_outcome(const struct call *call, const struct queue *queue, int k, vm which, narc_outcome outcome) {
+    int32_t pair[V_WIDTH];
+    if (!call->batch->outcomes || !vm_any(which))
+        return;
+    get_pairs(queue, k, pair);
+    for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1)
+        call->batch->outcomes[call->first + (uint32_t)pair[__builtin_ctz(lanes)]] = (uint8_t)outcome;
+}
+
+#endif

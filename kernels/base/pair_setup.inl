@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * pair_setup.inl - what every kernel begins with: B's pose in A's frame, and a first filter by circles.
+ *
+ * With d = position B - position A and rotations as complex numbers, B's frame in A's is
+ *     t = d / rotation A,   q = rotation B / rotation A,
+ * so that a point p of B lies at t + scale_b q p where a point p of A lies at scale_a p. Both keep their scale: nothing
+ * is divided.
+ *
+ * The filter may only say what the deciding formula (sat/normal_fan.inl) would say after all its rounding. That formula
+ * is within 32 e (D + E_a + E_b) of exact, e = 2^-24, D = |d|, E the extents; the bounding radii are 96 e E too large
+ * and the inner ones 96 e E too small (store.h). Let s be the distance between two circles' centres, so that
+ * D <= s + E_a + E_b.
+ *
+ *   apart   s (1 - 2^-17) > sum of bounding radii + margin. Then the exact gap exceeds the margin by more than
+ *           128 e s + 96 e (E_a + E_b), of which the formula can lose 32 e s + 64 e (E_a + E_b).
+ *   deep    s (1 + 2^-17) < sum of inner radii. Then s + the distances of the centres from their origins are at most
+ *           E_a + E_b, and so is D; the exact gap is below -96 e (E_a + E_b), and the formula can add 64 e (E_a + E_b).
+ *
+ * What is left over covers the rounding of s itself.
+ */
+#ifndef NARC_BASE_PAIR_SETUP_INL
+#define NARC_BASE_PAIR_SETUP_INL
+
+#include <math.h>
+#include <stdbool.h>
+
+#include "base/arcs.inl"
+#include "base/bodies.inl"
+#include "base/call.inl"
+#include "base/queue.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "kernels.h"
+#include "simd/simd.h"
+
+/* Makes a rotation's length 1, which it nearly is: one step of Newton's method for the inverse root of the square, from
+ * 1, which leaves 3/8 of the square's error squared, 1.5 e at most. In lanes where the square is off by more than
+ * NARC_ROTATION_TOLERANCE, `out_valid` is false. */
+INLINE vec2 normalise_rotation(vec2 rotation, vm *out_valid) {
+    const vf error = v_sub(v2_dot(rotation, rotation), v_set(1));
+    *out_valid = v_le(v_abs(error), v_set((float)NARC_ROTATION_TOLERANCE));
+    return v2_scale(rotation, v_sub(v_set(1), v_mul(v_set(0.5f), error)));
+}
+
+INLINE vm distance_in_range(vec2 difference) {
+    const vf limit = v_set((float)NARC_MAX_DISTANCE);
+    return vm_and(v_le(v_abs(difference.x), limit), v_le(v_abs(difference.y), limit));
+}
+
+/* The bounding radius has 96 e of the extent in it, so this keeps scaled coordinates below 2e14, too. */
+INLINE vm size_in_range(vf size) {
+    return vm_and(v_le(v_set((float)NARC_MIN_SIZE), size), v_le(size, v_set((float)NARC_MAX_BOUND_RADIUS)));
+}
+
+/* 128 e (D + E_a + E_b), four times what the deciding formula can be off by: what a value from the same arithmetic must
+ * be clear of, before it can stand for the formula's. Infinite where an extent is not known. */
+INLINE vf find_slack(vec2 position, vi info_a, vi info_b, vf size_a, vf size_b) {
+    const vi unknown = vi_set(255), ratio_a = info_extent_ratio(info_a), ratio_b = info_extent_ratio(info_b);
+    const vf extents = v_add(v_mul(size_a, v_of_int(ratio_a)), v_mul(size_b, v_of_int(ratio_b)));
+    const vf slack = v_mul(v_set(0x1p-17f), v_add(v_add(v_abs(position.x), v_abs(position.y)), extents));
+    return v_select(vm_and(vi_lt(ratio_a, unknown), vi_lt(ratio_b, unknown)), slack, v_set(INFINITY));
+}
+
+/* What the circles say of a pair in each lane. */
+struct filter {
+    vm valid, invalid; /* are all numbers in range? Only a valid pair has an answer. Neither: there is no pair */
+    vm apart;          /* the separation is above the margin, for certain */
+    vm deep;           /* the bodies collide, for certain */
+};
+
+/* From the centre of a circle of A to that of a circle of B. */
+INLINE vec2 circle_difference(vec2 a, vec2 b, const struct pose *pose) {
+    return v2_sub(place_center_b(b, pose), v2_scale(a, pose->scale_a));
+}
+
+/* Sets up the pairs k ... of a block of `count`, the first of which has the number `number`: fills `item`. */
+INLINE struct filter set_up_pairs(const struct call *call, const struct pair_indices *in, int k, int count,
+                                  bool adjacent, int32_t number, vf item[FIELDS]) {
+    const narc_batch *batch = call->batch;
+    const narc_pairs *pairs = batch->pairs;
+    const size_t first = call->first + (uint32_t)number + (uint32_t)k;
+    const float shrink = 1.0f - 0x1p-16f, grow = 1.0f + 0x1p-16f; /* of a square: 2^-17 of the distance */
+    const narc_column scale = batch->bodies->scale;
+    struct body_pair bodies = load_bodies(batch->bodies, adjacent, in->a + k, in->b + k);
+    if (pairs->shift_x.base || pairs->shift_y.base) {
+        const vec2 shift = {load_pair_column(pairs->shift_x, first, count - k, 0),
+                            load_pair_column(pairs->shift_y, first, count - k, 0)};
+        bodies.difference = load_shifted_difference(batch->bodies, shift, in->a + k, in->b + k);
+    }
+    const vf margin = load_pair_column(call->margins, first, count - k, call->margin);
+    const struct headers a = load_headers(batch->shapes->headers, in->shape_a + k);
+    const struct headers b = load_headers(batch->shapes->headers, in->shape_b + k);
+    const vf scale_a = scale.base ? load_column(scale, in->a + k) : v_set(1);
+    const vf scale_b = scale.base ? load_column(scale, in->b + k) : v_set(1);
+    struct filter filter;
+    vm valid_a, valid_b;
+    const vec2 rotation_a = normalise_rotation(bodies.rotation_a, &valid_a);
+    const vec2 rotation_b = normalise_rotation(bodies.rotation_b, &valid_b);
+    const vf size_a = v_mul(scale_a, a.bound_radius), size_b = v_mul(scale_b, b.bound_radius);
+    const vm near = distance_in_range(bodies.difference), sizes = vm_and(size_in_range(size_a), size_in_range(size_b));
+    const vm in_range = vm_and(vm_and(near, v_le(margin, margin)), vm_and(vm_and(valid_a, valid_b), sizes));
+    const vm exists = vm_front(count - k);
+    filter.valid = vm_and(exists, in_range);
+    filter.invalid = vm_and_not(exists, in_range);
+
+    const struct pose pose = {v2_unrotate(rotation_a, bodies.difference), v2_unrotate(rotation_a, rotation_b), scale_a,
+                              scale_b};
+    const vec2 bounds = circle_difference(a.bound_center, b.bound_center, &pose);
+    const vec2 axis = circle_difference(a.inner_center, b.inner_center, &pose);
+    const vf size = v_add(size_a, size_b), limit = v_add(size, margin);
+    const vf core = v_add(v_mul(scale_a, a.inner_radius), v_mul(scale_b, b.inner_radius));
+    filter.apart =
+        vm_or(v_lt(limit, v_set(0)), v_lt(v_mul(limit, limit), v_mul(v2_dot(bounds, bounds), v_set(shrink))));
+    filter.deep = v_lt(v_mul(v2_dot(axis, axis), v_set(grow)), v_mul(core, v_abs(core))); /* a core below 0 is none */
+
+    set_vec2(item, POSITION, pose.position);
+    set_vec2(item, ROTATION, pose.rotation);
+    item[SCALE_A] = scale_a;
+    item[SCALE_B] = scale_b;
+    set_vec2(item, AXIS, axis);
+    item[CORE] = core;
+    item[SLACK] = find_slack(pose.position, a.info, b.info, size_a, size_b);
+    item[FIRST_RECORD_A] = v_of_bits(a.first_record);
+    item[FIRST_RECORD_B] = v_of_bits(b.first_record);
+    item[INFO_A] = v_of_bits(a.info);
+    item[INFO_B] = v_of_bits(b.info);
+    item[PAIR] = v_of_bits(vi_add(vi_lanes(), vi_set(number + k)));
+    set_vec2(item, DIRECTION, axis);
+    set_vec2(item, ROTATION_A, rotation_a);
+    item[SIZE] = size;
+    return filter;
+}
+
+#endif

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * queue.inl - pairs that wait for a stage: dense, structure of arrays.
+ */
+#ifndef NARC_BASE_QUEUE_INL
+#define NARC_BASE_QUEUE_INL
+
+#include <stdint.h>
+
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "simd/simd.h"
+
+/* Pairs that are loaded at once: enough to fill vectors after most pairs are settled, few enough for the first cache.
+ * A pair touches 16 bytes of indices, 32 of the bodies' poses, 64 of the shapes' headers and up to 76 in a queue: a
+ * block 24 KB. A stage that few pairs reach waits for FLUSH of them. */
+enum { BLOCK = 128, FLUSH = 32, STAGES = 5 };
+
+/* A stage leaves less than FLUSH pairs in its queue and passes on at most all that it took: so the first of STAGES
+ * queues holds up to BLOCK pairs, and each one after it up to FLUSH more. push() and pad() write up to two vectors
+ * behind the last pair. */
+enum { CAPACITY = BLOCK + (STAGES - 1) * FLUSH + 2 * V_WIDTH };
+
+/* The fields of a pair. Integers are kept as their bits; the two coordinates of a vector follow each other. */
+enum {
+    POSITION,     /* B's pose in A's frame */
+    ROTATION = 2, /* cosine and sine */
+    SCALE_A = 4,
+    SCALE_B,
+    AXIS,           /* from the centre of A's inscribed circle to that of B's */
+    CORE = 8,       /* the sum of both inner radii; below 0: room for rounding has used them up */
+    SLACK,          /* see find_slack() */
+    FIRST_RECORD_A, /* the first two words of the shapes' headers (shape.inl) */
+    FIRST_RECORD_B,
+    INFO_A,
+    INFO_B,
+    PAIR,            /* counted from the first of the call */
+    DIRECTION,       /* what the next stage probes along, at first the axis */
+    ROTATION_A = 17, /* A's rotation in the world */
+    SIZE = 19,       /* the sum of both bounding radii */
+    FIELDS,
+    OVERLAP_FIELDS = ROTATION_A, /* overlaps need no rotation */
+    CONTACT_FIELDS = SIZE
+};
+
+struct queue {
+    _Alignas(64) float item[FIELDS][CAPACITY];      /* aligned: whole vectors do not lie across cache lines */
+    int32_t record_a[CAPACITY], record_b[CAPACITY]; /* the arcs that a stage found: push() leaves them out */
+    int32_t hinted[CAPACITY];                       /* 1 where a hint named these arcs */
+    int count;
+};
+
+INLINE vf get(const struct queue *queue, int field, int k) { return v_load(queue->item[field] + k); }
+
+INLINE vi get_bits(const struct queue *queue, int field, int k) { return vi_bits(get(queue, field, k)); }
+
+INLINE vec2 get_vec2(const struct queue *queue, int field, int k) {
+    return (vec2){get(queue, field, k), get(queue, field + 1, k)};
+}
+
+INLINE struct ring get_ring_a(const struct queue *queue, int k) {
+    return make_ring(get_bits(queue, FIRST_RECORD_A, k), get_bits(queue, INFO_A, k));
+}
+
+INLINE struct ring get_ring_b(const struct queue *queue, int k) {
+    return make_ring(get_bits(queue, FIRST_RECORD_B, k), get_bits(queue, INFO_B, k));
+}
+
+INLINE void set_vec2(vf *item, int field, vec2 a) {
+    item[field] = a.x;
+    item[field + 1] = a.y;
+}
+
+INLINE void get_item(const struct queue *queue, int k, vf *item, int fields) {
+    UNROLL
+    for (int f = 0; f < fields; f++)
+        item[f] = get(queue, f, k);
+}
+
+/* Appends the lanes `keep` of `item`. */
+INLINE void push(struct queue *queue, vm keep, const vf *item, int fields) {
+    const vp packing = vm_packing(keep);
+    const int end = queue->count;
+    UNROLL
+    for (int f = 0; f < fields; f++)
+        v_store(queue->item[f] + end, v_pack(packing, item[f]));
+    queue->count = end + __builtin_popcount(vm_bits(keep));
+}
+
+/* Fills the rest of a queue's last vector with harmless lanes: one arc, the first of all. */
+static inline void pad(struct queue *queue) {
+    for (int f = 0; f < FIELDS; f++)
+        v_store(queue->item[f] + queue->count, v_set(0));
+    v_store(queue->item[INFO_A] + queue->count, v_of_bits(vi_set(1)));
+    v_store(queue->item[INFO_B] + queue->count, v_of_bits(vi_set(1)));
+}
+
+/* The numbers of the pairs k ..., counted from the first of the call. */
+INLINE void get_pairs(const struct queue *queue, int k, int32_t pair[V_WIDTH]) {
+    vi_store(pair, get_bits(queue, PAIR, k));
+}
+
+#endif

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * contact_point.inl - where two bodies touch.
+ *
+ * The contact point lies halfway between the two support lines across n. Along them, A touches its line in a point or,
+ * where n is the normal of an edge, in a stretch, and so does B: the point is the middle of what the two have in
+ * common.
+ */
+#ifndef NARC_SAT_CONTACT_POINT_INL
+#define NARC_SAT_CONTACT_POINT_INL
+
+#include <stdbool.h>
+
+#include "base/arcs.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "simd/simd.h"
+
+/* An edge counts as lying on the support line if its normal is this close to n (radians): above the rounding of a
+ * rotated normal, 6.35 * 2^-24, below any angle between two normals of a shape. */
+#define PARALLEL 0x1p-20f
+
+/* What one shape touches its support line with: its position across n, the stretch along it, and the record of the arc
+ * and its radius; of an edge, those of the arc at its counter-clockwise end. */
+struct feature {
+    vf across, along_min, along_max;
+    vi record;
+    vf radius;
+    vf magnitude; /* what the stretch may be wrong by is in proportion to it */
+};
+
+/* What a place along n is computed from: the radius, and an eighth of the centre's coordinates. */
+INLINE vf find_magnitude(const struct arcs *arc) {
+    return v_add(v_mul(v_set(0.125f), v_add(v_abs(arc->center.x), v_abs(arc->center.y))), arc->radius);
+}
+
+/* The point of an arc with the normal n. A is touched on its side n, B on its side -n. */
+INLINE vec2 find_point(const struct arcs *arc, vec2 n, bool is_b) {
+    const vf radius = v_mul(v_set(is_b ? -1.0f : 1.0f), arc->radius);
+    return v2_add(arc->center, v2_scale(n, radius));
+}
+
+/* The feature between the arcs after and before n, one and the same unless n is their junction's normal. */
+INLINE struct feature find_feature(const struct arcs *after, const struct arcs *before, vec2 n, vi record, bool is_b) {
+    const vec2 point = find_point(after, n, is_b);
+    const vf along = v2_cross(n, point), other = v2_cross(n, find_point(before, n, is_b));
+    const vf magnitude = v_add(find_magnitude(after), find_magnitude(before));
+    return (struct feature){v2_dot(n, point), v_min(along, other), v_max(along, other),
+                            record,           after->radius,       magnitude};
+}
+
+INLINE vm is_parallel(vec2 junction, vec2 n) {
+    return vm_and(v_le(v_abs(v2_cross(junction, n)), v_set(PARALLEL)), v_lt(v_set(0), v2_dot(junction, n)));
+}
+
+/* The feature of the shape with the arc in `record`: a point, or up to the end of a neighbouring arc where n is the
+ * normal of the junction with it. */
+INLINE struct feature find_feature_at(const narc_record *records, struct ring ring, vi record, const struct pose *pose,
+                                      vec2 n, bool is_b) {
+    const vi next = step_record(ring, record, vi_set(1)), last = step_record(ring, record, vi_set(-1));
+    const struct arcs arc = load_arcs(records, record, pose, is_b);
+    const struct arcs before_arc = load_arcs(records, last, pose, is_b),
+                      after_arc = load_arcs(records, next, pose, is_b);
+    const vm starts = is_parallel(arc.start, n), ends = is_parallel(arc.end, n);
+    const vf before = v2_cross(n, find_point(&before_arc, n, is_b));
+    const vf after = v2_cross(n, find_point(&after_arc, n, is_b));
+    struct feature f = find_feature(&arc, &arc, n, vi_select(ends, next, record), is_b);
+    f.along_min = v_select(starts, v_min(f.along_min, before), f.along_min);
+    f.along_max = v_select(starts, v_max(f.along_max, before), f.along_max);
+    f.along_min = v_select(ends, v_min(f.along_min, after), f.along_min);
+    f.along_max = v_select(ends, v_max(f.along_max, after), f.along_max);
+    f.radius = v_select(ends, after_arc.radius, f.radius);
+    const vf other = v_select(ends, find_magnitude(&after_arc), find_magnitude(&before_arc));
+    f.magnitude = v_select(vm_or(starts, ends), v_add(find_magnitude(&arc), other), f.magnitude);
+    return f;
+}
+
+/* The contact point's place across n and along it. */
+INLINE vec2 find_contact_place(const struct feature *on_a, const struct feature *on_b) {
+    const vf half = v_set(0.5f), across = v_mul(half, v_add(on_a->across, on_b->across));
+    const vf along =
+        v_mul(half, v_add(v_max(on_a->along_min, on_b->along_min), v_min(on_a->along_max, on_b->along_max)));
+    return (vec2){across, along};
+}
+
+#endif

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * manifold_edges.inl - the last stage of manifolds: the second point, where a straight edge of A faces one of B.
+ *
+ * Seen along the tangent t, the normal n turned a quarter turn counter-clockwise, A's upper outline is a concave height
+ * function and B's lower one a convex one. Their distance is convex; its least value is the separation, at the deepest
+ * point. It stays small along the common stretch of two edges that are nearly across n. So each body offers the edge
+ * next to its touching arc whose normal is closest to n, if that is within the flat angle; the stretch of t that both
+ * edges cover is joined with the deepest point, and its ends are the two points. On A t rises from an edge's start to
+ * its end, and on B it falls.
+ */
+#ifndef NARC_SAT_MANIFOLD_EDGES_INL
+#define NARC_SAT_MANIFOLD_EDGES_INL
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/arcs.inl"
+#include "base/call.inl"
+#include "base/queue.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "kernels.h"
+#include "sat/contact_point.inl"
+#include "sat/contact_rows.inl"
+#include "sat/manifold_rows.inl"
+#include "simd/simd.h"
+
+/* One end of an edge: its place along t and across it, and the radius of the arc next to it. */
+struct edge_end {
+    vf along, across, radius;
+};
+
+struct edge {
+    vm offered, parallel;      /* parallel: n is the edge's normal */
+    struct edge_end low, high; /* in the order of t */
+    vi after;                  /* the record of the arc at its counter-clockwise end */
+    vf arc_radius;             /* of the touching arc */
+};
+
+INLINE struct edge_end find_edge_end(const struct arcs *arc, vec2 junction, vec2 n, bool is_b) {
+    const vec2 point = find_point(arc, junction, is_b);
+    return (struct edge_end){v2_cross(n, point), v2_dot(n, point), arc->radius};
+}
+
+INLINE struct edge_end select_edge_end(vm m, const struct edge_end *a, const struct edge_end *b) {
+    return (struct edge_end){v_select(m, a->along, b->along), v_select(m, a->across, b->across),
+                             v_select(m, a->radius, b->radius)};
+}
+
+/* An arc in its shape's own frame, and placed. */
+struct own_arc {
+    vec2 center, start, end;
+    vf radius;
+    struct arcs placed;
+};
+
+INLINE struct own_arc load_own_arc(const narc_record *records, vi record, const struct pose *pose, bool is_b) {
+    vf field[8];
+    load_records(records, record, field);
+    return (struct own_arc){{field[0], field[1]},
+                            {field[4], field[5]},
+                            {field[6], field[7]},
+                            field[2],
+                            is_b ? place_b(field, pose) : place_a(field, pose)};
+}
+
+/* The same without normals. */
+INLINE struct own_arc load_own_circle(const narc_record *records, vi record, const struct pose *pose, bool is_b) {
+    int32_t index[V_WIDTH];
+    vf field[4];
+    vi_store(index, record);
+    v_rows(records, sizeof *records, index, field);
+    struct own_arc arc = {.center = {field[0], field[1]}, .radius = field[2]};
+    arc.placed.center = is_b ? place_center_b(arc.center, pose) : v2_scale(arc.center, pose->scale_a);
+    arc.placed.radius = v_mul(field[2], is_b ? pose->scale_b : pose->scale_a);
+    return arc;
+}
+
+/* An edge shorter than this part of the coordinates of both its arcs is rounding, or arcs that were given a little
+ * apart (NARC_TOLERANCE). */
+#define LEAST_EDGE 0x1p-16f
+
+INLINE vm is_edge(const struct own_arc *arc, const struct own_arc *other, vec2 junction) {
+    const vec2 difference = v2_sub(other->center, arc->center);
+    const vf coordinates =
+        v_add(v_add(v_abs(arc->center.x), v_abs(arc->center.y)), v_add(v_abs(other->center.x), v_abs(other->center.y)));
+    const vf size = v_add(coordinates, v_add(arc->radius, other->radius));
+    return v_lt(v_mul(v_set(LEAST_EDGE), size), v_abs(v2_cross(junction, difference)));
+}
+
+/* The edge at the end of an arc, in the lanes `at_end`, or at its start. */
+INLINE struct edge find_edge_of(const narc_record *records, struct ring ring, vi record, const struct own_arc *arc,
+                                const struct pose *pose, vec2 n, vm at_end, bool is_b) {
+    const vi next = step_record(ring, record, vi_select(at_end, vi_set(1), vi_set(-1)));
+    const struct own_arc other = load_own_circle(records, next, pose, is_b);
+    const vec2 junction = v2_select(at_end, arc->placed.end, arc->placed.start);
+    const struct edge_end here = find_edge_end(&arc->placed, junction, n, is_b),
+                          there = find_edge_end(&other.placed, junction, n, is_b);
+    const vm here_is_low = is_b ? vm_not(at_end) : at_end;
+    struct edge edge;
+    edge.low = select_edge_end(here_is_low, &here, &there);
+    edge.high = select_edge_end(here_is_low, &there, &here);
+    edge.offered =
+        vm_and(is_edge(arc, &other, v2_select(at_end, arc->end, arc->start)), v_lt(edge.low.along, edge.high.along));
+    edge.parallel = is_parallel(junction, n);
+    edge.after = vi_select(at_end, next, record);
+    edge.arc_radius = arc->placed.radius;
+    return edge;
+}
+
+/* Is the normal of a junction within the flat angle of n? */
+INLINE vm is_flat(vec2 junction, vec2 n, vf sine, vf flat_sine) {
+    return vm_and(v_le(sine, flat_sine), v_lt(v_set(0), v2_dot(junction, n)));
+}
+
+/* The edge that a shape offers next to the arc in `record`: of two the one closer to n, of equals the one at the arc's
+ * end. Where that is none, because the arc and its neighbour have a common tangent, the other one. */
+INLINE struct edge find_edge(const struct call *call, const struct queue *queue, int k, vi record, vec2 n, bool is_b) {
+    const narc_record *records = call->batch->shapes->records;
+    const struct ring ring = is_b ? get_ring_b(queue, k) : get_ring_a(queue, k);
+    const struct pose pose = get_pose(queue, k);
+    const struct own_arc arc = load_own_arc(records, record, &pose, is_b);
+    const vec2 start = arc.placed.start, end = arc.placed.end;
+    const vf flat_sine = v_set(call->batch->flat_sine);
+    const vf to_start = v_abs(v2_cross(start, n)), to_end = v_abs(v2_cross(end, n));
+    const vm start_flat = is_flat(start, n, to_start, flat_sine), end_flat = is_flat(end, n, to_end, flat_sine);
+    const vm at_end = vm_and_not(end_flat, vm_and(start_flat, v_lt(to_start, to_end)));
+    struct edge edge = find_edge_of(records, ring, record, &arc, &pose, n, at_end, is_b);
+    const vm again = vm_and_not(vm_and(start_flat, end_flat), edge.offered);
+    edge.offered = vm_and(edge.offered, vm_or(start_flat, end_flat));
+    if (vm_any(again)) {
+        const struct edge other = find_edge_of(records, ring, record, &arc, &pose, n, vm_not(at_end), is_b);
+        edge.offered = vm_or(edge.offered, vm_and(again, other.offered));
+        edge.parallel = vm_or(vm_and_not(edge.parallel, again), vm_and(again, other.parallel));
+        edge.low = select_edge_end(again, &other.low, &edge.low);
+        edge.high = select_edge_end(again, &other.high, &edge.high);
+        edge.after = vi_select(again, other.after, edge.after);
+    }
+    return edge;
+}
+
+/* The height of an edge above the place `along`. */
+INLINE vf find_height(const struct edge *edge, vf along) {
+    const vf rise = v_sub(edge->high.across, edge->low.across), run = v_sub(edge->high.along, edge->low.along);
+    return v_add(edge->low.across, v_mul(v_sub(along, edge->low.along), v_div(rise, run)));
+}
+
+/* A point of a manifold. */
+struct end_point {
+    vf along, across, separation, radius_a, radius_b;
+};
+
+/* The point where the edges' common stretch ends, at its low end or its high one. The body whose edge ends there has
+ * the arc next to it. */
+INLINE struct end_point find_end_point(const struct edge *a, const struct edge *b, bool high) {
+    const struct edge_end *end_a = high ? &a->high : &a->low, *end_b = high ? &b->high : &b->low;
+    const vf flat = v_set(INFINITY);
+    const vm a_ends = high ? v_le(end_a->along, end_b->along) : v_le(end_b->along, end_a->along);
+    const vm b_ends = high ? v_le(end_b->along, end_a->along) : v_le(end_a->along, end_b->along);
+    struct end_point p;
+    p.along = v_select(a_ends, end_a->along, end_b->along);
+    const vf height_a = find_height(a, p.along), height_b = find_height(b, p.along);
+    p.separation = v_sub(height_b, height_a);
+    p.across = v_mul(v_set(0.5f), v_add(height_a, height_b));
+    p.radius_a = v_select(a_ends, end_a->radius, flat);
+    p.radius_b = v_select(b_ends, end_b->radius, flat);
+    return p;
+}
+
+INLINE struct end_point select_end_point(vm m, const struct end_point *a, const struct end_point *b) {
+    return (struct end_point){v_select(m, a->along, b->along), v_select(m, a->across, b->across),
+                              v_select(m, a->separation, b->separation), v_select(m, a->radius_a, b->radius_a),
+                              v_select(m, a->radius_b, b->radius_b)};
+}
+
+INLINE vi find_edge_feature(const struct edge *edge, const struct queue *queue, int k, bool is_b) {
+    const vi first = get_bits(queue, is_b ? FIRST_RECORD_B : FIRST_RECORD_A, k);
+    return vi_add(find_arc_number(edge->after, first, get_bits(queue, is_b ? INFO_B : INFO_A, k)),
+                  vi_set(NARC_FEATURE_EDGE));
+}
+
+/* Finds the second points of the pairs `begin` ... of a queue. */
+static void find_second_points(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+    struct manifold_rows *rows = call->manifolds;
+    (void)next;
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        const vm live = vm_front(queue->count - k);
+        const vec2 n = get_vec2(queue, DEEPEST_NORMAL, k);
+        const vf deepest = get(queue, DEEPEST_SEPARATION, k), along = get(queue, DEEPEST_ALONG, k);
+        const struct edge a = find_edge(call, queue, k, get_bits(queue, DEEPEST_RECORD_A, k), n, false);
+        const struct edge b = find_edge(call, queue, k, get_bits(queue, DEEPEST_RECORD_B, k), n, true);
+        struct end_point low = find_end_point(&a, &b, false), high = find_end_point(&a, &b, true);
+        const vm common = vm_and(vm_and(a.offered, b.offered), v_lt(low.along, high.along)),
+                 faces = vm_and(live, common);
+        if (!vm_any(faces))
+            continue;
+        /* The end that is the deepest point. Where the edges touch, the places are the stretch's ends. */
+        const vm touch = vm_and(a.parallel, b.parallel);
+        const vm nearer_low = v_le(v_abs(v_sub(along, low.along)), v_abs(v_sub(high.along, along)));
+        const vm lower_low = v_le(low.separation, high.separation);
+        const vm at_low = vm_or(vm_and(touch, lower_low), vm_and_not(nearer_low, touch));
+        struct end_point deep = select_end_point(at_low, &low, &high), other = select_end_point(at_low, &high, &low);
+        const struct end_point exact = {along, get(queue, DEEPEST_ACROSS, k), deepest,
+                                        v_select(a.parallel, v_set(INFINITY), a.arc_radius),
+                                        v_select(b.parallel, v_set(INFINITY), b.arc_radius)};
+        deep = select_end_point(touch, &deep, &exact);
+        deep.separation = deepest;
+        other.separation = v_max(other.separation, deepest);
+        const vm two = vm_and(faces, is_below(other.separation, get_margins(call, queue, k)));
+        const vm keeps_low = vm_or(two, at_low); /* the first point that is listed is the low one */
+        low = select_end_point(at_low, &deep, &other);
+        high = select_end_point(at_low, &other, &deep);
+        const struct end_point first = select_end_point(keeps_low, &low, &high);
+
+        const vi id_a = find_edge_feature(&a, queue, k, false), id_b = find_edge_feature(&b, queue, k, true);
+        const vi both = vi_add(id_a, vi_shift_left(id_b, 8)), end = vi_set(NARC_FEATURE_END);
+        const vi id_low = vi_add(both, vi_shift_left(end, 8)), id_high = vi_add(both, end);
+        const vec2 to_world = get_vec2(queue, ROTATION_A, k), normal = v2_rotate(to_world, n);
+        const vec2 point = v2_rotate(to_world, v2_rotate(n, (vec2){first.across, first.along}));
+        const vec2 second = v2_rotate(to_world, v2_rotate(n, (vec2){high.across, high.along}));
+        const vf of_first[ROW] = {first.separation, normal.x,      normal.y,
+                                  point.x,          point.y,       v_of_bits(vi_select(keeps_low, id_low, id_high)),
+                                  first.radius_a,   first.radius_b};
+        const vf of_second[ROW] = {high.separation, second.x,      second.y, v_of_bits(id_high),
+                                   high.radius_a,   high.radius_b, v_set(0), v_set(0)};
+        int32_t row[V_WIDTH], points[V_WIDTH];
+        find_rows(queue, k, faces, row);
+        vi_store(points, vi_select(two, vi_set(TWO_POINTS), vi_set(ONE_POINT)));
+        v_put_rows(rows->first.row, sizeof rows->first.row[0], row, of_first);
+        v_put_rows((float *)rows->first.row + 4, sizeof rows->first.row[0], row, of_first + 4);
+        v_put_rows(rows->second, sizeof rows->second[0], row, of_second);
+        v_put_rows((float *)rows->second + 4, sizeof rows->second[0], row, of_second + 4);
+        for (int lane = 0; lane < V_WIDTH; lane++)
+            rows->first.keep[row[lane]] = (uint8_t)points[lane];
+    }
+}
+
+#endif

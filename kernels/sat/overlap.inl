@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * overlap.inl - the overlap kernel: one bit per pair, set where the separation is below 0.
+ *
+ * Circles settle some pairs, and two probes most others: one along the axis between the inscribed circles, and one
+ * along u of the arcs that the first one found. A probe ends with a proof (certificates.inl) that the bodies are apart
+ * or have a common point, or passes the pair on. The rest climb to a local maximum of the gap. What is left then goes
+ * to the deciding formula.
+ */
+#ifndef NARC_SAT_OVERLAP_INL
+#define NARC_SAT_OVERLAP_INL
+
+#include "base/arcs.inl"
+#include "base/call.inl"
+#include "base/pair_setup.inl"
+#include "base/queue.inl"
+#include "base/vec2.inl"
+#include "kernels.h"
+#include "sat/certificates.inl"
+#include "sat/direction_lookup.inl"
+#include "sat/hill_climb.inl"
+#include "sat/normal_fan.inl"
+#include "sat/pipeline.inl"
+#include "sat/shortcuts.inl"
+#include "simd/simd.h"
+
+INLINE vm triage_overlaps(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
+    (void)item;
+    call->bits[pair / 64] |= (uint64_t)vm_bits(vm_and(circles->valid, circles->deep)) << pair % 64;
+    return vm_and_not(circles->valid, vm_or(circles->apart, circles->deep));
+}
+
+/* The centres and radii of the arcs that were looked up: u, and the sum of the radii. */
+INLINE vec2 load_circles(const narc_record *records, const struct queue *queue, int k, vf *out_radii) {
+    const struct pose pose = get_pose(queue, k);
+    vf a[4], b[4];
+    v_rows(records, sizeof *records, queue->record_a + k, a);
+    v_rows(records, sizeof *records, queue->record_b + k, b);
+    *out_radii = v_add(v_mul(pose.scale_a, a[2]), v_mul(pose.scale_b, b[2]));
+    return circle_difference((vec2){a[0], a[1]}, (vec2){b[0], b[1]}, &pose);
+}
+
+/* Probes along DIRECTION. The next stage probes along u. */
+static void probe_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+    const narc_record *records = call->batch->shapes->records;
+    look_up_arcs(records, queue, begin, false);
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        const vm live = vm_front(queue->count - k);
+        const vec2 n = get_vec2(queue, DIRECTION, k);
+        vf radii;
+        const vec2 u = load_circles(records, queue, k, &radii);
+        const vm apart = is_above(u, radii, n, lookup_slack(queue, k));
+        /* The difference of the support points, times the direction's length. */
+        const vf length = v2_length(n);
+        const vec2 p = v2_sub(v2_scale(n, radii), v2_scale(u, length));
+        const vm hit = has_common_point(queue, k, p, length);
+        mark_overlaps(call, queue, k, vm_and(live, hit));
+        const vm left = vm_and_not(live, vm_or(apart, hit));
+        if (vm_any(left)) {
+            vf item[FIELDS];
+            get_item(queue, k, item, OVERLAP_FIELDS);
+            set_vec2(item, DIRECTION, u);
+            push(next, left, item, OVERLAP_FIELDS);
+        }
+    }
+}
+
+/* Climbs from the arcs that hold DIRECTION. */
+static void climb_to_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+    const narc_record *records = call->batch->shapes->records;
+    look_up_arcs(records, queue, begin, false);
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        const vm live = vm_front(queue->count - k);
+        const struct certified_maximum top = climb_and_certify(records, queue, k, live, v_set(0));
+        mark_overlaps(call, queue, k, vm_and(top.certain, v_lt(top.separation, v_set(0))));
+        const vm left = vm_and_not(live, vm_or(top.apart, top.certain));
+        if (vm_any(left)) {
+            vf item[FIELDS];
+            get_item(queue, k, item, OVERLAP_FIELDS);
+            push(next, left, item, OVERLAP_FIELDS);
+        }
+    }
+}
+
+static void decide_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+    (void)next;
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        const struct gap gap = find_gap(call->batch->shapes, queue, k, vm_front(queue->count - k), false);
+        mark_overlaps(call, queue, k, v_lt(gap.separation, v_set(0)));
+    }
+}
+
+static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
+    static stage *const stages[] = {probe_overlaps, probe_overlaps, climb_to_overlaps, decide_overlaps};
+    struct queue queues[4];
+    if (!NARC_SHORTCUTS) {
+        run_overlap_method(decide_overlaps, batch, first, count, out_bits);
+        return;
+    }
+    const struct call call = begin_overlaps(batch, first, count, out_bits);
+    run_pairs(&call, triage_overlaps, OVERLAP_FIELDS, stages, 4, queues);
+}
+
+#endif

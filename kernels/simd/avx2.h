@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * avx2.h - the vector wrapper with eight lanes: AVX2.
+ */
+#ifndef NARC_SIMD_AVX2_H
+#define NARC_SIMD_AVX2_H
+
+#include "simd/simd.h"
+
+#if !defined(__AVX2__) || !defined(__BMI2__)
+#error "compile with -mavx2 -mbmi2"
+#endif
+#include <immintrin.h>
+
+#define V_WIDTH  8
+#define V_SINCOS Sleef_cinz_sincosf8_u10avx
+typedef __m256 vf;
+typedef __m256i vi;
+typedef __m256 vm;
+typedef __m256i vp;
+
+INLINE vf v_set(float a) { return _mm256_set1_ps(a); }
+INLINE vf v_load(const float *p) { return _mm256_loadu_ps(p); }
+INLINE void v_store(float *p, vf a) { _mm256_storeu_ps(p, a); }
+INLINE __m256 v_two_rows(const char *base, size_t stride, const int32_t *index) {
+    const __m128 low = _mm_loadu_ps((const float *)(const void *)(base + (size_t)(uint32_t)index[0] * stride));
+    const __m128 high = _mm_loadu_ps((const float *)(const void *)(base + (size_t)(uint32_t)index[4] * stride));
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1);
+}
+INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out[4]) {
+    const __m256 a = v_two_rows(base, stride, index), b = v_two_rows(base, stride, index + 1);
+    const __m256 c = v_two_rows(base, stride, index + 2), d = v_two_rows(base, stride, index + 3);
+    const __m256d ab_low = _mm256_castps_pd(_mm256_unpacklo_ps(a, b)),
+                  ab_high = _mm256_castps_pd(_mm256_unpackhi_ps(a, b));
+    const __m256d cd_low = _mm256_castps_pd(_mm256_unpacklo_ps(c, d)),
+                  cd_high = _mm256_castps_pd(_mm256_unpackhi_ps(c, d));
+    out[0] = _mm256_castpd_ps(_mm256_unpacklo_pd(ab_low, cd_low));
+    out[1] = _mm256_castpd_ps(_mm256_unpackhi_pd(ab_low, cd_low));
+    out[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(ab_high, cd_high));
+    out[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(ab_high, cd_high));
+}
+INLINE void v_put_two_rows(char *base, size_t stride, const int32_t *index, __m256 rows) {
+    _mm_storeu_ps((float *)(void *)(base + (size_t)(uint32_t)index[0] * stride), _mm256_castps256_ps128(rows));
+    _mm_storeu_ps((float *)(void *)(base + (size_t)(uint32_t)index[4] * stride), _mm256_extractf128_ps(rows, 1));
+}
+INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf in[4]) {
+    const __m256 low01 = _mm256_unpacklo_ps(in[0], in[1]), high01 = _mm256_unpackhi_ps(in[0], in[1]);
+    const __m256 low23 = _mm256_unpacklo_ps(in[2], in[3]), high23 = _mm256_unpackhi_ps(in[2], in[3]);
+    v_put_two_rows(base, stride, index, _mm256_shuffle_ps(low01, low23, 0x44));
+    v_put_two_rows(base, stride, index + 1, _mm256_shuffle_ps(low01, low23, 0xee));
+    v_put_two_rows(base, stride, index + 2, _mm256_shuffle_ps(high01, high23, 0x44));
+    v_put_two_rows(base, stride, index + 3, _mm256_shuffle_ps(high01, high23, 0xee));
+}
+INLINE vf v_add(vf a, vf b) { return _mm256_add_ps(a, b); }
+INLINE vf v_sub(vf a, vf b) { return _mm256_sub_ps(a, b); }
+INLINE vf v_mul(vf a, vf b) { return _mm256_mul_ps(a, b); }
+INLINE vf v_div(vf a, vf b) { return _mm256_div_ps(a, b); }
+INLINE vf v_sqrt(vf a) { return _mm256_sqrt_ps(a); }
+INLINE vf v_abs(vf a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a); }
+INLINE vf v_neg(vf a) { return _mm256_xor_ps(_mm256_set1_ps(-0.0f), a); }
+INLINE vf v_min(vf a, vf b) { return _mm256_min_ps(a, b); }
+INLINE vf v_max(vf a, vf b) { return _mm256_max_ps(a, b); }
+INLINE vm v_lt(vf a, vf b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
+INLINE vm v_le(vf a, vf b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
+INLINE vf v_select(vm m, vf a, vf b) { return _mm256_blendv_ps(b, a, m); }
+INLINE vf v_pack(vp p, vf a) { return _mm256_permutevar8x32_ps(a, p); }
+INLINE vi vi_set(int32_t a) { return _mm256_set1_epi32(a); }
+INLINE vi vi_load(const int32_t *p) { return _mm256_loadu_si256((const __m256i *)p); }
+INLINE void vi_store(int32_t *p, vi a) { _mm256_storeu_si256((__m256i *)p, a); }
+INLINE vi vi_add(vi a, vi b) { return _mm256_add_epi32(a, b); }
+INLINE vi vi_sub(vi a, vi b) { return _mm256_sub_epi32(a, b); }
+INLINE vm vi_lt(vi a, vi b) { return _mm256_castsi256_ps(_mm256_cmpgt_epi32(b, a)); }
+INLINE vi vi_select(vm m, vi a, vi b) { return _mm256_blendv_epi8(b, a, _mm256_castps_si256(m)); }
+INLINE vi vi_and(vi a, vi b) { return _mm256_and_si256(a, b); }
+INLINE vi vi_shift_left(vi a, int n) { return _mm256_slli_epi32(a, n); }
+INLINE vi vi_shift_right(vi a, int n) { return _mm256_srli_epi32(a, n); }
+INLINE vi vi_bits(vf a) { return _mm256_castps_si256(a); }
+INLINE vf v_of_bits(vi a) { return _mm256_castsi256_ps(a); }
+INLINE vf v_of_int(vi a) { return _mm256_cvtepi32_ps(a); }
+INLINE vi vi_truncate(vf a) { return _mm256_cvttps_epi32(a); }
+INLINE vi vi_count16(vi counts, vi below, vi values) {
+    return _mm256_sub_epi16(counts, _mm256_cmpgt_epi16(below, values));
+}
+INLINE vi vi_lanes(void) { return _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7); }
+INLINE vm vm_and(vm a, vm b) { return _mm256_and_ps(a, b); }
+INLINE vm vm_or(vm a, vm b) { return _mm256_or_ps(a, b); }
+INLINE vm vm_xor(vm a, vm b) { return _mm256_xor_ps(a, b); }
+INLINE vm vm_not(vm a) { return _mm256_xor_ps(a, _mm256_castsi256_ps(_mm256_set1_epi32(-1))); }
+INLINE vm vm_and_not(vm a, vm b) { return _mm256_andnot_ps(b, a); }
+INLINE vm vm_front(int n) { return vi_lt(vi_lanes(), vi_set(n)); }
+INLINE vp vm_packing(vm a) {
+    /* A byte of ones for each lane that is kept, and then those bytes of 0 ... 7. */
+    const uint64_t kept = _pdep_u64((uint32_t)_mm256_movemask_ps(a), 0x0101010101010101u) * 0xff;
+    return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)_pext_u64(0x0706050403020100u, kept)));
+}
+INLINE uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_ps(a); }
+INLINE int vm_any(vm a) { return _mm256_movemask_ps(a) != 0; }
+
+#endif

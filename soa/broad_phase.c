@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * broad_phase.c - allocates the memory of a broad phase. What a step needs is kept, so that the next one allocates
+ * nothing unless it is larger.
+ */
+#include "broad_phase.h"
+
+#include "memory.h"
+
+narc_status narc_create_broad_phase(const narc_allocator *allocator, narc_broad_phase **out_broad) {
+    const narc_allocator chosen = narc_choose_allocator(allocator);
+    if (!out_broad || !chosen.allocate || !chosen.release)
+        return NARC_ERROR_ARGUMENT;
+    narc_broad_phase *broad = chosen.allocate(sizeof *broad, chosen.context);
+    if (!broad)
+        return NARC_ERROR_MEMORY;
+    *broad = (narc_broad_phase){.allocator = chosen};
+    atomic_init(&broad->block_count, 0);
+    *out_broad = broad;
+    return NARC_OK;
+}
+
+void narc_destroy_broad_phase(narc_broad_phase *broad) {
+    if (!broad)
+        return;
+    const narc_allocator allocator = broad->allocator;
+    void *const memory[] = {broad->box_memory, broad->pair_memory, broad->match_memory, broad};
+    for (size_t k = 0; k < sizeof memory / sizeof memory[0]; k++)
+        if (memory[k])
+            allocator.release(memory[k], allocator.context);
+}
+
+/* Room for a quarter more than is needed, so that a scene that grows slowly does not allocate at every step. */
+static size_t with_room(size_t needed, size_t least) { return needed < least ? least : needed + needed / 4; }
+
+/* Replaces a piece of memory; the old one stays if that fails. */
+static bool replace(const narc_broad_phase *broad, void **memory, size_t items, size_t item_size) {
+    if (items > SIZE_MAX / item_size)
+        return false;
+    void *const fresh = broad->allocator.allocate(items * item_size, broad->allocator.context);
+    if (!fresh)
+        return false;
+    if (*memory)
+        broad->allocator.release(*memory, broad->allocator.context);
+    *memory = fresh;
+    return true;
+}
+
+/* Takes `count` items of `size` bytes from the front of the memory at `*at`, in whole units of 16 bytes. */
+static void *take(char **at, size_t count, size_t size) {
+    void *const taken = *at;
+    *at += (count * size + 15) / 16 * 16;
+    return taken;
+}
+
+/* What one box needs in all, generously: the arrays below, and what rounding them up to 16 bytes takes. */
+enum { BYTES_PER_BOX = 128 };
+
+narc_status narc_reserve_boxes(narc_broad_phase *broad, size_t count) {
+    if (broad->box_memory && count <= broad->box_capacity) /* padding needs memory even without boxes */
+        return NARC_OK;
+    const size_t n = with_room(count, 1024), padded = n + NARC_BOX_PADDING;
+    if (!replace(broad, &broad->box_memory, n + 64, BYTES_PER_BOX))
+        return NARC_ERROR_MEMORY;
+    char *at = broad->box_memory;
+    broad->entries = take(&at, n, sizeof *broad->entries);
+    broad->spare = take(&at, n, sizeof *broad->spare);
+    broad->strips = take(&at, n, sizeof *broad->strips);
+    broad->boxes.min_x = take(&at, padded, sizeof(float));
+    broad->boxes.max_x = take(&at, padded, sizeof(float));
+    broad->boxes.min_y = take(&at, padded, sizeof(float));
+    broad->boxes.max_y = take(&at, padded, sizeof(float));
+    broad->boxes.body = take(&at, padded, sizeof(uint32_t));
+    broad->ends = take(&at, n + 1, sizeof *broad->ends);
+    broad->box_capacity = n;
+    return NARC_OK;
+}
+
+narc_status narc_reserve_blocks(narc_broad_phase *broad, size_t count) {
+    if (count <= broad->block_capacity)
+        return NARC_OK;
+    const size_t n = with_room(count, 4);
+    if (!replace(broad, &broad->pair_memory, n, (2 * NARC_PAIR_BLOCK + 1) * sizeof(uint32_t)))
+        return NARC_ERROR_MEMORY;
+    broad->pair_a = broad->pair_memory;
+    broad->pair_b = broad->pair_a + n * NARC_PAIR_BLOCK;
+    broad->block_counts = broad->pair_b + n * NARC_PAIR_BLOCK;
+    broad->block_capacity = n;
+    return NARC_OK;
+}
+
+narc_status narc_reserve_matches(narc_broad_phase *broad, size_t bytes) {
+    if (bytes <= broad->match_capacity)
+        return NARC_OK;
+    const size_t n = with_room(bytes, 4096);
+    if (!replace(broad, &broad->match_memory, n, 1))
+        return NARC_ERROR_MEMORY;
+    broad->match_capacity = n;
+    return NARC_OK;
+}

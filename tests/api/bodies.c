@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * bodies.c - narc_validate_bodies(): each kind of bad number, and which body the message names; drifted rotations.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "narc.h"
+
+enum { COUNT = 5, BAD = 3 };
+
+struct body {
+    double x, y;
+    float cosine, sine, scale;
+    uint32_t shape;
+};
+
+struct fixture {
+    narc_shapes *shapes;
+    struct body body[COUNT];
+    narc_bodies bodies;
+};
+
+static void set_up(struct fixture *f) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    f->shapes = NULL;
+    assert_int_equal(narc_create_shapes(NULL, &f->shapes), NARC_OK);
+    assert_int_equal(narc_build_circle(2, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(narc_add_shape(f->shapes, arcs, count, NULL, NULL), NARC_OK);
+    for (int k = 0; k < COUNT; k++)
+        f->body[k] = (struct body){k, -k, 0.6f, 0.8f, 1, 0};
+    f->bodies = (narc_bodies){.count = COUNT,
+                              .position_precision = NARC_FLOAT64,
+                              .x = NARC_COLUMN(f->body, x),
+                              .y = NARC_COLUMN(f->body, y),
+                              .cosine = NARC_COLUMN(f->body, cosine),
+                              .sine = NARC_COLUMN(f->body, sine),
+                              .scale = NARC_COLUMN(f->body, scale),
+                              .shape = NARC_COLUMN(f->body, shape)};
+}
+
+static void expect(struct fixture *f, narc_status status, const char *words) {
+    narc_error error = {0};
+    assert_int_equal(narc_validate_bodies(f->shapes, &f->bodies, &error), status);
+    assert_int_equal(error.status, status);
+    assert_int_equal(error.index, BAD);
+    assert_non_null(strstr(error.message, "body 3: "));
+    assert_non_null(strstr(error.message, words));
+    assert_int_equal(narc_validate_bodies(f->shapes, &f->bodies, NULL), status);
+}
+
+static void test_good_bodies(void **state) {
+    (void)state;
+    struct fixture f;
+    set_up(&f);
+    narc_error error = {.status = NARC_ERROR_MEMORY};
+    assert_int_equal(narc_validate_bodies(f.shapes, &f.bodies, &error), NARC_OK);
+    f.bodies.scale.base = NULL;
+    assert_int_equal(narc_validate_bodies(f.shapes, &f.bodies, &error), NARC_OK);
+    f.bodies = (narc_bodies){.count = 0};
+    assert_int_equal(narc_validate_bodies(f.shapes, &f.bodies, &error), NARC_OK);
+    assert_int_equal(error.status, NARC_ERROR_MEMORY); /* untouched */
+    narc_destroy_shapes(f.shapes);
+}
+
+static void test_bad_numbers(void **state) {
+    (void)state;
+    struct fixture f;
+    set_up(&f);
+    struct body good = f.body[BAD], *bad = &f.body[BAD];
+    bad->shape = 1;
+    expect(&f, NARC_ERROR_INDEX, "shape is 1");
+    *bad = good;
+    bad->x = NAN;
+    expect(&f, NARC_ERROR_NOT_FINITE, "x is");
+    *bad = good;
+    bad->y = INFINITY;
+    expect(&f, NARC_ERROR_NOT_FINITE, "y is inf");
+    *bad = good;
+    bad->cosine = NAN;
+    expect(&f, NARC_ERROR_NOT_FINITE, "cosine");
+    *bad = good;
+    bad->sine = -INFINITY;
+    expect(&f, NARC_ERROR_NOT_FINITE, "sine");
+    *bad = good;
+    bad->sine = 0.801f;
+    expect(&f, NARC_ERROR_ARGUMENT, "length 1.0008");
+    *bad = good;
+    bad->scale = 0;
+    expect(&f, NARC_ERROR_SIZE, "scale is 0");
+    bad->scale = -1;
+    expect(&f, NARC_ERROR_SIZE, "scale is -1");
+    bad->scale = NAN;
+    expect(&f, NARC_ERROR_SIZE, "scale is");
+    bad->scale = 1e9f;
+    expect(&f, NARC_ERROR_SIZE, "radius is then 2");
+    narc_destroy_shapes(f.shapes);
+}
+
+static void test_bad_arguments(void **state) {
+    (void)state;
+    struct fixture f;
+    set_up(&f);
+    assert_int_equal(narc_validate_bodies(NULL, &f.bodies, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_validate_bodies(f.shapes, NULL, NULL), NARC_ERROR_ARGUMENT);
+    narc_column *columns[] = {&f.bodies.x, &f.bodies.y, &f.bodies.cosine, &f.bodies.sine, &f.bodies.shape};
+    for (size_t k = 0; k < sizeof columns / sizeof columns[0]; k++) {
+        const void *base = columns[k]->base;
+        columns[k]->base = NULL;
+        assert_int_equal(narc_validate_bodies(f.shapes, &f.bodies, NULL), NARC_ERROR_ARGUMENT);
+        columns[k]->base = base;
+    }
+    narc_destroy_shapes(f.shapes);
+}
+
+/* The separation of two boxes, B at the given place and rotation, A at the origin; +infinity if they have none. */
+static float separation_of_boxes(float x, float y, float cosine, float sine) {
+    narc_shapes *shapes = NULL;
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    assert_int_equal(narc_build_box(2, 1, 0.25, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+    const struct body body[2] = {{0, 0, 1, 0, 1, 0}, {(double)x, (double)y, cosine, sine, 1, 0}};
+    const uint32_t a = 1, b = 0; /* both orders of a rotated body and one that is not */
+    const narc_bodies bodies = {.count = 2,
+                                .position_precision = NARC_FLOAT64,
+                                .x = NARC_COLUMN(body, x),
+                                .y = NARC_COLUMN(body, y),
+                                .cosine = NARC_COLUMN(body, cosine),
+                                .sine = NARC_COLUMN(body, sine),
+                                .shape = NARC_COLUMN(body, shape)};
+    const narc_pairs forward = {.count = 1, .a = {&a, 0}, .b = {&b, 0}},
+                     backward = {.count = 1, .a = {&b, 0}, .b = {&a, 0}};
+    float separation[2];
+    for (int k = 0; k < 2; k++) {
+        const narc_contacts contacts = {.capacity = 1, .separation = &separation[k]};
+        assert_int_equal(
+            narc_find_contacts(shapes, &bodies, k ? &backward : &forward, INFINITY, 1, &contacts, &count, NULL),
+            NARC_OK);
+    }
+    narc_destroy_shapes(shapes);
+    assert_true(separation[0] == separation[1] || fabsf(separation[0] - separation[1]) < 2e-6f);
+    return separation[0];
+}
+
+/* A rotation that has drifted from the unit circle is taken as the rotation it was; one that is far off has no
+ * answer. */
+static void test_drifted_rotations(void **state) {
+    (void)state;
+    const float exact = separation_of_boxes(1.5f, 0.75f, 0.6f, 0.8f);
+    for (float drift = -2.4e-4f; drift < 2.4e-4f; drift += 0.1e-4f) {
+        const float drifted = separation_of_boxes(1.5f, 0.75f, 0.6f * (1 + drift), 0.8f * (1 + drift));
+        assert_true(fabsf(drifted - exact) < 2e-6f);
+    }
+    assert_true(isinf(separation_of_boxes(1.5f, 0.75f, 0.6f * 1.001f, 0.8f * 1.001f)));
+    assert_true(isinf(separation_of_boxes(0, 0, 0, 0)));
+    assert_true(isinf(separation_of_boxes(0, 0, 0.6f * 0.999f, 0.8f * 0.999f)));
+}
+
+/* The kernels take a drifted rotation as the rotation it was, and so must the box that a broad phase uses. */
+static void test_box_of_drifted_rotation(void **state) {
+    (void)state;
+    struct fixture f;
+    set_up(&f);
+    narc_aabb box;
+    for (float length = 0.9998f; length < 1.0003f; length += 0.0001f) {
+        assert_true(narc_get_aabb(f.shapes, 0, 0.6f * length, 0.8f * length, 0.5f, &box));
+        assert_true(box.min_x <= -1 && box.min_y <= -1 && box.max_x >= 1 && box.max_y >= 1);
+        assert_true(box.min_x > -1.0001 && box.max_y < 1.0001);
+    }
+    assert_false(narc_get_aabb(f.shapes, 0, 0, 0, 1, &box));
+    assert_false(narc_get_aabb(f.shapes, 0, NAN, 0, 1, &box));
+    assert_false(narc_get_aabb(f.shapes, 1, 1, 0, 1, &box));
+    narc_destroy_shapes(f.shapes);
+}
+
+/* ------------------------------------------------------------------------------------------------ columns */
+
+static const struct body two_bodies[] = {{1, 2, 1, 0, 1, 0}, {3, 4, 1, 0, 1, 0}};
+static const float numbers[] = {5, 6, 7};
+static const narc_column constant_column = NARC_COLUMN_INIT(two_bodies, y);
+static const narc_bodies constant_bodies = {.count = 2, .cosine = NARC_ARRAY_INIT(numbers)};
+
+static void expect_column(narc_column column, const void *base, size_t stride) {
+    assert_ptr_equal(column.base, base);
+    assert_int_equal(column.stride, stride);
+}
+
+/* Columns are values, wherever a value may stand; constants are the initialisers of static objects. */
+static void test_columns(void **state) {
+    (void)state;
+    narc_bodies bodies = {.count = 2, .x = NARC_COLUMN(two_bodies, x), .sine = NARC_ARRAY(numbers)};
+    expect_column(bodies.x, &two_bodies[0].x, sizeof two_bodies[0]);
+    expect_column(bodies.sine, numbers, sizeof(float));
+    bodies.x = NARC_COLUMN(two_bodies, y);
+    bodies.sine = bodies.count > 2 ? bodies.x : NARC_ARRAY(numbers + 1);
+    expect_column(bodies.x, &two_bodies[0].y, sizeof two_bodies[0]);
+    expect_column(bodies.sine, numbers + 1, sizeof(float));
+    expect_column(NARC_COLUMN(two_bodies + 1, shape), &two_bodies[1].shape, sizeof two_bodies[0]);
+    expect_column(constant_column, &two_bodies[0].y, sizeof two_bodies[0]);
+    expect_column(constant_bodies.cosine, numbers, sizeof(float));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_good_bodies),
+        cmocka_unit_test(test_bad_numbers),
+        cmocka_unit_test(test_bad_arguments),
+        cmocka_unit_test(test_drifted_rotations),
+        cmocka_unit_test(test_box_of_drifted_rotation),
+        cmocka_unit_test(test_columns),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * environment.c - choosing an instruction set by name and by NARC_ISA, and what the library tells of itself.
+ *
+ * NARC_ISA is read at the first call of a process, so each case runs in a child of its own; the parent makes no batch
+ * call.
+ */
+#define _POSIX_C_SOURCE 200809L
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "narc.h"
+#include "support.h"
+
+/* In a child: ends it, and the parent's test fails, if `condition` is false. */
+#define REQUIRE(condition)                                                                                             \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #condition);                                            \
+            _exit(1);                                                                                                  \
+        }                                                                                                              \
+    } while (0)
+
+static void run_child(const char *narc_isa, void (*body)(void)) {
+    fflush(NULL);
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        if (narc_isa)
+            setenv("NARC_ISA", narc_isa, 1);
+        else
+            unsetenv("NARC_ISA");
+        body();
+        _exit(0);
+    }
+    int status;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 0);
+}
+
+/* One circle on itself: the smallest batch with an answer. */
+struct tiny_batch {
+    narc_shapes *shapes;
+    narc_bodies bodies;
+    narc_pairs pairs;
+};
+
+static struct tiny_batch make_batch(void) {
+    static const float zero = 0, one = 1;
+    static const uint32_t first = 0;
+    const narc_column zeros = {&zero, 0}, ones = {&one, 0}, firsts = {&first, 0};
+    struct tiny_batch batch = {
+        .bodies = {.count = 1, .x = zeros, .y = zeros, .cosine = ones, .sine = zeros, .shape = firsts},
+        .pairs = {.count = 1, .a = firsts, .b = firsts}};
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    REQUIRE(narc_create_shapes(NULL, &batch.shapes) == NARC_OK);
+    REQUIRE(narc_build_circle(1, arcs, &count, NULL) == NARC_OK);
+    REQUIRE(narc_add_shape(batch.shapes, arcs, count, NULL, NULL) == NARC_OK);
+    return batch;
+}
+
+static void require_error(narc_status expected, const char *name) {
+    struct tiny_batch batch = make_batch();
+    uint64_t bits = 42;
+    float separation = 42, angle = 1, cosine = 42, sine = 42;
+    size_t count = 42;
+    narc_contacts contacts = {.capacity = 1, .separation = &separation};
+    narc_error error = {0};
+    REQUIRE(narc_find_overlaps(batch.shapes, &batch.bodies, &batch.pairs, 1, &bits, &error) == expected);
+    REQUIRE(error.status == expected && strstr(error.message, name));
+    REQUIRE(narc_find_contacts(batch.shapes, &batch.bodies, &batch.pairs, 0, 1, &contacts, &count, NULL) == expected);
+    REQUIRE(narc_compute_poses(&angle, 1, &cosine, &sine, NULL) == expected);
+    REQUIRE(bits == 42 && separation == 42 && count == 42 && cosine == 42 && sine == 42);
+    REQUIRE(narc_get_isa() == NULL);
+    /* The program's own word still counts. */
+    REQUIRE(narc_set_isa("scalar", NULL) == NARC_OK);
+    REQUIRE(strcmp(narc_get_isa(), "scalar") == 0);
+    REQUIRE(narc_find_overlaps(batch.shapes, &batch.bodies, &batch.pairs, 1, &bits, NULL) == NARC_OK && bits == 1);
+    narc_destroy_shapes(batch.shapes);
+}
+
+static void unknown_isa(void) { require_error(NARC_ERROR_ISA_UNKNOWN, "sse9"); }
+
+static void test_unknown(void **state) {
+    (void)state;
+    run_child("sse9", unknown_isa);
+}
+
+static const char *unsupported_name(void) {
+    for (size_t k = 0; narc_isa_name(k); k++)
+        if (!narc_isa_supported(narc_isa_name(k)))
+            return narc_isa_name(k);
+    return NULL;
+}
+
+static void unsupported_isa(void) { require_error(NARC_ERROR_ISA_UNSUPPORTED, unsupported_name()); }
+
+/* No processor has both NEON and AVX. */
+static void test_unsupported(void **state) {
+    (void)state;
+    assert_non_null(unsupported_name());
+    run_child(unsupported_name(), unsupported_isa);
+}
+
+static void supported_isa(void) {
+    struct tiny_batch batch = make_batch();
+    uint64_t bits = 42;
+    REQUIRE(narc_find_overlaps(batch.shapes, &batch.bodies, &batch.pairs, 1, &bits, NULL) == NARC_OK && bits == 1);
+    REQUIRE(strcmp(narc_get_isa(), getenv("NARC_ISA")) == 0);
+    narc_destroy_shapes(batch.shapes);
+}
+
+static void test_supported(void **state) {
+    (void)state;
+    for (size_t k = 0; narc_isa_name(k); k++)
+        if (narc_isa_supported(narc_isa_name(k)))
+            run_child(narc_isa_name(k), supported_isa);
+}
+
+/* Without a wish: the first of the list that is supported. */
+static void best_isa(void) {
+    size_t best = 0;
+    while (!narc_isa_supported(narc_isa_name(best)))
+        best++;
+    REQUIRE(strcmp(narc_get_isa(), narc_isa_name(best)) == 0);
+    REQUIRE(narc_set_isa("scalar", NULL) == NARC_OK);
+    REQUIRE(narc_set_isa(NULL, NULL) == NARC_OK);
+    REQUIRE(strcmp(narc_get_isa(), narc_isa_name(best)) == 0);
+}
+
+static void test_best(void **state) {
+    (void)state;
+    run_child(NULL, best_isa);
+}
+
+/* A choice that fails leaves the one before. */
+static void set_isa(void) {
+    narc_error error = {0};
+    REQUIRE(narc_set_isa("scalar", NULL) == NARC_OK);
+    REQUIRE(narc_set_isa("SCALAR", &error) == NARC_ERROR_ISA_UNKNOWN);
+    REQUIRE(error.status == NARC_ERROR_ISA_UNKNOWN && strstr(error.message, "SCALAR"));
+    REQUIRE(narc_set_isa("", NULL) == NARC_ERROR_ISA_UNKNOWN);
+    REQUIRE(narc_set_isa("avx", NULL) == NARC_ERROR_ISA_UNKNOWN);
+    REQUIRE(narc_set_isa(unsupported_name(), &error) == NARC_ERROR_ISA_UNSUPPORTED);
+    REQUIRE(error.status == NARC_ERROR_ISA_UNSUPPORTED && strstr(error.message, unsupported_name()));
+    REQUIRE(strcmp(narc_get_isa(), "scalar") == 0);
+    for (size_t k = 0; narc_isa_name(k); k++) {
+        narc_status status = narc_set_isa(narc_isa_name(k), NULL);
+        REQUIRE(status == (narc_isa_supported(narc_isa_name(k)) ? NARC_OK : NARC_ERROR_ISA_UNSUPPORTED));
+    }
+}
+
+static void test_set_isa(void **state) {
+    (void)state;
+    run_child(NULL, set_isa);
+}
+
+static bool is_isa(const char *name) {
+    for (size_t k = 0; narc_isa_name(k); k++)
+        if (strcmp(narc_isa_name(k), name) == 0)
+            return true;
+    return false;
+}
+
+static void test_names(void **state) {
+    (void)state;
+    char version[32];
+    snprintf(version, sizeof(version), "%d.%d.%d", NARC_VERSION_MAJOR, NARC_VERSION_MINOR, NARC_VERSION_PATCH);
+    assert_string_equal(narc_version(), version);
+    static const char *const names[] = {
+#define NARC_ISA(name, needs, processors, flags) #name,
+#include "isa.def"
+    };
+    const size_t count = sizeof names / sizeof *names;
+    narc_error error;
+    assert_int_equal(narc_set_isa("sse9", &error), NARC_ERROR_ISA_UNKNOWN);
+    for (size_t k = 0; k < count; k++) {
+        assert_string_equal(narc_isa_name(k), names[k]);
+        assert_non_null(strstr(error.message, names[k]));
+    }
+    assert_string_equal(names[count - 1], "scalar"); /* which is there whatever else is not */
+    assert_null(narc_isa_name(count));
+    assert_null(narc_isa_name(SIZE_MAX));
+    assert_true(narc_isa_supported("scalar"));
+    assert_false(narc_isa_supported("sse9"));
+    assert_false(narc_isa_supported(NULL));
+    bool overlap = false, contact = false, pose = false;
+    for (size_t k = 0; narc_kernel_name(k); k++) {
+        overlap = overlap || strcmp(narc_kernel_name(k), "overlap") == 0;
+        contact = contact || strcmp(narc_kernel_name(k), "contact") == 0;
+        pose = pose || strcmp(narc_kernel_name(k), "pose") == 0;
+        assert_non_null(narc_kernel_isa(k));
+        assert_true(is_isa(narc_kernel_isa(k)) && narc_isa_supported(narc_kernel_isa(k)));
+    }
+    assert_true(overlap && contact && pose);
+    assert_null(narc_kernel_name(SIZE_MAX));
+    assert_null(narc_kernel_isa(SIZE_MAX));
+    assert_non_null(narc_cpu_features());
+    assert_true(narc_default_threads() >= 1);
+    assert_string_equal(narc_status_name(NARC_OK), "NARC_OK");
+    assert_string_equal(narc_status_name(NARC_ERROR_ISA_UNSUPPORTED), "NARC_ERROR_ISA_UNSUPPORTED");
+    assert_string_equal(narc_status_name((narc_status)999), "unknown status");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_unknown), cmocka_unit_test(test_unsupported), cmocka_unit_test(test_supported),
+        cmocka_unit_test(test_best),    cmocka_unit_test(test_set_isa),     cmocka_unit_test(test_names),
+    };
+    return cmocka_run_group_tests_name("environment", tests, NULL, NULL);
+}

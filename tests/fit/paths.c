@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * paths.c - paths: the pen's errors, flattening, and points read from CSV and JSON.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "fit_support.h"
+
+/* ---------------------------------------------------------------------------- the pen */
+
+/* Draws with the degree's function; points[degree - 1] is where it goes. Degree 0 moves. */
+static narc_status draw(narc_path *path, unsigned degree, const narc_point *points, narc_error *error) {
+    switch (degree) {
+    case 0:
+        return narc_move_to(path, points[0], error);
+    case 1:
+        return narc_line_to(path, points[0], error);
+    case 2:
+        return narc_quadratic_to(path, points[0], points[1], error);
+    default:
+        return narc_cubic_to(path, points[0], points[1], points[2], error);
+    }
+}
+
+static void refuses_to_draw_without_contour(void **state) {
+    (void)state;
+    static const narc_point points[] = {{1, 2}, {3, 4}, {5, 6}};
+    narc_path *path = make_path();
+    for (unsigned degree = 0; degree <= 3; degree++) {
+        narc_error error;
+        expect_error(draw(NULL, degree, points, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
+        if (degree > 0) {
+            expect_error(draw(path, degree, points, &error), NARC_ERROR_ARGUMENT, &error, "no contour was begun");
+            assert_int_equal(draw(path, degree, points, NULL), NARC_ERROR_ARGUMENT);
+        }
+    }
+    narc_contours contours = flatten(path);
+    assert_int_equal(contours.count, 0);
+    assert_int_equal(contours.point_count, 0);
+    narc_release_contours(&contours);
+    narc_destroy_path(path);
+    narc_destroy_path(NULL);
+    narc_release_contours(NULL);
+    assert_int_equal(narc_create_path(NULL), NARC_ERROR_ARGUMENT);
+}
+
+/* One coordinate after the other of every move gets a value that it cannot have. */
+static void refuses_wrong_coordinates(void **state) {
+    (void)state;
+    static const struct {
+        double value;
+        narc_status status;
+        const char *words;
+    } wrong[] = {
+        {NAN, NARC_ERROR_NOT_FINITE, "not finite"},
+        {INFINITY, NARC_ERROR_NOT_FINITE, "inf"},
+        {-INFINITY, NARC_ERROR_NOT_FINITE, "-inf"},
+        {1e9 + 1, NARC_ERROR_SIZE, "1000000001, coordinates reach up to 1e+09"},
+        {-1e300, NARC_ERROR_SIZE, "coordinates reach up to 1e+09"},
+    };
+    narc_path *path = make_occupied_path();
+    for (unsigned degree = 0; degree <= 3; degree++) {
+        for (unsigned place = 0; place < 2 * (degree ? degree : 1); place++) {
+            for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+                double numbers[6] = {1, 2, 3, 4, 5, 6};
+                narc_point points[3];
+                narc_error error;
+                numbers[place] = wrong[k].value;
+                memcpy(points, numbers, sizeof points);
+                expect_error(draw(path, degree, points, &error), wrong[k].status, &error, wrong[k].words);
+                assert_non_null(strstr(error.message, place % 2 ? ": y is" : ": x is"));
+                assert_int_equal(strncmp(error.message, "control point 1", 15) == 0, degree > 1 && place < 2);
+                assert_memory_equal(&error.value, &wrong[k].value, sizeof error.value);
+                expect_unchanged(path);
+            }
+        }
+    }
+    narc_destroy_path(path);
+}
+
+static void takes_the_largest_coordinates(void **state) {
+    (void)state;
+    const double most = NARC_MAX_COORDINATE;
+    const narc_point square[] = {{-most, -most}, {most, -most}, {most, most}, {-most, most}};
+    narc_path *path = make_path();
+    draw_polygon(path, square, 4);
+    narc_contours contours = flatten(path);
+    assert_memory_equal(contours.points, square, sizeof square);
+    narc_release_contours(&contours);
+    narc_destroy_path(path);
+}
+
+/* ---------------------------------------------------------------------------- contours */
+
+static void closes_contours(void **state) {
+    (void)state;
+    static const narc_point open[] = {{0, 0}, {2, 0}, {2, 2}}, closed[] = {{5, 5}, {6, 5}, {6, 6}, {5, 5}, {5, 5}};
+    static const narc_point expected[] = {{0, 0}, {2, 0}, {2, 2}, {5, 5}, {6, 5}, {6, 6}, {7, 7}};
+    narc_path *path = make_path();
+    narc_error error;
+    draw_polygon(path, (narc_point[]){{9, 9}}, 1); /* a contour that is only begun is not drawn */
+    draw_polygon(path, open, 3);
+    draw_polygon(path, (narc_point[]){{8, 8}}, 1);
+    draw_polygon(path, closed, 5);
+    draw_polygon(path, (narc_point[]){{7, 7}, {7, 7}}, 2); /* a line of no length is a point */
+    draw_polygon(path, (narc_point[]){{4, 4}}, 1);
+    narc_contours contours = flatten(path);
+    assert_int_equal(contours.count, 3);
+    assert_memory_equal(contours.ends, ((size_t[]){3, 6, 7}), 3 * sizeof(size_t));
+    assert_int_equal(contours.point_count, 7);
+    assert_memory_equal(contours.points, expected, sizeof expected);
+    assert_true(contours.flatness == 0);
+    narc_release_contours(&contours);
+    assert_null(contours.points);
+    assert_null(contours.ends);
+
+    /* The pen goes on from the last contour. */
+    expect_ok(narc_line_to(path, (narc_point){1, 1}, &error), &error);
+    contours = flatten(path);
+    assert_int_equal(contours.count, 4);
+    assert_int_equal(contours.point_count, 9);
+    assert_true(contours.points[7].x == 4 && contours.points[8].x == 1);
+    narc_release_contours(&contours);
+    narc_destroy_path(path);
+}
+
+/* Points that repeat the one before stay, so that polygons come out as they were drawn. */
+static void keeps_repeated_points(void **state) {
+    (void)state;
+    static const narc_point points[] = {{0, 0}, {0, 0}, {2, 0}, {2, 0}, {2, 2}, {1, 1}, {1, 1}};
+    narc_path *path = make_path();
+    draw_polygon(path, points, 7);
+    narc_contours contours = flatten(path);
+    assert_int_equal(contours.point_count, 7);
+    assert_memory_equal(contours.points, points, sizeof points);
+    narc_release_contours(&contours);
+    narc_destroy_path(path);
+}
+
+static int test_pen(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(refuses_to_draw_without_contour), cmocka_unit_test(refuses_wrong_coordinates),
+        cmocka_unit_test(takes_the_largest_coordinates),   cmocka_unit_test(closes_contours),
+        cmocka_unit_test(keeps_repeated_points),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int main(void) {
+    if (!test_begin())
+        return TEST_SKIPPED;
+    return test_pen() + test_flattening() + test_points() != 0;
+}

@@ -1,0 +1,323 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * png.c - silhouettes in PNG images: where contours are, formats, which channel counts.
+ */
+#include <math.h>
+#include <png.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "png_files.h"
+
+enum { FULL = 65535 };
+
+static const struct png_format gray_alpha_8 = {8, PNG_COLOR_TYPE_GRAY_ALPHA, false};
+static const struct png_format gray_alpha_16 = {16, PNG_COLOR_TYPE_GRAY_ALPHA, false};
+
+static void expect_points(struct png_file file, double threshold, const narc_point *points, size_t count,
+                          double tolerance) {
+    narc_contours contours = read_png(file, threshold);
+    assert_int_equal(contours.count, 1);
+    assert_int_equal(contours.point_count, count);
+    for (size_t k = 0; k < count; k++) {
+        const narc_point p = contours.points[k];
+        if (!(fabs(p.x - points[k].x) <= tolerance && fabs(p.y - points[k].y) <= tolerance))
+            fail_msg("point %zu is (%.17g, %.17g)", k, p.x, p.y);
+    }
+    narc_release_contours(&contours);
+    free(file.bytes);
+}
+
+/* ---------------------------------------------------------------------------- where contours are */
+
+/* Values between two samples are linear: from `value` at a pixel's centre to 0 at its neighbour's, a threshold is
+ * passed (value - threshold) / value behind the centre. The level is between two of 65535 steps, at most half of one
+ * off. */
+static void passes_between_centres(void **state) {
+    (void)state;
+    static const struct {
+        unsigned value;
+        double threshold, reach;
+    } cases[] = {{FULL, 0, 0.5}, {FULL, 0.5, 0.5}, {FULL, 0.25, 0.75}, {FULL, 0.9, 0.1}, {FULL / 5 * 4, 0.2, 0.75}};
+    for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
+        const double r = cases[k].reach;
+        uint16_t alpha[9] = {0}, gray[9] = {0};
+        alpha[4] = (uint16_t)cases[k].value;
+        /* Round the middle of 3 x 3 pixels, counter-clockwise from the west. */
+        const narc_point middle[4] = {{1.5 - r, 1.5}, {1.5, 1.5 - r}, {1.5 + r, 1.5}, {1.5, 1.5 + r}};
+        expect_points(write_png(gray_alpha_16, 3, 3, gray, alpha), cases[k].threshold, middle, 4, 1.0 / FULL);
+        /* An image of one pixel: what surrounds it is outside. */
+        const narc_point only[4] = {{0.5 - r, 0.5}, {0.5, 0.5 - r}, {0.5 + r, 0.5}, {0.5, 0.5 + r}};
+        if (cases[k].value < FULL)
+            expect_points(write_png(gray_alpha_16, 1, 1, gray, alpha + 4), cases[k].threshold, only, 4, 1.0 / FULL);
+    }
+    /* The upper right pixel of 3 x 2: y is up. */
+    uint16_t alpha[6] = {0, 0, FULL}, gray[6] = {0};
+    const narc_point corner[4] = {{2, 1.5}, {2.5, 1}, {3, 1.5}, {2.5, 2}};
+    expect_points(write_png(gray_alpha_8, 3, 2, gray, alpha), 0, corner, 4, 0);
+}
+
+/* What a plane edge at angle `angle` covers of a pixel whose centre is `s` inside: the square [-1/2, 1/2]^2 cut by
+ * x cos + y sin <= s, integrated over x in many strips. */
+static double cover_half_plane(double angle, double s) {
+    enum { STRIPS = 2000 };
+    const double c = cos(angle), n = sin(angle); /* n > 0 */
+    double sum = 0;
+    for (int k = 0; k < STRIPS; k++) {
+        const double x = (k + 0.5) / STRIPS - 0.5;
+        sum += fmin(1, fmax(0, (s - x * c) / n + 0.5));
+    }
+    return sum / STRIPS;
+}
+
+/* How far from a straight edge the contour is, for pixels that are covered exactly: the crossing on a line of pixels
+ * that meets the edge at `angle`. For an edge across the line and a pixel whose centre is a <= 1/2 inside, the two
+ * values are 1/2 + a and 0, so the crossing is a / (1/2 + a) from that centre instead of a. The difference a (1/2 - a)
+ * / (1/2 + a) is largest at a = (sqrt 2 - 1) / 2: 3/2 - sqrt 2. That other angles have no more is tried here, on a fine
+ * grid. */
+static const double EDGE_ERROR = 1.5 - 1.4142135623730951;
+
+static void knows_its_error_at_straight_edges(void **state) {
+    (void)state;
+    double most = 0;
+    for (int k = 1; k <= 90; k++) {
+        const double angle = k * (3.14159265358979323846 / 180), step = sin(angle);
+        for (int i = 0; i < 50; i++) { /* the centre is s inside, the next one up is s - step */
+            const double s = step * i / 50, high = cover_half_plane(angle, s), low = cover_half_plane(angle, s - step);
+            const double part = (high - 0.5) / (high - low);
+            most = fmax(most, fabs(s - part * step));
+        }
+    }
+    /* Heights are straight but for two kinks: strips of width w are off there by w^2 / 8 times the slope cos / sin,
+     * which over the least slope 1/2 and times the step, sin, is below 2 (1 / 2000)^2 / 4: 1.3e-7. */
+    assert_true(most <= EDGE_ERROR + 1.3e-7);
+    assert_true(most > EDGE_ERROR - 1e-3); /* and the bound is reached, up to the grid */
+}
+
+/* The part of a pixel that a disc covers, in strips: each of exact height in its middle. */
+static double cover_disc(double x, double y, double radius) {
+    enum { STRIPS = 256 };
+    double sum = 0;
+    for (int k = 0; k < STRIPS; k++) {
+        const double u = x - 0.5 + (k + 0.5) / STRIPS, square = radius * radius - u * u;
+        const double half = square > 0 ? sqrt(square) : 0;
+        sum += fmax(0, fmin(y + 0.5, half) - fmax(y - 0.5, -half));
+    }
+    return sum / STRIPS;
+}
+
+/* A disc is between two half planes near its outline: that of the tangent at the nearest point, and the same moved in
+ * by d^2 / (2 R), d being how far points of the two pixels in question can be from there: hypot(3/2, 1/2) and the error
+ * itself, 1.67. Coverage grows with what is covered, so the crossing is between those of the half planes. Values are
+ * rounded to `step`, half of it at most, which the slope of 1/2 or more turns into as much of a pixel as a step is. A
+ * sum over 256 strips is off by at most half a strip's width times how much the heights vary, which is 1 at each of two
+ * sides: 1/256, and twice that of a pixel. */
+static void keeps_the_place_of_discs(void **state) {
+    (void)state;
+    enum { SIZE = 64 };
+    struct test_random random = test_random_named("png discs");
+    static const struct {
+        struct png_format format;
+        double step;
+    } kinds[] = {{{8, PNG_COLOR_TYPE_RGB_ALPHA, false}, 1.0 / 255},
+                 {{16, PNG_COLOR_TYPE_GRAY_ALPHA, true}, 1.0 / FULL},
+                 {{8, PNG_COLOR_TYPE_GRAY, false}, 1.0 / 255}};
+    for (size_t trial = 0; trial < test_trials(30); trial++) {
+        const double radius = random_between(&random, 10, 28), x = random_between(&random, 30, 34),
+                     y = random_between(&random, 30, 34);
+        uint16_t alpha[SIZE * SIZE], gray[SIZE * SIZE];
+        for (size_t k = 0; k < SIZE * SIZE; k++) {
+            const double column = (double)(k % SIZE) + 0.5, row = SIZE - (double)(k / SIZE) - 0.5;
+            alpha[k] = (uint16_t)lround(FULL * fmin(1, cover_disc(column - x, row - y, radius)));
+            gray[k] = (uint16_t)(FULL - alpha[k]); /* black on white */
+        }
+        const struct png_file file = write_png(kinds[trial % 3].format, SIZE, SIZE, gray, alpha);
+        narc_contours contours = read_png(file, 0.5);
+        assert_int_equal(contours.count, 1);
+        const double bound = EDGE_ERROR + 1.67 * 1.67 / (2 * radius) + kinds[trial % 3].step + 2.0 / 256;
+        for (size_t k = 0; k < contours.point_count; k++) {
+            const double off = hypot(contours.points[k].x - x, contours.points[k].y - y) - radius;
+            if (!(fabs(off) <= bound))
+                fail_msg("radius %g: a point is %g off; at most %g is right", radius, off, bound);
+        }
+        /* It goes round once: a crossing in each row and each column that it meets, to both sides. */
+        const double round = (double)contours.point_count;
+        assert_true(round > 7 * radius && round < 9 * radius);
+        narc_release_contours(&contours);
+        free(file.bytes);
+    }
+}
+
+/* ---------------------------------------------------------------------------- contours are right */
+
+struct segment {
+    narc_point a, b;
+};
+
+/* A segment of the marching squares, by the cell's crossings at its sides: 0 below, 1 right, 2 above, 3 left. */
+static size_t add_cell(const double v[4], double level, double x, double y, struct segment *segments) {
+    /* Corners: 0 lower left, then counter-clockwise; side k is from corner k to k + 1. */
+    static const narc_point corners[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    narc_point crossings[4];
+    int sides[4], count = 0;
+    for (int k = 0; k < 4; k++) {
+        const int next = (k + 1) % 4;
+        if ((v[k] > level) != (v[next] > level)) {
+            const double t = (level - v[k]) / (v[next] - v[k]);
+            crossings[count] = (narc_point){x + corners[k].x + t * (corners[next].x - corners[k].x),
+                                            y + corners[k].y + t * (corners[next].y - corners[k].y)};
+            sides[count++] = k;
+        }
+    }
+    if (count == 2) {
+        segments[0] = (struct segment){crossings[0], crossings[1]};
+    } else if (count == 4) {
+        /* A saddle: corners on the other side of the level than the middle are cut off. Corner k is between sides
+         * k - 1 and k. */
+        const bool high = v[0] + v[1] + v[2] + v[3] > 4 * level;
+        const int first = (v[0] > level) != high ? 0 : 1;
+        for (int k = 0; k < 2; k++) {
+            const int corner = first + 2 * k;
+            segments[k] = (struct segment){crossings[(corner + 3) % 4], crossings[corner]};
+        }
+    }
+    (void)sides;
+    return (size_t)count / 2;
+}
+
+static bool is_near(narc_point a, narc_point b) { return fabs(a.x - b.x) < 1e-9 && fabs(a.y - b.y) < 1e-9; }
+
+/* On random small images: the contours' sides are exactly the segments of all cells, each once, with what is above the
+ * level on their left. */
+static void follows_all_cells(void **state) {
+    (void)state;
+    enum { WIDTH = 9, HEIGHT = 7, MOST = 2 * (WIDTH + 1) * (HEIGHT + 1) };
+    struct test_random random = test_random_named("png cells");
+    for (size_t trial = 0; trial < test_trials(500); trial++) {
+        uint16_t alpha[WIDTH * HEIGHT], gray[WIDTH * HEIGHT] = {0};
+        for (size_t k = 0; k < WIDTH * HEIGHT; k++)
+            alpha[k] = (uint16_t)(257 * (trial % 2 ? random_below(&random, 256) : 255 * random_below(&random, 2)));
+        alpha[0] = 0;
+        alpha[20] = FULL;
+        const double threshold = random_between(&random, 0.01, 0.99), level = floor(threshold * FULL) + 0.5;
+        struct segment segments[MOST];
+        size_t count = 0;
+        for (int y = -1; y < HEIGHT; y++) { /* rows from below */
+            for (int x = -1; x < WIDTH; x++) {
+                double v[4];
+                for (int k = 0; k < 4; k++) {
+                    const int column = x + (k == 1 || k == 2), row = HEIGHT - 1 - (y + k / 2);
+                    const bool inside = column >= 0 && column < WIDTH && row >= 0 && row < HEIGHT;
+                    v[k] = inside ? alpha[row * WIDTH + column] : 0;
+                }
+                count += add_cell(v, level, x + 0.5, y + 0.5, segments + count);
+            }
+        }
+        const struct png_file file = write_png(gray_alpha_8, WIDTH, HEIGHT, gray, alpha);
+        narc_contours contours = read_png(file, threshold);
+        assert_int_equal(contours.point_count, count);
+        for (size_t k = 0, first = 0; k < contours.count; first = contours.ends[k++]) {
+            for (size_t i = first; i < contours.ends[k]; i++) {
+                const narc_point a = contours.points[i], b = contours.points[i + 1 < contours.ends[k] ? i + 1 : first];
+                size_t found = 0;
+                while (found < count && !(is_near(segments[found].a, a) && is_near(segments[found].b, b)) &&
+                       !(is_near(segments[found].a, b) && is_near(segments[found].b, a)))
+                    found++;
+                assert_true(found < count);
+                segments[found] = segments[--count];
+            }
+        }
+        assert_int_equal(count, 0);
+        narc_release_contours(&contours);
+        free(file.bytes);
+    }
+}
+
+/* A ring of 5 x 5 pixels round a hole of 1, at the border of the image: a square of 5 with corners cut by 1/8 each, and
+ * a diamond of area 1/2 the other way round. Contours do not cross. */
+static void turns_round_holes_the_other_way(void **state) {
+    (void)state;
+    uint16_t alpha[25], gray[25] = {0};
+    for (size_t k = 0; k < 25; k++)
+        alpha[k] = k == 12 ? 0 : FULL;
+    const struct png_file file = write_png(gray_alpha_8, 5, 5, gray, alpha);
+    narc_contours contours = read_png(file, 0);
+    assert_int_equal(contours.count, 2);
+    assert_true(measure_area(&contours, 0) == 25 - 4 * 0.125);
+    assert_true(measure_area(&contours, 1) == -0.5);
+    narc_release_contours(&contours);
+    free(file.bytes);
+}
+
+/* ---------------------------------------------------------------------------- formats */
+
+/* A blob of which all pixels are one of 16 levels, or one of 2. */
+static void make_blob(uint16_t *values, size_t width, size_t height, bool two) {
+    for (size_t k = 0; k < width * height; k++) {
+        const double x = (double)(k % width) - 5.3, y = (double)(k / width) - 6.1;
+        const double level = fmin(15, fmax(0, 8 * (5.2 - hypot(x, 0.8 * y + 0.2 * x))));
+        values[k] = (uint16_t)(two ? (level > 7 ? FULL : 0) : 4369 * (unsigned)level);
+    }
+}
+
+static void expect_same(const narc_contours *expected, struct png_file file, double tolerance, const char *what) {
+    narc_contours contours = read_png(file, 0.5);
+    if (contours.count != expected->count || contours.point_count != expected->point_count)
+        fail_msg("%s: %zu points, not %zu", what, contours.point_count, expected->point_count);
+    for (size_t k = 0; k < contours.point_count; k++) {
+        const narc_point a = contours.points[k], b = expected->points[k];
+        if (!(fabs(a.x - b.x) <= tolerance && fabs(a.y - b.y) <= tolerance))
+            fail_msg("%s: point %zu is (%.17g, %.17g), not (%.17g, %.17g)", what, k, a.x, a.y, b.x, b.y);
+    }
+    narc_release_contours(&contours);
+    free(file.bytes);
+}
+
+/* The same blob in formats of each kind: as alpha, dark on light, and light on dark. Grays of 16 bits are known to 11 bits;
+ * where neighbouring values differ by 1/15 or more, as on both sides of the threshold, that is up to 15 / 2^11 of a
+ * pixel. */
+static void reads_each_kind_of_format(void **state) {
+    (void)state;
+    enum { WIDTH = 13, HEIGHT = 11, COUNT = WIDTH * HEIGHT };
+    for (int two = 0; two < 2; two++) {
+        uint16_t blob[COUNT], inverse[COUNT], full[COUNT];
+        make_blob(blob, WIDTH, HEIGHT, two);
+        for (size_t k = 0; k < COUNT; k++) {
+            inverse[k] = (uint16_t)(FULL - blob[k]);
+            full[k] = FULL;
+        }
+        const struct png_file file = write_png(gray_alpha_8, WIDTH, HEIGHT, full, blob);
+        narc_contours expected = read_png(file, 0.5);
+        free(file.bytes);
+        for (int depth = 8; depth <= 16; depth *= 2) {
+            const struct png_format gray = {depth, PNG_COLOR_TYPE_GRAY, false};
+            const struct png_format gray_alpha = {depth, PNG_COLOR_TYPE_GRAY_ALPHA, false};
+            const struct png_format rgb = {depth, PNG_COLOR_TYPE_RGB, false};
+            const struct png_format rgb_alpha = {depth, PNG_COLOR_TYPE_RGB_ALPHA, true};
+            const double near = depth == 16 ? 15.0 / 2048 : 0;
+            expect_same(&expected, write_png(gray, WIDTH, HEIGHT, inverse, NULL), near, "dark gray");
+            expect_same(&expected, write_png(gray, WIDTH, HEIGHT, blob, NULL), near, "light gray");
+            expect_same(&expected, write_png(rgb, WIDTH, HEIGHT, inverse, NULL), near, "dark");
+            expect_same(&expected, write_png(rgb_alpha, WIDTH, HEIGHT, inverse, full), near, "dark, opaque");
+            expect_same(&expected, write_png(rgb_alpha, WIDTH, HEIGHT, full, blob), 0, "alpha, white");
+            expect_same(&expected, write_png(rgb_alpha, WIDTH, HEIGHT, inverse, blob), 0, "alpha, colours");
+            expect_same(&expected, write_png(gray_alpha, WIDTH, HEIGHT, blob, full), near, "gray, opaque");
+        }
+        const struct png_format palette = {8, PNG_COLOR_TYPE_PALETTE, false};
+        expect_same(&expected, write_png(palette, WIDTH, HEIGHT, inverse, NULL), 0, "palette");
+        expect_same(&expected, write_png(palette, WIDTH, HEIGHT, inverse, blob), 0, "palette with alpha");
+        narc_release_contours(&expected);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(passes_between_centres),          cmocka_unit_test(knows_its_error_at_straight_edges),
+        cmocka_unit_test(keeps_the_place_of_discs),        cmocka_unit_test(follows_all_cells),
+        cmocka_unit_test(turns_round_holes_the_other_way), cmocka_unit_test(reads_each_kind_of_format),
+    };
+    if (!test_begin())
+        return TEST_SKIPPED;
+    const int failures = cmocka_run_group_tests_name("PNG", tests, NULL, NULL);
+    return failures + test_png_damage();
+}

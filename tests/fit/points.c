@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * points.c - points from CSV and JSON: what is read, each error with its place, damaged texts; and their hull.
+ */
+#include <locale.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fit_support.h"
+
+/* `expected` as contours, each ended by a point of NAN, and the last by two. */
+static void expect_points(reader *read, const char *text, const narc_point *expected) {
+    narc_path *path = make_path();
+    narc_error error;
+    expect_ok(read_exactly(read, text, strlen(text), path, &error), &error);
+    narc_contours contours = flatten(path);
+    size_t contour = 0, point = 0;
+    for (size_t i = 0; contour == 0 || !isnan(expected[i].x); contour++, i++) {
+        for (; !isnan(expected[i].x); i++, point++) {
+            assert_true(point < contours.point_count);
+            assert_true(contours.points[point].x == expected[i].x && contours.points[point].y == expected[i].y);
+        }
+        assert_true(contour < contours.count);
+        assert_int_equal(contours.ends[contour], point);
+    }
+    assert_int_equal(contours.count, contour);
+    narc_release_contours(&contours);
+    narc_destroy_path(path);
+}
+
+static void expect_wrong(reader *read, const struct wrong *wrong, size_t count) {
+    for (size_t k = 0; k < count; k++)
+        expect_wrong_text(read, wrong[k].text, strlen(wrong[k].text), wrong[k].status, wrong[k].line, wrong[k].words);
+}
+
+#define END                                                                                                            \
+    { NAN, NAN }
+static const narc_point square[] = {{0, 0}, {1.5, 0}, {1.5, 2e1}, {-0.25, 20}, END, END};
+static const narc_point two[] = {{0, 0}, {1, 0}, {1, 1}, END, {5, 5}, {6, 5}, END, END};
+static const narc_point one_point[] = {{3, 4}, END, END};
+
+/* ---------------------------------------------------------------------------- CSV */
+
+static void reads_csv(void **state) {
+    (void)state;
+    expect_points(narc_read_csv, "0,0\n1.5,0\n1.5,2e1\n-.25,+20\n", square);
+    expect_points(narc_read_csv, "x,y\r\n0,0\r\n1.5,0\r\n1.5,2e1\r\n-0.25,20", square); /* no line end at the end */
+    expect_points(narc_read_csv, "\xef\xbb\xbf\n\n X , Y\n 0 ,\t0 \n1.50,0e0\n15e-1,20.\n-25e-2,20\n\n\n", square);
+    expect_points(narc_read_csv, "0,0\n1.5,0\n1.5,20\n-0.25,20\n0,0\n", square); /* closed by itself */
+    expect_points(narc_read_csv, "0,0\n1,0\n1,1\n\n5,5\n6,5\n", two);
+    expect_points(narc_read_csv, "\n0,0\n1,0\n1,1\n \t\r\n\r\n\n5,5\n6,5\n\n\n", two);
+    expect_points(narc_read_csv, "3,4", one_point);
+}
+
+static void names_lines_of_csv(void **state) {
+    (void)state;
+    static const struct wrong wrong[] = {
+        {"", NARC_ERROR_FORMAT, 0, "empty"},
+        {" \r\n\n\t", NARC_ERROR_FORMAT, 0, "empty"},
+        {"\xef\xbb\xbf", NARC_ERROR_FORMAT, 0, "empty"},
+        {"x,y\n\n", NARC_ERROR_FORMAT, 0, "header only"},
+        {"0,0\n1\n", NARC_ERROR_FORMAT, 2, "not two numbers 'x,y': '1'"},
+        {"0,0\n1,2,3\n", NARC_ERROR_FORMAT, 2, "'1,2,3'"},
+        {"0 0\n", NARC_ERROR_FORMAT, 1, "'0 0'"},
+        {"0;0\n", NARC_ERROR_FORMAT, 1, "'0;0'"},
+        {"x,y,z\n1,2,3\n", NARC_ERROR_FORMAT, 1, "'x,y,z'"},
+        {"0,0\n\nx,y\n", NARC_ERROR_FORMAT, 3, "x is not a number: 'x'"},
+        {"0,0\n1,0\r\n\r\n1,zwei\r\n", NARC_ERROR_FORMAT, 4, "y is not a number: 'zwei'"},
+        {"0,0\n,1\n", NARC_ERROR_FORMAT, 2, "x is not a number: ''"},
+        {"0,0\n1,\n", NARC_ERROR_FORMAT, 2, "y is not a number: ''"},
+        {"1e5e,0\n", NARC_ERROR_FORMAT, 1, "'1e5e'"},
+        {"0x10,0\n", NARC_ERROR_FORMAT, 1, "'0x10'"},
+        {"1.2.3,0\n", NARC_ERROR_FORMAT, 1, "'1.2.3'"},
+        {"1 2,0\n", NARC_ERROR_FORMAT, 1, "'1 2'"},
+        {"\"1\",2\n", NARC_ERROR_FORMAT, 1, "'\"1\"'"},
+        {"1,2\x01\n", NARC_ERROR_FORMAT, 1, "'2?'"},
+        {"1,2\r3,4\n", NARC_ERROR_FORMAT, 1, "'1,2?3,4'"},
+        {"0,0\nnan,1\n", NARC_ERROR_FORMAT, 2, "x is not a number: 'nan'"},
+        {"0,0\n1,-NaN\n", NARC_ERROR_FORMAT, 2, "y is not a number: '-NaN'"},
+        {"0,0\n0,0\n0,inf\n", NARC_ERROR_FORMAT, 3, "y is not a number: 'inf'"},
+        {"-Infinity,0\n", NARC_ERROR_FORMAT, 1, "x is not a number: '-Infinity'"},
+        {"0,0\n1e400,0\n", NARC_ERROR_NOT_FINITE, 2, "line 2: x is not finite: '1e400'"},
+        {"0,0\n0,-1000000001\n", NARC_ERROR_SIZE, 2, "y is -1000000001, coordinates reach up to 1e+09"},
+        /* what is shown of long values ends between characters: 39 letters, then one of two bytes */
+        {"0,aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\xc3\xa4zzz\n", NARC_ERROR_FORMAT, 1,
+         "'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...'"},
+    };
+    expect_wrong(narc_read_csv, wrong, sizeof wrong / sizeof wrong[0]);
+}
+
+/* A NUL byte, and numbers that are too long to be any. */
+static void refuses_odd_csv(void **state) {
+    (void)state;
+    narc_path *path = make_occupied_path();
+    narc_error error;
+    expect_error(read_exactly(narc_read_csv, "0,0\n1,\0 2\n", 10, path, &error), NARC_ERROR_FORMAT, &error,
+                 "line 2: a NUL byte");
+    char text[1002];
+    memset(text, '1', sizeof text);
+    text[1000] = ',';
+    expect_error(read_exactly(narc_read_csv, text, sizeof text, path, &error), NARC_ERROR_FORMAT, &error,
+                 "'1111111111111111111111111111111111111111...'");
+    expect_unchanged(path);
+    narc_destroy_path(path);
+}
+
+/* ---------------------------------------------------------------------------- JSON */
+
+static void reads_json(void **state) {
+    (void)state;
+    expect_points(narc_read_json, "[[0, 0], [1.5, 0], [1.5, 2e1], [-0.25, 20]]", square);
+    expect_points(narc_read_json, "\xef\xbb\xbf\n[[0,0],[1.5,0],\n[1.5,20],[-0.25,20],[0,0]]\n\n", square);
+    expect_points(narc_read_json, "[[[0, 0], [1.5, 0], [1.5, 20], [-0.25, 20]]]", square);
+    expect_points(narc_read_json, "[[[0, 0], [1, 0], [1, 1]], [[5, 5], [6, 5]]]", two);
+    expect_points(narc_read_json,
+                  "{\"name\": \"[{\\\"\", \"contours\": [[[0,0],[1,0],[1,1]],[[5,5],[6,5]]], \"b\": {}}", two);
+    expect_points(narc_read_json, "{\"points\": [[0, 0], [1.5, 0], [1.5, 20], [-0.25, 20]]}", square);
+    expect_points(narc_read_json, "{\"points\": [[[0,0],[1,0],[1,1]],[[5,5],[6,5]]]}", two);
+    expect_points(narc_read_json, "{\"contours\": [[3, 4]]}", one_point);
+    expect_points(narc_read_json, "[[3, 4]]", one_point);
+}
+
+static void names_places_of_json(void **state) {
+    (void)state;
+    static const struct wrong wrong[] = {
+        {"", NARC_ERROR_FORMAT, 0, "empty"},
+        {"\n \n", NARC_ERROR_FORMAT, 0, "empty"},
+        {"[[0, 0],\n[1, 0],\n[1,\n", NARC_ERROR_FORMAT, 4, "it ends too early"},
+        {"[[0, 0],\n[1, nan]]", NARC_ERROR_FORMAT, 2, "not valid JSON here: 'nan]]'"},
+        {"[[0, 0],\n[1, -Infinity],\n[2, 3]]", NARC_ERROR_FORMAT, 2, "'-Infinity],'"},
+        {"[[0, 0]]\nx", NARC_ERROR_FORMAT, 2, "here: 'x'"},
+        {"\n\n7", NARC_ERROR_FORMAT, 0, "not a list of points or contours: '7'"},
+        {"[]", NARC_ERROR_FORMAT, 0, "a list without points: '[]'"},
+        {"{\"a\": 1,\n\"points\":\n \"b\"}", NARC_ERROR_FORMAT, 0, "not a list of points or contours: '\"b\"'"},
+        {"\n{\"Points\": []}", NARC_ERROR_FORMAT, 0, "an object without a key 'points' or 'contours'"},
+        {"{\n\"points\": [[0, 0]],\n\"contours\": [[1, 1]]}", NARC_ERROR_FORMAT, 0, "a second key"},
+        {"[[0, 0],\n[1],\n[2, 2]]", NARC_ERROR_FORMAT, 0, "point 1 of contour 0 is not a list of two numbers: '[1]'"},
+        {"[[0, 0],\n\n[1, 2, 3]]", NARC_ERROR_FORMAT, 0, "'[1,2,3]'"},
+        {"[[0, 0],\n{\"x\": 1, \"y\": 2}]", NARC_ERROR_FORMAT, 0, "'{\"x\":1,\"y\":2}'"},
+        {"[[0, 0],\n[\n\"]\",\n\"1\"]]", NARC_ERROR_FORMAT, 0, "x of point 1 of contour 0 is not a number: '\"]\"'"},
+        {"[[0, 0], [1,\nnull]]", NARC_ERROR_FORMAT, 0, "y of point 1 of contour 0 is not a number: 'null'"},
+        {"[[[0, 0], [1, 0]],\n[[0, 0],\n[0, true]]]", NARC_ERROR_FORMAT, 0,
+         "y of point 1 of contour 1 is not a number: 'true'"},
+        {"[[[0, 0], [1, 0]],\n[]]", NARC_ERROR_FORMAT, 0, "contour 1 is not a list of points: '[]'"},
+        {"[[[0, 0], [1, 0]],\n5]", NARC_ERROR_FORMAT, 0, "contour 1 is not a list of points: '5'"},
+        {"[\n[]]", NARC_ERROR_FORMAT, 0, "point 0 of contour 0 is not a list of two numbers: '[]'"},
+        {"[[0, 0],\n[1, 2],\n[1e400, 2]]", NARC_ERROR_NOT_FINITE, 0, "x of point 2 of contour 0 is not finite"},
+        {"{\"[\": [\"\\\"\\\\\"],\n\"contours\":\n[[[0, 0]],\n[[1, 2],\n[1,\n-2e9]]]}", NARC_ERROR_SIZE, 0,
+         "y of point 1 of contour 1 is -2000000000, coordinates reach up to 1e+09"},
+    };
+    expect_wrong(narc_read_json, wrong, sizeof wrong / sizeof wrong[0]);
+}
+
+static void refuses_odd_json(void **state) {
+    (void)state;
+    narc_path *path = make_occupied_path();
+    narc_error error;
+    expect_error(read_exactly(narc_read_json, "[[0,\n\0 0]]", 10, path, &error), NARC_ERROR_FORMAT, &error,
+                 "line 2: a NUL byte");
+    expect_error(read_exactly(narc_read_json, "{\"a\\u0000\":\n[[1, 1]]}", 21, path, &error), NARC_ERROR_FORMAT, &error,
+                 "line 1: a NUL character");
+    char *deep = malloc(100001); /* nesting that would use up the stack */
+    assert_non_null(deep);
+    memset(deep, '[', 100000);
+    deep[100000] = 0;
+    expect_error(read_exactly(narc_read_json, deep, 100000, path, &error), NARC_ERROR_FORMAT, &error, "not valid");
+    free(deep);
+    expect_unchanged(path);
+    narc_destroy_path(path);
+}
+
+/* ---------------------------------------------------------------------------- both */
+
+static void refuses_null(void **state) {
+    (void)state;
+    reader *const readers[] = {narc_read_csv, narc_read_json};
+    narc_path *path = make_occupied_path();
+    for (size_t k = 0; k < 2; k++) {
+        narc_error error;
+        expect_error(readers[k](NULL, 5, path, &error), NARC_ERROR_ARGUMENT, &error, "data is NULL");
+        expect_error(readers[k]("1,1", 3, NULL, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
+    }
+    expect_unchanged(path);
+    narc_destroy_path(path);
+}
+
+/* Where the decimal point is a comma, files mean the same. Skipped without such a locale. */
+static void reads_in_any_locale(void **state) {
+    (void)state;
+    static const char *const names[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE", "fr_FR"};
+    const char *chosen = NULL;
+    for (size_t k = 0; k < 4 && !chosen; k++)
+        chosen = setlocale(LC_NUMERIC, names[k]);
+    if (!chosen) {
+        print_message("no locale with a decimal comma is installed\n");
+        skip();
+    }
+    expect_points(narc_read_csv, "0,0\n1.5,0\n1.5,2e1\n-.25,+20\n", square);
+    expect_points(narc_read_json, "[[0, 0], [1.5, 0], [1.5, 2e1], [-0.25, 20]]", square);
+    setlocale(LC_NUMERIC, "C");
+}
+
+/* ---------------------------------------------------------------------------- their hull */
+
+static void computes_the_hull(void **state) {
+    (void)state;
+    const narc_point corners[] = {{0, 0}, {4, 0}, {4, 3}, {0, 3}};
+    narc_point points[] = {{4, 3}, {2, 0}, {0, 3}, {1, 1}, {0, 0}, {4, 3}, {4, 0}, {4, 1}};
+    size_t count = 0;
+    narc_error error;
+    expect_ok(narc_compute_hull(points, 8, points, &count, &error), &error);
+    assert_int_equal(count, 4);
+    assert_memory_equal(points, corners, sizeof corners);
+    const narc_point line[] = {{0, 0}, {1, 1}, {3, 3}};
+    expect_error(narc_compute_hull(line, 3, points, &count, &error), NARC_ERROR_NOT_CONVEX, &error, "on a line");
+    expect_error(narc_compute_hull(line, 0, points, &count, &error), NARC_ERROR_COUNT, &error, "no points");
+    expect_error(narc_compute_hull(NULL, 3, points, &count, &error), NARC_ERROR_ARGUMENT, &error, "NULL");
+    assert_int_equal(count, 4);
+    assert_memory_equal(points, corners, sizeof corners);
+}
+
+/* Changes, leaves out, repeats or inserts bytes, or cuts the end. */
+static size_t damage(struct test_random *random, char *text, size_t size) {
+    static const char bytes[] = "[]{},:\"\\ \n\r\t0123456789.-+eEnaif\xff\xc3\0u";
+    for (size_t changes = 1 + random_below(random, 3); changes > 0; changes--) {
+        const size_t at = random_below(random, size), length = 1 + random_below(random, 4);
+        switch (random_below(random, 4)) {
+        case 0:
+            text[at] = bytes[random_below(random, sizeof bytes)];
+            break;
+        case 1:
+            memmove(text + at + 1, text + at, size - at);
+            text[at] = bytes[random_below(random, sizeof bytes)];
+            size++;
+            break;
+        case 2:
+            if (at + length < size) {
+                memmove(text + at, text + at + length, size - at - length);
+                size -= length;
+            }
+            break;
+        default:
+            size = random_below(random, 4) ? size : at + 1;
+            break;
+        }
+    }
+    return size;
+}
+
+/* Whatever the bytes, points come out, or an error whose line there is; then the path is as before. */
+static void survives_damage(void **state) {
+    (void)state;
+    static const char *const texts[] = {
+        "x,y\n0,0\n1.5,0\n\n1.5,2e1\n-.25,+20\n",
+        "[[0, 0], [1.5, 0],\n[1.5, 2e1], [-0.25, 20]]",
+        "{\"name\": \"\\u00e4\",\n\"contours\": [[[0,0],[1,0],\n[1,1]],[[5,5],\n[6,5e-3]]]}",
+    };
+    struct test_random random = test_random_named("damaged texts");
+    size_t read = 0;
+    const size_t trials = test_trials(30000);
+    for (size_t trial = 0; trial < trials; trial++) {
+        char text[200] = {0};
+        strcpy(text, texts[trial % 3]);
+        const size_t size = damage(&random, text, strlen(text));
+        narc_path *path = make_occupied_path();
+        narc_error error = {0};
+        const narc_status status = read_exactly(trial % 3 ? narc_read_json : narc_read_csv, text, size, path, &error);
+        size_t lines = 1;
+        for (size_t i = 0; i < size; i++)
+            lines += text[i] == '\n';
+        assert_true(status == NARC_OK || error.index <= lines);
+        const unsigned allowed = 1u << NARC_ERROR_FORMAT | 1u << NARC_ERROR_NOT_FINITE | 1u << NARC_ERROR_SIZE;
+        read += finish_any_bytes(status, &error, allowed, 100, path);
+    }
+    assert_true(read > trials / 20 && read < trials - trials / 4); /* both sorts are really met */
+}
+
+int test_points(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_csv),         cmocka_unit_test(names_lines_of_csv),   cmocka_unit_test(refuses_odd_csv),
+        cmocka_unit_test(reads_json),        cmocka_unit_test(names_places_of_json), cmocka_unit_test(refuses_odd_json),
+        cmocka_unit_test(refuses_null),      cmocka_unit_test(reads_in_any_locale),  cmocka_unit_test(survives_damage),
+        cmocka_unit_test(computes_the_hull),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

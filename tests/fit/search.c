@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * search.c - how well fits are searched for: the best that is known of hard outlines, more arcs and wider
+ * families never worse, outlines turned and in a mirror; and fits with a least radius.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "outlines.h"
+
+/* What is found is this near to the best known. */
+static const double NEAR = 3e-3;
+
+/* Two fits of which one may be the other differ by the rounding to single precision alone. */
+static const double ROUNDING = 1e-5;
+
+static void expect_known(const struct outline *of, size_t arcs, double known) {
+    const narc_fit_result fit = fit_shape(of, NARC_FIT_N_ARC, NARC_FIT_BOUND_AREA, arcs);
+    if (!(fit.area <= known * (1 + NEAR)))
+        fail_msg("%s, %zu arcs: area %.6f, but %.6f is known", of->name, arcs, fit.area, known);
+    check_contained(of, &fit, "known");
+}
+
+static void test_square(void **state) {
+    (void)state;
+    struct outline square = make_box(1, 1);
+    expect_known(&square, 4, 1.53461);
+    free_outline(&square);
+}
+
+static void test_thin_rhombus(void **state) {
+    (void)state;
+    const narc_point corners[4] = {{-16, 0}, {0, -1}, {16, 0}, {0, 1}};
+    struct outline rhombus = make_outline("rhombus");
+    add_corners(&rhombus, corners, 4);
+    expect_known(&rhombus, 4, 1.335 * 32);
+    free_outline(&rhombus);
+}
+
+static double fit_value(const struct outline *of, narc_fit_family family, narc_fit_goal goal, size_t arcs) {
+    const narc_fit_request request = {.arc_count = arcs, .family = family, .goal = goal, .starts = 1};
+    const narc_fit_result fit = fit_outline(of, request);
+    return goal_value(&fit, goal);
+}
+
+/* Each value of a fit against those with an arc less and of narrower families. Distances get a length for rounding:
+ * those of an outline of size 1 are rounded to 2^-24. */
+static void check_never_worse(const struct outline *of, narc_fit_goal goal) {
+    enum { FIRST = 3, LAST = 6 };
+    double value[3][LAST + 1];
+    for (size_t arcs = FIRST; arcs <= LAST; arcs++) {
+        for (int family = NARC_FIT_N_ARC; family <= NARC_FIT_POLYGON; family++) {
+            value[family][arcs] = fit_value(of, (narc_fit_family)family, goal, arcs);
+            const double less = arcs > FIRST ? value[family][arcs - 1] : INFINITY;
+            if (!(value[family][arcs] <= less * (1 + ROUNDING) + 1e-6)) {
+                fail_msg("%s, family %d, goal %d: %.9g with %zu arcs, %.9g with one less", of->name, family, (int)goal,
+                         value[family][arcs], arcs, less);
+            }
+        }
+        const double narrower = fmin(value[NARC_FIT_N_ARC][arcs], value[NARC_FIT_POLYGON][arcs]);
+        if (!(value[NARC_FIT_EDGES][arcs] <= narrower * (1 + ROUNDING) + 1e-6)) {
+            fail_msg("%s, goal %d, %zu arcs: %.9g with edges, %.9g without or with edges alone", of->name, (int)goal,
+                     arcs, value[NARC_FIT_EDGES][arcs], narrower);
+        }
+    }
+}
+
+static void test_more_is_never_worse(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("never worse");
+    for (size_t trial = 0, trials = test_trials(2); trial < trials; trial++) {
+        struct outline of = make_random_points(&random, 5 + random_below(&random, 12));
+        check_never_worse(&of, trial % 2 ? NARC_FIT_BOUND_DISTANCE : NARC_FIT_BOUND_AREA);
+        free_outline(&of);
+    }
+}
+
+static void test_turned_and_mirrored(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("turned");
+    struct outline of = make_random_points(&random, 10);
+    const double area = fit_shape(&of, NARC_FIT_N_ARC, NARC_FIT_BOUND_AREA, 6).area;
+    for (int k = 1; k <= 4; k++) {
+        const double scale = 1 + 0.5 * k;
+        struct outline moved = make_moved(&of, scale, 0.9 * k, k % 2, (narc_point){k, -2 * k});
+        const double there = fit_shape(&moved, NARC_FIT_N_ARC, NARC_FIT_BOUND_AREA, 6).area / (scale * scale);
+        if (!(fabs(there / area - 1) <= NEAR))
+            fail_msg("turned by %g, mirrored %d: area times %.6f", 0.9 * k, k % 2, there / area);
+        free_outline(&moved);
+    }
+    free_outline(&of);
+}
+
+/* ---------------------------------------------------------------------------- a least radius */
+
+static void check_least_radius(const struct outline *of, narc_fit_family family, narc_fit_goal goal, size_t arcs,
+                               double radius) {
+    narc_fit_request request = {.arc_count = arcs, .family = family, .goal = goal, .starts = 1};
+    const narc_fit_result free_fit = fit_outline(of, request);
+    request.min_radius = radius;
+    const narc_fit_result fit = fit_outline(of, request);
+    for (size_t i = 0; i < fit.arc_count; i++) {
+        if (!(fit.arcs[i].radius >= radius)) {
+            fail_msg("%s, family %d, goal %d, %zu arcs: radius %.9g, the least is %.9g", of->name, (int)family,
+                     (int)goal, arcs, fit.arcs[i].radius, radius);
+        }
+    }
+    check_fit_result(of, &request, &fit);
+    /* What is allowed with a least radius is allowed without. Both are searched for, so they may differ a little. */
+    assert_true(goal_value(&fit, goal) >= goal_value(&free_fit, goal) * 0.9);
+}
+
+static void test_least_radius(void **state) {
+    (void)state;
+    struct outline of = make_star();
+    static const double radii[] = {1e-9, 0.3, 4};
+    for (int goal = NARC_FIT_BOUND_AREA; goal <= NARC_FIT_DIFFERENCE; goal++) {
+        for (size_t r = 0; r < 3; r++) {
+            const narc_fit_family family = (goal + (int)r) % 2 ? NARC_FIT_EDGES : NARC_FIT_N_ARC;
+            check_least_radius(&of, family, (narc_fit_goal)goal, 4 + r % 2, radii[r]);
+        }
+    }
+    free_outline(&of);
+}
+
+/* The least area around a box with rounded corners of that radius, and edges: known in closed form. */
+static void test_least_radius_of_a_box(void **state) {
+    (void)state;
+    struct outline box = make_box(3, 1);
+    const narc_fit_result fit =
+        fit_outline(&box, (narc_fit_request){.arc_count = 4, .family = NARC_FIT_EDGES, .min_radius = 0.1});
+    /* Arcs around its corners, pushed in along the diagonals until these touch them: sides out by 0.1 (1 - 1/sqrt 2). */
+    const double out = 0.1 * (1 - sqrt(0.5)), corners = (4 - 3.14159265358979323846) * 0.01;
+    assert_true(fit.area <= ((3 + 2 * out) * (1 + 2 * out) - corners) * (1 + NEAR));
+    free_outline(&box);
+}
+
+static void refuse(const struct outline *of, narc_fit_request request, narc_status expected, const char *words) {
+    narc_fit_result fit;
+    narc_error error = {0};
+    expect_error(narc_fit_path(of->path, &request, &fit, &error), expected, &error, words);
+}
+
+static void test_least_radius_errors(void **state) {
+    (void)state;
+    struct outline box = make_box(2, 1);
+    refuse(&box, (narc_fit_request){.arc_count = 4, .min_radius = -1}, NARC_ERROR_SIZE, "-1");
+    refuse(&box, (narc_fit_request){.arc_count = 4, .min_radius = NAN}, NARC_ERROR_SIZE, "nan");
+    refuse(&box, (narc_fit_request){.arc_count = 4, .min_radius = 100}, NARC_ERROR_SIZE, "100");
+    refuse(&box, (narc_fit_request){.arc_count = 4, .min_radius = 0.1, .family = NARC_FIT_POLYGON}, NARC_ERROR_ARGUMENT,
+           "least radius");
+    refuse(&box, (narc_fit_request){.arc_count = 4, .min_radius = 0.1, .family = NARC_FIT_PAPER}, NARC_ERROR_ARGUMENT,
+           "least radius");
+    /* Circles of radius 0.5 stay 0.5 (1 - 1/sqrt 2) = 0.146 / 2 or more from the sides or the corner of a right angle. */
+    refuse(&box, (narc_fit_request){.tolerance = 0.01, .min_radius = 0.5, .starts = 1}, NARC_ERROR_NO_SOLUTION,
+           "at least the radius 0.5");
+    free_outline(&box);
+}
+
+int main(void) {
+    if (!test_begin())
+        return TEST_SKIPPED;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_square),
+        cmocka_unit_test(test_thin_rhombus),
+        cmocka_unit_test(test_more_is_never_worse),
+        cmocka_unit_test(test_turned_and_mirrored),
+        cmocka_unit_test(test_least_radius),
+        cmocka_unit_test(test_least_radius_of_a_box),
+        cmocka_unit_test(test_least_radius_errors),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

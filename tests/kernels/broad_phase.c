@@ -1,0 +1,450 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * broad_phase.c - pairs of boxes against all pairs, and matching against a search: sizes, places, filters, threads,
+ * memory, errors.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "guard.h"
+#include "narc_broad_phase.h"
+#include "support.h"
+
+struct pair_list {
+    uint32_t *a, *b;
+    size_t count;
+};
+
+static bool overlap(const narc_box *a, const narc_box *b) {
+    return a->min_x <= b->max_x && b->min_x <= a->max_x && a->min_y <= b->max_y && b->min_y <= a->max_y;
+}
+
+static bool is_empty(const narc_box *box) {
+    const bool finite = isfinite(box->min_x) && isfinite(box->min_y) && isfinite(box->max_x) && isfinite(box->max_y);
+    return !finite || box->min_x > box->max_x || box->min_y > box->max_y;
+}
+
+static uint32_t word(narc_column column, size_t k, uint32_t none) {
+    return column.base ? *(const uint32_t *)(const void *)((const char *)column.base + k * column.stride) : none;
+}
+
+static bool lets(const narc_pair_filter *f, size_t a, size_t b) {
+    if (!f)
+        return true;
+    const unsigned char *still = f->still.base;
+    if (still && still[a * f->still.stride] && still[b * f->still.stride])
+        return false;
+    if (word(f->group, a, 0) != 0 && word(f->group, a, 0) == word(f->group, b, 0))
+        return false;
+    return (word(f->category, a, ~0u) & word(f->mask, b, ~0u)) && (word(f->category, b, ~0u) & word(f->mask, a, ~0u));
+}
+
+/* Every pair, one after the other: in the order that is promised. */
+static struct pair_list all_pairs(const narc_box *boxes, size_t count, const narc_pair_filter *filter) {
+    struct pair_list list = {malloc(sizeof(uint32_t)), malloc(sizeof(uint32_t)), 0};
+    size_t capacity = 1;
+    for (size_t a = 0; a < count; a++) {
+        for (size_t b = a + 1; b < count; b++) {
+            if (is_empty(&boxes[a]) || is_empty(&boxes[b]) || !overlap(&boxes[a], &boxes[b]) || !lets(filter, a, b))
+                continue;
+            if (list.count == capacity) {
+                capacity *= 2;
+                list.a = realloc(list.a, capacity * sizeof(uint32_t));
+                list.b = realloc(list.b, capacity * sizeof(uint32_t));
+            }
+            list.a[list.count] = (uint32_t)a;
+            list.b[list.count++] = (uint32_t)b;
+        }
+    }
+    return list;
+}
+
+static void free_list(struct pair_list *list) {
+    free(list->a);
+    free(list->b);
+}
+
+static void check_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_pair_filter *filter) {
+    static const unsigned threads[] = {1, 2, 3, 7};
+    struct pair_list expected = all_pairs(boxes, count, filter);
+    narc_box *guarded = guard_copy(boxes, count * sizeof *boxes);
+    for (size_t t = 0; t < sizeof threads / sizeof threads[0]; t++) {
+        uint32_t *a = guard_allocate(expected.count * sizeof *a), *b = guard_allocate(expected.count * sizeof *b);
+        size_t found = 12345;
+        narc_error error;
+        assert_int_equal(
+            narc_find_pairs(broad, guarded, count, filter, threads[t], a, b, expected.count, &found, &error), NARC_OK);
+        assert_int_equal(found, expected.count);
+        assert_memory_equal(a, expected.a, found * sizeof *a);
+        assert_memory_equal(b, expected.b, found * sizeof *b);
+        guard_release(a);
+        guard_release(b);
+    }
+    guard_release(guarded);
+    free_list(&expected);
+}
+
+static narc_broad_phase *create(void) {
+    narc_broad_phase *broad = NULL;
+    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    return broad;
+}
+
+static narc_box random_box(struct test_random *random, double side, double smallest, double largest) {
+    const double x = random_between(random, -side, side), y = random_between(random, -side, side);
+    const double w = random_log_between(random, smallest, largest), h = random_log_between(random, smallest, largest);
+    return (narc_box){(float)(x - w), (float)(y - h), (float)(x + w), (float)(y + h)};
+}
+
+/* Sizes alike and sizes 1 : 10,000, dense and loose, few and many. */
+static void finds_all_pairs_of_random_boxes(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("random boxes");
+    narc_broad_phase *broad = create();
+    for (size_t trial = 0; trial < test_trials(60); trial++) {
+        const size_t count = random_below(&random, 8) == 0 ? 3000 : random_below(&random, 300);
+        const double side = random_log_between(&random, 1, 300), ratio = random_below(&random, 2) ? 1.5 : 1e4;
+        narc_box *boxes = malloc((count + 1) * sizeof *boxes);
+        for (size_t k = 0; k < count; k++)
+            boxes[k] = random_box(&random, side, 1 / sqrt(ratio), sqrt(ratio));
+        check_pairs(broad, boxes, count, NULL);
+        free(boxes);
+    }
+    narc_destroy_broad_phase(broad);
+}
+
+/* Small integers: borders that touch, equal boxes, boxes without width or height. */
+static void finds_pairs_that_touch(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("lattice boxes");
+    narc_broad_phase *broad = create();
+    for (size_t trial = 0; trial < test_trials(60); trial++) {
+        narc_box boxes[200];
+        for (size_t k = 0; k < 200; k++) {
+            const float x = (float)random_below(&random, 30), y = (float)random_below(&random, 30) - 15;
+            boxes[k] = (narc_box){x, y, x + (float)random_below(&random, 4), y + (float)random_below(&random, 9)};
+        }
+        check_pairs(broad, boxes, 200, NULL);
+    }
+    narc_destroy_broad_phase(broad);
+}
+
+/* Bodies that were parked far away, denormal sizes, the largest floats, a floor below everything. */
+static void finds_pairs_among_extremes(void **state) {
+    (void)state;
+    static const float places[] = {0,     -0.0f, 1,      -1,      1e-40f,   -1e-40f, 1e9f,
+                                   -1e9f, 1e30f, -1e30f, FLT_MAX, -FLT_MAX, 1e-20f};
+    static const float sizes[] = {0, 1e-45f, 1e-38f, 1e-9f, 1, 100, 1e9f, 1e30f, FLT_MAX};
+    struct test_random random = test_random_named("extreme boxes");
+    narc_broad_phase *broad = create();
+    for (size_t trial = 0; trial < test_trials(100); trial++) {
+        narc_box boxes[150];
+        for (size_t k = 0; k < 150; k++) {
+            const float x = places[random_below(&random, 13)], y = places[random_below(&random, 13)];
+            boxes[k] = (narc_box){x, y, x + sizes[random_below(&random, 9)], y + sizes[random_below(&random, 9)]};
+        }
+        check_pairs(broad, boxes, 150, NULL);
+    }
+    narc_destroy_broad_phase(broad);
+}
+
+static void leaves_out_empty_boxes(void **state) {
+    (void)state;
+    static const narc_box boxes[] = {{0, 0, 1, 1},        {NAN, 0, 1, 1},       {0, NAN, 1, 1},
+                                     {0, 0, NAN, 1},      {0, 0, 1, NAN},       {1, 0, 0, 1},
+                                     {0, 1, 1, 0},        {-INFINITY, 0, 1, 1}, {0, 0, INFINITY, 1},
+                                     {0, 0, 1, INFINITY}, {0.5f, 0.5f, 2, 2},   {INFINITY, 0, INFINITY, 1}};
+    narc_broad_phase *broad = create();
+    uint32_t a[4], b[4];
+    size_t found = 0;
+    assert_int_equal(narc_find_pairs(broad, boxes, 12, NULL, 1, a, b, 4, &found, NULL), NARC_OK);
+    assert_int_equal(found, 1);
+    assert_int_equal(a[0], 0);
+    assert_int_equal(b[0], 10);
+    check_pairs(broad, boxes, 12, NULL);
+    check_pairs(broad, boxes, 0, NULL);
+    narc_destroy_broad_phase(broad);
+}
+
+/* One box that all others overlap, in a list of its own that is long. */
+static void orders_the_partners_of_a_floor(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("floor");
+    narc_broad_phase *broad = create();
+    enum { COUNT = 2000 };
+    narc_box boxes[COUNT];
+    boxes[0] = (narc_box){-1000, -1000, 1000, 1000};
+    for (size_t k = 1; k < COUNT; k++)
+        boxes[k] = random_box(&random, 900, 0.5, 1);
+    check_pairs(broad, boxes, COUNT, NULL);
+    narc_destroy_broad_phase(broad);
+}
+
+static void filters_pairs(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("filters");
+    narc_broad_phase *broad = create();
+    struct body {
+        uint32_t category, mask, group;
+        uint8_t still;
+    };
+    for (size_t trial = 0; trial < test_trials(30); trial++) {
+        narc_box boxes[200];
+        struct body bodies[200];
+        for (size_t k = 0; k < 200; k++) {
+            boxes[k] = random_box(&random, 10, 0.5, 2);
+            bodies[k] = (struct body){(uint32_t)random_bits(&random) & 7, (uint32_t)random_bits(&random) & 7,
+                                      (uint32_t)random_below(&random, 4), (uint8_t)(random_bits(&random) & 2)};
+        }
+        const size_t stride = sizeof *bodies;
+        const narc_column still = {&bodies[0].still, stride}, category = {&bodies[0].category, stride},
+                          mask = {&bodies[0].mask, stride}, group = {&bodies[0].group, stride}, none = {NULL, 0};
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){still, category, mask, group});
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){still, none, none, none});
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){none, category, none, none});
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){none, none, mask, none});
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){none, none, none, group});
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){none, none, none, none});
+    }
+    narc_destroy_broad_phase(broad);
+}
+
+/* ------------------------------------------------------------------------------------------------ memory and errors */
+
+struct counter {
+    size_t allocations, left; /* made, and to be made before the next one fails */
+};
+
+static void *counted_allocate(size_t size, void *context) {
+    struct counter *counter = context;
+    if (counter->left == 0)
+        return NULL;
+    counter->left--;
+    counter->allocations++;
+    return malloc(size);
+}
+
+static void counted_release(void *memory, void *context) {
+    (void)context;
+    free(memory);
+}
+
+static void allocates_nothing_once_it_has_grown(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("steady state");
+    struct counter counter = {0, SIZE_MAX};
+    const narc_allocator allocator = {counted_allocate, counted_release, &counter};
+    narc_broad_phase *broad = NULL;
+    enum { COUNT = 5000, CAPACITY = 100000 };
+    narc_box *boxes = malloc(COUNT * sizeof *boxes);
+    uint32_t *a = malloc(CAPACITY * sizeof *a), *b = malloc(CAPACITY * sizeof *b),
+             *match = malloc(CAPACITY * sizeof *match);
+    assert_int_equal(narc_create_broad_phase(&allocator, &broad), NARC_OK);
+    size_t after_first = 0;
+    for (int step = 0; step < 5; step++) {
+        for (size_t k = 0; k < COUNT; k++)
+            boxes[k] = random_box(&random, 60, 0.5, 1);
+        size_t found;
+        assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, 2, a, b, CAPACITY, &found, NULL), NARC_OK);
+        assert_true(found > 1000);
+        const narc_pairs reversed = {
+            .count = found, .a = {a + found - 1, (size_t)-4}, .b = {b + found - 1, (size_t)-4}};
+        assert_int_equal(narc_match_pairs(broad, &reversed, &reversed, 1, match, NULL), NARC_OK);
+        if (step == 0)
+            after_first = counter.allocations;
+    }
+    assert_int_equal(counter.allocations, after_first);
+    narc_destroy_broad_phase(broad);
+    free(boxes);
+    free(a);
+    free(b);
+    free(match);
+}
+
+/* The first call of an object, without boxes: there is no memory yet. */
+static void finds_nothing_among_no_boxes(void **state) {
+    (void)state;
+    narc_broad_phase *broad = create();
+    const narc_box empty = {NAN, 0, 1, 1};
+    size_t found = 9;
+    assert_int_equal(narc_find_pairs(broad, NULL, 0, NULL, 1, NULL, NULL, 0, &found, NULL), NARC_OK);
+    assert_int_equal(found, 0);
+    found = 9;
+    assert_int_equal(narc_find_pairs(broad, &empty, 1, NULL, 1, NULL, NULL, 0, &found, NULL), NARC_OK);
+    assert_int_equal(found, 0);
+    narc_destroy_broad_phase(broad);
+}
+
+static void *summing_allocate(size_t size, void *context) {
+    *(size_t *)context += size;
+    return malloc(size);
+}
+
+/* Boxes in a row, none of which overlap: memory is for boxes and pairs, and not for questions without an answer. */
+static void takes_memory_for_pairs_alone(void **state) {
+    (void)state;
+    enum { COUNT = 4000 };
+    size_t bytes = 0, found = 9;
+    const narc_allocator allocator = {summing_allocate, counted_release, &bytes};
+    narc_broad_phase *broad = NULL;
+    narc_box *boxes = malloc(COUNT * sizeof *boxes);
+    for (size_t k = 0; k < COUNT; k++)
+        boxes[k] = (narc_box){2 * (float)k, 0, 2 * (float)k + 1, 1};
+    assert_int_equal(narc_create_broad_phase(&allocator, &broad), NARC_OK);
+    assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, 1, NULL, NULL, 0, &found, NULL), NARC_OK);
+    assert_int_equal(found, 0);
+    assert_true(bytes < (size_t)1 << 20); /* 128 bytes for a box, and a few blocks of 32 KB */
+    narc_destroy_broad_phase(broad);
+    free(boxes);
+}
+
+static void survives_failing_allocations(void **state) {
+    (void)state;
+    narc_box boxes[300];
+    uint32_t a[45000], b[45000];
+    for (size_t k = 0; k < 300; k++)
+        boxes[k] = (narc_box){0, 0, 1, 1};
+    bool succeeded = false;
+    for (size_t left = 0; !succeeded; left++) {
+        struct counter counter = {0, left};
+        const narc_allocator allocator = {counted_allocate, counted_release, &counter};
+        narc_broad_phase *broad = NULL;
+        if (narc_create_broad_phase(&allocator, &broad) == NARC_OK) {
+            size_t found = 77;
+            const narc_status status = narc_find_pairs(broad, boxes, 300, NULL, 1, a, b, 45000, &found, NULL);
+            succeeded = status == NARC_OK;
+            assert_true(succeeded || status == NARC_ERROR_MEMORY);
+            assert_int_equal(found, succeeded ? 300 * 299 / 2 : 77);
+        }
+        narc_destroy_broad_phase(broad);
+    }
+}
+
+static void tells_how_much_room_is_needed(void **state) {
+    (void)state;
+    narc_box boxes[100];
+    uint32_t a[10] = {7}, b[10] = {7};
+    size_t found = 0;
+    narc_error error;
+    narc_broad_phase *broad = create();
+    for (size_t k = 0; k < 100; k++)
+        boxes[k] = (narc_box){0, 0, 1, 1};
+    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, 1, a, b, 10, &found, &error), NARC_ERROR_CAPACITY);
+    assert_int_equal(found, 4950);
+    assert_int_equal(a[0], 7);
+    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, 1, NULL, NULL, 0, &found, &error), NARC_ERROR_CAPACITY);
+    assert_int_equal(found, 4950);
+    narc_destroy_broad_phase(broad);
+}
+
+static void refuses_bad_arguments(void **state) {
+    (void)state;
+    narc_broad_phase *broad = create();
+    const narc_box box = {0, 0, 1, 1};
+    uint32_t a, b, match = 5;
+    size_t found = 9;
+    const narc_pairs none = {0}, one = {.count = 1, .a = {&a, 4}, .b = {&b, 4}};
+    const narc_pairs broken = {.count = 1, .b = {&b, 4}};
+    assert_int_equal(narc_find_pairs(NULL, &box, 1, NULL, 1, &a, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_find_pairs(broad, NULL, 1, NULL, 1, &a, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_find_pairs(broad, &box, 1, NULL, 1, NULL, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_find_pairs(broad, &box, 1, NULL, 1, &a, &b, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_find_pairs(broad, &box, (size_t)UINT32_MAX, NULL, 1, &a, &b, 1, &found, NULL),
+                     NARC_ERROR_ARGUMENT);
+    assert_int_equal(found, 9);
+    assert_int_equal(narc_match_pairs(NULL, &none, &none, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_match_pairs(broad, NULL, &none, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_match_pairs(broad, &none, NULL, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_match_pairs(broad, &none, &broken, 1, &match, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_match_pairs(broad, &none, &one, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_match_pairs(broad, &none, &none, 1, NULL, NULL), NARC_OK);
+    assert_int_equal(match, 5);
+    assert_int_equal(narc_create_broad_phase(NULL, NULL), NARC_ERROR_ARGUMENT);
+    narc_destroy_broad_phase(broad);
+    narc_destroy_broad_phase(NULL);
+}
+
+/* ------------------------------------------------------------------------------------------------ matching */
+
+static int compare_pairs(const void *one, const void *other) {
+    const uint32_t *p = one, *q = other;
+    if (p[0] != q[0])
+        return p[0] < q[0] ? -1 : 1;
+    return p[1] == q[1] ? 0 : p[1] < q[1] ? -1 : 1;
+}
+
+/* Lists in order and not, with pairs that stand twice, and their reverses. */
+static void matches_as_a_search_does(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("matches");
+    narc_broad_phase *broad = create();
+    for (size_t trial = 0; trial < test_trials(80); trial++) {
+        const size_t old_count = random_below(&random, 400), new_count = random_below(&random, 400);
+        const size_t bodies = 2 + random_below(&random, 40), order = random_below(&random, 4);
+        uint32_t(*const old_pairs)[2] = malloc((old_count + 1) * sizeof *old_pairs);
+        uint32_t(*const new_pairs)[2] = guard_allocate(new_count * sizeof *new_pairs);
+        for (size_t k = 0; k < 2 * old_count; k++)
+            old_pairs[k / 2][k % 2] = (uint32_t)random_below(&random, bodies);
+        for (size_t k = 0; k < 2 * new_count; k++)
+            new_pairs[k / 2][k % 2] = (uint32_t)random_below(&random, bodies);
+        if (order & 1)
+            qsort(old_pairs, old_count, sizeof *old_pairs, compare_pairs);
+        if (order & 2)
+            qsort(new_pairs, new_count, sizeof *new_pairs, compare_pairs);
+        uint32_t *match = guard_allocate(new_count * sizeof *match);
+        const narc_pairs olds = {.count = old_count, .a = {&old_pairs[0][0], 8}, .b = {&old_pairs[0][1], 8}};
+        const narc_pairs news = {.count = new_count, .a = {&new_pairs[0][0], 8}, .b = {&new_pairs[0][1], 8}};
+        assert_int_equal(narc_match_pairs(broad, &olds, &news, 1 + (unsigned)trial % 3, match, NULL), NARC_OK);
+        for (size_t k = 0; k < new_count; k++) {
+            uint32_t expected = NARC_NO_MATCH;
+            for (size_t i = 0; i < old_count && expected == NARC_NO_MATCH; i++)
+                if (compare_pairs(old_pairs[i], new_pairs[k]) == 0)
+                    expected = (uint32_t)i;
+            assert_int_equal(match[k], expected);
+        }
+        guard_release(match);
+        guard_release(new_pairs);
+        free(old_pairs);
+    }
+    narc_destroy_broad_phase(broad);
+}
+
+static void gathers_columns(void **state) {
+    (void)state;
+    const uint32_t match[] = {2, NARC_NO_MATCH, 0, 2};
+    const uint32_t hints[] = {10, 11, 12};
+    const struct { float normal, tangent[2]; } impulses[] = {{1, {2, 3}}, {4, {5, 6}}, {7, {8, 9}}};
+    uint32_t *out_hints = guard_allocate(sizeof match);
+    float(*const out_impulses)[3] = guard_allocate(4 * sizeof impulses[0]);
+    narc_gather(match, 4, sizeof *hints, hints, out_hints);
+    narc_gather(match, 4, sizeof impulses[0], impulses, out_impulses);
+    assert_memory_equal(out_hints, ((const uint32_t[]){12, 0, 10, 12}), sizeof match);
+    assert_memory_equal(out_impulses, ((const float[4][3]){{7, 8, 9}, {0, 0, 0}, {1, 2, 3}, {7, 8, 9}}),
+                        4 * sizeof impulses[0]);
+    guard_release(out_hints);
+    guard_release(out_impulses);
+}
+
+int main(void) {
+    if (!test_begin())
+        return TEST_SKIPPED;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(finds_all_pairs_of_random_boxes),
+        cmocka_unit_test(finds_pairs_that_touch),
+        cmocka_unit_test(finds_pairs_among_extremes),
+        cmocka_unit_test(leaves_out_empty_boxes),
+        cmocka_unit_test(orders_the_partners_of_a_floor),
+        cmocka_unit_test(filters_pairs),
+        cmocka_unit_test(allocates_nothing_once_it_has_grown),
+        cmocka_unit_test(finds_nothing_among_no_boxes),
+        cmocka_unit_test(takes_memory_for_pairs_alone),
+        cmocka_unit_test(survives_failing_allocations),
+        cmocka_unit_test(tells_how_much_room_is_needed),
+        cmocka_unit_test(refuses_bad_arguments),
+        cmocka_unit_test(matches_as_a_search_does),
+        cmocka_unit_test(gathers_columns),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * cases.c - pairs whose answer is known by hand: exact touch, faces on faces, corners, coincident centres.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "check.h"
+
+static const double pi = 3.14159265358979323846;
+
+static struct shape circle_of(double radius) {
+    struct shape shape;
+    assert_int_equal(narc_build_circle(radius, shape.arcs, &shape.count, NULL), NARC_OK);
+    return shape;
+}
+
+static struct shape box_of(double width, double height, double radius) {
+    struct shape shape;
+    assert_int_equal(narc_build_box(width, height, radius, shape.arcs, &shape.count, NULL), NARC_OK);
+    return shape;
+}
+
+static struct shape half_disc(void) {
+    return (struct shape){{{0, -1, 0, -pi / 2, 0}, {0, 1, 0, 0, pi / 2}, {0, 0, 1, pi / 2, 3 * pi / 2}}, 3};
+}
+
+/* The answer for one pair: A at the origin, turned, B at (x, y); checked against the reference before anything else. */
+struct answer {
+    bool overlap;
+    float separation, normal_x, normal_y, point_x, point_y;
+    int arc_a, arc_b;
+};
+
+static struct answer ask_bodies(const struct shape *a, struct body body_a, const struct shape *b, struct body body_b) {
+    struct scene scene = create_scene(NARC_FLOAT64, 2, 2, 1);
+    scene_add_shape(&scene, a);
+    scene_add_shape(&scene, b);
+    body_b.shape = 1;
+    scene_add_body(&scene, body_a);
+    scene_add_body(&scene, body_b);
+    scene_add_pair(&scene, 0, 1);
+    uint64_t *bits = scene_overlaps(&scene);
+    struct contacts all = scene_contacts(&scene, INFINITY);
+    struct reference_body at_a = scene_reference(&scene, 0), at_b = scene_reference(&scene, 1);
+    struct fractions errors = {0};
+    const char *wrong = check_contact(&at_a, &at_b, reference_find_gap(&at_a, &at_b).gap, &all.view, 0, &errors);
+    if (wrong) {
+        fail_msg("B at (%a, %a): wrong %s; separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), errors %.3g, "
+                 "%.3g, %.3g",
+                 body_b.x, body_b.y, wrong, (double)all.view.separation[0], (double)all.view.normal_x[0],
+                 (double)all.view.normal_y[0], (double)all.view.point_x[0], (double)all.view.point_y[0],
+                 errors.separation, errors.normal, errors.point);
+    }
+    struct answer answer = {bit_is_set(bits, 0), all.view.separation[0], all.view.normal_x[0], all.view.normal_y[0],
+                            all.view.point_x[0], all.view.point_y[0],    all.view.arc_a[0],    all.view.arc_b[0]};
+    destroy_contacts(&all);
+    free(bits);
+    destroy_scene(&scene);
+    return answer;
+}
+
+static struct answer ask_turned(const struct shape *a, double angle, const struct shape *b, double x, double y) {
+    return ask_bodies(a, turned_body(angle, 1), b, (struct body){.x = x, .y = y, .cosine = 1, .scale = 1});
+}
+
+static struct answer ask(const struct shape *a, const struct shape *b, double x, double y) {
+    return ask_turned(a, 0, b, x, y);
+}
+
+/* Touching is not colliding, and the next float closer is. */
+static void test_circles_touch(void **state) {
+    (void)state;
+    struct shape one = circle_of(1);
+    struct answer apart = ask(&one, &one, 2, 0), deeper = ask(&one, &one, 2 - 0x1p-22, 0);
+    assert_false(apart.overlap);
+    assert_true(apart.separation == 0);
+    assert_true(deeper.overlap);
+    assert_true(deeper.separation == -0x1p-22f);
+}
+
+/* Side on side, corner on corner, and corner on side. */
+static void test_boxes_touch(void **state) {
+    (void)state;
+    struct shape box = box_of(2, 1, 0);
+    assert_false(ask(&box, &box, 2, 0).overlap);
+    assert_false(ask(&box, &box, 0, 1).overlap);
+    assert_false(ask(&box, &box, -2, 1).overlap);
+    assert_false(ask(&box, &box, -2, 0.25).overlap);
+    assert_true(ask(&box, &box, -2 + 0x1p-20, 0.25).overlap);
+}
+
+/* Where sides lie on each other, the point is the middle of what they share; the arc is the one after the side. */
+static void test_faces_share_a_stretch(void **state) {
+    (void)state;
+    struct shape wide = box_of(4, 1, 0), narrow = box_of(1, 1, 0.25);
+    /* Tops of A from x = -2 to 2; the side of B without its round corners is 0.5 wide. */
+    const struct {
+        double x, y;
+        float point_x, point_y, separation;
+    } cases[] = {
+        {0.75, 1, 0.75f, 0.5f, 0},            /* touching, all of B's side */
+        {0.75, 0.75, 0.75f, 0.375f, -0.25f},  /* inside */
+        {0.75, 1.5, 0.75f, 0.75f, 0.5f},      /* apart */
+        {2, 0.75, 1.875f, 0.375f, -0.25f},    /* half of B's side hangs over the end: 1.75 .. 2 */
+        {-2.125, 1.5, -1.9375f, 0.75f, 0.5f}, /* -2 .. -1.875 */
+    };
+    for (size_t k = 0; k < sizeof(cases) / sizeof(cases[0]); k++) {
+        struct answer up = ask(&wide, &narrow, cases[k].x, cases[k].y);
+        assert_true(fabsf(up.separation - cases[k].separation) <= 1e-6f);
+        assert_true(fabsf(up.normal_x) <= 1e-6f && fabsf(up.normal_y - 1) <= 1e-6f);
+        if (fabsf(up.point_x - cases[k].point_x) > 4e-6f || fabsf(up.point_y - cases[k].point_y) > 4e-6f)
+            fail_msg("case %zu: point (%.9g, %.9g)", k, (double)up.point_x, (double)up.point_y);
+        /* Arcs of a box, counter-clockwise from the upper right: its top ends at arc 1, its bottom at arc 3. */
+        size_t top, bottom;
+        narc_find_support(wide.arcs, wide.count, 0, 1, NULL, &top);
+        narc_find_support(narrow.arcs, narrow.count, 0, -1, NULL, &bottom);
+        assert_int_equal(up.arc_a, top);
+        assert_int_equal(up.arc_b, bottom);
+    }
+}
+
+/* The same with both turned, B's shape by another angle than B: then rounding leaves the normals of the sides apart. */
+static void test_turned_faces_share_a_stretch(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("turned faces");
+    struct shape wide = box_of(4, 1, 0), narrow;
+    for (size_t trial = 0; trial < test_trials(2000); trial++) {
+        double angle = random_between(&random, -pi, pi), c = cos(angle), s = sin(angle);
+        double own = random_between(&random, -pi, pi), oc = 0.5 * cos(own), os = 0.5 * sin(own);
+        const narc_point corners[4] = {
+            {oc - os, os + oc}, {-oc - os, oc - os}, {os - oc, -os - oc}, {oc + os, os - oc}};
+        assert_int_equal(narc_build_polygon(corners, 4, 0.25, narrow.arcs, &narrow.count, NULL), NARC_OK);
+        double x = random_between(&random, -1.5, 1.5), y = random_between(&random, 0.6, 1.5);
+        struct body at_b = turned_body(angle - own, 1);
+        at_b.x = c * x - s * y;
+        at_b.y = s * x + c * y;
+        struct answer up = ask_bodies(&wide, turned_body(angle, 1), &narrow, at_b);
+        double middle = (0.5 + (y - 0.5)) / 2; /* between A's top and B's bottom */
+        double off_x = (double)up.point_x - (c * x - s * middle), off_y = (double)up.point_y - (s * x + c * middle);
+        if (hypot(off_x, off_y) > 1e-5)
+            fail_msg("angle %.17g, B at (%.17g, %.17g): point off by (%.3g, %.3g)", angle, x, y, off_x, off_y);
+    }
+}
+
+/* A circle in another, its three arcs off by a rounding or two so that the gap grows along each of them and falls back
+ * where the next begins: no local maximum is to be seen anywhere, and the gap is the same in all directions but for
+ * that. */
+static void test_gap_rises_all_around(void **state) {
+    (void)state;
+    struct shape spiral = {.count = 3}, circle = circle_of(1.5);
+    for (size_t k = 0; k < 3; k++) {
+        double start = 0.1 + 2 * pi / 3 * (double)k, end = start + 2 * pi / 3, ahead = end + 0.5;
+        spiral.arcs[k] = (narc_arc){-2e-7 * cos(ahead), -2e-7 * sin(ahead), 1, start, end};
+    }
+    for (double angle = -3; angle < 3; angle += 0.01) {
+        struct answer answer = ask_turned(&spiral, angle, &circle, 0, 0);
+        assert_true(answer.overlap && fabsf(answer.separation + 2.5f) < 1e-6f);
+    }
+}
+
+static void test_coincident_circles(void **state) {
+    (void)state;
+    struct shape one = circle_of(1), two = circle_of(2);
+    struct answer same = ask(&one, &one, 0, 0), other = ask(&one, &two, 0, 0);
+    assert_true(same.overlap && other.overlap);
+    assert_true(same.separation == -2);
+    assert_true(other.separation == -3);
+    assert_int_equal(other.arc_a, 0);
+    assert_int_equal(other.arc_b, 0);
+}
+
+/* A circle beyond the end of an edge, but so little that the edge's normal has the same gap up to a rounding. The
+ * contact is at the edge's end, and must not be looked for on the edge's continuation. */
+static void test_just_beyond_an_edge(void **state) {
+    (void)state;
+    struct shape half = half_disc(), circle = circle_of(1);
+    for (double beyond = 1e-5; beyond < 0.1; beyond *= 1.004) {
+        ask(&half, &circle, 1.3, -1 - beyond);
+        ask(&half, &circle, 1.3, 1 + beyond);
+        ask(&half, &circle, 0.9, 1 + beyond);
+        ask(&circle, &half, -1, 1 + beyond);
+    }
+}
+
+/* The same at a smooth junction: a tip of a flat lens, whose large arc ends where the tip begins. */
+static void test_just_beyond_a_junction(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("just beyond a junction");
+    struct shape lens, circle = circle_of(1);
+    narc_four_arc form = {25, 25, 49.96, 0.002, 0.002};
+    assert_int_equal(narc_build_four_arc(form, lens.arcs, &lens.count, NULL), NARC_OK);
+    for (size_t trial = 0; trial < test_trials(10000); trial++) {
+        const narc_arc *arc = &lens.arcs[trial % 4];
+        double turn = random_between(&random, -pi, pi), c = cos(turn), s = sin(turn);
+        double beyond = random_between(&random, -1, 1) * random_log_between(&random, 1e-5, 1e-2);
+        double angle = arc->start + beyond, distance = random_between(&random, 1, 4);
+        double x = arc->center_x + arc->radius * cos(arc->start) + distance * cos(angle);
+        double y = arc->center_y + arc->radius * sin(arc->start) + distance * sin(angle);
+        ask_turned(&lens, turn, &circle, c * x - s * y, s * x + c * y);
+    }
+}
+
+/* Arcs of half a turn: where the normal is at one end of them, the opposite direction is at the other, and rounding may
+ * make them a little longer than half a turn. The largest gap must not be lost to the one on the opposite side. */
+static void test_half_turns(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("half turns");
+    struct shape shapes[3] = {circle_of(1), half_disc()};
+    assert_int_equal(narc_build_capsule(1, 0.5, shapes[2].arcs, &shapes[2].count, NULL), NARC_OK);
+    for (size_t trial = 0; trial < test_trials(10000); trial++) {
+        const struct shape *a = &shapes[trial % 3], *b = &shapes[trial / 3 % 3];
+        double quarter = pi / 2 * (double)random_below(&random, 4);
+        double tilt = random_below(&random, 2) ? 0x1p-24 * random_between(&random, -8, 8) : 0;
+        double turn = random_below(&random, 2) ? quarter + tilt : random_between(&random, -pi, pi);
+        /* Along an end of A's arcs, or along an axis, where B's are; from deep to apart. */
+        double direction = random_below(&random, 2) ? turn + pi / 2 * (double)random_below(&random, 4) : quarter;
+        double distance = random_between(&random, 0, 3);
+        ask_turned(a, turn, b, distance * cos(direction), distance * sin(direction));
+    }
+}
+
+/* The first junctions of A and B, counter-clockwise from A's x axis, agree up to rounding, and the normal is theirs:
+ * the interval that ends with them must end with the one that the first interval began with. */
+static void test_last_interval_meets_first(void **state) {
+    (void)state;
+    struct shape lens,
+        mixed = {{{0x1.56102fd2c42edp-2, -0x1.d9db3b05cfe4ep-2, 0, -0x1.9589d6a800c3cp-1, -0x1.f7028ddcac9fep-2},
+                  {0x1.bfb62b95f33e4p-2, 0x1.c4f6721a0f70cp-2, 0x1.5806d3f61a82ap-2, -0x1.f7028ddcac9fep-2,
+                   0x1.45642e7b3042p-3},
+                  {0x1.89b3dc3457d4p-1, 0x1.fb648f678264ep-2, 0, 0x1.45642e7b3042p-3, 0x1.491a0f25ad1d2p+0},
+                  {0x1.d50331e7c39e1p-4, -0x1.ba115f5167896p-1, 0x1.7cf80dac65349p+0, 0x1.491a0f25ad1d2p+0,
+                   0x1.cd1c6f1176f1cp+0},
+                  {-0x1.e38b525d83ce5p-4, -0x1.2ab08260bb1d8p-1, 0x1.2993dcd8a7727p+0, 0x1.cd1c6f1176f1cp+0,
+                   0x1.238bb20caa71dp+1},
+                  {-0x1.43a10a4bb2887p-1, 0x1.2ddbafd401f3ep-6, 0x1.7bdcd2000ce2bp-2, 0x1.238bb20caa71dp+1,
+                   0x1.a3f5aba3688ap+1},
+                  {-0x1.ffb82e8b7586ap-1, -0x1.0f2617eb94bbbp-5, 0, 0x1.a3f5aba3688ap+1, 0x1.ffe6f1aa72d6ep+1},
+                  {-0x1.d1c0a3ab40a67p-5, -0x1.b26adea68c427p-1, 0, 0x1.ffe6f1aa72d6ep+1, 0x1.5f6e7a6f42b9p+2}},
+                 8};
+    lens =
+        (struct shape){{{0x1.cea7f50158eb1p-1, -0x1.368d36697f931p-2, 0x1.4aba6911bf71fp-7, -0x1.2a414faec6d6dp+0,
+                         0x1.0718658603aa1p+0},
+                        {0, -0x1.ccde9df41da2ap+0, 0x1.c2389dffe5fe9p+0, 0x1.0718658603aa1p+0, 0x1.0d1d8252d98e2p+1},
+                        {-0x1.c3421947e9b8ep-1, -0x1.34ffc8dac4467p-2, 0x1.4aba6911bf71fp-6, 0x1.0d1d8252d98e2p+1,
+                         -0x1.f7c332d2b5228p+0},
+                        {0, 0x1.ccde9df41da2ap+0, 0x1.2656698978c85p+1, -0x1.f7c332d2b5228p+0, -0x1.2a414faec6d6dp+0}},
+                       4};
+    const struct body at_a = {.cosine = 0x1.88705p-3f, .sine = 0x1.f6831ep-1f, .scale = 1};
+    const struct body at_b = {.x = -0x1.06d629bce93f6p+0,
+                              .y = 0x1.88c24b752eadbp+0,
+                              .cosine = 0x1.cf4e28p-1f,
+                              .sine = -0x1.b3daa8p-2f,
+                              .scale = 1};
+    assert_false(ask_bodies(&mixed, at_a, &lens, at_b).overlap);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_circles_touch),
+        cmocka_unit_test(test_boxes_touch),
+        cmocka_unit_test(test_faces_share_a_stretch),
+        cmocka_unit_test(test_turned_faces_share_a_stretch),
+        cmocka_unit_test(test_gap_rises_all_around),
+        cmocka_unit_test(test_coincident_circles),
+        cmocka_unit_test(test_just_beyond_an_edge),
+        cmocka_unit_test(test_just_beyond_a_junction),
+        cmocka_unit_test(test_half_turns),
+        cmocka_unit_test(test_last_interval_meets_first),
+    };
+    return test_begin() ? cmocka_run_group_tests_name("cases", tests, NULL, NULL) : TEST_SKIPPED;
+}

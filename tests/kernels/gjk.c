@@ -1,0 +1,384 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gjk.c - gjk for all kinds of shapes in all kinds of places: what it promises, with any tolerance, any
+ * number of iterations, and any hints.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "methods.h"
+
+static struct corpus corpora[3]; /* both precisions, and polygons */
+enum { CORPORA = 3 };
+
+static int make_corpora(void **state) {
+    (void)state;
+    corpora[0] = make_corpus("gjk, single", NARC_FLOAT32, 0.4, false);
+    corpora[1] = make_corpus("gjk, double", NARC_FLOAT64, 0.4, false);
+    corpora[2] = make_corpus("gjk, polygons", NARC_FLOAT32, 1, true);
+    for (int k = 0; k < CORPORA; k++)
+        solve_corpus(&corpora[k]);
+    return 0;
+}
+
+static int destroy_corpora(void **state) {
+    (void)state;
+    for (int k = 0; k < CORPORA; k++)
+        destroy_corpus(&corpora[k]);
+    return 0;
+}
+
+/* How many wrong pairs are shown in full. */
+enum { SHOWN = 3 };
+
+/* What a run on a corpus came to. */
+struct tally {
+    size_t pairs, outcomes[4], wrong;
+    double worst; /* by how much a separation is less than the exact one, of what is allowed */
+    double off;   /* by how much a point is off the outlines, of what is allowed */
+};
+
+static void print_tally(const char *name, const struct tally *t) {
+    printf("  %-28s %7zu pairs: done %zu, limit %zu, rounding %zu; largest error %.3f of the tolerance, points' %.3f\n",
+           name, t->pairs, t->outcomes[NARC_OUTCOME_DONE], t->outcomes[NARC_OUTCOME_LIMIT],
+           t->outcomes[NARC_OUTCOME_ROUNDING], t->worst, t->off);
+}
+
+static void show_wrong(const struct corpus *corpus, size_t k, const char *name, const char *wrong, size_t *count) {
+    if ((*count)++ < SHOWN) {
+        print_error("wrong, %s: %s\n", name, wrong);
+        print_corpus_pair(corpus, k);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ contacts */
+
+static double tolerance_of(const narc_query *query) {
+    return query->tolerance > 0 ? (double)query->tolerance : (double)NARC_DEFAULT_TOLERANCE;
+}
+
+/* How far from the outlines the closest points may be. They lie on both support lines, beside points of A and B whose
+ * difference is the nearest point of a segment within the difference: that falls short of the support line of the
+ * difference by `allowed` at most, and each of the two points of its own body's by no more. */
+static double allowed_distance(const struct exact_pair *pair, double allowed) {
+    return allowed + point_bounds * pair->bound;
+}
+
+/* The separation is the gap along the normal, so it is never more than the exact one; less by the tolerance at most if
+ * the search ended well. Both but for rounding: the bound for the separation that is told, and as much for the other
+ * limit, the distance of the segment from the origin, which is made of two support points. */
+static const char *check_gjk_contact(const struct exact_pair *pair, const narc_contacts *told, size_t k,
+                                     const narc_query *query, unsigned outcome, struct tally *tally) {
+    const double separation = (double)told->separation[k];
+    const double allowed = tolerance_of(query) * pair->size + 2 * pair->bound;
+    /* GJK ended before it knew whether they collide, so the separation is not negative. */
+    const bool unknown = outcome != NARC_OUTCOME_DONE && separation == 0;
+    const char *wrong = check_along_normal(pair, told, k, unknown);
+    if (wrong || unknown)
+        return wrong;
+    if (outcome > NARC_OUTCOME_ROUNDING)
+        return "no such outcome";
+    if (separation > pair->gap + pair->bound)
+        return "more than the exact separation";
+    if (outcome == NARC_OUTCOME_DONE) {
+        const double allowed_off = allowed_distance(pair, allowed), off = distance_from_outlines(pair, told, k);
+        tally->worst = fmax(tally->worst, (pair->gap - separation) / allowed);
+        tally->off = fmax(tally->off, off / allowed_off);
+        if (pair->gap - separation > allowed)
+            return "further from the exact separation than the tolerance";
+        if (off > allowed_off)
+            return "the closest points are too far from the outlines";
+    }
+    return NULL;
+}
+
+/* All contacts of a corpus. The query's outcomes must be wanted. */
+static struct tally check_contacts(const struct corpus *corpus, const narc_query *query, const char *name) {
+    const size_t count = corpus->scene.pair_count;
+    struct tally tally = {.pairs = count};
+    memset(query->out_outcomes, 0xa5, count);
+    struct contacts all = query_contacts(&corpus->scene, query, INFINITY, 1);
+    assert_int_equal(all.count, count);
+    for (size_t k = 0; k < count; k++) {
+        const unsigned outcome = query->out_outcomes[k];
+        const char *wrong = check_gjk_contact(&corpus->pairs[k], &all.view, k, query, outcome, &tally);
+        tally.outcomes[outcome % 4]++;
+        if (all.view.pair[k] != k)
+            wrong = "pair index";
+        if (wrong) {
+            show_wrong(corpus, k, name, wrong, &tally.wrong);
+            print_error("  answer: outcome %u, separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), arcs %d, %d\n",
+                        outcome, (double)all.view.separation[k], (double)all.view.normal_x[k],
+                        (double)all.view.normal_y[k], (double)all.view.point_x[k], (double)all.view.point_y[k],
+                        all.view.arc_a[k], all.view.arc_b[k]);
+        }
+    }
+    destroy_contacts(&all);
+    return tally;
+}
+
+static void test_tolerances(void **state) {
+    (void)state;
+    static const float tolerances[] = {0, 1e-1f, 1e-2f, 1e-3f, 1e-4f, 1e-5f, 1e-6f, 1e-30f, 1e30f};
+    size_t wrong = 0;
+    for (size_t t = 0; t < sizeof tolerances / sizeof *tolerances; t++) {
+        for (int c = 0; c < CORPORA; c++) {
+            char name[64];
+            uint8_t *outcomes = create_outcomes(corpora[c].scene.pair_count);
+            const narc_query query = {.method = NARC_METHOD_GJK, .tolerance = tolerances[t], .out_outcomes = outcomes};
+            snprintf(name, sizeof name, "tolerance %g, scene %d", (double)tolerances[t], c);
+            const struct tally tally = check_contacts(&corpora[c], &query, name);
+            print_tally(name, &tally);
+            wrong += tally.wrong;
+            free(outcomes);
+        }
+    }
+    assert_int_equal(wrong, 0);
+}
+
+/* Few iterations: less exact, and told so, but never more than exact. */
+static void test_iterations(void **state) {
+    (void)state;
+    static const unsigned iterations[] = {1, 2, 3, 4, 5, 8, 16, 128, 129, UINT32_MAX};
+    size_t wrong = 0, limits[sizeof iterations / sizeof *iterations] = {0};
+    for (size_t i = 0; i < sizeof iterations / sizeof *iterations; i++) {
+        for (int c = 0; c < CORPORA; c++) {
+            char name[64];
+            uint8_t *outcomes = create_outcomes(corpora[c].scene.pair_count);
+            const narc_query query = {.method = NARC_METHOD_GJK, .iterations = iterations[i], .out_outcomes = outcomes};
+            snprintf(name, sizeof name, "iterations %u, scene %d", iterations[i], c);
+            const struct tally tally = check_contacts(&corpora[c], &query, name);
+            print_tally(name, &tally);
+            wrong += tally.wrong;
+            limits[i] += tally.outcomes[NARC_OUTCOME_LIMIT];
+            free(outcomes);
+        }
+    }
+    assert_int_equal(wrong, 0);
+    /* More iterations, fewer that run out; as many as there are, however many are asked for. */
+    for (size_t i = 1; i < sizeof iterations / sizeof *iterations; i++)
+        assert_true(limits[i] <= limits[i - 1]);
+    assert_true(limits[0] > 0);
+    assert_int_equal(limits[8], limits[7]);
+    assert_int_equal(limits[9], limits[7]);
+}
+
+/* A margin only saves work: a pair that is closer is reported, one that is further by more than the tolerance is not.
+ * With margin 0 it is reported exactly if its bit is set. */
+static void test_margins(void **state) {
+    (void)state;
+    static const float margins[] = {0, 0.25f, 1e-3f, -1e-3f, -0.1f};
+    size_t wrong_pairs = 0;
+    for (int c = 0; c < CORPORA; c++) {
+        const struct corpus *corpus = &corpora[c];
+        const size_t count = corpus->scene.pair_count;
+        uint8_t *outcomes = create_outcomes(count);
+        const narc_query query = {.method = NARC_METHOD_GJK, .out_outcomes = outcomes};
+        for (size_t m = 0; m < sizeof margins / sizeof *margins; m++) {
+            struct contacts found = query_contacts(&corpus->scene, &query, margins[m], 1);
+            struct tally tally = {0};
+            size_t next = 0;
+            for (size_t k = 0; k < count; k++) {
+                const struct exact_pair *pair = &corpus->pairs[k];
+                const bool listed = next < found.count && found.view.pair[next] == k;
+                const double away = pair->gap - (double)margins[m];
+                const char *wrong = NULL;
+                if (listed) {
+                    wrong = check_gjk_contact(pair, &found.view, next, &query, outcomes[k], &tally);
+                    wrong = found.view.separation[next] < margins[m] ? wrong : "reported, but not below the margin";
+                }
+                if (!listed && away < -pair->bound)
+                    wrong = "below the margin, but not reported";
+                else if (listed && outcomes[k] == NARC_OUTCOME_DONE &&
+                         away > tolerance_of(&query) * pair->size + 2 * pair->bound)
+                    wrong = "above the margin, but reported";
+                if (wrong) {
+                    show_wrong(corpus, k, "margin", wrong, &wrong_pairs);
+                    print_error("  margin %g, outcome %u\n", (double)margins[m], outcomes[k]);
+                }
+                next += listed;
+            }
+            assert_int_equal(next, found.count);
+            if (margins[m] == 0) {
+                uint64_t *bits = query_overlaps(&corpus->scene, &query, 1);
+                check_contacts_are_bits(&found, bits, count, "gjk");
+                free(bits);
+            }
+            destroy_contacts(&found);
+        }
+        free(outcomes);
+    }
+    assert_int_equal(wrong_pairs, 0);
+}
+
+/* ------------------------------------------------------------------------------------------------ overlaps */
+
+/* Bits and outcomes of a corpus. With a limit on iterations an answer may be missing, and then says so. */
+static struct tally check_overlaps(const struct corpus *corpus, const narc_query *query, const char *name) {
+    const size_t count = corpus->scene.pair_count;
+    struct tally tally = {.pairs = count};
+    memset(query->out_outcomes, 0xa5, count);
+    uint64_t *bits = query_overlaps(&corpus->scene, query, 1);
+    for (size_t k = 0; k < count; k++) {
+        const struct exact_pair *pair = &corpus->pairs[k];
+        const unsigned outcome = query->out_outcomes[k];
+        const char *wrong = NULL;
+        tally.outcomes[outcome % 4]++;
+        if (outcome > NARC_OUTCOME_ROUNDING)
+            wrong = "no such outcome";
+        else if (outcome == NARC_OUTCOME_LIMIT && bit_is_set(bits, k))
+            wrong = "iterations ran out, but it collides";
+        else if (outcome == NARC_OUTCOME_LIMIT && query->iterations == 0)
+            wrong = "iterations ran out";
+        else if (outcome == NARC_OUTCOME_ROUNDING && !query->hints && fabs(pair->gap) > pair->bound)
+            wrong = "rounding ended the search";
+        else if (fabs(pair->gap) > pair->bound && bit_is_set(bits, k) != (pair->gap < 0) &&
+                 (outcome == NARC_OUTCOME_DONE || bit_is_set(bits, k)))
+            wrong = "overlap";
+        if (wrong) {
+            show_wrong(corpus, k, name, wrong, &tally.wrong);
+            print_error("  answer: outcome %u, bit %d\n", outcome, bit_is_set(bits, k));
+        }
+    }
+    free(bits);
+    return tally;
+}
+
+static void test_overlaps(void **state) {
+    (void)state;
+    static const unsigned iterations[] = {0, 1, 2, 3, 5, 10};
+    size_t wrong = 0, limits = 0;
+    for (size_t i = 0; i < sizeof iterations / sizeof *iterations; i++) {
+        for (int c = 0; c < CORPORA; c++) {
+            char name[64];
+            uint8_t *outcomes = create_outcomes(corpora[c].scene.pair_count);
+            const narc_query query = {.method = NARC_METHOD_GJK, .iterations = iterations[i], .out_outcomes = outcomes};
+            snprintf(name, sizeof name, "overlaps, iterations %u, %d", iterations[i], c);
+            const struct tally tally = check_overlaps(&corpora[c], &query, name);
+            print_tally(name, &tally);
+            wrong += tally.wrong;
+            limits += tally.outcomes[NARC_OUTCOME_LIMIT];
+            free(outcomes);
+        }
+    }
+    assert_int_equal(wrong, 0);
+    assert_true(limits > 0);
+}
+
+/* ------------------------------------------------------------------------------------------------ hints */
+
+/* Overlaps and contacts with these hints, and what those calls leave of them. */
+static size_t check_with_hints(const struct corpus *corpus, uint32_t *hints, const char *what) {
+    const size_t count = corpus->scene.pair_count;
+    uint8_t *outcomes = create_outcomes(count);
+    uint32_t *of_overlaps = create_hints(count);
+    memcpy(of_overlaps, hints, count * sizeof *hints);
+    narc_query query = {.method = NARC_METHOD_GJK, .hints = of_overlaps, .out_outcomes = outcomes};
+    size_t wrong = 0;
+    for (int again = 0; again < 2; again++) { /* the second time with what the first one left */
+        const struct tally tally = check_overlaps(corpus, &query, what);
+        wrong += tally.wrong;
+        /* Rounding may leave a search with useless hints no way on; hardly ever. */
+        assert_true(tally.outcomes[NARC_OUTCOME_ROUNDING] <= count / 1000);
+    }
+    query.hints = hints;
+    for (int again = 0; again < 2; again++) {
+        const struct tally tally = check_contacts(corpus, &query, what);
+        print_tally(what, &tally);
+        wrong += tally.wrong;
+    }
+    free(of_overlaps);
+    free(outcomes);
+    return wrong;
+}
+
+static size_t count_limits(const struct corpus *corpus, narc_query query) {
+    const size_t count = corpus->scene.pair_count;
+    uint8_t *outcomes = create_outcomes(count);
+    size_t limits = 0;
+    query.out_outcomes = outcomes;
+    free(query_overlaps(&corpus->scene, &query, 1));
+    for (size_t k = 0; k < count; k++)
+        limits += outcomes[k] == NARC_OUTCOME_LIMIT;
+    free(outcomes);
+    return limits;
+}
+
+/* What hints are for: where nothing has moved, of the pairs for which some steps are too few, most need no more
+ * of them with hints. */
+static void test_warm_start(void **state) {
+    (void)state;
+    for (int c = 0; c < CORPORA; c++) {
+        uint32_t *hints = create_hints(corpora[c].scene.pair_count);
+        narc_query query = {.method = NARC_METHOD_GJK, .iterations = 3};
+        const size_t cold = count_limits(&corpora[c], query);
+        query.hints = hints;
+        query.iterations = 0;
+        assert_int_equal(count_limits(&corpora[c], query), 0);
+        query.iterations = 3;
+        const size_t warm = count_limits(&corpora[c], query);
+        printf("  three steps are too few for %zu pairs, with hints for %zu\n", cold, warm);
+        assert_true(warm < cold / 2);
+        free(hints);
+    }
+}
+
+/* Hints of a scene in motion. */
+static void test_frames(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("gjk frames");
+    struct corpus corpus = make_corpus("gjk frames", NARC_FLOAT64, 0.3, false);
+    solve_corpus(&corpus);
+    const size_t count = corpus.scene.pair_count;
+    uint32_t *hints = create_hints(count), *zeros = create_hints(count);
+    size_t wrong = check_with_hints(&corpus, hints, "zeros, then own");
+    assert_true(memcmp(hints, zeros, count * sizeof *hints) != 0);
+    static const double steps[] = {1e-6, 0.01, 0.1, 3};
+    for (size_t s = 0; s < sizeof steps / sizeof *steps; s++) {
+        move_corpus(&random, &corpus, steps[s]);
+        wrong += check_with_hints(&corpus, hints, "after a step");
+    }
+    free(hints);
+    free(zeros);
+    destroy_corpus(&corpus);
+    assert_int_equal(wrong, 0);
+}
+
+static void test_garbage_hints(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("gjk garbage");
+    size_t wrong = 0;
+    for (int c = 0; c < CORPORA; c++) {
+        const size_t count = corpora[c].scene.pair_count;
+        uint32_t *hints = create_hints(count);
+        for (int kind = 0; kind < 6; kind++) {
+            static const char *const names[] = {"random bits", "all ones",       "single bits",
+                                                "random axes", "random triples", "three times the same"};
+            for (size_t k = 0; k < count; k++) {
+                const uint32_t bits = (uint32_t)random_bits(&random), ten = bits >> 2 & 1023;
+                const uint32_t values[] = {bits,
+                                           UINT32_MAX,
+                                           0x80000000u >> k % 32,
+                                           (bits & ~3u) | 1,
+                                           bits | 3,
+                                           (ten | ten << 10 | ten << 20) << 2 | 3};
+                hints[k] = values[kind];
+            }
+            wrong += check_with_hints(&corpora[c], hints, names[kind]);
+        }
+        free(hints);
+    }
+    assert_int_equal(wrong, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_overlaps),   cmocka_unit_test(test_tolerances), cmocka_unit_test(test_iterations),
+        cmocka_unit_test(test_margins),    cmocka_unit_test(test_frames),     cmocka_unit_test(test_garbage_hints),
+        cmocka_unit_test(test_warm_start),
+    };
+    return test_begin() ? cmocka_run_group_tests_name("methods_gjk", tests, make_corpora, destroy_corpora)
+                        : TEST_SKIPPED;
+}

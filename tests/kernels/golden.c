@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * golden.c - the bits of the answers to fixed scenes, recorded: the same for every instruction set and processor.
+ *
+ * The scenes come from whole numbers, sums, products and quotients alone, so that no library function can make them
+ * differ. Rotations are rational, ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)). The recorded numbers may change only
+ * together with a wanted change of the kernels; the program prints what it finds.
+ */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "manifold_lists.h"
+#include "narc_methods.h"
+#include "scene.h"
+
+/* One number for both precisions: the double positions are the single ones, 2^30 away, and as exact. */
+static const uint64_t golden_answers = 0x9467dc252df3f63fu;
+static const uint64_t golden_manifolds = 0x91195546533318fdu;
+/* Those of the other methods, in their order. */
+static const uint64_t golden_methods[] = {0xf375815933dd3045u, 0xde05f3d86d13b145u, 0xb72adc1892a6c4b6u,
+                                          0x656376e9cda0e835u, 0xcee7633dc589d41du, 0xb137543756f0dd25u};
+#ifdef NARC_TEST_POSES
+/* Of SLEEF 3.5.1. */
+static const uint64_t golden_poses = 0x8b6998bde9bc55d9u;
+#endif
+
+#define PI 3.14159265358979323846
+
+/* Angles of the directions (3, 4) / 5, (7, 24) / 25 and (20, 99) / 101. */
+#define ANGLE_5   0.92729521800161224
+#define ANGLE_25  1.28700221758656973
+#define ANGLE_101 1.37145902181257261
+
+/* Four arcs around a direction d = (x, y) of the list above, at angle `a`: flat ones of radius R and tips of radius
+ * r. */
+#define LENS(a, x, y, R, r)                                                                                            \
+    {                                                                                                                  \
+        {                                                                                                              \
+            {((R) - (r)) * (x), 0, (r), -(a), (a)},                                                                    \
+            {0, -((R) - (r)) * (y), (R), (a), PI - (a)},                                                               \
+            {-((R) - (r)) * (x), 0, (r), PI - (a), PI + (a)},                                                          \
+            {0, ((R) - (r)) * (y), (R), PI + (a), 2 * PI - (a)},                                                       \
+        },                                                                                                             \
+            4                                                                                                          \
+    }
+
+#define TRIANGLE(r)                                                                                                    \
+    { {{1.5, -1, (r), -PI / 2, ANGLE_5}, {-1, 0.875, (r), ANGLE_5, PI}, {-1, -1, (r), PI, 1.5 * PI}}, 3 }
+
+#define BOX(x, y, r)                                                                                                   \
+    {                                                                                                                  \
+        {{(x), (y), (r), 0, PI / 2},                                                                                   \
+         {-(x), (y), (r), PI / 2, PI},                                                                                 \
+         {-(x), -(y), (r), PI, 1.5 * PI},                                                                              \
+         {(x), -(y), (r), 1.5 * PI, 2 * PI}},                                                                          \
+            4                                                                                                          \
+    }
+
+static const struct shape shapes[] = {
+    {{{0, 0, 1, 0, 2 * PI}}, 1},
+    {{{0.25, -0.5, 0.375, 0, 2 * PI}}, 1},
+    {{{1, 0, 0.25, -PI / 2, PI / 2}, {-1, 0, 0.25, PI / 2, 1.5 * PI}}, 2},
+    {{{0, -1, 0, -PI / 2, 0}, {0, 1, 0, 0, PI / 2}, {0, 0, 1, PI / 2, 1.5 * PI}}, 3},
+    BOX(0.75, 0.5, 0),
+    BOX(0.5, 0.25, 0.125),
+    BOX(1, 0.015625, 0),
+    TRIANGLE(0),
+    TRIANGLE(0.125),
+    LENS(ANGLE_5, 0.6, 0.8, 1.5, 0.25),
+    LENS(ANGLE_25, 0.28, 0.96, 4.0, 0.0625),
+    LENS(ANGLE_101, 20.0 / 101, 99.0 / 101, 6.0, 0),
+    LENS(ANGLE_25, 0.28, 0.96, 1.0, 0.9375),
+};
+enum { SHAPES = sizeof(shapes) / sizeof(shapes[0]), BODIES = 600, PAIRS = 10000 };
+
+static struct scene make_scene(narc_precision precision) {
+    /* Not of NARC_TEST_SEED. */
+    struct test_random random = {1};
+    struct scene scene = create_scene(precision, SHAPES, BODIES, PAIRS);
+    for (size_t k = 0; k < SHAPES; k++)
+        scene_add_shape(&scene, &shapes[k]);
+    for (size_t k = 0; k < BODIES; k++) {
+        double t = ((double)random_below(&random, 129) - 64) / 64, square = t * t;
+        double cosine = (1 - square) / (1 + square), sine = 2 * t / (1 + square);
+        bool lattice = random_below(&random, 4) == 0, turned = random_below(&random, 2);
+        cosine = lattice ? 1 : cosine;
+        sine = lattice ? 0 : sine;
+        /* One random number per statement: within one, each compiler has its own order. */
+        struct body body = {.cosine = (float)(turned ? -sine : cosine), .sine = (float)(turned ? cosine : sine)};
+        body.scale = 0.25f * (float)(1 + random_below(&random, 8));
+        body.shape = (uint32_t)random_below(&random, SHAPES);
+        double grid = lattice ? 0.125 : 0x1p-16, far = precision == NARC_FLOAT64 ? 0x1p30 : 0;
+        size_t places = lattice ? 25 : 200000;
+        body.x = far + (double)random_below(&random, places) * grid;
+        body.y = far + (double)random_below(&random, places) * grid;
+        scene_add_body(&scene, body);
+    }
+    for (size_t k = 0; k < PAIRS; k++) {
+        uint32_t a = (uint32_t)random_below(&random, BODIES);
+        scene_add_pair(&scene, a, (uint32_t)random_below(&random, BODIES));
+    }
+    return scene;
+}
+
+static uint64_t hash_answers(const struct scene *scene) {
+    uint64_t *bits = scene_overlaps(scene);
+    struct contacts all = scene_contacts(scene, INFINITY), colliding = scene_contacts(scene, 0);
+    uint64_t hash = test_hash(TEST_HASH_START, bits, NARC_BIT_WORDS(PAIRS) * sizeof(uint64_t));
+    hash = test_hash(hash, all.view.separation, PAIRS * sizeof(float));
+    hash = test_hash(hash, all.view.normal_x, PAIRS * sizeof(float));
+    hash = test_hash(hash, all.view.normal_y, PAIRS * sizeof(float));
+    hash = test_hash(hash, all.view.point_x, PAIRS * sizeof(float));
+    hash = test_hash(hash, all.view.point_y, PAIRS * sizeof(float));
+    hash = test_hash(hash, all.view.arc_a, PAIRS);
+    hash = test_hash(hash, all.view.arc_b, PAIRS);
+    hash = test_hash(hash, colliding.view.pair, colliding.count * sizeof(uint32_t));
+    printf("  %zu of %d pairs collide\n", colliding.count, (int)PAIRS);
+    /* Were all or none to collide, the hash would say little. */
+    assert_true(colliding.count > PAIRS / 4 && colliding.count < PAIRS * 3 / 4);
+    destroy_contacts(&all);
+    destroy_contacts(&colliding);
+    free(bits);
+    return hash;
+}
+
+static void check_hash(const char *name, uint64_t hash, uint64_t golden) {
+    printf("  %s: 0x%016" PRIx64 "\n", name, hash);
+    assert_true(hash == golden);
+}
+
+static void check_scene(const char *name, narc_precision precision, uint64_t golden) {
+    struct scene scene = make_scene(precision);
+    check_hash(name, hash_answers(&scene), golden);
+    destroy_scene(&scene);
+}
+
+static void test_single_positions(void **state) {
+    (void)state;
+    check_scene("single positions", NARC_FLOAT32, golden_answers);
+}
+
+static void test_double_positions(void **state) {
+    (void)state;
+    check_scene("double positions", NARC_FLOAT64, golden_answers);
+}
+
+/* Answers by one of the methods of narc_methods.h; by GJK twice, the second time from the first one's hints. */
+static uint64_t hash_method(const struct scene *scene, const narc_bodies *bodies, const narc_pairs *pairs,
+                            narc_method method) {
+    static uint64_t bits[NARC_BIT_WORDS(PAIRS)];
+    static uint8_t outcomes[PAIRS];
+    static uint32_t hints[PAIRS];
+    const bool lists = method <= NARC_METHOD_GJK;
+    const narc_query query = {.method = method, .hints = hints, .out_outcomes = outcomes};
+    uint64_t hash = TEST_HASH_START;
+    memset(hints, 0, sizeof hints);
+    for (int round = 0; round < 2; round++) {
+        struct contacts found = create_contacts(PAIRS);
+        assert_int_equal(narc_query_overlaps(scene->store, bodies, pairs, &query, 1, bits, NULL), NARC_OK);
+        if (lists)
+            assert_int_equal(
+                narc_query_contacts(scene->store, bodies, pairs, &query, INFINITY, 1, &found.view, &found.count, NULL),
+                NARC_OK);
+        assert_true(!lists || found.count == pairs->count);
+        const size_t count = lists ? found.count : 0;
+        hash = test_hash(hash, bits, NARC_BIT_WORDS(pairs->count) * sizeof(uint64_t));
+        hash = test_hash(hash, outcomes, pairs->count);
+        hash = test_hash(hash, hints, sizeof hints);
+        hash = test_hash(hash, found.view.separation, count * sizeof(float));
+        hash = test_hash(hash, found.view.normal_x, count * sizeof(float));
+        hash = test_hash(hash, found.view.normal_y, count * sizeof(float));
+        hash = test_hash(hash, found.view.point_x, count * sizeof(float));
+        hash = test_hash(hash, found.view.point_y, count * sizeof(float));
+        hash = test_hash(hash, found.view.arc_a, count);
+        hash = test_hash(hash, found.view.arc_b, count);
+        destroy_contacts(&found);
+    }
+    return hash;
+}
+
+static bool is_polygon(const struct scene *scene, uint32_t body) {
+    return narc_shape_flags(scene->store, scene->bodies[body].shape) & NARC_SHAPE_POLYGON;
+}
+
+static void test_methods(void **state) {
+    (void)state;
+    struct scene scene = make_scene(NARC_FLOAT32);
+    const narc_bodies bodies = scene_bodies(&scene);
+    struct pair *polygons = malloc(PAIRS * sizeof *polygons);
+    size_t count = 0;
+    assert_non_null(polygons);
+    for (size_t k = 0; k < PAIRS; k++)
+        if (is_polygon(&scene, scene.pairs[k].a) && is_polygon(&scene, scene.pairs[k].b))
+            polygons[count++] = scene.pairs[k];
+    assert_true(count > PAIRS / 40);
+    const narc_pairs all = scene_pairs(&scene),
+                     some = {.count = count, .a = NARC_COLUMN(polygons, a), .b = NARC_COLUMN(polygons, b)};
+    bool right = true;
+    for (narc_method method = NARC_METHOD_SAT_FIRST; narc_method_name(method); method++) {
+        const uint64_t hash = hash_method(&scene, &bodies, method == NARC_METHOD_POLYGON_SAT ? &some : &all, method);
+        printf("  %s: 0x%016" PRIx64 "\n", narc_method_name(method), hash);
+        right = right && hash == golden_methods[method - NARC_METHOD_SAT_FIRST];
+    }
+    assert_true(right);
+    free(polygons);
+    destroy_scene(&scene);
+}
+
+static void test_manifolds(void **state) {
+    (void)state;
+    uint64_t hashes[2];
+    for (int precision = 0; precision < 2; precision++) {
+        struct scene scene = make_scene((narc_precision)precision);
+        const float margins[] = {0, INFINITY};
+        uint64_t hash = TEST_HASH_START;
+        for (size_t m = 0; m < 2; m++) {
+            struct manifolds list = scene_manifolds(&scene, margins[m]);
+            size_t two = 0;
+            for (size_t k = 0; k < MANIFOLD_ARRAYS; k++)
+                hash = test_hash(hash, manifold_array(&list.view, k), list.count * manifold_item[k]);
+            for (size_t k = 0; k < list.count; k++)
+                two += list.view.point_count[k] == 2;
+            printf("  %zu of %zu manifolds have two points\n", two, list.count);
+            assert_true(two > list.count / 20);
+            destroy_manifolds(&list, false);
+        }
+        hashes[precision] = hash;
+        destroy_scene(&scene);
+    }
+    check_hash("manifolds, single positions", hashes[0], golden_manifolds);
+    check_hash("manifolds, double positions", hashes[1], golden_manifolds);
+}
+
+#ifdef NARC_TEST_POSES
+static void test_poses(void **state) {
+    (void)state;
+    enum { ANGLES = 100000 };
+    static float angles[ANGLES], cosines[ANGLES], sines[ANGLES];
+    struct test_random random = {2};
+    for (size_t k = 0; k < ANGLES; k++)
+        angles[k] = ((float)random_below(&random, 2000001) - 1000000.0f) / (k % 2 ? 4096.0f : 262144.0f);
+    assert_int_equal(narc_compute_poses(angles, ANGLES, cosines, sines, NULL), NARC_OK);
+    uint64_t hash = test_hash(TEST_HASH_START, cosines, sizeof(cosines));
+    check_hash("poses", test_hash(hash, sines, sizeof(sines)), golden_poses);
+}
+#endif
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_single_positions),
+        cmocka_unit_test(test_double_positions),
+        cmocka_unit_test(test_methods),
+        cmocka_unit_test(test_manifolds),
+#ifdef NARC_TEST_POSES
+        cmocka_unit_test(test_poses),
+#endif
+    };
+    return test_begin() ? cmocka_run_group_tests_name("golden", tests, NULL, NULL) : TEST_SKIPPED;
+}

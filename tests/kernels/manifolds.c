@@ -1,0 +1,421 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * manifolds.c - manifolds of all families of shapes in all placements against a construction in double precision,
+ * and under swapping A and B; ids and points of bodies that move a little.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "manifold_lists.h"
+#include "manifold_reference.h"
+#include "placements.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { SHAPES_PER_FAMILY = 4, SHOWN = 5 };
+
+/* A point's place and separation may be off by that many bounds of a separation: both edges' ends, a rotated normal,
+ * and the slope of an edge at the flat angle. */
+static const double point_bounds = 4;
+
+struct tally {
+    size_t pairs, two, stretches, doubtful, swaps_skipped, wrong;
+    double worst;
+};
+
+static bool same_radius(double expected, double found) {
+    return expected == found || fabs(expected - found) <= 1e-6 * expected;
+}
+
+/* Point i of manifold k against one of the reference; NULL, or what is wrong. */
+static const char *check_point(const struct reference_point *right, const narc_manifolds *list, size_t k, size_t i,
+                               double bound, bool radii, double *worst) {
+    const double off = hypot((double)list->point_x[i][k] - right->x, (double)list->point_y[i][k] - right->y);
+    const double error = fmax(off, fabs((double)list->separation[i][k] - right->separation));
+    *worst = fmax(*worst, error / bound);
+    if (!(error <= bound))
+        return "point or separation";
+    if (list->feature[i][k] != right->feature)
+        return "feature";
+    if (radii && (!same_radius(right->radius_a, (double)list->radius_a[i][k]) ||
+                  !same_radius(right->radius_b, (double)list->radius_b[i][k])))
+        return "radius";
+    return NULL;
+}
+
+/* Manifold k of a list with an infinite margin against contact k and the reference. */
+static const char *check_manifold(const struct reference_body *a, const struct reference_body *b,
+                                  const narc_contacts *contacts, const narc_manifolds *list, size_t k,
+                                  struct tally *tally) {
+    const struct exact_contact contact = {(double)contacts->separation[k],
+                                          (double)contacts->normal_x[k],
+                                          (double)contacts->normal_y[k],
+                                          (double)contacts->point_x[k],
+                                          (double)contacts->point_y[k],
+                                          contacts->arc_a[k],
+                                          contacts->arc_b[k]};
+    const struct reference_manifold right = reference_find_manifold(a, b, &contact, (double)NARC_FLAT_ANGLE);
+    const double bound = point_bounds * separation_bound(a, b);
+    const size_t count = list->point_count[k];
+    if (count < 1 || count > 2)
+        return "number of points";
+    if (memcmp(&list->normal_x[k], &contacts->normal_x[k], sizeof(float)) != 0 ||
+        memcmp(&list->normal_y[k], &contacts->normal_y[k], sizeof(float)) != 0)
+        return "normal";
+    /* One of the points is the contact, bit for bit; nothing is deeper. */
+    bool exact = false, exact_place = false;
+    for (size_t i = 0; i < count; i++) {
+        const bool same = memcmp(&list->separation[i][k], &contacts->separation[k], sizeof(float)) == 0;
+        exact = exact || same;
+        exact_place = exact_place || (same && memcmp(&list->point_x[i][k], &contacts->point_x[k], sizeof(float)) == 0 &&
+                                      memcmp(&list->point_y[i][k], &contacts->point_y[k], sizeof(float)) == 0);
+        if (list->separation[i][k] < contacts->separation[k])
+            return "a point deeper than the contact";
+    }
+    if (!exact)
+        return "the deepest separation";
+    tally->pairs++;
+    tally->two += count == 2;
+    if (right.doubtful) {
+        tally->doubtful++;
+        return NULL;
+    }
+    if (count != right.count)
+        return "number of points";
+    tally->stretches += right.stretch;
+    if (!exact_place && !right.stretch)
+        return "the deepest place";
+    /* What is certain but for the radii is which features; of a stretch, not which end is deeper. */
+    for (size_t i = 0; i < count; i++) {
+        struct reference_point point = right.point[i];
+        if (right.stretch)
+            point.separation = fmax(point.separation, contact.separation);
+        const char *wrong = check_point(&point, list, k, i, bound, !right.doubtful_radius, &tally->worst);
+        if (wrong && !(right.doubtful_radius && strcmp(wrong, "feature") == 0 && count == 1))
+            return wrong;
+    }
+    return NULL;
+}
+
+/* The manifold of (b, a) against that of (a, b). */
+static const char *check_swapped(const narc_manifolds *list, const narc_manifolds *swapped, size_t k, double x,
+                                 double y, double bound, struct tally *tally) {
+    const size_t count = list->point_count[k];
+    const double turn =
+        hypot((double)(list->normal_x[k] + swapped->normal_x[k]), (double)(list->normal_y[k] + swapped->normal_y[k]));
+    /* Another local maximum of the same value, or a choice within rounding. */
+    if (turn > 1e-4 || swapped->point_count[k] != count) {
+        tally->swaps_skipped++;
+        return NULL;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const size_t other = count - 1 - i;
+        const unsigned id = list->feature[i][k], turned = swapped->feature[other][k];
+        if ((id >> 8 | (id & 0xff) << 8) != turned) {
+            tally->swaps_skipped++;
+            return NULL;
+        }
+        const double off = hypot((double)(list->point_x[i][k] - swapped->point_x[other][k]) - x,
+                                 (double)(list->point_y[i][k] - swapped->point_y[other][k]) - y);
+        if (fabs((double)(list->separation[i][k] - swapped->separation[other][k])) > bound)
+            return "separation, swapped";
+        if (turn < 1e-6 && off > 4 * bound)
+            return "point, swapped";
+    }
+    return NULL;
+}
+
+static void check_scene(const struct scene *scene, const char *families, struct tally *tally) {
+    struct contacts all = scene_contacts(scene, INFINITY);
+    struct manifolds list = scene_manifolds(scene, INFINITY);
+    struct scene turned = *scene;
+    turned.pairs = malloc(scene->pair_count * sizeof *turned.pairs);
+    assert_non_null(turned.pairs);
+    for (size_t k = 0; k < scene->pair_count; k++)
+        turned.pairs[k] = (struct pair){scene->pairs[k].b, scene->pairs[k].a};
+    struct manifolds swapped = scene_manifolds(&turned, INFINITY);
+    assert_int_equal(list.count, scene->pair_count);
+    assert_int_equal(swapped.count, scene->pair_count);
+    for (size_t k = 0; k < scene->pair_count; k++) {
+        const struct reference_body a = scene_reference(scene, scene->pairs[k].a);
+        const struct reference_body b = scene_reference(scene, scene->pairs[k].b);
+        assert_int_equal(list.view.pair[k], k);
+        const char *wrong = check_manifold(&a, &b, &all.view, &list.view, k, tally);
+        if (!wrong)
+            wrong = check_swapped(&list.view, &swapped.view, k, b.x - a.x, b.y - a.y,
+                                  point_bounds * separation_bound(&a, &b), tally);
+        if (wrong && tally->wrong++ < SHOWN) {
+            print_error("%s, %s: wrong %s\n", families, placement_name((enum placement)(k % PLACE_COUNT)), wrong);
+            for (size_t i = 0; i < list.view.point_count[k]; i++)
+                print_error("  point %zu: (%.9g, %.9g), separation %.9g, feature %04x, radii %g and %g\n", i,
+                            (double)list.view.point_x[i][k], (double)list.view.point_y[i][k],
+                            (double)list.view.separation[i][k], list.view.feature[i][k],
+                            (double)list.view.radius_a[i][k], (double)list.view.radius_b[i][k]);
+            print_pair(&a, &b);
+        }
+    }
+    free(turned.pairs);
+    destroy_contacts(&all);
+    destroy_manifolds(&list, false);
+    destroy_manifolds(&swapped, false);
+}
+
+static void check_all_families(const char *name, narc_precision precision, size_t rounds) {
+    struct test_random random = test_random_named(name);
+    struct tally tally = {0};
+    const size_t pairs = PLACE_COUNT * test_trials(rounds);
+    for (int family_a = 0; family_a < FAMILY_COUNT; family_a++) {
+        for (int family_b = 0; family_b < FAMILY_COUNT; family_b++) {
+            struct scene scene = create_scene(precision, 2 * SHAPES_PER_FAMILY, 2 * pairs, pairs);
+            char families[64];
+            for (size_t k = 0; k < 2 * SHAPES_PER_FAMILY; k++) {
+                const struct shape shape = make_shape(&random, (enum family)(k % 2 ? family_b : family_a));
+                scene_add_shape(&scene, &shape);
+            }
+            for (size_t k = 0; k < pairs; k++) {
+                const uint32_t shape_a = 2 * (uint32_t)random_below(&random, SHAPES_PER_FAMILY);
+                const uint32_t shape_b = 2 * (uint32_t)random_below(&random, SHAPES_PER_FAMILY) + 1;
+                struct body a, b;
+                place_pair(&random, (enum placement)(k % PLACE_COUNT), precision, &scene.shapes[shape_a],
+                           &scene.shapes[shape_b], &a, &b);
+                a.shape = shape_a;
+                b.shape = shape_b;
+                const uint32_t body_a = scene_add_body(&scene, a);
+                scene_add_pair(&scene, body_a, scene_add_body(&scene, b));
+            }
+            snprintf(families, sizeof families, "%s - %s", family_name((enum family)family_a),
+                     family_name((enum family)family_b));
+            check_scene(&scene, families, &tally);
+            destroy_scene(&scene);
+        }
+    }
+    printf(
+        "  %zu pairs, %zu with two points, %zu stretches, %zu doubtful, %zu not compared swapped, largest error %.3f\n",
+        tally.pairs, tally.two, tally.stretches, tally.doubtful, tally.swaps_skipped, tally.worst);
+    assert_int_equal(tally.wrong, 0);
+    assert_true(tally.two > tally.pairs / 20);
+    assert_true(tally.stretches > tally.pairs / 500);
+    assert_true(tally.doubtful < tally.pairs / 20);
+    assert_true(tally.swaps_skipped < tally.pairs / 20);
+}
+
+static void test_single_positions(void **state) {
+    (void)state;
+    check_all_families("manifolds, single positions", NARC_FLOAT32, 10);
+}
+
+static void test_double_positions(void **state) {
+    (void)state;
+    check_all_families("manifolds, double positions", NARC_FLOAT64, 5);
+}
+
+/* ------------------------------------------------------------------------------------------------ small motions */
+
+/* Two bodies, one pair. */
+static struct scene make_duo(const struct shape *a, const struct shape *b) {
+    struct scene scene = create_scene(NARC_FLOAT32, 2, 2, 1);
+    for (uint32_t k = 0; k < 2; k++) {
+        struct body body = turned_body(0, 1);
+        body.shape = scene_add_shape(&scene, k == 0 ? a : b);
+        scene_add_body(&scene, body);
+    }
+    scene_add_pair(&scene, 0, 1);
+    return scene;
+}
+
+static void put(struct scene *scene, uint32_t index, double x, double y, double angle) {
+    struct body body = turned_body(angle, 1);
+    body.shape = scene->bodies[index].shape;
+    body.x = x;
+    body.y = y;
+    round_position(&body, scene->precision);
+    scene->bodies[index] = body;
+}
+
+static struct shape make_box(double width, double height, double radius) {
+    struct shape shape;
+    assert_int_equal(narc_build_box(width, height, radius, shape.arcs, &shape.count, NULL), NARC_OK);
+    return shape;
+}
+
+/* The edge of a box whose normal points up, and the one whose normal points down. */
+static unsigned find_edge_with(const struct shape *shape, double normal) {
+    for (size_t i = 0; i < shape->count; i++)
+        if (fabs(remainder(shape->arcs[i].start - normal, 2 * pi)) < 1e-9)
+            return (unsigned)i | NARC_FEATURE_EDGE;
+    fail_msg("no edge with the normal %g", normal);
+    return 0;
+}
+
+/* A box on a box, tilted and moved a little to either side, rounded or not, equal or not: always the same two ids, and
+ * points that move no more than the box does, but where they are cut off. */
+static void test_box_on_box(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("box on box");
+    for (size_t round = 0; round < 4; round++) {
+        const double rounding = round % 2 ? 0.1 : 0, width = round < 2 ? 2 : 1;
+        const struct shape below = make_box(2, 1, 0), above = make_box(width, 1, rounding);
+        struct scene scene = make_duo(&below, &above);
+        const unsigned up = find_edge_with(&below, pi / 2), down = find_edge_with(&above, -pi / 2);
+        const unsigned first = up | (down | NARC_FEATURE_END) << 8, second = (up | NARC_FEATURE_END) | down << 8;
+        for (size_t step = 0; step < 2000; step++) {
+            const double tilt =
+                step == 0 ? 0 : random_between(&random, -1, 1) * pow(10, -random_between(&random, 1.5, 8));
+            const double x = step == 0 ? 0 : random_between(&random, -0.02, 0.02);
+            put(&scene, 1, x, 0.99, tilt);
+            struct manifolds list = scene_manifolds(&scene, 0.05f);
+            assert_int_equal(list.count, 1);
+            assert_int_equal(list.view.point_count[0], 2);
+            assert_int_equal(list.view.feature[0][0], first);
+            assert_int_equal(list.view.feature[1][0], second);
+            /* The tangent of a normal that points up points left. The rounded box touches with its arcs' ends. */
+            const double half = width / 2, reach = 0.05;
+            assert_true(list.view.normal_y[0] > 0.999f);
+            assert_true(fabs((double)list.view.point_x[0][0] - half) < reach + rounding);
+            assert_true(fabs((double)list.view.point_x[1][0] + half) < reach + rounding);
+            assert_true(fabs((double)list.view.point_y[0][0] - 0.495) < 0.06);
+            destroy_manifolds(&list, false);
+        }
+        destroy_scene(&scene);
+    }
+}
+
+/* A rounded box that rocks through a tilt of zero: ids stay, and both points and separations are continuous. */
+static void test_rocking(void **state) {
+    (void)state;
+    const struct shape ground = make_box(20, 1, 0), rocker = make_box(2, 1, 0.2);
+    struct scene scene = make_duo(&ground, &rocker);
+    const double step = 1e-4, largest = 0.1;
+    float last[2][3] = {{0}};
+    unsigned id[2] = {0};
+    size_t frames = 0;
+    for (double tilt = -largest; tilt <= largest; tilt += step, frames++) {
+        put(&scene, 1, 0, 1, tilt);
+        struct manifolds list = scene_manifolds(&scene, 0.5f);
+        assert_int_equal(list.count, 1);
+        assert_int_equal(list.view.point_count[0], 2);
+        for (size_t i = 0; i < 2; i++) {
+            const float now[3] = {list.view.point_x[i][0], list.view.point_y[i][0], list.view.separation[i][0]};
+            for (size_t c = 0; c < 3 && frames > 0; c++)
+                assert_true(fabs((double)(now[c] - last[i][c])) < 3 * step);
+            if (frames > 0)
+                assert_int_equal(list.view.feature[i][0], id[i]);
+            memcpy(last[i], now, sizeof now);
+            id[i] = list.view.feature[i][0];
+        }
+        destroy_manifolds(&list, false);
+    }
+    assert_true(frames > 1000);
+    destroy_scene(&scene);
+}
+
+/* A circle that rolls along a box's flat top and around its corner: on the edge, then on the arc after the corner, and
+ * on the next edge; the kind and the radii say which. */
+static void test_rolling(void **state) {
+    (void)state;
+    const struct shape box = make_box(2, 2, 0);
+    struct shape circle;
+    assert_int_equal(narc_build_circle(0.5, circle.arcs, &circle.count, NULL), NARC_OK);
+    struct scene scene = make_duo(&circle, &box);
+    const unsigned top = find_edge_with(&box, pi / 2), right = find_edge_with(&box, 0), corner = right & 0x3f;
+    size_t seen[3] = {0};
+    for (double way = -1; way < 3; way += 0.01) {
+        /* Along the top for x < 1, around the corner (1, 1) for half a turn's quarter, and down. */
+        const double turn = fmin(fmax(way - 1, 0) / 0.5, pi / 2), down = fmax(way - 1 - pi / 4, 0);
+        put(&scene, 0, fmin(way, 1) + 0.5 * sin(turn), 1 + 0.5 * cos(turn) - down, way);
+        struct manifolds list = scene_manifolds(&scene, 0.01f);
+        assert_int_equal(list.count, 1);
+        assert_int_equal(list.view.point_count[0], 1);
+        const unsigned on_box = list.view.feature[0][0] >> 8;
+        const float curved = list.view.radius_b[0][0];
+        assert_int_equal(list.view.feature[0][0] & 0xff, 0);
+        assert_true(list.view.radius_a[0][0] == 0.5f);
+        assert_true(list.view.separation[1][0] == 0 && list.view.feature[1][0] == 0);
+        if (fabs(way - 1) < 0.02 || fabs(way - 1 - pi / 4) < 0.02) { /* on either side of the corner's end */
+            assert_true(on_box == top || on_box == corner || on_box == right);
+        } else if (way < 1) {
+            assert_int_equal(on_box, top);
+            assert_true(curved == INFINITY);
+            seen[0]++;
+        } else if (turn < pi / 2) {
+            assert_int_equal(on_box, corner);
+            assert_true(curved == 0);
+            seen[1]++;
+        } else {
+            assert_int_equal(on_box, right);
+            assert_true(curved == INFINITY);
+            seen[2]++;
+        }
+        destroy_manifolds(&list, false);
+    }
+    assert_true(seen[0] > 50 && seen[1] > 50 && seen[2] > 50);
+    destroy_scene(&scene);
+}
+
+/* The second point is listed exactly if its separation is below the margin; the first then keeps its id. */
+static void test_margin(void **state) {
+    (void)state;
+    const struct shape ground = make_box(20, 1, 0), box = make_box(2, 1, 0);
+    struct scene scene = make_duo(&ground, &box);
+    for (int side = -1; side <= 1; side += 2) {
+        put(&scene, 1, 0, 1.02, side * 0.05);
+        struct manifolds all = scene_manifolds(&scene, INFINITY);
+        assert_int_equal(all.view.point_count[0], 2);
+        const size_t deep = all.view.separation[1][0] < all.view.separation[0][0], other = 1 - deep;
+        assert_int_equal(deep, side < 0 ? 0 : 1);
+        const float limit = all.view.separation[other][0];
+        const float margins[] = {nextafterf(limit, INFINITY), limit, nextafterf(all.view.separation[deep][0], INFINITY),
+                                 all.view.separation[deep][0]};
+        const size_t points[] = {2, 1, 1, 0};
+        for (size_t m = 0; m < 4; m++) {
+            struct manifolds list = scene_manifolds(&scene, margins[m]);
+            assert_int_equal(list.count, points[m] > 0);
+            if (points[m] == 2) {
+                check_same_manifolds(&all, 0, &list, 0);
+            } else if (points[m] == 1) {
+                assert_int_equal(list.view.point_count[0], 1);
+                assert_int_equal(list.view.feature[0][0], all.view.feature[deep][0]);
+                assert_memory_equal(&list.view.separation[0][0], &all.view.separation[deep][0], sizeof(float));
+                assert_memory_equal(&list.view.point_x[0][0], &all.view.point_x[deep][0], sizeof(float));
+                assert_true(list.view.separation[1][0] == 0 && list.view.feature[1][0] == 0);
+            }
+            destroy_manifolds(&list, false);
+        }
+        destroy_manifolds(&all, false);
+    }
+    destroy_scene(&scene);
+}
+
+/* The flat angle decides which edges face each other. */
+static void test_flat_angle(void **state) {
+    (void)state;
+    const struct shape ground = make_box(20, 1, 0), box = make_box(2, 1, 0);
+    struct scene scene = make_duo(&ground, &box);
+    put(&scene, 1, 0, 1.2, 0.2);
+    const narc_bodies bodies = scene_bodies(&scene);
+    const narc_pairs pairs = scene_pairs(&scene);
+    struct manifolds list = create_manifolds(1, false);
+    const float angles[] = {0, 0.21f, 0.19f, -1, NARC_MAX_FLAT_ANGLE, -INFINITY};
+    const uint8_t points[] = {2, 2, 1, 1, 2, 1};
+    for (size_t k = 0; k < 6; k++) {
+        const narc_manifold_options options = {.margin = INFINITY, .flat_angle = angles[k]};
+        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL),
+                         NARC_OK);
+        assert_int_equal(list.view.point_count[0], points[k]);
+    }
+    destroy_manifolds(&list, false);
+    destroy_scene(&scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_single_positions), cmocka_unit_test(test_double_positions),
+        cmocka_unit_test(test_box_on_box),       cmocka_unit_test(test_rocking),
+        cmocka_unit_test(test_rolling),          cmocka_unit_test(test_margin),
+        cmocka_unit_test(test_flat_angle),
+    };
+    return test_begin() ? cmocka_run_group_tests_name("manifolds", tests, NULL, NULL) : TEST_SKIPPED;
+}

@@ -1,0 +1,459 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * methods.c - sat, sat-first, polygon-sat and the filters against references of their own, for all kinds of shapes
+ * in all kinds of places.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "method_references.h"
+
+static struct corpus corpora[4]; /* both precisions; the same of polygons only */
+enum { ANYTHING = 0, POLYGONS = 2, CORPORA = 4 };
+
+static int make_corpora(void **state) {
+    (void)state;
+    corpora[0] = make_corpus("methods, single", NARC_FLOAT32, 0.6, false);
+    corpora[1] = make_corpus("methods, double", NARC_FLOAT64, 0.6, false);
+    corpora[2] = make_corpus("methods, polygons, single", NARC_FLOAT32, 2, true);
+    corpora[3] = make_corpus("methods, polygons, double", NARC_FLOAT64, 2, true);
+    for (int k = 0; k < CORPORA; k++)
+        solve_corpus(&corpora[k]);
+    return 0;
+}
+
+static int destroy_corpora(void **state) {
+    (void)state;
+    for (int k = 0; k < CORPORA; k++)
+        destroy_corpus(&corpora[k]);
+    return 0;
+}
+
+static const float margins[] = {0, 0.2f, -0.1f, INFINITY};
+enum { MARGINS = sizeof margins / sizeof *margins };
+
+/* How many wrong pairs are shown in full. */
+enum { SHOWN = 3 };
+
+static void show_wrong(const struct corpus *corpus, size_t k, const char *wrong, size_t *count) {
+    if ((*count)++ < SHOWN) {
+        print_error("wrong: %s\n", wrong);
+        print_corpus_pair(corpus, k);
+    }
+}
+
+static void print_contact(const struct exact_pair *pair, const struct contacts *all, size_t k, unsigned outcome) {
+    print_error("  answer: outcome %u, separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), arcs %d and %d, point "
+                "off %.3g\n",
+                outcome, (double)all->view.separation[k], (double)all->view.normal_x[k], (double)all->view.normal_y[k],
+                (double)all->view.point_x[k], (double)all->view.point_y[k], all->view.arc_a[k], all->view.arc_b[k],
+                distance_from_outlines(pair, &all->view, k));
+}
+
+/* ------------------------------------------------------------------------------------------------ sat */
+
+/* What narc.h answers, with hints or without. */
+static struct contacts find_contacts(const struct scene *scene, float margin, uint32_t *hints) {
+    if (!hints)
+        return scene_contacts(scene, margin);
+    struct contacts found = create_contacts(scene->pair_count);
+    const narc_bodies bodies = scene_bodies(scene);
+    const narc_pairs pairs = scene_pairs(scene);
+    assert_int_equal(
+        narc_find_contacts_hinted(scene->store, &bodies, &pairs, margin, 1, hints, &found.view, &found.count, NULL),
+        NARC_OK);
+    return found;
+}
+
+static void check_all_done(const uint8_t *outcomes, size_t count) {
+    for (size_t k = 0; k < count; k++)
+        assert_int_equal(outcomes[k], NARC_OUTCOME_DONE);
+}
+
+/* Settings that mean nothing to it change nothing. */
+static void test_sat_is_narc_find(void **state) {
+    (void)state;
+    for (int c = 0; c < CORPORA; c++) {
+        const struct scene *scene = &corpora[c].scene;
+        const size_t count = scene->pair_count;
+        uint32_t *hints = create_hints(count), *own_hints = create_hints(count);
+        for (int round = 0; round < 2 * MARGINS; round++) {
+            const float margin = margins[round / 2];
+            uint8_t *outcomes = create_outcomes(count);
+            narc_query query = {.method = NARC_METHOD_SAT, .hints = round % 2 ? hints : NULL, .out_outcomes = outcomes};
+            query.tolerance = round % 3 ? 0 : 0.5f;
+            query.iterations = round % 3 ? 0 : 1;
+            struct contacts found = query_contacts(scene, &query, margin, 1 + (unsigned)round % 3);
+            struct contacts expected = find_contacts(scene, margin, round % 2 ? own_hints : NULL);
+            check_same_contacts(&found, &expected, "sat");
+            assert_memory_equal(hints, own_hints, count * sizeof *hints);
+            check_all_done(outcomes, count);
+            memset(outcomes, 0xa5, count);
+            uint64_t *bits = query_overlaps(scene, &query, 1 + (unsigned)round % 3);
+            uint64_t *expected_bits = scene_overlaps(scene);
+            assert_memory_equal(bits, expected_bits, NARC_BIT_WORDS(count) * sizeof *bits);
+            assert_memory_equal(hints, own_hints, count * sizeof *hints);
+            check_all_done(outcomes, count);
+            free(bits);
+            free(expected_bits);
+            free(outcomes);
+            destroy_contacts(&found);
+            destroy_contacts(&expected);
+        }
+        free(hints);
+        free(own_hints);
+    }
+}
+
+/* Exact, in the hard places too. */
+static void test_sat_is_exact(void **state) {
+    (void)state;
+    size_t wrong_pairs = 0;
+    for (int c = 0; c < CORPORA; c++) {
+        const struct corpus *corpus = &corpora[c];
+        const narc_query query = {.method = NARC_METHOD_SAT};
+        struct contacts all = query_contacts(&corpus->scene, &query, INFINITY, 1);
+        for (size_t k = 0; k < all.count; k++) {
+            const struct exact_pair *pair = &corpus->pairs[k];
+            const char *wrong = check_along_normal(pair, &all.view, k, false);
+            wrong = wrong ? wrong : check_between_touches(pair, &all.view, k);
+            if (!wrong && distance_from_outlines(pair, &all.view, k) > point_bounds * pair->bound)
+                wrong = "sat: the point is not on the outlines";
+            if (!wrong && fabs((double)all.view.separation[k] - pair->gap) > pair->bound)
+                wrong = "sat: not the exact separation";
+            if (wrong) {
+                show_wrong(corpus, k, wrong, &wrong_pairs);
+                print_contact(pair, &all, k, 0);
+            }
+        }
+        destroy_contacts(&all);
+    }
+    assert_int_equal(wrong_pairs, 0);
+}
+
+/* ------------------------------------------------------------------------------------------------ sat-first */
+
+/* What the reference says of a pair's answer. */
+struct first_verdict {
+    const char *wrong;
+    bool doubted;             /* some pair of arcs was in doubt before the answer */
+    bool found;               /* the answer is some pair of arcs */
+    double value;             /* the separation that is right for these arcs */
+    size_t before, arc_count; /* pairs of arcs that failed before it, of how many */
+};
+
+static double value_of(const struct first_body *a, const struct first_body *b, size_t i, size_t j) {
+    return hypot(b->x[j] - a->x[i], b->y[j] - a->y[i]) - a->radius[i] - b->radius[j];
+}
+
+/* The number that is reported of an arc: where the normal seems to lie on its end it may be the next arc. */
+static bool is_arc(const struct first_body *body, size_t arc, unsigned told, bool sure) {
+    if (body->circle)
+        return told == 0;
+    return told == arc || (!sure && told == (arc + 1) % body->count);
+}
+
+/* Is this the answer for arcs i and j? Their u is off by less than the bound of a separation, of which its own error is
+ * only a part; the normal is u over its length, and a dozen roundings. */
+static bool is_first_pair(const struct exact_pair *pair, const struct first_body *a, const struct first_body *b,
+                          size_t i, size_t j, const narc_contacts *told, size_t k, bool sure) {
+    const double u_x = b->x[j] - a->x[i], u_y = b->y[j] - a->y[i], length = hypot(u_x, u_y);
+    const double n_x = (double)told->normal_x[k], n_y = (double)told->normal_y[k];
+    if (!is_arc(a, i, told->arc_a[k], sure) || !is_arc(b, j, told->arc_b[k], sure) ||
+        fabs(value_of(a, b, i, j) - (double)told->separation[k]) > pair->bound)
+        return false;
+    if (hypot(length * n_x - u_x, length * n_y - u_y) > pair->bound + 1e-6 * length)
+        return false;
+    if (!sure) /* the normal may seem to be that of an edge, whose middle is told then */
+        return true;
+    /* Halfway between the arcs' points; the normal's error counts times the radius. */
+    const double off = length > 0 ? fmin(pair->bound / length + 1e-6, 2) : 2;
+    const double p_x = (a->x[i] + b->x[j] + (a->radius[i] - b->radius[j]) * n_x) / 2,
+                 p_y = (a->y[i] + b->y[j] + (a->radius[i] - b->radius[j]) * n_y) / 2;
+    return hypot(p_x - (double)told->point_x[k], p_y - (double)told->point_y[k]) <=
+           1.5 * pair->bound + off * fmax(a->radius[i], b->radius[j]);
+}
+
+/* Goes through all pairs of arcs, those of A outside: the answer is the first that passes for certain, or one in doubt
+ * before it, or none. */
+static struct first_verdict judge_first(const struct exact_pair *pair, const narc_contacts *told, size_t k,
+                                        unsigned outcome) {
+    const struct first_body a = make_first_body(&pair->a, &pair->a), b = make_first_body(&pair->b, &pair->a);
+    struct first_verdict verdict = {.value = INFINITY, .arc_count = a.count * b.count};
+    const bool none = outcome == NARC_OUTCOME_NONE;
+    for (size_t pair_of_arcs = 0; pair_of_arcs < verdict.arc_count; pair_of_arcs++) {
+        const size_t i = pair_of_arcs / b.count, j = pair_of_arcs % b.count;
+        const enum sureness sureness = test_arcs(&a, &b, pair->reach, i, j);
+        verdict.before += sureness == FAILS;
+        if (sureness == FAILS)
+            continue;
+        const bool sure = sureness == PASSES && !verdict.doubted;
+        if (!none && is_first_pair(pair, &a, &b, i, j, told, k, sureness == PASSES)) {
+            verdict.found = true;
+            verdict.value = value_of(&a, &b, i, j);
+            verdict.doubted = !sure;
+            return verdict;
+        }
+        verdict.doubted = true;
+        if (sureness == PASSES) {
+            verdict.wrong = none ? "none, but a pair of arcs passes" : "not the first pair of arcs that passes";
+            return verdict;
+        }
+    }
+    verdict.wrong = none ? NULL : "a pair of arcs that does not pass";
+    return verdict;
+}
+
+struct first_tally {
+    size_t pairs, doubted, none, late, wrong;
+    size_t inside,
+        wrong_signs; /* pairs of shapes with all centres inside; all others whose answer has the wrong sign */
+};
+
+static bool centers_inside(const struct scene *scene, size_t k) {
+    const uint32_t a = scene->bodies[scene->pairs[k].a].shape, b = scene->bodies[scene->pairs[k].b].shape;
+    return (narc_shape_flags(scene->store, a) & narc_shape_flags(scene->store, b) & NARC_SHAPE_CENTERS_INSIDE) != 0;
+}
+
+static void check_first_pair(const struct corpus *corpus, const struct contacts *all, size_t k, unsigned outcome,
+                             struct first_tally *tally) {
+    const struct exact_pair *pair = &corpus->pairs[k];
+    const double separation = (double)all->view.separation[k];
+    const struct first_verdict verdict = judge_first(pair, &all->view, k, outcome);
+    const char *wrong = verdict.wrong;
+    const bool sure = !verdict.doubted && verdict.found;
+    if (outcome != NARC_OUTCOME_DONE && outcome != NARC_OUTCOME_NONE)
+        wrong = "outcome";
+    else if (outcome == NARC_OUTCOME_NONE &&
+             (!isinf(separation) || all->view.normal_x[k] != 0 || all->view.normal_y[k] != 0 ||
+              all->view.point_x[k] != 0 || all->view.point_y[k] != 0 || all->view.arc_a[k] || all->view.arc_b[k]))
+        wrong = "none, but an answer";
+    /* A pair of arcs that passes has the gap along u, which is never more than the largest gap. */
+    if (!wrong && sure && verdict.value > pair->gap + pair->bound)
+        wrong = "more than the exact separation";
+    /* With all centres inside, what lies between two overlapping arcs' centres is in both shapes. */
+    const bool outside_band = fabs(pair->gap) > pair->bound;
+    if (!wrong && sure && outside_band && centers_inside(&corpus->scene, k)) {
+        tally->inside++;
+        if ((separation < 0) != (pair->gap < 0))
+            wrong = "the wrong sign though all centres lie inside";
+    } else if (outside_band) {
+        tally->wrong_signs += (separation < 0) != (pair->gap < 0);
+    }
+    tally->pairs++;
+    tally->doubted += verdict.doubted;
+    tally->none += outcome == NARC_OUTCOME_NONE;
+    tally->late += verdict.found && verdict.before > 0;
+    if (wrong) {
+        show_wrong(corpus, k, wrong, &tally->wrong);
+        print_contact(pair, all, k, outcome);
+    }
+}
+
+static void test_first_pair(void **state) {
+    (void)state;
+    struct first_tally tally = {0};
+    for (int c = 0; c < CORPORA; c++) {
+        const struct corpus *corpus = &corpora[c];
+        const size_t count = corpus->scene.pair_count;
+        uint8_t *outcomes = create_outcomes(count), *again = create_outcomes(count);
+        uint32_t *hints = create_hints(count), *zeros = create_hints(count);
+        const narc_query query = {.method = NARC_METHOD_SAT_FIRST, .hints = hints, .out_outcomes = outcomes};
+        const narc_query other = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = again};
+        struct contacts all = query_contacts(&corpus->scene, &query, INFINITY, 1);
+        assert_int_equal(all.count, count);
+        uint64_t *bits = query_overlaps(&corpus->scene, &other, 1);
+        assert_memory_equal(outcomes, again, count);
+        for (size_t k = 0; k < count; k++) {
+            assert_int_equal(bit_is_set(bits, k), all.view.separation[k] < 0);
+            check_first_pair(corpus, &all, k, outcomes[k], &tally);
+        }
+        for (int m = 0; m < MARGINS; m++) {
+            struct contacts found = query_contacts(&corpus->scene, &other, margins[m], 1);
+            if (margins[m] < INFINITY)
+                check_contacts_below(&found, &all, margins[m], "sat-first");
+            else
+                check_same_contacts(&found, &all, "sat-first");
+            assert_memory_equal(outcomes, again, count);
+            destroy_contacts(&found);
+        }
+        assert_memory_equal(hints, zeros, count * sizeof *hints);
+        free(outcomes);
+        free(again);
+        free(hints);
+        free(zeros);
+        free(bits);
+        destroy_contacts(&all);
+    }
+    printf("  sat-first: %zu pairs; in doubt %zu, without a pair of arcs %zu, with one that is not the first of all "
+           "%zu; sign wrong %zu, of %zu with all centres inside 0\n",
+           tally.pairs, tally.doubted, tally.none, tally.late, tally.wrong_signs, tally.inside);
+    assert_int_equal(tally.wrong, 0);
+    /* Hard places are in doubt on purpose, but only they are. */
+    assert_true(tally.doubted < tally.pairs / 2);
+    assert_true(tally.late > tally.pairs / 10);
+}
+
+/* ------------------------------------------------------------------------------------------------ polygon-sat */
+
+static const char *check_polygon_pair(const struct exact_pair *pair, const narc_contacts *told, size_t k) {
+    const double separation = (double)told->separation[k], right = polygon_gap(&pair->a, &pair->b);
+    const char *wrong = check_along_normal(pair, told, k, false);
+    wrong = wrong ? wrong : check_between_touches(pair, told, k);
+    if (wrong)
+        return wrong;
+    if (fabs(separation - right) > pair->bound)
+        return "not the largest gap along an edge normal";
+    if (separation > pair->gap + pair->bound)
+        return "more than the exact separation";
+    /* Of polygons that are apart, the normal is mostly not that of the closest points. */
+    if (pair->gap <= 0 && distance_from_outlines(pair, told, k) > point_bounds * pair->bound)
+        return "the point is not on the outlines";
+    return NULL;
+}
+
+static void test_polygons(void **state) {
+    (void)state;
+    size_t wrong_pairs = 0, apart = 0, colliding = 0, less = 0;
+    for (int c = POLYGONS; c < CORPORA; c++) {
+        const struct corpus *corpus = &corpora[c];
+        const size_t count = corpus->scene.pair_count;
+        uint8_t *outcomes = create_outcomes(count);
+        uint32_t *hints = create_hints(count), *zeros = create_hints(count);
+        const narc_query query = {.method = NARC_METHOD_POLYGON_SAT, .hints = hints, .out_outcomes = outcomes};
+        struct contacts all = query_contacts(&corpus->scene, &query, INFINITY, 1);
+        assert_int_equal(all.count, count);
+        check_all_done(outcomes, count);
+        memset(outcomes, 0xa5, count);
+        uint64_t *bits = query_overlaps(&corpus->scene, &query, 1);
+        check_all_done(outcomes, count);
+        for (size_t k = 0; k < count; k++) {
+            const struct exact_pair *pair = &corpus->pairs[k];
+            const char *wrong = check_polygon_pair(pair, &all.view, k);
+            if (bit_is_set(bits, k) != (all.view.separation[k] < 0))
+                wrong = "bit and separation differ";
+            else if (fabs(pair->gap) > pair->bound && bit_is_set(bits, k) != (pair->gap < 0))
+                wrong = "overlap";
+            apart += pair->gap > pair->bound;
+            colliding += pair->gap < -pair->bound;
+            less += (double)all.view.separation[k] < pair->gap - pair->bound;
+            if (wrong) {
+                show_wrong(corpus, k, wrong, &wrong_pairs);
+                print_contact(pair, &all, k, outcomes[k]);
+            }
+        }
+        /* It may end early, but reports the same. */
+        const float more[] = {0, 0.2f, 1e-6f, -1e-6f, -0.1f, -10, 10};
+        for (size_t m = 0; m < sizeof more / sizeof *more; m++) {
+            struct contacts found = query_contacts(&corpus->scene, &query, more[m], 1);
+            check_contacts_below(&found, &all, more[m], "polygon-sat");
+            destroy_contacts(&found);
+        }
+        assert_memory_equal(hints, zeros, count * sizeof *hints);
+        free(outcomes);
+        free(hints);
+        free(zeros);
+        free(bits);
+        destroy_contacts(&all);
+    }
+    printf("  polygon-sat: %zu pairs apart, of %zu of them less than the distance; %zu colliding\n", apart, less,
+           colliding);
+    assert_int_equal(wrong_pairs, 0);
+    assert_true(apart > 0 && colliding > 0 && less > 0);
+}
+
+/* ------------------------------------------------------------------------------------------------ filters */
+
+/* What a filter may be off by. Circles: the radii have room of 96 e of the extents, the filter loses 128 e of the
+ * distance and its rounding is below 32 e of the reach: 256 e. Boxes: both half sides have room of 96 e of the extents,
+ * of which at most the root of 2 counts along any axis, 136 e; their middles and axes are off like an arc's centre and
+ * normal, 27 e and 12 e, and the dot products and sums round by 20 e more. */
+static const double filter_band = 256.0 / 16777216.0;
+
+struct filter_tally {
+    size_t apart, colliding, wrong, false_alarms;
+};
+
+/* `least` and `most`: how far the filter's shapes are apart, where there is a choice of them. */
+static void check_filter(const struct corpus *corpus, size_t k, bool told, double least, double most,
+                         struct filter_tally *tally) {
+    const struct exact_pair *pair = &corpus->pairs[k];
+    const double misfit = pair->bound - NARC_ERROR_BOUND * pair->reach, band = filter_band * pair->reach + 2 * misfit;
+    const char *wrong = NULL;
+    if (pair->gap <= 0 && !told)
+        wrong = "no, though the bodies collide";
+    else if (least > band && told)
+        wrong = "yes, though the filter's shapes are apart";
+    else if (most < -band && !told)
+        wrong = "no, though the filter's shapes overlap";
+    tally->apart += least > band;
+    tally->colliding += most < -band;
+    tally->false_alarms += told && pair->gap > 0;
+    if (wrong) {
+        show_wrong(corpus, k, wrong, &tally->wrong);
+        print_error("  filter: told %d, gap %.9g .. %.9g, band %.3g\n", told, least, most, band);
+    }
+}
+
+static void test_filters(void **state) {
+    (void)state;
+    struct filter_tally tally[3] = {{0}};
+    for (int c = 0; c < CORPORA; c++) {
+        const struct corpus *corpus = &corpora[c];
+        const struct scene *scene = &corpus->scene;
+        const size_t count = scene->pair_count;
+        struct smallest_boxes *boxes = malloc(scene->shape_count * sizeof *boxes);
+        assert_non_null(boxes);
+        for (size_t k = 0; k < scene->shape_count; k++)
+            boxes[k] = find_boxes(&scene->shapes[k]);
+        uint64_t *bits[3];
+        uint8_t *outcomes = create_outcomes(count);
+        for (int f = 0; f < 3; f++) {
+            const narc_query query = {.method = (narc_method)(NARC_METHOD_CIRCLE + f), .out_outcomes = outcomes};
+            memset(outcomes, 0xa5, count);
+            bits[f] = query_overlaps(scene, &query, 1);
+            check_all_done(outcomes, count);
+        }
+        for (size_t k = 0; k < count; k++) {
+            const struct reference_body *a = &corpus->pairs[k].a, *b = &corpus->pairs[k].b;
+            const struct smallest_boxes *of_a = &boxes[scene->bodies[scene->pairs[k].a].shape],
+                                        *of_b = &boxes[scene->bodies[scene->pairs[k].b].shape];
+            double least[3], most[3];
+            least[0] = most[0] = circle_gap(a, b);
+            least[1] = least[2] = INFINITY;
+            most[1] = most[2] = -INFINITY;
+            for (size_t i = 0; i < of_a->count * of_b->count; i++) {
+                const struct plain_box box_a = place_box(&of_a->box[i % of_a->count], a, a),
+                                       box_b = place_box(&of_b->box[i / of_a->count], b, a);
+                const double gap[3] = {0, axis_gap(&box_a, &box_b), box_gap(&box_a, &box_b)};
+                for (int f = 1; f < 3; f++) {
+                    least[f] = fmin(least[f], gap[f]);
+                    most[f] = fmax(most[f], gap[f]);
+                }
+            }
+            for (int f = 0; f < 3; f++)
+                check_filter(corpus, k, bit_is_set(bits[f], k), least[f], most[f], &tally[f]);
+        }
+        for (int f = 0; f < 3; f++)
+            free(bits[f]);
+        free(outcomes);
+        free(boxes);
+    }
+    for (int f = 0; f < 3; f++) {
+        printf("  %s: %zu apart, %zu overlapping; says yes of %zu separated pairs\n",
+               narc_method_name((narc_method)(NARC_METHOD_CIRCLE + f)), tally[f].apart, tally[f].colliding,
+               tally[f].false_alarms);
+        assert_int_equal(tally[f].wrong, 0);
+        assert_true(tally[f].apart > 0 && tally[f].colliding > 0);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_sat_is_narc_find), cmocka_unit_test(test_sat_is_exact), cmocka_unit_test(test_first_pair),
+        cmocka_unit_test(test_polygons),         cmocka_unit_test(test_filters),
+    };
+    return test_begin() ? cmocka_run_group_tests_name("methods", tests, make_corpora, destroy_corpora) : TEST_SKIPPED;
+}

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * reference.c - is the reference itself right? Against closed forms, and against points sampled on two outlines.
+ */
+#include <math.h>
+#include <stdio.h>
+
+#include "placements.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* What the reference claims, relative to sizes near 1. */
+static const double tolerance = 1e-12;
+
+static struct shape circle_shape(double radius) { return (struct shape){{{0, 0, radius, 0, 2 * pi}}, 1}; }
+
+/* A polygon of four vertices of radius 0, or of `radius` around them. */
+static struct shape box_shape(double half_width, double half_height, double radius) {
+    return (struct shape){{{half_width, half_height, radius, 0, pi / 2},
+                           {-half_width, half_height, radius, pi / 2, pi},
+                           {-half_width, -half_height, radius, pi, 3 * pi / 2},
+                           {half_width, -half_height, radius, 3 * pi / 2, 2 * pi}},
+                          4};
+}
+
+static struct reference_body at(const struct shape *shape, double x, double y, double angle) {
+    return (struct reference_body){shape->arcs, shape->count, x, y, cos(angle), sin(angle), 1};
+}
+
+static void check_gap(const struct reference_body *a, const struct reference_body *b, double expected) {
+    double gap = reference_find_gap(a, b).gap, swapped = reference_find_gap(b, a).gap;
+    if (fabs(gap - expected) > tolerance || fabs(swapped - expected) > tolerance)
+        fail_msg("gap %.17g and, swapped, %.17g instead of %.17g", gap, swapped, expected);
+}
+
+static void test_circles(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("circles");
+    for (size_t trial = 0; trial < test_trials(200); trial++) {
+        struct shape shape_a = circle_shape(random_unit(&random)), shape_b = circle_shape(random_unit(&random));
+        double x = random_between(&random, -2, 2), y = random_between(&random, -2, 2);
+        struct reference_body a = at(&shape_a, 0, 0, 0), b = at(&shape_b, x, y, random_between(&random, -pi, pi));
+        check_gap(&a, &b, hypot(x, y) - shape_a.arcs[0].radius - shape_b.arcs[0].radius);
+    }
+}
+
+/* Signed distance from a point to a box around the origin. */
+static double box_distance(double half_width, double half_height, double x, double y) {
+    double out_x = fabs(x) - half_width, out_y = fabs(y) - half_height;
+    return hypot(fmax(out_x, 0), fmax(out_y, 0)) + fmin(fmax(out_x, out_y), 0);
+}
+
+static void test_circle_and_box(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("circle and box");
+    for (size_t trial = 0; trial < test_trials(200); trial++) {
+        double width = random_unit(&random), height = random_unit(&random), corner = random_unit(&random) / 4;
+        struct shape shape_a = box_shape(width, height, corner), shape_b = circle_shape(random_unit(&random));
+        double x = random_between(&random, -2, 2), y = random_between(&random, -2, 2);
+        double angle = random_between(&random, -pi, pi), c = cos(angle), s = sin(angle);
+        struct reference_body a = at(&shape_a, 3, -4, angle),
+                              b = at(&shape_b, 3 + c * x - s * y, -4 + s * x + c * y, 1);
+        check_gap(&a, &b, box_distance(width, height, x, y) - corner - shape_b.arcs[0].radius);
+    }
+}
+
+/* Distance between two segments p + [0, 1] v that do not cross: the least from an end of one to the other. */
+static double point_segment(narc_point p, narc_point from, narc_point to) {
+    double x = to.x - from.x, y = to.y - from.y, px = p.x - from.x, py = p.y - from.y;
+    double t = fmin(fmax((px * x + py * y) / (x * x + y * y), 0), 1);
+    return hypot(px - t * x, py - t * y);
+}
+
+/* Rotated boxes: outside each other the distance of vertices and sides; inside, the least overlap on the four
+ * normals. */
+static double box_gap(const narc_point a[4], const narc_point b[4]) {
+    double deepest = -INFINITY, distance = INFINITY;
+    const narc_point *one = a, *other = b;
+    for (int turn = 0; turn < 2; turn++) {
+        for (int i = 0; i < 4; i++) {
+            narc_point from = one[i], to = one[(i + 1) % 4];
+            double x = to.y - from.y, y = from.x - to.x, length = hypot(x, y), least = INFINITY;
+            for (int j = 0; j < 4; j++) {
+                least = fmin(least, ((other[j].x - from.x) * x + (other[j].y - from.y) * y) / length);
+                distance = fmin(distance, point_segment(other[j], from, to));
+            }
+            deepest = fmax(deepest, least);
+        }
+        one = b;
+        other = a;
+    }
+    return deepest > 0 ? distance : deepest;
+}
+
+static void test_boxes(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("boxes");
+    for (size_t trial = 0; trial < test_trials(200); trial++) {
+        struct shape shape[2];
+        struct reference_body body[2];
+        narc_point corner[2][4];
+        for (int k = 0; k < 2; k++) {
+            double angle = trial % 4 ? random_between(&random, -pi, pi) : pi / 2 * (double)random_below(&random, 4);
+            shape[k] = box_shape(random_between(&random, 0.1, 1), random_between(&random, 0.1, 1), 0);
+            body[k] = at(&shape[k], random_between(&random, -1, 1), random_between(&random, -1, 1), angle);
+            for (int i = 0; i < 4; i++) {
+                const narc_arc *arc = &shape[k].arcs[i];
+                corner[k][i].x = body[k].x + cos(angle) * arc->center_x - sin(angle) * arc->center_y;
+                corner[k][i].y = body[k].y + sin(angle) * arc->center_x + cos(angle) * arc->center_y;
+            }
+        }
+        check_gap(&body[0], &body[1], box_gap(corner[0], corner[1]));
+    }
+}
+
+static void test_capsules(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("capsules");
+    for (size_t trial = 0; trial < test_trials(200); trial++) {
+        struct shape shape[2];
+        struct reference_body body[2];
+        narc_point end[2][2];
+        double radii = 0, distance = INFINITY;
+        for (int k = 0; k < 2; k++) {
+            double angle = random_between(&random, -1, 1), half = random_between(&random, 0.1, 1);
+            double radius = random_unit(&random), x = 0, y = (k ? 1 : -1) * random_between(&random, 1, 2);
+            shape[k] = (struct shape){{{half, 0, radius, -pi / 2, pi / 2}, {-half, 0, radius, pi / 2, 3 * pi / 2}}, 2};
+            body[k] = at(&shape[k], x, y, angle);
+            end[k][0] = (narc_point){x + half * cos(angle), y + half * sin(angle)};
+            end[k][1] = (narc_point){x - half * cos(angle), y - half * sin(angle)};
+            radii += radius;
+        }
+        for (int k = 0; k < 2; k++) {
+            distance = fmin(distance, point_segment(end[0][k], end[1][0], end[1][1]));
+            distance = fmin(distance, point_segment(end[1][k], end[0][0], end[0][1]));
+        }
+        /* The segments never cross: one stays below y = sin(1) - 1, the other above 1 - sin(1). */
+        check_gap(&body[0], &body[1], distance - radii);
+    }
+}
+
+enum { OUTLINE_POINTS = 1500 };
+
+/* Points spread evenly over the length of an outline, and the largest step between two of them. */
+static double sample_outline(const struct reference_body *body, narc_point out[OUTLINE_POINTS]) {
+    size_t per_arc = OUTLINE_POINTS / body->count, n = 0;
+    double step = 0;
+    for (size_t i = 0; i < body->count; i++) {
+        const narc_arc *arc = &body->arcs[i];
+        double sweep = arc->end - arc->start;
+        sweep = sweep <= 0 ? sweep + 2 * pi : sweep;
+        for (size_t k = 0; k < per_arc; k++) {
+            double angle = arc->start + sweep * (double)k / (double)(per_arc - 1);
+            double x = arc->center_x + arc->radius * cos(angle), y = arc->center_y + arc->radius * sin(angle);
+            out[n].x = body->x + body->cosine * x - body->sine * y;
+            out[n].y = body->y + body->sine * x + body->cosine * y;
+            n++;
+        }
+        step = fmax(step, arc->radius * sweep / (double)(per_arc - 1));
+    }
+    for (; n < OUTLINE_POINTS; n++)
+        out[n] = out[0];
+    return step;
+}
+
+/* Disjoint smooth shapes: the closest of all sampled points are further apart than the gap, by at most what the steps
+ * along the outlines can cost. */
+static void test_sampled_points(void **state) {
+    (void)state;
+    static const enum family families[] = {FAMILY_SMOOTH, FAMILY_UNEQUAL, FAMILY_LENS, FAMILY_FITTED};
+    static narc_point point_a[OUTLINE_POINTS], point_b[OUTLINE_POINTS];
+    struct test_random random = test_random_named("sampled points");
+    for (size_t trial = 0; trial < test_trials(40); trial++) {
+        struct shape shape_a = make_shape(&random, families[trial % 4]);
+        struct shape shape_b = make_shape(&random, families[trial / 4 % 4]);
+        struct body body_a = turned_body(random_between(&random, -pi, pi), 1), body_b = turned_body((double)trial, 1);
+        place_at_gap(&shape_a, &shape_b, random_between(&random, -pi, pi), 0.3, &body_a, &body_b);
+        struct reference_body a = pose_shape(&shape_a, &body_a), b = pose_shape(&shape_b, &body_b);
+        double gap = reference_find_gap(&a, &b).gap, least = INFINITY;
+        double step = sample_outline(&a, point_a) + sample_outline(&b, point_b);
+        for (size_t i = 0; i < OUTLINE_POINTS; i++) {
+            for (size_t j = 0; j < OUTLINE_POINTS; j++) {
+                double x = point_b[j].x - point_a[i].x, y = point_b[j].y - point_a[i].y;
+                least = fmin(least, x * x + y * y);
+            }
+        }
+        least = sqrt(least);
+        /* cosines and sines in the pose are floats: lengths are off by that much. */
+        if (least < gap - 1e-6 || least > gap + step)
+            fail_msg("points %.9g apart, gap %.9g, step %.3g", least, gap, step);
+    }
+}
+
+/* g at the returned direction is the returned gap, and no direction of many has more. */
+static void test_maximum(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("maximum");
+    for (size_t trial = 0; trial < test_trials(300); trial++) {
+        struct shape shape_a = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
+        struct shape shape_b = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
+        struct body body_a, body_b;
+        place_pair(&random, (enum placement)random_below(&random, PLACE_SCALED), NARC_FLOAT64, &shape_a, &shape_b,
+                   &body_a, &body_b);
+        struct reference_body a = pose_shape(&shape_a, &body_a), b = pose_shape(&shape_b, &body_b);
+        struct reference_gap found = reference_find_gap(&a, &b);
+        double reach = reference_reach(&a, &b);
+        assert_true(fabs(reference_gap_along(&a, &b, found.normal_x, found.normal_y) - found.gap) <= tolerance * reach);
+        for (int k = 0; k < 1000; k++) {
+            double angle = 2 * pi * random_unit(&random);
+            assert_true(reference_gap_along(&a, &b, cos(angle), sin(angle)) <= found.gap + tolerance * reach);
+        }
+    }
+}
+
+/* The distance from a point by search against the library's closed form. */
+static void test_point_distance(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("point distance");
+    for (size_t trial = 0; trial < test_trials(1000); trial++) {
+        struct shape shape = make_shape(&random, (enum family)(trial % FAMILY_COUNT));
+        struct reference_body body = at(&shape, 7, 7, 0);
+        narc_point point = {random_between(&random, -2, 2), random_between(&random, -2, 2)};
+        double distance;
+        assert_true(narc_compute_distance(shape.arcs, shape.count, point, &distance));
+        double searched = reference_point_distance(&body, point.x, point.y);
+        if (fabs(searched - distance) > tolerance * (reference_extent(&body) + 3)) {
+            fail_msg("%s: distance %.17g, by search %.17g", family_name((enum family)(trial % FAMILY_COUNT)), distance,
+                     searched);
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_circles),        cmocka_unit_test(test_circle_and_box), cmocka_unit_test(test_boxes),
+        cmocka_unit_test(test_capsules),       cmocka_unit_test(test_sampled_points), cmocka_unit_test(test_maximum),
+        cmocka_unit_test(test_point_distance),
+    };
+    return test_begin() ? cmocka_run_group_tests_name("reference", tests, NULL, NULL) : TEST_SKIPPED;
+}

@@ -1,0 +1,417 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * shortcuts.c - shortcuts change no bit: all answers are those of the deciding formula, on shapes and in places
+ * that are meant to mislead them.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "hard.h"
+#include "layouts.h"
+#include "narc_methods.h"
+#include "placements.h"
+#include "plain.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* The ordinary families first, then the hard ones. */
+enum { FAMILIES = FAMILY_COUNT + HARD_COUNT };
+
+static struct shape make_any(struct test_random *random, size_t family) {
+    return family < FAMILY_COUNT ? make_shape(random, (enum family)family)
+                                 : make_hard_shape(random, (enum hard_family)(family - FAMILY_COUNT));
+}
+
+static const char *any_name(size_t family) {
+    return family < FAMILY_COUNT ? family_name((enum family)family)
+                                 : hard_family_name((enum hard_family)(family - FAMILY_COUNT));
+}
+
+/* All answers of a scene in one layout: with the usual margins, and with margins beside the separation of one pair,
+ * which the others must not mind. */
+static void check_scene(struct test_random *random, const struct scene *scene, enum layout layout, const char *name) {
+    struct columns columns = create_columns(scene, layout, 0, scene->pair_count);
+    struct contacts plain = find_plain_contacts(scene->store, &columns.bodies, &columns.pairs);
+    const struct plain_batch batch = {.shapes = scene->store,
+                                      .bodies = &columns.bodies,
+                                      .pairs = &columns.pairs,
+                                      .right = &plain.view,
+                                      .scene = scene,
+                                      .name = name};
+    const float some = plain.view.separation[random_below(random, plain.count)];
+    const float margins[] = {0, INFINITY, 0.25f, 1e-4f, -1e-4f, -0.25f, some, nextafterf(some, INFINITY), -FLT_MAX};
+    check_plain_overlaps(&batch, 1);
+    for (size_t k = 0; k < sizeof margins / sizeof *margins; k++)
+        check_plain_contacts(&batch, margins[k], 1, NULL);
+    destroy_contacts(&plain);
+    destroy_columns(&columns);
+}
+
+static enum layout any_layout(struct test_random *random) {
+    const enum layout layouts[] = {LAYOUT_ARRAYS, LAYOUT_STRUCTURES, LAYOUT_STRUCTURES, LAYOUT_REVERSED};
+    return layouts[random_below(random, sizeof layouts / sizeof *layouts)];
+}
+
+/* Every family against every other, in one kind of place. */
+static void check_hard_places(enum hard_placement placement, size_t trials) {
+    struct test_random random = test_random_named(hard_placement_name(placement));
+    for (size_t a = 0; a < FAMILIES; a++) {
+        for (size_t b = 0; b < FAMILIES; b++) {
+            const narc_precision precision = random_below(&random, 2) ? NARC_FLOAT64 : NARC_FLOAT32;
+            const size_t rounds = test_trials(trials);
+            struct scene scene = create_scene(precision, 2 * rounds, HARD_BODIES * rounds, HARD_BODIES / 2 * rounds);
+            for (size_t round = 0; round < rounds; round++) {
+                const struct shape shape_a = make_any(&random, a), shape_b = make_any(&random, b);
+                const uint32_t index = scene_add_shape(&scene, &shape_a);
+                add_hard_pairs(&random, &scene, placement, index, scene_add_shape(&scene, &shape_b));
+            }
+            char name[128];
+            snprintf(name, sizeof name, "%s, %s against %s", hard_placement_name(placement), any_name(a), any_name(b));
+            check_scene(&random, &scene, any_layout(&random), name);
+            destroy_scene(&scene);
+        }
+    }
+}
+
+static void test_touch(void **state) {
+    (void)state;
+    check_hard_places(HARD_TOUCH, 2);
+}
+
+static void test_junction(void **state) {
+    (void)state;
+    check_hard_places(HARD_JUNCTION, 3);
+}
+
+static void test_aligned(void **state) {
+    (void)state;
+    check_hard_places(HARD_ALIGNED, 3);
+}
+
+static void test_concentric(void **state) {
+    (void)state;
+    check_hard_places(HARD_CONCENTRIC, 3);
+}
+
+/* The places of the other tests: every kind, random families. */
+static void test_all_places(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("all places");
+    for (size_t place = 0; place < PLACE_COUNT; place++) {
+        const narc_precision precision = place % 2 ? NARC_FLOAT64 : NARC_FLOAT32;
+        const size_t count = test_trials(80);
+        struct scene scene = create_scene(precision, 2 * count, 2 * count, count);
+        for (size_t k = 0; k < count; k++) {
+            const struct shape shape_a = make_any(&random, random_below(&random, FAMILIES));
+            const struct shape shape_b = make_any(&random, random_below(&random, FAMILIES));
+            struct body a, b;
+            place_pair(&random, (enum placement)place, precision, &shape_a, &shape_b, &a, &b);
+            a.shape = scene_add_shape(&scene, &shape_a);
+            b.shape = scene_add_shape(&scene, &shape_b);
+            const uint32_t first = scene_add_body(&scene, a);
+            scene_add_pair(&scene, first, scene_add_body(&scene, b));
+        }
+        check_scene(&random, &scene, any_layout(&random), placement_name((enum placement)place));
+        destroy_scene(&scene);
+    }
+}
+
+/* Many random pairs of few shapes, packed, so that every answer of a batch is spread over all stages and vectors. */
+static void test_crowds(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("crowds");
+    enum { SHAPES = 60, BODIES = 2000, PAIRS = 40000 };
+    const enum layout layouts[] = {LAYOUT_STRUCTURES, LAYOUT_ARRAYS, LAYOUT_SHARED, LAYOUT_UNSCALED};
+    for (size_t round = 0; round < test_trials(4); round++) {
+        const enum layout layout = layouts[round % 4];
+        struct scene scene = create_scene(round % 3 ? NARC_FLOAT32 : NARC_FLOAT64, SHAPES, BODIES, PAIRS);
+        const double world = random_log_between(&random, 0.3, 4);
+        for (size_t k = 0; k < SHAPES; k++) {
+            const struct shape shape = make_any(&random, random_below(&random, FAMILIES - 1)); /* none far away */
+            scene_add_shape(&scene, &shape);
+        }
+        for (size_t k = 0; k < BODIES; k++) {
+            struct body body = turned_body(random_between(&random, -4, 4), random_log_between(&random, 0.25, 2));
+            body.x = random_between(&random, 0, world);
+            body.y = random_between(&random, 0, world);
+            body.shape = (uint32_t)random_below(&random, SHAPES);
+            /* Some with no answer. */
+            body.sine = random_below(&random, 100) ? body.sine : NAN;
+            body.scale = random_below(&random, 100) ? body.scale : 1e12f;
+            scene_add_body(&scene, body);
+        }
+        for (size_t k = 0; k < PAIRS; k++) {
+            const uint32_t first = (uint32_t)random_below(&random, BODIES);
+            scene_add_pair(&scene, first, (uint32_t)random_below(&random, BODIES));
+        }
+        if (layout == LAYOUT_SHARED) {
+            scene.bodies[0].scale = scene.bodies[0].cosine = 1;
+            scene.bodies[0].sine = 0;
+            share_values(&scene);
+        } else if (layout == LAYOUT_UNSCALED) {
+            unit_scales(&scene);
+        }
+        check_scene(&random, &scene, layout, "crowd");
+        destroy_scene(&scene);
+    }
+}
+
+/* Runs of one pair after the other: whatever stage settles it, between stages as many wait as ever can. */
+static void test_runs(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("runs");
+    enum { KINDS = 16, PAIRS = 12000, LONGEST = 320 };
+    for (size_t round = 0; round < test_trials(24); round++) {
+        struct scene scene =
+            create_scene(NARC_FLOAT32, 2 * KINDS, HARD_BODIES * KINDS, HARD_BODIES / 2 * KINDS + PAIRS);
+        for (size_t k = 0; k < KINDS; k++) {
+            const struct shape shape_a = make_any(&random, random_below(&random, FAMILIES));
+            const struct shape shape_b = make_any(&random, random_below(&random, FAMILIES));
+            const uint32_t index = scene_add_shape(&scene, &shape_a);
+            add_hard_pairs(&random, &scene, (enum hard_placement)(k % HARD_PLACES), index,
+                           scene_add_shape(&scene, &shape_b));
+        }
+        const size_t kinds = scene.pair_count;
+        size_t left = 0;
+        struct pair pair = scene.pairs[0];
+        for (size_t k = 0; k < PAIRS; k++, left--) {
+            if (left == 0) {
+                left = 1 + random_below(&random, random_below(&random, 2) ? LONGEST : LONGEST / 16);
+                pair = scene.pairs[random_below(&random, kinds)];
+            }
+            scene_add_pair(&scene, pair.a, pair.b);
+        }
+        check_scene(&random, &scene, LAYOUT_STRUCTURES, "runs");
+        destroy_scene(&scene);
+    }
+}
+
+/* B's way from one pose to another, relative to A; the answer changes somewhere between `low` and `high`. */
+struct way {
+    double x[2], y[2], angle[2];
+    double low, high;
+    bool changes;
+};
+
+static void walk(struct scene *scene, size_t pair, const struct way *way, double at) {
+    struct body *body = &scene->bodies[2 * pair + 1];
+    const double angle = way->angle[0] + at * (way->angle[1] - way->angle[0]);
+    body->x = way->x[0] + at * (way->x[1] - way->x[0]);
+    body->y = way->y[0] + at * (way->y[1] - way->y[0]);
+    body->cosine = (float)cos(angle);
+    body->sine = (float)sin(angle);
+}
+
+/* What changes: whether the bodies collide, the arcs that touch, or the side. */
+enum change { CHANGE_VERDICT, CHANGE_ARCS, CHANGE_SIDE, CHANGES };
+
+static bool is_change(enum change change, const narc_contacts *a, const narc_contacts *b, size_t k) {
+    switch (change) {
+    case CHANGE_VERDICT:
+        return (a->separation[k] < 0) != (b->separation[k] < 0);
+    case CHANGE_ARCS:
+        return a->arc_a[k] != b->arc_a[k] || a->arc_b[k] != b->arc_b[k];
+    default:
+        return a->normal_x[k] * b->normal_x[k] + a->normal_y[k] * b->normal_y[k] < 0.9f;
+    }
+}
+
+/* Two bodies somewhere near each other and a way for the second. */
+static struct way add_way(struct test_random *random, struct scene *scene) {
+    const struct shape shape_a = make_any(random, random_below(random, FAMILIES));
+    const struct shape shape_b = make_any(random, random_below(random, FAMILIES));
+    const double ratio = random_below(random, 2) ? 1 : random_log_between(random, 1e-4, 1e4);
+    struct body a = turned_body(random_between(random, -4, 4), 1), b = turned_body(0, ratio);
+    narc_circle inner_a, inner_b;
+    a.shape = scene_add_shape(scene, &shape_a);
+    b.shape = scene_add_shape(scene, &shape_b);
+    narc_compute_inscribed_circle(shape_a.arcs, shape_a.count, &inner_a);
+    narc_compute_inscribed_circle(shape_b.arcs, shape_b.count, &inner_b);
+    struct way way = {.high = 1};
+    const double reach = fmax(1, ratio) * random_log_between(random, 0.02, 2);
+    const double c_a = (double)a.cosine, s_a = (double)a.sine, start = random_between(random, -4, 4);
+    const double c_b = ratio * cos(start), s_b = ratio * sin(start);
+    for (int end = 0; end < 2; end++) {
+        way.angle[end] = end && random_below(random, 2) ? start + random_log_between(random, 1e-3, 3) : start;
+        way.x[end] = c_a * inner_a.x - s_a * inner_a.y - c_b * inner_b.x + s_b * inner_b.y +
+                     reach * random_between(random, -1, 1);
+        way.y[end] = s_a * inner_a.x + c_a * inner_a.y - s_b * inner_b.x - c_b * inner_b.y +
+                     reach * random_between(random, -1, 1);
+    }
+    const uint32_t first = scene_add_body(scene, a);
+    scene_add_pair(scene, first, scene_add_body(scene, b));
+    return way;
+}
+
+/* Where the deciding formula changes its mind, two answers are equally good: whoever settles such a pair early must be
+ * right about the last bit. Bisection finds these places, checks are made around them. */
+static void check_changes(struct test_random *random, enum change change) {
+    enum { PAIRS = 500, STEPS = 44, POINTS = 20 };
+    struct scene scene = create_scene(NARC_FLOAT64, 2 * PAIRS, 2 * PAIRS, PAIRS);
+    struct way ways[PAIRS];
+    for (size_t k = 0; k < PAIRS; k++) {
+        ways[k] = add_way(random, &scene);
+        walk(&scene, k, &ways[k], 0);
+    }
+    const narc_bodies bodies = scene_bodies(&scene);
+    const narc_pairs pairs = scene_pairs(&scene);
+    struct contacts first = find_plain_contacts(scene.store, &bodies, &pairs);
+    for (int step = 0; step <= STEPS; step++) { /* at first the other end, to see if there is a change at all */
+        for (size_t k = 0; k < PAIRS; k++)
+            walk(&scene, k, &ways[k], step ? (ways[k].low + ways[k].high) / 2 : 1);
+        struct contacts there = find_plain_contacts(scene.store, &bodies, &pairs);
+        for (size_t k = 0; k < PAIRS; k++) {
+            const bool changed = is_change(change, &first.view, &there.view, k);
+            if (step == 0)
+                ways[k].changes = changed;
+            else if (ways[k].changes)
+                *(changed ? &ways[k].high : &ways[k].low) = (ways[k].low + ways[k].high) / 2;
+        }
+        destroy_contacts(&there);
+    }
+    for (size_t point = 0; point < POINTS; point++) {
+        const double beside = point ? (point % 2 ? 1 : -1) * 1e-13 * pow(4, (double)point) : 0;
+        for (size_t k = 0; k < PAIRS; k++)
+            walk(&scene, k, &ways[k], ways[k].changes ? ways[k].low + beside : random_unit(random));
+        struct contacts plain = find_plain_contacts(scene.store, &bodies, &pairs);
+        const struct plain_batch batch = {.shapes = scene.store,
+                                          .bodies = &bodies,
+                                          .pairs = &pairs,
+                                          .right = &plain.view,
+                                          .scene = &scene,
+                                          .name = "change"};
+        check_plain_overlaps(&batch, 1);
+        check_plain_contacts(&batch, 0, 1, NULL);
+        check_plain_contacts(&batch, INFINITY, 1, NULL);
+        destroy_contacts(&plain);
+    }
+    destroy_contacts(&first);
+    destroy_scene(&scene);
+}
+
+static void test_changes(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("changes");
+    for (size_t round = 0; round < test_trials(12); round++)
+        check_changes(&random, (enum change)(round % CHANGES));
+}
+
+/* Specks at the flat side of a half disc, near a corner. Seen along that side the far corner is where the large arc
+ * begins: a hair beside it, a point of the arc's circle is no longer one of the shape. */
+static void test_specks(void **state) {
+    (void)state;
+    enum { PAIRS = 6000, SHAPES = 60 };
+    struct test_random random = test_random_named("specks");
+    for (size_t round = 0; round < test_trials(2); round++) {
+        struct scene scene = create_scene(NARC_FLOAT64, SHAPES, 2 * PAIRS, PAIRS);
+        const struct shape half = {
+            .count = 3, .arcs = {{0, -1, 0, -pi / 2, 0}, {0, 1, 0, 0, pi / 2}, {0, 0, 1, pi / 2, 3 * pi / 2}}};
+        const uint32_t disc = scene_add_shape(&scene, &half);
+        for (size_t k = 1; k < SHAPES; k++) {
+            const struct shape speck = k % 2 ? make_hard_shape(&random, k % 4 == 1 ? HARD_LONG : HARD_CORNERS)
+                                             : make_any(&random, random_below(&random, FAMILIES - 1));
+            scene_add_shape(&scene, &speck);
+        }
+        for (size_t k = 0; k < PAIRS; k++) {
+            const double size = random_log_between(&random, 1e3, 1e4), angle = random_between(&random, -pi, pi);
+            struct body a = turned_body(random_between(&random, -pi, pi), 1), b = turned_body(angle, size);
+            a.shape = 1 + (uint32_t)random_below(&random, SHAPES - 1);
+            b.shape = disc;
+            /* The speck's point furthest towards the side, a way from the corner along it, a little in or out. */
+            const struct shape *speck = &scene.shapes[a.shape];
+            const double x = cos(angle), y = sin(angle), c = (double)a.cosine, s = (double)a.sine;
+            const double way = (random_below(&random, 2) ? 1 : -1) * (size - random_log_between(&random, 0.1, 30));
+            const double gap = size * random_log_between(&random, 1e-8, 1e-5) * (random_below(&random, 4) ? 1 : -1);
+            narc_point p;
+            assert_true(narc_find_support(speck->arcs, speck->count, -c * x - s * y, s * x - c * y, &p, NULL));
+            b.x = c * p.x - s * p.y - gap * x + way * y;
+            b.y = s * p.x + c * p.y - gap * y - way * x;
+            const uint32_t first = scene_add_body(&scene, a);
+            scene_add_pair(&scene, first, scene_add_body(&scene, b));
+        }
+        check_scene(&random, &scene, LAYOUT_STRUCTURES, "specks");
+        destroy_scene(&scene);
+    }
+}
+
+/* A shape of the given size, `shift` away from its origin. */
+static struct shape move_away(struct test_random *random, struct shape shape, double size, double shift) {
+    narc_circle bound;
+    assert_true(narc_compute_bounding_circle(shape.arcs, shape.count, &bound));
+    const double angle = random_between(random, -pi, pi), factor = size / bound.radius;
+    for (size_t i = 0; i < shape.count; i++) {
+        narc_arc *arc = &shape.arcs[i];
+        arc->center_x = (arc->center_x - bound.x) * factor + shift * cos(angle);
+        arc->center_y = (arc->center_y - bound.y) * factor + shift * sin(angle);
+        arc->radius *= factor;
+    }
+    return shape;
+}
+
+/* Adds a body somewhere within `reach` of the world's origin, seen from the middle of its shape. */
+static uint32_t add_near_origin(struct test_random *random, struct scene *scene, uint32_t shape, double reach) {
+    struct body body = turned_body(random_below(random, 2) ? 0 : random_between(random, -pi, pi), 1);
+    const double c = (double)body.cosine, s = (double)body.sine;
+    narc_circle bound;
+    assert_true(narc_compute_bounding_circle(scene->shapes[shape].arcs, scene->shapes[shape].count, &bound));
+    body.x = reach * random_between(random, -1, 1) - (c * bound.x - s * bound.y);
+    body.y = reach * random_between(random, -1, 1) - (s * bound.x + c * bound.y);
+    body.shape = shape;
+    return scene_add_body(scene, body);
+}
+
+/* No filter says no where the exact method says yes. */
+static void check_filters(const struct scene *scene) {
+    const narc_bodies bodies = scene_bodies(scene);
+    const narc_pairs pairs = scene_pairs(scene);
+    uint64_t *exact = scene_overlaps(scene), *passed = scene_overlaps(scene);
+    for (narc_method method = NARC_METHOD_CIRCLE; method <= NARC_METHOD_OBB; method++) {
+        const narc_query query = {.method = method};
+        assert_int_equal(narc_query_overlaps(scene->store, &bodies, &pairs, &query, 1, passed, NULL), NARC_OK);
+        for (size_t k = 0; k < NARC_BIT_WORDS(pairs.count); k++)
+            assert_true((exact[k] & ~passed[k]) == 0);
+    }
+    free(exact);
+    free(passed);
+}
+
+/* Shapes ever further from their own origin: up to 1e18 times their radius, the smallest radius and the largest shift
+ * that a store takes. From 2e5 on the room for rounding is larger than the shape, and from 2e7 on single precision
+ * leaves nothing of it but a speck. From 1e10 on only circles still join up. */
+static void test_far_from_origin(void **state) {
+    (void)state;
+    enum { SHAPES = 40, PAIRS = 4000, DECADES = 18 };
+    struct test_random random = test_random_named("far from origin");
+    for (int decade = 3; decade <= DECADES; decade++) {
+        const double size = 1.000001 * fmin(1, pow(10, 9 - decade)), shift = fmin(pow(10, decade), 0.999999e9);
+        struct scene scene = create_scene(NARC_FLOAT64, SHAPES, 2 * PAIRS, PAIRS);
+        for (size_t k = 0; k < SHAPES; k++) {
+            const bool joins = decade < 10 || k % 2;
+            const struct shape shape = make_any(&random, joins ? random_below(&random, FAMILIES - 1) : FAMILY_CIRCLE);
+            const struct shape moved = move_away(&random, shape, size, k % 2 ? 0 : shift);
+            scene_add_shape(&scene, &moved);
+        }
+        for (size_t k = 0; k < PAIRS; k++) {
+            const double reach = size * random_log_between(&random, 0.1, 2);
+            const uint32_t first = add_near_origin(&random, &scene, (uint32_t)random_below(&random, SHAPES), reach);
+            scene_add_pair(&scene, first,
+                           add_near_origin(&random, &scene, (uint32_t)random_below(&random, SHAPES), reach));
+        }
+        check_scene(&random, &scene, LAYOUT_STRUCTURES, "far from origin");
+        check_filters(&scene);
+        destroy_scene(&scene);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_touch),      cmocka_unit_test(test_junction),
+        cmocka_unit_test(test_aligned),    cmocka_unit_test(test_concentric),
+        cmocka_unit_test(test_all_places), cmocka_unit_test(test_crowds),
+        cmocka_unit_test(test_runs),       cmocka_unit_test(test_changes),
+        cmocka_unit_test(test_specks),     cmocka_unit_test(test_far_from_origin),
+    };
+    return test_begin() ? cmocka_run_group_tests_name("shortcuts", tests, NULL, NULL) : TEST_SKIPPED;
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+//
+// consumer.cpp - the headers in C++: two boxes, one contact by two methods, an engine's own array of structures.
+#include <narc.h>
+#include <narc_methods.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace {
+struct Body {
+    double x, y;
+    float cosine, sine;
+    uint32_t shape;
+};
+struct Pair {
+    uint32_t a, b;
+};
+const Pair pair[] = {{0, 1}};
+const narc_column first_of_pair = NARC_COLUMN_INIT(pair, a);
+
+size_t stride_of(narc_column column) { return column.stride; }
+} // namespace
+
+int main() {
+    const Body body[] = {{0.0, 0.0, 1.0f, 0.0f, 0}, {1.5, 0.0, 1.0f, 0.0f, 0}};
+    narc_error error = {};
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t arc_count = 0, contact_count = 0;
+    narc_shapes *shapes = nullptr;
+
+    narc_bodies bodies = {};
+    bodies.count = 2;
+    bodies.position_precision = NARC_FLOAT64;
+    bodies.x = NARC_COLUMN(body, x);
+    bodies.y = NARC_COLUMN(body, y);
+    bodies.cosine = NARC_COLUMN(body, cosine);
+    bodies.sine = NARC_COLUMN(body, sine);
+    bodies.shape = NARC_COLUMN(body, shape);
+    narc_pairs pairs = {};
+    pairs.count = 1;
+    pairs.a = first_of_pair;
+    pairs.b = NARC_COLUMN(pair, b);
+
+    float separation = 0.0f, normal_x = 0.0f;
+    narc_contacts contacts = {};
+    contacts.capacity = 1;
+    contacts.separation = &separation;
+    contacts.normal_x = &normal_x;
+
+    if (narc_create_shapes(nullptr, &shapes) || narc_build_box(2.0, 2.0, 0.25, arcs, &arc_count, &error) ||
+        narc_add_shape(shapes, arcs, arc_count, nullptr, &error) ||
+        narc_find_contacts(shapes, &bodies, &pairs, 0.0f, 0, &contacts, &contact_count, &error)) {
+        std::fprintf(stderr, "narc: %s\n", error.message);
+        return 1;
+    }
+    const bool is_exact =
+        contact_count == 1 && std::fabs(separation + 0.5f) < 1e-5f && std::fabs(normal_x - 1.0f) < 1e-5f;
+
+    // The bounding radii are less than 1.4 each: the error is below 2.8 tolerances, and rounding is far below 0.2.
+    narc_query query = {};
+    query.method = NARC_METHOD_GJK;
+    query.tolerance = 1e-3f;
+    separation = 0.0f;
+    if (narc_query_contacts(shapes, &bodies, &pairs, &query, 0.0f, 0, &contacts, &contact_count, &error)) {
+        std::fprintf(stderr, "narc: %s\n", error.message);
+        return 1;
+    }
+    if (stride_of(NARC_COLUMN(pair, a)) != sizeof(Pair) || stride_of(NARC_ARRAY(pair)) != sizeof(Pair))
+        return 1;
+    const bool is_near = contact_count == 1 && std::fabs(separation + 0.5f) < 3e-3f;
+    narc_destroy_shapes(shapes);
+    std::printf("narc %s, separation by %s %g, normal x %g\n", narc_version(), narc_method_name(query.method),
+                separation, normal_x);
+    return is_exact && is_near ? 0 : 1;
+}

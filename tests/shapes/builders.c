@@ -1,0 +1,277 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * builders.c - circle, capsule, box, polygon and four arcs: closed formulas, and each documented failure.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support.h"
+#include "tests.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* What a builder was given to write to, full of a pattern, so that a stray write shows. */
+struct output {
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    narc_error error;
+};
+
+static struct output make_output(void) {
+    struct output out;
+    memset(&out, 0x5a, sizeof out);
+    return out;
+}
+
+static void expect_refused(const struct output *out, narc_status status, narc_status expected, const char *words) {
+    struct output untouched = make_output();
+    expect_error(status, expected, &out->error, words);
+    assert_memory_equal(out->arcs, untouched.arcs, sizeof out->arcs);
+    assert_memory_equal(&out->count, &untouched.count, sizeof out->count);
+}
+
+static void expect_measures(const struct output *out, double area, double second_moment, double perimeter) {
+    narc_mass mass;
+    double length;
+    assert_true(narc_compute_mass(out->arcs, out->count, &mass));
+    assert_true(narc_compute_perimeter(out->arcs, out->count, &length));
+    expect_near(mass.area, area, 1e-13 * area, "area");
+    expect_near(mass.second_moment, second_moment, 1e-13 * second_moment, "second moment");
+    expect_near(length, perimeter, 1e-13 * perimeter, "perimeter");
+    expect_near(hypot(mass.centroid_x, mass.centroid_y), 0, 1e-14 * perimeter, "centroid");
+}
+
+static void builds_circles(void **state) {
+    (void)state;
+    struct output out = make_output();
+    expect_ok(narc_build_circle(3, out.arcs, &out.count, &out.error), &out.error);
+    assert_int_equal(out.count, 1);
+    assert_true(out.arcs[0].end - out.arcs[0].start == 2 * pi);
+    expect_measures(&out, 9 * pi, 81 * pi / 2, 6 * pi);
+}
+
+static void builds_capsules(void **state) {
+    (void)state;
+    for (double length = 0; length < 9; length += 2) {
+        struct output out = make_output();
+        double r = 1.5, l = length;
+        expect_ok(narc_build_capsule(l, r, out.arcs, &out.count, &out.error), &out.error);
+        assert_int_equal(out.count, 2);
+        /* A rectangle l by 2r, and two half discs, whose centroids are 4r / (3 pi) from their middles. */
+        double half = pi * r * r / 2, c = 4 * r / (3 * pi);
+        double moment = l * 2 * r * (l * l + 4 * r * r) / 12 +
+                        2 * (half * r * r / 2 - half * c * c + half * (c + l / 2) * (c + l / 2));
+        expect_measures(&out, pi * r * r + 2 * r * l, moment, 2 * pi * r + 2 * l);
+    }
+}
+
+static void builds_boxes(void **state) {
+    (void)state;
+    const double w = 3, h = 2, radii[] = {0, 0.25, 0.7, 1};
+    for (size_t k = 0; k < 4; k++) {
+        struct output out = make_output();
+        double r = radii[k];
+        expect_ok(narc_build_box(w, h, r, out.arcs, &out.count, &out.error), &out.error);
+        assert_int_equal(out.count, 4);
+        /* Of a corner's square, r by r with its inner corner at (x, y), the quarter disc stays. */
+        double x = w / 2 - r, y = h / 2 - r, c = 4 * r / (3 * pi), quarter = pi * r * r / 4;
+        double corner = quarter * r * r / 2 + 2 * quarter * c * (x + y) + quarter * (x * x + y * y);
+        double square = (pow(x + r, 3) - pow(x, 3)) / 3 * r + (pow(y + r, 3) - pow(y, 3)) / 3 * r;
+        double moment = w * h * (w * w + h * h) / 12 - 4 * (square - corner);
+        expect_measures(&out, w * h - (4 - pi) * r * r, moment, 2 * (w + h) - (8 - 2 * pi) * r);
+        narc_aabb box;
+        assert_true(narc_compute_aabb(out.arcs, out.count, 0, &box));
+        assert_true(box.min_x == -1.5 && box.max_x == 1.5 && box.min_y == -1 && box.max_y == 1);
+    }
+}
+
+/* A regular polygon with n corners on a circle of radius R, and rounded corners. */
+static void builds_polygons(void **state) {
+    (void)state;
+    for (size_t n = 3; n <= NARC_MAX_ARCS; n++) {
+        narc_point points[NARC_MAX_ARCS];
+        double turn = 2 * pi / (double)n, apothem = 2 * cos(turn / 2), side = 4 * sin(turn / 2), count = (double)n;
+        for (size_t i = 0; i < n; i++)
+            points[i] = (narc_point){2 * cos(0.3 + turn * (double)i), 2 * sin(0.3 + turn * (double)i)};
+        struct output out = make_output();
+        expect_ok(narc_build_polygon(points, n, 0, out.arcs, &out.count, &out.error), &out.error);
+        assert_int_equal(out.count, n);
+        expect_measures(&out, count * side * apothem / 2,
+                        count * side * apothem / 2 * (apothem * apothem / 2 + side * side / 24), count * side);
+        for (size_t i = 0; i < n; i++) {
+            assert_true(out.arcs[i].center_x == points[i].x && out.arcs[i].center_y == points[i].y);
+            assert_true(out.arcs[i].radius == 0);
+        }
+        /* Rounded: each corner loses two triangles and keeps a sector. */
+        double r = apothem * 0.6, cut = tan(turn / 2);
+        expect_ok(narc_build_polygon(points, n, r, out.arcs, &out.count, &out.error), &out.error);
+        narc_mass mass;
+        double length;
+        assert_true(narc_compute_mass(out.arcs, out.count, &mass));
+        assert_true(narc_compute_perimeter(out.arcs, out.count, &length));
+        expect_near(mass.area, count * side * apothem / 2 - count * r * r * (cut - turn / 2), 1e-13 * mass.area,
+                    "area");
+        expect_near(length, count * (side - 2 * r * cut) + 2 * pi * r, 1e-13 * length, "perimeter");
+        /* As round as it gets: the inscribed circle. */
+        expect_ok(narc_build_polygon(points, n, apothem, out.arcs, &out.count, &out.error), &out.error);
+        expect_measures(&out, pi * apothem * apothem, pi * pow(apothem, 4) / 2, 2 * pi * apothem);
+    }
+}
+
+static void rounded_polygon_stays_inside(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("rounded polygons");
+    for (size_t k = 0; k < test_trials(500); k++) {
+        narc_point points[16];
+        size_t n = 3 + random_below(&random, 14);
+        for (size_t i = 0; i < n; i++) {
+            double angle = 2 * pi * ((double)i + 0.8 * random_unit(&random)) / (double)n;
+            points[i] = (narc_point){1 + 3 * cos(angle), sin(angle) - 2};
+        }
+        struct output out = make_output();
+        narc_status status = narc_build_polygon(points, n, 0.02 / (double)n, out.arcs, &out.count, &out.error);
+        if (status != NARC_OK) {
+            /* The largest radius that fits is told, and fits. */
+            const char *told = strstr(out.error.message, "fits it is ");
+            expect_error(status, NARC_ERROR_RADIUS, &out.error, "side ");
+            assert_non_null(told);
+            double radius = strtod(told + strlen("fits it is "), NULL);
+            assert_true(radius < 0.02 / (double)n);
+            continue;
+        }
+        for (size_t i = 0; i < n; i++) {
+            /* Side i: nothing outside it, and the shape lies on it. */
+            double x = points[(i + 1) % n].y - points[i].y, y = points[i].x - points[(i + 1) % n].x, l = hypot(x, y);
+            narc_point support;
+            assert_true(narc_find_support(out.arcs, out.count, x, y, &support, NULL));
+            expect_near((x * (support.x - points[i].x) + y * (support.y - points[i].y)) / l, 0, 1e-13, "height");
+        }
+    }
+}
+
+static void builds_four_arcs(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("four arcs");
+    for (size_t k = 0; k < test_trials(1000); k++) {
+        narc_four_arc f = {random_between(&random, 3, 6), random_between(&random, 3, 6), 0, 0, 0};
+        double sum = f.radius_low + f.radius_high;
+        f.distance = random_between(&random, 0.7, 0.95) * sum;
+        double most = (sum - f.distance) / 2;
+        f.radius_left = random_below(&random, 4) ? random_between(&random, 0, 0.95) * most : 0;
+        f.radius_right = random_below(&random, 4) ? random_between(&random, 0, 0.95) * most : 0;
+        struct output out = make_output();
+        expect_ok(narc_build_four_arc(f, out.arcs, &out.count, &out.error), &out.error);
+        assert_int_equal(out.count, 4);
+        assert_true(out.arcs[1].radius == f.radius_high && out.arcs[1].center_y == -f.distance / 2);
+        assert_true(out.arcs[3].radius == f.radius_low && out.arcs[3].center_y == f.distance / 2);
+        assert_true(out.arcs[0].radius == f.radius_right && out.arcs[0].center_x > 0);
+        assert_true(out.arcs[2].radius == f.radius_left && out.arcs[2].center_x < 0);
+        for (size_t tip = 0; tip < 4; tip += 2) { /* both touch both large circles from inside */
+            const narc_arc *arc = &out.arcs[tip];
+            expect_near(hypot(arc->center_x, arc->center_y - f.distance / 2), f.radius_low - arc->radius, 1e-12, "tip");
+            expect_near(hypot(arc->center_x, arc->center_y + f.distance / 2), f.radius_high - arc->radius, 1e-12,
+                        "tip");
+        }
+        narc_aabb box;
+        assert_true(narc_compute_aabb(out.arcs, 4, 0, &box));
+        expect_near(box.max_y, f.radius_high - f.distance / 2, 1e-12, "top");
+        expect_near(box.min_y, f.distance / 2 - f.radius_low, 1e-12, "bottom");
+    }
+    /* A sharp lens of equal circles: two segments of half angle a. */
+    struct output out = make_output();
+    expect_ok(narc_build_four_arc((narc_four_arc){5, 5, 8, 0, 0}, out.arcs, &out.count, &out.error), &out.error);
+    narc_mass mass;
+    assert_true(narc_compute_mass(out.arcs, 4, &mass));
+    double a = acos(0.8);
+    expect_near(mass.area, 25 * (2 * a - sin(2 * a)), 1e-13, "area of a lens");
+}
+
+static void refuses_bad_lengths(void **state) {
+    (void)state;
+    const struct {
+        double value;
+        narc_status circle;
+    } cases[] = {{0, NARC_ERROR_SIZE},         {-1, NARC_ERROR_SIZE},
+                 {NAN, NARC_ERROR_NOT_FINITE}, {INFINITY, NARC_ERROR_NOT_FINITE},
+                 {1e-10, NARC_ERROR_SIZE},     {1e10, NARC_ERROR_SIZE}};
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        struct output out = make_output();
+        double v = cases[k].value;
+        narc_status status = cases[k].circle;
+        expect_refused(&out, narc_build_circle(v, out.arcs, &out.count, &out.error), status, "radius is");
+        if (v == 1e-10)
+            continue; /* thin, but not small */
+        expect_refused(&out, narc_build_capsule(1, v, out.arcs, &out.count, &out.error), status, "radius is");
+        expect_refused(&out, narc_build_box(v, 1, 0, out.arcs, &out.count, &out.error), status,
+                       v == 1e10 ? "" : "width");
+        expect_refused(&out, narc_build_box(1, v, 0, out.arcs, &out.count, &out.error), status,
+                       v == 1e10 ? "" : "height is");
+        if (v != 0) {
+            expect_refused(&out, narc_build_capsule(v, 1, out.arcs, &out.count, &out.error), status,
+                           v == 1e10 ? "" : "length is");
+        }
+    }
+}
+
+static void refuses_what_does_not_fit(void **state) {
+    (void)state;
+    const narc_point square[4] = {{0, 0}, {2, 0}, {2, 1}, {0, 1}}, clockwise[4] = {{0, 0}, {0, 1}, {2, 1}, {2, 0}};
+    const narc_point dent[5] = {{0, 0}, {2, 0}, {1, 0.5}, {2, 1}, {0, 1}}, flat[4] = {{0, 0}, {1, 0}, {2, 0}, {1, 1}};
+    const narc_point twice[5] = {{0, 0}, {2, 0}, {2, 1}, {2, 1}, {0, 1}}, nan[3] = {{0, 0}, {1, NAN}, {0, 1}};
+    narc_point star[5];
+    for (size_t i = 0; i < 5; i++)
+        star[i] = (narc_point){cos(0.8 * pi * (double)i), sin(0.8 * pi * (double)i)};
+    struct output o = make_output();
+    narc_arc *arcs = o.arcs;
+    size_t *count = &o.count;
+    narc_error *error = &o.error;
+    expect_refused(&o, narc_build_box(2, 1, 0.6, arcs, count, error), NARC_ERROR_RADIUS, "half the shorter side, 0.5");
+    expect_refused(&o, narc_build_box(2, 1, -0.1, arcs, count, error), NARC_ERROR_RADIUS, "radius is -0.1");
+    expect_refused(&o, narc_build_polygon(NULL, 4, 0, arcs, count, error), NARC_ERROR_ARGUMENT, "points");
+    expect_refused(&o, narc_build_polygon(square, 2, 0, arcs, count, error), NARC_ERROR_COUNT, "2 points");
+    expect_refused(&o, narc_build_polygon(square, 65, 0, arcs, count, error), NARC_ERROR_COUNT, "65 points");
+    expect_refused(&o, narc_build_polygon(nan, 3, 0, arcs, count, error), NARC_ERROR_NOT_FINITE, "point 1");
+    expect_refused(&o, narc_build_polygon(square, 4, NAN, arcs, count, error), NARC_ERROR_NOT_FINITE, "radius");
+    expect_refused(&o, narc_build_polygon(clockwise, 4, 0, arcs, count, error), NARC_ERROR_NOT_CONVEX, "point 0");
+    expect_refused(&o, narc_build_polygon(dent, 5, 0, arcs, count, error), NARC_ERROR_NOT_CONVEX, "point 2");
+    expect_refused(&o, narc_build_polygon(flat, 4, 0, arcs, count, error), NARC_ERROR_NOT_CONVEX, "point 1");
+    expect_refused(&o, narc_build_polygon(star, 5, 0, arcs, count, error), NARC_ERROR_NOT_CONVEX, "not once");
+    expect_refused(&o, narc_build_polygon(twice, 5, 0, arcs, count, error), NARC_ERROR_SIZE, "side 2");
+    expect_refused(&o, narc_build_polygon(square, 4, 0.6, arcs, count, error), NARC_ERROR_RADIUS,
+                   "side 1: radius is 0.6, the largest that fits it is 0.5");
+    assert_int_equal(error->index, 1);
+    expect_refused(&o, narc_build_four_arc((narc_four_arc){1, 1, 2, 0, 0}, arcs, count, error), NARC_ERROR_SIZE,
+                   "overlap only below 2");
+    expect_refused(&o, narc_build_four_arc((narc_four_arc){3, 1, 2, 0, 0}, arcs, count, error), NARC_ERROR_SIZE,
+                   "contains the other");
+    expect_refused(&o, narc_build_four_arc((narc_four_arc){3, 0, 2, 0, 0}, arcs, count, error), NARC_ERROR_SIZE,
+                   "radius_high is 0");
+    expect_refused(&o, narc_build_four_arc((narc_four_arc){5, 5, 8, 1, 0}, arcs, count, error), NARC_ERROR_RADIUS,
+                   "radius_left is 1");
+    expect_refused(&o, narc_build_four_arc((narc_four_arc){5, 5, 8, 0, 1.5}, arcs, count, error), NARC_ERROR_RADIUS,
+                   "radius_right is 1.5");
+    expect_refused(&o, narc_build_four_arc((narc_four_arc){5, 5, 8, 0, -1}, arcs, count, error), NARC_ERROR_RADIUS,
+                   "radius_right is -1");
+    expect_refused(&o, narc_build_four_arc((narc_four_arc){NAN, 5, 8, 0, 0}, arcs, count, error), NARC_ERROR_NOT_FINITE,
+                   "radius_low");
+    /* Most of the small circle, with more than half a turn. */
+    expect_refused(&o, narc_build_four_arc((narc_four_arc){5, 1, 4.5, 0, 0}, arcs, count, error), NARC_ERROR_SWEEP,
+                   "arc 1");
+    assert_int_equal(narc_build_circle(1, NULL, count, error), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_build_circle(1, arcs, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_build_capsule(1, 1, arcs, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_build_box(1, 1, 0, NULL, count, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_build_polygon(square, 4, 0, NULL, count, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_build_four_arc((narc_four_arc){5, 5, 8, 0, 0}, NULL, count, NULL), NARC_ERROR_ARGUMENT);
+}
+
+int test_builders(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(builds_circles),      cmocka_unit_test(builds_capsules),
+        cmocka_unit_test(builds_boxes),        cmocka_unit_test(builds_polygons),
+        cmocka_unit_test(builds_four_arcs),    cmocka_unit_test(rounded_polygon_stays_inside),
+        cmocka_unit_test(refuses_bad_lengths), cmocka_unit_test(refuses_what_does_not_fit),
+    };
+    return cmocka_run_group_tests_name("builders", tests, NULL, NULL);
+}

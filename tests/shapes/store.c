@@ -1,0 +1,388 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * store.c - the store: what goes in comes out, memory, flags, and the header's circles.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "families.h"
+#include "oracle.h"
+#include "store.h"
+#include "support.h"
+#include "tests.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* One rounding to single precision, relative. */
+static const double ulp = 1.0 / 16777216.0;
+
+static void expect_same_arcs(const struct shape *shape, const narc_arc *stored, size_t count) {
+    assert_int_equal(count, shape->count);
+    for (size_t i = 0; i < count; i++) {
+        const narc_arc *a = &shape->arcs[i], *b = &stored[i];
+        assert_true(b->center_x == (double)(float)b->center_x && b->radius == (double)(float)b->radius);
+        expect_near(b->center_x, a->center_x, ulp * fabs(a->center_x) + 1e-15, "center x");
+        expect_near(b->center_y, a->center_y, ulp * fabs(a->center_y) + 1e-15, "center y");
+        expect_near(b->radius, a->radius, ulp * a->radius, "radius");
+        expect_near(remainder(b->start - a->start, 2 * pi), 0, 2 * ulp, "start");
+        expect_near(remainder(b->end - a->end, 2 * pi), 0, 2 * ulp, "end");
+        double sweep = b->end - b->start;
+        assert_true(sweep > 0 && sweep <= (count == 1 ? 2 * pi : pi) + 1e-15);
+    }
+}
+
+/* Hundreds of thousands of shapes, each found again afterwards. */
+static void keeps_many_shapes(void **state) {
+    (void)state;
+    enum { KINDS = 20 * FAMILY_COUNT, SHAPES = 70000 };
+    struct test_random random = test_random_named("many shapes");
+    struct shape *kinds = malloc(KINDS * sizeof *kinds);
+    narc_shapes *shapes = NULL;
+    narc_error error;
+    for (size_t k = 0; k < KINDS; k++)
+        kinds[k] = make_shape(&random, (enum family)(k % FAMILY_COUNT));
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    assert_int_equal(narc_count_shapes(shapes), 0);
+    for (size_t k = 0; k < SHAPES; k++) {
+        uint32_t index = UINT32_MAX;
+        const struct shape *kind = &kinds[k % KINDS];
+        expect_ok(narc_add_shape(shapes, kind->arcs, kind->count, &index, &error), &error);
+        assert_int_equal(index, k);
+    }
+    assert_int_equal(narc_count_shapes(shapes), SHAPES);
+    for (size_t k = 0; k < SHAPES; k++) {
+        narc_arc arcs[NARC_MAX_ARCS];
+        size_t count = narc_get_arcs(shapes, (uint32_t)k, arcs);
+        expect_same_arcs(&kinds[k % KINDS], arcs, count);
+        assert_int_equal(narc_get_arcs(shapes, (uint32_t)k, NULL), count);
+        if (k < KINDS)
+            expect_ok(narc_validate_arcs(arcs, count, &error), &error);
+    }
+    assert_int_equal(narc_get_arcs(shapes, SHAPES, NULL), 0);
+    assert_int_equal(narc_shape_flags(shapes, SHAPES), 0);
+    narc_destroy_shapes(shapes);
+    free(kinds);
+}
+
+static double height_of(const struct shape *shape, double x, double y) {
+    narc_point p;
+    assert_true(narc_find_support(shape->arcs, shape->count, x, y, &p, NULL));
+    return p.x * x + p.y * y;
+}
+
+/* Half the sides of the box whose first side lies along a unit vector. */
+static void find_half_sides(const struct shape *shape, double x, double y, double *out_half_x, double *out_half_y) {
+    *out_half_x = (height_of(shape, x, y) + height_of(shape, -x, -y)) / 2;
+    *out_half_y = (height_of(shape, -y, x) + height_of(shape, y, -x)) / 2;
+}
+
+/* The box behind the arcs: along a junction's normal, of a polygon an edge's; none along another junction's is smaller;
+ * it holds the shape with the room that is promised, but for the rounding of its numbers, and hardly more. */
+static void expect_box(const struct shape *shape, const narc_shape_header *header, const narc_record *arcs,
+                       double extent) {
+    const narc_oriented_box *box = &arcs[header->count].box;
+    const double x = (double)box->axis_x, y = (double)box->axis_y;
+    const double least = (NARC_ROUNDING_ROOM - 8 * ulp) * extent, most = (NARC_ROUNDING_ROOM + 8 * ulp) * extent;
+    double half_x, half_y, area = INFINITY, least_area = INFINITY;
+    narc_mass mass;
+    assert_true(narc_compute_mass(shape->arcs, shape->count, &mass));
+    expect_near((double)box->centroid_x, mass.centroid_x, ulp * extent, "centroid x");
+    expect_near((double)box->centroid_y, mass.centroid_y, ulp * extent, "centroid y");
+    for (size_t i = 0; i < header->count; i++) {
+        const double start = shape->count == 1 ? shape->arcs[0].start + pi * (double)i
+                                               : shape->arcs[(i + header->first_arc) % header->count].start;
+        find_half_sides(shape, cos(start), sin(start), &half_x, &half_y);
+        if (box->axis_x == arcs[i].arc.start_x && box->axis_y == arcs[i].arc.start_y)
+            area = half_x * half_y;
+        least_area = fmin(least_area, half_x * half_y);
+    }
+    /* That much is rounding in double precision; infinite: along no junction's normal. */
+    assert_true(area <= least_area * (1 + 1e-9));
+    const double from_x = (double)box->center_x * x + (double)box->center_y * y,
+                 from_y = (double)box->center_y * x - (double)box->center_x * y;
+    const double room[4] = {(double)box->half_x - (height_of(shape, x, y) - from_x),
+                            (double)box->half_x - (height_of(shape, -x, -y) + from_x),
+                            (double)box->half_y - (height_of(shape, -y, x) - from_y),
+                            (double)box->half_y - (height_of(shape, y, -x) + from_y)};
+    for (int k = 0; k < 4; k++)
+        assert_true(room[k] >= least && room[k] <= most);
+}
+
+/* The layout that the kernels rely on. */
+static void lays_out_blocks(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("blocks");
+    narc_shapes *shapes = NULL;
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    for (size_t k = 0; k < 40 * FAMILY_COUNT; k++) {
+        struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
+        assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+        narc_shape_header header = shapes->headers[k];
+        size_t count = shape.count == 1 ? 2 : shape.count, turn_records = narc_angle_records(count);
+        const narc_record *block = &shapes->records[header.first_record], *arcs = narc_arcs_of(shapes, &header);
+        assert_int_equal((uintptr_t)shapes->headers % NARC_CACHE_LINE, 0);
+        assert_int_equal((uintptr_t)shapes->records % NARC_CACHE_LINE, 0);
+        assert_int_equal(header.count, count);
+        assert_true(header.first_arc < count);
+        assert_true((size_t)(arcs - shapes->records) + count + 1 <= shapes->record_count);
+        assert_ptr_equal(arcs, block + turn_records);
+        for (size_t i = 0; i < count; i++) {
+            const narc_stored_arc *arc = &arcs[i].arc, *next = &arcs[(i + 1) % count].arc;
+            double ax = (double)arc->start_x, ay = (double)arc->start_y, bx = (double)arc->end_x,
+                   by = (double)arc->end_y;
+            expect_near(hypot(ax, ay), 1, ulp, "length of a normal");
+            assert_true(ax * by - ay * bx > 0 || (ax == -bx && ay == -by)); /* in order, or exactly opposite */
+            assert_true(arc->end_x == next->start_x && arc->end_y == next->start_y);
+            double turn = ay >= 0 ? 1 - ax / (fabs(ax) + fabs(ay)) : 3 + ax / (fabs(ax) + fabs(ay));
+            int16_t rounded = block[i / NARC_RECORD_ANGLES].angles[i % NARC_RECORD_ANGLES];
+            expect_near((double)rounded, (double)NARC_ANGLE_SCALE * turn - (double)NARC_ANGLE_OFFSET, 1.01,
+                        "its 16 bits");
+            assert_true(i == 0 || rounded >= block[(i - 1) / NARC_RECORD_ANGLES].angles[(i - 1) % NARC_RECORD_ANGLES]);
+        }
+        for (size_t i = count; i < NARC_RECORD_ANGLES * turn_records; i++)
+            assert_int_equal(block[i / NARC_RECORD_ANGLES].angles[i % NARC_RECORD_ANGLES], NARC_ANGLE_NONE);
+        double extent = 0;
+        for (size_t i = 0; i < shape.count; i++)
+            extent = fmax(extent, hypot(shape.arcs[i].center_x, shape.arcs[i].center_y) + shape.arcs[i].radius);
+        assert_true(header.extent_ratio == 255 || header.extent_ratio * (double)header.bound_radius >= extent);
+        assert_true((header.extent_ratio - 1) * (double)header.bound_radius <= extent * 1.001);
+        expect_box(&shape, &header, arcs, extent);
+    }
+    narc_destroy_shapes(shapes);
+}
+
+/* Multiples of a quarter turn are stored as exact zeros and ones, whole turns added or not. */
+static void stores_exact_quarter_turns(void **state) {
+    (void)state;
+    narc_shapes *shapes = NULL;
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    const float x[4] = {1, 0, -1, 0}, y[4] = {0, 1, 0, -1};
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    assert_int_equal(narc_build_box(2, 1, 0.25, arcs, &count, NULL), NARC_OK);
+    for (int turns = -3; turns <= 3; turns++) {
+        narc_arc turned[4];
+        uint32_t index;
+        for (size_t i = 0; i < 4; i++) {
+            turned[i] = arcs[i];
+            turned[i].start += 2 * pi * turns;
+            turned[i].end += 2 * pi * turns;
+        }
+        assert_int_equal(narc_add_shape(shapes, turned, 4, &index, NULL), NARC_OK);
+        for (size_t i = 0; i < 4; i++) {
+            const narc_shape_header *header = &shapes->headers[index];
+            const narc_stored_arc *arc = &narc_arcs_of(shapes, header)[(i + 4 - header->first_arc) % 4].arc;
+            assert_true(arc->start_x == x[i] && arc->start_y == y[i]);
+        }
+    }
+    narc_destroy_shapes(shapes);
+}
+
+static unsigned add_and_get_flags(narc_shapes *shapes, const narc_arc *arcs, size_t count) {
+    uint32_t index;
+    assert_int_equal(narc_add_shape(shapes, arcs, count, &index, NULL), NARC_OK);
+    return narc_shape_flags(shapes, index);
+}
+
+static void knows_what_shapes_are(void **state) {
+    (void)state;
+    narc_shapes *shapes = NULL;
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    const narc_point rhombus[4] = {{2, 0}, {0, 1}, {-2, 0}, {0, -1}}, square[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_build_circle(1, arcs, &count, NULL);
+    assert_int_equal(add_and_get_flags(shapes, arcs, count),
+                     NARC_SHAPE_SMOOTH | NARC_SHAPE_CIRCLE | NARC_SHAPE_CENTERS_INSIDE);
+    narc_build_capsule(0, 1, arcs, &count, NULL);
+    assert_int_equal(add_and_get_flags(shapes, arcs, count), NARC_SHAPE_SMOOTH | NARC_SHAPE_CENTERS_INSIDE);
+    narc_build_capsule(1, 1, arcs, &count, NULL);
+    assert_int_equal(add_and_get_flags(shapes, arcs, count), NARC_SHAPE_CENTERS_INSIDE);
+    narc_build_polygon(rhombus, 4, 0, arcs, &count, NULL);
+    assert_int_equal(add_and_get_flags(shapes, arcs, count), NARC_SHAPE_POLYGON | NARC_SHAPE_CENTERS_INSIDE);
+    narc_build_polygon(rhombus, 4, 0.1, arcs, &count, NULL);
+    assert_int_equal(add_and_get_flags(shapes, arcs, count), NARC_SHAPE_CENTERS_INSIDE);
+    narc_build_four_arc((narc_four_arc){5, 5, 8, 0.25, 0.25}, arcs, &count, NULL);
+    assert_int_equal(add_and_get_flags(shapes, arcs, count), NARC_SHAPE_SMOOTH);
+    assert_int_equal(narc_build_points(square, 4, 0.5, arcs, &count, NULL), NARC_ERROR_RADIUS);
+    narc_build_points(square, 4, 0.6, arcs, &count, NULL);
+    assert_int_equal(add_and_get_flags(shapes, arcs, count), NARC_SHAPE_SMOOTH | NARC_SHAPE_CENTERS_INSIDE);
+    narc_destroy_shapes(shapes);
+}
+
+/* The filters' circles hold for the shape that was stored, and are not much larger or smaller than they must be. */
+static void bounds_what_is_stored(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("bounds");
+    narc_shapes *shapes = NULL;
+    /* The room that is promised, less or more what rounding the arcs and the circle itself takes. */
+    const double least = NARC_ROUNDING_ROOM - 8 * ulp, most = NARC_ROUNDING_ROOM + 8 * ulp;
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    for (size_t k = 0; k < test_trials(100) * FAMILY_COUNT; k++) {
+        struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
+        narc_arc arcs[NARC_MAX_ARCS];
+        uint32_t index;
+        narc_circle bound, inner;
+        double extent = 0;
+        assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, &index, NULL), NARC_OK);
+        size_t count = narc_get_arcs(shapes, index, arcs);
+        for (size_t i = 0; i < count; i++)
+            extent = fmax(extent, hypot(arcs[i].center_x, arcs[i].center_y) + arcs[i].radius);
+        narc_shape_header header = shapes->headers[index];
+        double reach = oracle_reach(arcs, count, (narc_point){(double)header.bound_x, (double)header.bound_y});
+        narc_point middle = {(double)header.inner_x, (double)header.inner_y};
+        double room = fabs(oracle_distance(arcs, count, middle)); /* its sign is lost in the rounding of the joins */
+        assert_true(narc_contains_point(arcs, count, middle));
+        narc_compute_bounding_circle(shape.arcs, shape.count, &bound);
+        narc_compute_inscribed_circle(shape.arcs, shape.count, &inner);
+        assert_true((double)header.bound_radius >= reach + least * extent);
+        assert_true((double)header.bound_radius <= bound.radius + most * extent);
+        assert_true((double)header.inner_radius <= room - least * extent || header.inner_radius == 0);
+        assert_true((double)header.inner_radius >= inner.radius - most * extent);
+        /* The box of the body, turned and scaled. */
+        float angle = (float)random_between(&random, -pi, pi), c = cosf(angle), s = sinf(angle);
+        float scale = (float)random_log_between(&random, 0.1, 10);
+        double cosine = (double)c, sine = (double)s, size = (double)scale;
+        narc_aabb box;
+        assert_true(narc_get_aabb(shapes, index, c, s, scale, &box));
+        struct samples samples = oracle_sample(arcs, count, 300);
+        double slack = size * (2 * most * extent + samples.height_error);
+        double max_x = size * oracle_height(&samples, cosine, -sine),
+               max_y = size * oracle_height(&samples, sine, cosine);
+        double min_x = -size * oracle_height(&samples, -cosine, sine),
+               min_y = -size * oracle_height(&samples, -sine, -cosine);
+        oracle_free(&samples);
+        assert_true(box.max_x >= max_x + least * size * extent && box.max_x <= max_x + slack);
+        assert_true(box.max_y >= max_y + least * size * extent && box.max_y <= max_y + slack);
+        assert_true(box.min_x <= min_x - least * size * extent && box.min_x >= min_x - slack);
+        assert_true(box.min_y <= min_y - least * size * extent && box.min_y >= min_y - slack);
+        assert_false(narc_get_aabb(shapes, index + 1, c, s, scale, &box));
+        assert_false(narc_get_aabb(shapes, index, c, s, scale, NULL));
+    }
+    narc_destroy_shapes(shapes);
+}
+
+/* ------------------------------------------------------------------------------------------------ memory */
+
+struct counter {
+    size_t allocations, allowed; /* how many there were, and may be */
+    size_t live;
+};
+
+static void *count_allocation(size_t size, void *context) {
+    struct counter *counter = context;
+    if (counter->allocations >= counter->allowed)
+        return NULL;
+    counter->allocations++;
+    counter->live++;
+    void *memory = malloc(size);
+    memset(memory, 0xa5, size);
+    return memory;
+}
+
+static void count_release(void *memory, void *context) {
+    struct counter *counter = context;
+    assert_non_null(memory);
+    counter->live--;
+    free(memory);
+}
+
+/* Whichever allocation fails, the store stays as it was, and the same shape can be added once there is memory. */
+static void survives_failing_allocations(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("failing allocations");
+    struct shape added[400];
+    struct counter counter = {0};
+    narc_allocator allocator = {count_allocation, count_release, &counter};
+    narc_shapes *shapes = NULL;
+    narc_error error;
+    size_t failures = 0;
+    assert_int_equal(narc_create_shapes(&allocator, &shapes), NARC_ERROR_MEMORY);
+    assert_null(shapes);
+    counter.allowed = 1;
+    assert_int_equal(narc_create_shapes(&allocator, &shapes), NARC_OK);
+    for (size_t k = 0; k < 400; k++) {
+        uint32_t index = 12345;
+        added[k] = make_shape(&random, (enum family)(k % FAMILY_COUNT));
+        narc_status status;
+        while ((status = narc_add_shape(shapes, added[k].arcs, added[k].count, &index, &error)) != NARC_OK) {
+            failures++;
+            expect_error(status, NARC_ERROR_MEMORY, &error, "shape ");
+            assert_int_equal(index, 12345);
+            assert_int_equal(narc_count_shapes(shapes), k);
+            assert_int_equal(narc_get_arcs(shapes, (uint32_t)k, NULL), 0);
+            for (size_t j = 0; j < k; j++) {
+                narc_arc arcs[NARC_MAX_ARCS];
+                expect_same_arcs(&added[j], arcs, narc_get_arcs(shapes, (uint32_t)j, arcs));
+            }
+            counter.allowed++;
+        }
+        assert_int_equal(index, k);
+    }
+    assert_true(failures >= 10); /* each of the two arrays grew several times */
+    narc_destroy_shapes(shapes);
+    assert_int_equal(counter.live, 0);
+}
+
+static void reserve_is_enough(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("reserve");
+    for (size_t round = 0; round < 50; round++) {
+        struct shape added[2 * FAMILY_COUNT];
+        struct counter counter = {.allowed = 3};
+        narc_allocator allocator = {count_allocation, count_release, &counter};
+        narc_shapes *shapes = NULL;
+        size_t arc_count = 0;
+        assert_int_equal(narc_create_shapes(&allocator, &shapes), NARC_OK);
+        for (size_t k = 0; k < 2 * FAMILY_COUNT; k++) {
+            added[k] = make_shape(&random, round % 2 ? FAMILY_CIRCLE : (enum family)(k % FAMILY_COUNT));
+            arc_count += added[k].count;
+        }
+        assert_int_equal(narc_reserve_shapes(shapes, 2 * FAMILY_COUNT, arc_count), NARC_OK);
+        assert_int_equal(counter.allocations, 3);
+        for (size_t k = 0; k < 2 * FAMILY_COUNT; k++)
+            assert_int_equal(narc_add_shape(shapes, added[k].arcs, added[k].count, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_reserve_shapes(shapes, 1000000, 8000000), NARC_ERROR_MEMORY);
+        assert_int_equal(narc_reserve_shapes(shapes, SIZE_MAX, 0), NARC_ERROR_COUNT);
+        assert_int_equal(narc_reserve_shapes(shapes, 0, SIZE_MAX), NARC_ERROR_COUNT);
+        assert_int_equal(narc_reserve_shapes(shapes, 1, (size_t)1 << 30), NARC_ERROR_COUNT);
+        assert_int_equal(narc_reserve_shapes(shapes, 0, 0), NARC_OK);
+        narc_destroy_shapes(shapes);
+        assert_int_equal(counter.live, 0);
+    }
+}
+
+static void refuses_bad_arguments(void **state) {
+    (void)state;
+    narc_shapes *shapes = NULL;
+    narc_error error;
+    narc_allocator incomplete = {NULL, count_release, NULL};
+    narc_arc arc = {0, 0, -1, -pi, pi};
+    uint32_t index = 12345;
+    assert_int_equal(narc_create_shapes(NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_create_shapes(&incomplete, &shapes), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    expect_error(narc_add_shape(NULL, &arc, 1, &index, &error), NARC_ERROR_ARGUMENT, &error, "shapes");
+    expect_error(narc_add_shape(shapes, NULL, 1, &index, &error), NARC_ERROR_ARGUMENT, &error, "arcs");
+    expect_error(narc_add_shape(shapes, &arc, 0, &index, &error), NARC_ERROR_COUNT, &error, "0 arcs");
+    expect_error(narc_add_shape(shapes, &arc, 1, &index, &error), NARC_ERROR_RADIUS, &error, "arc 0: radius is -1");
+    assert_int_equal(narc_count_shapes(shapes), 0);
+    assert_int_equal(index, 12345);
+    assert_int_equal(narc_count_shapes(NULL), 0);
+    assert_int_equal(narc_shape_flags(NULL, 0), 0);
+    assert_int_equal(narc_get_arcs(NULL, 0, &arc), 0);
+    assert_int_equal(narc_reserve_shapes(NULL, 1, 1), NARC_ERROR_ARGUMENT);
+    narc_destroy_shapes(NULL);
+    narc_destroy_shapes(shapes);
+}
+
+int test_store(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(keeps_many_shapes),          cmocka_unit_test(lays_out_blocks),
+        cmocka_unit_test(stores_exact_quarter_turns), cmocka_unit_test(knows_what_shapes_are),
+        cmocka_unit_test(bounds_what_is_stored),      cmocka_unit_test(survives_failing_allocations),
+        cmocka_unit_test(reserve_is_enough),          cmocka_unit_test(refuses_bad_arguments),
+    };
+    return cmocka_run_group_tests_name("store", tests, NULL, NULL);
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * expect.c - what a function's status and error should be.
+ */
+#include "expect.h"
+
+#include <string.h>
+
+#include "support.h"
+
+void expect_error(narc_status status, narc_status expected, const narc_error *error, const char *words) {
+    if (status != expected)
+        fail_msg("got %s, expected %s (%s)", narc_status_name(status), narc_status_name(expected), words);
+    if (error->status != expected)
+        fail_msg("the error says %s, not %s", narc_status_name(error->status), narc_status_name(expected));
+    if (!strstr(error->message, words))
+        fail_msg("the message is \"%s\", it should mention \"%s\"", error->message, words);
+    const size_t length = strlen(error->message);
+    if (length == 0 || strchr(error->message, '\n') || error->message[length - 1] == '.')
+        fail_msg("not one line without a full stop: \"%s\"", error->message);
+}
+
+void expect_ok(narc_status status, const narc_error *error) {
+    if (status != NARC_OK)
+        fail_msg("%s: %s", narc_status_name(status), error->message);
+}

@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * layouts.c - the same bodies and pairs in the layouts that callers have.
+ */
+#include "layouts.h"
+
+#include "guard.h"
+
+struct structure {
+    float x, y, cosine, sine, scale;
+    uint32_t shape;
+};
+
+struct double_structure {
+    double x, y;
+    float cosine, sine, scale;
+    uint32_t shape;
+};
+
+struct reversed {
+    uint32_t shape;
+    float scale, sine, cosine, y, x;
+};
+
+struct double_reversed {
+    uint32_t shape;
+    float scale, sine, cosine;
+    double y, x;
+};
+
+struct reversed_pair {
+    uint32_t user[1], b, a;
+};
+
+static void *add_memory(struct columns *columns, size_t size) {
+    void *memory = guard_allocate(size);
+    columns->memory[columns->memory_count++] = memory;
+    return memory;
+}
+
+/* A packed array of `count` values of `type`, the member of each of the items. */
+#define PACK(columns, type, items, count, member, column)                                                              \
+    do {                                                                                                               \
+        type *packed = add_memory(columns, (count) * sizeof(type));                                                    \
+        for (size_t pack_k = 0; pack_k < (count); pack_k++)                                                            \
+            packed[pack_k] = (items)[pack_k].member;                                                                   \
+        (column) = (narc_column){packed, sizeof(type)};                                                                \
+    } while (0)
+
+/* An array of structures of `type`, positions from the members x_from and y_from. */
+#define STRUCTURES(columns, type, items, count, x_from, y_from)                                                        \
+    do {                                                                                                               \
+        type *array = add_memory(columns, (count) * sizeof(type));                                                     \
+        for (size_t k = 0; k < (count); k++)                                                                           \
+            array[k] = (type){.x = (items)[k].x_from,                                                                  \
+                              .y = (items)[k].y_from,                                                                  \
+                              .cosine = (items)[k].cosine,                                                             \
+                              .sine = (items)[k].sine,                                                                 \
+                              .scale = (items)[k].scale,                                                               \
+                              .shape = (items)[k].shape};                                                              \
+        (columns)->bodies.x = NARC_COLUMN(array, x);                                                                   \
+        (columns)->bodies.y = NARC_COLUMN(array, y);                                                                   \
+        (columns)->bodies.cosine = NARC_COLUMN(array, cosine);                                                         \
+        (columns)->bodies.sine = NARC_COLUMN(array, sine);                                                             \
+        (columns)->bodies.scale = NARC_COLUMN(array, scale);                                                           \
+        (columns)->bodies.shape = NARC_COLUMN(array, shape);                                                           \
+    } while (0)
+
+static void add_positions(struct columns *columns, const struct scene *scene) {
+    const struct body *body = scene->bodies;
+    size_t count = scene->body_count;
+    if (scene->precision == NARC_FLOAT64) {
+        PACK(columns, double, body, count, x, columns->bodies.x);
+        PACK(columns, double, body, count, y, columns->bodies.y);
+    } else {
+        PACK(columns, float, body, count, x_single, columns->bodies.x);
+        PACK(columns, float, body, count, y_single, columns->bodies.y);
+    }
+}
+
+/* Everything but the positions: `count` values each, or one for all with a stride of 0. */
+static void add_arrays(struct columns *columns, const struct scene *scene, size_t count) {
+    narc_bodies *bodies = &columns->bodies;
+    PACK(columns, float, scene->bodies, count, cosine, bodies->cosine);
+    PACK(columns, float, scene->bodies, count, sine, bodies->sine);
+    PACK(columns, float, scene->bodies, count, scale, bodies->scale);
+    PACK(columns, uint32_t, scene->bodies, count, shape, bodies->shape);
+    if (count < scene->body_count)
+        bodies->cosine.stride = bodies->sine.stride = bodies->scale.stride = bodies->shape.stride = 0;
+}
+
+static void add_pairs(struct columns *columns, const struct pair *pairs, size_t count, enum layout layout) {
+    columns->pairs.count = count;
+    if (layout == LAYOUT_STRUCTURES) {
+        struct pair *array = guard_copy(pairs, count * sizeof(*pairs));
+        columns->memory[columns->memory_count++] = array;
+        columns->pairs.a = NARC_COLUMN(array, a);
+        columns->pairs.b = NARC_COLUMN(array, b);
+    } else if (layout == LAYOUT_REVERSED) {
+        struct reversed_pair *array = add_memory(columns, count * sizeof(*array));
+        for (size_t k = 0; k < count; k++) {
+            array[k].a = pairs[k].a;
+            array[k].b = pairs[k].b;
+        }
+        columns->pairs.a = NARC_COLUMN(array, a);
+        columns->pairs.b = NARC_COLUMN(array, b);
+    } else {
+        PACK(columns, uint32_t, pairs, count, a, columns->pairs.a);
+        PACK(columns, uint32_t, pairs, count, b, columns->pairs.b);
+    }
+}
+
+struct columns create_columns(const struct scene *scene, enum layout layout, size_t first, size_t count) {
+    struct columns columns = {.bodies = {.count = scene->body_count, .position_precision = scene->precision}};
+    const struct body *body = scene->bodies;
+    bool doubles = scene->precision == NARC_FLOAT64;
+    switch (layout) {
+    case LAYOUT_STRUCTURES:
+        if (doubles)
+            STRUCTURES(&columns, struct double_structure, body, scene->body_count, x, y);
+        else
+            STRUCTURES(&columns, struct structure, body, scene->body_count, x_single, y_single);
+        break;
+    case LAYOUT_REVERSED:
+        if (doubles)
+            STRUCTURES(&columns, struct double_reversed, body, scene->body_count, x, y);
+        else
+            STRUCTURES(&columns, struct reversed, body, scene->body_count, x_single, y_single);
+        break;
+    default:
+        add_positions(&columns, scene);
+        add_arrays(&columns, scene, layout == LAYOUT_SHARED ? 1 : scene->body_count);
+        break;
+    }
+    if (layout == LAYOUT_UNSCALED)
+        columns.bodies.scale = (narc_column){NULL, 0};
+    add_pairs(&columns, scene->pairs + first, count, layout);
+    return columns;
+}
+
+void destroy_columns(struct columns *columns) {
+    for (size_t k = 0; k < columns->memory_count; k++)
+        guard_release(columns->memory[k]);
+}
+
+void share_values(struct scene *scene) {
+    for (size_t k = 1; k < scene->body_count; k++) {
+        scene->bodies[k].cosine = scene->bodies[0].cosine;
+        scene->bodies[k].sine = scene->bodies[0].sine;
+        scene->bodies[k].scale = scene->bodies[0].scale;
+        scene->bodies[k].shape = scene->bodies[0].shape;
+    }
+}
+
+void unit_scales(struct scene *scene) {
+    for (size_t k = 0; k < scene->body_count; k++)
+        scene->bodies[k].scale = 1;
+}
+
+narc_shapes *guard_store(const struct scene *scene) {
+    narc_shapes *store;
+    size_t arcs = 0;
+    for (size_t k = 0; k < scene->shape_count; k++)
+        arcs += scene->shapes[k].count;
+    assert_int_equal(narc_create_shapes(&guard_allocator, &store), NARC_OK);
+    assert_int_equal(narc_reserve_shapes(store, scene->shape_count, arcs), NARC_OK);
+    for (size_t k = 0; k < scene->shape_count; k++) {
+        const struct shape *shape = &scene->shapes[k];
+        assert_int_equal(narc_add_shape(store, shape->arcs, shape->count, NULL, NULL), NARC_OK);
+    }
+    return store;
+}
+
+narc_contacts create_guarded_contacts(size_t capacity) {
+    return (narc_contacts){.capacity = capacity,
+                           .pair = guard_allocate(capacity * sizeof(uint32_t)),
+                           .separation = guard_allocate(capacity * sizeof(float)),
+                           .normal_x = guard_allocate(capacity * sizeof(float)),
+                           .normal_y = guard_allocate(capacity * sizeof(float)),
+                           .point_x = guard_allocate(capacity * sizeof(float)),
+                           .point_y = guard_allocate(capacity * sizeof(float)),
+                           .arc_a = guard_allocate(capacity),
+                           .arc_b = guard_allocate(capacity)};
+}
+
+void destroy_guarded_contacts(const narc_contacts *contacts) {
+    guard_release(contacts->pair);
+    guard_release(contacts->separation);
+    guard_release(contacts->normal_x);
+    guard_release(contacts->normal_y);
+    guard_release(contacts->point_x);
+    guard_release(contacts->point_y);
+    guard_release(contacts->arc_a);
+    guard_release(contacts->arc_b);
+}

@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * method_references.c - the published tests and the filters in double precision.
+ */
+#include "method_references.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+struct vector {
+    double x, y;
+};
+
+static struct vector turn(const struct reference_body *body, double x, double y) {
+    return (struct vector){body->scale * (body->cosine * x - body->sine * y),
+                           body->scale * (body->sine * x + body->cosine * y)};
+}
+
+static double cross(double a_x, double a_y, double b_x, double b_y) { return a_x * b_y - a_y * b_x; }
+
+static double dot(double a_x, double a_y, double b_x, double b_y) { return a_x * b_x + a_y * b_y; }
+
+/* ----------------------------------------------------------------------------------------------- first pair of arcs */
+
+struct first_body make_first_body(const struct reference_body *body, const struct reference_body *origin) {
+    const double x = body->x - origin->x, y = body->y - origin->y, angle = atan2(body->sine, body->cosine);
+    struct first_body out = {.count = body->count == 1 ? 2 : body->count, .circle = body->count == 1};
+    narc_mass mass;
+    assert_true(narc_compute_mass(body->arcs, body->count, &mass));
+    const struct vector centroid = turn(body, mass.centroid_x, mass.centroid_y);
+    out.centroid_x = x + centroid.x;
+    out.centroid_y = y + centroid.y;
+    for (size_t i = 0; i <= out.count; i++) {
+        const size_t k = out.circle ? 0 : i % out.count;
+        const narc_arc *arc = &body->arcs[k];
+        const double start = arc->start + angle + (out.circle ? pi * (double)i : 0);
+        out.start_x[i] = cos(start);
+        out.start_y[i] = sin(start);
+        if (i < out.count) {
+            const struct vector center = turn(body, arc->center_x, arc->center_y);
+            out.x[i] = x + center.x;
+            out.y[i] = y + center.y;
+            out.radius[i] = body->scale * arc->radius;
+        }
+    }
+    return out;
+}
+
+static enum sureness above(double value, double band) {
+    return value > band ? PASSES : value < -band ? FAILS : IN_DOUBT;
+}
+
+/* Of the steps that kernels/sat/normal_fan.inl lists, those that lead to the vector between two centres leave it off by
+ * (10 D + 4 E_a + 19 E_b) e in any direction, by 27 e reach in all with both components off; so do the same steps the
+ * vector between the centroids. A normal is off by 6 e, a cross or dot product rounds by 3 e more, of the length of u:
+ * 36 e reach for the cones, and for the dot product 30 e reach times both lengths. 48 e reach covers either. */
+static const double sign_band = 48.0 / 16777216.0;
+
+enum sureness test_arcs(const struct first_body *a, const struct first_body *b, double reach, size_t i, size_t j) {
+    const double u_x = b->x[j] - a->x[i], u_y = b->y[j] - a->y[i];
+    const double c_x = b->centroid_x - a->centroid_x, c_y = b->centroid_y - a->centroid_y;
+    const double band = sign_band * reach;
+    const enum sureness sign[5] = {
+        above(cross(a->start_x[i], a->start_y[i], u_x, u_y), band),
+        above(cross(u_x, u_y, a->start_x[i + 1], a->start_y[i + 1]), band),
+        above(cross(b->start_x[j], b->start_y[j], -u_x, -u_y), band),
+        above(cross(-u_x, -u_y, b->start_x[j + 1], b->start_y[j + 1]), band),
+        above(dot(u_x, u_y, c_x, c_y), band * (hypot(u_x, u_y) + hypot(c_x, c_y))),
+    };
+    enum sureness least = PASSES;
+    for (int k = 0; k < 5; k++)
+        least = sign[k] < least ? sign[k] : least;
+    return least;
+}
+
+/* ------------------------------------------------------------------------------------------------ polygons */
+
+struct polygon {
+    size_t count;
+    struct vector vertex[NARC_MAX_ARCS];
+};
+
+static struct polygon make_polygon(const struct reference_body *body, const struct reference_body *origin) {
+    struct polygon out = {.count = body->count};
+    for (size_t i = 0; i < body->count; i++) {
+        assert_true(body->arcs[i].radius == 0);
+        const struct vector v = turn(body, body->arcs[i].center_x, body->arcs[i].center_y);
+        out.vertex[i] = (struct vector){v.x + (body->x - origin->x), v.y + (body->y - origin->y)};
+    }
+    return out;
+}
+
+static double gap_of_edges(const struct polygon *own, const struct polygon *other) {
+    double best = -INFINITY;
+    for (size_t i = 0; i < own->count; i++) {
+        const struct vector from = own->vertex[i], to = own->vertex[(i + 1) % own->count];
+        const double length = hypot(to.x - from.x, to.y - from.y);
+        const double n_x = (to.y - from.y) / length, n_y = (from.x - to.x) / length;
+        double least = INFINITY;
+        for (size_t j = 0; j < other->count; j++)
+            least = fmin(least, dot(n_x, n_y, other->vertex[j].x - to.x, other->vertex[j].y - to.y));
+        best = fmax(best, least);
+    }
+    return best;
+}
+
+double polygon_gap(const struct reference_body *a, const struct reference_body *b) {
+    const struct polygon of_a = make_polygon(a, a), of_b = make_polygon(b, a);
+    return fmax(gap_of_edges(&of_a, &of_b), gap_of_edges(&of_b, &of_a));
+}
+
+/* ------------------------------------------------------------------------------------------------ boxes */
+
+/* Boxes whose areas differ by less than this are the same choice: far above what double precision leaves of an area
+ * that is the product of two differences, each good to about 1e-13 of the coordinates; far below what matters. */
+static const double same_area = 1e-9;
+
+struct smallest_boxes find_boxes(const struct shape *shape) {
+    const struct reference_body body = {shape->arcs, shape->count, 0, 0, 1, 0, 1};
+    struct smallest_boxes all = {.count = shape->count}, smallest = {0};
+    double least = INFINITY;
+    for (size_t i = 0; i < shape->count; i++) {
+        const double x = cos(shape->arcs[i].start), y = sin(shape->arcs[i].start);
+        const double front = reference_height(&body, x, y), back = reference_height(&body, -x, -y);
+        const double left = reference_height(&body, -y, x), right = reference_height(&body, y, -x);
+        const double along = (front - back) / 2, across = (left - right) / 2;
+        all.box[i] = (struct plain_box){
+            along * x - across * y, along * y + across * x, (front + back) / 2, (left + right) / 2, x, y};
+        least = fmin(least, all.box[i].half_x * all.box[i].half_y);
+    }
+    for (size_t i = 0; i < all.count; i++)
+        if (all.box[i].half_x * all.box[i].half_y <= least * (1 + same_area))
+            smallest.box[smallest.count++] = all.box[i];
+    return smallest;
+}
+
+struct plain_box place_box(const struct plain_box *box, const struct reference_body *body,
+                           const struct reference_body *origin) {
+    const struct vector middle = turn(body, box->x, box->y);
+    return (struct plain_box){middle.x + body->x - origin->x,
+                              middle.y + body->y - origin->y,
+                              box->half_x * body->scale,
+                              box->half_y * body->scale,
+                              body->cosine * box->axis_x - body->sine * box->axis_y,
+                              body->sine * box->axis_x + body->cosine * box->axis_y};
+}
+
+static double reach_along(const struct plain_box *box, double x, double y) {
+    return box->half_x * fabs(dot(box->axis_x, box->axis_y, x, y)) +
+           box->half_y * fabs(cross(box->axis_x, box->axis_y, x, y));
+}
+
+static double gap_along(const struct plain_box *a, const struct plain_box *b, double x, double y) {
+    return fabs(dot(b->x - a->x, b->y - a->y, x, y)) - reach_along(a, x, y) - reach_along(b, x, y);
+}
+
+double box_gap(const struct plain_box *a, const struct plain_box *b) {
+    return fmax(fmax(gap_along(a, b, a->axis_x, a->axis_y), gap_along(a, b, -a->axis_y, a->axis_x)),
+                fmax(gap_along(a, b, b->axis_x, b->axis_y), gap_along(a, b, -b->axis_y, b->axis_x)));
+}
+
+double axis_gap(const struct plain_box *a, const struct plain_box *b) {
+    return fmax(gap_along(a, b, 1, 0), gap_along(a, b, 0, 1));
+}
+
+double circle_gap(const struct reference_body *a, const struct reference_body *b) {
+    narc_circle of_a, of_b;
+    assert_true(narc_compute_bounding_circle(a->arcs, a->count, &of_a));
+    assert_true(narc_compute_bounding_circle(b->arcs, b->count, &of_b));
+    const struct vector from = turn(a, of_a.x, of_a.y), to = turn(b, of_b.x, of_b.y);
+    return hypot(b->x - a->x + to.x - from.x, b->y - a->y + to.y - from.y) - a->scale * of_a.radius -
+           b->scale * of_b.radius;
+}

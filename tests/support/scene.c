@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * scene.c - shapes, bodies and pairs of the tests.
+ */
+#include "scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+static void *allocate(size_t count, size_t size) {
+    void *memory = calloc(count ? count : 1, size);
+    assert_non_null(memory);
+    return memory;
+}
+
+struct scene create_scene(narc_precision precision, size_t shapes, size_t bodies, size_t pairs) {
+    struct scene scene = {.precision = precision,
+                          .shapes = allocate(shapes, sizeof(struct shape)),
+                          .bodies = allocate(bodies, sizeof(struct body)),
+                          .pairs = allocate(pairs, sizeof(struct pair))};
+    assert_int_equal(narc_create_shapes(NULL, &scene.store), NARC_OK);
+    return scene;
+}
+
+void destroy_scene(struct scene *scene) {
+    narc_destroy_shapes(scene->store);
+    free(scene->shapes);
+    free(scene->bodies);
+    free(scene->pairs);
+}
+
+uint32_t scene_add_shape(struct scene *scene, const struct shape *shape) {
+    uint32_t index;
+    narc_error error;
+    if (narc_add_shape(scene->store, shape->arcs, shape->count, &index, &error) != NARC_OK)
+        fail_msg("a valid shape was refused: %s", error.message);
+    assert_int_equal(index, scene->shape_count);
+    scene->shapes[scene->shape_count++] = *shape;
+    return index;
+}
+
+uint32_t scene_add_body(struct scene *scene, struct body body) {
+    round_position(&body, scene->precision);
+    scene->bodies[scene->body_count] = body;
+    return (uint32_t)scene->body_count++;
+}
+
+uint32_t scene_add_pair(struct scene *scene, uint32_t a, uint32_t b) {
+    scene->pairs[scene->pair_count] = (struct pair){a, b};
+    return (uint32_t)scene->pair_count++;
+}
+
+narc_bodies scene_bodies(const struct scene *scene) {
+    const struct body *body = scene->bodies;
+    narc_bodies bodies = {.count = scene->body_count,
+                          .position_precision = scene->precision,
+                          .cosine = NARC_COLUMN(body, cosine),
+                          .sine = NARC_COLUMN(body, sine),
+                          .scale = NARC_COLUMN(body, scale),
+                          .shape = NARC_COLUMN(body, shape)};
+    bool single = scene->precision == NARC_FLOAT32;
+    bodies.x = single ? NARC_COLUMN(body, x_single) : NARC_COLUMN(body, x);
+    bodies.y = single ? NARC_COLUMN(body, y_single) : NARC_COLUMN(body, y);
+    return bodies;
+}
+
+narc_pairs scene_pairs(const struct scene *scene) {
+    return (narc_pairs){
+        .count = scene->pair_count, .a = NARC_COLUMN(scene->pairs, a), .b = NARC_COLUMN(scene->pairs, b)};
+}
+
+struct reference_body pose_shape(const struct shape *shape, const struct body *body) {
+    return (struct reference_body){shape->arcs,        shape->count,       body->x, body->y, (double)body->cosine,
+                                   (double)body->sine, (double)body->scale};
+}
+
+struct reference_body scene_reference(const struct scene *scene, uint32_t body) {
+    return pose_shape(&scene->shapes[scene->bodies[body].shape], &scene->bodies[body]);
+}
+
+struct body turned_body(double angle, double scale) {
+    return (struct body){.cosine = (float)cos(angle), .sine = (float)sin(angle), .scale = (float)scale};
+}
+
+/* volatile: GCC 12 takes (double)(float) of two neighbours for nothing to do when it vectorises them. */
+static float round_single(double value) {
+    volatile float rounded = (float)value;
+    return rounded;
+}
+
+void round_position(struct body *body, narc_precision precision) {
+    body->x_single = round_single(body->x);
+    body->y_single = round_single(body->y);
+    if (precision == NARC_FLOAT32) {
+        body->x = (double)body->x_single;
+        body->y = (double)body->y_single;
+    }
+}
+
+static void *junk(size_t count, size_t size) {
+    void *memory = allocate(count, size);
+    memset(memory, 0xa5, count * size);
+    return memory;
+}
+
+struct contacts create_contacts(size_t capacity) {
+    narc_contacts view = {.capacity = capacity,
+                          .pair = junk(capacity, sizeof(uint32_t)),
+                          .separation = junk(capacity, sizeof(float)),
+                          .normal_x = junk(capacity, sizeof(float)),
+                          .normal_y = junk(capacity, sizeof(float)),
+                          .point_x = junk(capacity, sizeof(float)),
+                          .point_y = junk(capacity, sizeof(float)),
+                          .arc_a = junk(capacity, 1),
+                          .arc_b = junk(capacity, 1)};
+    return (struct contacts){view, 0};
+}
+
+void destroy_contacts(struct contacts *contacts) {
+    free(contacts->view.pair);
+    free(contacts->view.separation);
+    free(contacts->view.normal_x);
+    free(contacts->view.normal_y);
+    free(contacts->view.point_x);
+    free(contacts->view.point_y);
+    free(contacts->view.arc_a);
+    free(contacts->view.arc_b);
+}
+
+uint64_t *scene_overlaps(const struct scene *scene) {
+    uint64_t *bits = junk(NARC_BIT_WORDS(scene->pair_count), sizeof(uint64_t));
+    narc_bodies bodies = scene_bodies(scene);
+    narc_pairs pairs = scene_pairs(scene);
+    narc_error error;
+    if (narc_find_overlaps(scene->store, &bodies, &pairs, 1, bits, &error) != NARC_OK)
+        fail_msg("narc_find_overlaps: %s", error.message);
+    return bits;
+}
+
+struct contacts scene_contacts(const struct scene *scene, float margin) {
+    struct contacts contacts = create_contacts(scene->pair_count);
+    narc_bodies bodies = scene_bodies(scene);
+    narc_pairs pairs = scene_pairs(scene);
+    narc_error error;
+    if (narc_find_contacts(scene->store, &bodies, &pairs, margin, 1, &contacts.view, &contacts.count, &error))
+        fail_msg("narc_find_contacts: %s", error.message);
+    return contacts;
+}
+
+struct scene make_random_scene(struct test_random *random, narc_precision precision, size_t bodies, size_t pairs) {
+    const size_t shapes_per_family = 4;
+    /* Bodies are about 2 wide: on a square of this width about half of the pairs collide. */
+    const double world = 2.5;
+    struct scene scene = create_scene(precision, shapes_per_family * FAMILY_COUNT, bodies, pairs);
+    for (size_t k = 0; k < shapes_per_family * FAMILY_COUNT; k++) {
+        struct shape shape = make_shape(random, (enum family)(k % FAMILY_COUNT));
+        scene_add_shape(&scene, &shape);
+    }
+    for (size_t k = 0; k < bodies; k++) {
+        bool lattice = random_below(random, 8) == 0;
+        double angle = lattice ? pi / 2 * (double)random_below(random, 4) : random_between(random, -pi, pi);
+        struct body body = turned_body(angle, lattice ? 1 : random_log_between(random, 0.25, 2));
+        body.x = random_between(random, 0, world);
+        body.y = random_between(random, 0, world);
+        body.shape = (uint32_t)random_below(random, scene.shape_count);
+        scene_add_body(&scene, body);
+    }
+    for (size_t k = 0; k < pairs; k++) {
+        uint32_t a = (uint32_t)random_below(random, bodies);
+        scene_add_pair(&scene, a, (uint32_t)random_below(random, bodies));
+    }
+    return scene;
+}

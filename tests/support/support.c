@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * support.c - seed, trials, instruction set and random numbers of the tests.
+ */
+#include "support.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "narc.h"
+
+static const uint64_t default_seed = 20250101;
+
+static uint64_t seed(void) {
+    const char *text = getenv("NARC_TEST_SEED");
+    return text ? strtoull(text, NULL, 0) : default_seed;
+}
+
+const char *test_isa(void) {
+    const char *name = getenv("NARC_TEST_ISA");
+    return name ? name : narc_get_isa();
+}
+
+bool test_begin(void) {
+    setvbuf(stdout, NULL, _IOLBF, 0);
+    const char *name = getenv("NARC_TEST_ISA");
+    if (name && !narc_isa_supported(name)) {
+        printf("skipped: this build or this machine has no %s\n", name);
+        return false;
+    }
+    narc_error error;
+    if (name && narc_set_isa(name, &error) != NARC_OK) {
+        printf("narc_set_isa: %s\n", error.message);
+        exit(EXIT_FAILURE);
+    }
+    printf("NARC_TEST_SEED=%" PRIu64 " NARC_TEST_ISA=%s\n", seed(), test_isa());
+    return true;
+}
+
+size_t test_trials(size_t base) {
+    const char *text = getenv("NARC_TEST_TRIALS");
+    double trials = (double)base * (text ? strtod(text, NULL) : 1.0);
+    return trials > 1.0 ? (size_t)trials : 1;
+}
+
+void test_use_isa(const char *name) {
+    narc_error error = {0};
+    if (narc_set_isa(name, &error) != NARC_OK)
+        fail_msg("narc_set_isa(%s): %s", name, error.message);
+}
+
+struct test_random test_random_named(const char *name) {
+    return (struct test_random){test_hash(TEST_HASH_START ^ seed(), name, strlen(name))};
+}
+
+uint64_t random_bits(struct test_random *random) {
+    /* A Weyl sequence, then two rounds of xor-shift and multiplication to spread every bit over all others. */
+    random->state += 0x9e3779b97f4a7c15u;
+    uint64_t bits = random->state;
+    bits = (bits ^ (bits >> 32)) * 0xd6e8feb86659fd93u;
+    bits = (bits ^ (bits >> 32)) * 0xd6e8feb86659fd93u;
+    return bits ^ (bits >> 32);
+}
+
+double random_unit(struct test_random *random) { return (double)(random_bits(random) >> 11) * 0x1p-53; }
+
+double random_between(struct test_random *random, double low, double high) {
+    return low + (high - low) * random_unit(random);
+}
+
+double random_log_between(struct test_random *random, double low, double high) {
+    return exp(random_between(random, log(low), log(high)));
+}
+
+size_t random_below(struct test_random *random, size_t limit) { return (size_t)(random_bits(random) % limit); }
+
+uint64_t test_hash(uint64_t hash, const void *bytes, size_t size) {
+    const unsigned char *byte = bytes;
+    for (size_t k = 0; k < size; k++)
+        hash = (hash ^ byte[k]) * 0x100000001b3u;
+    return hash;
+}

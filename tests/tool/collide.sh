@@ -1,0 +1,138 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# collide.sh NARC [FONT] - narc collide: answers, margins, pairs, pictures, progress.
+. "$(dirname "$0")/common.sh"
+
+works "collide" collide $known --out known.csv
+check "header of the contacts" \
+    test "$(head -n 1 known.csv)" = "a,b,separation,normal_x,normal_y,point_x,point_y,arc_a,arc_b"
+check "six contacts; touching is not colliding" lines known.csv 7
+check "disc and disc, 0.5 deep" contact known.csv 2 "0 1 -0.5 1 0 0.75 0"
+check "disc in the side of a square" contact known.csv 3 "2 3 -0.25 1 0 10.875 0.5"
+check "disc over a standing pill" contact known.csv 4 "4 5 -0.25 0 1 20 1.375"
+check "disc on the arc of a lens" contact known.csv 5 "8 9 -0.1 0 1 40 0.95"
+check "disc under a triangle" contact known.csv 6 "12 13 -0.25 0 -1 62 0.125"
+check "side against side" contact known.csv 7 "14 15 -0.25 1 0 70.875 0"
+check "report: shapes" reports shapes 8
+check "report: bodies" reports bodies 18
+check "report: threads are an upper bound" grep -q "^threads *at most [0-9]" out.txt
+check "report: colliding" reports "colliding pairs" 6
+for word in "candidate pairs" "instruction set" threads "broad phase" "narrow phase" "million pairs per second"; do
+    check "report tells $word" grep -q "$word" out.txt
+done
+
+works "margin" collide $known --margin 0.5 --out margin.csv
+check "margin finds the near pairs too" test "$(tail -n +2 margin.csv | cut -d, -f1,2 | tr '\n' ' ')" = \
+    "0,1 2,3 4,5 6,7 8,9 10,11 12,13 14,15 16,17 "
+check "near pair: corner of a turned square" contact margin.csv 5 "6 7 0.335786438 1 0 31.5821068 0"
+check "near pair: n-arc from points" contact margin.csv 7 "10 11 0.25 0 -1 50 -1.125"
+check "touching: separation 0" contact margin.csv 10 "16 17 0 1 0 101 0"
+check "margin does not change what collides" reports "colliding pairs" 6
+works "negative margin" collide $known --margin -0.3 --out deep.csv
+check "only the deep pair" lines deep.csv 2
+check "negative margin does not change what collides" reports "colliding pairs" 6
+
+printf 'a,b\r\n0,1\r\n1,0\r\n0,17\r\n\r\n' >pairs.csv
+works "pairs from a file with CR LF" collide $known --pairs pairs.csv --all --out all.csv
+check "--all reports every pair in order" test "$(tail -n +2 all.csv | cut -d, -f1,2 | tr '\n' ' ')" = "0,1 1,0 0,17 "
+check "swapped pair has the opposite normal" contact all.csv 3 "1 0 -0.5 -1 0 0.75 0"
+check "far pair" contact all.csv 4 "0 17 100 1 0 51 0"
+works "contacts on standard output" collide $known --out -
+check "they are the same" cmp out.txt known.csv
+check "the report is on standard error" grep -q "colliding pairs" err.txt
+works "no output asked for" collide $known
+
+printf 'shape,x,y,angle,scale\ndisc,1e7,0,0,2\n1,10000002.25,0,0,1\n' >scaled.csv
+works "scale, far away" collide --shapes shapes.json --bodies scaled.csv --out scaled.txt
+check "scale multiplies the size" contact scaled.txt 2 "0 1 -0.25 1 0"
+works "no bodies" collide --shapes shapes.json --bodies none.csv --out none.txt --picture none.png
+check "only the header" lines none.txt 1
+
+
+# ------------------------------------------------------------------------------------------- scenes, splits, pictures
+works "scene" scene --shapes shapes.json --bodies 3000 --density 0.6 --seed 7 --out scene.csv
+check "one line for each body" lines scene.csv 3001
+works "scene on standard output" scene --shapes shapes.json --bodies 3000 --density 0.6 --seed 7
+check "the same seed gives the same file" cmp out.txt scene.csv
+works "another seed" scene --shapes shapes.json --bodies 3000 --density 0.6 --seed 8 --out other.csv
+check "gives another file" sh -c '! cmp -s scene.csv other.csv'
+works "collide the scene" collide --shapes shapes.json --bodies scene.csv --out scene.txt --threads 1 --isa scalar
+check "there are contacts" test "$(wc -l <scene.txt)" -gt 1000
+for isa in $isas; do
+    for threads in 1 2 5; do
+        works "$isa, $threads threads" collide --shapes shapes.json --bodies scene.csv --out split.csv \
+            --threads $threads --isa "$isa"
+        check "$isa, $threads threads: same bytes" cmp scene.txt split.csv
+    done
+done
+# The broad phase misses nothing: all pairs of 200 bodies, given one by one.
+head -n 201 scene.csv >few.csv
+awk 'BEGIN { print "a,b"; for (a = 0; a < 200; a++) for (b = a + 1; b < 200; b++) print a "," b }' >every.csv
+works "candidates" collide --shapes shapes.json --bodies few.csv --margin 3 --out found.csv
+works "all pairs" collide --shapes shapes.json --bodies few.csv --margin 3 --pairs every.csv --out asked.csv
+check "the broad phase misses no pair" cmp found.csv asked.csv
+check "there are pairs to miss" test "$(wc -l <found.csv)" -gt 20
+
+# A row, a column, a giant under both and a body far away: sweeps along one axis alone would be slow or miss.
+awk 'BEGIN { print "shape,x,y,angle,scale"; print "disc,0,0,0,200"; print "disc,1e9,-1e9,0,1"
+    for (i = 0; i < 150; i++) { print "square," 1.9 * i ",0,0,1"; print "pill,0," 2.9 * i ",1.5707963,1" } }' >cross.csv
+awk 'BEGIN { print "a,b"; for (a = 0; a < 302; a++) for (b = a + 1; b < 302; b++) print a "," b }' >every.csv
+works "candidates of a cross" collide --shapes shapes.json --bodies cross.csv --out found.csv
+works "all pairs of a cross" collide --shapes shapes.json --bodies cross.csv --pairs every.csv --out asked.csv
+check "the broad phase misses no pair of a cross" cmp found.csv asked.csv
+check "neighbours and the giant collide" test "$(wc -l <found.csv)" -gt 400
+
+works "PNG" collide --shapes shapes.json --bodies few.csv --picture few.png --out few.txt
+check "PNG signature" begins_with few.png XPNG
+printf 'shape,x,y,angle\ndisc,-1e300,0,0\ndisc,1e300,0,0\n' >wide.csv
+works "bodies far apart" collide --shapes shapes.json --bodies wide.csv
+check "no pair of them" reports "skipped pairs" 0
+printf 'a,b\n0,0\n0,1\n' >wide-pairs.csv
+works "a pair too far apart for an answer" collide --shapes shapes.json --bodies wide.csv --pairs wide-pairs.csv
+check "it is told" reports "skipped pairs" 1
+for kind in png svg; do
+    fails "too far apart to draw, $kind" "narc: new.$kind: .*too far apart" collide --shapes shapes.json \
+        --bodies wide.csv --picture new.$kind --out new.csv
+done
+works "very many bodies" scene --shapes shapes.json --bodies 200001 --density 0.1 --seed 1 --out many.csv
+fails "too many for an SVG" "narc: new.svg: 200001 .*200000.*png" collide --shapes shapes.json --bodies many.csv \
+    --picture new.svg
+rm many.csv
+works "SVG" collide --shapes shapes.json --bodies few.csv --picture few.svg --margin 1
+check "SVG beginning" begins_with few.svg "<?xml"
+check "SVG end" grep -q "</svg>" few.svg
+
+# Progress is for terminals: `script` gives the command one, where it is installed and is that of util-linux.
+awk 'BEGIN { print "shape,x,y,angle"; for (i = 0; i < 3000; i++) print "disc,0,0,0" }' >pile.csv
+works "a pile of bodies" collide --shapes shapes.json --bodies pile.csv
+check "all of them collide" reports "colliding pairs" 4498500
+check "no progress line in a file" test ! -s err.txt
+# The number of candidates is exact, and told without looking at each of them: 100,000 bodies in one place have 5e9.
+works "as many candidates as are allowed" collide --shapes shapes.json --bodies pile.csv --max-pairs 4498500
+fails "one more" "narc: pile.csv: 4498500 candidate pairs, .*--max-pairs 4498499$" collide --shapes shapes.json \
+    --bodies pile.csv --max-pairs 4498499 --out new.csv
+awk 'BEGIN { print "shape,x,y,angle"; for (i = 0; i < 100000; i++) print "disc,0,0,0" }' >heap.csv
+fails "a heap of bodies" "narc: heap.csv: 4999950000 candidate pairs, .*--max-pairs 100000000$" collide \
+    --shapes shapes.json --bodies heap.csv --out new.csv --picture new.png
+
+# The shapes of the document.
+sed -n '/^```json/,/^```/p' "$docs/formats.md" | sed -e 1d -e '/^```/,$d' >documented.json
+printf 'shape,x,y,angle\nlens,0,0,0\np,0,0,0\nq,0,0,0\nc,0,0,0\nk,0,0,0\nb,0,0,0\nf,0,0,0\n' >documented.csv
+works "the documented shapes" collide --shapes documented.json --bodies documented.csv --picture documented.svg
+check "all of them collide" reports "colliding pairs" 21
+
+"$narc" collide --shapes shapes.json --bodies - --out - <bodies.csv >out.txt 2>err.txt
+check "bodies from standard input" cmp out.txt known.csv
+"$narc" collide --shapes - --bodies bodies.csv --out - <shapes.json >out.txt 2>err.txt
+check "shapes from standard input" cmp out.txt known.csv
+fails "standard input twice" "narc: standard input is given twice" collide --shapes shapes.json --bodies - --pairs - \
+    --out new.csv <bodies.csv
+if command -v script >/dev/null && script -qec true /dev/null >script.txt 2>&1 </dev/null; then
+    script -qec "'$narc' collide --shapes shapes.json --bodies pile.csv" /dev/null >script.txt 2>&1 </dev/null
+    check "progress on a terminal" grep -q "narrow phase, 4498500 pairs" script.txt
+else
+    echo "skipped: progress on a terminal (no script command)"
+fi
+
+finish

@@ -1,0 +1,109 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# files.sh NARC [FONT] - outputs that appear whole or not at all.
+. "$(dirname "$0")/common.sh"
+
+works "collide" collide $known --out known.csv
+works "a scene" scene --shapes shapes.json --bodies 3000 --density 0.6 --seed 7 --out scene.csv
+# ------------------------------------------------------------------------------------------- outputs that cannot be
+fails "output in no folder" "narc: absent/new.csv: " collide $known --out absent/new.csv
+fails "output under a file" "narc: shapes.json/new.csv: " collide $known \
+    --out shapes.json/new.csv
+mkdir full.csv
+fails "output is a folder" "narc: full.csv: " collide $known --out full.csv
+fails "picture in no folder, contacts given up" "narc: absent/few.png: " collide $known \
+    --out new.csv --picture absent/few.png
+fails "one file for both outputs" "narc: .*same" collide $known --out few.svg --picture few.svg
+mkdir inside
+fails "one new file for both outputs" "narc: .*same" collide $known --out new.svg --picture ./new.svg
+fails "one new file, another way to its folder" "narc: .*same" collide $known --out new.svg --picture inside/../new.svg
+works "the same name in two folders" collide $known --out few.svg --picture inside/few.svg
+check "are two files" sh -c 'cmp few.svg known.csv && ! cmp -s few.svg inside/few.svg'
+
+# An input stays what it is, whatever name an output gives it.
+printf 'a,b\n0,1\n' >pair.csv
+cp shapes.json kept.json && cp bodies.csv kept.txt && ln pair.csv hard.csv && ln -s bodies.csv soft.csv
+for output in shapes.json ./bodies.csv soft.csv; do
+    fails "output $output is an input" "narc: $output: .*input" collide $known --pairs pair.csv --out $output
+done
+fails "a scene's output is its input" "narc: shapes.json: .*input" scene $five --density 1 --seed 1 --out shapes.json
+works "an output may have another name of an input" collide $known --pairs pair.csv --out hard.csv
+check "then they are two files" sh -c '[ "$(cat pair.csv)" = "$(printf "a,b\n0,1")" ] && ! cmp -s pair.csv hard.csv'
+check "inputs are unchanged" sh -c 'cmp shapes.json kept.json && cmp bodies.csv kept.txt && [ -L soft.csv ]'
+
+# The longest name that a file system allows has no room for a suffix.
+long=$(printf '%0250d' 0)
+works "a long name" collide $known --out $long
+check "a long name: the contacts" cmp $long known.csv
+rm $long
+
+# closed STREAM NAME ARGUMENTS...: with that standard stream closed narc fails and leaves no file behind.
+closed() {
+    stream=$1 name=$2
+    shift 2
+    case $stream in
+    1) "$narc" "$@" >&- 2>err.txt ;;
+    2) "$narc" "$@" 2>&- >out.txt ;;
+    esac
+    status=$?
+    check "closed stream $stream: $name" test $status -eq 2 -a -z "$(find . -name 'new*' -o -name '.narc-*')"
+    rm -f new* .narc-*
+}
+closed 1 "contacts and a picture" collide $known --out - --picture new.png
+check "closed stream 1 is told" grep -q "^narc: standard output: " err.txt
+closed 1 "a report that cannot be printed" collide $known --out new.csv --picture new.png
+closed 1 "a scene" scene $five --density 1 --seed 1
+closed 1 "a scene's report" scene $five --density 1 --seed 1 --out new.csv
+closed 1 "help" --help
+closed 2 "a report beside contacts" collide $known --out - --picture new.png
+"$narc" collide $known --out few.txt --picture few.png <&- >out.txt 2>err.txt
+check "closed stream 0 is not needed" sh -c "[ $? -eq 0 ] && cmp few.txt known.csv"
+check "and no picture" begins_with few.png XPNG
+if [ "$(id -u)" -ne 0 ]; then
+    mkdir locked && chmod 555 locked
+    fails "unwritable folder" "narc: locked/new.csv: " collide $known --out locked/new.csv
+fi
+if [ -c /dev/full ]; then
+    fails "full disk" "narc: /dev/full: " collide --shapes shapes.json --bodies scene.csv --out /dev/full \
+        --picture new.png
+    ln -s /dev/full full.png
+    fails "full disk, picture" "narc: full.png: " collide --shapes shapes.json --bodies scene.csv --out new.csv \
+        --picture full.png
+    "$narc" collide $known --out new.csv --picture new.png >/dev/full 2>err.txt
+    check "full disk for the report" test $? -eq 2 -a -z "$(find . -name 'new*' -o -name '.narc-*')"
+    "$narc" --help >/dev/full 2>err.txt
+    check "full standard output" test $? -eq 2
+fi
+# A command waits for a reader of its picture, while its contacts have a temporary file: signals leave no such file.
+mkfifo stuck.png
+for signal in HUP INT QUIT ALRM TERM XCPU; do
+    env --default-signal=$signal "$narc" collide $known --out new.csv --picture stuck.png >out.txt 2>err.txt &
+    waiting=$!
+    tries=0
+    while [ -z "$(find . -name '.narc-*')" ] && [ $tries -lt 500 ]; do
+        sleep 0.05
+        tries=$((tries + 1))
+    done
+    check "SIG$signal: there is a temporary file" test -n "$(find . -name '.narc-*')"
+    kill -s $signal $waiting
+    wait $waiting 2>wait.log
+    check "SIG$signal ends the command" test $? -gt 128
+    check "SIG$signal leaves no file" test -z "$(find . -name 'new*' -o -name '.narc-*')"
+    rm -f new* .narc-*
+done
+# A file may not grow beyond a limit (in blocks of 512 bytes).
+(ulimit -f 1 && exec "$narc" scene --shapes shapes.json --bodies 3000 --density 1 --seed 1 --out new.csv) \
+    >out.txt 2>err.txt
+check "a file too large is an error" test $? -eq 2
+check "which is told" grep -q "^narc: new.csv: File too large$" err.txt
+check "and leaves no file" test -z "$(find . -name 'new*' -o -name '.narc-*')"
+
+echo old >kept.csv
+fails "a wrong input" "narc: absent.csv: " collide --shapes shapes.json --bodies absent.csv --out kept.csv
+check "keeps the old output" test "$(cat kept.csv)" = old
+ln -s kept.csv link.csv
+works "output through a link" collide $known --out link.csv
+check "replaces what the link names" sh -c '[ -L link.csv ] && cmp kept.csv known.csv'
+
+finish

@@ -1,0 +1,215 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# fit.sh NARC [FONT] - narc fit: every kind of input, goal and family.
+. "$(dirname "$0")/common.sh"
+
+# ------------------------------------------------------------------------------------------- fits
+# value SHAPE COLUMN: a number of the printed table. is SHAPE COLUMN NUMBER: it is this, within 1 %: enough to tell one
+# objective from another. Columns: 2 arcs, 3 edges, 4 area, 5 hull area, 6 ratio, 7 perimeter, 8 max, 9 mean distance, 10 and 11 origin.
+value() { awk -v shape="$1" -v column="$2" '$1 == shape { print $column }' out.txt; }
+is() { less "$(product "$3" 0.99)" "$(value "$1" "$2")" && less "$(value "$1" "$2")" "$(product "$3" 1.01)"; }
+less() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && b != "" && a + 0 < b + 0) }'; }
+product() { awk -v a="$1" -v b="$2" 'BEGIN { print a * b }'; }
+names() { [ "$(grep -o '"name": "[^"]*"' "$1" | cut -d'"' -f4 | tr '\n' ' ')" = "$2" ]; }
+
+# One outline in every format: a square with side 2. A polygon's arcs are its corners.
+mkdir fits fits/more
+printf '1,1\n3,1\n3,3\n1,3\n' >fits/square.csv
+printf '\357\273\277x,y\r\n1,1\r\n1,3\r\n3,3\r\n3,1\r\n' >fits/header.csv
+echo '[[1, 1], [3, 1], [3, 3], [1, 3]]' >fits/list.json
+echo '{"points": [[1, 1], [3, 1], [3, 3], [1, 3]]}' >fits/object.json
+cat >fits/rectangle.svg <<'EOT'
+<?xml version="1.0"?>
+<svg xmlns="http://www.w3.org/2000/svg" width="10" height="10">
+  <g transform="translate(1 1)"><rect width="1" height="1" transform="scale(2)"/></g>
+</svg>
+EOT
+cat >fits/circle.svg <<'EOT'
+<svg xmlns="http://www.w3.org/2000/svg"><circle cx="5" cy="5" r="2"/></svg>
+EOT
+squares="fits/square.csv fits/header.csv fits/list.json fits/object.json fits/rectangle.svg"
+
+works "fit" fit $squares --arcs 4 --starts 2 --out fits.json --picture fits.svg
+check "a shape for each file, named after it" names fits.json "square header list object rectangle "
+check "picture of the fits" begins_with fits.svg "<?xml"
+check "its end" grep -q "</svg>" fits.svg
+for one in square header list object rectangle; do
+    check "$one: area of the hull" is $one 5 4
+    check "$one: larger than the hull" less 0.99999 "$(value $one 6)"
+    check "$one: at most 4 arcs" less "$(value $one 2)" 5
+    check "$one: no edges" test "$(value $one 3)" = 0
+done
+works "fit to standard output" fit $squares --arcs=4 --starts=2 --bound --objective area
+check "the same shapes: --bound and area are the defaults" cmp out.txt fits.json
+check "the table is on standard error" grep -q "^square " err.txt
+works "scene of fits" scene --shapes fits.json --bodies 300 --density 0.5 --seed 1 --out fits.csv
+works "collide fits" collide --shapes fits.json --bodies fits.csv --out fits.txt --picture fits.png
+check "fits touch" test "$(wc -l <fits.txt)" -gt 50
+
+# A circle is the n-arc of a single arc. Around the square its radius is sqrt(2). Nearest to the square by distance it
+# has the mean of 1 and sqrt(2); by area, half of it lies inside: 1 / cos(pi / 8). Centroids are origins.
+works "circle around a square" fit fits/square.csv --arcs 1 --out one.json
+check "circle: one arc" test "$(value square 2)" = 1
+check "circle: area" is square 4 6.283185
+check "circle: ratio" is square 6 1.570796
+check "circle: perimeter" is square 7 8.885766
+check "circle: distance" is square 8 0.414214
+check "circle: it is around the origin" sh -c 'grep -o "center.: \[[^]]*" one.json | cut -d[ -f2 |
+    awk -F, "{ exit !(\$1 * \$1 < 1e-12 && \$2 * \$2 < 1e-12) }"'
+works "circle, least perimeter" fit fits/square.csv --arcs 1 --bound --objective perimeter --out one.json
+check "circle, least perimeter: it bounds" is square 7 8.885766
+works "circle, least distance" fit fits/square.csv --arcs 1 --bound --objective distance --out one.json
+check "circle, least distance: it bounds" is square 8 0.414214
+works "circle near a square" fit fits/square.csv --arcs 1 --approximate --out one.json
+check "circle near a square: distance" is square 8 0.207107
+check "circle near a square: area" is square 4 4.577643
+works "circle near a square, by name" fit fits/square.csv --arcs 1 --approximate --objective distance
+check "circle near a square, by name: the same" cmp out.txt one.json
+works "circle near a square by area" fit fits/square.csv --arcs 1 --approximate --objective area --out one.json
+check "circle near a square by area: area" is square 4 3.680578
+
+# More arcs do better, and no objective is worse, by its own measure, than another. (1.001: the searches are local.)
+works "least area" fit fits/square.csv --arcs 8 --objective area --out eight.json
+area=$(value square 4) perimeter=$(value square 7) distance=$(value square 8)
+check "8 arcs are better than 1" less "$area" 6
+works "least perimeter" fit fits/square.csv --arcs 8 --objective perimeter --out eight.json
+check "not longer than that of least area" less "$(value square 7)" "$(product "$perimeter" 1.001)"
+works "least distance" fit fits/square.csv --arcs 8 --objective distance --out eight.json
+check "not further than that of least area" less "$(value square 8)" "$(product "$distance" 1.001)"
+works "nearest" fit fits/square.csv --arcs 8 --approximate --out eight.json
+check "nearer than all that bound" less "$(value square 8)" "$(product "$distance" 0.9)"
+works "starts" fit fits/square.csv --arcs 5 --starts 3 --out five.json
+works "starts again" fit fits/square.csv --arcs 5 --starts 3
+check "the same bits" cmp out.txt five.json
+
+# Straight edges: the square itself, but for single precision.
+for family in edges polygon; do
+    works "$family" fit fits/square.csv --arcs 4 --$family --out edges.json --picture edges.png
+    check "$family: four edges" test "$(value square 3)" = 4
+    check "$family: area" is square 4 4
+    check "$family: nothing else" less "$(value square 8)" 1e-4
+    check "$family: picture" begins_with edges.png XPNG
+    works "$family: collide" collide --shapes edges.json --bodies none.csv
+done
+works "polygon for polygons only" scene --shapes edges.json --bodies 50 --density 1 --seed 1 --out edges.csv
+works "a polygon is one" collide --shapes edges.json --bodies edges.csv --method polygon-sat
+works "triangle" fit fits/square.csv --arcs 3 --polygon --out edges.json
+check "triangle: twice the area" is square 4 8
+works "the paper's route" fit fits/square.csv --arcs 4 --paper --out paper.json
+check "the paper's route: not smaller" less "$(product "$area" 0.99)" "$(value square 4)"
+
+# The distance of the circle around the square is 0.414, of the nearest 0.207.
+works "tolerance for a circle" fit fits/square.csv --tolerance 0.42 --out one.json
+check "tolerance for a circle: one arc" test "$(value square 2)" = 1
+works "tolerance for the nearest circle" fit fits/square.csv --tolerance 0.21 --approximate --out one.json
+check "tolerance for the nearest circle: one arc" test "$(value square 2)" = 1
+check "tolerance for the nearest circle: kept" less "$(value square 8)" 0.21
+works "a circle is not enough" fit fits/square.csv --tolerance 0.1 --out some.json
+check "a circle is not enough: arcs" less 3 "$(value square 2)"
+check "a circle is not enough: kept" less "$(value square 8)" 0.1
+works "tolerance with edges" fit fits/square.csv --tolerance 1e-3 --edges --out some.json
+check "tolerance with edges: kept" less "$(value square 8)" 1e-3
+# A polygon with 32 sides around a circle of radius 2 has corners that are 2 / cos(pi / 32) - 2 = 0.0097 away; it
+# leaves room for a pixel, a 4096th of 4, and tells another.
+fails "tolerance beyond reach" "narc: fits/circle.svg: .*0\\.011.*0\\.005" fit fits/circle.svg --tolerance 0.005 \
+    --polygon --starts 1 --out new.json
+
+# A drawing: its pixels are told.
+works "circle" fit fits/circle.svg --arcs 1 --out one.json
+check "circle: it bounds" less 0.99999 "$(value circle 6)"
+check "circle: closely" less "$(value circle 6)" 1.002
+
+# A collider lies over its outline, at its origin or with the input's own coordinates: discs of radius 0.01 at the
+# outline's corners reach 0.01 deep into the polygon.
+printf '101,51\n103,51\n103.5,53\n101,53.3\n' >fits/far.csv
+for option in "" --keep-origin; do
+    works "a far polygon $option" fit fits/far.csv --arcs 4 --polygon $option --out far.json
+    check "a far polygon $option: the table tells the origin" less 101 "$(value far 10)"
+    origin=$(grep -o '"origin": \[[^]]*' far.json | cut -d'[' -f2)
+    check "a far polygon $option: its origin" sh -c "[ '$option' = '' ] || [ '$origin' = '0, 0' ]"
+    sed 's/"shapes": \[/&{"name": "pin", "circle": 0.01},/' far.json >laid.json
+    awk -v origin="$origin" 'BEGIN { print "shape,x,y,angle"; print "far," origin ",0" } { print "pin," $0 ",0" }' \
+        fits/far.csv >laid.csv
+    works "a far polygon $option: laid over its outline" collide --shapes laid.json --bodies laid.csv --out laid.txt
+    check "a far polygon $option: coincides" awk -F, 'NR > 1 && ($1 != 0 || $3 < -0.01001 || $3 > -0.00999) { exit bad = 1 }
+        END { exit bad || NR != 5 }' laid.txt
+done
+
+# Splines: lines stay lines; a contour that goes round turns by a full turn, but for its corners.
+works "a spline of lines" fit fits/square.csv --spline --tolerance 0.1 --out spline.json --picture spline.svg
+check "a spline of lines: 4 of them" test "$(tail -n 1 out.txt | awk '{ print $1, $2, $3, $4 }')" = "square 1 0 4"
+check "a spline of lines: no radius" sh -c '! grep -q radius spline.json'
+check "a spline of lines: a picture" grep -q "</svg>" spline.svg
+
+# Images: what narc draws.
+printf 'shape,x,y,angle\ndisc,0,0,0\n' >disc.csv
+works "an image of a disc" collide --shapes shapes.json --bodies disc.csv --picture fits/disc.png
+works "from an image" fit fits/disc.png --arcs 1 --threshold 0.05 --out one.json --picture disc.svg
+check "from an image: a disc" less "$(value disc 6)" 1.01
+check "from an image: pixels" less 100000 "$(value disc 4)"
+works "an image of fits" fit fits/square.csv --arcs 6 --starts 1 --out six.json --picture fits/drawn.png
+works "from an image by darkness" fit fits/drawn.png --arcs 6 --starts 1 --out six.json
+check "from an image by darkness: named after it" names six.json "drawn "
+
+# Points in any order.
+printf '1,1\n3,3\n3,1\n1,3\n2,2\n2.5,1.5\n' >fits/cloud.csv
+works "a cloud" fit fits/cloud.csv --arcs 4 --polygon --out cloud.json --picture cloud.svg
+check "a cloud: its hull" is cloud 4 4
+echo '[[1, 1], [3, 3], [3, 1], [1, 3]]' >fits/cloud.json
+works "a cloud of JSON" fit fits/cloud.json --arcs 4 --polygon --out cloud.json
+check "a cloud of JSON: its hull" is cloud 4 4
+
+"$narc" fit - --arcs 1 --out stdin.json <fits/square.csv >out.txt 2>err.txt
+check "an outline from standard input" names stdin.json "stdin "
+
+# Names, and kinds told by content.
+cp fits/square.csv fits/more/square.csv && cp fits/square.csv fits/7.csv && cp fits/square.csv "fits/ a,b\"c.tar.csv"
+cp fits/rectangle.svg fits/kind.csv && cp fits/list.json fits/kind && cp fits/square.csv fits/.csv
+works "names" fit fits/square.csv fits/more/square.csv fits/7.csv "fits/ a,b\"c.tar.csv" fits/kind.csv fits/kind \
+    fits/.csv fits/square.csv --arcs 1 --out named.json
+check "names are made fit and unlike" names named.json "square square-2 shape-7 a_b_c.tar kind kind-2 .csv square-3 "
+works "they can be read" collide --shapes named.json --bodies none.csv
+
+if [ -n "$font" ]; then
+    works "glyphs" fit "$font" --characters "👻🏠🚀🌳️👻aZ7" --arcs 8 --starts 1 --out glyphs.json --picture glyphs.svg
+    check "one shape for each character, once" names glyphs.json "U+1F47B U+1F3E0 U+1F680 U+1F333 a Z U+0037 "
+    check "a table is printed" grep -q "^U+1F680  *[1-8] " out.txt
+    check "picture of the glyphs" begins_with glyphs.svg "<?xml"
+    # Curves: chords are as near as asked for.
+    works "few chords" fit "$font" --characters o --arcs 1 --flatness 0.01 --out one.json
+    rough=$(value o 8)
+    works "many chords" fit "$font" --characters o --arcs 1 --out one.json
+    check "many chords: closer" less "$(value o 8)" "$rough"
+    works "a font beside other files" fit "$font" fits/square.csv "$font" --characters a --arcs=1
+    cp out.txt mixed.json
+    check "a font beside other files: names" names mixed.json "a square a-2 "
+    works "scene of glyphs" scene --shapes glyphs.json --bodies 2000 --density 0.5 --seed 1 --out glyphs.csv
+    works "collide glyphs" collide --shapes glyphs.json --bodies glyphs.csv --out glyphs.txt --picture glyphs.png
+    check "glyphs touch" test "$(wc -l <glyphs.txt)" -gt 500
+    check "picture of the scene" begins_with glyphs.png XPNG
+
+    works "spline of a glyph" fit "$font" --characters 👻 --spline --tolerance 0.01 --out spline.json --picture spline.png
+    check "spline of a glyph: kept" less "$(tail -n 1 out.txt | awk '{ print $5 }')" 0.0100001
+    coarse=$(tail -n 1 out.txt | awk '{ print $3 }')
+    works "a finer spline" fit "$font" --characters 👻 --spline --tolerance 0.0001
+    check "a finer spline: more arcs" less "$coarse" "$(tail -n 1 err.txt | awk '{ print $3 }')"
+    check "a finer spline: each arc begins where another ends" awk -F'[][]' '/"start"/ { at[$2]++; at[$4]-- }
+        END { for (p in at) bad = bad || at[p] != 0; exit bad || NR < 100 }' out.txt
+
+    fails "no glyph" "narc: .*U+10FFFD" fit "$font" --characters "$(printf '\364\217\277\275')" --arcs 8 \
+        --out new.json
+    fails "a blank has no outline" "narc: .*U+0020" fit "$font" --characters " " --arcs 8 --out new.json
+    fails "invalid UTF-8" "narc: --characters .*UTF-8" fit "$font" --characters "$(printf 'a\300\200')" --arcs 8 \
+        --out new.json
+    fails "selectors only" "narc: --characters" fit "$font" --characters "$(printf '\357\270\217')" --arcs 8 \
+        --out new.json
+    fails "a font without --characters" "narc: $font: .*--characters" fit "$font" --arcs 8 --out new.json
+    head -c 3000 "$font" >fits/cut.ttf
+    fails "a font cut off" "narc: fits/cut.ttf: " fit fits/cut.ttf --characters a --arcs 8 --out new.json
+    fails "output is the font" "narc: .*input" fit "$font" --characters a --arcs 8 --out "$font"
+else
+    echo "skipped: glyphs (no font given)"
+fi
+
+finish

@@ -1,0 +1,95 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# fit_errors.sh NARC [FONT] - narc fit: wrong options and damaged inputs.
+. "$(dirname "$0")/common.sh"
+mkdir fits
+printf '1,1\n3,1\n3,3\n1,3\n' >fits/square.csv
+printf 'shape,x,y,angle\ndisc,0,0,0\n' >disc.csv
+works "an image" collide --shapes shapes.json --bodies disc.csv --picture fits/disc.png
+
+# ------------------------------------------------------------------------------------------- fits that cannot be
+# nofit NAME PATTERN ARGUMENTS...: a square and these options are refused.
+nofit() {
+    name=$1 pattern=$2
+    shift 2
+    fails "fit: $name" "$pattern" fit fits/square.csv "$@" --out new.json --picture new.png
+}
+fails "fit: no input" "narc: INPUT is missing" fit --arcs 8 --out new.json
+nofit "neither arcs nor tolerance" "narc: --arcs or --tolerance is missing"
+nofit "arcs and tolerance" "narc: --arcs and --tolerance exclude" --arcs 4 --tolerance 0.1
+for arcs in 0 33 8.5 x -1 ""; do
+    nofit "arcs '$arcs'" "narc: --arcs .*" --arcs "$arcs"
+done
+nofit "a polygon of two corners" "narc: --arcs .* 3 to 32, not '2'" --arcs 2 --polygon
+nofit "the paper's route from two corners" "narc: --arcs .* 3 to 32, not '2'" --arcs 2 --paper
+for tolerance in 0 -0.1 nan x ""; do
+    nofit "tolerance '$tolerance'" "narc: --tolerance " --tolerance "$tolerance"
+done
+for flatness in 0 -1 0.2 1e-10 nan x ""; do
+    nofit "flatness '$flatness'" "narc: --flatness " --arcs 4 --flatness "$flatness"
+done
+for threshold in 0 1 -0.5 nan x ""; do
+    fails "fit: threshold '$threshold'" "narc: --threshold " fit fits/disc.png --arcs 4 --threshold "$threshold" \
+        --out new.json
+done
+for starts in 0 -1 10001 x ""; do
+    nofit "starts '$starts'" "narc: --starts " --arcs 4 --starts "$starts"
+done
+for objective in length Area ""; do
+    nofit "objective '$objective'" "narc: --objective " --arcs 4 --objective "$objective"
+done
+nofit "bound and approximate" "narc: --bound and --approximate exclude" --arcs 4 --bound --approximate
+nofit "approximate perimeter" "narc: --objective perimeter is for --bound" --arcs 4 --approximate --objective perimeter
+nofit "tolerance and objective" "narc: --tolerance and --objective exclude" --tolerance 1 --objective distance
+nofit "edges and polygon" "narc: --edges and --polygon exclude" --arcs 4 --edges --polygon
+nofit "edges and paper" "narc: --edges and --paper exclude" --arcs 4 --paper --edges
+nofit "polygon and paper" "narc: --polygon and --paper exclude" --arcs 4 --paper --polygon
+for family in polygon paper; do
+    nofit "$family approximates" "narc: --$family and --approximate exclude" --arcs 4 --$family --approximate
+    nofit "$family of least distance" "narc: --$family .*'distance'" --arcs 4 --$family --objective distance
+done
+for option in "--arcs 4" --bound --approximate "--objective area" --edges --polygon --paper "--flatness 0.01" \
+    "--starts 3" --keep-origin; do
+    nofit "a spline and ${option% *}" "narc: --spline and ${option% *} exclude" --spline $option
+done
+nofit "a spline without a tolerance" "narc: --arcs or --tolerance is missing" --spline
+nofit "characters without a font" "narc: --characters is for fonts" --arcs 4 --characters a
+nofit "threshold without an image" "narc: --threshold is for PNG" --arcs 4 --threshold 0.4
+fails "fit: picture of another kind" "narc: .*new.jpg" fit fits/square.csv --arcs 4 --out new.json --picture new.jpg
+fails "fit: picture in no folder" "narc: absent/new.png" fit fits/square.csv --arcs 4 --out new.json \
+    --picture absent/new.png
+fails "fit: output is an input" "narc: fits/square.csv: .*input" fit fits/square.csv --arcs 4 --out fits/square.csv
+fails "fit: no such font" "narc: absent.ttf: " fit absent.ttf --characters a --arcs 8 --out new.json
+fails "fit: one missing file of two" "narc: absent.csv: " fit fits/square.csv absent.csv --arcs 8 --out new.json
+fails "fit: a folder" "narc: fits: " fit fits --arcs 8 --out new.json
+fails "fit: a shapes file" "\(narc: \)*shapes.json:" fit shapes.json --arcs 8 --out new.json
+
+# damaged SUFFIX NAME PATTERN TEXT: a file with this text (printf's notation) is refused.
+damaged() {
+    printf "$4" >"bad.$1"
+    fails "fit: $1, $2" "$3" fit fits/square.csv "bad.$1" --arcs 4 --out new.json --picture new.png
+}
+damaged csv "empty" "narc: bad.csv: " ''
+damaged csv "word for a number" "bad.csv:3: .*'up'" '0,0\n1,0\n1,up\n'
+damaged csv "three columns" "bad.csv:2: .*'1,0,5'" '0,0\n1,0,5\n1,1\n'
+damaged csv "NaN" "bad.csv:4: .*'nan'" 'x,y\n0,0\n1,0\nnan,1\n'
+damaged csv "too large" "bad.csv:2: x is 2000000000," '0,0\n2e9,0\n1,1\n'
+damaged csv "NUL byte" "bad.csv:2: " '0,0\n1,0\000\n1,1\n'
+damaged csv "two points" "narc: bad.csv: " '0,0\n1,0\n'
+damaged csv "points on a line" "narc: bad.csv: " '0,0\n1,0\n2,0\n'
+damaged json "cut off" "bad.json:2: .*JSON" '[[0, 0],\n [1, 0'
+damaged json "no point" "narc: bad.json: point 1 of contour 0 .*'7'" '[[0, 0],\n 7, [1, 1]]\n'
+damaged json "one coordinate" "narc: bad.json: point 2 .*'\[1]'" '[[0, 0],\n [1, 0],\n [1]]\n'
+damaged svg "empty" "narc: bad.svg: " ''
+damaged svg "not closed" "bad.svg:[23]: " '<svg xmlns="http://www.w3.org/2000/svg">\n<path d="M0 0H1V1z"/>\n'
+damaged svg "no outline" "\(narc: \)*bad.svg:" '<svg xmlns="http://www.w3.org/2000/svg"><defs><path d="M0 0h9v9z"/></defs></svg>\n'
+damaged svg "no SVG" "\(narc: \)*bad.svg:" '<html><body/></html>\n'
+damaged ttf "no font" "narc: bad.ttf: .*--characters" 'hello\n'
+damaged dat "no known kind" "narc: bad.dat: .*SVG" 'hello\n'
+head -c 200 fits/disc.png >bad.png
+fails "fit: png, cut off" "narc: bad.png: " fit bad.png --arcs 4 --out new.json
+printf '0,0\n1,1\n2,2\n' >flat.csv
+fails "fit: points on a line" "narc: flat.csv: .*line" fit flat.csv --arcs 4 --out new.json
+
+finish

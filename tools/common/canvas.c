@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * canvas.c - a PNG or SVG picture to draw on with cairo.
+ */
+#include "canvas.h"
+
+#include <cairo-svg.h>
+#include <math.h>
+#include <string.h>
+
+#include "fail.h"
+#include "turn.h"
+
+picture_kind picture_kind_of(const char *path) {
+    if (!path)
+        return PICTURE_NONE;
+    const size_t length = strlen(path);
+    const char *suffix = length > 4 ? path + length - 4 : "";
+    if (strcmp(suffix, ".png") == 0)
+        return PICTURE_PNG;
+    if (strcmp(suffix, ".svg") == 0)
+        return PICTURE_SVG;
+    fail("a picture's name must end in .png or .svg, not '%s'", path);
+}
+
+static cairo_status_t write_bytes(void *context, const unsigned char *bytes, unsigned count) {
+    canvas *page = context;
+    page->failed = page->failed || fwrite(bytes, 1, count, page->file) != count;
+    return page->failed ? CAIRO_STATUS_WRITE_ERROR : CAIRO_STATUS_SUCCESS;
+}
+
+void open_canvas(canvas *page, const char *path, FILE *file, double width, double height) {
+    *page = (canvas){.kind = picture_kind_of(path), .path = path, .file = file};
+    page->surface = page->kind == PICTURE_SVG
+                        ? cairo_svg_surface_create_for_stream(write_bytes, page, width, height)
+                        : cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width), (int)ceil(height));
+    page->pen = cairo_create(page->surface);
+    set_color(page, (color){1, 1, 1, 1});
+    cairo_paint(page->pen);
+    cairo_set_line_join(page->pen, CAIRO_LINE_JOIN_ROUND);
+    cairo_set_line_cap(page->pen, CAIRO_LINE_CAP_ROUND);
+}
+
+void finish_canvas(canvas *page) {
+    cairo_status_t status = cairo_status(page->pen);
+    cairo_destroy(page->pen);
+    if (status == CAIRO_STATUS_SUCCESS && page->kind == PICTURE_PNG)
+        status = cairo_surface_write_to_png_stream(page->surface, write_bytes, page);
+    cairo_surface_finish(page->surface);
+    if (status == CAIRO_STATUS_SUCCESS)
+        status = cairo_surface_status(page->surface);
+    if (page->failed)
+        status = CAIRO_STATUS_WRITE_ERROR;
+    if (status != CAIRO_STATUS_SUCCESS)
+        fail("%s: %s", page->path, cairo_status_to_string(status));
+    cairo_surface_destroy(page->surface);
+}
+
+void set_color(canvas *page, color paint) {
+    cairo_set_source_rgba(page->pen, paint.red, paint.green, paint.blue, paint.alpha);
+}
+
+const color INK = {0.12, 0.14, 0.18, 1};
+
+void draw_text(canvas *page, const char *text, double x, double y, double size, double widest) {
+    cairo_text_extents_t extents;
+    set_color(page, INK);
+    cairo_set_font_size(page->pen, size);
+    cairo_text_extents(page->pen, text, &extents);
+    if (extents.x_advance > widest) {
+        cairo_set_font_size(page->pen, size * widest / extents.x_advance);
+        cairo_text_extents(page->pen, text, &extents);
+    }
+    cairo_move_to(page->pen, x - extents.x_advance / 2, y);
+    cairo_show_text(page->pen, text);
+}
+
+narc_point place_point(const placement *where, narc_point p) {
+    return (narc_point){where->origin_x + where->cosine * p.x - where->sine * p.y,
+                        where->origin_y - where->sine * p.x - where->cosine * p.y};
+}
+
+/* From here to leave_shape() the pen draws in the shape's own coordinates. */
+static void enter_shape(canvas *page, const placement *where) {
+    const cairo_matrix_t matrix = {.xx = where->cosine,
+                                   .yx = -where->sine,
+                                   .xy = -where->sine,
+                                   .yy = -where->cosine,
+                                   .x0 = where->origin_x,
+                                   .y0 = where->origin_y};
+    cairo_save(page->pen);
+    cairo_transform(page->pen, &matrix);
+    cairo_new_sub_path(page->pen);
+}
+
+static void leave_shape(canvas *page) { cairo_restore(page->pen); }
+
+void trace_arcs(canvas *page, const placement *where, const narc_arc *arcs, size_t count) {
+    enter_shape(page, where);
+    for (size_t i = 0; i < count; i++) {
+        /* cairo joins an arc to what is there by a line: the edge between arcs, or nothing. */
+        cairo_arc(page->pen, arcs[i].center_x, arcs[i].center_y, arcs[i].radius, arcs[i].start, arcs[i].end);
+    }
+    leave_shape(page);
+}
+
+void trace_curve_arc(canvas *page, const placement *where, const narc_curve_arc *arc) {
+    enter_shape(page, where);
+    if (arc->turn == 0) {
+        cairo_move_to(page->pen, arc->start.x, arc->start.y);
+        cairo_line_to(page->pen, arc->end.x, arc->end.y);
+    } else {
+        const double start = atan2(arc->start.y - arc->center.y, arc->start.x - arc->center.x);
+        (arc->turn > 0 ? cairo_arc : cairo_arc_negative)(page->pen, arc->center.x, arc->center.y, arc->radius, start,
+                                                         start + arc->turn);
+    }
+    leave_shape(page);
+}
+
+void stroke_path(canvas *page, color line, double width) {
+    set_color(page, line);
+    cairo_set_line_width(page->pen, width);
+    cairo_stroke(page->pen);
+}
+
+void paint_path(canvas *page, color fill, color line, double line_width) {
+    set_color(page, fill);
+    cairo_fill_preserve(page->pen);
+    stroke_path(page, line, line_width);
+}
+
+void draw_dot(canvas *page, narc_point center, double radius) {
+    cairo_new_sub_path(page->pen);
+    cairo_arc(page->pen, center.x, center.y, radius, 0, FULL_TURN);
+    cairo_fill(page->pen);
+}

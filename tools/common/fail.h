@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * fail.h - an error ends the command: one line on standard error, no output file left behind, exit status 2.
+ */
+#ifndef NARC_TOOL_FAIL_H
+#define NARC_TOOL_FAIL_H
+
+#include <stddef.h>
+
+#if defined(__GNUC__)
+#define PRINTF_LIKE(format_at, first) __attribute__((format(printf, format_at, first)))
+#else
+#define PRINTF_LIKE(format_at, first)
+#endif
+
+/* "narc: message". Bytes that would break the line are shown as '?'. */
+PRINTF_LIKE(1, 2) _Noreturn void fail(const char *format, ...);
+
+/* "path:line: message"; without a line, 0, "narc: path: message". "-" is standard input. */
+PRINTF_LIKE(3, 4) _Noreturn void fail_at(const char *path, size_t line, const char *format, ...);
+
+/* Memory for `count` items of `size` bytes, never NULL. */
+void *allocate(size_t count, size_t size);
+
+/* Makes room for `needed` items in an array that grows by doubling; `items` may be NULL at first. */
+void *grow(void *items, size_t *capacity, size_t needed, size_t size);
+
+#endif

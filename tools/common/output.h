@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * output.h - output files that appear whole or not at all, and never in place of an input.
+ *
+ * A file is written under a temporary name beside its target and renamed when everything has been written; an error or
+ * a signal removes it. Standard output, devices and pipes are written directly.
+ */
+#ifndef NARC_TOOL_OUTPUT_H
+#define NARC_TOOL_OUTPUT_H
+
+#include <stdio.h>
+
+/* Remembers a file that the command reads: no output may replace it. */
+void protect_input(const char *path);
+
+/* Opens an output; "-" is standard output. Two outputs cannot be the same file, and none can be an input. */
+FILE *open_output(const char *path);
+
+/* Writes everything out, checks it and clears the progress line. Returns where the report goes: to standard output, or
+ * to standard error if an output is there. The files have no names yet, so that a report that cannot be printed leaves
+ * no outputs either. */
+FILE *finish_outputs(void);
+
+/* Writes out what was printed to standard output or standard error, and checks it. */
+void finish_report(FILE *file);
+
+/* Gives the finished files their names. */
+void commit_outputs(void);
+
+/* Removes what was not committed. */
+void discard_outputs(void);
+
+#endif
