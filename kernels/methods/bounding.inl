@@ -13,11 +13,11 @@
 
 #include "base/call.inl"
 #include "base/pair_setup.inl"
+#include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "methods/boxes.inl"
-#include "sat/pipeline.inl"
 #include "simd/simd.h"
 
 /* The extent of a box along a unit vector, from its centre. */

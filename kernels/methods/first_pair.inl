@@ -14,14 +14,14 @@
 #include <math.h>
 
 #include "base/call.inl"
+#include "base/contact_rows.inl"
+#include "base/gap.inl"
+#include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "methods/arc_lists.inl"
 #include "methods/boxes.inl"
-#include "sat/contact_rows.inl"
-#include "sat/gap.inl"
-#include "sat/pipeline.inl"
 #include "simd/simd.h"
 
 INLINE vm in_closed_cone(vec2 start, vec2 end, vec2 u) {

@@ -22,6 +22,7 @@
 #include <string.h>
 
 #include "base/call.inl"
+#include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
@@ -31,7 +32,6 @@
 #include "methods/lanes.inl"
 #include "methods/simplex.inl"
 #include "methods/support.inl"
-#include "sat/pipeline.inl"
 #include "simd/simd.h"
 
 /* What a step finds, in each lane. */

@@ -12,11 +12,11 @@
 #include <stdint.h>
 
 #include "base/call.inl"
+#include "base/contact_point.inl"
+#include "base/contact_rows.inl"
 #include "base/queue.inl"
 #include "base/vec2.inl"
 #include "methods/simplex.inl"
-#include "sat/contact_point.inl"
-#include "sat/contact_rows.inl"
 #include "simd/simd.h"
 
 struct lanes {

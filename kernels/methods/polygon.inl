@@ -15,15 +15,15 @@
 
 #include "base/arcs.inl"
 #include "base/call.inl"
+#include "base/contact_point.inl"
+#include "base/contact_rows.inl"
+#include "base/gap.inl"
+#include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "methods/arc_lists.inl"
 #include "methods/support.inl"
-#include "sat/contact_point.inl"
-#include "sat/contact_rows.inl"
-#include "sat/gap.inl"
-#include "sat/pipeline.inl"
 #include "simd/simd.h"
 
 /* The gap along edge normal i of one polygon against all vertices of the other. */

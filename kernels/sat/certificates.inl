@@ -18,10 +18,10 @@
 #define NARC_SAT_CERTIFICATES_INL
 
 #include "base/arcs.inl"
+#include "base/gap.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
-#include "sat/gap.inl"
 #include "sat/local_maximum.inl"
 #include "simd/simd.h"
 

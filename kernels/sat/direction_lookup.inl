@@ -47,8 +47,8 @@ INLINE vi count_junctions(const narc_record *records, vi record, vi count, vec2 
 /* The record of the arc that holds a direction, in each lane. */
 INLINE vi find_arc(const narc_record *records, vi first_record, vi info, vec2 direction) {
     const vi count = info_count(info), before = count_junctions(records, first_record, count, direction);
-    const vi place = vi_sub(vi_select(vi_lt(vi_set(0), before), before, count), vi_set(1));
-    return vi_add(first_arc_record(first_record, info), place);
+    const vi index = vi_sub(vi_select(vi_lt(vi_set(0), before), before, count), vi_set(1));
+    return vi_add(first_arc_record(first_record, info), index);
 }
 
 /* The arcs of the pairs k ... of a queue that hold n and -n. */

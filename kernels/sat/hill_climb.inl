@@ -6,11 +6,11 @@
 #define NARC_SAT_HILL_CLIMB_INL
 
 #include "base/arcs.inl"
+#include "base/gap.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "sat/certificates.inl"
-#include "sat/gap.inl"
 #include "sat/local_maximum.inl"
 #include "simd/simd.h"
 

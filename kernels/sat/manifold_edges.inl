@@ -18,12 +18,12 @@
 
 #include "base/arcs.inl"
 #include "base/call.inl"
+#include "base/contact_point.inl"
+#include "base/contact_rows.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
-#include "sat/contact_point.inl"
-#include "sat/contact_rows.inl"
 #include "sat/manifold_rows.inl"
 #include "simd/simd.h"
 

@@ -13,12 +13,12 @@
 #include <stdint.h>
 
 #include "base/call.inl"
+#include "base/contact_point.inl"
+#include "base/contact_rows.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
-#include "sat/contact_point.inl"
-#include "sat/contact_rows.inl"
 #include "simd/simd.h"
 
 /* What stands in the row of a manifold's first point, from separation to POINT_Y as in that of a contact, and in the

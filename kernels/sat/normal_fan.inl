@@ -53,10 +53,10 @@
 #include <stdint.h>
 
 #include "base/arcs.inl"
+#include "base/gap.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
-#include "sat/gap.inl"
 #include "simd/simd.h"
 
 /* The arc of B whose start, negated and in A's frame, is the first junction counter-clockwise from +x: the one with the

@@ -13,6 +13,7 @@
 #include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/pair_setup.inl"
+#include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
@@ -20,7 +21,6 @@
 #include "sat/direction_lookup.inl"
 #include "sat/hill_climb.inl"
 #include "sat/normal_fan.inl"
-#include "sat/pipeline.inl"
 #include "sat/shortcuts.inl"
 #include "simd/simd.h"
 

@@ -14,7 +14,7 @@ static const double pi = 3.14159265358979323846;
 /* Two angles that differ by less may be taken for the same, or not. */
 static const double angle_doubt = 1e-5;
 
-/* Is n the normal of a junction (PARALLEL in kernels/sat/contact_point.inl, 2^-20)? Yes below, perhaps between. */
+/* Is n the normal of a junction (PARALLEL in kernels/base/contact_point.inl, 2^-20)? Yes below, perhaps between. */
 static const double parallel_certain = 4e-7, parallel_doubt = 2e-6;
 
 /* Edges above the larger one, relative to the reach, are edges; below the smaller one they are rounding. */

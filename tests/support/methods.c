@@ -290,7 +290,7 @@ double reference_height(const struct reference_body *body, double x, double y) {
  * which says where it must be, adds half of that, and turning it into the world 4 roundings of its length. */
 const double point_bounds = 1.5 + 4.0 / 32;
 
-/* A normal this close to an edge's, in radians, is taken for it: kernels/sat/contact_point.inl. */
+/* A normal this close to an edge's, in radians, is taken for it: kernels/base/contact_point.inl. */
 static const double parallel = 0x1p-20;
 
 /* The extent along (-y, x) of a body's support points for all normals within an angle of (x, y) times `sign`. They move

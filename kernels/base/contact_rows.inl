@@ -2,8 +2,8 @@
  *
  * contact_rows.inl - contacts, stored by the number of their pair as stages find them, and listed in order at the end.
  */
-#ifndef NARC_SAT_CONTACT_ROWS_INL
-#define NARC_SAT_CONTACT_ROWS_INL
+#ifndef NARC_BASE_CONTACT_ROWS_INL
+#define NARC_BASE_CONTACT_ROWS_INL
 
 #include <math.h>
 #include <stdbool.h>
@@ -12,13 +12,13 @@
 
 #include "base/arcs.inl"
 #include "base/call.inl"
+#include "base/contact_point.inl"
+#include "base/gap.inl"
+#include "base/hints.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
-#include "sat/contact_point.inl"
-#include "sat/gap.inl"
-#include "sat/hints.inl"
 #include "simd/simd.h"
 
 enum { SEPARATION, NORMAL_X, NORMAL_Y, POINT_X, POINT_Y, ARCS, ROW = 8 };
@@ -39,26 +39,26 @@ struct contact_rows {
 /* Stores hints for the pairs k ... of a queue in the lanes `ended`. */
 INLINE void store_hints(const struct call *call, const struct queue *queue, int k, vm ended, vi record_a, vi record_b) {
     struct contact_rows *rows = call->rows;
-    int32_t place[V_WIDTH], hint[V_WIDTH];
+    int32_t row[V_WIDTH], hint[V_WIDTH];
     if (!rows->hinted)
         return;
-    vi_store(place, vi_select(ended, get_bits(queue, PAIR, k), vi_set(GROUP)));
+    vi_store(row, vi_select(ended, get_bits(queue, PAIR, k), vi_set(GROUP)));
     vi_store(hint, make_hint(queue, k, record_a, record_b));
     for (int lane = 0; lane < V_WIDTH; lane++)
-        rows->hint[place[lane]] = (uint32_t)hint[lane];
+        rows->hint[row[lane]] = (uint32_t)hint[lane];
 }
 
 /* The caller's number of an arc from its record; a circle's two halves are both arc 0. */
 INLINE vi find_arc_number(vi record, vi first_record, vi info) {
-    const vi place = vi_sub(record, first_arc_record(first_record, info));
-    const vi number = vi_add(place, info_first_arc(info)), count = info_count(info);
+    const vi index = vi_sub(record, first_arc_record(first_record, info));
+    const vi number = vi_add(index, info_first_arc(info)), count = info_count(info);
     const vi wrapped = vi_select(vi_lt(number, count), number, vi_sub(number, count));
     return vi_select(info_has(info, NARC_SHAPE_CIRCLE), vi_set(0), wrapped);
 }
 
-/* The place of the row of each of the pairs k ... of a queue in the lanes `keep`. */
-INLINE void find_rows(const struct queue *queue, int k, vm keep, int32_t place[V_WIDTH]) {
-    vi_store(place, vi_select(keep, get_bits(queue, PAIR, k), vi_set(GROUP)));
+/* The row of each of the pairs k ... of a queue in the lanes `keep`. */
+INLINE void find_rows(const struct queue *queue, int k, vm keep, int32_t row[V_WIDTH]) {
+    vi_store(row, vi_select(keep, get_bits(queue, PAIR, k), vi_set(GROUP)));
 }
 
 /* Stores the contacts of the pairs k ... of a queue in the lanes `keep`. */
@@ -71,12 +71,12 @@ INLINE void store_contacts(const struct call *call, const struct queue *queue, i
     const vi arc_b = find_arc_number(on_b->record, get_bits(queue, FIRST_RECORD_B, k), get_bits(queue, INFO_B, k));
     const vf arcs = v_of_bits(vi_add(arc_a, vi_shift_left(arc_b, 8))), none = v_set(0);
     const vf field[ROW] = {separation, normal.x, normal.y, point.x, point.y, arcs, none, none};
-    int32_t place[V_WIDTH];
-    find_rows(queue, k, keep, place);
-    v_put_rows(rows->row, sizeof rows->row[0], place, field);
-    v_put_rows((float *)rows->row + 4, sizeof rows->row[0], place, field + 4);
+    int32_t row[V_WIDTH];
+    find_rows(queue, k, keep, row);
+    v_put_rows(rows->row, sizeof rows->row[0], row, field);
+    v_put_rows((float *)rows->row + 4, sizeof rows->row[0], row, field + 4);
     for (int lane = 0; lane < V_WIDTH; lane++)
-        rows->keep[place[lane]] = ONE_POINT;
+        rows->keep[row[lane]] = ONE_POINT;
 }
 
 /* The unit normal of the gap of the pairs k ... of a queue, and what touches along it. */
@@ -98,11 +98,11 @@ INLINE void store_no_contact(const struct call *call, vi pairs, vm which) {
         return;
     vi_store(pair, pairs);
     for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
-        const int place = pair[__builtin_ctz(lanes)];
-        if (!(find_margin(call, place) >= INFINITY))
+        const int k = pair[__builtin_ctz(lanes)];
+        if (!(find_margin(call, k) >= INFINITY))
             continue;
-        memcpy(call->rows->row[place], none, sizeof none);
-        call->rows->keep[place] = NO_ANSWER;
+        memcpy(call->rows->row[k], none, sizeof none);
+        call->rows->keep[k] = NO_ANSWER;
     }
 }
 
@@ -148,9 +148,9 @@ INLINE void write_pairs(const struct call *call, const int32_t *pair, int count,
         column[k] = first + (uint32_t)pair[k];
 }
 
-INLINE void load_row(const float *rows, const int32_t *place, vf field[ROW]) {
-    v_rows(rows, ROW * sizeof *rows, place, field);
-    v_rows(rows + 4, ROW * sizeof *rows, place, field + 4);
+INLINE void load_row(const float *rows, const int32_t *row, vf field[ROW]) {
+    v_rows(rows, ROW * sizeof *rows, row, field);
+    v_rows(rows + 4, ROW * sizeof *rows, row, field + 4);
 }
 
 /* Writes the stored contacts of a call in the order of their pairs; returns how many. */

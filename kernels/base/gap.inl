@@ -2,8 +2,8 @@
  *
  * gap.inl - the gap between two bodies along a direction, as searches find it.
  */
-#ifndef NARC_SAT_GAP_INL
-#define NARC_SAT_GAP_INL
+#ifndef NARC_BASE_GAP_INL
+#define NARC_BASE_GAP_INL
 
 #include "base/vec2.inl"
 #include "simd/simd.h"

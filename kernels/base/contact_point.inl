@@ -6,8 +6,8 @@
  * where n is the normal of an edge, in a stretch, and so does B: the point is the middle of what the two have in
  * common.
  */
-#ifndef NARC_SAT_CONTACT_POINT_INL
-#define NARC_SAT_CONTACT_POINT_INL
+#ifndef NARC_BASE_CONTACT_POINT_INL
+#define NARC_BASE_CONTACT_POINT_INL
 
 #include <stdbool.h>
 

@@ -3,8 +3,8 @@
  * hints.inl - what a call leaves for the next one: the arcs of A and B at which a pair's search ended, counted from 1
  * in the order of the store, A's in the lowest 8 bits. Any other value names no arcs.
  */
-#ifndef NARC_SAT_HINTS_INL
-#define NARC_SAT_HINTS_INL
+#ifndef NARC_BASE_HINTS_INL
+#define NARC_BASE_HINTS_INL
 
 #include <stdint.h>
 

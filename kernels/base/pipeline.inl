@@ -7,8 +7,8 @@
  * block. The others, which few pairs reach, wait for FLUSH of them, so that vectors are full; after the last block they
  * take what is left.
  */
-#ifndef NARC_SAT_PIPELINE_INL
-#define NARC_SAT_PIPELINE_INL
+#ifndef NARC_BASE_PIPELINE_INL
+#define NARC_BASE_PIPELINE_INL
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -16,10 +16,10 @@
 
 #include "base/bodies.inl"
 #include "base/call.inl"
+#include "base/contact_rows.inl"
 #include "base/pair_setup.inl"
 #include "base/queue.inl"
 #include "kernels.h"
-#include "sat/contact_rows.inl"
 #include "simd/simd.h"
 
 /* Answers what it can of a vector of pairs, the first of which has the number `pair`, and returns the other lanes. */
