@@ -5,7 +5,8 @@
 #include "column.h"
 #include "dispatch.h"
 
-/* Pairs that one thread looks at in one go: some 50 microseconds of work. A batch of one part needs no threads. */
+/* Pairs that one thread looks at in one go: some 50 microseconds of work. A batch of one part needs no threads, and
+ * OpenMP is left alone: it takes a quarter of a microsecond even for a team of one. */
 enum { PART = 65536 };
 
 static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
@@ -37,23 +38,31 @@ static uint32_t find_largest_body(const narc_pairs *pairs, size_t first, size_t 
     return larger(find_largest(a, first, last), find_largest(b, first, last));
 }
 
-/* Are all bodies of pairs first ... and all shapes of all bodies in range? Reads columns from front to back, which is
- * much faster than looking up every pair's bodies. */
-static bool all_in_range(const narc_batch *batch, size_t first, size_t count, size_t parts, int team) {
+/* Are all bodies of a part's pairs in range, and all shapes of a part of the bodies? Reads columns from front to back,
+ * which is much faster than looking up every pair's bodies. */
+static bool part_in_range(const narc_batch *batch, size_t first, size_t count, size_t parts, size_t part) {
     const narc_bodies *bodies = batch->bodies;
     const size_t bodies_in_part = bodies->count / parts + 1;
+    const size_t start = part * PART, end = count - start < PART ? count : start + PART;
+    const size_t body = part * bodies_in_part, rest = bodies->count > body ? bodies->count - body : 0;
+    const size_t last_body = body + (rest < bodies_in_part ? rest : bodies_in_part);
+    return find_largest_body(batch->pairs, first + start, first + end) < bodies->count &&
+           (rest == 0 || find_largest(bodies->shape, body, last_body) < batch->shapes->count);
+}
+
+/* The same for all parts. */
+static bool all_in_range(const narc_batch *batch, size_t first, size_t count, size_t parts, int team) {
     bool fine = true;
-    (void)team;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) reduction(&& : fine) if (team > 1)
-#endif
-    for (size_t part = 0; part < parts; part++) {
-        const size_t start = part * PART, end = count - start < PART ? count : start + PART;
-        const size_t body = part * bodies_in_part, rest = bodies->count > body ? bodies->count - body : 0;
-        const size_t last_body = body + (rest < bodies_in_part ? rest : bodies_in_part);
-        fine = fine && find_largest_body(batch->pairs, first + start, first + end) < bodies->count &&
-               (rest == 0 || find_largest(bodies->shape, body, last_body) < batch->shapes->count);
+    if (team <= 1) {
+        for (size_t part = 0; part < parts && fine; part++)
+            fine = part_in_range(batch, first, count, parts, part);
+        return fine;
     }
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) num_threads(team) reduction(&& : fine)
+#endif
+    for (size_t part = 0; part < parts; part++)
+        fine = fine && part_in_range(batch, first, count, parts, part);
     return fine;
 }
 
@@ -78,8 +87,10 @@ size_t narc_find_bad_pair(const narc_batch *batch, size_t first, size_t count, u
     if (batch->bodies->count / 4 <= count && all_in_range(batch, first, count, parts, team))
         return first + count;
     size_t bad = first + count;
+    if (team <= 1)
+        return find_bad_pair(batch, first, bad);
 #ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) reduction(min : bad) if (team > 1)
+#pragma omp parallel for schedule(static) num_threads(team) reduction(min : bad)
 #endif
     for (size_t part = 0; part < parts; part++) {
         const size_t start = part * PART, end = count - start < PART ? count : start + PART;

@@ -41,7 +41,7 @@ INLINE void run_stages(const struct call *call, stage *const *stages, int stage_
         struct queue *queue = &queues[s];
         const bool all = end || s == 0;
         const int begin = all ? 0 : queue->count % V_WIDTH;
-        if (!all && queue->count < FLUSH)
+        if (queue->count == 0 || (!all && queue->count < FLUSH))
             continue;
         if (all)
             pad(queue);
@@ -83,7 +83,7 @@ static inline struct call begin_overlaps(const narc_batch *batch, size_t first, 
 static inline struct call begin_contacts(const narc_batch *batch, size_t first, size_t count, float margin,
                                          struct contact_rows *rows) {
     rows->hinted = false;
-    memset(rows->keep, NOT_LISTED, sizeof rows->keep);
+    memset(rows->keep, NOT_LISTED, count);
     return (struct call){.batch = batch,
                          .first = first,
                          .count = count,
