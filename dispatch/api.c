@@ -54,14 +54,9 @@ narc_status narc_check_batch(const narc_batch *batch, size_t first, size_t count
     if (count > 0) {
         if (!pairs->a.base || !pairs->b.base)
             return narc_fail_missing(error, !pairs->a.base ? "pairs.a" : "pairs.b");
-        if (bodies->count > 0) {
-            if (!bodies->x.base || !bodies->y.base)
-                return narc_fail_missing(error, !bodies->x.base ? "bodies.x" : "bodies.y");
-            if (!bodies->cosine.base || !bodies->sine.base)
-                return narc_fail_missing(error, !bodies->cosine.base ? "bodies.cosine" : "bodies.sine");
-            if (!bodies->shape.base)
-                return narc_fail_missing(error, "bodies.shape");
-        }
+        const narc_status columns = bodies->count > 0 ? narc_check_columns(bodies, error) : NARC_OK;
+        if (columns != NARC_OK)
+            return columns;
         const size_t bad = narc_find_bad_pair(batch, first, count, threads);
         if (bad < first + count)
             return describe_bad_pair(batch, bad, error);

@@ -61,4 +61,8 @@ size_t narc_run_contacts(narc_contact_kernel *kernel, const narc_batch *batch, s
  * none. */
 size_t narc_find_bad_pair(const narc_batch *batch, size_t first, size_t count, unsigned threads);
 
+/* The first of bodies first .. first + count - 1 whose shape does not exist; first + count if none. */
+size_t narc_find_bad_body(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t count,
+                          unsigned threads);
+
 #endif

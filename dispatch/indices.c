@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * indices.c - do all pairs name bodies, and these bodies shapes, that exist?
+ * indices.c - do all pairs name bodies, and all bodies shapes, that exist?
  */
 #include "column.h"
 #include "dispatch.h"
@@ -97,6 +97,27 @@ size_t narc_find_bad_pair(const narc_batch *batch, size_t first, size_t count, u
         const size_t found = find_bad_pair(batch, first + start, first + end);
         if (found < first + end && found < bad)
             bad = found;
+    }
+    return bad;
+}
+
+size_t narc_find_bad_body(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t count,
+                          unsigned threads) {
+    const size_t parts = (count + PART - 1) / PART;
+    const int team = narc_team_size(threads, parts);
+    size_t bad = first + count;
+    (void)team;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) num_threads(team) reduction(min : bad) if (team > 1)
+#endif
+    for (size_t part = 0; part < parts; part++) {
+        const size_t start = first + part * PART, end = count - part * PART < PART ? first + count : start + PART;
+        if (find_largest(bodies->shape, start, end) < shapes->count)
+            continue;
+        size_t body = start;
+        while (narc_index_at(bodies->shape, body) < shapes->count)
+            body++;
+        bad = body < bad ? body : bad;
     }
     return bad;
 }

@@ -7,6 +7,7 @@
  *
  *   A simulation step goes from boxes around the bodies to pairs of boxes that overlap, and from pairs to contacts:
  *
+ *       narc_compute_boxes()      the boxes of all bodies
  *       narc_find_pairs()         all pairs of boxes that overlap and whose filters let them
  *       narc_match_pairs()        which pair of the last step each pair was
  *       narc_gather()             carries hints, impulses, friction history from the last step's pairs to this one's
@@ -20,6 +21,7 @@
  *
  * Example
  *
+ *     narc_compute_boxes(shapes, &bodies, NULL, 0, boxes, &error);
  *     narc_find_pairs(broad, boxes, count, NULL, 0, a, b, capacity, &found, &error);
  *     narc_pairs pairs = {.count = found, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
  *     narc_match_pairs(broad, &last_pairs, &pairs, 0, match, &error);
@@ -33,6 +35,45 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* What narc_compute_boxes() puts boxes around; what is 0 or NULL is left out, as all is for {0}.
+ *   margin              at least 0: how far a box reaches beyond its body on every side. To find all pairs that are
+ *                       closer than some distance, half of it.
+ *   motion_x, motion_y  float, world axes: what each body moves. Its box holds the body at its position, at position +
+ *                       motion, and everywhere between.
+ *   out_skipped         how many bodies have no box; NULL: nobody asks */
+typedef struct narc_box_options {
+    float margin;
+    narc_column motion_x, motion_y;
+    size_t *out_skipped;
+} narc_box_options;
+
+/* The axis-aligned boxes of all bodies in the world, as tight as single precision allows: never too small for the body,
+ * however large its position, and on each side at most NARC_BOX_ROOM * (|coordinate of the position| + |motion| + margin
+ * + extent) too large, the extent as in narc.h. (Where a shape's arcs were given a little apart, see NARC_TOLERANCE,
+ * that much more is uncertain.)
+ *   options    NULL: defaults
+ *   threads    as in narc_find_overlaps()
+ *   out_boxes  bodies->count items, overlapping none of the inputs. A body that is broken (see narc_bodies), that has a
+ *              NaN or an infinity as its motion, or whose box is beyond the range of floats, gets the empty box from
+ *              (INFINITY, INFINITY) to (-INFINITY, -INFINITY), which narc_find_pairs() leaves out.
+ * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (a needed pointer is NULL, 2^32 bodies or more, a
+ * negative margin), NARC_ERROR_NOT_FINITE (margin), NARC_ERROR_INDEX (`error` names the body and the shape), and as
+ * narc_find_overlaps() for NARC_ISA. No bodies: NARC_OK. Allocates nothing. Thread-safe.
+ * Source: the support function of an arc shape (docs/algorithm.md) along four axes; kernels/broad/boxes.inl. */
+NARC_API narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bodies *bodies,
+                                        const narc_box_options *options, unsigned threads, narc_box *out_boxes,
+                                        narc_error *error);
+
+/* The same for bodies first .. first + count - 1 (any first and count), in the calling thread, for callers that have
+ * their own job system. `out_boxes` is that of all bodies; only those of the sub-range are written, and out_skipped
+ * counts these. */
+NARC_API narc_status narc_compute_boxes_range(const narc_shapes *shapes, const narc_bodies *bodies, size_t first,
+                                              size_t count, const narc_box_options *options, narc_box *out_boxes,
+                                              narc_error *error);
+
+/* 40 roundings; derived in kernels/broad/boxes.inl. */
+#define NARC_BOX_ROOM (40.0 / 16777216.0)
 
 /* All pairs a < b of boxes that overlap or touch, in the order of a and then b.
  *   boxes      `count` of them, at most 2^32 - 2; box k is that of body k

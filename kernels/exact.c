@@ -3,6 +3,7 @@
  * exact.c - the table of one instruction set's exact kernels, the only symbol of its object. The compiler's command
  * line defines NARC_ISA_NAME, the instruction set's name, and NARC_SIMD, the file of its vector wrapper.
  */
+#include "broad/boxes.inl"
 #include "broad/sweep.inl"
 #include "kernels.h"
 #include "pose.inl"

@@ -23,6 +23,14 @@ typedef struct narc_batch {
     float flat_sine;   /* of manifolds: the sine of the flat angle; below 0: no second points */
 } narc_batch;
 
+/* What the box kernel works on. */
+typedef struct narc_box_batch {
+    const narc_shapes *shapes;
+    const narc_bodies *bodies;
+    float margin;
+    narc_column motion_x, motion_y; /* base NULL: none */
+} narc_box_batch;
+
 /* The most pairs that one call of a contact kernel takes: it collects their contacts before it lists them. */
 enum { NARC_CONTACT_GROUP = 1024 };
 

@@ -8,7 +8,7 @@
 #include "error.h"
 #include "store.h"
 
-static narc_status check_columns(const narc_bodies *bodies, narc_error *error) {
+narc_status narc_check_columns(const narc_bodies *bodies, narc_error *error) {
     const struct {
         const char *name;
         narc_column column;
@@ -64,7 +64,7 @@ narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_bodies *b
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", shapes ? "bodies" : "shapes");
     if (bodies->count == 0)
         return NARC_OK;
-    narc_status status = check_columns(bodies, error);
+    narc_status status = narc_check_columns(bodies, error);
     for (size_t body = 0; body < bodies->count && status == NARC_OK; body++)
         status = check_body(shapes, bodies, body, error);
     return status;

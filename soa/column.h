@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * column.h - reads an item of a caller's column. Internal.
+ * column.h - a caller's columns. Internal.
  */
 #ifndef NARC_COLUMN_H
 #define NARC_COLUMN_H
@@ -20,5 +20,8 @@ static inline double narc_double_at(narc_column column, size_t index) {
 static inline uint32_t narc_index_at(narc_column column, size_t index) {
     return *(const uint32_t *)narc_at(column, index);
 }
+
+/* Has a body all columns that it must have, and are positions of a known type? */
+narc_status narc_check_columns(const narc_bodies *bodies, narc_error *error);
 
 #endif

@@ -13,12 +13,15 @@
 #include <string.h>
 
 #include "manifold_lists.h"
+#include "narc_broad_phase.h"
 #include "narc_methods.h"
 #include "scene.h"
 
 /* One number for both precisions: the double positions are the single ones, 2^30 away, and as exact. */
 static const uint64_t golden_answers = 0x9467dc252df3f63fu;
 static const uint64_t golden_manifolds = 0x91195546533318fdu;
+/* Boxes: the doubles 2^30 away are rounded outwards to floats. */
+static const uint64_t golden_boxes[] = {0x82c50e42c4824bc1u, 0xf33d99eef204246fu};
 /* Those of the other methods, in their order. */
 static const uint64_t golden_methods[] = {0xf375815933dd3045u, 0xde05f3d86d13b145u, 0xb72adc1892a6c4b6u,
                                           0x656376e9cda0e835u, 0xcee7633dc589d41du, 0xb137543756f0dd25u};
@@ -234,6 +237,27 @@ static void test_manifolds(void **state) {
     check_hash("manifolds, double positions", hashes[1], golden_manifolds);
 }
 
+static void test_boxes(void **state) {
+    (void)state;
+    for (int precision = 0; precision < 2; precision++) {
+        struct scene scene = make_scene((narc_precision)precision);
+        const narc_bodies bodies = scene_bodies(&scene);
+        narc_box boxes[BODIES];
+        float motion[BODIES];
+        for (size_t k = 0; k < BODIES; k++)
+            motion[k] = (float)(k % 17) - 8;
+        narc_box_options options = {0};
+        uint64_t hash = TEST_HASH_START;
+        for (int round = 0; round < 2; round++) {
+            assert_int_equal(narc_compute_boxes(scene.store, &bodies, &options, 1, boxes, NULL), NARC_OK);
+            hash = test_hash(hash, boxes, sizeof boxes);
+            options = (narc_box_options){.margin = 0.125f, .motion_x = NARC_ARRAY(motion), .motion_y = {motion + 5, 0}};
+        }
+        check_hash("boxes", hash, golden_boxes[precision]);
+        destroy_scene(&scene);
+    }
+}
+
 #ifdef NARC_TEST_POSES
 static void test_poses(void **state) {
     (void)state;
@@ -254,6 +278,7 @@ int main(void) {
         cmocka_unit_test(test_double_positions),
         cmocka_unit_test(test_methods),
         cmocka_unit_test(test_manifolds),
+        cmocka_unit_test(test_boxes),
 #ifdef NARC_TEST_POSES
         cmocka_unit_test(test_poses),
 #endif

@@ -1,0 +1,498 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * boxes.c - the boxes of bodies against the support function in double precision: never too small, and at most
+ * NARC_BOX_ROOM too large. Layouts, sub-ranges and threads; motion; broken bodies; errors.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "expect.h"
+#include "guard.h"
+#include "layouts.h"
+#include "narc_broad_phase.h"
+#include "placements.h"
+#include "scene.h"
+
+enum { SIDES = 4 };
+
+/* A box's reach to the right, up, to the left and down. */
+static void unfold(const narc_box *box, double reach[SIDES]) {
+    reach[0] = (double)box->max_x;
+    reach[1] = (double)box->max_y;
+    reach[2] = -(double)box->min_x;
+    reach[3] = -(double)box->min_y;
+}
+
+/* The furthest point of a list of arcs along a unit vector: of all ends of arcs, and where an arc holds the vector. */
+static double find_support(const struct reference_body *body, double x, double y) {
+    double furthest = -INFINITY;
+    for (size_t k = 0; k < body->count; k++) {
+        const narc_arc *const arc = &body->arcs[k];
+        const double sweep = fmod(arc->end - arc->start + 8 * 3.14159265358979323846, 2 * 3.14159265358979323846);
+        const double beyond = fmod(atan2(y, x) - arc->start + 16 * 3.14159265358979323846, 2 * 3.14159265358979323846);
+        const double middle = arc->center_x * x + arc->center_y * y;
+        const double along_start = cos(arc->start) * x + sin(arc->start) * y;
+        const double along_end = cos(arc->end) * x + sin(arc->end) * y;
+        const bool holds = body->count == 1 || beyond <= sweep;
+        furthest = fmax(furthest, middle + arc->radius * (holds ? 1 : fmax(along_start, along_end)));
+    }
+    return furthest;
+}
+
+/* What the body reaches from its position, its rotation made a unit vector. */
+static void find_reaches(const struct reference_body *body, double reach[SIDES]) {
+    const double length = hypot(body->cosine, body->sine), c = body->cosine / length, s = body->sine / length;
+    const double x[SIDES] = {c, s, -c, -s}, y[SIDES] = {-s, c, s, -c};
+    for (int k = 0; k < SIDES; k++)
+        reach[k] = body->scale * find_support(body, x[k], y[k]);
+}
+
+struct question {
+    double margin, motion_x, motion_y;
+};
+
+/* Differences of doubles are exact enough: their roundings are 2^-29 of those that are allowed. */
+static void check_box(const struct reference_body *body, const struct question *asked, const narc_box *box) {
+    double reach[SIDES], found[SIDES];
+    const double at[SIDES] = {body->x, body->y, -body->x, -body->y};
+    const double motion[SIDES] = {asked->motion_x, asked->motion_y, -asked->motion_x, -asked->motion_y};
+    find_reaches(body, reach);
+    unfold(box, found);
+    for (int k = 0; k < SIDES; k++) {
+        const double size = fabs(at[k]) + fabs(motion[k]) + asked->margin + reference_extent(body);
+        const double excess = found[k] - at[k] - fmax(0, motion[k]) - (reach[k] + asked->margin);
+        if (!(excess >= -0x1p-48 * size && excess <= NARC_BOX_ROOM * size))
+            fail_msg("side %d of a body at (%.17g, %.17g), rotation (%.9g, %.9g), scale %.9g: %.9g, which is %g of "
+                     "the room too large; %zu arcs",
+                     k, body->x, body->y, body->cosine, body->sine, body->scale, found[k],
+                     excess / (NARC_BOX_ROOM * size), body->count);
+    }
+}
+
+static narc_box *compute(const struct scene *scene, const narc_box_options *options, unsigned threads) {
+    const narc_bodies bodies = scene_bodies(scene);
+    narc_box *boxes = guard_allocate(bodies.count * sizeof *boxes);
+    narc_error error;
+    expect_ok(narc_compute_boxes(scene->store, &bodies, options, threads, boxes, &error), &error);
+    return boxes;
+}
+
+static void check_scene(const struct scene *scene, struct test_random *random) {
+    const size_t count = scene->body_count;
+    float(*const motion)[2] = malloc(count * sizeof *motion);
+    assert_non_null(motion);
+    for (size_t k = 0; k < count; k++) {
+        const struct reference_body body = scene_reference(scene, (uint32_t)k);
+        const double size = reference_extent(&body);
+        for (int i = 0; i < 2; i++)
+            motion[k][i] = (float)(random_below(random, 4) ? random_between(random, -2, 2) * size : 0);
+    }
+    narc_box *const still = compute(scene, NULL, 1);
+    for (int round = 0; round < 4; round++) {
+        size_t skipped = 7;
+        narc_box_options options = {.margin = round & 1 ? 0.125f : 0, .out_skipped = &skipped};
+        if (round & 2) {
+            options.motion_x = (narc_column){&motion[0][0], sizeof motion[0]};
+            options.motion_y = (narc_column){&motion[0][1], sizeof motion[0]};
+        }
+        narc_box *const boxes = compute(scene, &options, 1 + (unsigned)round);
+        assert_int_equal(skipped, 0);
+        for (size_t k = 0; k < count; k++) {
+            const struct reference_body body = scene_reference(scene, (uint32_t)k);
+            const struct question asked = {(double)options.margin, round & 2 ? (double)motion[k][0] : 0,
+                                           round & 2 ? (double)motion[k][1] : 0};
+            check_box(&body, &asked, &boxes[k]);
+        }
+        if (round == 0)
+            assert_memory_equal(boxes, still, count * sizeof *boxes);
+        guard_release(boxes);
+    }
+    guard_release(still);
+    free(motion);
+}
+
+/* Every family, in every placement: right angles, nearly right ones, far away, tiny and huge scales. */
+static void holds_every_shape(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("boxes");
+    enum { PLACES = 8 };
+    for (int precision = 0; precision < 2; precision++) {
+        for (enum family family = 0; family < FAMILY_COUNT; family++) {
+            const size_t trials = test_trials(12);
+            struct scene scene = create_scene((narc_precision)precision, trials, 2 * PLACES * trials, 1);
+            for (size_t trial = 0; trial < trials; trial++) {
+                const struct shape shape = make_shape(&random, family);
+                const uint32_t index = scene_add_shape(&scene, &shape);
+                for (size_t k = 0; k < PLACES; k++) {
+                    struct body a, b;
+                    place_pair(&random, (enum placement)random_below(&random, PLACE_COUNT), scene.precision, &shape,
+                               &shape, &a, &b);
+                    a.shape = b.shape = index;
+                    scene_add_body(&scene, a);
+                    scene_add_body(&scene, b);
+                }
+            }
+            check_scene(&scene, &random);
+            destroy_scene(&scene);
+        }
+    }
+}
+
+/* Junctions along the world's axes, within some units of the look-up's 16 bits, and arcs that are no wider than one. */
+static void holds_shapes_with_junctions_along_the_axes(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("junctions along axes");
+    const double quarter = 1.57079632679489661923;
+    const size_t trials = test_trials(400);
+    struct scene scene = create_scene(NARC_FLOAT32, trials, 8 * trials, 1);
+    for (size_t trial = 0; trial < trials; trial++) {
+        const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
+        const uint32_t index = scene_add_shape(&scene, &shape);
+        for (int k = 0; k < 8; k++) {
+            const narc_arc *const arc = &shape.arcs[random_below(&random, shape.count)];
+            const double off = k < 2 ? 0 : random_between(&random, -1, 1) * (k < 5 ? 1e-7 : 3e-4);
+            struct body body =
+                turned_body((double)random_below(&random, 4) * quarter - arc->start + off, k % 2 ? 1 : 0.37);
+            body.x = random_between(&random, -2, 2);
+            body.shape = index;
+            scene_add_body(&scene, body);
+        }
+    }
+    check_scene(&scene, &random);
+    destroy_scene(&scene);
+    /* Corners that are nearly straight: many junctions within a unit of one another, with edges between them. */
+    scene = create_scene(NARC_FLOAT32, trials, 8 * trials, 1);
+    for (size_t trial = 0; trial < trials; trial++) {
+        struct shape shape;
+        const double step = random_log_between(&random, 2e-5, 4e-4), from = (double)random_below(&random, 4) * quarter;
+        narc_point points[12];
+        double angle = from - 4.5 * step, x = 0, y = 0;
+        for (size_t k = 0; k < 10; k++) {
+            points[k] = (narc_point){x, y};
+            x -= sin(angle);
+            y += cos(angle);
+            angle += step;
+        }
+        points[10] = (narc_point){x, y};
+        points[11] = (narc_point){-4 * cos(from) - 5 * sin(from), -4 * sin(from) + 5 * cos(from)};
+        assert_int_equal(narc_build_polygon(points, 12, 0, shape.arcs, &shape.count, NULL), NARC_OK);
+        const uint32_t index = scene_add_shape(&scene, &shape);
+        for (int k = 0; k < 8; k++) {
+            struct body body = turned_body((double)(k % 4) * quarter + random_between(&random, -3, 3) * step, 1);
+            body.shape = index;
+            scene_add_body(&scene, body);
+        }
+    }
+    check_scene(&scene, &random);
+    destroy_scene(&scene);
+}
+
+/* Positions at which a body is less than a rounding, and positions that cancel its extent. */
+static void rounds_outwards_wherever_a_body_is(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("rounding");
+    for (int precision = 0; precision < 2; precision++) {
+        const size_t trials = test_trials(200);
+        struct scene scene = create_scene((narc_precision)precision, FAMILY_COUNT, FAMILY_COUNT * trials, 1);
+        for (enum family family = 0; family < FAMILY_COUNT; family++) {
+            const struct shape shape = make_shape(&random, family);
+            const uint32_t index = scene_add_shape(&scene, &shape);
+            for (size_t trial = 0; trial < trials; trial++) {
+                struct body body =
+                    turned_body(random_between(&random, -10, 10), random_log_between(&random, 1e-5, 1e5));
+                const struct reference_body reference = pose_shape(&shape, &body);
+                double reach[SIDES];
+                find_reaches(&reference, reach);
+                const bool cancels = trial % 2;
+                const double far = random_log_between(&random, 1e-30, 1e30);
+                body.x = cancels ? -reach[0] * (1 + random_between(&random, -1, 1) * 1e-7) : far;
+                body.y = cancels ? reach[3] * (1 + random_between(&random, -1, 1) * 1e-9) : -far;
+                body.shape = index;
+                round_position(&body, scene.precision);
+                scene_add_body(&scene, body);
+            }
+        }
+        check_scene(&scene, &random);
+        destroy_scene(&scene);
+    }
+}
+
+/* The box of a body that moves is that around its boxes before and after. */
+static void joins_both_ends_of_a_motion(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("motion");
+    enum { COUNT = 500 };
+    struct scene scene = make_random_scene(&random, NARC_FLOAT32, COUNT, 1);
+    float motion[COUNT];
+    for (size_t k = 0; k < COUNT; k++) {
+        /* In steps that add exactly. */
+        scene.bodies[k].x = round(scene.bodies[k].x * 256) / 256;
+        round_position(&scene.bodies[k], scene.precision);
+        motion[k] = ((float)random_below(&random, 201) - 100) / 16;
+    }
+    narc_box *const before = compute(&scene, NULL, 1), *const both = compute(
+                                                           &scene, &(narc_box_options){.motion_x = NARC_ARRAY(motion)},
+                                                           1);
+    for (size_t k = 0; k < COUNT; k++) {
+        scene.bodies[k].x += (double)motion[k];
+        round_position(&scene.bodies[k], scene.precision);
+    }
+    narc_box *const after = compute(&scene, NULL, 1);
+    for (size_t k = 0; k < COUNT; k++) {
+        const float size = fabsf(motion[k]) + fabsf(before[k].max_x) + fabsf(before[k].min_x);
+        const float min_x = fminf(before[k].min_x, after[k].min_x), max_x = fmaxf(before[k].max_x, after[k].max_x);
+        assert_true(both[k].min_x <= before[k].min_x && both[k].max_x >= before[k].max_x);
+        assert_true(fabsf(both[k].min_x - min_x) <= 0x1p-20f * size && fabsf(both[k].max_x - max_x) <= 0x1p-20f * size);
+        assert_true(both[k].min_y == before[k].min_y && both[k].max_y == before[k].max_y);
+    }
+    guard_release(before);
+    guard_release(both);
+    guard_release(after);
+    destroy_scene(&scene);
+}
+
+/* ------------------------------------------------------------------------------------------------ splits */
+
+/* Every layout and every count, each array with a guard page behind it; sub-ranges touch nothing but their own. Scalar
+ * in one call decides. */
+static void same_bits_whatever_the_split(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("splits");
+    for (int precision = 0; precision < 2; precision++) {
+        for (enum layout layout = 0; layout < LAYOUT_COUNT; layout++) {
+            enum { MOST = 2200 };
+            struct scene scene = make_random_scene(&random, (narc_precision)precision, MOST, 1);
+            if (layout == LAYOUT_SHARED)
+                share_values(&scene);
+            if (layout == LAYOUT_UNSCALED)
+                unit_scales(&scene);
+            if (layout != LAYOUT_SHARED)
+                scene.bodies[1].sine = 3;
+            test_use_isa("scalar");
+            narc_box *const right = compute(&scene, &(narc_box_options){.margin = 0.01f}, 1);
+            test_use_isa(test_isa());
+            for (size_t count = 0; count <= MOST; count += count < 70 ? 1 : 71) {
+                scene.body_count = count;
+                struct columns columns = create_columns(&scene, layout, 0, 0);
+                narc_shapes *const store = guard_store(&scene);
+                narc_box *const boxes = guard_allocate(count * sizeof *boxes), *const copy = malloc((count + 1) * 16);
+                size_t skipped = 99;
+                const narc_box_options options = {.margin = 0.01f, .out_skipped = &skipped};
+                const size_t first = random_below(&random, count + 1), part = random_below(&random, count - first + 1);
+                memcpy(copy, boxes, count * sizeof *boxes);
+                expect_ok(narc_compute_boxes_range(store, &columns.bodies, first, part, &options, boxes, NULL), NULL);
+                const bool has_broken = layout != LAYOUT_SHARED && first <= 1 && first + part > 1;
+                assert_int_equal(skipped, has_broken ? 1 : 0);
+                assert_memory_equal(boxes, copy, first * sizeof *boxes);
+                assert_memory_equal(boxes + first, right + first, part * sizeof *boxes);
+                assert_memory_equal(boxes + first + part, copy + first + part, (count - first - part) * sizeof *boxes);
+                const unsigned threads = (unsigned)random_below(&random, 5);
+                expect_ok(narc_compute_boxes(store, &columns.bodies, &options, threads, boxes, NULL), NULL);
+                assert_memory_equal(boxes, right, count * sizeof *boxes);
+                free(copy);
+                guard_release(boxes);
+                narc_destroy_shapes(store);
+                destroy_columns(&columns);
+            }
+            guard_release(right);
+            destroy_scene(&scene);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ broken bodies */
+
+static void gives_broken_bodies_empty_boxes(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("broken");
+    static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300};
+    enum { COUNT = 40, KINDS = 8 };
+    static const narc_box none = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    for (int precision = 0; precision < 2; precision++) {
+        struct scene scene = make_random_scene(&random, (narc_precision)precision, COUNT, 1);
+        narc_box *const right = compute(&scene, NULL, 1);
+        for (size_t kind = 0; kind < KINDS; kind++) {
+            for (size_t value = 0; value < 4; value++) {
+                float motion[COUNT] = {0};
+                const size_t k = random_below(&random, COUNT);
+                struct body *const body = &scene.bodies[k];
+                const struct body whole = *body;
+                const float single = (float)bad[value];
+                size_t skipped = 9;
+                switch (kind) {
+                case 0:
+                    body->x = bad[value], body->x_single = single;
+                    break;
+                case 1:
+                    body->y = bad[value], body->y_single = single;
+                    break;
+                case 2:
+                    body->cosine = single;
+                    break;
+                case 3:
+                    body->sine = single;
+                    break;
+                case 4:
+                    body->scale = single;
+                    break;
+                case 5:
+                    motion[k] = single;
+                    break;
+                case 6:
+                    body->scale = ((const float[]){0, -1, 1e-30f, 1e12f})[value];
+                    break;
+                case 7:
+                    body->cosine = ((const float[]){0, 1.001f, 2, 1e20f})[value];
+                    body->sine = 0;
+                    break;
+                default:
+                    break;
+                }
+                narc_box *const found =
+                    compute(&scene, &(narc_box_options){.motion_y = NARC_ARRAY(motion), .out_skipped = &skipped}, 1);
+                assert_int_equal(skipped, 1);
+                for (size_t i = 0; i < COUNT; i++)
+                    assert_memory_equal(&found[i], i == k ? &none : &right[i], sizeof none);
+                guard_release(found);
+                *body = whole;
+            }
+        }
+        guard_release(right);
+        destroy_scene(&scene);
+    }
+}
+
+/* Random bits as every number of every body: nothing hangs, crashes, or comes out as NaN. */
+static void survives_garbage(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("garbage boxes");
+    enum { COUNT = 300 };
+    for (size_t trial = 0; trial < test_trials(60); trial++) {
+        struct scene scene = make_random_scene(&random, (narc_precision)(trial % 2), COUNT, 1);
+        float motion[COUNT];
+        size_t skipped = 0, empty = 0;
+        for (size_t k = 0; k < COUNT; k++) {
+            struct body *const body = &scene.bodies[k];
+            const uint64_t words[5] = {random_bits(&random), random_bits(&random), random_bits(&random),
+                                       random_bits(&random), random_bits(&random)};
+            const uint32_t shape = body->shape;
+            if (random_below(&random, 2)) {
+                memcpy(body, words, sizeof *body < sizeof words ? sizeof *body : sizeof words);
+                body->shape = shape;
+            }
+            memcpy(&motion[k], (const char *)words + 4, sizeof motion[k]);
+        }
+        narc_box *const boxes =
+            compute(&scene,
+                    &(narc_box_options){
+                        .motion_x = NARC_ARRAY(motion), .motion_y = NARC_ARRAY(motion), .out_skipped = &skipped},
+                    1);
+        for (size_t k = 0; k < COUNT; k++) {
+            const narc_box *const box = &boxes[k];
+            const bool whole = box->min_x <= box->max_x && box->min_y <= box->max_y && fabsf(box->min_x) <= FLT_MAX &&
+                               fabsf(box->min_y) <= FLT_MAX && box->max_x <= FLT_MAX && box->max_y <= FLT_MAX;
+            assert_true(whole || (box->min_x == INFINITY && box->max_y == -INFINITY));
+            empty += !whole;
+        }
+        assert_int_equal(skipped, empty);
+        guard_release(boxes);
+        destroy_scene(&scene);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ errors */
+
+static void refuses_bad_arguments(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("errors of boxes");
+    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 100, 1);
+    const narc_bodies bodies = scene_bodies(&scene), none = {0};
+    narc_bodies broken = bodies;
+    narc_box boxes[100];
+    narc_box_options options = {0};
+    narc_error error;
+    size_t skipped = 5;
+    memset(boxes, GUARD_JUNK, sizeof boxes);
+    options.out_skipped = &skipped;
+    expect_error(narc_compute_boxes(NULL, &bodies, NULL, 1, boxes, &error), NARC_ERROR_ARGUMENT, &error, "shapes");
+    expect_error(narc_compute_boxes(scene.store, NULL, NULL, 1, boxes, &error), NARC_ERROR_ARGUMENT, &error, "bodies");
+    expect_error(narc_compute_boxes(scene.store, &bodies, NULL, 1, NULL, &error), NARC_ERROR_ARGUMENT, &error,
+                 "out_boxes");
+    expect_error(narc_compute_boxes_range(scene.store, &bodies, 90, 11, NULL, boxes, &error), NARC_ERROR_ARGUMENT,
+                 &error, "bodies 90 and the 11");
+    broken.sine.base = NULL;
+    expect_error(narc_compute_boxes(scene.store, &broken, NULL, 1, boxes, &error), NARC_ERROR_ARGUMENT, &error, "sine");
+    broken = bodies;
+    broken.count = (size_t)UINT32_MAX + 1;
+    expect_error(narc_compute_boxes(scene.store, &broken, NULL, 1, boxes, &error), NARC_ERROR_ARGUMENT, &error,
+                 "at most");
+    options.margin = -1;
+    expect_error(narc_compute_boxes(scene.store, &bodies, &options, 1, boxes, &error), NARC_ERROR_ARGUMENT, &error,
+                 "margin");
+    options.margin = NAN;
+    expect_error(narc_compute_boxes(scene.store, &bodies, &options, 1, boxes, &error), NARC_ERROR_NOT_FINITE, &error,
+                 "margin");
+    options.margin = INFINITY;
+    expect_error(narc_compute_boxes(scene.store, &bodies, &options, 1, boxes, &error), NARC_ERROR_NOT_FINITE, &error,
+                 "margin");
+    options.margin = 0;
+    scene.bodies[70].shape = 1000000;
+    scene.bodies[80].shape = 1000001;
+    for (unsigned threads = 1; threads < 4; threads++) {
+        expect_error(narc_compute_boxes(scene.store, &bodies, &options, threads, boxes, &error), NARC_ERROR_INDEX,
+                     &error, "body 70");
+        assert_int_equal(error.index, 70);
+    }
+    assert_int_equal(skipped, 5);
+    for (size_t k = 0; k < sizeof boxes; k++)
+        assert_int_equal(((const unsigned char *)boxes)[k], GUARD_JUNK);
+    expect_ok(narc_compute_boxes_range(scene.store, &bodies, 0, 70, NULL, boxes, &error), &error);
+    expect_ok(narc_compute_boxes(scene.store, &none, &options, 1, NULL, &error), &error);
+    assert_int_equal(skipped, 0);
+    destroy_scene(&scene);
+}
+
+/* The bodies of many parts: the first of several wrong shapes is named, whatever thread finds it. */
+static void names_the_first_wrong_shape(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("wrong shapes");
+    enum { COUNT = 200000 };
+    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 1, 1);
+    uint32_t *const shape = calloc(COUNT, sizeof *shape);
+    narc_box *const boxes = malloc(COUNT * sizeof *boxes);
+    narc_bodies bodies = scene_bodies(&scene);
+    narc_error error;
+    assert_non_null(shape);
+    bodies.count = COUNT;
+    bodies.x.stride = bodies.y.stride = bodies.cosine.stride = bodies.sine.stride = bodies.scale.stride = 0;
+    bodies.shape = NARC_ARRAY(shape);
+    shape[70000] = shape[70001] = shape[150000] = 12345;
+    for (unsigned threads = 1; threads < 5; threads++) {
+        expect_error(narc_compute_boxes(scene.store, &bodies, NULL, threads, boxes, &error), NARC_ERROR_INDEX, &error,
+                     "body 70000");
+        expect_error(narc_compute_boxes_range(scene.store, &bodies, 70001, 100000, NULL, boxes, &error),
+                     NARC_ERROR_INDEX, &error, "body 70001");
+    }
+    free(shape);
+    free(boxes);
+    destroy_scene(&scene);
+}
+
+int main(void) {
+    if (!test_begin())
+        return TEST_SKIPPED;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(holds_every_shape),
+        cmocka_unit_test(holds_shapes_with_junctions_along_the_axes),
+        cmocka_unit_test(rounds_outwards_wherever_a_body_is),
+        cmocka_unit_test(joins_both_ends_of_a_motion),
+        cmocka_unit_test(same_bits_whatever_the_split),
+        cmocka_unit_test(gives_broken_bodies_empty_boxes),
+        cmocka_unit_test(survives_garbage),
+        cmocka_unit_test(refuses_bad_arguments),
+        cmocka_unit_test(names_the_first_wrong_shape),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
