@@ -17,7 +17,7 @@ enum { BENCH_NAME = 96 };
 /* A row of the benchmark: `run` is timed as a whole and answers for `pairs` pairs. */
 struct bench_row {
     char name[BENCH_NAME];
-    size_t pairs;
+    size_t pairs;                           /* set by prepare */
     void (*prepare)(struct bench_row *row); /* before every repetition, outside the time; makes the scene, checks */
     void (*run)(struct bench_row *row);
     void *context;      /* of these two functions */

@@ -8,6 +8,8 @@
 #include <stdio.h>
 
 #include "common.h"
+#include "disc_loops.h"
+#include "manifolds.h"
 
 struct narc_row {
     struct bench_row row;
@@ -16,39 +18,82 @@ struct narc_row {
     size_t runs;
     uint64_t *bits;
     narc_contacts contacts;
-    size_t contact_count;
+    size_t found;
     uint32_t *hints;
+    struct disc *discs[2]; /* of the frames */
 };
+
+static bool has_frames(const struct narc_job *job) { return job->query >= QUERY_FRAMES || is_settled(&job->key); }
+
+static narc_contacts contacts_behind(const narc_contacts *contacts, size_t count) {
+    return (narc_contacts){.capacity = contacts->capacity - count,
+                           .pair = contacts->pair + count,
+                           .separation = contacts->separation + count,
+                           .normal_x = contacts->normal_x + count,
+                           .normal_y = contacts->normal_y + count,
+                           .point_x = contacts->point_x + count,
+                           .point_y = contacts->point_y + count,
+                           .arc_a = contacts->arc_a + count,
+                           .arc_b = contacts->arc_b + count};
+}
+
+/* Contacts, so many pairs in a call. */
+static narc_status run_batches(struct narc_row *row, const narc_shapes *shapes, const narc_bodies *bodies,
+                               const narc_pairs *pairs, narc_error *error) {
+    narc_status status = NARC_OK;
+    row->found = 0;
+    for (size_t first = 0; first < pairs->count && status == NARC_OK; first += row->job.batch) {
+        const size_t left = pairs->count - first, count = left < row->job.batch ? left : row->job.batch;
+        const narc_contacts rest = contacts_behind(&row->contacts, row->found);
+        size_t found = 0;
+        status = narc_find_contacts_range(shapes, bodies, pairs, first, count, 0, &rest, &found, error);
+        row->found += found;
+    }
+    return status;
+}
 
 static void run(struct bench_row *bench_row) {
     struct narc_row *row = bench_row->context;
-    const struct workload *workload = row->frames[row->runs++ % 2];
+    const struct narc_job *job = &row->job;
+    const size_t frame = row->runs++ % 2;
+    const struct workload *workload = row->frames[frame];
     const narc_bodies bodies = bodies_of(workload->bodies, workload->body_count);
     const narc_pairs pairs = {
-        .count = row->job.pair_count, .a = NARC_COLUMN(workload->pairs, a), .b = NARC_COLUMN(workload->pairs, b)};
+        .count = row->row.pairs, .a = NARC_COLUMN(workload->pairs, a), .b = NARC_COLUMN(workload->pairs, b)};
+    const narc_manifold_options options = {.hints = row->hints};
     narc_error error;
-    narc_status status;
-    if (row->job.query == QUERY_OVERLAP)
-        status = narc_find_overlaps(workload->shapes, &bodies, &pairs, row->job.threads, row->bits, &error);
-    else if (row->job.query == QUERY_HINTED)
-        status = narc_find_contacts_hinted(workload->shapes, &bodies, &pairs, 0, row->job.threads, row->hints,
-                                           &row->contacts, &row->contact_count, &error);
+    narc_status status = NARC_OK;
+    if (job->query == QUERY_OVERLAP)
+        status = narc_find_overlaps(workload->shapes, &bodies, &pairs, job->threads, row->bits, &error);
+    else if (job->query == QUERY_HINTED)
+        status = narc_find_contacts_hinted(workload->shapes, &bodies, &pairs, 0, job->threads, row->hints,
+                                           &row->contacts, &row->found, &error);
+    else if (job->query == QUERY_MANIFOLD)
+        status = narc_find_manifolds(workload->shapes, &bodies, &pairs, &options, job->threads,
+                                     share_manifolds(pairs.count), &row->found, &error);
+    else if (job->query == QUERY_DISCS)
+        row->found = find_disc_loop(job->isa)(row->discs[frame], workload->pairs, pairs.count, &row->contacts);
+    else if (job->batch > 0)
+        status = run_batches(row, workload->shapes, &bodies, &pairs, &error);
     else
-        status = narc_find_contacts(workload->shapes, &bodies, &pairs, 0, row->job.threads, &row->contacts,
-                                    &row->contact_count, &error);
+        status =
+            narc_find_contacts(workload->shapes, &bodies, &pairs, 0, job->threads, &row->contacts, &row->found, &error);
     if (status != NARC_OK)
         fail("%s: %s", row->row.name, error.message);
 }
 
 /* Bits from a list of contacts. A separation that is not the exact one counts as a wrong answer. */
 static size_t spread_contacts(struct narc_row *row, const struct workload *workload) {
+    const bool manifolds = row->job.query == QUERY_MANIFOLD;
+    const narc_manifolds *list = share_manifolds(row->row.pairs);
     size_t wrong = 0;
-    for (size_t k = 0; k < NARC_BIT_WORDS(row->job.pair_count); k++)
+    for (size_t k = 0; k < NARC_BIT_WORDS(row->row.pairs); k++)
         row->bits[k] = 0;
-    for (size_t k = 0; k < row->contact_count; k++) {
-        const uint32_t pair = row->contacts.pair[k];
+    for (size_t k = 0; k < row->found; k++) {
+        const uint32_t pair = manifolds ? list->pair[k] : row->contacts.pair[k];
+        const double separation = manifolds ? deepest_separation(list, k) : row->contacts.separation[k];
         row->bits[pair / 64] |= (uint64_t)1 << pair % 64;
-        wrong += !(fabs(row->contacts.separation[k] - workload->gaps[pair]) < TOUCHING);
+        wrong += !(fabs(separation - workload->gaps[pair]) < TOUCHING);
     }
     return wrong;
 }
@@ -60,34 +105,48 @@ static void check(struct narc_row *row) {
         run(&row->row);
         if (row->job.query != QUERY_OVERLAP)
             wrong += spread_contacts(row, workload);
-        for (size_t k = 0; k < row->job.pair_count; k++) {
+        for (size_t k = 0; k < row->row.pairs; k++) {
             const int hit = row->bits[k / 64] >> k % 64 & 1;
             colliding += (size_t)hit;
             wrong += hit != (workload->gaps[k] < 0) && fabs(workload->gaps[k]) >= TOUCHING;
         }
     }
-    row->row.colliding = (double)colliding / (2 * (double)row->job.pair_count);
+    row->row.colliding = (double)colliding / (2 * (double)row->row.pairs);
     row->row.wrong = (double)wrong;
 }
 
+static struct disc *make_discs(const struct workload *workload) {
+    struct disc *discs = allocate(workload->body_count, sizeof *discs);
+    for (size_t k = 0; k < workload->body_count; k++) {
+        const struct body *body = &workload->bodies[k];
+        discs[k] = (struct disc){body->x, body->y, (float)workload->outlines[body->shape].arcs[0].radius, 0};
+    }
+    return discs;
+}
+
 static void make_outputs(struct narc_row *row) {
-    const size_t count = row->job.pair_count;
+    const size_t count = row->row.pairs;
     row->bits = allocate(NARC_BIT_WORDS(count), sizeof *row->bits);
     if (row->job.query == QUERY_OVERLAP)
         return;
-    row->contacts = allocate_contacts(count);
+    if (row->job.query != QUERY_MANIFOLD)
+        row->contacts = allocate_contacts(count + 8); /* disc loops write whole vectors */
     row->hints = allocate(count, sizeof *row->hints);
+    for (int frame = 0; frame < 2 && row->job.query == QUERY_DISCS; frame++)
+        row->discs[frame] = make_discs(row->frames[frame]);
 }
 
 static void prepare(struct bench_row *bench_row) {
     struct narc_row *row = bench_row->context;
     narc_error error;
-    must(narc_set_isa(row->job.isa, &error), &error);
+    if (row->job.query != QUERY_DISCS)
+        must(narc_set_isa(row->job.isa, &error), &error);
     if (row->bits)
         return;
     struct workload_key key = row->job.key;
     row->frames[0] = row->frames[1] = get_workload(&key);
-    if (row->job.query >= QUERY_FRAMES) {
+    row->row.pairs = row->job.pair_count > 0 ? row->job.pair_count : row->frames[0]->pair_count;
+    if (has_frames(&row->job)) {
         key.moved = true;
         row->frames[1] = get_workload(&key);
     }
@@ -99,7 +158,6 @@ struct bench_row *make_narc_row(const char *name, const struct narc_job *job) {
     struct narc_row *row = allocate(1, sizeof *row);
     row->job = *job;
     snprintf(row->row.name, sizeof row->row.name, "%s", name);
-    row->row.pairs = job->pair_count;
     row->row.prepare = prepare;
     row->row.run = run;
     row->row.context = row;

@@ -21,16 +21,31 @@ struct peer {
     void (*run)(void *context, const struct pair *pairs, size_t count, uint8_t *out_colliding);
 };
 
+/* A library that keeps bodies and their pairs itself. */
+struct world_peer {
+    const char *name;    /* of its rows: "step/n8/settled/few/sorted/NAME" */
+    const char *missing; /* NULL, or why it can't run */
+    unsigned max_edges;
+    void *(*create)(const struct workload *workload); /* the bodies of a pile, at rest */
+    void (*step)(void *context);                      /* its boxes, pairs and contacts */
+    size_t (*count_touching)(void *context);
+};
+
 extern const struct peer plain_paper, plain_exact; /* plain.c */
 extern const struct peer box2d_collide, box2d_overlap;
 extern const struct peer chipmunk_collide;
 extern const struct peer ccd_gjk, ccd_mpr;
 
+extern const struct world_peer box2d_world, chipmunk_space;
+
 /* The row of a peer; `key` is that of the n-arcs. */
 struct bench_row *make_peer_row(const char *name, const struct peer *peer, const struct workload_key *key);
 
+struct bench_row *make_world_row(const char *name, const struct world_peer *peer, const struct workload_key *key);
+
 /* All peers, those that are not in this build as well; NULL behind the last. */
 extern const struct peer *const all_peers[];
+extern const struct world_peer *const all_world_peers[];
 
 #ifdef __cplusplus
 }

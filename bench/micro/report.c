@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * report.c - the targets, a table of times, and the data of the plots, from the rows that ran.
+ * report.c - the report's tables of times against n and of layouts, and the data of the plots, from the rows that ran.
  */
 #include "report.h"
 
@@ -9,88 +9,9 @@
 
 #include "common.h"
 #include "layout_rows.h"
-
-/* ------------------------------------------------------------------------------------------------ rows */
-
-/* The time of a row in nanoseconds per pair, NaN if it did not run. "BEST" in the name is the best instruction set. */
-static double time_of(const struct report *report, const char *name) {
-    char full[BENCH_NAME];
-    const char *best = strstr(name, "BEST");
-    if (best)
-        snprintf(full, sizeof full, "%.*s%s%s", (int)(best - name), name, report->best_isa, best + strlen("BEST"));
-    else
-        snprintf(full, sizeof full, "%s", name);
-    for (size_t k = 0; k < report->row_count; k++)
-        if (strcmp(report->rows[k]->name, full) == 0 && report->rows[k]->ns > 0)
-            return report->rows[k]->ns;
-    return NAN;
-}
-
-/* ------------------------------------------------------------------------------------------------ targets */
-
-enum bound { AT_LEAST, AT_MOST, WITHIN /* a factor, either way */ };
-
-/* The time of `above` divided by that of `below`. */
-struct target {
-    const char *what;
-    const char *above, *below;
-    enum bound bound;
-    double limit;
-};
-
-#define BOX2D(n) "contact/n" #n "/mixed/unique/random/box2d-collide"
-
-static const struct target targets[] = {
-    {"overlap, n = 8, against Box2D", BOX2D(8), "overlap/n8/mixed/unique/random/BEST", AT_LEAST, 12},
-    {"overlap, n = 4, against Box2D", BOX2D(4), "overlap/n4/mixed/unique/random/BEST", AT_LEAST, 12},
-    {"contact, n = 8, against Box2D", BOX2D(8), "contact/n8/mixed/unique/random/BEST", AT_LEAST, 8},
-    {"overlap, n = 8, AVX2, against Box2D", BOX2D(8), "overlap/n8/mixed/unique/random/avx2", AT_LEAST, 8},
-    {"overlap, n = 4, AVX2, against Box2D", BOX2D(4), "overlap/n4/mixed/unique/random/avx2", AT_LEAST, 8},
-    {"contact, n = 8, AVX2, against Box2D", BOX2D(8), "contact/n8/mixed/unique/random/avx2", AT_LEAST, 6},
-    {"overlap, n = 8, templates, time against the circle floor", "overlap/n8/mixed/templates/random/BEST",
-     "floor/n8/mixed/templates/random/BEST", AT_MOST, 4},
-    {"contact with hints, templates, time against without", "hinted/n8/mixed/templates/random/BEST",
-     "unhinted/n8/mixed/templates/random/BEST", AT_MOST, 0.5},
-    {"overlap, time of n = 16 against n = 4", "overlap/n16/mixed/unique/random/BEST",
-     "overlap/n4/mixed/unique/random/BEST", AT_MOST, 2.5},
-    {"overlap, n = 8, time of colliding against disjoint", "overlap/n8/colliding/unique/random/BEST",
-     "overlap/n8/disjoint/unique/random/BEST", WITHIN, 1.5},
-    {"overlap, one million pairs, 2 threads against 1", "overlap/n8/packing/unique/sorted/BEST",
-     "overlap/n8/packing/unique/sorted/BEST/2threads", AT_LEAST, 1.85},
-    {"overlap, general pairs, n = 8, time against n-arcs", "overlap/general/mixed/unique/random/BEST",
-     "overlap/n8/mixed/unique/random/BEST", AT_MOST, 2},
-    {"contact, general pairs, n = 8, time against n-arcs", "contact/general/mixed/unique/random/BEST",
-     "contact/n8/mixed/unique/random/BEST", AT_MOST, 2},
-};
-
-static bool is_reached(const struct target *target, double ratio) {
-    switch (target->bound) {
-    case AT_LEAST:
-        return ratio >= target->limit;
-    case AT_MOST:
-        return ratio <= target->limit;
-    default:
-        return ratio <= target->limit && ratio >= 1 / target->limit;
-    }
-}
-
-static void print_targets(const struct report *report, FILE *out) {
-    static const char *const bounds[] = {"at least", "at most", "within a factor of"};
-    bool any = false;
-    for (size_t k = 0; k < sizeof targets / sizeof targets[0]; k++) {
-        const struct target *target = &targets[k];
-        const double above = time_of(report, target->above), below = time_of(report, target->below);
-        if (isnan(above) || isnan(below))
-            continue;
-        if (!any)
-            fprintf(out, "| | target | reached | | ns per pair |\n| --- | --- | --- | --- | --- |\n");
-        any = true;
-        fprintf(out, "| %s | %s %g | %.2f | %s | %.2f / %.2f |\n", target->what, bounds[target->bound], target->limit,
-                above / below, is_reached(target, above / below) ? "yes" : "no", above, below);
-    }
-    if (any)
-        fputc('\n', out);
-}
+#include "settled_tables.h"
+#include "targets.h"
+#include "times.h"
 
 /* ------------------------------------------------------------------------------------------------ times against n */
 
@@ -140,13 +61,8 @@ static void print_times(const struct report *report, FILE *out) {
                          "| --- | ---: | ---: | ---: | ---: | ---: |\n");
         any = true;
         fprintf(out, "| %s |", series[s].title);
-        for (size_t k = 0; k < ARC_COUNTS; k++) {
-            const double time = time_in(report, &series[s], arc_counts[k]);
-            if (isnan(time))
-                fprintf(out, " |");
-            else
-                fprintf(out, " %.1f |", time);
-        }
+        for (size_t k = 0; k < ARC_COUNTS; k++)
+            print_cell(out, time_in(report, &series[s], arc_counts[k]));
         fputc('\n', out);
     }
     if (any)
@@ -177,7 +93,7 @@ static void print_layouts(const struct report *report, FILE *out) {
             any = true;
             fprintf(out, "| %s, %s |", layout_name(layout), isas[isa]);
             for (size_t k = 0; k < 6; k++)
-                fprintf(out, " %.1f |", times[k]);
+                print_cell(out, times[k]);
             fputc('\n', out);
         }
     if (any)
@@ -192,6 +108,8 @@ void print_report(const struct report *report, FILE *out) {
         return;
     fprintf(out, "\n%s, %s, %s; %s unless said otherwise; one thread\n\n", processor_name(), compiler_name,
             compiler_flags, report->best_isa);
+    print_settled_targets(report, out);
+    print_settled_times(report, out);
     print_targets(report, out);
     print_times(report, out);
     print_layouts(report, out);

@@ -9,6 +9,9 @@
 #include "arcs.h"
 #include "random.h"
 
+/* Of rounded polygons. */
+static const double corner_radius = 0.2;
+
 static size_t list_arcs(const struct outline *outline, narc_arc *out) {
     for (size_t k = 0; k < outline->count; k++) {
         const struct arc *arc = &outline->arcs[k], *next = arc + 1;
@@ -85,6 +88,32 @@ struct outline polygon_of(const struct outline *n_arc) {
     }
     add_edge_normals(&outline);
     return outline;
+}
+
+double area_of(const struct outline *outline) {
+    narc_arc arcs[MAX_EDGES] = {{0}};
+    const size_t count = list_arcs(outline, arcs);
+    return mass_of(arcs, count).area;
+}
+
+struct outline polygon_as_large_as(const struct outline *n_arc) {
+    struct outline polygon = polygon_of(n_arc);
+    const double factor = sqrt(area_of(n_arc) / area_of(&polygon));
+    for (size_t k = 0; k <= polygon.count; k++) {
+        polygon.arcs[k].x *= factor;
+        polygon.arcs[k].y *= factor;
+    }
+    return polygon;
+}
+
+struct outline round_polygon(const struct outline *n_arc) {
+    struct outline rounded = polygon_of(n_arc);
+    for (size_t k = 0; k <= rounded.count; k++) {
+        rounded.arcs[k].x *= 1 - corner_radius;
+        rounded.arcs[k].y *= 1 - corner_radius;
+        rounded.arcs[k].radius = corner_radius;
+    }
+    return rounded;
 }
 
 struct outline make_box(uint64_t *random) {

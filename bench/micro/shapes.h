@@ -14,10 +14,18 @@ struct outline make_n_arc(uint64_t *random, size_t n);
 /* The polygon whose vertices are the junctions of an n-arc. */
 struct outline polygon_of(const struct outline *n_arc);
 
+/* The same, grown around the origin to the area of the n-arc. */
+struct outline polygon_as_large_as(const struct outline *n_arc);
+
+/* The polygon of the junctions, 0.8 times as large, with an arc of radius 0.2 around each vertex. */
+struct outline round_polygon(const struct outline *n_arc);
+
 /* A rectangle, its sides 1 .. 2.4 long. */
 struct outline make_box(uint64_t *random);
 
 struct outline make_circle(double radius);
+
+double area_of(const struct outline *outline);
 
 /* No point of the outline is further from the origin. */
 double reach_of(const struct outline *outline);

@@ -11,16 +11,20 @@
 #include "common.h"
 #include "pairs.h"
 #include "random.h"
+#include "settled.h"
 #include "shapes.h"
 
 enum { MAX_WORKLOADS = 256 };
 
-static const size_t shape_counts[VARIETIES] = {[UNIQUE] = 4096, [TEMPLATES] = 16, [MANY] = 65536};
+static const size_t shape_counts[VARIETIES] = {[UNIQUE] = 4096, [TEMPLATES] = 16, [MANY] = 65536, [FEW] = 64};
 
 static bool same_key(const struct workload_key *a, const struct workload_key *b) {
     return a->edges == b->edges && a->family == b->family && a->scene == b->scene && a->variety == b->variety &&
-           a->sorted == b->sorted && a->moved == b->moved && a->pair_count == b->pair_count;
+           a->sorted == b->sorted && a->moved == b->moved && a->pair_count == b->pair_count &&
+           a->body_count == b->body_count;
 }
+
+bool is_settled(const struct workload_key *key) { return key->scene >= SCENE_SETTLED_SMALL; }
 
 /* Shapes of even and of odd index are the first and second bodies' in FAMILY_GENERAL. */
 static struct outline make_shape(const struct workload_key *key, size_t index, uint64_t *random) {
@@ -33,6 +37,12 @@ static struct outline make_shape(const struct workload_key *key, size_t index, u
                                 : n_arc;
     case FAMILY_GENERAL:
         return index % 2 == 0 ? polygon_of(&n_arc) : n_arc;
+    case FAMILY_ROUNDED:
+        return round_polygon(&n_arc);
+    case FAMILY_BOXES:
+        return make_box(random);
+    case FAMILY_DISCS:
+        return make_circle(random_between(random, 0.6, 1.2));
     default:
         return n_arc;
     }
@@ -85,13 +95,14 @@ static void measure_gaps(struct workload *workload) {
 
 static void move_bodies(struct workload *workload) {
     uint64_t random = 2;
+    const double most = is_settled(&workload->key) ? 0.001 : 0.01;
     struct body *bodies = allocate(workload->body_count, sizeof *bodies);
     for (size_t k = 0; k < workload->body_count; k++) {
         const struct body *body = &workload->bodies[k];
-        const double turn = random_between(&random, -0.01, 0.01), size = reach_of(&workload->outlines[body->shape]);
+        const double turn = random_between(&random, -most, most), size = reach_of(&workload->outlines[body->shape]);
         const double angle = atan2(body->sine, body->cosine) + turn;
-        bodies[k] = (struct body){(float)(body->x + 0.01 * size * random_between(&random, -1, 1)),
-                                  (float)(body->y + 0.01 * size * random_between(&random, -1, 1)), (float)cos(angle),
+        bodies[k] = (struct body){(float)(body->x + most * size * random_between(&random, -1, 1)),
+                                  (float)(body->y + most * size * random_between(&random, -1, 1)), (float)cos(angle),
                                   (float)sin(angle), body->shape};
     }
     workload->bodies = bodies;
@@ -100,9 +111,13 @@ static void move_bodies(struct workload *workload) {
 /* The same bodies and pairs, with something else in the place of each n-arc. */
 static void replace_shapes(struct workload *workload) {
     struct outline *outlines = allocate(workload->shape_count, sizeof *outlines);
-    for (size_t k = 0; k < workload->shape_count; k++)
-        outlines[k] = workload->key.family == FAMILY_POLYGONS ? polygon_of(&workload->outlines[k])
-                                                              : make_circle(bounding_radius(&workload->outlines[k]));
+    for (size_t k = 0; k < workload->shape_count; k++) {
+        const struct outline *n_arc = &workload->outlines[k];
+        if (workload->key.family == FAMILY_BOUNDS)
+            outlines[k] = make_circle(bounding_radius(n_arc));
+        else
+            outlines[k] = is_settled(&workload->key) ? polygon_as_large_as(n_arc) : polygon_of(n_arc);
+    }
     workload->outlines = outlines;
     store_shapes(workload);
 }
@@ -123,7 +138,9 @@ static void make_workload(struct workload *workload, const struct workload_key *
         move_bodies(workload);
     } else {
         make_shapes(workload);
-        if (key->scene == SCENE_PACKING)
+        if (is_settled(key))
+            make_settled(workload);
+        else if (key->scene == SCENE_PACKING)
             make_packing(workload);
         else
             make_pairs(workload);
@@ -147,12 +164,19 @@ const struct workload *get_workload(const struct workload_key *key) {
 }
 
 void name_workload(const struct workload_key *key, char *out, size_t size) {
-    static const char *const scenes[] = {"disjoint", "colliding", "mixed", "packing"};
-    static const char *const varieties[VARIETIES] = {[UNIQUE] = "unique", [TEMPLATES] = "templates", [MANY] = "many"};
-    char family[16] = "kinds";
-    if (key->family == FAMILY_GENERAL)
-        snprintf(family, sizeof family, "general");
-    else if (key->family != FAMILY_KINDS)
+    static const char *const scenes[] = {"disjoint",      "colliding", "mixed",        "packing",
+                                         "settled-small", "settled",   "settled-large"};
+    static const char *const varieties[VARIETIES] = {
+        [UNIQUE] = "unique", [TEMPLATES] = "templates", [MANY] = "many", [FEW] = "few"};
+    static const char *const families[] = {[FAMILY_KINDS] = "kinds",
+                                           [FAMILY_GENERAL] = "general",
+                                           [FAMILY_ROUNDED] = "rounded",
+                                           [FAMILY_BOXES] = "boxes",
+                                           [FAMILY_DISCS] = "discs"};
+    char family[16];
+    if (key->family >= FAMILY_KINDS && key->family <= FAMILY_DISCS)
+        snprintf(family, sizeof family, "%s", families[key->family]);
+    else
         snprintf(family, sizeof family, "n%u", key->edges % 100);
     snprintf(out, size, "%s/%s/%s/%s", family, scenes[key->scene], varieties[key->variety],
              key->sorted ? "sorted" : "random");

@@ -20,19 +20,30 @@ extern "C" {
 /* The shapes of a workload. */
 enum family {
     FAMILY_N_ARCS,
-    FAMILY_KINDS,    /* circles, boxes, polygons and n-arcs, equally many, in all combinations */
-    FAMILY_GENERAL,  /* a polygon against an n-arc, in every pair */
-    FAMILY_POLYGONS, /* the polygons of FAMILY_N_ARCS, in the same places */
+    FAMILY_KINDS,   /* circles, boxes, polygons and n-arcs, equally many, in all combinations */
+    FAMILY_GENERAL, /* a polygon against an n-arc, in every pair */
+    FAMILY_ROUNDED, /* the polygons of the junctions with arcs in the place of vertices */
+    FAMILY_BOXES,
+    FAMILY_DISCS,
+    FAMILY_POLYGONS, /* the polygons of FAMILY_N_ARCS, in the same places; in settled piles as large as the n-arcs */
     FAMILY_BOUNDS,   /* the bounding circles of FAMILY_N_ARCS, in the same places */
 };
 
 /* Where the second body of a pair is: at a multiple of the distance at which the two touch (in a random direction), or
  * anywhere where the axis-aligned boxes overlap, half of the pairs colliding. SCENE_PACKING is not made of pairs but of
- * bodies: 1 to 10 pairs, all in one square. */
-enum scene { SCENE_DISJOINT, SCENE_COLLIDING, SCENE_MIXED, SCENE_PACKING };
+ * bodies: 1 to 10 pairs, all in one square. So are the settled piles, of `body_count` bodies: see settled.h. */
+enum scene {
+    SCENE_DISJOINT,
+    SCENE_COLLIDING,
+    SCENE_MIXED,
+    SCENE_PACKING,
+    SCENE_SETTLED_SMALL,
+    SCENE_SETTLED,
+    SCENE_SETTLED_LARGE
+};
 
 /* How many distinct shapes. */
-enum variety { UNIQUE /* 4,096 */, TEMPLATES /* 16 */, MANY /* 65,536 */, VARIETIES };
+enum variety { UNIQUE /* 4,096 */, TEMPLATES /* 16 */, MANY /* 65,536 */, FEW /* 64 */, VARIETIES };
 
 /* What a workload is made from. */
 struct workload_key {
@@ -41,8 +52,10 @@ struct workload_key {
     enum scene scene;
     enum variety variety;
     bool sorted; /* pairs by their first body, as from a broad phase, instead of in random order */
-    bool moved;  /* the next frame: every body moved by up to 1 % of its size, and turned by up to 0.01 */
+    bool moved;  /* the next frame: every body moved by up to 1 % of its size, and turned by up to 0.01; in settled
+                  * piles a tenth of that */
     size_t pair_count;
+    size_t body_count; /* of a settled pile, whose pairs are those that are close; else 0 */
 };
 
 struct pair {
@@ -58,6 +71,8 @@ struct workload {
     struct pair *pairs;
     double *gaps; /* exact, one per pair */
 };
+
+bool is_settled(const struct workload_key *key);
 
 /* Makes a workload, or finds the one made before. The same key always gives the same one. */
 const struct workload *get_workload(const struct workload_key *key);

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * settled_list.c - which rows there are of settled piles.
+ */
+#include "settled_list.h"
+
+#include <stdio.h>
+
+#include "common.h"
+#include "disc_loops.h"
+#include "narc_rows.h"
+#include "peers.h"
+#include "step_rows.h"
+
+/* Bodies of a pile for 65,536 pairs of the other scenes: small, middle and large. */
+static const size_t body_counts[] = {2000, 30000, 1000008};
+
+static const struct shapes {
+    enum family family;
+    unsigned edges;
+} all_shapes[] = {{FAMILY_N_ARCS, 4}, {FAMILY_N_ARCS, 8}, {FAMILY_N_ARCS, 12}, {FAMILY_ROUNDED, 8},
+                  {FAMILY_BOXES, 4},  {FAMILY_DISCS, 8},  {FAMILY_KINDS, 8}};
+enum { SHAPES = sizeof all_shapes / sizeof all_shapes[0] };
+
+static size_t pair_count;
+
+static struct workload_key settled(struct shapes shapes, enum scene scene, enum variety variety) {
+    const double bodies = (double)body_counts[scene - SCENE_SETTLED_SMALL] * (double)pair_count / 65536;
+    return (struct workload_key){.edges = shapes.edges,
+                                 .family = shapes.family,
+                                 .scene = scene,
+                                 .variety = variety,
+                                 .sorted = true,
+                                 .body_count = bodies < 64 ? 64 : (size_t)bodies};
+}
+
+/* ------------------------------------------------------------------------------------------------ rows */
+
+static void name_row(const char *title, const struct workload_key *key, const char *who, const char *suffix,
+                     char name[BENCH_NAME]) {
+    char workload[BENCH_NAME / 2];
+    name_workload(key, workload, sizeof workload);
+    snprintf(name, BENCH_NAME, "%s/%s/%s%s", title, workload, who, suffix);
+}
+
+static void add_query(enum query query, struct workload_key key, const char *who) {
+    static const char *const titles[] = {[QUERY_OVERLAP] = "overlap",
+                                         [QUERY_CONTACT] = "contact",
+                                         [QUERY_HINTED] = "hinted",
+                                         [QUERY_MANIFOLD] = "manifold",
+                                         [QUERY_DISCS] = "contact"};
+    char name[BENCH_NAME];
+    name_row(titles[query], &key, who, "", name);
+    const struct narc_job job = {.query = query, .key = key, .isa = who, .threads = 1};
+    if (!is_listed(name))
+        list_row(make_narc_row(name, &job));
+}
+
+static void add_batches(struct workload_key key, const char *isa, size_t batch) {
+    char name[BENCH_NAME], suffix[32];
+    snprintf(suffix, sizeof suffix, "/by%zu", batch);
+    name_row("contact", &key, isa, suffix, name);
+    const struct narc_job job = {.query = QUERY_CONTACT, .key = key, .isa = isa, .threads = 1, .batch = batch};
+    list_row(make_narc_row(name, &job));
+}
+
+static void add_step(enum step step, struct workload_key key, const char *isa, unsigned threads) {
+    static const char *const titles[] = {"boxes", "pairs", "match", "step", "kept"};
+    char name[BENCH_NAME];
+    name_row(titles[step], &key, isa, threads == 2 ? "/2threads" : "", name);
+    const struct step_job job = {.step = step, .key = key, .isa = isa, .threads = threads};
+    if (threads > narc_default_threads())
+        bench_skip(name, "fewer threads here");
+    else
+        list_row(make_step_row(name, &job));
+}
+
+static void add_loop(const char *loop, struct workload_key key) {
+    char name[BENCH_NAME];
+    name_row("contact", &key, loop, "", name);
+    if (find_disc_loop(loop))
+        add_query(QUERY_DISCS, key, loop);
+    else
+        bench_skip(name, "not supported here");
+}
+
+static void add_peer(const struct peer *peer, struct workload_key key) {
+    char name[BENCH_NAME];
+    name_row(peer->query, &key, peer->name, "", name);
+    if (peer->missing)
+        bench_skip(name, peer->missing);
+    else
+        list_row(make_peer_row(name, peer, &key));
+}
+
+static void add_world(const struct world_peer *peer, struct workload_key key) {
+    char name[BENCH_NAME];
+    name_row("step", &key, peer->name, "", name);
+    if (peer->missing)
+        bench_skip(name, peer->missing);
+    else
+        list_row(make_world_row(name, peer, &key));
+}
+
+/* ------------------------------------------------------------------------------------------------ which */
+
+static void add_queries(const char *isa, enum variety variety) {
+    for (size_t k = 0; k < SHAPES; k++) {
+        const struct workload_key key = settled(all_shapes[k], SCENE_SETTLED, variety);
+        add_query(QUERY_OVERLAP, key, isa);
+        add_query(QUERY_CONTACT, key, isa);
+        add_query(QUERY_HINTED, key, isa);
+        add_query(QUERY_MANIFOLD, key, isa);
+    }
+}
+
+static void add_steps(struct workload_key key, const char *isa, unsigned threads) {
+    for (enum step step = STEP_BOXES; step <= STEP_KEPT; step++)
+        add_step(step, key, isa, threads);
+}
+
+void list_settled(const struct row_choice *choice) {
+    const struct shapes four = {FAMILY_N_ARCS, 4}, eight = {FAMILY_N_ARCS, 8}, boxes = {FAMILY_BOXES, 4};
+    const struct shapes discs = {FAMILY_DISCS, 8};
+    const char *best = choice->best_isa;
+    pair_count = choice->pair_count;
+    const struct workload_key key = settled(eight, SCENE_SETTLED, FEW),
+                              small = settled(eight, SCENE_SETTLED_SMALL, FEW),
+                              large = settled(eight, SCENE_SETTLED_LARGE, FEW);
+    add_queries(best, FEW);
+    add_queries(best, UNIQUE);
+    for (size_t batch = 16; batch <= 65536; batch *= batch == 256 ? 256 : 4)
+        add_batches(key, best, batch);
+    add_steps(small, best, 1);
+    add_steps(key, best, 1);
+    add_steps(large, best, 1);
+    add_steps(large, best, 2);
+    add_query(QUERY_MANIFOLD, large, best);
+    if (narc_isa_supported("avx2")) {
+        add_query(QUERY_CONTACT, settled(four, SCENE_SETTLED, FEW), "avx2");
+        add_query(QUERY_HINTED, settled(four, SCENE_SETTLED, FEW), "avx2");
+        add_query(QUERY_CONTACT, key, "avx2");
+        add_query(QUERY_HINTED, key, "avx2");
+    }
+    add_loop("scalar-loop", settled(discs, SCENE_SETTLED, FEW));
+    add_loop("avx2-loop", settled(discs, SCENE_SETTLED, FEW));
+    for (enum variety variety = UNIQUE; variety < VARIETIES; variety += FEW - UNIQUE) {
+        add_peer(&box2d_collide, settled(four, SCENE_SETTLED, variety));
+        add_peer(&box2d_collide, settled(eight, SCENE_SETTLED, variety));
+        add_peer(&box2d_collide, settled(boxes, SCENE_SETTLED, variety));
+        add_peer(&chipmunk_collide, settled(eight, SCENE_SETTLED, variety));
+        add_peer(&chipmunk_collide, settled(boxes, SCENE_SETTLED, variety));
+    }
+    for (size_t p = 0; all_world_peers[p]; p++) {
+        add_world(all_world_peers[p], small);
+        add_world(all_world_peers[p], key);
+    }
+}
