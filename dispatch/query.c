@@ -42,13 +42,13 @@ const char *narc_method_name(narc_method method) {
 
 /* Are all shapes of all pairs polygons? */
 static narc_status check_polygons(const narc_batch *batch, narc_error *error) {
-    if (batch->shapes->polygon_count == batch->shapes->count)
+    if (batch->shapes->curved_count == 0)
         return NARC_OK;
     const narc_column columns[2] = {batch->pairs->a, batch->pairs->b};
     for (size_t pair = 0; pair < batch->pairs->count; pair++) {
         for (int k = 0; k < 2; k++) {
             const uint32_t body = narc_index_at(columns[k], pair), shape = narc_index_at(batch->bodies->shape, body);
-            if (!(narc_shape_flags(batch->shapes, shape) & NARC_SHAPE_POLYGON))
+            if (narc_has_shape(batch->shapes, shape) && !(batch->shapes->headers[shape].flags & NARC_SHAPE_POLYGON))
                 return narc_fail(error, NARC_ERROR_ARGUMENT, pair, shape,
                                  "pair %zu: polygon-sat needs polygons, but shape %lu of body %lu has arcs", pair,
                                  (unsigned long)shape, (unsigned long)body);

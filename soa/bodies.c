@@ -42,6 +42,9 @@ static narc_status check_body(const narc_shapes *shapes, const narc_bodies *bodi
     if (shape >= shapes->count)
         return narc_fail(error, NARC_ERROR_INDEX, body, shape, "body %zu: shape is %lu, but there are %zu shapes", body,
                          (unsigned long)shape, shapes->count);
+    if (!narc_has_shape(shapes, shape))
+        return narc_fail(error, NARC_ERROR_INDEX, body, shape, "body %zu: shape %lu was removed", body,
+                         (unsigned long)shape);
     if (!isfinite(x) || !isfinite(y))
         return narc_fail(error, NARC_ERROR_NOT_FINITE, body, isfinite(x) ? y : x, "body %zu: %s is %g", body,
                          isfinite(x) ? "y" : "x", isfinite(x) ? y : x);

@@ -254,8 +254,10 @@ typedef struct narc_allocator {
     void *context;
 } narc_allocator;
 
-/* A growing list of arc shapes, each known by its index 0, 1, 2 ... The store keeps single-precision copies in a layout
- * that belongs to the kernels. Adding shapes needs exclusive access; queries may share it between threads. */
+/* A list of arc shapes, each known by its index 0, 1, 2 ... The store keeps single-precision copies in a layout that
+ * belongs to the kernels. Adding, replacing, removing and reserving need exclusive access; all else, queries above all,
+ * may share it between threads. A shape's index stays its own until it is removed. Memory grows to what the shapes want
+ * that there are at the same time, and up to four times as much if they come and go. */
 typedef struct narc_shapes narc_shapes;
 
 /* What a store knows of a shape, bits of narc_shape_flags(). */
@@ -272,21 +274,33 @@ NARC_API narc_status narc_create_shapes(const narc_allocator *allocator, narc_sh
 /* Frees a store; NULL is fine. */
 NARC_API void narc_destroy_shapes(narc_shapes *shapes);
 
-/* Room for `shape_count` more shapes with `arc_count` arcs in all, so that adding them allocates nothing. Optional. */
+/* Room for `shape_count` more shapes with `arc_count` arcs in all, so that adding them allocates nothing. Optional. (So
+ * does replacing a shape by one of more arcs, as if it were added.) */
 NARC_API narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t arc_count);
 
-/* Validates a shape and adds it. Its coordinates are kept as they are: a body's position is the place of the shape's
- * origin. It should be in the shape, or near it: errors grow with the distance (see "Precision" in narc.h). Errors:
- * those of narc_validate_arcs(), NARC_ERROR_MEMORY, NARC_ERROR_COUNT (the store is full); the store is unchanged then.
- * `out_shape` may be NULL. */
+/* Validates a shape and adds it: at the index that narc_remove_shape() freed last, else at the next higher one. Its
+ * coordinates are kept as they are: a body's position is the place of the shape's origin. It should be in the shape, or
+ * near it: errors grow with the distance (see "Precision" in narc.h). Errors: those of narc_validate_arcs(),
+ * NARC_ERROR_MEMORY, NARC_ERROR_COUNT (the store is full); the store is unchanged then. `out_shape` may be NULL. */
 NARC_API narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t count, uint32_t *out_shape,
                                     narc_error *error);
 
-/* The number of shapes; 0 for NULL. */
+/* Puts another shape in the place of one: all bodies with that index have it from now on. If it has as many arcs as the
+ * old one, or fewer, it takes the old one's memory. Errors: those of narc_add_shape(), NARC_ERROR_INDEX (there is no
+ * such shape, or it was removed); the store is unchanged then. */
+NARC_API narc_status narc_replace_shape(narc_shapes *shapes, uint32_t shape, const narc_arc *arcs, size_t count,
+                                        narc_error *error);
+
+/* Removes a shape. The others keep their indices, and narc_add_shape() will use this one again. Until then a body that
+ * still has it collides with nothing, as a broken one (see narc_bodies). Errors: NARC_ERROR_ARGUMENT (NULL),
+ * NARC_ERROR_INDEX (there is no such shape, or it was removed before). */
+NARC_API narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *error);
+
+/* The number of indices that were given out, those of removed shapes included: all are below it. 0 for NULL. */
 NARC_API size_t narc_count_shapes(const narc_shapes *shapes);
 
 /* The arcs of a shape as the kernels see them (single precision, widened): their number, at most NARC_MAX_ARCS, is
- * returned; 0 if there is no such shape. `out_arcs` may be NULL. */
+ * returned; 0 if there is no such shape, or it was removed. `out_arcs` may be NULL. */
 NARC_API size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_arcs);
 
 /* The flags of a shape, 0 if there is no such shape. */
@@ -316,9 +330,10 @@ typedef enum narc_precision { NARC_FLOAT32 = 0, NARC_FLOAT64 = 1 } narc_precisio
 
 /* Bodies: `count` of each column. The place of a shape's point p is (x, y) + scale * [cosine -sine; sine cosine] p.
  * cosine^2 + sine^2 must be 1 within NARC_ROTATION_TOLERANCE; the kernels remove the rest, so that a rotation may
- * drift a little. A body with a NaN or an infinity, with another cosine and sine, or with a scale that is not
- * positive or takes the shape out of NARC_MIN_SIZE .. NARC_MAX_SIZE, collides with nothing. A pair with such a body, or
- * with two bodies further apart than NARC_MAX_DISTANCE, has no answer; queries count these (narc_query.out_skipped). */
+ * drift a little. A body with a NaN or an infinity, with another cosine and sine, with a scale that is not positive or
+ * takes the shape out of NARC_MIN_SIZE .. NARC_MAX_SIZE, or with a shape that was removed, collides with nothing. A
+ * pair with such a body, or with two bodies further apart than NARC_MAX_DISTANCE, has no answer; queries count these
+ * (narc_query.out_skipped). */
 typedef struct narc_bodies {
     size_t count;
     narc_precision position_precision; /* of x and y: float or double */

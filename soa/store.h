@@ -31,9 +31,11 @@ enum { NARC_CACHE_LINE = 64, NARC_RECORD_ANGLES = 16 };
 #define NARC_ANGLE_OFFSET 32768.0f
 #define NARC_ANGLE_NONE   INT16_MAX
 
+/* A removed shape has a header of zeros: its bounding radius is not in range, so kernels take no body of that shape.
+ * Only `first_record` has a meaning: the shape that was removed before this one, if there is one. */
 typedef struct narc_shape_header {
     uint32_t first_record; /* index into narc_shapes.records */
-    uint8_t count;         /* arcs as stored, 2 .. NARC_MAX_ARCS */
+    uint8_t count;         /* arcs as stored, 2 .. NARC_MAX_ARCS; 0: a removed shape */
     uint8_t first_arc;     /* the caller's arc that is stored first */
     uint8_t flags;         /* NARC_SHAPE_... */
     /* The extent (the largest |centre| + radius) is at most this many bounding radii. 255: it is more, or the arcs join
@@ -80,6 +82,9 @@ typedef union narc_record {
 /* How many records the junction angles of a shape take: its first arc lies behind them. */
 static inline size_t narc_angle_records(size_t count) { return (count + NARC_RECORD_ANGLES - 1) / NARC_RECORD_ANGLES; }
 
+/* All records of a shape: its angles, its arcs and its box. */
+static inline size_t narc_count_records(size_t count) { return narc_angle_records(count) + count + 1; }
+
 /* 96 roundings, so that the circles stay clear of the deciding formula's error. That error is 32 roundings
  * (NARC_ERROR_BOUND) of the distance between the positions plus both extents, and that distance exceeds the distance
  * between the circles' centres by at most the sum of the extents. See kernels/base/pair_setup.inl. */
@@ -96,12 +101,20 @@ static inline size_t narc_angle_records(size_t count) { return (count + NARC_REC
 struct narc_shapes {
     narc_shape_header *headers;
     narc_record *records;
-    size_t count, capacity;               /* headers */
-    size_t polygon_count;                 /* of them, those with NARC_SHAPE_POLYGON */
-    size_t record_count, record_capacity; /* records */
+    size_t count, capacity;               /* headers, those of removed shapes among them */
+    size_t removed_count;                 /* removed shapes */
+    uint32_t last_removed;                /* the last of them, if there are any */
+    size_t curved_count;                  /* shapes without NARC_SHAPE_POLYGON */
+    size_t record_count, record_capacity; /* records, with the gaps between blocks */
+    size_t used_records;                  /* records that are in blocks */
     narc_allocator allocator;
     void *headers_memory, *records_memory; /* what the allocator returned; both arrays begin at cache lines in it */
 };
+
+/* Is there such a shape, and was it not removed? `shapes` may be NULL. */
+static inline bool narc_has_shape(const narc_shapes *shapes, uint32_t shape) {
+    return shape < narc_count_shapes(shapes) && shapes->headers[shape].count > 0;
+}
 
 /* The arcs of a shape, header->count of them. */
 static inline const narc_record *narc_arcs_of(const narc_shapes *shapes, const narc_shape_header *header) {

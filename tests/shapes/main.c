@@ -15,5 +15,7 @@ void expect_near(double value, double expected, double tolerance, const char *wh
 int main(void) {
     if (!test_begin())
         return TEST_SKIPPED;
-    return test_validation() + test_builders() + test_junctions() + test_derived() + test_store() + test_rolls() != 0;
+    return test_validation() + test_builders() + test_junctions() + test_derived() + test_store() + test_replacing() +
+               test_rolls() !=
+           0;
 }

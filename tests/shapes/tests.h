@@ -12,6 +12,7 @@ int test_builders(void);
 int test_junctions(void);
 int test_derived(void);
 int test_store(void);
+int test_replacing(void);
 int test_rolls(void);
 
 /* Fails unless |value - expected| <= tolerance. */

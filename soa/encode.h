@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * encode.h - a shape as the store keeps it. Internal.
+ */
+#ifndef NARC_ENCODE_H
+#define NARC_ENCODE_H
+
+#include "store.h"
+
+enum { NARC_MAX_RECORDS = NARC_MAX_ARCS / NARC_RECORD_ANGLES + NARC_MAX_ARCS + 1 };
+
+/* A header that lacks its place in the store, and narc_count_records(header.count) records. */
+typedef struct narc_encoded_shape {
+    narc_shape_header header;
+    narc_record records[NARC_MAX_RECORDS];
+} narc_encoded_shape;
+
+/* Validates and encodes a list of arcs. Errors: those of narc_validate_arcs(), NARC_ERROR_SIZE. */
+narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_shape *out_shape, narc_error *error);
+
+#endif

@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * replacing.c - shapes that come and go: the store holds what was put there last, indices are used again, memory does
+ * not grow, and a body without a shape has no answer.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "families.h"
+#include "narc.h"
+#include "narc_methods.h"
+#include "store.h"
+#include "support.h"
+#include "tests.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* What the allocator has given. */
+struct ledger {
+    size_t live, most, allocations;
+    bool refuses;
+};
+
+static void *ledger_allocate(size_t size, void *context) {
+    struct ledger *ledger = context;
+    if (ledger->refuses)
+        return NULL;
+    size_t *memory = malloc(size + 16);
+    assert_non_null(memory);
+    *memory = size;
+    ledger->allocations++;
+    ledger->live += size;
+    ledger->most = ledger->live > ledger->most ? ledger->live : ledger->most;
+    return (char *)memory + 16;
+}
+
+static void ledger_release(void *memory, void *context) {
+    struct ledger *ledger = context;
+    size_t *start = (size_t *)(void *)((char *)memory - 16);
+    ledger->live -= *start;
+    memset(memory, 0xa5, *start); /* what still reads it shows */
+    free(start);
+}
+
+static narc_shapes *create_store(struct ledger *ledger) {
+    const narc_allocator allocator = {ledger_allocate, ledger_release, ledger};
+    narc_shapes *shapes = NULL;
+    assert_int_equal(narc_create_shapes(&allocator, &shapes), NARC_OK);
+    return shapes;
+}
+
+/* A shape that was added to a store of its own has the same bits wherever it is. */
+static void expect_same_shape(const narc_shapes *shapes, uint32_t index, const struct shape *shape) {
+    narc_shapes *fresh = NULL;
+    assert_int_equal(narc_create_shapes(NULL, &fresh), NARC_OK);
+    assert_int_equal(narc_add_shape(fresh, shape->arcs, shape->count, NULL, NULL), NARC_OK);
+    narc_shape_header header = shapes->headers[index];
+    assert_true(header.first_record + narc_count_records(header.count) <= shapes->record_count);
+    assert_memory_equal(&shapes->records[header.first_record], fresh->records,
+                        narc_count_records(header.count) * sizeof(narc_record));
+    header.first_record = 0;
+    assert_memory_equal(&header, fresh->headers, sizeof header);
+    narc_destroy_shapes(fresh);
+}
+
+enum { MODEL_SHAPES = 40 };
+
+/* What the store should hold. */
+struct model {
+    struct shape shape[MODEL_SHAPES];
+    bool exists[MODEL_SHAPES];
+    size_t count; /* indices given out */
+    uint32_t removed[MODEL_SHAPES];
+    size_t removed_count;
+};
+
+static void expect_model(const narc_shapes *shapes, const struct model *model) {
+    size_t used = 0, curved = 0;
+    assert_int_equal(narc_count_shapes(shapes), model->count);
+    for (uint32_t k = 0; k < model->count; k++) {
+        if (model->exists[k]) {
+            assert_int_equal(narc_get_arcs(shapes, k, NULL), model->shape[k].count);
+            expect_same_shape(shapes, k, &model->shape[k]);
+            used += narc_count_records(shapes->headers[k].count);
+            curved += !(narc_shape_flags(shapes, k) & NARC_SHAPE_POLYGON);
+        } else {
+            narc_aabb box;
+            assert_int_equal(narc_get_arcs(shapes, k, NULL), 0);
+            assert_int_equal(narc_shape_flags(shapes, k), 0);
+            assert_false(narc_get_aabb(shapes, k, 1, 0, 1, &box));
+        }
+    }
+    assert_int_equal(shapes->used_records, used);
+    assert_int_equal(shapes->curved_count, curved);
+}
+
+static void holds_what_was_put_last(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("replacing");
+    for (size_t round = 0; round < test_trials(20); round++) {
+        struct ledger ledger = {0};
+        struct model *model = calloc(1, sizeof *model);
+        narc_shapes *shapes = create_store(&ledger);
+        assert_non_null(model);
+        for (int step = 0; step < 300; step++) {
+            const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
+            const uint32_t index = (uint32_t)random_below(&random, MODEL_SHAPES);
+            const bool exists = index < model->count && model->exists[index];
+            uint32_t added = UINT32_MAX;
+            narc_error error;
+            if (!exists) { /* add */
+                if (model->removed_count == 0 && model->count == MODEL_SHAPES)
+                    continue;
+                expect_ok(narc_add_shape(shapes, shape.arcs, shape.count, &added, &error), &error);
+                if (model->removed_count > 0)
+                    assert_int_equal(added, model->removed[--model->removed_count]);
+                else
+                    assert_int_equal(added, model->count++);
+                model->shape[added] = shape;
+                model->exists[added] = true;
+            } else if (random_below(&random, 3) == 0) {
+                expect_ok(narc_remove_shape(shapes, index, &error), &error);
+                model->exists[index] = false;
+                model->removed[model->removed_count++] = index;
+                expect_error(narc_remove_shape(shapes, index, &error), NARC_ERROR_INDEX, &error, "was removed");
+                expect_error(narc_replace_shape(shapes, index, shape.arcs, shape.count, &error), NARC_ERROR_INDEX,
+                             &error, "was removed");
+            } else {
+                expect_ok(narc_replace_shape(shapes, index, shape.arcs, shape.count, &error), &error);
+                model->shape[index] = shape;
+            }
+            if (step % 10 == 0)
+                expect_model(shapes, model);
+        }
+        expect_model(shapes, model);
+        narc_destroy_shapes(shapes);
+        assert_int_equal(ledger.live, 0);
+        free(model);
+    }
+}
+
+/* A regular polygon with so many corners. */
+static struct shape make_polygon(size_t corners) {
+    struct shape shape = {.count = 0};
+    narc_point points[NARC_MAX_ARCS];
+    for (size_t i = 0; i < corners; i++) {
+        const double angle = 2 * pi * (double)i / (double)corners;
+        points[i] = (narc_point){cos(angle), sin(angle)};
+    }
+    assert_int_equal(narc_build_polygon(points, corners, 0, shape.arcs, &shape.count, NULL), NARC_OK);
+    return shape;
+}
+
+/* The memory of so many shapes of 64 arcs, each counted four times, and once more while they move. */
+static size_t limit_memory(size_t shapes) {
+    return sizeof(narc_shapes) +
+           5 * (shapes * (narc_count_records(64) * sizeof(narc_record) + sizeof(narc_shape_header)) + 4096);
+}
+
+/* Replacing for ever, with any number of arcs, takes no more memory than is promised. */
+static void memory_does_not_grow(void **state) {
+    (void)state;
+    enum { SHAPES = 5, STEPS = 20000 };
+    struct test_random random = test_random_named("no growth");
+    for (int way = 0; way < 2; way++) { /* replace; remove and add */
+        struct ledger ledger = {0};
+        narc_shapes *shapes = create_store(&ledger);
+        struct shape polygons[NARC_MAX_ARCS + 1];
+        for (size_t n = 3; n <= NARC_MAX_ARCS; n++)
+            polygons[n] = make_polygon(n);
+        for (int k = 0; k < SHAPES; k++)
+            assert_int_equal(narc_add_shape(shapes, polygons[3].arcs, 3, NULL, NULL), NARC_OK);
+        for (int step = 0; step < STEPS; step++) {
+            const size_t n = 3 + random_below(&random, NARC_MAX_ARCS - 2);
+            const uint32_t index = (uint32_t)random_below(&random, SHAPES);
+            uint32_t added = index;
+            if (way == 0) {
+                assert_int_equal(narc_replace_shape(shapes, index, polygons[n].arcs, n, NULL), NARC_OK);
+            } else {
+                assert_int_equal(narc_remove_shape(shapes, index, NULL), NARC_OK);
+                assert_int_equal(narc_add_shape(shapes, polygons[n].arcs, n, &added, NULL), NARC_OK);
+            }
+            assert_int_equal(added, index);
+            assert_int_equal(narc_get_arcs(shapes, index, NULL), n);
+        }
+        assert_int_equal(narc_count_shapes(shapes), SHAPES);
+        assert_true(ledger.most <= limit_memory(SHAPES));
+        narc_destroy_shapes(shapes);
+    }
+}
+
+/* A shape that changes and keeps its number of arcs, or has fewer, allocates nothing. */
+static void same_size_allocates_nothing(void **state) {
+    (void)state;
+    struct ledger ledger = {0};
+    narc_shapes *shapes = create_store(&ledger);
+    const struct shape eight = make_polygon(8), five = make_polygon(5);
+    assert_int_equal(narc_add_shape(shapes, eight.arcs, 8, NULL, NULL), NARC_OK);
+    const size_t before = ledger.allocations;
+    for (int k = 0; k < 1000; k++)
+        assert_int_equal(narc_replace_shape(shapes, 0, eight.arcs, 8, NULL), NARC_OK);
+    assert_int_equal(narc_replace_shape(shapes, 0, five.arcs, 5, NULL), NARC_OK);
+    assert_int_equal(ledger.allocations, before);
+    expect_same_shape(shapes, 0, &five);
+    narc_destroy_shapes(shapes);
+}
+
+/* Whatever is wrong, the store stays as it was. */
+static void refused_replacement_changes_nothing(void **state) {
+    (void)state;
+    struct ledger ledger = {0};
+    struct model *model = calloc(1, sizeof *model);
+    narc_shapes *shapes = create_store(&ledger);
+    const struct shape small = make_polygon(3), large = make_polygon(64);
+    narc_arc broken = {0, 0, -1, -pi, pi};
+    narc_error error;
+    assert_non_null(model);
+    for (uint32_t k = 0; k < 20; k++) {
+        assert_int_equal(narc_add_shape(shapes, small.arcs, 3, NULL, NULL), NARC_OK);
+        model->shape[k] = small;
+        model->exists[k] = true;
+    }
+    model->count = 20;
+    ledger.refuses = true;
+    expect_error(narc_replace_shape(NULL, 0, small.arcs, 3, &error), NARC_ERROR_ARGUMENT, &error, "shapes is NULL");
+    expect_error(narc_remove_shape(NULL, 0, &error), NARC_ERROR_ARGUMENT, &error, "shapes is NULL");
+    expect_error(narc_replace_shape(shapes, 20, small.arcs, 3, &error), NARC_ERROR_INDEX, &error,
+                 "shape is 20, but there are 20 shapes");
+    expect_error(narc_remove_shape(shapes, UINT32_MAX, &error), NARC_ERROR_INDEX, &error, "there are 20 shapes");
+    expect_error(narc_replace_shape(shapes, 7, NULL, 1, &error), NARC_ERROR_ARGUMENT, &error, "arcs is NULL");
+    expect_error(narc_replace_shape(shapes, 7, &broken, 1, &error), NARC_ERROR_RADIUS, &error, "arc 0: radius is -1");
+    expect_error(narc_replace_shape(shapes, 7, large.arcs, 64, &error), NARC_ERROR_MEMORY, &error, "no memory");
+    expect_model(shapes, model);
+    ledger.refuses = false;
+    expect_ok(narc_replace_shape(shapes, 7, large.arcs, 64, &error), &error);
+    model->shape[7] = large;
+    expect_model(shapes, model);
+    narc_destroy_shapes(shapes);
+    free(model);
+}
+
+/* Three bodies in one place; the shape of the second is removed, and comes back. By every method, on every instruction
+ * set. */
+static void removed_shapes_collide_with_nothing(void **state) {
+    (void)state;
+    static const uint32_t shape[] = {0, 1, 2}, a[] = {0, 1, 0, 1}, b[] = {1, 2, 2, 1};
+    static const float zero = 0, one = 1;
+    narc_shapes *shapes = NULL;
+    const struct shape polygon = make_polygon(6);
+    const narc_bodies bodies = {.count = 3,
+                                .x = {&zero, 0},
+                                .y = {&zero, 0},
+                                .cosine = {&one, 0},
+                                .sine = {&zero, 0},
+                                .shape = NARC_ARRAY(shape)};
+    const narc_pairs pairs = {.count = 4, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    narc_error error;
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    for (int k = 0; k < 3; k++)
+        assert_int_equal(narc_add_shape(shapes, polygon.arcs, polygon.count, NULL, NULL), NARC_OK);
+    for (size_t run = 0; narc_isa_name(run / 7); run++) {
+        const narc_method method = (narc_method)(run % 7);
+        if (!narc_isa_supported(narc_isa_name(run / 7)))
+            continue;
+        test_use_isa(narc_isa_name(run / 7));
+        uint64_t bits = 0;
+        size_t skipped = 99;
+        const narc_query query = {.method = method, .out_skipped = &skipped};
+        expect_ok(narc_query_overlaps(shapes, &bodies, &pairs, &query, 1, &bits, &error), &error);
+        assert_int_equal(skipped, 0);
+        if (method != NARC_METHOD_SAT_FIRST) /* a polygon has no arcs for it */
+            assert_int_equal(bits, 0xf);
+        assert_int_equal(narc_remove_shape(shapes, 1, NULL), NARC_OK);
+        expect_ok(narc_query_overlaps(shapes, &bodies, &pairs, &query, 1, &bits, &error), &error);
+        assert_int_equal(bits & 0xb, 0);
+        assert_int_equal(skipped, 3);
+        float separation[4];
+        size_t found;
+        const narc_contacts contacts = {.capacity = 4, .separation = separation};
+        if (method < NARC_METHOD_CIRCLE) {
+            expect_ok(narc_query_contacts(shapes, &bodies, &pairs, &query, INFINITY, 1, &contacts, &found, &error),
+                      &error);
+            assert_int_equal(found, 4);
+            assert_true(isinf(separation[0]) && isinf(separation[1]) && isinf(separation[3]));
+        }
+        expect_error(narc_validate_bodies(shapes, &bodies, &error), NARC_ERROR_INDEX, &error,
+                     "body 1: shape 1 was removed");
+        assert_int_equal(narc_add_shape(shapes, polygon.arcs, polygon.count, NULL, NULL), NARC_OK);
+        expect_ok(narc_validate_bodies(shapes, &bodies, &error), &error);
+    }
+    test_use_isa(test_isa());
+    narc_destroy_shapes(shapes);
+}
+
+int test_replacing(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(holds_what_was_put_last),
+        cmocka_unit_test(memory_does_not_grow),
+        cmocka_unit_test(same_size_allocates_nothing),
+        cmocka_unit_test(refused_replacement_changes_nothing),
+        cmocka_unit_test(removed_shapes_collide_with_nothing),
+    };
+    return cmocka_run_group_tests_name("replacing", tests, NULL, NULL);
+}
