@@ -2,8 +2,9 @@
  *
  * store.c - the list of shapes: its memory, how shapes come and go, and what it tells of them.
  *
- * Blocks of records lie in the order in which they came. A shape that is removed, or replaced by one that needs more
- * records, leaves a gap; the gaps go when the array is full and moves to a new place.
+ * Blocks of records lie in the order in which they came. A shape that is replaced by one with more or fewer arcs leaves
+ * a gap; the gaps go when the array is full and moves to a new place. A removed shape keeps its block, so that kernels
+ * may read it as any other, until its index is used again.
  */
 #include "store.h"
 
@@ -86,8 +87,6 @@ static bool move_records(narc_shapes *shapes, size_t capacity) {
     size_t next = 0;
     for (size_t k = 0; k < shapes->count; k++) {
         narc_shape_header *header = &shapes->headers[k];
-        if (header->count == 0)
-            continue;
         const size_t size = narc_count_records(header->count);
         memcpy(&records[next], &shapes->records[header->first_record], size * sizeof *records);
         header->first_record = (uint32_t)next;
@@ -131,6 +130,14 @@ narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t 
 
 /* ------------------------------------------------------------------------------------------------ adding */
 
+static bool is_curved(const narc_shape_header *header) { return !(header->flags & NARC_SHAPE_POLYGON); }
+
+/* Where a removed shape says which one was removed before it. */
+static uint32_t *find_link(const narc_shapes *shapes, uint32_t shape) {
+    const narc_shape_header *header = &shapes->headers[shape];
+    return &shapes->records[header->first_record + narc_count_records(header->count) - 1].removed_before;
+}
+
 static narc_status fail_room(const narc_shapes *shapes, narc_status status, narc_error *error) {
     if (status == NARC_ERROR_COUNT)
         return narc_fail(error, status, shapes->count, (double)shapes->count, "the store is full, it has %zu shapes",
@@ -138,19 +145,26 @@ static narc_status fail_room(const narc_shapes *shapes, narc_status status, narc
     return narc_fail(error, status, shapes->count, 0, "no memory for a shape beside the other %zu", shapes->count);
 }
 
-/* Puts records behind the last block. There is room. */
-static void append_records(narc_shapes *shapes, narc_shape_header *header, const narc_record *records) {
-    const size_t size = narc_count_records(header->count);
-    header->first_record = (uint32_t)shapes->record_count;
-    memcpy(&shapes->records[shapes->record_count], records, size * sizeof *records);
-    shapes->record_count += size;
-}
-
-/* Counts a shape in (1) or out (-1). */
-static void count_shape(narc_shapes *shapes, const narc_shape_header *header, int sign) {
-    const size_t size = narc_count_records(header->count), curved = !(header->flags & NARC_SHAPE_POLYGON);
-    shapes->used_records = sign > 0 ? shapes->used_records + size : shapes->used_records - size;
-    shapes->curved_count = sign > 0 ? shapes->curved_count + curved : shapes->curved_count - curved;
+/* Puts an encoded shape at an index: in the place of the block that is there, if it fits. `is_new`: there is none. */
+static narc_status put_shape(narc_shapes *shapes, size_t shape, bool is_new, narc_encoded_shape *encoded,
+                             narc_error *error) {
+    const size_t size = narc_count_records(encoded->header.count);
+    const size_t old_size = is_new ? 0 : narc_count_records(shapes->headers[shape].count);
+    if (size > old_size) {
+        const narc_status status = make_room(shapes, shapes->count + is_new, size);
+        if (status != NARC_OK)
+            return fail_room(shapes, status, error);
+        encoded->header.first_record = (uint32_t)shapes->record_count;
+        shapes->record_count += size;
+    } else {
+        encoded->header.first_record = shapes->headers[shape].first_record;
+    }
+    memcpy(&shapes->records[encoded->header.first_record], encoded->records, size * sizeof *encoded->records);
+    shapes->headers[shape] = encoded->header;
+    shapes->used_records += size - old_size;
+    shapes->curved_count += is_curved(&encoded->header);
+    shapes->count += is_new;
+    return NARC_OK;
 }
 
 narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t count, uint32_t *out_shape,
@@ -161,18 +175,16 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
     narc_status status = narc_encode_shape(arcs, count, &encoded, error);
     if (status != NARC_OK)
         return status;
-    const bool reuses = shapes->removed_count > 0;
-    status = make_room(shapes, shapes->count + !reuses, narc_count_records(encoded.header.count));
+    const bool is_new = shapes->removed_count == 0;
+    const uint32_t shape = is_new ? (uint32_t)shapes->count : shapes->last_removed;
+    const uint32_t next_removed = is_new ? 0 : *find_link(shapes, shape);
+    status = put_shape(shapes, shape, is_new, &encoded, error);
     if (status != NARC_OK)
-        return fail_room(shapes, status, error);
-    const uint32_t shape = reuses ? shapes->last_removed : (uint32_t)shapes->count++;
-    if (reuses) {
-        shapes->last_removed = shapes->headers[shape].first_record;
+        return status;
+    if (!is_new) {
+        shapes->last_removed = next_removed;
         shapes->removed_count--;
     }
-    append_records(shapes, &encoded.header, encoded.records);
-    count_shape(shapes, &encoded.header, 1);
-    shapes->headers[shape] = encoded.header;
     if (out_shape)
         *out_shape = shape;
     return NARC_OK;
@@ -199,20 +211,11 @@ narc_status narc_replace_shape(narc_shapes *shapes, uint32_t shape, const narc_a
         status = narc_encode_shape(arcs, count, &encoded, error);
     if (status != NARC_OK)
         return status;
-    const size_t size = narc_count_records(encoded.header.count);
-    if (size <= narc_count_records(shapes->headers[shape].count)) {
-        encoded.header.first_record = shapes->headers[shape].first_record;
-        memcpy(&shapes->records[encoded.header.first_record], encoded.records, size * sizeof *encoded.records);
-    } else {
-        status = make_room(shapes, shapes->count, size);
-        if (status != NARC_OK)
-            return fail_room(shapes, status, error);
-        append_records(shapes, &encoded.header, encoded.records);
-    }
-    count_shape(shapes, &shapes->headers[shape], -1);
-    count_shape(shapes, &encoded.header, 1);
-    shapes->headers[shape] = encoded.header;
-    return NARC_OK;
+    const bool was_curved = is_curved(&shapes->headers[shape]);
+    status = put_shape(shapes, shape, false, &encoded, error);
+    if (status == NARC_OK)
+        shapes->curved_count -= was_curved;
+    return status;
 }
 
 narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *error) {
@@ -220,8 +223,9 @@ narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *e
     if (status != NARC_OK)
         return status;
     narc_shape_header *header = &shapes->headers[shape];
-    count_shape(shapes, header, -1);
-    *header = (narc_shape_header){.first_record = shapes->removed_count > 0 ? shapes->last_removed : 0};
+    shapes->curved_count -= is_curved(header);
+    header->bound_radius = 0;
+    *find_link(shapes, shape) = shapes->last_removed;
     shapes->last_removed = shape;
     shapes->removed_count++;
     return NARC_OK;
@@ -232,7 +236,7 @@ narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *e
 size_t narc_count_shapes(const narc_shapes *shapes) { return shapes ? shapes->count : 0; }
 
 unsigned narc_shape_flags(const narc_shapes *shapes, uint32_t shape) {
-    return shape < narc_count_shapes(shapes) ? shapes->headers[shape].flags : 0; /* of a removed shape 0, too */
+    return narc_has_shape(shapes, shape) ? shapes->headers[shape].flags : 0;
 }
 
 size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_arcs) {

@@ -31,11 +31,9 @@ enum { NARC_CACHE_LINE = 64, NARC_RECORD_ANGLES = 16 };
 #define NARC_ANGLE_OFFSET 32768.0f
 #define NARC_ANGLE_NONE   INT16_MAX
 
-/* A removed shape has a header of zeros: its bounding radius is not in range, so kernels take no body of that shape.
- * Only `first_record` has a meaning: the shape that was removed before this one, if there is one. */
 typedef struct narc_shape_header {
     uint32_t first_record; /* index into narc_shapes.records */
-    uint8_t count;         /* arcs as stored, 2 .. NARC_MAX_ARCS; 0: a removed shape */
+    uint8_t count;         /* arcs as stored, 2 .. NARC_MAX_ARCS */
     uint8_t first_arc;     /* the caller's arc that is stored first */
     uint8_t flags;         /* NARC_SHAPE_... */
     /* The extent (the largest |centre| + radius) is at most this many bounding radii. 255: it is more, or the arcs join
@@ -44,7 +42,8 @@ typedef struct narc_shape_header {
     /* A circle around the shape and one inside it. Both leave room (NARC_ROUNDING_ROOM times the extent) for the
      * rounding of the kernels, so that a filter that uses them never contradicts the deciding formula. The inner radius
      * is negative where the room is larger than the circle, of shapes far from their own origin: what is missing must
-     * come off the other body's radius. */
+     * come off the other body's radius.
+     *   A removed shape has the bounding radius 0, which is not in range: kernels take no body of that shape. */
     float bound_x, bound_y, bound_radius;
     float inner_x, inner_y, inner_radius;
 } narc_shape_header;
@@ -77,6 +76,7 @@ typedef union narc_record {
     int16_t angles[NARC_RECORD_ANGLES];
     narc_stored_arc arc;
     narc_oriented_box box;
+    uint32_t removed_before; /* in place of a removed shape's box: the shape that was removed before it, if any */
 } narc_record;
 
 /* How many records the junction angles of a shape take: its first arc lies behind them. */
@@ -103,17 +103,17 @@ struct narc_shapes {
     narc_record *records;
     size_t count, capacity;               /* headers, those of removed shapes among them */
     size_t removed_count;                 /* removed shapes */
-    uint32_t last_removed;                /* the last of them, if there are any */
+    uint32_t last_removed;                /* the last of them, if there are any: narc_record.removed_before */
     size_t curved_count;                  /* shapes without NARC_SHAPE_POLYGON */
     size_t record_count, record_capacity; /* records, with the gaps between blocks */
-    size_t used_records;                  /* records that are in blocks */
+    size_t used_records;                  /* records in blocks, those of removed shapes among them */
     narc_allocator allocator;
     void *headers_memory, *records_memory; /* what the allocator returned; both arrays begin at cache lines in it */
 };
 
 /* Is there such a shape, and was it not removed? `shapes` may be NULL. */
 static inline bool narc_has_shape(const narc_shapes *shapes, uint32_t shape) {
-    return shape < narc_count_shapes(shapes) && shapes->headers[shape].count > 0;
+    return shape < narc_count_shapes(shapes) && shapes->headers[shape].bound_radius > 0;
 }
 
 /* The arcs of a shape, header->count of them. */

@@ -9,6 +9,7 @@
 
 #include "families.h"
 #include "narc.h"
+#include "narc_broad_phase.h"
 #include "narc_methods.h"
 #include "store.h"
 #include "support.h"
@@ -79,10 +80,10 @@ static void expect_model(const narc_shapes *shapes, const struct model *model) {
     size_t used = 0, curved = 0;
     assert_int_equal(narc_count_shapes(shapes), model->count);
     for (uint32_t k = 0; k < model->count; k++) {
+        used += narc_count_records(shapes->headers[k].count);
         if (model->exists[k]) {
             assert_int_equal(narc_get_arcs(shapes, k, NULL), model->shape[k].count);
             expect_same_shape(shapes, k, &model->shape[k]);
-            used += narc_count_records(shapes->headers[k].count);
             curved += !(narc_shape_flags(shapes, k) & NARC_SHAPE_POLYGON);
         } else {
             narc_aabb box;
@@ -286,6 +287,11 @@ static void removed_shapes_collide_with_nothing(void **state) {
         }
         expect_error(narc_validate_bodies(shapes, &bodies, &error), NARC_ERROR_INDEX, &error,
                      "body 1: shape 1 was removed");
+        narc_box boxes[3];
+        const narc_box_options options = {.out_skipped = &skipped};
+        expect_ok(narc_compute_boxes(shapes, &bodies, &options, 1, boxes, &error), &error);
+        assert_int_equal(skipped, 1);
+        assert_true(!(boxes[1].min_x <= boxes[1].max_x) && boxes[0].min_x < boxes[0].max_x);
         assert_int_equal(narc_add_shape(shapes, polygon.arcs, polygon.count, NULL, NULL), NARC_OK);
         expect_ok(narc_validate_bodies(shapes, &bodies, &error), &error);
     }
