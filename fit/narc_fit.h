@@ -237,11 +237,14 @@ typedef struct narc_arc_chains {
     size_t arc_count;
     size_t *ends;
     size_t count;
-    double distance; /* the largest of narc_fit_bezier()'s; at most the tolerance */
+    double distance; /* between path and arcs, both ways; at most the tolerance */
 } narc_arc_chains;
 
-/* Each line and curve of a path by narc_fit_bezier(); contours are closed by a line where they are open, and those that
- * are a point are left out. Free the result with narc_release_chains(). Errors: those of narc_fit_bezier();
+/* The curves of a path, and lines alone, by narc_fit_bezier(). Of lines one after the other, such as those of traced
+ * outlines, as many as the tolerance lets be become one line or two arcs; pieces join with a common tangent but at
+ * corners: where the lines turn by more than half a radian within some tolerances. A chain of lines that is a whole
+ * contour may begin at another of its points. Contours are closed by a line where they are open, and those that are a
+ * point are left out. Free the result with narc_release_chains(). Errors: those of narc_fit_bezier();
  * NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_COUNT (nothing is drawn), NARC_ERROR_MEMORY. */
 NARC_API narc_status narc_fit_chains(const narc_path *path, double tolerance, narc_arc_chains *out_chains,
                                      narc_error *error);

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * path_arcs.c - the contours of a path as chains of arcs: narc_fit_bezier() for each line and curve.
+ * path_arcs.c - the contours of a path as chains of arcs: narc_fit_bezier() for each line and curve, and
+ * narc_fit_polyline() for lines one after the other.
  */
 #include <math.h>
 #include <stdlib.h>
 
+#include "biarc/polyline.h"
 #include "error.h"
 #include "outline/path.h"
 
@@ -40,13 +42,78 @@ static narc_status add_curve(struct builder *builder, const narc_point *controls
     return status;
 }
 
-/* Closes the contour that began at `start`, if anything was drawn of it. */
-static narc_status end_contour(struct builder *builder, narc_point start, narc_point pen) {
+static narc_curve_arc describe_arc(const narc_spline_arc *arc) {
+    narc_curve_arc out = {.start = arc->start, .end = arc->end, .center = arc->start, .radius = INFINITY};
+    if (arc->curvature != 0) {
+        out.center = along(arc->start, 1 / arc->curvature, turned(arc->start_tangent));
+        out.radius = fabs(1 / arc->curvature);
+        out.turn = arc->turn;
+    }
+    return out;
+}
+
+/* A tolerance must be what narc_fit_bezier() takes for each of the lines. */
+static narc_status check_tolerance(const struct builder *builder, const narc_point *points, size_t count) {
+    narc_status status = NARC_OK;
+    for (size_t k = 0; k + 1 < count && !status; k++) {
+        size_t arcs;
+        double distance;
+        status = narc_fit_bezier(points + k, 1, builder->tolerance, NULL, 0, &arcs, &distance, builder->error);
+    }
+    return status;
+}
+
+/* Adds lines from each point to the next, `count` points of which no two successive ones are the same. */
+static narc_status add_polyline(struct builder *builder, const narc_point *points, size_t count, bool closed,
+                                double slack) {
+    const narc_polyline line = {points, count, closed, slack};
     narc_arc_chains *chains = &builder->chains;
-    const narc_point closing[2] = {pen, start};
-    const narc_status status = add_curve(builder, closing, 1);
-    if (status || chains->arc_count == (chains->count ? chains->ends[chains->count - 1] : 0))
-        return status;
+    narc_spline spline = {0};
+    narc_status status = check_tolerance(builder, points, count);
+    if (!status)
+        status = narc_fit_polyline(&line, builder->tolerance, &spline, builder->error);
+    narc_curve_arc *arcs =
+        status ? NULL : narc_grow(chains->arcs, &builder->arc_capacity, chains->arc_count + spline.count, sizeof *arcs);
+    if (arcs) {
+        for (size_t k = 0; k < spline.count; k++)
+            arcs[chains->arc_count + k] = describe_arc(&spline.arcs[k]);
+        chains->arcs = arcs;
+        chains->arc_count += spline.count;
+        chains->distance = fmax(chains->distance, spline.distance);
+    }
+    free(spline.arcs);
+    return status || arcs ? status : fail_memory(builder);
+}
+
+static bool is_same(narc_point p, narc_point q) { return p.x == q.x && p.y == q.y; }
+
+/* Adds the lines from `points[0]` on, and one to `start` unless that is NULL; `closed` if they are a whole contour. */
+static narc_status add_lines(struct builder *builder, const narc_point *points, size_t lines, const narc_point *start,
+                             bool closed, double slack) {
+    narc_point *kept = malloc((lines + 2) * sizeof *kept);
+    if (!kept)
+        return fail_memory(builder);
+    size_t count = 1;
+    kept[0] = points[0];
+    for (size_t k = 1; k <= lines; k++)
+        if (!is_same(points[k], kept[count - 1]))
+            kept[count++] = points[k];
+    if (start && !is_same(*start, kept[count - 1]))
+        kept[count++] = *start;
+    narc_status status = NARC_OK;
+    if (count > 2)
+        status = add_polyline(builder, kept, count, closed, slack);
+    else if (count == 2)
+        status = add_curve(builder, kept, 1);
+    free(kept);
+    return status;
+}
+
+/* Ends a chain, if it has any arcs. */
+static narc_status end_chain(struct builder *builder) {
+    narc_arc_chains *chains = &builder->chains;
+    if (chains->arc_count == (chains->count ? chains->ends[chains->count - 1] : 0))
+        return NARC_OK;
     size_t *ends = narc_grow(chains->ends, &builder->end_capacity, chains->count + 1, sizeof *ends);
     if (!ends)
         return fail_memory(builder);
@@ -55,22 +122,40 @@ static narc_status end_contour(struct builder *builder, narc_point start, narc_p
     return NARC_OK;
 }
 
-static narc_status add_moves(struct builder *builder, const narc_path *path) {
-    const narc_point *next = path->points;
-    narc_point start = {0, 0}, pen = {0, 0};
+/* A contour's moves after the first, `count` of them, and the line that closes it. */
+static narc_status add_contour(struct builder *builder, const unsigned char *degrees, size_t count,
+                               const narc_point *points, double slack) {
+    const narc_point start = points[0];
     narc_status status = NARC_OK;
-    for (size_t k = 0; k < path->move_count && !status; k++) {
-        const unsigned degree = path->degrees[k];
-        if (degree > 0) {
-            status = add_curve(builder, next - 1, degree); /* the pen's place stands before the move's points */
+    for (size_t k = 0; !status && (k < count || (k == count && !is_same(points[0], start)));) {
+        size_t lines = 0;
+        while (k + lines < count && degrees[k + lines] == 1)
+            lines++;
+        const bool closing = k + lines == count;
+        if (lines || closing) {
+            status = add_lines(builder, points, lines, closing ? &start : NULL, closing && k == 0, slack);
+            points += lines;
+            k += lines + closing;
         } else {
-            status = end_contour(builder, start, pen);
-            start = next[0];
+            status = add_curve(builder, points, degrees[k]); /* the pen's place stands before the move's points */
+            points += degrees[k++];
         }
-        next += narc_count_move_points(degree);
-        pen = next[-1];
     }
-    return status ? status : end_contour(builder, start, pen);
+    return status ? status : end_chain(builder);
+}
+
+static narc_status add_moves(struct builder *builder, const narc_path *path) {
+    const narc_point *points = path->points;
+    narc_status status = NARC_OK;
+    for (size_t k = 0; k < path->move_count && !status;) {
+        size_t count = 0, point_count = 1;
+        for (; k + 1 + count < path->move_count && path->degrees[k + 1 + count] > 0; count++)
+            point_count += path->degrees[k + 1 + count];
+        status = add_contour(builder, path->degrees + k + 1, count, points, path->slack);
+        points += point_count;
+        k += 1 + count;
+    }
+    return status;
 }
 
 narc_status narc_fit_chains(const narc_path *path, double tolerance, narc_arc_chains *out_chains, narc_error *error) {

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * polylines.c - chains of many lines, such as traced outlines, as few arcs: how many, how far from the chain, joined.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "fit_support.h"
+#include "narc_fit.h"
+
+#define PI 3.14159265358979323846
+
+static narc_point minus(narc_point a, narc_point b) { return (narc_point){a.x - b.x, a.y - b.y}; }
+
+static double distance_to_line(narc_point p, narc_point q, narc_point x) {
+    const narc_point e = minus(q, p), d = minus(x, p);
+    const double square = e.x * e.x + e.y * e.y;
+    const double t = square > 0 ? fmin(fmax((d.x * e.x + d.y * e.y) / square, 0), 1) : 0;
+    return hypot(d.x - t * e.x, d.y - t * e.y);
+}
+
+/* A point of an arc, by its definition in the header. */
+static narc_point arc_point(const narc_curve_arc *arc, double part) {
+    if (isinf(arc->radius)) {
+        const narc_point e = minus(arc->end, arc->start);
+        return (narc_point){arc->start.x + part * e.x, arc->start.y + part * e.y};
+    }
+    const narc_point from = minus(arc->start, arc->center);
+    const double c = cos(part * arc->turn), s = sin(part * arc->turn);
+    return (narc_point){arc->center.x + c * from.x - s * from.y, arc->center.y + s * from.x + c * from.y};
+}
+
+/* Both ways, by samples, which miss `slop` at most: the chain's closed lines and the arcs. */
+static void check_near(const char *name, const narc_point *points, size_t count, const narc_arc_chains *chains,
+                       double tolerance, double slop) {
+    enum { SAMPLES = 50 };
+    narc_point *samples = malloc(chains->arc_count * (SAMPLES + 1) * sizeof *samples);
+    size_t sample_count = 0;
+    for (size_t i = 0; i < chains->arc_count; i++)
+        for (size_t s = 0; s <= SAMPLES; s++)
+            samples[sample_count++] = arc_point(&chains->arcs[i], (double)s / SAMPLES);
+    for (size_t s = 0; s < sample_count; s++) {
+        double least = INFINITY;
+        for (size_t k = 0; k < count; k++)
+            least = fmin(least, distance_to_line(points[k], points[(k + 1) % count], samples[s]));
+        if (!(least <= tolerance * (1 + 1e-9)))
+            fail_msg("%s: the arcs are %g from the chain, the tolerance is %g", name, least, tolerance);
+    }
+    for (size_t k = 0; k < count; k++) {
+        double least = INFINITY;
+        for (size_t s = 0; s + 1 < sample_count; s++)
+            least = fmin(least, distance_to_line(samples[s], samples[s + 1], points[k]));
+        if (!(least <= tolerance + slop))
+            fail_msg("%s: point %zu is %g from the arcs, the tolerance is %g", name, k, least, tolerance);
+    }
+    assert_true(chains->distance <= tolerance);
+    free(samples);
+}
+
+/* How many arcs and lines, which join, and with a common tangent but at `corners` places. */
+static size_t fit_ring(const char *name, const narc_point *points, size_t count, double tolerance, size_t corners) {
+    narc_path *path = NULL;
+    narc_error error;
+    narc_arc_chains chains;
+    assert_int_equal(narc_create_path(&path), NARC_OK);
+    narc_move_to(path, points[0], NULL);
+    for (size_t k = 1; k < count; k++)
+        narc_line_to(path, points[k], NULL);
+    if (narc_fit_chains(path, tolerance, &chains, &error) != NARC_OK)
+        fail_msg("%s: %s", name, error.message);
+    assert_int_equal(chains.count, 1);
+    size_t bends = 0;
+    for (size_t i = 0; i < chains.arc_count; i++) {
+        const narc_curve_arc *arc = &chains.arcs[i], *next = &chains.arcs[(i + 1) % chains.arc_count];
+        assert_true(arc->end.x == next->start.x && arc->end.y == next->start.y);
+        const narc_point end = arc_point(arc, 1), in = minus(end, arc_point(arc, 1 - 1e-4));
+        const narc_point out = minus(arc_point(next, 1e-4), next->start);
+        assert_true(hypot(end.x - arc->end.x, end.y - arc->end.y) <= 1e-9);
+        bends += fabs(atan2(in.x * out.y - in.y * out.x, in.x * out.x + in.y * out.y)) > 1e-3;
+    }
+    if (bends > corners)
+        fail_msg("%s: %zu corners, but the chain has %zu", name, bends, corners);
+    check_near(name, points, count, &chains, tolerance, 1e-3 * tolerance + 1e-3);
+    const size_t arcs = chains.arc_count;
+    narc_release_chains(&chains);
+    narc_destroy_path(path);
+    return arcs;
+}
+
+enum { COUNT = 600 };
+
+/* A circle is four arcs, an ellipse some more: of q, the change of curvature along it, follows their least number. */
+static void test_smooth_rings(void **state) {
+    (void)state;
+    static const double tolerances[] = {0.02, 0.002};
+    static const size_t most[2][2] = {{4, 12}, {6, 24}};
+    for (size_t t = 0; t < 2; t++) {
+        for (size_t shape = 0; shape < 2; shape++) {
+            narc_point points[COUNT];
+            for (size_t k = 0; k < COUNT; k++) {
+                const double a = 2 * PI * (double)k / COUNT;
+                points[k] = (narc_point){cos(a), (shape ? 0.5 : 1) * sin(a)};
+            }
+            const size_t arcs = fit_ring(shape ? "ellipse" : "circle", points, COUNT, tolerances[t], 0);
+            if (arcs > most[t][shape])
+                fail_msg("shape %zu, tolerance %g: %zu arcs", shape, tolerances[t], arcs);
+        }
+    }
+}
+
+/* Sides of many lines are one line each, wherever the chain begins. */
+static void test_square(void **state) {
+    (void)state;
+    static const narc_point corners[] = {{0, 0}, {3, 1}, {2, 4}, {-1, 3}};
+    for (size_t first = 0; first < COUNT; first += 75) {
+        narc_point points[COUNT];
+        for (size_t k = 0; k < COUNT; k++) {
+            const size_t place = (k + first + 7) % COUNT, side = place / (COUNT / 4);
+            const double part = (double)(place % (COUNT / 4)) / (COUNT / 4);
+            const narc_point p = corners[side], e = minus(corners[(side + 1) % 4], p);
+            points[k] = (narc_point){p.x + part * e.x, p.y + part * e.y};
+        }
+        assert_int_equal(fit_ring("square", points, COUNT, 0.01, 4), 4);
+    }
+}
+
+/* Waves of several lengths, and noise below the tolerance: whatever comes out is near. */
+static void test_random_rings(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("rings");
+    for (size_t trial = 0, trials = test_trials(12); trial < trials; trial++) {
+        const double tolerance = pow(10, -1 - 3 * random_unit(&random)), noise = 0.2 * tolerance * (double)(trial % 2);
+        double height[6], phase[6];
+        for (int w = 0; w < 6; w++) {
+            height[w] = 0.3 * random_unit(&random) / (w + 1);
+            phase[w] = 2 * PI * random_unit(&random);
+        }
+        narc_point points[COUNT];
+        for (size_t k = 0; k < COUNT; k++) {
+            const double a = 2 * PI * (double)k / COUNT;
+            double r = 1 + noise * random_unit(&random);
+            for (int w = 0; w < 6; w++)
+                r += height[w] * cos((w + 1) * a + phase[w]);
+            points[k] = (narc_point){r * cos(a), r * sin(a)};
+        }
+        fit_ring("waves", points, COUNT, tolerance, COUNT);
+    }
+}
+
+int main(void) {
+    if (!test_begin())
+        return TEST_SKIPPED;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_smooth_rings),
+        cmocka_unit_test(test_square),
+        cmocka_unit_test(test_random_rings),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
