@@ -30,6 +30,9 @@ narc_status narc_list_contacts(narc_contact_kernel *kernel, const narc_batch *ba
                                float margin, unsigned threads, const narc_contacts *out_contacts, size_t *out_count,
                                narc_error *error);
 
+/* Checks options, and finds the sine of the flat angle as a batch has it. */
+narc_status narc_read_manifold_options(const narc_manifold_options *options, float *out_flat_sine, narc_error *error);
+
 /* A list of answers in the caller's memory, contacts or manifolds, as columns. */
 enum { NARC_LIST_COLUMNS = 16 };
 typedef struct narc_list {

@@ -35,7 +35,7 @@ static narc_list list_columns(const narc_manifolds *out) {
                                  out->radius_b[1]}};
 }
 
-static narc_status check_options(const narc_manifold_options *options, narc_error *error) {
+narc_status narc_read_manifold_options(const narc_manifold_options *options, float *out_flat_sine, narc_error *error) {
     const float margin = options->margin, angle = options->flat_angle;
     if (isnan(margin))
         return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)margin, "options.margin is not a number");
@@ -44,6 +44,7 @@ static narc_status check_options(const narc_manifold_options *options, narc_erro
     if (angle > NARC_MAX_FLAT_ANGLE)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)angle, "options.flat_angle is %g, more than %g",
                          (double)angle, (double)NARC_MAX_FLAT_ANGLE);
+    *out_flat_sine = angle < 0 ? -1.0f : (float)sin((double)(angle == 0 ? NARC_FLAT_ANGLE : angle));
     return NARC_OK;
 }
 
@@ -52,21 +53,19 @@ static narc_status find(const narc_shapes *shapes, const narc_bodies *bodies, co
                         const narc_manifolds *out_manifolds, size_t *out_count, narc_error *error) {
     static const narc_manifold_options defaults = {0};
     const narc_manifold_options *o = options ? options : &defaults;
-    const float angle = o->flat_angle == 0 ? NARC_FLAT_ANGLE : o->flat_angle;
     size_t skipped = 0;
-    const narc_batch batch = {.shapes = shapes,
-                              .bodies = bodies,
-                              .pairs = pairs,
-                              .hints = o->hints,
-                              .skipped = o->out_skipped ? &skipped : NULL,
-                              .flat_sine = angle < 0 ? -1.0f : (float)sin((double)angle)};
+    narc_batch batch = {.shapes = shapes,
+                        .bodies = bodies,
+                        .pairs = pairs,
+                        .hints = o->hints,
+                        .skipped = o->out_skipped ? &skipped : NULL};
     const narc_kernel_table *kernels = NULL;
     narc_status status = narc_check_batch(&batch, first, count, threads, &kernels, error);
     if (status != NARC_OK)
         return status;
     if (!out_manifolds || !out_count)
         return narc_fail_missing(error, !out_manifolds ? "out_manifolds" : "out_count");
-    status = check_options(o, error);
+    status = narc_read_manifold_options(o, &batch.flat_sine, error);
     if (status != NARC_OK)
         return status;
     const narc_lister lister = {find_manifolds, NARC_CONTACT_GROUP / 2, o->margin, .manifold = kernels->manifold};

@@ -361,13 +361,28 @@ typedef struct narc_pairs {
     narc_column shift_x, shift_y;
 } narc_pairs;
 
+/* One body, for calls with a single pair. What is 0 has its default, so that {.x = 4, .shape = 1} is enough.
+ *   x, y           position of the shape's origin
+ *   shape          index in the store
+ *   angle          rotation in radians; counts only if cosine and sine are both 0
+ *   cosine, sine   the rotation, as in narc_bodies; both 0: that of the angle, from narc_compute_poses()
+ *   scale          0: 1 */
+typedef struct narc_body {
+    double x, y;
+    uint32_t shape;
+    float angle;
+    float cosine, sine;
+    float scale;
+} narc_body;
+
 /* A list of contacts in the caller's memory, one array per property; an array that is NULL is not written. Contact k is
  *   pair         the index of the pair in the batch
  *   separation   signed distance between the bodies, negative: penetration depth
  *   normal       unit, from A to B, world axes
  *   point        halfway between the two surfaces where they are closest (or deepest), in world axes, relative to the
  *                position of body A, so that it is precise in a large world; where two edges touch along a stretch,
- *                the middle of that stretch
+ *                the middle of that stretch. The point less half the separation along the normal lies on A, and plus
+ *                that on B: the closest points, or the deepest. They are within 1.5 times the separation's error bound.
  *   arc          the arcs of A and B that touch; where an edge touches, the arc at its counter-clockwise end */
 typedef struct narc_contacts {
     size_t capacity; /* items in each array */
@@ -377,6 +392,14 @@ typedef struct narc_contacts {
     float *point_x, *point_y;
     uint8_t *arc_a, *arc_b;
 } narc_contacts;
+
+/* One contact; see narc_contacts. */
+typedef struct narc_contact {
+    float separation;
+    float normal_x, normal_y;
+    float point_x, point_y;
+    uint8_t arc_a, arc_b;
+} narc_contact;
 
 /* A list of contact manifolds in the caller's memory, one array per property; an array that is NULL is not written.
  * Manifold k has one or two points, in the order along the normal turned a quarter turn counter-clockwise:
@@ -401,6 +424,16 @@ typedef struct narc_manifolds {
     uint16_t *feature[2];
     float *radius_a[2], *radius_b[2];
 } narc_manifolds;
+
+/* One contact manifold; see narc_manifolds. */
+typedef struct narc_manifold {
+    uint8_t point_count;
+    float normal_x, normal_y;
+    float separation[2];
+    float point_x[2], point_y[2];
+    uint16_t feature[2];
+    float radius_a[2], radius_b[2];
+} narc_manifold;
 
 #define NARC_FEATURE_EDGE 0x40
 #define NARC_FEATURE_END  0x80

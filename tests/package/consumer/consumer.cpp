@@ -57,6 +57,13 @@ int main() {
     const bool is_exact =
         contact_count == 1 && std::fabs(separation + 0.5f) < 1e-5f && std::fabs(normal_x - 1.0f) < 1e-5f;
 
+    // The same pair without a batch.
+    narc_body a = {}, b = {};
+    b.x = 1.5;
+    narc_contact contact = {};
+    if (narc_find_contact(shapes, &a, &b, &contact, &error) || contact.separation != separation)
+        return 1;
+
     // The bounding radii are less than 1.4 each: the error is below 2.8 tolerances, and rounding is far below 0.2.
     narc_query query = {};
     query.method = NARC_METHOD_GJK;
