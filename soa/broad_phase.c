@@ -66,6 +66,7 @@ narc_status narc_reserve_boxes(narc_broad_phase *broad, size_t count) {
     broad->entries = take(&at, n, sizeof *broad->entries);
     broad->spare = take(&at, n, sizeof *broad->spare);
     broad->strips = take(&at, n, sizeof *broad->strips);
+    broad->levels = take(&at, n, sizeof *broad->levels);
     broad->boxes.min_x = take(&at, padded, sizeof(float));
     broad->boxes.max_x = take(&at, padded, sizeof(float));
     broad->boxes.min_y = take(&at, padded, sizeof(float));

@@ -3,8 +3,8 @@
  * broad_phase.h - the memory of a broad phase, kept from step to step. Internal.
  *
  * Boxes are sorted into STRIPS, rows that are as high as the highest box of their LEVEL: boxes of a level that overlap
- * lie in one strip or in two strips next to each other. A level holds boxes of similar heights. In a strip boxes lie in
- * the order of min_x.
+ * lie in one strip or in two strips next to each other. A level holds boxes of similar heights and widths. In a strip
+ * boxes lie in the order of min_x.
  */
 #ifndef NARC_BROAD_PHASE_MEMORY_H
 #define NARC_BROAD_PHASE_MEMORY_H
@@ -15,7 +15,7 @@
 
 /* A box on its way to its strip. */
 typedef struct narc_box_entry {
-    uint64_t strip; /* level and number of the strip, see dispatch/strips.c */
+    uint64_t strip; /* level and number of the strip, see dispatch/broad_phase/strips.c */
     uint32_t min_x; /* the bits of min_x, turned so that unsigned numbers have their order */
     uint32_t body;
 } narc_box_entry;
@@ -23,8 +23,17 @@ typedef struct narc_box_entry {
 typedef struct narc_strip {
     uint64_t number;     /* that of its entries */
     uint32_t first, end; /* its boxes in the columns below */
+    uint32_t level;      /* its index in the list of levels */
     float min_y, max_y;  /* what they reach */
+    float width;         /* none of them is wider */
 } narc_strip;
+
+/* Boxes of one class of heights and one of widths; see dispatch/broad_phase/strips.c. */
+typedef struct narc_level {
+    uint64_t number;
+    double scale;        /* one over the height of its strips */
+    uint32_t first, end; /* its strips */
+} narc_level;
 
 /* Boxes in columns, and the body of each. */
 typedef struct narc_box_columns {
@@ -34,15 +43,11 @@ typedef struct narc_box_columns {
 
 /* Where a kernel puts pairs of places in the columns: room for some now, and more when it asks. */
 typedef struct narc_place_pairs {
-    uint32_t *a, *b; /* NULL: there is no more memory, pairs are only counted */
+    uint32_t *a, *b;
     uint32_t room, count;
-    uint64_t total;                                   /* of all before these */
     void (*get_room)(struct narc_place_pairs *pairs); /* for another NARC_BOX_PADDING pairs at least */
-    struct narc_broad_phase *broad;
+    uint64_t steps;                                   /* vectors of boxes looked at, and steps of searches */
 } narc_place_pairs;
-
-/* A level takes two of the 256 exponents of floats. */
-enum { NARC_MAX_LEVELS = 128 };
 
 struct narc_broad_phase {
     narc_allocator allocator;
@@ -52,14 +57,15 @@ struct narc_broad_phase {
     narc_box_entry *entries, *spare;
     narc_box_columns boxes; /* in the order of their strips, with NARC_BOX_PADDING items behind the last */
     narc_strip *strips;
-    uint32_t *ends; /* of each body's list of partners; one more than boxes */
+    narc_level *levels; /* those that have boxes, the highest strips first */
+    uint32_t *ends;     /* of each body's list of partners; one more than boxes */
     /* for each block of pairs */
     uint32_t *pair_a, *pair_b; /* NARC_PAIR_BLOCK each */
     uint32_t *block_counts;
     /* of the last call */
     atomic_size_t block_count; /* blocks that threads asked for, perhaps more than there are */
     size_t strip_count, level_count;
-    double scale[NARC_MAX_LEVELS];    /* one over the height of a level's strips, the highest strips first */
+    uint64_t steps;                   /* of the last sweep */
     int64_t lowest_strip, strip_span; /* of all levels; numbers of strips leave strip_span for each level */
 };
 
@@ -68,6 +74,9 @@ enum { NARC_BOX_PADDING = 16 };
 
 /* Pairs that a thread takes room for at a time. */
 enum { NARC_PAIR_BLOCK = 4096 };
+
+/* A block with fewer pairs is filled up before a thread takes the next. */
+enum { NARC_FULL_BLOCK = NARC_PAIR_BLOCK / 8 * 7 };
 
 /* Make room for so many boxes, blocks of pairs and bytes; what was there is lost, unless there is room already.
  * NARC_ERROR_MEMORY: there is as much room as before. */

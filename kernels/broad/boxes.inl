@@ -13,15 +13,15 @@
  *
  * What rounding can take from centre.m + radius, with |c| = |centre_x| + |centre_y|:
  *
- *   m                  4.5 e |c|            the rotation is within 1.5 e of unit and has three roundings (pair_setup.inl)
+ *   m                  4.5 e |c|            the rotation is within 1.5 e of unit and has three roundings
  *   centre, radius     e |c| + e radius     as stored
  *   two products       e |c|
  *   two sums           2 e |c| + e radius
  *
  * With the roundings behind it (by the scale, of this very room, and of the sum with the margin and the low part of a
- * double position) 12 e (|c| + radius) is enough. Rounding can also add what it can take away, |c| is at most 1.42 times
- * the centre's distance from the origin, and add_upwards() adds up to 4 e of its sum, twice if the body moves: all that
- * is below 40 e (NARC_BOX_ROOM).
+ * double position) 12 e (|c| + radius) is enough. Rounding can also add what it can take away, |c| is at most 1.42
+ * times the centre's distance from the origin, and add_upwards() adds up to 4 e of its sum, twice if the body moves: all
+ * that is below 40 e (NARC_BOX_ROOM).
  */
 #ifndef NARC_BROAD_BOXES_INL
 #define NARC_BROAD_BOXES_INL

@@ -3,55 +3,79 @@
  * sweep.inl - the sweep of the broad phase: pairs of boxes that overlap, of two lists in the order of min_x, or of one
  * list with itself.
  *
- * Of two boxes that overlap in x, one has the smaller min_x, and the min_x of the other lies within it. So for each box
- * the boxes behind it are looked at, a vector at a time, until their min_x is beyond its max_x; what is left to ask is
- * whether they overlap in y.
+ * A box of one list overlaps boxes of the other whose min_x is at most its own max_x, and at least its own min_x less
+ * the widest box's width. The first of these moves on from box to box. They are looked at a vector at a time.
  */
 #ifndef NARC_SWEEP_INL
 #define NARC_SWEEP_INL
 
+#include <stdbool.h>
+#include <stdint.h>
+
 #include "broad_phase.h"
 #include "simd/simd.h"
 
-/* Appends those boxes of places from .. end - 1 that overlap the box at `place`, all of which begin behind it. */
-INLINE void sweep_box(const narc_box_columns *boxes, uint32_t place, uint32_t from, uint32_t end,
+/* Appends those boxes of places from .. end - 1 that overlap the box at `place`; `behind`: all begin behind it. */
+INLINE void sweep_box(const narc_box_columns *boxes, uint32_t place, uint32_t from, uint32_t end, bool behind,
                       narc_place_pairs *out) {
-    const vf max_x = v_set(boxes->max_x[place]), min_y = v_set(boxes->min_y[place]), max_y = v_set(boxes->max_y[place]);
+    const vf min_x = v_set(boxes->min_x[place]), max_x = v_set(boxes->max_x[place]);
+    const vf min_y = v_set(boxes->min_y[place]), max_y = v_set(boxes->max_y[place]);
     const uint32_t all = vm_bits(vm_front(V_WIDTH));
     for (uint32_t k = from; k < end; k += V_WIDTH) {
         vm near = v_le(v_load(boxes->min_x + k), max_x);
         if (end - k < V_WIDTH)
             near = vm_and(near, vm_front((int)(end - k)));
-        const vm beside = vm_and(v_le(v_load(boxes->min_y + k), max_y), v_le(min_y, v_load(boxes->max_y + k)));
-        const vm hit = vm_and(near, beside);
+        vm hit = vm_and(v_le(v_load(boxes->min_y + k), max_y), v_le(min_y, v_load(boxes->max_y + k)));
+        hit = vm_and(near, hit);
+        if (!behind)
+            hit = vm_and(hit, v_le(min_x, v_load(boxes->max_x + k)));
         if (out->room - out->count < V_WIDTH)
             out->get_room(out);
-        if (out->a) {
-            const vf places = v_of_bits(vi_add(vi_lanes(), vi_set((int32_t)k)));
-            v_store((float *)(void *)(out->b + out->count), v_pack(vm_packing(hit), places));
-            vi_store((int32_t *)(void *)(out->a + out->count), vi_set((int32_t)place));
-        }
+        const vf places = v_of_bits(vi_add(vi_lanes(), vi_set((int32_t)k)));
+        v_store((float *)(void *)(out->b + out->count), v_pack(vm_packing(hit), places));
+        vi_store((int32_t *)(void *)(out->a + out->count), vi_set((int32_t)place));
         out->count += (uint32_t)__builtin_popcount(vm_bits(hit));
+        out->steps++;
         if (vm_bits(near) != all)
             return;
     }
 }
 
-/* All pairs of one box of places first_a .. end_a - 1 and one of first_b .. end_b - 1; the lists have no box in common,
- * or are the same. */
+/* The first of places from .. end - 1 whose min_x is not below `x`: by steps that double, then by halves. Counts both
+ * kinds. */
+static inline uint32_t find_min_x(const float *min_x, uint32_t from, uint32_t end, float x, uint64_t *steps) {
+    uint32_t high = from, step = 1, halves = 0;
+    while (high < end && min_x[high] < x) {
+        from = high + 1;
+        high = end - high > step ? high + step : end;
+        step *= 2;
+        halves += 2; /* as many again */
+    }
+    *steps += halves;
+    while (from < high) {
+        const uint32_t middle = from + (high - from) / 2;
+        if (min_x[middle] < x)
+            from = middle + 1;
+        else
+            high = middle;
+    }
+    return from;
+}
+
+/* All pairs of one box of places first_a .. end_a - 1 and one of first_b .. end_b - 1, none of which is wider than
+ * width_b. The lists have no box in common, or are the same. */
 static void sweep(const narc_box_columns *boxes, uint32_t first_a, uint32_t end_a, uint32_t first_b, uint32_t end_b,
-                  narc_place_pairs *out) {
+                  float width_b, narc_place_pairs *out) {
     if (first_a == first_b) {
         for (uint32_t a = first_a; a < end_a; a++)
-            sweep_box(boxes, a, a + 1, end_a, out);
+            sweep_box(boxes, a, a + 1, end_a, true, out);
         return;
     }
-    uint32_t a = first_a, b = first_b;
-    while (a < end_a && b < end_b)
-        if (boxes->min_x[a] <= boxes->min_x[b])
-            sweep_box(boxes, a++, b, end_b, out);
-        else
-            sweep_box(boxes, b++, a, end_a, out);
+    uint32_t from = first_b;
+    for (uint32_t a = first_a; a < end_a; a++) {
+        from = find_min_x(boxes->min_x, from, end_b, boxes->min_x[a] - width_b, &out->steps);
+        sweep_box(boxes, a, from, end_b, false, out);
+    }
 }
 
 #endif

@@ -5,9 +5,11 @@
  */
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "broad_phase.h"
 #include "guard.h"
 #include "narc_broad_phase.h"
 #include "support.h"
@@ -209,6 +211,85 @@ static void filters_pairs(void **state) {
         check_pairs(broad, boxes, 200, &(narc_pair_filter){none, none, none, none});
     }
     narc_destroy_broad_phase(broad);
+}
+
+/* ------------------------------------------------------------------------------------------------ growth */
+
+/* Finds the pairs of boxes in memory that it frees. Checks that it takes no more steps than `for_box` for each box and
+ * `for_pair` for each pair. */
+static void check_steps(const char *name, narc_box *boxes, size_t count, double for_box, double for_pair) {
+    narc_broad_phase *broad = create();
+    size_t found = 0;
+    const narc_status status = narc_find_pairs(broad, boxes, count, NULL, 1, NULL, NULL, 0, &found, NULL);
+    const double most = for_box * (double)count + for_pair * (double)found;
+    assert_int_equal(status, found > 0 ? NARC_ERROR_CAPACITY : NARC_OK);
+    printf("  %s: %.2f steps a box, %.2f pairs\n", name, (double)broad->steps / (double)count,
+           (double)found / (double)count);
+    if (!((double)broad->steps <= most))
+        fail_msg("%s: %zu boxes with %zu pairs took %.0f steps", name, count, found, (double)broad->steps);
+    narc_destroy_broad_phase(broad);
+    free(boxes);
+}
+
+static narc_box *allocate_boxes(size_t count) {
+    narc_box *boxes = malloc(count * sizeof *boxes);
+    assert_non_null(boxes);
+    return boxes;
+}
+
+static narc_box box_at(double x, double y, double width, double height) {
+    return (narc_box){(float)x, (float)y, (float)(x + width), (float)(y + height)};
+}
+
+/* Scenes that a sweep could take the square of the boxes for. `turn`: width for height. */
+static void grows_no_faster_than_boxes_and_pairs(void **state) {
+    (void)state;
+    enum { COUNT = 20000, CROWD = 2000 };
+    struct test_random random = test_random_named("growth");
+    for (int turn = 0; turn < 2; turn++) {
+        narc_box *const row = allocate_boxes(COUNT), *const walls = allocate_boxes(COUNT),
+                        *const large = allocate_boxes(COUNT), *const lines = allocate_boxes(COUNT),
+                        *const crosses = allocate_boxes(COUNT);
+        for (size_t k = 0; k < COUNT; k++) {
+            const double at = (double)k, half = (double)(k / 2);
+            row[k] = box_at(2 * at, 0, 1, 1);
+            /* Long walls, each between rows of 39 small bodies. */
+            walls[k] = k % 40 == 0 ? box_at(0, half / 10, 1000, 0.5)
+                                   : box_at(25 * (double)(k % 40), half / 10 + 0.7, 0.5, 0.5);
+            /* A row of boxes that are as high as a column of small ones in its middle. */
+            large[k] = k % 2 ? box_at(4 * half, 0, 1, 2 * COUNT) : box_at(COUNT + 0.25 + 1, 2 * half, 0.5, 1);
+            /* Without height, above one another. */
+            lines[k] = box_at(0, 1 + at / 65536, 1000, 0);
+            /* Wide ones above one another, far from high ones beside one another. */
+            crosses[k] = k % 2 ? box_at(4 * half, 0, 1, 1000) : box_at(-2000, 4 * half, 1000, 1);
+        }
+        narc_box *const scenes[] = {row, walls, large, lines, crosses};
+        for (size_t s = 0; turn && s < 5; s++)
+            for (size_t k = 0; k < COUNT; k++)
+                scenes[s][k] =
+                    (narc_box){scenes[s][k].min_y, scenes[s][k].min_x, scenes[s][k].max_y, scenes[s][k].max_x};
+        check_steps(turn ? "column" : "row", row, COUNT, 2, 0);
+        check_steps("walls", walls, COUNT, 20, 0);
+        check_steps("large around small", large, COUNT, 40, 0);
+        check_steps("lines", lines, COUNT, 2, 0);
+        check_steps("crosses", crosses, COUNT, 4, 0);
+        for (double ratio = 100; ratio <= 10000; ratio *= 100) {
+            narc_box *const mixed = allocate_boxes(COUNT), *const slim = allocate_boxes(COUNT);
+            for (size_t k = 0; k < COUNT; k++) {
+                const double width = random_log_between(&random, 1, ratio),
+                             height = random_log_between(&random, 1, ratio);
+                const double x = random_unit(&random), y = random_unit(&random), side = 0.5 * sqrt(COUNT) * ratio;
+                mixed[k] = k % 100 ? box_at(side * x, side * y, 1, 1) : box_at(side * x, side * y, ratio, ratio);
+                slim[k] = turn ? box_at(side * x, side * y, height, 1) : box_at(side * x, side * y, width, height);
+            }
+            check_steps("few large ones", mixed, COUNT, 20, 4);
+            check_steps("all sizes", slim, COUNT, 100, 20);
+        }
+        narc_box *const crowd = allocate_boxes(CROWD);
+        for (size_t k = 0; k < CROWD; k++)
+            crowd[k] = box_at(0, 0, 1, 1);
+        check_steps("one place", crowd, CROWD, 2, 1);
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------ memory and errors */
@@ -437,6 +518,7 @@ int main(void) {
         cmocka_unit_test(leaves_out_empty_boxes),
         cmocka_unit_test(orders_the_partners_of_a_floor),
         cmocka_unit_test(filters_pairs),
+        cmocka_unit_test(grows_no_faster_than_boxes_and_pairs),
         cmocka_unit_test(allocates_nothing_once_it_has_grown),
         cmocka_unit_test(finds_nothing_among_no_boxes),
         cmocka_unit_test(takes_memory_for_pairs_alone),

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * pair_order.c - the last steps of narc_find_pairs(): places to bodies, the filter, and the order of the pairs.
+ * order.c - the last steps of narc_find_pairs(): places to bodies, the filter, and the order of the pairs.
  */
-#include "broad_phase_steps.h"
 #include "column.h"
+#include "steps.h"
 
 #include <string.h>
 
@@ -23,30 +23,15 @@ static bool lets(const narc_pair_filter *filter, uint32_t a, uint32_t b) {
            (bits_at(filter->category, b) & bits_at(filter->mask, a)) != 0;
 }
 
-static uint32_t filter_block(const narc_broad_phase *broad, const narc_pair_filter *filter, size_t block) {
-    uint32_t *const first = broad->pair_a + block * NARC_PAIR_BLOCK, *const second =
-                                                                         broad->pair_b + block * NARC_PAIR_BLOCK;
-    uint32_t left = 0;
-    for (uint32_t k = 0; k < broad->block_counts[block]; k++) {
-        const uint32_t one = broad->boxes.body[first[k]], other = broad->boxes.body[second[k]];
-        const uint32_t a = one < other ? one : other, b = one < other ? other : one;
-        first[left] = a;
-        second[left] = b;
-        left += !filter || lets(filter, a, b);
-    }
-    return left;
-}
-
-size_t narc_filter_pairs(narc_broad_phase *broad, const narc_pair_filter *filter, int team) {
-    const size_t blocks = atomic_load_explicit(&broad->block_count, memory_order_relaxed);
-    size_t left = 0;
-    (void)team;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) reduction(+ : left) if (team > 1)
-#endif
-    for (size_t block = 0; block < blocks; block++) {
-        broad->block_counts[block] = filter_block(broad, filter, block);
-        left += broad->block_counts[block];
+uint32_t narc_filter_pairs(const narc_broad_phase *broad, const narc_pair_filter *filter, uint32_t *a, uint32_t *b,
+                           uint32_t first, uint32_t count) {
+    const uint32_t *const body = broad->boxes.body;
+    uint32_t left = first;
+    for (uint32_t k = first; k < count; k++) {
+        const uint32_t one = body[a[k]], other = body[b[k]];
+        a[left] = one < other ? one : other;
+        b[left] = one < other ? other : one;
+        left += !filter || lets(filter, a[left], b[left]);
     }
     return left;
 }
@@ -93,10 +78,6 @@ static void sort_list(uint32_t *list, size_t count) {
     }
 }
 
-static uint32_t part_start(size_t count, int part, int parts) {
-    return (uint32_t)(count * (size_t)part / (size_t)parts);
-}
-
 /* Counts the partners of bodies first .. end - 1. */
 static void count_partners(const narc_broad_phase *broad, size_t blocks, uint32_t first, uint32_t end) {
     for (size_t block = 0; block < blocks; block++) {
@@ -119,34 +100,46 @@ static void place_partners(const narc_broad_phase *broad, size_t blocks, uint32_
     }
 }
 
+/* The most threads, and so parts of the bodies (narc_team_size()). */
+enum { MOST_PARTS = 256 };
+
 /* Each thread reads all pairs and works on those of its own bodies. */
-void narc_order_pairs(narc_broad_phase *broad, size_t body_count, int team, uint32_t *out_a, uint32_t *out_b) {
-    const size_t blocks = atomic_load_explicit(&broad->block_count, memory_order_relaxed);
-    uint32_t *const ends = broad->ends;
-    memset(ends, 0, body_count * sizeof *ends);
+void narc_order_pairs(narc_broad_phase *broad, size_t blocks, size_t body_count, int team, uint32_t *out_a,
+                      uint32_t *out_b) {
+    uint32_t *const ends = broad->ends, start[MOST_PARTS + 1] = {0};
+    const int parts = team < MOST_PARTS ? team : MOST_PARTS;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
 #endif
-    for (int part = 0; part < team; part++)
-        count_partners(broad, blocks, part_start(body_count, part, team), part_start(body_count, part + 1, team));
-    uint32_t sum = 0;
-    for (size_t k = 0; k < body_count; k++) {
-        const uint32_t here = ends[k];
-        ends[k] = sum;
-        sum += here;
+    for (int part = 0; part < parts; part++) {
+        const size_t first = narc_part_start(body_count, part, parts),
+                     end = narc_part_start(body_count, part + 1, parts);
+        uint32_t sum = 0;
+        memset(ends + first, 0, (end - first) * sizeof *ends);
+        count_partners(broad, blocks, (uint32_t)first, (uint32_t)end);
+        for (size_t k = first; k < end; k++) {
+            const uint32_t here = ends[k];
+            ends[k] = sum;
+            sum += here;
+        }
+        start[part + 1] = sum;
     }
+    for (int part = 0; part < parts; part++)
+        start[part + 1] += start[part];
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
 #endif
-    for (int part = 0; part < team; part++) {
-        const uint32_t first = part_start(body_count, part, team), end = part_start(body_count, part + 1, team);
-        uint32_t start = first < end ? ends[first] : 0;
-        place_partners(broad, blocks, first, end, out_b);
-        for (uint32_t body = first; body < end; body++) {
-            for (uint32_t k = start; k < ends[body]; k++)
-                out_a[k] = body;
-            sort_list(out_b + start, ends[body] - start);
-            start = ends[body];
+    for (int part = 0; part < parts; part++) {
+        const size_t first = narc_part_start(body_count, part, parts),
+                     end = narc_part_start(body_count, part + 1, parts);
+        uint32_t *const own_a = out_a + start[part], *const own_b = out_b + start[part];
+        uint32_t from = 0;
+        place_partners(broad, blocks, (uint32_t)first, (uint32_t)end, own_b);
+        for (size_t body = first; body < end; body++) {
+            for (uint32_t k = from; k < ends[body]; k++)
+                own_a[k] = (uint32_t)body;
+            sort_list(own_b + from, ends[body] - from);
+            from = ends[body];
         }
     }
 }

@@ -56,7 +56,7 @@ static void walk(const narc_pairs *old_pairs, const narc_pairs *new_pairs, size_
 
 /* ------------------------------------------------------------------------------------------------ hash table */
 
-/* A place of the table: an old pair's index + 1, or 0. */
+/* Open addressing: a place holds an old pair's index + 1, or 0 while it is free. */
 typedef struct table {
     uint32_t *places;
     size_t mask;

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * find_pairs.c - narc_find_pairs(): boxes into strips, a sweep through each strip and its neighbours, pairs into order.
+ */
+#include "dispatch.h"
+#include "error.h"
+#include "narc_broad_phase.h"
+#include "steps.h"
+
+/* Boxes that are worth a thread. */
+enum { PART_BOXES = 1024 };
+
+/* Pairs that a box has, more or less: a call that finds more of them sweeps twice, the first time. */
+enum { USUAL_PAIRS = 3 };
+
+/* A thread's pairs, and where those go for which there is no block: they are only counted. */
+typedef struct own_pairs {
+    narc_place_pairs pairs; /* the kernel's view, first */
+    narc_broad_phase *broad;
+    const narc_pair_filter *filter;
+    uint32_t bodies; /* pairs of the block that have been filtered */
+    uint64_t total;  /* of the blocks before it */
+    uint32_t a[NARC_PAIR_BLOCK], b[NARC_PAIR_BLOCK];
+} own_pairs;
+
+static void filter_new(own_pairs *own) {
+    narc_place_pairs *const pairs = &own->pairs;
+    own->bodies = pairs->count =
+        narc_filter_pairs(own->broad, own->filter, pairs->a, pairs->b, own->bodies, pairs->count);
+}
+
+static void end_block(own_pairs *own) {
+    narc_place_pairs *const pairs = &own->pairs;
+    filter_new(own);
+    if (pairs->a != own->a)
+        own->broad->block_counts[(size_t)(pairs->a - own->broad->pair_a) / NARC_PAIR_BLOCK] = pairs->count;
+    own->total += pairs->count;
+    own->bodies = pairs->count = 0;
+}
+
+static void begin_block(own_pairs *own) {
+    narc_broad_phase *const broad = own->broad;
+    const size_t block = atomic_fetch_add_explicit(&broad->block_count, 1, memory_order_relaxed);
+    const bool exists = block < broad->block_capacity;
+    own->pairs.a = exists ? broad->pair_a + block * NARC_PAIR_BLOCK : own->a;
+    own->pairs.b = exists ? broad->pair_b + block * NARC_PAIR_BLOCK : own->b;
+}
+
+/* A block that the filter leaves room in is filled up first. */
+static void get_room(narc_place_pairs *pairs) {
+    own_pairs *const own = (own_pairs *)pairs;
+    filter_new(own);
+    if (pairs->count <= NARC_FULL_BLOCK)
+        return;
+    end_block(own);
+    begin_block(own);
+}
+
+/* ------------------------------------------------------------------------------------------------ sweeps */
+
+/* The first strip of a level whose number is at least this. */
+static size_t find_strip(const narc_broad_phase *broad, const narc_level *level, uint64_t number) {
+    size_t first = level->first, end = level->end;
+    while (first < end) {
+        const size_t middle = first + (end - first) / 2;
+        if (broad->strips[middle].number < number)
+            first = middle + 1;
+        else
+            end = middle;
+    }
+    return first;
+}
+
+/* The boxes of the shorter strip look for theirs in the other. */
+static void sweep_both(const narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_strip *one,
+                       const narc_strip *other, narc_place_pairs *out) {
+    if (one->min_y > other->max_y || other->min_y > one->max_y)
+        return;
+    const bool swap = one->end - one->first > other->end - other->first;
+    const narc_strip *const a = swap ? other : one, *const b = swap ? one : other;
+    kernels->sweep(&broad->boxes, a->first, a->end, b->first, b->end, b->width, out);
+}
+
+/* Sweeps a strip: itself, the one above it, and those of levels with strips at least as high that may reach it. */
+static void sweep_strip(const narc_broad_phase *broad, const narc_kernel_table *kernels, size_t index,
+                        narc_place_pairs *out) {
+    const narc_strip *const strip = &broad->strips[index], *const above = strip + 1;
+    kernels->sweep(&broad->boxes, strip->first, strip->end, strip->first, strip->end, strip->width, out);
+    if (index + 1 < broad->strip_count && above->number == strip->number + 1)
+        sweep_both(broad, kernels, strip, above, out);
+    for (const narc_level *level = broad->levels; level < &broad->levels[strip->level]; level++) {
+        const uint64_t lowest = narc_strip_number(broad, level, strip->min_y, -1);
+        const uint64_t highest = narc_strip_number(broad, level, strip->max_y, 0);
+        for (size_t k = find_strip(broad, level, lowest); k < level->end && broad->strips[k].number <= highest; k++)
+            sweep_both(broad, kernels, strip, &broad->strips[k], out);
+    }
+}
+
+/* Sweeps all strips; returns how many pairs the filter lets, of which only those are kept for which there are
+ * blocks. */
+static uint64_t sweep_all(narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_pair_filter *filter,
+                          int team) {
+    const int strips_at_a_time = 1 + (int)(broad->strip_count / ((size_t)team * 64));
+    uint64_t found = 0, steps = 0;
+    atomic_store_explicit(&broad->block_count, 0, memory_order_relaxed);
+    (void)strips_at_a_time;
+#ifdef _OPENMP
+#pragma omp parallel num_threads(team) reduction(+ : found, steps) if (team > 1)
+#endif
+    {
+        own_pairs own;
+        own.pairs = (narc_place_pairs){.room = NARC_PAIR_BLOCK, .get_room = get_room};
+        own.broad = broad;
+        own.filter = filter;
+        own.bodies = 0;
+        own.total = 0;
+        begin_block(&own);
+#ifdef _OPENMP
+#pragma omp for schedule(dynamic, strips_at_a_time)
+#endif
+        for (size_t k = 0; k < broad->strip_count; k++)
+            sweep_strip(broad, kernels, k, &own.pairs);
+        end_block(&own);
+        found += own.total;
+        steps += own.pairs.steps;
+    }
+    broad->steps = steps;
+    return found;
+}
+
+/* ------------------------------------------------------------------------------------------------ the call */
+
+static narc_status check(const narc_broad_phase *broad, const narc_box *boxes, size_t count, const uint32_t *out_a,
+                         const uint32_t *out_b, size_t capacity, const size_t *out_count, narc_error *error) {
+    if (!broad || !out_count)
+        return narc_fail_missing(error, !broad ? "broad" : "out_count");
+    if (count > 0 && !boxes)
+        return narc_fail_missing(error, "boxes");
+    if (capacity > 0 && (!out_a || !out_b))
+        return narc_fail_missing(error, !out_a ? "out_a" : "out_b");
+    if (count > UINT32_MAX - 1)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)count, "%zu boxes, at most %lu", count,
+                         (unsigned long)(UINT32_MAX - 1));
+    return NARC_OK;
+}
+
+/* Blocks that hold so many pairs: all are full but the last one of each thread. */
+static size_t count_blocks(uint64_t pairs, int team) { return (size_t)(pairs / NARC_FULL_BLOCK) + (size_t)team; }
+
+narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
+                            const narc_pair_filter *filter, unsigned threads, uint32_t *out_a, uint32_t *out_b,
+                            size_t capacity, size_t *out_count, narc_error *error) {
+    narc_status status = check(broad, boxes, count, out_a, out_b, capacity, out_count, error);
+    if (status != NARC_OK)
+        return status;
+    const narc_kernel_table *const kernels = narc_kernels(&status, error);
+    if (!kernels)
+        return status;
+    const int team = narc_team_size(threads, count / PART_BOXES + 1);
+    if (narc_reserve_boxes(broad, count) != NARC_OK ||
+        narc_reserve_blocks(broad, count_blocks(USUAL_PAIRS * (uint64_t)count, team)) != NARC_OK)
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)count, "not enough memory for %zu boxes", count);
+    narc_sort_into_strips(broad, boxes, count, team);
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 4) num_threads(team) if (team > 1)
+#endif
+    for (size_t k = 0; k < broad->strip_count; k++)
+        narc_sort_strip(broad, &broad->strips[k], boxes);
+    const uint64_t found = sweep_all(broad, kernels, filter, team);
+    if (found > UINT32_MAX)
+        return narc_fail(error, NARC_ERROR_COUNT, 0, (double)found, "%llu pairs of boxes overlap, at most %lu",
+                         (unsigned long long)found, (unsigned long)UINT32_MAX);
+    if (found > capacity) {
+        *out_count = (size_t)found;
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu pairs, but there is room for %zu",
+                         (size_t)found, capacity);
+    }
+    if (atomic_load_explicit(&broad->block_count, memory_order_relaxed) > broad->block_capacity) {
+        if (narc_reserve_blocks(broad, count_blocks(found, team)) != NARC_OK)
+            return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)found, "not enough memory for %zu pairs",
+                             (size_t)found);
+        sweep_all(broad, kernels, filter, team);
+    }
+    *out_count = (size_t)found;
+    narc_order_pairs(broad, atomic_load_explicit(&broad->block_count, memory_order_relaxed), count, team, out_a, out_b);
+    return NARC_OK;
+}
