@@ -16,8 +16,8 @@
  * block 24 KB. A stage that few pairs reach waits for FLUSH of them. */
 enum { BLOCK = 128, FLUSH = 32, STAGES = 5 };
 
-/* A stage leaves less than FLUSH pairs in its queue and passes on at most all that it took: so the first of STAGES
- * queues holds up to BLOCK pairs, and each one after it up to FLUSH more. push() and pad() write up to two vectors
+/* A stage leaves less than FLUSH pairs in its queue and passes on at most all that it took, to the next queue or the one
+ * after that: so the first of STAGES queues holds up to BLOCK pairs, and each one after it up to FLUSH more. push() and pad() write up to two vectors
  * behind the last pair. */
 enum { CAPACITY = BLOCK + (STAGES - 1) * FLUSH + 2 * V_WIDTH };
 
@@ -64,6 +64,16 @@ INLINE struct ring get_ring_a(const struct queue *queue, int k) {
 
 INLINE struct ring get_ring_b(const struct queue *queue, int k) {
     return make_ring(get_bits(queue, FIRST_RECORD_B, k), get_bits(queue, INFO_B, k));
+}
+
+INLINE void store_vec2(struct queue *queue, int field, int k, vec2 a) {
+    v_store(queue->item[field] + k, a.x);
+    v_store(queue->item[field + 1] + k, a.y);
+}
+
+/* Are both shapes of the pairs k ... smooth? */
+INLINE vm find_smooth(const struct queue *queue, int k) {
+    return info_has(vi_and(get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k)), NARC_SHAPE_SMOOTH);
 }
 
 INLINE void set_vec2(vf *item, int field, vec2 a) {

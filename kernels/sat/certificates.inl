@@ -36,8 +36,7 @@
 
 /* By how much g must exceed the margin, with arcs that were looked up. */
 INLINE vf lookup_slack(const struct queue *queue, int k) {
-    const vm smooth = info_has(vi_and(get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k)), NARC_SHAPE_SMOOTH);
-    return v_mul(get(queue, SLACK, k), v_select(smooth, v_set(1), v_set(LOOSE)));
+    return v_mul(get(queue, SLACK, k), v_select(find_smooth(queue, k), v_set(1), v_set(LOOSE)));
 }
 
 /* Is g(d) above `limit`, for a direction d of any length, with u and the sum of radii of its arcs? In squares, so that

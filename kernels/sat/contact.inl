@@ -30,20 +30,12 @@
 #include "sat/manifold_edges.inl"
 #include "sat/manifold_rows.inl"
 #include "sat/normal_fan.inl"
+#include "sat/probe.inl"
 #include "sat/shortcuts.inl"
 #include "simd/simd.h"
 
 INLINE vm triage_contacts(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
     return vm_and_not(take_valid(call, pair, circles, item), circles->apart);
-}
-
-/* The sine of the angle from u to the nearest junction of its arcs, times the length of u. A circle's junctions mean
- * nothing. */
-INLINE vf find_least_sine(const struct arc_pair *arcs, vec2 u, vf length, vi info_a, vi info_b) {
-    const vf from_a = v_min(v2_cross(arcs->a.start, u), v2_cross(u, arcs->a.end));
-    const vf from_b = v_min(v2_cross(arcs->b.start, u), v2_cross(u, arcs->b.end));
-    return v_min(v_select(info_has(info_a, NARC_SHAPE_CIRCLE), length, from_a),
-                 v_select(info_has(info_b, NARC_SHAPE_CIRCLE), length, from_b));
 }
 
 /* Stores what was found of the pairs k ... of a queue in the lanes `keep`. */
@@ -55,76 +47,106 @@ INLINE void store_answer(const struct call *call, const struct queue *queue, int
         store_contacts(call, queue, k, keep, separation, n, on_a, on_b);
 }
 
-/* Probes along DIRECTION, or the arcs of a hint. If u of these arcs lies between their junctions, it is the direction
- * of a local maximum, mostly the highest. The next stage probes along u, or along the axis where there are edges: near
- * them u leads astray. */
-INLINE void probe(const struct call *call, struct queue *queue, int begin, struct queue *next, bool hints,
-                  bool manifolds) {
-    const narc_record *records = call->batch->shapes->records;
-    if (hints)
-        read_hints(queue, call->rows->hint);
-    look_up_arcs(records, queue, begin, hints);
+/* Passes on the pairs k ... of a queue in the lanes `left`. */
+INLINE void pass_on(const struct queue *queue, int k, vm left, struct queue *next) {
+    vf item[FIELDS];
+    if (!vm_any(left))
+        return;
+    get_item(queue, k, item, CONTACT_FIELDS);
+    push(next, left, item, CONTACT_FIELDS);
+}
+
+/* Probes the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`. If u of these arcs lies
+ * between their junctions, it is the direction of a local maximum, mostly the highest. Returns the lanes without an
+ * answer; in *out_u, the direction to probe along next. */
+INLINE vm probe(const struct call *call, const struct queue *queue, int k, vm live, bool hints, bool manifolds,
+                vec2 *out_u) {
+    const vi record_a = vi_load(queue->record_a + k), record_b = vi_load(queue->record_b + k);
+    const vf margin = get_margins(call, queue, k);
+    const struct probe p = probe_arcs(call->batch->shapes->records, queue, k, live, margin);
+    const vf limit = v_add(margin, lookup_slack(queue, k));
+    vm apart = vm_or(p.far, is_above(p.u, p.radii, get_vec2(queue, DIRECTION, k), limit));
+    if (hints) /* a hint's arcs may not hold DIRECTION */
+        apart = vm_and_not(apart, vm_and_not(vi_lt(vi_set(0), vi_load(queue->hinted + k)), p.far));
+    const vm certain = vm_and_not(p.only, apart);
+    store_hints(call, queue, k, vm_or(p.far, certain), record_a, record_b);
+    const vm keep = vm_and(certain, is_below(p.separation, margin));
+    if (vm_any(keep)) {
+        const vec2 n = v2_divide(p.u, p.length);
+        const struct feature on_a = find_feature(&p.arcs.a, &p.arcs.a, n, record_a, false);
+        const struct feature on_b = find_feature(&p.arcs.b, &p.arcs.b, n, record_b, true);
+        store_answer(call, queue, k, keep, p.separation, n, &on_a, &on_b, manifolds);
+    }
+    *out_u = p.u;
+    return vm_and_not(live, vm_or(apart, certain));
+}
+
+/* Climbs from the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`; returns those
+ * without an answer. */
+INLINE vm climb_to(const struct call *call, const struct queue *queue, int k, vm live, bool manifolds) {
+    const vf margin = get_margins(call, queue, k);
+    const struct certified_maximum top = climb_and_certify(call->batch->shapes->records, queue, k, live, margin);
+    const struct local_maximum *m = &top.maximum;
+    store_hints(call, queue, k, vm_or(top.apart, top.certain), m->record_a, m->record_b);
+    const vm keep = vm_and(top.certain, is_below(top.separation, margin));
+    if (vm_any(keep)) {
+        const struct feature on_a = find_feature(&m->after.a, &m->before.a, top.normal, m->record_a, false);
+        const struct feature on_b = find_feature(&m->after.b, &m->before.b, top.normal, m->record_b, true);
+        store_answer(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b, manifolds);
+    }
+    return vm_and_not(live, vm_or(top.apart, top.certain));
+}
+
+/* First stage: probes along the axis, and hands smooth pairs to the next probe, along u. Near edges u leads astray:
+ * other pairs go to the climb, which begins along the axis again. */
+INLINE void probe_axis(const struct call *call, struct queue *queue, int begin, struct queue *next, bool manifolds) {
+    look_up_arcs(call->batch->shapes->records, queue, begin, false);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm live = vm_front(queue->count - k);
-        const vf slack = get(queue, SLACK, k), margin = get_margins(call, queue, k);
-        const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k);
-        const vi record_a = vi_load(queue->record_a + k), record_b = vi_load(queue->record_b + k);
-        const struct pose pose = get_pose(queue, k);
-        const struct arc_pair arcs = load_arc_pair(records, record_a, record_b, &pose);
-        const vec2 u = center_difference(&arcs);
-        const vf length = v2_length(u), radii = v_add(arcs.a.radius, arcs.b.radius), separation = v_sub(length, radii);
-        const vf least = find_least_sine(&arcs, u, length, info_a, info_b);
-        const vm inside =
-            vm_and(live, v_lt(v_set(0), least)); /* u is long enough for the formula if is_only_maximum() */
-        const vm far = vm_and(inside, v_lt(v_add(margin, slack), separation));
-        const vf limit = v_add(margin, lookup_slack(queue, k));
-        vm apart = vm_or(far, is_above(u, radii, get_vec2(queue, DIRECTION, k), limit));
-        if (hints) /* a hint's arcs may not hold DIRECTION */
-            apart = vm_and_not(apart, vm_and_not(vi_lt(vi_set(0), vi_load(queue->hinted + k)), far));
-        const vm only = is_only_maximum(v_add(arcs.a.inner, arcs.b.inner), separation, least, length, slack);
-        const vm certain = vm_and_not(vm_and(inside, only), apart);
-        store_hints(call, queue, k, vm_or(far, certain), record_a, record_b);
-        const vm keep = vm_and(certain, is_below(separation, margin));
-        if (vm_any(keep)) {
-            const vec2 n = v2_divide(u, length);
-            const struct feature on_a = find_feature(&arcs.a, &arcs.a, n, record_a, false);
-            const struct feature on_b = find_feature(&arcs.b, &arcs.b, n, record_b, true);
-            store_answer(call, queue, k, keep, separation, n, &on_a, &on_b, manifolds);
+        const vm smooth = find_smooth(queue, k);
+        vec2 u;
+        const vm left = probe(call, queue, k, vm_front(queue->count - k), false, manifolds, &u);
+        store_vec2(queue, DIRECTION, k, v2_select(smooth, u, get_vec2(queue, DIRECTION, k)));
+        pass_on(queue, k, vm_and(left, smooth), next);
+        pass_on(queue, k, vm_and_not(left, smooth), next + 1);
+    }
+}
+
+/* First stage with hints: probes the arcs of the last call, or climbs from them where there are edges. The next stage
+ * probes along u, or along the axis. */
+INLINE void start_from_hints(const struct call *call, struct queue *queue, int begin, struct queue *next,
+                             bool manifolds) {
+    read_hints(queue, call->rows->hint);
+    look_up_arcs(call->batch->shapes->records, queue, begin, true);
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        const vm live = vm_front(queue->count - k), smooth = find_smooth(queue, k);
+        const vm round = vm_and(live, smooth), edged = vm_and_not(live, smooth);
+        if (vm_any(round)) {
+            vec2 u;
+            const vm left = probe(call, queue, k, round, true, manifolds, &u);
+            store_vec2(queue, DIRECTION, k, v2_select(smooth, u, get_vec2(queue, DIRECTION, k)));
+            pass_on(queue, k, left, next);
         }
-        const vm left = vm_and_not(live, vm_or(apart, certain));
-        if (vm_any(left)) {
-            const vm smooth = info_has(vi_and(info_a, info_b), NARC_SHAPE_SMOOTH);
-            vf item[FIELDS];
-            get_item(queue, k, item, CONTACT_FIELDS);
-            set_vec2(item, DIRECTION, v2_select(smooth, u, (vec2){item[AXIS], item[AXIS + 1]}));
-            push(next, left, item, CONTACT_FIELDS);
-        }
+        if (vm_any(edged))
+            pass_on(queue, k, climb_to(call, queue, k, edged, manifolds), next);
+    }
+}
+
+/* Probes along DIRECTION. */
+INLINE void probe_again(const struct call *call, struct queue *queue, int begin, struct queue *next, bool manifolds) {
+    look_up_arcs(call->batch->shapes->records, queue, begin, false);
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        vec2 u;
+        const vm left = probe(call, queue, k, vm_front(queue->count - k), false, manifolds, &u);
+        store_vec2(queue, DIRECTION, k, v2_select(find_smooth(queue, k), u, get_vec2(queue, DIRECTION, k)));
+        pass_on(queue, k, left, next);
     }
 }
 
 /* Climbs from the arcs that hold DIRECTION. */
-INLINE void climb_to(const struct call *call, struct queue *queue, int begin, struct queue *next, bool manifolds) {
-    const narc_record *records = call->batch->shapes->records;
-    look_up_arcs(records, queue, begin, false);
-    for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm live = vm_front(queue->count - k);
-        const vf margin = get_margins(call, queue, k);
-        const struct certified_maximum top = climb_and_certify(records, queue, k, live, margin);
-        const struct local_maximum *m = &top.maximum;
-        store_hints(call, queue, k, vm_or(top.apart, top.certain), m->record_a, m->record_b);
-        const vm keep = vm_and(top.certain, is_below(top.separation, margin));
-        if (vm_any(keep)) {
-            const struct feature on_a = find_feature(&m->after.a, &m->before.a, top.normal, m->record_a, false);
-            const struct feature on_b = find_feature(&m->after.b, &m->before.b, top.normal, m->record_b, true);
-            store_answer(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b, manifolds);
-        }
-        const vm left = vm_and_not(live, vm_or(top.apart, top.certain));
-        if (vm_any(left)) {
-            vf item[FIELDS];
-            get_item(queue, k, item, CONTACT_FIELDS);
-            push(next, left, item, CONTACT_FIELDS);
-        }
-    }
+INLINE void climb_from(const struct call *call, struct queue *queue, int begin, struct queue *next, bool manifolds) {
+    look_up_arcs(call->batch->shapes->records, queue, begin, false);
+    for (int k = begin; k < queue->count; k += V_WIDTH)
+        pass_on(queue, k, climb_to(call, queue, k, vm_front(queue->count - k), manifolds), next);
 }
 
 INLINE void decide(const struct call *call, struct queue *queue, int begin, bool manifolds) {
@@ -143,14 +165,18 @@ INLINE void decide(const struct call *call, struct queue *queue, int begin, bool
 
 /* The stages of both kernels. */
 #define STAGES_OF(answers, manifolds)                                                                                  \
-    static void probe_##answers(const struct call *call, struct queue *queue, int begin, struct queue *next) {         \
-        probe(call, queue, begin, next, false, manifolds);                                                             \
+    static void probe_axis_##answers(const struct call *call, struct queue *queue, int begin, struct queue *next) {    \
+        probe_axis(call, queue, begin, next, manifolds);                                                               \
     }                                                                                                                  \
-    static void probe_hinted_##answers(const struct call *call, struct queue *queue, int begin, struct queue *next) {  \
-        probe(call, queue, begin, next, true, manifolds);                                                              \
+    static void start_from_hints_##answers(const struct call *call, struct queue *queue, int begin,                    \
+                                           struct queue *next) {                                                       \
+        start_from_hints(call, queue, begin, next, manifolds);                                                         \
     }                                                                                                                  \
-    static void climb_to_##answers(const struct call *call, struct queue *queue, int begin, struct queue *next) {      \
-        climb_to(call, queue, begin, next, manifolds);                                                                 \
+    static void probe_again_##answers(const struct call *call, struct queue *queue, int begin, struct queue *next) {   \
+        probe_again(call, queue, begin, next, manifolds);                                                              \
+    }                                                                                                                  \
+    static void climb_from_##answers(const struct call *call, struct queue *queue, int begin, struct queue *next) {    \
+        climb_from(call, queue, begin, next, manifolds);                                                               \
     }                                                                                                                  \
     static void decide_##answers(const struct call *call, struct queue *queue, int begin, struct queue *next) {        \
         (void)next;                                                                                                    \
@@ -173,8 +199,8 @@ INLINE void run_with_hints(const struct call *call, stage *const *stages, int st
 }
 
 static size_t contact(const narc_batch *batch, size_t first, size_t count, float margin, const narc_contacts *out) {
-    stage *const start = batch->hints ? probe_hinted_contacts : probe_contacts;
-    stage *const stages[] = {start, probe_contacts, climb_to_contacts, decide_contacts};
+    stage *const start = batch->hints ? start_from_hints_contacts : probe_axis_contacts;
+    stage *const stages[] = {start, probe_again_contacts, climb_from_contacts, decide_contacts};
     struct queue queues[4];
     struct contact_rows rows;
     if (!NARC_SHORTCUTS)
@@ -185,8 +211,8 @@ static size_t contact(const narc_batch *batch, size_t first, size_t count, float
 }
 
 static size_t manifold(const narc_batch *batch, size_t first, size_t count, float margin, const narc_manifolds *out) {
-    stage *const start = batch->hints ? probe_hinted_manifolds : probe_manifolds;
-    stage *const stages[] = {start, probe_manifolds, climb_to_manifolds, decide_manifolds, find_second_points};
+    stage *const start = batch->hints ? start_from_hints_manifolds : probe_axis_manifolds;
+    stage *const stages[] = {start, probe_again_manifolds, climb_from_manifolds, decide_manifolds, find_second_points};
     stage *const all[] = {decide_manifolds, find_second_points};
     struct queue queues[STAGES];
     struct manifold_rows rows;

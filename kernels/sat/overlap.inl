@@ -21,6 +21,7 @@
 #include "sat/direction_lookup.inl"
 #include "sat/hill_climb.inl"
 #include "sat/normal_fan.inl"
+#include "sat/probe.inl"
 #include "sat/shortcuts.inl"
 #include "simd/simd.h"
 
@@ -40,28 +41,53 @@ INLINE vec2 load_circles(const narc_record *records, const struct queue *queue, 
     return circle_difference((vec2){a[0], a[1]}, (vec2){b[0], b[1]}, &pose);
 }
 
-/* Probes along DIRECTION. The next stage probes along u. */
-static void probe_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+/* Passes on the pairs k ... of a queue in the lanes `left`. */
+INLINE void pass_on_overlaps(const struct queue *queue, int k, vm left, struct queue *next) {
+    vf item[FIELDS];
+    if (!vm_any(left))
+        return;
+    get_item(queue, k, item, OVERLAP_FIELDS);
+    push(next, left, item, OVERLAP_FIELDS);
+}
+
+/* The difference of the support points of two arcs along DIRECTION n, times the length of n. */
+INLINE vm touch_in_common(const struct queue *queue, int k, vec2 n, vec2 u, vf radii) {
+    const vf length = v2_length(n);
+    return has_common_point(queue, k, v2_sub(v2_scale(n, radii), v2_scale(u, length)), length);
+}
+
+/* Probes along the axis. Smooth pairs are probed along u next. Near edges u leads astray: other pairs climb. */
+static void probe_axis_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+    const narc_record *records = call->batch->shapes->records;
+    look_up_arcs(records, queue, begin, false);
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        const vm live = vm_front(queue->count - k), smooth = find_smooth(queue, k);
+        const vec2 n = get_vec2(queue, DIRECTION, k);
+        vf radii;
+        const vec2 u = load_circles(records, queue, k, &radii);
+        const vm apart = is_above(u, radii, n, lookup_slack(queue, k)), hit = touch_in_common(queue, k, n, u, radii);
+        mark_overlaps(call, queue, k, vm_and(live, hit));
+        const vm left = vm_and_not(live, vm_or(apart, hit));
+        store_vec2(queue, DIRECTION, k, v2_select(smooth, u, n));
+        pass_on_overlaps(queue, k, vm_and(left, smooth), next);
+        pass_on_overlaps(queue, k, vm_and_not(left, smooth), next + 1);
+    }
+}
+
+/* Probes along u, with whole arcs. */
+static void probe_again_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     const narc_record *records = call->batch->shapes->records;
     look_up_arcs(records, queue, begin, false);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k);
         const vec2 n = get_vec2(queue, DIRECTION, k);
-        vf radii;
-        const vec2 u = load_circles(records, queue, k, &radii);
-        const vm apart = is_above(u, radii, n, lookup_slack(queue, k));
-        /* The difference of the support points, times the direction's length. */
-        const vf length = v2_length(n);
-        const vec2 p = v2_sub(v2_scale(n, radii), v2_scale(u, length));
-        const vm hit = has_common_point(queue, k, p, length);
+        const struct probe p = probe_arcs(records, queue, k, live, v_set(0));
+        const vm apart = vm_or(p.far, is_above(p.u, p.radii, n, lookup_slack(queue, k)));
+        const vm certain = vm_or(p.only, vm_and(live, apart));
+        const vm hit = vm_or(touch_in_common(queue, k, n, p.u, p.radii), vm_and(p.only, v_lt(p.separation, v_set(0))));
         mark_overlaps(call, queue, k, vm_and(live, hit));
-        const vm left = vm_and_not(live, vm_or(apart, hit));
-        if (vm_any(left)) {
-            vf item[FIELDS];
-            get_item(queue, k, item, OVERLAP_FIELDS);
-            set_vec2(item, DIRECTION, u);
-            push(next, left, item, OVERLAP_FIELDS);
-        }
+        store_vec2(queue, DIRECTION, k, p.u);
+        pass_on_overlaps(queue, k, vm_and_not(live, vm_or(certain, hit)), next);
     }
 }
 
@@ -73,12 +99,7 @@ static void climb_to_overlaps(const struct call *call, struct queue *queue, int 
         const vm live = vm_front(queue->count - k);
         const struct certified_maximum top = climb_and_certify(records, queue, k, live, v_set(0));
         mark_overlaps(call, queue, k, vm_and(top.certain, v_lt(top.separation, v_set(0))));
-        const vm left = vm_and_not(live, vm_or(top.apart, top.certain));
-        if (vm_any(left)) {
-            vf item[FIELDS];
-            get_item(queue, k, item, OVERLAP_FIELDS);
-            push(next, left, item, OVERLAP_FIELDS);
-        }
+        pass_on_overlaps(queue, k, vm_and_not(live, vm_or(top.apart, top.certain)), next);
     }
 }
 
@@ -91,7 +112,7 @@ static void decide_overlaps(const struct call *call, struct queue *queue, int be
 }
 
 static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
-    static stage *const stages[] = {probe_overlaps, probe_overlaps, climb_to_overlaps, decide_overlaps};
+    static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_to_overlaps, decide_overlaps};
     struct queue queues[4];
     if (!NARC_SHORTCUTS) {
         run_overlap_method(decide_overlaps, batch, first, count, out_bits);

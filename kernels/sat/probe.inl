@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * probe.inl - what one arc of A and one of B tell of the gap. If u, from the centre of the one to that of the other, lies
+ * between their junctions, it is the direction of a local maximum of the gap, and mostly of the highest.
+ */
+#ifndef NARC_SAT_PROBE_INL
+#define NARC_SAT_PROBE_INL
+
+#include "base/arcs.inl"
+#include "base/queue.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "sat/certificates.inl"
+#include "simd/simd.h"
+
+struct probe {
+    struct arc_pair arcs;
+    vec2 u;
+    vf length, radii, separation; /* of u, of both arcs, along u */
+    vm far;                       /* the separation is above the margin, for certain */
+    vm only;                      /* it is the one that the deciding formula would give */
+};
+
+/* The sine of the angle from u to the nearest junction of its arcs, times the length of u. A circle's junctions mean
+ * nothing. */
+INLINE vf find_least_sine(const struct arc_pair *arcs, vec2 u, vf length, vi info_a, vi info_b) {
+    const vf from_a = v_min(v2_cross(arcs->a.start, u), v2_cross(u, arcs->a.end));
+    const vf from_b = v_min(v2_cross(arcs->b.start, u), v2_cross(u, arcs->b.end));
+    return v_min(v_select(info_has(info_a, NARC_SHAPE_CIRCLE), length, from_a),
+                 v_select(info_has(info_b, NARC_SHAPE_CIRCLE), length, from_b));
+}
+
+/* Probes the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`. */
+INLINE struct probe probe_arcs(const narc_record *records, const struct queue *queue, int k, vm live, vf margin) {
+    const struct pose pose = get_pose(queue, k);
+    const vf slack = get(queue, SLACK, k);
+    struct probe p;
+    p.arcs = load_arc_pair(records, vi_load(queue->record_a + k), vi_load(queue->record_b + k), &pose);
+    p.u = center_difference(&p.arcs);
+    p.length = v2_length(p.u);
+    p.radii = v_add(p.arcs.a.radius, p.arcs.b.radius);
+    p.separation = v_sub(p.length, p.radii);
+    const vf least = find_least_sine(&p.arcs, p.u, p.length, get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k));
+    const vf inner = v_add(p.arcs.a.inner, p.arcs.b.inner);
+    const vm inside = vm_and(live, v_lt(v_set(0), least)); /* u is long enough for the formula if is_only_maximum() */
+    p.far = vm_and(inside, v_lt(v_add(margin, slack), p.separation));
+    p.only = vm_and(inside, is_only_maximum(inner, p.separation, least, p.length, slack));
+    return p;
+}
+
+#endif
