@@ -301,3 +301,12 @@ narc_status narc_adjust_polygon(const narc_point *points, size_t count, narc_poi
     }
     return status;
 }
+
+narc_status narc_build_ring(const narc_point *points, size_t count, narc_arc *out_arcs, size_t *out_count,
+                            narc_error *error) {
+    narc_point junctions[NARC_MAX_ARCS];
+    if (!out_arcs || !out_count)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "an output is NULL");
+    const narc_status status = narc_adjust_polygon(points, count, junctions, error);
+    return status == NARC_OK ? narc_build_points(junctions, count, 0, out_arcs, out_count, error) : status;
+}

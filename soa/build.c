@@ -154,6 +154,23 @@ narc_status narc_build_polygon(const narc_point *points, size_t count, double ra
     return finish(arcs, count, out_arcs, out_count, error);
 }
 
+narc_status narc_build_regular_polygon(size_t corners, double circumradius, double radius, narc_arc *out_arcs,
+                                       size_t *out_count, narc_error *error) {
+    narc_point points[NARC_MAX_ARCS];
+    narc_status status = check_lengths(&(quantity){"circumradius", circumradius, POSITIVE}, 1, error);
+    if (status != NARC_OK)
+        return status;
+    if (corners < 3 || corners > NARC_MAX_ARCS)
+        return narc_fail(error, NARC_ERROR_COUNT, 0, (double)corners, "there are %zu corners, not 3 to %d", corners,
+                         NARC_MAX_ARCS);
+    for (size_t i = 0; i < corners; i++) {
+        narc_find_normal(2 * NARC_PI * (double)i / (double)corners, &points[i].x, &points[i].y);
+        points[i].x *= circumradius;
+        points[i].y *= circumradius;
+    }
+    return narc_build_polygon(points, corners, radius, out_arcs, out_count, error);
+}
+
 /* ------------------------------------------------------------------------------------------------ four arcs */
 
 /* The centre of a circle of `radius` that touches both large circles from inside: `low` and `high` are its distances

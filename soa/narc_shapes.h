@@ -157,6 +157,11 @@ NARC_API narc_status narc_build_box(double width, double height, double radius, 
 NARC_API narc_status narc_build_polygon(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
                                         size_t *out_count, narc_error *error);
 
+/* A regular polygon around the origin with 3 .. NARC_MAX_ARCS corners, corner 0 at (circumradius, 0), each rounded
+ * inside the polygon with `radius` >= 0. Errors as narc_build_polygon(). */
+NARC_API narc_status narc_build_regular_polygon(size_t corners, double circumradius, double radius, narc_arc *out_arcs,
+                                                size_t *out_count, narc_error *error);
+
 /* Figure 3 of "Using Piecewise Circular Curves as a 2D Collision Primitive": two large circles that overlap,
  * `distance` between their centres, and two small circles inscribed where they meet. The large centres are (0,
  * distance / 2), radius `radius_low` (its arc bounds the shape below), and (0, -distance / 2), radius `radius_high`;
@@ -199,6 +204,22 @@ NARC_API narc_status narc_find_radius_range(const narc_point *points, size_t cou
  * crosses or touches itself, repeats a vertex, or has no area. */
 NARC_API narc_status narc_adjust_polygon(const narc_point *polygon, size_t count, narc_point *out_points,
                                          narc_error *error);
+
+/* An n-arc near any ring of points in one call: narc_build_points() with the junctions that narc_adjust_polygon()
+ * finds. Every simple polygon has one, in either orientation, convex or not; where it is not convex the n-arc cuts
+ * across its dents and corners. It has as many arcs as there are points. Errors: those of narc_adjust_polygon(). */
+NARC_API narc_status narc_build_ring(const narc_point *points, size_t count, narc_arc *out_arcs, size_t *out_count,
+                                     narc_error *error);
+
+/* The same shape with its centroid at the origin. `out_centroid` (or NULL) is where it was: what the position of a body
+ * must be moved by, turned and scaled as the body is, for the body to stay where it is. `out_arcs`, `count` of them,
+ * may be `arcs`. Errors: NARC_ERROR_ARGUMENT (NULL), those of narc_validate_arcs(). Thread-safe. */
+NARC_API narc_status narc_center_arcs(const narc_arc *arcs, size_t count, narc_arc *out_arcs, narc_point *out_centroid,
+                                      narc_error *error);
+
+/* The mirror image of a shape at the y axis: x becomes -x. Arc i becomes arc count - 1 - i, so that the list stays
+ * counter-clockwise. `out_arcs` and errors as narc_center_arcs(). Thread-safe. */
+NARC_API narc_status narc_mirror_arcs(const narc_arc *arcs, size_t count, narc_arc *out_arcs, narc_error *error);
 
 /* ----------------------------------------------------------------------------------------- derived quantities */
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "families.h"
 #include "support.h"
 #include "tests.h"
 
@@ -266,12 +267,127 @@ static void refuses_what_does_not_fit(void **state) {
     assert_int_equal(narc_build_four_arc((narc_four_arc){5, 5, 8, 0, 0}, NULL, count, NULL), NARC_ERROR_ARGUMENT);
 }
 
+/* The same outline as the polygon with corners at equal angles, whose measures are checked above. */
+static void builds_regular_polygons(void **state) {
+    (void)state;
+    for (size_t n = 3; n <= NARC_MAX_ARCS; n++) {
+        const double turn = 2 * pi / (double)n, apothem = 3 * cos(turn / 2), r = 0.4 * apothem, count = (double)n;
+        struct output out = make_output();
+        narc_mass mass;
+        expect_ok(narc_build_regular_polygon(n, 3, 0, out.arcs, &out.count, &out.error), &out.error);
+        assert_int_equal(out.count, n);
+        assert_true(out.arcs[0].center_x == 3 && out.arcs[0].center_y == 0 && out.arcs[0].radius == 0);
+        for (size_t i = 0; i < n; i++)
+            expect_near(hypot(out.arcs[i].center_x, out.arcs[i].center_y), 3, 1e-15 * 4, "distance of a corner");
+        expect_ok(narc_build_regular_polygon(n, 3, r, out.arcs, &out.count, &out.error), &out.error);
+        assert_true(narc_compute_mass(out.arcs, n, &mass));
+        const double cut = tan(turn / 2), area = count * apothem * apothem * cut;
+        expect_near(mass.area, area - count * r * r * (cut - turn / 2), 1e-13 * area, "area");
+        expect_near(out.arcs[0].center_x, 3 - r / cos(turn / 2), 1e-14, "centre of a round corner");
+    }
+    struct output o = make_output();
+    narc_arc *arcs = o.arcs;
+    size_t *count = &o.count;
+    narc_error *error = &o.error;
+    expect_refused(&o, narc_build_regular_polygon(2, 1, 0, arcs, count, error), NARC_ERROR_COUNT, "2 corners");
+    expect_refused(&o, narc_build_regular_polygon(65, 1, 0, arcs, count, error), NARC_ERROR_COUNT, "65 corners");
+    expect_refused(&o, narc_build_regular_polygon(5, 0, 0, arcs, count, error), NARC_ERROR_SIZE, "circumradius is 0");
+    expect_refused(&o, narc_build_regular_polygon(5, NAN, 0, arcs, count, error), NARC_ERROR_NOT_FINITE,
+                   "circumradius");
+    expect_refused(&o, narc_build_regular_polygon(4, 1, 1, arcs, count, error), NARC_ERROR_RADIUS, "radius is 1");
+    expect_refused(&o, narc_build_regular_polygon(4, 1, -1, arcs, count, error), NARC_ERROR_RADIUS, "radius is -1");
+    assert_int_equal(narc_build_regular_polygon(4, 1, 0, NULL, count, error), NARC_ERROR_ARGUMENT);
+}
+
+/* Random rings: convex ones, stars in either direction; each has an n-arc with as many arcs. */
+static void builds_rings(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("rings");
+    for (size_t k = 0; k < test_trials(1000); k++) {
+        const size_t n = 3 + random_below(&random, 14);
+        const bool backwards = random_below(&random, 2), convex = random_below(&random, 2);
+        narc_point points[16];
+        for (size_t i = 0; i < n; i++) {
+            const double angle = 2 * pi * ((double)i + 0.8 * random_unit(&random)) / (double)n;
+            const double r = convex ? 1 : random_between(&random, 0.4, 1);
+            points[backwards ? n - 1 - i : i] = (narc_point){4 + 3 * r * cos(angle), r * sin(angle) - 2};
+        }
+        struct output out = make_output();
+        expect_ok(narc_build_ring(points, n, out.arcs, &out.count, &out.error), &out.error);
+        assert_int_equal(out.count, n);
+        expect_ok(narc_validate_arcs(out.arcs, n, &out.error), &out.error);
+        /* It is smooth. */
+        for (size_t i = 0; i < n; i++) {
+            const narc_arc *a = &out.arcs[i], *b = &out.arcs[(i + 1) % n];
+            const double x = a->center_x + a->radius * cos(a->end) - b->center_x - b->radius * cos(b->start);
+            const double y = a->center_y + a->radius * sin(a->end) - b->center_y - b->radius * sin(b->start);
+            expect_near(hypot(x, y), 0, 1e-9, "gap at a junction");
+        }
+    }
+    const narc_point bow[4] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}}, line[3] = {{0, 0}, {1, 0}, {2, 0}};
+    struct output o = make_output();
+    expect_refused(&o, narc_build_ring(bow, 4, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_SIMPLE, "cross or touch");
+    expect_refused(&o, narc_build_ring(line, 3, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_SIMPLE, "");
+    expect_refused(&o, narc_build_ring(bow, 2, o.arcs, &o.count, &o.error), NARC_ERROR_COUNT, "2 points");
+    expect_refused(&o, narc_build_ring(NULL, 4, o.arcs, &o.count, &o.error), NARC_ERROR_ARGUMENT, "polygon is NULL");
+    assert_int_equal(narc_build_ring(bow, 4, NULL, &o.count, &o.error), NARC_ERROR_ARGUMENT);
+}
+
+/* Heights of shapes of all kinds: of the mirror image along (-x, y), of the centred one less by what it moved. */
+static void moves_arcs(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("moved arcs");
+    for (size_t k = 0; k < test_trials(20) * FAMILY_COUNT; k++) {
+        const struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
+        struct output mirror = make_output(), centered = make_output();
+        narc_point centroid, a, b, c;
+        narc_mass mass, moved;
+        expect_ok(narc_mirror_arcs(shape.arcs, shape.count, mirror.arcs, &mirror.error), &mirror.error);
+        expect_ok(narc_validate_arcs(mirror.arcs, shape.count, &mirror.error), &mirror.error);
+        expect_ok(narc_center_arcs(shape.arcs, shape.count, centered.arcs, &centroid, &centered.error),
+                  &centered.error);
+        assert_true(narc_compute_mass(shape.arcs, shape.count, &mass));
+        assert_true(narc_compute_mass(centered.arcs, shape.count, &moved));
+        assert_true(centroid.x == mass.centroid_x && centroid.y == mass.centroid_y);
+        const double reach = 1 + hypot(centroid.x, centroid.y),
+                     tolerance = 1e-9 * reach; /* some roundings of angles and large radii */
+        expect_near(hypot(moved.centroid_x, moved.centroid_y), 0, tolerance, "centroid");
+        assert_true(mirror.arcs[0].radius == shape.arcs[shape.count - 1].radius);
+        for (int i = 0; i < 50; i++) {
+            const double angle = random_between(&random, -pi, pi), x = cos(angle), y = sin(angle);
+            assert_true(narc_find_support(shape.arcs, shape.count, x, y, &a, NULL));
+            assert_true(narc_find_support(mirror.arcs, shape.count, -x, y, &b, NULL));
+            assert_true(narc_find_support(centered.arcs, shape.count, x, y, &c, NULL));
+            expect_near(b.y * y - b.x * x, a.x * x + a.y * y, tolerance, "height of the mirror image");
+            expect_near(c.x * x + c.y * y, (a.x - centroid.x) * x + (a.y - centroid.y) * y, tolerance, "height");
+        }
+        /* In place; and the mirror image of the mirror image. */
+        expect_ok(narc_mirror_arcs(mirror.arcs, shape.count, mirror.arcs, NULL), NULL);
+        for (size_t i = 0; i < shape.count; i++)
+            assert_true(mirror.arcs[i].center_x == shape.arcs[i].center_x);
+        expect_ok(narc_center_arcs(centered.arcs, shape.count, centered.arcs, NULL, NULL), NULL);
+    }
+    struct output o = make_output();
+    narc_arc broken = {0, 0, -1, -pi, pi};
+    expect_refused(&o, narc_center_arcs(&broken, 1, o.arcs, NULL, &o.error), NARC_ERROR_RADIUS, "radius is -1");
+    expect_refused(&o, narc_mirror_arcs(NULL, 1, o.arcs, &o.error), NARC_ERROR_ARGUMENT, "arcs is NULL");
+    expect_refused(&o, narc_mirror_arcs(&broken, 1, NULL, &o.error), NARC_ERROR_ARGUMENT, "out_arcs is NULL");
+    expect_refused(&o, narc_mirror_arcs(&broken, 65, o.arcs, &o.error), NARC_ERROR_COUNT, "65 arcs");
+}
+
 int test_builders(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(builds_circles),      cmocka_unit_test(builds_capsules),
-        cmocka_unit_test(builds_boxes),        cmocka_unit_test(builds_polygons),
-        cmocka_unit_test(builds_four_arcs),    cmocka_unit_test(rounded_polygon_stays_inside),
-        cmocka_unit_test(refuses_bad_lengths), cmocka_unit_test(refuses_what_does_not_fit),
+        cmocka_unit_test(builds_circles),
+        cmocka_unit_test(builds_capsules),
+        cmocka_unit_test(builds_boxes),
+        cmocka_unit_test(builds_polygons),
+        cmocka_unit_test(builds_four_arcs),
+        cmocka_unit_test(rounded_polygon_stays_inside),
+        cmocka_unit_test(refuses_bad_lengths),
+        cmocka_unit_test(refuses_what_does_not_fit),
+        cmocka_unit_test(builds_regular_polygons),
+        cmocka_unit_test(builds_rings),
+        cmocka_unit_test(moves_arcs),
     };
     return cmocka_run_group_tests_name("builders", tests, NULL, NULL);
 }
