@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * scenes.h - worlds to look at, and what tells whether they do as they should.
+ */
+#ifndef SCENES_H
+#define SCENES_H
+
+#include "world.h"
+
+typedef struct scene {
+    const char *name, *purpose;
+    float seconds; /* how long it is worth watching */
+    size_t capacity;
+    narc_status (*build)(world *w, uint64_t seed);
+} scene;
+
+/* Number `index`, or NULL behind the last; and by name. */
+const scene *get_scene(size_t index);
+const scene *find_scene(const char *name);
+
+/* Builds the scene in a new world. Another seed puts bodies a little elsewhere. */
+narc_status build_scene(const scene *chosen, world_settings settings, uint64_t seed, world *out_world);
+
+/* A body moves if a point of it is faster than this, in m/s. */
+#define SCENE_MOVING 0.01f
+
+typedef struct scene_state {
+    double energy;       /* J */
+    double displacement; /* the largest distance of a body from where it was at first, m */
+    double overlap;      /* the deepest at the last step, m */
+    size_t moving, contacts, points;
+} scene_state;
+
+/* `start` has the bodies as they were at first. */
+scene_state measure_scene(const world *w, const world_body *start);
+
+#endif

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * runs.c - scenes of the example world, run and measured.
+ */
+#include "runs.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+run begin_run(const char *name, world_settings settings, uint64_t seed) {
+    run r = {.name = name, .seed = seed};
+    assert_non_null(find_scene(name));
+    assert_int_equal(build_scene(find_scene(name), settings, seed, &r.world), NARC_OK);
+    const size_t size = r.world.body_count * sizeof *r.start;
+    r.start = malloc(size);
+    assert_non_null(r.start);
+    memcpy(r.start, r.world.bodies, size);
+    return r;
+}
+
+static void continue_with(run *r, float seconds, double allowed) {
+    const long steps = lroundf(seconds / r->world.settings.time_step);
+    for (long step = 0; step < steps; step++) {
+        const double before = world_energy(&r->world);
+        if (world_step(&r->world) != NARC_OK)
+            fail_msg("%s, seed %d: %s", r->name, (int)r->seed, r->world.error.message);
+        const double after = world_energy(&r->world);
+        if (!(after - before <= allowed * fabs(before)))
+            fail_msg("%s, seed %d: energy %.9g became %.9g", r->name, (int)r->seed, before, after);
+    }
+}
+
+void continue_run(run *r, float seconds) { continue_with(r, seconds, INFINITY); }
+
+void continue_calm_run(run *r, float seconds) { continue_with(r, seconds, 1e-4); }
+
+scene_state measure_run(const run *r) {
+    const scene_state state = measure_scene(&r->world, r->start);
+    print_message("%s, seed %d: energy %.2f, displacement %.4f, overlap %.4f, %zu moving, %zu contacts\n", r->name,
+                  (int)r->seed, state.energy, state.displacement, state.overlap, state.moving, state.contacts);
+    return state;
+}
+
+void end_run(run *r) {
+    world_destroy(&r->world);
+    free(r->start);
+}
