@@ -6,7 +6,7 @@ set datafile missing "?"
 set grid ytics lt 1 lw 0.5 lc rgb "#cccccc"
 set border 3
 set tics nomirror
-set key outside right top Left reverse samplen 2 width -4
+set key outside right top Left reverse samplen 4 width -4
 
 # Okabe and Ito's colours, for two times six lines; ours (columns 2 to 5) are solid and thick.
 array colors[12] = ["", "#0072b2", "#56b4e9", "#d55e00", "#e69f00", "#009e73", "#88ccaa", "#cc79a7", "#8a2be2", \

@@ -51,9 +51,10 @@ static inline bool narc_is_distance(const narc_problem *problem) { return proble
 /* An arc turns by at least this. Normals then stay apart in single precision, and a shorter arc would not matter. */
 #define LEAST_SWEEP 1e-3
 
-/* How far an arc may turn; polygons need sides that meet. */
+/* How far an arc may turn; polygons need sides that meet: the tips of thin hulls turn by
+ * nearly half a turn. */
 static inline double narc_widest_sweep(const narc_problem *problem) {
-    return problem->family == NARC_FIT_POLYGON ? 3.08 : 3.14159265358979323846;
+    return problem->family == NARC_FIT_POLYGON ? 3.1415 : 3.14159265358979323846;
 }
 
 /* How many rows: a linear programme goes far and takes many. A step of the local search goes less far, and its time

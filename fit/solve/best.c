@@ -19,7 +19,7 @@ struct depth {
     unsigned rounds;
     double gain;
 };
-static const struct depth FIRST = {1, 1e-3}, SECOND = {3, 1e-6}, EXCHANGE = {2, 1e-5}, LAST = {10, 1e-7};
+static const struct depth FIRST = {1, 1e-3}, SECOND = {1, 1e-6}, EXCHANGE = {2, 1e-5}, LAST = {10, 1e-7};
 
 /* Steps take time in proportion to the cube of the arcs or so: of many arcs there are fewer rounds. */
 static unsigned count_rounds(struct depth depth, size_t arcs) {

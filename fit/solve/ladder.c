@@ -23,8 +23,8 @@ static narc_effort choose_effort(const narc_rung *rung, unsigned starts) {
         const size_t less = n <= 12 ? starts : (starts + 3) / 4;
         return (narc_effort){.starts = less, .exchanges = less / 3, .kicks = less / 2};
     }
-    return n <= 6    ? (narc_effort){.starts = 20, .exchanges = 2, .kicks = 10}
-           : n <= 8  ? (narc_effort){.starts = 8, .exchanges = 2, .kicks = 4}
+    return n <= 6    ? (narc_effort){.starts = 20, .exchanges = 2, .kicks = 4}
+           : n <= 8  ? (narc_effort){.starts = 3, .exchanges = 1, .kicks = 1}
            : n <= 12 ? (narc_effort){.starts = 2, .exchanges = 1}
                      : (narc_effort){.starts = 1};
 }

@@ -13,13 +13,14 @@
 #include "outline/vector.h"
 #include "solve/search.h"
 
-/* One round ends when the variables change by less than this, or after so many evaluations, of
- * more than 12 arcs half as many. */
+/* One attempt ends when the variables change by less than this, or after so many evaluations: a few steps go as far as
+ * the rows are good for. Without rows there is one attempt. */
 static const double STEP_TOLERANCE = 1e-7;
-enum { EVALUATIONS = 30 };
+enum { EVALUATIONS = 4, BARE_EVALUATIONS = 30 };
 
-/* Where a round ends too far for lack of rows it goes on from there with more of them, so many times in all. */
-enum { ATTEMPTS = 4 };
+/* Where an attempt ends too far for lack of rows the round goes on from there with more of them, so many times in all.
+ */
+enum { ATTEMPTS = 8 };
 
 /* Rows with more room than this, in units of the hull's radius, are left out until they are missed: the time of a step
  * grows with their number. */
@@ -239,7 +240,7 @@ static void run_solver(struct descent *descent, const narc_layout *layout, doubl
         nlopt_add_inequality_mconstraint(solver, (unsigned)descent->search->rows->count, conditions, descent, NULL);
     nlopt_set_xtol_abs1(solver, STEP_TOLERANCE);
     nlopt_set_ftol_rel(solver, gain);
-    nlopt_set_maxeval(solver, descent->chain.count <= 12 ? EVALUATIONS : EVALUATIONS / 2);
+    nlopt_set_maxeval(solver, descent->search->rows->count ? EVALUATIONS : BARE_EVALUATIONS);
     nlopt_optimize(solver, x, &least);
     nlopt_destroy(solver);
 }

@@ -33,13 +33,14 @@ size_t narc_find_widest(const double *angles, size_t count, double *out_sweep) {
     return widest;
 }
 
-/* Draws normals towards an even spread by as much as keeps any two of them apart. */
+/* Draws normals that are too near to each other towards an even spread. Others stay: those on the sides of a hull are the
+ * best there are. */
 static void spread_normals(double *angles, size_t count) {
     static const double EVEN = 0.02;
     double least = INFINITY;
     for (size_t k = 0; k + 1 < count; k++)
         least = fmin(least, angles[k + 1] - angles[k]);
-    if (least < 2 * LEAST_SWEEP)
+    if (least < LEAST_SWEEP)
         for (size_t k = 0; k < count; k++)
             angles[k] += EVEN * (angles[0] + 2 * PI * (double)k / (double)count - angles[k]);
 }

@@ -37,6 +37,22 @@ static void test_thin_rhombus(void **state) {
     free_outline(&rhombus);
 }
 
+/* Its tips turn by nearly half a turn. The certificate moves sides out by some 2^-23 of the length, which is 1e-4 of the
+ * width. */
+static void test_thinnest_rhombus(void **state) {
+    (void)state;
+    const narc_point corners[4] = {{-1000, 0}, {0, -1}, {1000, 0}, {0, 1}};
+    struct outline rhombus = make_outline("thinnest rhombus");
+    add_corners(&rhombus, corners, 4);
+    for (int family = NARC_FIT_EDGES; family <= NARC_FIT_POLYGON; family++) {
+        const narc_fit_result fit = fit_shape(&rhombus, (narc_fit_family)family, NARC_FIT_BOUND_AREA, 4);
+        if (!(fit.area <= 2000 * (1 + NEAR)))
+            fail_msg("thinnest rhombus, family %d: area %g, its own is 2000", family, fit.area);
+        check_contained(&rhombus, &fit, "thinnest rhombus");
+    }
+    free_outline(&rhombus);
+}
+
 static double fit_value(const struct outline *of, narc_fit_family family, narc_fit_goal goal, size_t arcs) {
     const narc_fit_request request = {.arc_count = arcs, .family = family, .goal = goal, .starts = 1};
     const narc_fit_result fit = fit_outline(of, request);
@@ -163,6 +179,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_square),
         cmocka_unit_test(test_thin_rhombus),
+        cmocka_unit_test(test_thinnest_rhombus),
         cmocka_unit_test(test_more_is_never_worse),
         cmocka_unit_test(test_turned_and_mirrored),
         cmocka_unit_test(test_least_radius),
