@@ -21,8 +21,8 @@ run begin_run(const char *name, world_settings settings, uint64_t seed);
 /* Steps for so many seconds. */
 void continue_run(run *r, float seconds);
 
-/* The same, and in no step may energy appear: more than a part in 10,000 of what there is, which is what pushing bodies
- * apart may add. */
+/* The same for bodies that rest: in no step may energy appear, more than the part in 10,000 that pushing bodies apart
+ * may add. */
 void continue_calm_run(run *r, float seconds);
 
 /* Measures it and prints that. */

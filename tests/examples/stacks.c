@@ -45,7 +45,7 @@ static void test_one_point_does_not_hold(void **state) {
     end_run(&r);
 }
 
-/* With a half, or twice, the flat angle nothing changes here. */
+/* Other flat angles do as well: docs/solver.md has the table. */
 static void test_flat_angles(void **state) {
     (void)state;
     const float degree = 0.017453293f, angles[] = {5 * degree, 15 * degree, 40 * degree};
