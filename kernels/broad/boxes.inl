@@ -223,13 +223,13 @@ static size_t box(const narc_box_batch *batch, size_t first, size_t count, narc_
     size_t skipped = 0;
     for (size_t k = 0; k < count; k += V_WIDTH) {
         /* The lanes behind the last body repeat the vector's first. */
+        const int lanes = count - k < V_WIDTH ? (int)(count - k) : V_WIDTH;
+        const vi lane = vi_select(vm_front(lanes), vi_lanes(), vi_set(0)), place = vi_add(lane, vi_set((int32_t)k));
         int32_t body[V_WIDTH], shape[V_WIDTH], to[V_WIDTH];
-        for (size_t l = 0; l < V_WIDTH; l++) {
-            const size_t at = k + l < count ? k + l : k;
-            body[l] = (int32_t)(uint32_t)(first + at);
-            to[l] = (int32_t)at;
-            shape[l] = (int32_t)narc_index_at(bodies->shape, first + at);
-        }
+        vi_store(to, place);
+        vi_store(body, vi_add(place, vi_set((int32_t)(uint32_t)first)));
+        for (int l = 0; l < V_WIDTH; l++)
+            shape[l] = (int32_t)narc_index_at(bodies->shape, (uint32_t)body[l]);
         const struct headers headers = load_headers(batch->shapes->headers, shape);
         const struct placed_bodies placed = load_placed_bodies(bodies, adjacent, body);
         vm valid;
@@ -251,7 +251,6 @@ static size_t box(const narc_box_batch *batch, size_t first, size_t count, narc_
         const vf sides[4] = {v_select(valid, v_neg(r.left), none), v_select(valid, v_neg(r.down), none),
                              v_select(valid, r.right, v_neg(none)), v_select(valid, r.up, v_neg(none))};
         v_put_rows(out, sizeof *out, to, sides);
-        const int lanes = count - k < V_WIDTH ? (int)(count - k) : V_WIDTH;
         skipped += (size_t)__builtin_popcount(vm_bits(vm_and_not(vm_front(lanes), valid)));
     }
     return skipped;
