@@ -31,7 +31,7 @@ enum { NOT_LISTED, ONE_POINT, TWO_POINTS, NO_ANSWER };
 /* A row for each pair of a call. The last item of each array takes what lanes without a contact write. */
 struct contact_rows {
     _Alignas(64) float row[GROUP + 1][ROW];
-    uint8_t keep[GROUP + 1]; /* one of the above */
+    int32_t keep[GROUP + 1]; /* one of the above */
     bool hinted;             /* are hints wanted? */
     uint32_t hint[GROUP + 1];
 };
@@ -110,12 +110,13 @@ INLINE void store_no_contact(const struct call *call, vi pairs, vm which) {
 INLINE int find_listed(const struct call *call, int32_t pair[GROUP + V_WIDTH]) {
     const int count = (int)call->count;
     int n = 0;
-    for (int k = 0; k < count; k++) {
-        pair[n] = k;
-        n += call->rows->keep[k] != NOT_LISTED;
+    for (int k = 0; k < count; k += V_WIDTH) {
+        const vm listed = vm_and(vm_front(count - k), vi_lt(vi_set(NOT_LISTED), vi_load(call->rows->keep + k)));
+        const vf pairs = v_of_bits(vi_add(vi_lanes(), vi_set(k)));
+        vi_store(pair + n, vi_bits(v_pack(vm_packing(listed), pairs)));
+        n += __builtin_popcount(vm_bits(listed));
     }
-    for (int k = 0; k < V_WIDTH; k++)
-        pair[n + k] = GROUP;
+    vi_store(pair + n, vi_set(GROUP));
     return n;
 }
 

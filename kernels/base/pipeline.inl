@@ -83,7 +83,8 @@ static inline struct call begin_overlaps(const narc_batch *batch, size_t first, 
 static inline struct call begin_contacts(const narc_batch *batch, size_t first, size_t count, float margin,
                                          struct contact_rows *rows) {
     rows->hinted = false;
-    memset(rows->keep, NOT_LISTED, count);
+    /* NOT_LISTED is 0. Lists are read by whole vectors. */
+    memset(rows->keep, 0, (count + V_WIDTH - 1) / V_WIDTH * V_WIDTH * sizeof *rows->keep);
     return (struct call){.batch = batch,
                          .first = first,
                          .count = count,

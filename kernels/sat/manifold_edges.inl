@@ -233,7 +233,7 @@ static void find_second_points(const struct call *call, struct queue *queue, int
         v_put_rows(rows->second, sizeof rows->second[0], row, of_second);
         v_put_rows((float *)rows->second + 4, sizeof rows->second[0], row, of_second + 4);
         for (int lane = 0; lane < V_WIDTH; lane++)
-            rows->first.keep[row[lane]] = (uint8_t)points[lane];
+            rows->first.keep[row[lane]] = points[lane];
     }
 }
 
