@@ -162,6 +162,17 @@ NARC_API narc_status narc_build_polygon(const narc_point *points, size_t count, 
 NARC_API narc_status narc_build_regular_polygon(size_t corners, double circumradius, double radius, narc_arc *out_arcs,
                                                 size_t *out_count, narc_error *error);
 
+/* The n-arc nearest to the ellipse x^2 / half_x^2 + y^2 / half_y^2 = 1, of all that are symmetric to both axes: the one
+ * with the least Hausdorff distance, which goes to `out_distance` (or NULL). (Of ellipses thinner than 12:1, with more
+ * than 16 arcs, it is sometimes another one, up to 1.7 times as far.) It lies partly inside and partly outside the
+ * ellipse. `arc_count` is 4, 8, 12 ... NARC_MAX_ARCS; twice as many arcs are about eight times as near. Where the half
+ * axes are equal (their difference below 2 * NARC_TOLERANCE times the larger), it is a circle of one arc.
+ * NARC_ERROR_COUNT: another arc_count. NARC_ERROR_RADIUS: an arc is flatter than narc_validate_arcs() allows; the
+ * flattest has a radius of about the larger half axis squared over the smaller.
+ * Source: equal extreme errors (Chebyshev) of the support function, by the Remez exchange; soa/ellipse.c. */
+NARC_API narc_status narc_build_ellipse(double half_x, double half_y, size_t arc_count, narc_arc *out_arcs,
+                                        size_t *out_count, double *out_distance, narc_error *error);
+
 /* Figure 3 of "Using Piecewise Circular Curves as a 2D Collision Primitive": two large circles that overlap,
  * `distance` between their centres, and two small circles inscribed where they meet. The large centres are (0,
  * distance / 2), radius `radius_low` (its arc bounds the shape below), and (0, -distance / 2), radius `radius_high`;

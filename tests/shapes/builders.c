@@ -299,6 +299,97 @@ static void builds_regular_polygons(void **state) {
     assert_int_equal(narc_build_regular_polygon(4, 1, 0, NULL, count, error), NARC_ERROR_ARGUMENT);
 }
 
+/* By how much the support function of a smooth outline, symmetric to both axes, differs from an ellipse's, at most:
+ * sampled. Each normal of the first quadrant is held by one arc. */
+static double measure_distance(const narc_arc *arcs, size_t count, double half_x, double half_y) {
+    enum { SAMPLES = 1000 };
+    double largest = 0;
+    for (int k = 0; k <= SAMPLES; k++) {
+        const double angle = atan2(sqrt(half_x) * sin(pi / 2 * k / SAMPLES), sqrt(half_y) * cos(pi / 2 * k / SAMPLES)),
+                     x = cos(angle), y = sin(angle);
+        double height = -INFINITY;
+        for (size_t i = 0; i < count; i++)
+            if (arcs[i].start <= angle && angle <= arcs[i].end)
+                height = arcs[i].center_x * x + arcs[i].center_y * y + arcs[i].radius;
+        largest = fmax(largest, fabs(height - hypot(half_x * x, half_y * y)));
+    }
+    return largest;
+}
+
+/* The same quadrant with other junctions and radii, closed by moving the centres. */
+static double measure_changed(const narc_arc *arcs, size_t count, double half_x, double half_y,
+                              struct test_random *random, double amount) {
+    const size_t last = count / 4;
+    narc_arc changed[NARC_MAX_ARCS];
+    for (size_t k = 0; k <= last; k++) {
+        changed[k] = arcs[k];
+        changed[k].radius *= 1 + amount * random_between(random, -1, 1);
+        changed[k].start += k > 0 ? amount * random_between(random, -1, 1) : 0;
+    }
+    for (size_t k = 0; k < last; k++)
+        changed[k].end = changed[k + 1].start;
+    changed[0].center_x = changed[0].center_y = 0;
+    for (size_t k = 1; k <= last; k++) {
+        const double step = changed[k - 1].radius - changed[k].radius;
+        changed[k].center_x = changed[k - 1].center_x + step * cos(changed[k].start);
+        changed[k].center_y = changed[k - 1].center_y + step * sin(changed[k].start);
+    }
+    const double by = changed[last].center_x;
+    for (size_t k = 0; k <= last; k++)
+        changed[k].center_x -= by;
+    return measure_distance(changed, last + 1, half_x, half_y);
+}
+
+/* Smooth, as near as it says, and no small change brings it nearer. */
+static void builds_ellipses(void **state) {
+    (void)state;
+    const double ratio[] = {1.001, 1.2, 2, 4.5, 11, 35};
+    struct test_random random = test_random_named("ellipses");
+    for (size_t r = 0; r < 2 * sizeof ratio / sizeof *ratio; r++) {
+        const double long_half = 3 * ratio[r / 2], half_x = r % 2 ? 3 : long_half, half_y = r % 2 ? long_half : 3;
+        double last = INFINITY;
+        for (size_t n = 4; n <= NARC_MAX_ARCS; n += n < 16 ? 4 : 16) {
+            struct output out = make_output();
+            double distance;
+            expect_ok(narc_build_ellipse(half_x, half_y, n, out.arcs, &out.count, &distance, &out.error), &out.error);
+            assert_int_equal(out.count, n);
+            for (size_t i = 0; i < n; i++) {
+                const narc_arc *a = &out.arcs[i], *b = &out.arcs[(i + 1) % n];
+                const double x = a->center_x + a->radius * cos(a->end) - b->center_x - b->radius * cos(b->start);
+                const double y = a->center_y + a->radius * sin(a->end) - b->center_y - b->radius * sin(b->start);
+                expect_near(hypot(x, y), 0, 1e-11 * long_half, "gap at a junction");
+                const narc_arc *across = &out.arcs[(n - i) % n]; /* mirrored at the x axis */
+                expect_near(across->center_y, -a->center_y, 1e-11 * long_half, "symmetry");
+            }
+            const double measured = measure_distance(out.arcs, n, half_x, half_y);
+            assert_true(measured <= distance * (1 + 1e-9) + 1e-14 * long_half);
+            assert_true(measured >= distance * 0.999);
+            assert_true(distance < last || ratio[r / 2] > 12);
+            last = distance;
+            if (ratio[r / 2] > 12 && n > 16)
+                continue; /* perhaps not the nearest */
+            for (size_t k = 0; k < test_trials(5) && n <= 12; k++)
+                for (double amount = 1e-2; amount > 1e-5; amount /= 8)
+                    assert_true(measure_changed(out.arcs, n, half_x, half_y, &random, amount) > distance * 0.9995);
+        }
+    }
+    struct output o = make_output();
+    narc_arc *arcs = o.arcs;
+    size_t *count = &o.count;
+    narc_error *error = &o.error;
+    double distance = 7;
+    expect_ok(narc_build_ellipse(2, 2.000001, 8, arcs, count, &distance, error), error);
+    assert_int_equal(*count, 1);
+    expect_near(distance, 5e-7, 1e-12, "distance");
+    o = make_output();
+    expect_refused(&o, narc_build_ellipse(2, 1, 6, arcs, count, NULL, error), NARC_ERROR_COUNT, "arc_count is 6");
+    expect_refused(&o, narc_build_ellipse(2, 1, 68, arcs, count, NULL, error), NARC_ERROR_COUNT, "arc_count is 68");
+    expect_refused(&o, narc_build_ellipse(0, 1, 8, arcs, count, NULL, error), NARC_ERROR_SIZE, "half_x is 0");
+    expect_refused(&o, narc_build_ellipse(1, NAN, 8, arcs, count, NULL, error), NARC_ERROR_NOT_FINITE, "half_y is");
+    expect_refused(&o, narc_build_ellipse(100, 1, 32, arcs, count, NULL, error), NARC_ERROR_RADIUS, "");
+    assert_int_equal(narc_build_ellipse(2, 1, 8, NULL, count, NULL, error), NARC_ERROR_ARGUMENT);
+}
+
 /* Random rings: convex ones, stars in either direction; each has an n-arc with as many arcs. */
 static void builds_rings(void **state) {
     (void)state;
@@ -386,6 +477,7 @@ int test_builders(void) {
         cmocka_unit_test(refuses_bad_lengths),
         cmocka_unit_test(refuses_what_does_not_fit),
         cmocka_unit_test(builds_regular_polygons),
+        cmocka_unit_test(builds_ellipses),
         cmocka_unit_test(builds_rings),
         cmocka_unit_test(moves_arcs),
     };
