@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "error.h"
+#include "model/least_distance.h"
 #include "outline/vector.h"
 #include "result/finish.h"
 #include "result/paper.h"
@@ -42,6 +43,13 @@ enum { MOST_CORNERS = 2000 };
 
 /* With a tolerance, curves are flattened to this part of it at least. */
 static const double FLATNESS_OF_TOLERANCE = 0.02;
+
+/* Coordinates are rounded to single precision, by up to this part of the outline's radius. */
+static const double SINGLE_ROUNDING = 0x1p-24;
+
+/* Chains of the most arcs that grow from fewer are closer than those from fresh starts, but never so many times: it was
+ * 2.5 times at most on random polygons, ellipses and curves. */
+static const double LOOK_AHEAD = 16;
 
 /* A fit under way. */
 struct job {
@@ -274,6 +282,13 @@ static narc_status prepare(const narc_path *path, struct job *job, narc_error *e
 
 /* ---------------------------------------------------------------------------- one count of arcs */
 
+static narc_ladder *aim_ladder(struct job *job) {
+    job->ladder.hull = job->mirrored.count ? &job->mirrored : &job->hull;
+    job->ladder.progress = &job->progress;
+    job->ladder.max_radius = job->max_radius;
+    return &job->ladder;
+}
+
 static narc_status find_chains(struct job *job, narc_fit_family family, narc_fit_goal goal, size_t count,
                                const narc_ranking **out_best, narc_error *error) {
     narc_rung wanted = {family, goal, count};
@@ -282,10 +297,7 @@ static narc_status find_chains(struct job *job, narc_fit_family family, narc_fit
         wanted.family = NARC_FIT_N_ARC;
         wanted.count = 3;
     }
-    job->ladder.hull = job->mirrored.count ? &job->mirrored : &job->hull;
-    job->ladder.progress = &job->progress;
-    job->ladder.max_radius = job->max_radius;
-    return narc_climb(&job->ladder, &wanted, out_best, error);
+    return narc_climb(aim_ladder(job), &wanted, out_best, error);
 }
 
 /* A chain as the outline has it. */
@@ -363,14 +375,41 @@ static narc_status fit_count(struct job *job, narc_fit_goal goal, size_t count, 
 
 /* ---------------------------------------------------------------------------- the fewest arcs */
 
+static bool is_n_arc(narc_fit_family family) { return family == NARC_FIT_N_ARC || family == NARC_FIT_PAPER; }
+
+static narc_fit_goal tolerance_goal(const narc_fit_request *request) {
+    return request->goal <= NARC_FIT_BOUND_DISTANCE ? NARC_FIT_BOUND_DISTANCE : NARC_FIT_DISTANCE;
+}
+
+/* Is the tolerance less than what is known before the search? A fit that bounds goes around the chords of curves by
+ * their flatness, and distances count the flatness once more. */
+static narc_status check_tolerance(const struct job *job, narc_error *error) {
+    const narc_fit_request *request = job->request;
+    const bool bound = tolerance_goal(request) == NARC_FIT_BOUND_DISTANCE;
+    const double bulge = is_n_arc(request->family) ? narc_least_distance(&job->hull, bound) : 0;
+    const double rounding = job->frame.radius * SINGLE_ROUNDING, side = job->frame.radius * bulge;
+    const double flatness = job->flatness + (bound ? job->outline.flatness : 0);
+    const double least = flatness + fmax(rounding, side);
+    if (request->tolerance >= least)
+        return NARC_OK;
+    char reason[160];
+    if (flatness >= fmax(rounding, side))
+        snprintf(reason, sizeof reason, "its chords are within %g of its curves", job->flatness);
+    else if (side >= rounding)
+        snprintf(reason, sizeof reason, "radii end at 64 times the shape's, straight edges may come closer");
+    else
+        snprintf(reason, sizeof reason, "single precision rounds its coordinates by up to %g", rounding);
+    return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, least,
+                     "up to %d arcs come no closer than %g to the outline, not within the tolerance %g: %s",
+                     NARC_MAX_FIT_ARCS, least, request->tolerance, reason);
+}
+
 /* Tries a count; true if it keeps the tolerance, and then the result is taken. `closest` is the least distance of all
  * tries. */
 static bool keeps_tolerance(struct job *job, size_t count, narc_fit_result *out_result, double *closest,
                             narc_status *out_status, narc_error *error) {
-    const narc_fit_goal goal =
-        job->request->goal <= NARC_FIT_BOUND_DISTANCE ? NARC_FIT_BOUND_DISTANCE : NARC_FIT_DISTANCE;
     narc_fit_result result;
-    *out_status = fit_count(job, goal, count, &result, error);
+    *out_status = fit_count(job, tolerance_goal(job->request), count, &result, error);
     if (*out_status != NARC_OK)
         return false;
     const double distance = result.max_distance + job->flatness;
@@ -389,19 +428,34 @@ static narc_status fail_fewest(const struct job *job, double closest, narc_statu
     char reason[100] = "";
     if (job->request->min_radius > 0)
         snprintf(reason, sizeof reason, ": arcs have at least the radius %g", job->request->min_radius);
-    else if (job->request->family == NARC_FIT_N_ARC)
+    else if (is_n_arc(job->request->family))
         snprintf(reason, sizeof reason, ": radii end at 64 times the shape's, straight edges may come closer");
     return narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, closest,
                      "up to %d arcs come within %g of the outline, not within the tolerance %g%s", NARC_MAX_FIT_ARCS,
                      closest, job->request->tolerance, reason);
 }
 
+/* Are the most arcs, from fresh starts, so far off that none is worth a search? */
+static bool is_out_of_reach(struct job *job, double *out_distance) {
+    const narc_rung most = {job->request->family, tolerance_goal(job->request), NARC_MAX_FIT_ARCS};
+    double value;
+    if (job->request->family == NARC_FIT_PAPER || narc_look_ahead(aim_ladder(job), &most, &value, NULL) != NARC_OK)
+        return false;
+    *out_distance = job->frame.radius * value + job->flatness;
+    return *out_distance > LOOK_AHEAD * job->request->tolerance;
+}
+
 /* More and more arcs, of which each count builds on the one before, until the tolerance is kept. */
 static narc_status fit_fewest(struct job *job, narc_fit_result *out_result, narc_error *error) {
     const bool corners = job->request->family == NARC_FIT_POLYGON || job->request->family == NARC_FIT_PAPER;
-    double closest = INFINITY;
-    narc_status status = NARC_OK;
+    double closest;
+    narc_status status = check_tolerance(job, error);
     narc_error last;
+    if (status != NARC_OK)
+        return status;
+    if (is_out_of_reach(job, &closest))
+        return fail_fewest(job, closest, status, NULL, error);
+    closest = INFINITY;
     for (size_t count = corners ? 3 : 1; count <= NARC_MAX_FIT_ARCS; count++) {
         if (keeps_tolerance(job, count, out_result, &closest, &status, &last))
             return NARC_OK;
@@ -416,15 +470,12 @@ static narc_status fit_fewest(struct job *job, narc_fit_result *out_result, narc
 static size_t plan_work(const struct job *job) {
     const narc_fit_request *request = job->request;
     const bool paper = request->family == NARC_FIT_PAPER, fewest = request->arc_count == 0;
-    const bool bound = request->goal <= NARC_FIT_BOUND_DISTANCE;
     const narc_rung last = {.family = paper ? NARC_FIT_POLYGON : request->family,
-                            .goal = !fewest || paper ? request->goal
-                                    : bound          ? NARC_FIT_BOUND_DISTANCE
-                                                     : NARC_FIT_DISTANCE,
+                            .goal = !fewest || paper ? request->goal : tolerance_goal(request),
                             .count = fewest                   ? NARC_MAX_FIT_ARCS
                                      : request->arc_count < 3 ? 3
                                                               : request->arc_count};
-    return narc_plan_ladder(&job->ladder, &last);
+    return narc_plan_ladder(&job->ladder, &last) + (fewest && !paper ? narc_plan_look(&job->ladder, &last) : 0);
 }
 
 narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request, narc_fit_result *out_result,

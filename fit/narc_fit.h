@@ -203,7 +203,9 @@ typedef struct narc_fit_result {
  * area below 1e-5 of the radius squared), NARC_ERROR_SIZE (tolerance not positive; least radius negative or more than
  * 16 times the hull's from its centroid; outline too small or too large), NARC_ERROR_NO_SOLUTION (the tolerance is not
  * reached with NARC_MAX_FIT_ARCS arcs, the message tells what was; or the paper's route finds no n-arc),
- * NARC_ERROR_MEMORY, NARC_ERROR_CANCELLED. */
+ * NARC_ERROR_MEMORY, NARC_ERROR_CANCELLED. Refused before any search are tolerances below 2^-24 of the outline's radius
+ * (single precision), below the flatness (of bounding fits twice that) and, of n-arcs, below what arcs with the largest
+ * radius bulge on the hull's longest side. */
 NARC_API narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request, narc_fit_result *out_result,
                                    narc_error *error);
 

@@ -272,8 +272,7 @@ static void exchange_best(narc_search *search, const narc_effort *effort, struct
         enter(best, &first);
 }
 
-/* Is a value the hull's own, which no shape betters? */
-static bool is_perfect(const narc_problem *problem, double value) {
+bool narc_is_perfect(const narc_problem *problem, double value) {
     const narc_hull *hull = problem->hull;
     return problem->goal == NARC_FIT_BOUND_AREA        ? value <= hull->area * (1 + SAME)
            : problem->goal == NARC_FIT_BOUND_PERIMETER ? value <= hull->perimeter * (1 + SAME)
@@ -288,7 +287,7 @@ static bool search_all(narc_search *search, const narc_effort *effort, const nar
     struct pool second = {.room = count_halves(effort->starts), .items = near.items + near.room};
     for (size_t k = 0; k < known_count; k++)
         (known[k].count == search->problem.count ? enter_whole : enter_splits)(search, &known[k], &near, best);
-    if (best->count && is_perfect(&search->problem, best->items[0].value))
+    if (best->count && narc_is_perfect(&search->problem, best->items[0].value))
         return true;
     if (!search->progress->cancelled && first.room && !enter_starts(search, &first))
         return false;

@@ -24,6 +24,9 @@ typedef struct narc_effort {
 /* The most pieces of work that narc_find_best() counts. */
 size_t narc_count_work(const narc_effort *effort);
 
+/* Is a value the hull's own, which no shape betters? */
+bool narc_is_perfect(const narc_problem *problem, double value);
+
 /* Searches from many starts and from known chains, which have as many arcs or one less. Of those with one less, each
  * arc is split in turn. The best is no worse than any known chain. NARC_ERROR_NO_SOLUTION: nothing was found.
  * NARC_ERROR_CANCELLED: nothing was found before the caller ended it. NARC_ERROR_MEMORY. */

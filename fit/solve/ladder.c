@@ -44,13 +44,17 @@ static size_t list_needs(const narc_ladder *ladder, const narc_rung *rung, narc_
     return count;
 }
 
+size_t narc_plan_look(const narc_ladder *ladder, const narc_rung *rung) {
+    const narc_effort effort = choose_effort(rung, ladder->starts);
+    return narc_count_work(&effort) * rung->count;
+}
+
 static size_t plan(const narc_ladder *ladder, const narc_rung *rung, bool seen[][LADDER_GOALS][MAX_CHAIN + 1]) {
     bool *mine = &seen[rung->family][rung->goal][rung->count];
     if (*mine)
         return 0;
     *mine = true;
-    const narc_effort effort = choose_effort(rung, ladder->starts);
-    size_t sum = narc_count_work(&effort) * rung->count;
+    size_t sum = narc_plan_look(ladder, rung);
     narc_rung needs[MOST_NEEDS];
     const size_t count = list_needs(ladder, rung, needs);
     for (size_t k = 0; k < count; k++)
@@ -80,6 +84,26 @@ static size_t adapt(const narc_ranking *ranking, const narc_rung *source, const 
     return count;
 }
 
+static narc_problem state_problem(const narc_ladder *ladder, const narc_rung *rung) {
+    return (narc_problem){ladder->hull, rung->family, rung->goal, rung->count, ladder->min_radius, ladder->max_radius};
+}
+
+/* Searches for a rung's chains from its own starts and from known ones. */
+static narc_status search_rung(narc_ladder *ladder, const narc_rung *rung, const narc_chain *known, size_t known_count,
+                               narc_ranking *out_best, narc_error *error) {
+    narc_problem problem = state_problem(ladder, rung);
+    narc_hull bare = *ladder->hull;
+    if (!narc_must_bound(&problem)) {
+        bare.inflation = 0;
+        problem.hull = &bare;
+    }
+    const narc_effort effort = choose_effort(rung, ladder->starts);
+    ladder->progress->limit += narc_plan_look(ladder, rung);
+    const narc_status status = narc_find_best(&problem, &effort, known, known_count, ladder->progress, out_best, error);
+    ladder->progress->done = ladder->progress->limit;
+    return status;
+}
+
 narc_status narc_climb(narc_ladder *ladder, const narc_rung *rung, const narc_ranking **out_best, narc_error *error) {
     narc_ranking **mine = &ladder->found[rung->family][rung->goal][rung->count];
     if (*mine) {
@@ -89,26 +113,21 @@ narc_status narc_climb(narc_ladder *ladder, const narc_rung *rung, const narc_ra
     narc_rung needs[MOST_NEEDS];
     narc_chain known[MOST_KNOWN];
     size_t known_count = 0;
+    const narc_problem problem = state_problem(ladder, rung);
     const size_t need_count = list_needs(ladder, rung, needs);
-    for (size_t k = 0; k < need_count; k++) {
+    bool perfect = false; /* with an arc less: then more arcs, and other families, change nothing */
+    for (size_t k = 0; k < need_count && !perfect; k++) {
         const narc_ranking *other;
-        if (narc_climb(ladder, &needs[k], &other, NULL) == NARC_OK)
+        if (narc_climb(ladder, &needs[k], &other, NULL) == NARC_OK) {
             known_count += adapt(other, &needs[k], rung, known + known_count);
+            perfect = needs[k].family == rung->family && needs[k].goal == rung->goal &&
+                      narc_is_perfect(&problem, other->items[0].value);
+        }
     }
-    narc_problem problem = {ladder->hull, rung->family,       rung->goal,
-                            rung->count,  ladder->min_radius, ladder->max_radius};
-    narc_hull bare = *ladder->hull;
-    if (!narc_must_bound(&problem)) {
-        bare.inflation = 0;
-        problem.hull = &bare;
-    }
-    const narc_effort effort = choose_effort(rung, ladder->starts);
     narc_ranking *ranking = malloc(sizeof *ranking);
     if (!ranking)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for chains of %zu arcs", rung->count);
-    ladder->progress->limit += narc_count_work(&effort) * rung->count;
-    const narc_status status = narc_find_best(&problem, &effort, known, known_count, ladder->progress, ranking, error);
-    ladder->progress->done = ladder->progress->limit;
+    const narc_status status = search_rung(ladder, rung, known, known_count, ranking, error);
     if (status != NARC_OK) {
         free(ranking);
         return status;
@@ -116,6 +135,14 @@ narc_status narc_climb(narc_ladder *ladder, const narc_rung *rung, const narc_ra
     *mine = ranking;
     *out_best = ranking;
     return NARC_OK;
+}
+
+narc_status narc_look_ahead(narc_ladder *ladder, const narc_rung *rung, double *out_value, narc_error *error) {
+    narc_ranking ranking;
+    const narc_status status = search_rung(ladder, rung, NULL, 0, &ranking, error);
+    if (status == NARC_OK)
+        *out_value = ranking.items[0].value;
+    return status;
 }
 
 void narc_clear_ladder(narc_ladder *ladder) {

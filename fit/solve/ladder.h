@@ -31,6 +31,11 @@ size_t narc_plan_ladder(const narc_ladder *ladder, const narc_rung *rung);
  * finds with fewer arcs, or with a narrower family. Errors: those of narc_find_best(). */
 narc_status narc_climb(narc_ladder *ladder, const narc_rung *rung, const narc_ranking **out_best, narc_error *error);
 
+/* The value of the best chain that a rung finds from its own starts alone, which takes a small part of a climb;
+ * and how many pieces of work that takes. */
+narc_status narc_look_ahead(narc_ladder *ladder, const narc_rung *rung, double *out_value, narc_error *error);
+size_t narc_plan_look(const narc_ladder *ladder, const narc_rung *rung);
+
 void narc_clear_ladder(narc_ladder *ladder);
 
 #endif
