@@ -94,15 +94,10 @@ narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32
     narc_circle circle;
     if (narc_count_shapes(w->store) == w->capacity)
         return fail(w, NARC_ERROR_CAPACITY, "too many shapes");
-    const narc_status status = narc_validate_arcs(arcs, count, &w->error);
+    const narc_status status = narc_center_arcs(arcs, count, centered, NULL, &w->error);
     if (status != NARC_OK)
         return status;
-    narc_compute_mass(arcs, count, &mass);
-    for (size_t i = 0; i < count; i++) {
-        centered[i] = arcs[i];
-        centered[i].center_x -= mass.centroid_x;
-        centered[i].center_y -= mass.centroid_y;
-    }
+    narc_compute_mass(centered, count, &mass);
     narc_compute_bounding_circle(centered, count, &circle);
     w->shapes[narc_count_shapes(w->store)] =
         (world_shape){(float)mass.area, (float)mass.second_moment, (float)(hypot(circle.x, circle.y) + circle.radius)};

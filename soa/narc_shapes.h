@@ -365,7 +365,8 @@ typedef enum narc_precision { NARC_FLOAT32 = 0, NARC_FLOAT64 = 1 } narc_precisio
  * drift a little. A body with a NaN or an infinity, with another cosine and sine, with a scale that is not positive or
  * takes the shape out of NARC_MIN_SIZE .. NARC_MAX_SIZE, or with a shape that was removed, collides with nothing. A
  * pair with such a body, or with two bodies further apart than NARC_MAX_DISTANCE, has no answer; queries count these
- * (narc_query.out_skipped). */
+ * (narc_query.out_skipped). narc_compute_boxes() gives a broken body an empty box, so that it is in no pair that is
+ * found from boxes: there it is narc_box_options.out_skipped that counts. */
 typedef struct narc_bodies {
     size_t count;
     narc_precision position_precision; /* of x and y: float or double */
