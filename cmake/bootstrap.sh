@@ -98,11 +98,13 @@ fetch_arm64_libraries() {
 }
 
 # ---------------------------------------------------------------------------- steps
-# build takes a preset and a target, check a preset and a command to go in front of ctest.
+# build takes a preset and targets, check a preset and a command to go in front of ctest.
 build() {
-    say "build/$1"
-    cmake --preset "$1" || fail "configuring build/$1 failed"
-    cmake --build --preset "$1" --target "$2" || fail "building build/$1 failed"
+    preset=$1
+    shift
+    say "build/$preset"
+    cmake --preset "$preset" || fail "configuring build/$preset failed"
+    cmake --build --preset "$preset" --target "$@" || fail "building build/$preset failed"
 }
 
 check() {
@@ -190,7 +192,8 @@ check_style() {
 
 gate() {
     require_packages $gate_packages
-    check ci
+    build ci bench_narc bench_paper fit_study
+    ctest --preset ci || fail "tests failed in build/ci"
     check_style
     build release all
     ctest --preset release -L slow || fail "tests failed in build/release"
