@@ -21,7 +21,7 @@ struct depth {
 };
 static const struct depth FIRST = {1, 1e-3}, SECOND = {1, 1e-6}, EXCHANGE = {2, 1e-5}, LAST = {10, 1e-7};
 
-/* Steps take time in proportion to the cube of the arcs or so: of many arcs there are fewer rounds. */
+/* Steps take time in proportion to the cube of the arcs or so: of more arcs there are fewer rounds. */
 static unsigned count_rounds(struct depth depth, size_t arcs) {
     return arcs <= 8 ? depth.rounds : (unsigned)((8 * depth.rounds + arcs - 1) / arcs);
 }
@@ -158,7 +158,7 @@ static bool try_exchanges(narc_search *search, narc_candidate *best) {
 /* Solves a linear programme for more sets of normals than the pool has room for, and for many more where they end in
  * the same chains, as they do for a symmetric outline. */
 static bool enter_starts(narc_search *search, struct pool *pool) {
-    const size_t usual = 2 * pool->room + 12;
+    const size_t usual = 2 * pool->room + (search->problem.count > MANY_ARCS ? 2 : 12);
     narc_start_list starts = {.room = 3 * usual};
     starts.angles = malloc(starts.room * sizeof *starts.angles);
     if (!starts.angles)

@@ -14,6 +14,9 @@ typedef struct narc_ranking {
     narc_candidate items[MOST_RANKED];
 } narc_ranking;
 
+/* With more arcs than this a fit takes so long that searches do less. */
+enum { MANY_ARCS = 12 };
+
 /* How much a search does. */
 typedef struct narc_effort {
     size_t starts;    /* sets of normals, of chains with an arc less, that the local search sets out from */

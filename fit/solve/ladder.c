@@ -20,23 +20,24 @@ static size_t least_count(narc_fit_family family) { return family == NARC_FIT_ED
 static narc_effort choose_effort(const narc_rung *rung, unsigned starts) {
     const size_t n = rung->count;
     if (starts) {
-        const size_t less = n <= 12 ? starts : (starts + 3) / 4;
+        const size_t less = n <= MANY_ARCS ? starts : (starts + 3) / 4;
         return (narc_effort){.starts = less, .exchanges = less / 3, .kicks = less / 2};
     }
-    return n <= 6    ? (narc_effort){.starts = 20, .exchanges = 2, .kicks = 4}
-           : n <= 8  ? (narc_effort){.starts = 3, .exchanges = 1, .kicks = 1}
-           : n <= 12 ? (narc_effort){.starts = 2, .exchanges = 1}
-                     : (narc_effort){.starts = 1};
+    return n <= 6           ? (narc_effort){.starts = 20, .exchanges = 2, .kicks = 4}
+           : n <= 8         ? (narc_effort){.starts = 3, .exchanges = 1, .kicks = 1}
+           : n <= MANY_ARCS ? (narc_effort){.starts = 2, .exchanges = 1}
+                            : (narc_effort){.starts = 1};
 }
 
-/* The fits that one builds on. */
+/* The fits that one builds on. With many arcs and edges those of other families come too far behind to be worth the
+ * time. */
 static size_t list_needs(const narc_ladder *ladder, const narc_rung *rung, narc_rung *out) {
     size_t count = 0;
     if (rung->count > least_count(rung->family))
         out[count++] = (narc_rung){rung->family, rung->goal, rung->count - 1};
     if (rung->goal == NARC_FIT_BOUND_DISTANCE || rung->goal == NARC_FIT_DIFFERENCE)
         out[count++] = (narc_rung){rung->family, NARC_FIT_DISTANCE, rung->count};
-    if (rung->family == NARC_FIT_EDGES) {
+    if (rung->family == NARC_FIT_EDGES && rung->count <= MANY_ARCS) {
         out[count++] = (narc_rung){NARC_FIT_N_ARC, rung->goal, rung->count < 3 ? 3 : rung->count};
         if (rung->count >= 3 && ladder->min_radius == 0)
             out[count++] = (narc_rung){NARC_FIT_POLYGON, rung->goal, rung->count};
