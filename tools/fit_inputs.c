@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "fail.h"
+#include "progress.h"
 #include "shape_list.h"
 #include "text.h"
 
@@ -227,12 +228,17 @@ static narc_status call_reader(file_kind kind, const char *bytes, size_t size, d
     }
 }
 
+/* Drawings of this size, in KB, may take long: librsvg draws them without a report. */
+enum { KB = 1024, LARGE_DRAWING = 512 };
+
 static void read_outline(const char *file, file_kind kind, const char *bytes, size_t size, const reading *how,
                          outline_list *outlines) {
     size_t stem;
     const char *base = base_name(file, &stem);
     outline *added = add_outline(outlines, file, 0, make_shape_name(base, stem));
     narc_error error;
+    if (kind == SVG)
+        show_stage("drawing", size / KB, "KB of SVG", size >= LARGE_DRAWING * KB);
     if (call_reader(kind, bytes, size, how->threshold, added->path, &error) != NARC_OK)
         fail_text(file, &error);
 }
