@@ -44,8 +44,12 @@ enum { MOST_CORNERS = 2000 };
 /* With a tolerance, curves are flattened to this part of it at least. */
 static const double FLATNESS_OF_TOLERANCE = 0.02;
 
-/* Coordinates are rounded to single precision, by up to this part of the outline's radius. */
+/* Coordinates are rounded to single precision, by up to this part of their size. */
 static const double SINGLE_ROUNDING = 0x1p-24;
+
+/* A shape keeps an origin that is so far away that its coordinates are rounded by up to this part of its radius: one that
+ * bounds is then a tenth larger or so. */
+static const double COARSEST = 1.0 / 16;
 
 /* Chains of the most arcs that grow from fewer are closer than those from fresh starts, but never so many times: it was
  * 2.5 times at most on random polygons, ellipses and curves. */
@@ -242,6 +246,17 @@ static narc_status limit_radii(struct job *job, narc_error *error) {
     return NARC_OK;
 }
 
+static narc_status check_origin(const struct job *job, narc_error *error) {
+    const double away = length(job->frame.middle), rounding = away * SINGLE_ROUNDING;
+    if (!job->request->keep_origin || rounding <= COARSEST * job->frame.radius)
+        return NARC_OK;
+    return narc_fail(
+        error, NARC_ERROR_NO_SOLUTION, 0, away,
+        "the outline is %g from its origin, where single precision rounds by up to %g: a shape of radius %g "
+        "can't keep that origin",
+        away, rounding, job->frame.radius);
+}
+
 static narc_status prepare(const narc_path *path, struct job *job, narc_error *error) {
     const narc_fit_request *request = job->request;
     double flatness = request->flatness;
@@ -254,6 +269,7 @@ static narc_status prepare(const narc_path *path, struct job *job, narc_error *e
     if (status != NARC_OK)
         return status;
     job->frame.outline = &job->outline;
+    job->frame.keep_origin = request->keep_origin;
     status = scale_hull(&job->outline, job, error);
     job->flatness = job->outline.flatness;
     if (status != NARC_OK)
@@ -263,7 +279,8 @@ static narc_status prepare(const narc_path *path, struct job *job, narc_error *e
         return narc_fail(error, NARC_ERROR_NOT_CONVEX, 0, job->hull.area,
                          "the outline is as thin as a line, single precision can't tell its sides apart");
     }
-    status = settle_hull(job, error);
+    status = check_origin(job, error);
+    status = status ? status : settle_hull(job, error);
     job->hull.inflation = job->flatness / job->frame.radius;
     for (double tolerance = LEAST_THINNING;
          status == NARC_OK && job->hull.count > MOST_CORNERS && tolerance < MOST_THINNING;) {
@@ -387,7 +404,8 @@ static narc_status check_tolerance(const struct job *job, narc_error *error) {
     const narc_fit_request *request = job->request;
     const bool bound = tolerance_goal(request) == NARC_FIT_BOUND_DISTANCE;
     const double bulge = is_n_arc(request->family) ? narc_least_distance(&job->hull, bound) : 0;
-    const double rounding = job->frame.radius * SINGLE_ROUNDING, side = job->frame.radius * bulge;
+    const double away = request->keep_origin ? length(job->frame.middle) : 0;
+    const double rounding = fmax(job->frame.radius, away) * SINGLE_ROUNDING, side = job->frame.radius * bulge;
     const double flatness = job->flatness + (bound ? job->outline.flatness : 0);
     const double least = flatness + fmax(rounding, side);
     if (request->tolerance >= least)

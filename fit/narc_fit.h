@@ -170,6 +170,8 @@ typedef struct narc_fit_request {
     double flatness;    /* of curves, as in narc_flatten_path(); 0: NARC_FLATNESS */
     double min_radius;  /* of every arc, a length in the path's unit, which keeps the outline smooth; 0: none, and a
                            corner is an arc of radius 0. Not for polygons and the paper's route */
+    bool keep_origin;   /* arcs keep the path's coordinates, in double precision, and result.origin is 0, 0. A store
+                           rounds them more far from there; a bounding shape is larger by that */
     unsigned starts;    /* of the local search; 0: the usual number. More take longer and often find better */
     /* Called now and then with the work done and in all, if not NULL; returning false ends the fit with the best so
      * far, or NARC_ERROR_CANCELLED if there is none. */
@@ -202,10 +204,11 @@ typedef struct narc_fit_result {
  * NARC_ERROR_COUNT (arc_count; an outline without points), NARC_ERROR_NOT_CONVEX (all points on a line, or nearly: an
  * area below 1e-5 of the radius squared), NARC_ERROR_SIZE (tolerance not positive; least radius negative or more than
  * 16 times the hull's from its centroid; outline too small or too large), NARC_ERROR_NO_SOLUTION (the tolerance is not
- * reached with NARC_MAX_FIT_ARCS arcs, the message tells what was; or the paper's route finds no n-arc),
- * NARC_ERROR_MEMORY, NARC_ERROR_CANCELLED. Refused before any search are tolerances below 2^-24 of the outline's radius
- * (single precision), below the flatness (of bounding fits twice that) and, of n-arcs, below what arcs with the largest
- * radius bulge on the hull's longest side. */
+ * reached with NARC_MAX_FIT_ARCS arcs, the message tells what was; the paper's route finds no n-arc; or single
+ * precision rounds by more than 1/16 of the outline's radius where its origin is to be kept), NARC_ERROR_MEMORY,
+ * NARC_ERROR_CANCELLED. Refused before any search are tolerances below 2^-24 of the outline's radius (single precision),
+ * below the flatness (of bounding fits twice that) and, of n-arcs, below what arcs with the largest radius bulge on the
+ * hull's longest side. */
 NARC_API narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request, narc_fit_result *out_result,
                                    narc_error *error);
 

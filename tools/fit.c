@@ -157,6 +157,7 @@ static narc_fit_request make_request(const option *options) {
     }
     request.tolerance = number_option(&options[TOLERANCE], DBL_MIN, DBL_MAX, "more than 0", 0);
     request.min_radius = number_option(&options[MIN_RADIUS], DBL_MIN, DBL_MAX, "more than 0", 0);
+    request.keep_origin = options[KEEP_ORIGIN].value;
     if (options[STARTS].value)
         request.starts = (unsigned)whole_option(&options[STARTS], 1, 10000);
     return request;
@@ -206,27 +207,26 @@ static narc_fit_result *fit_outlines(const outline_list *outlines, narc_fit_requ
     return fits;
 }
 
-/* With `keep_origin` the shapes are moved to where the input has them. */
-static shape_list list_shapes(const outline_list *outlines, const narc_fit_result *fits, bool keep_origin) {
+static shape_list list_shapes(const outline_list *outlines, const narc_fit_result *fits) {
     shape_list shapes = {0};
     for (size_t i = 0; i < outlines->count; i++) {
         narc_error error;
-        narc_fit_result moved = fits[i];
-        if (keep_origin) {
-            for (size_t k = 0; k < moved.arc_count; k++) {
-                moved.arcs[k].center_x += moved.origin.x;
-                moved.arcs[k].center_y += moved.origin.y;
-            }
-            moved.origin = (narc_point){0, 0};
-        }
-        if (add_shape(&shapes, outlines->items[i].name, moved.arcs, moved.arc_count, &error) != NARC_OK)
+        if (add_shape(&shapes, outlines->items[i].name, fits[i].arcs, fits[i].arc_count, &error) != NARC_OK)
             fail_outline(&outlines->items[i], error.message);
-        shapes.items[i].origin = moved.origin;
+        shapes.items[i].origin = fits[i].origin;
     }
     return shapes;
 }
 
 /* ---------------------------------------------------------------------------- the table */
+
+/* The shape's centroid in the input's coordinates: its origin, unless the input's is kept. */
+static narc_point find_centroid(const narc_fit_result *fit) {
+    narc_mass mass = {0};
+    if (fit->origin.x == 0 && fit->origin.y == 0)
+        narc_compute_mass(fit->arcs, fit->arc_count, &mass);
+    return (narc_point){fit->origin.x + mass.centroid_x, fit->origin.y + mass.centroid_y};
+}
 
 static void print_table(FILE *file, const outline_list *outlines, const narc_fit_result *fits) {
     const int width = print_name(file, outlines, "shape", 0);
@@ -234,19 +234,20 @@ static void print_table(FILE *file, const outline_list *outlines, const narc_fit
             "ratio", "perimeter", "max distance", "mean distance", "origin x", "origin y", "seconds");
     for (size_t i = 0; i < outlines->count; i++) {
         const narc_fit_result *f = &fits[i];
+        const narc_point centroid = find_centroid(f);
         print_name(file, outlines, outlines->items[i].name, width);
         fprintf(file, " %5zu %5zu %11.6g %11.6g %8.5f %11.6g %12.4g %13.4g %11.6g %11.6g %8.2f\n", f->arc_count,
                 f->edge_count, f->area, f->hull_area, f->area / f->hull_area, f->perimeter, f->max_distance,
-                f->mean_distance, f->origin.x, f->origin.y, f->seconds);
+                f->mean_distance, centroid.x, centroid.y, f->seconds);
     }
 }
 
 /* ---------------------------------------------------------------------------- both kinds of answers */
 
-static void make_shapes(const outline_list *outlines, narc_fit_request request, double flatness, bool keep_origin,
-                        FILE *file, const char *picture, FILE *picture_file) {
+static void make_shapes(const outline_list *outlines, narc_fit_request request, double flatness, FILE *file,
+                        const char *picture, FILE *picture_file) {
     narc_fit_result *fits = fit_outlines(outlines, request, flatness);
-    shape_list shapes = list_shapes(outlines, fits, keep_origin);
+    shape_list shapes = list_shapes(outlines, fits);
     write_shapes(file, &shapes);
     if (picture)
         draw_fits(picture, picture_file, outlines, fits, NULL);
@@ -307,7 +308,7 @@ static void run(int argc, char **argv) {
     if (options[SPLINE].value)
         make_splines(&outlines, request.tolerance, shapes_file, picture, picture_file);
     else
-        make_shapes(&outlines, request, flatness, options[KEEP_ORIGIN].value, shapes_file, picture, picture_file);
+        make_shapes(&outlines, request, flatness, shapes_file, picture, picture_file);
     free_outlines(&outlines);
     free(files);
 }

@@ -194,7 +194,8 @@ static double find_clearance(const narc_chain *stored, const narc_contours *outl
 }
 
 /* Rounds the arcs, moved out by as little as makes the shape that the store keeps of them hold the outline. `arcs` are
- * then the rounded ones, and `exact` is moved out as far. */
+ * then the rounded ones, and `exact` is moved out as far. Far from the origin rounded arcs would not join: there the
+ * store takes the exact ones, and rounds them itself. */
 static narc_status round_and_certify(narc_arc *exact, narc_arc *arcs, size_t count, const narc_frame *frame,
                                      narc_point origin, bool bound, double *out_clearance, narc_error *error) {
     narc_arc moved[NARC_MAX_ARCS];
@@ -203,7 +204,7 @@ static narc_status round_and_certify(narc_arc *exact, narc_arc *arcs, size_t cou
         narc_chain stored;
         offset_arcs(exact, count, distance, moved);
         round_arcs(moved, count, arcs);
-        const narc_status status = store_arcs(arcs, count, &stored, error);
+        const narc_status status = store_arcs(frame->keep_origin ? moved : arcs, count, &stored, error);
         if (status != NARC_OK)
             return status;
         const double clearance = find_clearance(&stored, frame->outline, origin);
@@ -324,6 +325,14 @@ static narc_status place_hull(const narc_hull *hull, const narc_frame *frame, na
     return status;
 }
 
+static void move_arcs(const narc_arc *arcs, size_t count, narc_point by, narc_arc *out_arcs) {
+    for (size_t i = 0; i < count; i++) {
+        out_arcs[i] = arcs[i];
+        out_arcs[i].center_x += by.x;
+        out_arcs[i].center_y += by.y;
+    }
+}
+
 narc_status narc_finish_arcs(const narc_arc *arcs, size_t count, const narc_hull *hull, const narc_frame *frame,
                              bool bound, narc_fit_result *out_result, narc_error *error) {
     narc_fit_result result = {.arc_count = count};
@@ -343,13 +352,22 @@ narc_status narc_finish_arcs(const narc_arc *arcs, size_t count, const narc_hull
     narc_status status = place_hull(hull, frame, origin, rounding, &placed, error);
     if (status != NARC_OK)
         return status;
-    narc_arc exact[NARC_MAX_ARCS];
-    memcpy(exact, result.arcs, count * sizeof *exact);
-    status = round_and_certify(exact, result.arcs, count, frame, result.origin, bound, &result.clearance, error);
+    const narc_point shift = frame->keep_origin ? result.origin : (narc_point){0, 0};
+    narc_arc exact[NARC_MAX_ARCS], kept[NARC_MAX_ARCS];
+    move_arcs(result.arcs, count, shift, exact);
+    status = round_and_certify(exact, kept, count, frame, minus(result.origin, shift), bound, &result.clearance, error);
+    /* Measures are taken near the origin. */
+    const narc_point back = minus((narc_point){0, 0}, shift);
+    move_arcs(kept, count, back, result.arcs);
+    if (frame->keep_origin)
+        memcpy(kept, exact, count * sizeof *kept);
+    move_arcs(exact, count, back, exact);
     if (status == NARC_OK && !measure(&placed, &result))
         status = narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for a hull of %zu corners", hull->count);
     result.difference_area = measure_difference(exact, count, &placed);
     narc_release_hull(&placed);
+    memcpy(result.arcs, kept, count * sizeof *kept);
+    result.origin = minus(result.origin, shift);
     if (status == NARC_OK)
         *out_result = result;
     return status;

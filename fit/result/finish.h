@@ -13,6 +13,7 @@
 typedef struct narc_frame {
     narc_point middle;
     double radius, angle;
+    bool keep_origin; /* of results: arcs have the outline's coordinates, rounded as far from 0 as they are */
     const narc_contours *outline; /* its own points, with the flatness of its curves: what a fit must hold */
 } narc_frame;
 

@@ -460,6 +460,58 @@ static void test_without_area(void **state) {
     }
 }
 
+/* ---------------------------------------------------------------------------- far from the origin */
+
+static struct outline make_far(struct test_random *random, double away) {
+    const double angle = random_between(random, 0, 2 * (double)PI), turn = random_between(random, 0, 1);
+    narc_point p[5];
+    for (int k = 0; k < 5; k++) {
+        const double at = turn + 2 * (double)PI * k / 5, r = random_between(random, 0.6, 1);
+        p[k] = (narc_point){away * cos(angle) + r * cos(at), away * sin(angle) + r * sin(at)};
+    }
+    struct outline made = make_outline("far");
+    add_corners(&made, p, 5);
+    return made;
+}
+
+/* Coordinates that are kept are rounded by the store, and the shape holds the outline there. Its distance is told of
+ * centres that are rounded by up to 2^-24 of theirs. */
+static void test_kept_origin(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("kept origin");
+    for (size_t trial = 0, trials = test_trials(12); trial < trials; trial++) {
+        const double away = pow(10, (double)(trial % 6));
+        struct outline of = make_far(&random, away);
+        const narc_fit_request request = {
+            .arc_count = 4, .family = (narc_fit_family)(trial % 3), .starts = 1, .keep_origin = true};
+        const narc_fit_result fit = fit_outline(&of, request);
+        const struct points points = see_points(&of, (narc_point){0, 0});
+        const struct shape kept = store_fit(&fit);
+        real least = INFINITY;
+        for (size_t k = 0; k < points.count; k++)
+            least = fminl(least, find_room(&kept, points.items[k]));
+        assert_true(fit.origin.x == 0 && fit.origin.y == 0);
+        if (!(least > 0 && fit.clearance > 0 && fit.clearance <= least))
+            fail_msg("%g away, family %d: the least room is %.3Lg, told %.3g", away, (int)request.family, least,
+                     fit.clearance);
+        const real told = fit.max_distance, miss = 4 * 0x1p-24L * (away + points.size) + 1e-5L;
+        expect_close("kept origin", "distance", (double)told, find_distance(&kept, &points), miss);
+        free_outline(&of);
+    }
+}
+
+static void test_too_far_to_keep(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("too far");
+    struct outline of = make_far(&random, 9e8);
+    const narc_fit_request request = {.arc_count = 4, .starts = 1, .keep_origin = true};
+    narc_fit_result fit;
+    narc_error error = {0};
+    expect_error(narc_fit_path(of.path, &request, &fit, &error), NARC_ERROR_NO_SOLUTION, &error,
+                 "9e+08 from its origin, where single precision rounds by up to 53.6442");
+    free_outline(&of);
+}
+
 /* ---------------------------------------------------------------------------- messages */
 
 /* What is told of a tolerance that is not reached is how close fits came, also if there is none with the most arcs: the
@@ -480,10 +532,11 @@ int main(void) {
     if (!test_begin())
         return TEST_SKIPPED;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_closed_by_hand), cmocka_unit_test(test_relative_steps),
-        cmocka_unit_test(test_hard_outlines),  cmocka_unit_test(test_rhombi),
-        cmocka_unit_test(test_thin_is_close),  cmocka_unit_test(test_without_area),
-        cmocka_unit_test(test_closest),
+        cmocka_unit_test(test_closed_by_hand),  cmocka_unit_test(test_relative_steps),
+        cmocka_unit_test(test_hard_outlines),   cmocka_unit_test(test_rhombi),
+        cmocka_unit_test(test_thin_is_close),   cmocka_unit_test(test_without_area),
+        cmocka_unit_test(test_closest),         cmocka_unit_test(test_kept_origin),
+        cmocka_unit_test(test_too_far_to_keep),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

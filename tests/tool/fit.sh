@@ -136,6 +136,30 @@ for option in "" --keep-origin; do
         END { exit bad || NR != 5 }' laid.txt
 done
 
+# A thousand sizes away the store's coordinates are coarser: the shape still holds the outline there, by being larger.
+printf '1000.1,1000\n1002.03,1000.33\n1001.7,1002.21\n999.7,1001.4\n' >fits/away.csv
+works "kept far away" fit fits/away.csv --arcs 4 --edges --starts 1 --keep-origin --out away.json
+check "kept far away: larger" less 2e-5 "$(value away 8)"
+check "kept far away: by as little as that takes" less "$(value away 8)" 5e-4
+works "kept far away: collide" collide --shapes away.json --bodies none.csv
+printf '900000000,0\n900000001,0\n900000000,1\n' >fits/away.csv
+fails "kept too far away" "narc: fits/away.csv: .*9e+08 from its origin, where single precision rounds by" fit \
+    fits/away.csv --arcs 4 --starts 1 --keep-origin --out new.json
+
+# Progress is for terminals: `script` gives the command one, where it is installed and is that of util-linux.
+if command -v script >/dev/null && script -qec true /dev/null >script.txt 2>&1 </dev/null; then
+    { printf '<svg viewBox="0 0 4 4" xmlns="http://www.w3.org/2000/svg"><!--' && head -c 600000 /dev/zero | tr '\0' x &&
+        printf -- '--><path d="M0 0H3V2z"/></svg>'; } >fits/large.svg
+    script -qec "'$narc' fit fits/large.svg --arcs 1 --out large.json" /dev/null >script.txt 2>&1 </dev/null
+    check "a large drawing is announced" grep -q "drawing, 586 KB of SVG" script.txt
+    awk 'BEGIN { for (k = 0; k < 60; k++) print cos(k * 0.1047) "," 0.4 * sin(k * 0.1047) }' >fits/ellipse.csv
+    script -qec "'$narc' fit fits/ellipse.csv --arcs 12 --edges --objective distance --out long.json" /dev/null \
+        >script.txt 2>&1 </dev/null
+    check "a long fit tells how far it is" grep -q "fitting: [1-9][0-9]* %" script.txt
+else
+    echo "skipped: progress on a terminal (no script command)"
+fi
+
 # Splines: lines stay lines; a contour that goes round turns by a full turn, but for its corners.
 works "a spline of lines" fit fits/square.csv --spline --tolerance 0.1 --out spline.json --picture spline.svg
 check "a spline of lines: 4 of them" test "$(tail -n 1 out.txt | awk '{ print $1, $2, $3, $4 }')" = "square 1 0 4"
