@@ -356,13 +356,17 @@ narc_status narc_finish_arcs(const narc_arc *arcs, size_t count, const narc_hull
     narc_arc exact[NARC_MAX_ARCS], kept[NARC_MAX_ARCS];
     move_arcs(result.arcs, count, shift, exact);
     status = round_and_certify(exact, kept, count, frame, minus(result.origin, shift), bound, &result.clearance, error);
+    if (status != NARC_OK) {
+        narc_release_hull(&placed);
+        return status;
+    }
     /* Measures are taken near the origin. */
     const narc_point back = minus((narc_point){0, 0}, shift);
     move_arcs(kept, count, back, result.arcs);
     if (frame->keep_origin)
         memcpy(kept, exact, count * sizeof *kept);
     move_arcs(exact, count, back, exact);
-    if (status == NARC_OK && !measure(&placed, &result))
+    if (!measure(&placed, &result))
         status = narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for a hull of %zu corners", hull->count);
     result.difference_area = measure_difference(exact, count, &placed);
     narc_release_hull(&placed);
