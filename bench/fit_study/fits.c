@@ -61,10 +61,10 @@ void find_fits(study *all, unsigned starts) {
 
 /* ---------------------------------------------------------------------------- checks */
 
-/* How much two areas of one outline may differ by rounding, relative to the hull's area: the fits hold the outline with
+/* The fits hold the outline with
  * the flatness of its curves around it, and 16 roundings to single precision of lengths that are less than the
  * perimeter, all along the perimeter. */
-static double find_slack(const fit *of) {
+double find_slack(const fit *of) {
     const double moved = of->made.flatness + 16 * FLT_EPSILON * of->made.perimeter;
     return moved * of->made.perimeter / of->made.hull_area;
 }

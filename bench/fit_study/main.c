@@ -35,6 +35,7 @@ static void print_results(const study *all, FILE *out) {
     print_relation(all, out);
     print_grains(all, out);
     print_all(all, out);
+    print_trials(all, out);
     print_shortfalls(all, out);
 }
 
@@ -70,13 +71,15 @@ int main(int argc, char **argv) {
     study all = load_subjects(required_option(&options[FONT]),
                               options[QUICK].value ? NULL : required_option(&options[DRAWINGS]), options[SAND].value);
     find_fits(&all, options[QUICK].value ? QUICK_STARTS : 0);
+    fprintf(stderr, "longer searches, and outlines turned\n");
+    find_trials(&all, options[QUICK].value ? QUICK_STARTS : 0);
     fprintf(stderr, "pictures and tables\n");
     draw_pictures(&all, folder);
     write_file(&all, folder, "fit-study.md", print_results);
     write_file(&all, folder, "fit-study.csv", print_csv);
     write_file(&all, folder, "fit-study.dat", print_points);
-    const bool right = check_bounds(&all);
+    const bool bounds = check_bounds(&all), trials = check_trials(&all);
     fprintf(stderr, "%zu outlines, %.0f seconds\n", all.count, seconds_now() - begin);
     free_subjects(&all);
-    return right ? 0 : 1;
+    return bounds && trials ? 0 : 1;
 }

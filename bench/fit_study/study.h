@@ -25,6 +25,12 @@ typedef struct fit {
     narc_fit_result made;
 } fit;
 
+/* n-arcs, relative to the area: larger than with more starts by so much; largest over least of the outline turned. NAN for
+ * grains, which are many. */
+typedef struct trial {
+    double excess, spread;
+} trial;
+
 typedef struct subject {
     const char *name;
     kind of;
@@ -42,6 +48,7 @@ typedef struct subject {
     double straight_share; /* part of the hull's perimeter in long straight sides */
     double greedy[SIZES];  /* area of the n-gon that is left when sides are taken away one by one */
     fit fits[FAMILIES][SIZES];
+    trial trials[SIZES];
 } subject;
 
 typedef struct study {
@@ -100,6 +107,14 @@ void find_fits(study *all, unsigned starts);
 
 /* No shape is smaller than the hull it must hold? If one is, it is told on standard error. */
 bool check_bounds(const study *all);
+
+/* How much two areas of one outline may differ by rounding, relative to the hull's area. */
+double find_slack(const fit *of);
+
+/* ---- trials.c. No fit is larger than one with fewer arcs? If some are, it is told on standard error. */
+void find_trials(study *all, unsigned starts);
+void print_trials(const study *all, FILE *out);
+bool check_trials(const study *all);
 
 /* ---- tables.c, summary.c, numbers.c, fits.c */
 void print_shortfalls(const study *all, FILE *out);
