@@ -25,9 +25,9 @@
  *   A body with a NaN, or with cosine and sine that are no rotation, collides with nothing (see narc_bodies): it would
  *   fall through the floor without a word. Two checks find it:
  *     - narc_validate_bodies() when a scene is loaded, and in debug builds each step: names the body and the number
- *     - narc_query.out_skipped each step: how many pairs the query had no answer for, at no cost. Normally 0; if not, let
- *       narc_validate_bodies() say why. (narc_methods.h: narc_query_contacts() with query {.out_skipped = &skipped} is
- *       narc_find_contacts(); for a sub-range move the bases of the pairs' columns.)
+ *     - narc_query.out_skipped each step: how many pairs the query had no answer for, at no cost. Normally 0; if not,
+ *       let narc_validate_bodies() say why. (narc_methods.h: narc_query_contacts() with query {.out_skipped =
+ *       &skipped} is narc_find_contacts(); for a sub-range move the bases of the pairs' columns.)
  *
  * Precision
  *
@@ -55,7 +55,7 @@
  *     narc_pairs pairs = {.count = 5000, .a = NARC_COLUMN(pair, a), .b = NARC_COLUMN(pair, b)};
  *     narc_find_overlaps(shapes, &bodies, &pairs, 0, hits, NULL);
  *
- * Every function here may be called from any number of threads at once. Queries need up to 256 KB of stack.
+ * Every function here may be called from any number of threads at once. Queries need up to 320 KB of stack.
  */
 #ifndef NARC_H
 #define NARC_H
@@ -73,8 +73,8 @@ extern "C" {
 /* "0.2.0". */
 NARC_API const char *narc_version(void);
 
-/* A narc_column over one field of an array of structures, and over a plain array: values, to initialise, to assign or to
- * pass. */
+/* A narc_column over one field of an array of structures, and over a plain array: values, to initialise, to assign or
+ * to pass. */
 #ifdef __cplusplus
 #define NARC_COLUMN(array, field) (narc_column NARC_COLUMN_INIT(array, field))
 #define NARC_ARRAY(array)         (narc_column NARC_ARRAY_INIT(array))
@@ -175,9 +175,9 @@ typedef struct narc_manifold_options {
 /* The contact manifolds of all pairs whose separation is less than the margin, in the order of the pairs: what a solver
  * wants. One point is the deepest: its normal and separation are those of narc_find_contacts() to the last bit, and so
  * is its place unless two edges touch along a stretch. There is a second point where both bodies have a straight edge
- * that faces the other one: at the other end of the edges' common stretch, with its own separation along the normal, if
- * that is less than the margin. Swapping A and B turns the normal, the order of the points, and the bytes of a feature
- * id, and nothing else but roundings.
+ * that faces the other one, next to the arc that touches or itself touching: at the other end of the edges' common
+ * stretch, with its own separation along the normal, if that is less than the margin. Swapping A and B turns the
+ * normal, the order of the points, and the bytes of a feature id, and nothing else but roundings.
  *   options         NULL: defaults
  *   out_manifolds   arrays of out_manifolds->capacity items, overlapping none of the inputs
  *   out_count       as in narc_find_contacts()

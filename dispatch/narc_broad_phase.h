@@ -84,10 +84,10 @@ NARC_API narc_status narc_compute_boxes_range(const narc_shapes *shapes, const n
  *   out_count  how many there are. If that is more than `capacity`, nothing else is written and NARC_ERROR_CAPACITY is
  *              returned; make room and call again.
  * Time grows with n log n, n the number of boxes, and with the pairs of boxes that would overlap if each were 16 times
- * as wide and 8 times as high. Sizes may differ by any factor: boxes are divided into levels, heights within a factor of 4
- * and widths within 16, and each box is searched for in every level that has boxes. So the bound is L n log n for L
- * levels, and the pairs; sizes that differ by 1 : 10,000 in height and in width make at most 32 levels. Boxes that all
- * lie in one row are sorted and swept by one thread.
+ * as wide and 8 times as high. Sizes may differ by any factor: boxes are divided into levels, heights within a factor
+ * of 4 and widths within 16, and each box is searched for in every level that has boxes. So the bound is L n log n for
+ * L levels, and the pairs; sizes that differ by 1 : 10,000 in height and in width make at most 32 levels. Boxes that
+ * all lie in one row are sorted and swept by one thread.
  * Errors: NARC_ERROR_ARGUMENT (NULL, too many boxes), NARC_ERROR_COUNT (2^32 pairs or more, after the filter),
  * NARC_ERROR_MEMORY, NARC_ERROR_CAPACITY.
  * Source: sweep and prune (Baraff 1992; Cohen and others 1995) in strips, by levels of size. */
@@ -98,7 +98,8 @@ NARC_API narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *bo
 /* No pair of the old list. */
 #define NARC_NO_MATCH UINT32_MAX
 
-/* For each pair of a new list: its index in an old list, or NARC_NO_MATCH. Pairs (a, b) and (b, a) are different. Both
+/* For each pair of a new list: its index in an old list, or NARC_NO_MATCH. Pairs (a, b) and (b, a) are different. Only
+ * bodies are compared: of one pair with several shifts (periodic images) all match the first. Both
  * lists may be in any order; two lists in the order of (a, b), as narc_find_pairs() makes them, are matched without
  * memory, in one walk. If a pair stands several times in the old list, the first counts.
  *   old_pairs, new_pairs   at most 2^32 - 2 pairs each

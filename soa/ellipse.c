@@ -3,11 +3,11 @@
  * ellipse.c - the n-arc that is nearest to an ellipse.
  *
  * The Hausdorff distance of two convex shapes is the largest difference of their support functions (Schneider, "Convex
- * Bodies", section 1.8). That of an ellipse is h(t) = sqrt(a^2 cos^2 t + b^2 sin^2 t), that of an n-arc centre.n + radius
- * of the arc that holds the normal n at the angle t. A quadrant with m junctions has 2 m + 1 unknowns: the angles of the
- * junctions and the radii of m + 1 arcs, of which the first and the last go on beyond the axes. The best choice is one
- * whose 2 m + 2 errors of largest size are equal, in turn above and below 0. The Remez exchange finds it: solve for equal
- * errors where the largest ones are now, by Newton's method; look where they are then; and so on.
+ * Bodies", section 1.8). That of an ellipse is h(t) = sqrt(a^2 cos^2 t + b^2 sin^2 t); that of an n-arc is centre.n
+ * + radius of the arc that holds the normal n at the angle t. A quadrant with m junctions has 2 m + 1 unknowns: the
+ * angles of the junctions, and the radii of m + 1 arcs, of which the first and the last go on beyond the axes. The best choice
+ * is one whose 2 m + 2 errors of largest size are equal, in turn above and below 0. The Remez exchange finds it: solve
+ * for equal errors where the largest ones are now, by Newton's method; look where they are then; and so on.
  */
 #include <math.h>
 #include <string.h>
@@ -297,8 +297,8 @@ static bool follow(ellipse e, quadrant *q, int *left) {
     return true;
 }
 
-/* The nearest quadrant; of a thin ellipse with many arcs, if the exchange fails, the guess with the least squares. False
- * if that has none. */
+/* The nearest quadrant; of a thin ellipse with many arcs, if the exchange fails, the guess with the least squares.
+ * False if that has none. */
 static bool find_nearest(ellipse e, quadrant *q) {
     int left = 400; /* most need ten */
     if (find_from_guess(e, q, &left) || follow(e, q, &left))
@@ -340,6 +340,13 @@ narc_status narc_build_ellipse(double half_x, double half_y, size_t arc_count, n
         if (!(halves[k] > 0))
             return narc_fail(error, NARC_ERROR_SIZE, 0, halves[k], "%s is %g, not above 0", name, halves[k]);
     }
+    /* Squares of all lengths are numbers, and no arc is flatter than a shape may have. */
+    if (!(fmin(half_x, half_y) >= 1e-150 && size <= 1e150))
+        return narc_fail(error, NARC_ERROR_SIZE, 0, size, "the half axes are %g and %g, not from 1e-150 to 1e150",
+                         half_x, half_y);
+    if (size > 2 * NARC_MAX_RADIUS_RATIO * fmin(half_x, half_y))
+        return narc_fail(error, NARC_ERROR_RADIUS, 0, half_x / half_y, "an ellipse %.6g by %.6g is too thin", half_x,
+                         half_y);
     if (arc_count < 4 || arc_count > NARC_MAX_ARCS || arc_count % 4 != 0)
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)arc_count, "arc_count is %zu, not 4, 8, 12 ... %d",
                          arc_count, NARC_MAX_ARCS);

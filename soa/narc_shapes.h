@@ -84,7 +84,7 @@ typedef enum narc_status {
     NARC_ERROR_ARGUMENT = 1,     /* a NULL pointer, a sub-range that does not fit, a negative count */
     NARC_ERROR_MEMORY = 2,       /* the allocator returned NULL */
     NARC_ERROR_INDEX = 3,        /* a body or shape index out of range */
-    NARC_ERROR_CAPACITY = 4,     /* the output list is too short; what fitted was written, the needed size is told */
+    NARC_ERROR_CAPACITY = 4,     /* the output list is too short; the needed size is told */
     NARC_ERROR_COUNT = 5,        /* too few or too many points, arcs or shapes */
     NARC_ERROR_NOT_FINITE = 6,   /* NaN or infinity */
     NARC_ERROR_SIZE = 7,         /* a length is zero or negative, or outside NARC_MIN_SIZE .. NARC_MAX_SIZE */
@@ -386,7 +386,8 @@ NARC_API narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_
  * out with base NULL:
  *   margin            float; replaces the call's margin for that pair, in contacts and manifolds (overlaps have none)
  *   shift_x, shift_y  float, world axes; added to the position of B, in double precision: for periodic images
- * A pair with a NaN in them, or an infinite shift, has no answer, as one with a broken body. */
+ * A pair with a NaN in them, or an infinite shift, has no answer, as one with a broken body. (Overlaps do not look at
+ * the margin.) */
 typedef struct narc_pairs {
     size_t count; /* at most UINT32_MAX */
     narc_column a, b;
@@ -441,9 +442,12 @@ typedef struct narc_contact {
  *   normal          unit, from A to B, world axes
  *   separation[i]   along the normal, at point i. One point is the deepest: its separation is that of the contact.
  *   point[i]        halfway between both surfaces along the normal, in world axes, relative to the position of body A
- *   feature[i]      what touches there: A in the low byte, B in the high byte. Bits 0 to 5: an arc in the caller's
- *                   numbering, or, with NARC_FEATURE_EDGE, an edge: number i is the one before arc i. Of two points on
- *                   two edges NARC_FEATURE_END marks the edge's counter-clockwise end rather than its start.
+ *   feature[i]      what faces the other body there: A in the low byte, B in the high byte. Bits 0 to 5: an arc in
+ *                   the caller's numbering, or, with NARC_FEATURE_EDGE, an edge: number i is the one before arc i.
+ *                   Where two edges face each other both points name them, the deepest too if it lies on a corner next
+ *                   to one of them, and NARC_FEATURE_END marks an edge's counter-clockwise end rather than its
+ *                   start; so they do if only one of the two points is within the margin. Else they name what
+ *                   touches. The radius tells whether an edge, an arc or a corner touches.
  *   radius_a[i]     radius of curvature of A, scaled: 0 at a corner, INFINITY on an edge; at an edge's end that of the
  *   radius_b[i]     arc next to it. And of B.
  * Where there is no point i its items are 0. */

@@ -20,8 +20,8 @@
  *
  * With the roundings behind it (by the scale, of this very room, and of the sum with the margin and the low part of a
  * double position) 12 e (|c| + radius) is enough. Rounding can also add what it can take away, |c| is at most 1.42
- * times the centre's distance from the origin, and add_upwards() adds up to 4 e of its sum, twice if the body moves: all
- * that is below 40 e (NARC_BOX_ROOM).
+ * times the centre's distance from the origin, and add_upwards() adds up to 4 e of its sum, twice if the body moves:
+ * all that is below 40 e (NARC_BOX_ROOM).
  */
 #ifndef NARC_BROAD_BOXES_INL
 #define NARC_BROAD_BOXES_INL

@@ -175,6 +175,12 @@ INLINE struct end_point select_end_point(vm m, const struct end_point *a, const 
                               v_select(m, a->radius_b, b->radius_b)};
 }
 
+/* Is the common stretch more than rounding? Where two corners face each other both edges end there, and it is not. */
+INLINE vm is_stretch(const struct end_point *low, const struct end_point *high, vf separation) {
+    const vf sizes = v_add(v_add(v_abs(low->along), v_abs(high->along)), v_add(v_abs(low->across), v_abs(separation)));
+    return v_lt(v_mul(v_set(LEAST_STRETCH), sizes), v_sub(high->along, low->along));
+}
+
 INLINE vi find_edge_feature(const struct edge *edge, const struct queue *queue, int k, bool is_b) {
     const vi first = get_bits(queue, is_b ? FIRST_RECORD_B : FIRST_RECORD_A, k);
     return vi_add(find_arc_number(edge->after, first, get_bits(queue, is_b ? INFO_B : INFO_A, k)),
@@ -192,8 +198,8 @@ static void find_second_points(const struct call *call, struct queue *queue, int
         const struct edge a = find_edge(call, queue, k, get_bits(queue, DEEPEST_RECORD_A, k), n, false);
         const struct edge b = find_edge(call, queue, k, get_bits(queue, DEEPEST_RECORD_B, k), n, true);
         struct end_point low = find_end_point(&a, &b, false), high = find_end_point(&a, &b, true);
-        const vm common = vm_and(vm_and(a.offered, b.offered), v_lt(low.along, high.along)),
-                 faces = vm_and(live, common);
+        const vm common = vm_and(vm_and(a.offered, b.offered), is_stretch(&low, &high, deepest));
+        const vm faces = vm_and(live, common);
         if (!vm_any(faces))
             continue;
         /* The end that is the deepest point. Where the edges touch, the places are the stretch's ends. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * probe.inl - what one arc of A and one of B tell of the gap. If u, from the centre of the one to that of the other, lies
- * between their junctions, it is the direction of a local maximum of the gap, and mostly of the highest.
+ * probe.inl - what one arc of A and one of B tell of the gap. If u, from the centre of the one to that of the other,
+ * lies between their junctions, it is the direction of a local maximum of the gap, and mostly of the highest.
  */
 #ifndef NARC_SAT_PROBE_INL
 #define NARC_SAT_PROBE_INL

@@ -283,6 +283,47 @@ static void test_box_on_box(void **state) {
     }
 }
 
+/* Two sharp corners that face each other: both boxes' edges end there, which is no stretch. */
+static void test_corner_on_corner(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("corner on corner");
+    const struct shape box = make_box(2, 1, 0);
+    struct scene scene = make_duo(&box, &box);
+    scene_add_pair(&scene, 1, 0);
+    size_t one = 0, two = 0;
+    for (size_t trial = 0; trial < test_trials(2000); trial++) {
+        const double reach = hypot(1, 0.5), gap = random_between(&random, 0.05, 0.4);
+        const double tilt = random_between(&random, -0.4, 0.4), along = random_between(&random, -1.5, 1.5);
+        /* The normal that is halfway between the corners' diagonals, give or take. */
+        const double angle_a = 0.3 * along, corner = angle_a + atan2(0.5, 1), angle_b = angle_a + tilt;
+        const double other = angle_b + atan2(0.5, 1), normal = (corner + other) / 2 + 0.2 * tilt;
+        put(&scene, 0, 0, 0, angle_a);
+        put(&scene, 1, reach * cos(corner) + gap * cos(normal) + reach * cos(other),
+            reach * sin(corner) + gap * sin(normal) + reach * sin(other), angle_b);
+        if (trial == 0) { /* one that was found to have two points in one place */
+            put(&scene, 0, 0, 0, 0.24253352);
+            put(&scene, 1, 2.1308323354012582, 1.2974483469287876, -0.0399784483);
+        }
+        struct manifolds list = scene_manifolds(&scene, 0.5f);
+        assert_int_equal(list.count, 2);
+        assert_true(trial > 0 || list.view.point_count[0] == 1);
+        assert_int_equal(list.view.point_count[0], list.view.point_count[1]);
+        if (list.view.point_count[0] == 2) { /* two edges on the same side of the corners */
+            assert_true(hypot((double)list.view.point_x[0][0] - (double)list.view.point_x[1][0],
+                              (double)list.view.point_y[0][0] - (double)list.view.point_y[1][0]) > 1e-5);
+            two++;
+            destroy_manifolds(&list, false);
+            continue;
+        }
+        one++;
+        assert_int_equal(list.view.feature[0][0] & 0xff, list.view.feature[0][1] >> 8);
+        assert_int_equal(list.view.feature[0][0] >> 8, list.view.feature[0][1] & 0xff);
+        destroy_manifolds(&list, false);
+    }
+    assert_true(one > two / 100);
+    destroy_scene(&scene);
+}
+
 /* A rounded box that rocks through a tilt of zero: ids stay, and both points and separations are continuous. */
 static void test_rocking(void **state) {
     (void)state;
@@ -413,9 +454,9 @@ static void test_flat_angle(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_single_positions), cmocka_unit_test(test_double_positions),
-        cmocka_unit_test(test_box_on_box),       cmocka_unit_test(test_rocking),
-        cmocka_unit_test(test_rolling),          cmocka_unit_test(test_margin),
-        cmocka_unit_test(test_flat_angle),
+        cmocka_unit_test(test_box_on_box),       cmocka_unit_test(test_corner_on_corner),
+        cmocka_unit_test(test_rocking),          cmocka_unit_test(test_rolling),
+        cmocka_unit_test(test_margin),           cmocka_unit_test(test_flat_angle),
     };
     return test_begin() ? cmocka_run_group_tests_name("manifolds", tests, NULL, NULL) : TEST_SKIPPED;
 }
