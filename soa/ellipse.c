@@ -2,12 +2,13 @@
  *
  * ellipse.c - the n-arc that is nearest to an ellipse.
  *
- * The Hausdorff distance of two convex shapes is the largest difference of their support functions (Schneider, "Convex
- * Bodies", section 1.8). That of an ellipse is h(t) = sqrt(a^2 cos^2 t + b^2 sin^2 t); that of an n-arc is centre.n
- * + radius of the arc that holds the normal n at the angle t. A quadrant with m junctions has 2 m + 1 unknowns: the
- * angles of the junctions, and the radii of m + 1 arcs, of which the first and the last go on beyond the axes. The best choice
- * is one whose 2 m + 2 errors of largest size are equal, in turn above and below 0. The Remez exchange finds it: solve
- * for equal errors where the largest ones are now, by Newton's method; look where they are then; and so on.
+ * The Hausdorff distance of two convex shapes is the largest difference of their support functions (Schneider,
+ * "Convex Bodies", section 1.8). That of an ellipse is h(t) = sqrt(a^2 cos^2 t + b^2 sin^2 t); that of an n-arc is
+ * centre.n + radius of the arc that holds the normal n at the angle t. A quadrant with m junctions has 2 m + 1
+ * unknowns: the angles of the junctions, and the radii of m + 1 arcs, of which the first and the last go on beyond
+ * the axes. The best choice is one whose 2 m + 2 errors of largest size are equal, in turn above and below 0. The
+ * Remez exchange finds it: solve for equal errors where the largest ones are now, by Newton's method; look where they
+ * are then; and so on.
  */
 #include <math.h>
 #include <string.h>
