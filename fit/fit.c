@@ -47,12 +47,12 @@ static const double FLATNESS_OF_TOLERANCE = 0.02;
 /* Coordinates are rounded to single precision, by up to this part of their size. */
 static const double SINGLE_ROUNDING = 0x1p-24;
 
-/* A shape keeps an origin that is so far away that its coordinates are rounded by up to this part of its radius: one that
- * bounds is then a tenth larger or so. */
+/* A shape keeps an origin that is so far away that its coordinates are rounded by up to this part of its radius: one
+ * that bounds is then a tenth larger or so. */
 static const double COARSEST = 1.0 / 16;
 
-/* Chains of the most arcs that grow from fewer are closer than those from fresh starts, but never so many times: it was
- * 2.5 times at most on random polygons, ellipses and curves. */
+/* Chains of the most arcs that grow from fewer are closer than those from fresh starts, but not so many times: on five
+ * outlines of different kinds it was 2.3 times at most. */
 static const double LOOK_AHEAD = 16;
 
 /* A fit under way. */
