@@ -81,20 +81,20 @@ extern "C" {
 
 typedef enum narc_status {
     NARC_OK = 0,
-    NARC_ERROR_ARGUMENT = 1,     /* a NULL pointer, a sub-range that does not fit, a negative count */
-    NARC_ERROR_MEMORY = 2,       /* the allocator returned NULL */
-    NARC_ERROR_INDEX = 3,        /* a body or shape index out of range */
-    NARC_ERROR_CAPACITY = 4,     /* the output list is too short; the needed size is told */
-    NARC_ERROR_COUNT = 5,        /* too few or too many points, arcs or shapes */
-    NARC_ERROR_NOT_FINITE = 6,   /* NaN or infinity */
-    NARC_ERROR_SIZE = 7,         /* a length is zero or negative, or outside NARC_MIN_SIZE .. NARC_MAX_SIZE */
-    NARC_ERROR_RADIUS = 8,       /* a radius is negative, too large for its shape, or not feasible */
-    NARC_ERROR_SWEEP = 9,        /* an arc turns by nothing or by more than half a turn; not one turn in all */
-    NARC_ERROR_NOT_CLOSED = 10,  /* neighbouring arcs do not meet */
-    NARC_ERROR_NOT_CONVEX = 11,  /* an edge runs backwards; points are not convex and counter-clockwise */
-    NARC_ERROR_NOT_SIMPLE = 12,  /* a polygon crosses itself or encloses no area */
-    NARC_ERROR_NO_SOLUTION = 13, /* no n-arc has these junctions */
-    NARC_ERROR_ISA_UNKNOWN = 14, /* no instruction set has that name */
+    NARC_ERROR_ARGUMENT = 1,         /* a NULL pointer, a sub-range that does not fit, a negative count */
+    NARC_ERROR_MEMORY = 2,           /* the allocator returned NULL */
+    NARC_ERROR_INDEX = 3,            /* a body or shape index out of range */
+    NARC_ERROR_CAPACITY = 4,         /* the output list is too short; the needed size is told */
+    NARC_ERROR_COUNT = 5,            /* too few or too many points, arcs or shapes */
+    NARC_ERROR_NOT_FINITE = 6,       /* NaN or infinity */
+    NARC_ERROR_SIZE = 7,             /* a length is zero or negative, or outside NARC_MIN_SIZE .. NARC_MAX_SIZE */
+    NARC_ERROR_RADIUS = 8,           /* a radius is negative, too large for its shape, or not feasible */
+    NARC_ERROR_SWEEP = 9,            /* an arc turns by nothing or by more than half a turn; not one turn in all */
+    NARC_ERROR_NOT_CLOSED = 10,      /* neighbouring arcs do not meet */
+    NARC_ERROR_NOT_CONVEX = 11,      /* an edge runs backwards; points are not convex and counter-clockwise */
+    NARC_ERROR_NOT_SIMPLE = 12,      /* a polygon crosses itself or encloses no area */
+    NARC_ERROR_NO_SOLUTION = 13,     /* no n-arc has these junctions */
+    NARC_ERROR_ISA_UNKNOWN = 14,     /* no instruction set has that name */
     NARC_ERROR_ISA_UNSUPPORTED = 15, /* known, but this build or this processor does not have it */
     NARC_ERROR_FORMAT = 16,          /* data that is not in the format it should be in, or damaged */
     NARC_ERROR_CANCELLED = 17        /* the caller's progress function ended the work */
