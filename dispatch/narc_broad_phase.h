@@ -88,8 +88,8 @@ NARC_API narc_status narc_compute_boxes_range(const narc_shapes *shapes, const n
  * of 4 and widths within 16, and each box is searched for in every level that has boxes. So the bound is L n log n for
  * L levels, and the pairs; sizes that differ by 1 : 10,000 in height and in width make at most 32 levels. Boxes that
  * all lie in one row are sorted and swept by one thread.
- * Errors: NARC_ERROR_ARGUMENT (NULL, too many boxes), NARC_ERROR_COUNT (2^32 pairs or more, after the filter),
- * NARC_ERROR_MEMORY, NARC_ERROR_CAPACITY.
+ * Errors: NARC_ERROR_ARGUMENT (NULL, too many boxes), NARC_ERROR_COUNT (2^32 pairs or more, after the filter; counting
+ * stops there), NARC_ERROR_MEMORY, NARC_ERROR_CAPACITY.
  * Source: sweep and prune (Baraff 1992; Cohen and others 1995) in strips, by levels of size. */
 NARC_API narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
                                      const narc_pair_filter *filter, unsigned threads, uint32_t *out_a, uint32_t *out_b,

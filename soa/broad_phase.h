@@ -46,6 +46,7 @@ typedef struct narc_place_pairs {
     uint32_t *a, *b;
     uint32_t room, count;
     void (*get_room)(struct narc_place_pairs *pairs); /* for another NARC_BOX_PADDING pairs at least */
+    bool enough;                                      /* nobody wants more pairs: the kernel may stop */
     uint64_t steps;                                   /* vectors of boxes looked at, and steps of searches */
 } narc_place_pairs;
 

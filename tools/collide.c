@@ -192,7 +192,8 @@ static void find_pairs(job *work, const settings *chosen) {
                                      nextafter(box.max_x + half, INFINITY), nextafter(box.max_y + half, INFINITY)};
         }
     }
-    find_candidates(chosen->bodies, widened ? widened : work->boxes, count, chosen->most_pairs, &work->pairs);
+    find_candidates(chosen->bodies, widened ? widened : work->boxes, count, chosen->most_pairs, chosen->narrow.threads,
+                    &work->pairs);
     free(widened);
 }
 

@@ -18,15 +18,20 @@ typedef struct own_pairs {
     narc_place_pairs pairs; /* the kernel's view, first */
     narc_broad_phase *broad;
     const narc_pair_filter *filter;
+    int team;
     uint32_t bodies; /* pairs of the block that have been filtered */
     uint64_t total;  /* of the blocks before it */
     uint32_t a[NARC_PAIR_BLOCK], b[NARC_PAIR_BLOCK];
 } own_pairs;
 
+/* Pairs that are only counted, and of which the filter leaves none out, may stay places. */
 static void filter_new(own_pairs *own) {
     narc_place_pairs *const pairs = &own->pairs;
-    own->bodies = pairs->count =
-        narc_filter_pairs(own->broad, own->filter, pairs->a, pairs->b, own->bodies, pairs->count);
+    if (pairs->a == own->a && !own->filter)
+        own->bodies = pairs->count;
+    else
+        own->bodies = pairs->count =
+            narc_filter_pairs(own->broad, own->filter, pairs->a, pairs->b, own->bodies, pairs->count);
 }
 
 static void end_block(own_pairs *own) {
@@ -46,6 +51,14 @@ static void begin_block(own_pairs *own) {
     own->pairs.b = exists ? broad->pair_b + block * NARC_PAIR_BLOCK : own->b;
 }
 
+/* Blocks that hold so many pairs: all are full but the last one of each thread. */
+static size_t count_blocks(uint64_t pairs, int team) { return (size_t)(pairs / NARC_FULL_BLOCK) + (size_t)team; }
+
+/* More than the largest number of pairs? Threads have asked for more blocks than hold that many. */
+static bool too_many(const narc_broad_phase *broad, int team) {
+    return atomic_load_explicit(&broad->block_count, memory_order_relaxed) > count_blocks(UINT32_MAX, team) + 1;
+}
+
 /* A block that the filter leaves room in is filled up first. */
 static void get_room(narc_place_pairs *pairs) {
     own_pairs *const own = (own_pairs *)pairs;
@@ -54,6 +67,7 @@ static void get_room(narc_place_pairs *pairs) {
         return;
     end_block(own);
     begin_block(own);
+    pairs->enough = too_many(own->broad, own->team);
 }
 
 /* ------------------------------------------------------------------------------------------------ sweeps */
@@ -97,7 +111,7 @@ static void sweep_strip(const narc_broad_phase *broad, const narc_kernel_table *
 }
 
 /* Sweeps all strips; returns how many pairs the filter lets, of which only those are kept for which there are
- * blocks. */
+ * blocks. Beyond UINT32_MAX it stops: then it returns any larger number. */
 static uint64_t sweep_all(narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_pair_filter *filter,
                           int team) {
     const int strips_at_a_time = 1 + (int)(broad->strip_count / ((size_t)team * 64));
@@ -112,6 +126,7 @@ static uint64_t sweep_all(narc_broad_phase *broad, const narc_kernel_table *kern
         own.pairs = (narc_place_pairs){.room = NARC_PAIR_BLOCK, .get_room = get_room};
         own.broad = broad;
         own.filter = filter;
+        own.team = team;
         own.bodies = 0;
         own.total = 0;
         begin_block(&own);
@@ -119,7 +134,8 @@ static uint64_t sweep_all(narc_broad_phase *broad, const narc_kernel_table *kern
 #pragma omp for schedule(dynamic, strips_at_a_time)
 #endif
         for (size_t k = 0; k < broad->strip_count; k++)
-            sweep_strip(broad, kernels, k, &own.pairs);
+            if (!own.pairs.enough)
+                sweep_strip(broad, kernels, k, &own.pairs);
         end_block(&own);
         found += own.total;
         steps += own.pairs.steps;
@@ -144,9 +160,6 @@ static narc_status check(const narc_broad_phase *broad, const narc_box *boxes, s
     return NARC_OK;
 }
 
-/* Blocks that hold so many pairs: all are full but the last one of each thread. */
-static size_t count_blocks(uint64_t pairs, int team) { return (size_t)(pairs / NARC_FULL_BLOCK) + (size_t)team; }
-
 narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
                             const narc_pair_filter *filter, unsigned threads, uint32_t *out_a, uint32_t *out_b,
                             size_t capacity, size_t *out_count, narc_error *error) {
@@ -168,8 +181,8 @@ narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size
         narc_sort_strip(broad, &broad->strips[k], boxes);
     const uint64_t found = sweep_all(broad, kernels, filter, team);
     if (found > UINT32_MAX)
-        return narc_fail(error, NARC_ERROR_COUNT, 0, (double)found, "%llu pairs of boxes overlap, at most %lu",
-                         (unsigned long long)found, (unsigned long)UINT32_MAX);
+        return narc_fail(error, NARC_ERROR_COUNT, 0, (double)UINT32_MAX, "more than %lu pairs of boxes overlap",
+                         (unsigned long)UINT32_MAX);
     if (found > capacity) {
         *out_count = (size_t)found;
         return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu pairs, but there is room for %zu",

@@ -67,12 +67,12 @@ static inline uint32_t find_min_x(const float *min_x, uint32_t from, uint32_t en
 static void sweep(const narc_box_columns *boxes, uint32_t first_a, uint32_t end_a, uint32_t first_b, uint32_t end_b,
                   float width_b, narc_place_pairs *out) {
     if (first_a == first_b) {
-        for (uint32_t a = first_a; a < end_a; a++)
+        for (uint32_t a = first_a; a < end_a && !out->enough; a++)
             sweep_box(boxes, a, a + 1, end_a, true, out);
         return;
     }
     uint32_t from = first_b;
-    for (uint32_t a = first_a; a < end_a; a++) {
+    for (uint32_t a = first_a; a < end_a && !out->enough; a++) {
         from = find_min_x(boxes->min_x, from, end_b, boxes->min_x[a] - width_b, &out->steps);
         sweep_box(boxes, a, from, end_b, false, out);
     }
