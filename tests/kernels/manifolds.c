@@ -214,9 +214,9 @@ static void test_double_positions(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ small motions */
 
-/* Two bodies, one pair. */
+/* Two bodies, one pair, and room for another. */
 static struct scene make_duo(const struct shape *a, const struct shape *b) {
-    struct scene scene = create_scene(NARC_FLOAT32, 2, 2, 1);
+    struct scene scene = create_scene(NARC_FLOAT32, 2, 2, 2);
     for (uint32_t k = 0; k < 2; k++) {
         struct body body = turned_body(0, 1);
         body.shape = scene_add_shape(&scene, k == 0 ? a : b);
