@@ -23,15 +23,18 @@ static void include(narc_interval *interval, narc_point direction, double differ
 static narc_interval make_interval(const narc_chain *chain, const narc_hull *hull, size_t arc, size_t corner,
                                    narc_point start, narc_point end) {
     const narc_point q = minus(hull->corners[corner], chain->center[arc]), away = {-q.x, -q.y};
-    const double base = chain->radius[arc] - hull->inflation, distance = length(q);
+    const double base = chain->radius[arc] - hull->inflation;
     narc_interval interval = {
         .arc = arc, .corner = corner, .start = start, .end = end, .least = {start, base - dot(q, start)}};
     interval.largest = interval.least;
     include(&interval, end, base - dot(q, end));
-    if (distance > 0 && is_between(q, start, end))
+    if (is_between(q, start, end)) {
+        const double distance = length(q);
         include(&interval, (narc_point){q.x / distance, q.y / distance}, base - distance);
-    if (distance > 0 && is_between(away, start, end))
+    } else if (is_between(away, start, end)) {
+        const double distance = length(q);
         include(&interval, (narc_point){away.x / distance, away.y / distance}, base + distance);
+    }
     return interval;
 }
 

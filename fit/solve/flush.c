@@ -28,30 +28,32 @@ static bool meet(const struct line *a, const struct line *b, narc_point *out) {
     return true;
 }
 
-/* The area that is added when the line between two others goes. */
-static double price(const struct line *before, const struct line *gone, const struct line *after) {
+/* The area that is added when line k goes: between it and the lines on both sides of it. */
+static double price(const struct line *lines, size_t count, size_t k) {
+    const struct line *before = &lines[(k + count - 1) % count], *gone = &lines[k], *after = &lines[(k + 1) % count];
     narc_point start, end, tip;
     if (!meet(before, gone, &start) || !meet(gone, after, &end) || !meet(before, after, &tip))
         return INFINITY;
     return 0.5 * fabs(cross(minus(end, start), minus(tip, start)));
 }
 
-/* Again and again the line that costs least goes, until `most` are left or none can go. */
-static size_t thin_lines(struct line *lines, size_t count, size_t most) {
+/* Again and again the line that costs least goes, until `most` are left or none can go. Only its neighbours' prices
+ * change then. `prices` is room for one of each line. */
+static size_t thin_lines(struct line *lines, double *prices, size_t count, size_t most) {
+    for (size_t k = 0; k < count && count > most; k++)
+        prices[k] = price(lines, count, k);
     while (count > most) {
-        double least = INFINITY;
         size_t best = 0;
-        for (size_t k = 0; k < count; k++) {
-            const double cost = price(&lines[(k + count - 1) % count], &lines[k], &lines[(k + 1) % count]);
-            if (cost < least) {
-                least = cost;
-                best = k;
-            }
-        }
-        if (!isfinite(least))
+        for (size_t k = 1; k < count; k++)
+            best = prices[k] < prices[best] ? k : best;
+        if (!isfinite(prices[best]))
             break;
         memmove(lines + best, lines + best + 1, (count - best - 1) * sizeof *lines);
+        memmove(prices + best, prices + best + 1, (count - best - 1) * sizeof *prices);
         count--;
+        const size_t before = (best + count - 1) % count, after = best % count;
+        prices[before] = price(lines, count, before);
+        prices[after] = price(lines, count, after);
     }
     return count;
 }
@@ -131,14 +133,15 @@ static size_t choose(const struct pockets *pockets, size_t count, double *out_an
 
 size_t narc_find_flush_polygon(const narc_hull *hull, size_t count, double *out_angles) {
     struct line *lines = malloc(hull->count * sizeof *lines);
+    double *prices = malloc(hull->count * sizeof *prices);
     struct pockets *pockets = malloc(sizeof *pockets);
     size_t found = 0;
-    if (lines && pockets && count >= 3) {
+    if (lines && prices && pockets && count >= 3) {
         for (size_t k = 0; k < hull->count; k++) {
             const narc_point d = hull->normals[k];
             lines[k] = (struct line){d, hull->angles[k], dot(d, hull->corners[k]) + hull->inflation};
         }
-        pockets->count = thin_lines(lines, hull->count, MOST_SIDES);
+        pockets->count = thin_lines(lines, prices, hull->count, MOST_SIDES);
         if (pockets->count <= MOST_SIDES) {
             memcpy(pockets->lines, lines, pockets->count * sizeof *lines);
             found = fill_pockets(pockets) ? choose(pockets, count < pockets->count ? count : pockets->count, out_angles)
@@ -146,6 +149,7 @@ size_t narc_find_flush_polygon(const narc_hull *hull, size_t count, double *out_
         }
     }
     free(lines);
+    free(prices);
     free(pockets);
     return found;
 }
