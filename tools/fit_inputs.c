@@ -228,8 +228,9 @@ static narc_status call_reader(file_kind kind, const char *bytes, size_t size, d
     }
 }
 
-/* Drawings of this size, in KB, may take long: librsvg draws them without a report. */
-enum { KB = 1024, LARGE_DRAWING = 512 };
+/* Drawings of this size, in KB, may take long, and librsvg draws them without a report. Paths that cross themselves take
+ * longest: 2,000 long curves, some 80 KB, take seconds. */
+enum { KB = 1024, LARGE_DRAWING = 64 };
 
 static void read_outline(const char *file, file_kind kind, const char *bytes, size_t size, const reading *how,
                          outline_list *outlines) {

@@ -148,10 +148,10 @@ fails "kept too far away" "narc: fits/away.csv: .*9e+08 from its origin, where s
 
 # Progress is for terminals: `script` gives the command one, where it is installed and is that of util-linux.
 if command -v script >/dev/null && script -qec true /dev/null >script.txt 2>&1 </dev/null; then
-    { printf '<svg viewBox="0 0 4 4" xmlns="http://www.w3.org/2000/svg"><!--' && head -c 600000 /dev/zero | tr '\0' x &&
+    { printf '<svg viewBox="0 0 4 4" xmlns="http://www.w3.org/2000/svg"><!--' && head -c 100000 /dev/zero | tr '\0' x &&
         printf -- '--><path d="M0 0H3V2z"/></svg>'; } >fits/large.svg
     script -qec "'$narc' fit fits/large.svg --arcs 1 --out large.json" /dev/null >script.txt 2>&1 </dev/null
-    check "a large drawing is announced" grep -q "drawing, 586 KB of SVG" script.txt
+    check "a large drawing is announced" grep -q "drawing, 97 KB of SVG" script.txt
     awk 'BEGIN { for (k = 0; k < 60; k++) print cos(k * 0.1047) "," 0.4 * sin(k * 0.1047) }' >fits/ellipse.csv
     script -qec "'$narc' fit fits/ellipse.csv --arcs 12 --edges --objective distance --out long.json" /dev/null \
         >script.txt 2>&1 </dev/null
