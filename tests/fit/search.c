@@ -53,6 +53,23 @@ static void test_thinnest_rhombus(void **state) {
     free_outline(&rhombus);
 }
 
+/* The least k-gons around an ellipse are those around a circle, squeezed. Its hull has far more sides than the flush
+ * polygons choose from, so that it is thinned first. */
+static void test_fine_ellipse(void **state) {
+    (void)state;
+    enum { CORNERS = 1800 };
+    const double pi = 3.14159265358979323846, squeeze = 0.5;
+    struct outline ellipse = make_regular("fine ellipse", CORNERS, 0, squeeze);
+    for (size_t k = 3; k <= 7; k += 2) {
+        const narc_fit_result fit = fit_shape(&ellipse, NARC_FIT_POLYGON, NARC_FIT_BOUND_AREA, k);
+        const double known = (double)k * tan(pi / (double)k) * squeeze;
+        if (!(fit.area <= known * (1 + NEAR)))
+            fail_msg("fine ellipse, %zu sides: area %.6f, but %.6f is known", k, fit.area, known);
+        check_contained(&ellipse, &fit, "fine ellipse");
+    }
+    free_outline(&ellipse);
+}
+
 static double fit_value(const struct outline *of, narc_fit_family family, narc_fit_goal goal, size_t arcs) {
     const narc_fit_request request = {.arc_count = arcs, .family = family, .goal = goal, .starts = 1};
     const narc_fit_result fit = fit_outline(of, request);
@@ -180,6 +197,7 @@ int main(void) {
         cmocka_unit_test(test_square),
         cmocka_unit_test(test_thin_rhombus),
         cmocka_unit_test(test_thinnest_rhombus),
+        cmocka_unit_test(test_fine_ellipse),
         cmocka_unit_test(test_more_is_never_worse),
         cmocka_unit_test(test_turned_and_mirrored),
         cmocka_unit_test(test_least_radius),
