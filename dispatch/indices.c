@@ -9,33 +9,43 @@
  * OpenMP is left alone: it takes a quarter of a microsecond even for a team of one. */
 enum { PART = 65536 };
 
-static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
+/* A limit that are_below() can take. What it then finds wrong may be right, and is looked at again. */
+static uint32_t clip(size_t limit) { return limit < 0x80000000u ? (uint32_t)limit : 0x80000000u; }
 
-/* The largest of items first .. last - 1 of a column. Compilers make vectors of the loop over a plain array; the other
- * one keeps four results, because one comparison would wait for the other. */
-static uint32_t find_largest(narc_column column, size_t first, size_t last) {
-    uint32_t largest[4] = {0};
+/* Are items first .. last - 1 of a column below `limit`? With limit at most 2^31, the upper bit of k - limit is that of a
+ * k below it, if k has none itself. So all that is kept of the items is the union and the intersection of bits: two
+ * operations each, on four items at a time, because one would wait for the other. */
+static bool are_below(narc_column column, size_t first, size_t last, uint32_t limit) {
+    uint32_t any[4] = {0}, all[4] = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
     size_t k = first;
-    if (column.stride == sizeof(uint32_t)) {
+    if (column.stride == sizeof(uint32_t)) { /* of a plain array compilers make vectors */
         const uint32_t *index = column.base;
-        for (; k < last; k++)
-            largest[0] = larger(largest[0], index[k]);
+        for (; k < last; k++) {
+            any[0] |= index[k];
+            all[0] &= index[k] - limit;
+        }
     }
     for (; k + 4 <= last; k += 4)
-        for (size_t i = 0; i < 4; i++)
-            largest[i] = larger(largest[i], narc_index_at(column, k + i));
-    for (; k < last; k++)
-        largest[0] = larger(largest[0], narc_index_at(column, k));
-    return larger(larger(largest[0], largest[1]), larger(largest[2], largest[3]));
+        for (size_t i = 0; i < 4; i++) {
+            const uint32_t index = narc_index_at(column, k + i);
+            any[i] |= index;
+            all[i] &= index - limit;
+        }
+    for (; k < last; k++) {
+        any[0] |= narc_index_at(column, k);
+        all[0] &= narc_index_at(column, k) - limit;
+    }
+    const uint32_t one = any[0] | any[1] | any[2] | any[3], every = all[0] & all[1] & all[2] & all[3];
+    return (~one & every) >> 31;
 }
 
-/* The largest body that pairs first .. last - 1 name. */
-static uint32_t find_largest_body(const narc_pairs *pairs, size_t first, size_t last) {
+/* Are all bodies that pairs first .. last - 1 name below `limit`? */
+static bool are_bodies_below(const narc_pairs *pairs, size_t first, size_t last, uint32_t limit) {
     const narc_column a = pairs->a, b = pairs->b;
     const size_t item = sizeof(uint32_t);
     if (a.stride == 2 * item && b.stride == 2 * item && (const char *)b.base == (const char *)a.base + item)
-        return find_largest((narc_column){a.base, item}, 2 * first, 2 * last); /* both columns are one */
-    return larger(find_largest(a, first, last), find_largest(b, first, last));
+        return are_below((narc_column){a.base, item}, 2 * first, 2 * last, limit); /* both columns are one */
+    return are_below(a, first, last, limit) && are_below(b, first, last, limit);
 }
 
 /* Are all bodies of a part's pairs in range, and all shapes of a part of the bodies? Reads columns from front to back,
@@ -46,8 +56,8 @@ static bool part_in_range(const narc_batch *batch, size_t first, size_t count, s
     const size_t start = part * PART, end = count - start < PART ? count : start + PART;
     const size_t body = part * bodies_in_part, rest = bodies->count > body ? bodies->count - body : 0;
     const size_t last_body = body + (rest < bodies_in_part ? rest : bodies_in_part);
-    return find_largest_body(batch->pairs, first + start, first + end) < bodies->count &&
-           (rest == 0 || find_largest(bodies->shape, body, last_body) < batch->shapes->count);
+    return are_bodies_below(batch->pairs, first + start, first + end, clip(bodies->count)) &&
+           are_below(bodies->shape, body, last_body, clip(batch->shapes->count));
 }
 
 /* The same for all parts. */
@@ -112,12 +122,13 @@ size_t narc_find_bad_body(const narc_shapes *shapes, const narc_bodies *bodies, 
 #endif
     for (size_t part = 0; part < parts; part++) {
         const size_t start = first + part * PART, end = count - part * PART < PART ? first + count : start + PART;
-        if (find_largest(bodies->shape, start, end) < shapes->count)
+        if (are_below(bodies->shape, start, end, clip(shapes->count)))
             continue;
         size_t body = start;
-        while (narc_index_at(bodies->shape, body) < shapes->count)
+        while (body < end && narc_index_at(bodies->shape, body) < shapes->count)
             body++;
-        bad = body < bad ? body : bad;
+        if (body < end && body < bad)
+            bad = body;
     }
     return bad;
 }

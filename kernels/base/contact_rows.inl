@@ -28,8 +28,12 @@ enum { GROUP = NARC_CONTACT_GROUP };
 /* What is known of a pair. */
 enum { NOT_LISTED, ONE_POINT, TWO_POINTS, NO_ANSWER };
 
-/* A row for each pair of a call. The last item of each array takes what lanes without a contact write. */
+/* What is known of the pairs of a call. The contacts of the first ones may be known in order: they are listed at once.
+ * Each other pair has a row. The last row takes what lanes without a contact write. */
 struct contact_rows {
+    int done, listed; /* all pairs before `done` are answered, and have `listed` contacts */
+    _Alignas(64) float list[ROW][GROUP + V_WIDTH];
+    int32_t list_pair[GROUP + V_WIDTH];
     _Alignas(64) float row[GROUP + 1][ROW];
     int32_t keep[GROUP + 1]; /* one of the above */
     bool hinted;             /* are hints wanted? */
@@ -48,6 +52,14 @@ INLINE void store_hints(const struct call *call, const struct queue *queue, int 
         rows->hint[row[lane]] = (uint32_t)hint[lane];
 }
 
+/* The same for pairs of circles. */
+INLINE void hint_first_arcs(struct contact_rows *rows, vi pairs, vm answered) {
+    int32_t row[V_WIDTH];
+    vi_store(row, vi_select(answered, pairs, vi_set(GROUP)));
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        rows->hint[row[lane]] = FIRST_ARCS;
+}
+
 /* The caller's number of an arc from its record; a circle's two halves are both arc 0. */
 INLINE vi find_arc_number(vi record, vi first_record, vi info) {
     const vi index = vi_sub(record, first_arc_record(first_record, info));
@@ -61,22 +73,35 @@ INLINE void find_rows(const struct queue *queue, int k, vm keep, int32_t row[V_W
     vi_store(row, vi_select(keep, get_bits(queue, PAIR, k), vi_set(GROUP)));
 }
 
+INLINE void put_rows(struct contact_rows *rows, vi pairs, vm keep, const vf field[ROW]) {
+    int32_t row[V_WIDTH];
+    vi_store(row, vi_select(keep, pairs, vi_set(GROUP)));
+    v_put_rows(rows->row, sizeof rows->row[0], row, field);
+    v_put_rows((float *)rows->row + 4, sizeof rows->row[0], row, field + 4);
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        rows->keep[row[lane]] = ONE_POINT;
+}
+
+/* Appends contacts to the list, in the lanes `keep`. */
+INLINE void append_to_list(struct contact_rows *rows, vi pairs, vm keep, const vf field[ROW]) {
+    const vp packing = vm_packing(keep);
+    UNROLL
+    for (int f = 0; f < ROW; f++)
+        v_store(rows->list[f] + rows->listed, v_pack(packing, field[f]));
+    vi_store(rows->list_pair + rows->listed, vi_bits(v_pack(packing, v_of_bits(pairs))));
+    rows->listed += __builtin_popcount(vm_bits(keep));
+}
+
 /* Stores the contacts of the pairs k ... of a queue in the lanes `keep`. */
 INLINE void store_contacts(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
                            const struct feature *on_a, const struct feature *on_b) {
-    struct contact_rows *rows = call->rows;
     const vec2 to_world = get_vec2(queue, ROTATION_A, k), normal = v2_rotate(to_world, n);
     const vec2 point = v2_rotate(to_world, v2_rotate(n, find_contact_place(on_a, on_b)));
     const vi arc_a = find_arc_number(on_a->record, get_bits(queue, FIRST_RECORD_A, k), get_bits(queue, INFO_A, k));
     const vi arc_b = find_arc_number(on_b->record, get_bits(queue, FIRST_RECORD_B, k), get_bits(queue, INFO_B, k));
     const vf arcs = v_of_bits(vi_add(arc_a, vi_shift_left(arc_b, 8))), none = v_set(0);
     const vf field[ROW] = {separation, normal.x, normal.y, point.x, point.y, arcs, none, none};
-    int32_t row[V_WIDTH];
-    find_rows(queue, k, keep, row);
-    v_put_rows(rows->row, sizeof rows->row[0], row, field);
-    v_put_rows((float *)rows->row + 4, sizeof rows->row[0], row, field + 4);
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        rows->keep[row[lane]] = ONE_POINT;
+    put_rows(call->rows, get_bits(queue, PAIR, k), keep, field);
 }
 
 /* The unit normal of the gap of the pairs k ... of a queue, and what touches along it. */
@@ -106,11 +131,11 @@ INLINE void store_no_contact(const struct call *call, vi pairs, vm which) {
     }
 }
 
-/* The pairs of a call that are listed, in order; returns how many. Behind them stands the last row. */
+/* The pairs of a call that are listed from rows, in order; returns how many. Behind them stands the last row. */
 INLINE int find_listed(const struct call *call, int32_t pair[GROUP + V_WIDTH]) {
     const int count = (int)call->count;
     int n = 0;
-    for (int k = 0; k < count; k += V_WIDTH) {
+    for (int k = call->rows->done; k < count; k += V_WIDTH) {
         const vm listed = vm_and(vm_front(count - k), vi_lt(vi_set(NOT_LISTED), vi_load(call->rows->keep + k)));
         const vf pairs = v_of_bits(vi_add(vi_lanes(), vi_set(k)));
         vi_store(pair + n, vi_bits(v_pack(vm_packing(listed), pairs)));
@@ -154,15 +179,34 @@ INLINE void load_row(const float *rows, const int32_t *row, vf field[ROW]) {
     v_rows(rows + 4, ROW * sizeof *rows, row, field + 4);
 }
 
+/* Copies a column of the list of the first pairs' contacts; returns the place behind it. */
+INLINE float *copy_listed(const struct contact_rows *rows, int field, float *column) {
+    if (!column)
+        return NULL;
+    memcpy(column, rows->list[field], (size_t)rows->listed * sizeof *column);
+    return column + rows->listed;
+}
+
+/* The same for bytes that are all alike. */
+INLINE uint8_t *fill_bytes(uint8_t *column, int count, int value) {
+    return column ? (uint8_t *)memset(column, value, (size_t)count) + count : NULL;
+}
+
 /* Writes the stored contacts of a call in the order of their pairs; returns how many. */
 static inline size_t list_contacts(const struct call *call, const narc_contacts *out) {
+    const struct contact_rows *rows = call->rows;
     int32_t pair[GROUP + V_WIDTH];
+    float *const lists[] = {out->separation, out->normal_x, out->normal_y, out->point_x, out->point_y};
+    float *columns[ARCS];
+    for (int f = 0; f < ARCS; f++)
+        columns[f] = copy_listed(rows, f, lists[f]);
+    write_pairs(call, rows->list_pair, rows->listed, out->pair);
+    uint8_t *const arc_a = fill_bytes(out->arc_a, rows->listed, 0), *const arc_b =
+                                                                        fill_bytes(out->arc_b, rows->listed, 0);
     const int n = find_listed(call, pair);
-    uint8_t *const arc_a = out->arc_a, *const arc_b = out->arc_b;
-    float *const columns[] = {out->separation, out->normal_x, out->normal_y, out->point_x, out->point_y};
     for (int k = 0; k < n; k += V_WIDTH) {
         vf field[ROW];
-        load_row(call->rows->row[0], pair + k, field);
+        load_row(rows->row[0], pair + k, field);
         const int lanes = n - k < V_WIDTH ? n - k : V_WIDTH;
         UNROLL
         for (int f = 0; f < ARCS; f++)
@@ -172,8 +216,8 @@ static inline size_t list_contacts(const struct call *call, const narc_contacts 
         write_bytes(arc_a, k, lanes, arcs, 0);
         write_bytes(arc_b, k, lanes, arcs, 8);
     }
-    write_pairs(call, pair, n, out->pair);
-    return (size_t)n;
+    write_pairs(call, pair, n, out->pair ? out->pair + rows->listed : NULL);
+    return (size_t)rows->listed + (size_t)n;
 }
 
 #endif

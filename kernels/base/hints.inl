@@ -12,9 +12,14 @@
 #include "base/shape.inl"
 #include "simd/simd.h"
 
+/* The hint of two circles, which need none. */
+#define FIRST_ARCS 0x0101
+
 INLINE vi make_hint(const struct queue *queue, int k, vi record_a, vi record_b) {
     const vi a = vi_sub(record_a, get_ring_a(queue, k).base), b = vi_sub(record_b, get_ring_b(queue, k).base);
-    return vi_add(vi_add(a, vi_set(1)), vi_shift_left(vi_add(b, vi_set(1)), 8));
+    const vi both = vi_and(get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k));
+    const vi hint = vi_add(vi_add(a, vi_set(1)), vi_shift_left(vi_add(b, vi_set(1)), 8));
+    return vi_select(info_has(both, NARC_SHAPE_CIRCLE), vi_set(FIRST_ARCS), hint);
 }
 
 /* Takes the arcs of all pairs of a queue from their hints, in lanes where these name arcs that exist. */

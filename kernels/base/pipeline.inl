@@ -36,6 +36,20 @@ INLINE vm take_valid(const struct call *call, size_t pair, const struct filter *
     return circles->valid;
 }
 
+/* Appends the lanes `open` of `item` to the first stage's queue. Where that one can't answer most of the pairs that have
+ * edges, as among bodies that rest on each other, these go to the stage that can. */
+INLINE void enter(struct queue *queues, vm open, const vf item[FIELDS], int fields, int edged_stage) {
+    vm here = open;
+    if (edged_stage > 0 && 4 * queues->edged_left > 3 * queues->edged) {
+        const vm edged = vm_and_not(open, find_smooth_items(item));
+        here = vm_and_not(open, edged);
+        if (vm_any(edged))
+            push(&queues[edged_stage], edged, item, fields);
+    }
+    if (vm_any(here))
+        push(queues, here, item, fields);
+}
+
 INLINE void run_stages(const struct call *call, stage *const *stages, int stage_count, struct queue *queues, bool end) {
     for (int s = 0; s < stage_count; s++) {
         struct queue *queue = &queues[s];
@@ -50,14 +64,15 @@ INLINE void run_stages(const struct call *call, stage *const *stages, int stage_
     }
 }
 
-/* Runs all pairs of a call. `queues`: one for each stage. */
+/* Runs all pairs of a call. `queues`: one for each stage. `edged_stage`: where pairs with edges may begin instead of at
+ * the first stage, or 0. */
 INLINE void run_pairs(const struct call *call, triage *settle, int fields, stage *const *stages, int stage_count,
-                      struct queue *queues) {
+                      int edged_stage, struct queue *queues) {
     const narc_batch *batch = call->batch;
     const bool adjacent = poses_are_adjacent(batch->bodies);
     struct pair_indices indices;
     for (int s = 0; s < stage_count; s++)
-        queues[s].count = 0;
+        queues[s].count = queues[s].edged = queues[s].edged_left = 0;
     for (size_t block = 0; block < call->count; block += BLOCK) {
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
         load_indices(batch, call->first + block, n, &indices);
@@ -67,8 +82,8 @@ INLINE void run_pairs(const struct call *call, triage *settle, int fields, stage
             if (batch->skipped)
                 *batch->skipped += (size_t)__builtin_popcount(vm_bits(circles.invalid));
             const vm open = settle(call, block + (size_t)k, &circles, item);
-            if (stage_count > 0)
-                push(queues, open, item, fields);
+            if (stage_count > 0 && vm_any(open))
+                enter(queues, open, item, fields, edged_stage);
         }
         run_stages(call, stages, stage_count, queues, false);
     }
@@ -83,6 +98,7 @@ static inline struct call begin_overlaps(const narc_batch *batch, size_t first, 
 static inline struct call begin_contacts(const narc_batch *batch, size_t first, size_t count, float margin,
                                          struct contact_rows *rows) {
     rows->hinted = false;
+    rows->done = rows->listed = 0;
     /* NOT_LISTED is 0. Lists are read by whole vectors. */
     memset(rows->keep, 0, (count + V_WIDTH - 1) / V_WIDTH * V_WIDTH * sizeof *rows->keep);
     return (struct call){.batch = batch,
@@ -97,7 +113,7 @@ static inline struct call begin_contacts(const narc_batch *batch, size_t first, 
 INLINE void run_overlap_method(stage *find, const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
     struct queue queue;
     const struct call call = begin_overlaps(batch, first, count, out_bits);
-    run_pairs(&call, take_valid, FIELDS, &find, 1, &queue);
+    run_pairs(&call, take_valid, FIELDS, &find, 1, 0, &queue);
 }
 
 INLINE size_t run_contact_method(stage *find, const narc_batch *batch, size_t first, size_t count, float margin,
@@ -105,7 +121,7 @@ INLINE size_t run_contact_method(stage *find, const narc_batch *batch, size_t fi
     struct queue queue;
     struct contact_rows rows;
     const struct call call = begin_contacts(batch, first, count, margin, &rows);
-    run_pairs(&call, take_valid, FIELDS, &find, 1, &queue);
+    run_pairs(&call, take_valid, FIELDS, &find, 1, 0, &queue);
     return list_contacts(&call, out);
 }
 

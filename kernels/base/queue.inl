@@ -48,6 +48,7 @@ struct queue {
     int32_t record_a[CAPACITY], record_b[CAPACITY]; /* the arcs that a stage found: push() leaves them out */
     int32_t hinted[CAPACITY];                       /* 1 where a hint named these arcs */
     int count;
+    int edged, edged_left; /* first stage: pairs with edges that it took, and passed on */
 };
 
 INLINE vf get(const struct queue *queue, int field, int k) { return v_load(queue->item[field] + k); }
@@ -74,6 +75,16 @@ INLINE void store_vec2(struct queue *queue, int field, int k, vec2 a) {
 /* Are both shapes of the pairs k ... smooth? */
 INLINE vm find_smooth(const struct queue *queue, int k) {
     return info_has(vi_and(get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k)), NARC_SHAPE_SMOOTH);
+}
+
+INLINE vm find_smooth_items(const vf *item) {
+    return info_has(vi_and(vi_bits(item[INFO_A]), vi_bits(item[INFO_B])), NARC_SHAPE_SMOOTH);
+}
+
+/* Notes how a first stage fared with pairs that have edges: what it took, and what is left of it. */
+INLINE void count_edged(struct queue *queue, vm taken, vm left) {
+    queue->edged += __builtin_popcount(vm_bits(taken));
+    queue->edged_left += __builtin_popcount(vm_bits(left));
 }
 
 INLINE void set_vec2(vf *item, int field, vec2 a) {

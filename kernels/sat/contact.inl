@@ -26,6 +26,7 @@
 #include "kernels.h"
 #include "sat/certificates.inl"
 #include "sat/direction_lookup.inl"
+#include "sat/discs.inl"
 #include "sat/hill_climb.inl"
 #include "sat/manifold_edges.inl"
 #include "sat/manifold_rows.inl"
@@ -34,8 +35,39 @@
 #include "sat/shortcuts.inl"
 #include "simd/simd.h"
 
+/* Answers pairs of two circles, the first of which has the number `pair`, in the lanes `open`; returns those that are
+ * left. `in_order`: are the pairs before, and those in the other lanes, done? Manifolds have radii where contacts have
+ * nothing. */
+INLINE vm answer_discs(const struct call *call, size_t pair, vm open, const vf item[FIELDS], bool in_order) {
+    struct contact_rows *rows = call->rows;
+    const vf margin = load_pair_column(call->margins, call->first + pair, (int)(call->count - pair), call->margin);
+    const struct probe p = probe_discs(call->batch->shapes->records, item, open, margin);
+    const vm answered = vm_and(open, vm_or(p.far, p.only)), left = vm_and_not(open, answered);
+    const vec2 to_world = {item[ROTATION_A], item[ROTATION_A + 1]}, n = v2_divide(p.u, p.length);
+    const vec2 normal = v2_rotate(to_world, n);
+    const struct feature on_a = find_feature(&p.arcs.a, &p.arcs.a, n, vi_set(0), false);
+    const struct feature on_b = find_feature(&p.arcs.b, &p.arcs.b, n, vi_set(0), true);
+    const vec2 point = v2_rotate(to_world, v2_rotate(n, find_contact_place(&on_a, &on_b)));
+    const vf field[ROW] = {p.separation, normal.x, normal.y,        point.x,
+                           point.y,      v_set(0), p.arcs.a.radius, p.arcs.b.radius};
+    const vi pairs = item_bits(item, PAIR);
+    const vm found = vm_and(vm_and_not(p.only, p.far), is_below(p.separation, margin));
+    if (in_order && !vm_any(left))
+        append_to_list(rows, pairs, found, field);
+    else
+        put_rows(rows, pairs, found, field);
+    if (rows->hinted)
+        hint_first_arcs(rows, pairs, answered);
+    return left;
+}
+
 INLINE vm triage_contacts(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
-    return vm_and_not(take_valid(call, pair, circles, item), circles->apart);
+    const vm open = vm_and_not(take_valid(call, pair, circles, item), circles->apart);
+    const bool in_order = call->rows->done == (int)pair && !vm_any(circles->invalid);
+    const vm left = are_discs(open, item) ? answer_discs(call, pair, open, item, in_order) : open;
+    if (in_order && !vm_any(left))
+        call->rows->done += V_WIDTH;
+    return left;
 }
 
 /* Stores what was found of the pairs k ... of a queue in the lanes `keep`. */
@@ -97,17 +129,21 @@ INLINE vm climb_to(const struct call *call, const struct queue *queue, int k, vm
     return vm_and_not(live, vm_or(top.apart, top.certain));
 }
 
+/* The stage that climbs. */
+enum { CLIMB = 2 };
+
 /* First stage: probes along the axis, and hands smooth pairs to the next probe, along u. Near edges u leads astray:
  * other pairs go to the climb, which begins along the axis again. */
 INLINE void probe_axis(const struct call *call, struct queue *queue, int begin, struct queue *next, bool manifolds) {
     look_up_arcs(call->batch->shapes->records, queue, begin, false);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm smooth = find_smooth(queue, k);
+        const vm live = vm_front(queue->count - k), smooth = find_smooth(queue, k);
         vec2 u;
-        const vm left = probe(call, queue, k, vm_front(queue->count - k), false, manifolds, &u);
+        const vm left = probe(call, queue, k, live, false, manifolds, &u);
         store_vec2(queue, DIRECTION, k, v2_select(smooth, u, get_vec2(queue, DIRECTION, k)));
         pass_on(queue, k, vm_and(left, smooth), next);
         pass_on(queue, k, vm_and_not(left, smooth), next + 1);
+        count_edged(queue, vm_and_not(live, smooth), vm_and_not(left, smooth));
     }
 }
 
@@ -193,7 +229,7 @@ INLINE void run_with_hints(const struct call *call, stage *const *stages, int st
     rows->hinted = batch->hints != NULL;
     if (batch->hints)
         memcpy(rows->hint, batch->hints + call->first, call->count * sizeof *rows->hint);
-    run_pairs(call, triage_contacts, CONTACT_FIELDS, stages, stage_count, queues);
+    run_pairs(call, triage_contacts, CONTACT_FIELDS, stages, stage_count, CLIMB, queues);
     if (batch->hints)
         memcpy(batch->hints + call->first, rows->hint, call->count * sizeof *rows->hint);
 }
@@ -223,7 +259,7 @@ static size_t manifold(const narc_batch *batch, size_t first, size_t count, floa
         run_with_hints(&call, stages, STAGES, queues);
     } else {
         call.edges = &queues[1];
-        run_pairs(&call, take_valid, FIELDS, all, 2, queues);
+        run_pairs(&call, take_valid, FIELDS, all, 2, 0, queues);
     }
     return list_manifolds(&call, out);
 }

@@ -118,9 +118,41 @@ INLINE void load_second(const struct manifold_rows *rows, const int32_t *pair, v
         field[f] = v_select(two, field[f], v_set(0));
 }
 
+/* A column of the list without second points. */
+INLINE void *clear_listed(void *column, int count, size_t size) {
+    return column ? (char *)memset(column, 0, (size_t)count * size) + (size_t)count * size : NULL;
+}
+
+/* Writes the list of the first pairs' manifolds, all of circles; returns the columns behind it. */
+static inline narc_manifolds copy_list(const struct call *call, const narc_manifolds *out) {
+    const struct contact_rows *rows = call->rows;
+    const int count = rows->listed;
+    narc_manifolds rest = {
+        .pair = out->pair ? out->pair + count : NULL,
+        .point_count = fill_bytes(out->point_count, count, 1),
+        .normal_x = copy_listed(rows, NORMAL_X, out->normal_x),
+        .normal_y = copy_listed(rows, NORMAL_Y, out->normal_y),
+        .separation = {copy_listed(rows, SEPARATION, out->separation[0])},
+        .point_x = {copy_listed(rows, POINT_X, out->point_x[0])},
+        .point_y = {copy_listed(rows, POINT_Y, out->point_y[0])},
+        .radius_a = {copy_listed(rows, RADIUS_A, out->radius_a[0])},
+        .radius_b = {copy_listed(rows, RADIUS_B, out->radius_b[0])},
+    };
+    write_pairs(call, rows->list_pair, count, out->pair);
+    for (int i = 0; i < 2; i++)
+        rest.feature[i] = clear_listed(out->feature[i], count, sizeof *rest.feature[i]);
+    rest.separation[1] = clear_listed(out->separation[1], count, sizeof(float));
+    rest.point_x[1] = clear_listed(out->point_x[1], count, sizeof(float));
+    rest.point_y[1] = clear_listed(out->point_y[1], count, sizeof(float));
+    rest.radius_a[1] = clear_listed(out->radius_a[1], count, sizeof(float));
+    rest.radius_b[1] = clear_listed(out->radius_b[1], count, sizeof(float));
+    return rest;
+}
+
 /* Writes the stored manifolds of a call in the order of their pairs; returns how many. */
-static inline size_t list_manifolds(const struct call *call, const narc_manifolds *out) {
+static inline size_t list_manifolds(const struct call *call, const narc_manifolds *out_manifolds) {
     const struct manifold_rows *rows = call->manifolds;
+    const narc_manifolds rest = copy_list(call, out_manifolds), *out = &rest;
     int32_t pair[GROUP + V_WIDTH];
     const int n = find_listed(call, pair);
     for (int k = 0; k < n; k += V_WIDTH) {
@@ -151,7 +183,7 @@ static inline size_t list_manifolds(const struct call *call, const narc_manifold
         write_bytes(out->point_count, k, lanes, known, 0);
     }
     write_pairs(call, pair, n, out->pair);
-    return (size_t)n;
+    return (size_t)rows->first.listed + (size_t)n;
 }
 
 #endif

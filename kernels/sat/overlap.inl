@@ -19,6 +19,7 @@
 #include "kernels.h"
 #include "sat/certificates.inl"
 #include "sat/direction_lookup.inl"
+#include "sat/discs.inl"
 #include "sat/hill_climb.inl"
 #include "sat/normal_fan.inl"
 #include "sat/probe.inl"
@@ -26,9 +27,15 @@
 #include "simd/simd.h"
 
 INLINE vm triage_overlaps(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
-    (void)item;
-    call->bits[pair / 64] |= (uint64_t)vm_bits(vm_and(circles->valid, circles->deep)) << pair % 64;
-    return vm_and_not(circles->valid, vm_or(circles->apart, circles->deep));
+    const vm open = vm_and_not(circles->valid, vm_or(circles->apart, circles->deep));
+    vm hits = vm_and(circles->valid, circles->deep), left = open;
+    if (are_discs(open, item)) {
+        const struct probe p = probe_discs(call->batch->shapes->records, item, open, v_set(0));
+        hits = vm_or(hits, vm_and(p.only, v_lt(p.separation, v_set(0))));
+        left = vm_and_not(open, vm_or(p.far, p.only));
+    }
+    call->bits[pair / 64] |= (uint64_t)vm_bits(hits) << pair % 64;
+    return left;
 }
 
 /* The centres and radii of the arcs that were looked up: u, and the sum of the radii. */
@@ -56,21 +63,49 @@ INLINE vm touch_in_common(const struct queue *queue, int k, vec2 n, vec2 u, vf r
     return has_common_point(queue, k, v2_sub(v2_scale(n, radii), v2_scale(u, length)), length);
 }
 
-/* Probes along the axis. Smooth pairs are probed along u next. Near edges u leads astray: other pairs climb. */
+/* What a probe along DIRECTION tells, in each lane. */
+struct overlap_probe {
+    vec2 u;
+    vm apart, hit;
+};
+
+/* Tells by centres and radii alone. */
+INLINE struct overlap_probe probe_circles(const narc_record *records, const struct queue *queue, int k, vec2 n) {
+    vf radii;
+    const vec2 u = load_circles(records, queue, k, &radii);
+    return (struct overlap_probe){u, is_above(u, radii, n, lookup_slack(queue, k)),
+                                  touch_in_common(queue, k, n, u, radii)};
+}
+
+/* Tells by whole arcs. */
+INLINE struct overlap_probe probe_whole_arcs(const narc_record *records, const struct queue *queue, int k, vec2 n,
+                                             vm live) {
+    const struct probe p = probe_arcs(records, queue, k, live, v_set(0));
+    const vm below = v_lt(p.separation, v_set(0)), above = is_above(p.u, p.radii, n, lookup_slack(queue, k));
+    return (struct overlap_probe){p.u, vm_or(vm_or(p.far, above), vm_and_not(p.only, below)),
+                                  vm_or(touch_in_common(queue, k, n, p.u, p.radii), vm_and(p.only, below))};
+}
+
+/* Probes along the axis. Smooth pairs are probed along u next. Near edges u leads astray: other pairs climb. Circles
+ * settle what overlaps deeply or is well apart; where they did not settle most of the pairs before, as among bodies
+ * that rest on each other, whole arcs are worth their price at once. */
 static void probe_axis_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     const narc_record *records = call->batch->shapes->records;
+    bool whole = false;
     look_up_arcs(records, queue, begin, false);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k), smooth = find_smooth(queue, k);
         const vec2 n = get_vec2(queue, DIRECTION, k);
-        vf radii;
-        const vec2 u = load_circles(records, queue, k, &radii);
-        const vm apart = is_above(u, radii, n, lookup_slack(queue, k)), hit = touch_in_common(queue, k, n, u, radii);
-        mark_overlaps(call, queue, k, vm_and(live, hit));
-        const vm left = vm_and_not(live, vm_or(apart, hit));
-        store_vec2(queue, DIRECTION, k, v2_select(smooth, u, n));
+        const struct overlap_probe p =
+            whole ? probe_whole_arcs(records, queue, k, n, live) : probe_circles(records, queue, k, n);
+        mark_overlaps(call, queue, k, vm_and(live, p.hit));
+        const vm left = vm_and_not(live, vm_or(p.apart, p.hit));
+        if (!whole)
+            whole = 2 * __builtin_popcount(vm_bits(vm_and(left, smooth))) > V_WIDTH;
+        store_vec2(queue, DIRECTION, k, v2_select(smooth, p.u, n));
         pass_on_overlaps(queue, k, vm_and(left, smooth), next);
         pass_on_overlaps(queue, k, vm_and_not(left, smooth), next + 1);
+        count_edged(queue, vm_and_not(live, smooth), vm_and_not(left, smooth));
     }
 }
 
@@ -80,14 +115,10 @@ static void probe_again_overlaps(const struct call *call, struct queue *queue, i
     look_up_arcs(records, queue, begin, false);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k);
-        const vec2 n = get_vec2(queue, DIRECTION, k);
-        const struct probe p = probe_arcs(records, queue, k, live, v_set(0));
-        const vm apart = vm_or(p.far, is_above(p.u, p.radii, n, lookup_slack(queue, k)));
-        const vm certain = vm_or(p.only, vm_and(live, apart));
-        const vm hit = vm_or(touch_in_common(queue, k, n, p.u, p.radii), vm_and(p.only, v_lt(p.separation, v_set(0))));
-        mark_overlaps(call, queue, k, vm_and(live, hit));
+        const struct overlap_probe p = probe_whole_arcs(records, queue, k, get_vec2(queue, DIRECTION, k), live);
+        mark_overlaps(call, queue, k, vm_and(live, p.hit));
         store_vec2(queue, DIRECTION, k, p.u);
-        pass_on_overlaps(queue, k, vm_and_not(live, vm_or(certain, hit)), next);
+        pass_on_overlaps(queue, k, vm_and_not(live, vm_or(p.apart, p.hit)), next);
     }
 }
 
@@ -119,7 +150,7 @@ static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_
         return;
     }
     const struct call call = begin_overlaps(batch, first, count, out_bits);
-    run_pairs(&call, triage_overlaps, OVERLAP_FIELDS, stages, 4, queues);
+    run_pairs(&call, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
 }
 
 #endif

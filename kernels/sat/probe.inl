@@ -30,21 +30,30 @@ INLINE vf find_least_sine(const struct arc_pair *arcs, vec2 u, vf length, vi inf
                  v_select(info_has(info_b, NARC_SHAPE_CIRCLE), length, from_b));
 }
 
+INLINE struct probe measure_gap(const struct arc_pair *arcs) {
+    struct probe p = {.arcs = *arcs, .u = center_difference(arcs)};
+    p.length = v2_length(p.u);
+    p.radii = v_add(arcs->a.radius, arcs->b.radius);
+    p.separation = v_sub(p.length, p.radii);
+    return p;
+}
+
+/* `least` as find_least_sine() gives it. */
+INLINE void certify_gap(struct probe *p, vf least, vf slack, vm live, vf margin) {
+    const vf inner = v_add(p->arcs.a.inner, p->arcs.b.inner);
+    const vm inside = vm_and(live, v_lt(v_set(0), least)); /* u is long enough for the formula if is_only_maximum() */
+    p->far = vm_and(inside, v_lt(v_add(margin, slack), p->separation));
+    p->only = vm_and(inside, is_only_maximum(inner, p->separation, least, p->length, slack));
+}
+
 /* Probes the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`. */
 INLINE struct probe probe_arcs(const narc_record *records, const struct queue *queue, int k, vm live, vf margin) {
     const struct pose pose = get_pose(queue, k);
-    const vf slack = get(queue, SLACK, k);
-    struct probe p;
-    p.arcs = load_arc_pair(records, vi_load(queue->record_a + k), vi_load(queue->record_b + k), &pose);
-    p.u = center_difference(&p.arcs);
-    p.length = v2_length(p.u);
-    p.radii = v_add(p.arcs.a.radius, p.arcs.b.radius);
-    p.separation = v_sub(p.length, p.radii);
-    const vf least = find_least_sine(&p.arcs, p.u, p.length, get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k));
-    const vf inner = v_add(p.arcs.a.inner, p.arcs.b.inner);
-    const vm inside = vm_and(live, v_lt(v_set(0), least)); /* u is long enough for the formula if is_only_maximum() */
-    p.far = vm_and(inside, v_lt(v_add(margin, slack), p.separation));
-    p.only = vm_and(inside, is_only_maximum(inner, p.separation, least, p.length, slack));
+    const struct arc_pair arcs =
+        load_arc_pair(records, vi_load(queue->record_a + k), vi_load(queue->record_b + k), &pose);
+    struct probe p = measure_gap(&arcs);
+    const vf least = find_least_sine(&arcs, p.u, p.length, get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k));
+    certify_gap(&p, least, get(queue, SLACK, k), live, margin);
     return p;
 }
 
