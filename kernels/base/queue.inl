@@ -16,9 +16,9 @@
  * block 24 KB. A stage that few pairs reach waits for FLUSH of them. */
 enum { BLOCK = 128, FLUSH = 32, STAGES = 5 };
 
-/* A stage leaves less than FLUSH pairs in its queue and passes on at most all that it took, to the next queue or to the
- * one after that: so the first of STAGES queues holds up to BLOCK pairs, and each one after it up to FLUSH more. push()
- * and pad() write up to two vectors behind the last pair. */
+/* A block's pairs enter at the first stage, or a later one, and each stage passes on at most all that it took, to any
+ * queue behind its own. It leaves less than FLUSH: so the first of STAGES queues holds up to BLOCK pairs, and each one
+ * after it up to FLUSH more. push() and pad() write up to two vectors behind the last pair. */
 enum { CAPACITY = BLOCK + (STAGES - 1) * FLUSH + 2 * V_WIDTH };
 
 /* The fields of a pair. Integers are kept as their bits; the two coordinates of a vector follow each other. */

@@ -114,8 +114,8 @@ INLINE vm probe(const struct call *call, const struct queue *queue, int k, vm li
 }
 
 /* Climbs from the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`; returns those
- * without an answer. */
-INLINE vm climb_to(const struct call *call, const struct queue *queue, int k, vm live, bool manifolds) {
+ * without an answer. In *out_lost, those without even a local maximum. */
+INLINE vm climb_to(const struct call *call, const struct queue *queue, int k, vm live, bool manifolds, vm *out_lost) {
     const vf margin = get_margins(call, queue, k);
     const struct certified_maximum top = climb_and_certify(call->batch->shapes->records, queue, k, live, margin);
     const struct local_maximum *m = &top.maximum;
@@ -126,6 +126,7 @@ INLINE vm climb_to(const struct call *call, const struct queue *queue, int k, vm
         const struct feature on_b = find_feature(&m->after.b, &m->before.b, top.normal, m->record_b, true);
         store_answer(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b, manifolds);
     }
+    *out_lost = vm_and_not(live, m->found);
     return vm_and_not(live, vm_or(top.apart, top.certain));
 }
 
@@ -147,8 +148,9 @@ INLINE void probe_axis(const struct call *call, struct queue *queue, int begin, 
     }
 }
 
-/* First stage with hints: probes the arcs of the last call, or climbs from them where there are edges. The next stage
- * probes along u, or along the axis. */
+/* First stage with hints: probes the arcs of the last call, and the next stage probes along u. Where there are edges,
+ * climbs from those arcs. A maximum that is not certain would mostly be found again from the axis: it is left to the
+ * formula; those that lost their way begin anew. */
 INLINE void start_from_hints(const struct call *call, struct queue *queue, int begin, struct queue *next,
                              bool manifolds) {
     read_hints(queue, call->rows->hint);
@@ -162,8 +164,12 @@ INLINE void start_from_hints(const struct call *call, struct queue *queue, int b
             store_vec2(queue, DIRECTION, k, v2_select(smooth, u, get_vec2(queue, DIRECTION, k)));
             pass_on(queue, k, left, next);
         }
-        if (vm_any(edged))
-            pass_on(queue, k, climb_to(call, queue, k, edged, manifolds), next);
+        if (vm_any(edged)) {
+            vm lost;
+            const vm left = climb_to(call, queue, k, edged, manifolds, &lost);
+            pass_on(queue, k, vm_and(left, lost), next + 1);
+            pass_on(queue, k, vm_and_not(left, lost), next + 2);
+        }
     }
 }
 
@@ -181,8 +187,9 @@ INLINE void probe_again(const struct call *call, struct queue *queue, int begin,
 /* Climbs from the arcs that hold DIRECTION. */
 INLINE void climb_from(const struct call *call, struct queue *queue, int begin, struct queue *next, bool manifolds) {
     look_up_arcs(call->batch->shapes->records, queue, begin, false);
+    vm lost;
     for (int k = begin; k < queue->count; k += V_WIDTH)
-        pass_on(queue, k, climb_to(call, queue, k, vm_front(queue->count - k), manifolds), next);
+        pass_on(queue, k, climb_to(call, queue, k, vm_front(queue->count - k), manifolds, &lost), next);
 }
 
 INLINE void decide(const struct call *call, struct queue *queue, int begin, bool manifolds) {
