@@ -81,11 +81,11 @@ narc_status narc_reserve_blocks(narc_broad_phase *broad, size_t count) {
     if (count <= broad->block_capacity)
         return NARC_OK;
     const size_t n = with_room(count, 4);
-    if (!replace(broad, &broad->pair_memory, n, (2 * NARC_PAIR_BLOCK + 1) * sizeof(uint32_t)))
+    if (!replace(broad, &broad->pair_memory, n, 2 * NARC_PAIR_BLOCK * sizeof(uint32_t) + sizeof(narc_pair_block)))
         return NARC_ERROR_MEMORY;
     broad->pair_a = broad->pair_memory;
     broad->pair_b = broad->pair_a + n * NARC_PAIR_BLOCK;
-    broad->block_counts = broad->pair_b + n * NARC_PAIR_BLOCK;
+    broad->blocks = (narc_pair_block *)(void *)(broad->pair_b + n * NARC_PAIR_BLOCK);
     broad->block_capacity = n;
     return NARC_OK;
 }

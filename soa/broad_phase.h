@@ -50,6 +50,11 @@ typedef struct narc_place_pairs {
     uint64_t steps;                                   /* vectors of boxes looked at, and steps of searches */
 } narc_place_pairs;
 
+/* What a block of pairs holds: the bodies `a` of its pairs are lowest_a .. highest_a. */
+typedef struct narc_pair_block {
+    uint32_t count, lowest_a, highest_a;
+} narc_pair_block;
+
 struct narc_broad_phase {
     narc_allocator allocator;
     void *box_memory, *pair_memory, *match_memory;
@@ -62,7 +67,7 @@ struct narc_broad_phase {
     uint32_t *ends;     /* of each body's list of partners; one more than boxes */
     /* for each block of pairs */
     uint32_t *pair_a, *pair_b; /* NARC_PAIR_BLOCK each */
-    uint32_t *block_counts;
+    narc_pair_block *blocks;
     /* of the last call */
     atomic_size_t block_count; /* blocks that threads asked for, perhaps more than there are */
     size_t strip_count, level_count;

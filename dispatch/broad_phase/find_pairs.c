@@ -34,11 +34,24 @@ static void filter_new(own_pairs *own) {
             narc_filter_pairs(own->broad, own->filter, pairs->a, pairs->b, own->bodies, pairs->count);
 }
 
+/* One thread reads all blocks: then their ranges do not matter. */
+static narc_pair_block describe_block(const narc_place_pairs *pairs, int team) {
+    if (team == 1)
+        return (narc_pair_block){pairs->count, 0, UINT32_MAX};
+    narc_pair_block block = {pairs->count, UINT32_MAX, 0};
+    for (uint32_t k = 0; k < pairs->count; k++) {
+        block.lowest_a = pairs->a[k] < block.lowest_a ? pairs->a[k] : block.lowest_a;
+        block.highest_a = pairs->a[k] > block.highest_a ? pairs->a[k] : block.highest_a;
+    }
+    return block;
+}
+
 static void end_block(own_pairs *own) {
     narc_place_pairs *const pairs = &own->pairs;
     filter_new(own);
     if (pairs->a != own->a)
-        own->broad->block_counts[(size_t)(pairs->a - own->broad->pair_a) / NARC_PAIR_BLOCK] = pairs->count;
+        own->broad->blocks[(size_t)(pairs->a - own->broad->pair_a) / NARC_PAIR_BLOCK] =
+            describe_block(pairs, own->team);
     own->total += pairs->count;
     own->bodies = pairs->count = 0;
 }

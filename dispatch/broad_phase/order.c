@@ -78,11 +78,18 @@ static void sort_list(uint32_t *list, size_t count) {
     }
 }
 
+/* Where bodies are numbered as they lie, few blocks hold pairs of more than one thread's bodies. */
+static bool has_pairs_of(const narc_pair_block *block, uint32_t first, uint32_t end) {
+    return block->lowest_a < end && block->highest_a >= first;
+}
+
 /* Counts the partners of bodies first .. end - 1. */
 static void count_partners(const narc_broad_phase *broad, size_t blocks, uint32_t first, uint32_t end) {
     for (size_t block = 0; block < blocks; block++) {
         const uint32_t *const a = broad->pair_a + block * NARC_PAIR_BLOCK;
-        for (uint32_t k = 0; k < broad->block_counts[block]; k++)
+        if (!has_pairs_of(&broad->blocks[block], first, end))
+            continue;
+        for (uint32_t k = 0; k < broad->blocks[block].count; k++)
             if (a[k] - first < end - first)
                 broad->ends[a[k]]++;
     }
@@ -94,7 +101,9 @@ static void place_partners(const narc_broad_phase *broad, size_t blocks, uint32_
     for (size_t block = 0; block < blocks; block++) {
         const uint32_t *const a = broad->pair_a + block * NARC_PAIR_BLOCK;
         const uint32_t *const b = broad->pair_b + block * NARC_PAIR_BLOCK;
-        for (uint32_t k = 0; k < broad->block_counts[block]; k++)
+        if (!has_pairs_of(&broad->blocks[block], first, end))
+            continue;
+        for (uint32_t k = 0; k < broad->blocks[block].count; k++)
             if (a[k] - first < end - first)
                 out_b[broad->ends[a[k]]++] = b[k];
     }
@@ -103,7 +112,7 @@ static void place_partners(const narc_broad_phase *broad, size_t blocks, uint32_
 /* The most threads, and so parts of the bodies (narc_team_size()). */
 enum { MOST_PARTS = 256 };
 
-/* Each thread reads all pairs and works on those of its own bodies. */
+/* Each thread reads all pairs that may be of its own bodies, and works on those that are. */
 void narc_order_pairs(narc_broad_phase *broad, size_t blocks, size_t body_count, int team, uint32_t *out_a,
                       uint32_t *out_b) {
     uint32_t *const ends = broad->ends, start[MOST_PARTS + 1] = {0};
