@@ -38,7 +38,28 @@ uint32_t narc_filter_pairs(const narc_broad_phase *broad, const narc_pair_filter
 
 /* ------------------------------------------------------------------------------------------------ order */
 
-enum { FEW = 32 };
+enum { FEW = 32, FOUR = 4 };
+
+static void put_in_order(uint32_t *one, uint32_t *other) {
+    const uint32_t low = *one < *other ? *one : *other, high = *one < *other ? *other : *one;
+    *one = low;
+    *other = high;
+}
+
+/* Sorts the first `count` of four items and leaves the others, without a branch: how many partners a body has is hard
+ * to predict. */
+static void sort_four(uint32_t *list, uint32_t count) {
+    uint32_t sorted[FOUR];
+    for (uint32_t k = 0; k < FOUR; k++)
+        sorted[k] = k < count ? list[k] : UINT32_MAX;
+    put_in_order(&sorted[0], &sorted[1]);
+    put_in_order(&sorted[2], &sorted[3]);
+    put_in_order(&sorted[0], &sorted[2]);
+    put_in_order(&sorted[1], &sorted[3]);
+    put_in_order(&sorted[1], &sorted[2]);
+    for (uint32_t k = 0; k < FOUR; k++)
+        list[k] = k < count ? sorted[k] : list[k];
+}
 
 static void insert_all(uint32_t *list, size_t count) {
     for (size_t k = 1; k < count; k++) {
@@ -142,13 +163,20 @@ void narc_order_pairs(narc_broad_phase *broad, size_t blocks, size_t body_count,
         const size_t first = narc_part_start(body_count, part, parts),
                      end = narc_part_start(body_count, part + 1, parts);
         uint32_t *const own_a = out_a + start[part], *const own_b = out_b + start[part];
+        const uint32_t own_count = start[part + 1] - start[part];
         uint32_t from = 0;
         place_partners(broad, blocks, (uint32_t)first, (uint32_t)end, own_b);
-        for (size_t body = first; body < end; body++) {
+        for (size_t body = first; body < end; from = ends[body++]) {
+            const uint32_t count = ends[body] - from;
+            if (count <= FOUR && own_count - from >= FOUR) { /* what is written too much, the next bodies write again */
+                for (uint32_t k = 0; k < FOUR; k++)
+                    own_a[from + k] = (uint32_t)body;
+                sort_four(own_b + from, count);
+                continue;
+            }
             for (uint32_t k = from; k < ends[body]; k++)
                 own_a[k] = (uint32_t)body;
-            sort_list(own_b + from, ends[body] - from);
-            from = ends[body];
+            sort_list(own_b + from, count);
         }
     }
 }
