@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: GPL-2.0-or-later
+ *
+ * fix_narc_shapes.h - what grains are: the form of each atom type or atom, and the memory of the contacts between grains,
+ * which goes with the atoms from rank to rank and into restart files.
+ *
+ *   fix ID all narc/shapes FILE NAME ... [density RHO] [shape i_PROPERTY]
+ */
+#ifndef NARC_LAMMPS_FIX_NARC_SHAPES_H
+#define NARC_LAMMPS_FIX_NARC_SHAPES_H
+
+#include <vector>
+
+#include "fix.h"
+#include "shape_file.h"
+
+namespace LAMMPS_NS {
+
+class PairNarc;
+
+class FixNarcShapes : public Fix {
+  public:
+    FixNarcShapes(class LAMMPS *lammps, int count, char **arguments);
+    ~FixNarcShapes() override;
+
+    int setmask() override;
+    void init() override;
+    void setup_post_neighbor() override;
+    void pre_exchange() override;
+    void post_neighbor() override;
+    void post_run() override;
+
+    void grow_arrays(int most) override;
+    void copy_arrays(int from, int to, int) override;
+    void set_arrays(int i) override;
+    int pack_exchange(int i, double *buffer) override;
+    int unpack_exchange(int i, double *buffer) override;
+    int pack_reverse_comm_size(int count, int first) override;
+    int pack_reverse_comm(int count, int first, double *buffer) override;
+    void unpack_reverse_comm(int count, int *list, double *buffer) override;
+    void write_restart(FILE *file) override;
+    void restart(char *) override {}
+    int pack_restart(int i, double *buffer) override;
+    void unpack_restart(int i, int nth) override;
+    int size_restart(int i) override;
+    int maxsize_restart() override;
+    double memory_usage() override;
+
+    /* The one fix of this style; ends the run with an error if there is none. */
+    static FixNarcShapes *find(class LAMMPS *lammps, const char *who);
+
+    /* The form of a local or ghost atom. */
+    const narc_lammps::Form &form(int i) const { return forms[form_index(i)]; }
+    double scale(int i) const; /* by which the form is drawn larger */
+    double moment_of_inertia(int i) const;
+
+    /* Sees to it that an atom has an orientation: that of angle 0 if it has none. */
+    void orient(int i);
+
+    /* Local and ghost atoms as the library wants them, as they are now. */
+    narc_bodies bodies();
+
+    narc_shapes *store = nullptr;
+    std::vector<narc_lammps::Form> forms; /* those that the command names, in its order; in the store as well */
+    PairNarc *pair = nullptr;             /* whose contacts are remembered; it registers itself */
+
+    /* The memory of a contact: the slip of the grain with the lower ID, and where the next search begins. */
+    struct Memory {
+        tagint other;
+        double slip[2];
+        uint32_t hint;
+    };
+    /* Of local atoms, between the end of a neighbour list and the next; while a list lives the pair style has it. */
+    std::vector<std::vector<Memory>> memories;
+
+    unsigned form_index(int i) const;
+
+  private:
+    void read_forms(const char *path, int count, char **names);
+    void set_mass(int i);
+    void save_memories();
+    static int pack(const std::vector<Memory> &list, double *buffer);
+    static int unpack(const double *buffer, std::vector<Memory> &list);
+
+    double density = 0;
+    std::string property; /* without its "i_"; empty: the type decides */
+    int property_index = -1;
+    std::vector<float> cosines, sines, scales;
+    std::vector<uint32_t> indices;
+};
+
+} // namespace LAMMPS_NS
+
+#endif

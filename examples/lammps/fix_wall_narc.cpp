@@ -1,0 +1,312 @@
+/* SPDX-License-Identifier: GPL-2.0-or-later
+ *
+ * fix_wall_narc.cpp - walls: half planes in closed form, boxes by the library.
+ */
+#include "fix_wall_narc.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix_narc_shapes.h"
+#include "force.h"
+#include "modify.h"
+#include "update.h"
+
+using namespace LAMMPS_NS;
+
+namespace {
+constexpr int arguments_before_wall = 10; /* ID group wall/narc LAW and six coefficients */
+}
+
+/* ---------------------------------------------------------------------------- the command */
+
+FixWallNarc::FixWallNarc(LAMMPS *lammps, int count, char **arguments) : Fix(lammps, count, arguments) {
+    if (count <= arguments_before_wall)
+        error->all(FLERR, std::string("fix wall/narc: LAW kn kt gamma_n gamma_t xmu dampflag WALL is wanted"));
+    const std::string kind = arguments[3];
+    if (kind != "hooke/history" && kind != "hertz/history")
+        error->all(FLERR, "fix wall/narc: no such law: " + kind);
+    const auto number = [this](const char *text) { return utils::numeric(FLERR, text, false, lmp); };
+    if (!narc_lammps::read_law(law, kind == "hertz/history", force->nktv2p, arguments + 4, number))
+        error->all(FLERR, std::string("fix wall/narc: a coefficient is negative or out of range"));
+    int i = read_wall(arguments_before_wall, count, arguments);
+    if (i + 3 == count && !std::strcmp(arguments[i], "velocity")) {
+        velocity_x = number(arguments[i + 1]);
+        velocity_y = number(arguments[i + 2]);
+        i += 3;
+    }
+    if (i != count)
+        error->all(FLERR, std::string("fix wall/narc: not understood: ") + arguments[i]);
+
+    scalar_flag = vector_flag = 1;
+    size_vector = 4;
+    global_freq = 1;
+    extscalar = extvector = 0;
+    restart_global = restart_peratom = 1;
+    create_attribute = 1;
+    maxexchange = 2;
+    grow_arrays(atom->nmax);
+    atom->add_callback(Atom::GROW);
+    atom->add_callback(Atom::RESTART);
+}
+
+FixWallNarc::~FixWallNarc() {
+    atom->delete_callback(id, Atom::GROW);
+    atom->delete_callback(id, Atom::RESTART);
+    narc_destroy_shapes(store);
+}
+
+/* Reads the wall from argument i on; the number of the argument behind it. */
+int FixWallNarc::read_wall(int i, int count, char **arguments) {
+    const auto number = [&](int k) { return utils::numeric(FLERR, arguments[k], false, lmp); };
+    plate = !std::strcmp(arguments[i], "plate");
+    if (!plate && std::strcmp(arguments[i], "box") != 0)
+        error->all(FLERR, std::string("fix wall/narc: no such wall: ") + arguments[i]);
+    const int end = i + (plate ? 5 : 6);
+    if (count < end)
+        error->all(FLERR, std::string("fix wall/narc: numbers are missing after ") + arguments[i]);
+    place_x = number(i + 1);
+    place_y = number(i + 2);
+    if (plate) {
+        const double length = std::hypot(number(i + 3), number(i + 4));
+        if (!(length > 0))
+            error->all(FLERR, std::string("fix wall/narc: the normal of a plate is 0"));
+        normal_x = number(i + 3) / length;
+        normal_y = number(i + 4) / length;
+        return end;
+    }
+    const double width = number(i + 3), height = number(i + 4), angle = number(i + 5) * std::acos(-1.0) / 180;
+    normal_x = std::cos(angle);
+    normal_y = std::sin(angle);
+    reach = 0.5 * std::hypot(width, height);
+    shapes = FixNarcShapes::find(lmp, "fix wall/narc");
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t arc_count;
+    narc_error failure = {};
+    if (narc_build_box(width, height, 0, arcs, &arc_count, &failure) != NARC_OK)
+        error->all(FLERR, std::string("fix wall/narc: box: ") + failure.message);
+    narc_status status = narc_create_shapes(nullptr, &store);
+    for (const narc_lammps::Form &form : shapes->forms)
+        if (status == NARC_OK)
+            status = narc_add_shape(store, form.arcs.data(), form.arcs.size(), nullptr, &failure);
+    if (status != NARC_OK || narc_add_shape(store, arcs, arc_count, nullptr, &failure) != NARC_OK)
+        error->all(FLERR, std::string("fix wall/narc: box: ") + failure.message);
+    return end;
+}
+
+int FixWallNarc::setmask() { return FixConst::INITIAL_INTEGRATE | FixConst::POST_FORCE; }
+
+void FixWallNarc::init() {
+    shapes = FixNarcShapes::find(lmp, "fix wall/narc");
+    if (store && narc_count_shapes(store) != shapes->forms.size() + 1)
+        error->all(FLERR, std::string("fix wall/narc: fix narc/shapes has changed since this wall was made"));
+}
+
+void FixWallNarc::setup(int virial_kind) { post_force(virial_kind); }
+
+void FixWallNarc::initial_integrate(int) {
+    moved[0] += velocity_x * update->dt;
+    moved[1] += velocity_y * update->dt;
+}
+
+/* ---------------------------------------------------------------------------- contacts */
+
+/* A half plane: the grain's deepest point is that of its support against the normal. */
+void FixWallNarc::find_plate_contacts() {
+    const double border = normal_x * (place_x + moved[0]) + normal_y * (place_y + moved[1]);
+    for (int i = 0; i < atom->nlocal; i++) {
+        const double height = normal_x * atom->x[i][0] + normal_y * atom->x[i][1] - border;
+        if (!(atom->mask[i] & groupbit) || height >= atom->radius[i])
+            continue;
+        const narc_lammps::Form &form = shapes->form(i);
+        const double c = atom->mu[i][0], s = atom->mu[i][1], scale = shapes->scale(i);
+        narc_point deepest;
+        size_t arc;
+        narc_find_support(form.arcs.data(), form.arcs.size(), -(c * normal_x + s * normal_y),
+                          -(c * normal_y - s * normal_x), &deepest, &arc);
+        const double arm_x = scale * (c * deepest.x - s * deepest.y), arm_y = scale * (s * deepest.x + c * deepest.y);
+        const double overlap = -(height + normal_x * arm_x + normal_y * arm_y);
+        if (overlap > 0)
+            contacts.push_back({i, -normal_x, -normal_y, overlap, arm_x, arm_y, scale * form.arcs[arc].radius,
+                                static_cast<double>(INFINITY)});
+    }
+}
+
+void FixWallNarc::find_box_contacts() {
+    std::vector<int> grains;
+    std::vector<double> x, y;
+    std::vector<float> cosines, sines, scales;
+    std::vector<uint32_t> forms, first;
+    const auto add = [&](double body_x, double body_y, double c, double s, double scale, size_t form) {
+        x.push_back(body_x);
+        y.push_back(body_y);
+        cosines.push_back(static_cast<float>(c));
+        sines.push_back(static_cast<float>(s));
+        scales.push_back(static_cast<float>(scale));
+        forms.push_back(static_cast<uint32_t>(form));
+    };
+    const double box_x = place_x + moved[0], box_y = place_y + moved[1];
+    for (int i = 0; i < atom->nlocal; i++) {
+        if (!(atom->mask[i] & groupbit) ||
+            std::hypot(atom->x[i][0] - box_x, atom->x[i][1] - box_y) >= reach + atom->radius[i])
+            continue;
+        first.push_back(static_cast<uint32_t>(grains.size()));
+        grains.push_back(i);
+        add(atom->x[i][0], atom->x[i][1], atom->mu[i][0], atom->mu[i][1], shapes->scale(i), shapes->form_index(i));
+    }
+    if (grains.empty())
+        return;
+    const uint32_t box = static_cast<uint32_t>(grains.size());
+    add(box_x, box_y, normal_x, normal_y, 1, shapes->forms.size());
+    narc_bodies bodies = {};
+    bodies.count = x.size();
+    bodies.position_precision = NARC_FLOAT64;
+    bodies.x = {x.data(), sizeof(double)};
+    bodies.y = {y.data(), sizeof(double)};
+    bodies.cosine = {cosines.data(), sizeof(float)};
+    bodies.sine = {sines.data(), sizeof(float)};
+    bodies.scale = {scales.data(), sizeof(float)};
+    bodies.shape = {forms.data(), sizeof(uint32_t)};
+    narc_pairs pairs = {};
+    pairs.count = grains.size();
+    pairs.a = {first.data(), sizeof(uint32_t)};
+    pairs.b = {&box, 0};
+    std::vector<uint32_t> pair(grains.size());
+    std::vector<float> columns[7];
+    for (auto &column : columns)
+        column.resize(grains.size());
+    narc_manifolds out = {};
+    out.capacity = grains.size();
+    out.pair = pair.data();
+    out.normal_x = columns[0].data();
+    out.normal_y = columns[1].data();
+    out.separation[0] = columns[2].data();
+    out.point_x[0] = columns[3].data();
+    out.point_y[0] = columns[4].data();
+    out.radius_a[0] = columns[5].data();
+    out.radius_b[0] = columns[6].data();
+    narc_manifold_options options = {};
+    options.flat_angle = -1;
+    size_t found = 0;
+    narc_error failure = {};
+    if (narc_find_manifolds(store, &bodies, &pairs, &options, 1, &out, &found, &failure) != NARC_OK)
+        error->one(FLERR, std::string("fix wall/narc: ") + failure.message);
+    for (size_t k = 0; k < found; k++) {
+        const double overlap = -static_cast<double>(columns[2][k]), nx = columns[0][k], ny = columns[1][k];
+        contacts.push_back({grains[pair[k]], nx, ny, overlap, columns[3][k] + 0.5 * overlap * nx,
+                            columns[4][k] + 0.5 * overlap * ny, columns[5][k], columns[6][k]});
+    }
+}
+
+void FixWallNarc::apply_contact(const Contact &contact, double step) {
+    const int i = contact.grain;
+    const double spin = atom->omega[i][2];
+    narc_lammps::Touch at = {};
+    at.normal_x = contact.normal_x;
+    at.normal_y = contact.normal_y;
+    at.overlap = contact.overlap;
+    at.velocity_x = atom->v[i][0] - spin * contact.arm_y - velocity_x;
+    at.velocity_y = atom->v[i][1] + spin * contact.arm_x - velocity_y;
+    at.mass = atom->rmass[i];
+    if (law.hertz) {
+        const double grain = narc_lammps::limit_curvature_radius(contact.grain_curvature, atom->radius[i]);
+        const double wall = std::max(contact.wall_curvature, narc_lammps::least_curvature_radius * atom->radius[i]);
+        at.curvature_radius = 1 / (1 / grain + 1 / wall);
+    }
+    const narc_lammps::Force on_grain = narc_lammps::compute_force(law, at, step, &slips[2 * static_cast<size_t>(i)]);
+    atom->f[i][0] += on_grain.x;
+    atom->f[i][1] += on_grain.y;
+    atom->torque[i][2] += contact.arm_x * on_grain.y - contact.arm_y * on_grain.x;
+    mine[0] -= on_grain.x;
+    mine[1] -= on_grain.y;
+    mine[2] += on_grain.energy;
+}
+
+void FixWallNarc::post_force(int) {
+    contacts.clear();
+    if (plate)
+        find_plate_contacts();
+    else
+        find_box_contacts();
+    std::fill(mine, mine + 3, 0.0);
+    summed = false;
+    std::fill(touched.begin(), touched.end(), false);
+    for (const Contact &contact : contacts)
+        touched[static_cast<size_t>(contact.grain)] = true;
+    for (size_t i = 0; i < static_cast<size_t>(atom->nlocal); i++)
+        if (!touched[i])
+            slips[2 * i] = slips[2 * i + 1] = 0;
+    const double step = update->setupflag ? 0 : update->dt;
+    for (const Contact &contact : contacts)
+        apply_contact(contact, step);
+}
+
+/* ---------------------------------------------------------------------------- output */
+
+void FixWallNarc::sum_ranks() {
+    if (!summed)
+        MPI_Allreduce(mine, total, 3, MPI_DOUBLE, MPI_SUM, world);
+    summed = true;
+}
+
+double FixWallNarc::compute_scalar() {
+    sum_ranks();
+    return total[2];
+}
+
+double FixWallNarc::compute_vector(int k) {
+    if (k >= 2)
+        return moved[k - 2];
+    sum_ranks();
+    return total[k];
+}
+
+/* ---------------------------------------------------------------------------- memory that goes with the atoms */
+
+void FixWallNarc::grow_arrays(int most) {
+    slips.resize(2 * static_cast<size_t>(most), 0);
+    touched.resize(static_cast<size_t>(most), false);
+}
+
+void FixWallNarc::copy_arrays(int from, int to, int) {
+    std::copy_n(&slips[2 * static_cast<size_t>(from)], 2, &slips[2 * static_cast<size_t>(to)]);
+}
+
+void FixWallNarc::set_arrays(int i) { std::fill_n(&slips[2 * static_cast<size_t>(i)], 2, 0.0); }
+
+int FixWallNarc::pack_exchange(int i, double *buffer) {
+    std::copy_n(&slips[2 * static_cast<size_t>(i)], 2, buffer);
+    return 2;
+}
+
+int FixWallNarc::unpack_exchange(int i, double *buffer) {
+    std::copy_n(buffer, 2, &slips[2 * static_cast<size_t>(i)]);
+    return 2;
+}
+
+void FixWallNarc::write_restart(FILE *file) {
+    if (comm->me == 0) {
+        const int size = sizeof moved;
+        fwrite(&size, sizeof size, 1, file);
+        fwrite(moved, sizeof moved, 1, file);
+    }
+}
+
+void FixWallNarc::restart(char *buffer) { std::memcpy(moved, buffer, sizeof moved); }
+
+int FixWallNarc::pack_restart(int i, double *buffer) {
+    buffer[0] = 3;
+    pack_exchange(i, buffer + 1);
+    return 3;
+}
+
+void FixWallNarc::unpack_restart(int i, int nth) {
+    double *extra = atom->extra[i];
+    for (int k = 0; k < nth; k++)
+        extra += static_cast<int>(*extra);
+    unpack_exchange(i, extra + 1);
+}

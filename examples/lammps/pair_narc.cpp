@@ -1,0 +1,343 @@
+/* SPDX-License-Identifier: GPL-2.0-or-later
+ *
+ * pair_narc.cpp - from the neighbour list to one batch of the library, and from its contacts to forces.
+ */
+#include "pair_narc.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "memory.h"
+#include "modify.h"
+#include "neigh_list.h"
+#include "neighbor.h"
+#include "update.h"
+
+using namespace LAMMPS_NS;
+using narc_lammps::Touch;
+
+PairNarc::PairNarc(LAMMPS *lammps, bool hertz) : Pair(lammps) {
+    law.hertz = hertz;
+    single_enable = 0;
+    no_virial_fdotr_compute = 1; /* forces do not act along the line of the centres */
+    centroidstressflag = CENTROID_NOTAVAIL;
+    finitecutflag = 1;
+}
+
+PairNarc::~PairNarc() {
+    if (shapes && !copymode)
+        for (int i = 0; modify && i < modify->nfix; i++)
+            if (modify->fix[i] == shapes)
+                shapes->pair = nullptr;
+    if (allocated) {
+        memory->destroy(setflag);
+        memory->destroy(cutsq);
+    }
+}
+
+/* ---------------------------------------------------------------------------- commands */
+
+void PairNarc::allocate() {
+    allocated = 1;
+    const int n = atom->ntypes + 1;
+    memory->create(setflag, n, n, "pair:setflag");
+    memory->create(cutsq, n, n, "pair:cutsq");
+    for (int i = 0; i < n; i++)
+        std::fill_n(setflag[i], n, 0);
+}
+
+void PairNarc::settings(int count, char **arguments) {
+    const bool limit = count == 7 && !std::strcmp(arguments[6], "limit_damping");
+    if (count != 6 && !limit)
+        error->all(FLERR, std::string("pair_style narc: kn kt gamma_n gamma_t xmu dampflag [limit_damping] is wanted"));
+    const auto number = [this](const char *text) { return utils::numeric(FLERR, text, false, lmp); };
+    if (!narc_lammps::read_law(law, law.hertz, force->nktv2p, arguments, number))
+        error->all(FLERR, std::string("pair_style narc: a coefficient is negative or out of range"));
+    law.limit_damping = limit;
+}
+
+void PairNarc::coeff(int count, char **arguments) {
+    if (count != 2)
+        error->all(FLERR, std::string("pair_coeff of narc: two types and nothing else are wanted"));
+    if (!allocated)
+        allocate();
+    int i_low, i_high, j_low, j_high, set = 0;
+    utils::bounds(FLERR, arguments[0], 1, atom->ntypes, i_low, i_high, error);
+    utils::bounds(FLERR, arguments[1], 1, atom->ntypes, j_low, j_high, error);
+    for (int i = i_low; i <= i_high; i++)
+        for (int j = std::max(j_low, i); j <= j_high; j++, set++)
+            setflag[i][j] = 1;
+    if (!set)
+        error->all(FLERR, std::string("pair_coeff of narc: no pair of types is named"));
+}
+
+void PairNarc::init_style() {
+    if (domain->dimension != 2)
+        error->all(FLERR, std::string("pair_style narc wants dimension 2"));
+    if (!atom->tag_enable)
+        error->all(FLERR, std::string("pair_style narc wants atom IDs"));
+    if (!comm->ghost_velocity)
+        error->all(FLERR, std::string("pair_style narc wants comm_modify vel yes"));
+    shapes = FixNarcShapes::find(lmp, "pair_style narc");
+    shapes->pair = this;
+    frozen = 0;
+    for (int i = 0; i < modify->nfix; i++)
+        if (!std::strcmp(modify->fix[i]->style, "freeze"))
+            frozen = modify->fix[i]->groupbit;
+
+    std::vector<double> mine(static_cast<size_t>(atom->ntypes) + 1, 0);
+    for (int i = 0; i < atom->nlocal; i++) {
+        double &most = mine[static_cast<size_t>(atom->type[i])];
+        most = std::max(most, atom->radius[i]);
+    }
+    type_radius.resize(mine.size());
+    MPI_Allreduce(mine.data(), type_radius.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_MAX, world);
+    Pair::init_style();
+}
+
+double PairNarc::init_one(int i, int j) {
+    if (!allocated)
+        allocate();
+    return type_radius[static_cast<size_t>(i)] + type_radius[static_cast<size_t>(j)];
+}
+
+/* ---------------------------------------------------------------------------- the list of pairs */
+
+bool PairNarc::remembers_for_ghosts() const { return force->newton_pair; }
+
+/* LAMMPS' list goes by the largest radius of each type; of its pairs those are kept whose own radii reach. */
+void PairNarc::build_pairs() {
+    first.clear();
+    second.clear();
+    touching.clear();
+    const tagint *tag = atom->tag;
+    for (int n = 0; n < list->inum; n++) {
+        const int i = list->ilist[n];
+        const double *x = atom->x[i];
+        for (int m = 0; m < list->numneigh[i]; m++) {
+            const int j = list->firstneigh[i][m] & NEIGHMASK;
+            const double reach = atom->radius[i] + atom->radius[j] + neighbor->skin;
+            const double dx = atom->x[j][0] - x[0], dy = atom->x[j][1] - x[1];
+            if (dx * dx + dy * dy >= reach * reach)
+                continue;
+            const bool ordered = tag[i] < tag[j] || (tag[i] == tag[j] && i < j);
+            first.push_back(static_cast<uint32_t>(ordered ? i : j));
+            second.push_back(static_cast<uint32_t>(ordered ? j : i));
+        }
+    }
+    hints.assign(first.size(), 0);
+    slips.assign(2 * first.size(), 0);
+    const size_t local = static_cast<size_t>(atom->nlocal);
+    for (size_t k = 0; k < first.size(); k++) {
+        const bool has_first = first[k] < local;
+        const tagint other = tag[has_first ? second[k] : first[k]];
+        for (const auto &memory : shapes->memories[has_first ? first[k] : second[k]]) {
+            if (memory.other != other)
+                continue;
+            slips[2 * k] = memory.slip[0];
+            slips[2 * k + 1] = memory.slip[1];
+            hints[k] = memory.hint;
+            touching.push_back(static_cast<uint32_t>(k));
+        }
+    }
+    valid = true;
+}
+
+void PairNarc::save_memories(std::vector<std::vector<FixNarcShapes::Memory>> &memories) const {
+    const size_t local = static_cast<size_t>(atom->nlocal);
+    const bool ghosts = remembers_for_ghosts();
+    for (const uint32_t k : touching) {
+        const uint32_t a = first[k], b = second[k];
+        FixNarcShapes::Memory memory = {atom->tag[b], {slips[2 * k], slips[2 * k + 1]}, hints[k]};
+        if (ghosts || a < local)
+            memories[a].push_back(memory);
+        memory.other = atom->tag[a];
+        if (ghosts || b < local)
+            memories[b].push_back(memory);
+    }
+}
+
+/* ---------------------------------------------------------------------------- forces */
+
+void PairNarc::Contacts::resize(size_t size, bool hertz) {
+    pair.resize(size);
+    for (auto *column : {&separation, &normal_x, &normal_y, &point_x, &point_y})
+        column->resize(size);
+    if (hertz) {
+        radius_a.resize(size);
+        radius_b.resize(size);
+        points.resize(size);
+    }
+}
+
+/* Hertz' law wants the radii of curvature, which manifolds have; a flat angle below 0 leaves them one point. */
+narc_status PairNarc::call_library(const narc_bodies &bodies, const narc_pairs &pairs, narc_error &failure) {
+    const unsigned threads = static_cast<unsigned>(comm->nthreads);
+    const size_t room = contacts.pair.size();
+    if (law.hertz) {
+        narc_manifold_options options = {};
+        options.flat_angle = -1;
+        options.hints = hints.data();
+        narc_manifolds out = {};
+        out.capacity = room;
+        out.pair = contacts.pair.data();
+        out.normal_x = contacts.normal_x.data();
+        out.normal_y = contacts.normal_y.data();
+        out.separation[0] = contacts.separation.data();
+        out.point_x[0] = contacts.point_x.data();
+        out.point_y[0] = contacts.point_y.data();
+        out.radius_a[0] = contacts.radius_a.data();
+        out.radius_b[0] = contacts.radius_b.data();
+        return narc_find_manifolds(shapes->store, &bodies, &pairs, &options, threads, &out, &contacts.count, &failure);
+    }
+    const narc_contacts out = {room,
+                               contacts.pair.data(),
+                               contacts.separation.data(),
+                               contacts.normal_x.data(),
+                               contacts.normal_y.data(),
+                               contacts.point_x.data(),
+                               contacts.point_y.data(),
+                               nullptr,
+                               nullptr};
+    return narc_find_contacts_hinted(shapes->store, &bodies, &pairs, 0, threads, hints.data(), &out, &contacts.count,
+                                     &failure);
+}
+
+void PairNarc::find_contacts() {
+    const narc_bodies bodies = shapes->bodies();
+    narc_pairs pairs = {};
+    pairs.count = first.size();
+    pairs.a = {first.data(), sizeof(uint32_t)};
+    pairs.b = {second.data(), sizeof(uint32_t)};
+    narc_error failure = {};
+    narc_status status = call_library(bodies, pairs, failure);
+    if (status == NARC_ERROR_CAPACITY) {
+        contacts.resize(contacts.count + contacts.count / 4, law.hertz);
+        status = call_library(bodies, pairs, failure);
+    }
+    if (status != NARC_OK)
+        error->one(FLERR, std::string("pair_style narc: ") + failure.message);
+}
+
+/* gran/hooke/history takes the velocities, and lets the forces act, where the surface of each grain lies deepest in the
+ * other: for discs at the end of each radius. So does this, for any form. */
+void PairNarc::apply_contact(size_t k, double step) {
+    const uint32_t pair = contacts.pair[k];
+    const int a = static_cast<int>(first[pair]), b = static_cast<int>(second[pair]);
+    const double *x_a = atom->x[a], *x_b = atom->x[b], *v_a = atom->v[a], *v_b = atom->v[b];
+    const double spin_a = atom->omega[a][2], spin_b = atom->omega[b][2];
+    const double dx = x_a[0] - x_b[0], dy = x_a[1] - x_b[1];
+    Touch at = {};
+    at.normal_x = contacts.normal_x[k];
+    at.normal_y = contacts.normal_y[k];
+    at.overlap = -static_cast<double>(contacts.separation[k]);
+    const double half = 0.5 * at.overlap;
+    const double arm_a[2] = {contacts.point_x[k] + half * at.normal_x, contacts.point_y[k] + half * at.normal_y};
+    const double arm_b[2] = {contacts.point_x[k] - half * at.normal_x + dx,
+                             contacts.point_y[k] - half * at.normal_y + dy};
+    at.velocity_x = v_a[0] - spin_a * arm_a[1] - (v_b[0] - spin_b * arm_b[1]);
+    at.velocity_y = v_a[1] + spin_a * arm_a[0] - (v_b[1] + spin_b * arm_b[0]);
+    const double mass_a = atom->rmass[a], mass_b = atom->rmass[b];
+    at.mass = mass_a * mass_b / (mass_a + mass_b);
+    if (atom->mask[a] & frozen)
+        at.mass = mass_b;
+    if (atom->mask[b] & frozen)
+        at.mass = mass_a;
+    if (law.hertz) {
+        const double radius_a = narc_lammps::limit_curvature_radius(contacts.radius_a[k], atom->radius[a]);
+        const double radius_b = narc_lammps::limit_curvature_radius(contacts.radius_b[k], atom->radius[b]);
+        at.curvature_radius = radius_a * radius_b / (radius_a + radius_b);
+    }
+    const narc_lammps::Force on_a = narc_lammps::compute_force(law, at, step, &slips[2 * static_cast<size_t>(pair)]);
+    if (force->newton_pair || a < atom->nlocal) {
+        atom->f[a][0] += on_a.x;
+        atom->f[a][1] += on_a.y;
+        atom->torque[a][2] += arm_a[0] * on_a.y - arm_a[1] * on_a.x;
+    }
+    if (force->newton_pair || b < atom->nlocal) {
+        atom->f[b][0] -= on_a.x;
+        atom->f[b][1] -= on_a.y;
+        atom->torque[b][2] -= arm_b[0] * on_a.y - arm_b[1] * on_a.x;
+    }
+    if (evflag)
+        ev_tally_xyz(a, b, atom->nlocal, force->newton_pair, on_a.energy, 0.0, on_a.x, on_a.y, 0.0, dx, dy, 0.0);
+}
+
+void PairNarc::compute(int energy, int virial_kind) {
+    ev_init(energy, virial_kind);
+    if (!valid)
+        build_pairs();
+    find_contacts();
+
+    /* Both lists rise. What touched and does so no more begins anew. */
+    size_t next = 0;
+    for (const uint32_t pair : touching) {
+        while (next < contacts.count && contacts.pair[next] < pair)
+            next++;
+        if (next == contacts.count || contacts.pair[next] != pair)
+            slips[2 * static_cast<size_t>(pair)] = slips[2 * static_cast<size_t>(pair) + 1] = 0;
+    }
+    touching.assign(contacts.pair.begin(), contacts.pair.begin() + static_cast<std::ptrdiff_t>(contacts.count));
+
+    const double step = update->setupflag ? 0 : update->dt;
+    for (size_t k = 0; k < contacts.count; k++)
+        apply_contact(k, step);
+}
+
+/* ---------------------------------------------------------------------------- restart */
+
+void PairNarc::write_restart(FILE *file) {
+    write_restart_settings(file);
+    for (int i = 1; i <= atom->ntypes; i++)
+        for (int j = i; j <= atom->ntypes; j++)
+            fwrite(&setflag[i][j], sizeof(int), 1, file);
+}
+
+void PairNarc::read_restart(FILE *file) {
+    read_restart_settings(file);
+    allocate();
+    for (int i = 1; i <= atom->ntypes; i++) {
+        for (int j = i; j <= atom->ntypes; j++) {
+            if (comm->me == 0)
+                utils::sfread(FLERR, &setflag[i][j], sizeof(int), 1, file, nullptr, error);
+            MPI_Bcast(&setflag[i][j], 1, MPI_INT, 0, world);
+        }
+    }
+}
+
+void PairNarc::write_restart_settings(FILE *file) {
+    const double values[] = {law.kn, law.kt, law.gamma_n, law.gamma_t, law.friction, law.limit_damping ? 1.0 : 0.0};
+    fwrite(values, sizeof values, 1, file);
+}
+
+void PairNarc::read_restart_settings(FILE *file) {
+    double values[6];
+    if (comm->me == 0)
+        utils::sfread(FLERR, values, sizeof(double), 6, file, nullptr, error);
+    MPI_Bcast(values, 6, MPI_DOUBLE, 0, world);
+    law.kn = values[0];
+    law.kt = values[1];
+    law.gamma_n = values[2];
+    law.gamma_t = values[3];
+    law.friction = values[4];
+    law.limit_damping = values[5] != 0;
+}
+
+/* Numbers that tests and measurements ask for. */
+void *PairNarc::extract(const char *name, int &dimension) {
+    dimension = 0;
+    if (!std::strcmp(name, "contact_count"))
+        return &contacts.count;
+    return nullptr;
+}
+
+double PairNarc::memory_usage() {
+    return Pair::memory_usage() +
+           static_cast<double>(first.capacity() * (3 * sizeof(uint32_t) + 2 * sizeof(double)) +
+                               contacts.pair.capacity() * (sizeof(uint32_t) * 2 + 7 * sizeof(float)));
+}

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-2.0-or-later
+ *
+ * pair_narc.h - forces between grains that touch. All pairs of a rank's neighbour list go to the library in one batch.
+ *
+ *   pair_style narc/hooke/history kn kt gamma_n gamma_t xmu dampflag [limit_damping]
+ *   pair_style narc/hertz/history kn kt gamma_n gamma_t xmu dampflag [limit_damping]
+ *   pair_coeff * *
+ */
+#ifndef NARC_LAMMPS_PAIR_NARC_H
+#define NARC_LAMMPS_PAIR_NARC_H
+
+#include <vector>
+
+#include "contact_law.h"
+#include "fix_narc_shapes.h"
+#include "pair.h"
+
+namespace LAMMPS_NS {
+
+class PairNarc : public Pair {
+  public:
+    PairNarc(class LAMMPS *lammps, bool hertz);
+    ~PairNarc() override;
+
+    void compute(int energy, int virial_kind) override;
+    void settings(int count, char **arguments) override;
+    void coeff(int count, char **arguments) override;
+    void init_style() override;
+    double init_one(int i, int j) override;
+    void write_restart(FILE *file) override;
+    void read_restart(FILE *file) override;
+    void write_restart_settings(FILE *file) override;
+    void read_restart_settings(FILE *file) override;
+    void *extract(const char *name, int &dimension) override;
+    double memory_usage() override;
+
+    /* Called by fix narc/shapes when there is a new neighbour list, and when it ends. */
+    void build_pairs();
+    void forget_pairs() { valid = false; }
+    bool has_pairs() const { return valid; }
+    bool remembers_for_ghosts() const;
+    void save_memories(std::vector<std::vector<FixNarcShapes::Memory>> &memories) const;
+
+  private:
+    struct Contacts {
+        std::vector<uint32_t> pair;
+        std::vector<float> separation, normal_x, normal_y, point_x, point_y, radius_a, radius_b;
+        std::vector<uint8_t> points;
+        size_t count = 0;
+        void resize(size_t size, bool hertz);
+    };
+
+    void allocate();
+    void find_contacts();
+    narc_status call_library(const narc_bodies &bodies, const narc_pairs &pairs, narc_error &failure);
+    void apply_contact(size_t k, double step);
+
+    narc_lammps::ContactLaw law;
+    FixNarcShapes *shapes = nullptr;
+    int frozen = 0; /* group bit of fix freeze */
+    std::vector<double> type_radius;
+
+    /* Pairs, A the grain with the lower ID: the order of a pair does not depend on the ranks, nor do its bits. */
+    bool valid = false;
+    std::vector<uint32_t> first, second, hints;
+    std::vector<double> slips;      /* two of each pair */
+    std::vector<uint32_t> touching; /* the pairs that touched in the last step */
+    Contacts contacts;
+    std::vector<uint8_t> remembered; /* scratch of build_pairs() */
+};
+
+class PairNarcHooke : public PairNarc {
+  public:
+    explicit PairNarcHooke(class LAMMPS *lammps) : PairNarc(lammps, false) {}
+};
+
+class PairNarcHertz : public PairNarc {
+  public:
+    explicit PairNarcHertz(class LAMMPS *lammps) : PairNarc(lammps, true) {}
+};
+
+} // namespace LAMMPS_NS
+
+#endif
