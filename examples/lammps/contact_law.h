@@ -44,8 +44,8 @@ struct Force {
     double energy; /* elastic: of both springs */
 };
 
-/* How a style's arguments name the law: kn kt gamma_n gamma_t xmu dampflag, NULL for kt (2/7 of kn) and gamma_t (half of
- * gamma_n). False if they are no law. `pressure_unit` is LAMMPS' force->nktv2p, by which Hertz' stiffnesses are
+/* How a style's arguments name the law: kn kt gamma_n gamma_t xmu dampflag, NULL for kt (2/7 of kn) and gamma_t (half
+ * of gamma_n). False if they are no law. `pressure_unit` is LAMMPS' force->nktv2p, by which Hertz' stiffnesses are
  * divided. `number` reads an argument. */
 template <class Number>
 bool read_law(ContactLaw &law, bool hertz, double pressure_unit, char **arguments, Number number) {

@@ -185,7 +185,7 @@ void FixNarcShapes::set_mass(int i) {
 
 void FixNarcShapes::orient(int i) {
     double *mu = atom->mu[i];
-    const double length = std::hypot(mu[0], mu[1]);
+    const double length = std::sqrt(mu[0] * mu[0] + mu[1] * mu[1]);
     mu[0] = length > 0 ? mu[0] / length : 1;
     mu[1] = length > 0 ? mu[1] / length : 0;
     mu[2] = 0;
@@ -237,8 +237,8 @@ void FixNarcShapes::post_run() {
         pair->forget_pairs();
 }
 
-/* From the pair style's arrays to both atoms of each contact. With Newton's third law a rank also computes pairs that it
- * has half of, and tells the owner of the ghost. */
+/* From the pair style's arrays to both atoms of each contact. With Newton's third law a rank also computes pairs that
+ * it has half of, and tells the owner of the ghost. */
 void FixNarcShapes::save_memories() {
     if (!pair || !pair->has_pairs())
         return;

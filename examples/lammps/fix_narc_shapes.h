@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later
  *
- * fix_narc_shapes.h - what grains are: the form of each atom type or atom, and the memory of the contacts between grains,
- * which goes with the atoms from rank to rank and into restart files.
+ * fix_narc_shapes.h - what grains are: the form of each atom type or atom, and the memory of the contacts between
+ * grains, which goes with the atoms from rank to rank and into restart files.
  *
  *   fix ID all narc/shapes FILE NAME ... [density RHO] [shape i_PROPERTY]
  */

@@ -13,8 +13,10 @@
 #include "error.h"
 #include "fix_narc_shapes.h"
 #include "force.h"
+#include "input.h"
 #include "modify.h"
 #include "update.h"
+#include "variable.h"
 
 using namespace LAMMPS_NS;
 
@@ -34,11 +36,22 @@ FixWallNarc::FixWallNarc(LAMMPS *lammps, int count, char **arguments) : Fix(lamm
     if (!narc_lammps::read_law(law, kind == "hertz/history", force->nktv2p, arguments + 4, number))
         error->all(FLERR, std::string("fix wall/narc: a coefficient is negative or out of range"));
     int i = read_wall(arguments_before_wall, count, arguments);
-    if (i + 3 == count && !std::strcmp(arguments[i], "velocity")) {
-        velocity_x = number(arguments[i + 1]);
-        velocity_y = number(arguments[i + 2]);
+    if (i + 3 <= count && !std::strcmp(arguments[i], "velocity")) {
+        for (int axis = 0; axis < 2; axis++) {
+            const char *text = arguments[i + 1 + axis];
+            if (std::strncmp(text, "v_", 2) != 0)
+                velocity[axis] = number(text);
+            else
+                velocity_variable[axis] = text + 2;
+        }
         i += 3;
+        if (i + 2 == count && !std::strcmp(arguments[i], "every")) {
+            every = utils::inumeric(FLERR, arguments[i + 1], false, lmp);
+            i += 2;
+        }
     }
+    if (every < 1)
+        error->all(FLERR, std::string("fix wall/narc: every is less than 1"));
     if (i != count)
         error->all(FLERR, std::string("fix wall/narc: not understood: ") + arguments[i]);
 
@@ -102,6 +115,11 @@ int FixWallNarc::setmask() { return FixConst::INITIAL_INTEGRATE | FixConst::POST
 
 void FixWallNarc::init() {
     shapes = FixNarcShapes::find(lmp, "fix wall/narc");
+    for (const std::string &name : velocity_variable) {
+        const int variable = name.empty() ? 0 : input->variable->find(const_cast<char *>(name.c_str()));
+        if (variable < 0 || (!name.empty() && !input->variable->equalstyle(variable)))
+            error->all(FLERR, "fix wall/narc: there is no equal-style variable " + name);
+    }
     if (store && narc_count_shapes(store) != shapes->forms.size() + 1)
         error->all(FLERR, std::string("fix wall/narc: fix narc/shapes has changed since this wall was made"));
 }
@@ -109,8 +127,17 @@ void FixWallNarc::init() {
 void FixWallNarc::setup(int virial_kind) { post_force(virial_kind); }
 
 void FixWallNarc::initial_integrate(int) {
-    moved[0] += velocity_x * update->dt;
-    moved[1] += velocity_y * update->dt;
+    const bool varies = !velocity_variable[0].empty() || !velocity_variable[1].empty();
+    if (varies && update->ntimestep % every == 0) {
+        modify->clearstep_compute();
+        for (int axis = 0; axis < 2; axis++)
+            if (!velocity_variable[axis].empty())
+                velocity[axis] = input->variable->compute_equal(
+                    input->variable->find(const_cast<char *>(velocity_variable[axis].c_str())));
+        modify->addstep_compute(update->ntimestep + every);
+    }
+    moved[0] += velocity[0] * update->dt;
+    moved[1] += velocity[1] * update->dt;
 }
 
 /* ---------------------------------------------------------------------------- contacts */
@@ -209,8 +236,8 @@ void FixWallNarc::apply_contact(const Contact &contact, double step) {
     at.normal_x = contact.normal_x;
     at.normal_y = contact.normal_y;
     at.overlap = contact.overlap;
-    at.velocity_x = atom->v[i][0] - spin * contact.arm_y - velocity_x;
-    at.velocity_y = atom->v[i][1] + spin * contact.arm_x - velocity_y;
+    at.velocity_x = atom->v[i][0] - spin * contact.arm_y - velocity[0];
+    at.velocity_y = atom->v[i][1] + spin * contact.arm_x - velocity[1];
     at.mass = atom->rmass[i];
     if (law.hertz) {
         const double grain = narc_lammps::limit_curvature_radius(contact.grain_curvature, atom->radius[i]);
@@ -234,9 +261,9 @@ void FixWallNarc::post_force(int) {
         find_box_contacts();
     std::fill(mine, mine + 3, 0.0);
     summed = false;
-    std::fill(touched.begin(), touched.end(), false);
+    std::fill(touched.begin(), touched.end(), 0);
     for (const Contact &contact : contacts)
-        touched[static_cast<size_t>(contact.grain)] = true;
+        touched[static_cast<size_t>(contact.grain)] = 1;
     for (size_t i = 0; i < static_cast<size_t>(atom->nlocal); i++)
         if (!touched[i])
             slips[2 * i] = slips[2 * i + 1] = 0;
@@ -269,7 +296,7 @@ double FixWallNarc::compute_vector(int k) {
 
 void FixWallNarc::grow_arrays(int most) {
     slips.resize(2 * static_cast<size_t>(most), 0);
-    touched.resize(static_cast<size_t>(most), false);
+    touched.resize(static_cast<size_t>(most), 0);
 }
 
 void FixWallNarc::copy_arrays(int from, int to, int) {

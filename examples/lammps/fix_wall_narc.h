@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later
  *
- * fix_wall_narc.h - a wall of infinite mass, at rest or in uniform motion. Periodic images of it there are none.
+ * fix_wall_narc.h - a wall of infinite mass, at rest or in motion. It has no periodic images.
  *
- *   fix ID group wall/narc LAW kn kt gamma_n gamma_t xmu dampflag WALL [velocity VX VY]
+ *   fix ID group wall/narc LAW kn kt gamma_n gamma_t xmu dampflag WALL [velocity VX VY [every N]]
  *
  *   LAW    hooke/history or hertz/history, coefficients as those of the pair styles
  *   WALL   plate PX PY NX NY                a half plane: its border goes through (PX, PY), grains are where N points
  *          box CX CY WIDTH HEIGHT DEGREES   a box around (CX, CY), turned
+ *
+ *   VX VY  numbers, or equal-style variables (v_NAME), which may look at the wall's force: a servo. They are evaluated
+ *          in steps whose number is a multiple of N, each if left out
  *
  * Vector: 1, 2 the force on the wall; 3, 4 how far it has moved. Scalar: the elastic energy of its contacts.
  */
@@ -66,13 +69,15 @@ class FixWallNarc : public Fix {
     bool plate = false;
     double place_x = 0, place_y = 0, normal_x = 0, normal_y = 0; /* a box: cosine and sine in place of the normal */
     double reach = 0;                                            /* a box: the circle around it */
-    double velocity_x = 0, velocity_y = 0;
+    double velocity[2] = {0, 0};
+    int every = 1;
+    std::string velocity_variable[2]; /* equal-style variables that give it; empty: constant */
     double moved[2] = {0, 0};
     narc_shapes *store = nullptr; /* a box: all forms of grains, and the box behind them */
 
     std::vector<Contact> contacts;
     std::vector<double> slips;   /* two of each atom */
-    std::vector<bool> touched;   /* by the wall, in the last step */
+    std::vector<char> touched;   /* by the wall, in the last step */
     double mine[3] = {0, 0, 0};  /* force on the wall and energy: of this rank */
     double total[3] = {0, 0, 0}; /* and of all, in step total_at */
     bool summed = false;

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include <narc_methods.h>
+
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
@@ -176,13 +178,15 @@ void PairNarc::Contacts::resize(size_t size, bool hertz) {
 }
 
 /* Hertz' law wants the radii of curvature, which manifolds have; a flat angle below 0 leaves them one point. */
-narc_status PairNarc::call_library(const narc_bodies &bodies, const narc_pairs &pairs, narc_error &failure) {
+narc_status PairNarc::call_library(const narc_bodies &bodies, const narc_pairs &pairs, size_t &skipped,
+                                   narc_error &failure) {
     const unsigned threads = static_cast<unsigned>(comm->nthreads);
     const size_t room = contacts.pair.size();
     if (law.hertz) {
         narc_manifold_options options = {};
         options.flat_angle = -1;
         options.hints = hints.data();
+        options.out_skipped = &skipped;
         narc_manifolds out = {};
         out.capacity = room;
         out.pair = contacts.pair.data();
@@ -195,17 +199,18 @@ narc_status PairNarc::call_library(const narc_bodies &bodies, const narc_pairs &
         out.radius_b[0] = contacts.radius_b.data();
         return narc_find_manifolds(shapes->store, &bodies, &pairs, &options, threads, &out, &contacts.count, &failure);
     }
-    const narc_contacts out = {room,
-                               contacts.pair.data(),
-                               contacts.separation.data(),
-                               contacts.normal_x.data(),
-                               contacts.normal_y.data(),
-                               contacts.point_x.data(),
-                               contacts.point_y.data(),
-                               nullptr,
-                               nullptr};
-    return narc_find_contacts_hinted(shapes->store, &bodies, &pairs, 0, threads, hints.data(), &out, &contacts.count,
-                                     &failure);
+    narc_query query = {};
+    query.hints = hints.data();
+    query.out_skipped = &skipped;
+    narc_contacts out = {};
+    out.capacity = room;
+    out.pair = contacts.pair.data();
+    out.separation = contacts.separation.data();
+    out.normal_x = contacts.normal_x.data();
+    out.normal_y = contacts.normal_y.data();
+    out.point_x = contacts.point_x.data();
+    out.point_y = contacts.point_y.data();
+    return narc_query_contacts(shapes->store, &bodies, &pairs, &query, 0, threads, &out, &contacts.count, &failure);
 }
 
 void PairNarc::find_contacts() {
@@ -215,11 +220,14 @@ void PairNarc::find_contacts() {
     pairs.a = {first.data(), sizeof(uint32_t)};
     pairs.b = {second.data(), sizeof(uint32_t)};
     narc_error failure = {};
-    narc_status status = call_library(bodies, pairs, failure);
+    size_t skipped = 0;
+    narc_status status = call_library(bodies, pairs, skipped, failure);
     if (status == NARC_ERROR_CAPACITY) {
         contacts.resize(contacts.count + contacts.count / 4, law.hertz);
-        status = call_library(bodies, pairs, failure);
+        status = call_library(bodies, pairs, skipped, failure);
     }
+    if (status == NARC_OK && skipped > 0) /* a number that is none, or so */
+        status = narc_validate_bodies(shapes->store, &bodies, &failure);
     if (status != NARC_OK)
         error->one(FLERR, std::string("pair_style narc: ") + failure.message);
 }

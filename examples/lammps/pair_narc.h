@@ -52,7 +52,7 @@ class PairNarc : public Pair {
 
     void allocate();
     void find_contacts();
-    narc_status call_library(const narc_bodies &bodies, const narc_pairs &pairs, narc_error &failure);
+    narc_status call_library(const narc_bodies &bodies, const narc_pairs &pairs, size_t &skipped, narc_error &failure);
     void apply_contact(size_t k, double step);
 
     narc_lammps::ContactLaw law;

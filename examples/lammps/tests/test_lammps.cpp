@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: GPL-2.0-or-later
+ *
+ * test_lammps.cpp - the styles against LAMMPS' own, against closed forms, and against themselves on other ranks.
+ *   mpirun -np 4 test_lammps TEST
+ */
+#include <cstring>
+#include <map>
+
+#include "check.h"
+
+int failures = 0;
+
+namespace {
+
+const std::string shapes_file = GRAINS_FILE;
+const std::string tracking = "neighbor 0.2 bin\nneigh_modify delay 0 every 1 check yes\n";
+
+/* Fixes and pair style for grains of one shape or several. */
+std::string grains(const std::string &shapes, const std::string &pair_style) {
+    return tracking + "fix shapes all narc/shapes " + shapes_file + " " + shapes + " density 1\npair_style " +
+           pair_style + "\npair_coeff * *\nfix nve all narc/nve\n";
+}
+
+/* LAMMPS' own styles for discs of density 1. */
+std::string discs(const std::string &pair_style) {
+    return tracking + "set group all density/disc 1\npair_style " + pair_style +
+           "\npair_coeff * *\nfix nve all nve/sphere disc\nfix flat all enforce2d\n";
+}
+
+double kinetic_energy(Simulation &simulation) {
+    double energy = simulation.variable("f_nve");
+    for (const State &s : simulation.states())
+        energy += 0.5 * s.mass * (s.velocity_x * s.velocity_x + s.velocity_y * s.velocity_y);
+    return energy;
+}
+
+/* ---------------------------------------------------------------------------- against LAMMPS' own styles */
+
+/* The library's separation of two discs is within NARC_ERROR_BOUND * (D + E_a + E_b) of theirs, D and both E being at
+ * most 1.2 in all here, each: 5e-6; its measured error is some 1e-7. Forces: kn times that for the six contacts of a
+ * disc. Positions after a time T: half the acceleration times T^2. */
+void compare_with_own(const char *law, double stiffening) {
+    const double kn = 1e4, separation_error = 32.0 / 16777216 * 2.4, step = 2e-4;
+    const int steps = 100;
+    const Packing packing = make_lattice(20, 20, 1.06, 0.1, 0.5, 7);
+    const std::string coefficients = "/history 10000 3000 20 10 0.4 1";
+    Simulation narc(MPI_COMM_WORLD), own(MPI_COMM_WORLD);
+    narc.create(packing);
+    narc.run(grains("disc", std::string("narc/") + law + coefficients) + "timestep 2e-4\nrun 0");
+    own.create(packing);
+    own.run(discs(std::string("gran/") + law + coefficients) + "timestep 2e-4\nrun 0");
+    Difference at = compare(narc.states(), own.states(), packing.width, packing.height);
+    const double force_error = 6 * kn * stiffening * separation_error, mass = 0.6;
+    check_at_most("forces at the start", at.force, force_error);
+    check_at_most("torques at the start", at.torque, force_error);
+    const std::string more = "run " + std::to_string(steps);
+    narc.run(more);
+    own.run(more);
+    at = compare(narc.states(), own.states(), packing.width, packing.height);
+    const double time = steps * step;
+    check_at_most("positions after 100 steps", at.position, 0.5 * force_error / mass * time * time);
+    check_at_most("velocities after 100 steps", at.velocity, force_error / mass * time);
+    check_at_most("spins after 100 steps", at.spin, 4 * force_error / mass * time);
+}
+
+void test_discs_hooke() { compare_with_own("hooke", 1); }
+
+/* The derivative of Hertz' force, 3/2 sqrt(R overlap), is below 1 here. */
+void test_discs_hertz() { compare_with_own("hertz", 1); }
+
+/* ---------------------------------------------------------------------------- closed forms */
+
+/* A head-on collision of two grains with damping is half a period of a damped oscillation:
+ * e = exp(-gamma pi / (2 w)), w^2 = kn / m - gamma^2 / 4. The steps, 4000 of them a period, leave 1e-3. */
+void check_restitution(const std::string &shape, double radius, bool turned) {
+    const double kn = 1e5, gamma = 60, quarter = std::acos(0.0);
+    Packing packing = {10, 10, {}};
+    const double gap = 2.01 * radius;
+    packing.grains = {{1, 5 - gap / 2, 5, radius, turned ? 2 * quarter : 0, 1, 0, 0},
+                      {1, 5 + gap / 2, 5, radius, 0, -1, 0, 0}};
+    Simulation pair(MPI_COMM_WORLD);
+    pair.create(packing);
+    pair.run(grains(shape, "narc/hooke/history 1e5 NULL 60 NULL 0.5 1") + "timestep 2e-6\nrun 0");
+    const double mass = pair.states()[0].mass / 2;
+    const double frequency = std::sqrt(kn / mass - gamma * gamma / 4);
+    const double restitution = std::exp(-gamma * 2 * quarter / (2 * frequency));
+    pair.run("run 20000");
+    const std::vector<State> after = pair.states();
+    const std::string what = "restitution of " + shape;
+    check_at_most(what.c_str(), std::fabs((after[1].velocity_x - after[0].velocity_x) / 2 - restitution),
+                  1e-3 * restitution);
+    check_at_most("the collision stays straight", std::fabs(after[0].velocity_y) + std::fabs(after[0].spin), 1e-4);
+}
+
+void test_restitution() {
+    check_restitution("disc", 0.5, false);
+    check_restitution("ellipse8", 0.5, true);
+}
+
+/* Forces between grains are equal and opposite, so that momentum stays but for roundings of sums. */
+void test_momentum() {
+    for (const bool newton : {false, true}) {
+        Packing packing = make_lattice(20, 20, 1.15, 0.1, 1, 11);
+        packing.types = 2;
+        for (size_t i = 0; i < packing.grains.size(); i++)
+            packing.grains[i].type = 1 + static_cast<int>(i % 2);
+        Simulation simulation(MPI_COMM_WORLD);
+        simulation.create(packing, "p p p", newton);
+        simulation.run(grains("ellipse8 pebble8", "narc/hooke/history 1e4 NULL 50 NULL 0.5 1") +
+                       "timestep 2e-4\nrun 0");
+        double momentum[2] = {0, 0}, scale = 0;
+        for (const State &s : simulation.states()) {
+            momentum[0] -= s.mass * s.velocity_x;
+            momentum[1] -= s.mass * s.velocity_y;
+            scale += s.mass * std::hypot(s.velocity_x, s.velocity_y);
+        }
+        simulation.run("run 1000");
+        for (const State &s : simulation.states()) {
+            momentum[0] += s.mass * s.velocity_x;
+            momentum[1] += s.mass * s.velocity_y;
+        }
+        check_at_most("momentum gained in 1000 steps", std::hypot(momentum[0], momentum[1]), 1e-12 * scale);
+    }
+}
+
+/* Without damping and friction energy stays. A step of velocity Verlet errs by some (w dt)^2 / 24 of what is in the
+ * springs, w^2 = 2 kn / m and w dt = 0.02 here: 2e-5; separations are single precision, 1e-7 of kn overlap^2. Hertz'
+ * force depends on the radius of curvature, which jumps where a contact moves from arc to arc, and so does the energy:
+ * discs have one arc. */
+void check_energy(const std::string &shape, const std::string &law) {
+    const Packing packing = make_lattice(20, 20, 1.15, 0.1, 1, 13);
+    Simulation simulation(MPI_COMM_WORLD);
+    simulation.create(packing);
+    simulation.run(grains(shape, "narc/" + law + "/history 1e4 0 0 0 0 0") + "timestep 1e-4\nrun 0");
+    const double kinetic = kinetic_energy(simulation), before = kinetic + simulation.pair_energy();
+    simulation.run("run 4000");
+    const double after = kinetic_energy(simulation) + simulation.pair_energy();
+    check_at_most((law + ", " + shape + ": energy gained or lost").c_str(), std::fabs(after / before - 1), 1e-4);
+    check_at_most("the energy that stayed was in motion and in springs", kinetic / before, 0.9);
+}
+
+void test_energy() {
+    check_energy("ellipse8", "hooke");
+    check_energy("pebble8", "hooke");
+    check_energy("disc", "hertz");
+}
+
+/* ---------------------------------------------------------------------------- against itself */
+
+std::vector<State> run_piece(MPI_Comm world, bool newton, const Packing &packing) {
+    Simulation simulation(world);
+    simulation.create(packing, "p p p", newton);
+    simulation.run(grains("pebble8", "narc/hooke/history 1e4 NULL 50 NULL 0.5 1") + "timestep 2e-4\nrun 500");
+    return simulation.states();
+}
+
+/* The same pairs have the same bits on any ranks, so that only the order of sums differs, and what differs by a
+ * rounding of double precision may be rounded to another float: 1e-7 of a grain, times what 500 steps make of it. */
+void test_ranks() {
+    int rank, size;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+    const Packing packing = make_lattice(20, 20, 1.15, 0.1, 1, 17);
+    const std::vector<State> alone = run_piece(MPI_COMM_SELF, false, packing);
+    for (int count = 2; count <= size; count *= 2) {
+        for (const bool newton : {false, true}) {
+            MPI_Comm part;
+            MPI_Comm_split(MPI_COMM_WORLD, rank / count, rank, &part);
+            const Difference at = compare(run_piece(part, newton, packing), alone, packing.width, packing.height);
+            const std::string what = std::to_string(count) + " ranks, newton " + (newton ? "on" : "off");
+            check_at_most((what + ": positions").c_str(), at.position, 1e-6);
+            check_at_most((what + ": angles").c_str(), at.angle, 1e-6);
+            check_at_most((what + ": velocities").c_str(), at.velocity, 1e-4);
+            MPI_Comm_free(&part);
+        }
+    }
+}
+
+void test_newton() {
+    const Packing packing = make_lattice(20, 20, 1.15, 0.1, 1, 19);
+    const Difference at = compare(run_piece(MPI_COMM_WORLD, true, packing), run_piece(MPI_COMM_WORLD, false, packing),
+                                  packing.width, packing.height);
+    check_at_most("positions, newton on and off", at.position, 1e-6);
+    check_at_most("angles, newton on and off", at.angle, 1e-6);
+}
+
+/* A run that was broken off goes on as if it were not: the memory of contacts is in the restart file. */
+void test_restart() {
+    const std::string file = "test.restart";
+    const Packing packing = make_lattice(20, 20, 1.15, 0.1, 0.2, 23);
+    const std::string wall = "fix floor all wall/narc hooke/history 1e4 NULL 50 NULL 0.5 1 plate 10 1 0.1 1 "
+                             "velocity 0 0.5\n";
+    Simulation whole(MPI_COMM_WORLD);
+    whole.create(packing, "p f p", true);
+    whole.run(grains("pebble8", "narc/hooke/history 1e4 NULL 50 NULL 0.5 1") + wall +
+              "fix ceiling all wall/narc hooke/history 1e4 NULL 50 NULL 0.5 1 plate 10 20 0 -1\ntimestep 2e-4\n"
+              "run 500\nwrite_restart " +
+              file + "\nrun 500");
+    Simulation rest(MPI_COMM_WORLD);
+    rest.run("atom_modify map array\nread_restart " + file + "\n" + tracking + "comm_modify vel yes\n" +
+             "fix shapes all narc/shapes " + shapes_file + " pebble8 density 1\nfix nve all narc/nve\n" + wall +
+             "fix ceiling all wall/narc hooke/history 1e4 NULL 50 NULL 0.5 1 plate 10 20 0 -1\ntimestep 2e-4\n"
+             "run 0");
+    rest.run("run 500");
+    const Difference at = compare(rest.states(), whole.states(), packing.width, packing.height);
+    check_at_most("positions after a restart", at.position, 1e-6);
+    check_at_most("angles after a restart", at.angle, 1e-6);
+    check_at_most("forces after a restart", at.force, 1e-2);
+    check_at_most("travel of the wall after a restart", std::fabs(rest.variable("f_floor[4]") - 0.1), 1e-12);
+    std::remove(file.c_str());
+}
+
+/* ---------------------------------------------------------------------------- walls */
+
+/* A heap of discs, 4-arcs and 8-arcs between a plate and two boxes comes to rest: walls and floor carry its weight. */
+void test_walls() {
+    for (const char *law : {"hooke", "hertz"}) {
+        Packing packing = make_lattice(8, 10, 0.9, 0.1, 0.3, 29);
+        packing.types = 4;
+        for (size_t i = 0; i < packing.grains.size(); i++)
+            packing.grains[i].type = 1 + static_cast<int>(i % 4);
+        packing.width = 8;
+        const std::string coefficients = std::string(law) + "/history 2e4 NULL 200 NULL 0.5 1 ";
+        Simulation heap(MPI_COMM_WORLD);
+        heap.create(packing, "f f p");
+        heap.run(grains("disc ellipse4 ellipse8 pebble8", "narc/" + coefficients) + "fix floor all wall/narc " +
+                 coefficients + "plate 0 0.1 0 1\n" + "fix left all wall/narc " + coefficients + "box -0.9 5 2 30 0\n" +
+                 "fix right all wall/narc " + coefficients + "box 8.9 5 30 2 90\n" +
+                 "fix gravity all gravity 1 vector 0 -1 0\nfix slow all viscous 0.5\ntimestep 1e-3\nrun 40000");
+        double weight = 0, sideways = 0, lowest = 1e9, fastest = 0;
+        for (const State &s : heap.states()) {
+            weight += s.mass;
+            lowest = std::fmin(lowest, s.y);
+            sideways = std::fmax(sideways, std::fabs(s.x - 4));
+            fastest = std::fmax(fastest, std::hypot(s.velocity_x, s.velocity_y));
+        }
+        check_at_most("the heap rests", fastest, 1e-3);
+        check_at_most("no grain is below the floor", 0.1 - lowest, 0);
+        check_at_most("no grain is in a wall", sideways, 4);
+        const double lift = heap.variable("f_left[2]") + heap.variable("f_right[2]") + heap.variable("f_floor[2]");
+        check_at_most("walls and floor carry the weight", std::fabs(lift / weight + 1), 1e-3);
+        const double push = heap.variable("f_left[1]") + heap.variable("f_right[1]") + heap.variable("f_floor[1]");
+        check_at_most("and push sideways as little", std::fabs(push / weight), 1e-3);
+    }
+}
+
+const std::map<std::string, void (*)()> tests = {
+    {"discs_hooke", test_discs_hooke}, {"discs_hertz", test_discs_hertz}, {"restitution", test_restitution},
+    {"momentum", test_momentum},       {"energy", test_energy},           {"ranks", test_ranks},
+    {"newton", test_newton},           {"restart", test_restart},         {"walls", test_walls},
+};
+
+} // namespace
+
+void check_at_most(const char *what, double value, double bound) {
+    int rank;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    const bool good = value <= bound;
+    failures += !good;
+    if (rank == 0)
+        std::printf("%s  %s: %.3g, at most %.3g\n", good ? "ok    " : "FAILED", what, value, bound);
+}
+
+Difference compare(const std::vector<State> &a, const std::vector<State> &b, double width, double height) {
+    Difference most = {};
+    const auto grow = [](double &so_far, double value) { so_far = value > so_far || value != value ? value : so_far; };
+    for (size_t i = 0; i < a.size(); i++) {
+        grow(most.position,
+             std::hypot(std::remainder(a[i].x - b[i].x, width), std::remainder(a[i].y - b[i].y, height)));
+        grow(most.angle, std::hypot(a[i].cosine - b[i].cosine, a[i].sine - b[i].sine));
+        grow(most.velocity, std::hypot(a[i].velocity_x - b[i].velocity_x, a[i].velocity_y - b[i].velocity_y));
+        grow(most.spin, std::fabs(a[i].spin - b[i].spin));
+        grow(most.force, std::hypot(a[i].force_x - b[i].force_x, a[i].force_y - b[i].force_y));
+        grow(most.torque, std::fabs(a[i].torque - b[i].torque));
+    }
+    return most;
+}
+
+int main(int count, char **arguments) {
+    MPI_Init(&count, &arguments);
+    const auto test = count == 2 ? tests.find(arguments[1]) : tests.end();
+    if (test == tests.end()) {
+        std::fprintf(stderr, "usage: test_lammps TEST\n");
+        for (const auto &known : tests)
+            std::fprintf(stderr, "  %s\n", known.first.c_str());
+        MPI_Finalize();
+        return 2;
+    }
+    test->second();
+    MPI_Finalize();
+    return failures ? 1 : 0;
+}
