@@ -256,11 +256,11 @@ void FixNarcShapes::save_memories() {
 int FixNarcShapes::pack(const std::vector<Memory> &list, double *buffer) {
     int n = 0;
     buffer[n++] = static_cast<double>(list.size());
-    for (const Memory &memory : list) {
-        buffer[n++] = static_cast<double>(memory.other);
-        buffer[n++] = memory.slip[0];
-        buffer[n++] = memory.slip[1];
-        buffer[n++] = memory.hint;
+    for (const Memory &kept : list) {
+        buffer[n++] = static_cast<double>(kept.other);
+        buffer[n++] = kept.slip[0];
+        buffer[n++] = kept.slip[1];
+        buffer[n++] = kept.hint;
     }
     return n;
 }

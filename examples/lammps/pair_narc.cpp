@@ -138,12 +138,12 @@ void PairNarc::build_pairs() {
     for (size_t k = 0; k < first.size(); k++) {
         const bool has_first = first[k] < local;
         const tagint other = tag[has_first ? second[k] : first[k]];
-        for (const auto &memory : shapes->memories[has_first ? first[k] : second[k]]) {
-            if (memory.other != other)
+        for (const auto &kept : shapes->memories[has_first ? first[k] : second[k]]) {
+            if (kept.other != other)
                 continue;
-            slips[2 * k] = memory.slip[0];
-            slips[2 * k + 1] = memory.slip[1];
-            hints[k] = memory.hint;
+            slips[2 * k] = kept.slip[0];
+            slips[2 * k + 1] = kept.slip[1];
+            hints[k] = kept.hint;
             touching.push_back(static_cast<uint32_t>(k));
         }
     }
@@ -155,12 +155,12 @@ void PairNarc::save_memories(std::vector<std::vector<FixNarcShapes::Memory>> &me
     const bool ghosts = remembers_for_ghosts();
     for (const uint32_t k : touching) {
         const uint32_t a = first[k], b = second[k];
-        FixNarcShapes::Memory memory = {atom->tag[b], {slips[2 * k], slips[2 * k + 1]}, hints[k]};
+        FixNarcShapes::Memory kept = {atom->tag[b], {slips[2 * k], slips[2 * k + 1]}, hints[k]};
         if (ghosts || a < local)
-            memories[a].push_back(memory);
-        memory.other = atom->tag[a];
+            memories[a].push_back(kept);
+        kept.other = atom->tag[a];
         if (ghosts || b < local)
-            memories[b].push_back(memory);
+            memories[b].push_back(kept);
     }
 }
 

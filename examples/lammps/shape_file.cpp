@@ -21,7 +21,7 @@ using Keys = std::initializer_list<const char *>;
 /* What is read now, for messages: "shapes.json: shape 'lens', arc 2". */
 class Reader {
   public:
-    explicit Reader(std::string place) : place(std::move(place)) {}
+    explicit Reader(std::string where) : place(std::move(where)) {}
     Reader in(const std::string &element) const { return Reader(place + element); }
 
     [[noreturn]] void fail(const std::string &message) const { throw std::runtime_error(place + ": " + message); }

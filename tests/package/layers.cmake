@@ -21,6 +21,7 @@ set(public_only fit/read/text fit tools examples)
 # Where each header stands: layer by name.
 foreach(layer ${layers})
   file(GLOB_RECURSE files RELATIVE "${root}" "${root}/${layer}/*.h" "${root}/${layer}/*.inl" "${root}/${layer}/*.def")
+  list(FILTER files EXCLUDE REGEX "^examples/lammps/")
   foreach(file ${files})
     get_filename_component(name "${file}" NAME)
     list(APPEND layers_of_${name} ${layer})
@@ -32,6 +33,7 @@ set(wrong "")
 foreach(layer ${layers})
   file(GLOB_RECURSE files RELATIVE "${root}" "${root}/${layer}/*.[ch]" "${root}/${layer}/*.inl" "${root}/${layer}/*.cc"
     "${root}/${layer}/*.cpp")
+  list(FILTER files EXCLUDE REGEX "^examples/lammps/") # a project of its own, whose headers are LAMMPS'
   foreach(file ${files})
     file(STRINGS "${root}/${file}" lines REGEX "^ *# *include +[\"<]")
     foreach(line ${lines})

@@ -26,7 +26,7 @@
 
 using namespace LAMMPS_NS;
 
-Simulation::Simulation(MPI_Comm world) : world(world) {
+Simulation::Simulation(MPI_Comm ranks, bool with_styles) : world(ranks) {
     /* What LAMMPS says is in a file, each instance's in its own; an error is on its last lines. */
     static int number = 0;
     std::string screen = "screen." + std::to_string(++number) + ".txt";
@@ -35,7 +35,8 @@ Simulation::Simulation(MPI_Comm world) : world(world) {
     for (std::string &word : words)
         arguments.push_back(&word[0]);
     lammps = new LAMMPS(static_cast<int>(arguments.size()), arguments.data(), world);
-    narc_lammps::register_styles(lammps);
+    if (with_styles)
+        narc_lammps::register_styles(lammps);
 }
 
 Simulation::~Simulation() { delete lammps; }

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <map>
 
+#include <dlfcn.h>
+
 #include "check.h"
 
 int failures = 0;
@@ -244,10 +246,53 @@ void test_walls() {
     }
 }
 
+/* ---------------------------------------------------------------------------- other ways */
+
+/* Shapes by atom answer as shapes by type. */
+void test_by_atom() {
+    Packing packing = make_lattice(10, 10, 1.15, 0.1, 1, 31);
+    const std::string law = "narc/hooke/history 1e4 NULL 50 NULL 0.5 1";
+    const std::string end = "\npair_coeff * *\nfix nve all narc/nve\ntimestep 2e-4\nrun 200";
+    Simulation by_atom(MPI_COMM_WORLD), by_type(MPI_COMM_WORLD);
+    by_atom.create(packing);
+    by_atom.run(tracking +
+                "fix which all property/atom i_which ghost yes\nset group all i_which 1\nset atom 1*50 i_which 2\n"
+                "fix shapes all narc/shapes " +
+                shapes_file + " ellipse8 pebble8 density 1 shape i_which\npair_style " + law + end);
+    packing.types = 2;
+    for (size_t i = 0; i < packing.grains.size(); i++)
+        packing.grains[i].type = i < 50 ? 2 : 1;
+    by_type.create(packing);
+    by_type.run(grains("ellipse8 pebble8", law) + "timestep 2e-4\nrun 200");
+    const Difference at = compare(by_atom.states(), by_type.states(), packing.width, packing.height);
+    check_at_most("positions, shapes by atom and by type", at.position, 0);
+}
+
+/* The plugin's styles are as good as the program's. */
+void test_plugin() {
+    const Packing packing = make_lattice(10, 10, 1.15, 0.1, 1, 37);
+    const std::string commands =
+        grains("pebble8", "narc/hooke/history 1e4 NULL 50 NULL 0.5 1") + "timestep 2e-4\nrun 100";
+    Simulation plugged(MPI_COMM_WORLD, false), built_in(MPI_COMM_WORLD);
+    void *plugin = dlopen(PLUGIN_FILE, RTLD_NOW | RTLD_LOCAL);
+    check_at_most("the plugin loads", plugin ? 0 : 1, 0);
+    if (!plugin)
+        return;
+    using Init = void (*)(void *, void *, void *);
+    reinterpret_cast<Init>(dlsym(plugin, "lammpsplugin_init"))(plugged.lammps, plugin, nullptr);
+    plugged.create(packing);
+    plugged.run(commands);
+    built_in.create(packing);
+    built_in.run(commands);
+    const Difference at = compare(plugged.states(), built_in.states(), packing.width, packing.height);
+    check_at_most("positions, plugin and program", at.position, 0);
+}
+
 const std::map<std::string, void (*)()> tests = {
     {"discs_hooke", test_discs_hooke}, {"discs_hertz", test_discs_hertz}, {"restitution", test_restitution},
     {"momentum", test_momentum},       {"energy", test_energy},           {"ranks", test_ranks},
     {"newton", test_newton},           {"restart", test_restart},         {"walls", test_walls},
+    {"by_atom", test_by_atom},         {"plugin", test_plugin},
 };
 
 } // namespace
