@@ -15,6 +15,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
              Benchmark's and those of bench/README.md
   paper      the paper's evaluation; tables and plots go to out/. Options are those of bench/paper/README.md
   fit-study  the paper's study of goodness of fit; tables and pictures go to out/
+  lammps     LAMMPS with grains that are arc shapes, over MPI: its tests, a biaxial compression on 1 and 2 ranks, and
+             tables of times beside LAMMPS' own styles; all goes to out/lammps/
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.
@@ -42,6 +44,7 @@ test_packages="$run_packages g++ binutils"
 gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang-tidy"
 bench_packages="$library_packages $peer_packages gnuplot-nox"
 study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
+lammps_packages="$library_packages g++ libcjson-dev liblammps-dev libopenmpi-dev openmpi-bin"
 arm64_tools="gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
 arm64_libraries="libsleef-dev libsleef3 libcmocka-dev libcmocka0"
 
@@ -175,6 +178,68 @@ fit_study() {
     ls -l out/fit-*
 }
 
+# A project of its own, examples/lammps, on a library without anything else. More ranks than cores are fine for tests.
+build_lammps() {
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
+        OMP_NUM_THREADS=1
+    say "build/lammps"
+    cmake -S . -B build/lammps-narc -DNARC_BUILD_FIT=OFF -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF \
+        -DNARC_WERROR=ON || fail "configuring build/lammps-narc failed"
+    cmake --build build/lammps-narc || fail "building build/lammps-narc failed"
+    cmake -S examples/lammps -B build/lammps -DNARC_BUILD="$PWD/build/lammps-narc" -DNARC_LAMMPS_WERROR=ON ||
+        fail "configuring build/lammps failed"
+    cmake --build build/lammps || fail "building build/lammps failed"
+}
+
+test_lammps() {
+    build_lammps
+    CTEST_PARALLEL_LEVEL=1 ctest --test-dir build/lammps --output-on-failure || fail "tests failed in build/lammps"
+}
+
+# The largest difference of numbers in two dumps, which is at most 1e-6 of a grain's diameter.
+compare_dumps() {
+    awk 'NR == FNR { line[FNR] = $0; next }
+        { if (split(line[FNR], other) != NF) most = 1
+          for (i = 1; i <= NF; i++) { d = $i - other[i]; if (d < 0) d = -d; if (d > most) most = d } }
+        END { printf "largest difference: %g\n", most; exit !(FNR > 1000 && most <= 1e-6) }' "$1" "$2"
+}
+
+# The force that grains and walls exert on each other in all, beside forces of some 1000: columns 5 and 6 of the log.
+check_momentum() {
+    awk '/^Loop/ { rows = 0 }
+        rows { for (i = 5; i <= 6; i++) { d = $i < 0 ? -$i : $i; if (d > most) most = d } seen++ }
+        /^Step/ { rows = 1 }
+        END { printf "largest force out of nothing: %g\n", most; exit !(seen > 1 && most <= 1e-9) }' "$1"
+}
+
+lammps() {
+    require_packages $lammps_packages
+    test_lammps
+    rm -rf out/lammps
+    mkdir -p out/lammps
+    say "a packing of some thousand 8-arcs"
+    (
+        cd out/lammps
+        inputs=../../examples/lammps
+        program=../../build/lammps/narc_lammps
+        mpirun -np 1 $program -in $inputs/prepare.in -var shapes $inputs/grains.json -log prepare.log
+        for ranks in 1 2; do
+            say "its biaxial compression, ranks: $ranks"
+            mpirun -np $ranks $program -in $inputs/biaxial.in -var shapes $inputs/grains.json -var steps 1000 \
+                -var every 500 -var out biaxial-$ranks -log biaxial-$ranks.log
+        done
+        say "the same on 1 rank and on 2?"
+        compare_dumps biaxial-1.dump biaxial-2.dump
+        check_momentum biaxial-1.log
+        check_momentum biaxial-2.log
+    ) || fail "the compression failed"
+    say "times"
+    cmake --build build/lammps --target tables >out/lammps/tables.txt || fail "measuring failed"
+    grep '|' out/lammps/tables.txt
+    say "written"
+    ls -l out/lammps
+}
+
 # One build, the one that users have, and what answers in minutes; the gate has the rest.
 test_release() {
     require_packages $test_packages
@@ -206,13 +271,18 @@ gate() {
     fixed=$(setarch "$(uname -m)" -R true 2>/dev/null && echo "setarch $(uname -m) -R") || fixed=
     check tsan "$fixed"
     skipped=
+    if install_packages $lammps_packages; then
+        test_lammps
+    else
+        skipped="; LAMMPS SKIPPED: not among this machine's packages"
+    fi
     case $(uname -m) in
     aarch64 | arm64) ;; # NEON is what all of the above ran
     *)
         if install_packages $arm64_tools && fetch_arm64_libraries; then
             check aarch64
         else
-            skipped="; NEON SKIPPED: no arm64 compiler, qemu or libraries from this machine's package sources"
+            skipped="$skipped; NEON SKIPPED: no arm64 compiler, qemu or libraries from this machine's package sources"
         fi
         ;;
     esac
@@ -241,6 +311,7 @@ paper)
     paper "$@"
     ;;
 fit-study) fit_study ;;
+lammps) lammps ;;
 *)
     usage
     case ${1:-} in -h | --help | help) exit 0 ;; *) exit 2 ;; esac

@@ -59,12 +59,14 @@ template <class Comm> void reverse_variable(Comm *comm, Fix *fix, long) { comm->
 
 FixNarcShapes::FixNarcShapes(LAMMPS *lammps, int count, char **arguments) : Fix(lammps, count, arguments) {
     if (count < 5)
-        error->all(FLERR, std::string("fix narc/shapes: FILE NAME ... [density RHO] [shape i_PROPERTY] is wanted"));
+        error->all(FLERR,
+                   std::string("fix narc/shapes: FILE NAME ... [density RHO] [shape i_PROPERTY] [mesh PREFIX] is "
+                               "wanted"));
     if (!atom->radius_flag || !atom->rmass_flag || !atom->omega_flag || !atom->torque_flag || !atom->mu_flag)
         error->all(FLERR, std::string("fix narc/shapes wants atom_style hybrid sphere dipole"));
     int names = 0;
     while (4 + names < count && std::strcmp(arguments[4 + names], "density") != 0 &&
-           std::strcmp(arguments[4 + names], "shape") != 0)
+           std::strcmp(arguments[4 + names], "shape") != 0 && std::strcmp(arguments[4 + names], "mesh") != 0)
         names++;
     for (int i = 4 + names; i < count; i += 2) {
         if (i + 1 >= count)
@@ -75,6 +77,8 @@ FixNarcShapes::FixNarcShapes(LAMMPS *lammps, int count, char **arguments) : Fix(
                 error->all(FLERR, std::string("fix narc/shapes: density is not positive: ") + arguments[i + 1]);
         } else if (!std::strcmp(arguments[i], "shape") && !std::strncmp(arguments[i + 1], "i_", 2)) {
             property = arguments[i + 1] + 2;
+        } else if (!std::strcmp(arguments[i], "mesh")) {
+            mesh = arguments[i + 1];
         } else {
             error->all(FLERR, std::string("fix narc/shapes: unknown keyword or value: ") + arguments[i] + " " +
                                   arguments[i + 1]);
@@ -119,11 +123,15 @@ void FixNarcShapes::read_forms(const char *path, int count, char **names) {
             if (narc_add_shape(store, found->arcs.data(), found->arcs.size(), nullptr, &failure) != NARC_OK)
                 throw std::runtime_error(std::string(path) + ": shape '" + names[i] + "': " + failure.message);
             forms.push_back(*found);
+            if (!mesh.empty() && comm->me == 0)
+                narc_lammps::write_mesh(*found, mesh + "." + found->name + ".obj");
         }
     } catch (const std::runtime_error &failure) {
         problem = failure.what();
     }
-    if (!problem.empty())
+    int failed = !problem.empty(), any_failed; /* meshes are rank 0's */
+    MPI_Allreduce(&failed, &any_failed, 1, MPI_INT, MPI_MAX, world);
+    if (any_failed)
         error->all(FLERR, "fix narc/shapes: " + problem);
 }
 

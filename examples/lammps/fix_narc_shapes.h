@@ -3,7 +3,7 @@
  * fix_narc_shapes.h - what grains are: the form of each atom type or atom, and the memory of the contacts between
  * grains, which goes with the atoms from rank to rank and into restart files.
  *
- *   fix ID all narc/shapes FILE NAME ... [density RHO] [shape i_PROPERTY]
+ *   fix ID all narc/shapes FILE NAME ... [density RHO] [shape i_PROPERTY] [mesh PREFIX]
  */
 #ifndef NARC_LAMMPS_FIX_NARC_SHAPES_H
 #define NARC_LAMMPS_FIX_NARC_SHAPES_H
@@ -82,6 +82,7 @@ class FixNarcShapes : public Fix {
     static int unpack(const double *buffer, std::vector<Memory> &list);
 
     double density = 0;
+    std::string mesh;     /* where meshes of the forms go */
     std::string property; /* without its "i_"; empty: the type decides */
     int property_index = -1;
     std::vector<float> cosines, sines, scales;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later
  *
  * scaling.cpp - where the time of a step goes on several ranks, and what that makes of many more.
- *   mpirun -np R scaling [--grains N] [--steps N] [--rounds N] [--out FILE]    adds a row to FILE
+ *   mpirun -np R scaling [--grains N] [--steps N] [--rounds N] [--out FILE]    prints a row, or adds it to FILE
  *   scaling --model FILE                                                        prints FILE, and the model from it
  *
  * Each rank has N grains, so that work and communication of a rank stay what they are while ranks become more (weak
@@ -188,9 +188,10 @@ int main(int count, char **arguments) {
     int rank;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     if (rank == 0) {
-        print_rows({r});
         FILE *file = out ? std::fopen(out, "a") : nullptr;
-        if (file) {
+        if (!file) {
+            print_rows({r});
+        } else {
             std::fprintf(file, "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g\n", r.ranks, r.grains, r.pair,
                          r.neighbour, r.modify, r.communication, r.rest, r.ghosts, r.bytes, r.messages);
             std::fclose(file);

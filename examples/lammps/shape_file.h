@@ -29,6 +29,10 @@ std::vector<Form> parse_forms(const std::string &path, const std::string &text);
 /* The form of a list of arcs; throws std::runtime_error with the library's message. */
 Form make_form(const std::string &name, const std::vector<narc_arc> &arcs);
 
+/* Writes a form as a Wavefront OBJ file: its outline as one polygon, scaled so that it reaches 1 from the centroid. A
+ * particle's mesh is this one times its radius. Throws std::runtime_error. */
+void write_mesh(const Form &form, const std::string &path);
+
 } // namespace narc_lammps
 
 #endif

@@ -71,7 +71,7 @@ void Simulation::create(const Packing &packing, const std::string &boundary, boo
         std::fclose(file);
     }
     MPI_Barrier(world);
-    run("units lj\ndimension 2\natom_style hybrid sphere dipole\natom_modify map array\ncomm_modify vel yes\n"
+    run("units lj\ndimension 2\natom_style hybrid sphere dipole\natom_modify map array sort 10 1\ncomm_modify vel yes\n"
         "boundary " +
         boundary + "\nnewton " + (newton ? "on" : "off") + "\nread_data " + name.c_str());
     MPI_Barrier(world);

@@ -149,6 +149,16 @@ void test_energy() {
 
 /* ---------------------------------------------------------------------------- against itself */
 
+/* Dense grains that drift, so that many go from rank to rank while they touch others. */
+Packing make_drifting(unsigned seed) {
+    Packing packing = make_lattice(20, 20, 1.15, 0.1, 1, seed);
+    for (Grain &grain : packing.grains) {
+        grain.velocity_x += 13;
+        grain.velocity_y += 7;
+    }
+    return packing;
+}
+
 std::vector<State> run_piece(MPI_Comm world, bool newton, const Packing &packing) {
     Simulation simulation(world);
     simulation.create(packing, "p p p", newton);
@@ -162,7 +172,7 @@ void test_ranks() {
     int rank, size;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &size);
-    const Packing packing = make_lattice(20, 20, 1.15, 0.1, 1, 17);
+    const Packing packing = make_drifting(17);
     const std::vector<State> alone = run_piece(MPI_COMM_SELF, false, packing);
     for (int count = 2; count <= size; count *= 2) {
         for (const bool newton : {false, true}) {
@@ -179,7 +189,7 @@ void test_ranks() {
 }
 
 void test_newton() {
-    const Packing packing = make_lattice(20, 20, 1.15, 0.1, 1, 19);
+    const Packing packing = make_drifting(19);
     const Difference at = compare(run_piece(MPI_COMM_WORLD, true, packing), run_piece(MPI_COMM_WORLD, false, packing),
                                   packing.width, packing.height);
     check_at_most("positions, newton on and off", at.position, 1e-6);
@@ -268,6 +278,31 @@ void test_by_atom() {
     check_at_most("positions, shapes by atom and by type", at.position, 0);
 }
 
+/* A form's mesh has the form's area, but for what its chords leave out: (0.09)^2 / 12 of the arcs' share of it. */
+void test_mesh() {
+    Simulation simulation(MPI_COMM_WORLD);
+    simulation.create(make_lattice(5, 5, 0.9, 0, 0, 1));
+    simulation.run("fix shapes all narc/shapes " + shapes_file + " disc density 1 mesh drawn");
+    FILE *file = std::fopen("drawn.disc.obj", "r");
+    check_at_most("the mesh is there", file ? 0 : 1, 0);
+    std::vector<double> x, y;
+    double point[2];
+    for (char line[4000]; file && std::fgets(line, sizeof line, file);) {
+        if (std::sscanf(line, "v %lf %lf", &point[0], &point[1]) == 2) {
+            x.push_back(point[0]);
+            y.push_back(point[1]);
+        }
+    }
+    if (file)
+        std::fclose(file);
+    double area = 0;
+    for (size_t i = 0; i < x.size(); i++) {
+        const size_t next = (i + 1) % x.size();
+        area += 0.5 * (x[i] * y[next] - x[next] * y[i]);
+    }
+    check_at_most("area of the mesh", std::fabs(area / std::acos(-1.0) - 1), 2e-3);
+}
+
 /* The plugin's styles are as good as the program's. */
 void test_plugin() {
     const Packing packing = make_lattice(10, 10, 1.15, 0.1, 1, 37);
@@ -292,7 +327,7 @@ const std::map<std::string, void (*)()> tests = {
     {"discs_hooke", test_discs_hooke}, {"discs_hertz", test_discs_hertz}, {"restitution", test_restitution},
     {"momentum", test_momentum},       {"energy", test_energy},           {"ranks", test_ranks},
     {"newton", test_newton},           {"restart", test_restart},         {"walls", test_walls},
-    {"by_atom", test_by_atom},         {"plugin", test_plugin},
+    {"by_atom", test_by_atom},         {"plugin", test_plugin},           {"mesh", test_mesh},
 };
 
 } // namespace
