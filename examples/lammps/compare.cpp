@@ -158,7 +158,10 @@ int main(int count, char **arguments) {
     if (sizes.empty())
         sizes = {2500, 20000};
     for (const int size : sizes) {
-        const int rows = static_cast<int>(std::sqrt(size)) / 2 * 2, columns = rows > 0 ? size / rows : 0;
+        int rows = static_cast<int>(std::sqrt(size)) / 2 * 2;
+        while (rows > 4 && size % rows != 0)
+            rows -= 2;
+        const int columns = rows > 0 ? size / rows : 0;
         if (rows < 4 || rounds < 1) {
             std::fprintf(stderr, "usage: compare [GRAINS ...] [--rounds N] [--steps N]\n");
             MPI_Abort(MPI_COMM_WORLD, 2);

@@ -290,6 +290,7 @@ void FixNarcShapes::copy_arrays(int from, int to, int) {
 
 void FixNarcShapes::set_arrays(int i) {
     memories[static_cast<size_t>(i)].clear();
+    orient(i);
     if (atom->radius[i] > 0 && form_index(i) < forms.size())
         set_mass(i);
 }
@@ -357,7 +358,7 @@ int FixNarcShapes::maxsize_restart() {
 
 double FixNarcShapes::memory_usage() {
     size_t bytes = cosines.size() * (3 * sizeof(float) + sizeof(uint32_t));
-    for (const auto &list : memories)
-        bytes += sizeof list + list.capacity() * sizeof(Memory);
+    for (const std::vector<Memory> &list : memories)
+        bytes += sizeof(std::vector<Memory>) + list.capacity() * sizeof(Memory);
     return static_cast<double>(bytes);
 }

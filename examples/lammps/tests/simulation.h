@@ -38,7 +38,7 @@ struct State {
 
 class Simulation {
   public:
-    explicit Simulation(MPI_Comm world, bool with_styles = true);
+    explicit Simulation(MPI_Comm ranks, bool with_styles = true);
     ~Simulation();
     Simulation(const Simulation &) = delete;
     Simulation &operator=(const Simulation &) = delete;
