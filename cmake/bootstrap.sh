@@ -44,7 +44,7 @@ test_packages="$run_packages g++ binutils"
 gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang-tidy"
 bench_packages="$library_packages $peer_packages gnuplot-nox"
 study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
-lammps_packages="$library_packages g++ libcjson-dev liblammps-dev libopenmpi-dev openmpi-bin"
+lammps_packages="$run_packages g++ liblammps-dev libopenmpi-dev openmpi-bin"
 arm64_tools="gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
 arm64_libraries="libsleef-dev libsleef3 libcmocka-dev libcmocka0"
 
@@ -178,15 +178,13 @@ fit_study() {
     ls -l out/fit-*
 }
 
-# A project of its own, examples/lammps, on a library without anything else. More ranks than cores are fine for tests.
+# A project of its own, examples/lammps, on the release build. More ranks than cores are fine for tests.
 build_lammps() {
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
         OMP_NUM_THREADS=1
+    build release all
     say "build/lammps"
-    cmake -S . -B build/lammps-narc -DNARC_BUILD_FIT=OFF -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF \
-        -DNARC_WERROR=ON || fail "configuring build/lammps-narc failed"
-    cmake --build build/lammps-narc || fail "building build/lammps-narc failed"
-    cmake -S examples/lammps -B build/lammps -DNARC_BUILD="$PWD/build/lammps-narc" -DNARC_LAMMPS_WERROR=ON ||
+    cmake -S examples/lammps -B build/lammps -DNARC_BUILD="$PWD/build/release" -DNARC_LAMMPS_WERROR=ON ||
         fail "configuring build/lammps failed"
     cmake --build build/lammps || fail "building build/lammps failed"
 }
