@@ -101,6 +101,33 @@ void test_restitution() {
     check_restitution("ellipse8", 0.5, true);
 }
 
+/* Hertz' force kn sqrt(R d) d of two grains along x that overlap by d, which is known to 5e-6: 1.5 * 5e-6 / d of it. */
+void check_hertz(const char *what, const std::string &shapes, const Grain &a, const Grain &b, double overlap,
+                 double radius) {
+    Packing packing = {10, 10, {a, b}};
+    packing.types = 2;
+    Simulation pair(MPI_COMM_WORLD);
+    pair.create(packing);
+    pair.run(grains(shapes, "narc/hertz/history 1e4 0 0 0 0 0") + "timestep 1e-6\nrun 0");
+    const double force = 1e4 * std::sqrt(radius * overlap) * overlap;
+    check_at_most(what, std::fabs(pair.states()[1].force_x / force - 1), 1.5 * 5e-6 / overlap);
+}
+
+/* Radii of curvature: of two arcs; of a straight edge, 16 times the radius of the grain; of a corner, 1/16 of it. */
+void test_hertz() {
+    /* The tips of ellipse8: an arc of radius r about (c, 0), that ends c + r from the centroid, scaled to 1/2. */
+    const double c = 0.47837264780920097, r = 0.52068561834042637, d = 0.01, tip = 0.5 * r / (c + r);
+    const double half_width = 0.8, half_height = 0.45, reach = std::hypot(half_width, half_height);
+    const double scale = 0.5 / reach, corner = 0.5 / 16, edge = 0.5 * 16;
+    const Grain disc = {1, 5, 5, 0.5, 0, 0, 0, 0};
+    check_hertz("force of two tips", "ellipse8 ellipse8", disc, {2, 6 - d, 5, 0.5, 0, 0, 0, 0}, d, tip / 2);
+    check_hertz("force of disc and edge", "disc brick", disc, {2, 5.5 + half_width * scale - d, 5, 0.5, 0, 0, 0, 0}, d,
+                0.5 * edge / (0.5 + edge));
+    const double to_corner = std::acos(-1.0) - std::atan2(half_height, half_width);
+    check_hertz("force of disc and corner", "disc brick", disc, {2, 6 - d, 5, 0.5, to_corner, 0, 0, 0}, d,
+                0.5 * corner / (0.5 + corner));
+}
+
 /* Forces between grains are equal and opposite, so that momentum stays but for roundings of sums. */
 void test_momentum() {
     for (const bool newton : {false, true}) {
@@ -328,10 +355,19 @@ void test_plugin() {
 }
 
 const std::map<std::string, void (*)()> tests = {
-    {"discs_hooke", test_discs_hooke}, {"discs_hertz", test_discs_hertz}, {"restitution", test_restitution},
-    {"momentum", test_momentum},       {"energy", test_energy},           {"ranks", test_ranks},
-    {"newton", test_newton},           {"restart", test_restart},         {"walls", test_walls},
-    {"by_atom", test_by_atom},         {"plugin", test_plugin},           {"mesh", test_mesh},
+    {"discs_hooke", test_discs_hooke},
+    {"discs_hertz", test_discs_hertz},
+    {"restitution", test_restitution},
+    {"momentum", test_momentum},
+    {"energy", test_energy},
+    {"ranks", test_ranks},
+    {"newton", test_newton},
+    {"restart", test_restart},
+    {"walls", test_walls},
+    {"by_atom", test_by_atom},
+    {"plugin", test_plugin},
+    {"mesh", test_mesh},
+    {"hertz", test_hertz},
 };
 
 } // namespace
