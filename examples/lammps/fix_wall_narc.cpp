@@ -315,15 +315,25 @@ int FixWallNarc::unpack_exchange(int i, double *buffer) {
     return 2;
 }
 
+/* The velocity too: variables may be looked at some steps later. */
 void FixWallNarc::write_restart(FILE *file) {
     if (comm->me == 0) {
-        const int size = sizeof moved;
+        const double state[] = {moved[0], moved[1], velocity[0], velocity[1]};
+        const int size = sizeof state;
         fwrite(&size, sizeof size, 1, file);
-        fwrite(moved, sizeof moved, 1, file);
+        fwrite(state, sizeof state, 1, file);
     }
 }
 
-void FixWallNarc::restart(char *buffer) { std::memcpy(moved, buffer, sizeof moved); }
+void FixWallNarc::restart(char *buffer) {
+    double state[4];
+    std::memcpy(state, buffer, sizeof state);
+    for (int axis = 0; axis < 2; axis++) {
+        moved[axis] = state[axis];
+        if (!velocity_variable[axis].empty())
+            velocity[axis] = state[2 + axis];
+    }
+}
 
 int FixWallNarc::pack_restart(int i, double *buffer) {
     buffer[0] = 3;

@@ -79,7 +79,7 @@ class FixWallNarc : public Fix {
     std::vector<double> slips;   /* two of each atom */
     std::vector<char> touched;   /* by the wall, in the last step */
     double mine[3] = {0, 0, 0};  /* force on the wall and energy: of this rank */
-    double total[3] = {0, 0, 0}; /* and of all, in step total_at */
+    double total[3] = {0, 0, 0}; /* and of all, if summed */
     bool summed = false;
 };
 
