@@ -5,8 +5,8 @@
  *
  * Grains of radius 1/2 on a triangular lattice, turned at random and a little out of place, none of which moves: every
  * style computes the forces of the same pairs in each step. With a constant of 0.98 nearly all discs touch, and few of
- * the 8-arcs, which are as long but thinner; with 0.84 most of these do as well. The pair time is that of LAMMPS' own timer. Styles
- * take turns, so that what else the machine does hits them all alike; of the rounds the median counts.
+ * the 8-arcs, which are as long but thinner; with 0.84 most of these do as well. The pair time is that of LAMMPS' own
+ * timer. Styles take turns, so that what else the machine does hits them all alike; of the rounds the median counts.
  */
 #include <algorithm>
 #include <cmath>

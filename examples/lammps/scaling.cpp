@@ -101,8 +101,8 @@ void print_rows(const std::vector<Row> &rows) {
                     r.bytes / r.ghosts);
 }
 
-/* The time of a step with n grains on each of R ranks: n times the work of a grain, g = c sqrt(n) ghosts that are packed
- * and sent, messages, and the one sum over all ranks that decides about new neighbour lists. */
+/* The time of a step with n grains on each of R ranks: n times the work of a grain, g = c sqrt(n) ghosts that are
+ * packed and sent, messages, and the one sum over all ranks that decides about new neighbour lists. */
 void print_model(const Row &alone, double bytes_per_ghost) {
     const double work = 1e-9 * (alone.pair + alone.neighbour + alone.modify + alone.rest);
     const double ghosts_per_root = alone.ghosts / std::sqrt(alone.grains);

@@ -38,13 +38,15 @@ double kinetic_energy(Simulation &simulation) {
 
 /* The library's separation of two discs is within NARC_ERROR_BOUND * (D + E_a + E_b) of theirs, D and both E being at
  * most 1.2 in all here, each: 5e-6; its measured error is some 1e-7. Forces: kn times that for the six contacts of a
- * disc. Positions after a time T: half the acceleration times T^2. */
+ * disc. Positions after a time T: half the acceleration times T^2.
+ * Neighbour lists are new every 7 steps, so that memories of contacts move. */
 void compare_with_own(const char *law, double stiffening) {
     const double kn = 1e4, separation_error = 32.0 / 16777216 * 2.4, step = 2e-4;
     const int steps = 100;
     const Packing packing = make_lattice(20, 20, 1.06, 0.1, 0.5, 7);
     const std::string coefficients = "/history 10000 3000 20 10 0.4 1";
-    const std::string start = "timestep 2e-4\nthermo_style custom step pxx pyy pxy\nrun 0";
+    const std::string start =
+        "neigh_modify delay 0 every 7 check no\ntimestep 2e-4\nthermo_style custom step pxx pyy pxy\nrun 0";
     Simulation narc(MPI_COMM_WORLD), own(MPI_COMM_WORLD);
     narc.create(packing);
     narc.run(grains("disc", std::string("narc/") + law + coefficients) + start);
