@@ -101,7 +101,7 @@ INLINE vm probe(const struct call *call, const struct queue *queue, int k, vm li
     if (hints) /* a hint's arcs may not hold DIRECTION */
         apart = vm_and_not(apart, vm_and_not(vi_lt(vi_set(0), vi_load(queue->hinted + k)), p.far));
     const vm certain = vm_and_not(p.only, apart);
-    store_hints(call, queue, k, vm_or(p.far, certain), record_a, record_b);
+    store_hints(call, queue, k, vm_or(p.far, p.only), record_a, record_b);
     const vm keep = vm_and(certain, is_below(p.separation, margin));
     if (vm_any(keep)) {
         const vec2 n = v2_divide(p.u, p.length);
