@@ -36,6 +36,9 @@ INLINE vm take_valid(const struct call *call, size_t pair, const struct filter *
     return circles->valid;
 }
 
+/* Pairs after which the first stage is tried anew with pairs that have edges: others may lie otherwise. */
+enum { REMEMBERED = 16 * BLOCK };
+
 /* Appends the lanes `open` of `item` to the first stage's queue. Where that one can't answer most of the pairs that have
  * edges, as among bodies that rest on each other, these go to the stage that can. */
 INLINE void enter(struct queue *queues, vm open, const vf item[FIELDS], int fields, int edged_stage) {
@@ -72,10 +75,12 @@ INLINE void run_pairs(const struct call *call, triage *settle, int fields, stage
     const bool adjacent = poses_are_adjacent(batch->bodies);
     struct pair_indices indices;
     for (int s = 0; s < stage_count; s++)
-        queues[s].count = queues[s].edged = queues[s].edged_left = 0;
+        queues[s].count = 0;
     for (size_t block = 0; block < call->count; block += BLOCK) {
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
         load_indices(batch, call->first + block, n, &indices);
+        if (edged_stage > 0 && block % REMEMBERED == 0)
+            queues->edged = queues->edged_left = 0;
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
             const struct filter circles = set_up_pairs(call, &indices, k, n, adjacent, (int32_t)(uint32_t)block, item);
