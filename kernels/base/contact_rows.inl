@@ -40,24 +40,22 @@ struct contact_rows {
     uint32_t hint[GROUP + 1];
 };
 
-/* Stores hints for the pairs k ... of a queue in the lanes `ended`. */
-INLINE void store_hints(const struct call *call, const struct queue *queue, int k, vm ended, vi record_a, vi record_b) {
-    struct contact_rows *rows = call->rows;
+/* The rows of pairs in the lanes `keep`. */
+INLINE void find_rows(vi pairs, vm keep, int32_t row[V_WIDTH]) { vi_store(row, vi_select(keep, pairs, vi_set(GROUP))); }
+
+/* Keeps the hints of pairs in the lanes `ended`. */
+INLINE void put_hints(struct contact_rows *rows, vi pairs, vm ended, vi hints) {
     int32_t row[V_WIDTH], hint[V_WIDTH];
-    if (!rows->hinted)
-        return;
-    vi_store(row, vi_select(ended, get_bits(queue, PAIR, k), vi_set(GROUP)));
-    vi_store(hint, make_hint(queue, k, record_a, record_b));
+    find_rows(pairs, ended, row);
+    vi_store(hint, hints);
     for (int lane = 0; lane < V_WIDTH; lane++)
         rows->hint[row[lane]] = (uint32_t)hint[lane];
 }
 
-/* The same for pairs of circles. */
-INLINE void hint_first_arcs(struct contact_rows *rows, vi pairs, vm answered) {
-    int32_t row[V_WIDTH];
-    vi_store(row, vi_select(answered, pairs, vi_set(GROUP)));
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        rows->hint[row[lane]] = FIRST_ARCS;
+/* Stores hints for the pairs k ... of a queue in the lanes `ended`. */
+INLINE void store_hints(const struct call *call, const struct queue *queue, int k, vm ended, vi record_a, vi record_b) {
+    if (call->rows->hinted)
+        put_hints(call->rows, get_bits(queue, PAIR, k), ended, make_hint(queue, k, record_a, record_b));
 }
 
 /* The caller's number of an arc from its record; a circle's two halves are both arc 0. */
@@ -68,14 +66,9 @@ INLINE vi find_arc_number(vi record, vi first_record, vi info) {
     return vi_select(info_has(info, NARC_SHAPE_CIRCLE), vi_set(0), wrapped);
 }
 
-/* The row of each of the pairs k ... of a queue in the lanes `keep`. */
-INLINE void find_rows(const struct queue *queue, int k, vm keep, int32_t row[V_WIDTH]) {
-    vi_store(row, vi_select(keep, get_bits(queue, PAIR, k), vi_set(GROUP)));
-}
-
 INLINE void put_rows(struct contact_rows *rows, vi pairs, vm keep, const vf field[ROW]) {
     int32_t row[V_WIDTH];
-    vi_store(row, vi_select(keep, pairs, vi_set(GROUP)));
+    find_rows(pairs, keep, row);
     v_put_rows(rows->row, sizeof rows->row[0], row, field);
     v_put_rows((float *)rows->row + 4, sizeof rows->row[0], row, field + 4);
     for (int lane = 0; lane < V_WIDTH; lane++)
@@ -187,9 +180,9 @@ INLINE float *copy_listed(const struct contact_rows *rows, int field, float *col
     return column + rows->listed;
 }
 
-/* The same for bytes that are all alike. */
-INLINE uint8_t *fill_bytes(uint8_t *column, int count, int value) {
-    return column ? (uint8_t *)memset(column, value, (size_t)count) + count : NULL;
+/* Fills `count` items of a column with one byte; returns the place behind them. */
+INLINE void *fill_listed(void *column, int count, size_t size, int byte) {
+    return column ? (char *)memset(column, byte, (size_t)count * size) + (size_t)count * size : NULL;
 }
 
 /* Writes the stored contacts of a call in the order of their pairs; returns how many. */
@@ -201,8 +194,8 @@ static inline size_t list_contacts(const struct call *call, const narc_contacts 
     for (int f = 0; f < ARCS; f++)
         columns[f] = copy_listed(rows, f, lists[f]);
     write_pairs(call, rows->list_pair, rows->listed, out->pair);
-    uint8_t *const arc_a = fill_bytes(out->arc_a, rows->listed, 0), *const arc_b =
-                                                                        fill_bytes(out->arc_b, rows->listed, 0);
+    uint8_t *const arc_a = fill_listed(out->arc_a, rows->listed, 1, 0);
+    uint8_t *const arc_b = fill_listed(out->arc_b, rows->listed, 1, 0);
     const int n = find_listed(call, pair);
     for (int k = 0; k < n; k += V_WIDTH) {
         vf field[ROW];

@@ -3,9 +3,9 @@
  * pipeline.inl - what all kernels do with the pairs of a call: block by block through one stage after another.
  *
  * A pair is set up, and its circles are compared. A triage then answers it or puts it into the queue of the first
- * stage. Each stage answers pairs of its queue, or passes them on to the next one. The first stage takes all pairs of a
- * block. The others, which few pairs reach, wait for FLUSH of them, so that vectors are full; after the last block they
- * take what is left.
+ * stage, or of a later one (enter()). Each stage answers pairs of its queue, or passes them on to the next one. The
+ * first stage takes all pairs of a block. The others, which few pairs reach, wait for FLUSH of them, so that vectors
+ * are full; after the last block they take what is left.
  */
 #ifndef NARC_BASE_PIPELINE_INL
 #define NARC_BASE_PIPELINE_INL
@@ -36,7 +36,7 @@ INLINE vm take_valid(const struct call *call, size_t pair, const struct filter *
     return circles->valid;
 }
 
-/* Pairs after which the first stage is tried anew with pairs that have edges: others may lie otherwise. */
+/* Pairs after which the first stage is tried anew with pairs that have edges: later ones may lie otherwise. */
 enum { REMEMBERED = 16 * BLOCK };
 
 /* Appends the lanes `open` of `item` to the first stage's queue. Where that one can't answer most of the pairs that have
@@ -44,7 +44,7 @@ enum { REMEMBERED = 16 * BLOCK };
 INLINE void enter(struct queue *queues, vm open, const vf item[FIELDS], int fields, int edged_stage) {
     vm here = open;
     if (edged_stage > 0 && 4 * queues->edged_left > 3 * queues->edged) {
-        const vm edged = vm_and_not(open, find_smooth_items(item));
+        const vm edged = vm_and_not(open, both_have(item, NARC_SHAPE_SMOOTH));
         here = vm_and_not(open, edged);
         if (vm_any(edged))
             push(&queues[edged_stage], edged, item, fields);

@@ -77,8 +77,11 @@ INLINE vm find_smooth(const struct queue *queue, int k) {
     return info_has(vi_and(get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k)), NARC_SHAPE_SMOOTH);
 }
 
-INLINE vm find_smooth_items(const vf *item) {
-    return info_has(vi_and(vi_bits(item[INFO_A]), vi_bits(item[INFO_B])), NARC_SHAPE_SMOOTH);
+INLINE vi item_bits(const vf item[FIELDS], int field) { return vi_bits(item[field]); }
+
+/* Do both shapes of a pair have a flag? */
+INLINE vm both_have(const vf item[FIELDS], int flag) {
+    return info_has(vi_and(item_bits(item, INFO_A), item_bits(item, INFO_B)), flag);
 }
 
 /* Notes how a first stage fared with pairs that have edges: what it took, and what is left of it. */

@@ -57,7 +57,7 @@ INLINE vm answer_discs(const struct call *call, size_t pair, vm open, const vf i
     else
         put_rows(rows, pairs, found, field);
     if (rows->hinted)
-        hint_first_arcs(rows, pairs, answered);
+        put_hints(rows, pairs, answered, vi_set(FIRST_ARCS));
     return left;
 }
 
@@ -236,7 +236,7 @@ INLINE void run_with_hints(const struct call *call, stage *const *stages, int st
     rows->hinted = batch->hints != NULL;
     if (batch->hints)
         memcpy(rows->hint, batch->hints + call->first, call->count * sizeof *rows->hint);
-    run_pairs(call, triage_contacts, CONTACT_FIELDS, stages, stage_count, CLIMB, queues);
+    run_pairs(call, triage_contacts, CONTACT_FIELDS, stages, stage_count, batch->hints ? 0 : CLIMB, queues);
     if (batch->hints)
         memcpy(batch->hints + call->first, rows->hint, call->count * sizeof *rows->hint);
 }

@@ -15,12 +15,9 @@
 #include "sat/probe.inl"
 #include "simd/simd.h"
 
-INLINE vi item_bits(const vf item[FIELDS], int field) { return vi_bits(item[field]); }
-
 /* Are there pairs in the lanes `open`, all of two circles? */
 INLINE bool are_discs(vm open, const vf item[FIELDS]) {
-    const vi both = vi_and(item_bits(item, INFO_A), item_bits(item, INFO_B));
-    return vm_any(open) && !vm_any(vm_and_not(open, info_has(both, NARC_SHAPE_CIRCLE)));
+    return vm_any(open) && !vm_any(vm_and_not(open, both_have(item, NARC_SHAPE_CIRCLE)));
 }
 
 /* A circle in each lane: half of it, without its ends, which mean nothing. */

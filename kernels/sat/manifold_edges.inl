@@ -232,7 +232,7 @@ static void find_second_points(const struct call *call, struct queue *queue, int
         const vf of_second[ROW] = {high.separation, second.x,      second.y, v_of_bits(id_high),
                                    high.radius_a,   high.radius_b, v_set(0), v_set(0)};
         int32_t row[V_WIDTH], points[V_WIDTH];
-        find_rows(queue, k, faces, row);
+        find_rows(get_bits(queue, PAIR, k), faces, row);
         vi_store(points, vi_select(two, vi_set(TWO_POINTS), vi_set(ONE_POINT)));
         v_put_rows(rows->first.row, sizeof rows->first.row[0], row, of_first);
         v_put_rows((float *)rows->first.row + 4, sizeof rows->first.row[0], row, of_first + 4);

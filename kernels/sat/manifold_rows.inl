@@ -56,7 +56,6 @@ enum {
  * have edges. */
 INLINE void store_deepest(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
                           const struct feature *on_a, const struct feature *on_b) {
-    struct contact_rows *rows = call->rows;
     const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k), zero = vi_set(0);
     const vec2 to_world = get_vec2(queue, ROTATION_A, k), normal = v2_rotate(to_world, n);
     const vec2 place = find_contact_place(on_a, on_b), point = v2_rotate(to_world, v2_rotate(n, place));
@@ -73,12 +72,7 @@ INLINE void store_deepest(const struct call *call, const struct queue *queue, in
                            v_of_bits(vi_add(feature_a, vi_shift_left(feature_b, 8))),
                            v_select(edge_a, v_set(INFINITY), on_a->radius),
                            v_select(edge_b, v_set(INFINITY), on_b->radius)};
-    int32_t row[V_WIDTH];
-    find_rows(queue, k, keep, row);
-    v_put_rows(rows->row, sizeof rows->row[0], row, field);
-    v_put_rows((float *)rows->row + 4, sizeof rows->row[0], row, field + 4);
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        rows->keep[row[lane]] = ONE_POINT;
+    put_rows(call->rows, get_bits(queue, PAIR, k), keep, field);
 
     const vm smooth = vm_or(info_has(info_a, NARC_SHAPE_SMOOTH), info_has(info_b, NARC_SHAPE_SMOOTH));
     const vm edges = vm_and_not(keep, smooth);
@@ -118,18 +112,13 @@ INLINE void load_second(const struct manifold_rows *rows, const int32_t *pair, v
         field[f] = v_select(two, field[f], v_set(0));
 }
 
-/* A column of the list without second points. */
-INLINE void *clear_listed(void *column, int count, size_t size) {
-    return column ? (char *)memset(column, 0, (size_t)count * size) + (size_t)count * size : NULL;
-}
-
 /* Writes the list of the first pairs' manifolds, all of circles; returns the columns behind it. */
 static inline narc_manifolds copy_list(const struct call *call, const narc_manifolds *out) {
     const struct contact_rows *rows = call->rows;
     const int count = rows->listed;
     narc_manifolds rest = {
         .pair = out->pair ? out->pair + count : NULL,
-        .point_count = fill_bytes(out->point_count, count, 1),
+        .point_count = fill_listed(out->point_count, count, 1, 1),
         .normal_x = copy_listed(rows, NORMAL_X, out->normal_x),
         .normal_y = copy_listed(rows, NORMAL_Y, out->normal_y),
         .separation = {copy_listed(rows, SEPARATION, out->separation[0])},
@@ -140,12 +129,12 @@ static inline narc_manifolds copy_list(const struct call *call, const narc_manif
     };
     write_pairs(call, rows->list_pair, count, out->pair);
     for (int i = 0; i < 2; i++)
-        rest.feature[i] = clear_listed(out->feature[i], count, sizeof *rest.feature[i]);
-    rest.separation[1] = clear_listed(out->separation[1], count, sizeof(float));
-    rest.point_x[1] = clear_listed(out->point_x[1], count, sizeof(float));
-    rest.point_y[1] = clear_listed(out->point_y[1], count, sizeof(float));
-    rest.radius_a[1] = clear_listed(out->radius_a[1], count, sizeof(float));
-    rest.radius_b[1] = clear_listed(out->radius_b[1], count, sizeof(float));
+        rest.feature[i] = fill_listed(out->feature[i], count, sizeof *rest.feature[i], 0);
+    rest.separation[1] = fill_listed(out->separation[1], count, sizeof(float), 0);
+    rest.point_x[1] = fill_listed(out->point_x[1], count, sizeof(float), 0);
+    rest.point_y[1] = fill_listed(out->point_y[1], count, sizeof(float), 0);
+    rest.radius_a[1] = fill_listed(out->radius_a[1], count, sizeof(float), 0);
+    rest.radius_b[1] = fill_listed(out->radius_b[1], count, sizeof(float), 0);
     return rest;
 }
 

@@ -87,8 +87,8 @@ INLINE struct overlap_probe probe_whole_arcs(const narc_record *records, const s
 }
 
 /* Probes along the axis. Smooth pairs are probed along u next. Near edges u leads astray: other pairs climb. Circles
- * settle what overlaps deeply or is well apart; where they did not settle most of the pairs before, as among bodies
- * that rest on each other, whole arcs are worth their price at once. */
+ * settle what overlaps deeply or is well apart. Once they leave more than half of a vector, as among bodies that rest
+ * on each other, whole arcs are worth their price for the rest of the block. */
 static void probe_axis_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     const narc_record *records = call->batch->shapes->records;
     bool whole = false;
