@@ -8,7 +8,7 @@
  *   here, a file for each part:
  *
  *       main.c        the command line, stages, progress, signals
- *       input.c       the JSON file (input_*.c: its sections)   json_path.c   checked access with messages
+ *       input.c       the JSON file (input_grains.c, input_walls.c: its sections)   json_path.c   checked access with messages
  *       model.c       memory, shapes, bodies                  place.c       where grains start
  *       neighbours.c  boxes, pairs with a skin, history       boundary.c    periodic images, wrapping
  *       step.c        velocity Verlet, the narrow phase       laws.c        forces of contacts
@@ -22,6 +22,8 @@
  *   Grains are bodies 0 .. grain_count - 1, walls follow. All state is double. narc reads positions as doubles in place
  *   (it subtracts them before it rounds) and rotations as floats, which are rounded copies of the doubles here. So the
  *   depth of a contact is within NARC_ERROR_BOUND times a few sizes of the two bodies, wherever they are.
+ *
+ *   Grains touch each other in one point, the deepest.
  *
  *   A contact's normal points from A to B, and A < B. Its tangent is the normal turned by a quarter turn. In two
  *   dimensions the tangential spring is one number along the tangent, so it turns with the contact by itself.
@@ -65,10 +67,11 @@ typedef enum dem_law { DEM_LINEAR, DEM_HERTZ } dem_law;
 typedef struct dem_contact_law {
     double kn, kt;           /* stiffness; of the Hertz law 4/3 E* and 8 G* */
     double gamma_n, gamma_t; /* damping per effective mass; not used where there is a damping ratio */
-    double damping_ratio;    /* of a restitution; below 0: gamma_n and gamma_t count */
+    double damping_ratio;    /* of a restitution: damping is this times sqrt(stiffness * effective mass); below 0: gamma
+                                counts */
     double tangential_share; /* with a damping ratio: tangential damping, as a share of the normal one */
     double friction;
-    double rolling_friction, rolling_stiffness; /* 0: none. Torque at most rolling_friction * Reff * |Fn| */
+    double rolling_friction; /* 0: none. Torque at most this times Reff |Fn| */
 } dem_contact_law;
 
 typedef struct dem_settings {
@@ -82,7 +85,7 @@ typedef struct dem_settings {
     double largest_radius; /* and at most, this share of half the grain's extent */
     bool periodic_x, periodic_y;
     double low_x, high_x, low_y, high_y; /* the periodic cell; also the region of pictures if it is not empty */
-    unsigned threads;                    /* 0: as OpenMP would */
+    unsigned threads;                    /* 0: as OpenMP would, fewer for few grains */
 } dem_settings;
 
 /* Bodies: `count` of each array, grains first. */
@@ -120,12 +123,18 @@ typedef struct dem_servo {
 typedef struct dem_wall {
     char name[DEM_NAME_SIZE];
     dem_wall_kind kind;
+    uint32_t shape; /* as it begins: dem_start() makes it a body */
+    uint8_t material;
+    double scale;
+    dem_vec place;
+    double angle;
     dem_vec normal;   /* a plate's, into the grains' half plane */
     dem_vec velocity; /* prescribed */
     double spin;      /* about the pivot, which moves with the velocity */
     dem_vec pivot;
     dem_servo servo;
-    double work; /* done on the grains since the start */
+    double work;          /* done on the grains since the start */
+    size_t contact_count; /* in the last step, if some wall has servo control */
 } dem_wall;
 
 /* The memory of a pair that touches. It counts only if `step` is the step before. */
@@ -147,7 +156,7 @@ typedef struct dem_pairs {
     float *shift_x, *shift_y; /* added to B's position */
     uint32_t *hints;          /* narc's */
     dem_memory *memory;
-    dem_rolling *rolling; /* NULL unless there is rolling friction */
+    dem_rolling *rolling; /* used only if there is rolling friction */
 } dem_pairs;
 
 /* The contacts of the last step, in the order of the pairs, and their forces on B (on A the opposite). */
@@ -212,13 +221,14 @@ typedef struct dem {
     size_t grain_count;
     dem_wall *walls;
     size_t wall_count, wall_capacity;
-    bool started; /* no body can be added any more */
+    double grain_reach, grain_extent; /* the largest */
+    bool started;                     /* no body can be added any more */
 
     uint64_t step;
     double time; /* step * time_step, summed over stages with their own steps */
     uint64_t list_builds;
     dem_pairs pairs, last_pairs;
-    dem_incidence incidence;
+    dem_incidence incidence; /* of the pairs */
     dem_contacts contacts;
 
     /* Summed up since the start. */
@@ -243,7 +253,7 @@ void dem_destroy(dem *d);
 /* Adds a shape, moved so that its centroid is its origin. */
 bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count, uint32_t *out_shape);
 
-/* Adds a material; laws with it are then set in d->laws, in both orders (see laws.c: dem_set_law()). */
+/* Adds a material. Laws with it are set in d->laws by dem_set_law(). */
 bool dem_add_material(dem *d, dem_material material, uint8_t *out_material);
 
 /* A grain as it is added. */
@@ -254,10 +264,10 @@ typedef struct dem_grain {
     double vx, vy, spin;
 } dem_grain;
 
-/* Grains first, then walls. A box's place is that of its centroid. */
+/* Grains and walls in any order. A wall as it is added: {.name, .kind, .material, .place}, and of a box .shape, .scale
+ * and .angle, of a plate .normal (of any length); its place is a point of its border. */
 bool dem_add_grain(dem *d, dem_grain grain);
-bool dem_add_box(dem *d, const char *name, uint32_t shape, uint8_t material, dem_vec place, double angle);
-bool dem_add_plate(dem *d, const char *name, uint8_t material, dem_vec point, dem_vec normal);
+bool dem_add_wall(dem *d, dem_wall wall);
 
 /* Checks the whole, makes room. To be called once, before the first step. */
 bool dem_start(dem *d);
@@ -267,9 +277,10 @@ bool dem_fail(dem *d, const char *format, ...);
 
 /* ------------------------------------------------------------------------------------------------ laws.c, step.c ... */
 
-/* Laws from numbers that are known: gamma from a restitution, Hertz's stiffness from E and nu of two materials. */
+/* The damping ratio that gives a restitution, above 0 and at most 1. */
 double dem_damping_ratio(dem_law law, double restitution);
-void dem_set_hertz(dem *d, uint8_t a, uint8_t b);
+
+/* The law between two materials, in both orders. With the Hertz law kn and kt come from the materials. */
 void dem_set_law(dem *d, uint8_t a, uint8_t b, dem_contact_law law);
 
 /* One step. */
@@ -300,10 +311,11 @@ bool dem_close_file(dem_file *out, bool ok, char *error);
 
 /* ------------------------------------------------------------------------------------------------ vtk.c, picture.c */
 
-/* Writes the state to `path`; errors as above, into `error` (512 bytes). */
-bool dem_write_vtk(const dem *d, const char *path, char *error);
+/* Writes the state to files whose names begin with `stem` ("out/pile-000012"); errors as above, into `error` (512
+ * bytes). */
+bool dem_write_vtk(const dem *d, const char *stem, char *error);
 
-/* A PNG or SVG of the region, or of all grains if it is not given, `width` pixels wide. */
+/* A PNG or SVG, by the path's suffix, of the region, or of all grains if it is not given, `width` pixels wide. */
 bool dem_draw_picture(const dem *d, const dem_region *region, const char *path, double width, char *error);
 
 /* ------------------------------------------------------------------------------------------------ restart.c */

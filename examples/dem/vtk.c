@@ -4,8 +4,8 @@
  */
 #include "dem.h"
 
-bool dem_write_vtk(const dem *d, const char *path, char *error) {
+bool dem_write_vtk(const dem *d, const char *stem, char *error) {
     (void)d;
-    snprintf(error, 512, "%s: this build writes no VTK files", path);
+    snprintf(error, 512, "%s: this build writes no VTK files", stem);
     return false;
 }

@@ -15,6 +15,10 @@
 
 enum { FAILURE_STATUS = 2, LINE_SIZE = 2048 };
 
+static const char *program = "narc";
+
+void name_program(const char *name) { program = name; }
+
 /* Prints `line` as one line and ends the process. _Exit() drops what is still buffered: nothing more gets written. */
 static _Noreturn void end(char *line) {
     discard_outputs();
@@ -28,7 +32,7 @@ static _Noreturn void end(char *line) {
 
 void fail(const char *format, ...) {
     char line[LINE_SIZE];
-    const int used = snprintf(line, sizeof line, "narc: ");
+    const int used = snprintf(line, sizeof line, "%s: ", program);
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(line + used, sizeof line - (size_t)used, format, arguments);
@@ -41,7 +45,7 @@ void fail_at(const char *path, size_t line_number, const char *format, ...) {
     const char *shown = strcmp(path, "-") == 0 ? "standard input" : path;
     /* Half the line is kept for the message, however long the path. */
     const int used = line_number ? snprintf(line, sizeof line, "%.*s:%zu: ", LINE_SIZE / 2, shown, line_number)
-                                 : snprintf(line, sizeof line, "narc: %.*s: ", LINE_SIZE / 2, shown);
+                                 : snprintf(line, sizeof line, "%s: %.*s: ", program, LINE_SIZE / 2, shown);
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(line + used, sizeof line - (size_t)used, format, arguments);

@@ -13,6 +13,9 @@
 #define PRINTF_LIKE(format_at, first)
 #endif
 
+/* The name that messages begin with, instead of "narc"; it must stay. */
+void name_program(const char *name);
+
 /* "narc: message". Bytes that would break the line are shown as '?'. */
 PRINTF_LIKE(1, 2) _Noreturn void fail(const char *format, ...);
 

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * csv.c - the table of measures.
+ */
+#define _XOPEN_SOURCE 700 /* ftruncate */
+#include "csv.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <string.h>
+#include <unistd.h>
+
+static FILE *fail_csv(const char *path, const char *reason, FILE *file, char *error) {
+    snprintf(error, 512, "%.400s: %s", path, reason);
+    if (file)
+        fclose(file);
+    return NULL;
+}
+
+static void write_head(FILE *csv, const dem *d) {
+    fprintf(csv, "step,time,kinetic,potential,elastic,damping,friction,walls,stress_xx,stress_xy,stress_yx,stress_yy,"
+                 "contacts,coordination,deepest,fastest");
+    for (size_t w = 0; w < d->wall_count; w++) {
+        const char *name = d->walls[w].name;
+        fprintf(csv, ",%s_x,%s_y,%s_fx,%s_fy", name, name, name, name);
+    }
+    fprintf(csv, "\n");
+}
+
+FILE *dem_open_csv(const dem *d, const char *path, uint64_t position, char *error) {
+    FILE *file = fopen(path, position > 0 ? "r+" : "w");
+    if (!file)
+        return fail_csv(path, strerror(errno), NULL, error);
+    if (position == 0) {
+        write_head(file, d);
+        return file;
+    }
+    if (fseek(file, 0, SEEK_END) != 0 || ftell(file) < 0 || (uint64_t)ftell(file) < position)
+        return fail_csv(path, "it is shorter than it was when the restart was written", file, error);
+    if (ftruncate(fileno(file), (off_t)position) != 0 || fseek(file, (long)position, SEEK_SET) != 0)
+        return fail_csv(path, strerror(errno), file, error);
+    return file;
+}
+
+bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m) {
+    const dem_energies *e = &m->energy;
+    fprintf(csv, "%" PRIu64 ",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%zu,%.6g,%.6g,%.6g", d->step,
+            d->time, e->kinetic, e->potential, e->elastic, e->damping, e->friction, e->walls, m->stress_xx,
+            m->stress_xy, m->stress_yx, m->stress_yy, m->contacts, m->coordination, m->deepest, m->fastest);
+    for (size_t w = 0; w < d->wall_count; w++) {
+        const size_t k = d->grain_count + w;
+        const dem_vec force = dem_wall_force(d, w);
+        fprintf(csv, ",%.9g,%.9g,%.9g,%.9g", d->bodies.x[k], d->bodies.y[k], force.x, force.y);
+    }
+    fprintf(csv, "\n");
+    return fflush(csv) == 0 && !ferror(csv);
+}

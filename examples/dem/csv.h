@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * csv.h - the table of measures: a line for each time. It grows while the run goes on, so that it can be looked at.
+ */
+#ifndef DEM_CSV_H
+#define DEM_CSV_H
+
+#include "dem.h"
+
+/* A new table, or (position above 0) an old one, cut off there. Errors go to `error` (512 bytes). */
+FILE *dem_open_csv(const dem *d, const char *path, uint64_t position, char *error);
+
+/* Adds a line; false if it cannot be written. */
+bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m);
+
+#endif

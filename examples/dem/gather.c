@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * gather.c - from the forces of contacts to those of bodies.
+ *
+ * A body's forces are added in the order of its contacts: first those where it is B, then those where it is A, for
+ * a < b and pairs are in the order of (a, b). A single thread adds contact by contact, which is the same order; several
+ * threads take a body each and look up its contacts.
+ */
+#include "internal.h"
+
+static void clear(dem *d) {
+    dem_bodies *b = &d->bodies;
+    for (size_t k = 0; k < b->count; k++)
+        b->fx[k] = b->fy[k] = b->torque[k] = 0;
+}
+
+static void scatter(dem *d) {
+    const dem_contacts c = d->contacts;
+    const dem_bodies bodies = d->bodies;
+    clear(d);
+    for (size_t k = 0; k < c.count; k++) {
+        const uint32_t a = d->pairs.a[c.pair[k]], b = d->pairs.b[c.pair[k]];
+        bodies.fx[a] -= c.fx[k];
+        bodies.fy[a] -= c.fy[k];
+        bodies.torque[a] += c.torque_a[k];
+        bodies.fx[b] += c.fx[k];
+        bodies.fy[b] += c.fy[k];
+        bodies.torque[b] += c.torque_b[k];
+    }
+}
+
+/* The contact of a pair, or the count if it has none. */
+static size_t find_contact(const dem *d, size_t pair) {
+    const size_t k = d->scratch->slot[pair];
+    return k < d->contacts.count && d->contacts.pair[k] == pair ? k : d->contacts.count;
+}
+
+static void gather_body(const dem *d, size_t body) {
+    const dem_contacts c = d->contacts;
+    const dem_incidence n = d->incidence;
+    double fx = 0, fy = 0, torque = 0;
+    for (size_t i = n.first_b[body]; i < n.first_b[body + 1]; i++) {
+        const size_t k = find_contact(d, n.of_b[i]);
+        if (k < c.count) {
+            fx += c.fx[k];
+            fy += c.fy[k];
+            torque += c.torque_b[k];
+        }
+    }
+    for (size_t p = n.first_a[body]; p < n.first_a[body + 1]; p++) {
+        const size_t k = find_contact(d, p);
+        if (k < c.count) {
+            fx -= c.fx[k];
+            fy -= c.fy[k];
+            torque += c.torque_a[k];
+        }
+    }
+    d->bodies.fx[body] = fx;
+    d->bodies.fy[body] = fy;
+    d->bodies.torque[body] = torque;
+}
+
+void dem_gather_forces(dem *d) {
+    const size_t count = d->bodies.count;
+    const unsigned team = dem_team(d);
+    if (team == 1) {
+        scatter(d);
+        return;
+    }
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) num_threads(team)
+#endif
+    for (size_t k = 0; k < count; k++)
+        gather_body(d, k);
+}

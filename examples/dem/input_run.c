@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * input_run.c - the JSON file's stages, and what it wants to be written.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "canvas.h"
+#include "input.h"
+
+/* ------------------------------------------------------------------------------------------------ stages */
+
+/* {"floor": {"velocity": [0, 1]}, ...} */
+static void read_changes(const json_value *walls, const dem *d, dem_stage *stage) {
+    static const char *const keys[] = {"velocity", "spin", "servo", NULL};
+    const cJSON *item;
+    if (!cJSON_IsObject(walls->item))
+        json_fail(walls, "is not an object");
+    stage->changes = allocate((size_t)cJSON_GetArraySize(walls->item), sizeof *stage->changes);
+    cJSON_ArrayForEach(item, walls->item) {
+        const json_value change = json_member(walls, item->string);
+        size_t w = 0;
+        while (w < d->wall_count && strcmp(d->walls[w].name, item->string) != 0)
+            w++;
+        if (w == d->wall_count)
+            json_fail(&change, "is of no wall of that name");
+        json_check_object(&change, keys);
+        dem_wall_change *added = &stage->changes[stage->change_count++];
+        added->wall = w;
+        dem_read_motion(&change, d, added);
+    }
+}
+
+/* A time as a number of steps, at least one. */
+static uint64_t read_steps(const json_value *value, const dem *d) {
+    const double steps = json_number(value, 0, 1e300, true) / d->settings.time_step;
+    if (steps > 1e15)
+        json_fail(value, "is more than 1e15 time steps");
+    return steps < 1 ? 1 : (uint64_t)(steps + 0.5);
+}
+
+void dem_read_stages(const json_value *root, dem *d, dem_input *input) {
+    static const char *const keys[] = {"name", "duration", "gravity", "friction", "walls", NULL};
+    const json_value list = json_require(root, "stages");
+    const size_t count = json_list(&list);
+    if (count == 0)
+        json_fail(&list, "is empty");
+    input->stages = allocate(count, sizeof *input->stages);
+    for (size_t i = 0; i < count; i++) {
+        const json_value item = json_at(&list, i);
+        json_check_object(&item, keys);
+        const json_value name = json_member(&item, "name"), duration = json_require(&item, "duration");
+        const json_value gravity = json_member(&item, "gravity"), friction = json_member(&item, "friction");
+        const json_value walls = json_member(&item, "walls");
+        dem_stage stage = {.steps = read_steps(&duration, d)};
+        snprintf(stage.name, sizeof stage.name, "stage %zu", i);
+        if (name.item)
+            json_text(&name, stage.name, sizeof stage.name);
+        if (gravity.item) {
+            double n[2];
+            json_numbers(&gravity, 2, n);
+            stage.sets_gravity = true;
+            stage.gravity = (dem_vec){n[0], n[1]};
+        }
+        if (friction.item) {
+            stage.sets_friction = true;
+            stage.friction = json_number(&friction, 0, 1e6, false);
+        }
+        if (walls.item)
+            read_changes(&walls, d, &stage);
+        input->stages[input->stage_count++] = stage;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ output */
+
+static void read_name(const json_value *object, const char *key, char *out_text) {
+    const json_value name = json_member(object, key);
+    if (name.item)
+        json_text(&name, out_text, DEM_PATH_SIZE - 32);
+}
+
+void dem_read_output(const json_value *root, const dem *d, dem_output *out_output) {
+    static const char *const keys[] = {"every",         "csv",    "vtk",     "restart",
+                                       "restart_every", "region", "picture", "picture_region",
+                                       "picture_width", NULL};
+    const json_value output = json_member(root, "output");
+    *out_output = (dem_output){.every = UINT64_MAX, .restart_every = UINT64_MAX, .picture_width = 800};
+    if (!output.item)
+        return;
+    json_check_object(&output, keys);
+    const json_value every = json_require(&output, "every"), restart_every = json_member(&output, "restart_every");
+    const json_value region = json_member(&output, "region"), picture_region = json_member(&output, "picture_region");
+    out_output->every = read_steps(&every, d);
+    if (restart_every.item)
+        out_output->restart_every = read_steps(&restart_every, d);
+    if (region.item)
+        out_output->region = dem_read_region(&region);
+    if (picture_region.item)
+        out_output->picture_region = dem_read_region(&picture_region);
+    out_output->picture_width = json_number_or(&output, "picture_width", 16, 20000, 800);
+    read_name(&output, "csv", out_output->csv);
+    read_name(&output, "vtk", out_output->vtk);
+    read_name(&output, "picture", out_output->picture);
+    read_name(&output, "restart", out_output->restart);
+    if (restart_every.item && !out_output->restart[0])
+        json_fail(&restart_every, "is there without restart");
+    if (out_output->picture[0])
+        picture_kind_of(out_output->picture); /* ends the program if it is of no kind */
+}

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * laws.c - the forces of contacts.
+ *
+ * Of a contact with depth h > 0, normal n from A to B and tangent t, whose surfaces move with the relative velocity v of
+ * B against A at its point, the force on B is, with 1 / m = 1 / m_A + 1 / m_B,
+ *
+ *       normal        F_n =  K_n h - C_n v.n
+ *       tangential    F_t = -K_t s - C_t v.t,    ds/dt = v.t,    |F_t| <= friction |F_n|, s cut back to what bears it
+ *       rolling       M   = -K_r a,              da/dt = spin_B - spin_A,    |M| <= rolling friction R |F_n|
+ *
+ *   linear            K_n = kn            K_t = kt            C = gamma m
+ *   Hertz-Mindlin     K_n = kn sqrt(R h)  K_t = kt sqrt(R h)  C = gamma m sqrt(R h)
+ *   with restitution  C_n = ratio sqrt(K_n m), C_t a share of it
+ *
+ * These are the formulae of LAMMPS's gran/hooke/history and gran/hertz/history (Cundall and Strack 1979; Mindlin 1949;
+ * Brilliantov and others 1996). 1 / R = 1 / R_A + 1 / R_B: with the Hertz law the radii of curvature of the arcs that
+ * touch, within limits; with the linear law, which needs it for rolling only, half the extents. K_r = K_t R^2.
+ *
+ * The ratio that gives a restitution e. Linear: h'' + gamma h' + (kn / m) h = 0 from h = 0 to h = 0 has e = exp(-gamma T
+ * / 2) with T = pi / sqrt(kn / m - gamma^2 / 4), so gamma = 2 b sqrt(kn / m) with b = -ln e / sqrt(pi^2 + ln^2 e). Hertz:
+ * with C_n in proportion to h^(1/4) e does not depend on the speed (Tsuji and others 1992), and the ratio is
+ * sqrt(5) b (Antypov and Elliott 2011).
+ *
+ * Energies. Velocity Verlet changes the kinetic energy by (F before + F after) / 2 times the way, so that is how work
+ * is counted: a spring's is then the difference of its energies, and what is left of the tangential work is friction's.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "internal.h"
+
+double dem_damping_ratio(dem_law law, double restitution) {
+    const double pi = 3.14159265358979323846, logarithm = -log(restitution);
+    const double b = logarithm / sqrt(pi * pi + logarithm * logarithm);
+    return (law == DEM_HERTZ ? sqrt(5.0) : 2) * b;
+}
+
+void dem_set_law(dem *d, uint8_t a, uint8_t b, dem_contact_law law) {
+    if (d->settings.law == DEM_HERTZ) {
+        const dem_material *m = &d->materials[a], *n = &d->materials[b];
+        law.kn = 4.0 / 3 / ((1 - m->poisson * m->poisson) / m->young + (1 - n->poisson * n->poisson) / n->young);
+        law.kt = 8 / (2 * (2 - m->poisson) * (1 + m->poisson) / m->young +
+                      2 * (2 - n->poisson) * (1 + n->poisson) / n->young);
+    }
+    d->laws[a][b] = d->laws[b][a] = law;
+}
+
+/* A contact, for its law. The tangent is (-normal.y, normal.x). */
+typedef struct contact {
+    size_t a, b;
+    dem_vec normal;
+    dem_vec arm_a, arm_b; /* from both centres to the point */
+    double depth, mass, radius;
+    double vn, vt, turn; /* relative velocities: apart, along the tangent, rotation */
+} contact;
+
+/* Half of the harmonic sum: R. Walls (inverse mass 0) have no limits above and take the grain's below. */
+static double find_radius(const dem *d, const dem_bodies *b, size_t k, size_t i, size_t j) {
+    const double half_i = 0.5 * b->extent[i], half_j = b->inverse_mass[j] > 0 ? 0.5 * b->extent[j] : half_i;
+    if (d->settings.law == DEM_LINEAR)
+        return b->inverse_mass[j] > 0 ? half_i * half_j / (half_i + half_j) : half_i;
+    const double low = d->settings.least_radius, high = d->settings.largest_radius;
+    const double r_a = fmin(fmax((double)d->contacts.radius_a[k], low * half_i), high * half_i);
+    double r_b = fmax((double)d->contacts.radius_b[k], low * half_j);
+    if (b->inverse_mass[j] > 0)
+        r_b = fmin(r_b, high * half_j);
+    return isinf(r_b) ? r_a : r_a * r_b / (r_a + r_b);
+}
+
+static contact load_contact(const dem *d, size_t k) {
+    const dem_contacts *list = &d->contacts;
+    const dem_bodies *b = &d->bodies;
+    const size_t p = list->pair[k], i = d->pairs.a[p], j = d->pairs.b[p];
+    contact c = {.a = i, .b = j, .normal = {(double)list->normal_x[k], (double)list->normal_y[k]}};
+    c.depth = -(double)list->separation[k];
+    c.arm_a = (dem_vec){(double)list->point_x[k], (double)list->point_y[k]};
+    c.arm_b = (dem_vec){c.arm_a.x + (b->x[i] - b->x[j] - (double)d->pairs.shift_x[p]),
+                        c.arm_a.y + (b->y[i] - b->y[j] - (double)d->pairs.shift_y[p])};
+    c.mass = 1 / (b->inverse_mass[i] + b->inverse_mass[j]);
+    const double x = b->vx[j] - b->vx[i] - (b->spin[j] * c.arm_b.y - b->spin[i] * c.arm_a.y);
+    const double y = b->vy[j] - b->vy[i] + (b->spin[j] * c.arm_b.x - b->spin[i] * c.arm_a.x);
+    c.vn = x * c.normal.x + y * c.normal.y;
+    c.vt = y * c.normal.x - x * c.normal.y;
+    c.turn = b->spin[j] - b->spin[i];
+    return c;
+}
+
+/* Adds to a slider's spring what moved in the step, and cuts it back to what friction bears. Returns the force, without
+ * a sign; `bound` is the largest. What work is lost is damping's, or friction's in a step that slides. (Where the dashpot
+ * alone is more than friction bears, cutting back stretches the spring the other way: LAMMPS's rule. The energy that it
+ * gets so is taken from friction's account.) */
+static double slide(double *spring, double *spring_force, double stiffness, double damping, double way, double dt,
+                    double bound, dem_sums *sums) {
+    const double before = *spring, force_before = *spring_force, dashpot = damping * (way / dt);
+    double stretch = before + way, pull = stiffness * stretch, force = pull + dashpot;
+    const bool slides = fabs(force) > bound;
+    if (slides) {
+        force = force > 0 ? bound : -bound;
+        pull = force - dashpot;
+        stretch = stiffness > 0 ? pull / stiffness : 0;
+    }
+    const double lost = (0.5 * (force_before + pull) + dashpot) * way - 0.5 * (pull * stretch - force_before * before);
+    *spring = stretch;
+    *spring_force = pull;
+    sums->damping += slides ? 0 : lost;
+    sums->friction += slides ? lost : 0;
+    return force;
+}
+
+static void apply_rolling(dem *d, const contact *c, size_t k, double stiffness, double bound, bool is_old,
+                          dem_sums *sums) {
+    dem_rolling *rolling = &d->pairs.rolling[d->contacts.pair[k]];
+    if (!is_old)
+        *rolling = (dem_rolling){0, 0};
+    sums->old_springs += 0.5 * rolling->torque * rolling->angle;
+    const double torque = slide(&rolling->angle, &rolling->torque, stiffness, 0, c->turn * d->settings.time_step,
+                                d->settings.time_step, bound, sums);
+    sums->rolling_energy += 0.5 * rolling->torque * rolling->angle;
+    d->contacts.torque_b[k] -= torque;
+    d->contacts.torque_a[k] += torque;
+}
+
+static void apply_law(dem *d, size_t k, bool rolls, dem_sums *sums) {
+    const contact c = load_contact(d, k);
+    const dem_bodies *b = &d->bodies;
+    const size_t p = d->contacts.pair[k];
+    const double dt = d->settings.time_step;
+    const dem_contact_law *law = &d->laws[b->material[c.a]][b->material[c.b]];
+    const bool hertz = d->settings.law == DEM_HERTZ;
+    const double radius = hertz || rolls ? find_radius(d, b, k, c.a, c.b) : 0;
+    const double size = hertz ? sqrt(radius * c.depth) : 1;
+    const double kn = law->kn * size, kt = law->kt * size;
+    const bool by_ratio = law->damping_ratio >= 0;
+    const double cn = by_ratio ? law->damping_ratio * sqrt(kn * c.mass) : law->gamma_n * c.mass * size;
+    const double ct = by_ratio ? law->tangential_share * cn : law->gamma_t * c.mass * size;
+
+    dem_memory *memory = &d->pairs.memory[p];
+    const bool is_old = memory->step + 1 == d->step;
+    if (!is_old)
+        *memory = (dem_memory){.slide = 0};
+    memory->step = d->step;
+    d->scratch->slot[p] = (uint32_t)k;
+
+    const double dashpot = -cn * c.vn, push = kn * c.depth + dashpot;
+    sums->damping -= 0.5 * (memory->damping + dashpot) * c.vn * dt;
+    memory->damping = dashpot;
+    sums->normal_energy += (hertz ? 0.4 : 0.5) * kn * c.depth * c.depth;
+
+    sums->old_springs += 0.5 * memory->spring * memory->slide;
+    const double drag =
+        -slide(&memory->slide, &memory->spring, kt, ct, c.vt * dt, dt, law->friction * fabs(push), sums);
+    sums->tangential_energy += 0.5 * memory->spring * memory->slide;
+
+    const double fx = push * c.normal.x - drag * c.normal.y, fy = push * c.normal.y + drag * c.normal.x;
+    d->contacts.fx[k] = fx;
+    d->contacts.fy[k] = fy;
+    d->contacts.torque_a[k] = -(c.arm_a.x * fy - c.arm_a.y * fx);
+    d->contacts.torque_b[k] = c.arm_b.x * fy - c.arm_b.y * fx;
+    if (rolls)
+        apply_rolling(d, &c, k, kt * radius * radius, law->rolling_friction * radius * fabs(push), is_old, sums);
+
+    const double size_b = b->inverse_mass[c.b] > 0 ? b->extent[c.b] : b->extent[c.a];
+    if (!(c.depth <= d->settings.max_overlap * fmin(b->extent[c.a], size_b)) && sums->too_deep == SIZE_MAX)
+        sums->too_deep = k;
+}
+
+static bool fail_depth(dem *d, size_t k) {
+    const size_t p = d->contacts.pair[k], a = d->pairs.a[p], b = d->pairs.b[p];
+    const bool is_grain = b < d->grain_count;
+    return dem_fail(
+        d,
+        "step %llu: grain %zu overlaps %s %zu by %g, more than %g of the smaller one's extent. Use a shorter "
+        "time step, or stiffer contacts",
+        (unsigned long long)d->step, a, is_grain ? "grain" : "wall", is_grain ? b : b - d->grain_count,
+        -(double)d->contacts.separation[k], d->settings.max_overlap);
+}
+
+bool dem_apply_laws(dem *d) {
+    dem_scratch *s = d->scratch;
+    const size_t count = d->contacts.count, blocks = (count + DEM_BLOCK - 1) / DEM_BLOCK;
+    const bool rolls = dem_has_rolling(d);
+    const unsigned team = dem_team(d);
+    (void)team;
+    if (!dem_reserve(d, &s->sums, &s->sums_capacity, blocks, sizeof *s->sums))
+        return false;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
+#endif
+    for (size_t block = 0; block < blocks; block++) {
+        dem_sums sums = {.too_deep = SIZE_MAX};
+        const size_t end = block + 1 < blocks ? (block + 1) * DEM_BLOCK : count;
+        for (size_t k = block * DEM_BLOCK; k < end; k++)
+            apply_law(d, k, rolls, &sums);
+        s->sums[block] = sums;
+    }
+    dem_sums all = {.too_deep = SIZE_MAX};
+    for (size_t block = blocks; block-- > 0;) {
+        const dem_sums *sums = &s->sums[block];
+        all.normal_energy += sums->normal_energy;
+        all.tangential_energy += sums->tangential_energy;
+        all.rolling_energy += sums->rolling_energy;
+        all.old_springs += sums->old_springs;
+        all.damping += sums->damping;
+        all.friction += sums->friction;
+        all.too_deep = sums->too_deep < SIZE_MAX ? sums->too_deep : all.too_deep;
+    }
+    /* What springs held whose contact opened is lost to friction. */
+    all.friction += d->tangential_energy + d->rolling_energy - all.old_springs;
+    d->damping += all.damping;
+    d->friction += all.friction;
+    d->normal_energy = all.normal_energy;
+    d->tangential_energy = all.tangential_energy;
+    d->rolling_energy = all.rolling_energy;
+    return all.too_deep == SIZE_MAX || fail_depth(d, all.too_deep);
+}

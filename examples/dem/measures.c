@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * measures.c - energies, stress, counts. All of them are sums over bodies or contacts in their order, by one thread.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "internal.h"
+
+static dem_energies measure_energies(const dem *d, double *out_fastest) {
+    const dem_bodies *b = &d->bodies;
+    const dem_vec g = d->settings.gravity;
+    dem_energies e = {.elastic = d->normal_energy + d->tangential_energy + d->rolling_energy,
+                      .damping = d->damping,
+                      .friction = d->friction};
+    double fastest = 0;
+    for (size_t k = 0; k < d->grain_count; k++) {
+        const double speed = b->vx[k] * b->vx[k] + b->vy[k] * b->vy[k];
+        double x = b->x[k], y = b->y[k]; /* as if there were no border */
+        x += d->settings.periodic_x ? b->cell_x[k] * dem_cell_width(d) : 0;
+        y += d->settings.periodic_y ? b->cell_y[k] * dem_cell_height(d) : 0;
+        e.kinetic += 0.5 * (b->mass[k] * speed + b->inertia[k] * b->spin[k] * b->spin[k]);
+        e.potential -= b->mass[k] * (g.x * x + g.y * y);
+        fastest = fmax(fastest, speed);
+    }
+    for (size_t w = 0; w < d->wall_count; w++)
+        e.walls += d->walls[w].work;
+    *out_fastest = sqrt(fastest);
+    return e;
+}
+
+static bool is_inside(const dem *d, const dem_region *r, size_t contact, size_t a) {
+    const double x = d->bodies.x[a] + (double)d->contacts.point_x[contact];
+    const double y = d->bodies.y[a] + (double)d->contacts.point_y[contact];
+    return !r->given || (x >= r->low_x && x < r->high_x && y >= r->low_y && y < r->high_y);
+}
+
+/* The area that stresses refer to: the region's, else the periodic cell's, else that of the box around all grains'
+ * centres, a reach larger. */
+static double find_area(const dem *d, const dem_region *r) {
+    const dem_settings *s = &d->settings;
+    double low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
+    if (r->given)
+        return (r->high_x - r->low_x) * (r->high_y - r->low_y);
+    for (size_t k = 0; k < d->grain_count; k++) {
+        low_x = fmin(low_x, d->bodies.x[k] - d->bodies.reach[k]);
+        high_x = fmax(high_x, d->bodies.x[k] + d->bodies.reach[k]);
+        low_y = fmin(low_y, d->bodies.y[k] - d->bodies.reach[k]);
+        high_y = fmax(high_y, d->bodies.y[k] + d->bodies.reach[k]);
+    }
+    return (s->periodic_x ? dem_cell_width(d) : high_x - low_x) * (s->periodic_y ? dem_cell_height(d) : high_y - low_y);
+}
+
+void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measures) {
+    const dem_region all = {.given = false};
+    const dem_region *r = region ? region : &all;
+    const dem_contacts *c = &d->contacts;
+    const dem_bodies *b = &d->bodies;
+    dem_measures m = {.contacts = c->count};
+    m.energy = measure_energies(d, &m.fastest);
+    double ends = 0;
+    for (size_t k = 0; k < c->count; k++) {
+        const size_t p = c->pair[k], i = d->pairs.a[p], j = d->pairs.b[p];
+        const bool is_wall = j >= d->grain_count;
+        const double smaller = is_wall ? b->extent[i] : fmin(b->extent[i], b->extent[j]);
+        ends += is_wall ? 1 : 2;
+        m.deepest = fmax(m.deepest, -(double)c->separation[k] / smaller);
+        if (!is_inside(d, r, k, i))
+            continue;
+        /* From the centre of A to that of B; of a wall, to the contact. */
+        const double x = is_wall ? (double)c->point_x[k] : b->x[j] - b->x[i] + (double)d->pairs.shift_x[p];
+        const double y = is_wall ? (double)c->point_y[k] : b->y[j] - b->y[i] + (double)d->pairs.shift_y[p];
+        m.stress_xx += c->fx[k] * x;
+        m.stress_xy += c->fx[k] * y;
+        m.stress_yx += c->fy[k] * x;
+        m.stress_yy += c->fy[k] * y;
+    }
+    const double volume = find_area(d, r) * d->settings.thickness;
+    m.coordination = ends / (double)d->grain_count;
+    m.stress_xx /= volume;
+    m.stress_xy /= volume;
+    m.stress_yx /= volume;
+    m.stress_yy /= volume;
+    *out_measures = m;
+}
+
+/* FNV-1a, 64 bits, continued. */
+uint64_t dem_hash_bytes(uint64_t hash, const void *bytes, size_t size) {
+    const unsigned char *byte = bytes;
+    for (size_t i = 0; i < size; i++)
+        hash = (hash ^ byte[i]) * 0x100000001b3u;
+    return hash;
+}
+
+uint64_t dem_hash(const dem *d) {
+    uint64_t hash = DEM_HASH_START;
+    const void *column;
+    size_t size;
+    for (size_t i = 0; (column = dem_body_column(d, i, &size)) != NULL; i++)
+        hash = dem_hash_bytes(hash, column, d->bodies.count * size);
+    for (size_t k = 0; k < d->pairs.count; k++)
+        if (d->pairs.memory[k].step == d->step)
+            hash = dem_hash_bytes(hash, &d->pairs.memory[k], sizeof d->pairs.memory[k]);
+    const double sums[] = {d->time, d->damping, d->friction, d->normal_energy, d->tangential_energy, d->rolling_energy};
+    for (size_t w = 0; w < d->wall_count; w++)
+        hash = dem_hash_bytes(hash, &d->walls[w].work, sizeof d->walls[w].work);
+    hash = dem_hash_bytes(hash, &d->step, sizeof d->step);
+    return dem_hash_bytes(hash, sums, sizeof sums);
+}

@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * neighbours.c - which pairs may touch before the next list, and what the last list knew of them.
+ *
+ * Boxes are half the skin larger than bodies. Two bodies whose boxes are apart are at least the skin apart, so they
+ * cannot touch before one of them has moved half of it (step.c watches that, rotation included).
+ */
+#include <stdlib.h>
+
+#include "internal.h"
+
+static bool make_room_for_boxes(dem *d) {
+    dem_scratch *s = d->scratch;
+    const size_t count = d->bodies.count;
+    if (count > s->box_capacity) {
+        if (!dem_resize(d, &s->boxes, count, sizeof *s->boxes) || !dem_resize(d, &s->still, count, sizeof *s->still) ||
+            !dem_resize(d, &s->image_of, count, sizeof *s->image_of) ||
+            !dem_resize(d, &s->image_x, count, sizeof *s->image_x) ||
+            !dem_resize(d, &s->image_y, count, sizeof *s->image_y))
+            return false;
+        s->box_capacity = count;
+    }
+    for (size_t k = 0; k < count; k++)
+        s->still[k] = d->bodies.still[k];
+    return true;
+}
+
+static bool find_boxes(dem *d) {
+    const narc_bodies bodies = dem_view_bodies(d);
+    size_t skipped = 0;
+    const narc_box_options options = {.margin = (float)(0.5 * d->settings.skin), .out_skipped = &skipped};
+    narc_error error;
+    if (!make_room_for_boxes(d))
+        return false;
+    if (narc_compute_boxes(d->store, &bodies, &options, dem_team(d), d->scratch->boxes, &error) != NARC_OK)
+        return dem_fail_narc(d, "boxes", &error);
+    if (skipped > 0)
+        return dem_find_broken_body(d);
+    for (size_t w = 0; w < d->wall_count; w++) /* plates have pairs of their own */
+        if (d->walls[w].kind == DEM_PLATE)
+            d->scratch->boxes[d->grain_count + w] = (narc_box){1, 1, -1, -1};
+    return dem_add_images(d);
+}
+
+static bool find_pairs(dem *d) {
+    dem_scratch *s = d->scratch;
+    const narc_pair_filter filter = {.still = NARC_ARRAY(s->still)};
+    const size_t boxes = d->bodies.count + s->image_count;
+    narc_error error;
+    for (;;) {
+        const narc_status status = narc_find_pairs(d->broad, s->boxes, boxes, &filter, dem_team(d), s->found_a,
+                                                   s->found_b, s->found_capacity, &s->found_count, &error);
+        if (status == NARC_OK)
+            break;
+        if (status != NARC_ERROR_CAPACITY)
+            return dem_fail_narc(d, "pairs", &error);
+        const size_t capacity = s->found_count + s->found_count / 4 + 16;
+        if (!dem_resize(d, &s->found_a, capacity, sizeof *s->found_a) ||
+            !dem_resize(d, &s->found_b, capacity, sizeof *s->found_b))
+            return false;
+        s->found_capacity = capacity;
+    }
+    s->extra_count = 0;
+    return (s->image_count == 0 || dem_take_image_pairs(d)) && dem_add_plate_pairs(d);
+}
+
+static int compare(uint32_t a, uint32_t b, uint32_t other_a, uint32_t other_b) {
+    return a != other_a ? (a > other_a) - (a < other_a) : (b > other_b) - (b < other_b);
+}
+
+static int compare_extra(const void *left, const void *right) {
+    const dem_extra *l = left, *r = right;
+    return compare(l->a, l->b, r->a, r->b);
+}
+
+/* Merges found and extra pairs in the order of (a, b). */
+static bool merge_pairs(dem *d) {
+    dem_scratch *s = d->scratch;
+    dem_pairs *p = &d->pairs;
+    if (!dem_grow_pairs(d, p, s->found_count + s->extra_count))
+        return false;
+    if (s->extra_count > 0)
+        qsort(s->extra, s->extra_count, sizeof *s->extra, compare_extra);
+    size_t i = 0, j = 0;
+    for (p->count = 0; i < s->found_count || j < s->extra_count; p->count++) {
+        const dem_extra *extra = &s->extra[j];
+        const bool is_found = j == s->extra_count ||
+                              (i < s->found_count && compare(s->found_a[i], s->found_b[i], extra->a, extra->b) < 0);
+        p->a[p->count] = is_found ? s->found_a[i] : extra->a;
+        p->b[p->count] = is_found ? s->found_b[i] : extra->b;
+        p->shift_x[p->count] = is_found ? 0 : extra->shift_x;
+        p->shift_y[p->count] = is_found ? 0 : extra->shift_y;
+        i += is_found;
+        j += !is_found;
+    }
+    return true;
+}
+
+/* Hints and histories of the pairs that were in the last list; zeros for the others. */
+static bool carry_over(dem *d) {
+    dem_pairs *p = &d->pairs, *last = &d->last_pairs;
+    dem_scratch *s = d->scratch;
+    const narc_pairs now = {.count = p->count, .a = NARC_ARRAY(p->a), .b = NARC_ARRAY(p->b)};
+    const narc_pairs before = {.count = last->count, .a = NARC_ARRAY(last->a), .b = NARC_ARRAY(last->b)};
+    narc_error error;
+    if (!dem_resize(d, &s->match, p->capacity, sizeof *s->match))
+        return false;
+    if (narc_match_pairs(d->broad, &before, &now, dem_team(d), s->match, &error) != NARC_OK)
+        return dem_fail_narc(d, "pairs", &error);
+    narc_gather(s->match, p->count, sizeof *p->hints, last->hints, p->hints);
+    narc_gather(s->match, p->count, sizeof *p->memory, last->memory, p->memory);
+    narc_gather(s->match, p->count, sizeof *p->rolling, last->rolling, p->rolling);
+    return true;
+}
+
+/* Which pairs a body has. */
+bool dem_index_pairs(dem *d) {
+    const dem_pairs *p = &d->pairs;
+    dem_incidence *n = &d->incidence;
+    const size_t bodies = d->bodies.count;
+    if (!dem_resize(d, &n->first_a, bodies + 1, sizeof *n->first_a) ||
+        !dem_resize(d, &n->first_b, bodies + 2, sizeof *n->first_b) ||
+        !dem_reserve(d, &n->of_b, &n->capacity, p->count, sizeof *n->of_b) ||
+        !dem_resize(d, &d->scratch->slot, p->capacity + 1, sizeof *d->scratch->slot))
+        return false;
+    for (size_t k = 0, next = 0; k <= bodies; k++) {
+        while (next < p->count && p->a[next] < k)
+            next++;
+        n->first_a[k] = (uint32_t)next;
+    }
+    for (size_t k = 0; k < bodies + 2; k++)
+        n->first_b[k] = 0;
+    for (size_t k = 0; k < p->count; k++)
+        n->first_b[p->b[k] + 2]++;
+    for (size_t k = 2; k < bodies + 2; k++)
+        n->first_b[k] += n->first_b[k - 1];
+    for (size_t k = 0; k < p->count; k++) /* moves each beginning to the next body's */
+        n->of_b[n->first_b[p->b[k] + 1]++] = (uint32_t)k;
+    for (size_t k = 0; k < p->count; k++)
+        d->scratch->slot[k] = 0;
+    return true;
+}
+
+/* From where bodies move. */
+static void remember_places(dem *d) {
+    dem_bodies *b = &d->bodies;
+    for (size_t k = 0; k < b->count; k++) {
+        b->list_x[k] = b->x[k];
+        b->list_y[k] = b->y[k];
+        b->list_cosine[k] = b->cosine[k];
+        b->list_sine[k] = b->sine[k];
+    }
+}
+
+bool dem_renew_lists(dem *d) {
+    const dem_pairs last = d->pairs;
+    dem_wrap_bodies(d);
+    if (!find_boxes(d) || !find_pairs(d))
+        return false;
+    d->pairs = d->last_pairs;
+    d->last_pairs = last;
+    if (!merge_pairs(d) || !carry_over(d) || !dem_index_pairs(d))
+        return false;
+    remember_places(d);
+    d->list_builds++;
+    return true;
+}

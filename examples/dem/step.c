@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * step.c - a step of velocity Verlet: half of the velocity's change, the way, the forces at its end, the other half.
+ *
+ * The forces see the velocity in the middle of the step, and the place at its end. So springs are of second order in
+ * the time step, dashpots of first.
+ *
+ * A rotation is a unit vector, and turns within a step by 2 atan(spin dt / 2), which is spin dt to the third order and
+ * needs no sine. What rounding takes from its length is given back each time.
+ */
+#include <math.h>
+
+#include <narc_methods.h>
+
+#include "internal.h"
+#include "progress.h"
+
+/* ------------------------------------------------------------------------------------------------ motion */
+
+static void kick(dem *d) {
+    const dem_bodies b = d->bodies;
+    const double half = 0.5 * d->settings.time_step, gx = d->settings.gravity.x, gy = d->settings.gravity.y;
+    const size_t count = d->grain_count;
+    const unsigned team = dem_team(d);
+    (void)team;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
+#endif
+    for (size_t k = 0; k < count; k++) {
+        b.vx[k] += half * (b.fx[k] * b.inverse_mass[k] + gx);
+        b.vy[k] += half * (b.fy[k] * b.inverse_mass[k] + gy);
+        b.spin[k] += half * (b.torque[k] * b.inverse_inertia[k]);
+    }
+}
+
+static void drift(dem *d) {
+    const dem_bodies b = d->bodies;
+    const double dt = d->settings.time_step;
+    const size_t count = d->grain_count;
+    const unsigned team = dem_team(d);
+    (void)team;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
+#endif
+    for (size_t k = 0; k < count; k++) {
+        b.x[k] += dt * b.vx[k];
+        b.y[k] += dt * b.vy[k];
+        const double half = 0.5 * dt * b.spin[k], share = 1 / (1 + half * half);
+        const double cosine = (1 - half * half) * share, sine = 2 * half * share;
+        const double c = b.cosine[k] * cosine - b.sine[k] * sine, s = b.sine[k] * cosine + b.cosine[k] * sine;
+        const double unit = 1.5 - 0.5 * (c * c + s * s);
+        b.cosine[k] = c * unit;
+        b.sine[k] = s * unit;
+        b.narc_cosine[k] = (float)(c * unit);
+        b.narc_sine[k] = (float)(s * unit);
+    }
+}
+
+/* Has a point of any body moved half of the skin since the pairs were found? A turn moves it by at most the body's reach
+ * times the chord between both rotations. A NaN has moved. */
+static bool have_moved(const dem *d) {
+    const dem_bodies b = d->bodies;
+    const double limit = 0.5 * d->settings.skin;
+    const size_t count = b.count;
+    const unsigned team = dem_team(d);
+    (void)team;
+    int moved = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) num_threads(team) if (team > 1) reduction(| : moved)
+#endif
+    for (size_t k = 0; k < count; k++) {
+        const double x = b.x[k] - b.list_x[k], y = b.y[k] - b.list_y[k];
+        const double c = b.cosine[k] - b.list_cosine[k], s = b.sine[k] - b.list_sine[k];
+        moved |= !(sqrt(x * x + y * y) + b.reach[k] * sqrt(c * c + s * s) <= limit);
+    }
+    return moved != 0;
+}
+
+/* ------------------------------------------------------------------------------------------------ contacts */
+
+static bool make_room_for_contacts(dem *d) {
+    dem_contacts *c = &d->contacts;
+    const size_t count = d->pairs.capacity;
+    if (count <= c->capacity)
+        return true;
+    float **const floats[] = {&c->separation, &c->normal_x, &c->normal_y, &c->point_x,
+                              &c->point_y,    &c->radius_a, &c->radius_b};
+    double **const doubles[] = {&c->fx, &c->fy, &c->torque_a, &c->torque_b};
+    for (size_t i = 0; i < sizeof floats / sizeof floats[0]; i++)
+        if (!dem_resize(d, floats[i], count, sizeof(float)))
+            return false;
+    for (size_t i = 0; i < sizeof doubles / sizeof doubles[0]; i++)
+        if (!dem_resize(d, doubles[i], count, sizeof(double)))
+            return false;
+    if (!dem_resize(d, &c->pair, count, sizeof *c->pair) || !dem_resize(d, &c->arc_a, count, sizeof *c->arc_a) ||
+        !dem_resize(d, &c->arc_b, count, sizeof *c->arc_b))
+        return false;
+    c->capacity = count;
+    return true;
+}
+
+static narc_status query_contacts(dem *d, const narc_bodies *bodies, const narc_pairs *pairs, size_t *skipped,
+                                  narc_error *error) {
+    dem_contacts *c = &d->contacts;
+    const narc_query query = {.hints = d->pairs.hints, .out_skipped = skipped};
+    const narc_contacts list = {.capacity = c->capacity,
+                                .pair = c->pair,
+                                .separation = c->separation,
+                                .normal_x = c->normal_x,
+                                .normal_y = c->normal_y,
+                                .point_x = c->point_x,
+                                .point_y = c->point_y,
+                                .arc_a = c->arc_a,
+                                .arc_b = c->arc_b};
+    return narc_query_contacts(d->store, bodies, pairs, &query, 0, dem_team(d), &list, &c->count, error);
+}
+
+/* The same with radii of curvature: manifolds that are told never to have a second point. */
+static narc_status query_radii(dem *d, const narc_bodies *bodies, const narc_pairs *pairs, size_t *skipped,
+                               narc_error *error) {
+    dem_contacts *c = &d->contacts;
+    const narc_manifold_options options = {.flat_angle = -1, .hints = d->pairs.hints, .out_skipped = skipped};
+    const narc_manifolds list = {.capacity = c->capacity,
+                                 .pair = c->pair,
+                                 .normal_x = c->normal_x,
+                                 .normal_y = c->normal_y,
+                                 .separation = {c->separation},
+                                 .point_x = {c->point_x},
+                                 .point_y = {c->point_y},
+                                 .radius_a = {c->radius_a},
+                                 .radius_b = {c->radius_b}};
+    return narc_find_manifolds(d->store, bodies, pairs, &options, dem_team(d), &list, &c->count, error);
+}
+
+static bool find_contacts(dem *d) {
+    const dem_pairs *p = &d->pairs;
+    const narc_bodies bodies = dem_view_bodies(d);
+    narc_pairs pairs = {.count = p->count, .a = NARC_ARRAY(p->a), .b = NARC_ARRAY(p->b)};
+    if (d->scratch->extra_count > 0) {
+        pairs.shift_x = NARC_ARRAY(p->shift_x);
+        pairs.shift_y = NARC_ARRAY(p->shift_y);
+    }
+    size_t skipped = 0;
+    narc_error error;
+    if (!make_room_for_contacts(d))
+        return false;
+    const narc_status status =
+        (d->settings.law == DEM_HERTZ ? query_radii : query_contacts)(d, &bodies, &pairs, &skipped, &error);
+    if (status != NARC_OK)
+        return dem_fail_narc(d, "contacts", &error);
+    return skipped == 0 || dem_find_broken_body(d);
+}
+
+/* ------------------------------------------------------------------------------------------------ the step */
+
+bool dem_step(dem *d) {
+    const bool timed = d->clock.on;
+    const double start = timed ? seconds_now() : 0;
+    d->step++;
+    d->time += d->settings.time_step;
+    dem_steer_walls(d);
+    kick(d);
+    drift(d);
+    dem_move_walls(d);
+    const bool renew = have_moved(d);
+    const double moved = timed ? seconds_now() : 0;
+    if (renew && !dem_renew_lists(d))
+        return false;
+    const double listed = timed ? seconds_now() : 0;
+    if (!find_contacts(d))
+        return false;
+    const double found = timed ? seconds_now() : 0;
+    dem_count_wall_work(d);
+    if (!dem_apply_laws(d))
+        return false;
+    dem_gather_forces(d);
+    dem_count_wall_work(d);
+    dem_count_wall_contacts(d);
+    const double pushed = timed ? seconds_now() : 0;
+    kick(d);
+    if (timed) {
+        d->clock.motion += moved - start + (seconds_now() - pushed);
+        d->clock.lists += listed - moved;
+        d->clock.narrow += found - listed;
+        d->clock.forces += pushed - found;
+    }
+    return true;
+}

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * walls.c - walls move as they are told, or so that the grains press against them with a given force.
+ *
+ * A plate is a half plane. Its body is a block whose upper side is the plate. A pair of a grain and the plate has a shift
+ * along the plate that brings the block under the grain: so the plate has no ends, and narc sees two bodies of similar
+ * size, whose separation is precise.
+ */
+#include <math.h>
+
+#include "internal.h"
+
+dem_vec dem_wall_force(const dem *d, size_t wall) {
+    const size_t k = d->grain_count + wall;
+    return (dem_vec){d->bodies.fx[k], d->bodies.fy[k]};
+}
+
+/* ------------------------------------------------------------------------------------------------ servo control */
+
+/* How far two walls are from each other, along the normal of a plate, else between their centres. */
+static double find_distance(const dem *d, int first, int second) {
+    const size_t i = d->grain_count + (size_t)first, j = d->grain_count + (size_t)second;
+    const dem_wall *a = &d->walls[first], *b = &d->walls[second];
+    dem_vec between = {d->bodies.x[j] - d->bodies.x[i], d->bodies.y[j] - d->bodies.y[i]};
+    if (a->kind != DEM_PLATE || b->kind != DEM_PLATE)
+        return sqrt(between.x * between.x + between.y * between.y);
+    const double half = 0.5 * d->shapes[a->shape].extent * 0.88622692545275801; /* sqrt(pi) / 2: of a square */
+    between.x += half * (b->normal.x - a->normal.x);
+    between.y += half * (b->normal.y - a->normal.y);
+    return fabs(between.x * a->normal.x + between.y * a->normal.y);
+}
+
+void dem_count_wall_contacts(dem *d) {
+    bool any = false;
+    for (size_t w = 0; w < d->wall_count; w++) {
+        any |= d->walls[w].servo.on;
+        d->walls[w].contact_count = 0;
+    }
+    for (size_t k = 0; any && k < d->contacts.count; k++) {
+        const size_t b = d->pairs.b[d->contacts.pair[k]];
+        if (b >= d->grain_count)
+            d->walls[b - d->grain_count].contact_count++;
+    }
+}
+
+/* The stiffness of a wall's contacts: how much its force changes with its place. */
+static double find_stiffness(const dem *d, const dem_wall *wall) {
+    double stiffest = 0;
+    for (size_t m = 0; m < d->material_count; m++)
+        stiffest = fmax(stiffest, d->laws[m][wall->material].kn);
+    if (d->settings.law == DEM_HERTZ) /* as deep as a hundredth of a grain */
+        stiffest *= 0.05 * d->grain_extent;
+    return stiffest * (double)(wall->contact_count > 1 ? wall->contact_count : 1);
+}
+
+/* The speed that would remove the share `gain` of the error within a step, if all contacts were springs. */
+void dem_steer_walls(dem *d) {
+    for (size_t w = 0; w < d->wall_count; w++) {
+        dem_wall *wall = &d->walls[w];
+        const dem_servo *servo = &wall->servo;
+        if (!servo->on)
+            continue;
+        const dem_vec force = dem_wall_force(d, w);
+        const double target = servo->between[0] >= 0 ? servo->stress * d->settings.thickness *
+                                                           find_distance(d, servo->between[0], servo->between[1])
+                                                     : servo->force;
+        const double pressing = -(force.x * servo->direction.x + force.y * servo->direction.y);
+        double speed = servo->gain * (target - pressing) / (find_stiffness(d, wall) * d->settings.time_step);
+        speed = fmin(fmax(speed, -servo->max_speed), servo->max_speed);
+        wall->velocity = (dem_vec){speed * servo->direction.x, speed * servo->direction.y};
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ motion */
+
+/* A plate moves across itself only: along itself its place means nothing, and its velocity is seen by friction. */
+static void move_plate(dem_wall *wall, dem_bodies *b, size_t k, double dt) {
+    const double across = dt * (wall->velocity.x * wall->normal.x + wall->velocity.y * wall->normal.y);
+    b->x[k] += across * wall->normal.x;
+    b->y[k] += across * wall->normal.y;
+    b->vx[k] = wall->velocity.x;
+    b->vy[k] = wall->velocity.y;
+}
+
+/* A rotation by 2 atan(spin dt / 2): see step.c. */
+static void move_box(dem_wall *wall, dem_bodies *b, size_t k, double dt) {
+    b->vx[k] = wall->velocity.x;
+    b->vy[k] = wall->velocity.y;
+    b->spin[k] = wall->spin;
+    wall->pivot.x += dt * wall->velocity.x;
+    wall->pivot.y += dt * wall->velocity.y;
+    b->x[k] += dt * wall->velocity.x;
+    b->y[k] += dt * wall->velocity.y;
+    if (wall->spin == 0)
+        return;
+    const double half = 0.5 * dt * wall->spin, share = 1 / (1 + half * half);
+    const double cosine = (1 - half * half) * share, sine = 2 * half * share;
+    const double arm_x = b->x[k] - wall->pivot.x, arm_y = b->y[k] - wall->pivot.y;
+    const double new_x = cosine * arm_x - sine * arm_y, new_y = sine * arm_x + cosine * arm_y;
+    const double c = b->cosine[k] * cosine - b->sine[k] * sine, s = b->sine[k] * cosine + b->cosine[k] * sine;
+    const double unit = 1.5 - 0.5 * (c * c + s * s);
+    b->x[k] = wall->pivot.x + new_x;
+    b->y[k] = wall->pivot.y + new_y;
+    b->cosine[k] = c * unit;
+    b->sine[k] = s * unit;
+    b->narc_cosine[k] = (float)b->cosine[k];
+    b->narc_sine[k] = (float)b->sine[k];
+    b->vx[k] -= wall->spin * new_y;
+    b->vy[k] += wall->spin * new_x;
+}
+
+void dem_move_walls(dem *d) {
+    for (size_t w = 0; w < d->wall_count; w++) {
+        const size_t k = d->grain_count + w;
+        if (d->walls[w].kind == DEM_PLATE)
+            move_plate(&d->walls[w], &d->bodies, k, d->settings.time_step);
+        else
+            move_box(&d->walls[w], &d->bodies, k, d->settings.time_step);
+    }
+}
+
+/* Half of a step's work, with the forces as they are now: called before and after they change. */
+void dem_count_wall_work(dem *d) {
+    const dem_bodies *b = &d->bodies;
+    for (size_t w = 0; w < d->wall_count; w++) {
+        const size_t k = d->grain_count + w;
+        d->walls[w].work -=
+            0.5 * d->settings.time_step * (b->fx[k] * b->vx[k] + b->fy[k] * b->vy[k] + b->torque[k] * b->spin[k]);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ pairs */
+
+/* Every grain that is closer to the plate than the skin. (A box pair would be found a little further.) */
+static bool add_pairs_of_plate(dem *d, uint32_t body, const dem_wall *plate) {
+    dem_scratch *s = d->scratch;
+    const dem_bodies *b = &d->bodies;
+    const double half = 0.5 * d->shapes[plate->shape].extent * 0.88622692545275801;
+    for (size_t k = 0; k < d->grain_count; k++) {
+        const double x = b->x[k] - b->x[body], y = b->y[k] - b->y[body];
+        const double height = x * plate->normal.x + y * plate->normal.y - half;
+        if (height - b->reach[k] > d->settings.skin * 1.001)
+            continue;
+        if (!dem_reserve(d, &s->extra, &s->extra_capacity, s->extra_count + 1, sizeof *s->extra))
+            return false;
+        const double along = plate->normal.x * y - plate->normal.y * x; /* the tangent is (-ny, nx) */
+        s->extra[s->extra_count++] =
+            (dem_extra){(uint32_t)k, body, (float)(-plate->normal.y * along), (float)(plate->normal.x * along)};
+    }
+    return true;
+}
+
+/* A plate of a periodic cell must run along the border, or it would end there. */
+static bool check_plate(dem *d, const dem_wall *plate) {
+    const double x = fabs(plate->normal.x), y = fabs(plate->normal.y);
+    if ((d->settings.periodic_x && x > 1e-12) || (d->settings.periodic_y && y > 1e-12))
+        return dem_fail(d, "wall '%s': a plate with normal %g, %g crosses a periodic border", plate->name,
+                        plate->normal.x, plate->normal.y);
+    return true;
+}
+
+bool dem_add_plate_pairs(dem *d) {
+    for (size_t w = 0; w < d->wall_count; w++)
+        if (d->walls[w].kind == DEM_PLATE &&
+            (!check_plate(d, &d->walls[w]) || !add_pairs_of_plate(d, (uint32_t)(d->grain_count + w), &d->walls[w])))
+            return false;
+    return true;
+}
