@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * dem_restart.c - a run that goes on from a file has the bits of one that was not interrupted; damaged files are told.
+ */
+#define _XOPEN_SOURCE 700
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "dem_worlds.h"
+
+static char path[] = "/tmp/narc-dem-XXXXXX";
+
+static int make_file(void **state) {
+    (void)state;
+    const int descriptor = mkstemp(path);
+    return descriptor < 0 ? -1 : close(descriptor);
+}
+
+static int remove_file(void **state) {
+    (void)state;
+    return unlink(path);
+}
+
+/* Borders, history, rolling friction, walls that move, turn and are controlled: all of it goes on. */
+static void test_bit_for_bit(void **state) {
+    (void)state;
+    char error[512];
+    dem d = make_busy_world(1), again = make_busy_world(2);
+    const dem_place place = {.input = 5, .stage = 1, .stage_step = 17, .csv_position = 99, .frame = 3, .random = 4};
+    dem_place found = {.input = 5};
+    start(&d);
+    start(&again);
+    step(&d, 1000);
+    assert_true(dem_write_restart(&d, &place, path, error));
+    assert_true(dem_read_restart(&again, &found, path));
+    assert_memory_equal(&place, &found, sizeof place);
+    assert_true(dem_hash(&d) == dem_hash(&again));
+    for (int i = 0; i < 10; i++) {
+        step(&d, 100);
+        step(&again, 100);
+        assert_true(dem_hash(&d) == dem_hash(&again));
+    }
+    assert_true(d.list_builds > 10 && d.walls[0].work != 0 && d.rolling_energy > 0);
+    assert_true(d.list_builds == again.list_builds);
+    dem_destroy(&d);
+    dem_destroy(&again);
+}
+
+static char *read_file(size_t *out_size) {
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, 0, SEEK_END), 0);
+    *out_size = (size_t)ftell(file);
+    rewind(file);
+    char *bytes = malloc(*out_size);
+    assert_non_null(bytes);
+    assert_int_equal(fread(bytes, 1, *out_size, file), *out_size);
+    fclose(file);
+    return bytes;
+}
+
+static void write_file(const char *bytes, size_t size) {
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    fclose(file);
+}
+
+static void expect_refusal(const char *message, uint64_t input) {
+    dem d = make_busy_world(1);
+    dem_place place = {.input = input};
+    start(&d);
+    const uint64_t before = dem_hash(&d);
+    assert_false(dem_read_restart(&d, &place, path));
+    if (!strstr(d.error, message) || !strstr(d.error, path))
+        fail_msg("'%s' instead of '%s'", d.error, message);
+    assert_true(dem_hash(&d) == before);
+    dem_destroy(&d);
+}
+
+static void test_damage(void **state) {
+    (void)state;
+    static const struct {
+        size_t offset;
+        const char *message;
+    } flips[] = {{0, "not a restart file"}, {7, "not a restart file"}, {8, "its version is"},
+                 {12, "order of bytes"},    {16, "and should have"},   {24, "damaged"},
+                 {32, "another input"},     {40, "damaged"},           {5000, "damaged"}};
+    char error[512];
+    dem d = make_busy_world(1);
+    size_t size;
+    start(&d);
+    step(&d, 10);
+    assert_true(dem_write_restart(&d, &(dem_place){.input = 5}, path, error));
+    char *bytes = read_file(&size);
+    for (size_t i = 0; i < sizeof flips / sizeof flips[0]; i++) {
+        bytes[flips[i].offset] ^= 1;
+        write_file(bytes, size);
+        bytes[flips[i].offset] ^= 1;
+        expect_refusal(flips[i].message, 5);
+    }
+    static const size_t sizes[] = {0, 1, 39};
+    for (size_t i = 0; i < 3; i++) {
+        write_file(bytes, sizes[i]);
+        expect_refusal("not a restart file", 5);
+    }
+    write_file(bytes, size - 1);
+    expect_refusal("and should have", 5);
+    write_file(bytes, size);
+    expect_refusal("another input", 6);
+    free(bytes);
+    dem_destroy(&d);
+}
+
+/* A file that cannot be written leaves the old one. */
+static void test_no_place_to_write(void **state) {
+    (void)state;
+    char error[512] = "";
+    dem d = make_busy_world(1);
+    start(&d);
+    assert_false(dem_write_restart(&d, &(dem_place){.input = 1}, "/nonexistent/folder/file", error));
+    assert_non_null(strstr(error, "/nonexistent/folder/file: "));
+    dem_destroy(&d);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_bit_for_bit), cmocka_unit_test(test_damage),
+                                       cmocka_unit_test(test_no_place_to_write)};
+    if (!test_begin())
+        return TEST_SKIPPED;
+    return cmocka_run_group_tests_name("dem_restart", tests, make_file, remove_file);
+}
