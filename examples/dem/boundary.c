@@ -14,9 +14,11 @@
 
 #include "internal.h"
 
-/* Where a coordinate is in [low, low + width): by steps of whole widths. */
+/* Where a coordinate is in [low, low + width): by steps of whole widths. What is lost stays so. */
 static double wrap(double value, double low, double width, int32_t *cell) {
     const double turns = floor((value - low) / width);
+    if (!(fabs(turns) < 1e9))
+        return INFINITY;
     *cell += (int32_t)turns;
     return value - turns * width;
 }
@@ -29,7 +31,7 @@ void dem_wrap_bodies(dem *d) {
     for (size_t k = 0; k < b->count; k++) {
         const double old_x = b->x[k], old_y = b->y[k];
         dem_wall *wall = k < d->grain_count ? NULL : &d->walls[k - d->grain_count];
-        if ((wall && wall->kind == DEM_PLATE) || !isfinite(old_x) || !isfinite(old_y))
+        if ((wall && wall->kind == DEM_PLATE))
             continue;
         if (s->periodic_x)
             b->x[k] = wrap(old_x, s->low_x, dem_cell_width(d), &b->cell_x[k]);

@@ -350,12 +350,13 @@ narc_bodies dem_view_bodies(const dem *d) {
 
 bool dem_find_broken_body(dem *d) {
     const narc_bodies bodies = dem_view_bodies(d);
-    narc_error error = {.message = "a body is too far away"};
-    narc_validate_bodies(d->store, &bodies, &error);
+    narc_error error = {.message = "its place is out of range"};
+    if (narc_validate_bodies(d->store, &bodies, &error) == NARC_OK)
+        while (error.index + 1 < d->bodies.count &&
+               fabs(d->bodies.x[error.index]) + fabs(d->bodies.y[error.index]) < NARC_MAX_DISTANCE)
+            error.index++;
     const bool is_grain = error.index < d->grain_count;
-    return dem_fail(d,
-                    "step %llu: %s %zu has no position any more (%s): forces became too large. Use a shorter time "
-                    "step",
+    return dem_fail(d, "step %llu: %s %zu is lost (%s): forces became too large. Use a shorter time step",
                     (unsigned long long)d->step, is_grain ? "grain" : "wall",
                     is_grain ? error.index : error.index - d->grain_count, error.message);
 }

@@ -21,8 +21,8 @@ static dem collide_at(double x, double y, bool periodic, double drift_x, double 
     law.damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.7);
     law.rolling_friction = 0.1;
     dem d = make_world(settings, law);
-    add_grain(&d, ARCS, x - 1.35, y - 0.3, 3 + drift_x, 1 + drift_y);
-    add_grain(&d, OCTAGON, x + 1.15, y + 0.2, -2 + drift_x, drift_y);
+    add_grain(&d, ARCS, x - 1.25, y - 0.3, 3 + drift_x, 1 + drift_y);
+    add_grain(&d, OCTAGON, x + 0.95, y + 0.2, -2 + drift_x, drift_y);
     start(&d);
     return d;
 }
@@ -41,9 +41,9 @@ static void check_same(const dem *d, const dem *reference) {
 
 static void test_collision_across_borders(void **state) {
     (void)state;
-    static const double places[][4] = {{8, 8, 0, 0},    {0, 8, 0, 0},    {16, 8, 0, 0},
-                                       {8, 0, 0, 0},    {16, 16, 0, 0},  {8, 16, 0, 40},
-                                       {15, 8, 100, 0}, {1, 8, -100, 0}, {15, 1, 90, -90}};
+    static const double places[][4] = {{8, 8, 0, 0},       {0, 8, 0, 0},      {16, 8, 0, 0},
+                                       {8, 0, 0, 0},       {16, 16, 0, 0},    {8, 15.65, 0, 40},
+                                       {15.65, 8, 100, 0}, {2.8, 8, -100, 0}, {15.76, 1.72, 90, -90}};
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
         const double *p = places[i];
         dem d = collide_at(p[0], p[1], true, p[2], p[3]), reference = collide_at(p[0], p[1], false, p[2], p[3]);

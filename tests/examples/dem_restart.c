@@ -32,7 +32,7 @@ static void test_bit_for_bit(void **state) {
     dem_place found = {.input = 5};
     start(&d);
     start(&again);
-    step(&d, 1000);
+    step(&d, 3000);
     assert_true(dem_write_restart(&d, &place, path, error));
     assert_true(dem_read_restart(&again, &found, path));
     assert_memory_equal(&place, &found, sizeof place);

@@ -72,11 +72,12 @@ void add_plate(dem *d, const char *name, double x, double y, double normal_x, do
 dem make_busy_world(unsigned threads) {
     dem_settings settings = plain_settings();
     dem_contact_law law = plain_law();
-    settings.gravity = (dem_vec){1, -10};
+    settings.gravity = (dem_vec){1, -40};
     settings.periodic_x = true;
     settings.high_x = 24;
     settings.threads = threads;
-    settings.time_step = 2e-4;
+    law.kn = 1e6;
+    law.kt = 3e5;
     law.damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.6);
     law.friction = 0.5;
     law.rolling_friction = 0.05;
@@ -93,7 +94,7 @@ dem make_busy_world(unsigned threads) {
                                           .spin = 2,
                                           .servo = {.between = {-1, -1}}}));
     d.walls[0].servo =
-        (dem_servo){.on = true, .direction = {0, 1}, .stress = 20, .between = {0, 1}, .gain = 0.1, .max_speed = 2};
+        (dem_servo){.on = true, .direction = {0, 1}, .stress = 100, .between = {0, 1}, .gain = 0.1, .max_speed = 2};
     const dem_filling filling = {.count = 120,
                                  .region = {true, 0, 24, 1.2, 21.3},
                                  .shapes = {DISC, ROUND, OCTAGON, ARCS},

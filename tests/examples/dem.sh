@@ -1,0 +1,184 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# usage: sh dem.sh DEM: the discrete element program from outside: runs, restarts, signals, and inputs that are wrong.
+set -u
+dem=$1
+folder=$(mktemp -d) || exit 1
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+failures=0
+miss() {
+    echo "WRONG $1"
+    sed 's/^/      /' err.txt
+    failures=$((failures + 1))
+}
+
+cat >shapes.json <<'END'
+{"shapes": [{"name": "disc", "circle": 1}, {"name": "brick", "box": {"width": 2, "height": 1, "radius": 0.2}}]}
+END
+cat >good.json <<'END'
+{
+  "materials": [{"name": "sand", "density": 1000, "young": 1e7, "poisson": 0.3}, {"name": "steel", "density": 7800, "young": 1e9, "poisson": 0.3}],
+  "shapes": "shapes.json",
+  "grains": [
+    {"place": "random", "count": 20, "region": [0.2, 0.2, 3.8, 6], "shapes": ["disc", "brick"], "size": {"normal": [0.4, 0.1], "low": 0.3, "high": 0.5}, "material": "sand"},
+    {"place": "lattice", "region": [0, 7, 4, 9], "spacing": [1, 1], "jitter": 0.2, "shapes": ["disc"], "size": 0.4, "material": "sand", "upright": true},
+    {"place": "list", "grains": [{"shape": "brick", "material": "sand", "at": [2, 9.5], "size": 0.4, "velocity": [1, 0], "spin": 3}]}
+  ],
+  "walls": [
+    {"name": "floor", "material": "steel", "plate": {"point": [0, 0], "normal": [0, 1]}},
+    {"name": "block", "material": "steel", "box": {"width": 0.5, "height": 0.5, "radius": 0.1}, "at": [2, 0], "angle": 0.3, "spin": 1, "pivot": [2.1, 0]},
+    {"name": "lid", "material": "steel", "plate": {"point": [0, 12], "normal": [0, -1]}, "servo": {"direction": [0, -1], "stress": 100, "between": ["floor", "lid"], "max_speed": 1}}
+  ],
+  "boundary": {"x": [0, 4]},
+  "gravity": [0, -9.81],
+  "thickness": 0.5,
+  "contact": {"law": "linear", "kn": 1e7, "restitution": 0.5, "friction": 0.5, "rolling_friction": 0.01, "pairs": [{"materials": ["sand", "steel"], "friction": 0.2}]},
+  "time_step": 1e-4,
+  "skin": 0.1,
+  "stages": [
+    {"name": "fall", "duration": 0.1},
+    {"name": "shear", "duration": 0.1, "friction": 0.4, "gravity": [1, -9], "walls": {"floor": {"velocity": [0.5, 0]}, "block": {"spin": -1}}}
+  ],
+  "output": {"every": 0.02, "csv": "out.csv", "restart": "out.restart", "restart_every": 0.1, "region": [0, 1, 4, 3]}
+}
+END
+
+# ------------------------------------------------------------------------------------------- runs and restarts
+"$dem" --help | grep -q 'usage: example_dem INPUT.json' || miss "help"
+"$dem" good.json --threads 1 >whole.txt 2>err.txt || miss "a run"
+[ "$(wc -l <out.csv)" -eq 12 ] || miss "a line for each 0.02 s, the start and a title: $(wc -l <out.csv)"
+grep -q '^steps 2000, time 0.2' whole.txt || miss "a report"
+cp out.csv whole.csv
+# Cut short: the first stage alone, whose restart goes on with both.
+sed 's/^    {"name": "shear".*//; s/"duration": 0.1},/"duration": 0.1}/' good.json >first.json
+"$dem" first.json --threads 1 >/dev/null 2>err.txt || miss "the first stage"
+"$dem" good.json --restart out.restart --threads 1 >half.txt 2>err.txt || miss "a restart"
+[ "$(grep state half.txt)" = "$(grep state whole.txt)" ] || miss "a restart has other bits"
+cmp -s out.csv whole.csv || miss "a restart goes on with another table"
+NARC_ISA=scalar "$dem" good.json --threads 2 >scalar.txt 2>err.txt || miss "a run with scalar"
+[ "$(grep state scalar.txt)" = "$(grep state whole.txt)" ] || miss "scalar has other bits"
+sed 's/"law": "linear", "kn": 1e7/"law": "hertz"/' good.json >hertz.json
+"$dem" hertz.json --threads 1 >/dev/null 2>err.txt || miss "a run with the Hertz law"
+for place in "1 3" "2 5"; do # a signal at any time: the run goes on to the same end
+    sed 's/"duration": 0.1/"duration": 5/g' good.json >long.json
+    set -- $place
+    rm -f out.restart
+    if [ ! -f long.txt ]; then "$dem" long.json --threads 1 >long.txt 2>err.txt || miss "a long run"; rm -f out.restart; fi
+    "$dem" long.json --threads 1 >cut.txt 2>err.txt &
+    process=$!
+    sleep "0.$2"
+    name=INT
+    [ "$1" = 2 ] && name=TERM
+    kill -s $name $process
+    wait $process
+    status=$?
+    if [ $status -eq 0 ]; then echo "note: the run was over before the signal"; continue; fi
+    grep -q "^dem: signal .* at step [0-9]*: go on with --restart out.restart$" err.txt || miss "a signal says so"
+    case $1$status in 1130 | 2143) ;; *) miss "status $status after signal $name" ;; esac
+    "$dem" long.json --restart out.restart --threads 1 >cut.txt 2>err.txt || miss "going on after a signal"
+    [ "$(grep state cut.txt)" = "$(grep state long.txt)" ] || miss "other bits after a signal"
+done
+
+# ------------------------------------------------------------------------------------------- wrong inputs
+# fails NAME MESSAGE ARGUMENTS: status 2, one line that begins with the message (a basic regular expression).
+fails() {
+    what=$1 message=$2
+    shift 2
+    "$dem" "$@" >out.txt 2>err.txt
+    status=$?
+    [ $status -eq 2 ] && [ "$(wc -l <err.txt)" -eq 1 ] && grep -q "^$message" err.txt || miss "$what: status $status, expected $message"
+}
+# wrong SED MESSAGE: the good input, changed by a sed script.
+wrong() {
+    sed "$1" good.json >bad.json
+    cmp -s good.json bad.json && miss "the script changes nothing: $1"
+    fails "$1" "dem: bad.json: $2" bad.json --threads 1
+}
+fails "no file" "dem: none.json: " none.json
+fails "no input" "dem: INPUT is missing"
+fails "an option" "dem: unknown option '--fly'" good.json --fly
+fails "threads" "dem: --threads" good.json --threads 0
+fails "no restart" "dem: none: it cannot be read" good.json --restart none
+printf 'hello' >foreign
+fails "a foreign restart" "dem: foreign: it is not a restart file" good.json --restart foreign
+"$dem" good.json --threads 1 >/dev/null 2>&1
+sed 's/"density": 1000/"density": 1001/' good.json >bad.json
+fails "another input" "dem: out.restart: it belongs to another input" bad.json --restart out.restart
+head -c 1000 out.restart >short
+fails "a short restart" "dem: short: it has 1000 bytes" good.json --restart short
+printf '{"materials": [}' >bad.json
+fails "no JSON" "bad.json:1: " bad.json
+printf '[1]' >bad.json
+fails "no object" "dem: bad.json: is not an object '\[1\]'" bad.json
+
+wrong 's/"skin": 0.1/"skn": 0.1/' "skn: is an unknown key"
+wrong 's/"skin": 0.1/"skin": 0.1, "skin": 2/' "skin: is there twice"
+wrong '/"skin"/d' "skin: is missing"
+wrong 's/"skin": 0.1/"skin": 0/' "skin: is not above 0 '0'"
+wrong 's/"skin": 0.1/"skin": "x"/' "skin: is not a number '\"x\"'"
+wrong 's/"skin": 0.1/"skin": 1e999/' "skin: is not finite"
+wrong 's/"time_step": 1e-4/"time_step": -1/' "time_step: is not above 0 '-1'"
+wrong 's/"time_step": 1e-4/"time_step": null/' "time_step: is not a number 'null'"
+wrong 's/-9.81\]/-9.81, 0]/' "gravity: is not a list of 2 numbers"
+wrong 's/"gravity": \[0, -9.81/"gravity": [0, "a"/' "gravity\[1\]: is not a number '\"a\"'"
+wrong 's/"x": \[0, 4\]/"x": [4, 0]/' "boundary.x: is not a range \[low, high\] '\[4,0\]'"
+wrong 's/"x": \[0, 4\]/"x": [0, 1]/' "the periodic cell is too small"
+wrong 's/"x": \[0, 4\]/"y": [0, 20]/' "wall 'floor': a plate with normal 0, 1 crosses a periodic border"
+wrong 's/"density": 1000/"density": 0/' "materials\[0\].density: is not above 0"
+wrong 's/"name": "steel"/"name": "sand"/' "materials\[1\].name: is the name of another material 'sand'\|materials\[1\].name: is the name of another material"
+wrong 's/"name": "sand"/"name": ""/' "materials\[0\].name: is empty"
+wrong 's/"shapes.json"/"none.json"/' "\|dem: none.json"
+wrong 's/"shapes": \["disc", "brick"\]/"shapes": ["ball"]/' "grains\[0\].shapes\[0\]: is not the name of a shape '\"ball\"'"
+wrong 's/"shapes": \["disc", "brick"\]/"shapes": []/' "grains\[0\].shapes: is empty"
+wrong 's/"count": 20/"count": 2.5/' "grains\[0\].count: is not a whole number '2.5'"
+wrong 's/"count": 20/"count": 2000, "tries": 50/' "grains\[0\]: grain [0-9]* of 2000 found no free place in 50 tries"
+wrong 's/\[0.2, 0.2, 3.8, 6\]/[0.2, 6, 3.8, 0.2]/' "grains\[0\].region: is not a region"
+wrong 's/"normal": \[0.4, 0.1\]/"normal": [0.2, 0.1]/' "grains\[0\].size: does not have its middle between low and high"
+wrong 's/"size": {"normal": \[0.4, 0.1\], /"size": {/' "grains\[0\].size: is not one of uniform, normal and lognormal"
+wrong 's/"size": {"normal": \[0.4, 0.1\]/"size": {"uniform": [0.5, 0.4]/' "grains\[0\].size.uniform: is not a range"
+wrong 's/"place": "random"/"place": "rain"/' "grains\[0\].place: is not one of list, random and lattice"
+wrong 's/"spacing": \[1, 1\]/"spacing": [9, 1]/' "grains\[1\]: a lattice of 0 by 2 places has no room"
+wrong 's/"jitter": 0.2/"jitter": 2/' "grains\[1\].jitter: is more than 1 '2'"
+wrong 's/"upright": true/"upright": 1/' "grains\[1\].upright: is neither true nor false"
+wrong 's/"at": \[2, 9.5\], "size": 0.4/"at": [2, 9.5], "size": -1/' "grains\[2\].grains\[0\].size: is not above 0 '-1'"
+wrong 's/"name": "block"/"name": "floor"/' "walls\[1\].name: is the name of another wall"
+wrong 's/"plate": {"point": \[0, 0\], "normal": \[0, 1\]}/"at": [0, 0]/' "walls\[0\]: is not one of plate, box and shape"
+wrong 's/"normal": \[0, 1\]/"normal": [0, 0]/' "walls\[0\].plate.normal: has no length"
+wrong 's/"radius": 0.1/"radius": 1/' "walls\[1\].box: "
+wrong 's/"material": "steel", "box"/"material": "gold", "box"/' "walls\[1\].material: is not a material '\"gold\"'"
+wrong 's/\["floor", "lid"\]/["floor", "roof"]/' "walls\[2\].servo.between\[1\]: is not the name of a wall"
+wrong 's/"stress": 100/"stress": 100, "force": 2/' "walls\[2\].servo: has not either force or stress"
+wrong 's/"law": "linear"/"law": "magic"/' "contact.law: is neither linear nor hertz"
+wrong 's/"law": "linear"/"law": "hertz"/' "contact.kn: is not of the Hertz law"
+wrong 's/"kn": 1e7, //' "contact.kn: is missing"
+wrong 's/"restitution": 0.5, //' "contact: has neither restitution nor gamma_n"
+wrong 's/"restitution": 0.5/"restitution": 1.5/' "contact.restitution: is more than 1 '1.5'"
+wrong 's/"restitution": 0.5/"restitution": 0.5, "gamma_n": 3/' "contact.gamma_n: excludes restitution"
+wrong 's/"friction": 0.5/"friction": -1/' "contact.friction: is less than 0 '-1'"
+wrong 's/\["sand", "steel"\]/["sand", "tin"]/' "contact.pairs\[0\].materials\[1\]: is not a material"
+wrong 's/"name": "fall", "duration": 0.1/"name": "fall"/' "stages\[0\].duration: is missing"
+wrong 's/"name": "fall", "duration": 0.1/"name": "fall", "duration": -1/' "stages\[0\].duration: is not above 0 '-1'"
+wrong 's/"walls": {"floor"/"walls": {"roof"/' "stages\[1\].walls.roof: is of no wall of that name"
+wrong 's/{"velocity": \[0.5, 0\]}/{"velocity": 3}/' "stages\[1\].walls.floor.velocity: is not a list of 2 numbers '3'"
+wrong 's/{"velocity": \[0.5, 0\]}/{"spin": 3}/' "stages\[1\].walls.floor.spin: turns a plate"
+wrong 's/"every": 0.02/"every": 0/' "output.every: is not above 0"
+wrong 's/"restart": "out.restart", //' "output.restart_every: is there without restart"
+wrong 's/"csv": "out.csv"/"csv": 7/' "output.csv: is not a string '7'"
+sed 's/"csv": "out.csv"/"picture": "out.gif"/' good.json >bad.json
+fails "a picture of no kind" "dem: .*out.gif" bad.json
+sed 's|"csv": "out.csv"|"csv": "no/folder/out.csv"|' good.json >bad.json
+fails "no folder for the table" "dem: no/folder/out.csv: " bad.json
+
+# Too long a step: which grain, and what to do.
+sed 's/"time_step": 1e-4/"time_step": 1e-2/; s/"duration": 0.1/"duration": 3/g' good.json >bad.json
+fails "too long a step" "dem: step [0-9]*: grain [0-9]* .*Use a shorter time step" bad.json --threads 1
+sed 's/"velocity": \[1, 0\]/"velocity": [1e200, 0]/' good.json >bad.json
+fails "a grain that leaves" "dem: step 1: grain 28 .*Use a shorter time step" bad.json --threads 1
+
+if [ $failures -ne 0 ]; then
+    echo "$failures checks went wrong"
+    exit 1
+fi
+echo "all checks passed"
