@@ -145,6 +145,11 @@ typedef struct dem_memory {
     uint64_t step;
 } dem_memory;
 
+/* The damping of a pair, per velocity; for contacts of unit size. */
+typedef struct dem_dashpot {
+    double normal, tangential;
+} dem_dashpot;
+
 typedef struct dem_rolling {
     double angle, torque;
 } dem_rolling;
@@ -155,6 +160,7 @@ typedef struct dem_pairs {
     uint32_t *a, *b;
     float *shift_x, *shift_y; /* added to B's position */
     uint32_t *hints;          /* narc's */
+    dem_dashpot *dashpot;
     dem_memory *memory;
     dem_rolling *rolling; /* used only if there is rolling friction */
 } dem_pairs;
@@ -222,6 +228,7 @@ typedef struct dem {
     dem_wall *walls;
     size_t wall_count, wall_capacity;
     double grain_reach, grain_extent; /* the largest */
+    double safe_depth;                /* a contact that is not deeper is allowed for all grains */
     bool started;                     /* no body can be added any more */
 
     uint64_t step;

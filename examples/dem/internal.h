@@ -74,6 +74,7 @@ void dem_count_wall_contacts(dem *d);
 bool dem_add_plate_pairs(dem *d);
 
 /* laws.c, gather.c */
+void dem_find_dashpots(dem *d);
 bool dem_apply_laws(dem *d);
 void dem_gather_forces(dem *d);
 

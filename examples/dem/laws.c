@@ -46,29 +46,45 @@ void dem_set_law(dem *d, uint8_t a, uint8_t b, dem_contact_law law) {
     d->laws[a][b] = d->laws[b][a] = law;
 }
 
+/* The dashpots of pairs do not change while a list lasts: for unit size of the contact (see apply_law()). */
+void dem_find_dashpots(dem *d) {
+    const dem_bodies *b = &d->bodies;
+    for (size_t k = 0; k < d->pairs.count; k++) {
+        const size_t i = d->pairs.a[k], j = d->pairs.b[k];
+        const dem_contact_law *law = &d->laws[b->material[i]][b->material[j]];
+        const double mass = 1 / (b->inverse_mass[i] + b->inverse_mass[j]);
+        const double by_ratio = law->damping_ratio * sqrt(law->kn * mass);
+        d->pairs.dashpot[k] = law->damping_ratio >= 0 ? (dem_dashpot){by_ratio, law->tangential_share * by_ratio}
+                                                      : (dem_dashpot){law->gamma_n * mass, law->gamma_t * mass};
+    }
+}
+
 /* A contact, for its law. The tangent is (-normal.y, normal.x). */
 typedef struct contact {
     size_t a, b;
     dem_vec normal;
     dem_vec arm_a, arm_b; /* from both centres to the point */
-    double depth, mass, radius;
+    double depth;
     double vn, vt, turn; /* relative velocities: apart, along the tangent, rotation */
 } contact;
 
-/* Half of the harmonic sum: R. Walls (inverse mass 0) have no limits above and take the grain's below. */
-static double find_radius(const dem *d, const dem_bodies *b, size_t k, size_t i, size_t j) {
-    const double half_i = 0.5 * b->extent[i], half_j = b->inverse_mass[j] > 0 ? 0.5 * b->extent[j] : half_i;
-    if (d->settings.law == DEM_LINEAR)
-        return b->inverse_mass[j] > 0 ? half_i * half_j / (half_i + half_j) : half_i;
-    const double low = d->settings.least_radius, high = d->settings.largest_radius;
-    const double r_a = fmin(fmax((double)d->contacts.radius_a[k], low * half_i), high * half_i);
-    double r_b = fmax((double)d->contacts.radius_b[k], low * half_j);
-    if (b->inverse_mass[j] > 0)
-        r_b = fmin(r_b, high * half_j);
-    return isinf(r_b) ? r_a : r_a * r_b / (r_a + r_b);
+static inline double clamp(double value, double low, double high) {
+    return value < low ? low : value > high ? high : value;
 }
 
-static contact load_contact(const dem *d, size_t k) {
+/* Half of the harmonic sum: R. Walls (inverse mass 0) have no limits above and take the grain's below. */
+static double find_radius(const dem *d, const dem_bodies *b, size_t k, size_t i, size_t j) {
+    const bool is_grain = b->inverse_mass[j] > 0;
+    const double half_i = 0.5 * b->extent[i], half_j = is_grain ? 0.5 * b->extent[j] : half_i;
+    if (d->settings.law == DEM_LINEAR)
+        return is_grain ? half_i * half_j / (half_i + half_j) : half_i;
+    const double low = d->settings.least_radius, high = d->settings.largest_radius;
+    const double r_a = clamp((double)d->contacts.radius_a[k], low * half_i, high * half_i);
+    const double r_b = clamp((double)d->contacts.radius_b[k], low * half_j, is_grain ? high * half_j : INFINITY);
+    return r_b < INFINITY ? r_a * r_b / (r_a + r_b) : r_a;
+}
+
+static inline contact load_contact(const dem *d, size_t k) {
     const dem_contacts *list = &d->contacts;
     const dem_bodies *b = &d->bodies;
     const size_t p = list->pair[k], i = d->pairs.a[p], j = d->pairs.b[p];
@@ -77,7 +93,6 @@ static contact load_contact(const dem *d, size_t k) {
     c.arm_a = (dem_vec){(double)list->point_x[k], (double)list->point_y[k]};
     c.arm_b = (dem_vec){c.arm_a.x + (b->x[i] - b->x[j] - (double)d->pairs.shift_x[p]),
                         c.arm_a.y + (b->y[i] - b->y[j] - (double)d->pairs.shift_y[p])};
-    c.mass = 1 / (b->inverse_mass[i] + b->inverse_mass[j]);
     const double x = b->vx[j] - b->vx[i] - (b->spin[j] * c.arm_b.y - b->spin[i] * c.arm_a.y);
     const double y = b->vy[j] - b->vy[i] + (b->spin[j] * c.arm_b.x - b->spin[i] * c.arm_a.x);
     c.vn = x * c.normal.x + y * c.normal.y;
@@ -90,9 +105,9 @@ static contact load_contact(const dem *d, size_t k) {
  * a sign; `bound` is the largest. What work is lost is damping's, or friction's in a step that slides. (Where the dashpot
  * alone is more than friction bears, cutting back stretches the spring the other way: LAMMPS's rule. The energy that it
  * gets so is taken from friction's account.) */
-static double slide(double *spring, double *spring_force, double stiffness, double damping, double way, double dt,
-                    double bound, dem_sums *sums) {
-    const double before = *spring, force_before = *spring_force, dashpot = damping * (way / dt);
+static inline double slide(double *spring, double *spring_force, double stiffness, double dashpot, double way,
+                           double bound, dem_sums *sums) {
+    const double before = *spring, force_before = *spring_force;
     double stretch = before + way, pull = stiffness * stretch, force = pull + dashpot;
     const bool slides = fabs(force) > bound;
     if (slides) {
@@ -114,43 +129,47 @@ static void apply_rolling(dem *d, const contact *c, size_t k, double stiffness, 
     if (!is_old)
         *rolling = (dem_rolling){0, 0};
     sums->old_springs += 0.5 * rolling->torque * rolling->angle;
-    const double torque = slide(&rolling->angle, &rolling->torque, stiffness, 0, c->turn * d->settings.time_step,
-                                d->settings.time_step, bound, sums);
+    const double torque =
+        slide(&rolling->angle, &rolling->torque, stiffness, 0, c->turn * d->settings.time_step, bound, sums);
     sums->rolling_energy += 0.5 * rolling->torque * rolling->angle;
     d->contacts.torque_b[k] -= torque;
     d->contacts.torque_a[k] += torque;
 }
 
-static void apply_law(dem *d, size_t k, bool rolls, dem_sums *sums) {
+/* Is the contact deeper than it may be? */
+static bool is_too_deep(const dem *d, size_t i, size_t j, double depth) {
+    const dem_bodies *b = &d->bodies;
+    const double size_i = b->extent[i], size_j = b->inverse_mass[j] > 0 ? b->extent[j] : size_i;
+    return !(depth <= d->settings.max_overlap * (size_i < size_j ? size_i : size_j));
+}
+
+/* One contact. Where `hertz` and `rolls` are constants all that they do not want is left out. */
+static inline void apply_law(dem *d, size_t k, bool hertz, bool rolls, dem_sums *sums) {
     const contact c = load_contact(d, k);
     const dem_bodies *b = &d->bodies;
     const size_t p = d->contacts.pair[k];
     const double dt = d->settings.time_step;
     const dem_contact_law *law = &d->laws[b->material[c.a]][b->material[c.b]];
-    const bool hertz = d->settings.law == DEM_HERTZ;
     const double radius = hertz || rolls ? find_radius(d, b, k, c.a, c.b) : 0;
     const double size = hertz ? sqrt(radius * c.depth) : 1;
     const double kn = law->kn * size, kt = law->kt * size;
-    const bool by_ratio = law->damping_ratio >= 0;
-    const double cn = by_ratio ? law->damping_ratio * sqrt(kn * c.mass) : law->gamma_n * c.mass * size;
-    const double ct = by_ratio ? law->tangential_share * cn : law->gamma_t * c.mass * size;
+    const double damped = hertz ? (law->damping_ratio >= 0 ? sqrt(size) : size) : 1;
 
-    dem_memory *memory = &d->pairs.memory[p];
-    const bool is_old = memory->step + 1 == d->step;
-    if (!is_old)
-        *memory = (dem_memory){.slide = 0};
-    memory->step = d->step;
+    dem_memory memory = d->pairs.memory[p];
+    const bool is_old = memory.step + 1 == d->step;
+    memory = is_old ? memory : (dem_memory){.slide = 0};
+    memory.step = d->step;
     d->scratch->slot[p] = (uint32_t)k;
+    sums->old_springs += 0.5 * memory.spring * memory.slide;
 
-    const double dashpot = -cn * c.vn, push = kn * c.depth + dashpot;
-    sums->damping -= 0.5 * (memory->damping + dashpot) * c.vn * dt;
-    memory->damping = dashpot;
+    const double dashpot = -d->pairs.dashpot[p].normal * damped * c.vn, push = kn * c.depth + dashpot;
+    sums->damping -= 0.5 * (memory.damping + dashpot) * c.vn * dt;
     sums->normal_energy += (hertz ? 0.4 : 0.5) * kn * c.depth * c.depth;
-
-    sums->old_springs += 0.5 * memory->spring * memory->slide;
-    const double drag =
-        -slide(&memory->slide, &memory->spring, kt, ct, c.vt * dt, dt, law->friction * fabs(push), sums);
-    sums->tangential_energy += 0.5 * memory->spring * memory->slide;
+    memory.damping = dashpot;
+    const double drag = -slide(&memory.slide, &memory.spring, kt, d->pairs.dashpot[p].tangential * damped * c.vt,
+                               c.vt * dt, law->friction * fabs(push), sums);
+    sums->tangential_energy += 0.5 * memory.spring * memory.slide;
+    d->pairs.memory[p] = memory;
 
     const double fx = push * c.normal.x - drag * c.normal.y, fy = push * c.normal.y + drag * c.normal.x;
     d->contacts.fx[k] = fx;
@@ -159,10 +178,22 @@ static void apply_law(dem *d, size_t k, bool rolls, dem_sums *sums) {
     d->contacts.torque_b[k] = c.arm_b.x * fy - c.arm_b.y * fx;
     if (rolls)
         apply_rolling(d, &c, k, kt * radius * radius, law->rolling_friction * radius * fabs(push), is_old, sums);
-
-    const double size_b = b->inverse_mass[c.b] > 0 ? b->extent[c.b] : b->extent[c.a];
-    if (!(c.depth <= d->settings.max_overlap * fmin(b->extent[c.a], size_b)) && sums->too_deep == SIZE_MAX)
+    if (!(c.depth <= d->safe_depth) && sums->too_deep == SIZE_MAX && is_too_deep(d, c.a, c.b, c.depth))
         sums->too_deep = k;
+}
+
+static dem_sums apply_linear(dem *d, size_t first, size_t end) {
+    dem_sums sums = {.too_deep = SIZE_MAX};
+    for (size_t k = first; k < end; k++)
+        apply_law(d, k, false, false, &sums);
+    return sums;
+}
+
+static dem_sums apply_any(dem *d, size_t first, size_t end, bool hertz, bool rolls) {
+    dem_sums sums = {.too_deep = SIZE_MAX};
+    for (size_t k = first; k < end; k++)
+        apply_law(d, k, hertz, rolls, &sums);
+    return sums;
 }
 
 static bool fail_depth(dem *d, size_t k) {
@@ -179,7 +210,7 @@ static bool fail_depth(dem *d, size_t k) {
 bool dem_apply_laws(dem *d) {
     dem_scratch *s = d->scratch;
     const size_t count = d->contacts.count, blocks = (count + DEM_BLOCK - 1) / DEM_BLOCK;
-    const bool rolls = dem_has_rolling(d);
+    const bool rolls = dem_has_rolling(d), hertz = d->settings.law == DEM_HERTZ;
     const unsigned team = dem_team(d);
     (void)team;
     if (!dem_reserve(d, &s->sums, &s->sums_capacity, blocks, sizeof *s->sums))
@@ -188,11 +219,8 @@ bool dem_apply_laws(dem *d) {
 #pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
 #endif
     for (size_t block = 0; block < blocks; block++) {
-        dem_sums sums = {.too_deep = SIZE_MAX};
-        const size_t end = block + 1 < blocks ? (block + 1) * DEM_BLOCK : count;
-        for (size_t k = block * DEM_BLOCK; k < end; k++)
-            apply_law(d, k, rolls, &sums);
-        s->sums[block] = sums;
+        const size_t first = block * DEM_BLOCK, end = block + 1 < blocks ? first + DEM_BLOCK : count;
+        s->sums[block] = hertz || rolls ? apply_any(d, first, end, hertz, rolls) : apply_linear(d, first, end);
     }
     dem_sums all = {.too_deep = SIZE_MAX};
     for (size_t block = blocks; block-- > 0;) {

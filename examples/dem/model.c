@@ -92,7 +92,7 @@ enum { BODY_COLUMNS = sizeof body_columns / sizeof body_columns[0] };
 static const column pair_columns[] = {DEM_COLUMN(dem_pairs, a),       DEM_COLUMN(dem_pairs, b),
                                       DEM_COLUMN(dem_pairs, shift_x), DEM_COLUMN(dem_pairs, shift_y),
                                       DEM_COLUMN(dem_pairs, hints),   DEM_COLUMN(dem_pairs, memory),
-                                      DEM_COLUMN(dem_pairs, rolling)};
+                                      DEM_COLUMN(dem_pairs, dashpot), DEM_COLUMN(dem_pairs, rolling)};
 enum { PAIR_COLUMNS = sizeof pair_columns / sizeof pair_columns[0] };
 
 void *dem_body_column(const dem *d, size_t index, size_t *out_item_size) {
@@ -251,6 +251,8 @@ bool dem_add_grain(dem *d, dem_grain grain) {
     d->grain_count++;
     d->grain_reach = fmax(d->grain_reach, b->reach[k]);
     d->grain_extent = fmax(d->grain_extent, b->extent[k]);
+    const double allowed = d->settings.max_overlap * b->extent[k];
+    d->safe_depth = k == 0 ? allowed : fmin(d->safe_depth, allowed);
     return true;
 }
 

@@ -113,7 +113,7 @@ static bool carry_over(dem *d) {
     return true;
 }
 
-/* Which pairs a body has. */
+/* Which pairs a body has, and what of them depends on the bodies alone. */
 bool dem_index_pairs(dem *d) {
     const dem_pairs *p = &d->pairs;
     dem_incidence *n = &d->incidence;
@@ -138,6 +138,7 @@ bool dem_index_pairs(dem *d) {
         n->of_b[n->first_b[p->b[k] + 1]++] = (uint32_t)k;
     for (size_t k = 0; k < p->count; k++)
         d->scratch->slot[k] = 0;
+    dem_find_dashpots(d);
     return true;
 }
 

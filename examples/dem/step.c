@@ -24,7 +24,7 @@ static void kick(dem *d) {
     const unsigned team = dem_team(d);
     (void)team;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
+#pragma omp parallel for simd schedule(static) num_threads(team) if (parallel : team > 1)
 #endif
     for (size_t k = 0; k < count; k++) {
         b.vx[k] += half * (b.fx[k] * b.inverse_mass[k] + gx);
@@ -33,19 +33,26 @@ static void kick(dem *d) {
     }
 }
 
-static void drift(dem *d) {
+/* A kick, and the way. */
+static void kick_and_drift(dem *d) {
     const dem_bodies b = d->bodies;
-    const double dt = d->settings.time_step;
+    const double dt = d->settings.time_step, kick = 0.5 * dt, gx = d->settings.gravity.x, gy = d->settings.gravity.y;
     const size_t count = d->grain_count;
     const unsigned team = dem_team(d);
     (void)team;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
+#pragma omp parallel for simd schedule(static) num_threads(team) if (parallel : team > 1)
 #endif
     for (size_t k = 0; k < count; k++) {
-        b.x[k] += dt * b.vx[k];
-        b.y[k] += dt * b.vy[k];
-        const double half = 0.5 * dt * b.spin[k], share = 1 / (1 + half * half);
+        const double vx = b.vx[k] + kick * (b.fx[k] * b.inverse_mass[k] + gx);
+        const double vy = b.vy[k] + kick * (b.fy[k] * b.inverse_mass[k] + gy);
+        const double spin = b.spin[k] + kick * (b.torque[k] * b.inverse_inertia[k]);
+        b.vx[k] = vx;
+        b.vy[k] = vy;
+        b.spin[k] = spin;
+        b.x[k] += dt * vx;
+        b.y[k] += dt * vy;
+        const double half = 0.5 * dt * spin, share = 1 / (1 + half * half);
         const double cosine = (1 - half * half) * share, sine = 2 * half * share;
         const double c = b.cosine[k] * cosine - b.sine[k] * sine, s = b.sine[k] * cosine + b.cosine[k] * sine;
         const double unit = 1.5 - 0.5 * (c * c + s * s);
@@ -57,21 +64,23 @@ static void drift(dem *d) {
 }
 
 /* Has a point of any body moved half of the skin since the pairs were found? A turn moves it by at most the body's reach
- * times the chord between both rotations. A NaN has moved. */
-static bool have_moved(const dem *d) {
+ * times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below the limit
+ * so has not moved, and only if all is not, roots are drawn. A NaN has moved. */
+static bool have_moved(const dem *d, bool exactly) {
     const dem_bodies b = d->bodies;
     const double limit = 0.5 * d->settings.skin;
     const size_t count = b.count;
     const unsigned team = dem_team(d);
-    (void)team;
     int moved = 0;
+    (void)team;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) if (team > 1) reduction(| : moved)
+#pragma omp parallel for simd schedule(static) num_threads(team) if (parallel : team > 1) reduction(| : moved)
 #endif
     for (size_t k = 0; k < count; k++) {
         const double x = b.x[k] - b.list_x[k], y = b.y[k] - b.list_y[k];
         const double c = b.cosine[k] - b.list_cosine[k], s = b.sine[k] - b.list_sine[k];
-        moved |= !(sqrt(x * x + y * y) + b.reach[k] * sqrt(c * c + s * s) <= limit);
+        const double way = x * x + y * y, turn = b.reach[k] * b.reach[k] * (c * c + s * s);
+        moved |= exactly ? !(sqrt(way) + sqrt(turn) <= limit) : !(2 * (way + turn) <= limit * limit);
     }
     return moved != 0;
 }
@@ -159,10 +168,9 @@ bool dem_step(dem *d) {
     d->step++;
     d->time += d->settings.time_step;
     dem_steer_walls(d);
-    kick(d);
-    drift(d);
+    kick_and_drift(d);
     dem_move_walls(d);
-    const bool renew = have_moved(d);
+    const bool renew = have_moved(d, false) && have_moved(d, true);
     const double moved = timed ? seconds_now() : 0;
     if (renew && !dem_renew_lists(d))
         return false;
