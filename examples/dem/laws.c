@@ -26,9 +26,15 @@
  * is counted: a spring's is then the difference of its energies, and what is left of the tangential work is friction's.
  */
 #include <math.h>
-#include <string.h>
 
 #include "internal.h"
+
+/* Inlined wherever it is called, for the constants that it is called with. */
+#if defined(__GNUC__)
+#define INLINE static inline __attribute__((always_inline))
+#else
+#define INLINE static inline
+#endif
 
 double dem_damping_ratio(dem_law law, double restitution) {
     const double pi = 3.14159265358979323846, logarithm = -log(restitution);
@@ -84,7 +90,7 @@ static double find_radius(const dem *d, const dem_bodies *b, size_t k, size_t i,
     return r_b < INFINITY ? r_a * r_b / (r_a + r_b) : r_a;
 }
 
-static inline contact load_contact(const dem *d, size_t k) {
+INLINE contact load_contact(const dem *d, size_t k) {
     const dem_contacts *list = &d->contacts;
     const dem_bodies *b = &d->bodies;
     const size_t p = list->pair[k], i = d->pairs.a[p], j = d->pairs.b[p];
@@ -105,8 +111,8 @@ static inline contact load_contact(const dem *d, size_t k) {
  * a sign; `bound` is the largest. What work is lost is damping's, or friction's in a step that slides. (Where the dashpot
  * alone is more than friction bears, cutting back stretches the spring the other way: LAMMPS's rule. The energy that it
  * gets so is taken from friction's account.) */
-static inline double slide(double *spring, double *spring_force, double stiffness, double dashpot, double way,
-                           double bound, dem_sums *sums) {
+INLINE double slide(double *spring, double *spring_force, double stiffness, double dashpot, double way, double bound,
+                    dem_sums *sums) {
     const double before = *spring, force_before = *spring_force;
     double stretch = before + way, pull = stiffness * stretch, force = pull + dashpot;
     const bool slides = fabs(force) > bound;
@@ -144,7 +150,7 @@ static bool is_too_deep(const dem *d, size_t i, size_t j, double depth) {
 }
 
 /* One contact. Where `hertz` and `rolls` are constants all that they do not want is left out. */
-static inline void apply_law(dem *d, size_t k, bool hertz, bool rolls, dem_sums *sums) {
+INLINE void apply_law(dem *d, size_t k, bool hertz, bool rolls, dem_sums *sums) {
     const contact c = load_contact(d, k);
     const dem_bodies *b = &d->bodies;
     const size_t p = d->contacts.pair[k];
@@ -189,10 +195,18 @@ static dem_sums apply_linear(dem *d, size_t first, size_t end) {
     return sums;
 }
 
-static dem_sums apply_any(dem *d, size_t first, size_t end, bool hertz, bool rolls) {
+static dem_sums apply_hertz(dem *d, size_t first, size_t end) {
     dem_sums sums = {.too_deep = SIZE_MAX};
     for (size_t k = first; k < end; k++)
-        apply_law(d, k, hertz, rolls, &sums);
+        apply_law(d, k, true, false, &sums);
+    return sums;
+}
+
+static dem_sums apply_with_rolling(dem *d, size_t first, size_t end) {
+    dem_sums sums = {.too_deep = SIZE_MAX};
+    const bool hertz = d->settings.law == DEM_HERTZ;
+    for (size_t k = first; k < end; k++)
+        apply_law(d, k, hertz, true, &sums);
     return sums;
 }
 
@@ -210,7 +224,9 @@ static bool fail_depth(dem *d, size_t k) {
 bool dem_apply_laws(dem *d) {
     dem_scratch *s = d->scratch;
     const size_t count = d->contacts.count, blocks = (count + DEM_BLOCK - 1) / DEM_BLOCK;
-    const bool rolls = dem_has_rolling(d), hertz = d->settings.law == DEM_HERTZ;
+    dem_sums (*const apply)(dem *, size_t, size_t) = dem_has_rolling(d)             ? apply_with_rolling
+                                                     : d->settings.law == DEM_HERTZ ? apply_hertz
+                                                                                    : apply_linear;
     const unsigned team = dem_team(d);
     (void)team;
     if (!dem_reserve(d, &s->sums, &s->sums_capacity, blocks, sizeof *s->sums))
@@ -220,7 +236,7 @@ bool dem_apply_laws(dem *d) {
 #endif
     for (size_t block = 0; block < blocks; block++) {
         const size_t first = block * DEM_BLOCK, end = block + 1 < blocks ? first + DEM_BLOCK : count;
-        s->sums[block] = hertz || rolls ? apply_any(d, first, end, hertz, rolls) : apply_linear(d, first, end);
+        s->sums[block] = apply(d, first, end);
     }
     dem_sums all = {.too_deep = SIZE_MAX};
     for (size_t block = blocks; block-- > 0;) {

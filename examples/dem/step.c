@@ -74,7 +74,7 @@ static bool have_moved(const dem *d, bool exactly) {
     int moved = 0;
     (void)team;
 #ifdef _OPENMP
-#pragma omp parallel for simd schedule(static) num_threads(team) if (parallel : team > 1) reduction(| : moved)
+#pragma omp parallel for schedule(static) num_threads(team) if (team > 1) reduction(| : moved)
 #endif
     for (size_t k = 0; k < count; k++) {
         const double x = b.x[k] - b.list_x[k], y = b.y[k] - b.list_y[k];
