@@ -133,8 +133,8 @@ typedef struct dem_wall {
     double spin;      /* about the pivot, which moves with the velocity */
     dem_vec pivot;
     dem_servo servo;
-    double work;          /* done on the grains since the start */
-    size_t contact_count; /* in the last step, if some wall has servo control */
+    double work;       /* done on the grains since the start */
+    double resistance; /* how its force grows with its speed in a step, if some wall has servo control */
 } dem_wall;
 
 /* The memory of a pair that touches. It counts only if `step` is the step before. */

@@ -85,7 +85,7 @@ void dem_apply_change(dem *d, const dem_wall_change *change) {
         wall->spin = change->spin;
     if (change->sets_servo) {
         wall->servo = change->servo;
-        wall->contact_count = 0;
+        wall->resistance = 0;
     }
 }
 

@@ -70,7 +70,7 @@ bool dem_take_image_pairs(dem *d); /* moves pairs with images from the found one
 void dem_steer_walls(dem *d);
 void dem_move_walls(dem *d);
 void dem_count_wall_work(dem *d);
-void dem_count_wall_contacts(dem *d);
+void dem_find_resistances(dem *d);
 bool dem_add_plate_pairs(dem *d);
 
 /* laws.c, gather.c */

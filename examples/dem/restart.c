@@ -35,8 +35,7 @@ typedef struct sums {
 /* A wall without its name and whatever else does not change. Every byte is told. */
 typedef struct wall_state {
     dem_vec velocity, pivot, direction;
-    double spin, work, force, stress, gain, max_speed;
-    uint64_t contact_count;
+    double spin, work, resistance, force, stress, gain, max_speed;
     int32_t between[2], on, padding;
 } wall_state;
 
@@ -68,28 +67,31 @@ static void pass_walls(stream *s, dem *d) {
     for (size_t i = 0; i < d->wall_count && s->ok; i++) {
         dem_wall *w = &d->walls[i];
         dem_servo *servo = &w->servo;
-        wall_state state = {w->velocity,
-                            w->pivot,
-                            servo->direction,
-                            w->spin,
-                            w->work,
-                            servo->force,
-                            servo->stress,
-                            servo->gain,
-                            servo->max_speed,
-                            w->contact_count,
-                            {servo->between[0], servo->between[1]},
-                            servo->on,
-                            0};
+        wall_state state = {.velocity = w->velocity,
+                            .pivot = w->pivot,
+                            .direction = servo->direction,
+                            .spin = w->spin,
+                            .work = w->work,
+                            .resistance = w->resistance,
+                            .force = servo->force,
+                            .stress = servo->stress,
+                            .gain = servo->gain,
+                            .max_speed = servo->max_speed,
+                            .between = {servo->between[0], servo->between[1]},
+                            .on = servo->on};
         pass(s, &state, sizeof state);
         w->velocity = state.velocity;
         w->pivot = state.pivot;
         w->spin = state.spin;
         w->work = state.work;
-        w->contact_count = state.contact_count;
-        *servo =
-            (dem_servo){state.on != 0, state.direction, state.force, state.stress, {state.between[0], state.between[1]},
-                        state.gain,    state.max_speed};
+        w->resistance = state.resistance;
+        *servo = (dem_servo){.on = state.on != 0,
+                             .direction = state.direction,
+                             .force = state.force,
+                             .stress = state.stress,
+                             .between = {state.between[0], state.between[1]},
+                             .gain = state.gain,
+                             .max_speed = state.max_speed};
     }
 }
 

@@ -183,7 +183,7 @@ bool dem_step(dem *d) {
         return false;
     dem_gather_forces(d);
     dem_count_wall_work(d);
-    dem_count_wall_contacts(d);
+    dem_find_resistances(d);
     const double pushed = timed ? seconds_now() : 0;
     kick(d);
     if (timed) {

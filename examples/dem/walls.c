@@ -30,30 +30,31 @@ static double find_distance(const dem *d, int first, int second) {
     return fabs(between.x * a->normal.x + between.y * a->normal.y);
 }
 
-void dem_count_wall_contacts(dem *d) {
+/* How much more a contact presses a wall that moves with speed 1 for a step: by its spring and its dashpot. Of the Hertz
+ * law with half the extent for a radius. */
+static double find_resistance(const dem *d, size_t contact) {
+    const size_t p = d->contacts.pair[contact], a = d->pairs.a[p], b = d->pairs.b[p];
+    const double kn = d->laws[d->bodies.material[a]][d->bodies.material[b]].kn;
+    const double depth = -(double)d->contacts.separation[contact];
+    const double size = d->settings.law == DEM_HERTZ ? 1.5 * sqrt(0.5 * d->bodies.extent[a] * depth) : 1;
+    return kn * size * d->settings.time_step + d->pairs.dashpot[p].normal * (size < 1 ? sqrt(size) : size);
+}
+
+void dem_find_resistances(dem *d) {
     bool any = false;
     for (size_t w = 0; w < d->wall_count; w++) {
         any |= d->walls[w].servo.on;
-        d->walls[w].contact_count = 0;
+        d->walls[w].resistance = 0;
     }
     for (size_t k = 0; any && k < d->contacts.count; k++) {
         const size_t b = d->pairs.b[d->contacts.pair[k]];
         if (b >= d->grain_count)
-            d->walls[b - d->grain_count].contact_count++;
+            d->walls[b - d->grain_count].resistance += find_resistance(d, k);
     }
 }
 
-/* The stiffness of a wall's contacts: how much its force changes with its place. */
-static double find_stiffness(const dem *d, const dem_wall *wall) {
-    double stiffest = 0;
-    for (size_t m = 0; m < d->material_count; m++)
-        stiffest = fmax(stiffest, d->laws[m][wall->material].kn);
-    if (d->settings.law == DEM_HERTZ) /* as deep as a hundredth of a grain */
-        stiffest *= 0.05 * d->grain_extent;
-    return stiffest * (double)(wall->contact_count > 1 ? wall->contact_count : 1);
-}
-
-/* The speed that would remove the share `gain` of the error within a step, if all contacts were springs. */
+/* The speed that removes the share `gain` of the error within a step, as far as springs and dashpots at the wall decide.
+ * A wall that touches nothing comes at its largest speed. */
 void dem_steer_walls(dem *d) {
     for (size_t w = 0; w < d->wall_count; w++) {
         dem_wall *wall = &d->walls[w];
@@ -64,9 +65,10 @@ void dem_steer_walls(dem *d) {
         const double target = servo->between[0] >= 0 ? servo->stress * d->settings.thickness *
                                                            find_distance(d, servo->between[0], servo->between[1])
                                                      : servo->force;
-        const double pressing = -(force.x * servo->direction.x + force.y * servo->direction.y);
-        double speed = servo->gain * (target - pressing) / (find_stiffness(d, wall) * d->settings.time_step);
-        speed = fmin(fmax(speed, -servo->max_speed), servo->max_speed);
+        const double missing = target + force.x * servo->direction.x + force.y * servo->direction.y;
+        double speed = missing > 0 ? servo->max_speed : -servo->max_speed;
+        if (servo->gain * fabs(missing) < wall->resistance * servo->max_speed)
+            speed = servo->gain * missing / wall->resistance;
         wall->velocity = (dem_vec){speed * servo->direction.x, speed * servo->direction.y};
     }
 }

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * dem_places.c - where grains start: free places, sizes as they are distributed, lattices.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "dem_worlds.h"
+#include "place.h"
+
+/* The mean of many draws is within five deviations of the mean of one, over the root of their number. */
+static void test_sizes(void **state) {
+    (void)state;
+    enum { DRAWS = 100000 };
+    static const dem_sizes sizes[] = {
+        {DEM_FIXED, 3, 0, 0, 0}, {DEM_UNIFORM, 0, 0, 2, 4}, {DEM_NORMAL, 3, 0.2, 2, 4}, {DEM_LOGNORMAL, 3, 0.3, 1, 9}};
+    uint64_t random = 3;
+    for (size_t i = 0; i < 4; i++) {
+        const dem_sizes *s = &sizes[i];
+        const bool lognormal = s->kind == DEM_LOGNORMAL;
+        const double deviation = s->kind == DEM_UNIFORM ? 2 / sqrt(12.0) : s->deviation;
+        double sum = 0, squares = 0;
+        for (int k = 0; k < DRAWS; k++) {
+            const double size = dem_draw_size(s, &random), x = lognormal ? log(size / 3) : size - 3;
+            assert_true(s->kind == DEM_FIXED ? size == 3 : size >= s->low && size <= s->high);
+            sum += x;
+            squares += x * x;
+        }
+        print_message("distribution %zu: mean off by %.2g, deviation %.6g, expected %.6g\n", i, sum / DRAWS,
+                      sqrt(squares / DRAWS), deviation);
+        assert_true(fabs(sum / DRAWS) <= 5 * deviation / sqrt(DRAWS));
+        assert_true(fabs(sqrt(squares / DRAWS) - deviation) <= 0.01 * deviation);
+    }
+}
+
+static dem_filling plain_filling(size_t count) {
+    return (dem_filling){.count = count,
+                         .region = {true, 0, 30, 0, 30},
+                         .shapes = {DISC, ROUND, OCTAGON, ARCS},
+                         .shape_count = 4,
+                         .sizes = {DEM_UNIFORM, 0, 0, 0.5, 2.5},
+                         .tries = 5000};
+}
+
+static dem make_room(void) {
+    dem_settings settings = plain_settings();
+    settings.periodic_x = true;
+    settings.high_x = 30;
+    dem d = make_world(settings, plain_law());
+    add_plate(&d, "floor", 0, 1, 0, 1);
+    assert_true(dem_add_wall(&d, (dem_wall){.name = "rock",
+                                            .kind = DEM_BOX,
+                                            .shape = OCTAGON,
+                                            .scale = 4,
+                                            .place = {15, 15},
+                                            .servo = {.between = {-1, -1}}}));
+    return d;
+}
+
+/* Every pair of the list is apart by the gap, by the exact test, borders and walls among them. */
+static void test_free_places(void **state) {
+    (void)state;
+    const double gap = 0.05;
+    dem d = make_room();
+    dem_filling filling = plain_filling(180);
+    uint64_t random = 5;
+    filling.gap = gap;
+    assert_true(dem_fill_randomly(&d, &filling, &random));
+    assert_int_equal(d.grain_count, 180);
+    start(&d);
+    const narc_bodies bodies = {.count = d.bodies.count,
+                                .position_precision = NARC_FLOAT64,
+                                .x = NARC_ARRAY(d.bodies.x),
+                                .y = NARC_ARRAY(d.bodies.y),
+                                .cosine = NARC_ARRAY(d.bodies.narc_cosine),
+                                .sine = NARC_ARRAY(d.bodies.narc_sine),
+                                .scale = NARC_ARRAY(d.bodies.scale),
+                                .shape = NARC_ARRAY(d.bodies.shape)};
+    const narc_pairs pairs = {.count = d.pairs.count,
+                              .a = NARC_ARRAY(d.pairs.a),
+                              .b = NARC_ARRAY(d.pairs.b),
+                              .shift_x = NARC_ARRAY(d.pairs.shift_x),
+                              .shift_y = NARC_ARRAY(d.pairs.shift_y)};
+    const narc_contacts none = {.capacity = 0};
+    size_t count = 99, walls = 0, images = 0;
+    for (size_t k = 0; k < d.pairs.count; k++) {
+        walls += d.pairs.b[k] >= d.grain_count;
+        images += d.pairs.b[k] < d.grain_count && d.pairs.shift_x[k] != 0;
+    }
+    assert_int_equal(narc_find_contacts(d.store, &bodies, &pairs, (float)gap - 1e-4f, 1, &none, &count, NULL), NARC_OK);
+    print_message("%zu pairs, %zu with walls, %zu across the border\n", d.pairs.count, walls, images);
+    assert_int_equal(count, 0);
+    assert_true(walls > 5 && images > 0);
+    dem_destroy(&d);
+}
+
+static void test_full_region(void **state) {
+    (void)state;
+    dem d = make_room();
+    const dem_filling filling = plain_filling(2000);
+    uint64_t random = 5;
+    assert_false(dem_fill_randomly(&d, &filling, &random));
+    assert_non_null(strstr(d.error, "found no free place in 5000 tries"));
+    dem_destroy(&d);
+}
+
+static void test_lattice(void **state) {
+    (void)state;
+    dem d = make_world(plain_settings(), plain_law());
+    dem_filling filling = plain_filling(0);
+    uint64_t random = 5;
+    filling.spacing = (dem_vec){3, 5};
+    filling.jitter = 0.5;
+    assert_true(dem_fill_lattice(&d, &filling, &random));
+    assert_int_equal(d.grain_count, 60);
+    for (size_t k = 0; k < 60; k++) {
+        assert_true(fabs(d.bodies.x[k] - 3 * ((double)(k % 10) + 0.5)) <= 0.75);
+        assert_true(fabs(d.bodies.y[k] - 5 * ((double)(k / 10) + 0.5)) <= 1.25);
+    }
+    filling.count = 61;
+    assert_false(dem_fill_lattice(&d, &filling, &random));
+    dem_destroy(&d);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sizes), cmocka_unit_test(test_free_places),
+                                       cmocka_unit_test(test_full_region), cmocka_unit_test(test_lattice)};
+    if (!test_begin())
+        return TEST_SKIPPED;
+    return cmocka_run_group_tests_name("dem_places", tests, NULL, NULL);
+}
