@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * boundary.c - periodic borders. Bodies are wrapped into the cell when pairs are found, and only then. For pairs across a
- * border some bodies get images: boxes, a cell's width away, which only take part in finding pairs. A pair then has a
+ * boundary.c - periodic borders. Bodies are wrapped into the cell when pairs are found, and only then. For pairs across
+ * a border some bodies get images: boxes, a cell's width away, which only take part in finding pairs. A pair then has a
  * shift, which narc adds to B's position.
  *
  * Of the eight neighbours of a cell, four are enough for pairs of grains: what is missing is found from the other

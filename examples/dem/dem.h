@@ -8,14 +8,22 @@
  *   here, a file for each part:
  *
  *       main.c        the command line, stages, progress, signals
- *       input.c       the JSON file (input_grains.c, input_walls.c: its sections)   json_path.c   checked access with messages
- *       model.c       memory, shapes, bodies                  place.c       where grains start
- *       neighbours.c  boxes, pairs with a skin, history       boundary.c    periodic images, wrapping
- *       step.c        velocity Verlet, the narrow phase       laws.c        forces of contacts
- *       gather.c      forces of bodies                        walls.c       motion of walls, servo control
- *       measures.c    energies, stress, counts                csv.c         the table of measures
- *       restart.c     the state in a file, bit for bit        files.c       files that appear whole or not at all
- *       vtk.c         files for ParaView                      picture.c     pictures
+ *       input.c       the JSON file; its sections: input_grains.c, input_walls.c, input_run.c
+ *       json_path.c   checked access to it, with messages
+ *       model.c       memory, shapes, bodies
+ *       place.c       where grains start
+ *       neighbours.c  boxes, pairs with a skin, history
+ *       boundary.c    periodic images, wrapping
+ *       step.c        velocity Verlet, the narrow phase
+ *       laws.c        forces of contacts
+ *       gather.c      forces of bodies
+ *       walls.c       motion of walls, servo control
+ *       measures.c    energies, stress, counts
+ *       csv.c         the table of measures
+ *       restart.c     the state in a file, bit for bit
+ *       files.c       files that appear whole or not at all
+ *       vtk.c         files for ParaView
+ *       picture.c     pictures
  *
  * Conventions
  *
@@ -45,7 +53,7 @@ typedef struct dem_vec {
     double x, y;
 } dem_vec;
 
-/* ------------------------------------------------------------------------------------------------ what it is made of */
+/* ---------------------------------------------------------------------------------------- what it is made of */
 
 typedef struct dem_material {
     char name[DEM_NAME_SIZE];
@@ -282,7 +290,7 @@ bool dem_start(dem *d);
 /* Reports an error; returns false. */
 bool dem_fail(dem *d, const char *format, ...);
 
-/* ------------------------------------------------------------------------------------------------ laws.c, step.c ... */
+/* ---------------------------------------------------------------------------------------- laws.c, step.c ... */
 
 /* The damping ratio that gives a restitution, above 0 and at most 1. */
 double dem_damping_ratio(dem_law law, double restitution);

@@ -2,12 +2,15 @@
  *
  * input_run.c - the JSON file's stages, and what it wants to be written.
  */
+#define _XOPEN_SOURCE 700 /* stat */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "canvas.h"
 #include "input.h"
+#include "shape_list.h"
 
 /* ------------------------------------------------------------------------------------------------ stages */
 
@@ -57,6 +60,8 @@ void dem_read_stages(const json_value *root, dem *d, dem_input *input) {
         snprintf(stage.name, sizeof stage.name, "stage %zu", i);
         if (name.item)
             json_text(&name, stage.name, sizeof stage.name);
+        if (!is_shape_name(stage.name)) /* it is shown on a terminal */
+            json_fail(&name, "has a comma, a quote, a control character, or a blank at its end");
         if (gravity.item) {
             double n[2];
             json_numbers(&gravity, 2, n);
@@ -75,10 +80,16 @@ void dem_read_stages(const json_value *root, dem *d, dem_input *input) {
 
 /* ------------------------------------------------------------------------------------------------ output */
 
+/* An output may not take the input's place. */
 static void read_name(const json_value *object, const char *key, char *out_text) {
     const json_value name = json_member(object, key);
-    if (name.item)
-        json_text(&name, out_text, DEM_PATH_SIZE - 32);
+    struct stat input, output;
+    if (!name.item)
+        return;
+    json_text(&name, out_text, DEM_PATH_SIZE - 32);
+    if (stat(name.file, &input) == 0 && stat(out_text, &output) == 0 && input.st_dev == output.st_dev &&
+        input.st_ino == output.st_ino)
+        json_fail(&name, "is the input itself");
 }
 
 void dem_read_output(const json_value *root, const dem *d, dem_output *out_output) {

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "input.h"
+#include "shape_list.h"
 
 static const char *const WALL_KEYS[] = {"name",  "material", "plate", "box",   "shape", "size", "at",
                                         "angle", "velocity", "spin",  "pivot", "servo", NULL};
@@ -110,21 +111,21 @@ static uint32_t add_box_shape(const json_value *value, dem *d, const char *name)
     narc_arc arcs[NARC_MAX_ARCS];
     narc_error error;
     size_t count;
-    uint32_t shape;
+    uint32_t index;
     json_check_object(value, keys);
     if (narc_build_box(json_positive(value, "width"), json_positive(value, "height"),
                        json_number_or(value, "radius", 0, 1e300, 0), arcs, &count, &error) != NARC_OK) {
         dem_fail(d, "%s", error.message);
         dem_fail_at(value, d);
     }
-    if (!dem_add_shape(d, name, arcs, count, &shape))
+    if (!dem_add_shape(d, name, arcs, count, &index))
         dem_fail_at(value, d);
-    return shape;
+    return index;
 }
 
 /* A box, or any shape of the shapes file. */
 static void read_block(const json_value *item, dem *d, dem_wall *wall) {
-    const json_value box = json_member(item, "box"), shape = json_member(item, "shape"), at = json_require(item, "at");
+    const json_value box = json_member(item, "box"), form = json_member(item, "shape"), at = json_require(item, "at");
     double n[2];
     json_numbers(&at, 2, n);
     wall->kind = DEM_BOX;
@@ -135,7 +136,7 @@ static void read_block(const json_value *item, dem *d, dem_wall *wall) {
         wall->shape = add_box_shape(&box, d, wall->name);
         return;
     }
-    wall->shape = dem_find_shape(&shape, d);
+    wall->shape = dem_find_shape(&form, d);
     wall->scale = json_positive(item, "size") / d->shapes[wall->shape].extent;
 }
 
@@ -144,6 +145,8 @@ static void read_wall(const json_value *item, dem *d) {
     const json_value plate = json_member(item, "plate"), pivot = json_member(item, "pivot");
     dem_wall wall = {.servo = {.between = {-1, -1}}};
     json_text(&name, wall.name, sizeof wall.name);
+    if (!is_shape_name(wall.name)) /* it stands in the head of the table */
+        json_fail(&name, "has a comma, a quote, a control character, or a blank at its end");
     for (size_t w = 0; w < d->wall_count; w++)
         if (strcmp(d->walls[w].name, wall.name) == 0)
             json_fail(&name, "is the name of another wall");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * json_path.h - values of a JSON file with their places in it, and checked access. Whatever is wrong ends the program with
- * a message that names file, place and value: "dem: pile.json: stages[1].duration: is not above 0 '-1'".
+ * json_path.h - values of a JSON file with their places in it, and checked access. Whatever is wrong ends the program
+ * with a message that names file, place and value: "dem: pile.json: stages[1].duration: is not above 0 '-1'".
  */
 #ifndef DEM_JSON_PATH_H
 #define DEM_JSON_PATH_H

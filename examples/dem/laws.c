@@ -2,8 +2,8 @@
  *
  * laws.c - the forces of contacts.
  *
- * Of a contact with depth h > 0, normal n from A to B and tangent t, whose surfaces move with the relative velocity v of
- * B against A at its point, the force on B is, with 1 / m = 1 / m_A + 1 / m_B,
+ * Of a contact with depth h > 0, normal n from A to B and tangent t, whose surfaces move with the relative velocity v
+ * of B against A at its point, the force on B is, with 1 / m = 1 / m_A + 1 / m_B,
  *
  *       normal        F_n =  K_n h - C_n v.n
  *       tangential    F_t = -K_t s - C_t v.t,    ds/dt = v.t,    |F_t| <= friction |F_n|, s cut back to what bears it
@@ -17,9 +17,9 @@
  * Brilliantov and others 1996). 1 / R = 1 / R_A + 1 / R_B: with the Hertz law the radii of curvature of the arcs that
  * touch, within limits; with the linear law, which needs it for rolling only, half the extents. K_r = K_t R^2.
  *
- * The ratio that gives a restitution e. Linear: h'' + gamma h' + (kn / m) h = 0 from h = 0 to h = 0 has e = exp(-gamma T
- * / 2) with T = pi / sqrt(kn / m - gamma^2 / 4), so gamma = 2 b sqrt(kn / m) with b = -ln e / sqrt(pi^2 + ln^2 e). Hertz:
- * with C_n in proportion to h^(1/4) e does not depend on the speed (Tsuji and others 1992), and the ratio is
+ * The ratio that gives a restitution e. Linear: h'' + gamma h' + (kn / m) h = 0 from h = 0 to h = 0 has e = exp(-gamma
+ * T / 2) with T = pi / sqrt(kn / m - gamma^2 / 4), so gamma = 2 b sqrt(kn / m) with b = -ln e / sqrt(pi^2 + ln^2 e).
+ * Hertz: with C_n in proportion to h^(1/4) e does not depend on the speed (Tsuji and others 1992), and the ratio is
  * sqrt(5) b (Antypov and Elliott 2011).
  *
  * Energies. Velocity Verlet changes the kinetic energy by (F before + F after) / 2 times the way, so that is how work
@@ -108,9 +108,9 @@ INLINE contact load_contact(const dem *d, size_t k) {
 }
 
 /* Adds to a slider's spring what moved in the step, and cuts it back to what friction bears. Returns the force, without
- * a sign; `bound` is the largest. What work is lost is damping's, or friction's in a step that slides. (Where the dashpot
- * alone is more than friction bears, cutting back stretches the spring the other way: LAMMPS's rule. The energy that it
- * gets so is taken from friction's account.) */
+ * a sign; `bound` is the largest. What work is lost is damping's, or friction's in a step that slides. (Where the
+ * dashpot alone is more than friction bears, cutting back stretches the spring the other way: LAMMPS's rule. The energy
+ * that it gets so is taken from friction's account.) */
 INLINE double slide(double *spring, double *spring_force, double stiffness, double dashpot, double way, double bound,
                     dem_sums *sums) {
     const double before = *spring, force_before = *spring_force;

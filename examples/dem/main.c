@@ -89,7 +89,7 @@ static void show_run(run *r, const dem_stage *stage) {
     fflush(stderr);
 }
 
-/* What a stage changes, at its beginning. */
+/* What a stage changes, at its beginning. Other gravity gives grains another potential energy at once. */
 static void enter_stage(run *r, const dem_stage *stage) {
     dem *d = &r->world;
     if (stage->sets_gravity)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * place.c - where grains start. A random filling puts grain after grain at a random place with a random angle, and tries
- * again while it would touch: narc_find_contact() decides, a grid of cells tells whom to ask about.
+ * place.c - where grains start. A random filling puts grain after grain at a random place with a random angle, and
+ * tries again while it would touch: narc_find_contact() decides, a grid of cells tells whom to ask about.
  */
 #include "place.h"
 

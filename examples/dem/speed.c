@@ -4,8 +4,8 @@
  * written for discs (speed_discs.c).
  *
  * A pile of 625 grains settles in a cell that is periodic in x and is then set side by side: all piles are at rest, and
- * of any size. Candidates take turns; each number is a median. Lists are renewed once for each candidate and turn, and
- * count as often as the settling pile renews them in the end (see LIST_LIFE).
+ * of any size. Candidates take turns; each number is a median. Lists are renewed once for each candidate and turn,
+ * which is shared among as many steps as LIST_LIFE says.
  */
 #include <inttypes.h>
 #include <math.h>
@@ -21,7 +21,8 @@
 
 enum { COLUMN = 625, WIDTH = 25, MAX_TURNS = 101, KINDS = 3, MAX_THREADS = 2 };
 
-/* Steps that a list lasts, in the table: of a pile that shears slowly. (At rest it lasts for ever, in free fall 20.) */
+/* Steps that a list lasts, in the table. Piles at rest keep theirs; here it is assumed that what moves among them wants
+ * a new one as often as this. */
 static const double LIST_LIFE = 100;
 
 static const char *const names[KINDS] = {"discs", "rounded octagons", "eight-arcs"};

@@ -7,8 +7,8 @@
 
 #include "dem.h"
 
-/* The state of a world of discs, and its lists. Laws, order of operations and lists are those of the world, so that both
- * go on alike. */
+/* The state of a world of discs, and its lists. Laws, order of operations and lists are those of the world, so that
+ * both go on alike. */
 typedef struct discs discs;
 
 /* A copy of the world's state; NULL without memory. Only the linear law, grains that are discs, and plates that do not

@@ -3,7 +3,8 @@
  * step.c - a step of velocity Verlet: half of the velocity's change, the way, the forces at its end, the other half.
  *
  * The forces see the velocity in the middle of the step, and the place at its end. So springs are of second order in
- * the time step, dashpots of first.
+ * the time step, dashpots of first. (So is the tangential spring where the contact turns: it takes the tangent of the
+ * step's end.) Before the first step no contact has a force.
  *
  * A rotation is a unit vector, and turns within a step by 2 atan(spin dt / 2), which is spin dt to the third order and
  * needs no sine. What rounding takes from its length is given back each time.
@@ -63,9 +64,9 @@ static void kick_and_drift(dem *d) {
     }
 }
 
-/* Has a point of any body moved half of the skin since the pairs were found? A turn moves it by at most the body's reach
- * times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below the limit
- * so has not moved, and only if all is not, roots are drawn. A NaN has moved. */
+/* Has a point of any body moved half of the skin since the pairs were found? A turn moves it by at most the body's
+ * reach times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below
+ * the limit so has not moved, and only if all is not, roots are drawn. A NaN has moved. */
 static bool have_moved(const dem *d, bool exactly) {
     const dem_bodies b = d->bodies;
     const double limit = 0.5 * d->settings.skin;

@@ -2,9 +2,9 @@
  *
  * walls.c - walls move as they are told, or so that the grains press against them with a given force.
  *
- * A plate is a half plane. Its body is a block whose upper side is the plate. A pair of a grain and the plate has a shift
- * along the plate that brings the block under the grain: so the plate has no ends, and narc sees two bodies of similar
- * size, whose separation is precise.
+ * A plate is a half plane. Its body is a block whose upper side is the plate. A pair of a grain and the plate has a
+ * shift along the plate that brings the block under the grain: so the plate has no ends, and narc sees two bodies of
+ * similar size, whose separation is precise.
  */
 #include <math.h>
 
@@ -30,8 +30,8 @@ static double find_distance(const dem *d, int first, int second) {
     return fabs(between.x * a->normal.x + between.y * a->normal.y);
 }
 
-/* How much more a contact presses a wall that moves with speed 1 for a step: by its spring and its dashpot. Of the Hertz
- * law with half the extent for a radius. */
+/* How much more a contact presses a wall that moves with speed 1 for a step: by its spring and its dashpot. Of the
+ * Hertz law with half the extent for a radius. */
 static double find_resistance(const dem *d, size_t contact) {
     const size_t p = d->contacts.pair[contact], a = d->pairs.a[p], b = d->pairs.b[p];
     const double kn = d->laws[d->bodies.material[a]][d->bodies.material[b]].kn;
@@ -53,8 +53,8 @@ void dem_find_resistances(dem *d) {
     }
 }
 
-/* The speed that removes the share `gain` of the error within a step, as far as springs and dashpots at the wall decide.
- * A wall that touches nothing comes at its largest speed. */
+/* The speed that removes the share `gain` of the error within a step, as far as springs and dashpots at the wall
+ * decide. A wall that touches nothing comes at its largest speed. */
 void dem_steer_walls(dem *d) {
     for (size_t w = 0; w < d->wall_count; w++) {
         dem_wall *wall = &d->walls[w];

@@ -27,8 +27,8 @@ static dem collide_at(double x, double y, bool periodic, double drift_x, double 
     return d;
 }
 
-/* Places are sums of other numbers there, so roundings differ: 1e-16 of 16 in each step, and the float of a difference of
- * places may be the next one, 1e-7 of it, which changes a force by 1e-5 at this depth. */
+/* Places are sums of other numbers there, so roundings differ: 1e-16 of 16 in each step, and the float of a difference
+ * of places may be the next one, 1e-7 of it, which changes a force by 1e-5 at this depth. */
 static void check_same(const dem *d, const dem *reference) {
     for (size_t k = 0; k < 2; k++) {
         assert_true(fabs(d->bodies.vx[k] - reference->bodies.vx[k]) < 1e-4);

@@ -61,8 +61,8 @@ static double find_restitution(double wanted, double time_step, double *out_imba
     return after;
 }
 
-/* The dashpot sees the velocity half a step late, so the error is of first order: with half the step, half of it. Of the
- * energy only what the last step dissipates is missing, at most half its power times the step. */
+/* The dashpot sees the velocity half a step late, so the error is of first order: with half the step, half of it. Of
+ * the energy only what the last step dissipates is missing, at most half its power times the step. */
 static void test_restitution(void **state) {
     (void)state;
     const double wanted[] = {0.9, 0.5, 0.1}, duration = PI * sqrt(0.5 * PI / 1e5);

@@ -45,8 +45,8 @@ static double find_drift(double time_step, double *out_first, size_t *out_most) 
     return worst / before;
 }
 
-/* A contact lasts some 0.01, 100 steps: while it lasts, Verlet's energy swings by (w dt)^2 / 8, 1e-4 of its own. What is
- * left behind by a contact that begins or ends within a step is of that size, and of either sign. So some hundred
+/* A contact lasts some 0.01, 100 steps: while it lasts, Verlet's energy swings by (w dt)^2 / 8, 1e-4 of its own. What
+ * is left behind by a contact that begins or ends within a step is of that size, and of either sign. So some hundred
  * collisions stay within 1e-3 of the gas's energy, and a fourth of the step within a fourth of that. */
 static void test_gas_keeps_its_energy(void **state) {
     (void)state;

@@ -30,9 +30,9 @@ static dem make_slope(uint32_t shape, double friction, double rolling_friction, 
     return d;
 }
 
-/* About the contact point, gravity's torque m g sin(angle) arm turns m arm^2 + I. The spring of the contact swings in at
- * the start and is damped, and takes a slip of m g sin(angle) / (3 kt) = 3e-4. Float depths are within 2e-6 of 3e-4, but
- * they change the normal force, which does not count as long as the grain does not slide. */
+/* About the contact point, gravity's torque m g sin(angle) arm turns m arm^2 + I. The spring of the contact swings in
+ * at the start and is damped, and takes a slip of m g sin(angle) / (3 kt) = 3e-4. Float depths are within 2e-6 of 3e-4,
+ * but they change the normal force, which does not count as long as the grain does not slide. */
 static void check_rolling(uint32_t shape, bool periodic) {
     dem d = make_slope(shape, 0.5, 0, periodic);
     const double arm = 1 - 0.5 * find_depth(&d), mass = d.bodies.mass[0], inertia = d.bodies.inertia[0];
@@ -86,8 +86,8 @@ static void test_grains_slide(void **state) {
     check_sliding(ROUND);
 }
 
-/* Rolling friction above tan(angle) holds a disc (its torque can be mu_r R m g cos, gravity's is m g sin R), and below it
- * takes away its share. */
+/* Rolling friction above tan(angle) holds a disc (its torque can be mu_r R m g cos, gravity's is m g sin R), and below
+ * it takes away its share. */
 static void test_rolling_friction(void **state) {
     (void)state;
     dem held = make_slope(DISC, 1, 1.2 * tan(ANGLE), false), slower = make_slope(DISC, 1, 0.5 * tan(ANGLE), false);

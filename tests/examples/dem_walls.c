@@ -70,8 +70,8 @@ static dem make_press(dem_servo servo) {
     return d;
 }
 
-/* The lid comes down until it presses as it should. In series three discs have four contacts, each F / kn deep. Depths are
- * floats, within 2e-6 of some 1e-3, so forces are within 0.2 %. */
+/* The lid comes down until it presses as it should. In series three discs have four contacts, each F / kn deep. Depths
+ * are floats, within 2e-6 of some 1e-3, so forces are within 0.2 %. */
 static void test_servo_force(void **state) {
     (void)state;
     const double force = 150;

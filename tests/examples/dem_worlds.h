@@ -22,8 +22,8 @@ dem_contact_law plain_law(void);
 void add_grain(dem *d, uint32_t shape, double x, double y, double vx, double vy);
 void add_plate(dem *d, const char *name, double x, double y, double normal_x, double normal_y);
 
-/* 120 grains of all shapes in a cell that is periodic in x, between two plates of which the upper one moves along and is
- * held at a stress, with a box that turns. */
+/* 120 grains of all shapes in a cell that is periodic in x, between two plates of which the upper one moves along and
+ * is held at a stress, with a box that turns. */
 dem make_busy_world(unsigned threads);
 
 void start(dem *d);
