@@ -216,7 +216,8 @@ static bool check_indices(const dem *d) {
 }
 
 static bool take_sums(dem *d, const sums *all) {
-    if (all->bodies != d->bodies.count || all->walls != d->wall_count || !dem_grow_pairs(d, &d->pairs, all->pairs))
+    if (all->bodies != d->bodies.count || all->walls != d->wall_count || all->pairs >= UINT32_MAX ||
+        !dem_grow_pairs(d, &d->pairs, all->pairs))
         return false;
     d->pairs.count = all->pairs;
     d->scratch->extra_count = all->extra;
