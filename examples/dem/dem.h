@@ -180,7 +180,8 @@ typedef struct dem_contacts {
     float *separation, *normal_x, *normal_y, *point_x, *point_y; /* the point from A's position */
     float *radius_a, *radius_b;                                  /* Hertz law only */
     uint8_t *arc_a, *arc_b;
-    double *fx, *fy, *torque_a, *torque_b;
+    double *fx, *fy;
+    double *torque_a, *torque_b; /* of several threads, until they are gathered */
 } dem_contacts;
 
 /* Energies, and what was dissipated since the start. kinetic + potential + elastic + damping + friction - walls stays

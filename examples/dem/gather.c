@@ -3,30 +3,18 @@
  * gather.c - from the forces of contacts to those of bodies.
  *
  * A body's forces are added in the order of its contacts: first those where it is B, then those where it is A, for
- * a < b and pairs are in the order of (a, b). A single thread adds contact by contact, which is the same order; several
- * threads take a body each and look up its contacts.
+ * a < b and pairs are in the order of (a, b). A single thread adds each contact's forces as it finds them (laws.c),
+ * which is the same order; several threads take a body each and look up its contacts.
  */
+#include <string.h>
+
 #include "internal.h"
 
-static void clear(dem *d) {
-    dem_bodies *b = &d->bodies;
-    for (size_t k = 0; k < b->count; k++)
-        b->fx[k] = b->fy[k] = b->torque[k] = 0;
-}
-
-static void scatter(dem *d) {
-    const dem_contacts c = d->contacts;
-    const dem_bodies bodies = d->bodies;
-    clear(d);
-    for (size_t k = 0; k < c.count; k++) {
-        const uint32_t a = d->pairs.a[c.pair[k]], b = d->pairs.b[c.pair[k]];
-        bodies.fx[a] -= c.fx[k];
-        bodies.fy[a] -= c.fy[k];
-        bodies.torque[a] += c.torque_a[k];
-        bodies.fx[b] += c.fx[k];
-        bodies.fy[b] += c.fy[k];
-        bodies.torque[b] += c.torque_b[k];
-    }
+void dem_clear_forces(dem *d) {
+    const size_t size = d->bodies.count * sizeof *d->bodies.fx;
+    memset(d->bodies.fx, 0, size);
+    memset(d->bodies.fy, 0, size);
+    memset(d->bodies.torque, 0, size);
 }
 
 /* The contact of a pair, or the count if it has none. */
@@ -63,10 +51,9 @@ static void gather_body(const dem *d, size_t body) {
 void dem_gather_forces(dem *d) {
     const size_t count = d->bodies.count;
     const unsigned team = dem_team(d);
-    if (team == 1) {
-        scatter(d);
+    (void)team;
+    if (d->scratch->adds)
         return;
-    }
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(team)
 #endif

@@ -35,6 +35,7 @@ typedef struct dem_scratch {
     dem_extra *extra;
     size_t extra_count, extra_capacity;
     uint32_t *slot; /* of a pair: its contact, if contacts.pair there says so */
+    bool adds;      /* a single thread adds forces to bodies as it finds them */
     dem_sums *sums;
     size_t sums_capacity;
 } dem_scratch;
@@ -76,6 +77,7 @@ bool dem_add_plate_pairs(dem *d);
 /* laws.c, gather.c */
 void dem_find_dashpots(dem *d);
 bool dem_apply_laws(dem *d);
-void dem_gather_forces(dem *d);
+void dem_clear_forces(dem *d);
+void dem_gather_forces(dem *d); /* unless they were added before */
 
 #endif

@@ -129,8 +129,9 @@ INLINE double slide(double *spring, double *spring_force, double stiffness, doub
     return force;
 }
 
-static void apply_rolling(dem *d, const contact *c, size_t k, double stiffness, double bound, bool is_old,
-                          dem_sums *sums) {
+/* Returns the torque on A; that on B is opposite. */
+static double apply_rolling(dem *d, const contact *c, size_t k, double stiffness, double bound, bool is_old,
+                            dem_sums *sums) {
     dem_rolling *rolling = &d->pairs.rolling[d->contacts.pair[k]];
     if (!is_old)
         *rolling = (dem_rolling){0, 0};
@@ -138,8 +139,13 @@ static void apply_rolling(dem *d, const contact *c, size_t k, double stiffness, 
     const double torque =
         slide(&rolling->angle, &rolling->torque, stiffness, 0, c->turn * d->settings.time_step, bound, sums);
     sums->rolling_energy += 0.5 * rolling->torque * rolling->angle;
-    d->contacts.torque_b[k] -= torque;
-    d->contacts.torque_a[k] += torque;
+    return torque;
+}
+
+INLINE void add_to_body(const dem_bodies *b, size_t k, double fx, double fy, double torque) {
+    b->fx[k] += fx;
+    b->fy[k] += fy;
+    b->torque[k] += torque;
 }
 
 /* Is the contact deeper than it may be? */
@@ -165,7 +171,6 @@ INLINE void apply_law(dem *d, size_t k, bool hertz, bool rolls, dem_sums *sums) 
     const bool is_old = memory.step + 1 == d->step;
     memory = is_old ? memory : (dem_memory){.slide = 0};
     memory.step = d->step;
-    d->scratch->slot[p] = (uint32_t)k;
     sums->old_springs += 0.5 * memory.spring * memory.slide;
 
     const double dashpot = -d->pairs.dashpot[p].normal * damped * c.vn, push = kn * c.depth + dashpot;
@@ -180,10 +185,21 @@ INLINE void apply_law(dem *d, size_t k, bool hertz, bool rolls, dem_sums *sums) 
     const double fx = push * c.normal.x - drag * c.normal.y, fy = push * c.normal.y + drag * c.normal.x;
     d->contacts.fx[k] = fx;
     d->contacts.fy[k] = fy;
-    d->contacts.torque_a[k] = -(c.arm_a.x * fy - c.arm_a.y * fx);
-    d->contacts.torque_b[k] = c.arm_b.x * fy - c.arm_b.y * fx;
-    if (rolls)
-        apply_rolling(d, &c, k, kt * radius * radius, law->rolling_friction * radius * fabs(push), is_old, sums);
+    double torque_a = -(c.arm_a.x * fy - c.arm_a.y * fx), torque_b = c.arm_b.x * fy - c.arm_b.y * fx;
+    if (rolls) {
+        const double bound = law->rolling_friction * radius * fabs(push);
+        const double torque = apply_rolling(d, &c, k, kt * radius * radius, bound, is_old, sums);
+        torque_a += torque;
+        torque_b -= torque;
+    }
+    if (d->scratch->adds) {
+        add_to_body(b, c.a, -fx, -fy, torque_a);
+        add_to_body(b, c.b, fx, fy, torque_b);
+    } else {
+        d->scratch->slot[p] = (uint32_t)k;
+        d->contacts.torque_a[k] = torque_a;
+        d->contacts.torque_b[k] = torque_b;
+    }
     if (!(c.depth <= d->safe_depth) && sums->too_deep == SIZE_MAX && is_too_deep(d, c.a, c.b, c.depth))
         sums->too_deep = k;
 }
@@ -228,7 +244,9 @@ bool dem_apply_laws(dem *d) {
                                                      : d->settings.law == DEM_HERTZ ? apply_hertz
                                                                                     : apply_linear;
     const unsigned team = dem_team(d);
-    (void)team;
+    s->adds = team == 1;
+    if (s->adds)
+        dem_clear_forces(d);
     if (!dem_reserve(d, &s->sums, &s->sums_capacity, blocks, sizeof *s->sums))
         return false;
 #ifdef _OPENMP
