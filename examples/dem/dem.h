@@ -22,7 +22,9 @@
  *       csv.c         the table of measures
  *       restart.c     the state in a file, bit for bit
  *       files.c       files that appear whole or not at all
- *       vtk.c         files for ParaView
+ *       frames.c      what pictures, files for ParaView and tables of grains have in common
+ *       grains_csv.c  tables of grains
+ *       vtk.c         files for ParaView; vtk_xml.c their XML
  *       picture.c     pictures
  *
  * Conventions
@@ -325,14 +327,29 @@ typedef struct dem_file {
 bool dem_open_file(dem_file *out, const char *path, char *error);
 bool dem_close_file(dem_file *out, bool ok, char *error);
 
-/* ------------------------------------------------------------------------------------------------ vtk.c, picture.c */
+/* ------------------------------------------------------------------------------------------------ frames */
 
-/* Writes the state to files whose names begin with `stem` ("out/pile-000012"); errors as above, into `error` (512
- * bytes). */
-bool dem_write_vtk(const dem *d, const char *stem, char *error);
+/* Writes the state for ParaView, and adds it to the lists of frames. Frame 12 of "out/pile" is out/pile-000012.vtp and
+ * out/pile-contacts-000012.vtp, the lists are out/pile.pvd and out/pile-contacts.pvd. Errors as above, into `error`
+ * (512 bytes). */
+bool dem_write_vtk(const dem *d, const char *stem, uint64_t frame, char *error);
 
-/* A PNG or SVG, by the path's suffix, of the region, or of all grains if it is not given, `width` pixels wide. */
-bool dem_draw_picture(const dem *d, const dem_region *region, const char *path, double width, char *error);
+/* What the colours of grains tell. */
+typedef enum dem_coloring { DEM_PLAIN, DEM_SPEED, DEM_COORDINATION, DEM_PRESSURE } dem_coloring;
+
+typedef struct dem_look {
+    dem_region region; /* if it is not given: of all bodies */
+    double width;      /* in pixels */
+    dem_coloring coloring;
+    double top;  /* the value that has the last colour; 0: the largest one of the frame */
+    bool forces; /* lines from centre to contact to centre */
+} dem_look;
+
+/* A PNG or SVG, by the path's suffix. */
+bool dem_draw_picture(const dem *d, const dem_look *look, const char *path, char *error);
+
+/* A line of CSV for each grain. */
+bool dem_write_grains(const dem *d, const char *path, char *error);
 
 /* ------------------------------------------------------------------------------------------------ restart.c */
 

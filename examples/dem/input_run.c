@@ -92,26 +92,50 @@ static void read_name(const json_value *object, const char *key, char *out_text)
         json_fail(&name, "is the input itself");
 }
 
+static dem_coloring read_coloring(const json_value *name) {
+    static const char *const names[] = {
+        [DEM_PLAIN] = "plain", [DEM_SPEED] = "speed", [DEM_COORDINATION] = "coordination", [DEM_PRESSURE] = "pressure"};
+    char text[DEM_NAME_SIZE];
+    json_text(name, text, sizeof text);
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (strcmp(text, names[i]) == 0)
+            return (dem_coloring)i;
+    json_fail(name, "is not one of plain, speed, coordination and pressure");
+}
+
+static dem_look read_look(const json_value *output) {
+    const json_value region = json_member(output, "picture_region"), coloring = json_member(output, "picture_color");
+    dem_look look = {.coloring = DEM_SPEED};
+    if (region.item)
+        look.region = dem_read_region(&region);
+    if (coloring.item)
+        look.coloring = read_coloring(&coloring);
+    look.width = json_number_or(output, "picture_width", 16, 20000, 800);
+    look.top = json_number_or(output, "picture_top", 0, 1e300, 0);
+    look.forces = json_bool_or(output, "picture_forces", true);
+    return look;
+}
+
 void dem_read_output(const json_value *root, const dem *d, dem_output *out_output) {
-    static const char *const keys[] = {"every",         "csv",    "vtk",     "restart",
-                                       "restart_every", "region", "picture", "picture_region",
-                                       "picture_width", NULL};
+    static const char *const keys[] = {
+        "every",          "csv",     "grains",         "vtk",           "restart",       "restart_every",
+        "region",         "picture", "picture_region", "picture_width", "picture_color", "picture_top",
+        "picture_forces", NULL};
     const json_value output = json_member(root, "output");
-    *out_output = (dem_output){.every = UINT64_MAX, .restart_every = UINT64_MAX, .picture_width = 800};
+    *out_output = (dem_output){.every = UINT64_MAX, .restart_every = UINT64_MAX};
     if (!output.item)
         return;
     json_check_object(&output, keys);
     const json_value every = json_require(&output, "every"), restart_every = json_member(&output, "restart_every");
-    const json_value region = json_member(&output, "region"), picture_region = json_member(&output, "picture_region");
+    const json_value region = json_member(&output, "region");
     out_output->every = read_steps(&every, d);
     if (restart_every.item)
         out_output->restart_every = read_steps(&restart_every, d);
     if (region.item)
         out_output->region = dem_read_region(&region);
-    if (picture_region.item)
-        out_output->picture_region = dem_read_region(&picture_region);
-    out_output->picture_width = json_number_or(&output, "picture_width", 16, 20000, 800);
+    out_output->look = read_look(&output);
     read_name(&output, "csv", out_output->csv);
+    read_name(&output, "grains", out_output->grains);
     read_name(&output, "vtk", out_output->vtk);
     read_name(&output, "picture", out_output->picture);
     read_name(&output, "restart", out_output->restart);

@@ -49,9 +49,9 @@ static void write_restart(run *r) {
         end_badly(r);
 }
 
-/* "out/pile" and 12 make "out/pile-000012"; "out/pile.png" makes "out/pile-000012.png". */
-static void number_name(const char *name, uint64_t number, bool has_suffix, char *out_name, size_t size) {
-    const char *dot = has_suffix ? strrchr(name, '.') : NULL;
+/* "out/pile.png" and 12 make "out/pile-000012.png". */
+static void number_name(const char *name, uint64_t number, char *out_name, size_t size) {
+    const char *dot = strrchr(name, '.');
     const int stem = (int)(dot ? (size_t)(dot - name) : strlen(name));
     snprintf(out_name, size, "%.*s-%06" PRIu64 "%s", stem, name, number, dot ? dot : "");
 }
@@ -67,11 +67,13 @@ static void write_frame(run *r) {
             fail("%s: it cannot be written", o->csv);
         r->place.csv_position = (uint64_t)ftell(r->csv);
     }
-    number_name(o->vtk, r->place.frame, false, name, sizeof name);
-    if (o->vtk[0] && !dem_write_vtk(d, name, d->error))
+    if (o->vtk[0] && !dem_write_vtk(d, o->vtk, r->place.frame, d->error))
         end_badly(r);
-    number_name(o->picture, r->place.frame, true, name, sizeof name);
-    if (o->picture[0] && !dem_draw_picture(d, &o->picture_region, name, o->picture_width, d->error))
+    number_name(o->grains, r->place.frame, name, sizeof name);
+    if (o->grains[0] && !dem_write_grains(d, name, d->error))
+        end_badly(r);
+    number_name(o->picture, r->place.frame, name, sizeof name);
+    if (o->picture[0] && !dem_draw_picture(d, &o->look, name, d->error))
         end_badly(r);
     r->place.frame++;
 }

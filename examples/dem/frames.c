@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * frames.c - what files for ParaView, pictures and tables have in common.
+ */
+#include "frames.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static void add_load(dem_load *load, dem_vec force, dem_vec arm) {
+    load->contacts++;
+    load->stress_xx -= force.x * arm.x;
+    load->stress_xy -= force.x * arm.y;
+    load->stress_yx -= force.y * arm.x;
+    load->stress_yy -= force.y * arm.y;
+}
+
+static void scale_load(dem_load *load, double by) {
+    load->stress_xx *= by;
+    load->stress_xy *= by;
+    load->stress_yx *= by;
+    load->stress_yy *= by;
+}
+
+dem_load *dem_find_loads(const dem *d, char *error) {
+    const dem_contacts *c = &d->contacts;
+    const dem_bodies *b = &d->bodies;
+    dem_load *loads = calloc(b->count, sizeof *loads);
+    if (!loads) {
+        snprintf(error, 512, "not enough memory for a frame of %zu bodies", b->count);
+        return NULL;
+    }
+    for (size_t k = 0; k < c->count; k++) {
+        const size_t p = c->pair[k], i = d->pairs.a[p], j = d->pairs.b[p];
+        const dem_vec arm_i = {(double)c->point_x[k], (double)c->point_y[k]};
+        const dem_vec arm_j = {arm_i.x + (b->x[i] - b->x[j] - (double)d->pairs.shift_x[p]),
+                               arm_i.y + (b->y[i] - b->y[j] - (double)d->pairs.shift_y[p])};
+        add_load(&loads[i], (dem_vec){-c->fx[k], -c->fy[k]}, arm_i);
+        add_load(&loads[j], (dem_vec){c->fx[k], c->fy[k]}, arm_j);
+    }
+    for (size_t k = 0; k < b->count; k++) {
+        const double area = 0.78539816339744831 * b->extent[k] * b->extent[k]; /* pi / 4 */
+        scale_load(&loads[k], k < d->grain_count ? 1 / (area * d->settings.thickness) : 0);
+    }
+    return loads;
+}
+
+double dem_normal_force(const dem *d, size_t k) {
+    const dem_contacts *c = &d->contacts;
+    return c->fx[k] * (double)c->normal_x[k] + c->fy[k] * (double)c->normal_y[k];
+}
+
+double dem_tangential_force(const dem *d, size_t k) {
+    const dem_contacts *c = &d->contacts;
+    return c->fy[k] * (double)c->normal_x[k] - c->fx[k] * (double)c->normal_y[k];
+}
+
+/* ------------------------------------------------------------------------------------------------ places */
+
+static void add_box(dem_region *r, double low_x, double low_y, double high_x, double high_y) {
+    r->low_x = fmin(r->low_x, low_x);
+    r->low_y = fmin(r->low_y, low_y);
+    r->high_x = fmax(r->high_x, high_x);
+    r->high_y = fmax(r->high_y, high_y);
+}
+
+dem_region dem_bound_all(const dem *d) {
+    const dem_bodies *b = &d->bodies;
+    dem_region r = {.low_x = INFINITY, .low_y = INFINITY, .high_x = -INFINITY, .high_y = -INFINITY};
+    for (size_t k = 0; k < d->grain_count; k++)
+        add_box(&r, b->x[k] - b->reach[k], b->y[k] - b->reach[k], b->x[k] + b->reach[k], b->y[k] + b->reach[k]);
+    for (size_t w = 0; w < d->wall_count; w++) {
+        const size_t k = d->grain_count + w;
+        narc_arc arcs[NARC_MAX_ARCS];
+        narc_aabb box;
+        if (d->walls[w].kind == DEM_PLATE)
+            continue;
+        const size_t count = narc_get_arcs(d->store, b->shape[k], arcs);
+        const double scale = (double)b->scale[k];
+        if (narc_compute_aabb(arcs, count, atan2(b->sine[k], b->cosine[k]), &box))
+            add_box(&r, b->x[k] + scale * box.min_x, b->y[k] + scale * box.min_y, b->x[k] + scale * box.max_x,
+                    b->y[k] + scale * box.max_y);
+    }
+    return r;
+}
+
+void dem_outline_plate(const dem *d, size_t wall, const dem_region *along, dem_vec out_corners[4]) {
+    const dem_bodies *b = &d->bodies;
+    const dem_wall *w = &d->walls[wall];
+    const size_t k = d->grain_count + wall;
+    const double half = 0.5 * d->shapes[w->shape].extent * 0.88622692545275801; /* sqrt(pi) / 2: of a square */
+    const dem_vec n = w->normal, t = {-n.y, n.x};
+    const dem_vec middle = {0.5 * (along->low_x + along->high_x) - b->x[k] - half * n.x,
+                            0.5 * (along->low_y + along->high_y) - b->y[k] - half * n.y};
+    /* How far the region reaches from its middle along the plate. */
+    const double reach =
+        0.5 * (fabs(t.x) * (along->high_x - along->low_x) + fabs(t.y) * (along->high_y - along->low_y));
+    const double foot = middle.x * t.x + middle.y * t.y, thick = d->grain_extent;
+    const dem_vec face = {b->x[k] + half * n.x + foot * t.x, b->y[k] + half * n.y + foot * t.y};
+    for (int i = 0; i < 4; i++) { /* the tangent is a quarter turn from the normal: the face comes first */
+        const double side = i == 0 || i == 3 ? -reach : reach, depth = i < 2 ? 0 : thick;
+        out_corners[i] = (dem_vec){face.x + side * t.x - depth * n.x, face.y + side * t.y - depth * n.y};
+    }
+}
