@@ -165,6 +165,21 @@ void dem_destroy(dem *d) {
 
 /* ------------------------------------------------------------------------------------------------ shapes, materials */
 
+/* At the point that is furthest from the origin the normal points away from the origin, so the arc's centre is on the
+ * same line: the point is the support in that direction, or in the opposite one if the arc is flatter. */
+static double find_reach(const narc_arc *arcs, size_t count) {
+    double reach = 0;
+    for (size_t i = 0; i < 2 * count; i++) {
+        const narc_arc *arc = &arcs[i / 2];
+        const double sign = i % 2 ? -1 : 1;
+        const bool central = arc->center_x == 0 && arc->center_y == 0;
+        narc_point p = {0, 0};
+        narc_find_support(arcs, count, central ? 1 : sign * arc->center_x, sign * arc->center_y, &p, NULL);
+        reach = fmax(reach, hypot(p.x, p.y));
+    }
+    return reach;
+}
+
 bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count, uint32_t *out_shape) {
     narc_arc centred[NARC_MAX_ARCS];
     narc_error error;
@@ -176,11 +191,11 @@ bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count,
     if (!dem_reserve(d, &d->shapes, &d->shape_capacity, d->shape_count + 1, sizeof *d->shapes))
         return false;
     dem_shape *shape = &d->shapes[d->shape_count++];
-    *shape = (dem_shape){.area = mass.area, .second_moment = mass.second_moment, .reach = 0};
+    *shape = (dem_shape){.area = mass.area,
+                         .second_moment = mass.second_moment,
+                         .reach = find_reach(centred, count),
+                         .extent = 2 * sqrt(mass.area / 3.14159265358979323846)};
     snprintf(shape->name, sizeof shape->name, "%s", name);
-    for (size_t i = 0; i < count; i++)
-        shape->reach = fmax(shape->reach, hypot(centred[i].center_x, centred[i].center_y) + centred[i].radius);
-    shape->extent = 2 * sqrt(mass.area / 3.14159265358979323846);
     return true;
 }
 
