@@ -17,6 +17,9 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   fit-study  the paper's study of goodness of fit; tables and pictures go to out/
   lammps     LAMMPS with grains that are arc shapes, over MPI: its tests, a biaxial compression on 1 and 2 ranks, and
              tables of times beside LAMMPS' own styles; all goes to out/lammps/
+  dem        a pile of 5,000 sand grains with the discrete element program: pictures, files for ParaView, tables and the
+             angle of repose go to out/dem/, in some minutes. dem cases: piles of discs and long grains, biaxial tests,
+             hoppers besides, in half an hour. dem speed: what a step costs. docs/dem.md says what they mean
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.
@@ -45,6 +48,7 @@ gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang
 bench_packages="$library_packages $peer_packages gnuplot-nox"
 study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
 lammps_packages="$run_packages g++ liblammps-dev libopenmpi-dev openmpi-bin"
+dem_packages="$run_packages r-cran-shapes gnuplot-nox"
 arm64_tools="gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
 arm64_libraries="libsleef-dev libsleef3 libcmocka-dev libcmocka0"
 
@@ -238,6 +242,52 @@ lammps() {
     ls -l out/lammps
 }
 
+# The outlines of sand grains, as arc shapes: out/dem/sand.json.
+fit_sand() {
+    sand=$(dpkg -L r-cran-shapes | grep -m 1 '/sand\.rda$') || fail "r-cran-shapes has no file sand.rda"
+    mkdir -p out/dem/grains
+    say "sand grains"
+    Rscript --vanilla bench/fit_study/grains.R "$sand" out/dem/grains
+    build/release/tools/narc fit out/dem/grains/*.csv --approximate --arcs 8 --objective distance \
+        --out out/dem/sand.json --picture out/dem/sand.png
+}
+
+dem_pile() {
+    fit_sand
+    say "a pile of 5,000 sand grains"
+    sh $dem_cases/pile.sh "$dem_program" out/dem/pile out/dem/sand.json "" >out/dem/pile.txt
+    say "a close look at it"
+    sh $dem_cases/look.sh "$dem_program" out/dem/pile pile.json pile.restart ../pile-close.png \
+        "-0.064, -0.006, 0.064, 0.034" 1600
+    gnuplot -e "folder='out/dem/pile'" $dem_cases/pile.gp
+    say "angle of repose, left, right, mean, in degrees"
+    cat out/dem/pile.txt
+}
+
+# As many at a time as there are processors.
+dem_all() {
+    dem_pile
+    say "other cases"
+    sh $dem_cases/all.sh "$dem_program" out/dem out/dem/sand.json "$jobs"
+    gnuplot -e "folder='out/dem'" $dem_cases/plots.gp
+    say "results"
+    cat out/dem/results.txt
+}
+
+dem() {
+    require_packages $dem_packages
+    build release narc_tool example_dem dem_speed
+    dem_program=$PWD/build/release/examples/dem/example_dem dem_cases=examples/dem/cases
+    mkdir -p out
+    case ${1:-pile} in
+    pile) rm -rf out/dem && dem_pile ;;
+    cases) rm -rf out/dem && dem_all ;;
+    speed) build/release/examples/dem/dem_speed ;;
+    *) fail "dem $1: it is pile, cases or speed" ;;
+    esac
+    [ ! -d out/dem ] || ls -ld out/dem/*
+}
+
 # One build, the one that users have, and what answers in minutes; the gate has the rest.
 test_release() {
     require_packages $test_packages
@@ -310,6 +360,10 @@ paper)
     ;;
 fit-study) fit_study ;;
 lammps) lammps ;;
+dem)
+    shift
+    dem "$@"
+    ;;
 *)
     usage
     case ${1:-} in -h | --help | help) exit 0 ;; *) exit 2 ;; esac

@@ -22,6 +22,40 @@ static void scale_load(dem_load *load, double by) {
     load->stress_yy *= by;
 }
 
+static uint32_t find_least_contacts(const dem *d) {
+    for (size_t a = 0; a < d->material_count; a++)
+        for (size_t b = 0; b < d->material_count; b++)
+            if (d->laws[a][b].friction > 0)
+                return 2;
+    return 3;
+}
+
+/* Counts, takes away who is not held, counts again, until all are. */
+static void find_bearing(const dem *d, dem_load *loads) {
+    const uint32_t least = find_least_contacts(d);
+    for (size_t k = 0; k < d->bodies.count; k++)
+        loads[k].bearing = least;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (size_t k = 0; k < d->bodies.count; k++)
+            loads[k].count = 0;
+        for (size_t k = 0; k < d->contacts.count; k++) {
+            const size_t p = d->contacts.pair[k];
+            dem_load *a = &loads[d->pairs.a[p]], *b = &loads[d->pairs.b[p]];
+            const bool bears = a->bearing > 0 && b->bearing > 0 && dem_normal_force(d, k) > 0;
+            a->count += bears;
+            b->count += bears;
+        }
+        for (size_t k = 0; k < d->bodies.count; k++) {
+            const uint32_t now = loads[k].bearing == 0 || (loads[k].count < least && k < d->grain_count)
+                                     ? 0
+                                     : (k < d->grain_count ? loads[k].count : least);
+            changed |= (now == 0) != (loads[k].bearing == 0);
+            loads[k].bearing = now;
+        }
+    }
+}
+
 dem_load *dem_find_loads(const dem *d, char *error) {
     const dem_contacts *c = &d->contacts;
     const dem_bodies *b = &d->bodies;
@@ -38,6 +72,7 @@ dem_load *dem_find_loads(const dem *d, char *error) {
         add_load(&loads[i], (dem_vec){-c->fx[k], -c->fy[k]}, arm_i);
         add_load(&loads[j], (dem_vec){c->fx[k], c->fy[k]}, arm_j);
     }
+    find_bearing(d, loads);
     for (size_t k = 0; k < b->count; k++) {
         const double area = 0.78539816339744831 * b->extent[k] * b->extent[k]; /* pi / 4 */
         scale_load(&loads[k], k < d->grain_count ? 1 / (area * d->settings.thickness) : 0);

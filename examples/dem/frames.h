@@ -9,9 +9,14 @@
 #include "dem.h"
 
 /* A body's contacts of the last step. Its stress is the sum of force times arm over its contacts, by its volume:
- * compression is positive. Walls have contacts, and no stress. */
+ * compression is positive. Walls have contacts, and no stress.
+ *
+ * Grains with too few contacts to be held are rattlers, and so are those that are held by them: a grain is held by two
+ * contacts that press, or, where no pair of materials has friction, three. */
 typedef struct dem_load {
     uint32_t contacts;
+    uint32_t bearing; /* contacts that press, with walls and grains that are no rattlers; of a rattler 0 */
+    uint32_t count;   /* while they are counted */
     double stress_xx, stress_xy, stress_yx, stress_yy;
 } dem_load;
 

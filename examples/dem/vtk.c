@@ -106,6 +106,9 @@ static void write_whole_fields(FILE *file, const dem *d, const dem_load *loads, 
     for (size_t k = 0; k < b->count; k++)
         vtk_add_word(c, loads[k].contacts);
     vtk_write_column(file, c, "Int32", "coordination", 1);
+    for (size_t k = 0; k < b->count; k++)
+        vtk_add_word(c, loads[k].bearing);
+    vtk_write_column(file, c, "Int32", "bearing", 1);
 }
 
 static void write_fields(FILE *file, const dem *d, const dem_load *loads, vtk_column *c) {

@@ -1,0 +1,15 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# usage: sh pile.sh PROGRAM FOLDER SHAPES NAME [SED]: the case pile.json with all shapes of the file SHAPES whose names begin
+# with NAME. Files go to FOLDER; prints the angle of repose, left, right and mean. SED changes the input besides.
+set -eu
+program=$1 folder=$2 shapes=$3 name=$4 change=${5:-}
+cases=$(cd "$(dirname "$0")" && pwd)
+mkdir -p "$folder"
+cp "$shapes" "$folder/shapes.json"
+cd "$folder"
+names=$(grep -o "\"name\": *\"${name}[^\"]*\"" shapes.json | sed 's/"name": *//' | paste -s -d , -)
+sed "s/\[\"disc\"\]/[$names]/; $change" "$cases/pile.json" >pile.json
+"$program" pile.json --threads 1 >pile.txt
+last=$(find . -name 'pile-0*.csv' | sort | tail -n 1)
+awk -F , -f "$cases/repose.awk" "$last"
