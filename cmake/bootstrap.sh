@@ -258,7 +258,7 @@ dem_pile() {
     sh $dem_cases/pile.sh "$dem_program" out/dem/pile out/dem/sand.json "" >out/dem/pile.txt
     say "a close look at it"
     sh $dem_cases/look.sh "$dem_program" out/dem/pile pile.json pile.restart ../pile-close.png \
-        "-0.064, -0.006, 0.064, 0.034" 1600
+        "-0.064, -0.006, 0.064, 0.034" 900
     gnuplot -e "folder='out/dem/pile'" $dem_cases/pile.gp
     say "angle of repose, left, right, mean, in degrees"
     cat out/dem/pile.txt

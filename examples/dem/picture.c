@@ -39,7 +39,8 @@ typedef struct view {
 /* ------------------------------------------------------------------------------------------------ colours */
 
 static color find_color(const view *seen, double share) {
-    const color *stops = seen->look->coloring == DEM_SPEED ? SPEED_STOPS : OTHER_STOPS;
+    const dem_coloring coloring = seen->look->coloring;
+    const color *stops = coloring == DEM_SPEED || coloring == DEM_PLAIN ? SPEED_STOPS : OTHER_STOPS;
     const double place = 2 * fmin(fmax(share, 0), 1);
     const color a = stops[place < 1 ? 0 : 1], b = stops[place < 1 ? 1 : 2];
     const double t = place < 1 ? place : place - 1;
