@@ -12,4 +12,5 @@ names=$(grep -o "\"name\": *\"${name}[^\"]*\"" shapes.json | sed 's/"name": *//'
 sed "s/\[\"disc\"\]/[$names]/; $change" "$cases/pile.json" >pile.json
 "$program" pile.json --threads 1 >pile.txt
 last=$(find . -name 'pile-0*.csv' | sort | tail -n 1)
-awk -F , -f "$cases/repose.awk" "$last"
+width=$(sed -n 's/.*"table".*"width": \([0-9.]*\),.*/\1/p' pile.json)
+awk -F , -v half="$(awk "BEGIN { print $width / 2 }")" -f "$cases/repose.awk" "$last"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# The angle of repose of the case pile.json: awk -F , -f repose.awk pile-000061.csv. The table's grains make the surface:
-# the highest point of each strip of 3 mm. A line is fitted to each flank, from 9 mm off the middle to 9 mm off the edge,
-# by least squares. Prints the left and the right angle and their mean, in degrees.
-BEGIN { strip = 0.003; half = 0.060; margin = 0.009 }
+# The angle of repose of the case pile.json: awk -F , -v half=0.06 -f repose.awk pile-000048.csv, with half of the table's
+# width. The table's grains make the surface: the highest point of each of 40 strips. A line is fitted to each flank, from
+# 15 % off the middle to 15 % off the edge, by least squares. Prints the left and the right angle and their mean, in degrees.
+BEGIN { strip = half / 20; margin = 0.15 * half }
 NR > 1 && $3 > 0 && $2 > -half && $2 < half {
     k = int(($2 + half) / strip)
     top = $3 + $6 / 2
