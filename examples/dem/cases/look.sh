@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# usage: sh look.sh PROGRAM FOLDER INPUT RESTART PICTURE REGION WIDTH: one more step from a restart file of that folder, drawn
-# to PICTURE (from there) with another region and width. Nothing else is written.
+# usage: sh look.sh PROGRAM FOLDER INPUT RESTART PICTURE REGION WIDTH [COLOR]: one more step from a restart file, drawn
+# to PICTURE with another region, width and colour; names are from FOLDER. Nothing else is written.
 set -eu
-program=$1 folder=$2 input=$3 restart=$4 picture=$5 region=$6 width=$7
+program=$1 folder=$2 input=$3 restart=$4 picture=$5 region=$6 width=$7 color=${8:-plain}
 cd "$folder"
 step=$(sed -n 's/.*"time_step": \([^,]*\),.*/\1/p' "$input")
 # All stages of the input are over: one is added.
@@ -15,7 +15,7 @@ awk -v step="$step" '
 { print }' "$input" >look.json
 cat >>look.json <<END
   "output": {"every": $step, "picture": "look.png", "picture_region": [$region], "picture_width": $width,
-             "picture_color": "plain"}
+             "picture_color": "$color"}
 }
 END
 rm -f look-*.png
