@@ -23,9 +23,9 @@ typedef struct dem_load {
 /* Of all bodies, in memory that the caller frees; NULL, with an error (512 bytes), if there is none left. */
 dem_load *dem_find_loads(const dem *d, char *error);
 
-/* How hard a contact's bodies press each other, and how much they rub. */
-double dem_normal_force(const dem *d, size_t contact);
-double dem_tangential_force(const dem *d, size_t contact);
+/* How hard the bodies of contact k press each other, and how much they rub. */
+double dem_normal_force(const dem *d, size_t k);
+double dem_tangential_force(const dem *d, size_t k);
 
 /* Around all grains and walls that are no plates. */
 dem_region dem_bound_all(const dem *d);
