@@ -42,6 +42,20 @@ uint32_t dem_find_shape(const json_value *name, const dem *d) {
 
 /* ------------------------------------------------------------------------------------------------ sizes */
 
+/* Sizes beyond the limits are drawn again: so many must be within. */
+static const double LEAST_SHARE = 0.001;
+
+/* How far a size is from the middle, in deviations times sqrt(2). */
+static double find_deviations(const dem_sizes *sizes, double size) {
+    const double off = sizes->kind == DEM_NORMAL ? size - sizes->mean : log(size / sizes->mean);
+    return off / (sizes->deviation * 1.4142135623730951);
+}
+
+/* The share of sizes that lie within the limits. */
+static double find_share(const dem_sizes *sizes) {
+    return 0.5 * (erf(find_deviations(sizes, sizes->high)) - erf(find_deviations(sizes, sizes->low)));
+}
+
 static dem_sizes read_sizes(const json_value *value) {
     static const char *const keys[] = {"uniform", "normal", "lognormal", "low", "high", NULL};
     if (cJSON_IsNumber(value->item))
@@ -68,6 +82,8 @@ static dem_sizes read_sizes(const json_value *value) {
                              .high = json_positive(value, "high")};
     if (!(sizes.low < sizes.mean && sizes.mean < sizes.high))
         json_fail(value, "does not have its middle between low and high");
+    if (find_share(&sizes) < LEAST_SHARE)
+        json_fail(value, "leaves fewer than one in 1000 sizes between low and high");
     return sizes;
 }
 

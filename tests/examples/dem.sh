@@ -136,6 +136,7 @@ wrong 's/"count": 20/"count": 2.5/' "grains\[0\].count: is not a whole number '2
 wrong 's/"count": 20/"count": 2000, "tries": 50/' "grains\[0\]: grain [0-9]* of 2000 found no free place in 50 tries"
 wrong 's/\[0.2, 0.2, 3.8, 6\]/[0.2, 6, 3.8, 0.2]/' "grains\[0\].region: is not a region"
 wrong 's/"normal": \[0.4, 0.1\]/"normal": [0.2, 0.1]/' "grains\[0\].size: does not have its middle between low and high"
+wrong 's/"normal": \[0.4, 0.1\]/"normal": [0.4, 1e9]/' "grains\[0\].size: leaves fewer than one in 1000 sizes between low and high"
 wrong 's/"size": {"normal": \[0.4, 0.1\], /"size": {/' "grains\[0\].size: is not one of uniform, normal and lognormal"
 wrong 's/"size": {"normal": \[0.4, 0.1\]/"size": {"uniform": [0.5, 0.4]/' "grains\[0\].size.uniform: is not a range"
 wrong 's/"place": "random"/"place": "rain"/' "grains\[0\].place: is not one of list, random and lattice"
