@@ -29,9 +29,17 @@ static dem_energies measure_energies(const dem *d, double *out_fastest) {
     return e;
 }
 
+/* Across a periodic border: the image that is at `low` or the next one above. */
+static double find_image(bool periodic, double value, double low, double width) {
+    return periodic ? value - width * floor((value - low) / width) : value;
+}
+
 static bool is_inside(const dem *d, const dem_region *r, size_t contact, size_t a) {
-    const double x = d->bodies.x[a] + (double)d->contacts.point_x[contact];
-    const double y = d->bodies.y[a] + (double)d->contacts.point_y[contact];
+    const dem_settings *s = &d->settings;
+    const double point_x = d->bodies.x[a] + (double)d->contacts.point_x[contact];
+    const double point_y = d->bodies.y[a] + (double)d->contacts.point_y[contact];
+    const double x = find_image(s->periodic_x, point_x, r->low_x, dem_cell_width(d));
+    const double y = find_image(s->periodic_y, point_y, r->low_y, dem_cell_height(d));
     return !r->given || (x >= r->low_x && x < r->high_x && y >= r->low_y && y < r->high_y);
 }
 
