@@ -150,15 +150,8 @@ static bool is_clear_of_cell(const dem *d, const grid *g, const dem_filling *f, 
     return true;
 }
 
-/* Also of images, and of walls. A plate is asked by the grain's support. */
-static bool is_free(const dem *d, const grid *g, const dem_filling *f, const dem_grain *grain) {
-    const dem_settings *s = &d->settings;
-    narc_arc arcs[NARC_MAX_ARCS];
-    const size_t count = narc_get_arcs(d->store, grain->shape, arcs);
-    for (int i = s->periodic_x ? -1 : 0; i <= (s->periodic_x ? 1 : 0); i++)
-        for (int j = s->periodic_y ? -1 : 0; j <= (s->periodic_y ? 1 : 0); j++)
-            if (!is_clear_of_cell(d, g, f, grain, (dem_vec){i * (s->high_x - s->low_x), j * (s->high_y - s->low_y)}))
-                return false;
+/* Of boxes among the walls. */
+static bool is_clear_of_boxes(const dem *d, const dem_filling *f, const dem_grain *grain, dem_vec shift) {
     for (size_t w = 0; w < d->wall_count; w++) {
         const dem_wall *wall = &d->walls[w];
         const narc_body body = {.x = wall->place.x,
@@ -166,8 +159,25 @@ static bool is_free(const dem *d, const grid *g, const dem_filling *f, const dem
                                 .shape = wall->shape,
                                 .angle = (float)wall->angle,
                                 .scale = (float)wall->scale};
-        if (wall->kind == DEM_BOX && !is_clear_of(d, grain, body, f->gap, (dem_vec){0, 0}))
+        if (wall->kind == DEM_BOX && !is_clear_of(d, grain, body, f->gap, shift))
             return false;
+    }
+    return true;
+}
+
+/* Also of images, and of walls. A plate is asked by the grain's support. */
+static bool is_free(const dem *d, const grid *g, const dem_filling *f, const dem_grain *grain) {
+    const dem_settings *s = &d->settings;
+    narc_arc arcs[NARC_MAX_ARCS];
+    const size_t count = narc_get_arcs(d->store, grain->shape, arcs);
+    for (int i = s->periodic_x ? -1 : 0; i <= (s->periodic_x ? 1 : 0); i++)
+        for (int j = s->periodic_y ? -1 : 0; j <= (s->periodic_y ? 1 : 0); j++) {
+            const dem_vec shift = {i * (s->high_x - s->low_x), j * (s->high_y - s->low_y)};
+            if (!is_clear_of_cell(d, g, f, grain, shift) || !is_clear_of_boxes(d, f, grain, shift))
+                return false;
+        }
+    for (size_t w = 0; w < d->wall_count; w++) {
+        const dem_wall *wall = &d->walls[w];
         if (wall->kind != DEM_PLATE)
             continue;
         const double c = cos(grain->angle), e = sin(grain->angle), x = -wall->normal.x, y = -wall->normal.y;
