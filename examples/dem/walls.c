@@ -34,10 +34,12 @@ static double find_distance(const dem *d, int first, int second) {
  * Hertz law with half the extent for a radius. */
 static double find_resistance(const dem *d, size_t contact) {
     const size_t p = d->contacts.pair[contact], a = d->pairs.a[p], b = d->pairs.b[p];
-    const double kn = d->laws[d->bodies.material[a]][d->bodies.material[b]].kn;
+    const dem_contact_law *law = &d->laws[d->bodies.material[a]][d->bodies.material[b]];
     const double depth = -(double)d->contacts.separation[contact];
-    const double size = d->settings.law == DEM_HERTZ ? 1.5 * sqrt(0.5 * d->bodies.extent[a] * depth) : 1;
-    return kn * size * d->settings.time_step + d->pairs.dashpot[p].normal * (size < 1 ? sqrt(size) : size);
+    const bool hertz = d->settings.law == DEM_HERTZ;
+    const double size = hertz ? sqrt(0.5 * d->bodies.extent[a] * depth) : 1,
+                 damped = law->damping_ratio >= 0 ? sqrt(size) : size;
+    return law->kn * (hertz ? 1.5 : 1) * size * d->settings.time_step + d->pairs.dashpot[p].normal * damped;
 }
 
 void dem_find_resistances(dem *d) {
