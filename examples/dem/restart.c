@@ -212,6 +212,13 @@ static bool check_indices(const dem *d) {
     for (size_t k = 0; k < d->bodies.count; k++)
         if (d->bodies.shape[k] >= d->shape_count || d->bodies.material[k] >= d->material_count)
             return false;
+    for (size_t w = 0; w < d->wall_count; w++)
+        for (size_t i = 0; i < 2; i++) {
+            const int other = d->walls[w].servo.between[i];
+            if (other < -1 || (other >= 0 && (size_t)other >= d->wall_count) ||
+                (other < 0) != (d->walls[w].servo.between[0] < 0))
+                return false;
+        }
     return true;
 }
 
