@@ -28,6 +28,9 @@ static void read_changes(const json_value *walls, const dem *d, dem_stage *stage
             w++;
         if (w == d->wall_count)
             json_fail(&change, "is of no wall of that name");
+        for (size_t i = 0; i < stage->change_count; i++)
+            if (stage->changes[i].wall == w)
+                json_fail(&change, "is there twice, the first time as");
         json_check_object(&change, keys);
         dem_wall_change *added = &stage->changes[stage->change_count++];
         added->wall = w;
