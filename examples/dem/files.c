@@ -21,7 +21,12 @@ static bool fail_file(const char *path, char *error) {
 bool dem_open_file(dem_file *out, const char *path, char *error) {
     const mode_t mask = umask(0);
     umask(mask);
+    struct stat old;
     out->file = NULL;
+    if (stat(path, &old) == 0 && !S_ISREG(old.st_mode)) { /* a device would be replaced by a file */
+        snprintf(error, ERROR_SIZE, "%.400s: it is there, and is not a file", path);
+        return false;
+    }
     const int length = snprintf(out->path, sizeof out->path, "%s", path);
     if (length < 0 || (size_t)length >= sizeof out->path) {
         errno = ENAMETOOLONG;
@@ -38,8 +43,8 @@ bool dem_open_file(dem_file *out, const char *path, char *error) {
 
 bool dem_close_file(dem_file *out, bool ok, char *error) {
     errno = 0;
-    const bool written = !ferror(out->file) && fflush(out->file) == 0;
-    const int reason = errno;
+    const bool flushed = fflush(out->file) == 0, written = flushed && !ferror(out->file);
+    const int reason = errno ? errno : EIO; /* an error that was earlier than the last flush has left none */
     const bool closed = fclose(out->file) == 0;
     if (ok && written && closed && rename(out->temporary, out->path) == 0)
         return true;
