@@ -27,6 +27,7 @@ static void watch_signals(void) {
     action.sa_handler = on_signal;
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit is an error of writing */
 }
 
 /* ------------------------------------------------------------------------------------------------ a run */
@@ -51,7 +52,7 @@ static void write_restart(run *r) {
 
 /* "out/pile.png" and 12 make "out/pile-000012.png". */
 static void number_name(const char *name, uint64_t number, char *out_name, size_t size) {
-    const char *dot = strrchr(name, '.');
+    const char *slash = strrchr(name, '/'), *dot = strrchr(slash ? slash : name, '.');
     const int stem = (int)(dot ? (size_t)(dot - name) : strlen(name));
     snprintf(out_name, size, "%.*s-%06" PRIu64 "%s", stem, name, number, dot ? dot : "");
 }
@@ -146,8 +147,12 @@ static void begin(run *r, const char *restart) {
     r->place.random = r->input.random;
     if (restart && !dem_read_restart(&r->world, &r->place, restart))
         end_badly(r);
-    if (r->place.stage >= r->input.stage_count && restart && r->place.stage > r->input.stage_count)
-        fail("%s: it is at stage %" PRIu64 ", the input has %zu", restart, r->place.stage, r->input.stage_count);
+    const uint64_t stage = r->place.stage;
+    if (restart && stage > r->input.stage_count)
+        fail("%s: it is at stage %" PRIu64 ", the input has %zu", restart, stage, r->input.stage_count);
+    if (restart && stage < r->input.stage_count && r->place.stage_step > r->input.stages[stage].steps)
+        fail("%s: it has done %" PRIu64 " steps of stage %" PRIu64 ", which has %" PRIu64 " in the input", restart,
+             r->place.stage_step, stage, r->input.stages[stage].steps);
     if (o->csv[0] && !(r->csv = dem_open_csv(&r->world, o->csv, r->place.csv_position, r->world.error)))
         end_badly(r);
     if (!restart)
@@ -194,9 +199,9 @@ int main(int argc, char **argv) {
     run *r = calloc(1, sizeof *r);
     if (!r)
         fail("not enough memory");
-    watch_signals();
     dem_read_input(operands[0], options[1].value ? (unsigned)whole_option(&options[1], 1, 256) : 0, &r->world,
                    &r->input);
+    watch_signals(); /* before that a signal ends the program at once: a filling may take long */
     begin(r, options[0].value);
     while (r->place.stage < r->input.stage_count)
         run_stage(r, &r->input.stages[r->place.stage]);
