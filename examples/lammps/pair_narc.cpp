@@ -173,7 +173,6 @@ void PairNarc::Contacts::resize(size_t size, bool hertz) {
     if (hertz) {
         radius_a.resize(size);
         radius_b.resize(size);
-        points.resize(size);
     }
 }
 

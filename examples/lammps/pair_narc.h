@@ -45,7 +45,6 @@ class PairNarc : public Pair {
     struct Contacts {
         std::vector<uint32_t> pair;
         std::vector<float> separation, normal_x, normal_y, point_x, point_y, radius_a, radius_b;
-        std::vector<uint8_t> points;
         size_t count = 0;
         void resize(size_t size, bool hertz);
     };
@@ -66,7 +65,6 @@ class PairNarc : public Pair {
     std::vector<double> slips;      /* two of each pair */
     std::vector<uint32_t> touching; /* the pairs that touched in the last step */
     Contacts contacts;
-    std::vector<uint8_t> remembered; /* scratch of build_pairs() */
 };
 
 class PairNarcHooke : public PairNarc {
