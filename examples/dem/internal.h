@@ -78,6 +78,7 @@ bool dem_add_plate_pairs(dem *d);
 void dem_find_dashpots(dem *d);
 bool dem_apply_laws(dem *d);
 void dem_clear_forces(dem *d);
-void dem_gather_forces(dem *d); /* unless they were added before */
+bool dem_find_first_forces(dem *d); /* of where bodies begin */
+void dem_gather_forces(dem *d);     /* unless they were added before */
 
 #endif

@@ -99,6 +99,11 @@ INLINE contact load_contact(const dem *d, size_t k) {
     c.arm_a = (dem_vec){(double)list->point_x[k], (double)list->point_y[k]};
     c.arm_b = (dem_vec){c.arm_a.x + (b->x[i] - b->x[j] - (double)d->pairs.shift_x[p]),
                         c.arm_a.y + (b->y[i] - b->y[j] - (double)d->pairs.shift_y[p])};
+    if (j >= d->grain_count) { /* a plate's shift is rounded: what of it is across the plate is no depth */
+        const dem_vec n = d->walls[j - d->grain_count].normal;
+        c.depth -= (double)d->pairs.shift_x[p] * n.x + (double)d->pairs.shift_y[p] * n.y;
+        c.depth = c.depth > 0 ? c.depth : 0;
+    }
     const double x = b->vx[j] - b->vx[i] - (b->spin[j] * c.arm_b.y - b->spin[i] * c.arm_a.y);
     const double y = b->vy[j] - b->vy[i] + (b->spin[j] * c.arm_b.x - b->spin[i] * c.arm_a.x);
     c.vn = x * c.normal.x + y * c.normal.y;

@@ -348,7 +348,7 @@ bool dem_start(dem *d) {
         (s->periodic_y && !check_cell(d, "y", s->low_y, &s->high_y)) || !add_walls(d))
         return false;
     d->started = true;
-    return dem_renew_lists(d);
+    return dem_renew_lists(d) && dem_find_first_forces(d);
 }
 
 /* ------------------------------------------------------------------------------------------------ views */

@@ -219,7 +219,9 @@ bool dem_fill_lattice(dem *d, const dem_filling *f, uint64_t *random) {
     const dem_region r = f->region;
     const double columns = floor((r.high_x - r.low_x) / f->spacing.x + 1e-9);
     const double rows = floor((r.high_y - r.low_y) / f->spacing.y + 1e-9);
-    if (columns * rows < (double)f->count || columns * rows < 1 || columns * rows > 1e9)
+    if (columns * rows > 1e8)
+        return dem_fail(d, "a lattice of %g by %g places is too large", columns, rows);
+    if (columns * rows < (double)f->count || columns * rows < 1)
         return dem_fail(d, "a lattice of %g by %g places has no room for %zu grains", columns, rows, f->count);
     const size_t count = f->count > 0 ? f->count : (size_t)(columns * rows);
     for (size_t k = 0; k < count; k++) {

@@ -4,7 +4,7 @@
  *
  * The forces see the velocity in the middle of the step, and the place at its end. So springs are of second order in
  * the time step, dashpots of first. (So is the tangential spring where the contact turns: it takes the tangent of the
- * step's end.) Before the first step no contact has a force.
+ * step's end.) Forces before the first step are those of where grains begin.
  *
  * A rotation is a unit vector, and turns within a step by 2 atan(spin dt / 2), which is spin dt to the third order and
  * needs no sine. What rounding takes from its length is given back each time.
@@ -162,6 +162,20 @@ static bool find_contacts(dem *d) {
 }
 
 /* ------------------------------------------------------------------------------------------------ the step */
+
+/* With a time step of 0 no spring stretches and no work is done. */
+bool dem_find_first_forces(dem *d) {
+    const double time_step = d->settings.time_step;
+    d->settings.time_step = 0;
+    dem_move_walls(d); /* walls get their velocities */
+    const bool found = find_contacts(d) && dem_apply_laws(d);
+    d->settings.time_step = time_step;
+    if (!found)
+        return false;
+    dem_gather_forces(d);
+    dem_find_resistances(d);
+    return true;
+}
 
 bool dem_step(dem *d) {
     const bool timed = d->clock.on;

@@ -27,6 +27,23 @@ static void test_work_of_a_wall(void **state) {
     dem_destroy(&d);
 }
 
+/* The depth in a plate that is neither level nor upright, far along it, before the first step. */
+static void test_oblique_plate_far_away(void **state) {
+    (void)state;
+    const double depth = 1e-3;
+    for (int k = 0; k < 20; k++) {
+        const double along = 1e4 + 7.7 * k;
+        dem d = make_world(plain_settings(), plain_law());
+        const double above = d.shapes[DISC].reach - depth;
+        add_plate(&d, "slope", 0, 0, 0.6, 0.8);
+        add_grain(&d, DISC, 0.8 * along + 0.6 * above, -0.6 * along + 0.8 * above, 0, 0);
+        start(&d);
+        assert_int_equal(d.contacts.count, 1);
+        assert_true(fabs(hypot(d.bodies.fx[0], d.bodies.fy[0]) / (plain_law().kn * depth) - 1) < 2e-3);
+        dem_destroy(&d);
+    }
+}
+
 /* A box on an arm: after one turn it is where it was, and its surface moves as it turns. */
 static void test_turning_wall(void **state) {
     (void)state;
@@ -128,9 +145,10 @@ static void test_conveyor(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_work_of_a_wall), cmocka_unit_test(test_turning_wall),
-                                       cmocka_unit_test(test_servo_force), cmocka_unit_test(test_servo_stress),
-                                       cmocka_unit_test(test_conveyor)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_work_of_a_wall), cmocka_unit_test(test_oblique_plate_far_away),
+        cmocka_unit_test(test_turning_wall),   cmocka_unit_test(test_servo_force),
+        cmocka_unit_test(test_servo_stress),   cmocka_unit_test(test_conveyor)};
     if (!test_begin())
         return TEST_SKIPPED;
     return cmocka_run_group_tests_name("dem_walls", tests, NULL, NULL);
