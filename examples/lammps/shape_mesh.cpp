@@ -17,6 +17,8 @@ constexpr double largest_sweep = 0.09;
 } // namespace
 
 void write_mesh(const Form &form, const std::string &path) {
+    if (form.name.find('/') != std::string::npos)
+        throw std::runtime_error(path + ": the shape's name has a / and cannot be a file's");
     const std::string part = path + ".part";
     FILE *file = std::fopen(part.c_str(), "w");
     if (!file)
