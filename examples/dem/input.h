@@ -51,6 +51,8 @@ void dem_free_input(dem_input *input);
 void dem_read_materials(const json_value *root, dem *d);
 void dem_read_contact(const json_value *root, dem *d);
 void dem_read_shapes(const json_value *root, dem *d);
+enum { DEM_SHAPES_PATH_SIZE = 2 * DEM_PATH_SIZE };
+void dem_find_shapes_file(const json_value *root, char path[DEM_SHAPES_PATH_SIZE]);
 void dem_read_grains(const json_value *root, dem *d, uint64_t *random);
 void dem_read_walls(const json_value *root, dem *d);
 void dem_read_motion(const json_value *object, const dem *d, dem_wall_change *out_change);

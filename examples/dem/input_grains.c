@@ -12,15 +12,21 @@
 /* ------------------------------------------------------------------------------------------------ shapes */
 
 /* A shapes file as narc fit writes it, named from the input's folder. */
-void dem_read_shapes(const json_value *root, dem *d) {
+void dem_find_shapes_file(const json_value *root, char path[DEM_SHAPES_PATH_SIZE]) {
     const json_value name = json_require(root, "shapes");
-    char text[DEM_PATH_SIZE], path[2 * DEM_PATH_SIZE];
+    char text[DEM_PATH_SIZE];
     json_text(&name, text, sizeof text);
     const char *slash = strrchr(root->file, '/');
     if (slash && text[0] != '/' && (size_t)(slash - root->file) < DEM_PATH_SIZE)
-        snprintf(path, sizeof path, "%.*s/%s", (int)(slash - root->file), root->file, text);
+        snprintf(path, DEM_SHAPES_PATH_SIZE, "%.*s/%s", (int)(slash - root->file), root->file, text);
     else
-        snprintf(path, sizeof path, "%s", text);
+        snprintf(path, DEM_SHAPES_PATH_SIZE, "%s", text);
+}
+
+void dem_read_shapes(const json_value *root, dem *d) {
+    const json_value name = json_require(root, "shapes");
+    char path[DEM_SHAPES_PATH_SIZE];
+    dem_find_shapes_file(root, path);
     shape_list shapes;
     read_shapes(path, &shapes);
     for (size_t k = 0; k < shapes.count; k++) {

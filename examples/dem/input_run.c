@@ -83,16 +83,23 @@ void dem_read_stages(const json_value *root, dem *d, dem_input *input) {
 
 /* ------------------------------------------------------------------------------------------------ output */
 
-/* An output may not take the input's place. */
-static void read_name(const json_value *object, const char *key, char *out_text) {
+static bool is_same_file(const char *one, const char *other) {
+    struct stat a, b;
+    return stat(one, &a) == 0 && stat(other, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+/* An output may not take the place of an input. */
+static void read_name(const json_value *root, const json_value *object, const char *key, char *out_text) {
     const json_value name = json_member(object, key);
-    struct stat input, output;
+    char shapes[DEM_SHAPES_PATH_SIZE];
     if (!name.item)
         return;
     json_text(&name, out_text, DEM_PATH_SIZE - 32);
-    if (stat(name.file, &input) == 0 && stat(out_text, &output) == 0 && input.st_dev == output.st_dev &&
-        input.st_ino == output.st_ino)
+    dem_find_shapes_file(root, shapes);
+    if (is_same_file(name.file, out_text))
         json_fail(&name, "is the input itself");
+    if (is_same_file(shapes, out_text))
+        json_fail(&name, "is the file of shapes");
 }
 
 static dem_coloring read_coloring(const json_value *name) {
@@ -137,11 +144,13 @@ void dem_read_output(const json_value *root, const dem *d, dem_output *out_outpu
     if (region.item)
         out_output->region = dem_read_region(&region);
     out_output->look = read_look(&output);
-    read_name(&output, "csv", out_output->csv);
-    read_name(&output, "grains", out_output->grains);
-    read_name(&output, "vtk", out_output->vtk);
-    read_name(&output, "picture", out_output->picture);
-    read_name(&output, "restart", out_output->restart);
+    read_name(root, &output, "csv", out_output->csv);
+    read_name(root, &output, "grains", out_output->grains);
+    read_name(root, &output, "vtk", out_output->vtk);
+    read_name(root, &output, "picture", out_output->picture);
+    read_name(root, &output, "restart", out_output->restart);
+    if (out_output->restart[0] && strcmp(out_output->restart, out_output->csv) == 0)
+        json_fail(&output, "names one file twice");
     if (restart_every.item && !out_output->restart[0])
         json_fail(&restart_every, "is there without restart");
     if (out_output->picture[0])

@@ -148,6 +148,8 @@ wrong 's/"name": "block"/"name": "floor"/' "walls\[1\].name: is the name of anot
 wrong 's/"name": "block"/"name": "a,b"/' "walls\[1\].name: has a comma"
 wrong 's/"name": "fall"/"name": "a\\u001bb"/' "stages\[0\].name: has a comma, a quote, a control character"
 wrong 's/"csv": "out.csv"/"csv": "bad.json"/' "output.csv: is the input itself"
+wrong 's/"restart": "out.restart"/"restart": ".\/shapes.json"/' "output.restart: is the file of shapes"
+wrong 's/"restart": "out.restart"/"restart": "out.csv"/' "output: names one file twice"
 wrong 's/"plate": {"point": \[0, 0\], "normal": \[0, 1\]}/"at": [0, 0]/' "walls\[0\]: is not one of plate, box and shape"
 wrong 's/"normal": \[0, 1\]/"normal": [0, 0]/' "walls\[0\].plate.normal: has no length"
 wrong 's/"radius": 0.1/"radius": 1/' "walls\[1\].box: "
