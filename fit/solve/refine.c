@@ -38,6 +38,8 @@ struct limit {
     double factor, sweep, length_factor;
 };
 
+enum { MOST_VARIABLES = 3 * MAX_CHAIN + 3 };
+
 struct descent {
     narc_search *search;
     narc_chain chain;
@@ -45,12 +47,13 @@ struct descent {
     double sweep[MAX_CHAIN];
     size_t limit_count;
     struct limit limits[3 * MAX_CHAIN];
-    double gradient[3 * MAX_CHAIN + 3];
+    size_t free_count, free[MOST_VARIABLES]; /* the variables that NLopt has */
+    double x[MOST_VARIABLES], gradient[MOST_VARIABLES];
 };
 
-/* The variables as NLopt has them: those of narc_make_layout(), with angles in place of turns, and lengths of arcs in
- * place of radii. A flat arc is much like an edge: its length matters, and how it is made up of radius and sweep does
- * not, so that with lengths the problem is far less curved. */
+/* The variables: those of narc_make_layout(), with angles in place of turns, and lengths of arcs in place of radii. A
+ * flat arc is much like an edge: its length matters, and how it is made up of radius and sweep does not, so that with
+ * lengths the problem is far less curved. */
 static void write_variables(const narc_chain *chain, double distance, double *x) {
     const narc_layout layout = narc_make_layout(chain->count);
     for (size_t i = 0; i < chain->count; i++)
@@ -62,9 +65,31 @@ static void write_variables(const narc_chain *chain, double distance, double *x)
     x[layout.distance] = distance;
 }
 
-static void move_to(struct descent *descent, const double *x) {
+/* NLopt has those of the variables that are not 0 throughout: a step's time grows with the square of their number. */
+static void list_free(struct descent *descent) {
+    const narc_problem *problem = &descent->search->problem;
+    const narc_layout layout = narc_make_layout(problem->count);
+    descent->free_count = 0;
+    for (size_t c = 0; c < layout.count; c++) {
+        const bool none = c < layout.edge    ? problem->family == NARC_FIT_POLYGON
+                          : c < layout.start ? problem->family == NARC_FIT_N_ARC
+                                             : c == layout.distance && !narc_is_distance(problem);
+        if (!none)
+            descent->free[descent->free_count++] = c;
+    }
+}
+
+static void take_free(const struct descent *descent, const double *all, double *out) {
+    for (size_t k = 0; k < descent->free_count; k++)
+        out[k] = all[descent->free[k]];
+}
+
+static void move_to(struct descent *descent, const double *free) {
     narc_chain *chain = &descent->chain;
     const narc_layout layout = narc_make_layout(chain->count);
+    double *x = descent->x;
+    for (size_t k = 0; k < descent->free_count; k++)
+        x[descent->free[k]] = free[k];
     memcpy(chain->edge, x + layout.edge, chain->count * sizeof *x);
     memcpy(chain->angle, x + layout.angle, chain->count * sizeof *x);
     for (size_t i = 0; i < chain->count; i++) {
@@ -109,11 +134,14 @@ static double measure(const narc_problem *problem, const narc_chain *chain, doub
 
 static double objective(unsigned count, const double *x, double *gradient, void *context) {
     struct descent *descent = context;
+    double *all = gradient ? descent->gradient : NULL;
     (void)count;
     move_to(descent, x);
-    const double value = measure(&descent->search->problem, &descent->chain, descent->distance, gradient);
-    if (gradient)
-        convert_gradient(descent, gradient);
+    const double value = measure(&descent->search->problem, &descent->chain, descent->distance, all);
+    if (gradient) {
+        convert_gradient(descent, all);
+        take_free(descent, all, gradient);
+    }
     return value;
 }
 
@@ -123,11 +151,14 @@ static void closure(unsigned rows, double *result, unsigned count, const double 
     const narc_point gap = minus(descent->chain.center[descent->chain.count], descent->chain.center[0]);
     result[0] = gap.x;
     result[1] = gap.y;
+    (void)rows;
     if (gradient) {
-        memset(gradient, 0, (size_t)rows * count * sizeof *gradient);
-        narc_derive_gap(&descent->chain, gradient, gradient + count);
-        convert_gradient(descent, gradient);
-        convert_gradient(descent, gradient + count);
+        double x_row[MOST_VARIABLES] = {0}, y_row[MOST_VARIABLES] = {0};
+        narc_derive_gap(&descent->chain, x_row, y_row);
+        convert_gradient(descent, x_row);
+        convert_gradient(descent, y_row);
+        take_free(descent, x_row, gradient);
+        take_free(descent, y_row, gradient + count);
     }
 }
 
@@ -139,12 +170,12 @@ static void conditions(unsigned rows, double *result, unsigned count, const doub
     move_to(descent, x);
     for (unsigned k = 0; k < rows; k++) {
         double *of_row = descent->gradient;
-        memset(of_row, 0, count * sizeof *of_row);
+        memset(of_row, 0, layout.count * sizeof *of_row);
         const double value = narc_evaluate_row(problem, &descent->chain, &descent->search->rows->items[k], of_row);
         result[k] = -value - of_row[layout.distance] * descent->distance;
         convert_gradient(descent, of_row);
         for (unsigned c = 0; c < count && gradient; c++)
-            gradient[(size_t)k * count + c] = -of_row[c];
+            gradient[(size_t)k * count + c] = -of_row[descent->free[c]];
     }
 }
 
@@ -153,21 +184,23 @@ static double read_sweep(const narc_layout *layout, size_t n, size_t arc, const 
     return x[layout->angle + next] - x[layout->angle + arc] + (next ? 0 : 2 * PI);
 }
 
-static void limits(unsigned rows, double *result, unsigned count, const double *x, double *gradient, void *context) {
-    const struct descent *descent = context;
+static void limits(unsigned rows, double *result, unsigned count, const double *free, double *gradient, void *context) {
+    struct descent *descent = context;
     const size_t n = descent->chain.count;
     const narc_layout layout = narc_make_layout(n);
-    if (gradient)
-        memset(gradient, 0, (size_t)rows * count * sizeof *gradient);
+    const double *x = descent->x;
+    move_to(descent, free);
     for (size_t k = 0; k < rows; k++) {
         const struct limit *limit = &descent->limits[k];
         result[k] = limit->factor * (read_sweep(&layout, n, limit->arc, x) - limit->sweep) +
                     limit->length_factor * x[layout.radius + limit->arc];
         if (gradient) {
-            double *entries = gradient + k * count;
+            double *entries = descent->gradient;
+            memset(entries, 0, layout.count * sizeof *entries);
             entries[layout.angle + (limit->arc + 1) % n] += limit->factor;
             entries[layout.angle + limit->arc] -= limit->factor;
             entries[layout.radius + limit->arc] += limit->length_factor;
+            take_free(descent, entries, gradient + k * count);
         }
     }
 }
@@ -202,38 +235,38 @@ static void keep_near(const narc_problem *problem, const narc_chain *chain, doub
 }
 
 /* Besides the lasting bounds, a round keeps within a box around where it begins: further away its rows say little. */
-static void set_bounds(nlopt_opt solver, const narc_problem *problem, const narc_layout *layout, double box,
-                       const double *x) {
-    for (unsigned c = 0; c < layout->count; c++) {
+static void set_bounds(nlopt_opt solver, const struct descent *descent, double box) {
+    const narc_problem *problem = &descent->search->problem;
+    const narc_layout layout = narc_make_layout(problem->count);
+    for (size_t k = 0; k < descent->free_count; k++) {
+        const size_t c = descent->free[k];
         double lower = -HUGE_VAL, upper = HUGE_VAL;
-        if (c < layout->edge) {
+        if (c < layout.start || c == layout.distance)
             lower = 0;
-            upper = problem->family == NARC_FIT_POLYGON ? 0 : HUGE_VAL;
-        } else if (c < layout->start) {
-            lower = 0;
+        if (c >= layout.edge && c < layout.start)
             upper = narc_edge_limit(problem);
-        } else if (c >= layout->angle && c < layout->distance) {
-            lower = x[c] - box;
-            upper = x[c] + box;
-        } else if (c == layout->distance) {
-            lower = 0;
-            upper = narc_is_distance(problem) ? HUGE_VAL : 0;
+        if (c >= layout.angle && c < layout.distance) {
+            lower = descent->x[c] - box;
+            upper = descent->x[c] + box;
         }
-        nlopt_set_lower_bound(solver, (int)c, lower);
-        nlopt_set_upper_bound(solver, (int)c, upper);
+        nlopt_set_lower_bound(solver, (int)k, lower);
+        nlopt_set_upper_bound(solver, (int)k, upper);
     }
 }
 
-static void run_solver(struct descent *descent, const narc_layout *layout, double box, double gain, double *x) {
-    const unsigned count = (unsigned)layout->count;
-    double least;
-    nlopt_opt solver = nlopt_create(NLOPT_LD_SLSQP, count);
+/* One attempt, from the descent's chain to another. */
+static void run_solver(struct descent *descent, double box, double gain) {
+    double least, x[MOST_VARIABLES];
+    list_free(descent);
+    nlopt_opt solver = nlopt_create(NLOPT_LD_SLSQP, (unsigned)descent->free_count);
     if (!solver)
         return;
-    set_bounds(solver, &descent->search->problem, layout, box, x);
+    write_variables(&descent->chain, descent->distance, descent->x);
+    take_free(descent, descent->x, x);
+    set_bounds(solver, descent, box);
     nlopt_set_min_objective(solver, objective, descent);
     nlopt_add_equality_mconstraint(solver, 2, closure, descent, NULL);
-    list_limits(descent, box, x);
+    list_limits(descent, box, descent->x);
     if (descent->limit_count)
         nlopt_add_inequality_mconstraint(solver, (unsigned)descent->limit_count, limits, descent, NULL);
     if (descent->search->rows->count)
@@ -243,6 +276,7 @@ static void run_solver(struct descent *descent, const narc_layout *layout, doubl
     nlopt_set_maxeval(solver, descent->search->rows->count ? EVALUATIONS : BARE_EVALUATIONS);
     nlopt_optimize(solver, x, &least);
     nlopt_destroy(solver);
+    move_to(descent, x);
 }
 
 /* False if the sectors are out of order or the chain can't be closed. */
@@ -268,7 +302,6 @@ static size_t add_missing(narc_search *search, const narc_chain *chain, double d
 
 static bool solve_round(narc_search *search, const narc_candidate *candidate, double box, double gain,
                         narc_candidate *out_next) {
-    const narc_layout layout = narc_make_layout(search->problem.count);
     const bool bare = search->problem.goal == NARC_FIT_DIFFERENCE;
     struct descent descent = {
         .search = search, .chain = candidate->chain, .widest = narc_widest_sweep(&search->problem)};
@@ -280,10 +313,7 @@ static bool solve_round(narc_search *search, const narc_candidate *candidate, do
     }
     bool found = false;
     for (unsigned attempt = 0; attempt < ATTEMPTS; attempt++) {
-        double x[3 * MAX_CHAIN + 3];
-        write_variables(&descent.chain, descent.distance, x);
-        run_solver(&descent, &layout, box, gain, x);
-        move_to(&descent, x);
+        run_solver(&descent, box, gain);
         narc_candidate next;
         if (!take_chain(search, &descent.chain, &next))
             break;
