@@ -13,6 +13,10 @@
 /* Rows hold to this, in units of the outline's radius. What is left over is repaired exactly afterwards. */
 static const double FEASIBLE = 1e-9;
 
+/* The GNU C library takes a block of this size from the system, and when it is released keeps as much free memory from
+ * then on. Otherwise each programme's memory would come from the system and go back: a sixth of a fit's time. */
+enum { LARGE_BLOCK = 1 << 21 };
+
 bool narc_open_programme(narc_programme *programme, size_t columns, size_t row_capacity) {
     *programme = (narc_programme){.columns = columns, .row_capacity = row_capacity};
     double **const arrays[] = {&programme->objective, &programme->lower, &programme->upper, &programme->solution};
@@ -23,10 +27,11 @@ bool narc_open_programme(narc_programme *programme, size_t columns, size_t row_c
     }
     programme->row_lower = malloc(row_capacity * sizeof(double));
     programme->row_upper = malloc(row_capacity * sizeof(double));
-    programme->entries = malloc(row_capacity * columns * sizeof(double));
+    const size_t entries_size = row_capacity * columns * sizeof(double);
+    programme->entries = malloc(entries_size > LARGE_BLOCK ? entries_size : LARGE_BLOCK);
     programme->packed = malloc(row_capacity * columns * sizeof(double));
     programme->packed_index = malloc(row_capacity * columns * sizeof(int));
-    programme->packed_start = malloc((columns + 1) * sizeof(int));
+    programme->packed_start = malloc(((columns > row_capacity ? columns : row_capacity) + 1) * sizeof(int));
     programme->model = Clp_newModel();
     if (!whole || !programme->row_lower || !programme->row_upper || !programme->entries || !programme->packed ||
         !programme->packed_index || !programme->packed_start || !programme->model) {
@@ -58,7 +63,7 @@ void narc_close_programme(narc_programme *programme) {
 }
 
 void narc_clear_programme(narc_programme *programme) {
-    programme->rows = 0;
+    programme->rows = programme->loaded = 0;
     for (size_t k = 0; k < programme->columns; k++) {
         programme->objective[k] = 0;
         programme->lower[k] = -INFINITY;
@@ -77,7 +82,7 @@ double *narc_add_row(narc_programme *programme, double lower, double upper) {
 }
 
 /* CLP takes its matrix by columns, without zeros. */
-static void pack(narc_programme *programme) {
+static void load_columns(narc_programme *programme) {
     int used = 0;
     for (size_t column = 0; column < programme->columns; column++) {
         programme->packed_start[column] = used;
@@ -90,14 +95,39 @@ static void pack(narc_programme *programme) {
         }
     }
     programme->packed_start[programme->columns] = used;
-}
-
-bool narc_solve_programme(narc_programme *programme) {
-    Clp_Simplex *model = programme->model;
-    pack(programme);
-    Clp_loadProblem(model, (int)programme->columns, (int)programme->rows, programme->packed_start,
+    Clp_loadProblem(programme->model, (int)programme->columns, (int)programme->rows, programme->packed_start,
                     programme->packed_index, programme->packed, programme->lower, programme->upper,
                     programme->objective, programme->row_lower, programme->row_upper);
+}
+
+/* Rows that come later it takes by rows. */
+static void add_rows(narc_programme *programme) {
+    int used = 0;
+    const size_t added = programme->rows - programme->loaded;
+    for (size_t k = 0; k < added; k++) {
+        programme->packed_start[k] = used;
+        const double *row = programme->entries + (programme->loaded + k) * programme->columns;
+        for (size_t column = 0; column < programme->columns; column++) {
+            if (row[column] != 0) {
+                programme->packed[used] = row[column];
+                programme->packed_index[used++] = (int)column;
+            }
+        }
+    }
+    programme->packed_start[added] = used;
+    Clp_addRows(programme->model, (int)added, programme->row_lower + programme->loaded,
+                programme->row_upper + programme->loaded, programme->packed_start, programme->packed_index,
+                programme->packed);
+}
+
+/* With rows added, the dual method goes on from the last solution. */
+bool narc_solve_programme(narc_programme *programme) {
+    Clp_Simplex *model = programme->model;
+    if (programme->loaded == 0)
+        load_columns(programme);
+    else
+        add_rows(programme);
+    programme->loaded = programme->rows;
     Clp_dual(model, 0);
     if (Clp_status(model) != 0)
         Clp_primal(model, 0);

@@ -14,7 +14,7 @@ typedef struct narc_programme {
     size_t columns, rows;
     double *objective, *lower, *upper;       /* of the columns */
     double *row_lower, *row_upper, *entries; /* entries[row * columns + column] */
-    size_t row_capacity;
+    size_t row_capacity, loaded; /* rows that the model has */
     double *solution;
     void *model; /* a Clp_Simplex */
     int *packed_index, *packed_start;
@@ -31,7 +31,8 @@ void narc_clear_programme(narc_programme *programme);
 /* A new row of zeros, to be filled in; NULL if there is no room. */
 double *narc_add_row(narc_programme *programme, double lower, double upper);
 
-/* Fills in `solution`. False if there is none (or no end of it). */
+/* Fills in `solution`. False if there is none (or no end of it). It may be called again with more rows; objective and
+ * bounds stay until the programme is cleared. */
 bool narc_solve_programme(narc_programme *programme);
 
 #endif
