@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * best.c - from many starts to the best chains: a linear programme for each set of normals, the local search from the
- * most promising ones, further from the better half, and then exchanges, in which one junction goes and another comes
+ * most promising ones, further from the best quarter, and then exchanges, in which one junction goes and another comes
  * somewhere else.
  */
 #include "solve/best.h"
@@ -13,7 +13,7 @@
 #include "outline/vector.h"
 #include "solve/starts.h"
 
-/* Rounds of quadratic programming and the gain that is worth another: from each start, from the better half, after an
+/* Rounds of quadratic programming and the gain that is worth another: from each start, from the best quarter, after an
  * exchange, and for the best. */
 struct depth {
     unsigned rounds;
@@ -35,19 +35,17 @@ static void refine(narc_search *search, narc_candidate *item, struct depth depth
 enum { EXCHANGED = 5, EXCHANGE_SEARCHES = 2, EXCHANGERS = 2 };
 
 /* Chains of fewer arcs are split in all places, others where another arc is wanted most. */
-enum { FEW_ARCS = 8 };
-
-/* Kicks move normals by up to this part of the way to the next. */
-static const double KICK = 0.3;
+enum { SPLIT_EVERYWHERE = 8 };
 
 /* Values that differ by less than this part are those of one chain, found twice. */
 static const double SAME = 1e-7;
 
-static size_t count_halves(size_t starts) { return starts / 3 + 1; }
+static size_t count_near(size_t starts) { return starts / 3 + 1; }
+static size_t count_best(size_t starts) { return starts / 4 + 1; }
 
 size_t narc_count_work(const narc_effort *effort) {
-    return effort->starts + effort->starts / 3 + 1 + count_halves(effort->starts) +
-           EXCHANGERS * EXCHANGE_SEARCHES * effort->exchanges + effort->kicks + 1;
+    return effort->starts + count_near(effort->starts) + count_best(effort->starts) +
+           EXCHANGERS * EXCHANGE_SEARCHES * effort->exchanges + 1;
 }
 
 struct pool {
@@ -158,7 +156,7 @@ static bool try_exchanges(narc_search *search, narc_candidate *best) {
 /* Solves a linear programme for more sets of normals than the pool has room for, and for many more where they end in
  * the same chains, as they do for a symmetric outline. */
 static bool enter_starts(narc_search *search, struct pool *pool) {
-    const size_t usual = 2 * pool->room + (search->problem.count > MANY_ARCS ? 2 : 12);
+    const size_t usual = 3 * pool->room / 2 + (search->problem.count > MANY_ARCS ? 2 : 12);
     narc_start_list starts = {.room = 3 * usual};
     starts.angles = malloc(starts.room * sizeof *starts.angles);
     if (!starts.angles)
@@ -202,7 +200,7 @@ static void enter_splits(narc_search *search, const narc_chain *known, struct po
     double needs[MAX_CHAIN], wants[MAX_CHAIN];
     size_t splits[MAX_CHAIN + 1];
     mark_places(search, known, needs, wants);
-    size_t count = pick_least(wants, known->count, known->count < FEW_ARCS ? known->count : EXCHANGED, splits);
+    size_t count = pick_least(wants, known->count, known->count < SPLIT_EVERYWHERE ? known->count : EXCHANGED, splits);
     double sweep;
     splits[count++] = narc_find_widest(known->angle, known->count, &sweep);
     for (size_t k = 0; k < count; k++) {
@@ -227,39 +225,6 @@ static bool refine_all(narc_search *search, struct pool *source, struct depth de
     return true;
 }
 
-/* Moves each normal at random by as much as keeps them in order. False if a sector gets too wide. */
-static bool kick(const narc_chain *chain, double widest, uint64_t *state, double *out_angles) {
-    for (size_t k = 0; k < chain->count; k++) {
-        const double before = k ? chain->angle[k - 1] : chain->angle[chain->count - 1] - 2 * PI;
-        const double where = 2 * narc_next_random(state) - 1;
-        out_angles[k] =
-            chain->angle[k] +
-            KICK * where * (where > 0 ? narc_end_angle(chain, k) - chain->angle[k] : chain->angle[k] - before);
-    }
-    bool fits = true;
-    for (size_t k = 0; k < chain->count; k++)
-        fits = fits && (k + 1 < chain->count ? out_angles[k + 1] : out_angles[0] + 2 * PI) - out_angles[k] <= widest;
-    return fits;
-}
-
-/* Goes on from normals near those of a chain, and from what is better: basin hopping (Wales and Doye 1997). */
-static bool try_kicks(narc_search *search, size_t kicks, narc_candidate *best) {
-    uint64_t state = 1;
-    bool going = true;
-    for (size_t k = 0; k < kicks && going; k++) {
-        double angles[MAX_CHAIN];
-        narc_candidate next;
-        if (kick(&best->chain, narc_widest_sweep(&search->problem), &state, angles) &&
-            narc_fit_normals(search, angles, &next)) {
-            refine(search, &next, EXCHANGE);
-            if (next.value < best->value)
-                *best = next;
-        }
-        going = narc_advance(search->progress, search->problem.count);
-    }
-    return going;
-}
-
 static void exchange_best(narc_search *search, const narc_effort *effort, struct pool *best) {
     for (size_t k = 0; k < EXCHANGERS && k < best->count && search->problem.count > 3; k++) {
         narc_candidate item = best->items[k];
@@ -267,9 +232,6 @@ static void exchange_best(narc_search *search, const narc_effort *effort, struct
         }
         enter(best, &item);
     }
-    narc_candidate first = best->items[0];
-    if (search->problem.count > 3 && try_kicks(search, effort->kicks, &first))
-        enter(best, &first);
 }
 
 bool narc_is_perfect(const narc_problem *problem, double value) {
@@ -283,8 +245,8 @@ bool narc_is_perfect(const narc_problem *problem, double value) {
 static bool search_all(narc_search *search, const narc_effort *effort, const narc_chain *known, size_t known_count,
                        narc_candidate *items, struct pool *best) {
     struct pool first = {.room = effort->starts, .items = items};
-    struct pool near = {.room = effort->starts / 3 + 1, .items = first.items + first.room};
-    struct pool second = {.room = count_halves(effort->starts), .items = near.items + near.room};
+    struct pool near = {.room = count_near(effort->starts), .items = first.items + first.room};
+    struct pool second = {.room = count_best(effort->starts), .items = near.items + near.room};
     for (size_t k = 0; k < known_count; k++)
         (known[k].count == search->problem.count ? enter_whole : enter_splits)(search, &known[k], &near, best);
     if (best->count && narc_is_perfect(&search->problem, best->items[0].value))
@@ -312,7 +274,7 @@ narc_status narc_find_best(const narc_problem *problem, const narc_effort *effor
     if (status != NARC_OK)
         return status;
     narc_candidate *items =
-        malloc((effort->starts + effort->starts / 3 + 1 + count_halves(effort->starts)) * sizeof *items);
+        malloc((effort->starts + count_near(effort->starts) + count_best(effort->starts)) * sizeof *items);
     struct pool best = {.room = MOST_RANKED, .items = out_best->items};
     const bool searched = items && search_all(&search, effort, known, known_count, items, &best);
     free(items);

@@ -14,7 +14,7 @@ typedef struct narc_programme {
     size_t columns, rows;
     double *objective, *lower, *upper;       /* of the columns */
     double *row_lower, *row_upper, *entries; /* entries[row * columns + column] */
-    size_t row_capacity, loaded; /* rows that the model has */
+    size_t row_capacity, loaded;             /* rows that the model has */
     double *solution;
     void *model; /* a Clp_Simplex */
     int *packed_index, *packed_start;

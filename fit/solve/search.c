@@ -17,7 +17,7 @@
 
 /* A solution that goes too far by more than the slack, in units of the hull's radius, gets more rows, so many times. */
 static const double SLACK = 1e-7;
-enum { ROUNDS = 5 };
+enum { ROUNDS = 3 };
 
 /* A shape with less than this part of the hull's area fits nothing. */
 static const double LEAST_AREA = 0.25;
