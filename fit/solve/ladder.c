@@ -15,10 +15,10 @@ enum { MOST_NEEDS = 5, MOST_KNOWN = MOST_NEEDS * MOST_RANKED };
 /* Closed chains of up to three arcs without edges are circles. */
 static size_t least_count(narc_fit_family family) { return family == NARC_FIT_EDGES ? 2 : 3; }
 
-/* Of the starts of 6 to 8 arcs a third or so ends at the best that is known, on hard outlines one in 50; exchanges find
- * it less often in the same time. n-arcs of least area have most starts, since what else is fitted has known chains too.
- * Fewer starts of many arcs, whose searches take long. The first start, on the sides of a bounding polygon, is always
- * there: chains that only grow from fewer arcs stay behind it. */
+/* Of the starts of 6 to 8 arcs a third or so ends at the best that is known, on hard outlines one in 50; exchanges
+ * find it less often in the same time. n-arcs of least area have most: what else is fitted has known chains too.
+ * Fewer starts of many arcs, whose searches take long. The first start, on the sides of a bounding polygon, is
+ * always there: chains that only grow from fewer arcs stay behind it. */
 enum { FEW_ARCS = 8, STARTS_OF_N_ARCS = 56, STARTS_OF_OTHERS = 36 };
 
 static narc_effort choose_effort(const narc_rung *rung, unsigned starts) {
