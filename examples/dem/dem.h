@@ -311,6 +311,9 @@ void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measu
 /* The force of the grains on a wall. */
 dem_vec dem_wall_force(const dem *d, size_t wall);
 
+/* How far the face of a plate is from its body's place: half the side of its block. */
+double dem_half_block(const dem *d, const dem_wall *plate);
+
 /* FNV-1a over the whole state. */
 uint64_t dem_hash(const dem *d);
 

@@ -123,7 +123,7 @@ void dem_outline_plate(const dem *d, size_t wall, const dem_region *along, dem_v
     const dem_bodies *b = &d->bodies;
     const dem_wall *w = &d->walls[wall];
     const size_t k = d->grain_count + wall;
-    const double half = 0.5 * d->shapes[w->shape].extent * 0.88622692545275801; /* sqrt(pi) / 2: of a square */
+    const double half = dem_half_block(d, w);
     const dem_vec n = w->normal, t = {-n.y, n.x};
     const dem_vec middle = {0.5 * (along->low_x + along->high_x) - b->x[k] - half * n.x,
                             0.5 * (along->low_y + along->high_y) - b->y[k] - half * n.y};

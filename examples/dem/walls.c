@@ -15,6 +15,12 @@ dem_vec dem_wall_force(const dem *d, size_t wall) {
     return (dem_vec){d->bodies.fx[k], d->bodies.fy[k]};
 }
 
+/* The extent is the diameter of the disc of equal area: of a square the side times 2 / sqrt(pi). */
+double dem_half_block(const dem *d, const dem_wall *plate) {
+    const double side_by_extent = 0.88622692545275801; /* sqrt(pi) / 2 */
+    return 0.5 * d->shapes[plate->shape].extent * side_by_extent;
+}
+
 /* ------------------------------------------------------------------------------------------------ servo control */
 
 /* How far two walls are from each other, along the normal of a plate, else between their centres. */
@@ -24,7 +30,7 @@ static double find_distance(const dem *d, int first, int second) {
     dem_vec between = {d->bodies.x[j] - d->bodies.x[i], d->bodies.y[j] - d->bodies.y[i]};
     if (a->kind != DEM_PLATE || b->kind != DEM_PLATE)
         return sqrt(between.x * between.x + between.y * between.y);
-    const double half = 0.5 * d->shapes[a->shape].extent * 0.88622692545275801; /* sqrt(pi) / 2: of a square */
+    const double half = dem_half_block(d, a);
     between.x += half * (b->normal.x - a->normal.x);
     between.y += half * (b->normal.y - a->normal.y);
     return fabs(between.x * a->normal.x + between.y * a->normal.y);
@@ -139,7 +145,7 @@ void dem_count_wall_work(dem *d) {
 static bool add_pairs_of_plate(dem *d, uint32_t body, const dem_wall *plate) {
     dem_scratch *s = d->scratch;
     const dem_bodies *b = &d->bodies;
-    const double half = 0.5 * d->shapes[plate->shape].extent * 0.88622692545275801;
+    const double half = dem_half_block(d, plate);
     for (size_t k = 0; k < d->grain_count; k++) {
         const double x = b->x[k] - b->x[body], y = b->y[k] - b->y[body];
         const double height = x * plate->normal.x + y * plate->normal.y - half;
