@@ -10,6 +10,9 @@
 #include <string.h>
 #include <unistd.h>
 
+static const char HEAD[] = "step,time,kinetic,potential,elastic,damping,friction,walls,stress_xx,stress_xy,stress_yx,"
+                           "stress_yy,contacts,coordination,deepest,fastest";
+
 static FILE *fail_csv(const char *path, const char *reason, FILE *file, char *error) {
     snprintf(error, 512, "%.400s: %s", path, reason);
     if (file)
@@ -18,8 +21,7 @@ static FILE *fail_csv(const char *path, const char *reason, FILE *file, char *er
 }
 
 static void write_head(FILE *csv, const dem *d) {
-    fprintf(csv, "step,time,kinetic,potential,elastic,damping,friction,walls,stress_xx,stress_xy,stress_yx,stress_yy,"
-                 "contacts,coordination,deepest,fastest");
+    fprintf(csv, "%s", HEAD);
     for (size_t w = 0; w < d->wall_count; w++) {
         const char *name = d->walls[w].name;
         fprintf(csv, ",%s_x,%s_y,%s_fx,%s_fy", name, name, name, name);
@@ -27,17 +29,46 @@ static void write_head(FILE *csv, const dem *d) {
     fprintf(csv, "\n");
 }
 
-FILE *dem_open_csv(const dem *d, const char *path, uint64_t position, char *error) {
-    FILE *file = fopen(path, position > 0 ? "r+" : "w");
+/* Does the file begin as a table does, and does a line end at the position, of a step that has been? */
+static bool is_table(const dem *d, FILE *file, uint64_t position) {
+    char head[sizeof HEAD];
+    if (!fgets(head, sizeof head, file) || strcmp(head, HEAD) != 0)
+        return false;
+    uint64_t step = UINT64_MAX; /* of the line that begins after the last line's end */
+    int before = 0, letter = 0;
+    bool in_step = false;
+    for (uint64_t at = sizeof HEAD - 1; at < position; at++) {
+        before = letter;
+        if ((letter = getc(file)) == EOF)
+            return false;
+        if (before == '\n')
+            step = 0;
+        in_step = letter >= '0' && letter <= '9' && (before == '\n' || in_step);
+        if (in_step)
+            step = 10 * step + (uint64_t)(letter - '0');
+    }
+    return letter == '\n' && (step == UINT64_MAX || step <= d->step);
+}
+
+FILE *dem_open_csv(const dem *d, const char *path, uint64_t *position, char *error) {
+    FILE *file = *position > 0 ? fopen(path, "r+") : NULL;
+    if (!file && (*position == 0 || errno == ENOENT)) {
+        file = fopen(path, "w");
+        *position = 0;
+    }
     if (!file)
         return fail_csv(path, strerror(errno), NULL, error);
-    if (position == 0) {
+    if (*position == 0) {
         write_head(file, d);
+        *position = (uint64_t)ftell(file);
         return file;
     }
-    if (fseek(file, 0, SEEK_END) != 0 || ftell(file) < 0 || (uint64_t)ftell(file) < position)
-        return fail_csv(path, "it is shorter than it was when the restart was written", file, error);
-    if (ftruncate(fileno(file), (off_t)position) != 0 || fseek(file, (long)position, SEEK_SET) != 0)
+    if (fseek(file, 0, SEEK_END) != 0 || ftell(file) < 0 || (uint64_t)ftell(file) < *position)
+        return fail_csv(path, "it is shorter than the table was when the restart was written", file, error);
+    rewind(file);
+    if (!is_table(d, file, *position))
+        return fail_csv(path, "it is not the table that the restart goes on with", file, error);
+    if (ftruncate(fileno(file), (off_t)*position) != 0 || fseek(file, (long)*position, SEEK_SET) != 0)
         return fail_csv(path, strerror(errno), file, error);
     return file;
 }

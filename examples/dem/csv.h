@@ -7,8 +7,10 @@
 
 #include "dem.h"
 
-/* A new table, or (position above 0) an old one, cut off there. Errors go to `error` (512 bytes). */
-FILE *dem_open_csv(const dem *d, const char *path, uint64_t position, char *error);
+/* A new table; or, if the position is above 0 and the file is there, an old one, cut off there: if it is one of this
+ * input, and the line that ends there is not of a later step than the world's. Sets the position to its end. Errors go
+ * to `error` (512 bytes). */
+FILE *dem_open_csv(const dem *d, const char *path, uint64_t *position, char *error);
 
 /* Adds a line; false if it cannot be written. */
 bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m);

@@ -62,6 +62,9 @@ uint64_t dem_hash_bytes(uint64_t hash, const void *bytes, size_t size);
 /* neighbours.c */
 bool dem_index_pairs(dem *d);
 
+/* step.c: as many as there is room for pairs */
+bool dem_make_room_for_contacts(dem *d);
+
 /* boundary.c */
 void dem_wrap_bodies(dem *d);
 bool dem_add_images(dem *d);

@@ -153,7 +153,7 @@ static void begin(run *r, const char *restart) {
     if (restart && stage < r->input.stage_count && r->place.stage_step > r->input.stages[stage].steps)
         fail("%s: it has done %" PRIu64 " steps of stage %" PRIu64 ", which has %" PRIu64 " in the input", restart,
              r->place.stage_step, stage, r->input.stages[stage].steps);
-    if (o->csv[0] && !(r->csv = dem_open_csv(&r->world, o->csv, r->place.csv_position, r->world.error)))
+    if (o->csv[0] && !(r->csv = dem_open_csv(&r->world, o->csv, &r->place.csv_position, r->world.error)))
         end_badly(r);
     if (!restart)
         write_frame(r);
@@ -170,6 +170,8 @@ static void report(const run *r) {
     const double steps = (double)(r->world.step - r->first_step), seconds = seconds_now() - r->began;
     if (r->terminal)
         fprintf(stderr, "\r\033[K");
+    if (r->total_steps == r->first_step)
+        fprintf(stderr, "dem: nothing was left to run: all stages of the input were over\n");
     printf("steps %" PRIu64 ", time %g, lists %" PRIu64 "\n", r->world.step, r->world.time, r->world.list_builds);
     printf("grains %zu, walls %zu, contacts %zu, coordination %.3f\n", r->world.grain_count, r->world.wall_count,
            m.contacts, m.coordination);

@@ -4,7 +4,7 @@
  *
  *     "narc-dem" | version | byte order mark | size of what follows the header | its checksum | input hash
  *     grain, wall, pair counts, sums, place in the run
- *     walls, the arrays of bodies, the pair list with its hints and histories
+ *     walls, the arrays of bodies, the pair list with its hints and histories, the contacts with their forces
  *
  * Shapes, materials and laws are not there: the input has them, and the input's hash says that it is the same. What
  * stages have changed is: gravity, laws, walls.
@@ -21,11 +21,11 @@ typedef struct header {
 } header;
 
 static const char MAGIC[8] = {'n', 'a', 'r', 'c', '-', 'd', 'e', 'm'};
-enum { VERSION = 1, BYTE_ORDER_MARK = 0x01020304 };
+enum { VERSION = 2, BYTE_ORDER_MARK = 0x01020304 };
 
 /* What is not an array. */
 typedef struct sums {
-    uint64_t bodies, walls, pairs, extra, step, list_builds;
+    uint64_t bodies, walls, pairs, contacts, extra, step, list_builds;
     double time, damping, friction, normal_energy, tangential_energy, rolling_energy;
     dem_vec gravity;
     dem_contact_law laws[DEM_MAX_MATERIALS][DEM_MAX_MATERIALS];
@@ -110,6 +110,24 @@ static void pass_arrays(stream *s, dem *d) {
     pass(s, p->rolling, p->count * sizeof *p->rolling);
 }
 
+/* What the last step found: a run that has no more steps is asked for it. */
+static void pass_contacts(stream *s, const dem *d) {
+    const dem_contacts *c = &d->contacts;
+    float *const floats[] = {c->separation, c->normal_x, c->normal_y, c->point_x, c->point_y};
+    pass(s, c->pair, c->count * sizeof *c->pair);
+    for (size_t i = 0; i < sizeof floats / sizeof floats[0]; i++)
+        pass(s, floats[i], c->count * sizeof *floats[i]);
+    if (d->settings.law == DEM_HERTZ) {
+        pass(s, c->radius_a, c->count * sizeof *c->radius_a);
+        pass(s, c->radius_b, c->count * sizeof *c->radius_b);
+    } else {
+        pass(s, c->arc_a, c->count * sizeof *c->arc_a);
+        pass(s, c->arc_b, c->count * sizeof *c->arc_b);
+    }
+    pass(s, c->fx, c->count * sizeof *c->fx);
+    pass(s, c->fy, c->count * sizeof *c->fy);
+}
+
 /* ------------------------------------------------------------------------------------------------ writing */
 
 static sums collect_sums(const dem *d, const dem_place *place) {
@@ -118,6 +136,7 @@ static sums collect_sums(const dem *d, const dem_place *place) {
     all.bodies = d->bodies.count;
     all.walls = d->wall_count;
     all.pairs = d->pairs.count;
+    all.contacts = d->contacts.count;
     all.extra = d->scratch->extra_count;
     all.step = d->step;
     all.list_builds = d->list_builds;
@@ -137,6 +156,7 @@ static void pass_all(stream *s, dem *d, sums *all) {
     pass(s, all, sizeof *all);
     pass_walls(s, d);
     pass_arrays(s, d);
+    pass_contacts(s, d);
 }
 
 bool dem_write_restart(const dem *d, const dem_place *place, const char *path, char *error) {
@@ -209,6 +229,9 @@ static bool check_indices(const dem *d) {
     for (size_t k = 0; k < d->pairs.count; k++)
         if (d->pairs.a[k] >= d->pairs.b[k] || d->pairs.b[k] >= d->bodies.count || d->pairs.a[k] >= d->grain_count)
             return false;
+    for (size_t k = 0; k < d->contacts.count; k++)
+        if (d->contacts.pair[k] >= d->pairs.count)
+            return false;
     for (size_t k = 0; k < d->bodies.count; k++)
         if (d->bodies.shape[k] >= d->shape_count || d->bodies.material[k] >= d->material_count)
             return false;
@@ -224,9 +247,10 @@ static bool check_indices(const dem *d) {
 
 static bool take_sums(dem *d, const sums *all) {
     if (all->bodies != d->bodies.count || all->walls != d->wall_count || all->pairs >= UINT32_MAX ||
-        !dem_grow_pairs(d, &d->pairs, all->pairs))
+        all->contacts > all->pairs || !dem_grow_pairs(d, &d->pairs, all->pairs) || !dem_make_room_for_contacts(d))
         return false;
     d->pairs.count = all->pairs;
+    d->contacts.count = all->contacts;
     d->scratch->extra_count = all->extra;
     d->step = all->step;
     d->list_builds = all->list_builds;
@@ -255,12 +279,12 @@ bool dem_read_restart(dem *d, dem_place *place, const char *path) {
         if (ok) {
             pass_walls(&in, d);
             pass_arrays(&in, d);
+            pass_contacts(&in, d);
             *place = all.place;
         }
         if (!ok || !in.ok || in.used != in.size || !check_indices(d) || !dem_index_pairs(d))
             ok = dem_fail(d, "%s: its counts do not fit the input", path);
     }
     free(bytes);
-    d->contacts.count = 0;
     return ok;
 }

@@ -88,7 +88,7 @@ static bool have_moved(const dem *d, bool exactly) {
 
 /* ------------------------------------------------------------------------------------------------ contacts */
 
-static bool make_room_for_contacts(dem *d) {
+bool dem_make_room_for_contacts(dem *d) {
     dem_contacts *c = &d->contacts;
     const size_t count = d->pairs.capacity;
     if (count <= c->capacity)
@@ -152,7 +152,7 @@ static bool find_contacts(dem *d) {
     }
     size_t skipped = 0;
     narc_error error;
-    if (!make_room_for_contacts(d))
+    if (!dem_make_room_for_contacts(d))
         return false;
     const narc_status status =
         (d->settings.law == DEM_HERTZ ? query_radii : query_contacts)(d, &bodies, &pairs, &skipped, &error);

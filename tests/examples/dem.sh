@@ -57,6 +57,25 @@ sed 's/^    {"name": "shear".*//; s/"duration": 0.1},/"duration": 0.1}/' good.js
 "$dem" good.json --restart out.restart --threads 1 >half.txt 2>err.txt || miss "a restart"
 [ "$(grep state half.txt)" = "$(grep state whole.txt)" ] || miss "a restart has other bits"
 cmp -s out.csv whole.csv || miss "a restart goes on with another table"
+# Nothing is left to run: the report is that of the end, and the table stays.
+"$dem" good.json --restart out.restart --threads 1 >over.txt 2>err.txt || miss "a restart after the end"
+cmp -s over.txt half.txt || miss "a restart after the end has another report: $(cat over.txt)"
+cmp -s out.csv whole.csv || miss "a restart after the end changes the table"
+grep -q '^dem: nothing was left to run: all stages of the input were over$' err.txt || miss "a restart after the end says so"
+# At a restart outputs may have other names, and files of theirs may be gone: they begin anew.
+"$dem" first.json --threads 1 >/dev/null 2>err.txt || miss "the first stage again"
+cp out.restart first.restart
+sed 's/"csv": "out.csv"/"csv": "new.csv", "grains": "new.csv", "vtk": "new", "picture": "new.png"/' good.json >other.json
+"$dem" other.json --restart first.restart --threads 1 >half.txt 2>err.txt || miss "a restart with other outputs"
+[ "$(grep state half.txt)" = "$(grep state whole.txt)" ] || miss "a restart with other outputs has other bits"
+{ head -n 1 whole.csv; tail -n 5 whole.csv; } | cmp -s - new.csv || miss "a new table: $(cat new.csv)"
+[ "$(grep -c new-0 new.pvd)" -eq 5 ] && [ "$(grep -c new-contacts-0 new-contacts.pvd)" -eq 5 ] || miss "new lists"
+[ -f new-000006.csv ] && [ -f new-000010.png ] && [ ! -f new-000005.png ] || miss "frames of a restart with other outputs"
+"$dem" other.json --restart out.restart --threads 1 >/dev/null 2>err.txt || miss "a restart with the new outputs"
+{ head -n 1 whole.csv; tail -n 5 whole.csv; } | cmp -s - new.csv || miss "the new table again: $(cat new.csv)"
+rm out.csv
+"$dem" good.json --restart first.restart --threads 1 >/dev/null 2>err.txt || miss "a restart without its table"
+cmp -s out.csv new.csv || miss "a table in place of one that is gone"
 NARC_ISA=scalar "$dem" good.json --threads 2 >scalar.txt 2>err.txt || miss "a run with scalar"
 [ "$(grep state scalar.txt)" = "$(grep state whole.txt)" ] || miss "scalar has other bits"
 sed 's/"law": "linear", "kn": 1e7/"law": "hertz"/' good.json >hertz.json
@@ -108,6 +127,15 @@ sed 's/"density": 1000/"density": 1001/' good.json >bad.json
 fails "another input" "dem: out.restart: it belongs to another input" bad.json --restart out.restart
 head -c 1000 out.restart >short
 fails "a short restart" "dem: short: it has 1000 bytes" good.json --restart short
+printf 'dear\ndiary\n' >diary.csv
+sed 's/"csv": "out.csv"/"csv": "diary.csv"/' good.json >bad.json
+fails "a short file for a table" "dem: diary.csv: it is shorter than the table was" bad.json --restart out.restart
+cat good.json good.json >diary.csv
+cp diary.csv before.csv
+fails "a foreign file for a table" "dem: diary.csv: it is not the table that the restart goes on with" bad.json --restart out.restart
+cmp -s diary.csv before.csv || miss "a foreign file is changed"
+sed 's/^[1-9]\([0-9]*,\)/9\1/' whole.csv >diary.csv
+fails "a table of a later time" "dem: diary.csv: it is not the table" bad.json --restart out.restart
 printf '{"materials": [}' >bad.json
 fails "no JSON" "bad.json:1: " bad.json
 printf '[1]' >bad.json
