@@ -125,6 +125,7 @@ typedef struct dem_servo {
     double stress;          /* times the distance of the two walls of `between` times the thickness */
     int between[2];         /* walls, or -1 */
     double gain, max_speed; /* the share of a step's error that the next step removes */
+    double travel; /* the run ends if the wall moves further without touching a grain; 0: the world's diagonal */
 } dem_servo;
 
 /* A wall is body grain_count + its index. A box (any convex arc shape) is where it is; a plate is a half plane: its
@@ -145,6 +146,7 @@ typedef struct dem_wall {
     dem_servo servo;
     double work;       /* done on the grains since the start */
     double resistance; /* how its force grows with its speed in a step, if some wall has servo control */
+    double idle_way;   /* how far servo control has moved it since it touched a grain */
 } dem_wall;
 
 /* The memory of a pair that touches. It counts only if `step` is the step before. */
@@ -240,6 +242,7 @@ typedef struct dem {
     size_t wall_count, wall_capacity;
     double grain_reach, grain_extent; /* the largest */
     double safe_depth;                /* a contact that is not deeper is allowed for all grains */
+    double diagonal;                  /* of the box around all grains and the places of walls, at the start */
     bool started;                     /* no body can be added any more */
 
     uint64_t step;

@@ -23,7 +23,7 @@ static size_t find_wall(const json_value *name, const dem *d) {
 /* ------------------------------------------------------------------------------------------------ motion */
 
 static dem_servo read_servo(const json_value *value, const dem *d) {
-    static const char *const keys[] = {"direction", "force", "stress", "between", "gain", "max_speed", NULL};
+    static const char *const keys[] = {"direction", "force", "stress", "between", "gain", "max_speed", "travel", NULL};
     dem_servo servo = {.on = true, .between = {-1, -1}};
     double n[2];
     if (cJSON_IsNull(value->item))
@@ -38,6 +38,7 @@ static dem_servo read_servo(const json_value *value, const dem *d) {
     servo.direction = (dem_vec){n[0] / length, n[1] / length};
     servo.gain = json_number_or(value, "gain", 1e-6, 1, 0.1);
     servo.max_speed = json_positive(value, "max_speed");
+    servo.travel = json_member(value, "travel").item ? json_positive(value, "travel") : 0;
     if ((force.item != NULL) == (stress.item != NULL))
         json_fail(value, "has not either force or stress");
     if (force.item) {
@@ -86,7 +87,7 @@ void dem_apply_change(dem *d, const dem_wall_change *change) {
         wall->spin = change->spin;
     if (change->sets_servo) {
         wall->servo = change->servo;
-        wall->resistance = 0;
+        wall->resistance = wall->idle_way = 0;
     }
 }
 

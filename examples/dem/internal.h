@@ -71,7 +71,7 @@ bool dem_add_images(dem *d);
 bool dem_take_image_pairs(dem *d); /* moves pairs with images from the found ones to the extra ones */
 
 /* walls.c */
-void dem_steer_walls(dem *d);
+bool dem_steer_walls(dem *d);
 void dem_move_walls(dem *d);
 void dem_count_wall_work(dem *d);
 void dem_find_resistances(dem *d);

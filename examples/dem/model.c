@@ -329,6 +329,22 @@ static bool add_walls(dem *d) {
     return true;
 }
 
+/* Of the box around all grains and the places of walls. */
+static double find_diagonal(const dem *d) {
+    const dem_bodies *b = &d->bodies;
+    double low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
+    for (size_t k = 0; k < b->count; k++) {
+        const bool is_grain = k < d->grain_count;
+        const dem_vec place = is_grain ? (dem_vec){b->x[k], b->y[k]} : d->walls[k - d->grain_count].place;
+        const double reach = is_grain ? b->reach[k] : 0;
+        low_x = fmin(low_x, place.x - reach);
+        high_x = fmax(high_x, place.x + reach);
+        low_y = fmin(low_y, place.y - reach);
+        high_y = fmax(high_y, place.y + reach);
+    }
+    return hypot(high_x - low_x, high_y - low_y);
+}
+
 /* A periodic cell's width is rounded to a float: the shift of an image is one. */
 static bool check_cell(dem *d, const char *axis, double low, double *high) {
     const float width = (float)(*high - low);
@@ -348,6 +364,7 @@ bool dem_start(dem *d) {
         (s->periodic_y && !check_cell(d, "y", s->low_y, &s->high_y)) || !add_walls(d))
         return false;
     d->started = true;
+    d->diagonal = find_diagonal(d);
     return dem_renew_lists(d) && dem_find_first_forces(d);
 }
 

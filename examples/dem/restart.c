@@ -35,7 +35,7 @@ typedef struct sums {
 /* A wall without its name and whatever else does not change. Every byte is told. */
 typedef struct wall_state {
     dem_vec velocity, pivot, direction;
-    double spin, work, resistance, force, stress, gain, max_speed;
+    double spin, work, resistance, idle_way, force, stress, gain, max_speed, travel;
     int32_t between[2], on, padding;
 } wall_state;
 
@@ -73,10 +73,12 @@ static void pass_walls(stream *s, dem *d) {
                             .spin = w->spin,
                             .work = w->work,
                             .resistance = w->resistance,
+                            .idle_way = w->idle_way,
                             .force = servo->force,
                             .stress = servo->stress,
                             .gain = servo->gain,
                             .max_speed = servo->max_speed,
+                            .travel = servo->travel,
                             .between = {servo->between[0], servo->between[1]},
                             .on = servo->on};
         pass(s, &state, sizeof state);
@@ -85,13 +87,15 @@ static void pass_walls(stream *s, dem *d) {
         w->spin = state.spin;
         w->work = state.work;
         w->resistance = state.resistance;
+        w->idle_way = state.idle_way;
         *servo = (dem_servo){.on = state.on != 0,
                              .direction = state.direction,
                              .force = state.force,
                              .stress = state.stress,
                              .between = {state.between[0], state.between[1]},
                              .gain = state.gain,
-                             .max_speed = state.max_speed};
+                             .max_speed = state.max_speed,
+                             .travel = state.travel};
     }
 }
 

@@ -182,7 +182,8 @@ bool dem_step(dem *d) {
     const double start = timed ? seconds_now() : 0;
     d->step++;
     d->time += d->settings.time_step;
-    dem_steer_walls(d);
+    if (!dem_steer_walls(d))
+        return false;
     kick_and_drift(d);
     dem_move_walls(d);
     const bool renew = have_moved(d, false) && have_moved(d, true);

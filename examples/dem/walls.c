@@ -61,9 +61,28 @@ void dem_find_resistances(dem *d) {
     }
 }
 
-/* The speed that removes the share `gain` of the error within a step, as far as springs and dashpots at the wall
- * decide. A wall that touches nothing comes at its largest speed. */
-void dem_steer_walls(dem *d) {
+/* The speed that removes the share `gain` of what is missing within a step, as far as springs and dashpots at the wall
+ * decide. A wall that touches nothing comes at its largest speed, and not at all if it misses nothing. */
+static double find_servo_speed(const dem_wall *wall, double missing) {
+    const dem_servo *servo = &wall->servo;
+    if (servo->gain * fabs(missing) < wall->resistance * servo->max_speed)
+        return servo->gain * missing / wall->resistance;
+    return missing > 0 ? servo->max_speed : missing < 0 ? -servo->max_speed : 0;
+}
+
+/* A wall with nothing to press would go on without end. */
+static bool count_idle_way(dem *d, dem_wall *wall, double speed) {
+    const double travel = wall->servo.travel > 0 ? wall->servo.travel : d->diagonal;
+    wall->idle_way = wall->resistance > 0 ? 0 : wall->idle_way + fabs(speed) * d->settings.time_step;
+    if (wall->idle_way <= travel)
+        return true;
+    return dem_fail(d,
+                    "step %llu: wall '%s' has moved by more than %g without touching a grain: its servo has "
+                    "nothing to press",
+                    (unsigned long long)d->step, wall->name, travel);
+}
+
+bool dem_steer_walls(dem *d) {
     for (size_t w = 0; w < d->wall_count; w++) {
         dem_wall *wall = &d->walls[w];
         const dem_servo *servo = &wall->servo;
@@ -74,11 +93,12 @@ void dem_steer_walls(dem *d) {
                                                            find_distance(d, servo->between[0], servo->between[1])
                                                      : servo->force;
         const double missing = target + force.x * servo->direction.x + force.y * servo->direction.y;
-        double speed = missing > 0 ? servo->max_speed : -servo->max_speed;
-        if (servo->gain * fabs(missing) < wall->resistance * servo->max_speed)
-            speed = servo->gain * missing / wall->resistance;
+        const double speed = find_servo_speed(wall, missing);
         wall->velocity = (dem_vec){speed * servo->direction.x, speed * servo->direction.y};
+        if (!count_idle_way(d, wall, speed))
+            return false;
     }
+    return true;
 }
 
 /* ------------------------------------------------------------------------------------------------ motion */

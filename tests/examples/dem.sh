@@ -205,6 +205,12 @@ fails "a picture of no kind" "dem: .*out.gif" bad.json
 sed 's|"csv": "out.csv"|"csv": "no/folder/out.csv"|' good.json >bad.json
 fails "no folder for the table" "dem: no/folder/out.csv: " bad.json
 
+# A lid that goes away from the grains.
+sed 's/"direction": \[0, -1\], "stress": 100, "between": \["floor", "lid"\], "max_speed": 1/"direction": [0, 1], "force": 1, "max_speed": 50, "travel": 1.999/' \
+    good.json >bad.json
+fails "nothing to press" "dem: step 400: wall 'lid' has moved by more than 1.999 without touching a grain: its servo has nothing to press" \
+    bad.json --threads 1
+
 # Too long a step: which grain, and what to do.
 sed 's/"time_step": 1e-4/"time_step": 1e-2/; s/"duration": 0.1/"duration": 3/g' good.json >bad.json
 fails "too long a step" "dem: step [0-9]*: grain [0-9]* .*Use a shorter time step" bad.json --threads 1

@@ -3,6 +3,7 @@
  * dem_walls.c - walls that move, turn, work and press; and stresses.
  */
 #include <math.h>
+#include <string.h>
 
 #include "dem_worlds.h"
 
@@ -121,6 +122,52 @@ static void test_servo_stress(void **state) {
     dem_destroy(&d);
 }
 
+/* A lid that finds nothing to press goes as far as it may, 0.01 a step, then the run ends. */
+static void test_servo_without_grains(void **state) {
+    (void)state;
+    const dem_servo servo = {
+        .on = true, .direction = {0, 1}, .force = 1, .between = {-1, -1}, .gain = 0.1, .max_speed = 100};
+    const double travels[] = {0, 2.495, 39.995};
+    for (size_t i = 0; i < 3; i++) {
+        dem_servo up = servo;
+        up.travel = travels[i];
+        dem d = make_press(up); /* grains from 0 to 6, 2 wide; the lid at 6.01, the floor at 0 */
+        const double travel = i > 0 ? travels[i] : hypot(2, 6.01);
+        while (d.step < 100000 && dem_step(&d)) {
+        }
+        print_message("%s\n", d.error);
+        assert_int_equal(d.step, (uint64_t)ceil(travel / 0.01));
+        assert_non_null(strstr(d.error, "wall 'lid' has moved by more than"));
+        dem_destroy(&d);
+    }
+}
+
+/* A gap that is shorter than the travel is crossed; after a contact the way counts anew. */
+static void test_servo_touches_in_time(void **state) {
+    (void)state;
+    dem d = make_press((dem_servo){.on = true,
+                                   .direction = {0, -1},
+                                   .force = 150,
+                                   .between = {-1, -1},
+                                   .gain = 0.1,
+                                   .max_speed = 0.5,
+                                   .travel = 0.011});
+    step(&d, 20000);
+    assert_true(d.walls[1].idle_way == 0 && fabs(dem_wall_force(&d, 1).y / 150 - 1) < 1e-3);
+    dem_destroy(&d);
+}
+
+/* Who is to press with no force, and touches nothing, stays. */
+static void test_servo_of_no_force(void **state) {
+    (void)state;
+    dem d = make_press(
+        (dem_servo){.on = true, .direction = {0, -1}, .force = 0, .between = {-1, -1}, .gain = 0.1, .max_speed = 0.5});
+    const double before = d.bodies.y[4];
+    step(&d, 1000);
+    assert_true(d.bodies.y[4] == before);
+    dem_destroy(&d);
+}
+
 /* A plate's own velocity along itself drags a grain by friction until both move alike. */
 static void test_conveyor(void **state) {
     (void)state;
@@ -145,10 +192,15 @@ static void test_conveyor(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_work_of_a_wall), cmocka_unit_test(test_oblique_plate_far_away),
-        cmocka_unit_test(test_turning_wall),   cmocka_unit_test(test_servo_force),
-        cmocka_unit_test(test_servo_stress),   cmocka_unit_test(test_conveyor)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_work_of_a_wall),
+                                       cmocka_unit_test(test_oblique_plate_far_away),
+                                       cmocka_unit_test(test_turning_wall),
+                                       cmocka_unit_test(test_servo_force),
+                                       cmocka_unit_test(test_servo_stress),
+                                       cmocka_unit_test(test_servo_without_grains),
+                                       cmocka_unit_test(test_servo_touches_in_time),
+                                       cmocka_unit_test(test_servo_of_no_force),
+                                       cmocka_unit_test(test_conveyor)};
     if (!test_begin())
         return TEST_SKIPPED;
     return cmocka_run_group_tests_name("dem_walls", tests, NULL, NULL);
