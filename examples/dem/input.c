@@ -34,6 +34,15 @@ uint8_t dem_find_material(const json_value *name, const dem *d) {
     json_fail(name, "is not a material");
 }
 
+static void refuse_elasticity(const json_value *material) {
+    static const char *const keys[] = {"young", "poisson"};
+    for (size_t i = 0; i < 2; i++) {
+        const json_value member = json_member(material, keys[i]);
+        if (member.item)
+            json_fail(&member, "is of the Hertz law: the linear law's stiffness is kn");
+    }
+}
+
 void dem_read_materials(const json_value *root, dem *d) {
     static const char *const keys[] = {"name", "density", "young", "poisson", NULL};
     const json_value list = json_require(root, "materials");
@@ -50,7 +59,9 @@ void dem_read_materials(const json_value *root, dem *d) {
         for (size_t m = 0; m < d->material_count; m++)
             if (strcmp(d->materials[m].name, material.name) == 0)
                 json_fail(&name, "is the name of another material");
-        if (d->settings.law == DEM_HERTZ) {
+        if (d->settings.law == DEM_LINEAR)
+            refuse_elasticity(&item);
+        else {
             material.young = json_positive(&item, "young");
             const json_value poisson = json_require(&item, "poisson");
             material.poisson = json_number(&poisson, 0, 0.5, false);
@@ -62,31 +73,39 @@ void dem_read_materials(const json_value *root, dem *d) {
 
 /* ------------------------------------------------------------------------------------------------ laws */
 
-/* What is there replaces what `law` has. */
-static void read_law(const json_value *object, const dem *d, dem_contact_law *law) {
+static void read_damping(const json_value *object, const dem *d, dem_contact_law *law) {
     const json_value restitution = json_member(object, "restitution"), gamma = json_member(object, "gamma_n");
-    const json_value kn = json_member(object, "kn"), kt = json_member(object, "kt");
-    if ((kn.item || kt.item) && d->settings.law == DEM_HERTZ)
-        json_fail(kn.item ? &kn : &kt, "is not of the Hertz law: stiffness comes from the materials");
+    const json_value gamma_t = json_member(object, "gamma_t"), share = json_member(object, "tangential_damping");
     if (restitution.item && gamma.item)
         json_fail(&gamma, "excludes restitution");
-    if (kn.item) {
-        law->kn = json_number(&kn, 0, 1e300, true);
-        law->kt = 2.0 / 7 * law->kn; /* as LAMMPS has it */
-    }
-    law->kt = json_number_or(object, "kt", 0, 1e300, law->kt);
+    if (restitution.item)
+        law->damping_ratio = dem_damping_ratio(d->settings.law, json_number(&restitution, 1e-6, 1, false));
     if (gamma.item) {
         law->gamma_n = json_number(&gamma, 0, 1e300, false);
         law->gamma_t = 0.5 * law->gamma_n;
         law->damping_ratio = -1;
     }
-    const json_value gamma_t = json_member(object, "gamma_t");
+    if (law->damping_ratio < 0 && law->gamma_n < 0)
+        json_fail(object, "has neither restitution nor gamma_n");
     if (gamma_t.item && law->damping_ratio >= 0)
         json_fail(&gamma_t, "is for gamma_n; with restitution it is tangential_damping");
+    if (share.item && law->damping_ratio < 0)
+        json_fail(&share, "is for restitution; with gamma_n it is gamma_t");
     law->gamma_t = json_number_or(object, "gamma_t", 0, 1e300, law->gamma_t);
-    if (restitution.item)
-        law->damping_ratio = dem_damping_ratio(d->settings.law, json_number(&restitution, 1e-6, 1, false));
     law->tangential_share = json_number_or(object, "tangential_damping", 0, 100, law->tangential_share);
+}
+
+/* What is there replaces what `law` has. */
+static void read_law(const json_value *object, const dem *d, dem_contact_law *law) {
+    const json_value kn = json_member(object, "kn"), kt = json_member(object, "kt");
+    if ((kn.item || kt.item) && d->settings.law == DEM_HERTZ)
+        json_fail(kn.item ? &kn : &kt, "is not of the Hertz law: stiffness comes from the materials");
+    if (kn.item) {
+        law->kn = json_number(&kn, 0, 1e300, true);
+        law->kt = 2.0 / 7 * law->kn; /* as LAMMPS has it */
+    }
+    law->kt = json_number_or(object, "kt", 0, 1e300, law->kt);
+    read_damping(object, d, law);
     law->friction = json_number_or(object, "friction", 0, 1e6, law->friction);
     law->rolling_friction = json_number_or(object, "rolling_friction", 0, 1e6, law->rolling_friction);
 }
@@ -97,28 +116,34 @@ static void read_pair_laws(const json_value *contact, dem *d, dem_contact_law co
         "tangential_damping", NULL};
     const json_value list = json_member(contact, "pairs");
     const size_t count = list.item ? json_list(&list) : 0;
+    bool seen[DEM_MAX_MATERIALS][DEM_MAX_MATERIALS] = {{false}};
     for (size_t i = 0; i < count; i++) {
         const json_value item = json_at(&list, i);
         json_check_object(&item, keys);
         const json_value names = json_require(&item, "materials");
         if (json_list(&names) != 2)
             json_fail(&names, "is not a list of two materials");
-        const json_value a = json_at(&names, 0), b = json_at(&names, 1);
+        const json_value first = json_at(&names, 0), second = json_at(&names, 1);
+        const uint8_t a = dem_find_material(&first, d), b = dem_find_material(&second, d);
+        if (seen[a][b])
+            json_fail(&names, "is a pair that stands before");
+        seen[a][b] = seen[b][a] = true;
         dem_contact_law law = common;
         read_law(&item, d, &law);
-        dem_set_law(d, dem_find_material(&a, d), dem_find_material(&b, d), law);
+        dem_set_law(d, a, b, law);
     }
 }
 
 void dem_read_contact(const json_value *root, dem *d) {
     const json_value contact = json_require(root, "contact");
     dem_contact_law law = {.damping_ratio = -1, .gamma_n = -1, .tangential_share = 0.5};
-    read_law(&contact, d, &law);
+    const json_value least = json_member(&contact, "least_radius"), largest = json_member(&contact, "largest_radius");
+    if ((least.item || largest.item) && d->settings.law == DEM_LINEAR)
+        json_fail(least.item ? &least : &largest, "is of the Hertz law");
     if (d->settings.law == DEM_LINEAR)
         json_require(&contact, "kn");
-    if (law.damping_ratio < 0 && law.gamma_n < 0)
-        json_fail(&contact, "has neither restitution nor gamma_n");
     json_require(&contact, "friction");
+    read_law(&contact, d, &law);
     for (size_t a = 0; a < d->material_count; a++)
         for (size_t b = a; b < d->material_count; b++)
             dem_set_law(d, (uint8_t)a, (uint8_t)b, law);

@@ -55,7 +55,7 @@ enum { DEM_SHAPES_PATH_SIZE = 2 * DEM_PATH_SIZE };
 void dem_find_shapes_file(const json_value *root, char path[DEM_SHAPES_PATH_SIZE]);
 void dem_read_grains(const json_value *root, dem *d, uint64_t *random);
 void dem_read_walls(const json_value *root, dem *d);
-void dem_read_motion(const json_value *object, const dem *d, dem_wall_change *out_change);
+void dem_read_motion(const json_value *object, const dem *d, bool has_servo, dem_wall_change *out_change);
 void dem_apply_change(dem *d, const dem_wall_change *change);
 void dem_read_stages(const json_value *root, dem *d, dem_input *input);
 void dem_read_output(const json_value *root, const dem *d, dem_output *out_output);

@@ -75,6 +75,9 @@ static dem_sizes read_sizes(const json_value *value) {
     const json_value *given = uniform.item ? &uniform : normal.item ? &normal : &lognormal;
     json_numbers(given, 2, n);
     if (uniform.item) {
+        const json_value low = json_member(value, "low"), high = json_member(value, "high");
+        if (low.item || high.item)
+            json_fail(low.item ? &low : &high, "is not for uniform, which has limits");
         if (!(n[0] > 0 && n[1] >= n[0]))
             json_fail(&uniform, "is not a range of sizes [low, high]");
         return (dem_sizes){.kind = DEM_UNIFORM, .low = n[0], .high = n[1]};

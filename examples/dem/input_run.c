@@ -14,8 +14,8 @@
 
 /* ------------------------------------------------------------------------------------------------ stages */
 
-/* {"floor": {"velocity": [0, 1]}, ...} */
-static void read_changes(const json_value *walls, const dem *d, dem_stage *stage) {
+/* {"floor": {"velocity": [0, 1]}, ...} has_servo: of each wall, kept up to date. */
+static void read_changes(const json_value *walls, const dem *d, bool *has_servo, dem_stage *stage) {
     static const char *const keys[] = {"velocity", "spin", "servo", NULL};
     const cJSON *item;
     if (!cJSON_IsObject(walls->item))
@@ -34,7 +34,8 @@ static void read_changes(const json_value *walls, const dem *d, dem_stage *stage
         json_check_object(&change, keys);
         dem_wall_change *added = &stage->changes[stage->change_count++];
         added->wall = w;
-        dem_read_motion(&change, d, added);
+        dem_read_motion(&change, d, has_servo[w], added);
+        has_servo[w] = added->sets_servo ? added->servo.on : has_servo[w];
     }
 }
 
@@ -53,6 +54,9 @@ void dem_read_stages(const json_value *root, dem *d, dem_input *input) {
     if (count == 0)
         json_fail(&list, "is empty");
     input->stages = allocate(count, sizeof *input->stages);
+    bool *has_servo = allocate(d->wall_count + 1, sizeof *has_servo);
+    for (size_t w = 0; w < d->wall_count; w++)
+        has_servo[w] = d->walls[w].servo.on;
     for (size_t i = 0; i < count; i++) {
         const json_value item = json_at(&list, i);
         json_check_object(&item, keys);
@@ -76,9 +80,10 @@ void dem_read_stages(const json_value *root, dem *d, dem_input *input) {
             stage.friction = json_number(&friction, 0, 1e6, false);
         }
         if (walls.item)
-            read_changes(&walls, d, &stage);
+            read_changes(&walls, d, has_servo, &stage);
         input->stages[input->stage_count++] = stage;
     }
+    free(has_servo);
 }
 
 /* ------------------------------------------------------------------------------------------------ output */

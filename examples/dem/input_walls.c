@@ -8,6 +8,9 @@
 #include "input.h"
 #include "shape_list.h"
 
+/* A plate moves across itself. A servo's direction has at least this share across it. */
+static const double LEAST_ACROSS = 1e-6;
+
 static const char *const WALL_KEYS[] = {"name",  "material", "plate", "box",   "shape", "size", "at",
                                         "angle", "velocity", "spin",  "pivot", "servo", NULL};
 
@@ -22,7 +25,21 @@ static size_t find_wall(const json_value *name, const dem *d) {
 
 /* ------------------------------------------------------------------------------------------------ motion */
 
-static dem_servo read_servo(const json_value *value, const dem *d) {
+/* The two walls that a stress acts between. */
+static void read_between(const json_value *between, const dem *d, size_t wall, int out_walls[2]) {
+    if (json_list(between) != 2)
+        json_fail(between, "is not a list of two walls");
+    for (size_t i = 0; i < 2; i++) {
+        const json_value name = json_at(between, i);
+        out_walls[i] = (int)find_wall(&name, d);
+        if (out_walls[i] == (int)wall)
+            json_fail(&name, "is the wall that moves: a stress acts on the distance of two others");
+    }
+    if (out_walls[0] == out_walls[1])
+        json_fail(between, "names one wall twice");
+}
+
+static dem_servo read_servo(const json_value *value, const dem *d, size_t wall) {
     static const char *const keys[] = {"direction", "force", "stress", "between", "gain", "max_speed", "travel", NULL};
     dem_servo servo = {.on = true, .between = {-1, -1}};
     double n[2];
@@ -36,27 +53,29 @@ static dem_servo read_servo(const json_value *value, const dem *d) {
     if (!(length > 0))
         json_fail(&direction, "has no length");
     servo.direction = (dem_vec){n[0] / length, n[1] / length};
+    const dem_vec normal = d->walls[wall].normal;
+    if (d->walls[wall].kind == DEM_PLATE &&
+        fabs(servo.direction.x * normal.x + servo.direction.y * normal.y) < LEAST_ACROSS)
+        json_fail(&direction, "runs along the plate, which has no ends");
     servo.gain = json_number_or(value, "gain", 1e-6, 1, 0.1);
     servo.max_speed = json_positive(value, "max_speed");
     servo.travel = json_member(value, "travel").item ? json_positive(value, "travel") : 0;
     if ((force.item != NULL) == (stress.item != NULL))
         json_fail(value, "has not either force or stress");
+    const json_value between = json_member(value, "between");
     if (force.item) {
+        if (between.item)
+            json_fail(&between, "is for stress, not for force");
         servo.force = json_number(&force, -1e300, 1e300, false);
         return servo;
     }
-    const json_value between = json_require(value, "between");
+    json_require(value, "between");
     servo.stress = json_number(&stress, -1e300, 1e300, false);
-    if (json_list(&between) != 2)
-        json_fail(&between, "is not a list of two walls");
-    for (size_t i = 0; i < 2; i++) {
-        const json_value name = json_at(&between, i);
-        servo.between[i] = (int)find_wall(&name, d);
-    }
+    read_between(&between, d, wall, servo.between);
     return servo;
 }
 
-void dem_read_motion(const json_value *object, const dem *d, dem_wall_change *out_change) {
+void dem_read_motion(const json_value *object, const dem *d, bool has_servo, dem_wall_change *out_change) {
     const json_value velocity = json_member(object, "velocity"), spin = json_member(object, "spin");
     const json_value servo = json_member(object, "servo");
     dem_wall_change change = {.wall = out_change->wall};
@@ -72,8 +91,10 @@ void dem_read_motion(const json_value *object, const dem *d, dem_wall_change *ou
     }
     if (servo.item) {
         change.sets_servo = true;
-        change.servo = read_servo(&servo, d);
+        change.servo = read_servo(&servo, d, change.wall);
     }
+    if (velocity.item && (change.sets_servo ? change.servo.on : has_servo))
+        json_fail(&velocity, "is of a wall that its servo moves");
     if (change.sets_spin && d->walls[change.wall].kind == DEM_PLATE && change.spin != 0)
         json_fail(&spin, "turns a plate, which has no ends");
     *out_change = change;
@@ -81,8 +102,8 @@ void dem_read_motion(const json_value *object, const dem *d, dem_wall_change *ou
 
 void dem_apply_change(dem *d, const dem_wall_change *change) {
     dem_wall *wall = &d->walls[change->wall];
-    if (change->sets_velocity)
-        wall->velocity = change->velocity;
+    if (change->sets_velocity || (change->sets_servo && wall->servo.on))
+        wall->velocity = change->velocity; /* without servo control it stays where it is */
     if (change->sets_spin)
         wall->spin = change->spin;
     if (change->sets_servo) {
@@ -141,6 +162,14 @@ static void read_block(const json_value *item, dem *d, dem_wall *wall) {
     wall->scale = json_positive(item, "size") / d->shapes[wall->shape].extent;
 }
 
+static void refuse_keys(const json_value *item, const char *const *keys, const char *problem) {
+    for (size_t i = 0; keys[i]; i++) {
+        const json_value member = json_member(item, keys[i]);
+        if (member.item)
+            json_fail(&member, problem);
+    }
+}
+
 static void read_wall(const json_value *item, dem *d) {
     const json_value name = json_require(item, "name"), material = json_require(item, "material");
     const json_value plate = json_member(item, "plate"), pivot = json_member(item, "pivot");
@@ -154,6 +183,10 @@ static void read_wall(const json_value *item, dem *d) {
     wall.material = dem_find_material(&material, d);
     if ((plate.item != NULL) + (json_member(item, "box").item != NULL) + (json_member(item, "shape").item != NULL) != 1)
         json_fail(item, "is not one of plate, box and shape");
+    if (plate.item)
+        refuse_keys(item, (const char *const[]){"at", "angle", "size", "pivot", NULL}, "is not for a plate");
+    if (json_member(item, "box").item)
+        refuse_keys(item, (const char *const[]){"size", NULL}, "is not for a box, which has width and height");
     if (plate.item)
         read_plate(&plate, &wall);
     else
@@ -178,7 +211,7 @@ void dem_read_walls(const json_value *root, dem *d) {
     for (size_t i = 0; i < count; i++) { /* when all names are known */
         const json_value item = json_at(&list, i);
         dem_wall_change change = {.wall = i};
-        dem_read_motion(&item, d, &change);
+        dem_read_motion(&item, d, false, &change);
         dem_apply_change(d, &change);
     }
 }

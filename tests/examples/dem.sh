@@ -19,7 +19,7 @@ cat >shapes.json <<'END'
 END
 cat >good.json <<'END'
 {
-  "materials": [{"name": "sand", "density": 1000, "young": 1e7, "poisson": 0.3}, {"name": "steel", "density": 7800, "young": 1e9, "poisson": 0.3}],
+  "materials": [{"name": "sand", "density": 1000}, {"name": "steel", "density": 7800}],
   "shapes": "shapes.json",
   "grains": [
     {"place": "random", "count": 20, "region": [0.2, 0.2, 3.8, 6], "shapes": ["disc", "brick"], "size": {"normal": [0.4, 0.1], "low": 0.3, "high": 0.5}, "material": "sand"},
@@ -29,7 +29,7 @@ cat >good.json <<'END'
   "walls": [
     {"name": "floor", "material": "steel", "plate": {"point": [0, 0], "normal": [0, 1]}},
     {"name": "block", "material": "steel", "box": {"width": 0.5, "height": 0.5, "radius": 0.1}, "at": [2, 0], "angle": 0.3, "spin": 1, "pivot": [2.1, 0]},
-    {"name": "lid", "material": "steel", "plate": {"point": [0, 12], "normal": [0, -1]}, "servo": {"direction": [0, -1], "stress": 100, "between": ["floor", "lid"], "max_speed": 1}}
+    {"name": "lid", "material": "steel", "plate": {"point": [0, 12], "normal": [0, -1]}, "servo": {"direction": [0, -1], "stress": 100, "between": ["floor", "block"], "max_speed": 1}}
   ],
   "boundary": {"x": [0, 4]},
   "gravity": [0, -9.81],
@@ -62,6 +62,13 @@ cmp -s out.csv whole.csv || miss "a restart goes on with another table"
 cmp -s over.txt half.txt || miss "a restart after the end has another report: $(cat over.txt)"
 cmp -s out.csv whole.csv || miss "a restart after the end changes the table"
 grep -q '^dem: nothing was left to run: all stages of the input were over$' err.txt || miss "a restart after the end says so"
+# A wall whose servo ends stands where it is.
+sed 's/"block": {"spin": -1}/"lid": {"servo": null}/; s/"out\./"stands./g' good.json >stands.json
+"$dem" stands.json --threads 1 >/dev/null 2>err.txt || miss "a servo that ends"
+awk -F , 'NR == 1 { while ($(++i) != "lid_y") { } next }
+    { y[$1] = $i }
+    END { exit !(y[200] < y[0] && y[1000] < y[800] && y[1200] == y[1000] && y[2000] == y[1000]) }' stands.csv ||
+    miss "a wall whose servo has ended moves on: $(cat stands.csv)"
 # At a restart outputs may have other names, and files of theirs may be gone: they begin anew.
 "$dem" first.json --threads 1 >/dev/null 2>err.txt || miss "the first stage again"
 cp out.restart first.restart
@@ -69,8 +76,8 @@ sed 's/"csv": "out.csv"/"csv": "new.csv", "grains": "new.csv", "vtk": "new", "pi
 "$dem" other.json --restart first.restart --threads 1 >half.txt 2>err.txt || miss "a restart with other outputs"
 [ "$(grep state half.txt)" = "$(grep state whole.txt)" ] || miss "a restart with other outputs has other bits"
 { head -n 1 whole.csv; tail -n 5 whole.csv; } | cmp -s - new.csv || miss "a new table: $(cat new.csv)"
-[ "$(grep -c new-0 new.pvd)" -eq 5 ] && [ "$(grep -c new-contacts-0 new-contacts.pvd)" -eq 5 ] || miss "new lists"
-[ -f new-000006.csv ] && [ -f new-000010.png ] && [ ! -f new-000005.png ] || miss "frames of a restart with other outputs"
+{ [ "$(grep -c new-0 new.pvd)" -eq 5 ] && [ "$(grep -c new-contacts-0 new-contacts.pvd)" -eq 5 ]; } || miss "new lists"
+{ [ -f new-000006.csv ] && [ -f new-000010.png ] && [ ! -f new-000005.png ]; } || miss "frames of a restart with other outputs"
 "$dem" other.json --restart out.restart --threads 1 >/dev/null 2>err.txt || miss "a restart with the new outputs"
 { head -n 1 whole.csv; tail -n 5 whole.csv; } | cmp -s - new.csv || miss "the new table again: $(cat new.csv)"
 rm out.csv
@@ -78,10 +85,11 @@ rm out.csv
 cmp -s out.csv new.csv || miss "a table in place of one that is gone"
 NARC_ISA=scalar "$dem" good.json --threads 2 >scalar.txt 2>err.txt || miss "a run with scalar"
 [ "$(grep state scalar.txt)" = "$(grep state whole.txt)" ] || miss "scalar has other bits"
-sed 's/"law": "linear", "kn": 1e7/"law": "hertz"/' good.json >hertz.json
+sed 's/"law": "linear", "kn": 1e7/"law": "hertz"/; s/"density": \([0-9]*\)/"density": \1, "young": 1e8, "poisson": 0.3/g' good.json >hertz.json
 "$dem" hertz.json --threads 1 >/dev/null 2>err.txt || miss "a run with the Hertz law"
 for place in "1 3" "2 5"; do # a signal at any time: the run goes on to the same end
     sed 's/"duration": 0.1/"duration": 5/g' good.json >long.json
+    # shellcheck disable=SC2086 # two words
     set -- $place
     rm -f out.restart
     if [ ! -f long.txt ]; then "$dem" long.json --threads 1 >long.txt 2>err.txt || miss "a long run"; rm -f out.restart; fi
@@ -107,7 +115,8 @@ fails() {
     shift 2
     "$dem" "$@" >out.txt 2>err.txt
     status=$?
-    [ $status -eq 2 ] && [ "$(wc -l <err.txt)" -eq 1 ] && grep -q "^$message" err.txt || miss "$what: status $status, expected $message"
+    { [ $status -eq 2 ] && [ "$(wc -l <err.txt)" -eq 1 ] && grep -q "^$message" err.txt; } ||
+        miss "$what: status $status, expected $message"
 }
 # wrong SED MESSAGE: the good input, changed by a sed script.
 wrong() {
@@ -166,7 +175,7 @@ wrong 's/\[0.2, 0.2, 3.8, 6\]/[0.2, 6, 3.8, 0.2]/' "grains\[0\].region: is not a
 wrong 's/"normal": \[0.4, 0.1\]/"normal": [0.2, 0.1]/' "grains\[0\].size: does not have its middle between low and high"
 wrong 's/"normal": \[0.4, 0.1\]/"normal": [0.4, 1e9]/' "grains\[0\].size: leaves fewer than one in 1000 sizes between low and high"
 wrong 's/"size": {"normal": \[0.4, 0.1\], /"size": {/' "grains\[0\].size: is not one of uniform, normal and lognormal"
-wrong 's/"size": {"normal": \[0.4, 0.1\]/"size": {"uniform": [0.5, 0.4]/' "grains\[0\].size.uniform: is not a range"
+wrong 's/"size": {"normal": \[0.4, 0.1\], "low": 0.3, "high": 0.5}/"size": {"uniform": [0.5, 0.4]}/' "grains\[0\].size.uniform: is not a range"
 wrong 's/"place": "random"/"place": "rain"/' "grains\[0\].place: is not one of list, random and lattice"
 wrong 's/"spacing": \[1, 1\]/"spacing": [9, 1]/' "grains\[1\]: a lattice of 0 by 2 places has no room"
 wrong 's/"jitter": 0.2/"jitter": 2/' "grains\[1\].jitter: is more than 1 '2'"
@@ -182,16 +191,47 @@ wrong 's/"plate": {"point": \[0, 0\], "normal": \[0, 1\]}/"at": [0, 0]/' "walls\
 wrong 's/"normal": \[0, 1\]/"normal": [0, 0]/' "walls\[0\].plate.normal: has no length"
 wrong 's/"radius": 0.1/"radius": 1/' "walls\[1\].box: "
 wrong 's/"material": "steel", "box"/"material": "gold", "box"/' "walls\[1\].material: is not a material '\"gold\"'"
-wrong 's/\["floor", "lid"\]/["floor", "roof"]/' "walls\[2\].servo.between\[1\]: is not the name of a wall"
+wrong 's/\["floor", "block"\]/["floor", "roof"]/' "walls\[2\].servo.between\[1\]: is not the name of a wall"
 wrong 's/"stress": 100/"stress": 100, "force": 2/' "walls\[2\].servo: has not either force or stress"
 wrong 's/"law": "linear"/"law": "magic"/' "contact.law: is neither linear nor hertz"
-wrong 's/"law": "linear"/"law": "hertz"/' "contact.kn: is not of the Hertz law"
+wrong 's/"law": "linear"/"law": "hertz"/' "materials\[0\].young: is missing"
 wrong 's/"kn": 1e7, //' "contact.kn: is missing"
 wrong 's/"restitution": 0.5, //' "contact: has neither restitution nor gamma_n"
 wrong 's/"restitution": 0.5/"restitution": 1.5/' "contact.restitution: is more than 1 '1.5'"
 wrong 's/"restitution": 0.5/"restitution": 0.5, "gamma_n": 3/' "contact.gamma_n: excludes restitution"
 wrong 's/"friction": 0.5/"friction": -1/' "contact.friction: is less than 0 '-1'"
 wrong 's/\["sand", "steel"\]/["sand", "tin"]/' "contact.pairs\[0\].materials\[1\]: is not a material"
+# What would not be used.
+wrong 's/"density": 1000/"density": 1000, "young": 1/' "materials\[0\].young: is of the Hertz law: the linear law's stiffness is kn '1'"
+wrong 's/"density": 7800/"density": 7800, "poisson": 0.3/' "materials\[1\].poisson: is of the Hertz law"
+wrong 's/"restitution": 0.5/"gamma_n": 5, "tangential_damping": 0.1/' "contact.tangential_damping: is for restitution; with gamma_n it is gamma_t '0.1'"
+wrong 's/"restitution": 0.5/"restitution": 0.5, "gamma_t": 3/' "contact.gamma_t: is for gamma_n; with restitution it is tangential_damping '3'"
+wrong 's/"friction": 0.2/"friction": 0.2, "gamma_t": 2/' "contact.pairs\[0\].gamma_t: is for gamma_n"
+wrong 's/"friction": 0.2/"friction": 0.2, "gamma_n": 3, "tangential_damping": 1/' "contact.pairs\[0\].tangential_damping: is for restitution"
+wrong 's/"restitution": 0.5/"gamma_n": 5/; s/"friction": 0.2/"friction": 0.2, "restitution": 0.5, "gamma_t": 1/' "contact.pairs\[0\].gamma_t: is for gamma_n"
+wrong 's/"kn": 1e7/"kn": 1e7, "least_radius": 0.1/' "contact.least_radius: is of the Hertz law '0.1'"
+wrong 's/"kn": 1e7/"kn": 1e7, "largest_radius": 4/' "contact.largest_radius: is of the Hertz law '4'"
+wrong 's/"rolling_friction": 0.01/"rolling_friction": -0.01/' "contact.rolling_friction: is less than 0 '-0.01'"
+wrong 's/"friction": 0.2}/"friction": 0.2}, {"materials": ["steel", "sand"], "kn": 2e7}/' "contact.pairs\[1\].materials: is a pair that stands before"
+wrong 's/"size": {"normal": \[0.4, 0.1\]/"size": {"uniform": [0.3, 0.4]/' "grains\[0\].size.low: is not for uniform, which has limits '0.3'"
+wrong 's/"normal": \[0, -1\]}/"normal": [0, -1]}, "at": [0, 12]/' "walls\[2\].at: is not for a plate"
+wrong 's/"normal": \[0, -1\]}/"normal": [0, -1]}, "pivot": [0, 12]/' "walls\[2\].pivot: is not for a plate"
+wrong 's/"at": \[2, 0\]/"at": [2, 0], "size": 3/' "walls\[1\].size: is not for a box, which has width and height '3'"
+wrong 's/\["floor", "block"\]/["floor", "floor"]/' "walls\[2\].servo.between: names one wall twice"
+wrong 's/\["floor", "block"\]/["floor", "lid"]/' "walls\[2\].servo.between\[1\]: is the wall that moves: .* '\"lid\"'"
+wrong 's/"stress": 100/"force": 100/' "walls\[2\].servo.between: is for stress, not for force"
+wrong 's/"between": \["floor", "block"\], //' "walls\[2\].servo.between: is missing"
+wrong 's/"direction": \[0, -1\]/"direction": [1, 0]/' "walls\[2\].servo.direction: runs along the plate, which has no ends '\[1,0\]'"
+wrong 's/"max_speed": 1/"max_speed": 1, "travel": 0/' "walls\[2\].servo.travel: is not above 0 '0'"
+wrong 's/"max_speed": 1}/"max_speed": 1}, "velocity": [0, 1]/' "walls\[2\].velocity: is of a wall that its servo moves"
+wrong 's/"block": {"spin": -1}/"lid": {"velocity": [1, 0]}/' "stages\[1\].walls.lid.velocity: is of a wall that its servo moves"
+sed 's/"law": "hertz"/"law": "hertz", "kn": 1e7/' hertz.json >bad.json
+fails "kn with hertz" "dem: bad.json: contact.kn: is not of the Hertz law: stiffness comes from the materials" bad.json
+sed 's/"friction": 0.2/"friction": 0.2, "kt": 1e7/' hertz.json >bad.json
+fails "kt of a pair with hertz" "dem: bad.json: contact.pairs\[0\].kt: is not of the Hertz law" bad.json
+sed 's/, "poisson": 0.3}\]/}]/' hertz.json >bad.json
+fails "hertz without poisson" "dem: bad.json: materials\[1\].poisson: is missing" bad.json
+
 wrong 's/"name": "fall", "duration": 0.1/"name": "fall"/' "stages\[0\].duration: is missing"
 wrong 's/"name": "fall", "duration": 0.1/"name": "fall", "duration": -1/' "stages\[0\].duration: is not above 0 '-1'"
 wrong 's/"walls": {"floor"/"walls": {"roof"/' "stages\[1\].walls.roof: is of no wall of that name"
@@ -206,7 +246,7 @@ sed 's|"csv": "out.csv"|"csv": "no/folder/out.csv"|' good.json >bad.json
 fails "no folder for the table" "dem: no/folder/out.csv: " bad.json
 
 # A lid that goes away from the grains.
-sed 's/"direction": \[0, -1\], "stress": 100, "between": \["floor", "lid"\], "max_speed": 1/"direction": [0, 1], "force": 1, "max_speed": 50, "travel": 1.999/' \
+sed 's/"direction": \[0, -1\], "stress": 100, "between": \["floor", "block"\], "max_speed": 1/"direction": [0, 1], "force": 1, "max_speed": 50, "travel": 1.999/' \
     good.json >bad.json
 fails "nothing to press" "dem: step 400: wall 'lid' has moved by more than 1.999 without touching a grain: its servo has nothing to press" \
     bad.json --threads 1
