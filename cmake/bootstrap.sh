@@ -18,8 +18,9 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   lammps     LAMMPS with grains that are arc shapes, over MPI: its tests, a biaxial compression on 1 and 2 ranks, and
              tables of times beside LAMMPS' own styles; all goes to out/lammps/
   dem        a pile of 5,000 sand grains with the discrete element program: pictures, files for ParaView, tables and the
-             angle of repose go to out/dem/, in some minutes. dem cases: piles of discs and long grains, biaxial tests,
-             hoppers besides, in half an hour. dem speed: what a step costs. docs/dem.md says what they mean
+             angle of repose go to out/dem/, in some minutes. dem cases: slopes, collisions, piles of discs and long
+             grains, biaxial tests, hoppers besides, in a quarter of an hour on two cores. dem speed: what a step
+             costs. docs/dem.md says what they mean
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.
@@ -269,6 +270,8 @@ dem_all() {
     dem_pile
     say "other cases"
     sh $dem_cases/all.sh "$dem_program" out/dem out/dem/sand.json "$jobs"
+    sh $dem_cases/look.sh "$dem_program" out/dem/biaxial-sand biaxial.json biaxial.restart ../biaxial-close.png \
+        "-38, -36, -14, -22" 560 coordination
     gnuplot -e "folder='out/dem'" $dem_cases/plots.gp
     say "results"
     cat out/dem/results.txt

@@ -57,7 +57,7 @@ pile() {
 # friction is 5 to 6 degrees, and 15 to 20 with friction of 0.5; 289 of them tell it within 5.
 biaxial() {
     small='s/"count": 5000/"count": 289/; s/-57, -57, 57, 57/-15, -15, 15, 15/; s/57, 0\]/15, 0]/; s/\[0, 57/[0, 15/
-        s/\[0, -57/[0, -15/; s/"spacing": \[1\.6, 1\.6\]/"spacing": [1.75, 1.75]/; s/"duration": 220/"duration": 110/
+        s/\[0, -57/[0, -15/; s/"spacing": \[1\.6, 1\.6\]/"spacing": [1.75, 1.75]/; s/"duration": 400/"duration": 110/
         s/"duration": 500/"duration": 150/; s/"every": 10/"every": 5/; s/-0\.01\]/-0.008]/'
     for friction in 0 0.5; do
         sh "$cases/biaxial.sh" "$dem" "$folder/$friction" "$shapes" disc $friction "$small; $quiet" >"$folder/$friction.txt"

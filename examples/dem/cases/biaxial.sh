@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# usage: sh biaxial.sh PROGRAM FOLDER SHAPES NAME FRICTION [SED]: the case biaxial.json with the shapes of the file SHAPES
-# whose names begin with NAME. Files go to FOLDER. Prints, at the end of the first stage, the mean number of contacts of a
-# grain that is no rattler and the share of rattlers; and the angle of friction in degrees, the mean over the last third
-# of the second stage: its sine is (s_yy - s_xx) / (s_yy + s_xx). biaxial.dat has the strain of y, both stresses, and the
-# strain of the area. SED changes the input besides.
+# usage: sh biaxial.sh PROGRAM FOLDER SHAPES NAME FRICTION [SED]: the case biaxial.json with the shapes of the file
+# SHAPES whose names begin with NAME. Files go to FOLDER. Prints, at the end of the first stage, the mean number of
+# contacts of a grain that is no rattler and the share of rattlers; and the angle of friction in degrees, the mean over
+# the last third of the second stage: its sine is (s_yy - s_xx) / (s_yy + s_xx). biaxial.dat has the strain of y, both
+# stresses, and the strain of the area. SED changes the input besides.
 set -eu
 program=$1 folder=$2 shapes=$3 name=$4 friction=$5 change=${6:-}
 cases=$(cd "$(dirname "$0")" && pwd)
@@ -17,6 +17,8 @@ sed "s/\[\"disc\"\]/[$names]/; s/\"friction\": 0.5/\"friction\": $friction/; $ch
 pressed=$(sed -n 's/.*"press", "duration": \([0-9.]*\).*/\1/p' biaxial.json)
 every=$(sed -n 's/.*"every": \([0-9.]*\),.*/\1/p' biaxial.json)
 frame=$(awk "BEGIN { printf \"%06d\", $pressed / $every }")
+awk -F , -v pressed="$pressed" '$2 > pressed * 0.9999 && $2 < pressed * 1.0001 && $9 > 0.9 && $12 > 0.9 { found = 1 }
+    END { if (!found) print "biaxial: the first stage ends before the stress is there" >"/dev/stderr"; exit !found }' biaxial.csv
 awk -F , 'NR > 1 { n++; if ($11 > 0) { m++; z += $11 } } END { printf "contacts %.3f, rattlers %.3f, ", z / m, 1 - m / n }' \
     "biaxial-$frame.csv"
 # A plate's place is the middle of its block, so distances of plates count from those at the start, which are known.
