@@ -16,7 +16,7 @@
 /* A box on its way to its strip. */
 typedef struct narc_box_entry {
     uint64_t strip; /* level and number of the strip, see dispatch/broad_phase/strips.c */
-    uint32_t min_x; /* the bits of min_x, turned so that unsigned numbers have their order */
+    float min_x;
     uint32_t body;
 } narc_box_entry;
 
@@ -41,14 +41,14 @@ typedef struct narc_box_columns {
     uint32_t *body;
 } narc_box_columns;
 
-/* Where a kernel puts pairs of places in the columns: room for some now, and more when it asks. */
-typedef struct narc_place_pairs {
+/* Where a kernel puts the bodies whose boxes overlap, a and b in any order: room for some now, and more when it asks. */
+typedef struct narc_found_pairs {
     uint32_t *a, *b;
     uint32_t room, count;
-    void (*get_room)(struct narc_place_pairs *pairs); /* for another NARC_BOX_PADDING pairs at least */
+    void (*get_room)(struct narc_found_pairs *pairs); /* for another NARC_BOX_PADDING pairs at least */
     bool enough;                                      /* nobody wants more pairs: the kernel may stop */
     uint64_t steps;                                   /* vectors of boxes looked at, and steps of searches */
-} narc_place_pairs;
+} narc_found_pairs;
 
 /* What a block of pairs holds: the bodies `a` of its pairs are lowest_a .. highest_a. */
 typedef struct narc_pair_block {

@@ -15,27 +15,26 @@ enum { USUAL_PAIRS = 3 };
 
 /* A thread's pairs, and where those go for which there is no block: they are only counted. */
 typedef struct own_pairs {
-    narc_place_pairs pairs; /* the kernel's view, first */
+    narc_found_pairs pairs; /* the kernel's view, first */
     narc_broad_phase *broad;
     const narc_pair_filter *filter;
     int team;
-    uint32_t bodies; /* pairs of the block that have been filtered */
-    uint64_t total;  /* of the blocks before it */
+    uint32_t filtered; /* pairs of the block that have been */
+    uint64_t total;    /* of the blocks before it */
     uint32_t a[NARC_PAIR_BLOCK], b[NARC_PAIR_BLOCK];
 } own_pairs;
 
-/* Pairs that are only counted, and of which the filter leaves none out, may stay places. */
+/* Without a filter, pairs that are only counted may stay as they are. */
 static void filter_new(own_pairs *own) {
-    narc_place_pairs *const pairs = &own->pairs;
+    narc_found_pairs *const pairs = &own->pairs;
     if (pairs->a == own->a && !own->filter)
-        own->bodies = pairs->count;
+        own->filtered = pairs->count;
     else
-        own->bodies = pairs->count =
-            narc_filter_pairs(own->broad, own->filter, pairs->a, pairs->b, own->bodies, pairs->count);
+        own->filtered = pairs->count = narc_filter_pairs(own->filter, pairs->a, pairs->b, own->filtered, pairs->count);
 }
 
 /* One thread reads all blocks: then their ranges do not matter. */
-static narc_pair_block describe_block(const narc_place_pairs *pairs, int team) {
+static narc_pair_block describe_block(const narc_found_pairs *pairs, int team) {
     if (team == 1)
         return (narc_pair_block){pairs->count, 0, UINT32_MAX};
     narc_pair_block block = {pairs->count, UINT32_MAX, 0};
@@ -47,13 +46,13 @@ static narc_pair_block describe_block(const narc_place_pairs *pairs, int team) {
 }
 
 static void end_block(own_pairs *own) {
-    narc_place_pairs *const pairs = &own->pairs;
+    narc_found_pairs *const pairs = &own->pairs;
     filter_new(own);
     if (pairs->a != own->a)
         own->broad->blocks[(size_t)(pairs->a - own->broad->pair_a) / NARC_PAIR_BLOCK] =
             describe_block(pairs, own->team);
     own->total += pairs->count;
-    own->bodies = pairs->count = 0;
+    own->filtered = pairs->count = 0;
 }
 
 static void begin_block(own_pairs *own) {
@@ -73,7 +72,7 @@ static bool too_many(const narc_broad_phase *broad, int team) {
 }
 
 /* A block that the filter leaves room in is filled up first. */
-static void get_room(narc_place_pairs *pairs) {
+static void get_room(narc_found_pairs *pairs) {
     own_pairs *const own = (own_pairs *)pairs;
     filter_new(own);
     if (pairs->count <= NARC_FULL_BLOCK)
@@ -100,7 +99,7 @@ static size_t find_strip(const narc_broad_phase *broad, const narc_level *level,
 
 /* The boxes of the shorter strip look for theirs in the other. */
 static void sweep_both(const narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_strip *one,
-                       const narc_strip *other, narc_place_pairs *out) {
+                       const narc_strip *other, narc_found_pairs *out) {
     if (one->min_y > other->max_y || other->min_y > one->max_y)
         return;
     const bool swap = one->end - one->first > other->end - other->first;
@@ -110,7 +109,7 @@ static void sweep_both(const narc_broad_phase *broad, const narc_kernel_table *k
 
 /* Sweeps a strip: itself, the one above it, and those of levels with strips at least as high that may reach it. */
 static void sweep_strip(const narc_broad_phase *broad, const narc_kernel_table *kernels, size_t index,
-                        narc_place_pairs *out) {
+                        narc_found_pairs *out) {
     const narc_strip *const strip = &broad->strips[index], *const above = strip + 1;
     kernels->sweep(&broad->boxes, strip->first, strip->end, strip->first, strip->end, strip->width, out);
     if (index + 1 < broad->strip_count && above->number == strip->number + 1)
@@ -136,11 +135,11 @@ static uint64_t sweep_all(narc_broad_phase *broad, const narc_kernel_table *kern
 #endif
     {
         own_pairs own;
-        own.pairs = (narc_place_pairs){.room = NARC_PAIR_BLOCK, .get_room = get_room};
+        own.pairs = (narc_found_pairs){.room = NARC_PAIR_BLOCK, .get_room = get_room};
         own.broad = broad;
         own.filter = filter;
         own.team = team;
-        own.bodies = 0;
+        own.filtered = 0;
         own.total = 0;
         begin_block(&own);
 #ifdef _OPENMP

@@ -1,11 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * order.c - the last steps of narc_find_pairs(): places to bodies, the filter, and the order of the pairs.
+ * order.c - the last steps of narc_find_pairs(): the filter, and the order of the pairs.
  */
 #include "column.h"
 #include "steps.h"
 
 #include <string.h>
+
+static void put_in_order(uint32_t *one, uint32_t *other) {
+    const uint32_t low = *one < *other ? *one : *other, high = *one < *other ? *other : *one;
+    *one = low;
+    *other = high;
+}
 
 /* ------------------------------------------------------------------------------------------------ filter */
 
@@ -23,28 +29,21 @@ static bool lets(const narc_pair_filter *filter, uint32_t a, uint32_t b) {
            (bits_at(filter->category, b) & bits_at(filter->mask, a)) != 0;
 }
 
-uint32_t narc_filter_pairs(const narc_broad_phase *broad, const narc_pair_filter *filter, uint32_t *a, uint32_t *b,
-                           uint32_t first, uint32_t count) {
-    const uint32_t *const body = broad->boxes.body;
+uint32_t narc_filter_pairs(const narc_pair_filter *filter, uint32_t *a, uint32_t *b, uint32_t first, uint32_t count) {
     uint32_t left = first;
-    for (uint32_t k = first; k < count; k++) {
-        const uint32_t one = body[a[k]], other = body[b[k]];
-        a[left] = one < other ? one : other;
-        b[left] = one < other ? other : one;
-        left += !filter || lets(filter, a[left], b[left]);
+    for (uint32_t k = first; k < count; k++)
+        put_in_order(&a[k], &b[k]);
+    for (uint32_t k = first; filter && k < count; k++) {
+        a[left] = a[k];
+        b[left] = b[k];
+        left += lets(filter, a[left], b[left]);
     }
-    return left;
+    return filter ? left : count;
 }
 
 /* ------------------------------------------------------------------------------------------------ order */
 
 enum { FEW = 32, FOUR = 4 };
-
-static void put_in_order(uint32_t *one, uint32_t *other) {
-    const uint32_t low = *one < *other ? *one : *other, high = *one < *other ? *other : *one;
-    *one = low;
-    *other = high;
-}
 
 /* Sorts the first `count` of four items and leaves the others, without a branch: how many partners a body has is hard
  * to predict. */
@@ -106,27 +105,31 @@ static bool has_pairs_of(const narc_pair_block *block, uint32_t first, uint32_t 
 
 /* Counts the partners of bodies first .. end - 1. */
 static void count_partners(const narc_broad_phase *broad, size_t blocks, uint32_t first, uint32_t end) {
+    uint32_t *const ends = broad->ends;
     for (size_t block = 0; block < blocks; block++) {
         const uint32_t *const a = broad->pair_a + block * NARC_PAIR_BLOCK;
+        const uint32_t count = broad->blocks[block].count;
         if (!has_pairs_of(&broad->blocks[block], first, end))
             continue;
-        for (uint32_t k = 0; k < broad->blocks[block].count; k++)
+        for (uint32_t k = 0; k < count; k++)
             if (a[k] - first < end - first)
-                broad->ends[a[k]]++;
+                ends[a[k]]++;
     }
 }
 
 /* Puts the partners of these bodies where `ends` says, and moves it on. */
 static void place_partners(const narc_broad_phase *broad, size_t blocks, uint32_t first, uint32_t end,
                            uint32_t *out_b) {
+    uint32_t *const ends = broad->ends;
     for (size_t block = 0; block < blocks; block++) {
         const uint32_t *const a = broad->pair_a + block * NARC_PAIR_BLOCK;
         const uint32_t *const b = broad->pair_b + block * NARC_PAIR_BLOCK;
+        const uint32_t count = broad->blocks[block].count;
         if (!has_pairs_of(&broad->blocks[block], first, end))
             continue;
-        for (uint32_t k = 0; k < broad->blocks[block].count; k++)
+        for (uint32_t k = 0; k < count; k++)
             if (a[k] - first < end - first)
-                out_b[broad->ends[a[k]]++] = b[k];
+                out_b[ends[a[k]]++] = b[k];
     }
 }
 

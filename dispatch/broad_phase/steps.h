@@ -23,10 +23,9 @@ void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box 
  * lie in. */
 uint64_t narc_strip_number(const narc_broad_phase *broad, const narc_level *level, float y, int64_t offset);
 
-/* Turns the pairs of places from `first` on into pairs of bodies a < b, leaves out those that the filter does not let,
- * and returns how many pairs there are then, with those before `first`. */
-uint32_t narc_filter_pairs(const narc_broad_phase *broad, const narc_pair_filter *filter, uint32_t *a, uint32_t *b,
-                           uint32_t first, uint32_t count);
+/* Puts the bodies of each pair from `first` on into their order, a < b, leaves out pairs that the filter does not let,
+ * and returns how many there are then, with those before `first`. */
+uint32_t narc_filter_pairs(const narc_pair_filter *filter, uint32_t *a, uint32_t *b, uint32_t first, uint32_t count);
 
 /* Writes the pairs of `blocks` blocks in their order. There is room for all. */
 void narc_order_pairs(narc_broad_phase *broad, size_t blocks, size_t body_count, int team, uint32_t *out_a,

@@ -54,7 +54,8 @@ static void clear_sizes(sizes *of) {
 
 static void add_size(sizes *to, float size) {
     float *const largest = &to->largest[exponent_of(size)];
-    *largest = size > *largest ? size : *largest;
+    if (size > *largest) /* rarely: nothing waits for a store */
+        *largest = size;
 }
 
 static void join_sizes(sizes *to, const sizes *from) {
@@ -131,8 +132,10 @@ static double find_scale(const classes *heights, size_t height_class) {
 /* The strip at a height, counted from y = 0. */
 static int64_t strip_at(double scale, float y) {
     const double strip = (double)y * scale;
-    if (fabs(strip) < MOST_STRIPS)
-        return (int64_t)floor(strip);
+    if (fabs(strip) < MOST_STRIPS) {
+        const int64_t towards_zero = (int64_t)strip;
+        return towards_zero - ((double)towards_zero > strip);
+    }
     const int64_t beyond = (int64_t)bits_of(fabsf(y)) - (int64_t)bits_of((float)(MOST_STRIPS / scale));
     const int64_t number = (int64_t)MOST_STRIPS + (beyond > 0 ? beyond : 0);
     return y < 0 ? -number - 1 : number;
@@ -142,12 +145,6 @@ uint64_t narc_strip_number(const narc_broad_phase *broad, const narc_level *leve
     const int64_t strip = strip_at(level->scale, y) + offset - broad->lowest_strip;
     const int64_t last = broad->strip_span - 2, within = strip < 0 ? 0 : strip > last ? last : strip;
     return level->number * (uint64_t)broad->strip_span + (uint64_t)within;
-}
-
-/* Unsigned numbers in the order of floats. */
-static uint32_t order_of(float x) {
-    const uint32_t bits = bits_of(x);
-    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
 /* An entry's level and strip until the range of strips is known. */
@@ -167,10 +164,11 @@ static void list_entries(narc_broad_phase *broad, const narc_box *boxes, size_t 
                                                                                            : highest) if (parts > 1)
 #endif
     for (int part = 0; part < parts; part++) {
-        const size_t end = narc_part_start(count, part + 1, parts);
+        const size_t first = narc_part_start(count, part, parts), end = narc_part_start(count, part + 1, parts);
+        const bool none_empty = all->start[part + 1] - all->start[part] == end - first;
         narc_box_entry *to = broad->entries + all->start[part];
-        for (size_t k = narc_part_start(count, part, parts); k < end; k++) {
-            if (!is_box(&boxes[k]))
+        for (size_t k = first; k < end; k++) {
+            if (!none_empty && !is_box(&boxes[k]))
                 continue;
             const size_t height = heights->of[exponent_of(boxes[k].max_y - boxes[k].min_y)];
             const size_t width = widths->of[exponent_of(boxes[k].max_x - boxes[k].min_x)];
@@ -179,7 +177,7 @@ static void list_entries(narc_broad_phase *broad, const narc_box *boxes, size_t 
             highest = strip > highest ? strip : highest;
             *to++ = (narc_box_entry){(uint64_t)(height * widths->count + width) << STRIP_BITS |
                                          (uint64_t)(strip + STRIP_ZERO),
-                                     order_of(boxes[k].min_x), (uint32_t)k};
+                                     boxes[k].min_x, (uint32_t)k};
         }
     }
     const bool any = lowest <= highest;
@@ -309,25 +307,36 @@ size_t narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, siz
 
 /* ------------------------------------------------------------------------------------------------ within a strip */
 
-/* Below so many entries, insertion is the faster sort. */
-enum { SMALL = 48, BYTE = 256 };
+/* Below so many entries, insertion is the faster sort. More go into buckets first, up to so many. */
+enum { SMALL = 32, BUCKETS = 2048, BYTE = 256 };
 
-static void sort_few(narc_box_entry *entries, size_t count) {
+/* Insertion with at most `moves` moves: false if they are not enough. */
+static bool insert_all(narc_box_entry *entries, size_t count, size_t moves) {
     for (size_t k = 1; k < count; k++) {
         const narc_box_entry moved = entries[k];
         size_t to = k;
         for (; to > 0 && entries[to - 1].min_x > moved.min_x; to--)
             entries[to] = entries[to - 1];
         entries[to] = moved;
+        if (moves < k - to)
+            return false;
+        moves -= k - to;
     }
+    return true;
+}
+
+/* Unsigned numbers in the order of floats. */
+static uint32_t order_of(float x) {
+    const uint32_t bits = bits_of(x);
+    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
 /* Radix sort, byte by byte, of all four; the result is in `entries` again. */
-static void sort_many(narc_box_entry *entries, narc_box_entry *spare, size_t count) {
+static void sort_by_bytes(narc_box_entry *entries, narc_box_entry *spare, size_t count) {
     uint32_t place[4][BYTE] = {0};
     for (size_t k = 0; k < count; k++)
         for (int byte = 0; byte < 4; byte++)
-            place[byte][entries[k].min_x >> 8 * byte & 0xff]++;
+            place[byte][order_of(entries[k].min_x) >> 8 * byte & 0xff]++;
     for (int byte = 0; byte < 4; byte++) {
         uint32_t sum = 0;
         for (size_t k = 0; k < BYTE; k++) {
@@ -336,25 +345,54 @@ static void sort_many(narc_box_entry *entries, narc_box_entry *spare, size_t cou
             sum += here;
         }
         for (size_t k = 0; k < count; k++)
-            spare[place[byte][entries[k].min_x >> 8 * byte & 0xff]++] = entries[k];
+            spare[place[byte][order_of(entries[k].min_x) >> 8 * byte & 0xff]++] = entries[k];
         narc_box_entry *const old = entries;
         entries = spare;
         spare = old;
     }
 }
 
+/* Sorts entries by buckets of equal widths, which brings those that are spread evenly nearly into their order, and by
+ * insertion; others byte by byte. Returns where they are then. */
+static narc_box_entry *sort_by_min_x(narc_box_entry *entries, narc_box_entry *spare, size_t count) {
+    uint32_t place[BUCKETS + 1];
+    float low = INFINITY, high = -INFINITY;
+    if (count < SMALL) {
+        insert_all(entries, count, SIZE_MAX);
+        return entries;
+    }
+    for (size_t k = 0; k < count; k++) {
+        low = entries[k].min_x < low ? entries[k].min_x : low;
+        high = entries[k].min_x > high ? entries[k].min_x : high;
+    }
+    const size_t buckets = count < BUCKETS ? count : BUCKETS;
+    const float scale = (float)(buckets - 1) / (high - low);
+    if (!(scale > 0) || scale > FLT_MAX) { /* all in one place, or nearly, or too far apart */
+        sort_by_bytes(entries, spare, count);
+        return entries;
+    }
+    memset(place, 0, (buckets + 1) * sizeof *place);
+    for (size_t k = 0; k < count; k++)
+        place[1 + (uint32_t)((entries[k].min_x - low) * scale)]++;
+    for (size_t k = 1; k < buckets; k++)
+        place[k] += place[k - 1];
+    for (size_t k = 0; k < count; k++)
+        spare[place[(uint32_t)((entries[k].min_x - low) * scale)]++] = entries[k];
+    if (!insert_all(spare, count, 2 * count))
+        sort_by_bytes(spare, entries, count);
+    return spare;
+}
+
 void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes) {
     const narc_box_columns *const out = &broad->boxes;
     const size_t count = strip->end - strip->first;
-    if (count < SMALL)
-        sort_few(broad->entries + strip->first, count);
-    else
-        sort_many(broad->entries + strip->first, broad->spare + strip->first, count);
+    const narc_box_entry *const sorted =
+        sort_by_min_x(broad->entries + strip->first, broad->spare + strip->first, count);
     strip->min_y = INFINITY;
     strip->max_y = -INFINITY;
     float width = 0;
     for (size_t k = strip->first; k < strip->end; k++) {
-        const uint32_t body = broad->entries[k].body;
+        const uint32_t body = sorted[k - strip->first].body;
         const narc_box box = boxes[body];
         out->body[k] = body;
         out->min_x[k] = box.min_x;

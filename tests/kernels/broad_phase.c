@@ -152,6 +152,47 @@ static void finds_pairs_among_extremes(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
+/* Boxes of one row: spread evenly, over many powers of two, all but one or two in a crowd, in one place, too far apart for
+ * a difference in floats; fewer and more than the sort has buckets. */
+static void sorts_rows_of_all_kinds(void **state) {
+    (void)state;
+    static const size_t counts[] = {1, 2, 31, 32, 33, 500, 3000};
+    enum { EVEN, POWERS, CROWD, TWO_CROWDS, ONE_PLACE, FAR_APART, KINDS };
+    struct test_random random = test_random_named("rows of boxes");
+    narc_broad_phase *broad = create();
+    for (size_t trial = 0; trial < KINDS * sizeof counts / sizeof counts[0]; trial++) {
+        const size_t count = counts[trial / KINDS];
+        narc_box *boxes = malloc(count * sizeof *boxes);
+        for (size_t k = 0; k < count; k++) {
+            const double part = random_unit(&random), sign = random_below(&random, 2) ? 1 : -1;
+            double x = part * (double)count;
+            switch (trial % KINDS) {
+            case POWERS:
+                x = sign * random_log_between(&random, 1e-30, 1e6);
+                break;
+            case CROWD:
+                x = k == 0 ? 1e30 : x;
+                break;
+            case TWO_CROWDS:
+                x += k % 2 ? 1e20 : 0;
+                break;
+            case ONE_PLACE:
+                x = 5;
+                break;
+            case FAR_APART:
+                x = k < 2 ? (k ? 3e38 : -3e38) : x;
+                break;
+            default:
+                break;
+            }
+            boxes[k] = (narc_box){(float)x, (float)part, (float)(x + 0.5), (float)part + 1};
+        }
+        check_pairs(broad, boxes, count, NULL);
+        free(boxes);
+    }
+    narc_destroy_broad_phase(broad);
+}
+
 static void leaves_out_empty_boxes(void **state) {
     (void)state;
     static const narc_box boxes[] = {{0, 0, 1, 1},        {NAN, 0, 1, 1},       {0, NAN, 1, 1},
@@ -515,6 +556,7 @@ int main(void) {
         cmocka_unit_test(finds_all_pairs_of_random_boxes),
         cmocka_unit_test(finds_pairs_that_touch),
         cmocka_unit_test(finds_pairs_among_extremes),
+        cmocka_unit_test(sorts_rows_of_all_kinds),
         cmocka_unit_test(leaves_out_empty_boxes),
         cmocka_unit_test(orders_the_partners_of_a_floor),
         cmocka_unit_test(filters_pairs),
