@@ -21,11 +21,24 @@ static uint64_t pair_at(const narc_pairs *pairs, size_t k) {
     return (uint64_t)narc_index_at(pairs->a, k) << 32 | narc_index_at(pairs->b, k);
 }
 
-static bool in_order(const narc_pairs *pairs) {
-    for (size_t k = 1; k < pairs->count; k++)
-        if (pair_at(pairs, k) < pair_at(pairs, k - 1))
-            return false;
-    return true;
+static size_t count_parts(size_t count) { return (count + PART - 1) / PART; }
+
+static size_t end_of_part(size_t count, size_t part) { return count - part * PART < PART ? count : (part + 1) * PART; }
+
+static bool in_order(const narc_pairs *pairs, unsigned threads) {
+    const size_t parts = count_parts(pairs->count);
+    const int team = narc_team_size(threads, parts);
+    bool fine = true;
+    (void)team;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) num_threads(team) reduction(&& : fine) if (team > 1)
+#endif
+    for (size_t part = 0; part < parts; part++) {
+        const size_t end = end_of_part(pairs->count, part);
+        for (size_t k = part * PART + (part == 0); k < end && fine; k++)
+            fine = pair_at(pairs, k - 1) <= pair_at(pairs, k);
+    }
+    return fine;
 }
 
 /* The first pair of a list in order that is not before `pair`. */
@@ -115,7 +128,7 @@ narc_status narc_match_pairs(narc_broad_phase *broad, const narc_pairs *old_pair
     if (!broad || (new_pairs->count > 0 && !out_match))
         return narc_fail_missing(error, broad ? "out_match" : "broad");
     table t = {NULL, 0};
-    if (!in_order(old_pairs) || !in_order(new_pairs)) {
+    if (!in_order(old_pairs, threads) || !in_order(new_pairs, threads)) {
         const size_t size = table_size(old_pairs->count);
         if (narc_reserve_matches(broad, size * sizeof *t.places) != NARC_OK)
             return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)old_pairs->count, "not enough memory for %zu pairs",
@@ -123,14 +136,14 @@ narc_status narc_match_pairs(narc_broad_phase *broad, const narc_pairs *old_pair
         t = (table){broad->match_memory, size - 1};
         fill(&t, old_pairs);
     }
-    const size_t count = new_pairs->count, parts = (count + PART - 1) / PART;
+    const size_t count = new_pairs->count, parts = count_parts(count);
     const int team = narc_team_size(threads, parts);
     (void)team;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
 #endif
     for (size_t part = 0; part < parts; part++) {
-        const size_t first = part * PART, end = count - first < PART ? count : first + PART;
+        const size_t first = part * PART, end = end_of_part(count, part);
         if (!t.places) {
             walk(old_pairs, new_pairs, first, end, out_match);
             continue;
