@@ -51,13 +51,14 @@ INLINE vm answer_discs(const struct call *call, size_t pair, vm open, const vf i
     const vf field[ROW] = {p.separation, normal.x, normal.y,        point.x,
                            point.y,      v_set(0), p.arcs.a.radius, p.arcs.b.radius};
     const vi pairs = item_bits(item, PAIR);
+    int32_t *const hints = (int32_t *)rows->hint + pair;
     const vm found = vm_and(vm_and_not(p.only, p.far), is_below(p.separation, margin));
     if (in_order && !vm_any(left))
         append_to_list(rows, pairs, found, field);
     else
         put_rows(rows, pairs, found, field);
     if (rows->hinted)
-        put_hints(rows, pairs, answered, vi_set(FIRST_ARCS));
+        vi_store(hints, vi_select(answered, vi_set(FIRST_ARCS), vi_load(hints)));
     return left;
 }
 
