@@ -128,6 +128,10 @@ static size_t list_in_order(const narc_lister *lister, const narc_batch *batch, 
         _Alignas(16) char buffer[BUFFER];
         const size_t size = count - start < lister->chunk ? count - start : lister->chunk;
         const bool fits = total <= list->capacity && list->capacity - total >= size;
+        if (fits && total == 0) {
+            total = lister->find(lister, batch, first + start, size, list);
+            continue;
+        }
         const narc_list part = fits ? skip_items(list, total) : divide_buffer(list, lister->chunk, buffer);
         const size_t found = lister->find(lister, batch, first + start, size, &part);
         if (!fits)

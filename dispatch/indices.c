@@ -76,9 +76,25 @@ static bool all_in_range(const narc_batch *batch, size_t first, size_t count, si
     return fine;
 }
 
+/* Are the shapes of all bodies that pairs first .. last - 1 name below `limit`? The bodies exist. */
+static bool are_shapes_below(const narc_batch *batch, size_t first, size_t last, uint32_t limit) {
+    const narc_column shape = batch->bodies->shape;
+    uint32_t any = 0, all = UINT32_MAX;
+    for (size_t pair = first; pair < last; pair++) {
+        const uint32_t a = narc_index_at(shape, narc_index_at(batch->pairs->a, pair));
+        const uint32_t b = narc_index_at(shape, narc_index_at(batch->pairs->b, pair));
+        any |= a | b;
+        all &= (a - limit) & (b - limit);
+    }
+    return (~any & all) >> 31;
+}
+
 /* The first of pairs first .. last - 1 that names a body or a shape that does not exist; last if none. */
 static size_t find_bad_pair(const narc_batch *batch, size_t first, size_t last) {
     const narc_bodies *bodies = batch->bodies;
+    if (are_bodies_below(batch->pairs, first, last, clip(bodies->count)) &&
+        are_shapes_below(batch, first, last, clip(batch->shapes->count)))
+        return last;
     for (size_t pair = first; pair < last; pair++) {
         const uint32_t a = narc_index_at(batch->pairs->a, pair);
         const uint32_t b = narc_index_at(batch->pairs->b, pair);

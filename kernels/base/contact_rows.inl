@@ -37,7 +37,7 @@ struct contact_rows {
     _Alignas(64) float row[GROUP + 1][ROW];
     int32_t keep[GROUP + 1]; /* one of the above */
     bool hinted;             /* are hints wanted? */
-    uint32_t hint[GROUP + 1];
+    uint32_t hint[GROUP + V_WIDTH];
 };
 
 /* The rows of pairs in the lanes `keep`. */
@@ -142,13 +142,10 @@ INLINE int find_listed(const struct call *call, int32_t pair[GROUP + V_WIDTH]) {
 INLINE void write_column(float *column, int k, int lanes, vf field) {
     if (!column)
         return;
-    if (lanes == V_WIDTH) {
+    if (lanes == V_WIDTH)
         v_store(column + k, field);
-    } else {
-        float rest[V_WIDTH];
-        v_store(rest, field);
-        memcpy(column + k, rest, (size_t)lanes * sizeof(float));
-    }
+    else
+        v_store_front(column + k, lanes, field);
 }
 
 INLINE void write_bytes(uint8_t *column, int k, int lanes, const int32_t lane[V_WIDTH], int shift) {
@@ -176,7 +173,8 @@ INLINE void load_row(const float *rows, const int32_t *row, vf field[ROW]) {
 INLINE float *copy_listed(const struct contact_rows *rows, int field, float *column) {
     if (!column)
         return NULL;
-    memcpy(column, rows->list[field], (size_t)rows->listed * sizeof *column);
+    if (rows->listed > 0)
+        memcpy(column, rows->list[field], (size_t)rows->listed * sizeof *column);
     return column + rows->listed;
 }
 

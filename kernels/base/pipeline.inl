@@ -60,7 +60,7 @@ INLINE void run_stages(const struct call *call, stage *const *stages, int stage_
         const int begin = all ? 0 : queue->count % V_WIDTH;
         if (queue->count == 0 || (!all && queue->count < FLUSH))
             continue;
-        if (all)
+        if (queue->count % V_WIDTH != 0 && all)
             pad(queue);
         stages[s](call, queue, begin, queue + 1);
         queue->count = begin;

@@ -113,6 +113,7 @@ INLINE void push(struct queue *queue, vm keep, const vf *item, int fields) {
 
 /* Fills the rest of a queue's last vector with harmless lanes: one arc, the first of all. */
 static inline void pad(struct queue *queue) {
+    UNROLL
     for (int f = 0; f < FIELDS; f++)
         v_store(queue->item[f] + queue->count, v_set(0));
     v_store(queue->item[INFO_A] + queue->count, v_of_bits(vi_set(1)));

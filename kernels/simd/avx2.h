@@ -22,6 +22,9 @@ typedef __m256i vp;
 INLINE vf v_set(float a) { return _mm256_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm256_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm256_storeu_ps(p, a); }
+INLINE void v_store_front(float *p, int n, vf a) {
+    _mm256_maskstore_ps(p, _mm256_cmpgt_epi32(_mm256_set1_epi32(n), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7)), a);
+}
 INLINE __m256 v_two_rows(const char *base, size_t stride, const int32_t *index) {
     const __m128 low = _mm_loadu_ps((const float *)(const void *)(base + (size_t)(uint32_t)index[0] * stride));
     const __m128 high = _mm_loadu_ps((const float *)(const void *)(base + (size_t)(uint32_t)index[4] * stride));

@@ -22,6 +22,7 @@ typedef __mmask16 vp;
 INLINE vf v_set(float a) { return _mm512_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm512_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm512_storeu_ps(p, a); }
+INLINE void v_store_front(float *p, int n, vf a) { _mm512_mask_storeu_ps(p, (__mmask16)((1u << n) - 1), a); }
 INLINE __m128 v_row(const char *base, size_t stride, int32_t index) {
     return _mm_loadu_ps((const float *)(const void *)(base + (size_t)(uint32_t)index * stride));
 }

@@ -22,6 +22,7 @@ typedef uint8x16_t vp;
 INLINE vf v_set(float a) { return vdupq_n_f32(a); }
 INLINE vf v_load(const float *p) { return vld1q_f32(p); }
 INLINE void v_store(float *p, vf a) { vst1q_f32(p, a); }
+INLINE void v_store_front(float *p, int n, vf a) { memcpy(p, &a, (size_t)n * sizeof *p); }
 INLINE vf v_row(const void *base, size_t stride, int32_t index) {
     return vld1q_f32((const float *)(const void *)((const char *)base + (size_t)(uint32_t)index * stride));
 }

@@ -21,6 +21,7 @@ typedef int vp;
 INLINE vf v_set(float a) { return a; }
 INLINE vf v_load(const float *p) { return *p; }
 INLINE void v_store(float *p, vf a) { *p = a; }
+INLINE void v_store_front(float *p, int n, vf a) { memcpy(p, &a, (size_t)n * sizeof *p); }
 INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out[4]) {
     memcpy(out, (const char *)base + (size_t)(uint32_t)*index * stride, 4 * sizeof(float));
 }

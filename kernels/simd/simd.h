@@ -9,6 +9,7 @@
  * multiply-add and no estimate on purpose.
  *
  *   v_set(float)  v_load(float *)  v_store(float *, vf)         any alignment
+ *   v_store_front(float *, int, vf)                             only that many lanes, the front ones
  *   v_rows(void *base, size_t stride, int32_t *index, vf out[4])
  *                                                               four floats from byte index[lane] * stride of base
  *   v_put_rows(void *base, size_t stride, int32_t *index, vf in[4])
