@@ -366,7 +366,10 @@ typedef enum narc_precision { NARC_FLOAT32 = 0, NARC_FLOAT64 = 1 } narc_precisio
  * takes the shape out of NARC_MIN_SIZE .. NARC_MAX_SIZE, or with a shape that was removed, collides with nothing. A
  * pair with such a body, or with two bodies further apart than NARC_MAX_DISTANCE, has no answer; queries count these
  * (narc_query.out_skipped). narc_compute_boxes() gives a broken body an empty box, so that it is in no pair that is
- * found from boxes: there it is narc_box_options.out_skipped that counts. */
+ * found from boxes: there it is narc_box_options.out_skipped that counts.
+ *
+ * Columns may lie anywhere. Batches of pairs are read fastest where what belongs to a body lies in a row: x, y, cosine
+ * and sine, all float; or double x and y, and cosine, sine, scale and shape behind them, 32 bytes. */
 typedef struct narc_bodies {
     size_t count;
     narc_precision position_precision; /* of x and y: float or double */

@@ -76,23 +76,20 @@ INLINE vec2 circle_difference(vec2 a, vec2 b, const struct pose *pose) {
 
 /* Sets up the pairs k ... of a block of `count`, the first of which has the number `number`: fills `item`. */
 INLINE struct filter set_up_pairs(const struct call *call, const struct pair_indices *in, int k, int count,
-                                  bool adjacent, int32_t number, vf item[FIELDS]) {
+                                  enum pose_layout layout, int32_t number, vf item[FIELDS]) {
     const narc_batch *batch = call->batch;
     const narc_pairs *pairs = batch->pairs;
     const size_t first = call->first + (uint32_t)number + (uint32_t)k;
     const float shrink = 1.0f - 0x1p-16f, grow = 1.0f + 0x1p-16f; /* of a square: 2^-17 of the distance */
-    const narc_column scale = batch->bodies->scale;
-    struct body_pair bodies = load_bodies(batch->bodies, adjacent, in->a + k, in->b + k);
-    if (pairs->shift_x.base || pairs->shift_y.base) {
-        const vec2 shift = {load_pair_column(pairs->shift_x, first, count - k, 0),
-                            load_pair_column(pairs->shift_y, first, count - k, 0)};
-        bodies.difference = load_shifted_difference(batch->bodies, shift, in->a + k, in->b + k);
-    }
+    const bool shifted = pairs->shift_x.base || pairs->shift_y.base;
+    float shifts[2 * V_WIDTH];
+    if (shifted)
+        load_shifts(pairs, first, count - k, shifts);
+    const struct body_pair bodies = load_bodies(batch->bodies, layout, in->a + k, in->b + k, shifted ? shifts : NULL);
     const vf margin = load_pair_column(call->margins, first, count - k, call->margin);
     const struct headers a = load_headers(batch->shapes->headers, in->shape_a + k);
     const struct headers b = load_headers(batch->shapes->headers, in->shape_b + k);
-    const vf scale_a = scale.base ? load_column(scale, in->a + k) : v_set(1);
-    const vf scale_b = scale.base ? load_column(scale, in->b + k) : v_set(1);
+    const vf scale_a = bodies.scale_a, scale_b = bodies.scale_b;
     struct filter filter;
     vm valid_a, valid_b;
     const vec2 rotation_a = normalise_rotation(bodies.rotation_a, &valid_a);

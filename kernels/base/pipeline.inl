@@ -72,7 +72,7 @@ INLINE void run_stages(const struct call *call, stage *const *stages, int stage_
 INLINE void run_pairs(const struct call *call, triage *settle, int fields, stage *const *stages, int stage_count,
                       int edged_stage, struct queue *queues) {
     const narc_batch *batch = call->batch;
-    const bool adjacent = poses_are_adjacent(batch->bodies);
+    const enum pose_layout layout = find_pose_layout(batch->bodies);
     struct pair_indices indices;
     for (int s = 0; s < stage_count; s++)
         queues[s].count = 0;
@@ -83,7 +83,7 @@ INLINE void run_pairs(const struct call *call, triage *settle, int fields, stage
             queues->edged = queues->edged_left = 0;
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
-            const struct filter circles = set_up_pairs(call, &indices, k, n, adjacent, (int32_t)(uint32_t)block, item);
+            const struct filter circles = set_up_pairs(call, &indices, k, n, layout, (int32_t)(uint32_t)block, item);
             if (batch->skipped)
                 *batch->skipped += (size_t)__builtin_popcount(vm_bits(circles.invalid));
             const vm open = settle(call, block + (size_t)k, &circles, item);

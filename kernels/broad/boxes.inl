@@ -62,10 +62,11 @@ INLINE void split_positions(narc_column column, const int32_t *index, vf *out_hi
     *out_low = v_load(low);
 }
 
-INLINE struct placed_bodies load_placed_bodies(const narc_bodies *bodies, bool adjacent, const int32_t *index) {
+INLINE struct placed_bodies load_placed_bodies(const narc_bodies *bodies, enum pose_layout layout,
+                                               const int32_t *index) {
     struct placed_bodies out = {.rest = {v_set(0), v_set(0)}};
     out.scale = bodies->scale.base ? load_column(bodies->scale, index) : v_set(1);
-    if (adjacent) {
+    if (layout == POSE_ROWS) {
         vf row[4];
         v_rows(bodies->x.base, bodies->x.stride, index, row);
         out.position = (vec2){row[0], row[1]};
@@ -217,7 +218,7 @@ INLINE struct reaches find_reaches(const narc_shapes *shapes, const struct heade
  * none. */
 static size_t box(const narc_box_batch *batch, size_t first, size_t count, narc_box *out) {
     const narc_bodies *const bodies = batch->bodies;
-    const bool adjacent = poses_are_adjacent(bodies);
+    const enum pose_layout layout = find_pose_layout(bodies);
     /* Room for the sum with a height, and for underflow: less than any rounding of NARC_MIN_SIZE. */
     const vf margin = v_set(batch->margin * (1 + 0x1p-22f) + 0x1p-80f), none = v_set(INFINITY);
     size_t skipped = 0;
@@ -231,7 +232,7 @@ static size_t box(const narc_box_batch *batch, size_t first, size_t count, narc_
         for (int l = 0; l < V_WIDTH; l++)
             shape[l] = (int32_t)narc_index_at(bodies->shape, (uint32_t)body[l]);
         const struct headers headers = load_headers(batch->shapes->headers, shape);
-        const struct placed_bodies placed = load_placed_bodies(bodies, adjacent, body);
+        const struct placed_bodies placed = load_placed_bodies(bodies, layout, body);
         vm valid;
         const vec2 rotation = normalise_rotation(placed.rotation, &valid);
         struct reaches r = find_reaches(batch->shapes, &headers, &placed, rotation, margin);

@@ -58,6 +58,34 @@ INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf
     v_put_four_rows(base, stride, index + 2, _mm512_shuffle_ps(high01, high23, 0x44));
     v_put_four_rows(base, stride, index + 3, _mm512_shuffle_ps(high01, high23, 0xee));
 }
+/* The differences of one lane, in the lower half. */
+INLINE __m128 v_double_difference(const char *base, size_t stride, int32_t a, int32_t b, const float *shift) {
+    const __m128d from = _mm_loadu_pd((const double *)(const void *)(base + (size_t)(uint32_t)a * stride));
+    const __m128d to = _mm_loadu_pd((const double *)(const void *)(base + (size_t)(uint32_t)b * stride));
+    const __m128d difference = _mm_sub_pd(to, from);
+    if (!shift)
+        return _mm_cvtpd_ps(difference);
+    const __m128d both = _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)shift)));
+    return _mm_cvtpd_ps(_mm_add_pd(difference, both));
+}
+/* Those of lanes `lane` and the next. */
+INLINE __m128 v_two_differences(const char *base, size_t stride, const int32_t *a, const int32_t *b,
+                                const float *shifts, int lane) {
+    const float *one = shifts ? shifts + 2 * lane : NULL, *other = shifts ? shifts + 2 * lane + 2 : NULL;
+    return _mm_movelh_ps(v_double_difference(base, stride, a[lane], b[lane], one),
+                         v_double_difference(base, stride, a[lane + 1], b[lane + 1], other));
+}
+INLINE void v_double_differences(const void *base, size_t stride, const int32_t *a, const int32_t *b,
+                                 const float *shifts, vf out[2]) {
+    __m128 two[8];
+    for (int i = 0; i < 8; i++)
+        two[i] = v_two_differences(base, stride, a, b, shifts, 2 * i);
+    __m512 low = _mm512_castps128_ps512(two[0]), high = _mm512_castps128_ps512(two[1]);
+    low = _mm512_insertf32x4(_mm512_insertf32x4(_mm512_insertf32x4(low, two[2], 1), two[4], 2), two[6], 3);
+    high = _mm512_insertf32x4(_mm512_insertf32x4(_mm512_insertf32x4(high, two[3], 1), two[5], 2), two[7], 3);
+    out[0] = _mm512_shuffle_ps(low, high, 0x88);
+    out[1] = _mm512_shuffle_ps(low, high, 0xdd);
+}
 INLINE vf v_add(vf a, vf b) { return _mm512_add_ps(a, b); }
 INLINE vf v_sub(vf a, vf b) { return _mm512_sub_ps(a, b); }
 INLINE vf v_mul(vf a, vf b) { return _mm512_mul_ps(a, b); }

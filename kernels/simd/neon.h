@@ -47,6 +47,22 @@ INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf
     v_put_row(base, stride, index[2], vzip1q_f32(high02, high13));
     v_put_row(base, stride, index[3], vzip2q_f32(high02, high13));
 }
+/* The differences of one lane. */
+INLINE float32x2_t v_double_difference(const char *base, size_t stride, int32_t a, int32_t b, const float *shift) {
+    const float64x2_t from = vld1q_f64((const double *)(const void *)(base + (size_t)(uint32_t)a * stride));
+    const float64x2_t to = vld1q_f64((const double *)(const void *)(base + (size_t)(uint32_t)b * stride));
+    const float64x2_t difference = vsubq_f64(to, from);
+    return vcvt_f32_f64(shift ? vaddq_f64(difference, vcvt_f64_f32(vld1_f32(shift))) : difference);
+}
+INLINE void v_double_differences(const void *base, size_t stride, const int32_t *a, const int32_t *b,
+                                 const float *shifts, vf out[2]) {
+    float32x2_t one[4];
+    for (int l = 0; l < 4; l++)
+        one[l] = v_double_difference(base, stride, a[l], b[l], shifts ? shifts + 2 * l : NULL);
+    const vf low = vcombine_f32(one[0], one[1]), high = vcombine_f32(one[2], one[3]);
+    out[0] = vuzp1q_f32(low, high);
+    out[1] = vuzp2q_f32(low, high);
+}
 INLINE vf v_add(vf a, vf b) { return vaddq_f32(a, b); }
 INLINE vf v_sub(vf a, vf b) { return vsubq_f32(a, b); }
 INLINE vf v_mul(vf a, vf b) { return vmulq_f32(a, b); }

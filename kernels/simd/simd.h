@@ -14,6 +14,10 @@
  *                                                               four floats from byte index[lane] * stride of base
  *   v_put_rows(void *base, size_t stride, int32_t *index, vf in[4])
  *                                                               the reverse of v_rows, lane by lane
+ *   v_double_differences(void *base, size_t stride, int32_t *a, int32_t *b, float *shifts, vf out[2])
+ *                                                               of two doubles from byte index[lane] * stride of base
+ *                                                               on: those of b less those of a, plus two shifts for
+ *                                                               each lane unless NULL; in double precision, rounded
  *   v_add v_sub v_mul v_div v_sqrt v_abs v_neg
  *   v_min v_max                                                 exactly a < b ? a : b and a > b ? a : b
  *   v_lt v_le                                                   false where an operand is NaN
