@@ -202,28 +202,23 @@ void FixNarcShapes::orient(int i) {
 
 narc_bodies FixNarcShapes::bodies() {
     const size_t count = static_cast<size_t>(atom->nlocal) + static_cast<size_t>(atom->nghost);
-    if (cosines.size() < count) {
-        cosines.resize(count);
-        sines.resize(count);
-        scales.resize(count);
-        indices.resize(count);
-    }
+    if (rows.size() <= count) /* one more, so that there is always a first */
+        rows.resize(count + 1);
     for (size_t i = 0; i < count; i++) {
         const int k = static_cast<int>(i);
-        cosines[i] = static_cast<float>(atom->mu[i][0]);
-        sines[i] = static_cast<float>(atom->mu[i][1]);
-        scales[i] = static_cast<float>(scale(k));
-        indices[i] = form_index(k);
+        const double *x = atom->x[i], *mu = atom->mu[i];
+        rows[i] = {x[0], x[1], static_cast<float>(mu[0]), static_cast<float>(mu[1]), static_cast<float>(scale(k)),
+                   form_index(k)};
     }
     narc_bodies all = {};
     all.count = count;
     all.position_precision = NARC_FLOAT64;
-    all.x = {count ? &atom->x[0][0] : nullptr, 3 * sizeof(double)};
-    all.y = {count ? &atom->x[0][1] : nullptr, 3 * sizeof(double)};
-    all.cosine = {cosines.data(), sizeof(float)};
-    all.sine = {sines.data(), sizeof(float)};
-    all.scale = {scales.data(), sizeof(float)};
-    all.shape = {indices.data(), sizeof(uint32_t)};
+    all.x = {&rows.data()->x, sizeof(Row)};
+    all.y = {&rows.data()->y, sizeof(Row)};
+    all.cosine = {&rows.data()->cosine, sizeof(Row)};
+    all.sine = {&rows.data()->sine, sizeof(Row)};
+    all.scale = {&rows.data()->scale, sizeof(Row)};
+    all.shape = {&rows.data()->shape, sizeof(Row)};
     return all;
 }
 
@@ -357,7 +352,7 @@ int FixNarcShapes::maxsize_restart() {
 }
 
 double FixNarcShapes::memory_usage() {
-    size_t bytes = cosines.size() * (3 * sizeof(float) + sizeof(uint32_t));
+    size_t bytes = rows.size() * sizeof(Row);
     for (const std::vector<Memory> &list : memories)
         bytes += sizeof(std::vector<Memory>) + list.capacity() * sizeof(Memory);
     return static_cast<double>(bytes);
