@@ -98,6 +98,13 @@ typedef struct dem_settings {
     unsigned threads;                    /* 0: as OpenMP would, fewer for few grains */
 } dem_settings;
 
+/* A body as narc reads it: in a row, which it does fastest. */
+typedef struct dem_pose {
+    double x, y;
+    float cosine, sine, scale;
+    uint32_t shape;
+} dem_pose;
+
 /* Bodies: `count` of each array, grains first. */
 typedef struct dem_bodies {
     size_t count, capacity;
@@ -109,8 +116,9 @@ typedef struct dem_bodies {
     double *mass, *inertia;
     double *list_x, *list_y, *list_cosine, *list_sine; /* where they were when the pairs were found */
     double *reach, *extent;                            /* of the scaled shape */
-    float *narc_cosine, *narc_sine, *scale;            /* what narc reads, beside x, y and shape */
+    float *scale;
     uint32_t *shape;
+    dem_pose *pose; /* of all of this, when narc was last asked */
     uint8_t *material, *still; /* still: a wall. Two of them form no pair */
     int32_t *cell_x, *cell_y;  /* how often it crossed the periodic border, for true displacements */
 } dem_bodies;

@@ -44,6 +44,7 @@ typedef struct dem_scratch {
 bool dem_reserve(dem *d, void *array_pointer, size_t *capacity, size_t needed, size_t size);
 bool dem_resize(dem *d, void *array_pointer, size_t count, size_t size);
 bool dem_grow_pairs(dem *d, dem_pairs *pairs, size_t needed);
+/* All bodies where they are now: sets their `pose`. */
 narc_bodies dem_view_bodies(const dem *d);
 bool dem_fail_narc(dem *d, const char *what, const narc_error *error);
 bool dem_find_broken_body(dem *d);

@@ -75,10 +75,9 @@ static const column body_columns[] = {DEM_COLUMN(dem_bodies, x),
                                       DEM_COLUMN(dem_bodies, list_sine),
                                       DEM_COLUMN(dem_bodies, cell_x),
                                       DEM_COLUMN(dem_bodies, cell_y),
-                                      DEM_COLUMN(dem_bodies, narc_cosine),
-                                      DEM_COLUMN(dem_bodies, narc_sine),
                                       DEM_COLUMN(dem_bodies, scale),
                                       DEM_COLUMN(dem_bodies, shape),
+                                      DEM_COLUMN(dem_bodies, pose),
                                       DEM_COLUMN(dem_bodies, material),
                                       DEM_COLUMN(dem_bodies, still),
                                       DEM_COLUMN(dem_bodies, mass),
@@ -228,8 +227,6 @@ static bool add_body(dem *d, uint32_t shape, uint8_t material, double x, double 
     b->y[k] = y;
     b->cosine[k] = cos(angle);
     b->sine[k] = sin(angle);
-    b->narc_cosine[k] = (float)b->cosine[k];
-    b->narc_sine[k] = (float)b->sine[k];
     b->scale[k] = scale;
     b->shape[k] = shape;
     b->material[k] = material;
@@ -321,8 +318,6 @@ static bool add_walls(dem *d) {
         if (wall->kind == DEM_PLATE) { /* the block's upper side is the plate */
             d->bodies.cosine[k] = wall->normal.y;
             d->bodies.sine[k] = -wall->normal.x;
-            d->bodies.narc_cosine[k] = (float)wall->normal.y;
-            d->bodies.narc_sine[k] = (float)-wall->normal.x;
         }
         d->bodies.still[k] = 1;
     }
@@ -372,14 +367,23 @@ bool dem_start(dem *d) {
 
 narc_bodies dem_view_bodies(const dem *d) {
     const dem_bodies *b = &d->bodies;
-    return (narc_bodies){.count = b->count,
+    dem_pose *const pose = b->pose;
+    const size_t count = b->count;
+    const unsigned team = dem_team(d);
+    (void)team;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
+#endif
+    for (size_t k = 0; k < count; k++)
+        pose[k] = (dem_pose){b->x[k], b->y[k], (float)b->cosine[k], (float)b->sine[k], b->scale[k], b->shape[k]};
+    return (narc_bodies){.count = count,
                          .position_precision = NARC_FLOAT64,
-                         .x = NARC_ARRAY(b->x),
-                         .y = NARC_ARRAY(b->y),
-                         .cosine = NARC_ARRAY(b->narc_cosine),
-                         .sine = NARC_ARRAY(b->narc_sine),
-                         .scale = NARC_ARRAY(b->scale),
-                         .shape = NARC_ARRAY(b->shape)};
+                         .x = NARC_COLUMN(pose, x),
+                         .y = NARC_COLUMN(pose, y),
+                         .cosine = NARC_COLUMN(pose, cosine),
+                         .sine = NARC_COLUMN(pose, sine),
+                         .scale = NARC_COLUMN(pose, scale),
+                         .shape = NARC_COLUMN(pose, shape)};
 }
 
 bool dem_find_broken_body(dem *d) {

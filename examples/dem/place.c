@@ -141,8 +141,8 @@ static bool is_clear_of_cell(const dem *d, const grid *g, const dem_filling *f, 
                 const narc_body other = {.x = b->x[k],
                                          .y = b->y[k],
                                          .shape = b->shape[k],
-                                         .cosine = b->narc_cosine[k],
-                                         .sine = b->narc_sine[k],
+                                         .cosine = (float)b->cosine[k],
+                                         .sine = (float)b->sine[k],
                                          .scale = b->scale[k]};
                 if (!is_clear_of(d, grain, other, f->gap, shift))
                     return false;

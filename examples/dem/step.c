@@ -59,8 +59,6 @@ static void kick_and_drift(dem *d) {
         const double unit = 1.5 - 0.5 * (c * c + s * s);
         b.cosine[k] = c * unit;
         b.sine[k] = s * unit;
-        b.narc_cosine[k] = (float)(c * unit);
-        b.narc_sine[k] = (float)(s * unit);
     }
 }
 

@@ -133,8 +133,6 @@ static void move_box(dem_wall *wall, dem_bodies *b, size_t k, double dt) {
     b->y[k] = wall->pivot.y + new_y;
     b->cosine[k] = c * unit;
     b->sine[k] = s * unit;
-    b->narc_cosine[k] = (float)b->cosine[k];
-    b->narc_sine[k] = (float)b->sine[k];
     b->vx[k] -= wall->spin * new_y;
     b->vy[k] += wall->spin * new_x;
 }

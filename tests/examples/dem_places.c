@@ -68,14 +68,15 @@ static void test_free_places(void **state) {
     assert_true(dem_fill_randomly(&d, &filling, &random));
     assert_int_equal(d.grain_count, 180);
     start(&d);
+    const dem_pose *pose = d.bodies.pose; /* of the first forces */
     const narc_bodies bodies = {.count = d.bodies.count,
                                 .position_precision = NARC_FLOAT64,
-                                .x = NARC_ARRAY(d.bodies.x),
-                                .y = NARC_ARRAY(d.bodies.y),
-                                .cosine = NARC_ARRAY(d.bodies.narc_cosine),
-                                .sine = NARC_ARRAY(d.bodies.narc_sine),
-                                .scale = NARC_ARRAY(d.bodies.scale),
-                                .shape = NARC_ARRAY(d.bodies.shape)};
+                                .x = NARC_COLUMN(pose, x),
+                                .y = NARC_COLUMN(pose, y),
+                                .cosine = NARC_COLUMN(pose, cosine),
+                                .sine = NARC_COLUMN(pose, sine),
+                                .scale = NARC_COLUMN(pose, scale),
+                                .shape = NARC_COLUMN(pose, shape)};
     const narc_pairs pairs = {.count = d.pairs.count,
                               .a = NARC_ARRAY(d.pairs.a),
                               .b = NARC_ARRAY(d.pairs.b),

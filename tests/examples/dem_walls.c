@@ -181,8 +181,6 @@ static void test_conveyor(void **state) {
     add_grain(&d, OCTAGON, 0, cos(PI / 8), 0, 0); /* it lies on a side, */
     d.bodies.cosine[0] = cos(PI / 8);             /* after an eighth of a turn */
     d.bodies.sine[0] = sin(PI / 8);
-    d.bodies.narc_cosine[0] = (float)cos(PI / 8);
-    d.bodies.narc_sine[0] = (float)sin(PI / 8);
     d.walls[0].velocity = (dem_vec){-2, 0};
     start(&d);
     step(&d, 20000);
