@@ -72,19 +72,11 @@ INLINE vf load_pair_column(narc_column column, size_t first, int count, float no
     float lane[V_WIDTH];
     if (!column.base)
         return v_set(none);
+    if (column.stride == sizeof(float) && count >= V_WIDTH)
+        return v_load((const float *)column.base + first);
     for (int l = 0; l < V_WIDTH; l++)
         lane[l] = narc_float_at(column, first + (size_t)(l < count ? l : count - 1));
     return v_load(lane);
-}
-
-/* The shifts of B in pairs from `first` on, x and y of each lane in turn; the lanes behind `count` repeat the last
- * pair. */
-INLINE void load_shifts(const narc_pairs *pairs, size_t first, int count, float out[2 * V_WIDTH]) {
-    for (int l = 0; l < V_WIDTH; l++) {
-        const size_t pair = first + (size_t)(l < count ? l : count - 1);
-        out[2 * l] = pairs->shift_x.base ? narc_float_at(pairs->shift_x, pair) : 0;
-        out[2 * l + 1] = pairs->shift_y.base ? narc_float_at(pairs->shift_y, pair) : 0;
-    }
 }
 
 /* Position of b minus position of a, plus a shift if there is one, in the precision of the positions (with a shift, in
@@ -98,13 +90,17 @@ INLINE float find_difference(narc_precision precision, narc_column column, size_
     return (float)(shift ? to - from + (double)*shift : to - from);
 }
 
-INLINE vec2 load_differences(const narc_bodies *bodies, const int32_t *a, const int32_t *b, const float *shifts) {
+INLINE vec2 load_differences(const narc_bodies *bodies, const int32_t *a, const int32_t *b, const vec2 *shift) {
     const narc_precision precision = bodies->position_precision;
-    float x[V_WIDTH], y[V_WIDTH];
+    float x[V_WIDTH], y[V_WIDTH], shift_x[V_WIDTH], shift_y[V_WIDTH];
+    if (shift) {
+        v_store(shift_x, shift->x);
+        v_store(shift_y, shift->y);
+    }
     for (int k = 0; k < V_WIDTH; k++) {
         const uint32_t from = (uint32_t)a[k], to = (uint32_t)b[k];
-        x[k] = find_difference(precision, bodies->x, from, to, shifts ? shifts + 2 * k : NULL);
-        y[k] = find_difference(precision, bodies->y, from, to, shifts ? shifts + 2 * k + 1 : NULL);
+        x[k] = find_difference(precision, bodies->x, from, to, shift ? shift_x + k : NULL);
+        y[k] = find_difference(precision, bodies->y, from, to, shift ? shift_y + k : NULL);
     }
     return (vec2){v_load(x), v_load(y)};
 }
@@ -115,40 +111,51 @@ struct body_pair {
     vf scale_a, scale_b;
 };
 
-/* The second half of a row with doubles. */
-INLINE void load_half_rows(const narc_bodies *bodies, const int32_t *index, vf half[4]) {
-    v_rows((const char *)bodies->x.base + 2 * sizeof(double), bodies->x.stride, index, half);
+INLINE void load_double_rows(const narc_bodies *bodies, const int32_t *a, const int32_t *b, const vec2 *shift,
+                             struct body_pair *out) {
+    const char *row = bodies->x.base, *half = row + 2 * sizeof(double);
+    const size_t stride = bodies->x.stride;
+    const vf shifts[2] = {shift ? shift->x : v_set(0), shift ? shift->y : v_set(0)};
+    vf of_a[4], of_b[4], difference[2];
+    v_rows(half, stride, a, of_a);
+    v_rows(half, stride, b, of_b);
+    v_double_differences(row, stride, a, b, shift ? shifts : NULL, difference);
+    *out = (struct body_pair){{difference[0], difference[1]}, {of_a[0], of_a[1]}, {of_b[0], of_b[1]}, of_a[2], of_b[2]};
 }
 
-/* `shifts`: of load_shifts(), or NULL. */
-INLINE struct body_pair load_bodies(const narc_bodies *bodies, enum pose_layout layout, const int32_t *a,
-                                    const int32_t *b, const float *shifts) {
-    struct body_pair pair;
-    if (layout == POSE_DOUBLE_ROWS) {
-        vf of_a[4], of_b[4], difference[2];
-        load_half_rows(bodies, a, of_a);
-        load_half_rows(bodies, b, of_b);
-        v_double_differences(bodies->x.base, bodies->x.stride, a, b, shifts, difference);
-        return (struct body_pair){
-            {difference[0], difference[1]}, {of_a[0], of_a[1]}, {of_b[0], of_b[1]}, of_a[2], of_b[2]};
-    }
+INLINE void load_columns(const narc_bodies *bodies, const int32_t *a, const int32_t *b, const vec2 *shift,
+                         struct body_pair *out) {
     const narc_column scale = bodies->scale;
-    pair.scale_a = scale.base ? load_column(scale, a) : v_set(1);
-    pair.scale_b = scale.base ? load_column(scale, b) : v_set(1);
-    if (layout == POSE_ROWS) {
+    out->difference = load_differences(bodies, a, b, shift);
+    out->rotation_a = (vec2){load_column(bodies->cosine, a), load_column(bodies->sine, a)};
+    out->rotation_b = (vec2){load_column(bodies->cosine, b), load_column(bodies->sine, b)};
+    out->scale_a = scale.base ? load_column(scale, a) : v_set(1);
+    out->scale_b = scale.base ? load_column(scale, b) : v_set(1);
+}
+
+/* `shift`: of B, or NULL. */
+INLINE struct body_pair load_bodies(const narc_bodies *bodies, enum pose_layout layout, const int32_t *a,
+                                    const int32_t *b, const vec2 *shift) {
+    const narc_column scale = bodies->scale;
+    struct body_pair pair;
+    if (__builtin_expect(layout == POSE_ROWS && !shift, 1)) {
         vf of_a[4], of_b[4];
         v_rows(bodies->x.base, bodies->x.stride, a, of_a);
         v_rows(bodies->x.base, bodies->x.stride, b, of_b);
-        pair.difference = (vec2){v_sub(of_b[0], of_a[0]), v_sub(of_b[1], of_a[1])};
-        pair.rotation_a = (vec2){of_a[2], of_a[3]};
-        pair.rotation_b = (vec2){of_b[2], of_b[3]};
-        if (shifts)
-            pair.difference = load_differences(bodies, a, b, shifts);
-        return pair;
+        pair = (struct body_pair){{v_sub(of_b[0], of_a[0]), v_sub(of_b[1], of_a[1])},
+                                  {of_a[2], of_a[3]},
+                                  {of_b[2], of_b[3]},
+                                  v_set(1),
+                                  v_set(1)};
+        if (scale.base) {
+            pair.scale_a = load_column(scale, a);
+            pair.scale_b = load_column(scale, b);
+        }
+    } else if (layout == POSE_DOUBLE_ROWS) {
+        load_double_rows(bodies, a, b, shift, &pair);
+    } else {
+        load_columns(bodies, a, b, shift, &pair);
     }
-    pair.difference = load_differences(bodies, a, b, shifts);
-    pair.rotation_a = (vec2){load_column(bodies->cosine, a), load_column(bodies->sine, a)};
-    pair.rotation_b = (vec2){load_column(bodies->cosine, b), load_column(bodies->sine, b)};
     return pair;
 }
 

@@ -82,10 +82,9 @@ INLINE struct filter set_up_pairs(const struct call *call, const struct pair_ind
     const size_t first = call->first + (uint32_t)number + (uint32_t)k;
     const float shrink = 1.0f - 0x1p-16f, grow = 1.0f + 0x1p-16f; /* of a square: 2^-17 of the distance */
     const bool shifted = pairs->shift_x.base || pairs->shift_y.base;
-    float shifts[2 * V_WIDTH];
-    if (shifted)
-        load_shifts(pairs, first, count - k, shifts);
-    const struct body_pair bodies = load_bodies(batch->bodies, layout, in->a + k, in->b + k, shifted ? shifts : NULL);
+    const vec2 shift = {load_pair_column(pairs->shift_x, first, count - k, 0),
+                        load_pair_column(pairs->shift_y, first, count - k, 0)};
+    const struct body_pair bodies = load_bodies(batch->bodies, layout, in->a + k, in->b + k, shifted ? &shift : NULL);
     const vf margin = load_pair_column(call->margins, first, count - k, call->margin);
     const struct headers a = load_headers(batch->shapes->headers, in->shape_a + k);
     const struct headers b = load_headers(batch->shapes->headers, in->shape_b + k);

@@ -54,30 +54,28 @@ INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf
     v_put_two_rows(base, stride, index + 2, _mm256_shuffle_ps(high01, high23, 0x44));
     v_put_two_rows(base, stride, index + 3, _mm256_shuffle_ps(high01, high23, 0xee));
 }
-/* The differences of one lane, in the lower half. */
-INLINE __m128 v_double_difference(const char *base, size_t stride, int32_t a, int32_t b, const float *shift) {
-    const __m128d from = _mm_loadu_pd((const double *)(const void *)(base + (size_t)(uint32_t)a * stride));
-    const __m128d to = _mm_loadu_pd((const double *)(const void *)(base + (size_t)(uint32_t)b * stride));
-    const __m128d difference = _mm_sub_pd(to, from);
-    if (!shift)
-        return _mm_cvtpd_ps(difference);
-    const __m128d both = _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)shift)));
-    return _mm_cvtpd_ps(_mm_add_pd(difference, both));
+/* The differences of two lanes that follow each other. */
+INLINE __m128 v_two_differences(const char *base, size_t stride, const int32_t *a, const int32_t *b, bool shifted,
+                                __m128 shifts) {
+    __m256d from = _mm256_castpd128_pd256(_mm_loadu_pd((const double *)(const void *)(base + (uint32_t)a[0] * stride)));
+    __m256d to = _mm256_castpd128_pd256(_mm_loadu_pd((const double *)(const void *)(base + (uint32_t)b[0] * stride)));
+    from = _mm256_insertf128_pd(from, _mm_loadu_pd((const double *)(const void *)(base + (uint32_t)a[1] * stride)), 1);
+    to = _mm256_insertf128_pd(to, _mm_loadu_pd((const double *)(const void *)(base + (uint32_t)b[1] * stride)), 1);
+    const __m256d difference = _mm256_sub_pd(to, from);
+    return _mm256_cvtpd_ps(shifted ? _mm256_add_pd(difference, _mm256_cvtps_pd(shifts)) : difference);
 }
-/* Those of lanes `lane` and the next. */
-INLINE __m128 v_two_differences(const char *base, size_t stride, const int32_t *a, const int32_t *b,
-                                const float *shifts, int lane) {
-    const float *one = shifts ? shifts + 2 * lane : NULL, *other = shifts ? shifts + 2 * lane + 2 : NULL;
-    return _mm_movelh_ps(v_double_difference(base, stride, a[lane], b[lane], one),
-                         v_double_difference(base, stride, a[lane + 1], b[lane + 1], other));
-}
-INLINE void v_double_differences(const void *base, size_t stride, const int32_t *a, const int32_t *b,
-                                 const float *shifts, vf out[2]) {
-    __m128 two[4];
-    for (int i = 0; i < 4; i++)
-        two[i] = v_two_differences(base, stride, a, b, shifts, 2 * i);
-    const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(two[0]), two[2], 1);
-    const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(two[1]), two[3], 1);
+INLINE void v_double_differences(const void *base, size_t stride, const int32_t *a, const int32_t *b, const vf *shifts,
+                                 vf out[2]) {
+    const bool shifted = shifts != NULL;
+    const __m256 zero = _mm256_setzero_ps();
+    const __m256 s_low = shifted ? _mm256_unpacklo_ps(shifts[0], shifts[1]) : zero;
+    const __m256 s_high = shifted ? _mm256_unpackhi_ps(shifts[0], shifts[1]) : zero;
+    const __m128 d01 = v_two_differences(base, stride, a, b, shifted, _mm256_castps256_ps128(s_low));
+    const __m128 d23 = v_two_differences(base, stride, a + 2, b + 2, shifted, _mm256_castps256_ps128(s_high));
+    const __m128 d45 = v_two_differences(base, stride, a + 4, b + 4, shifted, _mm256_extractf128_ps(s_low, 1));
+    const __m128 d67 = v_two_differences(base, stride, a + 6, b + 6, shifted, _mm256_extractf128_ps(s_high, 1));
+    const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(d01), d45, 1);
+    const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(d23), d67, 1);
     out[0] = _mm256_shuffle_ps(low, high, 0x88);
     out[1] = _mm256_shuffle_ps(low, high, 0xdd);
 }

@@ -48,18 +48,22 @@ INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf
     v_put_row(base, stride, index[3], vzip2q_f32(high02, high13));
 }
 /* The differences of one lane. */
-INLINE float32x2_t v_double_difference(const char *base, size_t stride, int32_t a, int32_t b, const float *shift) {
+INLINE float32x2_t v_double_difference(const char *base, size_t stride, int32_t a, int32_t b, bool shifted,
+                                       float32x2_t shift) {
     const float64x2_t from = vld1q_f64((const double *)(const void *)(base + (size_t)(uint32_t)a * stride));
     const float64x2_t to = vld1q_f64((const double *)(const void *)(base + (size_t)(uint32_t)b * stride));
     const float64x2_t difference = vsubq_f64(to, from);
-    return vcvt_f32_f64(shift ? vaddq_f64(difference, vcvt_f64_f32(vld1_f32(shift))) : difference);
+    return vcvt_f32_f64(shifted ? vaddq_f64(difference, vcvt_f64_f32(shift)) : difference);
 }
-INLINE void v_double_differences(const void *base, size_t stride, const int32_t *a, const int32_t *b,
-                                 const float *shifts, vf out[2]) {
-    float32x2_t one[4];
-    for (int l = 0; l < 4; l++)
-        one[l] = v_double_difference(base, stride, a[l], b[l], shifts ? shifts + 2 * l : NULL);
-    const vf low = vcombine_f32(one[0], one[1]), high = vcombine_f32(one[2], one[3]);
+INLINE void v_double_differences(const void *base, size_t stride, const int32_t *a, const int32_t *b, const vf *shifts,
+                                 vf out[2]) {
+    const bool shifted = shifts != NULL;
+    const vf s_low = shifted ? vzip1q_f32(shifts[0], shifts[1]) : vdupq_n_f32(0);
+    const vf s_high = shifted ? vzip2q_f32(shifts[0], shifts[1]) : vdupq_n_f32(0);
+    const vf low = vcombine_f32(v_double_difference(base, stride, a[0], b[0], shifted, vget_low_f32(s_low)),
+                                v_double_difference(base, stride, a[1], b[1], shifted, vget_high_f32(s_low)));
+    const vf high = vcombine_f32(v_double_difference(base, stride, a[2], b[2], shifted, vget_low_f32(s_high)),
+                                 v_double_difference(base, stride, a[3], b[3], shifted, vget_high_f32(s_high)));
     out[0] = vuzp1q_f32(low, high);
     out[1] = vuzp2q_f32(low, high);
 }

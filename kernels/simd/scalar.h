@@ -28,8 +28,8 @@ INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out
 INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf in[4]) {
     memcpy((char *)base + (size_t)(uint32_t)*index * stride, in, 4 * sizeof(float));
 }
-INLINE void v_double_differences(const void *base, size_t stride, const int32_t *a, const int32_t *b,
-                                 const float *shifts, vf out[2]) {
+INLINE void v_double_differences(const void *base, size_t stride, const int32_t *a, const int32_t *b, const vf *shifts,
+                                 vf out[2]) {
     double from[2], to[2];
     memcpy(from, (const char *)base + (size_t)(uint32_t)*a * stride, sizeof from);
     memcpy(to, (const char *)base + (size_t)(uint32_t)*b * stride, sizeof to);
