@@ -183,26 +183,25 @@ static void list_entries(narc_broad_phase *broad, const narc_box *boxes, size_t 
     const bool any = lowest <= highest;
     broad->lowest_strip = any ? lowest : 0;
     broad->strip_span = any ? highest - lowest + 2 : 2; /* one more, so that levels are not next to each other */
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(parts) if (parts > 1)
-#endif
-    for (int part = 0; part < parts; part++) {
-        for (size_t k = all->start[part]; k < all->start[part + 1]; k++) {
-            narc_box_entry *const entry = &broad->entries[k];
-            const uint64_t level = entry->strip >> STRIP_BITS;
-            const int64_t strip = (int64_t)(entry->strip & (((uint64_t)1 << STRIP_BITS) - 1)) - STRIP_ZERO;
-            entry->strip = level * (uint64_t)broad->strip_span + (uint64_t)(strip - broad->lowest_strip);
-        }
-    }
+}
+
+/* An entry's level and strip as one number, once the range of strips is known. */
+static uint64_t join_strip(uint64_t level_and_strip, int64_t lowest, int64_t span) {
+    const uint64_t level = level_and_strip >> STRIP_BITS;
+    const int64_t strip = (int64_t)(level_and_strip & (((uint64_t)1 << STRIP_BITS) - 1)) - STRIP_ZERO;
+    return level * (uint64_t)span + (uint64_t)(strip - lowest);
 }
 
 /* ------------------------------------------------------------------------------------------------ sorting */
 
 enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
 
-/* One pass of a stable radix sort. Each part counts its digits, and then knows where those of the parts before it
- * end. */
-static void sort_by_digit(const narc_box_entry *from, narc_box_entry *to, size_t count, int shift, int parts) {
+/* One pass of a stable radix sort, from `entries` to `spare`, which change places. Each part counts its digits, and then
+ * knows where those of the parts before it end. The first pass joins levels and strips. */
+static void sort_by_digit(narc_broad_phase *broad, size_t count, int shift, int parts) {
+    narc_box_entry *const from = broad->entries, *const to = broad->spare;
+    const int64_t lowest = broad->lowest_strip, span = broad->strip_span;
+    const bool first_pass = shift == 0;
     uint32_t place[MOST_PARTS][DIGITS];
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(parts) if (parts > 1)
@@ -210,8 +209,10 @@ static void sort_by_digit(const narc_box_entry *from, narc_box_entry *to, size_t
     for (int part = 0; part < parts; part++) {
         const size_t end = narc_part_start(count, part + 1, parts);
         memset(place[part], 0, sizeof place[part]);
-        for (size_t k = narc_part_start(count, part, parts); k < end; k++)
-            place[part][from[k].strip >> shift & (DIGITS - 1)]++;
+        for (size_t k = narc_part_start(count, part, parts); k < end; k++) {
+            const uint64_t number = first_pass ? join_strip(from[k].strip, lowest, span) : from[k].strip;
+            place[part][number >> shift & (DIGITS - 1)]++;
+        }
     }
     uint32_t sum = 0;
     for (size_t k = 0; k < DIGITS; k++) {
@@ -226,48 +227,40 @@ static void sort_by_digit(const narc_box_entry *from, narc_box_entry *to, size_t
 #endif
     for (int part = 0; part < parts; part++) {
         const size_t end = narc_part_start(count, part + 1, parts);
-        for (size_t k = narc_part_start(count, part, parts); k < end; k++)
-            to[place[part][from[k].strip >> shift & (DIGITS - 1)]++] = from[k];
+        for (size_t k = narc_part_start(count, part, parts); k < end; k++) {
+            const uint64_t number = first_pass ? join_strip(from[k].strip, lowest, span) : from[k].strip;
+            to[place[part][number >> shift & (DIGITS - 1)]++] = (narc_box_entry){number, from[k].min_x, from[k].body};
+        }
     }
-}
-
-static void swap_entries(narc_broad_phase *broad) {
-    narc_box_entry *const old = broad->entries;
-    broad->entries = broad->spare;
-    broad->spare = old;
+    broad->entries = to;
+    broad->spare = from;
 }
 
 static bool begins_strip(const narc_box_entry *entries, size_t k) {
     return k == 0 || entries[k].strip != entries[k - 1].strip;
 }
 
+/* Each part lists its strips where its entries are; then the lists move together. */
 static void list_strips(narc_broad_phase *broad, size_t listed, int parts) {
-    size_t start[MOST_PARTS + 1] = {0};
+    size_t found[MOST_PARTS] = {0};
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(parts) if (parts > 1)
 #endif
     for (int part = 0; part < parts; part++) {
-        const size_t end = narc_part_start(listed, part + 1, parts);
-        size_t found = 0;
-        for (size_t k = narc_part_start(listed, part, parts); k < end; k++)
-            found += begins_strip(broad->entries, k);
-        start[part + 1] = found;
-    }
-    for (int part = 0; part < parts; part++)
-        start[part + 1] += start[part];
-    broad->strip_count = start[parts];
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(parts) if (parts > 1)
-#endif
-    for (int part = 0; part < parts; part++) {
-        const size_t end = narc_part_start(listed, part + 1, parts);
-        narc_strip *to = broad->strips + start[part];
-        for (size_t k = narc_part_start(listed, part, parts); k < end; k++)
+        const size_t first = narc_part_start(listed, part, parts), end = narc_part_start(listed, part + 1, parts);
+        narc_strip *to = broad->strips + first;
+        for (size_t k = first; k < end; k++)
             if (begins_strip(broad->entries, k))
                 *to++ = (narc_strip){.number = broad->entries[k].strip, .first = (uint32_t)k};
+        found[part] = (size_t)(to - (broad->strips + first));
     }
-    for (size_t k = 0; k < broad->strip_count; k++)
-        broad->strips[k].end = k + 1 < broad->strip_count ? broad->strips[k + 1].first : (uint32_t)listed;
+    size_t count = 0;
+    for (int part = 0; part < parts; count += found[part++])
+        memmove(broad->strips + count, broad->strips + narc_part_start(listed, part, parts),
+                found[part] * sizeof *broad->strips);
+    broad->strip_count = count;
+    for (size_t k = 0; k < count; k++)
+        broad->strips[k].end = k + 1 < count ? broad->strips[k + 1].first : (uint32_t)listed;
 }
 
 /* The levels that have boxes, the highest strips first. */
@@ -293,10 +286,8 @@ size_t narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, siz
     list_entries(broad, boxes, count, parts, &all, &heights, &widths);
     const size_t listed = all.start[parts];
     const uint64_t numbers = (uint64_t)heights.count * (uint64_t)widths.count * (uint64_t)broad->strip_span;
-    for (int shift = 0; shift < 64 && numbers >> shift > 0; shift += DIGIT_BITS) {
-        sort_by_digit(broad->entries, broad->spare, listed, shift, parts);
-        swap_entries(broad);
-    }
+    for (int shift = 0; shift < 64 && numbers >> shift > 0; shift += DIGIT_BITS)
+        sort_by_digit(broad, listed, shift, parts);
     list_strips(broad, listed, parts);
     list_levels(broad, &heights, &widths);
     for (size_t k = 0; k < NARC_BOX_PADDING; k++) /* read, and of no use */
