@@ -128,14 +128,15 @@ static size_t list_in_order(const narc_lister *lister, const narc_batch *batch, 
         _Alignas(16) char buffer[BUFFER];
         const size_t size = count - start < lister->chunk ? count - start : lister->chunk;
         const bool fits = total <= list->capacity && list->capacity - total >= size;
-        if (fits && total == 0) {
-            total = lister->find(lister, batch, first + start, size, list);
-            continue;
+        const narc_list *to = list; /* as it is, for the first chunk */
+        narc_list part;
+        if (!fits || total > 0) {
+            part = fits ? skip_items(list, total) : divide_buffer(list, lister->chunk, buffer);
+            to = &part;
         }
-        const narc_list part = fits ? skip_items(list, total) : divide_buffer(list, lister->chunk, buffer);
-        const size_t found = lister->find(lister, batch, first + start, size, &part);
+        const size_t found = lister->find(lister, batch, first + start, size, to);
         if (!fits)
-            copy_items(&part, found, total, list);
+            copy_items(to, found, total, list);
         total += found;
     }
     return total;

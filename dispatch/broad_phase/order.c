@@ -30,15 +30,17 @@ static bool lets(const narc_pair_filter *filter, uint32_t a, uint32_t b) {
 }
 
 uint32_t narc_filter_pairs(const narc_pair_filter *filter, uint32_t *a, uint32_t *b, uint32_t first, uint32_t count) {
-    uint32_t left = first;
     for (uint32_t k = first; k < count; k++)
         put_in_order(&a[k], &b[k]);
-    for (uint32_t k = first; filter && k < count; k++) {
+    if (!filter)
+        return count;
+    uint32_t left = first;
+    for (uint32_t k = first; k < count; k++) {
         a[left] = a[k];
         b[left] = b[k];
         left += lets(filter, a[left], b[left]);
     }
-    return filter ? left : count;
+    return left;
 }
 
 /* ------------------------------------------------------------------------------------------------ order */

@@ -255,9 +255,11 @@ static void list_strips(narc_broad_phase *broad, size_t listed, int parts) {
         found[part] = (size_t)(to - (broad->strips + first));
     }
     size_t count = 0;
-    for (int part = 0; part < parts; count += found[part++])
-        memmove(broad->strips + count, broad->strips + narc_part_start(listed, part, parts),
-                found[part] * sizeof *broad->strips);
+    for (int part = 0; part < parts; part++) {
+        const narc_strip *from = broad->strips + narc_part_start(listed, part, parts);
+        memmove(broad->strips + count, from, found[part] * sizeof *from);
+        count += found[part];
+    }
     broad->strip_count = count;
     for (size_t k = 0; k < count; k++)
         broad->strips[k].end = k + 1 < count ? broad->strips[k + 1].first : (uint32_t)listed;
@@ -290,16 +292,18 @@ size_t narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, siz
         sort_by_digit(broad, listed, shift, parts);
     list_strips(broad, listed, parts);
     list_levels(broad, &heights, &widths);
-    for (size_t k = 0; k < NARC_BOX_PADDING; k++) /* read, and of no use */
-        broad->boxes.min_x[listed + k] = broad->boxes.max_x[listed + k] = broad->boxes.min_y[listed + k] =
-            broad->boxes.max_y[listed + k] = 0;
+    for (size_t k = listed; k < listed + NARC_BOX_PADDING; k++) { /* read, and of no use */
+        broad->boxes.min_x[k] = broad->boxes.max_x[k] = broad->boxes.min_y[k] = broad->boxes.max_y[k] = 0;
+        broad->boxes.body[k] = 0;
+    }
     return listed;
 }
 
 /* ------------------------------------------------------------------------------------------------ within a strip */
 
-/* Below so many entries, insertion is the faster sort. More go into buckets first, up to so many. */
-enum { SMALL = 32, BUCKETS = 2048, BYTE = 256 };
+/* Below so many entries, insertion is the faster sort. More go into buckets first, as many as there are entries; and from
+ * where buckets would hold more than a few each, bytes are faster. */
+enum { SMALL = 32, BUCKETS = 8192, MOST_FOR_BUCKETS = 2 * BUCKETS, BYTE = 256 };
 
 /* Insertion with at most `moves` moves: false if they are not enough. */
 static bool insert_all(narc_box_entry *entries, size_t count, size_t moves) {
@@ -348,17 +352,23 @@ static void sort_by_bytes(narc_box_entry *entries, narc_box_entry *spare, size_t
 static narc_box_entry *sort_by_min_x(narc_box_entry *entries, narc_box_entry *spare, size_t count) {
     uint32_t place[BUCKETS + 1];
     float low = INFINITY, high = -INFINITY;
+    bool in_order = true;
     if (count < SMALL) {
         insert_all(entries, count, SIZE_MAX);
         return entries;
     }
     for (size_t k = 0; k < count; k++) {
-        low = entries[k].min_x < low ? entries[k].min_x : low;
-        high = entries[k].min_x > high ? entries[k].min_x : high;
+        const float x = entries[k].min_x;
+        in_order = in_order && x >= high;
+        low = x < low ? x : low;
+        high = x > high ? x : high;
     }
+    if (in_order)
+        return entries;
     const size_t buckets = count < BUCKETS ? count : BUCKETS;
     const float scale = (float)(buckets - 1) / (high - low);
-    if (!(scale > 0) || scale > FLT_MAX) { /* all in one place, or nearly, or too far apart */
+    /* Too many, nearly all in one place, or too far apart. */
+    if (count > MOST_FOR_BUCKETS || !(scale > 0) || scale > FLT_MAX) {
         sort_by_bytes(entries, spare, count);
         return entries;
     }

@@ -98,13 +98,6 @@ typedef struct dem_settings {
     unsigned threads;                    /* 0: as OpenMP would, fewer for few grains */
 } dem_settings;
 
-/* A body as narc reads it: in a row, which it does fastest. */
-typedef struct dem_pose {
-    double x, y;
-    float cosine, sine, scale;
-    uint32_t shape;
-} dem_pose;
-
 /* Bodies: `count` of each array, grains first. */
 typedef struct dem_bodies {
     size_t count, capacity;
@@ -118,7 +111,6 @@ typedef struct dem_bodies {
     double *reach, *extent;                            /* of the scaled shape */
     float *scale;
     uint32_t *shape;
-    dem_pose *pose; /* of all of this, when narc was last asked */
     uint8_t *material, *still; /* still: a wall. Two of them form no pair */
     int32_t *cell_x, *cell_y;  /* how often it crossed the periodic border, for true displacements */
 } dem_bodies;

@@ -24,6 +24,13 @@ typedef struct dem_extra {
     float shift_x, shift_y;
 } dem_extra;
 
+/* A body as narc reads it: in a row, which it does fastest. */
+typedef struct dem_pose {
+    double x, y;
+    float cosine, sine, scale;
+    uint32_t shape;
+} dem_pose;
+
 typedef struct dem_scratch {
     narc_box *boxes; /* bodies, then images */
     uint8_t *still;
@@ -38,14 +45,16 @@ typedef struct dem_scratch {
     bool adds;      /* a single thread adds forces to bodies as it finds them */
     dem_sums *sums;
     size_t sums_capacity;
+    dem_pose *poses; /* of all bodies, when narc was last asked */
+    size_t pose_capacity;
 } dem_scratch;
 
 /* model.c: an array with room for `needed` items; grows by halves. The items that there are stay. */
 bool dem_reserve(dem *d, void *array_pointer, size_t *capacity, size_t needed, size_t size);
 bool dem_resize(dem *d, void *array_pointer, size_t count, size_t size);
 bool dem_grow_pairs(dem *d, dem_pairs *pairs, size_t needed);
-/* All bodies where they are now: sets their `pose`. */
-narc_bodies dem_view_bodies(const dem *d);
+/* All bodies where they are now, for narc, until the next call. */
+bool dem_make_poses(dem *d, narc_bodies *out);
 bool dem_fail_narc(dem *d, const char *what, const narc_error *error);
 bool dem_find_broken_body(dem *d);
 unsigned dem_team(const dem *d); /* threads */

@@ -77,7 +77,6 @@ static const column body_columns[] = {DEM_COLUMN(dem_bodies, x),
                                       DEM_COLUMN(dem_bodies, cell_y),
                                       DEM_COLUMN(dem_bodies, scale),
                                       DEM_COLUMN(dem_bodies, shape),
-                                      DEM_COLUMN(dem_bodies, pose),
                                       DEM_COLUMN(dem_bodies, material),
                                       DEM_COLUMN(dem_bodies, still),
                                       DEM_COLUMN(dem_bodies, mass),
@@ -152,7 +151,7 @@ void dem_destroy(dem *d) {
     free_columns(&d->last_pairs, pair_columns, PAIR_COLUMNS);
     if (s) {
         void *const scratch[] = {s->boxes,   s->still, s->image_of, s->image_x, s->image_y, s->found_a,
-                                 s->found_b, s->match, s->extra,    s->slot,    s->sums};
+                                 s->found_b, s->match, s->extra,    s->slot,    s->sums,    s->poses};
         for (size_t i = 0; i < sizeof scratch / sizeof scratch[0]; i++)
             free(scratch[i]);
         free(s);
@@ -363,20 +362,22 @@ bool dem_start(dem *d) {
     return dem_renew_lists(d) && dem_find_first_forces(d);
 }
 
-/* ------------------------------------------------------------------------------------------------ views */
+/* ------------------------------------------------------------------------------------------------ poses */
 
-narc_bodies dem_view_bodies(const dem *d) {
+bool dem_make_poses(dem *d, narc_bodies *out) {
     const dem_bodies *b = &d->bodies;
-    dem_pose *const pose = b->pose;
     const size_t count = b->count;
     const unsigned team = dem_team(d);
+    if (!dem_reserve(d, &d->scratch->poses, &d->scratch->pose_capacity, count, sizeof *d->scratch->poses))
+        return false;
+    dem_pose *const pose = d->scratch->poses;
     (void)team;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
 #endif
     for (size_t k = 0; k < count; k++)
         pose[k] = (dem_pose){b->x[k], b->y[k], (float)b->cosine[k], (float)b->sine[k], b->scale[k], b->shape[k]};
-    return (narc_bodies){.count = count,
+    *out = (narc_bodies){.count = count,
                          .position_precision = NARC_FLOAT64,
                          .x = NARC_COLUMN(pose, x),
                          .y = NARC_COLUMN(pose, y),
@@ -384,11 +385,14 @@ narc_bodies dem_view_bodies(const dem *d) {
                          .sine = NARC_COLUMN(pose, sine),
                          .scale = NARC_COLUMN(pose, scale),
                          .shape = NARC_COLUMN(pose, shape)};
+    return true;
 }
 
 bool dem_find_broken_body(dem *d) {
-    const narc_bodies bodies = dem_view_bodies(d);
+    narc_bodies bodies;
     narc_error error = {.message = "its place is out of range"};
+    if (!dem_make_poses(d, &bodies))
+        return false;
     if (narc_validate_bodies(d->store, &bodies, &error) == NARC_OK)
         while (error.index + 1 < d->bodies.count &&
                fabs(d->bodies.x[error.index]) + fabs(d->bodies.y[error.index]) < NARC_MAX_DISTANCE)

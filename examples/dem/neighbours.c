@@ -26,11 +26,11 @@ static bool make_room_for_boxes(dem *d) {
 }
 
 static bool find_boxes(dem *d) {
-    const narc_bodies bodies = dem_view_bodies(d);
+    narc_bodies bodies;
     size_t skipped = 0;
     const narc_box_options options = {.margin = (float)(0.5 * d->settings.skin), .out_skipped = &skipped};
     narc_error error;
-    if (!make_room_for_boxes(d))
+    if (!make_room_for_boxes(d) || !dem_make_poses(d, &bodies))
         return false;
     if (narc_compute_boxes(d->store, &bodies, &options, dem_team(d), d->scratch->boxes, &error) != NARC_OK)
         return dem_fail_narc(d, "boxes", &error);

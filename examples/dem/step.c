@@ -142,7 +142,7 @@ static narc_status query_radii(dem *d, const narc_bodies *bodies, const narc_pai
 
 static bool find_contacts(dem *d) {
     const dem_pairs *p = &d->pairs;
-    const narc_bodies bodies = dem_view_bodies(d);
+    narc_bodies bodies;
     narc_pairs pairs = {.count = p->count, .a = NARC_ARRAY(p->a), .b = NARC_ARRAY(p->b)};
     if (d->scratch->extra_count > 0) {
         pairs.shift_x = NARC_ARRAY(p->shift_x);
@@ -150,7 +150,7 @@ static bool find_contacts(dem *d) {
     }
     size_t skipped = 0;
     narc_error error;
-    if (!dem_make_room_for_contacts(d))
+    if (!dem_make_room_for_contacts(d) || !dem_make_poses(d, &bodies))
         return false;
     const narc_status status =
         (d->settings.law == DEM_HERTZ ? query_radii : query_contacts)(d, &bodies, &pairs, &skipped, &error);

@@ -352,7 +352,7 @@ int FixNarcShapes::maxsize_restart() {
 }
 
 double FixNarcShapes::memory_usage() {
-    size_t bytes = rows.size() * sizeof(Row);
+    size_t bytes = rows.capacity() * sizeof(Row);
     for (const std::vector<Memory> &list : memories)
         bytes += sizeof(std::vector<Memory>) + list.capacity() * sizeof(Memory);
     return static_cast<double>(bytes);

@@ -138,7 +138,7 @@ INLINE struct body_pair load_bodies(const narc_bodies *bodies, enum pose_layout 
                                     const int32_t *b, const vec2 *shift) {
     const narc_column scale = bodies->scale;
     struct body_pair pair;
-    if (__builtin_expect(layout == POSE_ROWS && !shift, 1)) {
+    if (__builtin_expect(layout == POSE_ROWS && !shift, 1)) { /* or compilers keep the vectors of all three in memory */
         vf of_a[4], of_b[4];
         v_rows(bodies->x.base, bodies->x.stride, a, of_a);
         v_rows(bodies->x.base, bodies->x.stride, b, of_b);

@@ -57,7 +57,7 @@ INLINE void sweep_box(const narc_box_columns *boxes, uint32_t place, uint32_t fr
 }
 
 /* The first of places from .. end - 1 whose min_x is not below `x`. It is mostly within the first vector; else steps
- * that double, and then halve, find it. Counts both kinds. */
+ * that double, and then halve, find it: those are counted. */
 INLINE uint32_t find_min_x(const float *min_x, uint32_t from, uint32_t end, float x, uint64_t *steps) {
     const uint32_t left = end - from;
     vm below = v_lt(v_load(min_x + from), v_set(x));

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dem_worlds.h"
+#include "internal.h"
 #include "place.h"
 
 /* The mean of many draws is within five deviations of the mean of one, over the root of their number. */
@@ -68,15 +69,8 @@ static void test_free_places(void **state) {
     assert_true(dem_fill_randomly(&d, &filling, &random));
     assert_int_equal(d.grain_count, 180);
     start(&d);
-    const dem_pose *pose = d.bodies.pose; /* of the first forces */
-    const narc_bodies bodies = {.count = d.bodies.count,
-                                .position_precision = NARC_FLOAT64,
-                                .x = NARC_COLUMN(pose, x),
-                                .y = NARC_COLUMN(pose, y),
-                                .cosine = NARC_COLUMN(pose, cosine),
-                                .sine = NARC_COLUMN(pose, sine),
-                                .scale = NARC_COLUMN(pose, scale),
-                                .shape = NARC_COLUMN(pose, shape)};
+    narc_bodies bodies;
+    assert_true(dem_make_poses(&d, &bodies));
     const narc_pairs pairs = {.count = d.pairs.count,
                               .a = NARC_ARRAY(d.pairs.a),
                               .b = NARC_ARRAY(d.pairs.b),

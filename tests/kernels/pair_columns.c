@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "guard.h"
+#include "layouts.h"
 #include "narc_methods.h"
 #include "scene.h"
 
@@ -166,10 +168,86 @@ static void test_shifts(void **state) {
     }
 }
 
+/* Each pair's bodies anew: A in the origin, B where the difference of the positions and the shift puts it. */
+static struct scene place_differences(const struct scene *scene, const float shift[][2]) {
+    struct scene placed = *scene;
+    placed.precision = NARC_FLOAT32;
+    placed.body_count = 0;
+    placed.bodies = calloc(2 * PAIRS, sizeof *placed.bodies);
+    placed.pairs = calloc(PAIRS, sizeof *placed.pairs);
+    assert_non_null(placed.bodies);
+    assert_non_null(placed.pairs);
+    for (size_t k = 0; k < PAIRS; k++) {
+        const struct body a = scene->bodies[scene->pairs[k].a], b = scene->bodies[scene->pairs[k].b];
+        struct body at_origin = a, there = b;
+        at_origin.x = at_origin.y = 0;
+        there.x = (double)(float)(b.x - a.x + (double)shift[k][0]);
+        there.y = (double)(float)(b.y - a.y + (double)shift[k][1]);
+        placed.pairs[k].a = scene_add_body(&placed, at_origin);
+        placed.pairs[k].b = scene_add_body(&placed, there);
+    }
+    return placed;
+}
+
+/* Shifts and margins with all their digits, between guard pages, whatever the layout of the bodies. */
+static void test_layouts(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("shifts and layouts");
+    for (int precision = 0; precision < 2; precision++) {
+        struct scene scene = make_random_scene(&random, (narc_precision)precision, BODIES, PAIRS);
+        static float shift[PAIRS][2], shift_x[PAIRS], shift_y[PAIRS], margin[PAIRS];
+        for (size_t k = 0; k < BODIES && precision == NARC_FLOAT64; k++) { /* doubles that floats do not have */
+            scene.bodies[k].x += 1e6 + random_between(&random, 0, 1e-8);
+            scene.bodies[k].y -= 1e6 + random_between(&random, 0, 1e-8);
+        }
+        for (size_t k = 0; k < PAIRS; k++) {
+            shift[k][0] = shift_x[k] = (float)random_between(&random, -1, 1);
+            shift[k][1] = shift_y[k] = (float)random_between(&random, -1, 1);
+            margin[k] = (float)random_between(&random, -0.1, 0.3);
+        }
+        struct scene placed = place_differences(&scene, (const float(*)[2])shift);
+        const narc_bodies right_bodies = scene_bodies(&placed);
+        narc_pairs right_pairs = scene_pairs(&placed);
+        right_pairs.margin = NARC_ARRAY(margin);
+        for (size_t layout = LAYOUT_ARRAYS; layout <= LAYOUT_REVERSED; layout++) {
+            for (size_t count = PAIRS - 3; count > PAIRS - 40; count -= 9) {
+                const size_t first = random_below(&random, 40);
+                struct columns columns = create_columns(&scene, (enum layout)layout, 0, count);
+                float *const x = guard_copy(shift_x, count * sizeof *x),
+                             *const y = guard_copy(shift_y, count * sizeof *y),
+                             *const margins_of = guard_copy(margin, count * sizeof *margins_of);
+                struct contacts found = create_contacts(PAIRS), right = create_contacts(PAIRS);
+                columns.pairs.shift_x = NARC_ARRAY(x);
+                columns.pairs.shift_y = NARC_ARRAY(y);
+                columns.pairs.margin = NARC_ARRAY(margins_of);
+                assert_int_equal(narc_find_contacts_range(scene.store, &columns.bodies, &columns.pairs, first,
+                                                          count - first, 0, &found.view, &found.count, NULL),
+                                 NARC_OK);
+                assert_int_equal(narc_find_contacts_range(scene.store, &right_bodies, &right_pairs, first,
+                                                          count - first, 0, &right.view, &right.count, NULL),
+                                 NARC_OK);
+                assert_int_equal(found.count, right.count);
+                for (size_t k = 0; k < found.count; k++)
+                    assert_true(same_contact(&found.view, k, &right.view, k));
+                destroy_contacts(&found);
+                destroy_contacts(&right);
+                guard_release(x);
+                guard_release(y);
+                guard_release(margins_of);
+                destroy_columns(&columns);
+            }
+        }
+        free(placed.bodies);
+        free(placed.pairs);
+        destroy_scene(&scene);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_margins),
         cmocka_unit_test(test_shifts),
+        cmocka_unit_test(test_layouts),
     };
     return test_begin() ? cmocka_run_group_tests_name("pair_columns", tests, NULL, NULL) : TEST_SKIPPED;
 }
