@@ -303,7 +303,7 @@ size_t narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, siz
 
 /* Below so many entries, insertion is the faster sort. More go into buckets first, as many as there are entries; and from
  * where buckets would hold more than a few each, bytes are faster. */
-enum { SMALL = 32, BUCKETS = 8192, MOST_FOR_BUCKETS = 2 * BUCKETS, BYTE = 256 };
+enum { SMALL = 32, BUCKETS = 8192, MOST_FOR_BUCKETS = BUCKETS * 3 / 2, BYTE = 256 };
 
 /* Insertion with at most `moves` moves: false if they are not enough. */
 static bool insert_all(narc_box_entry *entries, size_t count, size_t moves) {
