@@ -10,7 +10,7 @@
 #if !defined(__AVX2__) || !defined(__BMI2__)
 #error "compile with -mavx2 -mbmi2"
 #endif
-#include <immintrin.h>
+#include "simd/x86.h"
 
 #define V_WIDTH  8
 #define V_SINCOS Sleef_cinz_sincosf8_u10avx
@@ -53,16 +53,6 @@ INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf
     v_put_two_rows(base, stride, index + 1, _mm256_shuffle_ps(low01, low23, 0xee));
     v_put_two_rows(base, stride, index + 2, _mm256_shuffle_ps(high01, high23, 0x44));
     v_put_two_rows(base, stride, index + 3, _mm256_shuffle_ps(high01, high23, 0xee));
-}
-/* The differences of two lanes that follow each other. */
-INLINE __m128 v_two_differences(const char *base, size_t stride, const int32_t *a, const int32_t *b, bool shifted,
-                                __m128 shifts) {
-    __m256d from = _mm256_castpd128_pd256(_mm_loadu_pd((const double *)(const void *)(base + (uint32_t)a[0] * stride)));
-    __m256d to = _mm256_castpd128_pd256(_mm_loadu_pd((const double *)(const void *)(base + (uint32_t)b[0] * stride)));
-    from = _mm256_insertf128_pd(from, _mm_loadu_pd((const double *)(const void *)(base + (uint32_t)a[1] * stride)), 1);
-    to = _mm256_insertf128_pd(to, _mm_loadu_pd((const double *)(const void *)(base + (uint32_t)b[1] * stride)), 1);
-    const __m256d difference = _mm256_sub_pd(to, from);
-    return _mm256_cvtpd_ps(shifted ? _mm256_add_pd(difference, _mm256_cvtps_pd(shifts)) : difference);
 }
 INLINE void v_double_differences(const void *base, size_t stride, const int32_t *a, const int32_t *b, const vf *shifts,
                                  vf out[2]) {
