@@ -207,8 +207,9 @@ narc_bodies FixNarcShapes::bodies() {
     for (size_t i = 0; i < count; i++) {
         const int k = static_cast<int>(i);
         const double *x = atom->x[i], *mu = atom->mu[i];
-        rows[i] = {x[0], x[1], static_cast<float>(mu[0]), static_cast<float>(mu[1]), static_cast<float>(scale(k)),
-                   form_index(k)};
+        rows[i] = {
+            x[0],         x[1], static_cast<float>(mu[0]), static_cast<float>(mu[1]), static_cast<float>(scale(k)),
+            form_index(k)};
     }
     narc_bodies all = {};
     all.count = count;
