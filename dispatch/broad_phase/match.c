@@ -34,9 +34,13 @@ static bool in_order(const narc_pairs *pairs, unsigned threads) {
 #pragma omp parallel for schedule(static) num_threads(team) reduction(&& : fine) if (team > 1)
 #endif
     for (size_t part = 0; part < parts; part++) {
-        const size_t end = end_of_part(pairs->count, part);
-        for (size_t k = part * PART + (part == 0); k < end && fine; k++)
-            fine = pair_at(pairs, k - 1) <= pair_at(pairs, k);
+        const size_t first = part * PART, end = end_of_part(pairs->count, part);
+        uint64_t last = pair_at(pairs, part > 0 ? first - 1 : 0);
+        for (size_t k = first; k < end; k++) {
+            const uint64_t pair = pair_at(pairs, k);
+            fine &= last <= pair;
+            last = pair;
+        }
     }
     return fine;
 }
