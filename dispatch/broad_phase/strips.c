@@ -301,8 +301,8 @@ size_t narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, siz
 
 /* ------------------------------------------------------------------------------------------------ within a strip */
 
-/* Below so many entries, insertion is the faster sort. More go into buckets first, as many as there are entries; and from
- * where buckets would hold more than a few each, bytes are faster. */
+/* Below so many entries, insertion is the faster sort. More go into buckets first, as many as there are entries; and where
+ * buckets would hold more than one or two each, bytes are faster. */
 enum { SMALL = 32, BUCKETS = 8192, MOST_FOR_BUCKETS = BUCKETS * 3 / 2, BYTE = 256 };
 
 /* Insertion with at most `moves` moves: false if they are not enough. */

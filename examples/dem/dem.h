@@ -314,6 +314,9 @@ void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measu
 /* The force of the grains on a wall. */
 dem_vec dem_wall_force(const dem *d, size_t wall);
 
+/* The box around all grains: squares as large as they reach. */
+dem_region dem_bound_grains(const dem *d);
+
 /* How far the face of a plate is from its body's place: half the side of its block. */
 double dem_half_block(const dem *d, const dem_wall *plate);
 

@@ -101,9 +101,7 @@ static void add_box(dem_region *r, double low_x, double low_y, double high_x, do
 
 dem_region dem_bound_all(const dem *d) {
     const dem_bodies *b = &d->bodies;
-    dem_region r = {.low_x = INFINITY, .low_y = INFINITY, .high_x = -INFINITY, .high_y = -INFINITY};
-    for (size_t k = 0; k < d->grain_count; k++)
-        add_box(&r, b->x[k] - b->reach[k], b->y[k] - b->reach[k], b->x[k] + b->reach[k], b->y[k] + b->reach[k]);
+    dem_region r = dem_bound_grains(d);
     for (size_t w = 0; w < d->wall_count; w++) {
         const size_t k = d->grain_count + w;
         narc_arc arcs[NARC_MAX_ARCS];

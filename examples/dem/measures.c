@@ -47,16 +47,11 @@ static bool is_inside(const dem *d, const dem_region *r, size_t contact, size_t 
  * centres, a reach larger. */
 static double find_area(const dem *d, const dem_region *r) {
     const dem_settings *s = &d->settings;
-    double low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
     if (r->given)
         return (r->high_x - r->low_x) * (r->high_y - r->low_y);
-    for (size_t k = 0; k < d->grain_count; k++) {
-        low_x = fmin(low_x, d->bodies.x[k] - d->bodies.reach[k]);
-        high_x = fmax(high_x, d->bodies.x[k] + d->bodies.reach[k]);
-        low_y = fmin(low_y, d->bodies.y[k] - d->bodies.reach[k]);
-        high_y = fmax(high_y, d->bodies.y[k] + d->bodies.reach[k]);
-    }
-    return (s->periodic_x ? dem_cell_width(d) : high_x - low_x) * (s->periodic_y ? dem_cell_height(d) : high_y - low_y);
+    const dem_region all = dem_bound_grains(d);
+    return (s->periodic_x ? dem_cell_width(d) : all.high_x - all.low_x) *
+           (s->periodic_y ? dem_cell_height(d) : all.high_y - all.low_y);
 }
 
 void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measures) {

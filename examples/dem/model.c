@@ -323,20 +323,29 @@ static bool add_walls(dem *d) {
     return true;
 }
 
+dem_region dem_bound_grains(const dem *d) {
+    const dem_bodies *b = &d->bodies;
+    dem_region r = {.low_x = INFINITY, .low_y = INFINITY, .high_x = -INFINITY, .high_y = -INFINITY};
+    for (size_t k = 0; k < d->grain_count; k++) {
+        r.low_x = fmin(r.low_x, b->x[k] - b->reach[k]);
+        r.high_x = fmax(r.high_x, b->x[k] + b->reach[k]);
+        r.low_y = fmin(r.low_y, b->y[k] - b->reach[k]);
+        r.high_y = fmax(r.high_y, b->y[k] + b->reach[k]);
+    }
+    return r;
+}
+
 /* Of the box around all grains and the places of walls. */
 static double find_diagonal(const dem *d) {
-    const dem_bodies *b = &d->bodies;
-    double low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
-    for (size_t k = 0; k < b->count; k++) {
-        const bool is_grain = k < d->grain_count;
-        const dem_vec place = is_grain ? (dem_vec){b->x[k], b->y[k]} : d->walls[k - d->grain_count].place;
-        const double reach = is_grain ? b->reach[k] : 0;
-        low_x = fmin(low_x, place.x - reach);
-        high_x = fmax(high_x, place.x + reach);
-        low_y = fmin(low_y, place.y - reach);
-        high_y = fmax(high_y, place.y + reach);
+    dem_region r = dem_bound_grains(d);
+    for (size_t w = 0; w < d->wall_count; w++) {
+        const dem_vec place = d->walls[w].place;
+        r.low_x = fmin(r.low_x, place.x);
+        r.high_x = fmax(r.high_x, place.x);
+        r.low_y = fmin(r.low_y, place.y);
+        r.high_y = fmax(r.high_y, place.y);
     }
-    return hypot(high_x - low_x, high_y - low_y);
+    return hypot(r.high_x - r.low_x, r.high_y - r.low_y);
 }
 
 /* A periodic cell's width is rounded to a float: the shift of an image is one. */

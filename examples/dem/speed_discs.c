@@ -130,8 +130,18 @@ void discs_free(discs *s) {
 
 /* ------------------------------------------------------------------------------------------------ a step */
 
+/* Half of a step's change of velocity. */
+static inline void kick_disc(const discs *s, size_t k) {
+    disc *b = &s->disc[k];
+    const force f = s->force[k];
+    const double half = 0.5 * s->dt;
+    b->vx += half * (f.x * b->inverse_mass + s->gx);
+    b->vy += half * (f.y * b->inverse_mass + s->gy);
+    b->spin += half * (f.torque * b->inverse_inertia);
+}
+
 static bool move(discs *s, unsigned threads) {
-    const double dt = s->dt, half = 0.5 * dt, limit = 0.25 * s->skin * s->skin;
+    const double dt = s->dt, limit = 0.25 * s->skin * s->skin;
     const size_t count = s->count;
     int moved = 0;
     (void)threads;
@@ -140,10 +150,7 @@ static bool move(discs *s, unsigned threads) {
 #endif
     for (size_t k = 0; k < count; k++) {
         disc *b = &s->disc[k];
-        const force f = s->force[k];
-        b->vx += half * (f.x * b->inverse_mass + s->gx);
-        b->vy += half * (f.y * b->inverse_mass + s->gy);
-        b->spin += half * (f.torque * b->inverse_inertia);
+        kick_disc(s, k);
         b->x += dt * b->vx;
         b->y += dt * b->vy;
         const double x = b->x - s->list_x[k], y = b->y - s->list_y[k];
@@ -153,19 +160,13 @@ static bool move(discs *s, unsigned threads) {
 }
 
 static void kick(discs *s, unsigned threads) {
-    const double half = 0.5 * s->dt;
     const size_t count = s->count;
     (void)threads;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
 #endif
-    for (size_t k = 0; k < count; k++) {
-        disc *b = &s->disc[k];
-        const force f = s->force[k];
-        b->vx += half * (f.x * b->inverse_mass + s->gx);
-        b->vy += half * (f.y * b->inverse_mass + s->gy);
-        b->spin += half * (f.torque * b->inverse_inertia);
-    }
+    for (size_t k = 0; k < count; k++)
+        kick_disc(s, k);
 }
 
 /* The force of the law: normal (nx, ny) from A to B, depth, relative velocity of the surfaces at the point, mass. */

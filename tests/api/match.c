@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * match.c - narc_match_pairs() against a search, and narc_gather(): which pair of the last step each pair was.
+ */
+#include <stdlib.h>
+
+#include "guard.h"
+#include "narc_broad_phase.h"
+#include "support.h"
+
+static int compare_pairs(const void *one, const void *other) {
+    const uint32_t *p = one, *q = other;
+    if (p[0] != q[0])
+        return p[0] < q[0] ? -1 : 1;
+    return p[1] == q[1] ? 0 : p[1] < q[1] ? -1 : 1;
+}
+
+/* Lists in order and not, with pairs that stand twice, and their reverses. */
+static void matches_as_a_search_does(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("matches");
+    narc_broad_phase *broad = NULL;
+    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    for (size_t trial = 0; trial < test_trials(80); trial++) {
+        const size_t old_count = random_below(&random, 400), new_count = random_below(&random, 400);
+        const size_t bodies = 2 + random_below(&random, 40), order = random_below(&random, 4);
+        uint32_t(*const old_pairs)[2] = malloc((old_count + 1) * sizeof *old_pairs);
+        uint32_t(*const new_pairs)[2] = guard_allocate(new_count * sizeof *new_pairs);
+        for (size_t k = 0; k < 2 * old_count; k++)
+            old_pairs[k / 2][k % 2] = (uint32_t)random_below(&random, bodies);
+        for (size_t k = 0; k < 2 * new_count; k++)
+            new_pairs[k / 2][k % 2] = (uint32_t)random_below(&random, bodies);
+        if (order & 1)
+            qsort(old_pairs, old_count, sizeof *old_pairs, compare_pairs);
+        if (order & 2)
+            qsort(new_pairs, new_count, sizeof *new_pairs, compare_pairs);
+        uint32_t *match = guard_allocate(new_count * sizeof *match);
+        const narc_pairs olds = {.count = old_count, .a = {&old_pairs[0][0], 8}, .b = {&old_pairs[0][1], 8}};
+        const narc_pairs news = {.count = new_count, .a = {&new_pairs[0][0], 8}, .b = {&new_pairs[0][1], 8}};
+        assert_int_equal(narc_match_pairs(broad, &olds, &news, 1 + (unsigned)trial % 3, match, NULL), NARC_OK);
+        for (size_t k = 0; k < new_count; k++) {
+            uint32_t expected = NARC_NO_MATCH;
+            for (size_t i = 0; i < old_count && expected == NARC_NO_MATCH; i++)
+                if (compare_pairs(old_pairs[i], new_pairs[k]) == 0)
+                    expected = (uint32_t)i;
+            assert_int_equal(match[k], expected);
+        }
+        guard_release(match);
+        guard_release(new_pairs);
+        free(old_pairs);
+    }
+    narc_destroy_broad_phase(broad);
+}
+
+/* Lists whose only disorder is anywhere, where parts for threads meet among others. */
+static void matches_lists_with_one_disorder(void **state) {
+    (void)state;
+    enum { COUNT = 40000, PART = 16384 };
+    static uint32_t a[COUNT], b[COUNT], match[COUNT];
+    static const size_t places[] = {1, PART - 1, PART, PART + 1, 2 * PART, COUNT - 1};
+    narc_broad_phase *broad = NULL;
+    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    for (size_t p = 0; p < sizeof places / sizeof places[0]; p++) {
+        for (uint32_t k = 0; k < COUNT; k++) {
+            a[k] = k;
+            b[k] = k + 1;
+        }
+        a[places[p]] = (uint32_t)places[p] - 1; /* two that change places */
+        b[places[p]] = (uint32_t)places[p];
+        a[places[p] - 1] = (uint32_t)places[p];
+        b[places[p] - 1] = (uint32_t)places[p] + 1;
+        const narc_pairs pairs = {.count = COUNT, .a = {a, sizeof *a}, .b = {b, sizeof *b}};
+        for (unsigned threads = 1; threads <= 3; threads++) {
+            assert_int_equal(narc_match_pairs(broad, &pairs, &pairs, threads, match, NULL), NARC_OK);
+            for (uint32_t k = 0; k < COUNT; k++)
+                assert_int_equal(match[k], k);
+        }
+    }
+    narc_destroy_broad_phase(broad);
+}
+
+static void gathers_columns(void **state) {
+    (void)state;
+    const uint32_t match[] = {2, NARC_NO_MATCH, 0, 2};
+    const uint32_t hints[] = {10, 11, 12};
+    const struct { float normal, tangent[2]; } impulses[] = {{1, {2, 3}}, {4, {5, 6}}, {7, {8, 9}}};
+    uint32_t *out_hints = guard_allocate(sizeof match);
+    float(*const out_impulses)[3] = guard_allocate(4 * sizeof impulses[0]);
+    narc_gather(match, 4, sizeof *hints, hints, out_hints);
+    narc_gather(match, 4, sizeof impulses[0], impulses, out_impulses);
+    assert_memory_equal(out_hints, ((const uint32_t[]){12, 0, 10, 12}), sizeof match);
+    assert_memory_equal(out_impulses, ((const float[4][3]){{7, 8, 9}, {0, 0, 0}, {1, 2, 3}, {7, 8, 9}}),
+                        4 * sizeof impulses[0]);
+    guard_release(out_hints);
+    guard_release(out_impulses);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(matches_as_a_search_does),
+        cmocka_unit_test(matches_lists_with_one_disorder),
+        cmocka_unit_test(gathers_columns),
+    };
+    return test_begin() ? cmocka_run_group_tests_name("match", tests, NULL, NULL) : TEST_SKIPPED;
+}
