@@ -328,7 +328,9 @@ uint64_t dem_hash(const dem *d);
 /* A file that is written under a temporary name and gets its own when it is closed. */
 typedef struct dem_file {
     FILE *file;
-    char path[DEM_PATH_SIZE], temporary[DEM_PATH_SIZE + 16];
+    const char *path; /* as it was given: must last as long */
+    char *target;
+    char *volatile temporary;
 } dem_file;
 
 /* Errors, with the system's reason, go to `error` (512 bytes). dem_close_file() with ok = false removes what was

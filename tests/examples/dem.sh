@@ -69,6 +69,19 @@ awk -F , 'NR == 1 { while ($(++i) != "lid_y") { } next }
     { y[$1] = $i }
     END { exit !(y[200] < y[0] && y[1000] < y[800] && y[1200] == y[1000] && y[2000] == y[1000]) }' stands.csv ||
     miss "a wall whose servo has ended moves on: $(cat stands.csv)"
+# A symbolic link stays one, its file is replaced and keeps its permissions; names may be as long as names can be.
+long=$(printf '%0243d' 0)
+mkdir -p elsewhere
+echo old >elsewhere/real
+chmod 640 elsewhere/real
+ln -s elsewhere/real linked
+sed "s/\"out.csv\"/\"linked.csv\"/; s/\"out.restart\"/\"linked\"/; s/\"restart_every\"/\"grains\": \"$long.c\", &/" first.json >linked.json
+"$dem" linked.json --threads 1 >/dev/null 2>err.txt || miss "a restart behind a link"
+[ -L linked ] || miss "a link is replaced"
+[ "$(head -c 8 elsewhere/real)" = narc-dem ] || miss "the file behind a link has no restart"
+[ "$(stat -c %a elsewhere/real)" = 640 ] || miss "other permissions: $(stat -c %a elsewhere/real)"
+[ -f "$long-000000.c" ] || miss "no file with a long name"
+[ -z "$(find . -name '.narc-*')" ] || miss "a temporary file stays"
 # At a restart outputs may have other names, and files of theirs may be gone: they begin anew.
 "$dem" first.json --threads 1 >/dev/null 2>err.txt || miss "the first stage again"
 cp out.restart first.restart
@@ -87,23 +100,23 @@ NARC_ISA=scalar "$dem" good.json --threads 2 >scalar.txt 2>err.txt || miss "a ru
 [ "$(grep state scalar.txt)" = "$(grep state whole.txt)" ] || miss "scalar has other bits"
 sed 's/"law": "linear", "kn": 1e7/"law": "hertz"/; s/"density": \([0-9]*\)/"density": \1, "young": 1e8, "poisson": 0.3/g' good.json >hertz.json
 "$dem" hertz.json --threads 1 >/dev/null 2>err.txt || miss "a run with the Hertz law"
-for place in "1 3" "2 5"; do # a signal at any time: the run goes on to the same end
-    sed 's/"duration": 0.1/"duration": 5/g' good.json >long.json
-    # shellcheck disable=SC2086 # two words
-    set -- $place
-    rm -f out.restart
-    if [ ! -f long.txt ]; then "$dem" long.json --threads 1 >long.txt 2>err.txt || miss "a long run"; rm -f out.restart; fi
+# A signal at any time, in either stage: the run goes on to the same end.
+sed 's/"duration": 0.1/"duration": 5/g' good.json >long.json
+"$dem" long.json --threads 1 >long.txt 2>err.txt || miss "a long run"
+for signal in "INT 130 5" "TERM 143 300"; do
+    # shellcheck disable=SC2086 # its name, the status, and after how many lines of the table
+    set -- $signal
+    rm -f out.restart out.csv
     "$dem" long.json --threads 1 >cut.txt 2>err.txt &
     process=$!
-    sleep "0.$2"
-    name=INT
-    [ "$1" = 2 ] && name=TERM
-    kill -s $name $process
+    while [ ! -f out.csv ] || [ "$(wc -l <out.csv)" -lt "$3" ]; do
+        kill -0 $process || break
+    done 2>/dev/null
+    kill -s "$1" $process 2>/dev/null
     wait $process
     status=$?
-    if [ $status -eq 0 ]; then echo "note: the run was over before the signal"; continue; fi
-    grep -q "^dem: signal .* at step [0-9]*: go on with --restart out.restart$" err.txt || miss "a signal says so"
-    case $1$status in 1130 | 2143) ;; *) miss "status $status after signal $name" ;; esac
+    [ $status -eq "$2" ] || miss "status $status after signal $1"
+    grep -q "^dem: signal .* at step [0-9]*: go on with --restart out.restart$" err.txt || miss "signal $1 says so"
     "$dem" long.json --restart out.restart --threads 1 >cut.txt 2>err.txt || miss "going on after a signal"
     [ "$(grep state cut.txt)" = "$(grep state long.txt)" ] || miss "other bits after a signal"
 done

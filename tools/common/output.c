@@ -2,7 +2,7 @@
  *
  * output.c - temporary files beside their targets, renamed at the end.
  */
-#define _XOPEN_SOURCE 700 /* realpath */
+#define _XOPEN_SOURCE 700
 #include "output.h"
 
 #include <errno.h>
@@ -15,6 +15,7 @@
 
 #include "fail.h"
 #include "progress.h"
+#include "temporary.h"
 
 enum { MAX_OUTPUTS = 4 };
 
@@ -55,37 +56,6 @@ static void watch_signals(void) {
     signal(SIGXFSZ, SIG_IGN);
 }
 
-/* `suffix` behind the first `length` bytes of `text`. */
-static char *join(const char *text, size_t length, const char *suffix) {
-    char *joined = allocate(length + strlen(suffix) + 1, 1);
-    memcpy(joined, text, length);
-    strcpy(joined + length, suffix);
-    return joined;
-}
-
-/* The length of the part of a path that names its folder: up to the last slash, or 0. */
-static size_t folder_length(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? (size_t)(slash - path) + 1 : 0;
-}
-
-/* The file that a path means, always by the same name; NULL if neither it nor its folder exists. */
-static char *find_target(const char *path) {
-    char *found = realpath(path, NULL);
-    if (found || errno != ENOENT)
-        return found;
-    const size_t length = folder_length(path);
-    char *as_given = join(path, length, "."), *folder = realpath(as_given, NULL);
-    if (folder) {
-        char *with_slash = join(folder, strlen(folder), "/");
-        found = join(with_slash, strlen(with_slash), path + length);
-        free(with_slash);
-    }
-    free(as_given);
-    free(folder);
-    return found;
-}
-
 void protect_input(const char *path) {
     char *target = find_target(path);
     if (target) {
@@ -101,20 +71,6 @@ static void check_target(const output *out) {
     for (const output *other = outputs; other < out; other++)
         if (other->target && strcmp(out->target, other->target) == 0)
             fail("%s: two outputs are the same file", out->path);
-}
-
-/* Opens a temporary file beside the target, with the permissions of the file that it replaces, or those that the user's
- * mask allows. Its name is short: the target's may be as long as names can be. */
-static void open_temporary(output *out, const struct stat *old) {
-    const mode_t mask = umask(0);
-    umask(mask);
-    char *name = join(out->target, folder_length(out->target), ".narc-XXXXXX");
-    out->temporary = name;
-    const int descriptor = mkstemp(name);
-    if (descriptor >= 0) {
-        fchmod(descriptor, old ? old->st_mode & 0777 : 0666 & ~mask);
-        out->file = fdopen(descriptor, "wb");
-    }
 }
 
 FILE *open_output(const char *path) {
@@ -133,7 +89,7 @@ FILE *open_output(const char *path) {
         out->file = fopen(path, "wb");
     } else if ((out->target = find_target(path))) {
         check_target(out);
-        open_temporary(out, exists ? &old : NULL);
+        out->file = open_temporary(out->target, exists ? &old : NULL, &out->temporary);
     }
     if (!out->file)
         fail("%s: %s", path, strerror(errno));
