@@ -181,9 +181,9 @@ typedef struct narc_manifold_options {
  *   options         NULL: defaults
  *   out_manifolds   arrays of out_manifolds->capacity items, overlapping none of the inputs
  *   out_count       as in narc_find_contacts()
- * Feature ids tell which features touch, and nothing of who is larger or was found first; so of the same pair at the
- * next step, the same id means the same point (a solver's warm start). Two edges that face each other keep their two
- * ids whichever of their corners limit the stretch between them. docs/algorithm.md, section 11, derives all this.
+ * Feature ids tell which features lie at a point, and nothing of who is larger or was found first, of the flat angle or
+ * of the other point; so of the same pair at the next step, the same id means the same point (a solver's warm start),
+ * and a point keeps its id as long as the same features touch there. docs/algorithm.md, section 11, derives all this.
  * Errors and `threads` as narc_find_contacts(), and NARC_ERROR_ARGUMENT and NARC_ERROR_NOT_FINITE for options out of
  * range. Allocates nothing. Thread-safe. */
 NARC_API narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,

@@ -37,6 +37,8 @@ static uint8_t find_flags(const narc_outline *o, size_t count, double size) {
                      (polygon ? NARC_SHAPE_POLYGON : 0) | (inside ? NARC_SHAPE_CENTERS_INSIDE : 0));
 }
 
+static unsigned find_size_class(double extent) { return (unsigned)(fmin(fmax(0, ilogb(extent) + 32), 79) / 5); }
+
 /* By how much the arcs fail to make a closed convex outline, in all: distances across the normal of a junction, and
  * along an edge that runs backwards. */
 static double find_misfit(const narc_outline *o) {
@@ -56,7 +58,7 @@ static narc_shape_header make_header(const narc_outline *o, size_t count, narc_c
     inner.x += o->origin_x;
     inner.y += o->origin_y;
     narc_shape_header header = {.count = (uint8_t)o->count};
-    header.flags = find_flags(o, count, bound.radius);
+    header.flags = (uint8_t)(find_flags(o, count, bound.radius) | find_size_class(extent) << NARC_SIZE_CLASS_SHIFT);
     header.bound_x = (float)bound.x;
     header.bound_y = (float)bound.y;
     double moved = hypot((double)header.bound_x - bound.x, (double)header.bound_y - bound.y);

@@ -445,12 +445,10 @@ typedef struct narc_contact {
  *   normal          unit, from A to B, world axes
  *   separation[i]   along the normal, at point i. One point is the deepest: its separation is that of the contact.
  *   point[i]        halfway between both surfaces along the normal, in world axes, relative to the position of body A
- *   feature[i]      what faces the other body there: A in the low byte, B in the high byte. Bits 0 to 5: an arc in
- *                   the caller's numbering, or, with NARC_FEATURE_EDGE, an edge: number i is the one before arc i.
- *                   Where two edges face each other both points name them, the deepest too if it lies on a corner next
- *                   to one of them, and NARC_FEATURE_END marks an edge's counter-clockwise end rather than its
- *                   start; so they do if only one of the two points is within the margin. Else they name what
- *                   touches. The radius tells whether an edge, an arc or a corner touches.
+ *   feature[i]      what lies there: of A in the low byte, of B in the high byte. Bits 0 to 5: an arc in the caller's
+ *                   numbering, or, with NARC_FEATURE_EDGE, an edge: number i is the one before arc i. Where corners
+ *                   of both bodies lie side by side, up to 1/32 of an edge apart, both are named. The radius tells
+ *                   whether an edge, an arc or a corner touches.
  *   radius_a[i]     radius of curvature of A, scaled: 0 at a corner, INFINITY on an edge; at an edge's end that of the
  *   radius_b[i]     arc next to it. And of B.
  * Where there is no point i its items are 0. */
@@ -476,7 +474,6 @@ typedef struct narc_manifold {
 } narc_manifold;
 
 #define NARC_FEATURE_EDGE 0x40
-#define NARC_FEATURE_END  0x80
 
 /* How a method came to a pair's answer (see narc_methods.h; the exact one always ends well). */
 typedef enum narc_outcome {

@@ -236,7 +236,7 @@ narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *e
 size_t narc_count_shapes(const narc_shapes *shapes) { return shapes ? shapes->count : 0; }
 
 unsigned narc_shape_flags(const narc_shapes *shapes, uint32_t shape) {
-    return narc_has_shape(shapes, shape) ? shapes->headers[shape].flags : 0;
+    return narc_has_shape(shapes, shape) ? shapes->headers[shape].flags % (1u << NARC_SIZE_CLASS_SHIFT) : 0;
 }
 
 size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_arcs) {

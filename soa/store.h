@@ -35,7 +35,7 @@ typedef struct narc_shape_header {
     uint32_t first_record; /* index into narc_shapes.records */
     uint8_t count;         /* arcs as stored, 2 .. NARC_MAX_ARCS */
     uint8_t first_arc;     /* the caller's arc that is stored first */
-    uint8_t flags;         /* NARC_SHAPE_... */
+    uint8_t flags;         /* NARC_SHAPE_..., and in the upper half the size class */
     /* The extent (the largest |centre| + radius) is at most this many bounding radii. 255: it is more, or the arcs join
      * worse than NARC_MAX_MISFIT; then the kernels prove nothing and go by the deciding formula. */
     uint8_t extent_ratio;
@@ -47,6 +47,12 @@ typedef struct narc_shape_header {
     float bound_x, bound_y, bound_radius;
     float inner_x, inner_y, inner_radius;
 } narc_shape_header;
+
+/* The upper half of a shape's flags is the class of its extent, from 2^(5 class - 32) up to 32 times that, the last one
+ * open: up to 2^48 all that NARC_MAX_BOUND_RADIUS lets through. A straight part shorter than 2^(5 class - 47), between
+ * 2^-20 and 2^-15 of the extent, is no edge: it is what centres and radii lost when they were stored, 2^-22 of the
+ * extent, or arcs that were given a little apart. */
+#define NARC_SIZE_CLASS_SHIFT 4
 
 /* An arc: its circle, and the unit outward normals where it starts and ends, counter-clockwise. `inner_radii` is two
  * radii that tell how much shape there is behind the arc, each rounded down to the upper half of a float:

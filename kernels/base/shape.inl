@@ -32,6 +32,13 @@ INLINE vi info_first_arc(vi info) { return vi_and(vi_shift_right(info, 8), vi_se
 
 INLINE vm info_has(vi info, int flag) { return vi_lt(vi_set(0), vi_and(info, vi_set(flag << 16))); }
 
+/* A shape's straight parts that are no longer than this, in its own unit, are no edges (store.h, the size class). */
+INLINE vf find_least_edge(vi info) {
+    const vi size_class = vi_and(vi_shift_right(info, 20), vi_set(15));
+    const vi exponent = vi_add(vi_add(vi_shift_left(size_class, 2), size_class), vi_set(127 - 47));
+    return v_of_bits(vi_shift_left(exponent, 23));
+}
+
 INLINE vi info_extent_ratio(vi info) { return vi_shift_right(info, 24); }
 
 /* The record of the shape's first arc, behind its junction angles. */

@@ -8,6 +8,8 @@
  * next to its touching arc whose normal is closest to n, if that is within the flat angle; the stretch of t that both
  * edges cover is joined with the deepest point, and its ends are the two points. On A t rises from an edge's start to
  * its end, and on B it falls.
+ *
+ * Here the ids of points get their last form, those of pairs with one point too (find_feature_id()).
  */
 #ifndef NARC_SAT_MANIFOLD_EDGES_INL
 #define NARC_SAT_MANIFOLD_EDGES_INL
@@ -15,6 +17,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "base/arcs.inl"
 #include "base/call.inl"
@@ -33,9 +36,11 @@ struct edge_end {
 };
 
 struct edge {
-    vm offered, parallel;      /* parallel: n is the edge's normal */
+    vm is_edge;                /* is it more than rounding? */
+    vm offered;                /* and its normal within the flat angle of n? */
+    vm parallel;               /* n is the edge's normal */
     struct edge_end low, high; /* in the order of t */
-    vi after;                  /* the record of the arc at its counter-clockwise end */
+    vi before, after;          /* the records of the arcs at its start and at its counter-clockwise end */
     vf arc_radius;             /* of the touching arc */
 };
 
@@ -78,21 +83,19 @@ INLINE struct own_arc load_own_circle(const narc_record *records, vi record, con
     return arc;
 }
 
-/* An edge shorter than this part of the coordinates of both its arcs is rounding, or arcs that were given a little
- * apart (NARC_TOLERANCE). */
-#define LEAST_EDGE 0x1p-16f
+/* Is there an edge at the junction of two arcs, and not only rounding, or arcs that were given a little apart? */
+INLINE vm is_edge(const struct own_arc *arc, const struct own_arc *other, vec2 junction, vf least_edge) {
+    return v_lt(least_edge, v_abs(v2_cross(junction, v2_sub(other->center, arc->center))));
+}
 
-INLINE vm is_edge(const struct own_arc *arc, const struct own_arc *other, vec2 junction) {
-    const vec2 difference = v2_sub(other->center, arc->center);
-    const vf coordinates =
-        v_add(v_add(v_abs(arc->center.x), v_abs(arc->center.y)), v_add(v_abs(other->center.x), v_abs(other->center.y)));
-    const vf size = v_add(coordinates, v_add(arc->radius, other->radius));
-    return v_lt(v_mul(v_set(LEAST_EDGE), size), v_abs(v2_cross(junction, difference)));
+/* Is the normal of a junction within the flat angle of n? */
+INLINE vm is_flat(vec2 junction, vec2 n, vf flat_sine) {
+    return vm_and(v_le(v_abs(v2_cross(junction, n)), flat_sine), v_lt(v_set(0), v2_dot(junction, n)));
 }
 
 /* The edge at the end of an arc, in the lanes `at_end`, or at its start. */
 INLINE struct edge find_edge_of(const narc_record *records, struct ring ring, vi record, const struct own_arc *arc,
-                                const struct pose *pose, vec2 n, vm at_end, bool is_b) {
+                                const struct pose *pose, vec2 n, vm at_end, vf least_edge, vf flat_sine, bool is_b) {
     const vi next = step_record(ring, record, vi_select(at_end, vi_set(1), vi_set(-1)));
     const struct own_arc other = load_own_circle(records, next, pose, is_b);
     const vec2 junction = v2_select(at_end, arc->placed.end, arc->placed.start);
@@ -102,40 +105,40 @@ INLINE struct edge find_edge_of(const narc_record *records, struct ring ring, vi
     struct edge edge;
     edge.low = select_edge_end(here_is_low, &here, &there);
     edge.high = select_edge_end(here_is_low, &there, &here);
-    edge.offered =
-        vm_and(is_edge(arc, &other, v2_select(at_end, arc->end, arc->start)), v_lt(edge.low.along, edge.high.along));
+    edge.is_edge = vm_and(is_edge(arc, &other, v2_select(at_end, arc->end, arc->start), least_edge),
+                          v_lt(edge.low.along, edge.high.along));
+    edge.offered = vm_and(edge.is_edge, is_flat(junction, n, flat_sine));
     edge.parallel = is_parallel(junction, n);
+    edge.before = vi_select(at_end, record, next);
     edge.after = vi_select(at_end, next, record);
     edge.arc_radius = arc->placed.radius;
     return edge;
 }
 
-/* Is the normal of a junction within the flat angle of n? */
-INLINE vm is_flat(vec2 junction, vec2 n, vf sine, vf flat_sine) {
-    return vm_and(v_le(sine, flat_sine), v_lt(v_set(0), v2_dot(junction, n)));
-}
-
-/* The edge that a shape offers next to the arc in `record`: of two the one closer to n, of equals the one at the arc's
- * end. Where that is none, because the arc and its neighbour have a common tangent, the other one. */
+/* The edge next to the arc in `record`: of two the one closer to n, of equals the one at the arc's end. Where that is none,
+ * because the arc and its neighbour have a common tangent, the other one. */
 INLINE struct edge find_edge(const struct call *call, const struct queue *queue, int k, vi record, vec2 n, bool is_b) {
     const narc_record *records = call->batch->shapes->records;
     const struct ring ring = is_b ? get_ring_b(queue, k) : get_ring_a(queue, k);
     const struct pose pose = get_pose(queue, k);
     const struct own_arc arc = load_own_arc(records, record, &pose, is_b);
+    const vf least_edge = find_least_edge(get_bits(queue, is_b ? INFO_B : INFO_A, k));
+    const vf flat_sine = v_set(call->batch->flat_sine), zero = v_set(0);
     const vec2 start = arc.placed.start, end = arc.placed.end;
-    const vf flat_sine = v_set(call->batch->flat_sine);
-    const vf to_start = v_abs(v2_cross(start, n)), to_end = v_abs(v2_cross(end, n));
-    const vm start_flat = is_flat(start, n, to_start, flat_sine), end_flat = is_flat(end, n, to_end, flat_sine);
-    const vm at_end = vm_and_not(end_flat, vm_and(start_flat, v_lt(to_start, to_end)));
-    struct edge edge = find_edge_of(records, ring, record, &arc, &pose, n, at_end, is_b);
-    const vm again = vm_and_not(vm_and(start_flat, end_flat), edge.offered);
-    edge.offered = vm_and(edge.offered, vm_or(start_flat, end_flat));
+    const vm start_faces = v_lt(zero, v2_dot(start, n)), end_faces = v_lt(zero, v2_dot(end, n));
+    const vm start_closer = v_lt(v_abs(v2_cross(start, n)), v_abs(v2_cross(end, n)));
+    const vm at_end = vm_not(vm_and_not(start_faces, vm_and_not(end_faces, start_closer)));
+    struct edge edge = find_edge_of(records, ring, record, &arc, &pose, n, at_end, least_edge, flat_sine, is_b);
+    const vm again = vm_not(edge.is_edge);
     if (vm_any(again)) {
-        const struct edge other = find_edge_of(records, ring, record, &arc, &pose, n, vm_not(at_end), is_b);
+        const struct edge other =
+            find_edge_of(records, ring, record, &arc, &pose, n, vm_not(at_end), least_edge, flat_sine, is_b);
+        edge.is_edge = vm_or(edge.is_edge, other.is_edge);
         edge.offered = vm_or(edge.offered, vm_and(again, other.offered));
         edge.parallel = vm_or(vm_and_not(edge.parallel, again), vm_and(again, other.parallel));
         edge.low = select_edge_end(again, &other.low, &edge.low);
         edge.high = select_edge_end(again, &other.high, &edge.high);
+        edge.before = vi_select(again, other.before, edge.before);
         edge.after = vi_select(again, other.after, edge.after);
     }
     return edge;
@@ -181,13 +184,57 @@ INLINE vm is_stretch(const struct end_point *low, const struct end_point *high, 
     return v_lt(v_mul(v_set(LEAST_STRETCH), sizes), v_sub(high->along, low->along));
 }
 
-INLINE vi find_edge_feature(const struct edge *edge, const struct queue *queue, int k, bool is_b) {
+/* Ids. A point is at the low or the high end of both bodies' edges. A byte of its id names what of a body lies there: the
+ * arc at that end of its edge, if the point is no further from it than this part of the edge, or else the edge. That
+ * much is for two corners that face each other, as in a stack of equal boxes: either may end the common stretch, as
+ * rounding has it, and so both are named. */
+#define AT_END 0x1p-5f
+
+/* The byte of a body's edge, of a point at `along`, at the low end in the lanes `low`. */
+INLINE vi find_edge_feature(const struct queue *queue, int k, const struct edge *edge, vf along, vm low, bool is_b) {
     const vi first = get_bits(queue, is_b ? FIRST_RECORD_B : FIRST_RECORD_A, k);
-    return vi_add(find_arc_number(edge->after, first, get_bits(queue, is_b ? INFO_B : INFO_A, k)),
-                  vi_set(NARC_FEATURE_EDGE));
+    const vi info = get_bits(queue, is_b ? INFO_B : INFO_A, k);
+    const vf least = v_mul(v_set(AT_END), v_sub(edge->high.along, edge->low.along));
+    const vf inside = v_select(low, v_sub(along, edge->low.along), v_sub(edge->high.along, along));
+    const vm on_edge = v_lt(least, inside), at_start = is_b ? vm_not(low) : low;
+    const vi record = vi_select(vm_and_not(at_start, on_edge), edge->before, edge->after);
+    return vi_add(find_arc_number(record, first, info), vi_select(on_edge, vi_set(NARC_FEATURE_EDGE), vi_set(0)));
 }
 
-/* Finds the second points of the pairs `begin` ... of a queue. */
+/* Does a body touch the other one with its edge? */
+INLINE vm touches(const struct edge *edge) { return vm_and(edge->is_edge, edge->parallel); }
+
+INLINE vm is_nearer_low(const struct edge *edge, vf along) {
+    return v_le(v_abs(v_sub(along, edge->low.along)), v_abs(v_sub(edge->high.along, along)));
+}
+
+/* The byte of the body with `edge`, of the only point of two bodies, at `along`. A body that touches with its edge does
+ * so at the end where the other one's corner has its own edge beside it: so the id is that of the same point with the
+ * other edge within the flat angle. */
+INLINE vi find_touching_feature(const struct queue *queue, int k, const struct edge *edge, const struct edge *other,
+                                vf along, bool is_b) {
+    const vi first = get_bits(queue, is_b ? FIRST_RECORD_B : FIRST_RECORD_A, k);
+    const vi info = get_bits(queue, is_b ? INFO_B : INFO_A, k);
+    const vi arc = find_arc_number(get_bits(queue, is_b ? DEEPEST_RECORD_B : DEEPEST_RECORD_A, k), first, info);
+    const vm corner = vm_and_not(other->is_edge, other->parallel);
+    const vm low = vm_or(vm_and(corner, is_nearer_low(other, along)), vm_and_not(is_nearer_low(edge, along), corner));
+    return vi_select(touches(edge), find_edge_feature(queue, k, edge, along, low, is_b), arc);
+}
+
+/* Stores the ids of pairs with one point, in the lanes `which`. */
+INLINE void store_touching_features(const struct call *call, const struct queue *queue, int k, vm which,
+                                    const struct edge *a, const struct edge *b) {
+    const vf along = get(queue, DEEPEST_ALONG, k);
+    const vi of_a = find_touching_feature(queue, k, a, b, along, false);
+    const vi of_b = find_touching_feature(queue, k, b, a, along, true);
+    int32_t row[V_WIDTH], id[V_WIDTH];
+    find_rows(get_bits(queue, PAIR, k), which, row);
+    vi_store(id, vi_add(of_a, vi_shift_left(of_b, 8)));
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        memcpy(&call->rows->row[row[lane]][FEATURES], &id[lane], sizeof id[lane]);
+}
+
+/* Finds the second points of the pairs `begin` ... of a queue, and the ids of all points. */
 static void find_second_points(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     struct manifold_rows *rows = call->manifolds;
     (void)next;
@@ -200,6 +247,9 @@ static void find_second_points(const struct call *call, struct queue *queue, int
         struct end_point low = find_end_point(&a, &b, false), high = find_end_point(&a, &b, true);
         const vm common = vm_and(vm_and(a.offered, b.offered), is_stretch(&low, &high, deepest));
         const vm faces = vm_and(live, common);
+        const vm one = vm_and(vm_and_not(live, faces), vm_or(touches(&a), touches(&b)));
+        if (vm_any(one))
+            store_touching_features(call, queue, k, one, &a, &b);
         if (!vm_any(faces))
             continue;
         /* The end that is the deepest point. Where the edges touch, the places are the stretch's ends. */
@@ -220,16 +270,19 @@ static void find_second_points(const struct call *call, struct queue *queue, int
         high = select_end_point(at_low, &other, &deep);
         const struct end_point first = select_end_point(keeps_low, &low, &high);
 
-        const vi id_a = find_edge_feature(&a, queue, k, false), id_b = find_edge_feature(&b, queue, k, true);
-        const vi both = vi_add(id_a, vi_shift_left(id_b, 8)), end = vi_set(NARC_FEATURE_END);
-        const vi id_low = vi_add(both, vi_shift_left(end, 8)), id_high = vi_add(both, end);
+        const vm none = vm_xor(faces, faces);
+        const vi first_a = find_edge_feature(queue, k, &a, first.along, keeps_low, false);
+        const vi first_b = find_edge_feature(queue, k, &b, first.along, keeps_low, true);
+        const vi high_a = find_edge_feature(queue, k, &a, high.along, none, false);
+        const vi high_b = find_edge_feature(queue, k, &b, high.along, none, true);
+        const vi first_id = vi_add(first_a, vi_shift_left(first_b, 8));
+        const vi high_id = vi_add(high_a, vi_shift_left(high_b, 8));
         const vec2 to_world = get_vec2(queue, ROTATION_A, k), normal = v2_rotate(to_world, n);
         const vec2 point = v2_rotate(to_world, v2_rotate(n, (vec2){first.across, first.along}));
         const vec2 second = v2_rotate(to_world, v2_rotate(n, (vec2){high.across, high.along}));
-        const vf of_first[ROW] = {first.separation, normal.x,      normal.y,
-                                  point.x,          point.y,       v_of_bits(vi_select(keeps_low, id_low, id_high)),
-                                  first.radius_a,   first.radius_b};
-        const vf of_second[ROW] = {high.separation, second.x,      second.y, v_of_bits(id_high),
+        const vf of_first[ROW] = {first.separation,    normal.x,       normal.y,      point.x, point.y,
+                                  v_of_bits(first_id), first.radius_a, first.radius_b};
+        const vf of_second[ROW] = {high.separation, second.x,      second.y, v_of_bits(high_id),
                                    high.radius_a,   high.radius_b, v_set(0), v_set(0)};
         int32_t row[V_WIDTH], points[V_WIDTH];
         find_rows(get_bits(queue, PAIR, k), faces, row);

@@ -36,9 +36,12 @@ struct manifold_rows {
  * that is PARALLEL to a junction's, and eight roundings of the coordinates. */
 #define LEAST_STRETCH 0x1p-18f
 
-INLINE vm touches_edge(const struct feature *f, vi info) {
-    const vf length = v_sub(f->along_max, f->along_min);
-    return vm_and_not(v_lt(v_mul(v_set(LEAST_STRETCH), f->magnitude), length), info_has(info, NARC_SHAPE_SMOOTH));
+/* Does a body touch with an edge? Its own coordinates may be far larger than those in A's frame: what they lost when
+ * they were stored is no edge either. */
+INLINE vm touches_edge(const struct feature *f, vi info, vf scale) {
+    const vf length = v_sub(f->along_max, f->along_min), least = v_mul(scale, find_least_edge(info));
+    const vm longer = v_lt(v_max(v_mul(v_set(LEAST_STRETCH), f->magnitude), least), length);
+    return vm_and_not(longer, info_has(info, NARC_SHAPE_SMOOTH));
 }
 
 /* The fields of pairs that may have a second point, in place of those that are of no more use: what is known of the
@@ -59,7 +62,8 @@ INLINE void store_deepest(const struct call *call, const struct queue *queue, in
     const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k), zero = vi_set(0);
     const vec2 to_world = get_vec2(queue, ROTATION_A, k), normal = v2_rotate(to_world, n);
     const vec2 place = find_contact_place(on_a, on_b), point = v2_rotate(to_world, v2_rotate(n, place));
-    const vm edge_a = touches_edge(on_a, info_a), edge_b = touches_edge(on_b, info_b);
+    const vm edge_a = touches_edge(on_a, info_a, get(queue, SCALE_A, k));
+    const vm edge_b = touches_edge(on_b, info_b, get(queue, SCALE_B, k));
     const vi number_a = find_arc_number(on_a->record, get_bits(queue, FIRST_RECORD_A, k), info_a);
     const vi number_b = find_arc_number(on_b->record, get_bits(queue, FIRST_RECORD_B, k), info_b);
     const vi feature_a = vi_add(number_a, vi_select(edge_a, vi_set(NARC_FEATURE_EDGE), zero));

@@ -75,6 +75,8 @@ static const char *check_manifold(const struct reference_body *a, const struct r
         if (list->separation[i][k] < contacts->separation[k])
             return "a point deeper than the contact";
     }
+    if (count == 2 && list->feature[0][k] == list->feature[1][k])
+        return "id of two points";
     if (!exact)
         return "the deepest separation";
     tally->pairs++;
@@ -251,7 +253,8 @@ static unsigned find_edge_with(const struct shape *shape, double normal) {
 }
 
 /* A box on a box, tilted and moved a little to either side, rounded or not, equal or not: always the same two ids, and
- * points that move no more than the box does, but where they are cut off. */
+ * points that move no more than the box does, but where they are cut off. Of equal sharp boxes either corner may end the
+ * stretch. */
 static void test_box_on_box(void **state) {
     (void)state;
     struct test_random random = test_random_named("box on box");
@@ -260,7 +263,9 @@ static void test_box_on_box(void **state) {
         const struct shape below = make_box(2, 1, 0), above = make_box(width, 1, rounding);
         struct scene scene = make_duo(&below, &above);
         const unsigned up = find_edge_with(&below, pi / 2), down = find_edge_with(&above, -pi / 2);
-        const unsigned first = up | (down | NARC_FEATURE_END) << 8, second = (up | NARC_FEATURE_END) | down << 8;
+        const unsigned up_arc = up & 0x3f, down_arc = down & 0x3f; /* counter-clockwise behind these edges */
+        const unsigned first = (round == 0 ? (up_arc + 3) % 4 : up) | down_arc << 8;
+        const unsigned second = (round == 0 ? up_arc : up) | (down_arc + 3) % 4 << 8;
         for (size_t step = 0; step < 2000; step++) {
             const double tilt =
                 step == 0 ? 0 : random_between(&random, -1, 1) * pow(10, -random_between(&random, 1.5, 8));
@@ -451,12 +456,216 @@ static void test_flat_angle(void **state) {
     destroy_scene(&scene);
 }
 
+/* ------------------------------------------------------------------------------------------------ ids */
+
+/* Manifold k of a list in one word: its ids, or its deepest point's alone. */
+static unsigned find_ids(const struct manifolds *list, size_t k) {
+    return list->view.feature[0][k] | (unsigned)list->view.feature[1][k] << 16;
+}
+
+static unsigned swap_bytes(unsigned id) { return (id >> 8 & 0x00ff00ff) | (id & 0x00ff00ff) << 8; }
+
+static struct shape doubled_corner(double x, double y, double gap, double normal) {
+    struct shape shape = {{{x, y, 0, -pi / 2, normal},
+                           {x - gap * sin(normal), y + gap * cos(normal), 0, normal, 0},
+                           {x, y + 1, 0, 0, pi / 2},
+                           {x - 2, y + 1, 0, pi / 2, pi},
+                           {x - 2, y, 0, pi, 1.5 * pi}},
+                          5};
+    return shape;
+}
+
+/* A corner of two arcs of radius 0, a hair apart, on the shape's own origin: the hair is no edge, whatever the shape's
+ * coordinates are there. Manifolds are those of the same corner elsewhere, and of the swapped pair. */
+static void test_doubled_corner(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("doubled corner");
+    const double gaps[] = {0, 1e-17, 1e-14, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 3e-7};
+    const struct shape ground = make_box(10, 1, 0);
+    size_t two = 0, near_joint = 0;
+    for (size_t g = 0; g < sizeof gaps / sizeof gaps[0]; g++) {
+        const double normal = -random_between(&random, 0.3, 1.3);
+        struct scene scene = create_scene(NARC_FLOAT32, 3, 2, 2);
+        scene_add_shape(&scene, &ground);
+        for (int moved = 0; moved < 2; moved++) {
+            const struct shape shape = doubled_corner(moved, moved, gaps[g], normal);
+            scene_add_shape(&scene, &shape);
+        }
+        scene_add_body(&scene, turned_body(0, 1));
+        scene_add_body(&scene, turned_body(0, 1));
+        scene_add_pair(&scene, 0, 1);
+        scene_add_pair(&scene, 1, 0);
+        for (size_t trial = 0; trial < test_trials(400); trial++) {
+            /* The corner is 0.01 deep in the ground's top, which is looked at from the joint's side. */
+            const double tilt = -random_between(&random, 0.02, pi / 2 - 0.02), c = cos(tilt), s = sin(tilt);
+            const double place = random_between(&random, -2, 2);
+            unsigned ids[2];
+            for (uint32_t moved = 0; moved < 2; moved++) {
+                const double x = moved, y = moved;
+                scene.bodies[1].shape = 1 + moved;
+                put(&scene, 1, place - c * x + s * y, 0.49 - s * x - c * y, tilt);
+                struct manifolds list = scene_manifolds(&scene, 1);
+                assert_int_equal(list.count, 2);
+                assert_int_equal(list.view.point_count[0], list.view.point_count[1]);
+                ids[moved] = find_ids(&list, 0);
+                const unsigned turned = swap_bytes(find_ids(&list, 1));
+                const bool both = list.view.point_count[0] == 2;
+                assert_int_equal(ids[moved], both ? turned >> 16 | turned << 16 : turned);
+                two += both;
+                for (size_t i = 0; i < list.view.point_count[0]; i++) {
+                    assert_true(list.view.feature[i][0] >> 8 != (1 | NARC_FEATURE_EDGE));
+                    assert_true(!isinf(list.view.radius_b[i][0]) || list.view.feature[i][0] >> 8 & NARC_FEATURE_EDGE);
+                }
+                destroy_manifolds(&list, false);
+            }
+            assert_int_equal(ids[0], ids[1]);
+            near_joint += fabs(-pi / 2 - normal - tilt) < 0.4;
+        }
+        destroy_scene(&scene);
+    }
+    assert_true(two > 100 && near_joint > 100);
+}
+
+/* A corner that is rounded by two arcs has no edge between them, however far from the shape its origin is: what the
+ * arcs' centres lose there is rounding. */
+static void test_far_origin(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("far origin");
+    struct shape ball;
+    assert_int_equal(narc_build_circle(0.5, ball.arcs, &ball.count, NULL), NARC_OK);
+    const struct shape flat = make_box(2, 2, 0);
+    for (double far = 1; far < 2e6; far *= 10) {
+        for (size_t trial = 0; trial < test_trials(100); trial++) {
+            const double x = far * random_between(&random, -1, 1), y = far * random_between(&random, -1, 1);
+            const double joint = random_between(&random, 0.2, 1.3), first = 0.3,
+                         second = random_between(&random, 0.1, 0.5);
+            /* The second arc goes on from where the first one ends. */
+            const double moved_x = (first - second) * cos(joint), moved_y = (first - second) * sin(joint);
+            struct shape shape = {{{x + 0.7, y + 0.7, first, 0, joint},
+                                   {x + 0.7 + moved_x, y + 0.7 + moved_y, second, joint, pi / 2},
+                                   {x - 1, y + 0.7 + moved_y + second, 0, pi / 2, pi},
+                                   {x - 1, y - 1, 0, pi, 1.5 * pi},
+                                   {x + 1, y - 1, 0, 1.5 * pi, 2 * pi}},
+                                  5};
+            const double out_x = cos(joint), out_y = sin(joint), top_x = x + 0.7 + first * out_x;
+            const double top_y = y + 0.7 + first * out_y;
+            for (int edged = 0; edged < 2; edged++) {
+                struct scene scene = make_duo(edged ? &flat : &ball, &shape);
+                /* The other body's right side, turned round to the joint. */
+                const double reach = edged ? 1 : 0.5;
+                put(&scene, 0, 0, 0, joint + pi);
+                put(&scene, 1, -top_x - reach * out_x, -top_y - reach * out_y, 0);
+                scene_add_pair(&scene, 1, 0);
+                struct manifolds list = scene_manifolds(&scene, INFINITY);
+                for (size_t i = 0; i < list.view.point_count[0]; i++)
+                    assert_true(list.view.feature[i][0] >> 8 != (1 | NARC_FEATURE_EDGE));
+                for (size_t i = 0; i < list.view.point_count[1]; i++)
+                    assert_true((list.view.feature[i][1] & 0xff) != (1 | NARC_FEATURE_EDGE));
+                destroy_manifolds(&list, false);
+                destroy_scene(&scene);
+            }
+        }
+    }
+}
+
+/* A corner that leans on an edge's middle, sharp or rounded, from lying nearly flat on one side through standing on it
+ * to lying on the other: the deepest point keeps its id, which names the corner's arc and the edge. */
+static void test_leaning(void **state) {
+    (void)state;
+    const struct shape ground = make_box(20, 1, 0);
+    const unsigned top = find_edge_with(&ground, pi / 2);
+    for (int rounded = 0; rounded < 2; rounded++) {
+        const double radius = rounded ? 0.2 : 0;
+        const struct shape box = make_box(2, 1, radius);
+        struct scene scene = make_duo(&ground, &box);
+        size_t one = 0, two = 0;
+        const unsigned corner = (find_edge_with(&box, 0) & 0x3f) - 1 + (unsigned)box.count; /* the lower right arc */
+        for (double tilt = -89; tilt < -1; tilt += 0.01) {
+            const double c = cos(tilt * pi / 180), s = sin(tilt * pi / 180), right = 1 - radius, low = radius - 0.5;
+            put(&scene, 1, 0.3 - (c * right - s * low), 0.5 + radius - 0.01 - (s * right + c * low), tilt * pi / 180);
+            struct manifolds list = scene_manifolds(&scene, 0.5f);
+            assert_int_equal(list.count, 1);
+            const size_t count = list.view.point_count[0];
+            const size_t deep = count == 2 && list.view.separation[1][0] < list.view.separation[0][0];
+            assert_int_equal(list.view.feature[deep][0], top | corner % (unsigned)box.count << 8);
+            one += count == 1;
+            two += count == 2;
+            destroy_manifolds(&list, false);
+        }
+        assert_true(one > 1000 && two > 1000);
+        destroy_scene(&scene);
+    }
+}
+
+/* The point of a list that has the place and the separation of the contact, or point_count if neither has. */
+static size_t find_deepest(const struct manifolds *list, const struct contacts *contacts, size_t k) {
+    for (size_t i = 0; i < list->view.point_count[k]; i++)
+        if (list->view.separation[i][k] == contacts->view.separation[k] &&
+            list->view.point_x[i][k] == contacts->view.point_x[k] &&
+            list->view.point_y[i][k] == contacts->view.point_y[k])
+            return i;
+    return list->view.point_count[k];
+}
+
+/* The flat angle decides whether there is a second point, and nothing of the deepest one's id. */
+static void test_ids_at_all_flat_angles(void **state) {
+    (void)state;
+    enum { ANGLES = 5, IDS_PAIRS = 400 };
+    const float angles[ANGLES] = {0.45f, 0.001f, 0.1f, 0.8f, 1.5f};
+    struct test_random random = test_random_named("ids at all flat angles");
+    size_t compared = 0, come_and_go = 0;
+    for (int family = 0; family < FAMILY_COUNT * FAMILY_COUNT; family++) {
+        struct scene scene = create_scene(NARC_FLOAT32, 8, 2 * IDS_PAIRS, IDS_PAIRS);
+        for (int k = 0; k < 8; k++) {
+            const struct shape shape =
+                make_shape(&random, (enum family)(k % 2 ? family % FAMILY_COUNT : family / FAMILY_COUNT));
+            scene_add_shape(&scene, &shape);
+        }
+        for (size_t k = 0; k < IDS_PAIRS; k++) {
+            struct body a, b;
+            const uint32_t shape_a = 2 * (uint32_t)random_below(&random, 4),
+                           shape_b = 2 * (uint32_t)random_below(&random, 4) + 1;
+            place_pair(&random, (enum placement)(k % PLACE_COUNT), NARC_FLOAT32, &scene.shapes[shape_a],
+                       &scene.shapes[shape_b], &a, &b);
+            a.shape = shape_a;
+            b.shape = shape_b;
+            const uint32_t body_a = scene_add_body(&scene, a);
+            scene_add_pair(&scene, body_a, scene_add_body(&scene, b));
+        }
+        const narc_bodies bodies = scene_bodies(&scene);
+        const narc_pairs pairs = scene_pairs(&scene);
+        struct contacts contacts = scene_contacts(&scene, INFINITY);
+        struct manifolds usual = scene_manifolds(&scene, INFINITY), list = create_manifolds(IDS_PAIRS, false);
+        for (size_t a = 1; a < ANGLES; a++) {
+            const narc_manifold_options options = {.margin = INFINITY, .flat_angle = angles[a]};
+            assert_int_equal(
+                narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL), NARC_OK);
+            for (size_t k = 0; k < IDS_PAIRS; k++) {
+                const size_t i = find_deepest(&usual, &contacts, k), j = find_deepest(&list, &contacts, k);
+                if (i == usual.view.point_count[k] || j == list.view.point_count[k])
+                    continue;
+                assert_int_equal(usual.view.feature[i][k], list.view.feature[j][k]);
+                compared++;
+                come_and_go += usual.view.point_count[k] != list.view.point_count[k];
+            }
+        }
+        destroy_contacts(&contacts);
+        destroy_manifolds(&usual, false);
+        destroy_manifolds(&list, false);
+        destroy_scene(&scene);
+    }
+    printf("  %zu points compared, %zu where the second one comes or goes\n", compared, come_and_go);
+    assert_true(compared > 10000 && come_and_go > 1000);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_single_positions), cmocka_unit_test(test_double_positions),
         cmocka_unit_test(test_box_on_box),       cmocka_unit_test(test_corner_on_corner),
         cmocka_unit_test(test_rocking),          cmocka_unit_test(test_rolling),
         cmocka_unit_test(test_margin),           cmocka_unit_test(test_flat_angle),
+        cmocka_unit_test(test_doubled_corner),   cmocka_unit_test(test_far_origin),
+        cmocka_unit_test(test_leaning),          cmocka_unit_test(test_ids_at_all_flat_angles),
     };
     return test_begin() ? cmocka_run_group_tests_name("manifolds", tests, NULL, NULL) : TEST_SKIPPED;
 }

@@ -24,10 +24,14 @@ struct end {
     double t, height, radius;
 };
 
+/* A point this part of an edge from its end lies at the end's arc. */
+static const double end_part = 1.0 / 32;
+
 struct side {
-    bool offered, parallel, doubtful, doubtful_parallel;
-    size_t number; /* of the edge that is offered */
+    bool has_edge, offered, parallel, doubtful, doubtful_parallel;
+    size_t number; /* of the edge next to the touching arc that is closest to n */
     struct end low, high;
+    unsigned low_arc, high_arc; /* at its ends */
     double touching_radius;
     unsigned touching_feature;
 };
@@ -63,22 +67,25 @@ static struct side look_at(const struct frame *frame, const struct reference_bod
             place(frame, body, after->center_x + after->radius * c, after->center_y + after->radius * s, after->radius);
         length[k] = hypot(end[k].t - start[k].t, end[k].height - start[k].height);
     }
-    bool flat[2];
+    bool is_edge[2];
     for (size_t k = 0; k < 2; k++) {
-        const bool is_edge = count > 1 && length[k] > edge_doubt_low * reach;
-        flat[k] = is_edge && angle[k] <= flat_angle;
-        side.doubtful = side.doubtful || (is_edge && length[k] < edge_doubt_high * reach) ||
-                        (is_edge && fabs(angle[k] - flat_angle) < angle_doubt);
+        is_edge[k] = count > 1 && length[k] > edge_doubt_low * reach;
+        side.doubtful = side.doubtful || (is_edge[k] && length[k] < edge_doubt_high * reach) ||
+                        (is_edge[k] && fabs(angle[k] - flat_angle) < angle_doubt);
         side.doubtful_parallel =
-            side.doubtful_parallel || (is_edge && angle[k] > parallel_certain && angle[k] < parallel_doubt);
+            side.doubtful_parallel || (is_edge[k] && angle[k] > parallel_certain && angle[k] < parallel_doubt);
     }
-    side.offered = flat[0] || flat[1];
-    side.doubtful = side.doubtful || (flat[0] && flat[1] && fabs(angle[0] - angle[1]) < angle_doubt);
-    const size_t chosen = flat[1] && !(flat[0] && angle[0] < angle[1]);
+    const size_t chosen = is_edge[1] && !(is_edge[0] && angle[0] < angle[1]);
+    side.has_edge = is_edge[chosen] && angle[chosen] < pi / 2;
+    side.offered = is_edge[chosen] && angle[chosen] <= flat_angle;
+    side.doubtful = side.doubtful || (is_edge[chosen] && fabs(angle[chosen] - pi / 2) < angle_doubt) ||
+                    (is_edge[0] && is_edge[1] && fabs(angle[0] - angle[1]) < angle_doubt);
     side.number = (arc + chosen) % count;
     side.low = sign > 0 ? start[chosen] : end[chosen];
     side.high = sign > 0 ? end[chosen] : start[chosen];
-    side.parallel = side.offered && angle[chosen] < parallel_doubt;
+    side.low_arc = (unsigned)(sign > 0 ? (side.number + count - 1) % count : side.number);
+    side.high_arc = (unsigned)(sign > 0 ? side.number : (side.number + count - 1) % count);
+    side.parallel = side.has_edge && angle[chosen] < parallel_doubt;
     for (size_t k = 0; k < 2; k++) {
         if (count > 1 && length[k] > edge_doubt_low * reach && angle[k] < parallel_doubt) {
             side.touching_feature = (unsigned)((arc + k) % count) | NARC_FEATURE_EDGE;
@@ -86,6 +93,40 @@ static struct side look_at(const struct frame *frame, const struct reference_bod
         }
     }
     return side;
+}
+
+/* Has a body no edges? */
+static bool is_smooth(const struct reference_body *body) {
+    const double reach = reference_extent(body) / body->scale;
+    double length = 0;
+    for (size_t k = 0; k < body->count; k++) {
+        const narc_arc *before = &body->arcs[(k + body->count - 1) % body->count], *after = &body->arcs[k];
+        const double c = cos(after->start), s = sin(after->start), radii = after->radius - before->radius;
+        length = fmax(length, hypot(after->center_x - before->center_x + radii * c,
+                                    after->center_y - before->center_y + radii * s));
+    }
+    return body->count == 1 || length < edge_doubt_high * reach;
+}
+
+/* What of a body lies at t, at the low or the high end of its edge. */
+static unsigned feature_at(const struct side *side, double t, bool low, double doubt, bool *doubtful) {
+    const double inside = (low ? t - side->low.t : side->high.t - t) - end_part * (side->high.t - side->low.t);
+    *doubtful = *doubtful || fabs(inside) < doubt;
+    if (inside > 0)
+        return (unsigned)side->number | NARC_FEATURE_EDGE;
+    return low ? side->low_arc : side->high_arc;
+}
+
+static bool is_nearer_low(const struct side *side, double t) { return fabs(t - side->low.t) <= fabs(side->high.t - t); }
+
+/* What of a body lies at the only point of two: an edge that touches does so at the end where the other one's corner
+ * has its own edge beside it. */
+static unsigned feature_of_one(const struct side *side, const struct side *other, double t, double doubt,
+                               bool *doubtful) {
+    if (!side->parallel)
+        return side->touching_feature;
+    const struct side *corner = other->has_edge && !other->parallel ? other : side;
+    return feature_at(side, t, is_nearer_low(corner, t), doubt, doubtful);
 }
 
 static double height_at(const struct side *side, double t) {
@@ -99,16 +140,15 @@ static struct reference_point point_at(const struct frame *frame, double t, doub
 
 /* One end of the common stretch. */
 static struct reference_point end_point(const struct frame *frame, const struct side *a, const struct side *b, double t,
-                                        bool high, bool *doubtful_radius, double doubt) {
+                                        bool high, struct reference_manifold *m, double doubt) {
     const double height_a = height_at(a, t), height_b = height_at(b, t);
     const struct end *end_a = high ? &a->high : &a->low, *end_b = high ? &b->high : &b->low;
     struct reference_point point = point_at(frame, t, (height_a + height_b) / 2);
     point.separation = height_b - height_a;
     point.radius_a = end_a->t == t ? end_a->radius : INFINITY;
     point.radius_b = end_b->t == t ? end_b->radius : INFINITY;
-    *doubtful_radius = *doubtful_radius || fabs(end_a->t - end_b->t) < doubt;
-    point.feature = (unsigned)(a->number | b->number << 8) | NARC_FEATURE_EDGE | NARC_FEATURE_EDGE << 8 |
-                    (high ? NARC_FEATURE_END : NARC_FEATURE_END << 8);
+    m->doubtful_radius = m->doubtful_radius || fabs(end_a->t - end_b->t) < doubt;
+    point.feature = feature_at(a, t, !high, doubt, &m->doubtful) | feature_at(b, t, !high, doubt, &m->doubtful) << 8;
     return point;
 }
 
@@ -122,10 +162,14 @@ struct reference_manifold reference_find_manifold(const struct reference_body *a
     struct reference_manifold m = {.count = 1,
                                    .doubtful = side_a.doubtful || side_b.doubtful,
                                    .doubtful_radius = side_a.doubtful_parallel || side_b.doubtful_parallel};
-    const struct reference_point exact = {
-        contact->separation,    contact->point_x,
-        contact->point_y,       side_a.touching_feature | side_b.touching_feature << 8,
-        side_a.touching_radius, side_b.touching_radius};
+    const double deepest = frame.normal_x * contact->point_y - frame.normal_y * contact->point_x;
+    unsigned touching_a = side_a.touching_feature, touching_b = side_b.touching_feature;
+    if (!is_smooth(a) && !is_smooth(b)) {
+        touching_a = feature_of_one(&side_a, &side_b, deepest, doubt, &m.doubtful);
+        touching_b = feature_of_one(&side_b, &side_a, deepest, doubt, &m.doubtful);
+    }
+    const struct reference_point exact = {contact->separation,          contact->point_x,       contact->point_y,
+                                          touching_a | touching_b << 8, side_a.touching_radius, side_b.touching_radius};
     m.point[0] = exact;
     const double low = fmax(side_a.low.t, side_b.low.t), high = fmin(side_a.high.t, side_b.high.t);
     if (!side_a.offered || !side_b.offered)
@@ -135,18 +179,17 @@ struct reference_manifold reference_find_manifold(const struct reference_body *a
         return m;
     m.count = 2;
     m.stretch = side_a.parallel && side_b.parallel;
-    m.point[0] = end_point(&frame, &side_a, &side_b, low, false, &m.doubtful_radius, doubt);
-    m.point[1] = end_point(&frame, &side_a, &side_b, high, true, &m.doubtful_radius, doubt);
+    m.point[0] = end_point(&frame, &side_a, &side_b, low, false, &m, doubt);
+    m.point[1] = end_point(&frame, &side_a, &side_b, high, true, &m, doubt);
     if (m.stretch) {
         m.deepest = m.point[1].separation < m.point[0].separation;
         m.point[m.deepest].separation = contact->separation;
         return m;
     }
-    const double t = frame.normal_x * contact->point_y - frame.normal_y * contact->point_x;
-    m.deepest = fabs(t - low) > fabs(high - t);
-    m.doubtful = m.doubtful || fabs(fabs(t - low) - fabs(high - t)) < doubt;
-    const unsigned feature = m.point[m.deepest].feature;
+    m.deepest = fabs(deepest - low) > fabs(high - deepest);
+    m.doubtful = m.doubtful || fabs(fabs(deepest - low) - fabs(high - deepest)) < doubt;
     m.point[m.deepest] = exact;
-    m.point[m.deepest].feature = feature;
+    m.point[m.deepest].feature = feature_at(&side_a, deepest, m.deepest == 0, doubt, &m.doubtful) |
+                                 feature_at(&side_b, deepest, m.deepest == 0, doubt, &m.doubtful) << 8;
     return m;
 }
