@@ -17,7 +17,7 @@
 #include "outline.h"
 
 /* The promised 2^31 floats. */
-#define MAX_RECORDS (((size_t)1 << 31) * sizeof(float) / sizeof(narc_record))
+#define MAX_RECORDS (((size_t)1 << 31) / (sizeof(narc_record) / sizeof(float)))
 
 /* ------------------------------------------------------------------------------------------------ memory */
 

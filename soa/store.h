@@ -33,12 +33,18 @@ enum { NARC_CACHE_LINE = 64, NARC_RECORD_ANGLES = 16 };
 
 typedef struct narc_shape_header {
     uint32_t first_record; /* index into narc_shapes.records */
-    uint8_t count;         /* arcs as stored, 2 .. NARC_MAX_ARCS */
-    uint8_t first_arc;     /* the caller's arc that is stored first */
-    uint8_t flags;         /* NARC_SHAPE_..., and in the upper half the size class */
-    /* The extent (the largest |centre| + radius) is at most this many bounding radii. 255: it is more, or the arcs join
-     * worse than NARC_MAX_MISFIT; then the kernels prove nothing and go by the deciding formula. */
-    uint8_t extent_ratio;
+    /* Four bytes that the kernels read as one number, `count` its lowest byte:
+     *   count          arcs as stored, 2 .. NARC_MAX_ARCS
+     *   first_arc      the caller's arc that is stored first
+     *   flags          NARC_SHAPE_..., and in the upper half the size class
+     *   extent_ratio   The extent (the largest |centre| + radius) is at most this many bounding radii. 255: it is more, or
+     *                  the arcs join worse than NARC_MAX_MISFIT; then the kernels prove nothing and go by the deciding
+     *                  formula. */
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+    uint8_t extent_ratio, flags, first_arc, count;
+#else
+    uint8_t count, first_arc, flags, extent_ratio;
+#endif
     /* A circle around the shape and one inside it. Both leave room (NARC_ROUNDING_ROOM times the extent) for the
      * rounding of the kernels, so that a filter that uses them never contradicts the deciding formula. The inner radius
      * is negative where the room is larger than the circle, of shapes far from their own origin: what is missing must

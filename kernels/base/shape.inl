@@ -9,7 +9,8 @@
 #include "simd/simd.h"
 #include "store.h"
 
-/* The header of a shape in each lane. `info` is its second word: count, first arc, flags, extent ratio. */
+/* The header of a shape in each lane. `info` is its second word: count, first arc, flags, extent ratio, from the
+ * lowest byte on. */
 struct headers {
     vi first_record, info;
     vec2 bound_center;

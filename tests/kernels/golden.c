@@ -111,15 +111,15 @@ static struct scene make_scene(narc_precision precision) {
 static uint64_t hash_answers(const struct scene *scene) {
     uint64_t *bits = scene_overlaps(scene);
     struct contacts all = scene_contacts(scene, INFINITY), colliding = scene_contacts(scene, 0);
-    uint64_t hash = test_hash(TEST_HASH_START, bits, NARC_BIT_WORDS(PAIRS) * sizeof(uint64_t));
-    hash = test_hash(hash, all.view.separation, PAIRS * sizeof(float));
-    hash = test_hash(hash, all.view.normal_x, PAIRS * sizeof(float));
-    hash = test_hash(hash, all.view.normal_y, PAIRS * sizeof(float));
-    hash = test_hash(hash, all.view.point_x, PAIRS * sizeof(float));
-    hash = test_hash(hash, all.view.point_y, PAIRS * sizeof(float));
+    uint64_t hash = test_hash_items(TEST_HASH_START, bits, NARC_BIT_WORDS(PAIRS), sizeof(uint64_t));
+    hash = test_hash_items(hash, all.view.separation, PAIRS, sizeof(float));
+    hash = test_hash_items(hash, all.view.normal_x, PAIRS, sizeof(float));
+    hash = test_hash_items(hash, all.view.normal_y, PAIRS, sizeof(float));
+    hash = test_hash_items(hash, all.view.point_x, PAIRS, sizeof(float));
+    hash = test_hash_items(hash, all.view.point_y, PAIRS, sizeof(float));
     hash = test_hash(hash, all.view.arc_a, PAIRS);
     hash = test_hash(hash, all.view.arc_b, PAIRS);
-    hash = test_hash(hash, colliding.view.pair, colliding.count * sizeof(uint32_t));
+    hash = test_hash_items(hash, colliding.view.pair, colliding.count, sizeof(uint32_t));
     printf("  %zu of %d pairs collide\n", colliding.count, (int)PAIRS);
     /* Were all or none to collide, the hash would say little. */
     assert_true(colliding.count > PAIRS / 4 && colliding.count < PAIRS * 3 / 4);
@@ -169,14 +169,14 @@ static uint64_t hash_method(const struct scene *scene, const narc_bodies *bodies
                 NARC_OK);
         assert_true(!lists || found.count == pairs->count);
         const size_t count = lists ? found.count : 0;
-        hash = test_hash(hash, bits, NARC_BIT_WORDS(pairs->count) * sizeof(uint64_t));
+        hash = test_hash_items(hash, bits, NARC_BIT_WORDS(pairs->count), sizeof(uint64_t));
         hash = test_hash(hash, outcomes, pairs->count);
-        hash = test_hash(hash, hints, sizeof hints);
-        hash = test_hash(hash, found.view.separation, count * sizeof(float));
-        hash = test_hash(hash, found.view.normal_x, count * sizeof(float));
-        hash = test_hash(hash, found.view.normal_y, count * sizeof(float));
-        hash = test_hash(hash, found.view.point_x, count * sizeof(float));
-        hash = test_hash(hash, found.view.point_y, count * sizeof(float));
+        hash = test_hash_items(hash, hints, PAIRS, sizeof *hints);
+        hash = test_hash_items(hash, found.view.separation, count, sizeof(float));
+        hash = test_hash_items(hash, found.view.normal_x, count, sizeof(float));
+        hash = test_hash_items(hash, found.view.normal_y, count, sizeof(float));
+        hash = test_hash_items(hash, found.view.point_x, count, sizeof(float));
+        hash = test_hash_items(hash, found.view.point_y, count, sizeof(float));
         hash = test_hash(hash, found.view.arc_a, count);
         hash = test_hash(hash, found.view.arc_b, count);
         destroy_contacts(&found);
@@ -223,7 +223,7 @@ static void test_manifolds(void **state) {
             struct manifolds list = scene_manifolds(&scene, margins[m]);
             size_t two = 0;
             for (size_t k = 0; k < MANIFOLD_ARRAYS; k++)
-                hash = test_hash(hash, manifold_array(&list.view, k), list.count * manifold_item[k]);
+                hash = test_hash_items(hash, manifold_array(&list.view, k), list.count, manifold_item[k]);
             for (size_t k = 0; k < list.count; k++)
                 two += list.view.point_count[k] == 2;
             printf("  %zu of %zu manifolds have two points\n", two, list.count);
@@ -250,7 +250,7 @@ static void test_boxes(void **state) {
         uint64_t hash = TEST_HASH_START;
         for (int round = 0; round < 2; round++) {
             assert_int_equal(narc_compute_boxes(scene.store, &bodies, &options, 1, boxes, NULL), NARC_OK);
-            hash = test_hash(hash, boxes, sizeof boxes);
+            hash = test_hash_items(hash, boxes, BODIES * 4, sizeof(float));
             options = (narc_box_options){.margin = 0.125f, .motion_x = NARC_ARRAY(motion), .motion_y = {motion + 5, 0}};
         }
         check_hash("boxes", hash, golden_boxes[precision]);
@@ -267,8 +267,8 @@ static void test_poses(void **state) {
     for (size_t k = 0; k < ANGLES; k++)
         angles[k] = ((float)random_below(&random, 2000001) - 1000000.0f) / (k % 2 ? 4096.0f : 262144.0f);
     assert_int_equal(narc_compute_poses(angles, ANGLES, cosines, sines, NULL), NARC_OK);
-    uint64_t hash = test_hash(TEST_HASH_START, cosines, sizeof(cosines));
-    check_hash("poses", test_hash(hash, sines, sizeof(sines)), golden_poses);
+    uint64_t hash = test_hash_items(TEST_HASH_START, cosines, ANGLES, sizeof *cosines);
+    check_hash("poses", test_hash_items(hash, sines, ANGLES, sizeof *sines), golden_poses);
 }
 #endif
 

@@ -83,3 +83,12 @@ uint64_t test_hash(uint64_t hash, const void *bytes, size_t size) {
         hash = (hash ^ byte[k]) * 0x100000001b3u;
     return hash;
 }
+
+uint64_t test_hash_items(uint64_t hash, const void *items, size_t count, size_t size) {
+    const unsigned char *byte = items;
+    const size_t turn = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? size - 1 : 0;
+    for (size_t k = 0; k < count; k++, byte += size)
+        for (size_t i = 0; i < size; i++)
+            hash = test_hash(hash, &byte[i ^ turn], 1);
+    return hash;
+}

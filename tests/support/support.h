@@ -50,8 +50,10 @@ double random_between(struct test_random *random, double low, double high); /* l
 double random_log_between(struct test_random *random, double low, double high);
 size_t random_below(struct test_random *random, size_t limit); /* 0 .. limit - 1 */
 
-/* FNV-1a, 64 bits, continued from `hash`. */
+/* FNV-1a, 64 bits, continued from `hash`: of bytes, and of numbers of `size` bytes each, the lowest byte first on every
+ * machine. */
 #define TEST_HASH_START 0xcbf29ce484222325u
 uint64_t test_hash(uint64_t hash, const void *bytes, size_t size);
+uint64_t test_hash_items(uint64_t hash, const void *items, size_t count, size_t size);
 
 #endif
