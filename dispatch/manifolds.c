@@ -3,6 +3,7 @@
  * manifolds.c - narc_find_manifolds(): argument checks, then one call down.
  */
 #include "dispatch.h"
+#include "elementary.h"
 #include "error.h"
 
 #include <math.h>
@@ -44,7 +45,7 @@ narc_status narc_read_manifold_options(const narc_manifold_options *options, flo
     if (angle > NARC_MAX_FLAT_ANGLE)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)angle, "options.flat_angle is %g, more than %g",
                          (double)angle, (double)NARC_MAX_FLAT_ANGLE);
-    *out_flat_sine = angle < 0 ? -1.0f : (float)sin((double)(angle == 0 ? NARC_FLAT_ANGLE : angle));
+    *out_flat_sine = angle < 0 ? -1.0f : (float)narc_sin((double)(angle == 0 ? NARC_FLAT_ANGLE : angle));
     return NARC_OK;
 }
 

@@ -3,15 +3,16 @@
  * pose.inl - the pose kernel: cosines and sines of many angles.
  *
  * SLEEF's `cinz` functions promise equal bits on every instruction set and use no fused multiply-add, so that the
- * scalar table runs on any processor. Without SLEEF every table calls the C library, one angle at a time.
+ * scalar table runs on any processor. Without SLEEF every table takes one angle at a time, in double precision, by
+ * soa/elementary.h.
  */
 #ifndef NARC_POSE_INL
 #define NARC_POSE_INL
 
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
+#include "elementary.h"
 #include "simd/simd.h"
 
 #if defined(NARC_WITH_SLEEF)
@@ -42,10 +43,10 @@ static void pose(const float *angles, size_t count, float *out_cosines, float *o
 
 static void pose(const float *angles, size_t count, float *out_cosines, float *out_sines) {
     for (size_t k = 0; k < count; k++) {
-        const float angle = angles[k];
-        const bool finite = fabsf(angle) < INFINITY;
-        out_cosines[k] = finite ? cosf(angle) : NAN;
-        out_sines[k] = finite ? sinf(angle) : NAN;
+        double cosine, sine;
+        narc_find_cosine((double)angles[k], &cosine, &sine);
+        out_cosines[k] = (float)cosine;
+        out_sines[k] = (float)sine;
     }
 }
 

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
 #include "error.h"
 #include "outline.h"
 
@@ -49,7 +50,7 @@ static double cross(narc_point a, narc_point b, narc_point c) {
 static double point_to_segment(narc_point p, narc_point a, narc_point b) {
     double x = b.x - a.x, y = b.y - a.y, t = ((p.x - a.x) * x + (p.y - a.y) * y) / (x * x + y * y);
     t = fmin(1, fmax(0, t));
-    return hypot(a.x + t * x - p.x, a.y + t * y - p.y);
+    return narc_hypot(a.x + t * x - p.x, a.y + t * y - p.y);
 }
 
 static bool segments_touch(narc_point a, narc_point b, narc_point c, narc_point d) {
@@ -80,7 +81,7 @@ static narc_status normalise(const narc_point *points, size_t count, polygon *ou
         y += points[i].y / (double)count;
     }
     for (size_t i = 0; i < count; i++)
-        size = fmax(size, hypot(points[i].x - x, points[i].y - y));
+        size = fmax(size, narc_hypot(points[i].x - x, points[i].y - y));
     if (size == 0)
         return narc_fail(error, NARC_ERROR_NOT_SIMPLE, 0, 0, "all points are one");
     if (!(size >= NARC_MIN_SIZE && size <= 2 * NARC_MAX_SIZE)) /* the mean may be off the middle */
@@ -100,7 +101,7 @@ static narc_status read_polygon(const narc_point *points, size_t count, polygon 
         return status;
     for (size_t i = 0; i < count; i++) {
         narc_point from = out->point[i], to = out->point[(i + 1) % count];
-        out->length[i] = hypot(to.x - from.x, to.y - from.y);
+        out->length[i] = narc_hypot(to.x - from.x, to.y - from.y);
         if (out->length[i] <= TOUCHING)
             return narc_fail(error, NARC_ERROR_NOT_SIMPLE, i, 0, "point %zu: the next point is the same", i);
     }
@@ -122,7 +123,7 @@ static narc_status read_polygon(const narc_point *points, size_t count, polygon 
     }
     for (size_t i = 0; i < count; i++) {
         narc_point a = out->point[(i + count - 1) % count], b = out->point[i], c = out->point[(i + 1) % count];
-        out->turn[i] = atan2(cross(a, b, c), (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y));
+        out->turn[i] = narc_atan2(cross(a, b, c), (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y));
     }
     return NARC_OK;
 }
@@ -215,7 +216,7 @@ static void lay_lines(const polygon *p, const double *alpha, lines *out) {
     }
     out->middle.x /= perimeter;
     out->middle.y /= perimeter;
-    double angle = atan2(p->point[0].x - p->point[1].x, p->point[1].y - p->point[0].y) + difference / perimeter;
+    double angle = narc_atan2(p->point[0].x - p->point[1].x, p->point[1].y - p->point[0].y) + difference / perimeter;
     double amount = 0;
     out->mean_distance = 0;
     for (size_t i = 0; i < n; i++) {
@@ -234,8 +235,10 @@ static void lay_lines(const polygon *p, const double *alpha, lines *out) {
 /* The length of side i is linear in the distances of its line and its two neighbours'. */
 static double find_length(const lines *l, size_t count, size_t i, const double *distance) {
     size_t before = (i + count - 1) % count, after = (i + 1) % count;
-    return (distance[before] - distance[i] * cos(l->turn[i])) / sin(l->turn[i]) +
-           (distance[after] - distance[i] * cos(l->turn[after])) / sin(l->turn[after]);
+    double c, s, next_c, next_s;
+    narc_find_cosine(l->turn[i], &c, &s);
+    narc_find_cosine(l->turn[after], &next_c, &next_s);
+    return (distance[before] - distance[i] * c) / s + (distance[after] - distance[i] * next_c) / next_s;
 }
 
 /* Moves the lines towards tangents of a circle, all at the mean distance, by at least the part `least` of the way
@@ -256,7 +259,7 @@ static void lengthen_sides(lines *l, size_t count, double least) {
 static void intersect(const lines *l, size_t count, narc_circle place, narc_point *out_points) {
     for (size_t i = 0; i < count; i++) {
         size_t before = (i + count - 1) % count;
-        double a = l->distance[before], b = l->distance[i], s = sin(l->turn[i]);
+        double a = l->distance[before], b = l->distance[i], s = narc_sin(l->turn[i]);
         double x = (a * l->normal_y[i] - b * l->normal_y[before]) / s;
         double y = (b * l->normal_x[before] - a * l->normal_x[i]) / s;
         out_points[i] =

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "column.h"
+#include "elementary.h"
 #include "error.h"
 #include "store.h"
 
@@ -52,8 +53,8 @@ static narc_status check_body(const narc_shapes *shapes, const narc_bodies *bodi
         return narc_fail(error, NARC_ERROR_NOT_FINITE, body, isfinite(c) ? s : c, "body %zu: %s is %g", body,
                          isfinite(c) ? "sine" : "cosine", isfinite(c) ? s : c);
     if (!(fabsf(off) <= (float)NARC_ROTATION_TOLERANCE))
-        return narc_fail(error, NARC_ERROR_ARGUMENT, body, hypot(c, s),
-                         "body %zu: cosine and sine make a vector of length %.9g, not 1", body, hypot(c, s));
+        return narc_fail(error, NARC_ERROR_ARGUMENT, body, narc_hypot(c, s),
+                         "body %zu: cosine and sine make a vector of length %.9g, not 1", body, narc_hypot(c, s));
     const float size = scale * shapes->headers[shape].bound_radius;
     if (!(size >= (float)NARC_MIN_SIZE && size <= (float)NARC_MAX_BOUND_RADIUS))
         return narc_fail(error, NARC_ERROR_SIZE, body, (double)scale,

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
 #include "error.h"
 #include "outline.h"
 
@@ -102,7 +103,7 @@ static narc_status find_sides(const narc_point *points, size_t count, side *out_
         return status;
     for (size_t i = 0; i < count; i++) {
         narc_point from = points[i], to = points[(i + 1) % count];
-        double length = hypot(to.x - from.x, to.y - from.y);
+        double length = narc_hypot(to.x - from.x, to.y - from.y);
         if (!(length > 0) || !isfinite(length))
             return narc_fail(error, NARC_ERROR_SIZE, i, length, "side %zu: length is %g", i, length);
         out_sides[i] = (side){length, (to.y - from.y) / length, (from.x - to.x) / length, 0};
@@ -111,7 +112,7 @@ static narc_status find_sides(const narc_point *points, size_t count, side *out_
         side *after = &out_sides[i];
         const side *before = &out_sides[(i + count - 1) % count];
         double cross = before->normal_x * after->normal_y - before->normal_y * after->normal_x;
-        after->turn = atan2(cross, before->normal_x * after->normal_x + before->normal_y * after->normal_y);
+        after->turn = narc_atan2(cross, before->normal_x * after->normal_x + before->normal_y * after->normal_y);
         if (after->turn < NARC_TOLERANCE)
             return narc_fail(error, NARC_ERROR_NOT_CONVEX, i, after->turn,
                              "point %zu: the outline turns by %.6g rad, not left (counter-clockwise)", i, after->turn);
@@ -120,6 +121,12 @@ static narc_status find_sides(const narc_point *points, size_t count, side *out_
     if (sum > 3 * NARC_PI) /* a closed outline makes a whole number of turns */
         return narc_fail(error, NARC_ERROR_NOT_CONVEX, 0, sum, "the polygon turns by %.6g rad in all, not once", sum);
     return NARC_OK;
+}
+
+static double find_tangent(double angle) {
+    double c, s;
+    narc_find_cosine(angle, &c, &s);
+    return s / c;
 }
 
 narc_status narc_build_polygon(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
@@ -139,17 +146,19 @@ narc_status narc_build_polygon(const narc_point *points, size_t count, double ra
         return status;
     for (size_t i = 0; i < count; i++) {
         /* A corner that turns by e, rounded with radius r, uses up r tan(e / 2) of both its sides. */
-        double most = sides[i].length / (tan(sides[i].turn / 2) + tan(sides[(i + 1) % count].turn / 2));
+        double most =
+            sides[i].length / (find_tangent(sides[i].turn / 2) + find_tangent(sides[(i + 1) % count].turn / 2));
         if (radius > most * (1 + FIT_SLACK))
             return narc_fail(error, NARC_ERROR_RADIUS, i, radius,
                              "side %zu: radius is %.9g, the largest that fits it is %.9g", i, radius, most);
     }
     for (size_t i = 0; i < count; i++) {
         const side *before = &sides[(i + count - 1) % count], *after = &sides[i];
-        double inset = radius / (1 + cos(after->turn));
-        arcs[i] = (narc_arc){points[i].x - inset * (before->normal_x + after->normal_x),
-                             points[i].y - inset * (before->normal_y + after->normal_y), radius,
-                             atan2(before->normal_y, before->normal_x), atan2(after->normal_y, after->normal_x)};
+        double inset = radius / (1 + narc_cos(after->turn));
+        arcs[i] =
+            (narc_arc){points[i].x - inset * (before->normal_x + after->normal_x),
+                       points[i].y - inset * (before->normal_y + after->normal_y), radius,
+                       narc_atan2(before->normal_y, before->normal_x), narc_atan2(after->normal_y, after->normal_x)};
     }
     return finish(arcs, count, out_arcs, out_count, error);
 }
@@ -208,8 +217,8 @@ narc_status narc_build_four_arc(narc_four_arc form, narc_arc *out_arcs, size_t *
                              lengths[i].value, most);
     narc_point right = find_tip(form, form.radius_right), left = find_tip(form, form.radius_left);
     double y = form.distance / 2;
-    double right_low = atan2(right.y - y, right.x), right_high = atan2(right.y + y, right.x);
-    double left_low = atan2(left.y - y, -left.x), left_high = atan2(left.y + y, -left.x);
+    double right_low = narc_atan2(right.y - y, right.x), right_high = narc_atan2(right.y + y, right.x);
+    double left_low = narc_atan2(left.y - y, -left.x), left_high = narc_atan2(left.y + y, -left.x);
     const narc_arc arcs[4] = {{right.x, right.y, form.radius_right, right_low, right_high},
                               {0, -y, form.radius_high, right_high, left_high},
                               {-left.x, left.y, form.radius_left, left_high, left_low},

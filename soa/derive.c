@@ -4,6 +4,7 @@
  */
 #include <math.h>
 
+#include "elementary.h"
 #include "outline.h"
 
 /* A direction closer than this (radians) to an edge's normal is that normal: a few roundings of a unit vector. */
@@ -21,7 +22,7 @@ static bool read_list(const narc_arc *arcs, size_t count, const void *out, narc_
 /* t - sin t, by its series where the difference would cancel. */
 static double subtract_sine(double t) {
     if (t > 0.5)
-        return t - sin(t);
+        return t - narc_sin(t);
     double s = t * t, sum = 1;
     for (int k = 15; k >= 5; k -= 2) /* the next factor would change 1 by 0.25^7 * 3! / 17!, far below a rounding */
         sum = 1 - s / (k * (k - 1)) * sum;
@@ -46,8 +47,9 @@ static void add_triangle(moments *sum, narc_point a, narc_point b) /* origin, a,
  * sweep being f: area r^2/2 (2f - sin 2f), first moment 2/3 r^3 sin^3 f along m, second r^4/4 (2f - sin 2f + 2/3 sin
  * 2f sin^2 f). */
 static void add_segment(moments *sum, const narc_outline *o, size_t i) {
-    double r = o->radius[i], half = o->sweep[i] / 2, part = subtract_sine(o->sweep[i]), s = sin(half);
-    double c = cos(half), x = o->normal_x[i], y = o->normal_y[i], ax = o->center_x[i], ay = o->center_y[i];
+    double r = o->radius[i], part = subtract_sine(o->sweep[i]), c, s;
+    narc_find_cosine(o->sweep[i] / 2, &c, &s);
+    double x = o->normal_x[i], y = o->normal_y[i], ax = o->center_x[i], ay = o->center_y[i];
     double area = r * r / 2 * part, first = 2.0 / 3 * r * r * r * s * s * s;
     double mx = first * (x * c - y * s), my = first * (y * c + x * s);
     double second = r * r * r * r / 4 * (part + 4.0 / 3 * s * c * s * s);
@@ -81,7 +83,7 @@ bool narc_compute_perimeter(const narc_arc *arcs, size_t count, double *out_peri
     double sum = 0;
     for (size_t i = 0; i < o.count; i++) {
         narc_point from = narc_find_end(&o, i), to = narc_find_start(&o, (i + 1) % o.count);
-        sum += o.radius[i] * o.sweep[i] + hypot(to.x - from.x, to.y - from.y);
+        sum += o.radius[i] * o.sweep[i] + narc_hypot(to.x - from.x, to.y - from.y);
     }
     *out_perimeter = sum;
     return true;
@@ -126,7 +128,7 @@ static size_t find_arc(const narc_outline *o, double x, double y) {
 bool narc_find_support(const narc_arc *arcs, size_t count, double direction_x, double direction_y,
                        narc_point *out_point, size_t *out_arc) {
     narc_outline o;
-    double length = hypot(direction_x, direction_y);
+    double length = narc_hypot(direction_x, direction_y);
     if (!(length > 0) || !isfinite(length) || !read_list(arcs, count, arcs, &o))
         return false;
     double x = direction_x / length, y = direction_y / length;

@@ -13,6 +13,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
 #include "error.h"
 #include "outline.h"
 
@@ -29,7 +30,11 @@ typedef struct quadrant {
     double center_x[MOST_JUNCTIONS + 1], center_y[MOST_JUNCTIONS + 1];
 } quadrant;
 
-static double find_height(ellipse e, double angle) { return hypot(e.a * cos(angle), e.b * sin(angle)); }
+static double find_height(ellipse e, double angle) {
+    double c, s;
+    narc_find_cosine(angle, &c, &s);
+    return narc_hypot(e.a * c, e.b * s);
+}
 
 static double find_curvature_radius(ellipse e, double angle) {
     double height = find_height(e, angle);
@@ -43,8 +48,10 @@ static void place_centers(quadrant *q) {
     q->center_x[0] = q->center_y[0] = 0;
     for (size_t k = 1; k <= m; k++) {
         double step = q->radius[k - 1] - q->radius[k];
-        q->center_x[k] = q->center_x[k - 1] + step * cos(q->junction[k]);
-        q->center_y[k] = q->center_y[k - 1] + step * sin(q->junction[k]);
+        double c, s;
+        narc_find_cosine(q->junction[k], &c, &s);
+        q->center_x[k] = q->center_x[k - 1] + step * c;
+        q->center_y[k] = q->center_y[k - 1] + step * s;
     }
     double last = q->center_x[m];
     for (size_t k = 0; k <= m; k++)
@@ -53,12 +60,16 @@ static void place_centers(quadrant *q) {
 
 /* How far the arc's support line lies outside the ellipse's, and the derivative of that. */
 static double find_error(ellipse e, const quadrant *q, size_t arc, double angle) {
-    return q->center_x[arc] * cos(angle) + q->center_y[arc] * sin(angle) + q->radius[arc] - find_height(e, angle);
+    double c, s;
+    narc_find_cosine(angle, &c, &s);
+    return q->center_x[arc] * c + q->center_y[arc] * s + q->radius[arc] - narc_hypot(e.a * c, e.b * s);
 }
 
 static double find_slope(ellipse e, const quadrant *q, size_t arc, double angle) {
-    double c = cos(angle), s = sin(angle);
-    return q->center_y[arc] * c - q->center_x[arc] * s + (e.a - e.b) * (e.a + e.b) * c * s / find_height(e, angle);
+    double c, s;
+    narc_find_cosine(angle, &c, &s);
+    return q->center_y[arc] * c - q->center_x[arc] * s +
+           (e.a - e.b) * (e.a + e.b) * c * s / narc_hypot(e.a * c, e.b * s);
 }
 
 /* ------------------------------------------------------------------------------------------------ equations */
@@ -101,10 +112,10 @@ static void guess_junctions(ellipse e, quadrant *q) {
     double sum[STEPS + 1] = {0}, angle[STEPS + 1] = {0};
     for (int k = 1; k <= STEPS; k++) {
         const double t = NARC_PI / 2 * k / STEPS;
-        angle[k] = k < STEPS ? atan2(sqrt(e.a) * sin(t), sqrt(e.b) * cos(t)) : NARC_PI / 2;
+        angle[k] = k < STEPS ? narc_atan2(sqrt(e.a) * narc_sin(t), sqrt(e.b) * narc_cos(t)) : NARC_PI / 2;
         const double width = angle[k] - angle[k - 1];
         const double change = find_curvature_radius(e, angle[k]) - find_curvature_radius(e, angle[k - 1]);
-        sum[k] = sum[k - 1] + cbrt(fabs(change) * width * width);
+        sum[k] = sum[k - 1] + narc_pow(fabs(change) * width * width, 1.0 / 3);
     }
     int step = 1;
     for (size_t junction = 1; junction <= q->junctions; junction++) {
@@ -276,18 +287,23 @@ static bool find_from_guess(ellipse e, quadrant *q, int *left) {
     return guess_radii(e, q) && is_in_order(q) && equalise(e, q, left);
 }
 
+/* A rounder ellipse: half axes to a power of 0 to 1. */
+static ellipse round_off(ellipse e, double power) {
+    return power < 1 ? (ellipse){narc_pow(e.a, power), narc_pow(e.b, power)} : e;
+}
+
 /* If the guess is not good enough, the exchange starts from a rounder ellipse and follows it to the one that is wanted.
  * False if it loses its way. */
 static bool follow(ellipse e, quadrant *q, int *left) {
     const double rounder = 0.8, roundest = 1e-3, least = 1e-4;
     double done = rounder;
-    while (!find_from_guess((ellipse){pow(e.a, done), pow(e.b, done)}, q, left))
+    while (!find_from_guess(round_off(e, done), q, left))
         if (*left <= 0 || (done *= rounder) < roundest)
             return false;
     for (double stride = 0.1 * done; done < 1;) {
         const double next = fmin(1, done + stride);
         quadrant moved = *q;
-        if (equalise((ellipse){pow(e.a, next), pow(e.b, next)}, &moved, left)) {
+        if (equalise(round_off(e, next), &moved, left)) {
             *q = moved;
             done = next;
             stride *= 2;

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
 #include "error.h"
 #include "outline.h"
 
@@ -28,7 +29,7 @@ static uint8_t find_flags(const narc_outline *o, size_t count, double size) {
     bool smooth = true, polygon = true, inside = true;
     for (size_t i = 0; i < o->count; i++) {
         narc_point from = narc_find_end(o, i ? i - 1 : o->count - 1), to = narc_find_start(o, i);
-        smooth = smooth && hypot(to.x - from.x, to.y - from.y) <= NARC_TOLERANCE * size;
+        smooth = smooth && narc_hypot(to.x - from.x, to.y - from.y) <= NARC_TOLERANCE * size;
         polygon = polygon && o->radius[i] == 0;
         inside = inside &&
                  (o->radius[i] == 0 || narc_find_gap(o, o->center_x[i], o->center_y[i], NULL) <= CENTER_SLACK * size);
@@ -61,11 +62,11 @@ static narc_shape_header make_header(const narc_outline *o, size_t count, narc_c
     header.flags = (uint8_t)(find_flags(o, count, bound.radius) | find_size_class(extent) << NARC_SIZE_CLASS_SHIFT);
     header.bound_x = (float)bound.x;
     header.bound_y = (float)bound.y;
-    double moved = hypot((double)header.bound_x - bound.x, (double)header.bound_y - bound.y);
+    double moved = narc_hypot((double)header.bound_x - bound.x, (double)header.bound_y - bound.y);
     header.bound_radius = round_up(bound.radius + moved + room);
     header.inner_x = (float)inner.x;
     header.inner_y = (float)inner.y;
-    moved = hypot((double)header.inner_x - inner.x, (double)header.inner_y - inner.y);
+    moved = narc_hypot((double)header.inner_x - inner.x, (double)header.inner_y - inner.y);
     header.inner_radius = round_down(inner.radius - moved - room);
     /* One part in a million for the rounding of what is stored. */
     header.extent_ratio = UINT8_MAX;
@@ -202,7 +203,7 @@ narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_s
         return status;
     double extent = 0;
     for (size_t i = 0; i < count; i++)
-        extent = fmax(extent, hypot(arcs[i].center_x, arcs[i].center_y) + arcs[i].radius);
+        extent = fmax(extent, narc_hypot(arcs[i].center_x, arcs[i].center_y) + arcs[i].radius);
     narc_shape_header header = make_header(&outline, count, bound, extent);
     if ((double)header.bound_radius > NARC_MAX_BOUND_RADIUS)
         return narc_fail(error, NARC_ERROR_SIZE, 0, bound.radius,

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
 #include "error.h"
 #include "outline.h"
 
@@ -48,13 +49,13 @@ static narc_status measure_chords(const narc_point *points, size_t count, chord_
         return status;
     for (size_t i = 0; i < count; i++) {
         narc_point from = points[i], to = points[(i + 1) % count];
-        double x = to.x - from.x, y = to.y - from.y, length = hypot(x, y);
+        double x = to.x - from.x, y = to.y - from.y, length = narc_hypot(x, y);
         if (!(length > 0) || !isfinite(length))
             return narc_fail(error, NARC_ERROR_SIZE, i, length, "the chord from point %zu to the next: length is %g", i,
                              length);
         out_chain->point[i] = from;
         out_chain->chord[i] = length;
-        out_chain->direction[i] = atan2(-x, y);
+        out_chain->direction[i] = narc_atan2(-x, y);
     }
     for (size_t i = 0; i < count; i++) {
         out_turns[i] = narc_wrap_angle(out_chain->direction[i] - out_chain->direction[(i + count - 1) % count]);
@@ -108,7 +109,7 @@ static narc_status find_range(chord_ring *c, narc_error *error) {
 static double find_variance(const chord_ring *c, double first) {
     double sum = 0, squares = 0, count = (double)c->count;
     for (size_t i = 0; i < c->count; i++) {
-        double value = log(c->chord[i] / c->chord[0] / sin(find_alpha(c, i, first)));
+        double value = narc_log(c->chord[i] / c->chord[0] / narc_sin(find_alpha(c, i, first)));
         sum += value;
         squares += value * value;
     }
@@ -185,7 +186,7 @@ static narc_status solve(const narc_point *points, size_t count, chord_ring *out
     return count % 2 ? solve_odd(out_chain, turns, error) : solve_even(out_chain, turns, error);
 }
 
-static double find_radius(const chord_ring *c, double alpha) { return c->chord[0] / (2 * sin(alpha)); }
+static double find_radius(const chord_ring *c, double alpha) { return c->chord[0] / (2 * narc_sin(alpha)); }
 
 static void find_radii(const chord_ring *c, double *out_min, double *out_max, double *out_chosen) {
     *out_min = find_radius(c, c->high);
@@ -203,7 +204,7 @@ static narc_status choose_radius(chord_ring *c, double radius, narc_error *error
         return narc_fail(error, NARC_ERROR_RADIUS, 0, radius,
                          "radius is %.9g, but an odd number of points has one solution, %.9g", radius, chosen);
     }
-    c->alpha = asin(fmin(1, c->chord[0] / (2 * radius)));
+    c->alpha = narc_asin(fmin(1, c->chord[0] / (2 * radius)));
     if (radius < least * (1 - RIGHT_ANGLE_SLACK) || radius > most)
         return narc_fail(error, NARC_ERROR_RADIUS, 0, radius, "radius is %.9g, not between %.9g and %.9g", radius,
                          least, most);
@@ -234,7 +235,7 @@ static void make_arcs(const chord_ring *c, narc_arc *out_arcs) {
         *arc = (narc_arc){.start = normal[i], .end = normal[next]};
         narc_find_normal(arc->start, &a.x, &a.y);
         narc_find_normal(arc->end, &b.x, &b.y);
-        arc->radius = c->chord[i] / (2 * sin(narc_find_sweep(arc) / 2));
+        arc->radius = c->chord[i] / (2 * narc_sin(narc_find_sweep(arc) / 2));
         arc->center_x = (from.x + to.x) / 2 - arc->radius * (a.x + b.x) / 2;
         arc->center_y = (from.y + to.y) / 2 - arc->radius * (a.y + b.y) / 2;
     }

@@ -6,12 +6,15 @@
 
 #include <math.h>
 
+#include "elementary.h"
+
 /* How far the cosine or sine of a multiple of pi/2, itself rounded to a double, can be from 0: per radian of the
  * angle. */
 #define SNAP 1e-15
 
 void narc_find_normal(double angle, double *out_x, double *out_y) {
-    double x = cos(angle), y = sin(angle), snap = SNAP * fmax(1.0, fabs(angle));
+    double x, y, snap = SNAP * fmax(1.0, fabs(angle));
+    narc_find_cosine(angle, &x, &y);
     if (fabs(x) <= snap) {
         x = 0;
         y = y > 0 ? 1 : -1;

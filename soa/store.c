@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary.h"
 #include "encode.h"
 #include "error.h"
 #include "memory.h"
@@ -247,7 +248,8 @@ size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_ar
     size_t count = header.flags & NARC_SHAPE_CIRCLE ? 1 : header.count;
     for (size_t i = 0; out_arcs && i < count; i++) {
         const narc_stored_arc *r = &arcs[(i + header.count - header.first_arc) % header.count].arc;
-        double start = atan2((double)r->start_y, (double)r->start_x), end = atan2((double)r->end_y, (double)r->end_x);
+        double start = narc_atan2((double)r->start_y, (double)r->start_x),
+               end = narc_atan2((double)r->end_y, (double)r->end_x);
         if (count == 1)
             end = start;
         if (end <= start)
@@ -280,7 +282,7 @@ bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, floa
         return false;
     const narc_record *arcs = narc_arcs_of(shapes, &shapes->headers[shape]);
     size_t count = shapes->headers[shape].count;
-    double length = hypot((double)cosine, (double)sine), c = (double)cosine / length, s = (double)sine / length;
+    double length = narc_hypot((double)cosine, (double)sine), c = (double)cosine / length, s = (double)sine / length;
     double extent = 0;
     if (!(length > 0) || !isfinite(length))
         return false;

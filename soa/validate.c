@@ -2,6 +2,7 @@
  *
  * validate.c - is a list of arcs a closed convex outline?
  */
+#include "elementary.h"
 #include "error.h"
 #include "outline.h"
 
@@ -96,7 +97,7 @@ static bool is_flat(const narc_outline *o, double size) {
 }
 
 static narc_status check_size(const narc_outline *o, narc_circle bound, narc_error *error) {
-    double size = bound.radius, away = hypot(bound.x, bound.y);
+    double size = bound.radius, away = narc_hypot(bound.x, bound.y);
     if (!(size >= NARC_MIN_SIZE && size <= NARC_MAX_SIZE))
         return narc_fail(error, NARC_ERROR_SIZE, 0, size, "the shape's bounding radius is %g, not in %g .. %g", size,
                          NARC_MIN_SIZE, NARC_MAX_SIZE);

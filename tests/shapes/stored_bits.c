@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * stored_bits.c - the bits of what builders make and the store keeps, recorded: the same with every C library, compiler
+ * and processor.
+ *
+ * The builders' inputs come from whole numbers, sums, products and quotients alone.
+ */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "store.h"
+#include "support.h"
+
+enum builder { CIRCLE, CAPSULE, BOX, POLYGON, REGULAR, FOUR_ARC, POINTS, RADIUS, RING, ELLIPSE, BUILDERS };
+
+static const char *const names[BUILDERS] = {
+    "circle", "capsule",           "box",  "polygon", "regular polygon", "four-arc",
+    "points", "points and radius", "ring", "ellipse"};
+static const uint64_t golden[BUILDERS] = {
+    0xb6621a8c6a35fadbu, 0x89a6bc4d27dce1a6u, 0x285ea8b8726dfaa9u, 0xff45f58547f7e1c9u, 0x91f2c8c0f967e1b8u,
+    0x7b0231bfc5f57a8cu, 0xdd55c9e5869c9a07u, 0x5170549fe11c4a83u, 0x03936a0d583dfc8bu, 0xf35f6b02624e6426u};
+
+/* Of each builder. An ellipse takes much longer than the others. */
+static size_t shapes_of(enum builder builder) { return builder == ELLIPSE ? 48 : 300; }
+
+/* Corners of a convex polygon: on the unit circle, at ((1 - t^2) / (1 + t^2), 2 t / (1 + t^2)) turned by quarter turns,
+ * then stretched and moved. */
+static void place_corners(struct test_random *random, size_t count, narc_point *out_points) {
+    const double across = random_between(random, 0.25, 4), up = random_between(random, 0.25, 4);
+    const double x = random_between(random, -2, 2), y = random_between(random, -2, 2);
+    for (size_t i = 0; i < count; i++) {
+        const double turn = ((double)i + random_between(random, 0.1, 0.9)) * 4 / (double)count;
+        const int quarter = (int)turn;
+        const double t = turn - quarter, c = (1 - t * t) / (1 + t * t), s = 2 * t / (1 + t * t);
+        const double turned_c = quarter % 2 ? -s : c, turned_s = quarter % 2 ? c : s;
+        out_points[i].x = x + across * (quarter / 2 ? -turned_c : turned_c);
+        out_points[i].y = y + up * (quarter / 2 ? -turned_s : turned_s);
+    }
+}
+
+/* The k-th shape of a builder. */
+static narc_status build(enum builder builder, struct test_random *random, size_t k, narc_arc *out_arcs,
+                         size_t *out_count) {
+    narc_point corners[NARC_MAX_ARCS], points[NARC_MAX_ARCS];
+    const double a = random_between(random, 0.125, 8), b = random_between(random, 0.125, 8), part = random_unit(random);
+    const size_t count = 3 + random_below(random, k % 4 ? 8 : 30);
+    const double radius = k % 2 ? part * (a < b ? a : b) / 2 : 0;
+    double least, most, chosen;
+    place_corners(random, count, corners);
+    switch (builder) {
+    case CIRCLE:
+        return narc_build_circle(a, out_arcs, out_count, NULL);
+    case CAPSULE:
+        return narc_build_capsule(a, b, out_arcs, out_count, NULL);
+    case BOX:
+        return narc_build_box(a, b, radius, out_arcs, out_count, NULL);
+    case POLYGON:
+        return narc_build_polygon(corners, count, radius / (double)(count * count), out_arcs, out_count, NULL);
+    case REGULAR:
+        return narc_build_regular_polygon(count, a, k % 2 ? part * a / 4 : 0, out_arcs, out_count, NULL);
+    case FOUR_ARC: {
+        const double distance = a + b - part * (a < b ? a : b), tip = k % 2 ? (a + b - distance) / 8 : 0;
+        return narc_build_four_arc((narc_four_arc){a, b, distance, tip, tip / 2}, out_arcs, out_count, NULL);
+    }
+    case POINTS:
+    case RADIUS: {
+        narc_status status = narc_adjust_polygon(corners, count, points, NULL);
+        if (status == NARC_OK)
+            status = narc_find_radius_range(points, count, &least, &most, &chosen, NULL);
+        if (status != NARC_OK || builder == POINTS)
+            return status == NARC_OK ? narc_build_points(points, count, 0, out_arcs, out_count, NULL) : status;
+        return narc_build_points(points, count, least + (chosen - least) * part, out_arcs, out_count, NULL);
+    }
+    case RING:
+        return narc_build_ring(corners, count, out_arcs, out_count, NULL);
+    default:
+        return narc_build_ellipse(a, b, 4 * (1 + k % 8), out_arcs, out_count, NULL, NULL);
+    }
+}
+
+static uint64_t hash_double(uint64_t hash, double value) { return test_hash_items(hash, &value, 1, sizeof value); }
+
+/* All that the store keeps of its last shape. */
+static uint64_t hash_stored(uint64_t hash, const narc_shapes *shapes) {
+    const narc_shape_header *const header = &shapes->headers[shapes->count - 1];
+    const narc_record *const records = &shapes->records[header->first_record];
+    const size_t angles = narc_angle_records(header->count);
+    const uint8_t bytes[] = {header->count, header->first_arc, header->flags, header->extent_ratio};
+    hash = test_hash(hash, bytes, sizeof bytes);
+    hash = test_hash_items(hash, &header->bound_x, 6, sizeof(float));
+    hash = test_hash_items(hash, records, angles * NARC_RECORD_ANGLES, sizeof(int16_t));
+    return test_hash_items(hash, &records[angles], (header->count + 1u) * 8, sizeof(float)); /* the arcs and the box */
+}
+
+/* What is told of a list of arcs and of the stored shape. */
+static uint64_t hash_derived(uint64_t hash, const narc_shapes *shapes, const narc_arc *arcs, size_t count) {
+    narc_arc stored[NARC_MAX_ARCS];
+    narc_mass mass;
+    narc_aabb box;
+    narc_point point;
+    double perimeter;
+    assert_true(narc_compute_mass(arcs, count, &mass) && narc_compute_perimeter(arcs, count, &perimeter) &&
+                narc_compute_aabb(arcs, count, 0.7, &box) && narc_find_support(arcs, count, 1, 2, &point, NULL));
+    hash = hash_double(hash_double(hash, mass.second_moment), perimeter);
+    hash = hash_double(hash_double(hash_double(hash, box.max_x), point.x), point.y);
+    const size_t stored_count = narc_get_arcs(shapes, (uint32_t)narc_count_shapes(shapes) - 1, stored);
+    return test_hash_items(hash, stored, stored_count * 5, sizeof(double));
+}
+
+static void test_builders(void **state) {
+    (void)state;
+    bool same = true;
+    for (enum builder builder = 0; builder < BUILDERS; builder++) {
+        struct test_random random = {builder}; /* not of NARC_TEST_SEED */
+        uint64_t hash = TEST_HASH_START;
+        size_t built = 0;
+        narc_shapes *shapes;
+        assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+        for (size_t k = 0; k < shapes_of(builder); k++) {
+            narc_arc arcs[NARC_MAX_ARCS];
+            size_t count = 0;
+            narc_status status = build(builder, &random, k, arcs, &count);
+            if (status == NARC_OK && k % 3 == 1)
+                status = narc_center_arcs(arcs, count, arcs, NULL, NULL);
+            if (status == NARC_OK && k % 3 == 2)
+                status = narc_mirror_arcs(arcs, count, arcs, NULL);
+            if (status == NARC_OK)
+                status = narc_add_shape(shapes, arcs, count, NULL, NULL);
+            hash = hash_double(hash, status);
+            if (status != NARC_OK)
+                continue;
+            built++;
+            hash = hash_stored(test_hash_items(hash, arcs, count * 5, sizeof(double)), shapes);
+            hash = hash_derived(hash, shapes, arcs, count);
+        }
+        printf("  %s: %zu of %zu, 0x%016" PRIx64 "\n", names[builder], built, shapes_of(builder), hash);
+        assert_true(built > shapes_of(builder) * 3 / 4);
+        same = same && hash == golden[builder];
+        narc_destroy_shapes(shapes);
+    }
+    assert_true(same);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_builders)};
+    return test_begin() ? cmocka_run_group_tests_name("stored bits", tests, NULL, NULL) : TEST_SKIPPED;
+}
