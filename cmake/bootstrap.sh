@@ -10,7 +10,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
 
   run        collide 20,000 bodies; shapes, contacts and pictures go to out/
   test       one build and its tests, minutes
-  gate       what a change must pass besides: style, long tests, without dependencies, sanitizers, NEON under qemu
+  gate       what a change must pass besides: style, long tests, without dependencies, sanitizers, and
+             under qemu NEON, 32-bit x86 and a big-endian processor
   bench      the benchmarks beside Box2D, Chipmunk and libccd; tables and plots go to out/. Options are Google
              Benchmark's and those of bench/README.md
   paper      the paper's evaluation; tables and plots go to out/. Options are those of bench/paper/README.md
@@ -50,8 +51,6 @@ bench_packages="$library_packages $peer_packages gnuplot-nox"
 study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
 lammps_packages="$run_packages g++ liblammps-dev libopenmpi-dev openmpi-bin"
 dem_packages="$run_packages r-cran-shapes gnuplot-nox"
-arm64_tools="gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user"
-arm64_libraries="libsleef-dev libsleef3 libcmocka-dev libcmocka0"
 
 missing_of() {
     for package; do
@@ -89,20 +88,24 @@ require_packages() {
     install_packages "$@" || fail "these packages could not be installed:$missing"
 }
 
-# The arm64 libraries are unpacked in build/arm64, from package lists of their own: the system does not change.
-fetch_arm64_libraries() {
-    [ -e build/arm64/complete ] && return 0
-    rm -rf build/arm64 build/arm64-apt
-    mkdir -p build/arm64 build/arm64-apt/lists/partial build/arm64-apt/archives/partial
+# Libraries of another processor, by Debian's name of it, are unpacked in build/packages, from package lists of their own:
+# the system does not change.
+fetch_libraries() {
+    foreign=$1
+    shift
+    [ ! -e "build/packages/$foreign/complete" ] || return 0
+    rm -rf "build/packages/$foreign" "build/packages/$foreign-apt"
+    mkdir -p "build/packages/$foreign" "build/packages/$foreign-apt/lists/partial" \
+        "build/packages/$foreign-apt/archives/partial"
     (
-        cd build/arm64-apt
-        arm64_apt="apt-get -q -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o APT::Sandbox::User=root \
-            -o Dir::State::lists=$PWD/lists -o Dir::Cache=$PWD"
-        $arm64_apt update # a source without arm64 may make this fail; the download decides
-        $arm64_apt download $arm64_libraries || exit 1
-        for package in *.deb; do dpkg-deb -x "$package" ../arm64 || exit 1; done
-        touch ../arm64/complete
-    ) || { rm -rf build/arm64; return 1; }
+        cd "build/packages/$foreign-apt"
+        foreign_apt="apt-get -q -o APT::Architecture=$foreign -o APT::Architectures=$foreign \
+            -o APT::Sandbox::User=root -o Dir::State::lists=$PWD/lists -o Dir::Cache=$PWD"
+        $foreign_apt update # a source without this processor may make this fail; the download decides
+        $foreign_apt download "$@" || exit 1
+        for package in *.deb; do dpkg-deb -x "$package" "../$foreign" || exit 1; done
+        touch "../$foreign/complete"
+    ) || { rm -rf "build/packages/$foreign"; return 1; }
 }
 
 # ---------------------------------------------------------------------------- steps
@@ -118,6 +121,18 @@ build() {
 check() {
     build "$1" all
     ${2:-} ctest --preset "$1" || fail "tests failed in build/$1"
+}
+
+# Tests on another processor: the preset, the compiler's package, Debian's name of the processor, libraries. Where they
+# can't be had that is noted in `skipped`.
+check_foreign() {
+    preset=$1 tools="$2 libc6-dev-$3-cross qemu-user" processor=$3
+    shift 3
+    if install_packages $tools && fetch_libraries "$processor" "$@"; then
+        check "$preset"
+    else
+        skipped="$skipped; $preset SKIPPED: no compiler, qemu or libraries from this machine's package sources"
+    fi
 }
 
 run() {
@@ -329,14 +344,10 @@ gate() {
     fi
     case $(uname -m) in
     aarch64 | arm64) ;; # NEON is what all of the above ran
-    *)
-        if install_packages $arm64_tools && fetch_arm64_libraries; then
-            check aarch64
-        else
-            skipped="$skipped; NEON SKIPPED: no arm64 compiler, qemu or libraries from this machine's package sources"
-        fi
-        ;;
+    *) check_foreign aarch64 gcc-aarch64-linux-gnu arm64 libsleef-dev libsleef3 libcmocka-dev libcmocka0 ;;
     esac
+    check_foreign i686 gcc-i686-linux-gnu i386 libcmocka-dev libcmocka0
+    check_foreign s390x gcc-s390x-linux-gnu s390x libcmocka-dev libcmocka0
     say "all tests passed$skipped"
 }
 

@@ -123,6 +123,33 @@ elseif(STEP STREQUAL "subproject")
     message(FATAL_ERROR "a subproject builds more than the library: ${extra}")
   endif()
 
+# A project without a build type: narc is optimised, and what is the project's own is as it was.
+elseif(STEP STREQUAL "subproject_flags")
+  run(${configure} -S "${SOURCE}/tests/package/consumer" -B "${folder}" -DKIND=subproject "-DNARC_SOURCE=${SOURCE}"
+    "-DNARC_SLEEF=${SLEEF}" -DCMAKE_BUILD_TYPE= -DCMAKE_C_FLAGS= -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)
+  file(READ "${folder}/compile_commands.json" commands)
+  string(REGEX MATCHALL "\"command\": [^\n]*" commands "${commands}")
+  foreach(command IN LISTS commands)
+    string(REGEX MATCH "-c [^\n]*" source "${command}")
+    if(source MATCHES "/(soa|dispatch|kernels)/")
+      math(EXPR narc_sources "0${narc_sources} + 1")
+      if(NOT command MATCHES " -O[23] ")
+        message(FATAL_ERROR "not optimised: ${command}")
+      endif()
+    elseif(command MATCHES " -O| -DNDEBUG")
+      message(FATAL_ERROR "the project's own flags changed: ${command}")
+    endif()
+  endforeach()
+  if(NOT narc_sources GREATER 20)
+    message(FATAL_ERROR "narc's own sources are not among the commands")
+  endif()
+  file(STRINGS "${folder}/CMakeCache.txt" cached REGEX "^(CMAKE_BUILD_TYPE|CMAKE_C_FLAGS):")
+  foreach(line IN LISTS cached)
+    if(NOT line MATCHES "=$")
+      message(FATAL_ERROR "the project's cache changed: ${line}")
+    endif()
+  endforeach()
+
 elseif(STEP STREQUAL "compiler_alone")
   # No pkg-config, no OpenMP, no SLEEF: the library itself must not look for anything.
   run(${configure} -S "${SOURCE}" -B "${folder}" -DCMAKE_BUILD_TYPE=Debug -DNARC_BUILD_FIT=OFF -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF
