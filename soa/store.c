@@ -2,9 +2,10 @@
  *
  * store.c - the list of shapes: its memory, how shapes come and go, and what it tells of them.
  *
- * Blocks of records lie in the order in which they came. A shape that is replaced by one with more or fewer arcs leaves
- * a gap; the gaps go when the array is full and moves to a new place. A removed shape keeps its block, so that kernels
- * may read it as any other, until its index is used again.
+ * Blocks of records lie in the order in which they came. A shape that is removed, or replaced by one with more or fewer
+ * arcs, leaves a gap; the gaps go when the array is full and moves to a new place. The first block is a circle that
+ * belongs to no shape: when its own block is gone, a removed shape has that one, so that kernels may read it as any
+ * other.
  */
 #include "store.h"
 
@@ -20,6 +21,9 @@
 /* The promised 2^31 floats. */
 #define MAX_RECORDS (((size_t)1 << 31) / (sizeof(narc_record) / sizeof(float)))
 
+/* The block of removed shapes: a circle, two arcs. */
+enum { SPARE_ARCS = 2, SPARE_RECORDS = 1 + SPARE_ARCS + 1 };
+
 /* ------------------------------------------------------------------------------------------------ memory */
 
 static void release(const narc_shapes *shapes, void *memory) {
@@ -34,7 +38,7 @@ narc_status narc_create_shapes(const narc_allocator *allocator, narc_shapes **ou
     narc_shapes *shapes = chosen.allocate(sizeof *shapes, chosen.context);
     if (!shapes)
         return NARC_ERROR_MEMORY;
-    *shapes = (narc_shapes){.allocator = chosen};
+    *shapes = (narc_shapes){.used_records = SPARE_RECORDS, .allocator = chosen};
     *out_shapes = shapes;
     return NARC_OK;
 }
@@ -48,12 +52,11 @@ void narc_destroy_shapes(narc_shapes *shapes) {
     allocator.release(shapes, allocator.context);
 }
 
-/* Room for `needed` items where there is room for `capacity`: twice as much, so that adding copies little. */
-static size_t choose_capacity(size_t capacity, size_t needed, size_t smallest, size_t limit) {
-    size_t chosen = capacity < limit / 2 ? 2 * capacity : limit;
-    if (chosen < smallest)
-        chosen = smallest;
-    return chosen < needed ? needed : chosen;
+/* Room for `needed` headers where there is room for `capacity`: twice as much, so that adding copies little. */
+static size_t choose_headers(size_t capacity, size_t needed) {
+    const size_t twice = capacity < NARC_MAX_SHAPES / 2 ? 2 * capacity : NARC_MAX_SHAPES, least = 16;
+    const size_t chosen = twice > least ? twice : least;
+    return chosen > needed ? chosen : needed;
 }
 
 /* Memory for `count` items that begin at a cache line. */
@@ -79,16 +82,25 @@ static bool grow_headers(narc_shapes *shapes, size_t capacity) {
     return true;
 }
 
-/* Moves all blocks to a new array, one behind the other. */
+/* Moves all blocks that are in use to a new array, one behind the other. */
 static bool move_records(narc_shapes *shapes, size_t capacity) {
+    static const narc_arc circle = {0, 0, 1, 0, 2 * NARC_PI};
+    narc_encoded_shape spare;
     void *array = NULL, *memory = allocate(shapes, capacity, sizeof(narc_record), &array);
     if (!memory)
         return false;
     narc_record *records = array;
-    size_t next = 0;
-    for (size_t k = 0; k < shapes->count; k++) {
+    size_t next = SPARE_RECORDS;
+    (void)narc_encode_shape(&circle, 1, &spare, NULL);
+    memcpy(records, spare.records, SPARE_RECORDS * sizeof *records);
+    for (uint32_t k = 0; k < shapes->count; k++) {
         narc_shape_header *header = &shapes->headers[k];
         const size_t size = narc_count_records(header->count);
+        if (!narc_has_shape(shapes, k)) {
+            header->first_record = 0;
+            header->count = SPARE_ARCS;
+            continue;
+        }
         memcpy(&records[next], &shapes->records[header->first_record], size * sizeof *records);
         header->first_record = (uint32_t)next;
         next += size;
@@ -101,22 +113,27 @@ static bool move_records(narc_shapes *shapes, size_t capacity) {
     return true;
 }
 
+/* Records to make room for, where `used` and `added` have to fit: room for as many as are used, so that moves copy
+ * little, and never more than twice what was needed at one time, so that both arrays of a move are within four times
+ * that. */
+static size_t choose_records(const narc_shapes *shapes, size_t used, size_t added) {
+    const size_t most = MAX_RECORDS - used, room = added > used ? added : used, least = 64;
+    const size_t chosen = used + (room < most ? room : most);
+    const size_t larger = chosen > least ? chosen : least;
+    return larger > shapes->record_capacity ? larger : shapes->record_capacity;
+}
+
 /* Room for so many headers in all, and so many records behind those that are there. If the second allocation fails the
- * first stays, unseen and unused. Gaps count as room to come: an array of which half is gaps does not grow. */
+ * first stays, unseen and unused. */
 static narc_status make_room(narc_shapes *shapes, size_t count, size_t records) {
     const size_t used = shapes->used_records;
     if (count > NARC_MAX_SHAPES || records > MAX_RECORDS - used)
         return NARC_ERROR_COUNT;
-    if (count > shapes->capacity &&
-        !grow_headers(shapes, choose_capacity(shapes->capacity, count, 16, NARC_MAX_SHAPES)))
+    if (count > shapes->capacity && !grow_headers(shapes, choose_headers(shapes->capacity, count)))
         return NARC_ERROR_MEMORY;
     if (records <= shapes->record_capacity - shapes->record_count)
         return NARC_OK;
-    const bool is_sparse = used + records <= shapes->record_capacity / 2;
-    return move_records(shapes, is_sparse ? shapes->record_capacity
-                                          : choose_capacity(shapes->record_capacity, used + records, 64, MAX_RECORDS))
-               ? NARC_OK
-               : NARC_ERROR_MEMORY;
+    return move_records(shapes, choose_records(shapes, used, records)) ? NARC_OK : NARC_ERROR_MEMORY;
 }
 
 narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t arc_count) {
@@ -133,12 +150,6 @@ narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t 
 
 static bool is_curved(const narc_shape_header *header) { return !(header->flags & NARC_SHAPE_POLYGON); }
 
-/* Where a removed shape says which one was removed before it. */
-static uint32_t *find_link(const narc_shapes *shapes, uint32_t shape) {
-    const narc_shape_header *header = &shapes->headers[shape];
-    return &shapes->records[header->first_record + narc_count_records(header->count) - 1].removed_before;
-}
-
 static narc_status fail_room(const narc_shapes *shapes, narc_status status, narc_error *error) {
     if (status == NARC_ERROR_COUNT)
         return narc_fail(error, status, shapes->count, (double)shapes->count, "the store is full, it has %zu shapes",
@@ -146,12 +157,18 @@ static narc_status fail_room(const narc_shapes *shapes, narc_status status, narc
     return narc_fail(error, status, shapes->count, 0, "no memory for a shape beside the other %zu", shapes->count);
 }
 
-/* Puts an encoded shape at an index: in the place of the block that is there, if it fits. `is_new`: there is none. */
-static narc_status put_shape(narc_shapes *shapes, size_t shape, bool is_new, narc_encoded_shape *encoded,
-                             narc_error *error) {
-    const size_t size = narc_count_records(encoded->header.count);
-    const size_t old_size = is_new ? 0 : narc_count_records(shapes->headers[shape].count);
-    if (size > old_size) {
+/* How many records the block at an index has that is the index's own: also that of a removed shape, until it is gone. */
+static size_t count_own_records(const narc_shapes *shapes, uint32_t shape) {
+    const bool has_block = shape < shapes->count && shapes->headers[shape].first_record > 0;
+    return has_block ? narc_count_records(shapes->headers[shape].count) : 0;
+}
+
+/* Puts an encoded shape at an index, or at the next new one: in the place of the block that is there, if it fits. */
+static narc_status put_shape(narc_shapes *shapes, uint32_t shape, narc_encoded_shape *encoded, narc_error *error) {
+    const bool is_new = shape == shapes->count;
+    const size_t size = narc_count_records(encoded->header.count), own_size = count_own_records(shapes, shape);
+    const size_t used_size = narc_has_shape(shapes, shape) ? own_size : 0;
+    if (size > own_size) {
         const narc_status status = make_room(shapes, shapes->count + is_new, size);
         if (status != NARC_OK)
             return fail_room(shapes, status, error);
@@ -162,7 +179,7 @@ static narc_status put_shape(narc_shapes *shapes, size_t shape, bool is_new, nar
     }
     memcpy(&shapes->records[encoded->header.first_record], encoded->records, size * sizeof *encoded->records);
     shapes->headers[shape] = encoded->header;
-    shapes->used_records += size - old_size;
+    shapes->used_records += size - used_size;
     shapes->curved_count += is_curved(&encoded->header);
     shapes->count += is_new;
     return NARC_OK;
@@ -178,8 +195,8 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
         return status;
     const bool is_new = shapes->removed_count == 0;
     const uint32_t shape = is_new ? (uint32_t)shapes->count : shapes->last_removed;
-    const uint32_t next_removed = is_new ? 0 : *find_link(shapes, shape);
-    status = put_shape(shapes, shape, is_new, &encoded, error);
+    const uint32_t next_removed = is_new ? 0 : shapes->headers[shape].removed_before;
+    status = put_shape(shapes, shape, &encoded, error);
     if (status != NARC_OK)
         return status;
     if (!is_new) {
@@ -213,7 +230,7 @@ narc_status narc_replace_shape(narc_shapes *shapes, uint32_t shape, const narc_a
     if (status != NARC_OK)
         return status;
     const bool was_curved = is_curved(&shapes->headers[shape]);
-    status = put_shape(shapes, shape, false, &encoded, error);
+    status = put_shape(shapes, shape, &encoded, error);
     if (status == NARC_OK)
         shapes->curved_count -= was_curved;
     return status;
@@ -225,8 +242,9 @@ narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *e
         return status;
     narc_shape_header *header = &shapes->headers[shape];
     shapes->curved_count -= is_curved(header);
+    shapes->used_records -= narc_count_records(header->count);
     header->bound_radius = 0;
-    *find_link(shapes, shape) = shapes->last_removed;
+    header->removed_before = shapes->last_removed;
     shapes->last_removed = shape;
     shapes->removed_count++;
     return NARC_OK;

@@ -49,9 +49,14 @@ typedef struct narc_shape_header {
      * rounding of the kernels, so that a filter that uses them never contradicts the deciding formula. The inner radius
      * is negative where the room is larger than the circle, of shapes far from their own origin: what is missing must
      * come off the other body's radius.
-     *   A removed shape has the bounding radius 0, which is not in range: kernels take no body of that shape. */
+     *   A removed shape has the bounding radius 0, which is not in range: kernels take no body of that shape. In place
+     * of a number that only bodies in range need, it has the shape that was removed before it, if any. */
     float bound_x, bound_y, bound_radius;
-    float inner_x, inner_y, inner_radius;
+    union {
+        float inner_x;
+        uint32_t removed_before;
+    };
+    float inner_y, inner_radius;
 } narc_shape_header;
 
 /* The upper half of a shape's flags is the class of its extent, from 2^(5 class - 32) up to 32 times that, the last one
@@ -88,7 +93,6 @@ typedef union narc_record {
     int16_t angles[NARC_RECORD_ANGLES];
     narc_stored_arc arc;
     narc_oriented_box box;
-    uint32_t removed_before; /* in place of a removed shape's box: the shape that was removed before it, if any */
 } narc_record;
 
 /* How many records the junction angles of a shape take: its first arc lies behind them. */
@@ -115,10 +119,10 @@ struct narc_shapes {
     narc_record *records;
     size_t count, capacity;               /* headers, those of removed shapes among them */
     size_t removed_count;                 /* removed shapes */
-    uint32_t last_removed;                /* the last of them, if there are any: narc_record.removed_before */
+    uint32_t last_removed;                /* the last of them, if there are any: narc_shape_header.removed_before */
     size_t curved_count;                  /* shapes without NARC_SHAPE_POLYGON */
     size_t record_count, record_capacity; /* records, with the gaps between blocks */
-    size_t used_records;                  /* records in blocks, those of removed shapes among them */
+    size_t used_records;                  /* records in blocks of shapes, and of the circle that removed ones have */
     narc_allocator allocator;
     void *headers_memory, *records_memory; /* what the allocator returned; both arrays begin at cache lines in it */
 };
