@@ -101,7 +101,8 @@ NARC_API narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *bo
 /* For each pair of a new list: its index in an old list, or NARC_NO_MATCH. Pairs (a, b) and (b, a) are different. Only
  * bodies are compared: of one pair with several shifts (periodic images) all match the first. Both
  * lists may be in any order; two lists in the order of (a, b), as narc_find_pairs() makes them, are matched without
- * memory, in one walk. If a pair stands several times in the old list, the first counts.
+ * memory, in one walk. Others take up to 15 bytes for each old pair and time that grows with n log n at most, whatever
+ * the pairs are. If a pair stands several times in the old list, the first counts.
  *   old_pairs, new_pairs   at most 2^32 - 2 pairs each
  *   out_match              new_pairs->count items, overlapping nothing else
  * Errors: NARC_ERROR_ARGUMENT (NULL, too many pairs), NARC_ERROR_MEMORY. */

@@ -31,7 +31,10 @@ void narc_destroy_broad_phase(narc_broad_phase *broad) {
 }
 
 /* Room for a quarter more than is needed, so that a scene that grows slowly does not allocate at every step. */
-static size_t with_room(size_t needed, size_t least) { return needed < least ? least : needed + needed / 4; }
+static size_t with_room(size_t needed, size_t least) {
+    const size_t room = needed / 4 < SIZE_MAX - needed ? needed / 4 : SIZE_MAX - needed;
+    return needed < least ? least : needed + room;
+}
 
 /* Replaces a piece of memory; the old one stays if that fails. */
 static bool replace(const narc_broad_phase *broad, void **memory, size_t items, size_t item_size) {
@@ -90,11 +93,14 @@ narc_status narc_reserve_blocks(narc_broad_phase *broad, size_t count) {
     return NARC_OK;
 }
 
-narc_status narc_reserve_matches(narc_broad_phase *broad, size_t bytes) {
-    if (bytes <= broad->match_capacity)
+narc_status narc_reserve_matches(narc_broad_phase *broad, size_t first_count, size_t second_count) {
+    if (second_count > SIZE_MAX - first_count)
+        return NARC_ERROR_MEMORY;
+    const size_t count = first_count + second_count;
+    if (count <= broad->match_capacity)
         return NARC_OK;
-    const size_t n = with_room(bytes, 4096);
-    if (!replace(broad, &broad->match_memory, n, 1))
+    const size_t n = with_room(count, 1024);
+    if (!replace(broad, &broad->match_memory, n, sizeof(uint32_t)))
         return NARC_ERROR_MEMORY;
     broad->match_capacity = n;
     return NARC_OK;

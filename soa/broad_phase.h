@@ -58,7 +58,7 @@ typedef struct narc_pair_block {
 struct narc_broad_phase {
     narc_allocator allocator;
     void *box_memory, *pair_memory, *match_memory;
-    size_t box_capacity, block_capacity, match_capacity; /* match_capacity: bytes */
+    size_t box_capacity, block_capacity, match_capacity; /* match_capacity: of uint32_t */
     /* for each box */
     narc_box_entry *entries, *spare;
     narc_box_columns boxes; /* in the order of their strips, with NARC_BOX_PADDING items behind the last */
@@ -84,10 +84,10 @@ enum { NARC_PAIR_BLOCK = 4096 };
 /* A block with fewer pairs is filled up before a thread takes the next. */
 enum { NARC_FULL_BLOCK = NARC_PAIR_BLOCK / 8 * 7 };
 
-/* Make room for so many boxes, blocks of pairs and bytes; what was there is lost, unless there is room already.
- * NARC_ERROR_MEMORY: there is as much room as before. */
+/* Make room for so many boxes, blocks of pairs, and numbers in two arrays of 32 bits; what was there is lost, unless
+ * there is room already. NARC_ERROR_MEMORY: there is as much room as before. */
 narc_status narc_reserve_boxes(narc_broad_phase *broad, size_t count);
 narc_status narc_reserve_blocks(narc_broad_phase *broad, size_t count);
-narc_status narc_reserve_matches(narc_broad_phase *broad, size_t bytes);
+narc_status narc_reserve_matches(narc_broad_phase *broad, size_t first_count, size_t second_count);
 
 #endif

@@ -2,8 +2,9 @@
  *
  * match.c - narc_match_pairs() and narc_gather(): what of the last step belongs to the pairs of this one.
  *
- * Two lists in order are walked side by side. Otherwise the old pairs go into a hash table with open addressing, at
- * most half full.
+ * Two lists in order are walked side by side. Otherwise the old pairs go into buckets by a hash, which mostly have one
+ * or two. Many pairs may have one hash, of lists that were made for it all of them; a bucket with more than a few is in
+ * order, so that a pair is found in it by halving.
  */
 #include "broad_phase.h"
 #include "column.h"
@@ -71,42 +72,100 @@ static void walk(const narc_pairs *old_pairs, const narc_pairs *new_pairs, size_
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ hash table */
+/* ------------------------------------------------------------------------------------------------ buckets */
 
-/* Open addressing: a place holds an old pair's index + 1, or 0 while it is free. */
-typedef struct table {
-    uint32_t *places;
-    size_t mask;
-} table;
+/* Of bucket k: items starts[k] .. starts[k + 1] - 1, indices of old pairs. They rise; in a bucket with more than FEW
+ * they are in the order of their pairs, and rise among equal ones. */
+typedef struct buckets {
+    const narc_pairs *pairs;
+    uint32_t *starts, *items;
+    unsigned bits; /* there are 2^bits buckets, more than pairs if these are below 2^31 */
+} buckets;
 
-/* A multiplier with well-mixed bits (the golden ratio's), and the upper half of the product. */
-static size_t hash(uint64_t pair) {
-    const uint64_t mixed = (pair ^ pair >> 32) * 0x9e3779b97f4a7c15u;
-    return (size_t)(mixed >> 32 ^ mixed >> 7);
+enum { FEW = 8 };
+
+/* Products with the golden ratio's bits, and of the second the upper bits, which depend on all of the pair's. */
+static size_t find_bucket(const buckets *t, uint64_t pair) {
+    const uint64_t ratio = 0x9e3779b97f4a7c15u, once = pair * ratio;
+    return (size_t)((once ^ once >> 32) * ratio >> 1 >> (63 - t->bits));
 }
 
-static size_t table_size(size_t count) {
-    size_t size = 16;
-    while (size < 2 * count)
-        size *= 2;
-    return size;
+static uint64_t pair_of(const buckets *t, uint32_t item) { return pair_at(t->pairs, item); }
+
+static bool comes_before(const buckets *t, uint32_t one, uint32_t other) {
+    const uint64_t first = pair_of(t, one), second = pair_of(t, other);
+    return first < second || (first == second && one < other);
 }
 
-/* The place of a pair, or the free place where it belongs. */
-static size_t find_place(const table *t, const narc_pairs *old_pairs, uint64_t pair) {
-    size_t at = hash(pair) & t->mask;
-    while (t->places[at] != 0 && pair_at(old_pairs, t->places[at] - 1) != pair)
-        at = (at + 1) & t->mask;
-    return at;
-}
-
-static void fill(const table *t, const narc_pairs *old_pairs) {
-    memset(t->places, 0, (t->mask + 1) * sizeof *t->places);
-    for (size_t k = 0; k < old_pairs->count; k++) {
-        uint32_t *const place = &t->places[find_place(t, old_pairs, pair_at(old_pairs, k))];
-        if (*place == 0) /* the first of equal pairs counts */
-            *place = (uint32_t)(k + 1);
+/* Moves the item at `root` down a heap with the last in front. */
+static void sift_down(const buckets *t, uint32_t *heap, size_t root, size_t count) {
+    const uint32_t moved = heap[root];
+    for (size_t child; (child = 2 * root + 1) < count; root = child) {
+        child += child + 1 < count && comes_before(t, heap[child], heap[child + 1]);
+        if (!comes_before(t, moved, heap[child]))
+            break;
+        heap[root] = heap[child];
     }
+    heap[root] = moved;
+}
+
+static void sort_bucket(const buckets *t, uint32_t *items, size_t count) {
+    for (size_t k = count / 2; k-- > 0;)
+        sift_down(t, items, k, count);
+    for (size_t k = count; k-- > 1;) {
+        const uint32_t last = items[0];
+        items[0] = items[k];
+        items[k] = last;
+        sift_down(t, items, 0, k);
+    }
+}
+
+/* A counting sort by bucket. */
+static void fill(const buckets *t) {
+    const size_t count = t->pairs->count, bucket_count = (size_t)1 << t->bits;
+    uint32_t sum = 0;
+    memset(t->starts, 0, (bucket_count + 1) * sizeof *t->starts);
+    for (size_t k = 0; k < count; k++)
+        t->starts[find_bucket(t, pair_at(t->pairs, k))]++;
+    for (size_t k = 0; k <= bucket_count; k++)
+        t->starts[k] = sum += t->starts[k];
+    for (size_t k = count; k-- > 0;)
+        t->items[--t->starts[find_bucket(t, pair_at(t->pairs, k))]] = (uint32_t)k;
+    for (size_t k = 0; k < bucket_count; k++)
+        if (t->starts[k + 1] - t->starts[k] > FEW)
+            sort_bucket(t, t->items + t->starts[k], t->starts[k + 1] - t->starts[k]);
+}
+
+/* The first old pair that is this one. */
+static uint32_t find_match(const buckets *t, uint64_t pair) {
+    const size_t bucket = find_bucket(t, pair);
+    uint32_t first = t->starts[bucket], end = t->starts[bucket + 1];
+    while (end - first > FEW) {
+        const uint32_t middle = first + (end - first) / 2;
+        if (pair_of(t, t->items[middle]) < pair)
+            first = middle + 1;
+        else
+            end = middle + 1;
+    }
+    for (; first < end; first++)
+        if (pair_of(t, t->items[first]) == pair)
+            return t->items[first];
+    return NARC_NO_MATCH;
+}
+
+/* NARC_ERROR_MEMORY. */
+static narc_status make_buckets(narc_broad_phase *broad, const narc_pairs *pairs, buckets *out_buckets) {
+    buckets t = {.pairs = pairs};
+    while (t.bits < 31 && pairs->count >> t.bits > 0)
+        t.bits++;
+    const size_t start_count = ((size_t)1 << t.bits) + 1;
+    if (narc_reserve_matches(broad, start_count, pairs->count) != NARC_OK)
+        return NARC_ERROR_MEMORY;
+    t.starts = broad->match_memory;
+    t.items = t.starts + start_count;
+    fill(&t);
+    *out_buckets = t;
+    return NARC_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------ the calls */
@@ -131,15 +190,11 @@ narc_status narc_match_pairs(narc_broad_phase *broad, const narc_pairs *old_pair
         return status;
     if (!broad || (new_pairs->count > 0 && !out_match))
         return narc_fail_missing(error, broad ? "out_match" : "broad");
-    table t = {NULL, 0};
-    if (!in_order(old_pairs, threads) || !in_order(new_pairs, threads)) {
-        const size_t size = table_size(old_pairs->count);
-        if (narc_reserve_matches(broad, size * sizeof *t.places) != NARC_OK)
-            return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)old_pairs->count, "not enough memory for %zu pairs",
-                             old_pairs->count);
-        t = (table){broad->match_memory, size - 1};
-        fill(&t, old_pairs);
-    }
+    buckets t = {.starts = NULL};
+    if ((!in_order(old_pairs, threads) || !in_order(new_pairs, threads)) &&
+        make_buckets(broad, old_pairs, &t) != NARC_OK)
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)old_pairs->count, "not enough memory for %zu pairs",
+                         old_pairs->count);
     const size_t count = new_pairs->count, parts = count_parts(count);
     const int team = narc_team_size(threads, parts);
     (void)team;
@@ -148,14 +203,12 @@ narc_status narc_match_pairs(narc_broad_phase *broad, const narc_pairs *old_pair
 #endif
     for (size_t part = 0; part < parts; part++) {
         const size_t first = part * PART, end = end_of_part(count, part);
-        if (!t.places) {
+        if (!t.starts) {
             walk(old_pairs, new_pairs, first, end, out_match);
             continue;
         }
-        for (size_t k = first; k < end; k++) {
-            const uint32_t place = t.places[find_place(&t, old_pairs, pair_at(new_pairs, k))];
-            out_match[k] = place ? place - 1 : NARC_NO_MATCH;
-        }
+        for (size_t k = first; k < end; k++)
+            out_match[k] = find_match(&t, pair_at(new_pairs, k));
     }
     return NARC_OK;
 }

@@ -79,6 +79,99 @@ static void matches_lists_with_one_disorder(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
+enum { MANY = 400000, SKIPPED = 5 };
+
+/* Pairs of which a fixed hash makes little. None stands twice. */
+static uint64_t choose_regular(uint64_t k) { return k * 4096; }
+
+static uint64_t choose_far_apart(uint64_t k) { return (k % 1000 * 4096) << 32 | k / 1000 * 4096; }
+
+static uint64_t choose_grid(uint64_t k) { return k << 44 | k << 12; }
+
+static const uint64_t golden = 0x9e3779b97f4a7c15u; /* the usual multiplier */
+
+/* Modulo 2^64; Newton's steps double the number of bits that are right. */
+static uint64_t invert(uint64_t odd) {
+    uint64_t inverse = odd;
+    for (int step = 0; step < 6; step++)
+        inverse *= 2 - odd * inverse;
+    return inverse;
+}
+
+/* The product's upper bits are 0. */
+static uint64_t choose_small_products(uint64_t k) { return k * invert(golden); }
+
+/* 25 bits of its upper half are those 25 places below, so that both with an exclusive or are 0. The pair's halves were
+ * mixed before. */
+static uint64_t choose_folded_products(uint64_t k) {
+    const uint64_t low = k << 7, mixed = (low << 25 | low) * invert(golden);
+    return mixed ^ mixed >> 32;
+}
+
+/* Two products, the first with its upper half mixed into the lower; the second's upper bits are 0. */
+static uint64_t choose_small_second_products(uint64_t k) {
+    const uint64_t mixed = k * invert(golden);
+    return (mixed ^ mixed >> 32) * invert(golden);
+}
+
+/* Whoever chooses the pairs of a list, matching does not look at all old pairs for each, which would not end here. */
+static void matches_lists_that_were_chosen_badly(void **state) {
+    (void)state;
+    static uint64_t (*const choose[])(uint64_t) = {
+        choose_regular,        choose_far_apart,       choose_grid,
+        choose_small_products, choose_folded_products, choose_small_second_products};
+    static uint32_t a[MANY], b[MANY], match[MANY];
+    narc_broad_phase *broad = NULL;
+    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    for (size_t way = 0; way < sizeof choose / sizeof choose[0]; way++) {
+        for (size_t k = 0; k < MANY - 1; k++) { /* each once, in disorder */
+            const uint64_t pair = choose[way](k * 7 % (MANY - 1));
+            a[k] = (uint32_t)(pair >> 32);
+            b[k] = (uint32_t)pair;
+        }
+        a[MANY - 1] = a[SKIPPED]; /* and one twice */
+        b[MANY - 1] = b[SKIPPED];
+        const narc_pairs olds = {.count = MANY, .a = {a, sizeof *a}, .b = {b, sizeof *b}};
+        const narc_pairs news = {
+            .count = MANY - SKIPPED - 1, .a = {a + SKIPPED + 1, sizeof *a}, .b = {b + SKIPPED + 1, sizeof *b}};
+        for (unsigned threads = 1; threads <= 3; threads += 2) {
+            assert_int_equal(narc_match_pairs(broad, &olds, &news, threads, match, NULL), NARC_OK);
+            for (size_t k = 0; k < news.count - 1; k++)
+                assert_int_equal(match[k], k + SKIPPED + 1);
+            assert_int_equal(match[news.count - 1], SKIPPED);
+        }
+    }
+    narc_destroy_broad_phase(broad);
+}
+
+static void *refuse_large(size_t size, void *context) {
+    (void)context;
+    return size < 1 << 20 ? malloc(size) : NULL;
+}
+
+static void release(void *memory, void *context) {
+    (void)context;
+    free(memory);
+}
+
+/* A list for which a 32-bit machine has no memory, nor room to count its bytes. */
+static void tells_that_there_is_no_memory(void **state) {
+    (void)state;
+    static const uint32_t zero = 0, falling[] = {1, 0};
+    const narc_allocator allocator = {refuse_large, release, NULL};
+    narc_broad_phase *broad = NULL;
+    uint32_t match[2] = {7, 7};
+    narc_error error;
+    assert_int_equal(narc_create_broad_phase(&allocator, &broad), NARC_OK);
+    const narc_pairs olds = {.count = ((size_t)1 << 30) + 1, .a = {&zero, 0}, .b = {&zero, 0}};
+    const narc_pairs news = {.count = 2, .a = {falling, sizeof *falling}, .b = {falling, sizeof *falling}};
+    assert_int_equal(narc_match_pairs(broad, &olds, &news, 0, match, &error), NARC_ERROR_MEMORY);
+    assert_string_equal(error.message, "not enough memory for 1073741825 pairs");
+    assert_int_equal(match[0], 7);
+    assert_int_equal(narc_match_pairs(broad, &news, &news, 0, match, &error), NARC_OK);
+    narc_destroy_broad_phase(broad);
+}
+
 static void gathers_columns(void **state) {
     (void)state;
     const uint32_t match[] = {2, NARC_NO_MATCH, 0, 2};
@@ -99,6 +192,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(matches_as_a_search_does),
         cmocka_unit_test(matches_lists_with_one_disorder),
+        cmocka_unit_test(matches_lists_that_were_chosen_badly),
+        cmocka_unit_test(tells_that_there_is_no_memory),
         cmocka_unit_test(gathers_columns),
     };
     return test_begin() ? cmocka_run_group_tests_name("match", tests, NULL, NULL) : TEST_SKIPPED;
