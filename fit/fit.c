@@ -463,18 +463,18 @@ static bool is_out_of_reach(struct job *job, double *out_distance) {
     return *out_distance > LOOK_AHEAD * job->request->tolerance;
 }
 
-/* More and more arcs, of which each count builds on the one before, until the tolerance is kept. */
-static narc_status fit_fewest(struct job *job, narc_fit_result *out_result, narc_error *error) {
+/* More and more arcs up to `most`, of which each count builds on the one before, until the tolerance is kept. */
+static narc_status fit_fewest(struct job *job, size_t most, narc_fit_result *out_result, narc_error *error) {
     const bool corners = job->request->family == NARC_FIT_POLYGON || job->request->family == NARC_FIT_PAPER;
     double closest;
     narc_status status = check_tolerance(job, error);
     narc_error last;
     if (status != NARC_OK)
         return status;
-    if (is_out_of_reach(job, &closest))
+    if (most == NARC_MAX_FIT_ARCS && is_out_of_reach(job, &closest))
         return fail_fewest(job, closest, status, NULL, error);
     closest = INFINITY;
-    for (size_t count = corners ? 3 : 1; count <= NARC_MAX_FIT_ARCS; count++) {
+    for (size_t count = corners ? 3 : 1; count <= most; count++) {
         if (keeps_tolerance(job, count, out_result, &closest, &status, &last))
             return NARC_OK;
         if (status == NARC_ERROR_MEMORY)
@@ -496,6 +496,76 @@ static size_t plan_work(const struct job *job) {
     return narc_plan_ladder(&job->ladder, &last) + (fewest && !paper ? narc_plan_look(&job->ladder, &last) : 0);
 }
 
+/* ---------------------------------------------------------------------------- rounds */
+
+/* A number of starts stands for rounds of searches, each from starts of its own, of which the best fit is kept: from 1,
+ * 2, 4 ... starts up to that number, and from 56 on the usual search and further ones of its size. More starts have the
+ * rounds of fewer and perhaps others: they are never worse. */
+struct round {
+    unsigned starts, number; /* as in narc_ladder */
+};
+
+static size_t count_quick_rounds(unsigned starts) {
+    size_t count = 0;
+    while (1u << count <= starts && 1u << count < USUAL_STARTS)
+        count++;
+    return count;
+}
+
+static size_t count_rounds(unsigned starts) { return starts ? count_quick_rounds(starts) + starts / USUAL_STARTS : 1; }
+
+static struct round choose_round(unsigned starts, size_t index) {
+    const size_t quick = count_quick_rounds(starts);
+    if (index < quick)
+        return (struct round){1u << index, 0};
+    return (struct round){index == quick ? 0 : USUAL_STARTS, (unsigned)(index - quick)};
+}
+
+static void begin_round(struct job *job, size_t index) {
+    const struct round round = choose_round(job->request->starts, index);
+    narc_clear_ladder(&job->ladder);
+    job->ladder.starts = round.starts;
+    job->ladder.round = round.number;
+}
+
+static bool is_better(const narc_fit_request *request, const narc_fit_result *a, const narc_fit_result *b) {
+    if (request->arc_count == 0)
+        return a->arc_count < b->arc_count || (a->arc_count == b->arc_count && a->max_distance < b->max_distance);
+    return request->goal == NARC_FIT_BOUND_AREA        ? a->area < b->area
+           : request->goal == NARC_FIT_BOUND_PERIMETER ? a->perimeter < b->perimeter
+           : request->goal == NARC_FIT_DIFFERENCE      ? a->difference_area < b->difference_area
+                                                       : a->max_distance < b->max_distance;
+}
+
+/* The best of all rounds, or what the last one failed with. */
+static narc_status fit_rounds(struct job *job, narc_fit_result *out_result, narc_error *error) {
+    const narc_fit_request *request = job->request;
+    const size_t rounds = count_rounds(request->starts);
+    size_t planned = 0;
+    for (size_t k = 0; k < rounds; k++) {
+        begin_round(job, k);
+        job->progress.total += plan_work(job);
+    }
+    narc_fit_result found;
+    bool any = false;
+    narc_status status = NARC_OK;
+    narc_error last;
+    for (size_t k = 0; k < rounds && !job->progress.cancelled && status != NARC_ERROR_MEMORY; k++) {
+        begin_round(job, k);
+        job->progress.done = job->progress.limit = planned;
+        planned += plan_work(job);
+        status = request->arc_count ? fit_count(job, request->goal, request->arc_count, &found, &last)
+                                    : fit_fewest(job, any ? out_result->arc_count : NARC_MAX_FIT_ARCS, &found, &last);
+        if (status == NARC_OK && (!any || is_better(request, &found, out_result))) {
+            *out_result = found;
+            any = true;
+        }
+    }
+    if (any && status != NARC_ERROR_MEMORY)
+        return NARC_OK;
+    return narc_fail(error, status, last.index, last.value, "%s", last.message);
+}
+
 narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request, narc_fit_result *out_result,
                           narc_error *error) {
     const double begin = seconds_now();
@@ -508,13 +578,9 @@ narc_status narc_fit_path(const narc_path *path, const narc_fit_request *request
         narc_release_contours(&job.outline);
         return status;
     }
-    const bool fewest = request->arc_count == 0;
-    job.ladder.starts = request->starts;
     job.progress = (narc_progress){.tell = request->progress, .context = request->context};
-    job.progress.total = plan_work(&job);
     narc_fit_result result;
-    status =
-        fewest ? fit_fewest(&job, &result, error) : fit_count(&job, request->goal, request->arc_count, &result, error);
+    status = fit_rounds(&job, &result, error);
     narc_clear_ladder(&job.ladder);
     narc_release_hull(&job.hull);
     narc_release_hull(&job.mirrored);

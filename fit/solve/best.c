@@ -155,13 +155,13 @@ static bool try_exchanges(narc_search *search, narc_candidate *best) {
 
 /* Solves a linear programme for more sets of normals than the pool has room for, and for many more where they end in
  * the same chains, as they do for a symmetric outline. */
-static bool enter_starts(narc_search *search, struct pool *pool) {
+static bool enter_starts(narc_search *search, uint64_t round, struct pool *pool) {
     const size_t usual = 3 * pool->room / 2 + (search->problem.count > MANY_ARCS ? 2 : 12);
     narc_start_list starts = {.room = 3 * usual};
     starts.angles = malloc(starts.room * sizeof *starts.angles);
     if (!starts.angles)
         return false;
-    narc_list_starts(&search->problem, &starts);
+    narc_list_starts(&search->problem, round, &starts);
     for (size_t k = 0; k < starts.count && (k < usual || pool->count < pool->room); k++) {
         narc_candidate next;
         if (narc_fit_normals(search, starts.angles[k], &next))
@@ -251,7 +251,7 @@ static bool search_all(narc_search *search, const narc_effort *effort, const nar
         (known[k].count == search->problem.count ? enter_whole : enter_splits)(search, &known[k], &near, best);
     if (best->count && narc_is_perfect(&search->problem, best->items[0].value))
         return true;
-    if (!search->progress->cancelled && first.room && !enter_starts(search, &first))
+    if (!search->progress->cancelled && first.room && !enter_starts(search, effort->round, &first))
         return false;
     if (!search->progress->cancelled && refine_all(search, &near, FIRST, &second) &&
         refine_all(search, &first, FIRST, &second) && refine_all(search, &second, SECOND, best))

@@ -19,16 +19,14 @@ static size_t least_count(narc_fit_family family) { return family == NARC_FIT_ED
  * find it less often in the same time. n-arcs of least area have most: what else is fitted has known chains too.
  * Fewer starts of many arcs, whose searches take long. The first start, on the sides of a bounding polygon, is
  * always there: chains that only grow from fewer arcs stay behind it. */
-enum { FEW_ARCS = 8, STARTS_OF_N_ARCS = 56, STARTS_OF_OTHERS = 36 };
+enum { FEW_ARCS = 8, STARTS_OF_OTHERS = 36 };
 
-static narc_effort choose_effort(const narc_rung *rung, unsigned starts) {
-    const size_t n = rung->count;
-    if (starts) {
-        const size_t less = n <= MANY_ARCS ? starts : (starts + 3) / 4;
-        return (narc_effort){.starts = less, .exchanges = 1 + less / STARTS_OF_N_ARCS};
-    }
+static narc_effort choose_effort(const narc_ladder *ladder, const narc_rung *rung) {
+    const size_t n = rung->count, starts = ladder->starts;
+    if (starts)
+        return (narc_effort){n <= MANY_ARCS ? starts : (starts + 3) / 4, .exchanges = 1, .round = ladder->round};
     const bool plain = rung->family == NARC_FIT_N_ARC && rung->goal == NARC_FIT_BOUND_AREA;
-    return n <= FEW_ARCS    ? (narc_effort){.starts = plain ? STARTS_OF_N_ARCS : STARTS_OF_OTHERS, .exchanges = 1}
+    return n <= FEW_ARCS    ? (narc_effort){.starts = plain ? USUAL_STARTS : STARTS_OF_OTHERS, .exchanges = 1}
            : n <= MANY_ARCS ? (narc_effort){.starts = 2, .exchanges = 1}
                             : (narc_effort){.starts = 1};
 }
@@ -50,7 +48,7 @@ static size_t list_needs(const narc_ladder *ladder, const narc_rung *rung, narc_
 }
 
 size_t narc_plan_look(const narc_ladder *ladder, const narc_rung *rung) {
-    const narc_effort effort = choose_effort(rung, ladder->starts);
+    const narc_effort effort = choose_effort(ladder, rung);
     return narc_count_work(&effort) * rung->count;
 }
 
@@ -102,7 +100,7 @@ static narc_status search_rung(narc_ladder *ladder, const narc_rung *rung, const
         bare.inflation = 0;
         problem.hull = &bare;
     }
-    const narc_effort effort = choose_effort(rung, ladder->starts);
+    const narc_effort effort = choose_effort(ladder, rung);
     ladder->progress->limit += narc_plan_look(ladder, rung);
     const narc_status status = narc_find_best(&problem, &effort, known, known_count, ladder->progress, out_best, error);
     ladder->progress->done = ladder->progress->limit;

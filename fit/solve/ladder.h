@@ -16,10 +16,14 @@ typedef struct narc_rung {
 
 enum { LADDER_FAMILIES = 3, LADDER_GOALS = 5 };
 
+/* The usual number of starts for n-arcs of least area with 8 arcs or less, where it is largest. */
+enum { USUAL_STARTS = 56 };
+
 typedef struct narc_ladder {
     const narc_hull *hull;
     double min_radius, max_radius; /* of arcs, in units of the hull's radius */
     unsigned starts;               /* 0: the usual number */
+    unsigned round;                /* of searches from as many starts: each from other random ones */
     narc_progress *progress;
     narc_ranking *found[LADDER_FAMILIES][LADDER_GOALS][MAX_CHAIN + 1]; /* those that were searched for */
 } narc_ladder;

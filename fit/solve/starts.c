@@ -3,8 +3,9 @@
  * starts.c - normals to start from: on flush polygons, spread evenly, and spread by length and turning of the hull.
  *
  * An arc fits a corner or a side of the hull best if its sector is just the corner's or, flat, straddles the side's
- * normal. So half as many sides as there are arcs give pairs of normals, one on either side of each side's normal;
- * where straight edges are allowed the sides' normals are those of edges. Smooth hulls want normals spread evenly in a
+ * normal. So half as many sides as there are arcs give pairs of normals, one on either side of each side's normal: the
+ * flattest arcs that pass through both ends of a side, with corners between them, or wider sectors. Where straight
+ * edges are allowed the sides' normals are those of edges. Smooth hulls want normals spread evenly in a
  * mixture of turning and length.
  */
 #include "solve/starts.h"
@@ -115,6 +116,14 @@ static void add_random(narc_start_list *starts, const narc_hull *hull, size_t co
     add_measured(starts, hull, count, 0.2 + 0.6 * narc_next_random(state), targets);
 }
 
+/* Where two sides of a bounding polygon with these normals meet. */
+static narc_point meet_sides(const narc_hull *hull, double before, double after) {
+    const narc_point p = unit_at(before), q = unit_at(after);
+    const double at_p = dot(p, hull->corners[narc_find_corner(hull, before)]) + hull->inflation;
+    const double at_q = dot(q, hull->corners[narc_find_corner(hull, after)]) + hull->inflation, turn = cross(p, q);
+    return (narc_point){(at_p * q.y - at_q * p.y) / turn, (at_q * p.x - at_p * q.x) / turn};
+}
+
 /* Two normals at each side of a flush polygon, `apart` to either side of the side's own. */
 static void add_pairs(narc_start_list *starts, const narc_hull *hull, size_t count, size_t sides, double apart) {
     double flush[MAX_CHAIN], angles[MAX_CHAIN];
@@ -126,13 +135,37 @@ static void add_pairs(narc_start_list *starts, const narc_hull *hull, size_t cou
     add_set(starts, angles, 2 * found, count);
 }
 
+/* A corner for each corner of a flush polygon, and for each side the flattest arc from one of its ends to the other: half
+ * of its sector has the sine of half the side over the radius. Thin polygons leave no room for wider sectors, the thinnest not even for these. */
+static void add_chords(narc_start_list *starts, const narc_problem *problem, size_t sides) {
+    double flush[MAX_CHAIN], angles[MAX_CHAIN];
+    const size_t found = narc_find_flush_polygon(problem->hull, sides, flush);
+    narc_point corners[MAX_CHAIN]; /* corner k begins side k */
+    for (size_t k = 0; k < found; k++)
+        corners[k] = meet_sides(problem->hull, flush[(k + found - 1) % found], flush[k]);
+    for (size_t k = 0; k < found; k++) {
+        const double side = length(minus(corners[(k + 1) % found], corners[k]));
+        const double half = asin(fmin(1, 0.5 * side / problem->max_radius));
+        angles[2 * k] = flush[k] - half;
+        angles[2 * k + 1] = flush[k] + half;
+    }
+    for (size_t k = 0; k < found; k++) {
+        const double turn = k + 1 < found ? 0 : 2 * PI;
+        double *end = &angles[2 * k + 1], *next = &angles[2 * ((k + 1) % found)];
+        const double middle = 0.5 * (*end + *next + turn);
+        *end = fmin(*end, middle - 0.51 * LEAST_SWEEP);
+        *next = fmax(*next, middle - turn + 0.51 * LEAST_SWEEP);
+    }
+    add_set(starts, angles, 2 * found, problem->count);
+}
+
 static void add_flush(narc_start_list *starts, const narc_hull *hull, size_t count, size_t sides) {
     double flush[MAX_CHAIN];
     const size_t found = narc_find_flush_polygon(hull, sides, flush);
     add_set(starts, flush, found, count);
 }
 
-void narc_list_starts(const narc_problem *problem, narc_start_list *out_starts) {
+void narc_list_starts(const narc_problem *problem, uint64_t round, narc_start_list *out_starts) {
     const size_t n = problem->count;
     out_starts->count = 0;
     out_starts->widest = narc_widest_sweep(problem) + 1e-9;
@@ -141,7 +174,7 @@ void narc_list_starts(const narc_problem *problem, narc_start_list *out_starts) 
         add_flush(out_starts, problem->hull, n, n - 1);
     }
     if (problem->family != NARC_FIT_POLYGON) {
-        add_pairs(out_starts, problem->hull, n, n / 2, 0.015);
+        add_chords(out_starts, problem, n / 2);
         add_pairs(out_starts, problem->hull, n, n / 2, 0.12);
         add_pairs(out_starts, problem->hull, n, (n - 1) / 2, 0.03);
         add_pairs(out_starts, problem->hull, n, n / 3, 0.05);
@@ -152,7 +185,7 @@ void narc_list_starts(const narc_problem *problem, narc_start_list *out_starts) 
         add_regular(out_starts, problem->hull, n, k % 2 ? 0.2 : 0.8, phase);
         add_even(out_starts, n, phase);
     }
-    uint64_t state = 1;
+    uint64_t state = 1 + round;
     for (size_t k = 0; k < out_starts->room && out_starts->count < out_starts->room; k++)
         add_random(out_starts, problem->hull, n, &state);
 }

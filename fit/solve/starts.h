@@ -13,8 +13,8 @@ typedef struct narc_start_list {
     double (*angles)[MAX_CHAIN];
 } narc_start_list;
 
-/* Fills `room` sets: the reasonable ones first, then random ones. */
-void narc_list_starts(const narc_problem *problem, narc_start_list *out_starts);
+/* Fills `room` sets: the reasonable ones first, then random ones, other ones in each round. */
+void narc_list_starts(const narc_problem *problem, uint64_t round, narc_start_list *out_starts);
 
 /* The widest sector of a list of normals, by the normal it begins with. */
 size_t narc_find_widest(const double *angles, size_t count, double *out_sweep);
