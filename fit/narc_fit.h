@@ -30,7 +30,7 @@
  *     narc_path *path = NULL;
  *     narc_fit_result fit;
  *     narc_create_path(&path);
- *     narc_read_svg(text, size, path, &error);
+ *     narc_read_svg(text, size, NULL, path, &error);
  *     narc_fit_path(path, &(narc_fit_request){.arc_count = 8, .goal = NARC_FIT_BOUND_AREA}, &fit, &error);
  *     narc_add_shape(shapes, fit.arcs, fit.arc_count, &shape, &error);
  */
@@ -97,7 +97,7 @@ NARC_API narc_status narc_compute_hull(const narc_point *points, size_t count, n
 
 /* Each adds what it reads to a path; on error the path is as before. They read from memory, so that nothing
  * depends on files. For text formats error->index is the line, from 1 (0: no particular one); messages name line and
- * value. Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_FORMAT (not in that format, damaged, or without an outline),
+ * value. Errors: NARC_ERROR_ARGUMENT (NULL; a silhouette that does not exist), NARC_ERROR_FORMAT (not in that format, damaged, or without an outline),
  * NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE, NARC_ERROR_MEMORY. Inputs may come from strangers: any bytes end in a
  * path or an error. */
 
@@ -114,11 +114,27 @@ NARC_API narc_status narc_read_glyph(narc_font *font, uint32_t character, narc_p
  * 0: no more. */
 NARC_API uint32_t narc_next_character(narc_font *font, uint32_t after);
 
+/* Which part of an image or drawing is its silhouette: what is not transparent; or what is dark, or light, of it. Darkness
+ * is 1 - luminance, of what is transparent as much less. */
+typedef enum narc_silhouette {
+    NARC_SILHOUETTE_ALPHA = 0,
+    NARC_SILHOUETTE_DARK = 1,
+    NARC_SILHOUETTE_LIGHT = 2
+} narc_silhouette;
+
+/* How images and drawings are read; NULL in its place or zeros: as usual. */
+typedef struct narc_image_request {
+    narc_silhouette silhouette;
+    double threshold; /* of alpha, darkness or lightness, above 0 and below 1; 0: 0.5 of PNG, 0.25 of SVG */
+    bool *out_whole;  /* NULL, or set on success: all of the image or page counts, and the outline is its rectangle */
+} narc_image_request;
+
 /* What is seen of an SVG file: librsvg draws it, whatever it uses (strokes, clipping, text, style sheets, filters), and
- * the outline of all that is not wholly transparent is traced, however faint it is. The ink's longer side is 4096
+ * the outline of all ink above the threshold is traced. So that antialiased edges and tips keep their place, fainter ink
+ * that is within 8 pixels of such ink along rows and columns counts too. The ink's longer side is 4096
  * pixels or more, less only where the page, at 8192 pixels, is more than twice as large as the ink. Outline and ink
  * are within one pixel of each other; contours tell that as their flatness, and fits count it, so that a bounding fit
- * bounds the ink. What is thinner than a fifteenth of a pixel may not be seen; tips of needles, below 8 degrees, end
+ * bounds the ink. What is thinner than a pixel counts with as much less alpha; tips of needles, below 8 degrees, end
  * where they become so thin. Circles are librsvg's: too large by up to 2.8e-4 of the radius.
  *
  * Units are the SVG's user units, those of the viewBox if there is one, y turned up. The page, which is the viewBox or
@@ -126,14 +142,16 @@ NARC_API uint32_t narc_next_character(narc_font *font, uint32_t after);
  * the parts at negative coordinates of groups with opacity, masks or filters), and percentages are of 300 x 150. Text
  * is drawn with the fonts that are installed. No other file is read, and nothing from a network. Path data and
  * attributes that are wrong are as in any viewer: a path ends before the first error. It takes a tenth of a second to a
- * few seconds, and up to 300 MB or, where groups with opacity, masks or filters are inside each other, more. */
-NARC_API narc_status narc_read_svg(const void *data, size_t size, narc_path *path, narc_error *error);
+ * few seconds, and up to 300 MB (500 MB for darkness or lightness) or, where groups with opacity, masks or filters are
+ * inside each other, more. */
+NARC_API narc_status narc_read_svg(const void *data, size_t size, const narc_image_request *request, narc_path *path,
+                                   narc_error *error);
 
-/* The silhouette in a PNG image: contours at `threshold` (between 0 and 1) of the alpha channel, interpolated between
- * the centres of pixels, so that antialiased edges keep their place. An image without alpha, or one that is opaque
- * throughout, is taken by its darkness (1 - luminance) instead, or by lightness if its corners are dark. Units are
- * pixels, y up, the origin at the lower left corner of the image. Threshold 0 means 0.5. */
-NARC_API narc_status narc_read_png(const void *data, size_t size, double threshold, narc_path *path, narc_error *error);
+/* The silhouette in a PNG image: contours at the threshold, interpolated between the centres of pixels, so that
+ * antialiased edges keep their place. An image of which every pixel counts is its rectangle. Units are pixels, y up, the
+ * origin at the lower left corner of the image. */
+NARC_API narc_status narc_read_png(const void *data, size_t size, const narc_image_request *request, narc_path *path,
+                                   narc_error *error);
 
 /* Points: CSV, one "x,y" a line, an optional header line "x,y", blank lines between contours. JSON: [[x, y], ...], or a
  * list of such lists (contours), or an object whose key "points" or "contours" has that. */

@@ -86,6 +86,7 @@ enum {
     POLYGON,
     PAPER,
     CHARACTERS,
+    SILHOUETTE,
     THRESHOLD,
     FLATNESS,
     MIN_RADIUS,
@@ -284,6 +285,7 @@ static void run(int argc, char **argv) {
                                [POLYGON] = {"--polygon", false, NULL},
                                [PAPER] = {"--paper", false, NULL},
                                [CHARACTERS] = {"--characters", true, NULL},
+                               [SILHOUETTE] = {"--silhouette", true, NULL},
                                [THRESHOLD] = {"--threshold", true, NULL},
                                [FLATNESS] = {"--flatness", true, NULL},
                                [MIN_RADIUS] = {"--min-radius", true, NULL},
@@ -297,6 +299,7 @@ static void run(int argc, char **argv) {
     const narc_fit_request request = make_request(options);
     const double flatness = number_option(&options[FLATNESS], 1e-9, 0.1, "from 1e-9 to 0.1", 0);
     const reading how = {.characters = options[CHARACTERS].value,
+                         .silhouette = options[SILHOUETTE].value,
                          .threshold = number_option(&options[THRESHOLD], DBL_MIN, 1 - DBL_EPSILON / 2,
                                                     "more than 0 and less than 1", 0)};
     const char *picture = options[PICTURE].value, *out = options[OUT].value ? options[OUT].value : "-";

@@ -214,13 +214,23 @@ static void read_glyphs(const char *file, const char *bytes, size_t size, const 
 
 /* ---------------------------------------------------------------------------- other files */
 
-static narc_status call_reader(file_kind kind, const char *bytes, size_t size, double threshold, narc_path *path,
-                               narc_error *error) {
+static narc_silhouette choose_silhouette(const char *name) {
+    static const char *const names[] = {"alpha", "dark", "light"};
+    for (int k = NARC_SILHOUETTE_ALPHA; name && k <= NARC_SILHOUETTE_LIGHT; k++)
+        if (strcmp(name, names[k]) == 0)
+            return (narc_silhouette)k;
+    if (name)
+        fail("--silhouette must be one of alpha, dark, light, not '%s'", narc_make_excerpt(name).text);
+    return NARC_SILHOUETTE_ALPHA;
+}
+
+static narc_status call_reader(file_kind kind, const char *bytes, size_t size, const narc_image_request *how,
+                               narc_path *path, narc_error *error) {
     switch (kind) {
     case SVG:
-        return narc_read_svg(bytes, size, path, error);
+        return narc_read_svg(bytes, size, how, path, error);
     case PNG:
-        return narc_read_png(bytes, size, threshold, path, error);
+        return narc_read_png(bytes, size, how, path, error);
     case CSV:
         return narc_read_csv(bytes, size, path, error);
     default:
@@ -240,8 +250,14 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
     narc_error error;
     if (kind == SVG)
         show_stage("drawing", size / KB, "KB of SVG", size >= LARGE_DRAWING * KB);
-    if (call_reader(kind, bytes, size, how->threshold, added->path, &error) != NARC_OK)
+    bool whole = false;
+    const narc_image_request image = {choose_silhouette(how->silhouette), how->threshold, &whole};
+    if (call_reader(kind, bytes, size, &image, added->path, &error) != NARC_OK)
         fail_text(file, &error);
+    if (whole && image.silhouette == NARC_SILHOUETTE_ALPHA)
+        warn_at(file, "opaque throughout, its outline is a rectangle; --silhouette dark or light traces what it shows");
+    else if (whole)
+        warn_at(file, "%s throughout, its outline is a rectangle", how->silhouette);
 }
 
 void read_outlines(const char *const *files, size_t count, const reading *how, outline_list *out_outlines) {
@@ -261,6 +277,8 @@ void read_outlines(const char *const *files, size_t count, const reading *how, o
     }
     if (how->characters && !met[FONT])
         fail("--characters is for fonts, and none is given");
-    if (how->threshold > 0 && !met[PNG])
-        fail("--threshold is for PNG images, and none is given");
+    if (how->threshold > 0 && !met[PNG] && !met[SVG])
+        fail("--threshold is for PNG and SVG, and neither is given");
+    if (how->silhouette && !met[PNG] && !met[SVG])
+        fail("--silhouette is for PNG and SVG, and neither is given");
 }

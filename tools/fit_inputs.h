@@ -23,7 +23,8 @@ typedef struct outline_list {
 
 typedef struct reading {
     const char *characters; /* which glyphs of fonts; NULL: none */
-    double threshold;       /* of images, see narc_read_png(); 0: the usual one */
+    const char *silhouette; /* of images and drawings: alpha, dark, light; NULL: the usual one */
+    double threshold;       /* of images and drawings, as in narc_image_request; 0: the usual one */
 } reading;
 
 /* Reads files: each font gives an outline for each character (once, without variation selectors), each other file gives

@@ -92,7 +92,7 @@ static void read_drawing(const subject *of, const char *folder) {
     if (!bytes)
         fail("%s/%s is missing; it belongs to the package openclipart-svg of Debian 12", folder, of->file);
     narc_error error;
-    if (narc_read_svg(bytes, size, of->path, &error) != NARC_OK)
+    if (narc_read_svg(bytes, size, NULL, of->path, &error) != NARC_OK)
         fail("%s/%s: %s", folder, of->file, error.message);
     free(bytes);
 }
@@ -150,7 +150,7 @@ static const subject *find_subject(const study *all, const char *name) {
 static void read_pixels(const study *all, const subject *of) {
     memory png = draw_pixels(find_subject(all, of->image));
     narc_error error;
-    if (narc_read_png(png.bytes, png.size, 0, of->path, &error) != NARC_OK)
+    if (narc_read_png(png.bytes, png.size, NULL, of->path, &error) != NARC_OK)
         fail("%s: %s", of->name, error.message);
     free(png.bytes);
 }

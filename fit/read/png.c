@@ -45,14 +45,17 @@ static narc_status begin(const struct source *source, png_image *image) {
     return NARC_OK;
 }
 
-/* Reads the pixels in a format of the library's, in a buffer of at least 2 bytes a pixel. */
-static narc_status load(const struct source *source, png_uint_32 format, png_image *image, void **out_buffer) {
+/* Reads the pixels as gray and alpha: bytes, or linear light of 16 bits, which the alpha has multiplied. Images of 16 bits
+ * go through linear light: libpng 1.6 mixes up the rows if it is to read an interlaced one with 8 bits. Its tables keep
+ * 11 bits. */
+static narc_status load(const struct source *source, png_image *image, bool *out_deep, void **out_buffer) {
     const narc_status status = begin(source, image);
     if (status)
         return status;
-    image->format = format;
-    const size_t size = PNG_IMAGE_SIZE(*image), least = (size_t)2 * image->width * image->height;
-    void *buffer = malloc(size > least ? size : least);
+    const bool deep = image->format & PNG_FORMAT_FLAG_LINEAR;
+    image->format = deep ? PNG_FORMAT_LINEAR_Y_ALPHA : PNG_FORMAT_GA;
+    const size_t size = PNG_IMAGE_SIZE(*image);
+    void *buffer = malloc(size);
     if (!buffer) {
         png_image_free(image);
         return narc_fail(source->error, NARC_ERROR_MEMORY, 0, (double)size, "no memory for the image");
@@ -61,113 +64,61 @@ static narc_status load(const struct source *source, png_uint_32 format, png_ima
         free(buffer);
         return fail_png(source, image);
     }
+    *out_deep = deep;
     *out_buffer = buffer;
     return NARC_OK;
 }
 
-/* Gray (or alpha) of 8 bits that stand every `step` bytes from `first` on become samples in the same buffer, `samples`.
- * With one byte each they grow: from the end, none is overwritten before it was read. */
-static void widen(void *buffer, size_t count, size_t first, size_t step) {
+/* How much a pixel of this gray and alpha, of at most `full`, belongs to the silhouette. */
+static unsigned weigh(narc_silhouette silhouette, unsigned gray, unsigned alpha, unsigned full) {
+    const unsigned part = silhouette == NARC_SILHOUETTE_ALPHA  ? full
+                          : silhouette == NARC_SILHOUETTE_DARK ? full - gray
+                                                               : gray;
+    return (unsigned)(((uint64_t)part * alpha + full / 2) / full);
+}
+
+static void weigh_bytes(narc_silhouette silhouette, void *buffer, size_t count) {
     const unsigned char *bytes = buffer;
     uint16_t *samples = buffer;
-    if (step == 2) {
-        for (size_t k = 0; k < count; k++) {
-            const unsigned value = bytes[2 * k + first];
-            samples[k] = (uint16_t)(value * (FULL / 255));
-        }
-        return;
-    }
-    for (size_t k = count; k-- > 0;) {
-        const unsigned value = bytes[k];
-        samples[k] = (uint16_t)(value * (FULL / 255));
+    for (size_t k = 0; k < count; k++) {
+        const unsigned weight = weigh(silhouette, bytes[2 * k], bytes[2 * k + 1], 255);
+        samples[k] = (uint16_t)(weight * (FULL / 255));
     }
 }
 
-/* The alpha channel, in as many bits as the file has; *out_opaque: it is full throughout. */
-static narc_status load_alpha(const struct source *source, bool deep, png_image *image, void **out_buffer,
-                              bool *out_opaque) {
-    void *buffer = NULL;
-    const narc_status status = load(source, deep ? PNG_FORMAT_LINEAR_Y_ALPHA : PNG_FORMAT_GA, image, &buffer);
-    if (status)
-        return status;
-    uint16_t *samples = buffer;
-    const size_t count = (size_t)image->width * image->height;
-    if (deep)
-        for (size_t k = 0; k < count; k++)
-            samples[k] = samples[2 * k + 1];
-    else
-        widen(buffer, count, 1, 2);
-    bool opaque = true;
-    for (size_t k = 0; k < count && opaque; k++)
-        opaque = samples[k] == FULL;
-    *out_opaque = opaque;
-    *out_buffer = buffer;
-    return NARC_OK;
-}
-
-/* Linear light of 16 bits as what a file holds, which is what antialiased edges are blended in: libpng takes values for
+/* Linear light counts as what a file holds, which is what antialiased edges are blended in: libpng takes values for
  * linear light to the power 0.45455 unless the file tells another. */
-static narc_status encode(const struct source *source, uint16_t *samples, size_t count) {
-    uint16_t *table = malloc((FULL + 1) * sizeof(*table));
-    if (!table)
+static narc_status weigh_words(const struct source *source, narc_silhouette silhouette, uint16_t *samples,
+                               size_t count) {
+    uint16_t *encoded = malloc((FULL + 1) * sizeof *encoded);
+    if (!encoded)
         return narc_fail(source->error, NARC_ERROR_MEMORY, 0, 0, "no memory for the image");
     for (size_t k = 0; k <= FULL; k++)
-        table[k] = (uint16_t)lround(FULL * pow((double)k / FULL, 0.45455));
-    for (size_t k = 0; k < count; k++)
-        samples[k] = table[samples[k]];
-    free(table);
+        encoded[k] = (uint16_t)lround(FULL * pow((double)k / FULL, 0.45455));
+    for (size_t k = 0; k < count; k++) {
+        const uint32_t light = samples[2 * k], alpha = samples[2 * k + 1];
+        const uint32_t gray = light < alpha ? (light * FULL + alpha / 2) / alpha : FULL;
+        samples[k] = (uint16_t)weigh(silhouette, encoded[gray], alpha, FULL);
+    }
+    free(encoded);
     return NARC_OK;
 }
 
-/* Gray, encoded. Images of 16 bits go through linear light: libpng 1.6 mixes up the rows if it is to read an interlaced
- * one with 8 bits. Its tables keep 11 bits. */
-static narc_status load_gray(const struct source *source, bool deep, png_image *image, void **out_buffer) {
+static narc_status load_silhouette(const struct source *source, narc_silhouette silhouette, png_image *image,
+                                   void **out_buffer) {
     void *buffer = NULL;
-    narc_status status = load(source, deep ? PNG_FORMAT_LINEAR_Y : PNG_FORMAT_GRAY, image, &buffer);
+    bool deep = false;
+    narc_status status = load(source, image, &deep, &buffer);
     if (status)
         return status;
     const size_t count = (size_t)image->width * image->height;
     if (deep)
-        status = encode(source, buffer, count);
+        status = weigh_words(source, silhouette, buffer, count);
     else
-        widen(buffer, count, 0, 1);
-    if (status) {
+        weigh_bytes(silhouette, buffer, count);
+    if (status)
         free(buffer);
-        return status;
-    }
-    *out_buffer = buffer;
-    return NARC_OK;
-}
-
-/* Darkness, or lightness if the four corners are on average darker than half. */
-static narc_status load_darkness(const struct source *source, bool deep, png_image *image, void **out_buffer) {
-    const narc_status status = load_gray(source, deep, image, out_buffer);
-    if (status)
-        return status;
-    uint16_t *samples = *out_buffer;
-    const size_t width = image->width, count = width * image->height;
-    const unsigned corners = (unsigned)samples[0] + samples[width - 1] + samples[count - width] + samples[count - 1];
-    for (size_t k = 0; k < count && corners >= 2 * FULL; k++)
-        samples[k] = (uint16_t)(FULL - samples[k]);
-    return NARC_OK;
-}
-
-static narc_status load_silhouette(const struct source *source, png_image *image, void **out_buffer) {
-    void *buffer = NULL;
-    bool opaque = true;
-    narc_status status = begin(source, image);
-    if (status)
-        return status;
-    const bool alpha = image->format & PNG_FORMAT_FLAG_ALPHA, deep = image->format & PNG_FORMAT_FLAG_LINEAR;
-    png_image_free(image);
-    if (alpha) {
-        status = load_alpha(source, deep, image, &buffer, &opaque);
-        if (!status && opaque)
-            free(buffer);
-    }
-    if (!status && opaque)
-        status = load_darkness(source, deep, image, &buffer);
-    if (!status)
+    else
         *out_buffer = buffer;
     return status;
 }
@@ -175,28 +126,47 @@ static narc_status load_silhouette(const struct source *source, png_image *image
 /* Between two values that a sample can have: contours then never pass through a sample, where they could touch. */
 static double sample_level(double threshold) { return floor((threshold == 0 ? 0.5 : threshold) * FULL) + 0.5; }
 
-narc_status narc_read_png(const void *data, size_t size, double threshold, narc_path *path, narc_error *error) {
-    if (!data || !path)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, data ? "path is NULL" : "data is NULL");
-    if (!(threshold >= 0 && threshold < 1)) {
-        return narc_fail(error, isnan(threshold) ? NARC_ERROR_NOT_FINITE : NARC_ERROR_SIZE, 0, threshold,
-                         "threshold is %g; it must be between 0 and 1", threshold);
-    }
+static unsigned find_least(const narc_image *image) {
+    unsigned least = FULL;
+    for (size_t k = 0; k < image->width * image->height; k++)
+        least = image->samples[k] < least ? image->samples[k] : least;
+    return least;
+}
+
+/* An image that is full throughout. A contour of the samples would cut its corners. */
+static narc_status draw_rectangle(double width, double height, narc_path *path, narc_error *error) {
+    narc_status status = narc_move_to(path, (narc_point){0, 0}, error);
+    status = status ? status : narc_line_to(path, (narc_point){width, 0}, error);
+    status = status ? status : narc_line_to(path, (narc_point){width, height}, error);
+    return status ? status : narc_line_to(path, (narc_point){0, height}, error);
+}
+
+narc_status narc_read_png(const void *data, size_t size, const narc_image_request *request, narc_path *path,
+                          narc_error *error) {
+    const narc_image_request usual = {0}, *how = request ? request : &usual;
+    narc_status status = narc_check_image_request(data, how, path, error);
+    if (status)
+        return status;
     if (size == 0)
         return narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "the PNG file is empty");
     const struct source source = {data, size, error};
     png_image image;
     void *samples = NULL;
-    narc_status status = load_silhouette(&source, &image, &samples);
+    status = load_silhouette(&source, how->silhouette, &image, &samples);
     if (status)
         return status;
     const narc_image silhouette = {.samples = samples, .width = image.width, .height = image.height, .pixel = 1};
+    const double level = sample_level(how->threshold);
+    const unsigned least = find_least(&silhouette);
     const narc_path_mark mark = narc_mark_path(path);
-    status = narc_trace_image(&silhouette, sample_level(threshold), path, error);
+    status = least == FULL ? draw_rectangle(image.width, image.height, path, error)
+                           : narc_trace_image(&silhouette, level, path, error);
     if (!status && !narc_is_drawn_since(path, mark))
-        status = narc_fail(error, NARC_ERROR_FORMAT, 0, threshold, "no pixel of the image reaches the threshold");
+        status = narc_fail(error, NARC_ERROR_FORMAT, 0, how->threshold, "no pixel of the image reaches the threshold");
     if (status)
         narc_rewind_path(path, mark);
+    else if (how->out_whole)
+        *how->out_whole = least > level;
     free(samples);
     return status;
 }

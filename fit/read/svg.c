@@ -30,6 +30,10 @@ enum { LOOK = 1024, INK = 4096, PAGE = 8192 };
 enum { FULL = 65535 };
 static const double LEVEL = 0.75 * FULL;
 
+/* What counts if nothing else is asked for, and how far from it, in pixels, fainter ink counts too. */
+static const double THRESHOLD = 0.25;
+enum { REACH = 8 };
+
 /* What percentages are of in a file that tells no size: CSS's size of a picture that has none. */
 static const RsvgRectangle NO_SIZE = {0, 0, 300, 150};
 
@@ -38,7 +42,16 @@ struct page {
     RsvgRectangle box, viewport;
 };
 
-/* A drawing's alpha, in rows of `stride` bytes. */
+/* What is drawn, and the threshold, above which it counts: from `least` of 255 on. */
+struct subject {
+    RsvgHandle *handle;
+    struct page page;
+    narc_silhouette silhouette;
+    double threshold;
+    int least;
+};
+
+/* A drawing's alpha, or darkness or lightness, in rows of `stride` bytes. */
 struct drawing {
     cairo_surface_t *surface;
     const unsigned char *alpha;
@@ -47,7 +60,7 @@ struct drawing {
     double scale; /* pixels per user unit */
 };
 
-/* The rows and columns with ink: from the first to the one before the end. */
+/* The rows and columns with ink that counts: from the first to the one before the end. */
 struct extent {
     int left, right, top, bottom;
 };
@@ -152,15 +165,32 @@ static void release_drawing(struct drawing *drawing) {
     *drawing = (struct drawing){0};
 }
 
-static narc_status draw(RsvgHandle *handle, const struct page *page, double scale, struct drawing *out_drawing,
-                        narc_error *error) {
+/* Makes bytes of darkness or lightness, which the alpha has multiplied, of pixels of four, in the same rows. The weights
+ * of the colours are those of BT.709. */
+static void weigh_pixels(narc_silhouette silhouette, const struct drawing *drawing, unsigned char *bytes) {
+    for (int y = 0; y < drawing->height; y++) {
+        unsigned char *row = bytes + (size_t)y * drawing->stride;
+        for (int x = 0; x < drawing->width; x++) {
+            uint32_t pixel;
+            memcpy(&pixel, row + (size_t)x * sizeof pixel, sizeof pixel);
+            const uint32_t alpha = pixel >> 24, red = pixel >> 16 & 255, green = pixel >> 8 & 255, blue = pixel & 255;
+            const uint32_t light = (54 * red + 183 * green + 19 * blue + 128) / 256;
+            row[x] = (unsigned char)(silhouette == NARC_SILHOUETTE_LIGHT ? light : alpha > light ? alpha - light : 0);
+        }
+    }
+}
+
+static narc_status draw(const struct subject *of, double scale, struct drawing *out_drawing, narc_error *error) {
+    const struct page *page = &of->page;
+    const bool colours = of->silhouette != NARC_SILHOUETTE_ALPHA;
     struct drawing drawing = {
         .width = (int)ceil(page->box.width * scale), .height = (int)ceil(page->box.height * scale), .scale = scale};
-    drawing.surface = cairo_image_surface_create(CAIRO_FORMAT_A8, drawing.width, drawing.height);
+    drawing.surface =
+        cairo_image_surface_create(colours ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_A8, drawing.width, drawing.height);
     cairo_t *cairo = cairo_create(drawing.surface);
     cairo_scale(cairo, scale, scale);
     cairo_translate(cairo, -page->box.x, -page->box.y);
-    struct rendering rendering = {.handle = handle, .cairo = cairo, .viewport = page->viewport};
+    struct rendering rendering = {.handle = of->handle, .cairo = cairo, .viewport = page->viewport};
     const bool drawn = render_apart(&rendering);
     const bool sound = cairo_status(cairo) == CAIRO_STATUS_SUCCESS;
     cairo_destroy(cairo);
@@ -172,19 +202,21 @@ static narc_status draw(RsvgHandle *handle, const struct page *page, double scal
     cairo_surface_flush(drawing.surface);
     drawing.alpha = cairo_image_surface_get_data(drawing.surface);
     drawing.stride = (size_t)cairo_image_surface_get_stride(drawing.surface);
+    if (colours)
+        weigh_pixels(of->silhouette, &drawing, cairo_image_surface_get_data(drawing.surface));
     *out_drawing = drawing;
     return NARC_OK;
 }
 
-/* Without any ink the end is not behind the beginning. */
-static struct extent find_extent(const struct drawing *drawing) {
+/* The extent of what is at least so strong. Without any the end is not behind the beginning. */
+static struct extent find_extent(const struct drawing *drawing, int least) {
     struct extent found = {drawing->width, 0, drawing->height, 0};
     for (int y = 0; y < drawing->height; y++) {
         const unsigned char *row = drawing->alpha + (size_t)y * drawing->stride;
         int left = 0, right = drawing->width;
-        while (left < right && !row[left])
+        while (left < right && row[left] < least)
             left++;
-        while (right > left && !row[right - 1])
+        while (right > left && row[right - 1] < least)
             right--;
         if (left < right) {
             found.left = left < found.left ? left : found.left;
@@ -197,12 +229,12 @@ static struct extent find_extent(const struct drawing *drawing) {
 }
 
 /* The scale at which the ink is large enough: a first look tells its size up to a pixel at both ends. */
-static narc_status find_scale(RsvgHandle *handle, const struct page *page, double *out_scale, narc_error *error) {
-    const double longer = fmax(page->box.width, page->box.height);
+static narc_status find_scale(const struct subject *of, double *out_scale, narc_error *error) {
+    const double longer = fmax(of->page.box.width, of->page.box.height);
     struct drawing look;
-    const narc_status status = draw(handle, page, LOOK / longer, &look, error);
+    const narc_status status = draw(of, LOOK / longer, &look, error);
     if (!status) {
-        const struct extent ink = find_extent(&look);
+        const struct extent ink = find_extent(&look, of->least);
         const int width = ink.right - ink.left, height = ink.bottom - ink.top, size = width > height ? width : height;
         *out_scale = fmin(PAGE / longer, look.scale * INK / fmax(1, size - 2));
         release_drawing(&look);
@@ -212,57 +244,116 @@ static narc_status find_scale(RsvgHandle *handle, const struct page *page, doubl
 
 /* ---------------------------------------------------------------------------- the outline */
 
-static narc_status trace(const struct drawing *drawing, narc_point corner, narc_path *path, narc_error *error) {
-    const struct extent ink = find_extent(drawing);
-    if (ink.left >= ink.right)
+/* Marks, in each of two passes along a line of samples, what is within REACH of one that has the bit `from`, with `to`. */
+static void mark_near(uint16_t *samples, size_t count, size_t step, unsigned from, unsigned to) {
+    for (int pass = 0; pass < 2; pass++) {
+        size_t since = REACH + 1;
+        for (size_t k = 0; k < count; k++) {
+            uint16_t *at = samples + step * (pass ? count - 1 - k : k);
+            since = *at & from ? 0 : since + 1;
+            if (since <= REACH)
+                *at = (uint16_t)(*at | to);
+        }
+    }
+}
+
+/* Samples of the ink that counts: what is strong enough, and fainter ink within REACH of it in both directions. */
+static void mark_ink(const struct drawing *drawing, struct extent part, int least, uint16_t *samples) {
+    enum { STRONG = 1, NEAR_IN_ROW = 2, NEAR = 4 };
+    const size_t width = (size_t)(part.right - part.left), height = (size_t)(part.bottom - part.top);
+    const unsigned char *first = drawing->alpha + (size_t)part.top * drawing->stride + part.left;
+    for (size_t y = 0; y < height; y++) {
+        for (size_t x = 0; x < width; x++)
+            samples[y * width + x] = first[y * drawing->stride + x] >= least ? STRONG : 0;
+        mark_near(samples + y * width, width, 1, STRONG, NEAR_IN_ROW);
+    }
+    for (size_t x = 0; x < width; x++)
+        mark_near(samples + x, height, width, NEAR_IN_ROW, NEAR);
+    for (size_t y = 0; y < height; y++)
+        for (size_t x = 0; x < width; x++)
+            samples[y * width + x] = first[y * drawing->stride + x] && samples[y * width + x] & NEAR ? FULL : 0;
+}
+
+/* Does the whole page count, but for pixels at its right and lower sides of which only a part is on it? */
+static bool fills_page(const struct drawing *drawing, int least) {
+    for (int y = 0; y + 1 < drawing->height; y++)
+        for (int x = 0; x + 1 < drawing->width; x++)
+            if (drawing->alpha[(size_t)y * drawing->stride + (size_t)x] < least)
+                return false;
+    return true;
+}
+
+static narc_status fail_faint(const struct subject *of, const struct drawing *drawing, narc_error *error) {
+    if (of->silhouette != NARC_SILHOUETTE_ALPHA) {
+        return narc_fail(error, NARC_ERROR_FORMAT, 0, of->threshold,
+                         "the SVG file has nothing %s above the threshold %g",
+                         of->silhouette == NARC_SILHOUETTE_DARK ? "dark" : "light", of->threshold);
+    }
+    const struct extent any = find_extent(drawing, 1);
+    if (any.left >= any.right)
         return narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "nothing is seen in the SVG file");
-    const size_t width = (size_t)(ink.right - ink.left), height = (size_t)(ink.bottom - ink.top);
+    return narc_fail(error, NARC_ERROR_FORMAT, 0, of->threshold,
+                     "all ink of the SVG file is fainter than the threshold %g", of->threshold);
+}
+
+static narc_status trace(const struct subject *of, const struct drawing *drawing, narc_path *path, narc_error *error) {
+    const struct extent ink = find_extent(drawing, of->least);
+    if (ink.left >= ink.right)
+        return fail_faint(of, drawing, error);
+    const struct extent part = {ink.left > REACH ? ink.left - REACH : 0,
+                                ink.right + REACH < drawing->width ? ink.right + REACH : drawing->width,
+                                ink.top > REACH ? ink.top - REACH : 0,
+                                ink.bottom + REACH < drawing->height ? ink.bottom + REACH : drawing->height};
+    const size_t width = (size_t)(part.right - part.left), height = (size_t)(part.bottom - part.top);
     uint16_t *samples = malloc(width * height * sizeof *samples);
     if (!samples)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for the outline of the SVG file");
-    for (size_t y = 0; y < height; y++) {
-        const unsigned char *row = drawing->alpha + ((size_t)ink.top + y) * drawing->stride + ink.left;
-        for (size_t x = 0; x < width; x++)
-            samples[y * width + x] = row[x] ? FULL : 0;
-    }
+    mark_ink(drawing, part, of->least, samples);
     const double pixel = 1 / drawing->scale;
     const narc_image image = {.samples = samples,
                               .width = width,
                               .height = height,
                               .pixel = pixel,
-                              .origin = {corner.x + pixel * ink.left, corner.y - pixel * ink.bottom}};
+                              /* y up */
+                              .origin = {of->page.box.x + pixel * part.left, -of->page.box.y - pixel * part.bottom}};
     const narc_status status = narc_trace_image(&image, LEVEL, path, error);
     free(samples);
     return status;
 }
 
-static narc_status draw_and_trace(RsvgHandle *handle, const struct page *page, narc_path *path, narc_error *error) {
+static narc_status draw_and_trace(const struct subject *of, bool *out_whole, narc_path *path, narc_error *error) {
     double scale;
     struct drawing drawing;
-    narc_status status = find_scale(handle, page, &scale, error);
-    status = status ? status : draw(handle, page, scale, &drawing, error);
+    narc_status status = find_scale(of, &scale, error);
+    status = status ? status : draw(of, scale, &drawing, error);
     if (status)
         return status;
     const narc_path_mark mark = narc_mark_path(path);
-    status = trace(&drawing, (narc_point){page->box.x, -page->box.y}, path, error); /* y up */
-    release_drawing(&drawing);
+    status = trace(of, &drawing, path, error);
     if (status)
         narc_rewind_path(path, mark);
     else
         path->slack = fmax(path->slack, 1 / scale);
+    if (!status && out_whole)
+        *out_whole = fills_page(&drawing, of->least);
+    release_drawing(&drawing);
     return status;
 }
 
-narc_status narc_read_svg(const void *data, size_t size, narc_path *path, narc_error *error) {
-    if (!data || !path)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, data ? "path is NULL" : "data is NULL");
-    RsvgHandle *handle = NULL;
-    narc_status status = open_svg(data, size, &handle, error);
+narc_status narc_read_svg(const void *data, size_t size, const narc_image_request *request, narc_path *path,
+                          narc_error *error) {
+    const narc_image_request usual = {0}, *how = request ? request : &usual;
+    narc_status status = narc_check_image_request(data, how, path, error);
     if (status)
         return status;
-    struct page page;
-    status = find_page(handle, &page, error);
-    status = status ? status : draw_and_trace(handle, &page, path, error);
-    g_object_unref(handle);
+    const double threshold = how->threshold == 0 ? THRESHOLD : how->threshold;
+    struct subject of = {
+        .silhouette = how->silhouette, .threshold = threshold, .least = (int)floor(threshold * 255) + 1};
+    status = open_svg(data, size, &of.handle, error);
+    if (status)
+        return status;
+    status = find_page(of.handle, &of.page, error);
+    status = status ? status : draw_and_trace(&of, how->out_whole, path, error);
+    g_object_unref(of.handle);
     return status;
 }

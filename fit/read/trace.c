@@ -4,6 +4,7 @@
  */
 #include "read/trace.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "error.h"
@@ -101,4 +102,20 @@ narc_status narc_trace_image(const narc_image *image, double level, narc_path *p
     }
     free(t.seen);
     return status;
+}
+
+narc_status narc_check_image_request(const void *data, const narc_image_request *request, const narc_path *path,
+                                     narc_error *error) {
+    const double threshold = request->threshold;
+    if (!data || !path)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, data ? "path is NULL" : "data is NULL");
+    if ((unsigned)request->silhouette > NARC_SILHOUETTE_LIGHT) {
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, request->silhouette, "there is no silhouette %d",
+                         (int)request->silhouette);
+    }
+    if (!(threshold >= 0 && threshold < 1)) {
+        return narc_fail(error, isnan(threshold) ? NARC_ERROR_NOT_FINITE : NARC_ERROR_SIZE, 0, threshold,
+                         "threshold is %g; it must be between 0 and 1", threshold);
+    }
+    return NARC_OK;
 }

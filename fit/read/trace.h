@@ -22,4 +22,8 @@ typedef struct narc_image {
  * and it must be above 0. NARC_ERROR_MEMORY, NARC_ERROR_SIZE (coordinates); then the path may have some of them. */
 narc_status narc_trace_image(const narc_image *image, double level, narc_path *path, narc_error *error);
 
+/* What both readers of images are called with. NARC_ERROR_ARGUMENT, NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE. */
+narc_status narc_check_image_request(const void *data, const narc_image_request *request, const narc_path *path,
+                                     narc_error *error);
+
 #endif

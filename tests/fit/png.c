@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * png.c - silhouettes in PNG images: where contours are, formats, which channel counts.
+ * png.c - silhouettes in PNG images: where contours are, formats, which channel counts, opaque tiles.
  */
 #include <math.h>
 #include <png.h>
@@ -132,7 +132,9 @@ static void keeps_the_place_of_discs(void **state) {
             gray[k] = (uint16_t)(FULL - alpha[k]); /* black on white */
         }
         const struct png_file file = write_png(kinds[trial % 3].format, SIZE, SIZE, gray, alpha);
-        narc_contours contours = read_png(file, 0.5);
+        narc_contours contours =
+            read_silhouette(file, (narc_image_request){trial % 3 == 2 ? NARC_SILHOUETTE_DARK : NARC_SILHOUETTE_ALPHA,
+                                                       .threshold = 0.5});
         assert_int_equal(contours.count, 1);
         const double bound = EDGE_ERROR + 1.67 * 1.67 / (2 * radius) + kinds[trial % 3].step + 2.0 / 256;
         for (size_t k = 0; k < contours.point_count; k++) {
@@ -260,8 +262,9 @@ static void make_blob(uint16_t *values, size_t width, size_t height, bool two) {
     }
 }
 
-static void expect_same(const narc_contours *expected, struct png_file file, double tolerance, const char *what) {
-    narc_contours contours = read_png(file, 0.5);
+static void expect_same(const narc_contours *expected, struct png_file file, narc_silhouette silhouette,
+                        double tolerance, const char *what) {
+    narc_contours contours = read_silhouette(file, (narc_image_request){silhouette, .threshold = 0.5});
     if (contours.count != expected->count || contours.point_count != expected->point_count)
         fail_msg("%s: %zu points, not %zu", what, contours.point_count, expected->point_count);
     for (size_t k = 0; k < contours.point_count; k++) {
@@ -273,14 +276,14 @@ static void expect_same(const narc_contours *expected, struct png_file file, dou
     free(file.bytes);
 }
 
-/* The same blob in formats of each kind: as alpha, dark on light, and light on dark. Grays of 16 bits are known to 11 bits;
+/* The same blob in formats of each kind: as alpha, dark, and light; opaque, and where all that is transparent is dark. Grays of 16 bits are known to 11 bits;
  * where neighbouring values differ by 1/15 or more, as on both sides of the threshold, that is up to 15 / 2^11 of a
  * pixel. */
 static void reads_each_kind_of_format(void **state) {
     (void)state;
     enum { WIDTH = 13, HEIGHT = 11, COUNT = WIDTH * HEIGHT };
     for (int two = 0; two < 2; two++) {
-        uint16_t blob[COUNT], inverse[COUNT], full[COUNT];
+        uint16_t blob[COUNT], inverse[COUNT], full[COUNT], none[COUNT] = {0};
         make_blob(blob, WIDTH, HEIGHT, two);
         for (size_t k = 0; k < COUNT; k++) {
             inverse[k] = (uint16_t)(FULL - blob[k]);
@@ -295,19 +298,121 @@ static void reads_each_kind_of_format(void **state) {
             const struct png_format rgb = {depth, PNG_COLOR_TYPE_RGB, false};
             const struct png_format rgb_alpha = {depth, PNG_COLOR_TYPE_RGB_ALPHA, true};
             const double near = depth == 16 ? 15.0 / 2048 : 0;
-            expect_same(&expected, write_png(gray, WIDTH, HEIGHT, inverse, NULL), near, "dark gray");
-            expect_same(&expected, write_png(gray, WIDTH, HEIGHT, blob, NULL), near, "light gray");
-            expect_same(&expected, write_png(rgb, WIDTH, HEIGHT, inverse, NULL), near, "dark");
-            expect_same(&expected, write_png(rgb_alpha, WIDTH, HEIGHT, inverse, full), near, "dark, opaque");
-            expect_same(&expected, write_png(rgb_alpha, WIDTH, HEIGHT, full, blob), 0, "alpha, white");
-            expect_same(&expected, write_png(rgb_alpha, WIDTH, HEIGHT, inverse, blob), 0, "alpha, colours");
-            expect_same(&expected, write_png(gray_alpha, WIDTH, HEIGHT, blob, full), near, "gray, opaque");
+            expect_same(&expected, write_png(gray, WIDTH, HEIGHT, inverse, NULL), NARC_SILHOUETTE_DARK, near,
+                        "dark gray");
+            expect_same(&expected, write_png(gray, WIDTH, HEIGHT, blob, NULL), NARC_SILHOUETTE_LIGHT, near,
+                        "light gray");
+            expect_same(&expected, write_png(rgb, WIDTH, HEIGHT, inverse, NULL), NARC_SILHOUETTE_DARK, near, "dark");
+            expect_same(&expected, write_png(rgb_alpha, WIDTH, HEIGHT, inverse, full), NARC_SILHOUETTE_DARK, near,
+                        "dark, opaque");
+            expect_same(&expected, write_png(rgb_alpha, WIDTH, HEIGHT, full, blob), NARC_SILHOUETTE_ALPHA, 0,
+                        "alpha, white");
+            expect_same(&expected, write_png(rgb_alpha, WIDTH, HEIGHT, inverse, blob), NARC_SILHOUETTE_ALPHA, 0,
+                        "alpha, colours");
+            expect_same(&expected, write_png(gray_alpha, WIDTH, HEIGHT, none, blob), NARC_SILHOUETTE_DARK, near,
+                        "dark, on nothing");
+            expect_same(&expected, write_png(rgb_alpha, WIDTH, HEIGHT, full, blob), NARC_SILHOUETTE_LIGHT, near,
+                        "light, on nothing");
+            expect_same(&expected, write_png(gray_alpha, WIDTH, HEIGHT, blob, full), NARC_SILHOUETTE_LIGHT, near,
+                        "gray, opaque");
         }
         const struct png_format palette = {8, PNG_COLOR_TYPE_PALETTE, false};
-        expect_same(&expected, write_png(palette, WIDTH, HEIGHT, inverse, NULL), 0, "palette");
-        expect_same(&expected, write_png(palette, WIDTH, HEIGHT, inverse, blob), 0, "palette with alpha");
+        expect_same(&expected, write_png(palette, WIDTH, HEIGHT, inverse, NULL), NARC_SILHOUETTE_DARK, 0, "palette");
+        expect_same(&expected, write_png(palette, WIDTH, HEIGHT, inverse, blob), NARC_SILHOUETTE_ALPHA, 0,
+                    "palette with alpha");
         narc_release_contours(&expected);
     }
+}
+
+/* ---------------------------------------------------------------------------- opaque tiles */
+
+/* Textures of a game's tiles: pixel (x, y) of `size`. */
+static unsigned paint_tile(int texture, size_t x, size_t y, size_t size, struct test_random *random) {
+    switch (texture) {
+    case 0: /* plain, dark or light */
+        return 0;
+    case 1:
+        return FULL;
+    case 2: /* stripes, a board, a slope */
+        return x / 3 % 2 ? FULL : 9000;
+    case 3:
+        return (x / 4 + y / 4) % 2 ? 60000 : 20000;
+    case 4:
+        return (unsigned)(FULL * (x + y) / (2 * size));
+    case 5: /* noise; dark with a light border, light with a dark one */
+        return (unsigned)random_below(random, FULL + 1);
+    case 6:
+        return x == 0 || y == 0 || x + 1 == size || y + 1 == size ? FULL : 3000;
+    default:
+        return x == 0 || y == 0 || x + 1 == size || y + 1 == size ? 0 : 50000;
+    }
+}
+
+/* Whatever an opaque tile shows, and however it is stored, its outline is the tile, and the caller is told. */
+static void takes_opaque_tiles_whole(void **state) {
+    (void)state;
+    enum { SIZE = 32, TEXTURES = 8 };
+    static const struct png_format formats[] = {
+        {8, PNG_COLOR_TYPE_GRAY, false}, {8, PNG_COLOR_TYPE_RGB, true},        {8, PNG_COLOR_TYPE_RGB_ALPHA, false},
+        {16, PNG_COLOR_TYPE_GRAY, true}, {16, PNG_COLOR_TYPE_RGB_ALPHA, true}, {8, PNG_COLOR_TYPE_PALETTE, false}};
+    struct test_random random = test_random_named("png tiles");
+    uint16_t gray[SIZE * SIZE], full[SIZE * SIZE];
+    for (int texture = 0; texture < TEXTURES; texture++) {
+        for (size_t k = 0; k < SIZE * SIZE; k++) {
+            gray[k] = (uint16_t)paint_tile(texture, k % SIZE, k / SIZE, SIZE, &random);
+            full[k] = FULL;
+        }
+        for (size_t f = 0; f < sizeof formats / sizeof formats[0]; f++) {
+            const bool palette = formats[f].color_type == PNG_COLOR_TYPE_PALETTE;
+            const size_t height = 1 + 31 * (f % 2);
+            struct png_file file = write_png(formats[f], SIZE, height, gray, palette ? NULL : full);
+            for (double threshold = 0; threshold < 1; threshold += 0.45) {
+                bool whole = false;
+                narc_contours contours =
+                    read_silhouette(file, (narc_image_request){.threshold = threshold, .out_whole = &whole});
+                assert_true(whole);
+                assert_int_equal(contours.point_count, 4);
+                assert_true(measure_area(&contours, 0) == (double)(SIZE * height));
+                narc_release_contours(&contours);
+            }
+            free(file.bytes);
+        }
+    }
+}
+
+/* One transparent pixel, and the image is not opaque; dark and light count apart, in opaque tiles too. */
+static void tells_what_is_whole(void **state) {
+    (void)state;
+    enum { SIZE = 8, COUNT = SIZE * SIZE };
+    uint16_t gray[COUNT], alpha[COUNT], dark[COUNT] = {0};
+    for (size_t k = 0; k < COUNT; k++) {
+        gray[k] = k % SIZE < 3 ? 10000 : 60000;
+        alpha[k] = k == 0 ? 0 : FULL;
+    }
+    static const double areas[] = {SIZE * SIZE, 3 * SIZE, 5 * SIZE};
+    for (int silhouette = NARC_SILHOUETTE_ALPHA; silhouette <= NARC_SILHOUETTE_LIGHT; silhouette++) {
+        bool whole = silhouette != NARC_SILHOUETTE_ALPHA;
+        struct png_file file = write_png((struct png_format){8, PNG_COLOR_TYPE_GRAY, false}, SIZE, SIZE, gray, NULL);
+        narc_contours contours = read_silhouette(
+            file, (narc_image_request){(narc_silhouette)silhouette, .threshold = 0.5, .out_whole = &whole});
+        assert_int_equal(whole, silhouette == NARC_SILHOUETTE_ALPHA);
+        /* Grays of 39 and 234 of 255: darknesses pass 127.5 0.454 pixels behind the centre of the dark one, lightnesses
+         * 0.546 before that of the light one, and at the borders 0.41 and 0.455 outside of centres. Corners are cut. */
+        assert_true(fabs(measure_area(&contours, 0) - areas[silhouette]) <= 0.1 * (2 * SIZE + 10) + 0.5);
+        narc_release_contours(&contours);
+        free(file.bytes);
+    }
+    bool whole = true;
+    struct png_file file = write_png(gray_alpha_8, SIZE, SIZE, gray, alpha);
+    narc_contours contours = read_silhouette(file, (narc_image_request){.out_whole = &whole});
+    assert_false(whole);
+    narc_release_contours(&contours);
+    free(file.bytes);
+    file = write_png((struct png_format){8, PNG_COLOR_TYPE_GRAY, false}, SIZE, SIZE, dark, NULL);
+    contours = read_silhouette(file, (narc_image_request){NARC_SILHOUETTE_DARK, .out_whole = &whole});
+    assert_true(whole);
+    narc_release_contours(&contours);
+    free(file.bytes);
 }
 
 int main(void) {
@@ -315,6 +420,7 @@ int main(void) {
         cmocka_unit_test(passes_between_centres),          cmocka_unit_test(knows_its_error_at_straight_edges),
         cmocka_unit_test(keeps_the_place_of_discs),        cmocka_unit_test(follows_all_cells),
         cmocka_unit_test(turns_round_holes_the_other_way), cmocka_unit_test(reads_each_kind_of_format),
+        cmocka_unit_test(takes_opaque_tiles_whole),        cmocka_unit_test(tells_what_is_whole),
     };
     if (!test_begin())
         return TEST_SKIPPED;

@@ -14,17 +14,25 @@ enum { FULL = 65535 };
 static const struct png_format gray_8 = {8, PNG_COLOR_TYPE_GRAY, false};
 static const struct png_format gray_alpha_8 = {8, PNG_COLOR_TYPE_GRAY_ALPHA, false};
 
-static void expect_png_error(const void *bytes, size_t size, double threshold, narc_status status, const char *words) {
+static void expect_request_error(const void *bytes, size_t size, narc_image_request request, narc_status status,
+                                 const char *words) {
+    bool whole = true;
+    request.out_whole = &whole;
     narc_path *path = make_occupied_path();
     narc_error error = {.message = "?"};
     unsigned char *copy = malloc(size ? size : 1); /* the address sanitizer sees every read behind it */
     assert_non_null(copy);
     memcpy(copy, bytes, size);
-    expect_error(narc_read_png(copy, size, threshold, path, &error), status, &error, words);
-    assert_int_equal(narc_read_png(copy, size, threshold, path, NULL), status);
+    expect_error(narc_read_png(copy, size, &request, path, &error), status, &error, words);
+    assert_int_equal(narc_read_png(copy, size, &request, path, NULL), status);
     expect_unchanged(path);
+    assert_true(whole);
     free(copy);
     narc_destroy_path(path);
+}
+
+static void expect_png_error(const void *bytes, size_t size, double threshold, narc_status status, const char *words) {
+    expect_request_error(bytes, size, (narc_image_request){.threshold = threshold}, status, words);
 }
 
 static struct png_file write_square(struct png_format format) {
@@ -93,7 +101,11 @@ static void refuses_what_has_no_outline(void **state) {
     expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "no pixel of the image reaches the threshold");
     free(file.bytes);
     file = write_png(gray_8, 2, 2, full, NULL);
-    expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "no pixel");
+    expect_request_error(file.bytes, file.size, (narc_image_request){.silhouette = NARC_SILHOUETTE_DARK},
+                         NARC_ERROR_FORMAT, "no pixel");
+    for (int k = -1; k <= 3; k += 4)
+        expect_request_error(file.bytes, file.size, (narc_image_request){.silhouette = (narc_silhouette)k},
+                             NARC_ERROR_ARGUMENT, "there is no silhouette");
     free(file.bytes);
     file = write_png(gray_alpha_8, 2, 2, full, some);
     expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "no pixel");
@@ -102,8 +114,8 @@ static void refuses_what_has_no_outline(void **state) {
     expect_png_error(file.bytes, file.size, NAN, NARC_ERROR_NOT_FINITE, "threshold is");
     narc_path *path = make_path();
     narc_error error;
-    expect_error(narc_read_png(NULL, 5, 0, path, &error), NARC_ERROR_ARGUMENT, &error, "data is NULL");
-    expect_error(narc_read_png(file.bytes, file.size, 0, NULL, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
+    expect_error(narc_read_png(NULL, 5, NULL, path, &error), NARC_ERROR_ARGUMENT, &error, "data is NULL");
+    expect_error(narc_read_png(file.bytes, file.size, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
     narc_destroy_path(path);
     free(file.bytes);
 }

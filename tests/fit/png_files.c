@@ -89,11 +89,15 @@ struct png_file write_png(struct png_format format, size_t width, size_t height,
     return file;
 }
 
-narc_contours read_png(struct png_file file, double threshold) {
+narc_contours read_silhouette(struct png_file file, narc_image_request request) {
     narc_path *path = make_path();
     narc_error error = {.message = ""};
-    expect_ok(narc_read_png(file.bytes, file.size, threshold, path, &error), &error);
+    expect_ok(narc_read_png(file.bytes, file.size, &request, path, &error), &error);
     const narc_contours contours = flatten(path);
     narc_destroy_path(path);
     return contours;
+}
+
+narc_contours read_png(struct png_file file, double threshold) {
+    return read_silhouette(file, (narc_image_request){.threshold = threshold});
 }

@@ -24,8 +24,9 @@ struct png_file {
 struct png_file write_png(struct png_format format, size_t width, size_t height, const uint16_t *gray,
                           const uint16_t *alpha);
 
-/* The contours in such a file at a threshold. */
+/* The contours in such a file, of its alpha at a threshold, or as the request says. */
 narc_contours read_png(struct png_file file, double threshold);
+narc_contours read_silhouette(struct png_file file, narc_image_request request);
 
 int test_png_damage(void);
 

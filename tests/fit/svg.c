@@ -15,7 +15,11 @@ static const double PI = 3.14159265358979323846;
 /* The largest part of its radius by which a circle of four cubics, which librsvg draws, is too large. */
 static const double CIRCLE_ERROR = 2.8e-4;
 
-static narc_path *read_path(const char *attributes, const char *body) {
+static narc_status read_usual(const void *data, size_t size, narc_path *path, narc_error *error) {
+    return narc_read_svg(data, size, NULL, path, error);
+}
+
+static narc_path *read_request(const char *attributes, const char *body, narc_image_request request) {
     char text[4000];
     const int size = snprintf(text, sizeof text,
                               "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink' %s>"
@@ -24,10 +28,14 @@ static narc_path *read_path(const char *attributes, const char *body) {
     assert_true(size > 0 && (size_t)size < sizeof text);
     narc_path *path = make_path();
     narc_error error = {.message = ""};
-    const narc_status status = narc_read_svg(text, (size_t)size, path, &error);
+    const narc_status status = narc_read_svg(text, (size_t)size, &request, path, &error);
     if (status)
         fail_msg("%s: %s", text, error.message);
     return path;
+}
+
+static narc_path *read_path(const char *attributes, const char *body) {
+    return read_request(attributes, body, (narc_image_request){.threshold = 0});
 }
 
 static narc_contours read_contours(const char *attributes, const char *body) {
@@ -246,8 +254,7 @@ static void sees_what_is_drawn(void **state) {
         {page, "<path d='M5 5H10' stroke='red' stroke-width='2'/>", 5, -6, 10, -4},
         {page, "<rect x='-5' y='10' width='10' height='30'/>", 0, -20, 5, -10},
         {page, "<g opacity='0.5'><rect x='-5' y='10' width='10' height='30'/></g>", 0, -20, 5, -10},
-        /* However faint it is, it counts; what is not drawn at all does not. */
-        {page, "<rect x='5' y='5' width='3' height='4' fill-opacity='.004'/>", 5, -9, 8, -5},
+        /* What is not drawn at all does not count. */
         {page, "<circle r='9' fill='none'/><circle r='9' opacity='0'/><rect x='5' y='5' width='3' height='4'/>", 5, -9,
          8, -5},
         {page,
@@ -268,6 +275,100 @@ static void sees_what_is_drawn(void **state) {
          -9, 8, -5},
     };
     expect_seen(cases, sizeof cases / sizeof cases[0]);
+}
+
+/* ---------------------------------------------------------------------------- how faint ink may be */
+
+static const char page_of_100[] = "viewBox='0 0 100 100'", square[] = "<rect x='20' y='20' width='30' height='30'/>";
+
+/* How far the outline reaches to the right, and upwards. */
+static narc_point measure_reach(const char *body, narc_image_request request) {
+    narc_path *path = read_request(page_of_100, body, request);
+    narc_contours contours = flatten(path);
+    const narc_point reach = {find_support(contours.points, contours.point_count, 0),
+                              find_support(contours.points, contours.point_count, PI / 2)};
+    narc_release_contours(&contours);
+    narc_destroy_path(path);
+    return reach;
+}
+
+/* A shadow, even or blurred, apart or behind, counts if it is not fainter than the threshold, which usually is a quarter.
+ * What is near ink counts with it, by up to 8 pixels of a 4096th of the ink, and the outline is a pixel away. */
+static void leaves_out_faint_shadows(void **state) {
+    (void)state;
+    static const double near = 9 * 70.0 / 4096;
+    static const struct {
+        const char *shadow;
+        double opacity, right; /* of all of it */
+    } cases[] = {
+        {"<rect x='30' y='30' width='40' height='30' opacity='%g'/>", 0.2, 70},
+        {"<g opacity='%g'><rect x='60' y='30' width='30' height='9'/></g>", 0.15, 90},
+        {"<rect x='25' y='22' width='60' height='30' fill-opacity='%g' fill='red'/>", 0.02, 85},
+        {"<filter id='f' x='-1' y='-1' width='3' height='3'><feGaussianBlur stdDeviation='2'/></filter>"
+         "<rect x='30' y='22' width='40' height='20' filter='url(#f)' opacity='%g'/>",
+         0.24, 73},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        char body[600];
+        const double opacity = cases[k].opacity;
+        snprintf(body, sizeof body, cases[k].shadow, opacity);
+        strcat(body, square);
+        narc_point reach = measure_reach(body, (narc_image_request){.threshold = 0});
+        if (!(fabs(reach.x - 50) <= near))
+            fail_msg("%s: the outline reaches to %g", body, reach.x);
+        assert_true(fabs(reach.y + 20) <= near);
+        reach = measure_reach(body, (narc_image_request){.threshold = opacity + 0.01});
+        assert_true(fabs(reach.x - 50) <= near);
+        reach = measure_reach(body, (narc_image_request){.threshold = 0.005});
+        assert_true(reach.x > cases[k].right - near);
+        reach = measure_reach(body, (narc_image_request){.threshold = 0.95});
+        assert_true(fabs(reach.x - 50) <= near);
+    }
+    /* However faint, it counts if the threshold lets it. */
+    const struct seen faint = {page_of_100, "<rect x='5' y='5' width='3' height='4' fill-opacity='.26'/>", 5, -9, 8,
+                               -5};
+    expect_seen(&faint, 1);
+    const narc_point reach =
+        measure_reach("<rect width='3' height='4' fill-opacity='.004'/>", (narc_image_request){.threshold = 1e-9});
+    assert_true(fabs(reach.x - 3) <= 9e-3);
+}
+
+/* Ink of full strength is where it is whatever the threshold; tips of 30 degrees too. */
+static void keeps_strong_ink_at_any_threshold(void **state) {
+    (void)state;
+    static const char body[] = "<path d='M20 20H80L50 76z'/><path d='M10 90L90 79V90z'/>";
+    for (double threshold = 0.05; threshold < 1; threshold += 0.15) {
+        const narc_point reach = measure_reach(body, (narc_image_request){.threshold = threshold});
+        assert_true(fabs(reach.x - 90) <= 1.001 * 80 / 4096 && fabs(reach.y + 20) <= 1.001 * 80 / 4096);
+    }
+}
+
+/* Darkness and lightness of what is drawn, also on a background; a page that is covered is its rectangle, and told. */
+static void takes_dark_and_light(void **state) {
+    (void)state;
+    static const char on_white[] = "<rect width='100' height='100' fill='white'/><rect x='20' y='20' width='30' "
+                                   "height='30' fill='#402010'/><circle cx='80' cy='80' r='9' fill='#ffff80'/>";
+    static const char on_black[] = "<rect width='100' height='100'/><rect x='20' y='20' width='30' height='30' "
+                                   "fill='#c0d0e0'/><circle cx='80' cy='80' r='9' fill='#300'/>";
+    static const char on_nothing[] = "<rect x='20' y='20' width='30' height='30' fill='black'/><rect x='60' y='60' "
+                                     "width='10' height='10' fill='white'/>";
+    static const double pixel = 100.0 / 4096;
+    bool whole = false;
+    narc_point reach = measure_reach(on_white, (narc_image_request){.out_whole = &whole});
+    assert_true(whole && fabs(reach.x - 100) <= pixel && fabs(reach.y) <= pixel);
+    reach = measure_reach(on_white, (narc_image_request){NARC_SILHOUETTE_DARK, .out_whole = &whole});
+    assert_true(!whole && fabs(reach.x - 50) <= pixel && fabs(reach.y + 20) <= pixel);
+    reach = measure_reach(on_black, (narc_image_request){NARC_SILHOUETTE_LIGHT, .out_whole = &whole});
+    assert_true(!whole && fabs(reach.x - 50) <= pixel && fabs(reach.y + 20) <= pixel);
+    reach = measure_reach(on_black, (narc_image_request){NARC_SILHOUETTE_DARK, .threshold = 0.1});
+    assert_true(fabs(reach.x - 100) <= pixel);
+    reach = measure_reach(on_nothing, (narc_image_request){.silhouette = NARC_SILHOUETTE_DARK});
+    assert_true(fabs(reach.x - 50) <= pixel && fabs(reach.y + 20) <= pixel);
+    reach = measure_reach(on_nothing, (narc_image_request){.silhouette = NARC_SILHOUETTE_LIGHT});
+    assert_true(fabs(reach.x - 70) <= pixel && fabs(reach.y + 60) <= pixel);
+    whole = true;
+    measure_reach(square, (narc_image_request){.out_whole = &whole});
+    assert_false(whole);
 }
 
 /* Text too large for FreeType is left out, and no later text suffers for it, in this file or in the next. Without a font
@@ -308,12 +409,32 @@ static void tells_what_is_wrong(void **state) {
     };
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
         const struct wrong *w = &wrong[k];
-        expect_wrong_text(narc_read_svg, w->text, strlen(w->text), w->status, w->line, w->words);
+        expect_wrong_text(read_usual, w->text, strlen(w->text), w->status, w->line, w->words);
     }
     narc_path *path = make_path();
     narc_error error;
-    expect_error(narc_read_svg(NULL, 1, path, &error), NARC_ERROR_ARGUMENT, &error, "data is NULL");
-    expect_error(narc_read_svg("<svg/>", 6, NULL, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
+    expect_error(narc_read_svg(NULL, 1, NULL, path, &error), NARC_ERROR_ARGUMENT, &error, "data is NULL");
+    expect_error(narc_read_svg("<svg/>", 6, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
+    static const char faint[] = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 9'><circle r='3' "
+                                "opacity='0.2'/></svg>";
+    static const struct {
+        narc_image_request request;
+        narc_status status;
+        const char *words;
+    } requests[] = {
+        {{.silhouette = (narc_silhouette)3}, NARC_ERROR_ARGUMENT, "there is no silhouette 3"},
+        {{.threshold = 1}, NARC_ERROR_SIZE, "threshold is 1;"},
+        {{.threshold = -0.5}, NARC_ERROR_SIZE, "threshold is -0.5;"},
+        {{.threshold = NAN}, NARC_ERROR_NOT_FINITE, "threshold is"},
+        {{.threshold = 0}, NARC_ERROR_FORMAT, "all ink of the SVG file is fainter than the threshold 0.25"},
+        {{.threshold = 0.21}, NARC_ERROR_FORMAT, "fainter than the threshold 0.21"},
+        {{.silhouette = NARC_SILHOUETTE_LIGHT},
+         NARC_ERROR_FORMAT,
+         "the SVG file has nothing light above the threshold 0.25"},
+    };
+    for (size_t k = 0; k < sizeof requests / sizeof requests[0]; k++)
+        expect_error(narc_read_svg(faint, sizeof faint - 1, &requests[k].request, path, &error), requests[k].status,
+                     &error, requests[k].words);
     narc_destroy_path(path);
 }
 
@@ -345,7 +466,7 @@ static void reads_no_other_file(void **state) {
         snprintf(place, sizeof place, "%s%s%s%s", k % 2 ? "file://" : "", k % 2 ? folder : "", k % 2 ? "/" : "", name);
         const char *format = cases[k / 2].format, *hole = strstr(format, "%s");
         const int size = snprintf(text, sizeof text, "%.*s%s%s", (int)(hole - format), format, place, hole + 2);
-        expect_wrong_text(narc_read_svg, text, (size_t)size, NARC_ERROR_FORMAT, cases[k / 2].line, cases[k / 2].words);
+        expect_wrong_text(read_usual, text, (size_t)size, NARC_ERROR_FORMAT, cases[k / 2].line, cases[k / 2].words);
     }
     remove(name);
 }
@@ -364,11 +485,11 @@ static void ends_what_multiplies(void **state) {
         size += (size_t)sprintf(text + size, "'>");
     }
     size += (size_t)sprintf(text + size, "]><svg xmlns='http://www.w3.org/2000/svg'><path d='M0 0&a10;'/></svg>");
-    expect_wrong_text(narc_read_svg, text, size, NARC_ERROR_FORMAT, 1, "not SVG: ");
+    expect_wrong_text(read_usual, text, size, NARC_ERROR_FORMAT, 1, "not SVG: ");
     size = (size_t)sprintf(text, "<svg xmlns='http://www.w3.org/2000/svg'>");
     for (int k = 0; k < DEEP; k++)
         size += (size_t)sprintf(text + size, "<g>");
-    expect_wrong_text(narc_read_svg, text, size, NARC_ERROR_FORMAT, 1, "not SVG: ");
+    expect_wrong_text(read_usual, text, size, NARC_ERROR_FORMAT, 1, "not SVG: ");
     free(text);
 }
 
@@ -389,7 +510,7 @@ static void survives_changed_bytes(void **state) {
         }
         narc_path *path = make_occupied_path();
         narc_error error = {.message = ""};
-        const narc_status status = read_exactly(narc_read_svg, text, sizeof good - 1, path, &error);
+        const narc_status status = read_exactly(read_usual, text, sizeof good - 1, path, &error);
         read += finish_any_bytes(status, &error, 1u << NARC_ERROR_FORMAT | 1u << NARC_ERROR_SIZE, SIZE_MAX, path);
     }
     assert_true(read > 0 && read < trials);
@@ -404,6 +525,9 @@ int main(void) {
         cmocka_unit_test(tells_a_pixel),
         cmocka_unit_test(keeps_user_units),
         cmocka_unit_test(sees_what_is_drawn),
+        cmocka_unit_test(leaves_out_faint_shadows),
+        cmocka_unit_test(keeps_strong_ink_at_any_threshold),
+        cmocka_unit_test(takes_dark_and_light),
         cmocka_unit_test(leaves_out_huge_text),
         cmocka_unit_test(tells_what_is_wrong),
         cmocka_unit_test(reads_no_other_file),

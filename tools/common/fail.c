@@ -19,14 +19,19 @@ static const char *program = "narc";
 
 void name_program(const char *name) { program = name; }
 
-/* Prints `line` as one line and ends the process. _Exit() drops what is still buffered: nothing more gets written. */
-static _Noreturn void end(char *line) {
-    discard_outputs();
+/* Prints `line` as one line. */
+static void print_line(char *line) {
     hide_progress();
     for (char *c = line; *c; c++)
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
             *c = '?';
     fprintf(stderr, "%s\n", line);
+}
+
+/* Prints `line` and ends the process. _Exit() drops what is still buffered: nothing more gets written. */
+static _Noreturn void end(char *line) {
+    discard_outputs();
+    print_line(line);
     _Exit(FAILURE_STATUS);
 }
 
@@ -51,6 +56,17 @@ void fail_at(const char *path, size_t line_number, const char *format, ...) {
     vsnprintf(line + used, sizeof line - (size_t)used, format, arguments);
     va_end(arguments);
     end(line);
+}
+
+void warn_at(const char *path, const char *format, ...) {
+    char line[LINE_SIZE];
+    const char *shown = strcmp(path, "-") == 0 ? "standard input" : path;
+    const int used = snprintf(line, sizeof line, "%s: %.*s: ", program, LINE_SIZE / 2, shown);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line + used, sizeof line - (size_t)used, format, arguments);
+    va_end(arguments);
+    print_line(line);
 }
 
 void *allocate(size_t count, size_t size) {

@@ -22,6 +22,9 @@ PRINTF_LIKE(1, 2) _Noreturn void fail(const char *format, ...);
 /* "path:line: message"; without a line, 0, "narc: path: message". "-" is standard input. */
 PRINTF_LIKE(3, 4) _Noreturn void fail_at(const char *path, size_t line, const char *format, ...);
 
+/* A warning: "narc: path: message". */
+PRINTF_LIKE(2, 3) void warn_at(const char *path, const char *format, ...);
+
 /* Memory for `count` items of `size` bytes, never NULL. */
 void *allocate(size_t count, size_t size);
 
