@@ -169,12 +169,43 @@ check "a spline of lines: a picture" grep -q "</svg>" spline.svg
 # Images: what narc draws.
 printf 'shape,x,y,angle\ndisc,0,0,0\n' >disc.csv
 works "an image of a disc" collide --shapes shapes.json --bodies disc.csv --picture fits/disc.png
-works "from an image" fit fits/disc.png --arcs 1 --threshold 0.05 --out one.json --picture disc.svg
+works "from an image" fit fits/disc.png --arcs 1 --silhouette dark --threshold 0.05 --out one.json --picture disc.svg
 check "from an image: a disc" less "$(value disc 6)" 1.01
 check "from an image: pixels" less 100000 "$(value disc 4)"
 works "an image of fits" fit fits/square.csv --arcs 6 --starts 1 --out six.json --picture fits/drawn.png
-works "from an image by darkness" fit fits/drawn.png --arcs 6 --starts 1 --out six.json
+works "from an image by darkness" fit fits/drawn.png --silhouette dark --arcs 6 --starts 1 --out six.json
 check "from an image by darkness: named after it" names six.json "drawn "
+
+
+# Opaque images are their rectangle, and that is said; what they show is asked for. Of the picture, the paper is light.
+works "an opaque image" fit fits/drawn.png --arcs 4 --polygon --starts 1 --out opaque.json
+check "an opaque image: its rectangle" is drawn 6 1
+check "an opaque image: said" grep -q "^narc: fits/drawn.png: opaque throughout, its outline is a rectangle" err.txt
+check "an opaque image: in one line" lines err.txt 1
+rectangle=$(value drawn 5)
+works "what is dark" fit fits/drawn.png --arcs 4 --polygon --starts 1 --silhouette dark --out opaque.json
+check "what is dark: less" less "$(value drawn 5)" "$(product "$rectangle" 0.98)"
+check "what is dark: nothing is said" lines err.txt 0
+works "what is light" fit fits/drawn.png --arcs 4 --polygon --starts 1 --silhouette=light --out opaque.json
+check "what is light: the paper" is drawn 5 "$rectangle"
+
+# Faint ink of drawings: a shadow to the right of a square.
+cat >fits/shadow.svg <<'EOT'
+<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 10">
+  <rect x="5" y="2" width="12" height="6" opacity="0.2"/><rect x="2" y="2" width="6" height="6"/>
+</svg>
+EOT
+works "a faint shadow" fit fits/shadow.svg --arcs 4 --polygon --starts 1 --out shadow.json
+check "a faint shadow: the square" is shadow 5 36
+works "a faint shadow that counts" fit fits/shadow.svg --arcs 4 --polygon --starts 1 --threshold 0.1 --out shadow.json
+check "a faint shadow that counts: with the square" is shadow 5 90
+echo '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 4"><rect width="9" height="4" fill="white"/>
+<rect x="2" y="1" width="2" height="2"/></svg>' >fits/paper.svg
+works "a drawing on paper" fit fits/paper.svg --arcs 4 --polygon --starts 1 --out paper.json
+check "a drawing on paper: said" grep -q "^narc: fits/paper.svg: opaque throughout" err.txt
+check "a drawing on paper: the page" is paper 5 36
+works "a drawing on paper, dark" fit fits/paper.svg --arcs 4 --polygon --starts 1 --silhouette dark --out paper.json
+check "a drawing on paper, dark: what is drawn" is paper 5 4
 
 # Points in any order.
 printf '1,1\n3,3\n3,1\n1,3\n2,2\n2.5,1.5\n' >fits/cloud.csv

@@ -6,6 +6,9 @@
 mkdir fits
 printf '1,1\n3,1\n3,3\n1,3\n' >fits/square.csv
 printf 'shape,x,y,angle\ndisc,0,0,0\n' >disc.csv
+cat >fits/circle.svg <<'EOT'
+<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10"><circle cx="5" cy="5" r="2" opacity="0.5"/></svg>
+EOT
 works "an image" collide --shapes shapes.json --bodies disc.csv --picture fits/disc.png
 
 # ------------------------------------------------------------------------------------------- fits that cannot be
@@ -32,7 +35,17 @@ done
 for threshold in 0 1 -0.5 nan x ""; do
     fails "fit: threshold '$threshold'" "narc: --threshold " fit fits/disc.png --arcs 4 --threshold "$threshold" \
         --out new.json
+    fails "fit: threshold '$threshold' of a drawing" "narc: --threshold " fit fits/circle.svg --arcs 4 \
+        --threshold "$threshold" --out new.json
 done
+for silhouette in Alpha darkness 0 ""; do
+    fails "fit: silhouette '$silhouette'" "narc: --silhouette .*" fit fits/disc.png --arcs 4 \
+        --silhouette "$silhouette" --out new.json
+done
+fails "fit: silhouette, named" "narc: --silhouette must be one of alpha, dark, light, not 'darkness'" fit \
+    fits/circle.svg --arcs 4 --silhouette darkness --out new.json
+fails "fit: all too faint" "narc: fits/circle.svg: all ink .* fainter than the threshold 0.6" fit fits/circle.svg --arcs 4 \
+    --threshold 0.6 --out new.json
 for starts in 0 -1 10001 x ""; do
     nofit "starts '$starts'" "narc: --starts " --arcs 4 --starts "$starts"
 done
@@ -55,7 +68,8 @@ for option in "--arcs 4" --bound --approximate "--objective area" --edges --poly
 done
 nofit "a spline without a tolerance" "narc: --arcs or --tolerance is missing" --spline
 nofit "characters without a font" "narc: --characters is for fonts" --arcs 4 --characters a
-nofit "threshold without an image" "narc: --threshold is for PNG" --arcs 4 --threshold 0.4
+nofit "threshold without an image" "narc: --threshold is for PNG and SVG" --arcs 4 --threshold 0.4
+nofit "silhouette without an image" "narc: --silhouette is for PNG and SVG" --arcs 4 --silhouette dark
 fails "fit: picture of another kind" "narc: .*new.jpg" fit fits/square.csv --arcs 4 --out new.json --picture new.jpg
 fails "fit: picture in no folder" "narc: absent/new.png" fit fits/square.csv --arcs 4 --out new.json \
     --picture absent/new.png
