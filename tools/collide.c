@@ -340,6 +340,8 @@ static void run(int argc, char **argv) {
         write_passing(out, &work);
     else if (out)
         write_contacts(out, &work);
+    if (out)
+        flush_output(out);
     if (picture) {
         const body_scene scene = {&work.shapes,
                                   &work.bodies,

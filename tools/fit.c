@@ -23,9 +23,9 @@ static const char HELP[] =
     "usage: narc fit INPUT... --arcs N|--tolerance T [--bound|--approximate] [--objective NAME]\n"
     "                [--edges|--polygon|--paper] [--characters TEXT] [--silhouette NAME]\n"
     "                [--threshold X] [--flatness F] [--min-radius R] [--starts N] [--keep-origin]\n"
-    "                [--out shapes.json] [--picture FILE]\n"
+    "                [--keep-going] [--out shapes.json] [--picture FILE]\n"
     "       narc fit INPUT... --spline --tolerance T [--characters TEXT] [--silhouette NAME]\n"
-    "                [--threshold X] [--out splines.json] [--picture FILE]\n"
+    "                [--threshold X] [--keep-going] [--out splines.json] [--picture FILE]\n"
     "\n"
     "Makes an arc shape of each input: the best that is found of those that bound the outline, or of\n"
     "those that come close to it. Of an outline only the convex hull counts.\n"
@@ -34,7 +34,8 @@ static const char HELP[] =
     "                  fonts         with --characters: each of these is one shape; lengths in em\n"
     "                  SVG           what is drawn, as one shape, traced at its edge\n"
     "                  PNG           the silhouette: what is not transparent; lengths in pixels\n"
-    "                  CSV           points, one x,y a line; a blank line begins another contour\n"
+    "                  CSV           points, one x,y a line, or columns x and y of a table; a blank\n"
+    "                                line begins another contour\n"
     "                  JSON          points, [[x, y], ...], or a list of such lists\n"
     "  --arcs N        at most N arcs a shape, 1 to 32\n"
     "  --tolerance T   instead: as few arcs as stay within the distance T of the hull, in the\n"
@@ -65,13 +66,14 @@ static const char HELP[] =
     "                  far from its origin a shape is rounded more\n"
     "  --spline        instead of a convex shape: the outline itself as arcs that join with a common\n"
     "                  tangent, within --tolerance of its curves\n"
+    "  --keep-going    what cannot be read or fitted is left out; its error is told, and the exit status\n"
+    "                  is 1\n"
     "  --out FILE      the shapes file to write; left out or -: standard output\n"
     "  --picture FILE  a .png or .svg picture of outlines, hulls and shapes\n"
     "\n"
-    "A shape is named by its file, without the suffix. A glyph is named by its character if that is an\n"
-    "ASCII letter, and otherwise by its code point, such as U+1F47B. Names that are taken get -2, -3 and\n"
-    "so on. A shape's centroid is its origin; \"origin\" in the shapes file tells where that is in the\n"
-    "input's coordinates. A body at that place lies over its outline.\n"
+    "A shape is named by its file without the suffix (shape-0 for 0.csv), a glyph by its ASCII letter or\n"
+    "its code point (U+1F47B); names that are taken get -2, -3 and so on. A shape's centroid is its\n"
+    "origin; \"origin\" in the shapes file tells where that is in the input's coordinates.\n"
     "\n"
     "The table has areas of shape and hull and their ratio, how far the shape is from the hull: at\n"
     "most, and in the mean along the shape, and the origin.\n";
@@ -93,6 +95,7 @@ enum {
     STARTS,
     SPLINE,
     KEEP_ORIGIN,
+    KEEP_GOING,
     OUT,
     PICTURE,
     OPTIONS
@@ -177,12 +180,11 @@ static bool tell_progress(size_t done, size_t total, void *context) {
     return true;
 }
 
-/* The larger side of an outline's bounding box. */
+/* The larger side of an outline's bounding box; 0 if it has none, which fitting then tells. */
 static double measure_extent(const outline *of) {
     narc_contours contours;
-    narc_error error;
-    if (narc_flatten_path(of->path, 0, &contours, &error) != NARC_OK)
-        fail_outline(of, error.message);
+    if (narc_flatten_path(of->path, 0, &contours, NULL) != NARC_OK)
+        return 0;
     narc_aabb box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < contours.point_count; i++) {
         const narc_point p = contours.points[i];
@@ -193,8 +195,10 @@ static double measure_extent(const outline *of) {
 }
 
 /* `flatness` is relative to an outline's extent; 0: the usual one. */
-static narc_fit_result *fit_outlines(const outline_list *outlines, narc_fit_request request, double flatness) {
+static narc_fit_result *fit_outlines(outline_list *outlines, narc_fit_request request, double flatness,
+                                     shape_list *out_shapes) {
     narc_fit_result *fits = allocate(outlines->count, sizeof *fits);
+    size_t kept = 0;
     stage at = {0, outlines->count};
     request.progress = tell_progress;
     request.context = &at;
@@ -202,21 +206,17 @@ static narc_fit_result *fit_outlines(const outline_list *outlines, narc_fit_requ
         const outline *of = &outlines->items[at.done];
         narc_error error;
         request.flatness = flatness > 0 ? flatness * measure_extent(of) : 0;
-        if (narc_fit_path(of->path, &request, &fits[at.done], &error) != NARC_OK)
-            fail_outline(of, error.message);
+        narc_fit_result *fit = &fits[kept];
+        if (narc_fit_path(of->path, &request, fit, &error) != NARC_OK ||
+            add_shape(out_shapes, of->name, fit->arcs, fit->arc_count, &error) != NARC_OK) {
+            report_outline(of, error.message);
+            continue;
+        }
+        out_shapes->items[kept].origin = fit->origin;
+        keep_outline(outlines, at.done, kept++);
     }
+    cut_outlines(outlines, kept);
     return fits;
-}
-
-static shape_list list_shapes(const outline_list *outlines, const narc_fit_result *fits) {
-    shape_list shapes = {0};
-    for (size_t i = 0; i < outlines->count; i++) {
-        narc_error error;
-        if (add_shape(&shapes, outlines->items[i].name, fits[i].arcs, fits[i].arc_count, &error) != NARC_OK)
-            fail_outline(&outlines->items[i], error.message);
-        shapes.items[i].origin = fits[i].origin;
-    }
-    return shapes;
 }
 
 /* ---------------------------------------------------------------------------- the table */
@@ -245,11 +245,19 @@ static void print_table(FILE *file, const outline_list *outlines, const narc_fit
 
 /* ---------------------------------------------------------------------------- both kinds of answers */
 
-static void make_shapes(const outline_list *outlines, narc_fit_request request, double flatness, FILE *file,
+/* Nothing is left of the inputs: their errors have been told. */
+static void check_any(const outline_list *outlines) {
+    if (outlines->count == 0)
+        fail("no outline is left to fit");
+}
+
+static void make_shapes(outline_list *outlines, narc_fit_request request, double flatness, FILE *file,
                         const char *picture, FILE *picture_file) {
-    narc_fit_result *fits = fit_outlines(outlines, request, flatness);
-    shape_list shapes = list_shapes(outlines, fits);
+    shape_list shapes = {0};
+    narc_fit_result *fits = fit_outlines(outlines, request, flatness, &shapes);
+    check_any(outlines);
     write_shapes(file, &shapes);
+    flush_output(file);
     if (picture)
         draw_fits(picture, picture_file, outlines, fits, NULL);
     FILE *report = finish_outputs();
@@ -260,10 +268,12 @@ static void make_shapes(const outline_list *outlines, narc_fit_request request, 
     free(fits);
 }
 
-static void make_splines(const outline_list *outlines, double tolerance, FILE *file, const char *picture,
+static void make_splines(outline_list *outlines, double tolerance, FILE *file, const char *picture,
                          FILE *picture_file) {
     narc_arc_chains *chains = fit_splines(outlines, tolerance);
+    check_any(outlines);
     write_splines(file, outlines, chains);
+    flush_output(file);
     if (picture)
         draw_fits(picture, picture_file, outlines, NULL, chains);
     FILE *report = finish_outputs();
@@ -292,6 +302,7 @@ static void run(int argc, char **argv) {
                                [STARTS] = {"--starts", true, NULL},
                                [SPLINE] = {"--spline", false, NULL},
                                [KEEP_ORIGIN] = {"--keep-origin", false, NULL},
+                               [KEEP_GOING] = {"--keep-going", false, NULL},
                                [OUT] = {"--out", true, NULL},
                                [PICTURE] = {"--picture", true, NULL}};
     const char **files = allocate((size_t)argc, sizeof *files);
@@ -306,12 +317,17 @@ static void run(int argc, char **argv) {
     picture_kind_of(picture);
 
     outline_list outlines = {0};
+    if (options[KEEP_GOING].value)
+        keep_going();
     read_outlines(files, file_count, &how, &outlines);
+    check_any(&outlines);
     FILE *shapes_file = open_output(out), *picture_file = picture ? open_output(picture) : NULL;
     if (options[SPLINE].value)
         make_splines(&outlines, request.tolerance, shapes_file, picture, picture_file);
     else
         make_shapes(&outlines, request, flatness, shapes_file, picture, picture_file);
+    if (count_reports())
+        fprintf(stderr, "narc: errors: %zu; shapes written: %zu\n", count_reports(), outlines.count);
     free_outlines(&outlines);
     free(files);
 }

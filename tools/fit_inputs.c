@@ -4,6 +4,7 @@
  */
 #include "fit_inputs.h"
 
+#include <glib.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -118,10 +119,30 @@ static outline *add_outline(outline_list *outlines, const char *file, uint32_t c
     return added;
 }
 
-_Noreturn void fail_outline(const outline *at, const char *message) {
+void report_outline(const outline *at, const char *message) {
     if (at->character)
-        fail_at(at->file, 0, "U+%04X: %s", (unsigned)at->character, message);
-    fail_at(at->file, 0, "%s", message);
+        report_at(at->file, 0, "U+%04X: %s", (unsigned)at->character, message);
+    else
+        report_at(at->file, 0, "%s", message);
+}
+
+static void free_outline(outline *removed) {
+    free(removed->name);
+    narc_destroy_path(removed->path);
+}
+
+void keep_outline(outline_list *outlines, size_t from, size_t to) {
+    if (to < from) {
+        const outline kept = outlines->items[from];
+        outlines->items[from] = (outline){0};
+        free_outline(&outlines->items[to]);
+        outlines->items[to] = kept;
+    }
+}
+
+void cut_outlines(outline_list *outlines, size_t count) {
+    while (outlines->count > count)
+        free_outline(&outlines->items[--outlines->count]);
 }
 
 /* The characters of a name: bytes that continue one begin with the bits 10. */
@@ -145,10 +166,7 @@ int print_name(FILE *file, const outline_list *outlines, const char *name, int w
 }
 
 void free_outlines(outline_list *outlines) {
-    for (size_t i = 0; i < outlines->count; i++) {
-        free(outlines->items[i].name);
-        narc_destroy_path(outlines->items[i].path);
-    }
+    cut_outlines(outlines, 0);
     free(outlines->items);
     *outlines = (outline_list){0};
 }
@@ -199,14 +217,18 @@ static void read_glyphs(const char *file, const char *bytes, size_t size, const 
     narc_font *font;
     if (!characters)
         fail_at(file, 0, "a font: --characters must tell which of its glyphs to fit");
+    if (narc_open_font(bytes, size, &font, &error) != NARC_OK) {
+        report_at(file, 0, "%s", error.message);
+        return;
+    }
     size_t count;
     uint32_t *codes = list_characters(characters, &count);
-    if (narc_open_font(bytes, size, &font, &error) != NARC_OK)
-        fail_at(file, 0, "%s", error.message);
     for (size_t i = 0; i < count; i++) {
         outline *added = add_outline(outlines, file, codes[i], glyph_name(codes[i]));
-        if (narc_read_glyph(font, codes[i], added->path, &error) != NARC_OK)
-            fail_at(file, 0, "%s", error.message);
+        if (narc_read_glyph(font, codes[i], added->path, &error) != NARC_OK) {
+            report_at(file, 0, "%s", error.message);
+            cut_outlines(outlines, outlines->count - 1);
+        }
     }
     narc_close_font(font);
     free(codes);
@@ -242,6 +264,17 @@ static narc_status call_reader(file_kind kind, const char *bytes, size_t size, c
  * longest: 2,000 long curves, some 80 KB, take seconds. */
 enum { KB = 1024, LARGE_DRAWING = 64 };
 
+/* The first warning of Pango and others below librsvg, which they would print themselves. */
+static char warning[256];
+
+static GLogWriterOutput keep_warning(GLogLevelFlags level, const GLogField *fields, gsize count, gpointer context) {
+    (void)context;
+    for (gsize i = 0; i < count && level <= G_LOG_LEVEL_WARNING && !warning[0]; i++)
+        if (strcmp(fields[i].key, "MESSAGE") == 0)
+            snprintf(warning, sizeof warning, "%s", (const char *)fields[i].value);
+    return G_LOG_WRITER_HANDLED;
+}
+
 static void read_outline(const char *file, file_kind kind, const char *bytes, size_t size, const reading *how,
                          outline_list *outlines) {
     size_t stem;
@@ -252,8 +285,14 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
         show_stage("drawing", size / KB, "KB of SVG", size >= LARGE_DRAWING * KB);
     bool whole = false;
     const narc_image_request image = {choose_silhouette(how->silhouette), how->threshold, &whole};
-    if (call_reader(kind, bytes, size, &image, added->path, &error) != NARC_OK)
-        fail_text(file, &error);
+    warning[0] = 0;
+    if (call_reader(kind, bytes, size, &image, added->path, &error) != NARC_OK) {
+        report_text(file, &error);
+        cut_outlines(outlines, outlines->count - 1);
+        return;
+    }
+    if (warning[0])
+        warn_at(file, "a part of it, perhaps some text, may be missing: %s", warning);
     if (whole && image.silhouette == NARC_SILHOUETTE_ALPHA)
         warn_at(file, "opaque throughout, its outline is a rectangle; --silhouette dark or light traces what it shows");
     else if (whole)
@@ -262,14 +301,19 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
 
 void read_outlines(const char *const *files, size_t count, const reading *how, outline_list *out_outlines) {
     bool met[KIND_COUNT] = {false};
+    g_log_set_writer_func(keep_warning, NULL, NULL);
     for (size_t i = 0; i < count; i++) {
         size_t size;
-        char *bytes = read_bytes(files[i], &size);
+        char *bytes = try_read_bytes(files[i], &size);
+        if (!bytes)
+            continue;
         const file_kind kind = kind_of(files[i], bytes, size);
+        if (kind < KIND_COUNT)
+            met[kind] = true;
         if (kind == UNKNOWN)
-            fail_at(files[i], 0, "neither its beginning nor its suffix is that of a font, or of SVG, PNG, CSV or JSON");
-        met[kind] = true;
-        if (kind == FONT)
+            report_at(files[i], 0,
+                      "neither its beginning nor its suffix is that of a font, or of SVG, PNG, CSV or JSON");
+        else if (kind == FONT)
             read_glyphs(files[i], bytes, size, how->characters, out_outlines);
         else
             read_outline(files[i], kind, bytes, size, how, out_outlines);

@@ -29,11 +29,16 @@ typedef struct reading {
 
 /* Reads files: each font gives an outline for each character (once, without variation selectors), each other file gives
  * one. What a file is, its first bytes tell, and its suffix where they do not. It is an error if a setting has no file
- * to apply to. */
+ * to apply to. A command that keeps going leaves out what cannot be read. */
 void read_outlines(const char *const *files, size_t count, const reading *how, outline_list *out_outlines);
 
-/* Ends the command with a message about an outline. */
-_Noreturn void fail_outline(const outline *at, const char *message);
+/* An error in an outline; returns if the command keeps going. */
+void report_outline(const outline *at, const char *message);
+
+/* Leave some outlines out: outline `from` takes the place of one before it (or stays), and at the end the first `count`
+ * are kept. */
+void keep_outline(outline_list *outlines, size_t from, size_t to);
+void cut_outlines(outline_list *outlines, size_t count);
 
 /* Prints a cell of a table's first column, `width` characters wide; 0: as wide as the longest name and the word itself.
  * Returns the width. */

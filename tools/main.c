@@ -72,5 +72,5 @@ int main(int argc, char **argv) {
     else
         run_command(find_command(argv[1]), argc - 2, argv + 2);
     finish_report(stdout);
-    return 0;
+    return count_reports() ? PARTIAL_STATUS : 0;
 }

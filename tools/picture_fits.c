@@ -44,11 +44,11 @@ static drawing make_drawing(const outline *of) {
     drawing made;
     narc_error error;
     if (narc_flatten_path(of->path, 0, &made.contours, &error) != NARC_OK)
-        fail_outline(of, error.message);
+        fail_at(of->file, 0, "%s", error.message);
     made.corners = allocate(made.contours.point_count, sizeof *made.corners);
     if (narc_compute_hull(made.contours.points, made.contours.point_count, made.corners, &made.corner_count, &error) !=
         NARC_OK)
-        fail_outline(of, error.message);
+        fail_at(of->file, 0, "%s", error.message);
     return made;
 }
 

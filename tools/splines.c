@@ -8,14 +8,18 @@
 #include "progress.h"
 #include "shapes_json.h"
 
-narc_arc_chains *fit_splines(const outline_list *outlines, double tolerance) {
+narc_arc_chains *fit_splines(outline_list *outlines, double tolerance) {
     narc_arc_chains *chains = allocate(outlines->count, sizeof *chains);
+    size_t kept = 0;
     for (size_t i = 0; i < outlines->count; i++) {
         narc_error error;
-        if (narc_fit_chains(outlines->items[i].path, tolerance, &chains[i], &error) != NARC_OK)
-            fail_outline(&outlines->items[i], error.message);
+        if (narc_fit_chains(outlines->items[i].path, tolerance, &chains[kept], &error) != NARC_OK)
+            report_outline(&outlines->items[i], error.message);
+        else
+            keep_outline(outlines, i, kept++);
         show_progress("fitting", i, outlines->count);
     }
+    cut_outlines(outlines, kept);
     return chains;
 }
 

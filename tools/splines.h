@@ -10,7 +10,7 @@
 #include "fit_inputs.h"
 
 /* The chains of each outline; free each, then the array. */
-narc_arc_chains *fit_splines(const outline_list *outlines, double tolerance);
+narc_arc_chains *fit_splines(outline_list *outlines, double tolerance);
 
 /* {"splines": [{"name": ..., "contours": [[{"start", "end", "center", "radius", "turn"}, ...], ...]}, ...]}, with 17
  * significant digits. A line has "start" and "end" only. */

@@ -2,11 +2,14 @@
  *
  * canvas.c - a PNG or SVG picture to draw on with cairo.
  */
+#define _XOPEN_SOURCE 700 /* strcasecmp */
 #include "canvas.h"
 
 #include <cairo-svg.h>
+#include <errno.h>
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 #include "fail.h"
 #include "turn.h"
@@ -16,17 +19,18 @@ picture_kind picture_kind_of(const char *path) {
         return PICTURE_NONE;
     const size_t length = strlen(path);
     const char *suffix = length > 4 ? path + length - 4 : "";
-    if (strcmp(suffix, ".png") == 0)
+    if (strcasecmp(suffix, ".png") == 0)
         return PICTURE_PNG;
-    if (strcmp(suffix, ".svg") == 0)
+    if (strcasecmp(suffix, ".svg") == 0)
         return PICTURE_SVG;
     fail("a picture's name must end in .png or .svg, not '%s'", path);
 }
 
 static cairo_status_t write_bytes(void *context, const unsigned char *bytes, unsigned count) {
-    canvas *page = context;
-    page->failed = page->failed || fwrite(bytes, 1, count, page->file) != count;
-    return page->failed ? CAIRO_STATUS_WRITE_ERROR : CAIRO_STATUS_SUCCESS;
+    const canvas *page = context;
+    if (fwrite(bytes, 1, count, page->file) != count)
+        fail("%s: %s", page->path, strerror(errno)); /* cairo would lose the reason */
+    return CAIRO_STATUS_SUCCESS;
 }
 
 void open_canvas(canvas *page, const char *path, FILE *file, double width, double height) {
@@ -49,8 +53,6 @@ void finish_canvas(canvas *page) {
     cairo_surface_finish(page->surface);
     if (status == CAIRO_STATUS_SUCCESS)
         status = cairo_surface_status(page->surface);
-    if (page->failed)
-        status = CAIRO_STATUS_WRITE_ERROR;
     if (status != CAIRO_STATUS_SUCCESS)
         fail("%s: %s", page->path, cairo_status_to_string(status));
     cairo_surface_destroy(page->surface);

@@ -25,7 +25,6 @@ typedef struct canvas {
     FILE *file;
     cairo_surface_t *surface;
     cairo_t *pen;
-    bool failed; /* a write did */
 } canvas;
 
 /* A white page. `file` is an open output; the canvas must stay where it is until it is finished. */

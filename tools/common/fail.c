@@ -5,6 +5,7 @@
 #include "fail.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,11 +14,19 @@
 #include "output.h"
 #include "progress.h"
 
-enum { FAILURE_STATUS = 2, LINE_SIZE = 2048 };
+enum { LINE_SIZE = 2048 };
 
 static const char *program = "narc";
+static bool going_on;
+static size_t report_count;
 
 void name_program(const char *name) { program = name; }
+
+/* _Exit() drops what is still buffered: nothing more gets written. */
+_Noreturn void abandon(void) {
+    discard_outputs();
+    _Exit(FAILURE_STATUS);
+}
 
 /* Prints `line` as one line. */
 static void print_line(char *line) {
@@ -28,11 +37,12 @@ static void print_line(char *line) {
     fprintf(stderr, "%s\n", line);
 }
 
-/* Prints `line` and ends the process. _Exit() drops what is still buffered: nothing more gets written. */
-static _Noreturn void end(char *line) {
-    discard_outputs();
-    print_line(line);
-    _Exit(FAILURE_STATUS);
+/* Begins a line with the place of an error; returns its length. */
+static size_t print_place(char *line, const char *path, size_t line_number) {
+    const char *shown = strcmp(path, "-") == 0 ? "standard input" : path;
+    /* Half the line is kept for the message, however long the path. */
+    return (size_t)(line_number ? snprintf(line, LINE_SIZE, "%.*s:%zu: ", LINE_SIZE / 2, shown, line_number)
+                                : snprintf(line, LINE_SIZE, "%s: %.*s: ", program, LINE_SIZE / 2, shown));
 }
 
 void fail(const char *format, ...) {
@@ -42,32 +52,47 @@ void fail(const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(line + used, sizeof line - (size_t)used, format, arguments);
     va_end(arguments);
-    end(line);
+    print_line(line);
+    abandon();
 }
 
 void fail_at(const char *path, size_t line_number, const char *format, ...) {
     char line[LINE_SIZE];
-    const char *shown = strcmp(path, "-") == 0 ? "standard input" : path;
-    /* Half the line is kept for the message, however long the path. */
-    const int used = line_number ? snprintf(line, sizeof line, "%.*s:%zu: ", LINE_SIZE / 2, shown, line_number)
-                                 : snprintf(line, sizeof line, "%s: %.*s: ", program, LINE_SIZE / 2, shown);
+    const size_t used = print_place(line, path, line_number);
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(line + used, sizeof line - (size_t)used, format, arguments);
+    vsnprintf(line + used, sizeof line - used, format, arguments);
     va_end(arguments);
-    end(line);
+    print_line(line);
+    abandon();
+}
+
+void report_at(const char *path, size_t line_number, const char *format, ...) {
+    char line[LINE_SIZE];
+    const size_t used = print_place(line, path, line_number);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line + used, sizeof line - used, format, arguments);
+    va_end(arguments);
+    print_line(line);
+    report_count++;
+    if (!going_on)
+        abandon();
 }
 
 void warn_at(const char *path, const char *format, ...) {
     char line[LINE_SIZE];
-    const char *shown = strcmp(path, "-") == 0 ? "standard input" : path;
-    const int used = snprintf(line, sizeof line, "%s: %.*s: ", program, LINE_SIZE / 2, shown);
+    const size_t used = print_place(line, path, 0);
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(line + used, sizeof line - (size_t)used, format, arguments);
+    vsnprintf(line + used, sizeof line - used, format, arguments);
     va_end(arguments);
     print_line(line);
 }
+
+void keep_going(void) { going_on = true; }
+
+size_t count_reports(void) { return report_count; }
 
 void *allocate(size_t count, size_t size) {
     void *memory = count <= SIZE_MAX / size ? malloc(count ? count * size : 1) : NULL;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * fail.h - an error ends the command: one line on standard error, no output file left behind, exit status 2.
+ * fail.h - an error ends the command: one line on standard error, no output file left behind, exit status 2. A command
+ * that keeps going after errors in some of its inputs ends with status 1.
  */
 #ifndef NARC_TOOL_FAIL_H
 #define NARC_TOOL_FAIL_H
@@ -13,6 +14,8 @@
 #define PRINTF_LIKE(format_at, first)
 #endif
 
+enum { PARTIAL_STATUS = 1, FAILURE_STATUS = 2 };
+
 /* The name that messages begin with, instead of "narc"; it must stay. */
 void name_program(const char *name);
 
@@ -22,8 +25,16 @@ PRINTF_LIKE(1, 2) _Noreturn void fail(const char *format, ...);
 /* "path:line: message"; without a line, 0, "narc: path: message". "-" is standard input. */
 PRINTF_LIKE(3, 4) _Noreturn void fail_at(const char *path, size_t line, const char *format, ...);
 
+/* As fail_at(), but from keep_going() on it prints the line, counts it and returns. */
+PRINTF_LIKE(3, 4) void report_at(const char *path, size_t line, const char *format, ...);
+void keep_going(void);
+size_t count_reports(void);
+
 /* A warning: "narc: path: message". */
 PRINTF_LIKE(2, 3) void warn_at(const char *path, const char *format, ...);
+
+/* Ends the command behind an error that was reported. */
+_Noreturn void abandon(void);
 
 /* Memory for `count` items of `size` bytes, never NULL. */
 void *allocate(size_t count, size_t size);

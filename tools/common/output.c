@@ -96,14 +96,21 @@ FILE *open_output(const char *path) {
     return out->file;
 }
 
+void flush_output(FILE *file) {
+    size_t i = 0;
+    while (i < output_count && outputs[i].file != file)
+        i++;
+    const bool failed = ferror(file);
+    if ((fflush(file) != 0 || failed) && i < output_count)
+        fail("%s: %s", outputs[i].path, strerror(errno));
+}
+
 FILE *finish_outputs(void) {
     FILE *report = stdout;
     for (size_t i = 0; i < output_count; i++) {
-        const bool written = !ferror(outputs[i].file) && fflush(outputs[i].file) == 0;
-        const int reason = errno;
-        const bool closed = outputs[i].file == stdout || fclose(outputs[i].file) == 0;
-        if (!written || !closed)
-            fail("%s: %s", outputs[i].path, strerror(written ? errno : reason));
+        flush_output(outputs[i].file);
+        if (outputs[i].file != stdout && fclose(outputs[i].file) != 0)
+            fail("%s: %s", outputs[i].path, strerror(errno));
         report = outputs[i].file == stdout ? stderr : report;
     }
     hide_progress();

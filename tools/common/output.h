@@ -16,6 +16,10 @@ void protect_input(const char *path);
 /* Opens an output; "-" is standard output. Two outputs cannot be the same file, and none can be an input. */
 FILE *open_output(const char *path);
 
+/* Writes out what an output has so far, and checks it: after the last line of a file, while the reason why it cannot be
+ * written is known. */
+void flush_output(FILE *file);
+
 /* Writes everything out, checks it and clears the progress line. Returns where the report goes: to standard output, or
  * to standard error if an output is there. The files have no names yet, so that a report that cannot be printed leaves
  * no outputs either. */

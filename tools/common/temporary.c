@@ -6,6 +6,7 @@
 #include "temporary.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -42,7 +43,16 @@ char *find_target(const char *path) {
     return found;
 }
 
+/* rename() would replace a file that may not be written to, and root may write to all. */
+static bool is_read_only(const char *target, const struct stat *old) {
+    if (!(old->st_mode & 0222))
+        errno = EACCES;
+    return !(old->st_mode & 0222) || access(target, W_OK) != 0;
+}
+
 FILE *open_temporary(const char *target, const struct stat *old, char *volatile *out_name) {
+    if (old && is_read_only(target, old))
+        return NULL;
     const mode_t mask = umask(0);
     umask(mask);
     char *name = join(target, folder_length(target), ".narc-XXXXXX"); /* short: the target's may be as long as can be */
@@ -50,6 +60,8 @@ FILE *open_temporary(const char *target, const struct stat *old, char *volatile 
     const int descriptor = mkstemp(name);
     if (descriptor < 0)
         return NULL;
+    if (old && fchown(descriptor, old->st_uid, old->st_gid) != 0 && fchown(descriptor, (uid_t)-1, old->st_gid) != 0)
+        errno = 0; /* only root gives files to others */
     fchmod(descriptor, old ? old->st_mode & 0777 : 0666 & ~mask);
     return fdopen(descriptor, "wb");
 }

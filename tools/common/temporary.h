@@ -12,8 +12,8 @@
  * neither it nor its folder exists. */
 char *find_target(const char *path);
 
-/* Opens a temporary file beside a target, with the permissions of the file that it will replace, or (`old` NULL) those
- * that the user's mask allows. Its name, the caller's to remove and to free, is told before the file is there, so that a
+/* Opens a temporary file beside a target, with owner and permissions of the file that it will replace, or (`old` NULL)
+ * with those that the user's mask allows. A file that is read-only is not replaced: EACCES or EROFS. Its name, the caller's to remove and to free, is told before the file is there, so that a
  * signal handler can remove it. NULL, and errno, if it cannot be opened. */
 FILE *open_temporary(const char *target, const struct stat *old, char *volatile *out_name);
 

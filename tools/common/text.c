@@ -2,6 +2,7 @@
  *
  * text.c - whole files, numbers and UTF-8.
  */
+#define _POSIX_C_SOURCE 200809L /* fileno */
 #include "text.h"
 
 #include <errno.h>
@@ -9,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "fail.h"
 #include "number.h"
@@ -28,21 +30,45 @@ static FILE *open_input(const char *path) {
     return stdin;
 }
 
-char *read_bytes(const char *path, size_t *out_size) {
+/* The reason why a file cannot be read, or NULL. A regular file that is too large is known before it is read. */
+static const char *read_all(FILE *file, char **bytes, size_t *size) {
+    static const char too_large[] = "it has more than 1 GiB, the most that is read";
+    const size_t most = (size_t)1 << 30;
+    struct stat found;
+    size_t capacity = 0, got = 1;
+    if (fstat(fileno(file), &found) == 0 && S_ISREG(found.st_mode) && (uintmax_t)found.st_size > most)
+        return too_large;
+    while (got) {
+        /* Doubling the room asked for keeps the number of copies small. */
+        *bytes = grow(*bytes, &capacity, *size + 65536, 1);
+        const size_t room = capacity - *size - 1, rest = most + 1 - *size;
+        got = fread(*bytes + *size, 1, room < rest ? room : rest, file);
+        *size += got;
+        if (*size > most)
+            return too_large;
+    }
+    (*bytes)[*size] = 0;
+    return ferror(file) ? strerror(errno) : NULL;
+}
+
+char *try_read_bytes(const char *path, size_t *out_size) {
     FILE *file = open_input(path);
     char *bytes = NULL;
-    size_t size = 0, capacity = 0, got = 1;
-    while (file && got) {
-        /* Doubling the room asked for keeps the number of copies small. */
-        bytes = grow(bytes, &capacity, size + 65536, 1);
-        got = fread(bytes + size, 1, capacity - size - 1, file);
-        size += got;
-    }
-    if (!file || ferror(file))
-        fail_at(path, 0, "%s", strerror(errno));
-    fclose(file);
-    bytes[size] = 0;
-    *out_size = size;
+    *out_size = 0;
+    const char *wrong = file ? read_all(file, &bytes, out_size) : strerror(errno);
+    if (file)
+        fclose(file);
+    if (!wrong)
+        return bytes;
+    free(bytes);
+    report_at(path, 0, "%s", wrong);
+    return NULL;
+}
+
+char *read_bytes(const char *path, size_t *out_size) {
+    char *bytes = try_read_bytes(path, out_size);
+    if (!bytes)
+        abandon();
     return bytes;
 }
 
@@ -55,11 +81,16 @@ char *read_text(const char *path) {
     return text;
 }
 
-_Noreturn void fail_text(const char *path, const narc_error *error) {
+void report_text(const char *path, const narc_error *error) {
     char line[32];
     snprintf(line, sizeof line, "line %zu: ", error->index);
     const size_t length = strlen(line);
-    fail_at(path, error->index, "%s", error->message + (strncmp(error->message, line, length) == 0 ? length : 0));
+    report_at(path, error->index, "%s", error->message + (strncmp(error->message, line, length) == 0 ? length : 0));
+}
+
+_Noreturn void fail_text(const char *path, const narc_error *error) {
+    report_text(path, error);
+    abandon();
 }
 
 bool parse_number(const char *text, double *out_value) {

@@ -11,15 +11,20 @@
 
 #include "lines.h"
 
-/* The bytes of a file, with a NUL behind them that does not count; "-" is standard input, which can be read once. From
- * now on no output may replace the file. To be freed. */
+/* The bytes of a file, at most 1 GiB, with a NUL behind them that does not count; "-" is standard input, which can be read
+ * once. From now on no output may replace the file. To be freed. The second one returns NULL where a command that keeps
+ * going has reported an error. */
 char *read_bytes(const char *path, size_t *out_size);
+char *try_read_bytes(const char *path, size_t *out_size);
 
 /* The text of a file, NUL-terminated, as narc_clean_text() leaves it. */
 char *read_text(const char *path);
 
 /* Ends the command with an error of reading a text, whose index is its line. */
 _Noreturn void fail_text(const char *path, const narc_error *error);
+
+/* The same for a command that may keep going. */
+void report_text(const char *path, const narc_error *error);
 
 /* A finite decimal number, and nothing else. */
 bool parse_number(const char *text, double *out_value);
