@@ -13,14 +13,17 @@
 #include "text.h"
 #include "turn.h"
 
+enum { SHAPE, X, Y, ANGLE, SCALE, BODY_COLUMNS };
+static const char *const body_columns[BODY_COLUMNS] = {"shape", "x", "y", "angle", "scale"};
+
 /* The scale of the current row. The kernels ignore a body that is too small or too large; a file must not have one. */
-static float read_scale(const table *rows, const shape *of) {
-    const double scale = row_number(rows, 4, "scale");
+static float read_scale(table *rows, const shape *of) {
+    const double scale = row_number(rows, SCALE);
     const double size = scale * of->bound;
     if (!(scale > 0))
-        fail_field(rows, 4, "scale must be more than 0");
+        fail_field(rows, SCALE, "must be more than 0");
     if (!(size >= NARC_MIN_SIZE && size <= NARC_MAX_SIZE)) {
-        fail_field(rows, 4, "scale makes the body's radius %.9g, outside %.9g to %.9g,", size, NARC_MIN_SIZE,
+        fail_field(rows, SCALE, "makes the body's radius %.9g, outside %.9g to %.9g,", size, NARC_MIN_SIZE,
                    NARC_MAX_SIZE);
     }
     return (float)scale;
@@ -41,24 +44,24 @@ static void compute_poses(body_list *bodies, float *angles) {
 }
 
 void read_bodies(const char *path, const shape_list *shapes, body_list *out_bodies) {
-    static const char *const headers[] = {"shape,x,y,angle", "shape,x,y,angle,scale"};
     table rows;
-    const bool scaled = open_table(&rows, path, headers, 2) == 1;
+    open_table(&rows, path, body_columns, BODY_COLUMNS, SCALE);
+    const bool scaled = has_column(&rows, SCALE);
     body_list bodies = {0};
     bodies.items = grow(NULL, &bodies.capacity, 0, sizeof *bodies.items);
     size_t angle_capacity = 0;
     float *angles = grow(NULL, &angle_capacity, 0, sizeof *angles);
     while (next_row(&rows, "reading bodies")) {
         if (bodies.count == UINT32_MAX)
-            fail_at(path, rows.line, "more than %u bodies", UINT32_MAX);
+            fail_at(path, rows.csv.line, "more than %u bodies", UINT32_MAX);
         bodies.items = grow(bodies.items, &bodies.capacity, bodies.count + 1, sizeof *bodies.items);
         angles = grow(angles, &angle_capacity, bodies.count + 1, sizeof *angles);
-        const size_t found = find_shape(shapes, rows.fields[0]);
+        const size_t found = find_shape(shapes, row_field(&rows, SHAPE));
         if (found == shapes->count)
-            fail_field(&rows, 0, "no shape has that name or index (there are %zu)", shapes->count);
-        angles[bodies.count] = (float)remainder(row_number(&rows, 3, "angle"), FULL_TURN);
-        bodies.items[bodies.count++] = (body){.x = row_number(&rows, 1, "x"),
-                                              .y = row_number(&rows, 2, "y"),
+            fail_field(&rows, SHAPE, "is no name or index of a shape (there are %zu)", shapes->count);
+        angles[bodies.count] = (float)remainder(row_number(&rows, ANGLE), FULL_TURN);
+        bodies.items[bodies.count++] = (body){.x = row_number(&rows, X),
+                                              .y = row_number(&rows, Y),
                                               .scale = scaled ? read_scale(&rows, &shapes->items[found]) : 1.0f,
                                               .shape = (uint32_t)found};
     }
@@ -68,27 +71,26 @@ void read_bodies(const char *path, const shape_list *shapes, body_list *out_bodi
     *out_bodies = bodies;
 }
 
-static uint32_t read_index(const table *rows, size_t column, const char *name, size_t body_count) {
+static uint32_t read_index(const table *rows, size_t column, size_t body_count) {
     uint64_t index;
-    if (!parse_whole(rows->fields[column], UINT64_MAX, &index))
-        fail_field(rows, column, "%s is not a whole number", name);
+    if (!parse_whole(row_field(rows, column), UINT64_MAX, &index))
+        fail_field(rows, column, "is not a whole number");
     if (index >= body_count)
-        fail_field(rows, column, "%s is out of range, there are %zu bodies", name, body_count);
+        fail_field(rows, column, "is out of range, there are %zu bodies", body_count);
     return (uint32_t)index;
 }
 
 void read_pairs(const char *path, size_t body_count, pair_list *out_pairs) {
-    static const char *const headers[] = {"a,b"};
+    static const char *const names[] = {"a", "b"};
     table rows;
-    open_table(&rows, path, headers, 1);
+    open_table(&rows, path, names, 2, 2);
     pair_list pairs = {0};
     pairs.items = grow(NULL, &pairs.capacity, 0, sizeof *pairs.items);
     while (next_row(&rows, "reading pairs")) {
         if (pairs.count == UINT32_MAX)
-            fail_at(path, rows.line, "more than %u pairs", UINT32_MAX);
+            fail_at(path, rows.csv.line, "more than %u pairs", UINT32_MAX);
         pairs.items = grow(pairs.items, &pairs.capacity, pairs.count + 1, sizeof *pairs.items);
-        pairs.items[pairs.count++] =
-            (pair){read_index(&rows, 0, "a", body_count), read_index(&rows, 1, "b", body_count)};
+        pairs.items[pairs.count++] = (pair){read_index(&rows, 0, body_count), read_index(&rows, 1, body_count)};
     }
     close_table(&rows);
     *out_pairs = pairs;

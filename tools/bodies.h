@@ -27,10 +27,10 @@ typedef struct pair_list {
     size_t count, capacity;
 } pair_list;
 
-/* Reads a CSV file with the header shape,x,y,angle or shape,x,y,angle,scale. */
+/* Reads a CSV file with the columns shape, x, y, angle and perhaps scale. */
 void read_bodies(const char *path, const shape_list *shapes, body_list *out_bodies);
 
-/* Reads a CSV file with the header a,b: indices of bodies. */
+/* Reads a CSV file with the columns a and b: indices of bodies. */
 void read_pairs(const char *path, size_t body_count, pair_list *out_pairs);
 
 /* Both as the library wants them. */

@@ -45,9 +45,9 @@ static const struct {
     const char *suffix;
     file_kind kind;
 } suffixes[] = {
-    {".svg", SVG},   {".xml", SVG},  {".png", PNG},  {".csv", CSV},   {".txt", CSV},
-    {".json", JSON}, {".ttf", FONT}, {".otf", FONT}, {".ttc", FONT},  {".otc", FONT},
-    {".pfb", FONT},  {".pfa", FONT}, {".cff", FONT}, {".woff", FONT}, {".woff2", FONT},
+    {".svg", SVG},   {".xml", SVG},  {".png", PNG},   {".csv", CSV},    {".txt", CSV},  {".tsv", CSV},
+    {".json", JSON}, {".ttf", FONT}, {".otf", FONT},  {".ttc", FONT},   {".otc", FONT}, {".pfb", FONT},
+    {".pfa", FONT},  {".cff", FONT}, {".woff", FONT}, {".woff2", FONT},
 };
 enum { SUFFIX_COUNT = sizeof suffixes / sizeof suffixes[0] };
 
@@ -78,7 +78,7 @@ static file_kind kind_of(const char *file, const char *bytes, size_t size) {
         return SVG;
     if (*text == '[' || *text == '{')
         return JSON;
-    if (*text && strchr("+-.0123456789", *text))
+    if (*text && strchr("+-.0123456789\"", *text))
         return CSV;
     size_t stem;
     const char *base = base_name(file, &stem);

@@ -40,14 +40,16 @@ typedef struct drawing {
     size_t corner_count;
 } drawing;
 
-static drawing make_drawing(const outline *of) {
+/* A spline needs no hull: its outline may lie on a line. */
+static drawing make_drawing(const outline *of, bool has_hull) {
     drawing made;
     narc_error error;
     if (narc_flatten_path(of->path, 0, &made.contours, &error) != NARC_OK)
         fail_at(of->file, 0, "%s", error.message);
     made.corners = allocate(made.contours.point_count, sizeof *made.corners);
-    if (narc_compute_hull(made.contours.points, made.contours.point_count, made.corners, &made.corner_count, &error) !=
-        NARC_OK)
+    made.corner_count = 0;
+    if (has_hull && narc_compute_hull(made.contours.points, made.contours.point_count, made.corners, &made.corner_count,
+                                      &error) != NARC_OK)
         fail_at(of->file, 0, "%s", error.message);
     return made;
 }
@@ -87,8 +89,9 @@ static void draw_caption(canvas *page, const char *name, const char *text, doubl
 static void draw_cell(canvas *page, const outline *of, const narc_fit_result *fit, const narc_arc_chains *chains,
                       double left, double top, double cell, bool *shown) {
     fit_look look = {.line = LINE * cell, .dot = DOT * cell, .shortest = SHORTEST * cell};
-    drawing drawn = make_drawing(of);
-    const narc_aabb box = join_boxes(bound_points(drawn.corners, drawn.corner_count), fit ? bound_fit(fit) : EMPTY_BOX);
+    drawing drawn = make_drawing(of, fit);
+    const narc_aabb box =
+        join_boxes(bound_points(drawn.contours.points, drawn.contours.point_count), fit ? bound_fit(fit) : EMPTY_BOX);
     const double inner = cell * (1 - 2 * PADDING);
     const placement where = place_box(box, left + PADDING * cell, top + PADDING * cell, inner, inner);
     char text[128] = "";

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * table.h - CSV files with a header that is known, then rows with as many fields. Fields are not quoted.
+ * table.h - CSV files with a header, whose columns are found by their names: in any order, among others.
  */
 #ifndef NARC_TOOL_TABLE_H
 #define NARC_TOOL_TABLE_H
@@ -8,29 +8,36 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "csv.h"
 #include "fail.h"
 
 enum { TABLE_MAX_COLUMNS = 8 };
 
 typedef struct table {
     const char *path;
-    char *text, *next; /* the whole file, the line behind the current one */
-    size_t size, line;
-    size_t columns;
-    char *fields[TABLE_MAX_COLUMNS]; /* of the current row, without surrounding blanks */
+    char *text; /* the whole file */
+    size_t size;
+    narc_csv csv;
+    size_t columns;                   /* of the header */
+    const char *const *names;         /* of the columns that are asked for */
+    size_t places[TABLE_MAX_COLUMNS]; /* where they are in a row; `columns`: there is none */
 } table;
 
-/* Opens a file whose first line is one of `headers`, and tells which. */
-size_t open_table(table *rows, const char *path, const char *const *headers, size_t header_count);
+/* Opens a file that has columns with `count` names, small letters; only the first `required` of them must be there. */
+void open_table(table *rows, const char *path, const char *const *names, size_t count, size_t required);
+
+/* Is there a column with name k? */
+bool has_column(const table *rows, size_t k);
 
 /* Moves to the next row; false at the end. Blank lines may follow the last row. Shows progress as `stage`. */
 bool next_row(table *rows, const char *stage);
 
-/* A field of the current row as a number; `name` is for the message. */
-double row_number(const table *rows, size_t column, const char *name);
+/* The field of the current row in the column with name k; as a number. */
+const char *row_field(const table *rows, size_t k);
+double row_number(table *rows, size_t k);
 
-/* Ends the command: "path:line: message 'field'", the field cut if it is long. */
-PRINTF_LIKE(3, 4) _Noreturn void fail_field(const table *rows, size_t column, const char *format, ...);
+/* Ends the command: "path:line: name message 'field'", the field cut if it is long. */
+PRINTF_LIKE(3, 4) _Noreturn void fail_field(const table *rows, size_t k, const char *format, ...);
 
 void close_table(table *rows);
 

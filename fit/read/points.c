@@ -7,10 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "csv.h"
 #include "error.h"
 #include "json.h"
-#include "lines.h"
-#include "number.h"
 #include "outline/path.h"
 
 /* ---------------------------------------------------------------------------- contours of points */
@@ -48,48 +47,86 @@ static narc_status check_value(double value, size_t line, const char *where, nar
 
 /* ---------------------------------------------------------------------------- CSV */
 
-static narc_status read_field(const char *field, size_t line, const char *name, double *out_value, narc_error *error) {
+/* Where x, y and z are in the rows of a table. */
+struct columns {
+    size_t count, x, y, z; /* z == count: no column is looked at as z */
+    double plane;          /* the z of the first row */
+};
+
+static narc_status read_field(narc_csv *csv, size_t column, const char *name, double *out_value, narc_error *error) {
     char where[32];
-    snprintf(where, sizeof where, "line %zu: %s", line, name);
-    if (!narc_parse_number(field, strlen(field), out_value)) {
-        return narc_fail(error, NARC_ERROR_FORMAT, line, 0, "%s is not a number: '%s'", where,
-                         narc_make_excerpt(field).text);
-    }
+    snprintf(where, sizeof where, "line %zu: %s", csv->line, name);
+    const char *wrong = narc_read_number(csv, column, out_value);
+    const narc_excerpt shown = narc_make_excerpt(csv->fields[column]);
+    if (wrong)
+        return narc_fail(error, NARC_ERROR_FORMAT, csv->line, 0, "%s %s: '%s'", where, wrong, shown.text);
     if (!isfinite(*out_value)) {
-        return narc_fail(error, NARC_ERROR_NOT_FINITE, line, *out_value, "%s is not finite: '%s'", where,
-                         narc_make_excerpt(field).text);
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, csv->line, *out_value, "%s is not finite: '%s'", where,
+                         shown.text);
     }
-    return check_value(*out_value, line, where, error);
+    return check_value(*out_value, csv->line, where, error);
 }
 
-/* "x" or "X" for 'x'. */
-static bool is_letter(const char *field, char letter) { return (field[0] | 0x20) == letter && !field[1]; }
+/* A row with a column x or y, or without any number. */
+static bool is_header(narc_csv csv) {
+    bool has_number = false;
+    for (size_t k = 0; k < csv.count && k < NARC_CSV_COLUMNS; k++) {
+        double value;
+        const char *name = csv.fields[k];
+        if ((name[0] == 'x' || name[0] == 'X' || name[0] == 'y' || name[0] == 'Y') && !name[1])
+            return true;
+        has_number = has_number || !narc_read_number(&csv, k, &value);
+    }
+    return !has_number;
+}
 
-/* One line that is not blank. */
-static narc_status read_row(struct pen *pen, char *row, size_t line, bool may_be_header, narc_error *error) {
-    const narc_excerpt shown = narc_make_excerpt(row);
-    char *fields[2];
+/* What the first row tells: its names, or else that there are x and y, or x, y and z. */
+static narc_status find_columns(narc_csv *csv, bool has_names, struct columns *out_columns, narc_error *error) {
+    *out_columns = (struct columns){.count = csv->count, .x = 0, .y = 1, .z = has_names ? csv->count : 2};
+    if (has_names) {
+        const narc_status status = narc_find_column(csv, "x", true, &out_columns->x, error);
+        return status ? status : narc_find_column(csv, "y", true, &out_columns->y, error);
+    }
+    if (csv->count < 2 || csv->count > 3) {
+        return narc_fail(error, NARC_ERROR_FORMAT, csv->line, 0, "line %zu: not numbers 'x,y' or 'x,y,z': '%s'",
+                         csv->line, csv->row.text);
+    }
+    return out_columns->z < csv->count ? read_field(csv, 2, "z", &out_columns->plane, error) : NARC_OK;
+}
+
+static narc_status read_point(struct pen *pen, narc_csv *csv, const struct columns *columns, narc_error *error) {
     narc_point p;
-    if (narc_split_line(row, fields, 2) != 2)
-        return narc_fail(error, NARC_ERROR_FORMAT, line, 0, "line %zu: not two numbers 'x,y': '%s'", line, shown.text);
-    if (may_be_header && is_letter(fields[0], 'x') && is_letter(fields[1], 'y'))
-        return NARC_OK;
-    narc_status status = read_field(fields[0], line, "x", &p.x, error);
-    status = status ? status : read_field(fields[1], line, "y", &p.y, error);
+    double z = columns->plane;
+    if (csv->count != columns->count) {
+        return narc_fail(error, NARC_ERROR_FORMAT, csv->line, 0,
+                         "line %zu: %zu columns where the first row has %zu: '%s'", csv->line, csv->count,
+                         columns->count, csv->row.text);
+    }
+    narc_status status = read_field(csv, columns->x, "x", &p.x, error);
+    status = status ? status : read_field(csv, columns->y, "y", &p.y, error);
+    if (!status && columns->z < columns->count)
+        status = read_field(csv, columns->z, "z", &z, error);
+    if (!status && z != columns->plane) {
+        return narc_fail(error, NARC_ERROR_FORMAT, csv->line, z,
+                         "line %zu: z changes, but without a header that names x and y all points lie in a plane: '%s'",
+                         csv->line, csv->row.text);
+    }
     return status ? status : add_point(pen, p, error);
 }
 
 static narc_status read_rows(struct pen *pen, char *text, narc_error *error) {
-    bool may_be_header = true;
-    narc_status status = NARC_OK;
-    char *row;
-    for (size_t line = 1; !status && (row = narc_next_line(&text)); line++) {
-        if (*row) {
-            status = read_row(pen, row, line, may_be_header, error);
-            may_be_header = false;
-        } else {
+    narc_csv csv = {.rest = text};
+    struct columns columns = {0};
+    bool is_found;
+    narc_status status = narc_read_row(&csv, &is_found, error);
+    for (; !status && is_found; status = status ? status : narc_read_row(&csv, &is_found, error)) {
+        const bool is_first = csv.count > 0 && columns.count == 0, has_names = is_first && is_header(csv);
+        if (is_first)
+            status = find_columns(&csv, has_names, &columns, error);
+        if (!status && csv.count == 0)
             status = end_contour(pen, error);
-        }
+        else if (!status && !has_names)
+            status = read_point(pen, &csv, &columns, error);
     }
     return status ? status : end_contour(pen, error);
 }

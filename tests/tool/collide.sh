@@ -43,6 +43,23 @@ check "they are the same" cmp out.txt known.csv
 check "the report is on standard error" grep -q "colliding pairs" err.txt
 works "no output asked for" collide $known
 
+# Tables as spreadsheets write them, their columns in any order.
+awk -F, 'BEGIN { OFS = ";" } NR == 1 { print "id", "Angle", "\"x\"", "y", "note", "SHAPE" }
+    NR > 1 { for (k = 2; k <= 4; k++) sub(/\./, ",", $k); print NR - 2, $4, "\"" $2 "\"", $3, "\"a;\"\"b\"\"\"", "\"" $1 "\"" }
+    END { print ";;;;;" }' bodies.csv >sheet.csv
+printf '\357\273\277' | cat - sheet.csv | sed 's/$/\r/' >marked.csv
+sed 's/,/\t/g' bodies.csv >tabs.csv
+sed 's/,/  /g' bodies.csv >blanks.csv
+for sheet in sheet marked tabs blanks; do
+    works "bodies of a spreadsheet, $sheet" collide --shapes shapes.json --bodies $sheet.csv --out $sheet.txt
+    check "bodies of a spreadsheet, $sheet: the same" cmp $sheet.txt known.csv
+done
+printf 'b,n,A\n1,0,0\n0,1,1\n17,2,0\n' >swapped.csv
+works "pairs with columns in another order" collide $known --pairs swapped.csv --all --out swapped.txt
+check "are the same pairs" cmp swapped.txt all.csv
+works "contacts as pairs" collide $known --pairs known.csv --out again.csv
+check "are found again" cmp again.csv known.csv
+
 printf 'shape,x,y,angle,scale\ndisc,1e7,0,0,2\n1,10000002.25,0,0,1\n' >scaled.csv
 works "scale, far away" collide --shapes shapes.json --bodies scaled.csv --out scaled.txt
 check "scale multiplies the size" contact scaled.txt 2 "0 1 -0.25 1 0"

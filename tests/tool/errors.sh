@@ -113,11 +113,17 @@ scaled='shape,x,y,angle,scale\n'
 fails "bodies: no file" "narc: absent.csv: " collide --shapes shapes.json --bodies absent.csv --out new.csv
 fails "bodies: a folder" "narc: full.csv: " collide --shapes shapes.json --bodies full.csv --out new.csv
 bodies "empty" "narc: bad.csv: .*empty" ''
-bodies "wrong header" "bad.csv:1: .*'shape,x,y'" 'shape,x,y\ndisc,0,0\n'
-bodies "no header" "bad.csv:1: .*'disc,0,0,0'" 'disc,0,0,0\n'
+bodies "wrong header" "bad.csv:1: the header has no column 'angle': 'shape,x,y'" 'shape,x,y\ndisc,0,0\n'
+bodies "no header" "bad.csv:1: the header has no column 'shape': 'disc,0,0,0'" 'disc,0,0,0\n'
+bodies "two columns of a name" "bad.csv:1: the header has two columns 'x': 'shape;x;X;y;angle'" 'shape;x;X;y;angle\n'
+bodies "a decimal comma between commas" "bad.csv:2: x has a decimal comma, .* '1,5'" "${head}disc,\"1,5\",0,0\n"
+bodies "points and commas" "bad.csv:3: x has a decimal point, .* '1.5'" 'shape;x;y;angle\ndisc;1,5;0;0\ndisc;1.5;0;0\n'
+bodies "quotes that do not end" "bad.csv:2: a field in quotes does not end, .*'disc,\"1'" "${head}disc,\"1\n"
+bodies "UTF-16" "bad.csv:1: the text is UTF-16" '\377\376s\000'
 bodies "too few columns" "bad.csv:3: 3 columns" "${head}disc,0,0,0\ndisc,0,0\n"
 bodies "too many columns" "bad.csv:2: 5 columns" "${head}disc,0,0,0,1\n"
 bodies "blank line" "bad.csv:3: " "${head}disc,0,0,0\n\ndisc,0,0,0\n"
+bodies "line of empty fields" "bad.csv:3: a blank line" "${head}disc,0,0,0\n,,,\n\ndisc,0,0,0\n"
 bodies "word for a number" "bad.csv:3: y .*'up'" "${head}disc,0,0,0\ndisc,0,up,0\n"
 bodies "number with a tail" "bad.csv:2: x .*'1.5m'" "${head}disc,1.5m,0,0\n"
 bodies "no number" "bad.csv:2: angle .*''" "${head}disc,1,2,\n"
@@ -138,12 +144,12 @@ bodies "numbers that differ look different" "bad.csv:2: scale .* 1.00000001e+09,
 bodies "NUL byte" "bad.csv:2: " "${head}disc\\000,0,0,0\n"
 bodies "control characters stay on one line" "bad.csv:2: .*'a?b'" "${head}a\\001b,0,0,0\n"
 long=$(printf '%02000d' 0)x
-bodies "a long field is cut" "bad.csv:2: x is not a finite number '0\\{40\\}\\.\\.\\.'\$" "${head}disc,$long,0,0\n"
-bodies "a long name is cut" "bad.csv:2: no shape .* '0\\{40\\}\\.\\.\\.'\$" "${head}$long,0,0,0\n"
+bodies "a long field is cut" "bad.csv:2: x is not a number '0\\{40\\}\\.\\.\\.'\$" "${head}disc,$long,0,0\n"
+bodies "a long name is cut" "bad.csv:2: shape is no name or index .* '0\\{40\\}\\.\\.\\.'\$" "${head}$long,0,0,0\n"
 bodies "a long header is cut" "bad.csv:1: the header .* '0\\{40\\}\\.\\.\\.'\$" "$long\n"
 pairs "a long index is cut" "bad.csv:2: b is not a whole number '0\\{40\\}\\.\\.\\.'\$" "a,b\n0,$long\n"
 fails "a long option is cut" "narc: --threads .*'0\\{40\\}\\.\\.\\.'\$" collide $known --threads $long --out new.csv
-pairs "wrong header" "bad.csv:1: .*'b,a'" 'b,a\n0,1\n'
+pairs "wrong header" "bad.csv:1: the header has no column 'b': 'a,c'" 'a,c\n0,1\n'
 pairs "out of range" "bad.csv:3: b .*'18'" 'a,b\n0,1\n0,18\n'
 pairs "negative" "bad.csv:2: a .*'-1'" 'a,b\n-1,0\n'
 pairs "fraction" "bad.csv:2: b .*'1.5'" 'a,b\n0,1.5\n'
@@ -174,6 +180,8 @@ json "comma missing" "bad.json:3: not valid JSON" '{"shapes": [
 json "tail" "bad.json:2: not valid JSON" '{"shapes": [{"name": "a", "circle": 1}]}
 more'
 json "a list" "narc: bad.json: " '[]'
+json "nested too deep" "bad.json:2: lists and objects nested more than 1000 deep" "[
+$(printf '%01100d' 0 | tr 0 '[')"
 json "no list of shapes" "narc: bad.json: .*missing" '{}'
 json "shapes is no list" "narc: bad.json: .*not a list" '{"shapes": 1}'
 json "no shape" "narc: bad.json: .*empty" '{"shapes": []}'

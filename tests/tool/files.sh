@@ -64,12 +64,45 @@ if [ "$(id -u)" -ne 0 ]; then
     mkdir locked && chmod 555 locked
     fails "unwritable folder" "narc: locked/new.csv: " collide $known --out locked/new.csv
 fi
+# What is read-only stays, also for root.
+echo old >read-only.csv && chmod 444 read-only.csv
+fails "a read-only file" "narc: read-only.csv: Permission denied" collide $known --out read-only.csv
+fails "a read-only picture" "narc: read-only.png: Permission denied" collide $known --out new.csv \
+    --picture "$(cp read-only.csv read-only.png && echo read-only.png)"
+check "stays what it was" test "$(cat read-only.csv)" = old
+if [ "$(id -u)" -eq 0 ]; then
+    echo old >owned.csv && chown 12345:54321 owned.csv && chmod 640 owned.csv
+    works "a file of another owner" collide $known --out owned.csv
+    check "keeps its owner, group and permissions" sh -c 'cmp owned.csv known.csv &&
+        ls -ln owned.csv | grep -q "^-rw-r-----.* 12345  *54321 "'
+fi
+
+# What is too large to read is known at once where it is a file.
+if truncate -s 5G large.csv; then
+    large="it has more than 1 GiB, the most that is read"
+    fails "bodies too large to read" "narc: large.csv: $large" collide --shapes shapes.json --bodies large.csv
+    fails "shapes too large to read" "narc: large.csv: $large" collide --shapes large.csv --bodies bodies.csv
+    fails "points too large to read" "narc: standard input: $large" fit - --arcs 4 --out new.json <large.csv
+    rm large.csv
+fi
+if [ "$(awk '/^MemAvailable/ { print $2 > 4e6 }' /proc/meminfo 2>/dev/null)" ] && [ -c /dev/zero ]; then
+    fails "a stream too large to read" "narc: /dev/zero: $large" fit /dev/zero --arcs 4 --out new.json
+fi
+
 if [ -c /dev/full ]; then
-    fails "full disk" "narc: /dev/full: " collide --shapes shapes.json --bodies scene.csv --out /dev/full \
+    fails "full disk" "narc: /dev/full: No space left on device" collide --shapes shapes.json --bodies scene.csv --out /dev/full \
         --picture new.png
     ln -s /dev/full full.png
-    fails "full disk, picture" "narc: full.png: " collide --shapes shapes.json --bodies scene.csv --out new.csv \
-        --picture full.png
+    ln -s /dev/full full.svg
+    for kind in png svg; do
+        fails "full disk, picture, $kind" "narc: full.$kind: No space left on device" collide --shapes shapes.json \
+            --bodies scene.csv --out new.csv --picture full.$kind
+    done
+    printf '0,0\n4,0\n4,3\n' >triangle.csv
+    fails "full disk, picture of a fit" "narc: full.png: No space left on device" fit triangle.csv --arcs 3 \
+        --out new.json --picture full.png
+    fails "full disk, shapes" "narc: /dev/full: No space left on device" fit triangle.csv --arcs 3 --out /dev/full \
+        --picture new.png
     "$narc" collide $known --out new.csv --picture new.png >/dev/full 2>err.txt
     check "full disk for the report" test $? -eq 2 -a -z "$(find . -name 'new*' -o -name '.narc-*')"
     "$narc" --help >/dev/full 2>err.txt

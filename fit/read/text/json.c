@@ -4,15 +4,35 @@
  */
 #include "json.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 #include "error.h"
+
+/* Lists and objects that are open before `end`, a place in valid JSON. */
+static size_t count_open(const char *text, const char *end) {
+    size_t open = 0;
+    bool is_string = false;
+    for (; text < end; text++)
+        if (*text == '"')
+            is_string = !is_string;
+        else if (is_string)
+            text += *text == '\\';
+        else if (*text == '[' || *text == '{')
+            open++;
+        else if (*text == ']' || *text == '}')
+            open--;
+    return open;
+}
 
 narc_status narc_parse_json(const char *text, cJSON **out_value, narc_error *error) {
     const char *end = text;
     cJSON *value = cJSON_ParseWithOpts(text, &end, true);
     if (!value) {
         const size_t line = narc_find_line(text, end);
+        if (count_open(text, end) >= CJSON_NESTING_LIMIT)
+            return narc_fail(error, NARC_ERROR_FORMAT, line, 0, "line %zu: lists and objects nested more than %d deep",
+                             line, CJSON_NESTING_LIMIT);
         return *end ? narc_fail(error, NARC_ERROR_FORMAT, line, 0, "line %zu: not valid JSON here: '%s'", line,
                                 narc_make_excerpt(end).text)
                     : narc_fail(error, NARC_ERROR_FORMAT, line, 0, "line %zu: not valid JSON: it ends too early", line);

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * lines.c - texts, their lines, the fields of CSV. Texts are cut in place.
+ * lines.c - texts and their lines.
  */
 #include "lines.h"
 
 #include <string.h>
 
 #include "error.h"
-
-static const char BLANKS[] = " \t\r";
 
 narc_excerpt narc_make_excerpt(const char *text) {
     enum { LONGEST = 40 };
@@ -37,6 +35,8 @@ size_t narc_find_line(const char *text, const char *place) {
 }
 
 narc_status narc_clean_text(char *text, size_t size, narc_error *error) {
+    if (strncmp(text, "\xff\xfe", 2) == 0 || strncmp(text, "\xfe\xff", 2) == 0)
+        return narc_fail(error, NARC_ERROR_FORMAT, 1, 0, "line 1: the text is UTF-16: it must be saved as UTF-8");
     const char *nul = text + strlen(text);
     if (nul != text + size) {
         const size_t line = narc_find_line(text, nul);
@@ -47,36 +47,4 @@ narc_status narc_clean_text(char *text, size_t size, narc_error *error) {
     if (!text[strspn(text, " \t\r\n")])
         return narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "the text is empty");
     return NARC_OK;
-}
-
-static char *trim(char *field) {
-    field += strspn(field, BLANKS);
-    size_t length = strlen(field);
-    while (length && strchr(BLANKS, field[length - 1]))
-        length--;
-    field[length] = 0;
-    return field;
-}
-
-char *narc_next_line(char **rest) {
-    char *line = *rest, *end = strchr(line, '\n');
-    if (!*line)
-        return NULL;
-    *rest = end ? end + 1 : line + strlen(line);
-    if (end)
-        *end = 0;
-    return trim(line);
-}
-
-size_t narc_split_line(char *line, char **out_fields, size_t capacity) {
-    size_t count = 0;
-    for (char *field = line; field; count++) {
-        char *comma = strchr(field, ',');
-        if (comma)
-            *comma++ = 0;
-        if (count < capacity)
-            out_fields[count] = trim(field);
-        field = comma;
-    }
-    return count;
 }
