@@ -349,7 +349,8 @@ static void run(int argc, char **argv) {
                                   work.colliding,
                                   &work.pairs,
                                   &work.narrow.contacts,
-                                  work.narrow.contact_count};
+                                  work.narrow.contact_count,
+                                  is_filter(chosen.narrow.method)};
         draw_bodies(chosen.picture, picture, &scene);
     }
     FILE *report = finish_outputs();

@@ -1,18 +1,26 @@
 /* SPDX-License-Identifier: MIT
  *
  * picture_bodies.c - bodies filled, colliding ones in another colour and on top, then contact points with their
- * normals. Lines and dots are in proportion to the bodies on the page, so that 20 and 20,000 of them look alike.
+ * normals; a legend below, if there is anything of these. Lines and dots are in proportion to the bodies on the page, so
+ * that 20 and 20,000 of them look alike.
  */
 #include "picture_bodies.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "canvas.h"
 #include "fail.h"
+#include "legend.h"
 #include "progress.h"
+#include "turn.h"
 
 /* In pixels: a body as one likes to see it; the page's limits; its margin. */
 static const double GOOD_BODY = 110, SMALLEST_PAGE = 900, LARGEST_PAGE = 3000, MARGIN = 24, NARROWEST_PAGE = 160;
+
+/* The narrowest page that has a legend; of the page's longer side: the size of its text; of that: the legend's height. */
+static const double NARROWEST_LEGEND = 600, TEXT = 0.016, LEGEND_HEIGHT = 3;
 
 /* In bodies. */
 static const double OUTLINE = 0.022, NORMAL_LENGTH = 0.30, NORMAL_LINE = 0.028, DOT = 0.042;
@@ -24,21 +32,40 @@ static const color FREE_FILL = {0.83, 0.88, 0.93, 0.9}, FREE_LINE = {0.42, 0.53,
 static const color HIT_FILL = {0.99, 0.80, 0.60, 0.8}, HIT_LINE = {0.83, 0.40, 0.12, 1};
 static const color CONTACT = {0.10, 0.10, 0.28, 1}, NEAR_CONTACT = {0.35, 0.55, 0.42, 1};
 
-/* An SVG file grows by a kilobyte or more with each body: this many are 200 megabytes, too many for viewers. */
-enum { MOST_SVG_BODIES = 200000 };
+/* An SVG file grows by a tenth of a kilobyte with each body and each contact: so many are 50 megabytes, and librsvg draws
+ * no more. Bodies alone are counted before they meet. */
+enum { MOST_SVG_BODIES = 200000, MOST_SVG_ITEMS = 500000 };
+
+typedef enum sample { FREE, HIT, TOUCHING, APART, SAMPLE_COUNT } sample;
 
 typedef struct view {
     double middle_x, middle_y; /* in the world */
     double page_x, page_y;     /* the same on the page */
     double zoom;               /* pixels per unit of length */
+    double width, height;      /* of the page */
+    double text;               /* its size in the legend */
+    bool shown[SAMPLE_COUNT];
 } view;
 
 static double clamp(double value, double low, double high) { return fmin(fmax(value, low), high); }
 
 static double box_size(narc_aabb box) { return fmax(box.max_x - box.min_x, box.max_y - box.min_y); }
 
+/* What the picture will have. */
+static void find_samples(const body_scene *scene, bool *shown) {
+    for (size_t i = 0; i < scene->bodies->count; i++)
+        shown[scene->colliding[i] ? HIT : FREE] = true;
+    for (size_t k = 0; k < scene->contact_count; k++)
+        if (isfinite(scene->contacts->separation[k]))
+            shown[scene->contacts->separation[k] < 0 ? TOUCHING : APART] = true;
+}
+
+/* Bodies alone need none. */
+static bool has_legend(const bool *shown) { return shown[HIT] || shown[TOUCHING] || shown[APART]; }
+
 /* Chooses the page's size and how the world lies on it. */
-static view choose_view(const char *path, const body_scene *scene, double *out_width, double *out_height) {
+static view choose_view(const char *path, const body_scene *scene) {
+    view seen = {0};
     const size_t count = scene->bodies->count;
     narc_aabb world = count ? scene->boxes[0] : (narc_aabb){-1, -1, 1, 1};
     double sizes = 0;
@@ -52,14 +79,19 @@ static view choose_view(const char *path, const body_scene *scene, double *out_w
     if (!(size > 0 && size <= NARC_MAX_DISTANCE))
         fail("%s: the bodies are too far apart to draw", path);
     const double side = clamp(GOOD_BODY * size / mean, SMALLEST_PAGE, LARGEST_PAGE) - 2 * MARGIN;
-    const double zoom = side / size;
-    *out_width = ceil(fmax(zoom * (world.max_x - world.min_x) + 2 * MARGIN, NARROWEST_PAGE));
-    *out_height = ceil(fmax(zoom * (world.max_y - world.min_y) + 2 * MARGIN, NARROWEST_PAGE));
-    return (view){.middle_x = world.min_x + (world.max_x - world.min_x) / 2,
-                  .middle_y = world.min_y + (world.max_y - world.min_y) / 2,
-                  .page_x = *out_width / 2,
-                  .page_y = *out_height / 2,
-                  .zoom = zoom};
+    find_samples(scene, seen.shown);
+    const bool legend = has_legend(seen.shown);
+    seen.zoom = side / size;
+    seen.width = fmax(seen.zoom * (world.max_x - world.min_x) + 2 * MARGIN, legend ? NARROWEST_LEGEND : NARROWEST_PAGE);
+    seen.height = fmax(seen.zoom * (world.max_y - world.min_y) + 2 * MARGIN, NARROWEST_PAGE);
+    seen.middle_x = world.min_x + (world.max_x - world.min_x) / 2;
+    seen.middle_y = world.min_y + (world.max_y - world.min_y) / 2;
+    seen.page_x = ceil(seen.width) / 2;
+    seen.page_y = ceil(seen.height) / 2;
+    seen.text = TEXT * fmax(seen.width, seen.height);
+    seen.width = ceil(seen.width);
+    seen.height = ceil(seen.height + (legend ? LEGEND_HEIGHT * seen.text - MARGIN : 0));
+    return seen;
 }
 
 static narc_point to_page(const view *seen, double x, double y) {
@@ -67,14 +99,18 @@ static narc_point to_page(const view *seen, double x, double y) {
                         seen->page_y - seen->zoom * (y - seen->middle_y)};
 }
 
-static void draw_body(canvas *page, const view *seen, const body_scene *scene, size_t index) {
-    const body *drawn = &scene->bodies->items[index];
-    const shape *form = &scene->shapes->items[drawn->shape];
-    const double zoom = seen->zoom * (double)drawn->scale, size = seen->zoom * box_size(scene->boxes[index]);
-    const narc_point origin = to_page(seen, drawn->x, drawn->y);
-    const placement where = {origin.x, origin.y, zoom * (double)drawn->cosine, zoom * (double)drawn->sine};
-    const bool hit = scene->colliding[index];
-    trace_arcs(page, &where, form->arcs, form->arc_count);
+/* ---------------------------------------------------------------------------- bodies and contacts */
+
+/* What a picture draws again and again. A PNG image draws each anew, with lines of its own. */
+typedef struct stamps {
+    canvas *bodies; /* free and colliding ones of each shape; NULL: there are no stamps */
+    double *zooms;  /* pixels per unit of length of each */
+    canvas contacts[2];
+    double sizes[2]; /* the size of the bodies, in pixels */
+} stamps;
+
+static void paint_body(canvas *page, const placement *where, const shape *form, bool hit, double size) {
+    trace_arcs(page, where, form->arcs, form->arc_count);
     cairo_close_path(page->pen);
     if (size < SMALLEST_OUTLINED) {
         set_color(page, hit ? HIT_LINE : FREE_LINE);
@@ -85,22 +121,97 @@ static void draw_body(canvas *page, const view *seen, const body_scene *scene, s
     }
 }
 
-/* The contact point and the normal of contact k, sized after the smaller body. */
-static void draw_contact(canvas *page, const view *seen, const body_scene *scene, size_t k) {
+static void open_body_stamp(canvas *stamp, const shape *form, bool hit, double size, double zoom) {
+    narc_aabb box;
+    narc_compute_aabb(form->arcs, form->arc_count, 0, &box);
+    open_stamp(stamp, (narc_aabb){zoom * box.min_x - THICKEST, -zoom * box.max_y - THICKEST,
+                                  zoom * box.max_x + THICKEST, -zoom * box.min_y + THICKEST});
+    paint_body(stamp, &(placement){0, 0, zoom, 0}, form, hit, size);
+}
+
+static void draw_body(canvas *page, const view *seen, const body_scene *scene, stamps *made, size_t index) {
+    const body *drawn = &scene->bodies->items[index];
+    const shape *form = &scene->shapes->items[drawn->shape];
+    const double zoom = seen->zoom * (double)drawn->scale, size = seen->zoom * box_size(scene->boxes[index]);
+    const double cosine = (double)drawn->cosine, sine = (double)drawn->sine;
+    const narc_point origin = to_page(seen, drawn->x, drawn->y);
+    const bool hit = scene->colliding[index];
+    if (!made->bodies) {
+        paint_body(page, &(placement){origin.x, origin.y, zoom * cosine, zoom * sine}, form, hit, size);
+        return;
+    }
+    const size_t k = 2 * (size_t)drawn->shape + hit;
+    if (!made->bodies[k].surface) {
+        open_body_stamp(&made->bodies[k], form, hit, size, zoom);
+        made->zooms[k] = zoom;
+    }
+    const double ratio = zoom / made->zooms[k];
+    use_stamp(page, &made->bodies[k], origin, ratio * cosine, ratio * sine);
+}
+
+/* A contact point and its normal, sized after a body. */
+static void paint_contact(canvas *page, narc_point p, narc_point normal, bool touching, double size) {
+    const double length = NORMAL_LENGTH * size;
+    set_color(page, touching ? CONTACT : NEAR_CONTACT);
+    cairo_set_line_width(page->pen, clamp(NORMAL_LINE * size, THINNEST, THICKEST));
+    cairo_move_to(page->pen, p.x, p.y);
+    cairo_line_to(page->pen, p.x + length * normal.x, p.y - length * normal.y);
+    cairo_stroke(page->pen);
+    draw_dot(page, p, clamp(DOT * size, 0.8 * THINNEST, 2 * THICKEST));
+}
+
+/* Contact k, sized after the smaller body. */
+static void draw_contact(canvas *page, const view *seen, const body_scene *scene, stamps *made, size_t k) {
     const narc_contacts *contacts = scene->contacts;
     const pair of = scene->pairs->items[contacts->pair[k]];
     const double size = seen->zoom * fmin(box_size(scene->boxes[of.a]), box_size(scene->boxes[of.b]));
     const body *a = &scene->bodies->items[of.a];
     const narc_point p = to_page(seen, a->x + (double)contacts->point_x[k], a->y + (double)contacts->point_y[k]);
-    const double length = NORMAL_LENGTH * size;
-    set_color(page, contacts->separation[k] < 0 ? CONTACT : NEAR_CONTACT);
-    cairo_set_line_width(page->pen, clamp(NORMAL_LINE * size, THINNEST, THICKEST));
-    cairo_move_to(page->pen, p.x, p.y);
-    cairo_line_to(page->pen, p.x + length * (double)contacts->normal_x[k],
-                  p.y - length * (double)contacts->normal_y[k]);
-    cairo_stroke(page->pen);
-    draw_dot(page, p, clamp(DOT * size, 0.8 * THINNEST, 2 * THICKEST));
+    const narc_point normal = {(double)contacts->normal_x[k], (double)contacts->normal_y[k]};
+    const bool touching = contacts->separation[k] < 0;
+    canvas *stamp = &made->contacts[touching];
+    if (!made->bodies) {
+        paint_contact(page, p, normal, touching, size);
+        return;
+    }
+    if (!stamp->surface) {
+        const double margin = 2 * THICKEST;
+        open_stamp(stamp, (narc_aabb){-margin, -margin, NORMAL_LENGTH * size + margin, margin});
+        paint_contact(stamp, (narc_point){0, 0}, (narc_point){1, 0}, touching, size);
+        made->sizes[touching] = size;
+    }
+    const double ratio = size / made->sizes[touching];
+    use_stamp(page, stamp, p, ratio * normal.x, ratio * normal.y);
 }
+
+/* ---------------------------------------------------------------------------- legend */
+
+static void draw_sample_of(canvas *page, int of, double x, double y, double half) {
+    if (of == FREE || of == HIT) {
+        cairo_new_sub_path(page->pen);
+        cairo_arc(page->pen, x, y, 0.6 * half, 0, FULL_TURN);
+        paint_path(page, of == HIT ? HIT_FILL : FREE_FILL, of == HIT ? HIT_LINE : FREE_LINE, OUTLINE * 2 * half);
+    } else {
+        set_color(page, of == TOUCHING ? CONTACT : NEAR_CONTACT);
+        cairo_set_line_width(page->pen, 0.12 * half);
+        cairo_move_to(page->pen, x - 0.6 * half, y);
+        cairo_line_to(page->pen, x + 0.6 * half, y);
+        cairo_stroke(page->pen);
+        draw_dot(page, (narc_point){x - 0.6 * half, y}, 0.2 * half);
+    }
+}
+
+static void draw_legend_of(canvas *page, const view *seen, bool is_filter) {
+    static const char *const words[SAMPLE_COUNT] = {
+        "collides with none", "collides", "contact: point, normal from a to b", "the same of a pair that is apart"};
+    static const char *const filter_words[SAMPLE_COUNT] = {"in no pair that passes", "in a pair that passes", "", ""};
+    if (has_legend(seen->shown)) {
+        draw_legend(page, is_filter ? filter_words : words, seen->shown, SAMPLE_COUNT, draw_sample_of, seen->width / 2,
+                    seen->height - 0.5 * LEGEND_HEIGHT * seen->text, seen->text, seen->width - 2 * MARGIN);
+    }
+}
+
+/* ---------------------------------------------------------------------------- pictures */
 
 void check_picture_size(const char *path, size_t body_count) {
     if (picture_kind_of(path) == PICTURE_SVG && body_count > MOST_SVG_BODIES) {
@@ -109,21 +220,50 @@ void check_picture_size(const char *path, size_t body_count) {
     }
 }
 
+static void check_items(const char *path, const body_scene *scene) {
+    if (picture_kind_of(path) == PICTURE_SVG && scene->contact_count > MOST_SVG_ITEMS - scene->bodies->count) {
+        fail("%s: %zu bodies and %zu contacts, an .svg picture has at most %d of both; a .png picture can have more",
+             path, scene->bodies->count, scene->contact_count, MOST_SVG_ITEMS);
+    }
+}
+
+static stamps make_stamps(picture_kind kind, size_t shape_count) {
+    stamps made = {0};
+    if (kind == PICTURE_SVG) {
+        made.bodies = allocate(2 * shape_count, sizeof *made.bodies);
+        made.zooms = allocate(2 * shape_count, sizeof *made.zooms);
+        memset(made.bodies, 0, 2 * shape_count * sizeof *made.bodies);
+    }
+    return made;
+}
+
+static void free_stamps(stamps *made, size_t shape_count) {
+    for (size_t k = 0; made->bodies && k < 2 * shape_count; k++)
+        close_stamp(&made->bodies[k]);
+    for (int k = 0; k < 2; k++)
+        close_stamp(&made->contacts[k]);
+    free(made->bodies);
+    free(made->zooms);
+}
+
 void draw_bodies(const char *path, FILE *file, const body_scene *scene) {
-    double width, height;
-    const view seen = choose_view(path, scene, &width, &height);
+    check_items(path, scene);
+    const view seen = choose_view(path, scene);
     canvas page;
-    open_canvas(&page, path, file, width, height);
+    open_canvas(&page, path, file, seen.width, seen.height);
+    stamps made = make_stamps(page.kind, scene->shapes->count);
     const size_t count = scene->bodies->count, steps = 2 * count + scene->contact_count;
     for (size_t i = 0; i < 2 * count; i++) {
         if (scene->colliding[i % count] == (i >= count))
-            draw_body(&page, &seen, scene, i % count);
+            draw_body(&page, &seen, scene, &made, i % count);
         show_progress("drawing", i, steps);
     }
     for (size_t k = 0; k < scene->contact_count; k++) {
         if (isfinite(scene->contacts->separation[k]))
-            draw_contact(&page, &seen, scene, k);
+            draw_contact(&page, &seen, scene, &made, k);
         show_progress("drawing", 2 * count + k, steps);
     }
+    draw_legend_of(&page, &seen, scene->is_filter);
     finish_canvas(&page);
+    free_stamps(&made, scene->shapes->count);
 }

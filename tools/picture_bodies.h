@@ -17,6 +17,7 @@ typedef struct body_scene {
     const pair_list *pairs;
     const narc_contacts *contacts;
     size_t contact_count;
+    bool is_filter; /* the pairs passed a filter: they may collide */
 } body_scene;
 
 /* A picture that would have too many bodies is an error; `path` may be NULL, no picture. */

@@ -11,6 +11,7 @@
 
 #include "draw_fit.h"
 #include "fail.h"
+#include "legend.h"
 #include "progress.h"
 #include "splines.h"
 
@@ -20,6 +21,9 @@ static const double CELL = 440, LARGEST_PAGE = 3000;
 /* In cells. */
 static const double PADDING = 0.09, CAPTION_HEIGHT = 0.19, LEGEND_HEIGHT = 0.15, NARROWEST_PAGE = 1.4;
 static const double LINE = 0.009, THIN_LINE = 0.004, DOT = 0.012, TEXT = 0.05, SMALL_TEXT = 0.036;
+
+/* Half the width of a sample in the legend, in cells. */
+static const double HALF_SAMPLE = 0.045;
 
 /* Chains have many arcs: their lines and dots are thinner by this. */
 static const double CHAIN_LINES = 0.5;
@@ -125,11 +129,8 @@ static void draw_cell(canvas *page, const outline *of, const narc_fit_result *fi
 
 /* ---------------------------------------------------------------------------- legend */
 
-/* In cells: half a sample's width, the gaps behind a sample and behind a word. */
-static const double HALF_SAMPLE = 0.045, SAMPLE_GAP = 0.02, WORD_GAP = 0.07;
-
-static void draw_sample(canvas *page, sample of, double x, double y, double cell) {
-    const double half = HALF_SAMPLE * cell;
+static void draw_sample_of(canvas *page, int of, double x, double y, double half) {
+    const double cell = half / HALF_SAMPLE;
     if (of == OUTLINE) {
         cairo_rectangle(page->pen, x - half, y - 0.4 * half, 2 * half, 0.8 * half);
         paint_path(page, OUTLINE_FILL, OUTLINE_LINE, THIN_LINE * cell);
@@ -152,27 +153,6 @@ static void draw_sample(canvas *page, sample of, double x, double y, double cell
     }
 }
 
-/* Samples of what the page shows with a word each, in one line around the middle of the page. */
-static void draw_legend(canvas *page, const bool *shown, double middle, double y, double cell) {
-    double widths[SAMPLE_COUNT] = {0}, width = -WORD_GAP * cell;
-    cairo_set_font_size(page->pen, SMALL_TEXT * cell);
-    for (int k = 0; k < SAMPLE_COUNT; k++) {
-        cairo_text_extents_t extents;
-        cairo_text_extents(page->pen, words[k], &extents);
-        widths[k] = extents.x_advance;
-        width += shown[k] ? widths[k] + (2 * HALF_SAMPLE + SAMPLE_GAP + WORD_GAP) * cell : 0;
-    }
-    double x = middle - width / 2;
-    for (int k = 0; k < SAMPLE_COUNT; k++) {
-        if (shown[k]) {
-            draw_sample(page, (sample)k, x + HALF_SAMPLE * cell, y, cell);
-            x += (2 * HALF_SAMPLE + SAMPLE_GAP) * cell;
-            draw_text(page, words[k], x + widths[k] / 2, y + 0.3 * SMALL_TEXT * cell, SMALL_TEXT * cell, widths[k]);
-            x += widths[k] + WORD_GAP * cell;
-        }
-    }
-}
-
 void draw_fits(const char *path, FILE *file, const outline_list *outlines, const narc_fit_result *fits,
                const narc_arc_chains *chains) {
     const size_t count = outlines->count, columns = count <= 5 ? count : (size_t)ceil(sqrt(1.5 * (double)count));
@@ -183,7 +163,6 @@ void draw_fits(const char *path, FILE *file, const outline_list *outlines, const
     const double left = cell * (width - (double)columns) / 2;
     canvas page;
     open_canvas(&page, path, file, cell * width, cell * height);
-    cairo_select_font_face(page.pen, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
     bool shown[SAMPLE_COUNT] = {false};
     for (size_t i = 0; i < count; i++) {
         draw_cell(&page, &outlines->items[i], fits ? &fits[i] : NULL, chains ? &chains[i] : NULL,
@@ -191,6 +170,7 @@ void draw_fits(const char *path, FILE *file, const outline_list *outlines, const
                   shown);
         show_progress("drawing", i, count);
     }
-    draw_legend(&page, shown, cell * width / 2, cell * (height - LEGEND_HEIGHT / 2), cell);
+    draw_legend(&page, words, shown, SAMPLE_COUNT, draw_sample_of, cell * width / 2,
+                cell * (height - LEGEND_HEIGHT / 2), SMALL_TEXT * cell, cell * (width - PADDING));
     finish_canvas(&page);
 }

@@ -113,12 +113,37 @@ for kind in png svg; do
         --bodies wide.csv --picture new.$kind --out new.csv
 done
 works "very many bodies" scene --shapes shapes.json --bodies 200001 --density 0.1 --seed 1 --out many.csv
+awk 'BEGIN { print "shape,x,y,angle"; for (i = 0; i < 1100; i++) print "disc,0,0,0" }' >pile.csv
+fails "too many contacts for an SVG" "narc: new.svg: 1100 bodies and 604450 contacts, .*500000 .*png" collide \
+    --shapes shapes.json --bodies pile.csv --picture new.svg
 fails "too many for an SVG" "narc: new.svg: 200001 .*200000.*png" collide --shapes shapes.json --bodies many.csv \
     --picture new.svg
 rm many.csv
 works "SVG" collide --shapes shapes.json --bodies few.csv --picture few.svg --margin 1
 check "SVG beginning" begins_with few.svg "<?xml"
 check "SVG end" grep -q "</svg>" few.svg
+
+# An SVG file holds each shape once; each body and contact is one line.
+printf 'shape,x,y,angle\ndisc,0,0,0\ndisc,5,0,0\n' >apart.csv
+works "SVG of a scene" collide --shapes shapes.json --bodies scene.csv --picture scene.svg
+contacts=$(awk '/^reported contacts/ { print $NF }' out.txt)
+check "all bodies and contacts are there" test "$(grep -c '<use' scene.svg)" -ge $((3000 + contacts))
+check "a tenth of a kilobyte for each" test "$(wc -c <scene.svg)" -lt $((120 * (3000 + contacts) + 50000))
+
+# inside FILE: all text of an SVG lies on the page.
+inside() {
+    awk '/viewBox/ { split($0, view, /viewBox="/); split(view[2], size, /[ "]/) }
+        /#glyph/ { split($0, x, /" x="/); n++; if (x[2] + 0 < 0 || x[2] + 0 > size[3] - 5) exit bad = 1 }
+        END { exit bad || n < 10 }' "$1"
+}
+check "a legend tells what the colours mean" inside few.svg
+works "bodies apart" collide --shapes shapes.json --bodies apart.csv --picture apart.svg
+check "need no legend" sh -c '! grep -q glyph apart.svg'
+printf 'shape,x,y,angle\ndisc,0,0,0\ndisc,0,1,0\ndisc,0,90,0\n' >tower.csv
+works "bodies in a narrow column" collide --shapes shapes.json --bodies tower.csv --picture tower.svg --margin 1
+check "the whole legend is seen" inside tower.svg
+works "circle: a narrow column" collide --shapes shapes.json --bodies tower.csv --picture tower.svg --method circle
+check "circle: the whole legend is seen" inside tower.svg
 
 # Progress is for terminals: `script` gives the command one, where it is installed and is that of util-linux.
 awk 'BEGIN { print "shape,x,y,angle"; for (i = 0; i < 3000; i++) print "disc,0,0,0" }' >pile.csv

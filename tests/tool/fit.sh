@@ -99,6 +99,14 @@ check "triangle: twice the area" is square 4 8
 works "the paper's route" fit fits/square.csv --arcs 4 --paper --out paper.json
 check "the paper's route: not smaller" less "$(product "$area" 0.99)" "$(value square 4)"
 
+# One shape with arcs, edges and corners has the longest legend: all its text lies on the page.
+awk 'BEGIN { print "0,0\n4,0"; for (k = 0; k <= 40; k++) print 4 * cos(k * 0.03927) "," 1 + 3 * sin(k * 0.03927) }' \
+    >fits/quarter.csv
+works "the longest legend" fit fits/quarter.csv --arcs 6 --edges --starts 1 --out quarter.json --picture quarter.svg
+check "the longest legend: it is not cut" awk '/viewBox/ { split($0, view, /viewBox="/); split(view[2], size, /[ "]/) }
+    /#glyph/ { split($0, x, /" x="/); n++; if (x[2] + 0 < 0 || x[2] + 0 > size[3] - 5) bad = 1 }
+    END { exit bad || n < 50 }' quarter.svg
+
 # The distance of the circle around the square is 0.414, of the nearest 0.207.
 works "tolerance for a circle" fit fits/square.csv --tolerance 0.42 --out one.json
 check "tolerance for a circle: one arc" test "$(value square 2)" = 1

@@ -33,16 +33,21 @@ static cairo_status_t write_bytes(void *context, const unsigned char *bytes, uns
     return CAIRO_STATUS_SUCCESS;
 }
 
+static void start_pen(canvas *page) {
+    page->pen = cairo_create(page->surface);
+    cairo_set_line_join(page->pen, CAIRO_LINE_JOIN_ROUND);
+    cairo_set_line_cap(page->pen, CAIRO_LINE_CAP_ROUND);
+}
+
 void open_canvas(canvas *page, const char *path, FILE *file, double width, double height) {
     *page = (canvas){.kind = picture_kind_of(path), .path = path, .file = file};
     page->surface = page->kind == PICTURE_SVG
                         ? cairo_svg_surface_create_for_stream(write_bytes, page, width, height)
                         : cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width), (int)ceil(height));
-    page->pen = cairo_create(page->surface);
+    start_pen(page);
     set_color(page, (color){1, 1, 1, 1});
     cairo_paint(page->pen);
-    cairo_set_line_join(page->pen, CAIRO_LINE_JOIN_ROUND);
-    cairo_set_line_cap(page->pen, CAIRO_LINE_CAP_ROUND);
+    cairo_select_font_face(page->pen, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
 }
 
 void finish_canvas(canvas *page) {
@@ -56,6 +61,42 @@ void finish_canvas(canvas *page) {
     if (status != CAIRO_STATUS_SUCCESS)
         fail("%s: %s", page->path, cairo_status_to_string(status));
     cairo_surface_destroy(page->surface);
+}
+
+/* A box that begins elsewhere than at 0, 0 is not clipped rightly by cairo 1.16. */
+void open_stamp(canvas *stamp, narc_aabb box) {
+    const cairo_rectangle_t extents = {0, 0, ceil(box.max_x - box.min_x), ceil(box.max_y - box.min_y)};
+    *stamp = (canvas){.surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, &extents),
+                      .corner = {box.min_x, box.min_y},
+                      .size = fmax(extents.width, extents.height)};
+    start_pen(stamp);
+    cairo_translate(stamp->pen, -box.min_x, -box.min_y);
+}
+
+void close_stamp(canvas *stamp) {
+    if (stamp->surface) {
+        cairo_destroy(stamp->pen);
+        cairo_surface_destroy(stamp->surface);
+    }
+}
+
+static double round_to(double value, double grid) { return nearbyint(value * grid) / grid; }
+
+/* Rounded numbers are short in an SVG file. Those of the matrix move no point of the stamp by a 100th of a pixel. */
+void use_stamp(canvas *page, const canvas *stamp, narc_point where, double cosine, double sine) {
+    const double grid = stamp->size < 50 ? 1e4 : 1e6;
+    const narc_point corner = stamp->corner;
+    const cairo_matrix_t matrix = {.xx = round_to(cosine, grid),
+                                   .yx = round_to(-sine, grid),
+                                   .xy = round_to(sine, grid),
+                                   .yy = round_to(cosine, grid),
+                                   .x0 = round_to(where.x + cosine * corner.x + sine * corner.y, 100),
+                                   .y0 = round_to(where.y - sine * corner.x + cosine * corner.y, 100)};
+    cairo_save(page->pen);
+    cairo_transform(page->pen, &matrix);
+    cairo_set_source_surface(page->pen, stamp->surface, 0, 0);
+    cairo_paint(page->pen);
+    cairo_restore(page->pen);
 }
 
 void set_color(canvas *page, color paint) {

@@ -25,6 +25,8 @@ typedef struct canvas {
     FILE *file;
     cairo_surface_t *surface;
     cairo_t *pen;
+    narc_point corner; /* of a stamp's box */
+    double size;       /* of that box */
 } canvas;
 
 /* A white page. `file` is an open output; the canvas must stay where it is until it is finished. */
@@ -32,6 +34,13 @@ void open_canvas(canvas *page, const char *path, FILE *file, double width, doubl
 
 /* Writes the picture. */
 void finish_canvas(canvas *page);
+
+/* A drawing that is made once and used many times, in SVG files too: the pen draws it in the box (on a page). */
+void open_stamp(canvas *stamp, narc_aabb box);
+void close_stamp(canvas *stamp);
+
+/* Draws it where its own origin comes to `where`, turned and enlarged. */
+void use_stamp(canvas *page, const canvas *stamp, narc_point where, double cosine, double sine);
 
 void set_color(canvas *page, color paint);
 
