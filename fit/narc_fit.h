@@ -141,9 +141,10 @@ typedef struct narc_image_request {
  * else from 0 to width and height, cuts off what is outside, as in any viewer; without either all is drawn (but for
  * the parts at negative coordinates of groups with opacity, masks or filters), and percentages are of 300 x 150. Text
  * is drawn with the fonts that are installed. No other file is read, and nothing from a network. Path data and
- * attributes that are wrong are as in any viewer: a path ends before the first error. It takes a tenth of a second to a
- * few seconds, and up to 300 MB (500 MB for darkness or lightness) or, where groups with opacity, masks or filters are
- * inside each other, more. */
+ * attributes that are wrong are as in any viewer: a path ends before the first error. Pango warns through GLib's log,
+ * which without a handler of the program's goes to standard error, of text that it cannot draw. It takes a tenth of a
+ * second to a few seconds, and up to 300 MB (500 MB for darkness or lightness) or, where groups with opacity, masks or
+ * filters are inside each other, more. */
 NARC_API narc_status narc_read_svg(const void *data, size_t size, const narc_image_request *request, narc_path *path,
                                    narc_error *error);
 
@@ -153,8 +154,11 @@ NARC_API narc_status narc_read_svg(const void *data, size_t size, const narc_ima
 NARC_API narc_status narc_read_png(const void *data, size_t size, const narc_image_request *request, narc_path *path,
                                    narc_error *error);
 
-/* Points: CSV, one "x,y" a line, an optional header line "x,y", blank lines between contours. JSON: [[x, y], ...], or a
- * list of such lists (contours), or an object whose key "points" or "contours" has that. */
+/* Points, blank lines between contours: CSV as spreadsheets write it, UTF-8. The first row tells what separates fields:
+ * semicolons, or else tabs, commas, blanks; fields may be in quotes, and numbers have a decimal comma where semicolons or
+ * tabs separate them. A header names the columns "x" and "y", in any order among others, which are not looked at. Without
+ * a header a row is x,y or x,y,z, with the same z in all rows. JSON: [[x, y], ...], or a list of such lists (contours), or
+ * an object whose key "points" or "contours" has that. */
 NARC_API narc_status narc_read_csv(const void *data, size_t size, narc_path *path, narc_error *error);
 NARC_API narc_status narc_read_json(const void *data, size_t size, narc_path *path, narc_error *error);
 
