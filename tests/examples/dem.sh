@@ -82,6 +82,13 @@ sed "s/\"out.csv\"/\"linked.csv\"/; s/\"out.restart\"/\"linked\"/; s/\"restart_e
 [ "$(stat -c %a elsewhere/real)" = 640 ] || miss "other permissions: $(stat -c %a elsewhere/real)"
 [ -f "$long-000000.c" ] || miss "no file with a long name"
 [ -z "$(find . -name '.narc-*')" ] || miss "a temporary file stays"
+# What is read-only stays, also for root.
+chmod 444 elsewhere/real
+cp elsewhere/real kept.real
+"$dem" linked.json --threads 1 >/dev/null 2>err.txt && miss "a restart in place of a read-only file"
+grep -q "linked: Permission denied" err.txt || miss "a read-only file is not told: $(cat err.txt)"
+cmp -s elsewhere/real kept.real || miss "a read-only file is replaced"
+[ -z "$(find . -name '.narc-*')" ] || miss "a temporary file stays beside a read-only one"
 # At a restart outputs may have other names, and files of theirs may be gone: they begin anew.
 "$dem" first.json --threads 1 >/dev/null 2>err.txt || miss "the first stage again"
 cp out.restart first.restart
