@@ -8,6 +8,7 @@
 #include "column.h"
 #include "dispatch.h"
 
+#include <assert.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <string.h>
@@ -17,9 +18,12 @@
 #include <sched.h>
 #endif
 
-/* A chunk of contacts has NARC_CONTACT_GROUP pairs, one of manifolds half of that: some 25 microseconds of work,
- * against about one for handing it out. Each thread has a buffer for it on its stack. */
-enum { BUFFER = 30 * NARC_CONTACT_GROUP };
+/* Each thread has a buffer for the answers to a chunk on its stack, contacts or manifolds with all columns. */
+enum {
+    CONTACTS = NARC_CONTACT_CHUNK * NARC_CONTACT_BYTES,
+    MANIFOLDS = NARC_MANIFOLD_CHUNK * NARC_MANIFOLD_BYTES,
+    BUFFER = CONTACTS > MANIFOLDS ? CONTACTS : MANIFOLDS
+};
 
 /* Pairs in a chunk of overlaps, multiples of 64: as many as possible, because at the end of a chunk the kernel decides
  * the rest of its pairs in vectors that are not full, but several for each thread, so that all end together. */
@@ -85,13 +89,15 @@ void narc_run_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, uns
 }
 
 /* A list's columns in a buffer, without gaps, for `count` items; those that are not wanted are not wanted there. */
-static narc_list divide_buffer(const narc_list *list, size_t count, char *buffer) {
+static narc_list divide_buffer(const narc_list *list, size_t count, char buffer[BUFFER]) {
     narc_list part = *list;
+    char *next = buffer;
     part.capacity = count;
     for (size_t c = 0; c < list->columns; c++) {
-        part.array[c] = list->array[c] ? buffer : NULL;
-        buffer += count * list->item[c];
+        part.array[c] = list->array[c] ? next : NULL;
+        next += count * list->item[c];
     }
+    assert(next <= buffer + BUFFER);
     return part;
 }
 
@@ -120,9 +126,9 @@ static void give_way(void) {
 }
 
 /* One chunk after the other, straight to the caller's list while it has room for as many answers as a chunk has
- * pairs. */
-static size_t list_in_order(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count,
-                            const narc_list *list) {
+ * pairs. Not inlined: where there are several threads its buffer would be on the stack beside the thread's own. */
+static __attribute__((noinline)) size_t list_in_order(const narc_lister *lister, const narc_batch *batch, size_t first,
+                                                      size_t count, const narc_list *list) {
     size_t total = 0;
     for (size_t start = 0; start < count; start += lister->chunk) {
         _Alignas(16) char buffer[BUFFER];
@@ -179,19 +185,17 @@ size_t narc_run_list(const narc_lister *lister, const narc_batch *batch, size_t 
 static size_t find_contacts(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count,
                             const narc_list *list) {
     void *const *array = list->array;
-    const narc_contacts out = {list->capacity, array[0], array[1], array[2], array[3],
-                               array[4],       array[5], array[6], array[7]};
+    narc_contacts out = {.capacity = list->capacity};
+    NARC_CONTACT_COLUMNS(NARC_TAKE_ARRAY, &out)
     return lister->contact(batch, first, count, lister->margin, &out);
 }
 
 size_t narc_run_contacts(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count, float margin,
                          unsigned threads, const narc_contacts *out_contacts) {
-    const narc_contacts *out = out_contacts;
-    const narc_lister lister = {find_contacts, NARC_CONTACT_GROUP, margin, .contact = kernel};
-    const narc_list list = {.capacity = out->capacity,
-                            .columns = 8,
-                            .item = {4, 4, 4, 4, 4, 4, 1, 1},
-                            .array = {out->pair, out->separation, out->normal_x, out->normal_y, out->point_x,
-                                      out->point_y, out->arc_a, out->arc_b}};
+    const narc_lister lister = {find_contacts, NARC_CONTACT_CHUNK, margin, .contact = kernel};
+    const narc_list list = {.capacity = out_contacts->capacity,
+                            .columns = NARC_CONTACT_COLUMN_COUNT,
+                            .item = {NARC_CONTACT_COLUMNS(NARC_COLUMN_SIZE, out_contacts)},
+                            .array = {NARC_CONTACT_COLUMNS(NARC_COLUMN_ARRAY, out_contacts)}};
     return narc_run_list(&lister, batch, first, count, threads, &list);
 }

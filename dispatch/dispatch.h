@@ -33,8 +33,47 @@ narc_status narc_list_contacts(narc_contact_kernel *kernel, const narc_batch *ba
 /* Checks options, and finds the sine of the flat angle as a batch has it. */
 narc_status narc_read_manifold_options(const narc_manifold_options *options, float *out_flat_sine, narc_error *error);
 
+/* The arrays of narc_contacts and narc_manifolds, all of them: COLUMN(list, member) for each. */
+/* clang-format off */
+#define NARC_CONTACT_COLUMNS(COLUMN, list)                  \
+    COLUMN(list, pair)        COLUMN(list, separation)      \
+    COLUMN(list, normal_x)    COLUMN(list, normal_y)        \
+    COLUMN(list, point_x)     COLUMN(list, point_y)         \
+    COLUMN(list, arc_a)       COLUMN(list, arc_b)
+#define NARC_MANIFOLD_COLUMNS(COLUMN, list)                 \
+    COLUMN(list, pair)          COLUMN(list, point_count)   \
+    COLUMN(list, normal_x)      COLUMN(list, normal_y)      \
+    COLUMN(list, separation[0]) COLUMN(list, separation[1]) \
+    COLUMN(list, point_x[0])    COLUMN(list, point_x[1])    \
+    COLUMN(list, point_y[0])    COLUMN(list, point_y[1])    \
+    COLUMN(list, feature[0])    COLUMN(list, feature[1])    \
+    COLUMN(list, radius_a[0])   COLUMN(list, radius_a[1])   \
+    COLUMN(list, radius_b[0])   COLUMN(list, radius_b[1])
+/* clang-format on */
+
+/* COLUMN: initialisers, sums, and the members out of a list of pointers, `array`. */
+#define NARC_COLUMN_ARRAY(list, member) (list)->member,
+#define NARC_COLUMN_SIZE(list, member)  sizeof *(list)->member,
+#define NARC_PLUS_SIZE(list, member)    +(int)sizeof *(list)->member
+#define NARC_PLUS_ONE(list, member)     +1
+#define NARC_TAKE_ARRAY(list, member)   (list)->member = *array++;
+
+/* How many there are, the bytes of one item in all of them, and how many pairs a chunk has: some 25 microseconds of
+ * work, against about one for handing it out. */
+enum {
+    NARC_CONTACT_COLUMN_COUNT = 0 NARC_CONTACT_COLUMNS(NARC_PLUS_ONE, ),
+    NARC_MANIFOLD_COLUMN_COUNT = 0 NARC_MANIFOLD_COLUMNS(NARC_PLUS_ONE, ),
+    NARC_CONTACT_BYTES = 0 NARC_CONTACT_COLUMNS(NARC_PLUS_SIZE, (const narc_contacts *)NULL),
+    NARC_MANIFOLD_BYTES = 0 NARC_MANIFOLD_COLUMNS(NARC_PLUS_SIZE, (const narc_manifolds *)NULL),
+    NARC_CONTACT_CHUNK = NARC_CONTACT_GROUP,
+    NARC_MANIFOLD_CHUNK = NARC_CONTACT_GROUP / 2
+};
+_Static_assert(sizeof(narc_contacts) == sizeof(size_t) + NARC_CONTACT_COLUMN_COUNT * sizeof(void *), "a column is new");
+_Static_assert(sizeof(narc_manifolds) == sizeof(size_t) + NARC_MANIFOLD_COLUMN_COUNT * sizeof(void *),
+               "a column is new");
+
 /* A list of answers in the caller's memory, contacts or manifolds, as columns. */
-enum { NARC_LIST_COLUMNS = 16 };
+enum { NARC_LIST_COLUMNS = NARC_MANIFOLD_COLUMN_COUNT };
 typedef struct narc_list {
     size_t capacity, columns;
     size_t item[NARC_LIST_COLUMNS]; /* bytes */

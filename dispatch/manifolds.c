@@ -8,32 +8,12 @@
 
 #include <math.h>
 
-/* The columns of a list of manifolds have the order of narc_manifolds, from here and to there. */
 static size_t find_manifolds(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count,
                              const narc_list *list) {
     void *const *array = list->array;
-    const narc_manifolds out = {.capacity = list->capacity,
-                                .pair = array[0],
-                                .point_count = array[1],
-                                .normal_x = array[2],
-                                .normal_y = array[3],
-                                .separation = {array[4], array[5]},
-                                .point_x = {array[6], array[7]},
-                                .point_y = {array[8], array[9]},
-                                .feature = {array[10], array[11]},
-                                .radius_a = {array[12], array[13]},
-                                .radius_b = {array[14], array[15]}};
+    narc_manifolds out = {.capacity = list->capacity};
+    NARC_MANIFOLD_COLUMNS(NARC_TAKE_ARRAY, &out)
     return lister->manifold(batch, first, count, lister->margin, &out);
-}
-
-static narc_list list_columns(const narc_manifolds *out) {
-    return (narc_list){.capacity = out->capacity,
-                       .columns = 16,
-                       .item = {4, 1, 4, 4, 4, 4, 4, 4, 4, 4, 2, 2, 4, 4, 4, 4},
-                       .array = {out->pair, out->point_count, out->normal_x, out->normal_y, out->separation[0],
-                                 out->separation[1], out->point_x[0], out->point_x[1], out->point_y[0], out->point_y[1],
-                                 out->feature[0], out->feature[1], out->radius_a[0], out->radius_a[1], out->radius_b[0],
-                                 out->radius_b[1]}};
 }
 
 narc_status narc_read_manifold_options(const narc_manifold_options *options, float *out_flat_sine, narc_error *error) {
@@ -69,8 +49,11 @@ static narc_status find(const narc_shapes *shapes, const narc_bodies *bodies, co
     status = narc_read_manifold_options(o, &batch.flat_sine, error);
     if (status != NARC_OK)
         return status;
-    const narc_lister lister = {find_manifolds, NARC_CONTACT_GROUP / 2, o->margin, .manifold = kernels->manifold};
-    const narc_list list = list_columns(out_manifolds);
+    const narc_lister lister = {find_manifolds, NARC_MANIFOLD_CHUNK, o->margin, .manifold = kernels->manifold};
+    const narc_list list = {.capacity = out_manifolds->capacity,
+                            .columns = NARC_MANIFOLD_COLUMN_COUNT,
+                            .item = {NARC_MANIFOLD_COLUMNS(NARC_COLUMN_SIZE, out_manifolds)},
+                            .array = {NARC_MANIFOLD_COLUMNS(NARC_COLUMN_ARRAY, out_manifolds)}};
     const size_t found = narc_run_list(&lister, &batch, first, count, threads, &list);
     if (o->out_skipped)
         *o->out_skipped = skipped;

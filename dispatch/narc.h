@@ -55,7 +55,7 @@
  *     narc_pairs pairs = {.count = 5000, .a = NARC_COLUMN(pair, a), .b = NARC_COLUMN(pair, b)};
  *     narc_find_overlaps(shapes, &bodies, &pairs, 0, hits, NULL);
  *
- * Every function here may be called from any number of threads at once. Queries need up to 320 KB of stack.
+ * Every function here may be called from any number of threads at once, with NARC_STACK_SIZE bytes of stack.
  */
 #ifndef NARC_H
 #define NARC_H

@@ -18,7 +18,7 @@
  *
  *   A query of zeros is the exact method without extras: the calls of narc.h are short forms of it.
  *
- * Every function here may be called from any number of threads at once. Queries need up to 256 KB of stack.
+ * Every function here may be called from any number of threads at once, with NARC_STACK_SIZE bytes of stack.
  */
 #ifndef NARC_METHODS_H
 #define NARC_METHODS_H

@@ -77,6 +77,12 @@ extern "C" {
  * Files with 7 digits pass, but for arcs with a radius above some 10 times the bounding radius, which need more. */
 #define NARC_TOLERANCE 1e-5
 
+/* Bytes of stack. A thread that has this much, for itself too, may call every function of narc_shapes.h, narc.h,
+ * narc_methods.h and narc_broad_phase.h; OpenMP's own threads need as much (OMP_STACKSIZE). Of a library that was
+ * compiled with optimisation and without sanitizers: some 30 KB are room for compilers that need more than GCC and
+ * clang do. (narc_fit.h calls other libraries and needs what they need.) */
+#define NARC_STACK_SIZE (320 * 1024)
+
 /* ------------------------------------------------------------------------------------------------ status */
 
 typedef enum narc_status {
