@@ -7,51 +7,66 @@
 #if defined(__x86_64__)
 #include <cpuid.h>
 
-/* Extended control register 0: which register files the operating system saves. */
+/* Bits of extended control register 0: the register files that the operating system saves. */
+enum { YMM_SAVED = 0x06, ZMM_SAVED = 0xe6 };
+
+/* Each feature: the need that it is part of, its bit in ebx of leaf 7, and the registers that it works on. */
+static const struct feature {
+    const char *name;
+    unsigned need, bit;
+    unsigned long long saved;
+} features[] = {
+    {"avx2", NARC_CPU_AVX2, 5, YMM_SAVED},        {"bmi2", NARC_CPU_AVX2, 8, YMM_SAVED},
+    {"avx512f", NARC_CPU_AVX512, 16, ZMM_SAVED},  {"avx512dq", NARC_CPU_AVX512, 17, ZMM_SAVED},
+    {"avx512bw", NARC_CPU_AVX512, 30, ZMM_SAVED}, {"avx512vl", NARC_CPU_AVX512, 31, ZMM_SAVED},
+};
+
 static unsigned long long read_xcr0(void) {
     unsigned low, high;
     __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
     return (unsigned long long)high << 32 | low;
 }
 
-unsigned narc_detect_cpu(void) {
-    const unsigned osxsave_and_avx = 1u << 27 | 1u << 28;              /* leaf 1, ecx */
-    const unsigned avx2_and_bmi2 = 1u << 5 | 1u << 8;                  /* leaf 7, ebx */
-    const unsigned avx512 = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31; /* leaf 7, ebx: F, DQ, BW, VL */
-    const unsigned long long ymm_saved = 0x06, zmm_saved = 0xe6;
-    unsigned a, b, c, d, found = 0;
-    if (!__get_cpuid(1, &a, &b, &c, &d) || (c & osxsave_and_avx) != osxsave_and_avx)
-        return 0;
-    const unsigned long long saved = read_xcr0();
-    if ((saved & ymm_saved) != ymm_saved)
-        return 0;
-    found |= NARC_CPU_AVX;
-    if (!__get_cpuid_count(7, 0, &a, &b, &c, &d))
-        return found;
-    if ((b & avx2_and_bmi2) == avx2_and_bmi2)
-        found |= NARC_CPU_AVX2;
-    if ((b & avx512) == avx512 && (saved & zmm_saved) == zmm_saved)
-        found |= NARC_CPU_AVX512;
-    return found;
+static bool has_feature(const struct feature *feature) {
+    const unsigned osxsave = 1u << 27; /* leaf 1, ecx */
+    unsigned a, b, c, d;
+    if (!__get_cpuid(1, &a, &b, &c, &d) || !(c & osxsave) || (read_xcr0() & feature->saved) != feature->saved)
+        return false;
+    return __get_cpuid_count(7, 0, &a, &b, &c, &d) && b >> feature->bit & 1;
 }
-
-#elif defined(__aarch64__)
-
-unsigned narc_detect_cpu(void) { return NARC_CPU_NEON; } /* part of the base architecture */
 
 #else
 
-unsigned narc_detect_cpu(void) { return 0; }
+static const struct feature {
+    const char *name;
+    unsigned need;
+} features[] = {{"neon", NARC_CPU_NEON}};
+
+static bool has_feature(const struct feature *feature) {
+    (void)feature;
+#if defined(__aarch64__)
+    return true; /* part of the base architecture */
+#else
+    return false;
+#endif
+}
 
 #endif
 
-const char *narc_cpu_features(void) {
-    const unsigned found = narc_detect_cpu();
-    if (found & NARC_CPU_NEON)
-        return "neon";
-    if (found & NARC_CPU_AVX512)
-        return "avx avx2 avx512f avx512dq avx512bw avx512vl";
-    if (found & NARC_CPU_AVX2)
-        return "avx avx2";
-    return found & NARC_CPU_AVX ? "avx" : "";
+enum { FEATURES = sizeof features / sizeof *features };
+
+unsigned narc_detect_cpu(void) {
+    unsigned known = 0, missing = 0;
+    for (int k = 0; k < FEATURES; k++) {
+        known |= features[k].need;
+        missing |= has_feature(&features[k]) ? 0 : features[k].need;
+    }
+    return known & ~missing;
+}
+
+const char *narc_cpu_feature(size_t index) {
+    for (int k = 0; k < FEATURES; k++)
+        if (has_feature(&features[k]) && index-- == 0)
+            return features[k].name;
+    return NULL;
 }

@@ -113,6 +113,3 @@ static const char *const kernel_names[] = {
 enum { KERNEL_COUNT = sizeof kernel_names / sizeof kernel_names[0] };
 
 const char *narc_kernel_name(size_t index) { return index < KERNEL_COUNT ? kernel_names[index] : NULL; }
-
-/* So far each table serves all its kernels itself. */
-const char *narc_kernel_isa(size_t index) { return index < KERNEL_COUNT ? narc_get_isa() : NULL; }

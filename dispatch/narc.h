@@ -215,7 +215,8 @@ NARC_API narc_status narc_find_contact(const narc_shapes *shapes, const narc_bod
                                        narc_contact *out_contact, narc_error *error);
 
 /* The contact manifold of two bodies, with the bits that narc_find_manifolds() finds; without points, and all 0, if the
- * separation is not less than the margin. `options` as there; options->hints is one value. Errors as
+ * separation is not less than the margin. With margin +INFINITY that of bodies further apart than NARC_MAX_DISTANCE has
+ * separation[0] +INFINITY, no points, and all else 0. `options` as there; options->hints is one value. Errors as
  * narc_find_contact(), and those of the options. */
 NARC_API narc_status narc_find_manifold(const narc_shapes *shapes, const narc_body *a, const narc_body *b,
                                         const narc_manifold_options *options, narc_manifold *out_manifold,
@@ -245,13 +246,12 @@ NARC_API const char *narc_isa_name(size_t index);
 /* Can this build and this processor run it? False for a name that is not known. */
 NARC_API bool narc_isa_supported(const char *name);
 
-/* The kernels of the table in use: name of number `index`, NULL behind the last, and the instruction set that serves it
- * (a wider one is not always faster). */
+/* The kernels, which every instruction set has: name number `index`, NULL behind the last. */
 NARC_API const char *narc_kernel_name(size_t index);
-NARC_API const char *narc_kernel_isa(size_t index);
 
-/* What the processor and the operating system offer, as far as this library asks: such as "avx avx2" or "neon". */
-NARC_API const char *narc_cpu_features(void);
+/* What the processor and the operating system offer, as far as this library asks: name number `index`, such as "avx2"
+ * or "neon", NULL behind the last. */
+NARC_API const char *narc_cpu_feature(size_t index);
 
 /* How many threads `threads` = 0 means now; 1 in a build without OpenMP. */
 NARC_API unsigned narc_default_threads(void);

@@ -156,7 +156,8 @@ NARC_API narc_status narc_build_box(double width, double height, double radius, 
                                     narc_error *error);
 
 /* A convex polygon, `points[0 .. count-1]` counter-clockwise, each corner rounded inside the polygon with `radius`
- * >= 0: the shape never leaves the polygon and its sides lie on the polygon's. Corner i is arc i.
+ * >= 0: the shape never leaves the polygon and its sides lie on the polygon's. Corner i is arc i. (Box2D's radius is a
+ * skin around the polygon: for that shape move the sides outwards by the radius before.)
  * NARC_ERROR_COUNT: fewer than 3 or more than NARC_MAX_ARCS points. NARC_ERROR_NOT_CONVEX: a corner does not turn
  * left, or the polygon turns more than once. NARC_ERROR_RADIUS: two rounded corners do not fit on the side between
  * them (the message names the side and the largest radius that fits it). */
@@ -171,8 +172,9 @@ NARC_API narc_status narc_build_regular_polygon(size_t corners, double circumrad
 /* The n-arc nearest to the ellipse x^2 / half_x^2 + y^2 / half_y^2 = 1, of all that are symmetric to both axes: the one
  * with the least Hausdorff distance, which goes to `out_distance` (or NULL). (Of ellipses thinner than 12:1, with more
  * than 16 arcs, it is sometimes another one, up to 1.7 times as far.) It lies partly inside and partly outside the
- * ellipse. `arc_count` is 4, 8, 12 ... NARC_MAX_ARCS; twice as many arcs are about eight times as near. Where the half
- * axes are equal (their difference below 2 * NARC_TOLERANCE times the larger), it is a circle of one arc.
+ * ellipse. `arc_count` is 4, 8, 12 ... NARC_MAX_ARCS. Twice as many arcs are 4.2 to 7.3 times as near, the more there
+ * are the more (eight times would be the limit). Where the half axes are equal (their difference below 2 *
+ * NARC_TOLERANCE times the larger), it is a circle of one arc.
  * NARC_ERROR_COUNT: another arc_count. NARC_ERROR_RADIUS: an arc is flatter than narc_validate_arcs() allows; the
  * flattest has a radius of about the larger half axis squared over the smaller.
  * Source: equal extreme errors (Chebyshev) of the support function, by the Remez exchange; soa/ellipse.c. */
@@ -458,7 +460,7 @@ typedef struct narc_contact {
  *                   whether an edge, an arc or a corner touches.
  *   radius_a[i]     radius of curvature of A, scaled: 0 at a corner, INFINITY on an edge; at an edge's end that of the
  *   radius_b[i]     arc next to it. And of B.
- * Where there is no point i its items are 0. */
+ * Where there is no point i its items are 0; but of a pair without an answer separation[0] is +INFINITY. */
 typedef struct narc_manifolds {
     size_t capacity; /* items in each array */
     uint32_t *pair;

@@ -14,8 +14,8 @@
 static const char HELP[] = "usage: narc info\n"
                            "\n"
                            "Prints the version, the processor's features as far as narc uses them, the instruction\n"
-                           "sets, which of them serves each kernel, and the number of threads. The environment\n"
-                           "variable NARC_ISA chooses another instruction set.\n";
+                           "sets, the kernels, and the number of threads. The environment variable NARC_ISA\n"
+                           "chooses another instruction set.\n";
 
 static void run(int argc, char **argv) {
     parse_options(argc, argv, NULL, 0, NULL, NULL);
@@ -26,9 +26,10 @@ static void run(int argc, char **argv) {
         narc_set_isa(getenv("NARC_ISA"), &error);
         fail("NARC_ISA%s", error.message + strcspn(error.message, ":"));
     }
-    const char *features = narc_cpu_features();
-    printf("narc %s\n\n", narc_version());
-    printf("%-20s %s\n", "processor features", *features ? features : "none of those asked for");
+    printf("narc %s\n\n%-20s", narc_version(), "processor features");
+    for (size_t i = 0; narc_cpu_feature(i); i++)
+        printf(" %s", narc_cpu_feature(i));
+    printf("%s\n", narc_cpu_feature(0) ? "" : " none of those asked for");
     for (size_t i = 0; narc_isa_name(i); i++) {
         const char *name = narc_isa_name(i);
         printf("%-20s %-8s %s\n", i ? "" : "instruction sets", name,
@@ -36,7 +37,7 @@ static void run(int argc, char **argv) {
     }
     printf("%-20s %s\n", "in use", chosen);
     for (size_t i = 0; narc_kernel_name(i); i++)
-        printf("%-20s %-8s %s\n", i ? "" : "kernels", narc_kernel_name(i), narc_kernel_isa(i));
+        printf("%-20s %s\n", i ? "" : "kernels", narc_kernel_name(i));
     printf("%-20s %u\n", "threads", narc_default_threads());
 }
 

@@ -106,12 +106,12 @@ INLINE vm vm_xor(vm a, vm b) { return _mm256_xor_ps(a, b); }
 INLINE vm vm_not(vm a) { return _mm256_xor_ps(a, _mm256_castsi256_ps(_mm256_set1_epi32(-1))); }
 INLINE vm vm_and_not(vm a, vm b) { return _mm256_andnot_ps(b, a); }
 INLINE vm vm_front(int n) { return vi_lt(vi_lanes(), vi_set(n)); }
+INLINE uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_ps(a); }
 INLINE vp vm_packing(vm a) {
     /* A byte of ones for each lane that is kept, and then those bytes of 0 ... 7. */
     const uint64_t kept = _pdep_u64((uint32_t)_mm256_movemask_ps(a), 0x0101010101010101u) * 0xff;
     return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)_pext_u64(0x0706050403020100u, kept)));
 }
-INLINE uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_ps(a); }
 INLINE int vm_any(vm a) { return _mm256_movemask_ps(a) != 0; }
 
 #endif

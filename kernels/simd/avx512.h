@@ -117,8 +117,8 @@ INLINE vm vm_xor(vm a, vm b) { return _kxor_mask16(a, b); }
 INLINE vm vm_not(vm a) { return _knot_mask16(a); }
 INLINE vm vm_and_not(vm a, vm b) { return _kandn_mask16(b, a); }
 INLINE vm vm_front(int n) { return vi_lt(vi_lanes(), vi_set(n)); }
-INLINE vp vm_packing(vm a) { return a; }
 INLINE uint32_t vm_bits(vm a) { return (uint32_t)a; }
+INLINE vp vm_packing(vm a) { return a; }
 INLINE int vm_any(vm a) { return a != 0; }
 
 #endif

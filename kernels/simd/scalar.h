@@ -91,8 +91,8 @@ INLINE vm vm_xor(vm a, vm b) { return a ^ b; }
 INLINE vm vm_not(vm a) { return !a; }
 INLINE vm vm_and_not(vm a, vm b) { return a & !b; }
 INLINE vm vm_front(int n) { return n > 0; }
-INLINE vp vm_packing(vm a) { return a; }
 INLINE uint32_t vm_bits(vm a) { return (uint32_t)a; }
+INLINE vp vm_packing(vm a) { return a; }
 INLINE int vm_any(vm a) { return a; }
 
 #endif

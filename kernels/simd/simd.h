@@ -34,8 +34,8 @@
  *   vi_lanes()                                                  0, 1, 2 ...
  *   vm_and vm_or vm_xor vm_not vm_and_not(a, b)                 the last: a and not b
  *   vm_front(int)                                               true in that many lanes, the front ones
- *   vm_packing(vm)                                              the vp of a predicate
  *   vm_bits(vm)                                                 bit k is lane k
+ *   vm_packing(vm)                                              the vp of a predicate
  *   vm_any(vm)
  *   V_SINCOS                                                    the name of SLEEF's deterministic sincos() of a vf
  */

@@ -148,6 +148,12 @@ static void zeros_are_defaults(void **state) {
     const narc_body far = {.x = 1e18};
     assert_int_equal(narc_find_contact(shapes, &a, &far, &c, NULL), NARC_OK);
     assert_true(isinf(c.separation) && c.separation > 0 && c.normal_x == 0 && c.point_x == 0);
+    const size_t floats = sizeof m - offsetof(narc_manifold, normal_x);
+    const narc_manifold none = {0}, no_answer = {.separation = {INFINITY, 0}};
+    assert_int_equal(narc_find_manifold(shapes, &a, &far, NULL, &m, NULL), NARC_OK);
+    assert_true(m.point_count == 0 && memcmp(&m.normal_x, &none.normal_x, floats) == 0);
+    assert_int_equal(narc_find_manifold(shapes, &a, &far, &(narc_manifold_options){.margin = INFINITY}, &m, NULL), 0);
+    assert_true(m.point_count == 0 && memcmp(&m.normal_x, &no_answer.normal_x, floats) == 0);
     narc_destroy_shapes(shapes);
 }
 

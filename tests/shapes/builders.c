@@ -390,6 +390,23 @@ static void builds_ellipses(void **state) {
     assert_int_equal(narc_build_ellipse(2, 1, 8, NULL, count, NULL, error), NARC_ERROR_ARGUMENT);
 }
 
+/* What narc_build_ellipse() says of the number of arcs. */
+static void more_arcs_are_nearer_to_ellipses(void **state) {
+    (void)state;
+    const double ratio[] = {1.01, 1.5, 3, 7, 12};
+    for (size_t r = 0; r < sizeof ratio / sizeof *ratio; r++) {
+        double last = 0, least = 4.15;
+        for (size_t n = 4; n <= NARC_MAX_ARCS; n *= 2) {
+            struct output o = make_output();
+            double distance;
+            expect_ok(narc_build_ellipse(ratio[r], 1, n, o.arcs, &o.count, &distance, &o.error), &o.error);
+            assert_true(n == 4 || (last / distance > least && last / distance < 7.35));
+            least = n == 4 ? least : last / distance;
+            last = distance;
+        }
+    }
+}
+
 /* Random rings: convex ones, stars in either direction; each has an n-arc with as many arcs. */
 static void builds_rings(void **state) {
     (void)state;
@@ -478,6 +495,7 @@ int test_builders(void) {
         cmocka_unit_test(refuses_what_does_not_fit),
         cmocka_unit_test(builds_regular_polygons),
         cmocka_unit_test(builds_ellipses),
+        cmocka_unit_test(more_arcs_are_nearer_to_ellipses),
         cmocka_unit_test(builds_rings),
         cmocka_unit_test(moves_arcs),
     };

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: MIT
+# Have all vector wrappers the same operations in the same order, which is that of their contract, simd.h? Helpers of one
+# wrapper alone may stand between. Run as
+#   cmake -D SOURCE=<the project's folder> -P wrappers.cmake
+cmake_minimum_required(VERSION 3.22)
+file(STRINGS "${SOURCE}/kernels/isa.def" lines REGEX "^NARC_ISA\\(")
+list(TRANSFORM lines REPLACE "^NARC_ISA\\(([a-z0-9_]+),.*" "\\1" OUTPUT_VARIABLE names)
+
+# The operations that a wrapper defines.
+function(read_operations name out)
+  file(STRINGS "${SOURCE}/kernels/simd/${name}.h" lines REGEX "^(INLINE [a-z0-9_]+|#define) (V_|v[a-z]*_)")
+  list(TRANSFORM lines REPLACE "^(INLINE [a-z0-9_]+|#define) ([A-Za-z0-9_]+).*" "\\2")
+  set(${out} "${lines}" PARENT_SCOPE)
+endfunction()
+
+# Each is in the contract, behind the one before. (V_WIDTH and V_SINCOS stand in front of the types.)
+read_operations(scalar operations)
+list(LENGTH operations count)
+if(count LESS 40)
+  message(FATAL_ERROR "only ${count} operations in scalar.h")
+endif()
+file(READ "${SOURCE}/kernels/simd/simd.h" contract)
+set(last 0)
+foreach(operation IN LISTS operations)
+  string(REGEX MATCH "[^A-Za-z0-9_]${operation}[^A-Za-z0-9_]" found "${contract}")
+  string(FIND "${contract}" "${found}" place)
+  if(found STREQUAL "" OR (place LESS last AND NOT operation MATCHES "^V_"))
+    message(SEND_ERROR "simd.h: ${operation} is missing, or not in the order of scalar.h")
+  elseif(NOT operation MATCHES "^V_")
+    set(last ${place})
+  endif()
+endforeach()
+
+foreach(name IN LISTS names)
+  read_operations(${name} own)
+  set(shared)
+  foreach(operation IN LISTS own)
+    if(operation IN_LIST operations)
+      list(APPEND shared ${operation})
+    endif()
+  endforeach()
+  if(NOT shared STREQUAL operations)
+    message(SEND_ERROR "${name}.h has another order than scalar.h, or lacks something:\n${shared}\n${operations}")
+  endif()
+endforeach()
