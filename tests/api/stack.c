@@ -284,7 +284,7 @@ static unsigned char *map_memory(size_t size, int protection) {
     return memory;
 }
 
-/* Runs all calls; returns the most stack that one used. */
+/* Runs all calls, and prints which one used most. NARC_TEST_STACKS=1 prints them all. */
 static void run_calls(unsigned threads) {
     unsigned char *const map = map_memory(FORBIDDEN + NARC_STACK_SIZE, PROT_READ | PROT_WRITE);
     unsigned char *const stack = map + FORBIDDEN;
@@ -314,8 +314,7 @@ static void run_calls(unsigned threads) {
         }
     }
     print_message("%zu of %zu bytes by %s\n", most, (size_t)NARC_STACK_SIZE, hungry);
-    /* The measure works: a chunk's results alone are more. */
-    assert_true(most > (size_t)64 * NARC_MAX_ARCS);
+    assert_true(most > NARC_STACK_SIZE / 2); /* the measure works, and the promise is near the need */
     munmap(map, FORBIDDEN + NARC_STACK_SIZE);
 }
 
