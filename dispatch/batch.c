@@ -126,9 +126,9 @@ static void give_way(void) {
 }
 
 /* One chunk after the other, straight to the caller's list while it has room for as many answers as a chunk has
- * pairs. Not inlined: where there are several threads its buffer would be on the stack beside the thread's own. */
-static __attribute__((noinline)) size_t list_in_order(const narc_lister *lister, const narc_batch *batch, size_t first,
-                                                      size_t count, const narc_list *list) {
+ * pairs. */
+static size_t list_in_order(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count,
+                            const narc_list *list) {
     size_t total = 0;
     for (size_t start = 0; start < count; start += lister->chunk) {
         _Alignas(16) char buffer[BUFFER];
@@ -148,13 +148,10 @@ static __attribute__((noinline)) size_t list_in_order(const narc_lister *lister,
     return total;
 }
 
-size_t narc_run_list(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count, unsigned threads,
-                     const narc_list *list) {
-    clear_outcomes(batch, first, count);
+/* Several threads. Not inlined: the buffer of list_in_order() would be on the stack beside the thread's own. */
+static __attribute__((noinline)) size_t list_in_team(const narc_lister *lister, const narc_batch *batch, size_t first,
+                                                     size_t count, int team, const narc_list *list) {
     const size_t chunks = (count + lister->chunk - 1) / lister->chunk;
-    const int team = narc_team_size(threads, chunks);
-    if (team <= 1)
-        return list_in_order(lister, batch, first, count, list);
     /* Chunks are handed out in the order of the pairs and run at once; only the reservation of their place in the list
      * waits for its turn. It gives up the processor while it waits: OpenMP's own `ordered` spins, which on a busy
      * machine keeps the thread that it waits for from running. */
@@ -180,6 +177,15 @@ size_t narc_run_list(const narc_lister *lister, const narc_batch *batch, size_t 
     if (batch->skipped)
         *batch->skipped += skipped;
     return total;
+}
+
+size_t narc_run_list(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count, unsigned threads,
+                     const narc_list *list) {
+    clear_outcomes(batch, first, count);
+    const int team = narc_team_size(threads, (count + lister->chunk - 1) / lister->chunk);
+    if (team <= 1)
+        return list_in_order(lister, batch, first, count, list);
+    return list_in_team(lister, batch, first, count, team, list);
 }
 
 static size_t find_contacts(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count,
