@@ -97,9 +97,9 @@ NARC_API narc_status narc_compute_hull(const narc_point *points, size_t count, n
 
 /* Each adds what it reads to a path; on error the path is as before. They read from memory, so that nothing
  * depends on files. For text formats error->index is the line, from 1 (0: no particular one); messages name line and
- * value. Errors: NARC_ERROR_ARGUMENT (NULL; a silhouette that does not exist), NARC_ERROR_FORMAT (not in that format, damaged, or without an outline),
- * NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE, NARC_ERROR_MEMORY. Inputs may come from strangers: any bytes end in a
- * path or an error. */
+ * value. Errors: NARC_ERROR_ARGUMENT (NULL; a silhouette that does not exist), NARC_ERROR_FORMAT (not in that format,
+ * damaged, or without an outline), NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE, NARC_ERROR_MEMORY. Inputs may come from
+ * strangers: any bytes end in a path or an error. */
 
 /* A font that FreeType reads (TrueType, OpenType, Type 1 ...). The data must stay until it is closed. */
 typedef struct narc_font narc_font;
@@ -114,8 +114,8 @@ NARC_API narc_status narc_read_glyph(narc_font *font, uint32_t character, narc_p
  * 0: no more. */
 NARC_API uint32_t narc_next_character(narc_font *font, uint32_t after);
 
-/* Which part of an image or drawing is its silhouette: what is not transparent; or what is dark, or light, of it. Darkness
- * is 1 - luminance, of what is transparent as much less. */
+/* Which part of an image or drawing is its silhouette: what is not transparent; or what is dark, or light, of it.
+ * Darkness is 1 - luminance, of what is transparent as much less. */
 typedef enum narc_silhouette {
     NARC_SILHOUETTE_ALPHA = 0,
     NARC_SILHOUETTE_DARK = 1,
@@ -130,12 +130,12 @@ typedef struct narc_image_request {
 } narc_image_request;
 
 /* What is seen of an SVG file: librsvg draws it, whatever it uses (strokes, clipping, text, style sheets, filters), and
- * the outline of all ink above the threshold is traced. So that antialiased edges and tips keep their place, fainter ink
- * that is within 8 pixels of such ink along rows and columns counts too. The ink's longer side is 4096
- * pixels or more, less only where the page, at 8192 pixels, is more than twice as large as the ink. Outline and ink
- * are within one pixel of each other; contours tell that as their flatness, and fits count it, so that a bounding fit
- * bounds the ink. What is thinner than a pixel counts with as much less alpha; tips of needles, below 8 degrees, end
- * where they become so thin. Circles are librsvg's: too large by up to 2.8e-4 of the radius.
+ * the outline of all ink above the threshold is traced. Fainter ink within 8 pixels of it along rows and columns counts
+ * too, so that antialiased edges and tips keep their place. The ink's longer side is 4096 pixels or more, less only
+ * where the page, at 8192 pixels, is more than twice as large as the ink. Outline and ink that counts are within one
+ * pixel of each other; contours tell that as their flatness, and fits count it, so that a bounding fit bounds the ink.
+ * What is thinner than a pixel counts with as much less alpha; tips of needles, below 8 degrees (at thresholds above 0.5
+ * below 15), end where they become so thin. Circles are librsvg's: too large by up to 2.8e-4 of the radius.
  *
  * Units are the SVG's user units, those of the viewBox if there is one, y turned up. The page, which is the viewBox or
  * else from 0 to width and height, cuts off what is outside, as in any viewer; without either all is drawn (but for
@@ -149,8 +149,8 @@ NARC_API narc_status narc_read_svg(const void *data, size_t size, const narc_ima
                                    narc_error *error);
 
 /* The silhouette in a PNG image: contours at the threshold, interpolated between the centres of pixels, so that
- * antialiased edges keep their place. An image of which every pixel counts is its rectangle. Units are pixels, y up, the
- * origin at the lower left corner of the image. */
+ * antialiased edges keep their place. An image that is full throughout, such as an opaque one, is its rectangle. Units
+ * are pixels, y up, the origin at the lower left corner of the image. */
 NARC_API narc_status narc_read_png(const void *data, size_t size, const narc_image_request *request, narc_path *path,
                                    narc_error *error);
 

@@ -45,9 +45,9 @@ static narc_status begin(const struct source *source, png_image *image) {
     return NARC_OK;
 }
 
-/* Reads the pixels as gray and alpha: bytes, or linear light of 16 bits, which the alpha has multiplied. Images of 16 bits
- * go through linear light: libpng 1.6 mixes up the rows if it is to read an interlaced one with 8 bits. Its tables keep
- * 11 bits. */
+/* Reads the pixels as gray and alpha: bytes, or linear light of 16 bits, which the alpha has multiplied. Images of 16
+ * bits go through linear light: libpng 1.6 mixes up the rows if it is to read an interlaced one with 8 bits. Its tables
+ * keep 11 bits. */
 static narc_status load(const struct source *source, png_image *image, bool *out_deep, void **out_buffer) {
     const narc_status status = begin(source, image);
     if (status)

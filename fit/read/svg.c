@@ -2,7 +2,11 @@
  *
  * svg.c - SVG files: librsvg draws them, and the outline of what is drawn is traced.
  *
- * How far the outline is from the ink, in pixels. Ink is in every pixel whose alpha is not 0. The contours pass a
+ * What is fainter than the threshold does not count, unless it is REACH pixels or less from what does: an edge of strong
+ * ink has faint pixels too, and so has its tip, which is w pixels wide where 7 w pixels of a tip of 8 degrees are left.
+ * Between two rows its alpha is w / 2 at most: up to a threshold of 1/2 that is within 8 pixels of the end.
+ *
+ * How far the outline is from the ink, in pixels. Ink is in every pixel that counts. The contours pass a
  * quarter of a pixel beyond the centres of the outermost of these pixels, so that round each centre there is at least
  * the diamond |x| + |y| <= 1/4. A corner of the pixel is (1 - 1/4) / sqrt 2 = 0.53 from it, and no point of the pixel
  * is further: so far the ink may be outside. Each point of the contours is at most 1/4 from a centre, across from
@@ -30,7 +34,8 @@ enum { LOOK = 1024, INK = 4096, PAGE = 8192 };
 enum { FULL = 65535 };
 static const double LEVEL = 0.75 * FULL;
 
-/* What counts if nothing else is asked for, and how far from it, in pixels, fainter ink counts too. */
+/* What counts if nothing else is asked for: shadows and glows are fainter, in most drawings, glass is not. And how far
+ * from it, in pixels, fainter ink counts too. */
 static const double THRESHOLD = 0.25;
 enum { REACH = 8 };
 
@@ -165,8 +170,8 @@ static void release_drawing(struct drawing *drawing) {
     *drawing = (struct drawing){0};
 }
 
-/* Makes bytes of darkness or lightness, which the alpha has multiplied, of pixels of four, in the same rows. The weights
- * of the colours are those of BT.709. */
+/* Makes bytes of darkness or lightness, which the alpha has multiplied, of pixels of four, in the same rows. Colours
+ * have the weights of BT.709. */
 static void weigh_pixels(narc_silhouette silhouette, const struct drawing *drawing, unsigned char *bytes) {
     for (int y = 0; y < drawing->height; y++) {
         unsigned char *row = bytes + (size_t)y * drawing->stride;
@@ -244,7 +249,7 @@ static narc_status find_scale(const struct subject *of, double *out_scale, narc_
 
 /* ---------------------------------------------------------------------------- the outline */
 
-/* Marks, in each of two passes along a line of samples, what is within REACH of one that has the bit `from`, with `to`. */
+/* Marks what is within REACH of a sample with the bit `from`, in a line of samples, with `to`. */
 static void mark_near(uint16_t *samples, size_t count, size_t step, unsigned from, unsigned to) {
     for (int pass = 0; pass < 2; pass++) {
         size_t since = REACH + 1;

@@ -135,8 +135,9 @@ static void add_pairs(narc_start_list *starts, const narc_hull *hull, size_t cou
     add_set(starts, angles, 2 * found, count);
 }
 
-/* A corner for each corner of a flush polygon, and for each side the flattest arc from one of its ends to the other: half
- * of its sector has the sine of half the side over the radius. Thin polygons leave no room for wider sectors, the thinnest not even for these. */
+/* A corner for each corner of a flush polygon, and for each side the flattest arc from one of its ends to the other:
+ * half of its sector has the sine of half the side over the radius. Thin polygons leave no room for wider sectors, the
+ * thinnest not even for these. */
 static void add_chords(narc_start_list *starts, const narc_problem *problem, size_t sides) {
     double flush[MAX_CHAIN], angles[MAX_CHAIN];
     const size_t found = narc_find_flush_polygon(problem->hull, sides, flush);

@@ -276,9 +276,9 @@ static void expect_same(const narc_contours *expected, struct png_file file, nar
     free(file.bytes);
 }
 
-/* The same blob in formats of each kind: as alpha, dark, and light; opaque, and where all that is transparent is dark. Grays of 16 bits are known to 11 bits;
- * where neighbouring values differ by 1/15 or more, as on both sides of the threshold, that is up to 15 / 2^11 of a
- * pixel. */
+/* The same blob in formats of each kind: as alpha, dark, and light; opaque, and on nothing. Grays of 16 bits are known
+ * to 11 bits; where neighbouring values differ by 1/15 or more, as on both sides of the threshold, that is up to 15
+ * / 2^11 of a pixel. */
 static void reads_each_kind_of_format(void **state) {
     (void)state;
     enum { WIDTH = 13, HEIGHT = 11, COUNT = WIDTH * HEIGHT };
