@@ -34,6 +34,12 @@ static two multiply(double a, double b) {
     return (two){product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low};
 }
 
+/* What brings a vector to a size whose square is a number; 1 for most. */
+static double find_scale(double x, double y) {
+    const double largest = fmax(fabs(x), fabs(y));
+    return largest > 0x1p500 ? 0x1p-600 : largest < 0x1p-500 ? 0x1p600 : 1;
+}
+
 /* c[0] + c[1] z + ... */
 static double sum_series(const double *c, int count, double z) {
     double sum = 0;
@@ -101,7 +107,7 @@ static unsigned reduce(double angle, two *out_rest) {
     if (angle <= half_pi.high / 2)
         return 0;
     if (angle < large) {
-        const double turns = nearbyint(angle / half_pi.high);
+        const double turns = (int)(angle * 0.63661977236758134 + 0.5); /* 2 / pi */
         const two part = add(angle - turns * 0x1.921fb544p+0, -turns * 0x1.0b4611a6p-34);
         *out_rest = add(part.high, part.low - turns * 0x1.3198a2e037073p-69);
         if (fabs(out_rest->high) >= near)
@@ -184,9 +190,7 @@ double narc_atan2(double y, double x) {
         return NAN;
     if (x == 0 && y == 0)
         return copysign(signbit(x) ? pi.high : 0, y);
-    int exponent;
-    frexp(fmax(fabs(x), fabs(y)), &exponent);
-    const double across = ldexp(fabs(x), -exponent), up = ldexp(fabs(y), -exponent);
+    const double scale = find_scale(x, y), across = scale * fabs(x), up = scale * fabs(y);
     const bool is_steep = up > across, is_left = x < 0;
     const two part = is_steep ? find_arc_tangent(across, up) : find_arc_tangent(up, across);
     const two from = is_steep ? half_pi : is_left ? pi : (two){0, 0};
@@ -200,9 +204,9 @@ double narc_asin(double sine) { return narc_atan2(sine, sqrt((1 - sine) * (1 + s
 /* ------------------------------------------------------------------------------------------------ length */
 
 double narc_hypot(double x, double y) {
-    const double largest = fmax(fabs(x), fabs(y));
-    /* Squares of what lies between are numbers. */
-    const double scale = largest > 0x1p500 ? 0x1p-600 : largest < 0x1p-500 ? 0x1p600 : 1;
+    const double scale = find_scale(x, y);
+    if (scale == 1)
+        return sqrt(x * x + y * y);
     x *= scale;
     y *= scale;
     return sqrt(x * x + y * y) / scale;
