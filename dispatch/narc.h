@@ -226,7 +226,8 @@ NARC_API narc_status narc_find_manifold(const narc_shapes *shapes, const narc_bo
 
 /* Cosines and sines of `count` angles, in radians, within 1 ulp of exact, in the calling thread. Outputs may be
  * the input's array, not otherwise overlap it or each other. An angle that is not finite gives NaN, and so a body that
- * collides with nothing. Uses SLEEF's deterministic functions; in a build without SLEEF, the C library's. */
+ * collides with nothing. Uses SLEEF's deterministic functions: the bits are the same in all builds with
+ * the same version of it. In builds without SLEEF they are always the same. */
 NARC_API narc_status narc_compute_poses(const float *angles, size_t count, float *out_cosines, float *out_sines,
                                         narc_error *error);
 
