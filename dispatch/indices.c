@@ -106,7 +106,7 @@ static size_t find_bad_pair(const narc_batch *batch, size_t first, size_t last) 
 }
 
 size_t narc_find_bad_pair(const narc_batch *batch, size_t first, size_t count, unsigned threads) {
-    const size_t parts = (count + PART - 1) / PART;
+    const size_t parts = count / PART + (count % PART != 0);
     const int team = narc_team_size(threads, parts);
     /* With many more bodies than pairs it is better to look up those that are named. A body that no pair names may have
      * any shape, so what the quick way finds wrong is looked at again. */
@@ -129,7 +129,7 @@ size_t narc_find_bad_pair(const narc_batch *batch, size_t first, size_t count, u
 
 size_t narc_find_bad_body(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t count,
                           unsigned threads) {
-    const size_t parts = (count + PART - 1) / PART;
+    const size_t parts = count / PART + (count % PART != 0);
     const int team = narc_team_size(threads, parts);
     size_t bad = first + count;
     (void)team;

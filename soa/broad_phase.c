@@ -63,7 +63,7 @@ narc_status narc_reserve_boxes(narc_broad_phase *broad, size_t count) {
     if (broad->box_memory && count <= broad->box_capacity) /* padding needs memory even without boxes */
         return NARC_OK;
     const size_t n = with_room(count, 1024), padded = n + NARC_BOX_PADDING;
-    if (!replace(broad, &broad->box_memory, n + 64, BYTES_PER_BOX))
+    if (n > SIZE_MAX - 64 || !replace(broad, &broad->box_memory, n + 64, BYTES_PER_BOX))
         return NARC_ERROR_MEMORY;
     char *at = broad->box_memory;
     broad->entries = take(&at, n, sizeof *broad->entries);

@@ -52,7 +52,7 @@ static size_t compute_chunk(const narc_kernel_table *kernels, const narc_box_bat
  * one. */
 static size_t compute_chunks(const narc_kernel_table *kernels, const narc_box_batch *batch, size_t first, size_t count,
                              unsigned threads, narc_box *out_boxes) {
-    const size_t chunks = (count + CHUNK - 1) / CHUNK;
+    const size_t chunks = count / CHUNK + (count % CHUNK != 0);
     const int team = narc_team_size(threads, chunks);
     size_t skipped = 0;
     if (team <= 1) {
