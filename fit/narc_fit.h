@@ -23,7 +23,9 @@
  *
  * This library is meant for tools and load time, not for the inner loop of a game. It allocates memory, keeps no
  * globals, and prints nothing. All functions may be called from several threads, each with paths of its own. On an
- * error the outputs are untouched. Units and directions are those of narc_shapes.h: y points up, counter-clockwise.
+ * error the outputs are untouched. Where memory runs out it is NARC_ERROR_MEMORY, except in narc_read_svg(): librsvg and
+ * GLib end the process. (What CLP, which a fit uses, has of memory when it runs out is not released.) Units and
+ * directions are those of narc_shapes.h: y points up, counter-clockwise.
  *
  * Example
  *
@@ -142,9 +144,10 @@ typedef struct narc_image_request {
  * the parts at negative coordinates of groups with opacity, masks or filters), and percentages are of 300 x 150. Text
  * is drawn with the fonts that are installed. No other file is read, and nothing from a network. Path data and
  * attributes that are wrong are as in any viewer: a path ends before the first error. Pango warns through GLib's log,
- * which without a handler of the program's goes to standard error, of text that it cannot draw. It takes a tenth of a
- * second to a few seconds, and up to 300 MB (500 MB for darkness or lightness) or, where groups with opacity, masks or
- * filters are inside each other, more. */
+ * which without a handler of the program's goes to standard error, of text that it cannot draw. If memory runs out, or a
+ * drawing is beyond what librsvg takes (text larger than 1e6 units), the process ends, which librsvg and GLib do. It takes
+ * a tenth of a second to a few seconds, and up to 300 MB (500 MB for darkness or lightness) or, where groups with opacity,
+ * masks or filters are inside each other, more. */
 NARC_API narc_status narc_read_svg(const void *data, size_t size, const narc_image_request *request, narc_path *path,
                                    narc_error *error);
 
@@ -254,8 +257,8 @@ typedef struct narc_curve_arc {
  * the curve; it is at most `tolerance`. A cusp or a doubling back is a corner: there the tangent may jump, as that of
  * the curve does. With out_arcs NULL and capacity 0 only the count and the distance are told. NARC_ERROR_ARGUMENT
  * (NULL, degree), NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE (tolerance not positive, or below 1e-9 of the curve's extent;
- * coordinates beyond NARC_MAX_COORDINATE), NARC_ERROR_CAPACITY (`out_count` is set to the number needed). A curve that
- * is a point has no arcs. */
+ * coordinates beyond NARC_MAX_COORDINATE), NARC_ERROR_CAPACITY (`out_count` is set to the number needed),
+ * NARC_ERROR_MEMORY. A curve that is a point has no arcs. */
 NARC_API narc_status narc_fit_bezier(const narc_point *controls, size_t degree, double tolerance,
                                      narc_curve_arc *out_arcs, size_t capacity, size_t *out_count, double *out_distance,
                                      narc_error *error);

@@ -137,8 +137,12 @@ static narc_status fit_best(const narc_cubic *curve, double tolerance, double ro
     for (int k = 0; k < TRIES && status == NARC_OK && best->count <= FEW_ARCS; k++) {
         narc_spline closer = {0};
         tolerance *= 0.65;
-        if (tolerance < 1e-9 || fit_both_ways(curve, tolerance, rounding, &closer, NULL) != NARC_OK) {
+        const narc_status tried =
+            tolerance < 1e-9 ? NARC_ERROR_SIZE : fit_both_ways(curve, tolerance, rounding, &closer, NULL);
+        if (tried != NARC_OK) {
             free(closer.arcs);
+            if (tried == NARC_ERROR_MEMORY) /* otherwise what there is stays the best */
+                status = narc_fail(error, tried, 0, 0, "no memory for arcs");
             break;
         }
         const bool too_many = closer.count > best->count;

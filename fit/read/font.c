@@ -2,6 +2,7 @@
  *
  * font.c - outlines of glyphs, through FreeType.
  */
+#include <errno.h>
 #include <ft2build.h>
 #include <limits.h>
 #include <stdlib.h>
@@ -19,16 +20,20 @@ struct narc_font {
 
 static const uint32_t LAST_CHARACTER = 0x10ffff;
 
+/* Some of FreeType's formats tell another error where there is no memory; malloc() tells in errno, 0 before the call. */
+static bool ran_out_of_memory(FT_Error problem) { return problem == FT_Err_Out_Of_Memory || errno == ENOMEM; }
+
 static narc_status open_face(narc_font *font, const void *data, size_t size, narc_error *error) {
+    errno = 0;
     if (FT_Init_FreeType(&font->library) != 0) {
         font->library = NULL;
-        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "FreeType does not start");
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory to start FreeType");
     }
     const FT_Error problem = size > LONG_MAX ? FT_Err_Invalid_Argument
                                              : FT_New_Memory_Face(font->library, data, (FT_Long)size, 0, &font->face);
     if (problem) {
         font->face = NULL;
-        return problem == FT_Err_Out_Of_Memory
+        return ran_out_of_memory(problem)
                    ? narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory to open the font")
                    : narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "not a font that FreeType can read (%zu bytes)", size);
     }
@@ -125,8 +130,9 @@ static narc_status load_glyph(narc_font *font, uint32_t character, narc_error *e
         return narc_fail(error, NARC_ERROR_INDEX, character, character, "the font has no glyph for U+%04X",
                          (unsigned)character);
     }
+    errno = 0;
     const FT_Error problem = FT_Load_Glyph(font->face, index, FT_LOAD_NO_SCALE | FT_LOAD_NO_BITMAP);
-    if (problem == FT_Err_Out_Of_Memory) {
+    if (problem && ran_out_of_memory(problem)) {
         return narc_fail(error, NARC_ERROR_MEMORY, character, character, "no memory for the glyph of U+%04X",
                          (unsigned)character);
     }

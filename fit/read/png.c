@@ -2,6 +2,7 @@
  *
  * png.c - silhouettes in PNG images.
  */
+#include <errno.h>
 #include <math.h>
 #include <png.h>
 #include <stdlib.h>
@@ -22,13 +23,18 @@ struct source {
     narc_error *error;
 };
 
+/* libpng tells in words that there is no memory, in several; malloc() does in errno. */
 static narc_status fail_png(const struct source *source, png_image *image) {
+    const bool has_memory = errno != ENOMEM;
     png_image_free(image);
+    if (!has_memory)
+        return narc_fail(source->error, NARC_ERROR_MEMORY, 0, 0, "no memory for the image");
     return narc_fail(source->error, NARC_ERROR_FORMAT, 0, 0, "not PNG, or damaged: %s", image->message);
 }
 
 /* Reads the header. The caller frees the image. */
 static narc_status begin(const struct source *source, png_image *image) {
+    errno = 0;
     *image = (png_image){.version = PNG_IMAGE_VERSION};
     if (!png_image_begin_read_from_memory(image, source->data, source->size))
         return fail_png(source, image);

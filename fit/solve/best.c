@@ -168,7 +168,7 @@ static bool enter_starts(narc_search *search, uint64_t round, struct pool *pool)
             enter(pool, &next);
     }
     free(starts.angles);
-    return true;
+    return !starts.no_memory;
 }
 
 /* The same shape with arc `split` in two halves. */
@@ -276,7 +276,7 @@ narc_status narc_find_best(const narc_problem *problem, const narc_effort *effor
     narc_candidate *items =
         malloc((effort->starts + count_near(effort->starts) + count_best(effort->starts)) * sizeof *items);
     struct pool best = {.room = MOST_RANKED, .items = out_best->items};
-    const bool searched = items && search_all(&search, effort, known, known_count, items, &best);
+    const bool searched = items && search_all(&search, effort, known, known_count, items, &best) && !search.no_memory;
     free(items);
     narc_close_search(&search);
     out_best->count = best.count;

@@ -131,11 +131,12 @@ static size_t choose(const struct pockets *pockets, size_t count, double *out_an
     return isfinite(least) ? count : 0;
 }
 
-size_t narc_find_flush_polygon(const narc_hull *hull, size_t count, double *out_angles) {
+size_t narc_find_flush_polygon(const narc_hull *hull, size_t count, double *out_angles, bool *no_memory) {
     struct line *lines = malloc(hull->count * sizeof *lines);
     double *prices = malloc(hull->count * sizeof *prices);
     struct pockets *pockets = malloc(sizeof *pockets);
     size_t found = 0;
+    *no_memory = *no_memory || !lines || !prices || !pockets;
     if (lines && prices && pockets && count >= 3) {
         for (size_t k = 0; k < hull->count; k++) {
             const narc_point d = hull->normals[k];

@@ -121,7 +121,10 @@ narc_status narc_climb(narc_ladder *ladder, const narc_rung *rung, const narc_ra
     bool perfect = false; /* with an arc less: then more arcs, and other families, change nothing */
     for (size_t k = 0; k < need_count && !perfect; k++) {
         const narc_ranking *other;
-        if (narc_climb(ladder, &needs[k], &other, NULL) == NARC_OK) {
+        const narc_status status = narc_climb(ladder, &needs[k], &other, NULL);
+        if (status == NARC_ERROR_MEMORY)
+            return narc_fail(error, status, 0, 0, "not enough memory for chains of %zu arcs", needs[k].count);
+        if (status == NARC_OK) {
             known_count += adapt(other, &needs[k], rung, known + known_count);
             perfect = needs[k].family == rung->family && needs[k].goal == rung->goal &&
                       narc_is_perfect(&problem, other->items[0].value);

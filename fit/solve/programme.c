@@ -10,12 +10,23 @@
 
 #include <coin/Clp_C_Interface.h>
 
+#include "solve/guard.h"
+
 /* Rows hold to this, in units of the outline's radius. What is left over is repaired exactly afterwards. */
 static const double FEASIBLE = 1e-9;
 
 /* The GNU C library takes a block of this size from the system, and when it is released keeps as much free memory from
  * then on. Otherwise each programme's memory would come from the system and go back: a sixth of a fit's time. */
 enum { LARGE_BLOCK = 1 << 21 };
+
+static void make_model(void *context) {
+    narc_programme *programme = context;
+    programme->model = Clp_newModel();
+    Clp_setLogLevel(programme->model, 0);
+    Clp_setPrimalTolerance(programme->model, FEASIBLE);
+    /* All lengths are near 1. With its own scaling CLP may end at what is an optimum of the scaled problem only. */
+    Clp_scaling(programme->model, 0);
+}
 
 bool narc_open_programme(narc_programme *programme, size_t columns, size_t row_capacity) {
     *programme = (narc_programme){.columns = columns, .row_capacity = row_capacity};
@@ -32,16 +43,11 @@ bool narc_open_programme(narc_programme *programme, size_t columns, size_t row_c
     programme->packed = malloc(row_capacity * columns * sizeof(double));
     programme->packed_index = malloc(row_capacity * columns * sizeof(int));
     programme->packed_start = malloc(((columns > row_capacity ? columns : row_capacity) + 1) * sizeof(int));
-    programme->model = Clp_newModel();
     if (!whole || !programme->row_lower || !programme->row_upper || !programme->entries || !programme->packed ||
-        !programme->packed_index || !programme->packed_start || !programme->model) {
+        !programme->packed_index || !programme->packed_start || !narc_call_guarded(make_model, programme)) {
         narc_close_programme(programme);
         return false;
     }
-    Clp_setLogLevel(programme->model, 0);
-    Clp_setPrimalTolerance(programme->model, FEASIBLE);
-    /* All lengths are near 1. With its own scaling CLP may end at what is an optimum of the scaled problem only. */
-    Clp_scaling(programme->model, 0);
     narc_clear_programme(programme);
     return true;
 }
@@ -121,7 +127,8 @@ static void add_rows(narc_programme *programme) {
 }
 
 /* With rows added, the dual method goes on from the last solution. */
-bool narc_solve_programme(narc_programme *programme) {
+static void solve_model(void *context) {
+    narc_programme *programme = context;
     Clp_Simplex *model = programme->model;
     if (programme->loaded == 0)
         load_columns(programme);
@@ -131,8 +138,17 @@ bool narc_solve_programme(narc_programme *programme) {
     Clp_dual(model, 0);
     if (Clp_status(model) != 0)
         Clp_primal(model, 0);
-    if (Clp_status(model) != 0)
+}
+
+bool narc_solve_programme(narc_programme *programme) {
+    if (!narc_call_guarded(solve_model, programme)) {
+        programme->no_memory = true;
+        programme->model = NULL; /* CLP leaves it half changed: to delete it may release memory twice */
         return false;
-    memcpy(programme->solution, Clp_primalColumnSolution(model), programme->columns * sizeof *programme->solution);
+    }
+    if (Clp_status(programme->model) != 0)
+        return false;
+    memcpy(programme->solution, Clp_primalColumnSolution(programme->model),
+           programme->columns * sizeof *programme->solution);
     return true;
 }

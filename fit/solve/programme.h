@@ -19,6 +19,7 @@ typedef struct narc_programme {
     void *model; /* a Clp_Simplex */
     int *packed_index, *packed_start;
     double *packed;
+    bool no_memory; /* CLP had none: the programme can only be closed */
 } narc_programme;
 
 /* Memory for `columns` columns and at most `row_capacity` rows; false if there is none. */
@@ -31,7 +32,7 @@ void narc_clear_programme(narc_programme *programme);
 /* A new row of zeros, to be filled in; NULL if there is no room. */
 double *narc_add_row(narc_programme *programme, double lower, double upper);
 
-/* Fills in `solution`. False if there is none (or no end of it). It may be called again with more rows; objective and
+/* Fills in `solution`. False if there is none (or no end of it), or no memory. It may be called again with more rows; objective and
  * bounds stay until the programme is cleared. */
 bool narc_solve_programme(narc_programme *programme);
 

@@ -254,29 +254,33 @@ static void set_bounds(nlopt_opt solver, const struct descent *descent, double b
     }
 }
 
-/* One attempt, from the descent's chain to another. */
-static void run_solver(struct descent *descent, double box, double gain) {
+/* One attempt, from the descent's chain to another. False if there is no memory. */
+static bool run_solver(struct descent *descent, double box, double gain) {
     double least, x[MOST_VARIABLES];
     list_free(descent);
     nlopt_opt solver = nlopt_create(NLOPT_LD_SLSQP, (unsigned)descent->free_count);
     if (!solver)
-        return;
+        return false;
     write_variables(&descent->chain, descent->distance, descent->x);
     take_free(descent, descent->x, x);
     set_bounds(solver, descent, box);
     nlopt_set_min_objective(solver, objective, descent);
-    nlopt_add_equality_mconstraint(solver, 2, closure, descent, NULL);
     list_limits(descent, box, descent->x);
-    if (descent->limit_count)
-        nlopt_add_inequality_mconstraint(solver, (unsigned)descent->limit_count, limits, descent, NULL);
-    if (descent->search->rows->count)
-        nlopt_add_inequality_mconstraint(solver, (unsigned)descent->search->rows->count, conditions, descent, NULL);
-    nlopt_set_xtol_abs1(solver, STEP_TOLERANCE);
+    const unsigned limit_count = (unsigned)descent->limit_count, row_count = (unsigned)descent->search->rows->count;
+    nlopt_result results[5] = {
+        nlopt_add_equality_mconstraint(solver, 2, closure, descent, NULL),
+        limit_count ? nlopt_add_inequality_mconstraint(solver, limit_count, limits, descent, NULL) : NLOPT_SUCCESS,
+        row_count ? nlopt_add_inequality_mconstraint(solver, row_count, conditions, descent, NULL) : NLOPT_SUCCESS,
+        nlopt_set_xtol_abs1(solver, STEP_TOLERANCE)};
     nlopt_set_ftol_rel(solver, gain);
-    nlopt_set_maxeval(solver, descent->search->rows->count ? EVALUATIONS : BARE_EVALUATIONS);
-    nlopt_optimize(solver, x, &least);
+    nlopt_set_maxeval(solver, row_count ? EVALUATIONS : BARE_EVALUATIONS);
+    results[4] = nlopt_optimize(solver, x, &least);
     nlopt_destroy(solver);
     move_to(descent, x);
+    bool has_memory = true;
+    for (size_t k = 0; k < sizeof results / sizeof results[0]; k++)
+        has_memory = has_memory && results[k] != NLOPT_OUT_OF_MEMORY;
+    return has_memory;
 }
 
 /* False if the sectors are out of order or the chain can't be closed. */
@@ -313,7 +317,10 @@ static bool solve_round(narc_search *search, const narc_candidate *candidate, do
     }
     bool found = false;
     for (unsigned attempt = 0; attempt < ATTEMPTS; attempt++) {
-        run_solver(&descent, box, gain);
+        if (!run_solver(&descent, box, gain)) {
+            search->no_memory = true;
+            return false;
+        }
         narc_candidate next;
         if (!take_chain(search, &descent.chain, &next))
             break;
@@ -329,7 +336,8 @@ static bool solve_round(narc_search *search, const narc_candidate *candidate, do
 void narc_refine(narc_search *search, narc_candidate *best, unsigned rounds, double gain) {
     double box = BOX_TURN;
     unsigned idle = 0;
-    for (unsigned round = 0; round < rounds && idle < PATIENCE && narc_advance(search->progress, 0); round++) {
+    for (unsigned round = 0;
+         round < rounds && idle < PATIENCE && !search->no_memory && narc_advance(search->progress, 0); round++) {
         narc_candidate next;
         const bool better = solve_round(search, best, box, 0.1 * gain, &next) && next.value < best->value;
         const bool gains = better && next.value < best->value * (1 - gain);

@@ -121,6 +121,8 @@ double narc_settle(narc_search *search, narc_chain *chain) {
 
 /* One step from a chain: the programme, again with more rows where its solution goes too far for lack of them. */
 static bool make_step(narc_search *search, const narc_chain *chain, narc_candidate *out_next) {
+    if (search->no_memory)
+        return false;
     set_columns(search, chain);
     double *x = narc_add_row(&search->programme, 0, 0), *y = narc_add_row(&search->programme, 0, 0);
     narc_derive_gap(chain, x, y);
@@ -131,8 +133,10 @@ static bool make_step(narc_search *search, const narc_chain *chain, narc_candida
         for (; built < search->rows->count; built++)
             add_condition(search, chain, &search->rows->items[built]);
         narc_candidate next;
-        if (!narc_solve_programme(&search->programme) || !take_solution(search, chain, &next.chain))
+        if (!narc_solve_programme(&search->programme) || !take_solution(search, chain, &next.chain)) {
+            search->no_memory = search->programme.no_memory;
             return found;
+        }
         const size_t count = narc_make_profile(&next.chain, search->problem.hull, search->intervals);
         const double distance = search->programme.solution[narc_make_layout(chain->count).distance];
         narc_add_violated(&search->problem, search->intervals, count, distance + SLACK, search->rows);

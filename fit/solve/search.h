@@ -29,6 +29,7 @@ typedef struct narc_search {
     narc_row_list *rows;
     narc_programme programme;
     narc_progress *progress;
+    bool no_memory; /* ran out: what is found from then on counts for nothing */
 } narc_search;
 
 narc_status narc_open_search(narc_search *search, const narc_problem *problem, narc_progress *progress,

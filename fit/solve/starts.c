@@ -127,7 +127,7 @@ static narc_point meet_sides(const narc_hull *hull, double before, double after)
 /* Two normals at each side of a flush polygon, `apart` to either side of the side's own. */
 static void add_pairs(narc_start_list *starts, const narc_hull *hull, size_t count, size_t sides, double apart) {
     double flush[MAX_CHAIN], angles[MAX_CHAIN];
-    const size_t found = narc_find_flush_polygon(hull, sides, flush);
+    const size_t found = narc_find_flush_polygon(hull, sides, flush, &starts->no_memory);
     for (size_t k = 0; k < found; k++) {
         angles[2 * k] = flush[k] - apart;
         angles[2 * k + 1] = flush[k] + apart;
@@ -162,7 +162,7 @@ static void add_chords(narc_start_list *starts, const narc_problem *problem, siz
 
 static void add_flush(narc_start_list *starts, const narc_hull *hull, size_t count, size_t sides) {
     double flush[MAX_CHAIN];
-    const size_t found = narc_find_flush_polygon(hull, sides, flush);
+    const size_t found = narc_find_flush_polygon(hull, sides, flush, &starts->no_memory);
     add_set(starts, flush, found, count);
 }
 

@@ -11,6 +11,7 @@ typedef struct narc_start_list {
     size_t count, room;
     double widest; /* sets with a wider sector are left out */
     double (*angles)[MAX_CHAIN];
+    bool no_memory; /* ran out: some are missing */
 } narc_start_list;
 
 /* Fills `room` sets: the reasonable ones first, then random ones, other ones in each round. */

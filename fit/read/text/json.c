@@ -4,6 +4,7 @@
  */
 #include "json.h"
 
+#include <errno.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -27,7 +28,10 @@ static size_t count_open(const char *text, const char *end) {
 
 narc_status narc_parse_json(const char *text, cJSON **out_value, narc_error *error) {
     const char *end = text;
+    errno = 0; /* cJSON does not tell what is wrong; malloc() does */
     cJSON *value = cJSON_ParseWithOpts(text, &end, true);
+    if (!value && errno == ENOMEM)
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for JSON of %zu bytes", strlen(text));
     if (!value) {
         const size_t line = narc_find_line(text, end);
         if (count_open(text, end) >= CJSON_NESTING_LIMIT)

@@ -10,7 +10,7 @@
 #include "lines.h"
 
 /* Parses a text as narc_clean_text() leaves it; free the value with cJSON_Delete(). NARC_ERROR_FORMAT, with the line:
- * the text is not JSON, or has a NUL character in a string, which cJSON would silently cut there. */
+ * the text is not JSON, or has a NUL character in a string, which cJSON would silently cut there. NARC_ERROR_MEMORY. */
 narc_status narc_parse_json(const char *text, cJSON **out_value, narc_error *error);
 
 /* A value as JSON, for messages. */
