@@ -140,7 +140,7 @@ static void add_pairs(narc_start_list *starts, const narc_hull *hull, size_t cou
  * thinnest not even for these. */
 static void add_chords(narc_start_list *starts, const narc_problem *problem, size_t sides) {
     double flush[MAX_CHAIN], angles[MAX_CHAIN];
-    const size_t found = narc_find_flush_polygon(problem->hull, sides, flush);
+    const size_t found = narc_find_flush_polygon(problem->hull, sides, flush, &starts->no_memory);
     narc_point corners[MAX_CHAIN]; /* corner k begins side k */
     for (size_t k = 0; k < found; k++)
         corners[k] = meet_sides(problem->hull, flush[(k + found - 1) % found], flush[k]);

@@ -157,11 +157,11 @@ static void read_csv(const void *input, struct outcome *out) { read_with(narc_re
 
 static void read_json(const void *input, struct outcome *out) { read_with(narc_read_json, input, out); }
 
-static narc_status read_silhouette(const void *data, size_t size, narc_path *path, narc_error *error) {
-    return narc_read_png(data, size, 0, path, error);
+static narc_status read_alpha(const void *data, size_t size, narc_path *path, narc_error *error) {
+    return narc_read_png(data, size, NULL, path, error);
 }
 
-static void read_image(const void *input, struct outcome *out) { read_with(read_silhouette, input, out); }
+static void read_image(const void *input, struct outcome *out) { read_with(read_alpha, input, out); }
 
 static narc_status read_letter(const void *data, size_t size, narc_path *path, narc_error *error) {
     narc_font *font = NULL;
