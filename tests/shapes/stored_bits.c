@@ -99,7 +99,7 @@ static uint64_t hash_derived(uint64_t hash, const narc_shapes *shapes, const nar
     narc_mass mass;
     narc_aabb box;
     narc_point point;
-    double perimeter;
+    double perimeter = 0;
     assert_true(narc_compute_mass(arcs, count, &mass) && narc_compute_perimeter(arcs, count, &perimeter) &&
                 narc_compute_aabb(arcs, count, 0.7, &box) && narc_find_support(arcs, count, 1, 2, &point, NULL));
     hash = hash_double(hash_double(hash, mass.second_moment), perimeter);
