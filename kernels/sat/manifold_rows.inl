@@ -80,7 +80,7 @@ INLINE void store_deepest(const struct call *call, const struct queue *queue, in
 
     const vm smooth = vm_or(info_has(info_a, NARC_SHAPE_SMOOTH), info_has(info_b, NARC_SHAPE_SMOOTH));
     const vm edges = vm_and_not(keep, smooth);
-    if (call->batch->flat_sine < 0 || !vm_any(edges))
+    if (!vm_any(edges))
         return;
     vf item[FIELDS];
     get_item(queue, k, item, SIZE);

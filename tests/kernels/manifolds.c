@@ -610,8 +610,8 @@ static size_t find_deepest(const struct manifolds *list, const struct contacts *
 /* The flat angle decides whether there is a second point, and nothing of the deepest one's id. */
 static void test_ids_at_all_flat_angles(void **state) {
     (void)state;
-    enum { ANGLES = 5, IDS_PAIRS = 400 };
-    const float angles[ANGLES] = {0.45f, 0.001f, 0.1f, 0.8f, 1.5f};
+    enum { ANGLES = 6, IDS_PAIRS = 400 };
+    const float angles[ANGLES] = {0.45f, -1.0f, 0.001f, 0.1f, 0.8f, 1.5f};
     struct test_random random = test_random_named("ids at all flat angles");
     size_t compared = 0, come_and_go = 0;
     for (int family = 0; family < FAMILY_COUNT * FAMILY_COUNT; family++) {
