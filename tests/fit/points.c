@@ -199,6 +199,10 @@ static void refuses_odd_json(void **state) {
                  "line 2: lists and objects nested more than 1000 deep");
     expect_error(read_exactly(narc_read_json, deep, 900, path, &error), NARC_ERROR_FORMAT, &error,
                  "line 2: not valid JSON: it ends too early");
+    memset(deep, '[', 1000); /* as deep as may be, and wrong there */
+    deep[1000] = 'x';
+    expect_error(read_exactly(narc_read_json, deep, 1001, path, &error), NARC_ERROR_FORMAT, &error,
+                 "line 1: not valid JSON here: 'x'");
     free(deep);
     expect_unchanged(path);
     narc_destroy_path(path);

@@ -34,7 +34,7 @@ narc_status narc_parse_json(const char *text, cJSON **out_value, narc_error *err
         return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for JSON of %zu bytes", strlen(text));
     if (!value) {
         const size_t line = narc_find_line(text, end);
-        if (count_open(text, end) >= CJSON_NESTING_LIMIT)
+        if ((*end == '[' || *end == '{') && count_open(text, end) >= CJSON_NESTING_LIMIT)
             return narc_fail(error, NARC_ERROR_FORMAT, line, 0, "line %zu: lists and objects nested more than %d deep",
                              line, CJSON_NESTING_LIMIT);
         return *end ? narc_fail(error, NARC_ERROR_FORMAT, line, 0, "line %zu: not valid JSON here: '%s'", line,
