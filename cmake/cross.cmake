@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # What the toolchain files share: build for another processor on a Debian or Ubuntu machine, run the tests under qemu.
-# Set before: `processor`, CMake's name of it; `tools`, the prefix of the compiler; `debian`, Debian's name of it; `emulator`.
+# Set before: `processor`, CMake's name of it; `tools`, the prefix of the compiler; `debian`, Debian's name of it;
+# `emulator`.
 #
 # Libraries of that processor (cmocka, SLEEF) come from the packages unpacked in build/packages/<debian>, where
 # `sh cmake/bootstrap.sh gate` puts them; where that folder is missing, from the system (libcmocka-dev:<debian>).

@@ -32,8 +32,8 @@ void narc_clear_programme(narc_programme *programme);
 /* A new row of zeros, to be filled in; NULL if there is no room. */
 double *narc_add_row(narc_programme *programme, double lower, double upper);
 
-/* Fills in `solution`. False if there is none (or no end of it), or no memory. It may be called again with more rows; objective and
- * bounds stay until the programme is cleared. */
+/* Fills in `solution`. False if there is none (or no end of it), or no memory. It may be called again with more rows;
+ * objective and bounds stay until the programme is cleared. */
 bool narc_solve_programme(narc_programme *programme);
 
 #endif

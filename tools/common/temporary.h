@@ -12,9 +12,10 @@
  * neither it nor its folder exists. */
 char *find_target(const char *path);
 
-/* Opens a temporary file beside a target, with owner and permissions of the file that it will replace, or (`old` NULL)
- * with those that the user's mask allows. A file that is read-only is not replaced: EACCES or EROFS. Its name, the caller's to remove and to free, is told before the file is there, so that a
- * signal handler can remove it. NULL, and errno, if it cannot be opened. */
+/* Opens a temporary file beside a target, with owner (where that is allowed) and permissions of the file that it will
+ * replace, or (`old` NULL) with those that the user's mask allows. A file that is read-only is not replaced: EACCES or
+ * EROFS. The new file's name, the caller's to remove and to free, is told before the file is there, so that a signal
+ * handler can remove it. NULL, and errno, if it cannot be opened. */
 FILE *open_temporary(const char *target, const struct stat *old, char *volatile *out_name);
 
 #endif
