@@ -151,7 +151,8 @@ static size_t list_in_order(const narc_lister *lister, const narc_batch *batch, 
 /* Several threads. Not inlined: the buffer of list_in_order() would be on the stack beside the thread's own. */
 static __attribute__((noinline)) size_t list_in_team(const narc_lister *lister, const narc_batch *batch, size_t first,
                                                      size_t count, int team, const narc_list *list) {
-    const size_t chunks = (count + lister->chunk - 1) / lister->chunk;
+    const size_t chunks = count / lister->chunk + (count % lister->chunk != 0);
+    (void)team;
     /* Chunks are handed out in the order of the pairs and run at once; only the reservation of their place in the list
      * waits for its turn. It gives up the processor while it waits: OpenMP's own `ordered` spins, which on a busy
      * machine keeps the thread that it waits for from running. */

@@ -99,6 +99,7 @@ static bool move_records(narc_shapes *shapes, size_t capacity) {
         if (!narc_has_shape(shapes, k)) {
             header->first_record = 0;
             header->count = SPARE_ARCS;
+            header->first_arc = 0;
             continue;
         }
         memcpy(&records[next], &shapes->records[header->first_record], size * sizeof *records);

@@ -178,9 +178,19 @@ INLINE struct end_point select_end_point(vm m, const struct end_point *a, const 
                               v_select(m, a->radius_b, b->radius_b)};
 }
 
-/* Is the common stretch more than rounding? Where two corners face each other both edges end there, and it is not. */
-INLINE vm is_stretch(const struct end_point *low, const struct end_point *high, vf separation) {
-    const vf sizes = v_add(v_add(v_abs(low->along), v_abs(high->along)), v_add(v_abs(low->across), v_abs(separation)));
+/* The coordinates that a stretch was computed from, seen from an origin. */
+INLINE vf add_coordinates(const struct end_point *low, const struct end_point *high, vf along, vf across) {
+    const vf ends = v_add(v_abs(v_sub(low->along, along)), v_abs(v_sub(high->along, along)));
+    return v_add(ends, v_abs(v_sub(low->across, across)));
+}
+
+/* Is the common stretch more than rounding? Where two corners face each other both edges end there, and it is not. Both
+ * bodies' origins count, so that it is the same with A and B swapped. */
+INLINE vm is_stretch(const struct end_point *low, const struct end_point *high, vf separation, vec2 n,
+                     vec2 position_b) {
+    const vf of_a = add_coordinates(low, high, v_set(0), v_set(0));
+    const vf of_b = add_coordinates(low, high, v2_cross(n, position_b), v2_dot(n, position_b));
+    const vf sizes = v_add(v_add(of_a, of_b), v_abs(separation));
     return v_lt(v_mul(v_set(LEAST_STRETCH), sizes), v_sub(high->along, low->along));
 }
 
@@ -245,7 +255,8 @@ static void find_second_points(const struct call *call, struct queue *queue, int
         const struct edge a = find_edge(call, queue, k, get_bits(queue, DEEPEST_RECORD_A, k), n, false);
         const struct edge b = find_edge(call, queue, k, get_bits(queue, DEEPEST_RECORD_B, k), n, true);
         struct end_point low = find_end_point(&a, &b, false), high = find_end_point(&a, &b, true);
-        const vm common = vm_and(vm_and(a.offered, b.offered), is_stretch(&low, &high, deepest));
+        const vec2 position_b = get_vec2(queue, POSITION, k);
+        const vm common = vm_and(vm_and(a.offered, b.offered), is_stretch(&low, &high, deepest, n, position_b));
         const vm faces = vm_and(live, common);
         const vm one = vm_and(vm_and_not(live, faces), vm_or(touches(&a), touches(&b)));
         if (vm_any(one))

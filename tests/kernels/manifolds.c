@@ -526,6 +526,34 @@ static void test_doubled_corner(void **state) {
     assert_true(two > 100 && near_joint > 100);
 }
 
+/* A corner that is cut off by little more than rounding, far from its shape's origin: as many points for (A, B) as for
+ * (B, A), but where roundings decide. */
+static void test_short_edges_swapped(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("short edges swapped");
+    const struct shape ground = make_box(4, 1, 0);
+    const size_t trials = test_trials(2000);
+    size_t differ = 0, two = 0;
+    for (size_t trial = 0; trial < trials; trial++) {
+        const double cut = random_between(&random, 0.8e-5, 2e-5), normal = -pi / 4;
+        struct shape shape = doubled_corner(1, 1, 0, normal);
+        shape.arcs[0].center_x -= cut;
+        shape.arcs[1].center_y += cut;
+        struct scene scene = make_duo(&ground, &shape);
+        scene_add_pair(&scene, 1, 0);
+        const double tilt = -pi / 2 - normal + random_between(&random, -0.4, 0.4), c = cos(tilt), s = sin(tilt);
+        put(&scene, 1, random_between(&random, -0.2, 0.2) - c + s, 0.49 - s - c, tilt);
+        struct manifolds list = scene_manifolds(&scene, 1);
+        assert_int_equal(list.count, 2);
+        differ += list.view.point_count[0] != list.view.point_count[1];
+        two += list.view.point_count[0] == 2;
+        destroy_manifolds(&list, false);
+        destroy_scene(&scene);
+    }
+    printf("  %zu of %zu differ, %zu with two points\n", differ, trials, two);
+    assert_true(differ < trials / 100 && two > trials / 20);
+}
+
 /* A corner that is rounded by two arcs has no edge between them, however far from the shape its origin is: what the
  * arcs' centres lose there is rounding. */
 static void test_far_origin(void **state) {
@@ -660,12 +688,19 @@ static void test_ids_at_all_flat_angles(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_single_positions), cmocka_unit_test(test_double_positions),
-        cmocka_unit_test(test_box_on_box),       cmocka_unit_test(test_corner_on_corner),
-        cmocka_unit_test(test_rocking),          cmocka_unit_test(test_rolling),
-        cmocka_unit_test(test_margin),           cmocka_unit_test(test_flat_angle),
-        cmocka_unit_test(test_doubled_corner),   cmocka_unit_test(test_far_origin),
-        cmocka_unit_test(test_leaning),          cmocka_unit_test(test_ids_at_all_flat_angles),
+        cmocka_unit_test(test_single_positions),
+        cmocka_unit_test(test_double_positions),
+        cmocka_unit_test(test_box_on_box),
+        cmocka_unit_test(test_corner_on_corner),
+        cmocka_unit_test(test_rocking),
+        cmocka_unit_test(test_rolling),
+        cmocka_unit_test(test_margin),
+        cmocka_unit_test(test_flat_angle),
+        cmocka_unit_test(test_doubled_corner),
+        cmocka_unit_test(test_far_origin),
+        cmocka_unit_test(test_short_edges_swapped),
+        cmocka_unit_test(test_leaning),
+        cmocka_unit_test(test_ids_at_all_flat_angles),
     };
     return test_begin() ? cmocka_run_group_tests_name("manifolds", tests, NULL, NULL) : TEST_SKIPPED;
 }
