@@ -17,9 +17,9 @@ enum { SHAPE, X, Y, ANGLE, SCALE, BODY_COLUMNS };
 static const char *const body_columns[BODY_COLUMNS] = {"shape", "x", "y", "angle", "scale"};
 
 /* The scale of the current row. The kernels ignore a body that is too small or too large; a file must not have one. */
-static float read_scale(table *rows, const shape *of) {
+static float read_scale(table *rows, double bound) {
     const double scale = row_number(rows, SCALE);
-    const double size = scale * of->bound;
+    const double size = scale * bound;
     if (!(scale > 0))
         fail_field(rows, SCALE, "must be more than 0");
     if (!(size >= NARC_MIN_SIZE && size <= NARC_MAX_SIZE)) {
@@ -43,10 +43,29 @@ static void compute_poses(body_list *bodies, float *angles) {
     free(sines);
 }
 
-void read_bodies(const char *path, const shape_list *shapes, body_list *out_bodies) {
+/* The place of the shape that `text` names: by its name, otherwise by its index; shapes->count if there is none. */
+static size_t find_shape(const narc_shape_list *shapes, const char *text) {
+    const size_t found = narc_find_named_shape(shapes, text);
+    uint64_t index;
+    return found == shapes->count && parse_whole(text, shapes->count - 1, &index) ? (size_t)index : found;
+}
+
+/* The radius of the smallest circle around each shape. */
+static double *measure_bounds(const narc_shape_list *shapes) {
+    double *bounds = allocate(shapes->count, sizeof *bounds);
+    for (size_t k = 0; k < shapes->count; k++) {
+        narc_circle bound;
+        narc_compute_bounding_circle(shapes->items[k].arcs, shapes->items[k].arc_count, &bound);
+        bounds[k] = bound.radius;
+    }
+    return bounds;
+}
+
+void read_bodies(const char *path, const narc_shape_list *shapes, body_list *out_bodies) {
     table rows;
     open_table(&rows, path, body_columns, BODY_COLUMNS, SCALE);
     const bool scaled = has_column(&rows, SCALE);
+    double *bounds = measure_bounds(shapes);
     body_list bodies = {0};
     bodies.items = grow(NULL, &bodies.capacity, 0, sizeof *bodies.items);
     size_t angle_capacity = 0;
@@ -62,11 +81,13 @@ void read_bodies(const char *path, const shape_list *shapes, body_list *out_bodi
         angles[bodies.count] = (float)remainder(row_number(&rows, ANGLE), FULL_TURN);
         bodies.items[bodies.count++] = (body){.x = row_number(&rows, X),
                                               .y = row_number(&rows, Y),
-                                              .scale = scaled ? read_scale(&rows, &shapes->items[found]) : 1.0f,
-                                              .shape = (uint32_t)found};
+                                              .scale = scaled ? read_scale(&rows, bounds[found]) : 1.0f,
+                                              .shape = shapes->items[found].index,
+                                              .item = (uint32_t)found};
     }
     compute_poses(&bodies, angles);
     free(angles);
+    free(bounds);
     close_table(&rows);
     *out_bodies = bodies;
 }

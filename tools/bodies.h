@@ -5,12 +5,12 @@
 #ifndef NARC_TOOL_BODIES_H
 #define NARC_TOOL_BODIES_H
 
-#include "shape_list.h"
+#include "narc_files.h"
 
 typedef struct body {
     double x, y;
     float cosine, sine, scale;
-    uint32_t shape;
+    uint32_t shape, item; /* its place in the store, and in the file of shapes */
 } body;
 
 typedef struct body_list {
@@ -28,7 +28,7 @@ typedef struct pair_list {
 } pair_list;
 
 /* Reads a CSV file with the columns shape, x, y, angle and perhaps scale. */
-void read_bodies(const char *path, const shape_list *shapes, body_list *out_bodies);
+void read_bodies(const char *path, const narc_shape_list *shapes, body_list *out_bodies);
 
 /* Reads a CSV file with the columns a and b: indices of bodies. */
 void read_pairs(const char *path, size_t body_count, pair_list *out_pairs);

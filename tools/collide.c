@@ -17,7 +17,7 @@
 #include "output.h"
 #include "picture_bodies.h"
 #include "progress.h"
-#include "shapes_json.h"
+#include "text.h"
 
 static const char HELP[] =
     "usage: narc collide --shapes shapes.json --bodies bodies.csv [--pairs pairs.csv|--max-pairs N]\n"
@@ -77,7 +77,8 @@ typedef struct settings {
 } settings;
 
 typedef struct job {
-    shape_list shapes;
+    narc_shape_list *shapes;
+    narc_shapes *store;
     body_list bodies;
     narc_aabb *boxes;
     pair_list pairs;
@@ -173,7 +174,7 @@ static void bound_bodies(job *work) {
     for (size_t i = 0; i < work->bodies.count; i++) {
         const body *at = &work->bodies.items[i];
         narc_aabb box;
-        narc_get_aabb(work->shapes.store, at->shape, at->cosine, at->sine, at->scale, &box);
+        narc_get_aabb(work->store, at->shape, at->cosine, at->sine, at->scale, &box);
         work->boxes[i] = (narc_aabb){nextafter(at->x + box.min_x, -INFINITY), nextafter(at->y + box.min_y, -INFINITY),
                                      nextafter(at->x + box.max_x, INFINITY), nextafter(at->y + box.max_y, INFINITY)};
     }
@@ -203,11 +204,11 @@ static void check_polygons(const job *work, const char *path) {
     for (size_t k = 0; k < work->pairs.count; k++) {
         const uint32_t both[2] = {work->pairs.items[k].a, work->pairs.items[k].b};
         for (int side = 0; side < 2; side++) {
-            const uint32_t used = work->bodies.items[both[side]].shape;
-            if (!(narc_shape_flags(work->shapes.store, used) & NARC_SHAPE_POLYGON)) {
+            const body *used = &work->bodies.items[both[side]];
+            if (!(narc_shape_flags(work->store, used->shape) & NARC_SHAPE_POLYGON)) {
                 fail_at(path, (size_t)both[side] + 2,
                         "method 'polygon-sat' needs polygons without rounding, but this body's shape has arcs '%s'",
-                        work->shapes.items[used].name);
+                        work->shapes->items[used->item].name);
             }
         }
     }
@@ -292,7 +293,7 @@ static void print_answers(FILE *file, const narrow_result *found, narc_method me
 
 static void print_report(FILE *file, const job *work, const settings *chosen) {
     const narrow_result *found = &work->narrow;
-    fprintf(file, "shapes              %zu\n", work->shapes.count);
+    fprintf(file, "shapes              %zu\n", work->shapes->count);
     fprintf(file, "bodies              %zu\n", work->bodies.count);
     fprintf(file, "candidate pairs     %zu%s\n", work->pairs.count, chosen->pairs ? " (from the file)" : "");
     print_method(file, &chosen->narrow);
@@ -318,8 +319,8 @@ static void run(int argc, char **argv) {
         /* The message begins with the library's function; the user knows the option. */
         fail("--isa%s", error.message + strcspn(error.message, ":"));
     }
-    read_shapes(chosen.shapes, &work.shapes);
-    read_bodies(chosen.bodies, &work.shapes, &work.bodies);
+    work.shapes = read_shapes(chosen.shapes, &work.store);
+    read_bodies(chosen.bodies, work.shapes, &work.bodies);
     check_picture_size(chosen.picture, work.bodies.count);
     bound_bodies(&work);
     if (chosen.pairs)
@@ -334,7 +335,7 @@ static void run(int argc, char **argv) {
     }
     if (chosen.narrow.method == NARC_METHOD_POLYGON_SAT)
         check_polygons(&work, chosen.bodies);
-    run_narrow_phase(&chosen.narrow, &work.shapes, &work.bodies, &work.pairs, &work.narrow);
+    run_narrow_phase(&chosen.narrow, work.store, &work.bodies, &work.pairs, &work.narrow);
     mark_bodies(&work);
     if (out && is_filter(chosen.narrow.method))
         write_passing(out, &work);
@@ -343,7 +344,7 @@ static void run(int argc, char **argv) {
     if (out)
         flush_output(out);
     if (picture) {
-        const body_scene scene = {&work.shapes,
+        const body_scene scene = {work.shapes,
                                   &work.bodies,
                                   work.boxes,
                                   work.colliding,
@@ -363,7 +364,8 @@ static void run(int argc, char **argv) {
     free(work.pairs.items);
     free(work.boxes);
     free(work.bodies.items);
-    free_shapes(&work.shapes);
+    narc_destroy_shape_list(work.shapes);
+    narc_destroy_shapes(work.store);
 }
 
 const command collide_command = {"collide", "bodies against each other: contacts, report, picture", HELP, run};

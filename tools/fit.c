@@ -15,7 +15,6 @@
 #include "output.h"
 #include "picture_fits.h"
 #include "progress.h"
-#include "shapes_json.h"
 #include "splines.h"
 #include "text.h"
 
@@ -196,9 +195,12 @@ static double measure_extent(const outline *of) {
 
 /* `flatness` is relative to an outline's extent; 0: the usual one. */
 static narc_fit_result *fit_outlines(outline_list *outlines, narc_fit_request request, double flatness,
-                                     shape_list *out_shapes) {
+                                     narc_named_shape *out_shapes) {
     narc_fit_result *fits = allocate(outlines->count, sizeof *fits);
+    narc_shapes *store; /* takes what a file must be able to bring there */
     size_t kept = 0;
+    if (narc_create_shapes(NULL, &store) != NARC_OK)
+        fail("not enough memory for a store of shapes");
     stage at = {0, outlines->count};
     request.progress = tell_progress;
     request.context = &at;
@@ -208,14 +210,16 @@ static narc_fit_result *fit_outlines(outline_list *outlines, narc_fit_request re
         request.flatness = flatness > 0 ? flatness * measure_extent(of) : 0;
         narc_fit_result *fit = &fits[kept];
         if (narc_fit_path(of->path, &request, fit, &error) != NARC_OK ||
-            add_shape(out_shapes, of->name, fit->arcs, fit->arc_count, &error) != NARC_OK) {
+            narc_add_shape(store, fit->arcs, fit->arc_count, NULL, &error) != NARC_OK) {
             report_outline(of, error.message);
             continue;
         }
-        out_shapes->items[kept].origin = fit->origin;
+        out_shapes[kept] =
+            (narc_named_shape){.name = of->name, .arcs = fit->arcs, .arc_count = fit->arc_count, .origin = fit->origin};
         keep_outline(outlines, at.done, kept++);
     }
     cut_outlines(outlines, kept);
+    narc_destroy_shapes(store);
     return fits;
 }
 
@@ -253,10 +257,16 @@ static void check_any(const outline_list *outlines) {
 
 static void make_shapes(outline_list *outlines, narc_fit_request request, double flatness, FILE *file,
                         const char *picture, FILE *picture_file) {
-    shape_list shapes = {0};
-    narc_fit_result *fits = fit_outlines(outlines, request, flatness, &shapes);
+    narc_named_shape *shapes = allocate(outlines->count, sizeof *shapes);
+    narc_fit_result *fits = fit_outlines(outlines, request, flatness, shapes);
     check_any(outlines);
-    write_shapes(file, &shapes);
+    char *text;
+    size_t size;
+    narc_error error;
+    if (narc_write_shapes(shapes, outlines->count, NULL, &text, &size, &error) != NARC_OK)
+        fail("%s", error.message);
+    fwrite(text, 1, size, file);
+    free(text);
     flush_output(file);
     if (picture)
         draw_fits(picture, picture_file, outlines, fits, NULL);
@@ -264,7 +274,7 @@ static void make_shapes(outline_list *outlines, narc_fit_request request, double
     print_table(report, outlines, fits);
     finish_report(report);
     commit_outputs();
-    free_shapes(&shapes);
+    free(shapes);
     free(fits);
 }
 

@@ -10,8 +10,8 @@
 #include <string.h>
 
 #include "fail.h"
+#include "names.h"
 #include "progress.h"
-#include "shape_list.h"
 #include "text.h"
 
 /* ---------------------------------------------------------------------------- kinds of files */
@@ -187,7 +187,7 @@ static uint32_t *list_characters(const char *text, size_t *out_count) {
     size_t count = 0;
     for (const char *c = text; *c;) {
         uint32_t code;
-        if (!next_code_point(&c, &code))
+        if (!narc_next_code_point(&c, &code))
             fail("--characters is not valid UTF-8 at byte %td", c - text);
         if (!is_selector(code) && !seen[code]) {
             seen[code] = 1;
@@ -273,6 +273,33 @@ static GLogWriterOutput keep_warning(GLogLevelFlags level, const GLogField *fiel
         if (strcmp(fields[i].key, "MESSAGE") == 0)
             snprintf(warning, sizeof warning, "%s", (const char *)fields[i].value);
     return G_LOG_WRITER_HANDLED;
+}
+
+/* A name made of the first `length` bytes of any text: what cannot be in a name becomes '_', blanks at the ends go, and
+ * digits alone, which would be an index, get "shape-" in front; of nothing it makes "shape". To be freed. */
+static char *make_shape_name(const char *text, size_t length) {
+    static const char prefix[] = "shape-";
+    for (; length && text[0] == ' '; length--)
+        text++;
+    while (length && text[length - 1] == ' ')
+        length--;
+    char *name = allocate(length + sizeof prefix, 1);
+    memcpy(name, text, length);
+    name[length] = 0;
+    for (char *c = name; *c;) {
+        const char *next = c;
+        if (narc_next_of_name(&next))
+            c += next - c;
+        else
+            *c++ = '_';
+    }
+    if (length == 0) {
+        strcpy(name, "shape");
+    } else if (!name[strspn(name, "0123456789")]) {
+        memmove(name + strlen(prefix), name, length + 1);
+        memcpy(name, prefix, strlen(prefix));
+    }
+    return name;
 }
 
 static void read_outline(const char *file, file_kind kind, const char *bytes, size_t size, const reading *how,

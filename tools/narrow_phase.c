@@ -157,12 +157,12 @@ static void compare_with_exact(const batch *asked, narrow_result *result) {
     free(exact);
 }
 
-void run_narrow_phase(const narrow_settings *chosen, const shape_list *shapes, const body_list *bodies,
+void run_narrow_phase(const narrow_settings *chosen, const narc_shapes *shapes, const body_list *bodies,
                       const pair_list *pairs, narrow_result *out_result) {
     const size_t count = pairs->count;
     uint8_t *outcomes = allocate(count, sizeof *outcomes);
     const batch asked = {.chosen = chosen,
-                         .store = shapes->store,
+                         .store = shapes,
                          .bodies = view_bodies(bodies),
                          .pairs = view_pairs(pairs),
                          .query = {.method = chosen->method,

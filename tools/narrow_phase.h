@@ -38,7 +38,7 @@ narc_method find_method(const char *name);
 bool is_filter(narc_method method);
 
 /* Runs the method on all pairs. */
-void run_narrow_phase(const narrow_settings *chosen, const shape_list *shapes, const body_list *bodies,
+void run_narrow_phase(const narrow_settings *chosen, const narc_shapes *shapes, const body_list *bodies,
                       const pair_list *pairs, narrow_result *out_result);
 
 /* Does pair number `index` collide, as the method finds it? */

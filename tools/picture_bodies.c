@@ -109,7 +109,7 @@ typedef struct stamps {
     double sizes[2]; /* the size of the bodies, in pixels */
 } stamps;
 
-static void paint_body(canvas *page, const placement *where, const shape *form, bool hit, double size) {
+static void paint_body(canvas *page, const placement *where, const narc_named_shape *form, bool hit, double size) {
     trace_arcs(page, where, form->arcs, form->arc_count);
     cairo_close_path(page->pen);
     if (size < SMALLEST_OUTLINED) {
@@ -121,7 +121,7 @@ static void paint_body(canvas *page, const placement *where, const shape *form, 
     }
 }
 
-static void open_body_stamp(canvas *stamp, const shape *form, bool hit, double size, double zoom) {
+static void open_body_stamp(canvas *stamp, const narc_named_shape *form, bool hit, double size, double zoom) {
     narc_aabb box;
     narc_compute_aabb(form->arcs, form->arc_count, 0, &box);
     open_stamp(stamp, (narc_aabb){zoom * box.min_x - THICKEST, -zoom * box.max_y - THICKEST,
@@ -131,7 +131,7 @@ static void open_body_stamp(canvas *stamp, const shape *form, bool hit, double s
 
 static void draw_body(canvas *page, const view *seen, const body_scene *scene, stamps *made, size_t index) {
     const body *drawn = &scene->bodies->items[index];
-    const shape *form = &scene->shapes->items[drawn->shape];
+    const narc_named_shape *form = &scene->shapes->items[drawn->item];
     const double zoom = seen->zoom * (double)drawn->scale, size = seen->zoom * box_size(scene->boxes[index]);
     const double cosine = (double)drawn->cosine, sine = (double)drawn->sine;
     const narc_point origin = to_page(seen, drawn->x, drawn->y);
@@ -140,7 +140,7 @@ static void draw_body(canvas *page, const view *seen, const body_scene *scene, s
         paint_body(page, &(placement){origin.x, origin.y, zoom * cosine, zoom * sine}, form, hit, size);
         return;
     }
-    const size_t k = 2 * (size_t)drawn->shape + hit;
+    const size_t k = 2 * (size_t)drawn->item + hit;
     if (!made->bodies[k].surface) {
         open_body_stamp(&made->bodies[k], form, hit, size, zoom);
         made->zooms[k] = zoom;

@@ -10,7 +10,7 @@
 #include "bodies.h"
 
 typedef struct body_scene {
-    const shape_list *shapes;
+    const narc_shape_list *shapes;
     const body_list *bodies;
     const narc_aabb *boxes; /* of the bodies */
     const bool *colliding;  /* of the bodies: is it in a colliding pair? */

@@ -12,7 +12,6 @@
 #include "options.h"
 #include "output.h"
 #include "progress.h"
-#include "shapes_json.h"
 #include "text.h"
 #include "turn.h"
 
@@ -56,12 +55,18 @@ static void run(int argc, char **argv) {
     const double density = number_option(&options[DENSITY], DBL_MIN, 10, "more than 0 and at most 10", 0);
     const uint64_t seed = whole_option(&options[SEED], 0, UINT64_MAX);
 
-    shape_list shapes;
-    read_shapes(path, &shapes);
+    narc_shapes *store;
+    narc_shape_list *shapes = read_shapes(path, &store); /* all of them can be in a store */
+    double *areas = allocate(shapes->count, sizeof *areas);
+    for (size_t k = 0; k < shapes->count; k++) {
+        narc_mass mass;
+        narc_compute_mass(shapes->items[k].arcs, shapes->items[k].arc_count, &mass);
+        areas[k] = mass.area;
+    }
     uint64_t state = seed;
     double area = 0;
     for (uint64_t i = 0; i < count; i++) {
-        area += shapes.items[next_index(&state, shapes.count)].area;
+        area += areas[next_index(&state, shapes->count)];
         show_progress("measuring shapes", (size_t)i, (size_t)count);
     }
     /* Rounded to single precision: areas come from sines, whose last bit differs from one C library to the next. */
@@ -75,17 +80,19 @@ static void run(int argc, char **argv) {
     FILE *file = open_output(out);
     fprintf(file, "shape,x,y,angle\n");
     for (uint64_t i = 0; i < count && !ferror(file); i++) {
-        const char *name = shapes.items[next_index(&shape_state, shapes.count)].name;
+        const char *name = shapes->items[next_index(&shape_state, shapes->count)].name;
         const double x = side * (next_uniform(&state) - 0.5), y = side * (next_uniform(&state) - 0.5);
         const double angle = FULL_TURN * next_uniform(&state);
         fprintf(file, "%s,%.17g,%.17g,%.17g\n", name, x, y, angle);
         show_progress("writing bodies", (size_t)i, (size_t)count);
     }
     FILE *report = finish_outputs();
-    fprintf(report, "%" PRIu64 " bodies of %zu shapes in a square of side %g\n", count, shapes.count, side);
+    fprintf(report, "%" PRIu64 " bodies of %zu shapes in a square of side %g\n", count, shapes->count, side);
     finish_report(report);
     commit_outputs();
-    free_shapes(&shapes);
+    free(areas);
+    narc_destroy_shape_list(shapes);
+    narc_destroy_shapes(store);
 }
 
 const command scene_command = {"scene", "bodies at random places", HELP, run};

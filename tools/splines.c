@@ -6,7 +6,6 @@
 
 #include "fail.h"
 #include "progress.h"
-#include "shapes_json.h"
 
 narc_arc_chains *fit_splines(outline_list *outlines, double tolerance) {
     narc_arc_chains *chains = allocate(outlines->count, sizeof *chains);
@@ -33,12 +32,18 @@ static void write_piece(FILE *file, const narc_curve_arc *piece) {
     fprintf(file, "}");
 }
 
+/* A name as a JSON string: names have no quotes and no control characters. */
+static void write_name(FILE *file, const char *name) {
+    for (; *name; name++)
+        fprintf(file, *name == '\\' ? "\\\\" : "%c", *name);
+}
+
 void write_splines(FILE *file, const outline_list *outlines, const narc_arc_chains *chains) {
     fprintf(file, "{\"splines\": [");
     for (size_t k = 0; k < outlines->count; k++) {
-        fprintf(file, "%s\n  {\"name\": ", k ? "," : "");
+        fprintf(file, "%s\n  {\"name\": \"", k ? "," : "");
         write_name(file, outlines->items[k].name);
-        fprintf(file, ", \"contours\": [");
+        fprintf(file, "\", \"contours\": [");
         for (size_t c = 0, i = 0; c < chains[k].count; c++) {
             fprintf(file, "%s\n    [", c ? "," : "");
             for (const size_t begin = i; i < chains[k].ends[c]; i++) {

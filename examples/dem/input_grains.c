@@ -7,7 +7,7 @@
 
 #include "input.h"
 #include "place.h"
-#include "shapes_json.h"
+#include "text.h"
 
 /* ------------------------------------------------------------------------------------------------ shapes */
 
@@ -27,14 +27,14 @@ void dem_read_shapes(const json_value *root, dem *d) {
     const json_value name = json_require(root, "shapes");
     char path[DEM_SHAPES_PATH_SIZE];
     dem_find_shapes_file(root, path);
-    shape_list shapes;
-    read_shapes(path, &shapes);
-    for (size_t k = 0; k < shapes.count; k++) {
+    narc_shape_list *shapes = read_shapes(path, NULL);
+    for (size_t k = 0; k < shapes->count; k++) {
+        const narc_named_shape *shape = &shapes->items[k];
         uint32_t index;
-        if (!dem_add_shape(d, shapes.items[k].name, shapes.items[k].arcs, shapes.items[k].arc_count, &index))
+        if (!dem_add_shape(d, shape->name, shape->arcs, shape->arc_count, &index))
             dem_fail_at(&name, d);
     }
-    free_shapes(&shapes);
+    narc_destroy_shape_list(shapes);
 }
 
 uint32_t dem_find_shape(const json_value *name, const dem *d) {

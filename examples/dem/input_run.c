@@ -10,7 +10,7 @@
 
 #include "canvas.h"
 #include "input.h"
-#include "shape_list.h"
+#include "names.h"
 
 /* ------------------------------------------------------------------------------------------------ stages */
 
@@ -67,7 +67,7 @@ void dem_read_stages(const json_value *root, dem *d, dem_input *input) {
         snprintf(stage.name, sizeof stage.name, "stage %zu", i);
         if (name.item)
             json_text(&name, stage.name, sizeof stage.name);
-        if (!is_shape_name(stage.name)) /* it is shown on a terminal */
+        if (!narc_is_name(stage.name)) /* it is shown on a terminal */
             json_fail(&name, "has a comma, a quote, a control character, or a blank at its end");
         if (gravity.item) {
             double n[2];

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "input.h"
-#include "shape_list.h"
+#include "names.h"
 
 /* A plate moves across itself. A servo's direction has at least this share across it. */
 static const double LEAST_ACROSS = 1e-6;
@@ -175,7 +175,7 @@ static void read_wall(const json_value *item, dem *d) {
     const json_value plate = json_member(item, "plate"), pivot = json_member(item, "pivot");
     dem_wall wall = {.servo = {.between = {-1, -1}}};
     json_text(&name, wall.name, sizeof wall.name);
-    if (!is_shape_name(wall.name)) /* it stands in the head of the table */
+    if (!narc_is_name(wall.name)) /* it stands in the head of the table */
         json_fail(&name, "has a comma, a quote, a control character, or a blank at its end");
     for (size_t w = 0; w < d->wall_count; w++)
         if (strcmp(d->walls[w].name, wall.name) == 0)

@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: MIT
 # Includes go one way. A file includes headers of its own folder, and of the layers below that stand in the list; of
-# those in `public_only` just the public headers, and soa/error.h, which fills a narc_error. Run as
+# those in `public_only` just the public headers, and soa/error.h and soa/memory.h. Run as
 #   cmake -D SOURCE=<the project's folder> -P layers.cmake
 cmake_minimum_required(VERSION 3.22)
 set(root "${SOURCE}")
 
-set(public narc_export.h narc_shapes.h narc.h narc_methods.h narc_broad_phase.h narc_fit.h error.h)
-set(layers soa kernels dispatch fit/read/text fit tools examples tests bench)
+set(public narc_export.h narc_shapes.h narc.h narc_methods.h narc_broad_phase.h narc_files.h narc_fit.h error.h memory.h)
+set(layers soa kernels dispatch files fit tools examples tests bench)
 set(below_soa "")
 set(below_kernels soa)
 set(below_dispatch kernels soa)
-set(below_fit/read/text "")
-set(below_fit fit/read/text)
-set(below_tools fit/read/text)
-set(below_examples tools fit/read/text)
-set(below_tests soa kernels dispatch fit/read/text fit tools examples)
-set(below_bench soa kernels dispatch fit/read/text fit tools)
-set(public_only fit/read/text fit tools examples)
+set(below_files "")
+set(below_fit files)
+set(below_tools files)
+set(below_examples tools files)
+set(below_tests soa kernels dispatch files fit tools examples)
+set(below_bench soa kernels dispatch files fit tools)
+set(public_only files fit tools examples)
 
 # Where each header stands: layer by name.
 foreach(layer ${layers})

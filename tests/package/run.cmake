@@ -69,9 +69,9 @@ elseif(STEP MATCHES "^pkgconfig_" OR STEP STREQUAL "readme_example")
   endif()
   set(package narc)
   set(source "${SOURCE}/tests/package/consumer/consumer")
-  if(KIND STREQUAL "fit")
-    set(package narc-fit)
-    set(source "${SOURCE}/tests/package/consumer/consumer_fit")
+  if(KIND MATCHES "^(files|fit)$")
+    set(package narc-${KIND})
+    set(source "${SOURCE}/tests/package/consumer/consumer_${KIND}")
   elseif(KIND STREQUAL "static")
     set(package narc-static)
   endif()
@@ -152,7 +152,8 @@ elseif(STEP STREQUAL "subproject_flags")
 
 elseif(STEP STREQUAL "compiler_alone")
   # No pkg-config, no OpenMP, no SLEEF: the library itself must not look for anything.
-  run(${configure} -S "${SOURCE}" -B "${folder}" -DCMAKE_BUILD_TYPE=Debug -DNARC_BUILD_FIT=OFF -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF
+  run(${configure} -S "${SOURCE}" -B "${folder}" -DCMAKE_BUILD_TYPE=Debug -DNARC_BUILD_FILES=OFF -DNARC_BUILD_FIT=OFF -DNARC_BUILD_TOOLS=OFF
+    -DNARC_BUILD_TESTS=OFF
     -DNARC_OPENMP=OFF -DNARC_SLEEF=OFF -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON)
   run(${CMAKE_COMMAND} --build "${folder}" --config "${CONFIG}" --target narc_core narc_isa_scalar)
 

@@ -179,80 +179,80 @@ json "comma missing" "bad.json:3: not valid JSON" '{"shapes": [
    "circle" 1}]}'
 json "tail" "bad.json:2: not valid JSON" '{"shapes": [{"name": "a", "circle": 1}]}
 more'
-json "a list" "narc: bad.json: " '[]'
+json "a list" "bad.json:1: " '[]'
 json "nested too deep" "bad.json:2: lists and objects nested more than 1000 deep" "[
 $(printf '%01100d' 0 | tr 0 '[')"
-json "no list of shapes" "narc: bad.json: .*missing" '{}'
-json "shapes is no list" "narc: bad.json: .*not a list" '{"shapes": 1}'
-json "no shape" "narc: bad.json: .*empty" '{"shapes": []}'
-json "unknown key" "narc: bad.json: .*'Shapes'" '{"shapes": [{"name": "a", "circle": 1}], "Shapes": []}'
-json "shapes is a word" "narc: bad.json: shapes is not a list '\"many\"'" '{"shapes": "many"}'
+json "no list of shapes" "bad.json:1: .*missing" '{}'
+json "shapes is no list" "bad.json:1: .*not a list" '{"shapes": 1}'
+json "no shape" "bad.json:1: .*empty" '{"shapes": []}'
+json "unknown key" "bad.json:1: .*'Shapes'" '{"shapes": [{"name": "a", "circle": 1}], "Shapes": []}'
+json "shapes is a word" "bad.json:1: shapes is not a list '\"many\"'" '{"shapes": "many"}'
 json "NUL in a name" "bad.json:2: a NUL .*u0000" '{"shapes": [
   {"name": "a\u0000b", "circle": 1}]}'
 json "NUL in a key" "bad.json:1: a NUL" '{"shapes": [{"name": "a", "circle\u0000": 1}]}'
-json "a backslash before u0000 is no NUL" "narc: bad.json: shape .*radius is missing" \
+json "a backslash before u0000 is no NUL" "bad.json:1: shape .*radius is missing" \
     '{"shapes": [{"name": "a\\u0000", "capsule": {"length": 1}}]}'
-shape "no object" "narc: bad.json: shape 1: it is not an object '7'" '7'
-shape "no name" "narc: bad.json: shape 1: name is missing" '{"circle": 1}'
-shape "name is a number" "narc: bad.json: shape 1: name is not a string '1'" '{"name": 1, "circle": 1}'
-shape "name with a comma" "narc: bad.json: shape 1: .*'a,b'" '{"name": "a,b", "circle": 1}'
-shape "name is another's index" "narc: bad.json: shape 1: .*index.*'0'" '{"name": "0", "circle": 1}'
-shape "name of digits" "narc: bad.json: shape 1: .*index.*'99999999999999999999'" \
+shape "no object" "bad.json:3: shape 1: it is not an object '7'" '7'
+shape "no name" "bad.json:3: shape 1: name is missing" '{"circle": 1}'
+shape "name is a number" "bad.json:3: shape 1: name is not a string '1'" '{"name": 1, "circle": 1}'
+shape "name with a comma" "bad.json:3: shape 1: .*'a,b'" '{"name": "a,b", "circle": 1}'
+shape "name is another's index" "bad.json:3: shape 1: .*index.*'0'" '{"name": "0", "circle": 1}'
+shape "name of digits" "bad.json:3: shape 1: .*index.*'99999999999999999999'" \
     '{"name": "99999999999999999999", "circle": 1}'
 printf '{"shapes": [{"name": "0", "circle": 1}, {"name": "1", "circle": 2}]}\n' >digits.json
 printf 'shape,x,y,angle\n0,0,0,0\n1,2.5,0,0\n' >digits.csv
 works "names that are their own index" collide --shapes digits.json --bodies digits.csv --out digits.txt
 check "mean what the index means" contact digits.txt 2 "0 1 -0.5 1 0 0.75 0"
-shape "empty name" "narc: bad.json: shape 1: " '{"name": "", "circle": 1}'
-shape "name twice" "narc: bad.json: .*'first'" '{"name": "first", "circle": 2}'
-shape "no form" "narc: bad.json: shape 'a': " '{"name": "a"}'
-shape "two forms" "narc: bad.json: shape 'a': .*'arcs' and 'points'" '{"name": "a", "points": [[0, 0]], "arcs": []}'
-shape "unknown key" "narc: bad.json: shape 'a': unknown key 'color'" '{"name": "a", "circle": 1, "color": 3}'
-shape "key twice" "narc: bad.json: shape 'a': key 'circle'" '{"name": "a", "circle": 1, "circle": 1}'
-shape "radius beside circle" "narc: bad.json: shape 'a': .*'radius'" '{"name": "a", "circle": 1, "radius": 1}'
-shape "negative circle" "narc: bad.json: shape 'a': .*-1" '{"name": "a", "circle": -1}'
-shape "circle is a word" "narc: bad.json: shape 'a': circle is not a number '\"1\"'" '{"name": "a", "circle": "1"}'
-shape "a long value is cut" "narc: bad.json: shape 'a': circle .*'\\[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,\\.\\.\\.'\$" \
+shape "empty name" "bad.json:3: shape 1: " '{"name": "", "circle": 1}'
+shape "name twice" "bad.json:3: .*'first'" '{"name": "first", "circle": 2}'
+shape "no form" "bad.json:3: shape 'a': " '{"name": "a"}'
+shape "two forms" "bad.json:3: shape 'a': .*'arcs' and 'points'" '{"name": "a", "points": [[0, 0]], "arcs": []}'
+shape "unknown key" "bad.json:3: shape 'a': unknown key 'color'" '{"name": "a", "circle": 1, "color": 3}'
+shape "key twice" "bad.json:3: shape 'a': key 'circle'" '{"name": "a", "circle": 1, "circle": 1}'
+shape "radius beside circle" "bad.json:3: shape 'a': .*'radius'" '{"name": "a", "circle": 1, "radius": 1}'
+shape "negative circle" "bad.json:3: shape 'a': .*-1" '{"name": "a", "circle": -1}'
+shape "circle is a word" "bad.json:3: shape 'a': circle is not a number '\"1\"'" '{"name": "a", "circle": "1"}'
+shape "a long value is cut" "bad.json:3: shape 'a': circle .*'\\[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,\\.\\.\\.'\$" \
     '{"name": "a", "circle": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18]}'
-shape "no half characters" "narc: bad.json: shape 'a': circle is not a number '\"aé\\(é\\)*\\.\\.\\.'\$" \
+shape "no half characters" "bad.json:3: shape 'a': circle is not a number '\"aé\\(é\\)*\\.\\.\\.'\$" \
     '{"name": "a", "circle": "aéééééééééééééééééééééééé"}'
 check "the message is valid UTF-8" iconv -f UTF-8 -t UTF-8 err.txt
-shape "overflow" "narc: bad.json: shape 'a': circle is not finite" '{"name": "a", "circle": 1e999}'
-shape "no arcs" "narc: bad.json: shape 'a': arcs is an empty list" '{"name": "a", "arcs": []}'
-shape "arcs is a number" "narc: bad.json: shape 'a': arcs is not a list '3'" '{"name": "a", "arcs": 3}'
-shape "arc is a number" "narc: bad.json: shape 'a', arc 1: it is not an object '5'" "{\"name\": \"a\", \"arcs\": [$arc, 5]}"
-shape "arc without radius" "narc: bad.json: shape 'a', arc 0: radius is missing" \
+shape "overflow" "bad.json:3: shape 'a': circle is not finite" '{"name": "a", "circle": 1e999}'
+shape "no arcs" "bad.json:3: shape 'a': arcs is an empty list" '{"name": "a", "arcs": []}'
+shape "arcs is a number" "bad.json:3: shape 'a': arcs is not a list '3'" '{"name": "a", "arcs": 3}'
+shape "arc is a number" "bad.json:3: shape 'a', arc 1: it is not an object '5'" "{\"name\": \"a\", \"arcs\": [$arc, 5]}"
+shape "arc without radius" "bad.json:3: shape 'a', arc 0: radius is missing" \
     '{"name": "a", "arcs": [{"center": [0, 0], "start": 0, "end": 1}]}'
-shape "arc with one coordinate" "narc: bad.json: shape 'a', arc 0: center .*'\\[0]'" \
+shape "arc with one coordinate" "bad.json:3: shape 'a', arc 0: center .*'\\[0]'" \
     '{"name": "a", "arcs": [{"center": [0], "radius": 1, "start": 0, "end": 1}]}'
-shape "arc with an unknown key" "narc: bad.json: shape 'a', arc 0: unknown key 'r'" \
+shape "arc with an unknown key" "bad.json:3: shape 'a', arc 0: unknown key 'r'" \
     '{"name": "a", "arcs": [{"center": [0, 0], "r": 1, "start": 0, "end": 1}]}'
-shape "half a circle" "narc: bad.json: shape 'a', arc 0: " "{\"name\": \"a\", \"arcs\": [$arc]}"
+shape "half a circle" "bad.json:3: shape 'a', arc 0: " "{\"name\": \"a\", \"arcs\": [$arc]}"
 other='{"center": [0, 0], "radius": -1, "start": 3.141592653589793, "end": 6.283185307179586}'
-shape "negative radius" "narc: bad.json: shape 'a', arc 1: .*-1" "{\"name\": \"a\", \"arcs\": [$arc, $other]}"
-shape "negative radius of arc 0" "narc: bad.json: shape 'a', arc 0: .*-1" "{\"name\": \"a\", \"arcs\": [$other, $arc]}"
-shape "a corner that turns right" "narc: bad.json: shape 'a', point 2: " '{"name": "a", "polygon": [[0, 0], [4, 0], [1, 1], [0, 4]]}'
-shape "points that do not suit" "narc: bad.json: shape 'a': the exterior" \
+shape "negative radius" "bad.json:3: shape 'a', arc 1: .*-1" "{\"name\": \"a\", \"arcs\": [$arc, $other]}"
+shape "negative radius of arc 0" "bad.json:3: shape 'a', arc 0: .*-1" "{\"name\": \"a\", \"arcs\": [$other, $arc]}"
+shape "a corner that turns right" "bad.json:3: shape 'a', point 2: " '{"name": "a", "polygon": [[0, 0], [4, 0], [1, 1], [0, 4]]}'
+shape "points that do not suit" "bad.json:3: shape 'a': the exterior" \
     '{"name": "a", "points": [[0, 0], [4, 0], [4, 1], [0, 3]]}'
-shape "two points" "narc: bad.json: shape 'a': " '{"name": "a", "points": [[0, 0], [1, 0]]}'
-shape "point is a number" "narc: bad.json: shape 'a', point 1: .*'1'" '{"name": "a", "points": [[0, 0], 1, [0, 1]]}'
-shape "polygon that turns right" "narc: bad.json: shape 'a', point 0: " '{"name": "a", "polygon": [[0, 0], [0, 1], [1, 0]]}'
-shape "corner radius too large" "narc: bad.json: shape 'a', side 0: " \
+shape "two points" "bad.json:3: shape 'a': " '{"name": "a", "points": [[0, 0], [1, 0]]}'
+shape "point is a number" "bad.json:3: shape 'a', point 1: .*'1'" '{"name": "a", "points": [[0, 0], 1, [0, 1]]}'
+shape "polygon that turns right" "bad.json:3: shape 'a', point 0: " '{"name": "a", "polygon": [[0, 0], [0, 1], [1, 0]]}'
+shape "corner radius too large" "bad.json:3: shape 'a', side 0: " \
     '{"name": "a", "polygon": [[0, 0], [1, 0], [0, 1]], "radius": 5}'
-shape "capsule without length" "narc: bad.json: shape 'a': length is missing" '{"name": "a", "capsule": {"radius": 1}}'
-shape "capsule is a number" "narc: bad.json: shape 'a': capsule is not an object '1'" '{"name": "a", "capsule": 1}'
-shape "box with an unknown key" "narc: bad.json: shape 'a': unknown key 'depth'" \
+shape "capsule without length" "bad.json:3: shape 'a': length is missing" '{"name": "a", "capsule": {"radius": 1}}'
+shape "capsule is a number" "bad.json:3: shape 'a': capsule is not an object '1'" '{"name": "a", "capsule": 1}'
+shape "box with an unknown key" "bad.json:3: shape 'a': unknown key 'depth'" \
     '{"name": "a", "box": {"width": 1, "height": 1, "depth": 1}}'
-shape "four_arc without a distance" "narc: bad.json: shape 'a': distance is missing" \
+shape "four_arc without a distance" "bad.json:3: shape 'a': distance is missing" \
     '{"name": "a", "four_arc": {"radius_low": 5, "radius_high": 5}}'
-shape "four_arc of circles apart" "narc: bad.json: shape 'a': " \
+shape "four_arc of circles apart" "bad.json:3: shape 'a': " \
     '{"name": "a", "four_arc": {"radius_low": 5, "radius_high": 5, "distance": 11}}'
-shape "origin is a number" "narc: bad.json: shape 'a': origin is not a list of two numbers '1'" \
+shape "origin is a number" "bad.json:3: shape 'a': origin is not a list of two numbers '1'" \
     '{"name": "a", "circle": 1, "origin": 1}'
-shape "box rounder than wide" "narc: bad.json: shape 'a': " '{"name": "a", "box": {"width": 1, "height": 1, "radius": 1}}'
+shape "box rounder than wide" "bad.json:3: shape 'a': " '{"name": "a", "box": {"width": 1, "height": 1, "radius": 1}}'
 awk 'BEGIN { printf "{\"shapes\": [\n{\"name\": \"a\", \"polygon\": ["
     for (i = 0; i < 65; i++) printf "%s[%.17g, %.17g]", i ? ", " : "", cos(i * 6.283185 / 65), sin(i * 6.283185 / 65)
     print "]}]}" }' >bad.json
-fails "shape: 65 corners" "narc: bad.json: shape 'a': .*65" collide --shapes bad.json --bodies bodies.csv --out new.csv
+fails "shape: 65 corners" "bad.json:2: shape 'a': .*65" collide --shapes bad.json --bodies bodies.csv --out new.csv
 
 finish

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * text.c - whole files, numbers and UTF-8.
+ * text.c - whole files and numbers.
  */
 #define _POSIX_C_SOURCE 200809L /* fileno */
 #include "text.h"
@@ -81,6 +81,19 @@ char *read_text(const char *path) {
     return text;
 }
 
+narc_shape_list *read_shapes(const char *path, narc_shapes **out_store) {
+    size_t size;
+    char *bytes = read_bytes(path, &size);
+    narc_shape_list *shapes;
+    narc_error error;
+    if (out_store && narc_create_shapes(NULL, out_store) != NARC_OK)
+        fail("not enough memory for a store of shapes");
+    if (narc_read_shapes(bytes, size, NULL, out_store ? *out_store : NULL, &shapes, &error) != NARC_OK)
+        fail_text(path, &error);
+    free(bytes);
+    return shapes;
+}
+
 void report_text(const char *path, const narc_error *error) {
     char line[32];
     snprintf(line, sizeof line, "line %zu: ", error->index);
@@ -110,24 +123,5 @@ bool parse_whole(const char *text, uint64_t largest, uint64_t *out_value) {
     if (value > largest)
         return false;
     *out_value = value;
-    return true;
-}
-
-bool next_code_point(const char **text, uint32_t *out_code) {
-    static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
-    const unsigned char *byte = (const unsigned char *)*text;
-    const size_t length = byte[0] < 0x80 ? 1 : byte[0] < 0xc0 ? 0 : byte[0] < 0xe0 ? 2 : byte[0] < 0xf0 ? 3 : 4;
-    if (length == 0 || byte[0] > 0xf4)
-        return false;
-    uint32_t code = length == 1 ? byte[0] : byte[0] & (0x7fu >> length);
-    for (size_t i = 1; i < length; i++) {
-        if ((byte[i] & 0xc0) != 0x80)
-            return false;
-        code = code << 6 | (byte[i] & 0x3f);
-    }
-    if (code < smallest[length] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000))
-        return false;
-    *text += length;
-    *out_code = code;
     return true;
 }

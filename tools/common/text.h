@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * text.h - whole files, numbers and UTF-8.
+ * text.h - whole files and numbers.
  */
 #ifndef NARC_TOOL_TEXT_H
 #define NARC_TOOL_TEXT_H
@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "lines.h"
+#include "narc_files.h"
 
 /* The bytes of a file, at most 1 GiB, with a NUL behind them that does not count; "-" is standard input, which can be read
  * once. From now on no output may replace the file. To be freed. The second one returns NULL where a command that keeps
@@ -19,6 +20,9 @@ char *try_read_bytes(const char *path, size_t *out_size);
 
 /* The text of a file, NUL-terminated, as narc_clean_text() leaves it. */
 char *read_text(const char *path);
+
+/* The shapes of a file, and a store of them unless `out_store` is NULL. */
+narc_shape_list *read_shapes(const char *path, narc_shapes **out_store);
 
 /* Ends the command with an error of reading a text, whose index is its line. */
 _Noreturn void fail_text(const char *path, const narc_error *error);
@@ -31,8 +35,5 @@ bool parse_number(const char *text, double *out_value);
 
 /* A whole number in decimal digits, at most `largest`. */
 bool parse_whole(const char *text, uint64_t largest, uint64_t *out_value);
-
-/* Reads the code point at *text and moves on; false for invalid UTF-8 (also surrogates and overlong forms). */
-bool next_code_point(const char **text, uint32_t *out_code);
 
 #endif

@@ -58,3 +58,34 @@ narc_excerpt narc_show_json(const cJSON *value) {
     cJSON_free(text);
     return shown;
 }
+
+/* Adds the number of keys and values in front of `item`, in the order of the text; false if it is not in `value`. */
+static bool count_before(const cJSON *value, const cJSON *item, size_t *count) {
+    if (value == item)
+        return true;
+    *count += 1;
+    for (const cJSON *child = value->child; child; child = child->next) {
+        *count += child->string != NULL;
+        if (count_before(child, item, count))
+            return true;
+    }
+    return false;
+}
+
+size_t narc_find_json_line(const char *text, const cJSON *root, const cJSON *item) {
+    size_t before = 0;
+    count_before(root, item, &before);
+    for (const char *c = text;; before--) {
+        while (*c && (*c <= ' ' || strchr(",:]}", *c)))
+            c++;
+        if (before == 0 || !*c)
+            return narc_find_line(text, c);
+        if (*c == '"') {
+            for (c++; *c && *c != '"'; c++)
+                c += *c == '\\' && c[1];
+            c += *c == '"';
+        } else {
+            c += *c == '[' || *c == '{' ? 1 : strcspn(c, ",:]}");
+        }
+    }
+}

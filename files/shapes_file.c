@@ -1,0 +1,573 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * shapes_file.c - reads and writes the shapes file. Reading is strict: a key that is unknown, missing or there twice is
+ * an error, so that a misspelt one is not silently ignored.
+ */
+#include <locale.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "json.h"
+
+#include "memory.h"
+#include "names.h"
+#include "narc_files.h"
+
+/* What is read now, for messages. After the first error numbers are 0 and lists are empty. */
+typedef struct reader {
+    const char *text;
+    cJSON *root;
+    narc_status status; /* of the first error */
+    narc_error *error;
+    char shape[64];   /* "shape 'lens'"; empty: the file's value */
+    char element[32]; /* "arc 2"; empty: the shape itself */
+} reader;
+
+/* "line 3: shape 'lens', arc 2: message", the line being that of `item`. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 5, 6)))
+#endif
+static void
+fail_shape(reader *at, narc_status status, const cJSON *item, double value, const char *format, ...) {
+    char message[sizeof((narc_error *)0)->message];
+    if (at->status)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    const size_t line = narc_find_json_line(at->text, at->root, item);
+    at->status = narc_fail(at->error, status, line, value, "line %zu: %s%s%s%s%s", line, at->shape,
+                           at->element[0] ? ", " : "", at->element, at->shape[0] ? ": " : "", message);
+}
+
+/* "what is not a number 'value'", the value as JSON. */
+static void fail_value(reader *at, const cJSON *item, const char *what, const char *problem) {
+    fail_shape(at, NARC_ERROR_FORMAT, item, 0, "%s %s '%s'", what, problem, narc_show_json(item).text);
+}
+
+/* ---------------------------------------------------------------------------- checked access */
+
+/* Every key of `object` is among `keys` (the end of the list is NULL) and there once. */
+static void check_keys(reader *at, const cJSON *object, const char *const *keys) {
+    const cJSON *item, *other;
+    cJSON_ArrayForEach(item, object) {
+        size_t k = 0;
+        while (keys[k] && strcmp(keys[k], item->string) != 0)
+            k++;
+        if (!keys[k])
+            fail_shape(at, NARC_ERROR_FORMAT, item, 0, "unknown key '%s'", narc_make_excerpt(item->string).text);
+        for (other = object->child; other != item && !at->status; other = other->next)
+            if (strcmp(other->string, item->string) == 0)
+                fail_shape(at, NARC_ERROR_FORMAT, item, 0, "key '%s' is there twice",
+                           narc_make_excerpt(item->string).text);
+    }
+}
+
+static const cJSON *find(const cJSON *object, const char *key) { return cJSON_GetObjectItemCaseSensitive(object, key); }
+
+/* The value of a key that must be there. */
+static const cJSON *require(reader *at, const cJSON *object, const char *key) {
+    const cJSON *item = find(object, key);
+    if (!item)
+        fail_shape(at, NARC_ERROR_FORMAT, object, 0, "%s is missing", key);
+    return item;
+}
+
+static double as_number(reader *at, const cJSON *item, const char *what) {
+    if (!at->status && !cJSON_IsNumber(item))
+        fail_value(at, item, what, "is not a number");
+    else if (!at->status && !isfinite(item->valuedouble))
+        fail_shape(at, NARC_ERROR_NOT_FINITE, item, item->valuedouble, "%s is not finite", what);
+    return at->status ? 0 : item->valuedouble;
+}
+
+static double get_number(reader *at, const cJSON *object, const char *key) {
+    return as_number(at, require(at, object, key), key);
+}
+
+static double get_number_or_zero(reader *at, const cJSON *object, const char *key) {
+    const cJSON *item = find(object, key);
+    return item ? as_number(at, item, key) : 0;
+}
+
+static narc_point as_point(reader *at, const cJSON *item, const char *what) {
+    if (!at->status && (!cJSON_IsArray(item) || cJSON_GetArraySize(item) != 2))
+        fail_value(at, item, what, "is not a list of two numbers");
+    return at->status ? (narc_point){0}
+                      : (narc_point){as_number(at, item->child, what), as_number(at, item->child->next, what)};
+}
+
+/* The length of a list that must have between 1 and NARC_MAX_ARCS items. */
+static size_t check_list(reader *at, const cJSON *list, const char *key) {
+    const size_t count = (size_t)cJSON_GetArraySize(list);
+    if (!cJSON_IsArray(list))
+        fail_value(at, list, key, "is not a list");
+    else if (count == 0)
+        fail_shape(at, NARC_ERROR_COUNT, list, 0, "%s is an empty list", key);
+    else if (count > NARC_MAX_ARCS)
+        fail_shape(at, NARC_ERROR_COUNT, list, (double)count, "%s has %zu items, at most %d are possible", key, count,
+                   NARC_MAX_ARCS);
+    return at->status ? 0 : count;
+}
+
+static size_t get_points(reader *at, const cJSON *list, const char *key, narc_point *out_points) {
+    const size_t count = check_list(at, list, key);
+    const cJSON *item = list->child;
+    for (size_t i = 0; i < count; i++, item = item->next) {
+        snprintf(at->element, sizeof at->element, "point %zu", i);
+        out_points[i] = as_point(at, item, "it");
+    }
+    at->element[0] = 0;
+    return count;
+}
+
+static void check_object(reader *at, const cJSON *item, const char *what, const char *const *keys) {
+    if (cJSON_IsObject(item))
+        check_keys(at, item, keys);
+    else
+        fail_value(at, item, what, "is not an object");
+}
+
+/* ---------------------------------------------------------------------------- the forms of a shape */
+
+/* Builds a shape from what was read; after an error in that, of anything. */
+typedef narc_status build_form(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
+                               narc_error *error);
+
+static narc_status build_arcs(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
+                              narc_error *error) {
+    static const char *const keys[] = {"center", "radius", "start", "end", NULL};
+    (void)radius;
+    const size_t count = check_list(at, item, "arcs");
+    const cJSON *arc = item->child;
+    for (size_t i = 0; i < count; i++, arc = arc->next) {
+        snprintf(at->element, sizeof at->element, "arc %zu", i);
+        check_object(at, arc, "it", keys);
+        const narc_point center = as_point(at, require(at, arc, "center"), "center");
+        out_arcs[i] = (narc_arc){center.x, center.y, get_number(at, arc, "radius"), get_number(at, arc, "start"),
+                                 get_number(at, arc, "end")};
+    }
+    at->element[0] = 0;
+    *out_count = count;
+    return narc_validate_arcs(out_arcs, count, error);
+}
+
+static narc_status build_points(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
+                                narc_error *error) {
+    narc_point points[NARC_MAX_ARCS];
+    const size_t count = get_points(at, item, "points", points);
+    return narc_build_points(points, count, radius, out_arcs, out_count, error);
+}
+
+static narc_status build_polygon(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
+                                 narc_error *error) {
+    narc_point points[NARC_MAX_ARCS];
+    const size_t count = get_points(at, item, "polygon", points);
+    return narc_build_polygon(points, count, radius, out_arcs, out_count, error);
+}
+
+static narc_status build_circle(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
+                                narc_error *error) {
+    (void)radius;
+    return narc_build_circle(as_number(at, item, "circle"), out_arcs, out_count, error);
+}
+
+static narc_status build_capsule(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
+                                 narc_error *error) {
+    static const char *const keys[] = {"length", "radius", NULL};
+    (void)radius;
+    check_object(at, item, "capsule", keys);
+    return narc_build_capsule(get_number(at, item, "length"), get_number(at, item, "radius"), out_arcs, out_count,
+                              error);
+}
+
+static narc_status build_box(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
+                             narc_error *error) {
+    static const char *const keys[] = {"width", "height", "radius", NULL};
+    (void)radius;
+    check_object(at, item, "box", keys);
+    return narc_build_box(get_number(at, item, "width"), get_number(at, item, "height"),
+                          get_number_or_zero(at, item, "radius"), out_arcs, out_count, error);
+}
+
+static narc_status build_four_arc(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
+                                  narc_error *error) {
+    static const char *const keys[] = {"radius_low", "radius_high", "distance", "radius_left", "radius_right", NULL};
+    (void)radius;
+    check_object(at, item, "four_arc", keys);
+    const narc_four_arc form = {.radius_low = get_number(at, item, "radius_low"),
+                                .radius_high = get_number(at, item, "radius_high"),
+                                .distance = get_number(at, item, "distance"),
+                                .radius_left = get_number_or_zero(at, item, "radius_left"),
+                                .radius_right = get_number_or_zero(at, item, "radius_right")};
+    return narc_build_four_arc(form, out_arcs, out_count, error);
+}
+
+static const struct {
+    const char *key;
+    bool takes_radius; /* a key "radius" may stand beside it */
+    build_form *build;
+} forms[] = {
+    {"arcs", false, build_arcs},         {"points", true, build_points},    {"polygon", true, build_polygon},
+    {"circle", false, build_circle},     {"capsule", false, build_capsule}, {"box", false, build_box},
+    {"four_arc", false, build_four_arc},
+};
+enum { FORM_COUNT = sizeof forms / sizeof forms[0] };
+
+/* ---------------------------------------------------------------------------- names */
+
+static bool is_index(const char *digits, size_t index) {
+    size_t value = 0;
+    for (; *digits && value <= index; digits++)
+        value = 10 * value + (size_t)(*digits - '0');
+    return !*digits && value == index;
+}
+
+/* What is wrong with the name of shape number `index`, or NULL. */
+static const char *check_name(const char *name, size_t index) {
+    if (!narc_is_name(name))
+        return "a name cannot be empty, begin or end with a blank, or hold commas, quotes, control characters or "
+               "invalid UTF-8";
+    if (!name[strspn(name, "0123456789")] && !is_index(name, index))
+        return "a name of digits would be taken for the index of another shape";
+    return NULL;
+}
+
+/* By name, then by place. */
+static int compare_names(const void *left, const void *right) {
+    const narc_named_shape *const *a = left, *const *b = right;
+    const int order = strcmp((*a)->name, (*b)->name);
+    return order ? order : (*a > *b) - (*a < *b);
+}
+
+/* Sorts the shapes by name. Returns the place of one whose name another one before it has, or `count`. */
+static size_t sort_names(const narc_named_shape *shapes, size_t count, const narc_named_shape **out_sorted) {
+    for (size_t i = 0; i < count; i++)
+        out_sorted[i] = &shapes[i];
+    qsort(out_sorted, count, sizeof(const narc_named_shape *), compare_names);
+    for (size_t i = 1; i < count; i++)
+        if (strcmp(out_sorted[i - 1]->name, out_sorted[i]->name) == 0)
+            return (size_t)(out_sorted[i] - shapes);
+    return count;
+}
+
+/* ---------------------------------------------------------------------------- the list */
+
+/* What stands behind a narc_shape_list; the shapes' arcs, with the name behind them, are blocks of their own. */
+typedef struct list {
+    narc_shape_list shown; /* its count is that of the shapes that are whole */
+    narc_allocator allocator;
+    const narc_named_shape **by_name;
+    narc_named_shape items[];
+} list;
+
+static void *allocate(const narc_allocator *allocator, size_t size, const char *what, narc_error *error) {
+    void *memory = allocator->allocate(size, allocator->context);
+    if (!memory)
+        narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for %s of %zu bytes", what, size);
+    return memory;
+}
+
+/* A list without shapes, with room for as many as there are values in the parsed file; so its size is less than theirs,
+ * which is in memory. */
+static list *create_list(const narc_allocator *allocator, size_t count, narc_error *error) {
+    const size_t item = sizeof(narc_named_shape) + sizeof(const narc_named_shape *);
+    list *made = allocate(allocator, sizeof *made + count * item, "a list", error);
+    if (made) {
+        *made = (list){.allocator = *allocator, .by_name = (const narc_named_shape **)(void *)&made->items[count]};
+        made->shown.items = made->items;
+    }
+    return made;
+}
+
+void narc_destroy_shape_list(narc_shape_list *shapes) {
+    if (!shapes)
+        return;
+    const narc_allocator allocator = ((list *)shapes)->allocator;
+    for (size_t i = 0; i < shapes->count; i++)
+        allocator.release((void *)shapes->items[i].arcs, allocator.context);
+    allocator.release(shapes, allocator.context);
+}
+
+size_t narc_find_named_shape(const narc_shape_list *shapes, const char *name) {
+    const narc_named_shape **by_name = ((const list *)shapes)->by_name;
+    size_t low = 0, high = shapes->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        const int order = strcmp(name, by_name[middle]->name);
+        if (order == 0)
+            return (size_t)(by_name[middle] - shapes->items);
+        low = order > 0 ? middle + 1 : low;
+        high = order > 0 ? high : middle;
+    }
+    return shapes->count;
+}
+
+/* ---------------------------------------------------------------------------- reading */
+
+/* Finds the one form that a shape has. */
+static size_t find_form(reader *at, const cJSON *object) {
+    size_t found = FORM_COUNT;
+    for (size_t i = 0; i < FORM_COUNT; i++) {
+        const cJSON *item = find(object, forms[i].key);
+        if (item && found < FORM_COUNT)
+            fail_shape(at, NARC_ERROR_FORMAT, item, 0, "it has both '%s' and '%s'", forms[found].key, forms[i].key);
+        found = item ? i : found;
+    }
+    if (found == FORM_COUNT)
+        fail_shape(at, NARC_ERROR_FORMAT, object, 0,
+                   "none of arcs, points, polygon, circle, capsule, box and four_arc is there");
+    return found;
+}
+
+/* The name of shape number `index`. */
+static const char *get_name(reader *at, const cJSON *object, size_t index) {
+    const cJSON *item = require(at, object, "name");
+    if (item && !cJSON_IsString(item))
+        fail_value(at, item, "name", "is not a string");
+    if (at->status)
+        return NULL;
+    const char *problem = check_name(item->valuestring, index);
+    if (problem)
+        fail_shape(at, NARC_ERROR_FORMAT, item, 0, "%s '%s'", problem, narc_make_excerpt(item->valuestring).text);
+    return item->valuestring;
+}
+
+/* Reports a builder's error, which may begin with what it is about: "arc 2: ". */
+static void fail_build(reader *at, const cJSON *item, const narc_error *error) {
+    int length = 0, number;
+    if (sscanf(error->message, "%*[a-z] %d%n", &number, &length) == 1 && error->message[length] == ':') {
+        const cJSON *element = cJSON_IsArray(item) ? cJSON_GetArrayItem(item, number) : NULL;
+        snprintf(at->element, sizeof at->element, "%.*s", length, error->message);
+        fail_shape(at, error->status, element ? element : item, error->value, "%s", error->message + length + 2);
+    }
+    fail_shape(at, error->status, item, error->value, "%s", error->message);
+}
+
+static void read_shape(reader *at, const cJSON *object, narc_shapes *store, list *shapes) {
+    static const char *const keys[] = {"name", "origin", "arcs",    "points",   "polygon", "circle",
+                                       "box",  "radius", "capsule", "four_arc", NULL};
+    narc_named_shape *shape = &shapes->items[shapes->shown.count];
+    snprintf(at->shape, sizeof at->shape, "shape %zu", shapes->shown.count);
+    if (!cJSON_IsObject(object))
+        fail_value(at, object, "it", "is not an object");
+    const char *name = get_name(at, object, shapes->shown.count);
+    if (at->status)
+        return;
+    snprintf(at->shape, sizeof at->shape, "shape '%s'", narc_make_excerpt(name).text);
+    check_keys(at, object, keys);
+    const size_t form = find_form(at, object);
+    if (at->status)
+        return;
+    const cJSON *item = find(object, forms[form].key), *radius = find(object, "radius"),
+                *origin = find(object, "origin");
+    if (radius && !forms[form].takes_radius)
+        fail_shape(at, NARC_ERROR_FORMAT, radius, 0, "'%s' takes no 'radius' beside it", forms[form].key);
+    *shape = (narc_named_shape){.origin = origin ? as_point(at, origin, "origin") : (narc_point){0}};
+
+    narc_arc arcs[NARC_MAX_ARCS];
+    narc_error error;
+    const double corner = get_number_or_zero(at, object, "radius");
+    if (forms[form].build(at, item, corner, arcs, &shape->arc_count, &error) != NARC_OK ||
+        (store && !at->status && narc_add_shape(store, arcs, shape->arc_count, &shape->index, &error) != NARC_OK))
+        fail_build(at, item, &error);
+    if (at->status)
+        return;
+    const size_t size = shape->arc_count * sizeof *arcs, length = strlen(name) + 1;
+    char *block = allocate(&shapes->allocator, size + length, "a shape", at->error);
+    if (block) {
+        shape->arcs = memcpy(block, arcs, size);
+        shape->name = memcpy(block + size, name, length);
+        shapes->shown.count++;
+        return;
+    }
+    at->status = NARC_ERROR_MEMORY;
+    if (store)
+        narc_remove_shape(store, shape->index, NULL);
+}
+
+/* The list of shapes that the file must be; NULL after an error. */
+static const cJSON *find_list(reader *at) {
+    static const char *const keys[] = {"shapes", NULL};
+    check_object(at, at->root, "the file's value", keys);
+    const cJSON *found = at->status ? NULL : require(at, at->root, "shapes");
+    if (found && !cJSON_IsArray(found))
+        fail_value(at, found, "shapes", "is not a list");
+    else if (found && !found->child)
+        fail_shape(at, NARC_ERROR_COUNT, found, 0, "shapes is an empty list");
+    return at->status ? NULL : found;
+}
+
+static list *read_list(reader *at, const narc_allocator *allocator, narc_shapes *store) {
+    const cJSON *values = find_list(at), *item;
+    size_t count = 0;
+    if (!values)
+        return NULL;
+    cJSON_ArrayForEach(item, values) { count++; }
+    list *shapes = create_list(allocator, count, at->error);
+    if (!shapes) {
+        at->status = NARC_ERROR_MEMORY;
+        return NULL;
+    }
+    for (item = values->child; item && !at->status; item = item->next)
+        read_shape(at, item, store, shapes);
+    const size_t twin = at->status ? count : sort_names(shapes->items, count, shapes->by_name);
+    if (twin < count) {
+        snprintf(at->shape, sizeof at->shape, "shape %zu", twin);
+        fail_shape(at, NARC_ERROR_FORMAT, find(cJSON_GetArrayItem(values, (int)twin), "name"), 0,
+                   "another shape has that name '%s'", narc_make_excerpt(shapes->items[twin].name).text);
+    }
+    if (!at->status)
+        return shapes;
+    for (size_t i = store ? shapes->shown.count : 0; i > 0; i--)
+        narc_remove_shape(store, shapes->items[i - 1].index, NULL);
+    narc_destroy_shape_list(&shapes->shown);
+    return NULL;
+}
+
+narc_status narc_read_shapes(const void *data, size_t size, const narc_allocator *allocator, narc_shapes *store,
+                             narc_shape_list **out_shapes, narc_error *error) {
+    if (!data || !out_shapes)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", data ? "out_shapes" : "data");
+    const narc_allocator chosen = narc_choose_allocator(allocator);
+    char *text = size < SIZE_MAX ? allocate(&chosen, size + 1, "a text", error) : NULL;
+    if (!text)
+        return NARC_ERROR_MEMORY;
+    memcpy(text, data, size);
+    text[size] = 0;
+    reader at = {.text = text, .error = error};
+    list *read = NULL;
+    at.status = narc_clean_text(text, size, error);
+    if (!at.status)
+        at.status = narc_parse_json(text, &at.root, error);
+    if (!at.status)
+        read = read_list(&at, &chosen, store);
+    cJSON_Delete(at.root);
+    chosen.release(text, chosen.context);
+    if (read)
+        *out_shapes = &read->shown;
+    return at.status;
+}
+
+/* ---------------------------------------------------------------------------- writing */
+
+/* A text that is written twice: for its length, with `text` NULL, and into the memory for it. */
+typedef struct writer {
+    char *text;
+    size_t length;
+} writer;
+
+static void put(writer *to, const char *text) {
+    const size_t length = strlen(text);
+    if (to->text)
+        memcpy(to->text + to->length, text, length);
+    to->length += length;
+}
+
+static void put_number(writer *to, const char *before, double value) {
+    char digits[40];
+    snprintf(digits, sizeof digits, "%.17g", value);
+    const char *point = localeconv()->decimal_point;
+    char *found = strstr(digits, point);
+    if (found) {
+        *found = '.';
+        memmove(found + 1, found + strlen(point), strlen(found + strlen(point)) + 1);
+    }
+    put(to, before);
+    put(to, digits);
+}
+
+/* No more than a backslash needs another one: names have no quotes and no control characters. */
+static void put_name(writer *to, const char *name) {
+    for (; *name; name++)
+        put(to, *name == '\\' ? "\\\\" : (char[]){*name, 0});
+}
+
+static void put_shapes(writer *to, const narc_named_shape *shapes, size_t count) {
+    put(to, "{\"shapes\": [");
+    for (size_t i = 0; i < count; i++) {
+        const narc_named_shape *shape = &shapes[i];
+        put(to, i ? ",\n  {\"name\": \"" : "\n  {\"name\": \"");
+        put_name(to, shape->name);
+        put_number(to, "\", \"origin\": [", shape->origin.x);
+        put_number(to, ", ", shape->origin.y);
+        put(to, "], \"arcs\": [");
+        for (size_t k = 0; k < shape->arc_count; k++) {
+            const narc_arc *arc = &shape->arcs[k];
+            put_number(to, k ? ",\n    {\"center\": [" : "\n    {\"center\": [", arc->center_x);
+            put_number(to, ", ", arc->center_y);
+            put_number(to, "], \"radius\": ", arc->radius);
+            put_number(to, ", \"start\": ", arc->start);
+            put_number(to, ", \"end\": ", arc->end);
+            put(to, "}");
+        }
+        put(to, "\n  ]}");
+    }
+    put(to, "\n]}\n");
+}
+
+/* Would the shape be read again? */
+static narc_status check_shape(const narc_named_shape *shape, size_t index, narc_error *error) {
+    if (!shape->name || !shape->arcs)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, index, 0, "shape %zu: %s is NULL", index,
+                         shape->name ? "arcs" : "name");
+    const char *problem = check_name(shape->name, index);
+    if (problem)
+        return narc_fail(error, NARC_ERROR_FORMAT, index, 0, "shape %zu: %s '%s'", index, problem,
+                         narc_make_excerpt(shape->name).text);
+    if (!isfinite(shape->origin.x) || !isfinite(shape->origin.y))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, index, shape->origin.x + shape->origin.y,
+                         "shape '%s': origin is not finite", narc_make_excerpt(shape->name).text);
+    narc_error wrong;
+    if (narc_validate_arcs(shape->arcs, shape->arc_count, &wrong) != NARC_OK)
+        return narc_fail(error, wrong.status, index, wrong.value, "shape '%s': %s", narc_make_excerpt(shape->name).text,
+                         wrong.message);
+    return NARC_OK;
+}
+
+/* Do all names differ? */
+static narc_status check_twins(const narc_named_shape *shapes, size_t count, const narc_allocator *allocator,
+                               narc_error *error) {
+    const narc_named_shape **sorted = allocate(allocator, count * sizeof *sorted, "names", error);
+    if (!sorted)
+        return NARC_ERROR_MEMORY;
+    const size_t twin = sort_names(shapes, count, sorted);
+    allocator->release((void *)sorted, allocator->context);
+    return twin == count ? NARC_OK
+                         : narc_fail(error, NARC_ERROR_FORMAT, twin, 0, "shape %zu: another shape has that name '%s'",
+                                     twin, narc_make_excerpt(shapes[twin].name).text);
+}
+
+narc_status narc_write_shapes(const narc_named_shape *shapes, size_t count, const narc_allocator *allocator,
+                              char **out_text, size_t *out_size, narc_error *error) {
+    if (!shapes || !out_text || !out_size)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL",
+                         !shapes     ? "shapes"
+                         : !out_text ? "out_text"
+                                     : "out_size");
+    if (count == 0)
+        return narc_fail(error, NARC_ERROR_COUNT, 0, 0, "no shape to write");
+    const narc_allocator chosen = narc_choose_allocator(allocator);
+    narc_status status = NARC_OK;
+    for (size_t i = 0; i < count && !status; i++)
+        status = check_shape(&shapes[i], i, error);
+    status = status ? status : check_twins(shapes, count, &chosen, error);
+    if (status)
+        return status;
+    writer to = {0};
+    put_shapes(&to, shapes, count);
+    const size_t size = to.length;
+    to = (writer){.text = allocate(&chosen, size + 1, "a text", error)};
+    if (!to.text)
+        return NARC_ERROR_MEMORY;
+    put_shapes(&to, shapes, count);
+    to.text[size] = 0;
+    *out_text = to.text;
+    *out_size = size;
+    return NARC_OK;
+}

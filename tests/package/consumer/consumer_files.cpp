@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+//
+// consumer_files.cpp - the same program in C++.
+#include "consumer_files.c"
