@@ -23,7 +23,7 @@ struct Form {
 };
 
 /* The forms of a shapes file, in its order. `path` is for messages only. Throws std::runtime_error, whose message names
- * file, shape and arc. */
+ * file, line, shape and arc. */
 std::vector<Form> parse_forms(const std::string &path, const std::string &text);
 
 /* The form of a list of arcs; throws std::runtime_error with the library's message. */
