@@ -46,7 +46,7 @@ typedef struct narc_shape_list {
 /* Reads a shapes file of `size` bytes, and adds each shape to `store` unless that is NULL. The list's memory comes from
  * `allocator`, NULL: malloc() and free(); cJSON, which parses, uses malloc(). The list may outlive the data and the
  * store.
- * Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_MEMORY; NARC_ERROR_FORMAT (no JSON, a key that is unknown, missing or
+ * Errors: NARC_ERROR_ARGUMENT (NULL, an allocator without a function), NARC_ERROR_MEMORY; NARC_ERROR_FORMAT (no JSON, a key that is unknown, missing or
  * there twice, a value of another kind, a name that cannot be one or is another shape's), NARC_ERROR_COUNT (no shape, too
  * many arcs or points), NARC_ERROR_NOT_FINITE; and those of narc_validate_arcs(), the builders and narc_add_shape().
  * error->index is the line, 0 where none is known; the message begins with it, "line 3: ", and names the shape, its arc
@@ -63,7 +63,7 @@ NARC_API void narc_destroy_shape_list(narc_shape_list *shapes);
 /* Writes `shapes[0 .. count-1]`, count > 0, as a shapes file: arcs and origin of each, with 17 significant digits, so that
  * reading gives the same bits. The text, of *out_size bytes and a NUL behind them, is the caller's: memory of `allocator`,
  * NULL: of malloc(). Equal shapes give equal bytes.
- * Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_MEMORY, NARC_ERROR_COUNT (no shape), NARC_ERROR_FORMAT (a name that
+ * Errors: NARC_ERROR_ARGUMENT (NULL, an allocator without a function), NARC_ERROR_MEMORY, NARC_ERROR_COUNT (no shape), NARC_ERROR_FORMAT (a name that
  * cannot be one or is another shape's), NARC_ERROR_NOT_FINITE (an origin), and those of narc_validate_arcs().
  * error->index is the shape's place. */
 NARC_API narc_status narc_write_shapes(const narc_named_shape *shapes, size_t count, const narc_allocator *allocator,

@@ -266,6 +266,10 @@ typedef struct list {
     narc_named_shape items[];
 } list;
 
+static bool is_incomplete(const narc_allocator *allocator) {
+    return allocator && (!allocator->allocate || !allocator->release);
+}
+
 static void *allocate(const narc_allocator *allocator, size_t size, const char *what, narc_error *error) {
     void *memory = allocator->allocate(size, allocator->context);
     if (!memory)
@@ -434,6 +438,8 @@ narc_status narc_read_shapes(const void *data, size_t size, const narc_allocator
                              narc_shape_list **out_shapes, narc_error *error) {
     if (!data || !out_shapes)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", data ? "out_shapes" : "data");
+    if (is_incomplete(allocator))
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "the allocator lacks a function");
     const narc_allocator chosen = narc_choose_allocator(allocator);
     char *text = size < SIZE_MAX ? allocate(&chosen, size + 1, "a text", error) : NULL;
     if (!text)
@@ -550,6 +556,8 @@ narc_status narc_write_shapes(const narc_named_shape *shapes, size_t count, cons
                          !shapes     ? "shapes"
                          : !out_text ? "out_text"
                                      : "out_size");
+    if (is_incomplete(allocator))
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "the allocator lacks a function");
     if (count == 0)
         return narc_fail(error, NARC_ERROR_COUNT, 0, 0, "no shape to write");
     const narc_allocator chosen = narc_choose_allocator(allocator);

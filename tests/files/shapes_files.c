@@ -1,0 +1,456 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * shapes_files.c - shapes files: every form, bits that survive, lines of errors, damage, memory that runs out.
+ */
+#include <errno.h>
+#include <locale.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cjson/cJSON.h>
+
+#include "expect.h"
+#include "families.h"
+#include "narc_files.h"
+#include "support.h"
+
+static const char every_form[] =
+    "\xef\xbb\xbf{\"shapes\": [\n"
+    "  {\"name\": \"disc\", \"origin\": [-0.0, 1e-310], \"circle\": 1.5},\n"
+    "  {\"name\": \"kapsel-\\u00e4\", \"capsule\": {\"length\": 4, \"radius\": 1}},\n"
+    "  {\"name\": \"2\", \"box\": {\"width\": 4, \"height\": 2, \"radius\": 0.5}},\n"
+    "  {\"name\": \"back\\\\slash\", \"polygon\": [[0, 0], [4, 0], [0, 3]], \"radius\": 0.25},\n"
+    "  {\"name\": \"p\", \"points\": [[0, 0], [4, 0], [4, 3], [0, 3]], \"radius\": 2.5},\n"
+    "  {\"name\": \"f\", \"four_arc\": {\"radius_low\": 5, \"radius_high\": 5, \"distance\": 8, \"radius_left\": "
+    "0.25}},\n"
+    "  {\"name\": \"half\", \"arcs\": [\n"
+    "    {\"center\": [0, 0], \"radius\": 1, \"start\": 0, \"end\": 3.141592653589793},\n"
+    "    {\"center\": [0, -1], \"radius\": 1, \"start\": 3.141592653589793, \"end\": 6.283185307179586}]}]}\n";
+enum { FORMS = 7 };
+
+/* Reads from a block of exactly that size, so that reading behind its end shows. */
+static narc_status read_exactly(const char *text, size_t size, const narc_allocator *allocator, narc_shapes *store,
+                                narc_shape_list **out_list, narc_error *error) {
+    char *data = malloc(size ? size : 1);
+    assert_non_null(data);
+    memcpy(data, text, size);
+    const narc_status status = narc_read_shapes(data, size, allocator, store, out_list, error);
+    free(data);
+    return status;
+}
+
+static narc_shape_list *read_text(const char *text, narc_shapes *store) {
+    narc_shape_list *list = NULL;
+    narc_error error;
+    expect_ok(read_exactly(text, strlen(text), NULL, store, &list, &error), &error);
+    return list;
+}
+
+static void expect_arcs(const narc_named_shape *shape, const char *name, const narc_arc *arcs, size_t count) {
+    assert_string_equal(shape->name, name);
+    assert_int_equal(shape->arc_count, count);
+    assert_memory_equal(shape->arcs, arcs, count * sizeof *arcs);
+}
+
+static void reads_every_form(void **state) {
+    (void)state;
+    narc_shapes *store = NULL;
+    const narc_arc circle = {0, 0, 1, 0, 6.283185307179586};
+    assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+    assert_int_equal(narc_add_shape(store, &circle, 1, NULL, NULL), NARC_OK);
+    narc_shape_list *list = read_text(every_form, store);
+    assert_int_equal(list->count, FORMS);
+    assert_int_equal(narc_count_shapes(store), FORMS + 1);
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    const narc_point triangle[] = {{0, 0}, {4, 0}, {0, 3}}, square[] = {{0, 0}, {4, 0}, {4, 3}, {0, 3}};
+    assert_int_equal(narc_build_circle(1.5, arcs, &count, NULL), NARC_OK);
+    expect_arcs(&list->items[0], "disc", arcs, count);
+    assert_true(signbit(list->items[0].origin.x) && list->items[0].origin.y == 1e-310);
+    assert_int_equal(narc_build_capsule(4, 1, arcs, &count, NULL), NARC_OK);
+    expect_arcs(&list->items[1], "kapsel-\xc3\xa4", arcs, count);
+    assert_int_equal(narc_build_box(4, 2, 0.5, arcs, &count, NULL), NARC_OK);
+    expect_arcs(&list->items[2], "2", arcs, count);
+    assert_int_equal(narc_build_polygon(triangle, 3, 0.25, arcs, &count, NULL), NARC_OK);
+    expect_arcs(&list->items[3], "back\\slash", arcs, count);
+    assert_int_equal(narc_build_points(square, 4, 2.5, arcs, &count, NULL), NARC_OK);
+    expect_arcs(&list->items[4], "p", arcs, count);
+    assert_int_equal(narc_build_four_arc((narc_four_arc){5, 5, 8, 0.25, 0}, arcs, &count, NULL), NARC_OK);
+    expect_arcs(&list->items[5], "f", arcs, count);
+    const narc_arc halves[] = {{0, 0, 1, 0, 3.141592653589793}, {0, -1, 1, 3.141592653589793, 6.283185307179586}};
+    expect_arcs(&list->items[6], "half", halves, 2);
+    for (size_t k = 0; k < FORMS; k++) {
+        assert_int_equal(list->items[k].index, k + 1);
+        assert_int_equal(narc_get_arcs(store, list->items[k].index, NULL), list->items[k].arc_count);
+        assert_int_equal(narc_find_named_shape(list, list->items[k].name), k);
+    }
+    assert_int_equal(narc_find_named_shape(list, ""), FORMS);
+    assert_int_equal(narc_find_named_shape(list, "discs"), FORMS);
+    narc_destroy_shape_list(list);
+    narc_destroy_shape_list(NULL);
+    narc_destroy_shapes(store);
+}
+
+/* ---------------------------------------------------------------------------- there and back */
+
+static void expect_same(const narc_named_shape *a, const narc_named_shape *b) {
+    expect_arcs(a, b->name, b->arcs, b->arc_count);
+    assert_memory_equal(&a->origin, &b->origin, sizeof a->origin);
+}
+
+/* Written and read they have the same bits; written again the file has the same bytes. */
+static void expect_round_trip(const narc_named_shape *shapes, size_t count) {
+    char *text = NULL, *again = NULL;
+    size_t size = 0, again_size = 0;
+    narc_error error;
+    expect_ok(narc_write_shapes(shapes, count, NULL, &text, &size, &error), &error);
+    assert_int_equal(strlen(text), size);
+    narc_shape_list *list = read_text(text, NULL);
+    assert_int_equal(list->count, count);
+    for (size_t k = 0; k < count; k++)
+        expect_same(&list->items[k], &shapes[k]);
+    expect_ok(narc_write_shapes(list->items, count, NULL, &again, &again_size, &error), &error);
+    assert_int_equal(again_size, size);
+    assert_memory_equal(again, text, size);
+    free(text);
+    free(again);
+    narc_destroy_shape_list(list);
+}
+
+static double random_finite(struct test_random *random) {
+    for (;;) {
+        const uint64_t bits = random_bits(random);
+        double value;
+        memcpy(&value, &bits, sizeof value);
+        if (isfinite(value))
+            return value;
+    }
+}
+
+static void keeps_bits(void **state) {
+    (void)state;
+    enum { SHAPES = 60 };
+    struct test_random random = test_random_named("shapes there and back");
+    for (size_t trial = 0; trial < test_trials(20); trial++) {
+        struct shape *made = malloc(SHAPES * sizeof *made);
+        narc_named_shape shapes[SHAPES];
+        char names[SHAPES][40];
+        for (size_t k = 0; k < SHAPES; k++) {
+            made[k] = make_shape(&random, (enum family)(k % FAMILY_COUNT));
+            snprintf(names[k], sizeof names[k], "%s%zu \\\\ \xf0\x9f\x91\xbb", k % 2 ? "a" : "\xc3\xa4", SHAPES - k);
+            shapes[k] = (narc_named_shape){
+                names[k], made[k].arcs, made[k].count, {random_finite(&random), random_finite(&random)}, 0};
+        }
+        shapes[7].name = "7";
+        expect_round_trip(shapes, SHAPES);
+        free(made);
+    }
+}
+
+/* Where the decimal point is a comma, files are the same. Skipped without such a locale. */
+static void same_in_any_locale(void **state) {
+    (void)state;
+    static const char *const names[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE", "fr_FR"};
+    narc_shape_list *list = read_text(every_form, NULL);
+    char *text = NULL, *other = NULL;
+    size_t size = 0, other_size = 0;
+    const char *chosen = NULL;
+    assert_int_equal(narc_write_shapes(list->items, FORMS, NULL, &text, &size, NULL), NARC_OK);
+    for (size_t k = 0; k < 4 && !chosen; k++)
+        chosen = setlocale(LC_NUMERIC, names[k]);
+    if (chosen) {
+        assert_int_equal(narc_write_shapes(list->items, FORMS, NULL, &other, &other_size, NULL), NARC_OK);
+        assert_int_equal(other_size, size);
+        assert_memory_equal(other, text, size);
+        expect_round_trip(list->items, FORMS);
+        setlocale(LC_NUMERIC, "C");
+    }
+    free(text);
+    free(other);
+    narc_destroy_shape_list(list);
+    if (!chosen) {
+        print_message("no locale with a decimal comma is installed\n");
+        skip();
+    }
+}
+
+/* ---------------------------------------------------------------------------- what is refused */
+
+/* The line is that of the value, or of the object that lacks one. */
+static void names_lines(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        narc_status status;
+        size_t line;
+        double value;
+        const char *message;
+    } wrong[] = {
+        {"", NARC_ERROR_FORMAT, 0, 0, "the text is empty"},
+        {"{\"shapes\": [\n{\"name\": \"a\",, \"circle\": 1}]}", NARC_ERROR_FORMAT, 2, 0, "line 2: not valid JSON"},
+        {"\n[]", NARC_ERROR_FORMAT, 2, 0, "line 2: the file's value is not an object '[]'"},
+        {"{\n}", NARC_ERROR_FORMAT, 1, 0, "line 1: shapes is missing"},
+        {"{\"shapes\":\n[]}", NARC_ERROR_COUNT, 2, 0, "line 2: shapes is an empty list"},
+        {"{\"shapes\": [{\"name\": \"a\", \"circle\": 1}],\n \"a\": [\"]:,\\\"\"],\n \"b\": 1}", NARC_ERROR_FORMAT, 2,
+         0, "line 2: unknown key 'a'"},
+        {"{\"shapes\": [{\"name\": \"a\", \"circle\": 1},\n\n7]}", NARC_ERROR_FORMAT, 3, 0,
+         "line 3: shape 1: it is not an object '7'"},
+        {"{\"shapes\": [{\"name\": \"a\",\n\"circle\":\n-2}]}", NARC_ERROR_SIZE, 3, -2, "line 3: shape 'a': "},
+        {"{\"shapes\": [{\"name\": \"a\",\n\"circle\": 1e999}]}", NARC_ERROR_NOT_FINITE, 2, INFINITY,
+         "line 2: shape 'a': circle is not finite"},
+        {"{\"shapes\": [{\"name\": \"a\", \"arcs\": [\n{\"center\": [0, 0], \"radius\": 1, \"start\": 0, \"end\": 3},\n"
+         "{\"center\": [\n0,\n\"1\"], \"radius\": 1}]}]}",
+         NARC_ERROR_FORMAT, 5, 0, "line 5: shape 'a', arc 1: center is not a number '\"1\"'"},
+        {"{\"shapes\": [{\"name\": \"a\", \"arcs\": [\n{\"center\": [0, 0], \"radius\": 1, \"start\": 0, \"end\": 3},\n"
+         "{\"center\": [0, 0], \"start\": 0, \"end\": 3}]}]}",
+         NARC_ERROR_FORMAT, 3, 0, "line 3: shape 'a', arc 1: radius is missing"},
+        {"{\"shapes\": [{\"name\": \"a\",\n\"polygon\": [[0, 0],\n[4, 0],\n[1, 1],\n[0, 4]]}]}", NARC_ERROR_NOT_CONVEX,
+         4, 0, "line 4: shape 'a', point 2: "},
+        {"{\"shapes\": [{\"name\": \"a\", \"circle\": 1},\n{\"name\": \"b\", \"circle\": 1},\n{\"circle\": "
+         "1,\n\"name\": "
+         "\"a\"}]}",
+         NARC_ERROR_FORMAT, 4, 0, "line 4: shape 2: another shape has that name 'a'"},
+        {"{\"shapes\": [{\"name\": \"a\", \"circle\": 1},\n{\"circle\": 1,\n\"name\":\n\"0\"}]}", NARC_ERROR_FORMAT, 4,
+         0, "line 4: shape 1: a name of digits would be taken for the index of another shape '0'"},
+        /* Valid, but with room for rounding too large for the store. */
+        {"{\"shapes\": [{\"name\": \"b\", \"circle\": 1},\n{\"name\": \"a\", \"arcs\":\n[{\"center\": [9e8, 0], "
+         "\"radius\": 1e9, \"start\": 0, \"end\": 6.283185307179586}]}]}",
+         NARC_ERROR_SIZE, 3, 1e9, "line 3: shape 'a': the shape's bounding radius"},
+    };
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+        narc_shape_list *list = (narc_shape_list *)(void *)&list;
+        const void *before = list;
+        narc_shapes *store = NULL;
+        narc_error error = {.message = "?"};
+        uint32_t index = 99;
+        assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+        const narc_status status = read_exactly(wrong[k].text, strlen(wrong[k].text), NULL, store, &list, &error);
+        expect_error(status, wrong[k].status, &error, wrong[k].message);
+        assert_int_equal(error.index, wrong[k].line);
+        assert_true(wrong[k].value == 0 || error.value == wrong[k].value);
+        assert_int_equal(read_exactly(wrong[k].text, strlen(wrong[k].text), NULL, store, &list, NULL), status);
+        assert_ptr_equal(list, before);
+        /* The store is as it was. */
+        assert_int_equal(narc_add_shape(store, &(narc_arc){0, 0, 1, 0, 6.283185307179586}, 1, &index, NULL), NARC_OK);
+        assert_int_equal(index, 0);
+        narc_destroy_shapes(store);
+    }
+}
+
+static void *never(size_t size, void *context) {
+    (void)size, (void)context;
+    return NULL;
+}
+
+static void writes_nothing_wrong(void **state) {
+    (void)state;
+    const narc_arc disc = {0, 0, 1, 0, 6.283185307179586}, half = {0, 0, 1, 0, 3};
+    const narc_named_shape good = {"a", &disc, 1, {0, 0}, 0};
+    narc_named_shape shapes[2] = {good, good};
+    char *text = NULL;
+    size_t size = 7;
+    narc_error error;
+    expect_error(narc_write_shapes(NULL, 1, NULL, &text, &size, &error), NARC_ERROR_ARGUMENT, &error, "shapes is NULL");
+    expect_error(narc_write_shapes(shapes, 1, NULL, NULL, &size, &error), NARC_ERROR_ARGUMENT, &error, "out_text");
+    expect_error(narc_write_shapes(shapes, 1, NULL, &text, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_size");
+    expect_error(narc_write_shapes(shapes, 1, &(narc_allocator){.allocate = never}, &text, &size, &error),
+                 NARC_ERROR_ARGUMENT, &error, "allocator");
+    expect_error(narc_write_shapes(shapes, 0, NULL, &text, &size, &error), NARC_ERROR_COUNT, &error, "no shape");
+    expect_error(narc_write_shapes(shapes, 2, NULL, &text, &size, &error), NARC_ERROR_FORMAT, &error,
+                 "shape 1: another shape has that name 'a'");
+    assert_int_equal(error.index, 1);
+    static const char *const names[] = {"", " b", "b ", "b,c", "b\"c", "b\nc", "\xc3", "0", "99999999999999999999"};
+    for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
+        shapes[1].name = names[k];
+        expect_error(narc_write_shapes(shapes, 2, NULL, &text, &size, &error), NARC_ERROR_FORMAT, &error,
+                     "shape 1: a name");
+    }
+    shapes[1] = (narc_named_shape){"b", &half, 1, {0, 0}, 0};
+    expect_error(narc_write_shapes(shapes, 2, NULL, &text, &size, &error), NARC_ERROR_SWEEP, &error, "shape 'b': ");
+    shapes[1] = (narc_named_shape){"b", &disc, 1, {0, NAN}, 0};
+    expect_error(narc_write_shapes(shapes, 2, NULL, &text, &size, &error), NARC_ERROR_NOT_FINITE, &error, "origin");
+    shapes[1] = (narc_named_shape){"b", NULL, 1, {0, 0}, 0};
+    expect_error(narc_write_shapes(shapes, 2, NULL, &text, &size, &error), NARC_ERROR_ARGUMENT, &error, "arcs is NULL");
+    narc_shape_list *list = NULL;
+    expect_error(narc_read_shapes(NULL, 0, NULL, NULL, &list, &error), NARC_ERROR_ARGUMENT, &error, "data is NULL");
+    expect_error(narc_read_shapes("{}", 2, NULL, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error,
+                 "out_shapes is NULL");
+    expect_error(narc_read_shapes("{}", 2, &(narc_allocator){.allocate = never}, NULL, &list, &error),
+                 NARC_ERROR_ARGUMENT, &error, "allocator");
+    assert_true(!text && size == 7 && !list);
+}
+
+/* ---------------------------------------------------------------------------- damage */
+
+/* Flips bits, repeats, leaves out or inserts bytes, or cuts the end. */
+static size_t damage(struct test_random *random, char *text, size_t size) {
+    static const char bytes[] = "[]{},;:\"\\ \n\t0123456789.-+eEnaiu\xff\xc3\0";
+    for (size_t changes = 1 + random_below(random, 3); changes > 0; changes--) {
+        const size_t at = random_below(random, size), length = 1 + random_below(random, 8);
+        switch (random_below(random, 5)) {
+        case 0:
+            text[at] = bytes[random_below(random, sizeof bytes)];
+            break;
+        case 1:
+            memmove(text + at + 1, text + at, size++ - at);
+            text[at] = bytes[random_below(random, sizeof bytes)];
+            break;
+        case 2:
+            if (at + length < size)
+                memmove(text + at, text + at + length, (size -= length) - at);
+            break;
+        case 3:
+            text[at] = (char)(text[at] ^ 1 << random_below(random, 8));
+            break;
+        default:
+            size = random_below(random, 4) ? size : at + 1;
+            break;
+        }
+    }
+    return size;
+}
+
+/* Whatever the bytes, shapes come out that can be written and read again, or an error whose line there is; then the store
+ * is as before. */
+static void survives_damage(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("damaged shapes files");
+    size_t read = 0;
+    const size_t trials = test_trials(20000);
+    for (size_t trial = 0; trial < trials; trial++) {
+        char text[sizeof every_form + 8];
+        memcpy(text, every_form, sizeof every_form);
+        const size_t size = damage(&random, text, sizeof every_form - 1);
+        narc_shapes *store = NULL;
+        narc_shape_list *list = NULL;
+        narc_error error = {.status = NARC_OK};
+        assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+        const narc_status status = read_exactly(text, size, NULL, store, &list, &error);
+        size_t lines = 1;
+        for (size_t i = 0; i < size; i++)
+            lines += text[i] == '\n';
+        if (status) {
+            assert_true(!list && error.index <= lines && status != NARC_ERROR_MEMORY && status != NARC_ERROR_ARGUMENT);
+            uint32_t index = 99;
+            assert_int_equal(narc_add_shape(store, &(narc_arc){0, 0, 1, 0, 6.283185307179586}, 1, &index, NULL),
+                             NARC_OK);
+            assert_int_equal(index, 0);
+        } else {
+            assert_int_equal(narc_count_shapes(store), list->count);
+            expect_round_trip(list->items, list->count);
+            narc_destroy_shape_list(list);
+            read++;
+        }
+        narc_destroy_shapes(store);
+    }
+    assert_true(read > trials / 20 && read < trials - trials / 4); /* both sorts are really met */
+}
+
+/* ---------------------------------------------------------------------------- memory that runs out */
+
+/* Gives memory so many times; counts what is not released. */
+struct purse {
+    size_t left, held;
+};
+
+static void *take(size_t size, void *context) {
+    struct purse *purse = context;
+    void *memory = purse->left ? malloc(size) : NULL;
+    purse->left -= purse->left > 0;
+    purse->held += memory != NULL;
+    return memory;
+}
+
+static void give_back(void *memory, void *context) {
+    struct purse *purse = context;
+    purse->held -= memory != NULL;
+    free(memory);
+}
+
+/* Each of the caller's allocations fails, and all behind it: those of the list, then those of the store. */
+static void tells_missing_memory(void **state) {
+    (void)state;
+    for (int of_store = 0; of_store < 2; of_store++) {
+        size_t failures = 0;
+        for (narc_status status = NARC_ERROR_MEMORY; status; failures += status != NARC_OK) {
+            struct purse purse = {.left = failures + (size_t)of_store};
+            const narc_allocator allocator = {take, give_back, &purse};
+            narc_shapes *store = NULL;
+            narc_shape_list *list = NULL;
+            narc_error error = {.status = NARC_OK};
+            assert_int_equal(narc_create_shapes(of_store ? &allocator : NULL, &store), NARC_OK);
+            status =
+                read_exactly(every_form, sizeof every_form - 1, of_store ? NULL : &allocator, store, &list, &error);
+            if (status) {
+                expect_error(status, NARC_ERROR_MEMORY, &error, "");
+                uint32_t index = 99;
+                purse.left = 100;
+                assert_int_equal(narc_add_shape(store, &(narc_arc){0, 0, 1, 0, 6.283185307179586}, 1, &index, NULL),
+                                 NARC_OK);
+                assert_int_equal(index, 0);
+            }
+            narc_destroy_shape_list(list);
+            narc_destroy_shapes(store);
+            assert_int_equal(purse.held, 0);
+        }
+        assert_true(failures > (of_store ? 1 : FORMS + 1));
+    }
+    narc_shape_list *list = read_text(every_form, NULL);
+    for (size_t left = 0; left < 3; left++) {
+        struct purse purse = {.left = left};
+        const narc_allocator allocator = {take, give_back, &purse};
+        char *text = NULL;
+        size_t size = 0;
+        narc_error error;
+        const narc_status status = narc_write_shapes(list->items, FORMS, &allocator, &text, &size, &error);
+        if (left < 2)
+            expect_error(status, NARC_ERROR_MEMORY, &error, "");
+        else
+            expect_ok(status, &error);
+        assert_true((text != NULL) == (left == 2));
+        if (text)
+            give_back(text, &purse);
+        assert_int_equal(purse.held, 0);
+    }
+    narc_destroy_shape_list(list);
+}
+
+static size_t json_left;
+
+static void *take_for_json(size_t size) {
+    if (json_left-- > 0)
+        return malloc(size);
+    json_left = 0;
+    errno = ENOMEM;
+    return NULL;
+}
+
+/* So does each of cJSON's. */
+static void tells_missing_memory_of_json(void **state) {
+    (void)state;
+    size_t failures = 0;
+    cJSON_InitHooks(&(cJSON_Hooks){take_for_json, free});
+    for (narc_status status = NARC_ERROR_MEMORY; status; failures += status != NARC_OK) {
+        narc_shape_list *list = NULL;
+        narc_error error = {.status = NARC_OK};
+        json_left = failures;
+        status = read_exactly(every_form, sizeof every_form - 1, NULL, NULL, &list, &error);
+        if (status)
+            expect_error(status, NARC_ERROR_MEMORY, &error, "not enough memory for JSON");
+        narc_destroy_shape_list(list);
+    }
+    cJSON_InitHooks(NULL);
+    assert_true(failures > 50);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_every_form),     cmocka_unit_test(keeps_bits),
+        cmocka_unit_test(same_in_any_locale),   cmocka_unit_test(names_lines),
+        cmocka_unit_test(writes_nothing_wrong), cmocka_unit_test(survives_damage),
+        cmocka_unit_test(tells_missing_memory), cmocka_unit_test(tells_missing_memory_of_json),
+    };
+    return test_begin() ? cmocka_run_group_tests(tests, NULL, NULL) : TEST_SKIPPED;
+}
