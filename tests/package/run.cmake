@@ -118,7 +118,7 @@ elseif(STEP STREQUAL "documented_shapes")
 elseif(STEP STREQUAL "subproject")
   build_and_test("${SOURCE}/tests/package/consumer" -DKIND=subproject "-DNARC_SOURCE=${SOURCE}" "-DNARC_SLEEF=${SLEEF}"
     -DCMAKE_BUILD_TYPE=Debug)
-  file(GLOB_RECURSE extra "${folder}/narc/fit/*" "${folder}/narc/tests/*" "${folder}/narc/tools/*")
+  file(GLOB_RECURSE extra "${folder}/narc/files/*" "${folder}/narc/fit/*" "${folder}/narc/tests/*" "${folder}/narc/tools/*")
   if(extra)
     message(FATAL_ERROR "a subproject builds more than the library: ${extra}")
   endif()
