@@ -21,7 +21,7 @@ narc_status narc_fail_missing(narc_error *error, const char *name) {
 
 /* Says which of pair number `pair`'s indices is out of range. */
 static narc_status describe_bad_pair(const narc_batch *batch, size_t pair, narc_error *error) {
-    const narc_column columns[2] = {batch->pairs->a, batch->pairs->b};
+    const narc_index_column columns[2] = {batch->pairs->a, batch->pairs->b};
     for (int k = 0; k < 2; k++) {
         const uint32_t body = narc_index_at(columns[k], pair);
         if (body >= batch->bodies->count)
@@ -48,9 +48,6 @@ narc_status narc_check_batch(const narc_batch *batch, size_t first, size_t count
     if (first > pairs->count || count > pairs->count - first)
         return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)count,
                          "pairs %zu and the %zu from there on, but there are %zu", first, count, pairs->count);
-    if (bodies->position_precision != NARC_FLOAT32 && bodies->position_precision != NARC_FLOAT64)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->position_precision,
-                         "bodies.position_precision is %d", (int)bodies->position_precision);
     if (count > 0) {
         if (!pairs->a.base || !pairs->b.base)
             return narc_fail_missing(error, !pairs->a.base ? "pairs.a" : "pairs.b");

@@ -15,7 +15,7 @@ static uint32_t clip(size_t limit) { return limit < 0x80000000u ? (uint32_t)limi
 /* Are items first .. last - 1 of a column below `limit`? With limit at most 2^31, the upper bit of k - limit is that of a
  * k below it, if k has none itself. So all that is kept of the items is the union and the intersection of bits: two
  * operations each, on four items at a time, because one would wait for the other. */
-static bool are_below(narc_column column, size_t first, size_t last, uint32_t limit) {
+static bool are_below(narc_index_column column, size_t first, size_t last, uint32_t limit) {
     uint32_t any[4] = {0}, all[4] = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
     size_t k = first;
     if (column.stride == sizeof(uint32_t)) { /* of a plain array compilers make vectors */
@@ -41,10 +41,10 @@ static bool are_below(narc_column column, size_t first, size_t last, uint32_t li
 
 /* Are all bodies that pairs first .. last - 1 name below `limit`? */
 static bool are_bodies_below(const narc_pairs *pairs, size_t first, size_t last, uint32_t limit) {
-    const narc_column a = pairs->a, b = pairs->b;
-    const size_t item = sizeof(uint32_t);
-    if (a.stride == 2 * item && b.stride == 2 * item && (const char *)b.base == (const char *)a.base + item)
-        return are_below((narc_column){a.base, item}, 2 * first, 2 * last, limit); /* both columns are one */
+    const narc_index_column a = pairs->a, b = pairs->b;
+    const ptrdiff_t item = sizeof(uint32_t);
+    if (a.stride == 2 * item && b.stride == 2 * item && b.base == a.base + 1)
+        return are_below((narc_index_column){a.base, item}, 2 * first, 2 * last, limit); /* both columns are one */
     return are_below(a, first, last, limit) && are_below(b, first, last, limit);
 }
 
@@ -78,7 +78,7 @@ static bool all_in_range(const narc_batch *batch, size_t first, size_t count, si
 
 /* Are the shapes of all bodies that pairs first .. last - 1 name below `limit`? The bodies exist. */
 static bool are_shapes_below(const narc_batch *batch, size_t first, size_t last, uint32_t limit) {
-    const narc_column shape = batch->bodies->shape;
+    const narc_index_column shape = batch->bodies->shape;
     uint32_t any = 0, all = UINT32_MAX;
     for (size_t pair = first; pair < last; pair++) {
         const uint32_t a = narc_index_at(shape, narc_index_at(batch->pairs->a, pair));

@@ -50,7 +50,7 @@
  *     uint64_t hits[NARC_BIT_WORDS(5000)];
  *
  *     narc_bodies bodies = {.count = 1000,
- *         .x = NARC_COLUMN(body, x), .y = NARC_COLUMN(body, y),
+ *         .x = NARC_POSITION_COLUMN(body, x), .y = NARC_POSITION_COLUMN(body, y),
  *         .cosine = NARC_COLUMN(body, c), .sine = NARC_COLUMN(body, s), .shape = NARC_COLUMN(body, shape)};
  *     narc_pairs pairs = {.count = 5000, .a = NARC_COLUMN(pair, a), .b = NARC_COLUMN(pair, b)};
  *     narc_find_overlaps(shapes, &bodies, &pairs, 0, hits, NULL);
@@ -72,22 +72,6 @@ extern "C" {
 
 /* "0.2.0". */
 NARC_API const char *narc_version(void);
-
-/* A narc_column over one field of an array of structures, and over a plain array: values, to initialise, to assign or
- * to pass. */
-#ifdef __cplusplus
-#define NARC_COLUMN(array, field) (narc_column NARC_COLUMN_INIT(array, field))
-#define NARC_ARRAY(array)         (narc_column NARC_ARRAY_INIT(array))
-#else
-#define NARC_COLUMN(array, field) ((narc_column)NARC_COLUMN_INIT(array, field))
-#define NARC_ARRAY(array)         ((narc_column)NARC_ARRAY_INIT(array))
-#endif
-
-/* The same as bare initialisers: for objects of static storage duration, where C wants constants. */
-#define NARC_COLUMN_INIT(array, field)                                                                                 \
-    { &(array)[0].field, sizeof((array)[0]) }
-#define NARC_ARRAY_INIT(array)                                                                                         \
-    { (array), sizeof((array)[0]) }
 
 /* The number of 64-bit words that hold `count` bits. */
 #define NARC_BIT_WORDS(count) (((count) + 63) / 64)

@@ -39,12 +39,12 @@ extern "C" {
 /* What narc_compute_boxes() puts boxes around; what is 0 or NULL is left out, as all is for {0}.
  *   margin              at least 0: how far a box reaches beyond its body on every side. To find all pairs that are
  *                       closer than some distance, half of it.
- *   motion_x, motion_y  float, world axes: what each body moves. Its box holds the body at its position, at position +
+ *   motion_x, motion_y  world axes: what each body moves. Its box holds the body at its position, at position +
  *                       motion, and everywhere between.
  *   out_skipped         how many bodies have no box; NULL: nobody asks */
 typedef struct narc_box_options {
     float margin;
-    narc_column motion_x, motion_y;
+    narc_float_column motion_x, motion_y;
     size_t *out_skipped;
 } narc_box_options;
 

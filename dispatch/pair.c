@@ -48,8 +48,8 @@ static narc_status place_bodies(const narc_shapes *shapes, const narc_body *a, c
             return status;
     }
     out->bodies = (narc_bodies){.count = 2,
-                                .x = NARC_COLUMN(out->body, x),
-                                .y = NARC_COLUMN(out->body, y),
+                                .x = NARC_POSITION_COLUMN(out->body, x),
+                                .y = NARC_POSITION_COLUMN(out->body, y),
                                 .cosine = NARC_COLUMN(out->body, cosine),
                                 .sine = NARC_COLUMN(out->body, sine),
                                 .scale = NARC_COLUMN(out->body, scale),
@@ -63,9 +63,8 @@ static narc_status find_fault(const narc_shapes *shapes, const struct two_bodies
                               const narc_body *b, narc_error *error) {
     const double x[2] = {a->x, b->x}, y[2] = {a->y, b->y};
     narc_bodies bodies = two->bodies;
-    bodies.position_precision = NARC_FLOAT64;
-    bodies.x = NARC_ARRAY(x);
-    bodies.y = NARC_ARRAY(y);
+    bodies.x = NARC_POSITION_ARRAY(x);
+    bodies.y = NARC_POSITION_ARRAY(y);
     return narc_validate_bodies(shapes, &bodies, error);
 }
 

@@ -44,7 +44,7 @@ const char *narc_method_name(narc_method method) {
 static narc_status check_polygons(const narc_batch *batch, narc_error *error) {
     if (batch->shapes->curved_count == 0)
         return NARC_OK;
-    const narc_column columns[2] = {batch->pairs->a, batch->pairs->b};
+    const narc_index_column columns[2] = {batch->pairs->a, batch->pairs->b};
     for (size_t pair = 0; pair < batch->pairs->count; pair++) {
         for (int k = 0; k < 2; k++) {
             const uint32_t body = narc_index_at(columns[k], pair), shape = narc_index_at(batch->bodies->shape, body);

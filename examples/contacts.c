@@ -16,8 +16,8 @@ int main(void) {
         uint32_t a, b;
     } pair[] = {{0, 1}, {1, 2}};
     narc_bodies bodies = {.count = 3,
-                          .x = NARC_COLUMN(body, x),
-                          .y = NARC_COLUMN(body, y),
+                          .x = NARC_POSITION_COLUMN(body, x),
+                          .y = NARC_POSITION_COLUMN(body, y),
                           .cosine = NARC_COLUMN(body, c),
                           .sine = NARC_COLUMN(body, s),
                           .shape = NARC_COLUMN(body, shape)};

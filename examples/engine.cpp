@@ -62,9 +62,8 @@ int main() {
 
     narc_bodies bodies = {};
     bodies.count = entities.size();
-    bodies.position_precision = NARC_FLOAT64;
-    bodies.x = NARC_COLUMN(entities, transform.x);
-    bodies.y = NARC_COLUMN(entities, transform.y);
+    bodies.x = NARC_POSITION_COLUMN(entities, transform.x);
+    bodies.y = NARC_POSITION_COLUMN(entities, transform.y);
     bodies.cosine = NARC_COLUMN(entities, transform.cosine);
     bodies.sine = NARC_COLUMN(entities, transform.sine);
     bodies.shape = NARC_COLUMN(entities, shape);

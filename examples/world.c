@@ -120,8 +120,8 @@ narc_status world_add_body(world *w, world_body body) {
 /* The bodies as narc sees them: nothing is copied. */
 static narc_bodies view_bodies(const world *w) {
     return (narc_bodies){.count = w->body_count,
-                         .x = NARC_COLUMN(w->bodies, position.x),
-                         .y = NARC_COLUMN(w->bodies, position.y),
+                         .x = NARC_POSITION_COLUMN(w->bodies, position.x),
+                         .y = NARC_POSITION_COLUMN(w->bodies, position.y),
                          .cosine = NARC_COLUMN(w->bodies, cosine),
                          .sine = NARC_COLUMN(w->bodies, sine),
                          .shape = NARC_COLUMN(w->bodies, shape)};

@@ -28,7 +28,7 @@ typedef struct narc_box_batch {
     const narc_shapes *shapes;
     const narc_bodies *bodies;
     float margin;
-    narc_column motion_x, motion_y; /* base NULL: none */
+    narc_float_column motion_x, motion_y; /* base NULL: none */
 } narc_box_batch;
 
 /* The most pairs that one call of a contact kernel takes: it collects their contacts before it lists them. */

@@ -12,29 +12,25 @@
 narc_status narc_check_columns(const narc_bodies *bodies, narc_error *error) {
     const struct {
         const char *name;
-        narc_column column;
-    } columns[] = {{"x", bodies->x},
-                   {"y", bodies->y},
-                   {"cosine", bodies->cosine},
-                   {"sine", bodies->sine},
-                   {"shape", bodies->shape}};
+        const void *base;
+    } columns[] = {{"x", bodies->x.base},
+                   {"y", bodies->y.base},
+                   {"cosine", bodies->cosine.base},
+                   {"sine", bodies->sine.base},
+                   {"shape", bodies->shape.base}};
     for (size_t k = 0; k < sizeof columns / sizeof columns[0]; k++)
-        if (!columns[k].column.base)
+        if (!columns[k].base)
             return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "bodies.%s is NULL", columns[k].name);
-    if (bodies->position_precision != NARC_FLOAT32 && bodies->position_precision != NARC_FLOAT64)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->position_precision,
-                         "bodies.position_precision is %d", (int)bodies->position_precision);
+    const narc_precision x = bodies->x.precision, y = bodies->y.precision;
+    if ((x != NARC_FLOAT32 && x != NARC_FLOAT64) || x != y)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)x,
+                         "bodies.x.precision is %d and bodies.y.precision is %d", (int)x, (int)y);
     return NARC_OK;
-}
-
-static double position_at(const narc_bodies *bodies, narc_column column, size_t body) {
-    return bodies->position_precision == NARC_FLOAT64 ? narc_double_at(column, body)
-                                                      : (double)narc_float_at(column, body);
 }
 
 static narc_status check_body(const narc_shapes *shapes, const narc_bodies *bodies, size_t body, narc_error *error) {
     const uint32_t shape = narc_index_at(bodies->shape, body);
-    const double x = position_at(bodies, bodies->x, body), y = position_at(bodies, bodies->y, body);
+    const double x = narc_position_at(bodies->x, body), y = narc_position_at(bodies->y, body);
     /* In single precision, as the kernels compute it: what passes here has an answer there. */
     const float cosine = narc_float_at(bodies->cosine, body), sine = narc_float_at(bodies->sine, body);
     const float off = cosine * cosine + sine * sine - 1.0f;

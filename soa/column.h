@@ -7,18 +7,25 @@
 
 #include "narc_shapes.h"
 
-static inline const void *narc_at(narc_column column, size_t index) {
-    return (const char *)column.base + index * column.stride;
+static inline const void *narc_at(const void *base, ptrdiff_t stride, size_t index) {
+    return (const char *)base + (ptrdiff_t)index * stride;
 }
 
-static inline float narc_float_at(narc_column column, size_t index) { return *(const float *)narc_at(column, index); }
-
-static inline double narc_double_at(narc_column column, size_t index) {
-    return *(const double *)narc_at(column, index);
+static inline float narc_float_at(narc_float_column column, size_t index) {
+    return *(const float *)narc_at(column.base, column.stride, index);
 }
 
-static inline uint32_t narc_index_at(narc_column column, size_t index) {
-    return *(const uint32_t *)narc_at(column, index);
+static inline uint32_t narc_index_at(narc_index_column column, size_t index) {
+    return *(const uint32_t *)narc_at(column.base, column.stride, index);
+}
+
+static inline uint8_t narc_byte_at(narc_byte_column column, size_t index) {
+    return *(const uint8_t *)narc_at(column.base, column.stride, index);
+}
+
+static inline double narc_position_at(narc_position_column column, size_t index) {
+    const void *item = narc_at(column.base, column.stride, index);
+    return column.precision == NARC_FLOAT64 ? *(const double *)item : (double)*(const float *)item;
 }
 
 /* Has a body all columns that it must have, and are positions of a known type? */

@@ -15,7 +15,7 @@
  *
  *   Shapes live in a STORE (`narc_shapes`), laid out for the kernels. A BODY is a shape in a place: position, rotation
  *   and scale. Bodies and PAIRS of bodies stay in the caller's memory, in whatever layout they have there: every
- *   property is a `narc_column`, a base pointer with a byte stride. Nothing is copied.
+ *   property is a column, a base pointer with a byte stride (narc_columns.h). Nothing is copied.
  *
  * Conventions, said once
  *
@@ -44,6 +44,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "narc_columns.h"
 #include "narc_export.h"
 
 #ifdef __cplusplus
@@ -355,17 +356,6 @@ NARC_API bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cos
 
 /* ------------------------------------------------------------------------------------------------ bodies and pairs */
 
-/* A strided column in the caller's memory: item k is at (const char *)base + k * stride. A stride of 0 gives every item
- * the same value. Items must be aligned for their type. */
-typedef struct narc_column {
-    const void *base;
-    size_t stride; /* bytes */
-} narc_column;
-
-/* What a position is made of. Doubles keep their precision in large worlds: positions are subtracted before anything is
- * rounded to single precision. */
-typedef enum narc_precision { NARC_FLOAT32 = 0, NARC_FLOAT64 = 1 } narc_precision;
-
 /* How far cosine^2 + sine^2 may be from 1. */
 #define NARC_ROTATION_TOLERANCE (1.0 / 2048)
 
@@ -381,11 +371,10 @@ typedef enum narc_precision { NARC_FLOAT32 = 0, NARC_FLOAT64 = 1 } narc_precisio
  * and sine, all float; or double x and y, and cosine, sine, scale and shape behind them, 32 bytes. */
 typedef struct narc_bodies {
     size_t count;
-    narc_precision position_precision; /* of x and y: float or double */
-    narc_column x, y;
-    narc_column cosine, sine; /* float */
-    narc_column scale;        /* float; base NULL: all 1 */
-    narc_column shape;        /* uint32_t, index in the store */
+    narc_position_column x, y; /* both float or both double */
+    narc_float_column cosine, sine;
+    narc_float_column scale; /* base NULL: all 1 */
+    narc_index_column shape; /* in the store */
 } narc_bodies;
 
 /* Are all bodies what the kernels expect? Batch calls check indices only; this checks every number: shapes that exist,
@@ -394,17 +383,17 @@ typedef struct narc_bodies {
  * NARC_ERROR_INDEX, NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE. Thread-safe. */
 NARC_API narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_bodies *bodies, narc_error *error);
 
-/* Pairs of body indices (uint32_t). Both may name the same body (it collides with itself). The other columns are left
+/* Pairs of body indices. Both may name the same body (it collides with itself). The other columns are left
  * out with base NULL:
- *   margin            float; replaces the call's margin for that pair, in contacts and manifolds (overlaps have none)
- *   shift_x, shift_y  float, world axes; added to the position of B, in double precision: for periodic images
+ *   margin            replaces the call's margin for that pair, in contacts and manifolds (overlaps have none)
+ *   shift_x, shift_y  world axes; added to the position of B, in double precision: for periodic images
  * A pair with a NaN in them, or an infinite shift, has no answer, as one with a broken body. (Overlaps do not look at
  * the margin.) */
 typedef struct narc_pairs {
     size_t count; /* at most UINT32_MAX */
-    narc_column a, b;
-    narc_column margin;
-    narc_column shift_x, shift_y;
+    narc_index_column a, b;
+    narc_float_column margin;
+    narc_float_column shift_x, shift_y;
 } narc_pairs;
 
 /* One body, for calls with a single pair. What is 0 has its default, so that {.x = 4, .shape = 1} is enough.
@@ -504,12 +493,13 @@ typedef struct narc_box {
 } narc_box;
 
 /* Which boxes may form a pair. Every column may be left out (base NULL); a NULL filter lets all boxes.
- *   still            uint8_t: not 0 for what does not move (static or asleep). Two of them form no pair.
- *   category, mask   uint32_t: a and b form a pair only if category a & mask b and category b & mask a are not 0. Left
+ *   still            not 0 for what does not move (static or asleep). Two of them form no pair.
+ *   category, mask   a and b form a pair only if category a & mask b and category b & mask a are not 0. Left
  *                    out: all bits set.
- *   group            uint32_t: two boxes of the same group other than 0 form no pair (the parts of one machine). */
+ *   group            two boxes of the same group other than 0 form no pair (the parts of one machine). */
 typedef struct narc_pair_filter {
-    narc_column still, category, mask, group;
+    narc_byte_column still;
+    narc_index_column category, mask, group;
 } narc_pair_filter;
 
 /* The memory that finding and matching pairs needs. It grows to what the largest step wants and stays, so that after

@@ -120,9 +120,8 @@ void read_pairs(const char *path, size_t body_count, pair_list *out_pairs) {
 narc_bodies view_bodies(const body_list *bodies) {
     const body *items = bodies->items;
     return (narc_bodies){.count = bodies->count,
-                         .position_precision = NARC_FLOAT64,
-                         .x = NARC_COLUMN(items, x),
-                         .y = NARC_COLUMN(items, y),
+                         .x = NARC_POSITION_COLUMN(items, x),
+                         .y = NARC_POSITION_COLUMN(items, y),
                          .cosine = NARC_COLUMN(items, cosine),
                          .sine = NARC_COLUMN(items, sine),
                          .scale = NARC_COLUMN(items, scale),

@@ -23,8 +23,8 @@ struct body random_body(uint64_t *random, size_t shape, double half_width) {
 
 narc_bodies bodies_of(const struct body *bodies, size_t count) {
     return (narc_bodies){.count = count,
-                         .x = NARC_COLUMN(bodies, x),
-                         .y = NARC_COLUMN(bodies, y),
+                         .x = NARC_POSITION_COLUMN(bodies, x),
+                         .y = NARC_POSITION_COLUMN(bodies, y),
                          .cosine = NARC_COLUMN(bodies, cosine),
                          .sine = NARC_COLUMN(bodies, sine),
                          .shape = NARC_COLUMN(bodies, shape)};

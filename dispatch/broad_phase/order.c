@@ -15,13 +15,14 @@ static void put_in_order(uint32_t *one, uint32_t *other) {
 
 /* ------------------------------------------------------------------------------------------------ filter */
 
-static uint32_t bits_at(narc_column column, uint32_t body) {
+static uint32_t bits_at(narc_index_column column, uint32_t body) {
     return column.base ? narc_index_at(column, body) : UINT32_MAX;
 }
 
 static bool lets(const narc_pair_filter *filter, uint32_t a, uint32_t b) {
-    const narc_column still = filter->still, group = filter->group;
-    if (still.base && *(const uint8_t *)narc_at(still, a) && *(const uint8_t *)narc_at(still, b))
+    const narc_byte_column still = filter->still;
+    const narc_index_column group = filter->group;
+    if (still.base && narc_byte_at(still, a) && narc_byte_at(still, b))
         return false;
     if (group.base && narc_index_at(group, a) != 0 && narc_index_at(group, a) == narc_index_at(group, b))
         return false;

@@ -387,9 +387,8 @@ bool dem_make_poses(dem *d, narc_bodies *out) {
     for (size_t k = 0; k < count; k++)
         pose[k] = (dem_pose){b->x[k], b->y[k], (float)b->cosine[k], (float)b->sine[k], b->scale[k], b->shape[k]};
     *out = (narc_bodies){.count = count,
-                         .position_precision = NARC_FLOAT64,
-                         .x = NARC_COLUMN(pose, x),
-                         .y = NARC_COLUMN(pose, y),
+                         .x = NARC_POSITION_COLUMN(pose, x),
+                         .y = NARC_POSITION_COLUMN(pose, y),
                          .cosine = NARC_COLUMN(pose, cosine),
                          .sine = NARC_COLUMN(pose, sine),
                          .scale = NARC_COLUMN(pose, scale),

@@ -213,9 +213,8 @@ narc_bodies FixNarcShapes::bodies() {
     }
     narc_bodies all = {};
     all.count = count;
-    all.position_precision = NARC_FLOAT64;
-    all.x = {&rows.data()->x, sizeof(Row)};
-    all.y = {&rows.data()->y, sizeof(Row)};
+    all.x = NARC_POSITION_COLUMN(rows, x);
+    all.y = NARC_POSITION_COLUMN(rows, y);
     all.cosine = {&rows.data()->cosine, sizeof(Row)};
     all.sine = {&rows.data()->sine, sizeof(Row)};
     all.scale = {&rows.data()->scale, sizeof(Row)};

@@ -191,9 +191,8 @@ void FixWallNarc::find_box_contacts() {
     add(box_x, box_y, normal_x, normal_y, 1, shapes->forms.size());
     narc_bodies bodies = {};
     bodies.count = x.size();
-    bodies.position_precision = NARC_FLOAT64;
-    bodies.x = {x.data(), sizeof(double)};
-    bodies.y = {y.data(), sizeof(double)};
+    bodies.x = NARC_POSITION_ARRAY(x);
+    bodies.y = NARC_POSITION_ARRAY(y);
     bodies.cosine = {cosines.data(), sizeof(float)};
     bodies.sine = {sines.data(), sizeof(float)};
     bodies.scale = {scales.data(), sizeof(float)};

@@ -20,7 +20,7 @@ struct pair_indices {
 };
 
 INLINE void load_indices(const narc_batch *batch, size_t first, int count, struct pair_indices *out) {
-    const narc_column column_a = batch->pairs->a, column_b = batch->pairs->b, shape = batch->bodies->shape;
+    const narc_index_column column_a = batch->pairs->a, column_b = batch->pairs->b, shape = batch->bodies->shape;
     for (int k = 0; k < count; k++) {
         const uint32_t a = narc_index_at(column_a, first + (size_t)k), b = narc_index_at(column_b, first + (size_t)k);
         out->a[k] = (int32_t)a;
@@ -43,23 +43,26 @@ enum pose_layout {
     POSE_DOUBLE_ROWS /* double x, y; float cosine, sine, scale; shape: 32 bytes */
 };
 
-static inline bool follows(narc_column column, narc_column first, size_t offset) {
-    return column.base == (const void *)((const char *)first.base + offset) && column.stride == first.stride;
+static inline bool follows(const void *base, ptrdiff_t stride, narc_position_column first, size_t offset) {
+    return base == (const void *)((const char *)first.base + offset) && stride == first.stride;
 }
 
 static inline enum pose_layout find_pose_layout(const narc_bodies *bodies) {
-    const narc_column x = bodies->x;
-    const bool doubles = bodies->position_precision == NARC_FLOAT64;
+    const narc_position_column x = bodies->x, y = bodies->y;
+    const narc_float_column cosine = bodies->cosine, sine = bodies->sine, scale = bodies->scale;
+    const bool doubles = x.precision == NARC_FLOAT64;
     const size_t position = doubles ? sizeof(double) : sizeof(float), item = sizeof(float);
-    if (!follows(bodies->y, x, position) || !follows(bodies->cosine, x, 2 * position) ||
-        !follows(bodies->sine, x, 2 * position + item))
+    if (!follows(y.base, y.stride, x, position) || !follows(cosine.base, cosine.stride, x, 2 * position) ||
+        !follows(sine.base, sine.stride, x, 2 * position + item))
         return POSE_COLUMNS;
     if (!doubles)
         return POSE_ROWS;
-    return follows(bodies->scale, x, 6 * item) && follows(bodies->shape, x, 7 * item) ? POSE_DOUBLE_ROWS : POSE_COLUMNS;
+    const bool is_row = follows(scale.base, scale.stride, x, 6 * item) &&
+                        follows(bodies->shape.base, bodies->shape.stride, x, 7 * item);
+    return is_row ? POSE_DOUBLE_ROWS : POSE_COLUMNS;
 }
 
-INLINE vf load_column(narc_column column, const int32_t *index) {
+INLINE vf load_column(narc_float_column column, const int32_t *index) {
     float lane[V_WIDTH];
     for (int k = 0; k < V_WIDTH; k++)
         lane[k] = narc_float_at(column, (uint32_t)index[k]);
@@ -68,12 +71,12 @@ INLINE vf load_column(narc_column column, const int32_t *index) {
 
 /* The item of a pair's column in each lane, from pair `first` on; the lanes behind `count` repeat the last pair.
  * Without a column, `none`. */
-INLINE vf load_pair_column(narc_column column, size_t first, int count, float none) {
+INLINE vf load_pair_column(narc_float_column column, size_t first, int count, float none) {
     float lane[V_WIDTH];
     if (!column.base)
         return v_set(none);
     if (column.stride == sizeof(float) && count >= V_WIDTH)
-        return v_load((const float *)column.base + first);
+        return v_load(column.base + first);
     for (int l = 0; l < V_WIDTH; l++)
         lane[l] = narc_float_at(column, first + (size_t)(l < count ? l : count - 1));
     return v_load(lane);
@@ -81,17 +84,14 @@ INLINE vf load_pair_column(narc_column column, size_t first, int count, float no
 
 /* Position of b minus position of a, plus a shift if there is one, in the precision of the positions (with a shift, in
  * double precision), then rounded. */
-INLINE float find_difference(narc_precision precision, narc_column column, size_t a, size_t b, const float *shift) {
-    const bool doubles = precision == NARC_FLOAT64;
-    if (!doubles && !shift)
-        return narc_float_at(column, b) - narc_float_at(column, a);
-    const double from = doubles ? narc_double_at(column, a) : (double)narc_float_at(column, a);
-    const double to = doubles ? narc_double_at(column, b) : (double)narc_float_at(column, b);
+INLINE float find_difference(narc_position_column column, size_t a, size_t b, const float *shift) {
+    const double from = narc_position_at(column, a), to = narc_position_at(column, b);
+    if (column.precision == NARC_FLOAT32 && !shift)
+        return (float)to - (float)from;
     return (float)(shift ? to - from + (double)*shift : to - from);
 }
 
 INLINE vec2 load_differences(const narc_bodies *bodies, const int32_t *a, const int32_t *b, const vec2 *shift) {
-    const narc_precision precision = bodies->position_precision;
     float x[V_WIDTH], y[V_WIDTH], shift_x[V_WIDTH], shift_y[V_WIDTH];
     if (shift) {
         v_store(shift_x, shift->x);
@@ -99,8 +99,8 @@ INLINE vec2 load_differences(const narc_bodies *bodies, const int32_t *a, const 
     }
     for (int k = 0; k < V_WIDTH; k++) {
         const uint32_t from = (uint32_t)a[k], to = (uint32_t)b[k];
-        x[k] = find_difference(precision, bodies->x, from, to, shift ? shift_x + k : NULL);
-        y[k] = find_difference(precision, bodies->y, from, to, shift ? shift_y + k : NULL);
+        x[k] = find_difference(bodies->x, from, to, shift ? shift_x + k : NULL);
+        y[k] = find_difference(bodies->y, from, to, shift ? shift_y + k : NULL);
     }
     return (vec2){v_load(x), v_load(y)};
 }
@@ -114,7 +114,7 @@ struct body_pair {
 INLINE void load_double_rows(const narc_bodies *bodies, const int32_t *a, const int32_t *b, const vec2 *shift,
                              struct body_pair *out) {
     const char *row = bodies->x.base, *half = row + 2 * sizeof(double);
-    const size_t stride = bodies->x.stride;
+    const ptrdiff_t stride = bodies->x.stride;
     const vf shifts[2] = {shift ? shift->x : v_set(0), shift ? shift->y : v_set(0)};
     vf of_a[4], of_b[4], difference[2];
     v_rows(half, stride, a, of_a);
@@ -125,7 +125,7 @@ INLINE void load_double_rows(const narc_bodies *bodies, const int32_t *a, const 
 
 INLINE void load_columns(const narc_bodies *bodies, const int32_t *a, const int32_t *b, const vec2 *shift,
                          struct body_pair *out) {
-    const narc_column scale = bodies->scale;
+    const narc_float_column scale = bodies->scale;
     out->difference = load_differences(bodies, a, b, shift);
     out->rotation_a = (vec2){load_column(bodies->cosine, a), load_column(bodies->sine, a)};
     out->rotation_b = (vec2){load_column(bodies->cosine, b), load_column(bodies->sine, b)};
@@ -136,7 +136,7 @@ INLINE void load_columns(const narc_bodies *bodies, const int32_t *a, const int3
 /* `shift`: of B, or NULL. */
 INLINE struct body_pair load_bodies(const narc_bodies *bodies, enum pose_layout layout, const int32_t *a,
                                     const int32_t *b, const vec2 *shift) {
-    const narc_column scale = bodies->scale;
+    const narc_float_column scale = bodies->scale;
     struct body_pair pair;
     if (__builtin_expect(layout == POSE_ROWS && !shift, 1)) { /* or compilers keep the vectors of all three in memory */
         vf of_a[4], of_b[4];

@@ -17,7 +17,7 @@ struct call {
     const narc_batch *batch;
     size_t first, count;             /* its pairs in the batch */
     float margin;                    /* 0 for overlaps */
-    narc_column margins;             /* one for each pair of the batch; base NULL: all are `margin` */
+    narc_float_column margins;       /* one for each pair of the batch; base NULL: all are `margin` */
     uint64_t *bits;                  /* overlap kernels: where the answers go; else NULL */
     struct contact_rows *rows;       /* contact kernels: the same */
     struct manifold_rows *manifolds; /* the manifold kernel: `rows` and those of second points */

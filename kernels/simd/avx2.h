@@ -25,12 +25,12 @@ INLINE void v_store(float *p, vf a) { _mm256_storeu_ps(p, a); }
 INLINE void v_store_front(float *p, int n, vf a) {
     _mm256_maskstore_ps(p, _mm256_cmpgt_epi32(_mm256_set1_epi32(n), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7)), a);
 }
-INLINE __m256 v_two_rows(const char *base, size_t stride, const int32_t *index) {
-    const __m128 low = _mm_loadu_ps((const float *)(const void *)(base + (size_t)(uint32_t)index[0] * stride));
-    const __m128 high = _mm_loadu_ps((const float *)(const void *)(base + (size_t)(uint32_t)index[4] * stride));
+INLINE __m256 v_two_rows(const char *base, ptrdiff_t stride, const int32_t *index) {
+    const __m128 low = _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index[0] * stride));
+    const __m128 high = _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index[4] * stride));
     return _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1);
 }
-INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out[4]) {
+INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
     const __m256 a = v_two_rows(base, stride, index), b = v_two_rows(base, stride, index + 1);
     const __m256 c = v_two_rows(base, stride, index + 2), d = v_two_rows(base, stride, index + 3);
     const __m256d ab_low = _mm256_castps_pd(_mm256_unpacklo_ps(a, b)),
@@ -42,11 +42,11 @@ INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out
     out[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(ab_high, cd_high));
     out[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(ab_high, cd_high));
 }
-INLINE void v_put_two_rows(char *base, size_t stride, const int32_t *index, __m256 rows) {
-    _mm_storeu_ps((float *)(void *)(base + (size_t)(uint32_t)index[0] * stride), _mm256_castps256_ps128(rows));
-    _mm_storeu_ps((float *)(void *)(base + (size_t)(uint32_t)index[4] * stride), _mm256_extractf128_ps(rows, 1));
+INLINE void v_put_two_rows(char *base, ptrdiff_t stride, const int32_t *index, __m256 rows) {
+    _mm_storeu_ps((float *)(void *)(base + (ptrdiff_t)(uint32_t)index[0] * stride), _mm256_castps256_ps128(rows));
+    _mm_storeu_ps((float *)(void *)(base + (ptrdiff_t)(uint32_t)index[4] * stride), _mm256_extractf128_ps(rows, 1));
 }
-INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf in[4]) {
+INLINE void v_put_rows(void *base, ptrdiff_t stride, const int32_t *index, const vf in[4]) {
     const __m256 low01 = _mm256_unpacklo_ps(in[0], in[1]), high01 = _mm256_unpackhi_ps(in[0], in[1]);
     const __m256 low23 = _mm256_unpacklo_ps(in[2], in[3]), high23 = _mm256_unpackhi_ps(in[2], in[3]);
     v_put_two_rows(base, stride, index, _mm256_shuffle_ps(low01, low23, 0x44));
@@ -54,8 +54,8 @@ INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf
     v_put_two_rows(base, stride, index + 2, _mm256_shuffle_ps(high01, high23, 0x44));
     v_put_two_rows(base, stride, index + 3, _mm256_shuffle_ps(high01, high23, 0xee));
 }
-INLINE void v_double_differences(const void *base, size_t stride, const int32_t *a, const int32_t *b, const vf *shifts,
-                                 vf out[2]) {
+INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
+                                 const vf *shifts, vf out[2]) {
     const bool shifted = shifts != NULL;
     const __m256 zero = _mm256_setzero_ps();
     const __m256 s_low = shifted ? _mm256_unpacklo_ps(shifts[0], shifts[1]) : zero;

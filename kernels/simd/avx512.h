@@ -23,16 +23,16 @@ INLINE vf v_set(float a) { return _mm512_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm512_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm512_storeu_ps(p, a); }
 INLINE void v_store_front(float *p, int n, vf a) { _mm512_mask_storeu_ps(p, (__mmask16)((1u << n) - 1), a); }
-INLINE __m128 v_row(const char *base, size_t stride, int32_t index) {
-    return _mm_loadu_ps((const float *)(const void *)(base + (size_t)(uint32_t)index * stride));
+INLINE __m128 v_row(const char *base, ptrdiff_t stride, int32_t index) {
+    return _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index * stride));
 }
-INLINE __m512 v_four_rows(const char *base, size_t stride, const int32_t *index) {
+INLINE __m512 v_four_rows(const char *base, ptrdiff_t stride, const int32_t *index) {
     __m512 rows = _mm512_castps128_ps512(v_row(base, stride, index[0]));
     rows = _mm512_insertf32x4(rows, v_row(base, stride, index[4]), 1);
     rows = _mm512_insertf32x4(rows, v_row(base, stride, index[8]), 2);
     return _mm512_insertf32x4(rows, v_row(base, stride, index[12]), 3);
 }
-INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out[4]) {
+INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
     const __m512 a = v_four_rows(base, stride, index), b = v_four_rows(base, stride, index + 1);
     const __m512 c = v_four_rows(base, stride, index + 2), d = v_four_rows(base, stride, index + 3);
     const __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(a, b)),
@@ -44,13 +44,13 @@ INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out
     out[2] = _mm512_castpd_ps(_mm512_unpacklo_pd(ab_high, cd_high));
     out[3] = _mm512_castpd_ps(_mm512_unpackhi_pd(ab_high, cd_high));
 }
-INLINE void v_put_four_rows(char *base, size_t stride, const int32_t *index, __m512 rows) {
-    _mm_storeu_ps((float *)(void *)(base + (size_t)(uint32_t)index[0] * stride), _mm512_castps512_ps128(rows));
-    _mm_storeu_ps((float *)(void *)(base + (size_t)(uint32_t)index[4] * stride), _mm512_extractf32x4_ps(rows, 1));
-    _mm_storeu_ps((float *)(void *)(base + (size_t)(uint32_t)index[8] * stride), _mm512_extractf32x4_ps(rows, 2));
-    _mm_storeu_ps((float *)(void *)(base + (size_t)(uint32_t)index[12] * stride), _mm512_extractf32x4_ps(rows, 3));
+INLINE void v_put_four_rows(char *base, ptrdiff_t stride, const int32_t *index, __m512 rows) {
+    _mm_storeu_ps((float *)(void *)(base + (ptrdiff_t)(uint32_t)index[0] * stride), _mm512_castps512_ps128(rows));
+    _mm_storeu_ps((float *)(void *)(base + (ptrdiff_t)(uint32_t)index[4] * stride), _mm512_extractf32x4_ps(rows, 1));
+    _mm_storeu_ps((float *)(void *)(base + (ptrdiff_t)(uint32_t)index[8] * stride), _mm512_extractf32x4_ps(rows, 2));
+    _mm_storeu_ps((float *)(void *)(base + (ptrdiff_t)(uint32_t)index[12] * stride), _mm512_extractf32x4_ps(rows, 3));
 }
-INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf in[4]) {
+INLINE void v_put_rows(void *base, ptrdiff_t stride, const int32_t *index, const vf in[4]) {
     const __m512 low01 = _mm512_unpacklo_ps(in[0], in[1]), high01 = _mm512_unpackhi_ps(in[0], in[1]);
     const __m512 low23 = _mm512_unpacklo_ps(in[2], in[3]), high23 = _mm512_unpackhi_ps(in[2], in[3]);
     v_put_four_rows(base, stride, index, _mm512_shuffle_ps(low01, low23, 0x44));
@@ -59,7 +59,7 @@ INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf
     v_put_four_rows(base, stride, index + 3, _mm512_shuffle_ps(high01, high23, 0xee));
 }
 /* Of lanes 0, 1, 4, 5, 8 ... (from lane 0 on) or 2, 3, 6, 7 ... */
-INLINE __m512 v_half_differences(const char *base, size_t stride, const int32_t *a, const int32_t *b, bool shifted,
+INLINE __m512 v_half_differences(const char *base, ptrdiff_t stride, const int32_t *a, const int32_t *b, bool shifted,
                                  __m512 shifts) {
     __m512 all = _mm512_castps128_ps512(v_two_differences(base, stride, a, b, shifted, _mm512_castps512_ps128(shifts)));
     all = _mm512_insertf32x4(
@@ -69,8 +69,8 @@ INLINE __m512 v_half_differences(const char *base, size_t stride, const int32_t 
     return _mm512_insertf32x4(
         all, v_two_differences(base, stride, a + 12, b + 12, shifted, _mm512_extractf32x4_ps(shifts, 3)), 3);
 }
-INLINE void v_double_differences(const void *base, size_t stride, const int32_t *a, const int32_t *b, const vf *shifts,
-                                 vf out[2]) {
+INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
+                                 const vf *shifts, vf out[2]) {
     const bool shifted = shifts != NULL;
     const __m512 zero = _mm512_setzero_ps();
     const __m512 s_low = shifted ? _mm512_unpacklo_ps(shifts[0], shifts[1]) : zero;

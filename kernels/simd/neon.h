@@ -23,10 +23,10 @@ INLINE vf v_set(float a) { return vdupq_n_f32(a); }
 INLINE vf v_load(const float *p) { return vld1q_f32(p); }
 INLINE void v_store(float *p, vf a) { vst1q_f32(p, a); }
 INLINE void v_store_front(float *p, int n, vf a) { memcpy(p, &a, (size_t)n * sizeof *p); }
-INLINE vf v_row(const void *base, size_t stride, int32_t index) {
-    return vld1q_f32((const float *)(const void *)((const char *)base + (size_t)(uint32_t)index * stride));
+INLINE vf v_row(const void *base, ptrdiff_t stride, int32_t index) {
+    return vld1q_f32((const float *)(const void *)((const char *)base + (ptrdiff_t)(uint32_t)index * stride));
 }
-INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out[4]) {
+INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
     const vf a = v_row(base, stride, index[0]), b = v_row(base, stride, index[1]);
     const vf c = v_row(base, stride, index[2]), d = v_row(base, stride, index[3]);
     const vf ac_low = vzip1q_f32(a, c), ac_high = vzip2q_f32(a, c);
@@ -36,10 +36,10 @@ INLINE void v_rows(const void *base, size_t stride, const int32_t *index, vf out
     out[2] = vzip1q_f32(ac_high, bd_high);
     out[3] = vzip2q_f32(ac_high, bd_high);
 }
-INLINE void v_put_row(void *base, size_t stride, int32_t index, vf row) {
-    vst1q_f32((float *)(void *)((char *)base + (size_t)(uint32_t)index * stride), row);
+INLINE void v_put_row(void *base, ptrdiff_t stride, int32_t index, vf row) {
+    vst1q_f32((float *)(void *)((char *)base + (ptrdiff_t)(uint32_t)index * stride), row);
 }
-INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf in[4]) {
+INLINE void v_put_rows(void *base, ptrdiff_t stride, const int32_t *index, const vf in[4]) {
     const vf low02 = vzip1q_f32(in[0], in[2]), high02 = vzip2q_f32(in[0], in[2]);
     const vf low13 = vzip1q_f32(in[1], in[3]), high13 = vzip2q_f32(in[1], in[3]);
     v_put_row(base, stride, index[0], vzip1q_f32(low02, low13));
@@ -48,15 +48,15 @@ INLINE void v_put_rows(void *base, size_t stride, const int32_t *index, const vf
     v_put_row(base, stride, index[3], vzip2q_f32(high02, high13));
 }
 /* The differences of one lane. */
-INLINE float32x2_t v_double_difference(const char *base, size_t stride, int32_t a, int32_t b, bool shifted,
+INLINE float32x2_t v_double_difference(const char *base, ptrdiff_t stride, int32_t a, int32_t b, bool shifted,
                                        float32x2_t shift) {
-    const float64x2_t from = vld1q_f64((const double *)(const void *)(base + (size_t)(uint32_t)a * stride));
-    const float64x2_t to = vld1q_f64((const double *)(const void *)(base + (size_t)(uint32_t)b * stride));
+    const float64x2_t from = vld1q_f64((const double *)(const void *)(base + (ptrdiff_t)(uint32_t)a * stride));
+    const float64x2_t to = vld1q_f64((const double *)(const void *)(base + (ptrdiff_t)(uint32_t)b * stride));
     const float64x2_t difference = vsubq_f64(to, from);
     return vcvt_f32_f64(shifted ? vaddq_f64(difference, vcvt_f64_f32(shift)) : difference);
 }
-INLINE void v_double_differences(const void *base, size_t stride, const int32_t *a, const int32_t *b, const vf *shifts,
-                                 vf out[2]) {
+INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
+                                 const vf *shifts, vf out[2]) {
     const bool shifted = shifts != NULL;
     const vf s_low = shifted ? vzip1q_f32(shifts[0], shifts[1]) : vdupq_n_f32(0);
     const vf s_high = shifted ? vzip2q_f32(shifts[0], shifts[1]) : vdupq_n_f32(0);

@@ -10,11 +10,11 @@
  *
  *   v_set(float)  v_load(float *)  v_store(float *, vf)         any alignment
  *   v_store_front(float *, int, vf)                             only that many lanes, the front ones
- *   v_rows(void *base, size_t stride, int32_t *index, vf out[4])
+ *   v_rows(void *base, ptrdiff_t stride, int32_t *index, vf out[4])
  *                                                               four floats from byte index[lane] * stride of base
- *   v_put_rows(void *base, size_t stride, int32_t *index, vf in[4])
+ *   v_put_rows(void *base, ptrdiff_t stride, int32_t *index, vf in[4])
  *                                                               the reverse of v_rows, lane by lane
- *   v_double_differences(void *base, size_t stride, int32_t *a, int32_t *b, vf *shifts, vf out[2])
+ *   v_double_differences(void *base, ptrdiff_t stride, int32_t *a, int32_t *b, vf *shifts, vf out[2])
  *                                                               of two doubles from byte index[lane] * stride of base
  *                                                               on: those of b less those of a, plus two shifts for
  *                                                               each lane unless NULL; in double precision, rounded
@@ -45,6 +45,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 

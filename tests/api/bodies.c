@@ -37,9 +37,8 @@ static void set_up(struct fixture *f) {
     for (int k = 0; k < COUNT; k++)
         f->body[k] = (struct body){k, -k, 0.6f, 0.8f, 1, 0};
     f->bodies = (narc_bodies){.count = COUNT,
-                              .position_precision = NARC_FLOAT64,
-                              .x = NARC_COLUMN(f->body, x),
-                              .y = NARC_COLUMN(f->body, y),
+                              .x = NARC_POSITION_COLUMN(f->body, x),
+                              .y = NARC_POSITION_COLUMN(f->body, y),
                               .cosine = NARC_COLUMN(f->body, cosine),
                               .sine = NARC_COLUMN(f->body, sine),
                               .scale = NARC_COLUMN(f->body, scale),
@@ -110,12 +109,29 @@ static void test_bad_arguments(void **state) {
     set_up(&f);
     assert_int_equal(narc_validate_bodies(NULL, &f.bodies, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_validate_bodies(f.shapes, NULL, NULL), NARC_ERROR_ARGUMENT);
-    narc_column *columns[] = {&f.bodies.x, &f.bodies.y, &f.bodies.cosine, &f.bodies.sine, &f.bodies.shape};
-    for (size_t k = 0; k < sizeof columns / sizeof columns[0]; k++) {
-        const void *base = columns[k]->base;
-        columns[k]->base = NULL;
-        assert_int_equal(narc_validate_bodies(f.shapes, &f.bodies, NULL), NARC_ERROR_ARGUMENT);
-        columns[k]->base = base;
+    for (int k = 0; k < 6; k++) {
+        narc_bodies bodies = f.bodies;
+        switch (k) {
+        case 0:
+            bodies.x.base = NULL;
+            break;
+        case 1:
+            bodies.y.base = NULL;
+            break;
+        case 2:
+            bodies.cosine.base = NULL;
+            break;
+        case 3:
+            bodies.sine.base = NULL;
+            break;
+        case 4:
+            bodies.shape.base = NULL;
+            break;
+        default:
+            bodies.y.precision = NARC_FLOAT32;
+            break;
+        }
+        assert_int_equal(narc_validate_bodies(f.shapes, &bodies, NULL), NARC_ERROR_ARGUMENT);
     }
     narc_destroy_shapes(f.shapes);
 }
@@ -131,9 +147,8 @@ static float separation_of_boxes(float x, float y, float cosine, float sine) {
     const struct body body[2] = {{0, 0, 1, 0, 1, 0}, {(double)x, (double)y, cosine, sine, 1, 0}};
     const uint32_t a = 1, b = 0; /* both orders of a rotated body and one that is not */
     const narc_bodies bodies = {.count = 2,
-                                .position_precision = NARC_FLOAT64,
-                                .x = NARC_COLUMN(body, x),
-                                .y = NARC_COLUMN(body, y),
+                                .x = NARC_POSITION_COLUMN(body, x),
+                                .y = NARC_POSITION_COLUMN(body, y),
                                 .cosine = NARC_COLUMN(body, cosine),
                                 .sine = NARC_COLUMN(body, sine),
                                 .shape = NARC_COLUMN(body, shape)};
@@ -186,27 +201,37 @@ static void test_box_of_drifted_rotation(void **state) {
 
 static const struct body two_bodies[] = {{1, 2, 1, 0, 1, 0}, {3, 4, 1, 0, 1, 0}};
 static const float numbers[] = {5, 6, 7};
-static const narc_column constant_column = NARC_COLUMN_INIT(two_bodies, y);
-static const narc_bodies constant_bodies = {.count = 2, .cosine = NARC_ARRAY_INIT(numbers)};
+static const narc_index_column constant_column = NARC_COLUMN_INIT(two_bodies, shape);
+static const narc_bodies constant_bodies = {.count = 2,
+                                            .x = NARC_POSITION_COLUMN_INIT(two_bodies, x),
+                                            .y = NARC_POSITION_ARRAY_INIT(numbers),
+                                            .cosine = NARC_ARRAY_INIT(numbers)};
 
-static void expect_column(narc_column column, const void *base, size_t stride) {
-    assert_ptr_equal(column.base, base);
-    assert_int_equal(column.stride, stride);
-}
+#define EXPECT_COLUMN(column, first, step)                                                                             \
+    do {                                                                                                               \
+        assert_ptr_equal((column).base, first);                                                                        \
+        assert_int_equal((column).stride, step);                                                                       \
+    } while (0)
 
 /* Columns are values, wherever a value may stand; constants are the initialisers of static objects. */
 static void test_columns(void **state) {
     (void)state;
-    narc_bodies bodies = {.count = 2, .x = NARC_COLUMN(two_bodies, x), .sine = NARC_ARRAY(numbers)};
-    expect_column(bodies.x, &two_bodies[0].x, sizeof two_bodies[0]);
-    expect_column(bodies.sine, numbers, sizeof(float));
-    bodies.x = NARC_COLUMN(two_bodies, y);
-    bodies.sine = bodies.count > 2 ? bodies.x : NARC_ARRAY(numbers + 1);
-    expect_column(bodies.x, &two_bodies[0].y, sizeof two_bodies[0]);
-    expect_column(bodies.sine, numbers + 1, sizeof(float));
-    expect_column(NARC_COLUMN(two_bodies + 1, shape), &two_bodies[1].shape, sizeof two_bodies[0]);
-    expect_column(constant_column, &two_bodies[0].y, sizeof two_bodies[0]);
-    expect_column(constant_bodies.cosine, numbers, sizeof(float));
+    narc_bodies bodies = {.count = 2, .x = NARC_POSITION_COLUMN(two_bodies, x), .sine = NARC_ARRAY(numbers)};
+    EXPECT_COLUMN(bodies.x, &two_bodies[0].x, sizeof two_bodies[0]);
+    EXPECT_COLUMN(bodies.sine, numbers, sizeof(float));
+    bodies.x = NARC_POSITION_COLUMN(two_bodies, y);
+    bodies.sine = bodies.count > 2 ? bodies.cosine : NARC_ARRAY(numbers + 1);
+    EXPECT_COLUMN(bodies.x, &two_bodies[0].y, sizeof two_bodies[0]);
+    EXPECT_COLUMN(bodies.sine, numbers + 1, sizeof(float));
+    EXPECT_COLUMN(NARC_COLUMN(two_bodies + 1, shape), &two_bodies[1].shape, sizeof two_bodies[0]);
+    EXPECT_COLUMN(constant_column, &two_bodies[0].shape, sizeof two_bodies[0]);
+    EXPECT_COLUMN(constant_bodies.x, &two_bodies[0].x, sizeof two_bodies[0]);
+    EXPECT_COLUMN(constant_bodies.cosine, numbers, sizeof(float));
+    assert_int_equal(constant_bodies.x.precision, NARC_FLOAT64);
+    assert_int_equal(constant_bodies.y.precision, NARC_FLOAT32);
+    const bool flags[] = {true, false};
+    const narc_byte_column bytes = NARC_ARRAY(flags);
+    EXPECT_COLUMN(bytes, flags, 1);
 }
 
 int main(void) {

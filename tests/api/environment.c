@@ -52,9 +52,11 @@ struct tiny_batch {
 static struct tiny_batch make_batch(void) {
     static const float zero = 0, one = 1;
     static const uint32_t first = 0;
-    const narc_column zeros = {&zero, 0}, ones = {&one, 0}, firsts = {&first, 0};
+    const narc_position_column origin = {&zero, 0, NARC_FLOAT32};
+    const narc_float_column zeros = {&zero, 0}, ones = {&one, 0};
+    const narc_index_column firsts = {&first, 0};
     struct tiny_batch batch = {
-        .bodies = {.count = 1, .x = zeros, .y = zeros, .cosine = ones, .sine = zeros, .shape = firsts},
+        .bodies = {.count = 1, .x = origin, .y = origin, .cosine = ones, .sine = zeros, .shape = firsts},
         .pairs = {.count = 1, .a = firsts, .b = firsts}};
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;

@@ -201,13 +201,37 @@ static void test_null_arguments(void **state) {
         static const char *const names[] = {"x", "y", "cosine", "sine", "shape", "a", "b"};
         narc_bodies b = bodies;
         narc_pairs p = pairs;
-        narc_column *columns[] = {&b.x, &b.y, &b.cosine, &b.sine, &b.shape, &p.a, &p.b};
-        columns[k]->base = NULL;
+        switch (k) {
+        case 0:
+            b.x.base = NULL;
+            break;
+        case 1:
+            b.y.base = NULL;
+            break;
+        case 2:
+            b.cosine.base = NULL;
+            break;
+        case 3:
+            b.sine.base = NULL;
+            break;
+        case 4:
+            b.shape.base = NULL;
+            break;
+        case 5:
+            p.a.base = NULL;
+            break;
+        default:
+            p.b.base = NULL;
+            break;
+        }
         check_batch(scene.store, &b, &p, NARC_ERROR_ARGUMENT, &names[k], 1);
     }
     narc_bodies b = bodies;
-    b.position_precision = (narc_precision)7;
-    check_batch(scene.store, &b, &pairs, NARC_ERROR_ARGUMENT, NULL, 0);
+    b.x.precision = b.y.precision = (narc_precision)7;
+    check_batch(scene.store, &b, &pairs, NARC_ERROR_ARGUMENT, NAMES("x.precision is 7"));
+    b.x.precision = NARC_FLOAT32;
+    b.y.precision = NARC_FLOAT64;
+    check_batch(scene.store, &b, &pairs, NARC_ERROR_ARGUMENT, NAMES("y.precision is 1"));
     destroy_scene(&scene);
 }
 

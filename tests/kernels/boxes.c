@@ -94,8 +94,8 @@ static void check_scene(const struct scene *scene, struct test_random *random) {
         size_t skipped = 7;
         narc_box_options options = {.margin = round & 1 ? 0.125f : 0, .out_skipped = &skipped};
         if (round & 2) {
-            options.motion_x = (narc_column){&motion[0][0], sizeof motion[0]};
-            options.motion_y = (narc_column){&motion[0][1], sizeof motion[0]};
+            options.motion_x = (narc_float_column){&motion[0][0], sizeof motion[0]};
+            options.motion_y = (narc_float_column){&motion[0][1], sizeof motion[0]};
         }
         narc_box *const boxes = compute(scene, &options, 1 + (unsigned)round);
         assert_int_equal(skipped, 0);

@@ -27,15 +27,16 @@ static bool is_empty(const narc_box *box) {
     return !finite || box->min_x > box->max_x || box->min_y > box->max_y;
 }
 
-static uint32_t word(narc_column column, size_t k, uint32_t none) {
-    return column.base ? *(const uint32_t *)(const void *)((const char *)column.base + k * column.stride) : none;
+static uint32_t word(narc_index_column column, size_t k, uint32_t none) {
+    const char *const base = (const char *)column.base;
+    return base ? *(const uint32_t *)(const void *)(base + (ptrdiff_t)k * column.stride) : none;
 }
 
 static bool lets(const narc_pair_filter *f, size_t a, size_t b) {
     if (!f)
         return true;
     const unsigned char *still = f->still.base;
-    if (still && still[a * f->still.stride] && still[b * f->still.stride])
+    if (still && still[(ptrdiff_t)a * f->still.stride] && still[(ptrdiff_t)b * f->still.stride])
         return false;
     if (word(f->group, a, 0) != 0 && word(f->group, a, 0) == word(f->group, b, 0))
         return false;
@@ -242,15 +243,15 @@ static void filters_pairs(void **state) {
             bodies[k] = (struct body){(uint32_t)random_bits(&random) & 7, (uint32_t)random_bits(&random) & 7,
                                       (uint32_t)random_below(&random, 4), (uint8_t)(random_bits(&random) & 2)};
         }
-        const size_t stride = sizeof *bodies;
-        const narc_column still = {&bodies[0].still, stride}, category = {&bodies[0].category, stride},
-                          mask = {&bodies[0].mask, stride}, group = {&bodies[0].group, stride}, none = {NULL, 0};
+        const narc_byte_column still = NARC_COLUMN(bodies, still);
+        const narc_index_column category = NARC_COLUMN(bodies, category), mask = NARC_COLUMN(bodies, mask),
+                                group = NARC_COLUMN(bodies, group);
         check_pairs(broad, boxes, 200, &(narc_pair_filter){still, category, mask, group});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){still, none, none, none});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){none, category, none, none});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){none, none, mask, none});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){none, none, none, group});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){none, none, none, none});
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){.still = still});
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){.category = category});
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){.mask = mask});
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){.group = group});
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){0});
     }
     narc_destroy_broad_phase(broad);
 }
@@ -372,8 +373,7 @@ static void allocates_nothing_once_it_has_grown(void **state) {
         size_t found;
         assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, 2, a, b, CAPACITY, &found, NULL), NARC_OK);
         assert_true(found > 1000);
-        const narc_pairs reversed = {
-            .count = found, .a = {a + found - 1, (size_t)-4}, .b = {b + found - 1, (size_t)-4}};
+        const narc_pairs reversed = {.count = found, .a = {a + found - 1, -4}, .b = {b + found - 1, -4}};
         assert_int_equal(narc_match_pairs(broad, &reversed, &reversed, 1, match, NULL), NARC_OK);
         if (step == 0)
             after_first = counter.allocations;

@@ -116,8 +116,8 @@ static void test_shifts(void **state) {
         }
         const narc_bodies bodies = scene_bodies(&scene);
         narc_pairs pairs = scene_pairs(&scene);
-        pairs.shift_x = (narc_column){&shift[0][0], sizeof shift[0]};
-        pairs.shift_y = (narc_column){&shift[0][1], sizeof shift[0]};
+        pairs.shift_x = (narc_float_column){&shift[0][0], sizeof shift[0]};
+        pairs.shift_y = (narc_float_column){&shift[0][1], sizeof shift[0]};
         struct contacts right = scene_contacts(&moved, 0.2f), found = create_contacts(PAIRS);
         assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, 0.2f, 1, &found.view, &found.count, NULL),
                          NARC_OK);
@@ -136,7 +136,7 @@ static void test_shifts(void **state) {
         struct contacts all = scene_contacts(&moved, INFINITY);
         for (size_t k = 0; k < part.count; k++)
             assert_true(same_contact(&part.view, k, &all.view, 700 + k));
-        pairs.shift_y = (narc_column){0};
+        pairs.shift_y = (narc_float_column){0};
         for (size_t k = 0; k < PAIRS; k++) {
             moved.bodies[BODIES + k].y = scene.bodies[scene.pairs[k].b].y;
             round_position(&moved.bodies[BODIES + k], scene.precision);

@@ -70,7 +70,7 @@ static void check_hints(struct test_random *random, const struct scene *scene, f
 static void check_manifolds(const struct scene *scene, float margin, const float *own, unsigned threads) {
     const narc_bodies bodies = scene_bodies(scene);
     narc_pairs pairs = scene_pairs(scene);
-    pairs.margin = (narc_column){own, sizeof *own};
+    pairs.margin = (narc_float_column){own, sizeof *own};
     const narc_batch batch = {
         .shapes = scene->store, .bodies = &bodies, .pairs = &pairs, .flat_sine = (float)sin((double)NARC_FLAT_ANGLE)};
     const narc_manifold_options options = {.margin = margin};

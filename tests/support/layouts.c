@@ -4,6 +4,8 @@
  */
 #include "layouts.h"
 
+#include <string.h>
+
 #include "guard.h"
 
 struct structure {
@@ -39,12 +41,12 @@ static void *add_memory(struct columns *columns, size_t size) {
 }
 
 /* A packed array of `count` values of `type`, the member of each of the items. */
-#define PACK(columns, type, items, count, member, column)                                                              \
+#define PACK(columns, type, items, count, member, column, make)                                                        \
     do {                                                                                                               \
         type *packed = add_memory(columns, (count) * sizeof(type));                                                    \
         for (size_t pack_k = 0; pack_k < (count); pack_k++)                                                            \
             packed[pack_k] = (items)[pack_k].member;                                                                   \
-        (column) = (narc_column){packed, sizeof(type)};                                                                \
+        (column) = make(packed);                                                                                       \
     } while (0)
 
 /* An array of structures of `type`, positions from the members x_from and y_from. */
@@ -58,8 +60,8 @@ static void *add_memory(struct columns *columns, size_t size) {
                               .sine = (items)[k].sine,                                                                 \
                               .scale = (items)[k].scale,                                                               \
                               .shape = (items)[k].shape};                                                              \
-        (columns)->bodies.x = NARC_COLUMN(array, x);                                                                   \
-        (columns)->bodies.y = NARC_COLUMN(array, y);                                                                   \
+        (columns)->bodies.x = NARC_POSITION_COLUMN(array, x);                                                          \
+        (columns)->bodies.y = NARC_POSITION_COLUMN(array, y);                                                          \
         (columns)->bodies.cosine = NARC_COLUMN(array, cosine);                                                         \
         (columns)->bodies.sine = NARC_COLUMN(array, sine);                                                             \
         (columns)->bodies.scale = NARC_COLUMN(array, scale);                                                           \
@@ -70,23 +72,53 @@ static void add_positions(struct columns *columns, const struct scene *scene) {
     const struct body *body = scene->bodies;
     size_t count = scene->body_count;
     if (scene->precision == NARC_FLOAT64) {
-        PACK(columns, double, body, count, x, columns->bodies.x);
-        PACK(columns, double, body, count, y, columns->bodies.y);
+        PACK(columns, double, body, count, x, columns->bodies.x, NARC_POSITION_ARRAY);
+        PACK(columns, double, body, count, y, columns->bodies.y, NARC_POSITION_ARRAY);
     } else {
-        PACK(columns, float, body, count, x_single, columns->bodies.x);
-        PACK(columns, float, body, count, y_single, columns->bodies.y);
+        PACK(columns, float, body, count, x_single, columns->bodies.x, NARC_POSITION_ARRAY);
+        PACK(columns, float, body, count, y_single, columns->bodies.y, NARC_POSITION_ARRAY);
     }
 }
 
 /* Everything but the positions: `count` values each, or one for all with a stride of 0. */
 static void add_arrays(struct columns *columns, const struct scene *scene, size_t count) {
     narc_bodies *bodies = &columns->bodies;
-    PACK(columns, float, scene->bodies, count, cosine, bodies->cosine);
-    PACK(columns, float, scene->bodies, count, sine, bodies->sine);
-    PACK(columns, float, scene->bodies, count, scale, bodies->scale);
-    PACK(columns, uint32_t, scene->bodies, count, shape, bodies->shape);
+    PACK(columns, float, scene->bodies, count, cosine, bodies->cosine, NARC_ARRAY);
+    PACK(columns, float, scene->bodies, count, sine, bodies->sine, NARC_ARRAY);
+    PACK(columns, float, scene->bodies, count, scale, bodies->scale, NARC_ARRAY);
+    PACK(columns, uint32_t, scene->bodies, count, shape, bodies->shape, NARC_ARRAY);
     if (count < scene->body_count)
         bodies->cosine.stride = bodies->sine.stride = bodies->scale.stride = bodies->shape.stride = 0;
+}
+
+/* Turns an array of `count` items round, so that the column that begins at its last one has the same items. */
+static void *turn_round(const void *base, size_t count, size_t size) {
+    char *first = (char *)(uintptr_t)base, item[sizeof(double)];
+    for (size_t k = 0; k < count / 2; k++) {
+        char *const a = first + k * size, *const b = first + (count - 1 - k) * size;
+        memcpy(item, a, size);
+        memcpy(a, b, size);
+        memcpy(b, item, size);
+    }
+    return count ? first + (count - 1) * size : first;
+}
+
+#define TURN_ROUND(column, count)                                                                                      \
+    do {                                                                                                               \
+        (column).base = turn_round((column).base, count, (size_t)(column).stride);                                     \
+        (column).stride = -(column).stride;                                                                            \
+    } while (0)
+
+static void turn_columns(struct columns *columns) {
+    narc_bodies *bodies = &columns->bodies;
+    TURN_ROUND(bodies->x, bodies->count);
+    TURN_ROUND(bodies->y, bodies->count);
+    TURN_ROUND(bodies->cosine, bodies->count);
+    TURN_ROUND(bodies->sine, bodies->count);
+    TURN_ROUND(bodies->scale, bodies->count);
+    TURN_ROUND(bodies->shape, bodies->count);
+    TURN_ROUND(columns->pairs.a, columns->pairs.count);
+    TURN_ROUND(columns->pairs.b, columns->pairs.count);
 }
 
 static void add_pairs(struct columns *columns, const struct pair *pairs, size_t count, enum layout layout) {
@@ -105,13 +137,13 @@ static void add_pairs(struct columns *columns, const struct pair *pairs, size_t 
         columns->pairs.a = NARC_COLUMN(array, a);
         columns->pairs.b = NARC_COLUMN(array, b);
     } else {
-        PACK(columns, uint32_t, pairs, count, a, columns->pairs.a);
-        PACK(columns, uint32_t, pairs, count, b, columns->pairs.b);
+        PACK(columns, uint32_t, pairs, count, a, columns->pairs.a, NARC_ARRAY);
+        PACK(columns, uint32_t, pairs, count, b, columns->pairs.b, NARC_ARRAY);
     }
 }
 
 struct columns create_columns(const struct scene *scene, enum layout layout, size_t first, size_t count) {
-    struct columns columns = {.bodies = {.count = scene->body_count, .position_precision = scene->precision}};
+    struct columns columns = {.bodies = {.count = scene->body_count}};
     const struct body *body = scene->bodies;
     bool doubles = scene->precision == NARC_FLOAT64;
     switch (layout) {
@@ -133,8 +165,10 @@ struct columns create_columns(const struct scene *scene, enum layout layout, siz
         break;
     }
     if (layout == LAYOUT_UNSCALED)
-        columns.bodies.scale = (narc_column){NULL, 0};
+        columns.bodies.scale.base = NULL;
     add_pairs(&columns, scene->pairs + first, count, layout);
+    if (layout == LAYOUT_BACKWARDS)
+        turn_columns(&columns);
     return columns;
 }
 

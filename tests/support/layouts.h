@@ -11,6 +11,7 @@ enum layout {
     LAYOUT_ARRAYS,     /* one packed array per property */
     LAYOUT_STRUCTURES, /* an engine's bodies, position first; pairs as structures */
     LAYOUT_REVERSED,   /* the same the other way round, so that positions too end where the guard begins */
+    LAYOUT_BACKWARDS,  /* packed arrays from the last item to the first, with strides below 0 */
     LAYOUT_SHARED,     /* angle, scale and shape are one value for all, with a stride of 0; needs share_values() */
     LAYOUT_UNSCALED,   /* no scales; needs unit_scales() */
     LAYOUT_COUNT

@@ -56,14 +56,13 @@ uint32_t scene_add_pair(struct scene *scene, uint32_t a, uint32_t b) {
 narc_bodies scene_bodies(const struct scene *scene) {
     const struct body *body = scene->bodies;
     narc_bodies bodies = {.count = scene->body_count,
-                          .position_precision = scene->precision,
                           .cosine = NARC_COLUMN(body, cosine),
                           .sine = NARC_COLUMN(body, sine),
                           .scale = NARC_COLUMN(body, scale),
                           .shape = NARC_COLUMN(body, shape)};
     bool single = scene->precision == NARC_FLOAT32;
-    bodies.x = single ? NARC_COLUMN(body, x_single) : NARC_COLUMN(body, x);
-    bodies.y = single ? NARC_COLUMN(body, y_single) : NARC_COLUMN(body, y);
+    bodies.x = single ? NARC_POSITION_COLUMN(body, x_single) : NARC_POSITION_COLUMN(body, x);
+    bodies.y = single ? NARC_POSITION_COLUMN(body, y_single) : NARC_POSITION_COLUMN(body, y);
     return bodies;
 }
 

@@ -17,7 +17,7 @@ int main(void) {
     narc_bodies bodies = {.count = 3, .y = {&zero, 0}, .cosine = {&one, 0}, .sine = {&zero, 0}, .shape = {&circle, 0}};
     narc_pairs pairs = {.count = 2, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
     narc_query query = {.method = NARC_METHOD_AABB};
-    bodies.x = NARC_ARRAY(x);
+    bodies.x = NARC_POSITION_ARRAY(x);
 
     if (narc_create_shapes(NULL, &shapes) || narc_build_circle(1.0, arcs, &arc_count, &error) ||
         narc_add_shape(shapes, arcs, arc_count, NULL, &error) ||

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 namespace {
 struct Body {
@@ -17,9 +18,9 @@ struct Pair {
     uint32_t a, b;
 };
 const Pair pair[] = {{0, 1}};
-const narc_column first_of_pair = NARC_COLUMN_INIT(pair, a);
+const narc_index_column first_of_pair = NARC_COLUMN_INIT(pair, a);
 
-size_t stride_of(narc_column column) { return column.stride; }
+std::ptrdiff_t stride_of(narc_index_column column) { return column.stride; }
 } // namespace
 
 int main() {
@@ -31,9 +32,8 @@ int main() {
 
     narc_bodies bodies = {};
     bodies.count = 2;
-    bodies.position_precision = NARC_FLOAT64;
-    bodies.x = NARC_COLUMN(body, x);
-    bodies.y = NARC_COLUMN(body, y);
+    bodies.x = NARC_POSITION_COLUMN(body, x);
+    bodies.y = NARC_POSITION_COLUMN(body, y);
     bodies.cosine = NARC_COLUMN(body, cosine);
     bodies.sine = NARC_COLUMN(body, sine);
     bodies.shape = NARC_COLUMN(body, shape);
@@ -73,7 +73,10 @@ int main() {
         std::fprintf(stderr, "narc: %s\n", error.message);
         return 1;
     }
-    if (stride_of(NARC_COLUMN(pair, a)) != sizeof(Pair) || stride_of(NARC_ARRAY(pair)) != sizeof(Pair))
+    const std::vector<Body> none;
+    const std::vector<float> numbers = {1, 2};
+    if (stride_of(NARC_COLUMN(pair, a)) != sizeof(Pair) || NARC_COLUMN(none, cosine).base ||
+        NARC_POSITION_COLUMN(none, x).precision != NARC_FLOAT64 || NARC_ARRAY(numbers).base != numbers.data())
         return 1;
     const bool is_near = contact_count == 1 && std::fabs(separation + 0.5f) < 3e-3f;
     narc_destroy_shapes(shapes);
