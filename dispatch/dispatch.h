@@ -31,7 +31,7 @@ narc_status narc_list_contacts(narc_contact_kernel *kernel, const narc_batch *ba
                                narc_error *error);
 
 /* Checks options, and finds the sine of the flat angle as a batch has it. */
-narc_status narc_read_manifold_options(const narc_manifold_options *options, float *out_flat_sine, narc_error *error);
+narc_status narc_read_manifold_options(const narc_manifold_options *options, narc_batch *batch, narc_error *error);
 
 /* The arrays of narc_contacts and narc_manifolds, all of them: COLUMN(list, member) for each. */
 /* clang-format off */

@@ -16,7 +16,7 @@ static size_t find_manifolds(const narc_lister *lister, const narc_batch *batch,
     return lister->manifold(batch, first, count, lister->margin, &out);
 }
 
-narc_status narc_read_manifold_options(const narc_manifold_options *options, float *out_flat_sine, narc_error *error) {
+narc_status narc_read_manifold_options(const narc_manifold_options *options, narc_batch *batch, narc_error *error) {
     const float margin = options->margin, angle = options->flat_angle;
     if (isnan(margin))
         return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)margin, "options.margin is not a number");
@@ -25,7 +25,11 @@ narc_status narc_read_manifold_options(const narc_manifold_options *options, flo
     if (angle > NARC_MAX_FLAT_ANGLE)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)angle, "options.flat_angle is %g, more than %g",
                          (double)angle, (double)NARC_MAX_FLAT_ANGLE);
-    *out_flat_sine = angle < 0 ? -1.0f : (float)narc_sin((double)(angle == 0 ? NARC_FLAT_ANGLE : angle));
+    if (isnan(options->second_margin))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)options->second_margin,
+                         "options.second_margin is not a number");
+    batch->second_margin = options->second_margin == 0 ? -INFINITY : options->second_margin;
+    batch->flat_sine = angle < 0 ? -1.0f : (float)narc_sin((double)(angle == 0 ? NARC_FLAT_ANGLE : angle));
     return NARC_OK;
 }
 
@@ -46,7 +50,7 @@ static narc_status find(const narc_shapes *shapes, const narc_bodies *bodies, co
         return status;
     if (!out_manifolds || !out_count)
         return narc_fail_missing(error, !out_manifolds ? "out_manifolds" : "out_count");
-    status = narc_read_manifold_options(o, &batch.flat_sine, error);
+    status = narc_read_manifold_options(o, &batch, error);
     if (status != NARC_OK)
         return status;
     const narc_lister lister = {find_manifolds, NARC_MANIFOLD_CHUNK, o->margin, .manifold = kernels->manifold};

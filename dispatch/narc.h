@@ -144,13 +144,15 @@ NARC_API narc_status narc_find_contacts_hinted_range(const narc_shapes *shapes, 
 #define NARC_MAX_FLAT_ANGLE 1.5f
 
 /* How narc_find_manifolds() answers; what is 0 or NULL has its default, as all has for {0}.
- *   margin       as in narc_find_contacts(), of every point
- *   flat_angle   how far an edge's normal may be from the contact's for the edge to count as facing the other body; 0:
- *                NARC_FLAT_ANGLE; below 0: never a second point; at most NARC_MAX_FLAT_ANGLE
- *   hints        as in narc_find_contacts_hinted(), which may take them from here and the other way round; NULL: none
- *   out_skipped  how many pairs had no answer; NULL: nobody asks */
+ *   margin         as in narc_find_contacts(), of the deepest point
+ *   second_margin  that of the other point, where it is larger: a box that tips meets its second point in time; 0: none
+ *   flat_angle     how far an edge's normal may be from the contact's for the edge to count as facing the other body; 0:
+ *                  NARC_FLAT_ANGLE; below 0: never a second point; at most NARC_MAX_FLAT_ANGLE
+ *   hints          as in narc_find_contacts_hinted(), which may take them from here and the other way round; NULL: none
+ *   out_skipped    how many pairs had no answer; NULL: nobody asks */
 typedef struct narc_manifold_options {
     float margin;
+    float second_margin;
     float flat_angle;
     uint32_t *hints;
     size_t *out_skipped;
@@ -160,7 +162,7 @@ typedef struct narc_manifold_options {
  * wants. One point is the deepest: its normal and separation are those of narc_find_contacts() to the last bit, and so
  * is its place unless two edges touch along a stretch. There is a second point where both bodies have a straight edge
  * that faces the other one, next to the arc that touches or itself touching: at the other end of the edges' common
- * stretch, with its own separation along the normal, if that is less than the margin. Swapping A and B turns the
+ * stretch, with its own separation along the normal, if that is less than its margin. Swapping A and B turns the
  * normal, the order of the points, and the bytes of a feature id, and nothing else but roundings.
  *   options         NULL: defaults
  *   out_manifolds   arrays of out_manifolds->capacity items, overlapping none of the inputs

@@ -108,7 +108,7 @@ narc_status narc_find_manifold(const narc_shapes *shapes, const narc_body *a, co
         .shapes = shapes, .bodies = &two.bodies, .pairs = &two.pairs, .hints = o->hints, .skipped = &skipped};
     narc_status status = place_bodies(shapes, a, b, &two, error);
     if (status == NARC_OK)
-        status = narc_read_manifold_options(o, &batch.flat_sine, error);
+        status = narc_read_manifold_options(o, &batch, error);
     if (status != NARC_OK)
         return status;
     if (!out_manifold)

@@ -15,12 +15,13 @@ typedef struct narc_batch {
     const narc_shapes *shapes;
     const narc_bodies *bodies;
     const narc_pairs *pairs;
-    uint32_t *hints;   /* one for each pair, in and out; may be NULL */
-    uint8_t *outcomes; /* one for each pair, out; may be NULL. Only methods that can fail write them. */
-    size_t *skipped;   /* pairs without an answer are added to it; may be NULL. Two threads may not share one. */
-    float tolerance;   /* of gjk, relative to the sum of both bounding radii */
-    int iterations;    /* of gjk, 1 .. NARC_MAX_ITERATIONS */
-    float flat_sine;   /* of manifolds: the sine of the flat angle; below 0: no second points */
+    uint32_t *hints;     /* one for each pair, in and out; may be NULL */
+    uint8_t *outcomes;   /* one for each pair, out; may be NULL. Only methods that can fail write them. */
+    size_t *skipped;     /* pairs without an answer are added to it; may be NULL. Two threads may not share one. */
+    float tolerance;     /* of gjk, relative to the sum of both bounding radii */
+    int iterations;      /* of gjk, 1 .. NARC_MAX_ITERATIONS */
+    float second_margin; /* of manifolds: of the second point, where it is larger than the first one's */
+    float flat_sine;     /* of manifolds: the sine of the flat angle; below 0: no second points */
 } narc_batch;
 
 /* What the box kernel works on. */

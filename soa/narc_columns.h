@@ -79,17 +79,17 @@ typedef struct narc_position_column {
 #define NARC_TYPED_POINTER(pointer)                                                                                    \
     _Generic((pointer), float * : (pointer), const float * : (pointer), uint32_t * : (pointer), const uint32_t *       \
              : (pointer), uint8_t * : (pointer), const uint8_t * : (pointer))
-#define NARC_POSITIONS_AT(pointer, size)                                                                               \
-    {                                                                                                                  \
+#define NARC_POSITIONS_AT(pointer, size)                                                                                 \
+    {                                                                                                                    \
         (pointer), (ptrdiff_t)(size),                                                                                  \
             _Generic((pointer), float * : NARC_FLOAT32, const float * : NARC_FLOAT32, double * : NARC_FLOAT64,         \
-                     const double * : NARC_FLOAT64)                                                                    \
+                     const double * : NARC_FLOAT64) \
     }
 
 #else
 
-#define NARC_COLUMN(array, field) NARC_FIELD(narc::make_column, array, field)
-#define NARC_ARRAY(array)         narc::make_column(narc::data_of(array), sizeof *narc::data_of(array))
+#define NARC_COLUMN(array, field)          NARC_FIELD(narc::make_column, array, field)
+#define NARC_ARRAY(array)                  narc::make_column(narc::data_of(array), sizeof *narc::data_of(array))
 #define NARC_POSITION_COLUMN(array, field) NARC_FIELD(narc::make_positions, array, field)
 #define NARC_POSITION_ARRAY(array)         narc::make_positions(narc::data_of(array), sizeof *narc::data_of(array))
 

@@ -275,7 +275,8 @@ static void find_second_points(const struct call *call, struct queue *queue, int
         deep = select_end_point(touch, &deep, &exact);
         deep.separation = deepest;
         other.separation = v_max(other.separation, deepest);
-        const vm two = vm_and(faces, is_below(other.separation, get_margins(call, queue, k)));
+        const vf margin = v_max(get_margins(call, queue, k), v_set(call->batch->second_margin));
+        const vm two = vm_and(faces, is_below(other.separation, margin));
         const vm keeps_low = vm_or(two, at_low); /* the first point that is listed is the low one */
         low = select_end_point(at_low, &deep, &other);
         high = select_end_point(at_low, &other, &deep);

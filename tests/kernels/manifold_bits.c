@@ -18,8 +18,11 @@ enum { MARGINS = sizeof margins / sizeof *margins, BODIES = 200, PAIRS = 3000 };
 static struct manifolds find_plain(const struct scene *scene, float margin) {
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
-    const narc_batch batch = {
-        .shapes = scene->store, .bodies = &bodies, .pairs = &pairs, .flat_sine = (float)sin((double)NARC_FLAT_ANGLE)};
+    const narc_batch batch = {.shapes = scene->store,
+                              .bodies = &bodies,
+                              .pairs = &pairs,
+                              .second_margin = -INFINITY,
+                              .flat_sine = (float)sin((double)NARC_FLAT_ANGLE)};
     struct manifolds all = create_manifolds(pairs.count, false), part = create_manifolds(NARC_CONTACT_GROUP, false);
     for (size_t first = 0; first < pairs.count; first += NARC_CONTACT_GROUP) {
         const size_t left = pairs.count - first, count = left < NARC_CONTACT_GROUP ? left : NARC_CONTACT_GROUP;

@@ -435,6 +435,45 @@ static void test_margin(void **state) {
     destroy_scene(&scene);
 }
 
+/* A second point may be farther than the first one. */
+static void test_second_margin(void **state) {
+    (void)state;
+    const struct shape ground = make_box(20, 1, 0), box = make_box(2, 1, 0);
+    struct scene scene = make_duo(&ground, &box);
+    put(&scene, 1, 0, 1.02, 0.05);
+    const narc_bodies bodies = scene_bodies(&scene);
+    const narc_pairs pairs = scene_pairs(&scene);
+    struct manifolds all = scene_manifolds(&scene, INFINITY), list = create_manifolds(1, false);
+    assert_int_equal(all.view.point_count[0], 2);
+    const float first = fminf(all.view.separation[0][0], all.view.separation[1][0]);
+    const float second = fmaxf(all.view.separation[0][0], all.view.separation[1][0]);
+    const float margins[][2] = {{first + 0.01f, 0},
+                                {first + 0.01f, second},
+                                {first + 0.01f, nextafterf(second, 1)},
+                                {first, 2 * second},
+                                {INFINITY, first},
+                                {first + 0.01f, INFINITY},
+                                {first + 0.01f, -0.01f},
+                                {-1, 0}};
+    const uint8_t points[] = {1, 1, 2, 0, 2, 2, 1, 0};
+    for (size_t k = 0; k < sizeof points; k++) {
+        const narc_manifold_options options = {.margin = margins[k][0], .second_margin = margins[k][1]};
+        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL),
+                         NARC_OK);
+        assert_int_equal(list.count, points[k] > 0);
+        if (points[k] > 0)
+            assert_int_equal(list.view.point_count[0], points[k]);
+        if (points[k] == 2)
+            check_same_manifolds(&all, 0, &list, 0);
+    }
+    const narc_manifold_options options = {.second_margin = NAN};
+    assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL),
+                     NARC_ERROR_NOT_FINITE);
+    destroy_manifolds(&all, false);
+    destroy_manifolds(&list, false);
+    destroy_scene(&scene);
+}
+
 /* The flat angle decides which edges face each other. */
 static void test_flat_angle(void **state) {
     (void)state;
@@ -694,6 +733,7 @@ int main(void) {
         cmocka_unit_test(test_corner_on_corner),
         cmocka_unit_test(test_rocking),
         cmocka_unit_test(test_rolling),
+        cmocka_unit_test(test_second_margin),
         cmocka_unit_test(test_margin),
         cmocka_unit_test(test_flat_angle),
         cmocka_unit_test(test_doubled_corner),

@@ -71,8 +71,11 @@ static void check_manifolds(const struct scene *scene, float margin, const float
     const narc_bodies bodies = scene_bodies(scene);
     narc_pairs pairs = scene_pairs(scene);
     pairs.margin = (narc_float_column){own, sizeof *own};
-    const narc_batch batch = {
-        .shapes = scene->store, .bodies = &bodies, .pairs = &pairs, .flat_sine = (float)sin((double)NARC_FLAT_ANGLE)};
+    const narc_batch batch = {.shapes = scene->store,
+                              .bodies = &bodies,
+                              .pairs = &pairs,
+                              .second_margin = -INFINITY,
+                              .flat_sine = (float)sin((double)NARC_FLAT_ANGLE)};
     const narc_manifold_options options = {.margin = margin};
     struct manifolds part = create_manifolds(NARC_CONTACT_GROUP, false);
     struct manifolds found = create_manifolds(pairs.count, true), some = create_manifolds(pairs.count, true);
