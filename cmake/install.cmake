@@ -2,7 +2,8 @@
 # What cmake --install writes: headers, the libraries, the CMake package and the pkg-config files.
 include(CMakePackageConfigHelpers)
 
-install(FILES soa/narc_export.h soa/narc_columns.h soa/narc_shapes.h dispatch/narc.h dispatch/narc_methods.h dispatch/narc_broad_phase.h
+install(FILES soa/narc_export.h soa/narc_columns.h soa/narc_shapes.h dispatch/narc.h
+  dispatch/narc_broad_phase.h
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 
 # Two export files, because only those who ask for the static library need its dependencies.
@@ -20,6 +21,14 @@ if(TARGET narc_files)
   install(TARGETS narc_files_static EXPORT narc_files_static INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
   install(EXPORT narc_files NAMESPACE narc:: FILE narcFiles.cmake DESTINATION "${package_directory}")
   install(EXPORT narc_files_static NAMESPACE narc:: FILE narcFilesStatic.cmake DESTINATION "${package_directory}")
+endif()
+# The library of other methods, where it is built.
+if(TARGET narc_methods)
+  install(FILES methods/narc_methods.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  install(TARGETS narc_methods EXPORT narc_methods INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  install(TARGETS narc_methods_static EXPORT narc_methods_static INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+  install(EXPORT narc_methods NAMESPACE narc:: FILE narcMethods.cmake DESTINATION "${package_directory}")
+  install(EXPORT narc_methods_static NAMESPACE narc:: FILE narcMethodsStatic.cmake DESTINATION "${package_directory}")
 endif()
 # The fitting library, where it is built. What it links itself, its users need not find.
 if(TARGET narc_fit)
@@ -48,6 +57,9 @@ list(JOIN SLEEF_LDFLAGS " " pc_sleef)
 set(packages narc narc-static)
 if(TARGET narc_files)
   list(APPEND packages narc-files)
+endif()
+if(TARGET narc_methods)
+  list(APPEND packages narc-methods narc-methods-static)
 endif()
 if(TARGET narc_fit)
   list(APPEND packages narc-fit)

@@ -4,27 +4,24 @@
 #   NARC_ISA_LIST         all names, best first
 #   NARC_ISA_NAMES        those that are built
 #   NARC_ISA_OBJECTS      their objects
+#   NARC_ISA_FLAGS_<name> what the compiler needs for it
 #   NARC_ISA_DEFINITIONS  NARC_BUILT_<name>=1 or 0, for the dispatcher
 # tests/kernels/CMakeLists.txt makes tests of every name, tests/package/CMakeLists.txt tests the symbols of what is built.
 include(CheckCSourceCompiles)
 
-function(narc_add_isa name flags)
-  add_library(narc_isa_${name} OBJECT
-    "${PROJECT_SOURCE_DIR}/kernels/exact.c" "${PROJECT_SOURCE_DIR}/kernels/methods.c")
-  target_compile_definitions(narc_isa_${name} PRIVATE NARC_ISA_NAME=${name} NARC_SIMD="simd/${name}.h")
+# narc_add_isa_objects(TARGET ISA SOURCE ...)
+function(narc_add_isa_objects target isa)
+  add_library(${target} OBJECT ${ARGN})
+  target_compile_definitions(${target} PRIVATE NARC_ISA_NAME=${isa} NARC_SIMD="simd/${isa}.h")
   # No LTO, whoever asks for it: inlining must not carry these instructions across the processor check.
-  set_target_properties(narc_isa_${name} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
-  separate_arguments(flag_list UNIX_COMMAND "${flags}")
-  target_compile_options(narc_isa_${name} PRIVATE ${flag_list} -fno-lto)
+  set_target_properties(${target} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
+  separate_arguments(flag_list UNIX_COMMAND "${NARC_ISA_FLAGS_${isa}}")
+  target_compile_options(${target} PRIVATE ${flag_list} -fno-lto)
   # Clang 14 crashes over variables in the debug information of optimised AVX-512 kernels (in LLVM's salvageDebugInfo):
   # lines, but no variables.
-  target_compile_options(narc_isa_${name} PRIVATE
+  target_compile_options(${target} PRIVATE
     $<$<AND:$<C_COMPILER_ID:Clang>,$<VERSION_LESS:$<C_COMPILER_VERSION>,16>>:-gline-tables-only>)
-  target_link_libraries(narc_isa_${name} PRIVATE narc_flags)
-  if(NARC_SLEEF)
-    target_link_libraries(narc_isa_${name} PRIVATE PkgConfig::SLEEF)
-    target_compile_definitions(narc_isa_${name} PRIVATE NARC_WITH_SLEEF=1)
-  endif()
+  target_link_libraries(${target} PRIVATE narc_flags)
 endfunction()
 
 set(processor "${CMAKE_SYSTEM_PROCESSOR}")
@@ -46,7 +43,12 @@ foreach(line IN LISTS isa_lines)
   if(processor MATCHES "^(${processors})$")
     check_c_source_compiles("int main(void) { return 0; }" NARC_COMPILES_${name})
     if(NARC_COMPILES_${name})
-      narc_add_isa(${name} "${CMAKE_REQUIRED_FLAGS}")
+      set(NARC_ISA_FLAGS_${name} "${CMAKE_REQUIRED_FLAGS}")
+      narc_add_isa_objects(narc_isa_${name} ${name} "${PROJECT_SOURCE_DIR}/kernels/exact.c")
+      if(NARC_SLEEF)
+        target_link_libraries(narc_isa_${name} PRIVATE PkgConfig::SLEEF)
+        target_compile_definitions(narc_isa_${name} PRIVATE NARC_WITH_SLEEF=1)
+      endif()
       list(APPEND NARC_ISA_NAMES ${name})
       list(APPEND NARC_ISA_OBJECTS $<TARGET_OBJECTS:narc_isa_${name}>)
       set(built 1)

@@ -2,11 +2,12 @@
  *
  * api.c - the batch calls of narc.h: argument checks, then one call down.
  */
-#include "column.h"
 #include "dispatch.h"
 #include "error.h"
 
-#include <math.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 #define TEXT_(a) #a
 #define TEXT(a)  TEXT_(a)
@@ -15,51 +16,19 @@ const char *narc_version(void) {
     return TEXT(NARC_VERSION_MAJOR) "." TEXT(NARC_VERSION_MINOR) "." TEXT(NARC_VERSION_PATCH);
 }
 
-narc_status narc_fail_missing(narc_error *error, const char *name) {
-    return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", name);
-}
-
-/* Says which of pair number `pair`'s indices is out of range. */
-static narc_status describe_bad_pair(const narc_batch *batch, size_t pair, narc_error *error) {
-    const narc_index_column columns[2] = {batch->pairs->a, batch->pairs->b};
-    for (int k = 0; k < 2; k++) {
-        const uint32_t body = narc_index_at(columns[k], pair);
-        if (body >= batch->bodies->count)
-            return narc_fail(error, NARC_ERROR_INDEX, pair, body, "pair %zu: body %c is %lu, but there are %zu bodies",
-                             pair, "ab"[k], (unsigned long)body, batch -> bodies -> count);
-        const uint32_t shape = narc_index_at(batch->bodies->shape, body);
-        if (shape >= batch->shapes->count)
-            return narc_fail(error, NARC_ERROR_INDEX, pair, shape,
-                             "pair %zu: body %lu has shape %lu, but there are %zu shapes", pair, (unsigned long)body,
-                             (unsigned long)shape, batch->shapes->count);
-    }
-    return NARC_OK;
+unsigned narc_default_threads(void) {
+#ifdef _OPENMP
+    return (unsigned)omp_get_max_threads();
+#else
+    return 1;
+#endif
 }
 
 narc_status narc_check_batch(const narc_batch *batch, size_t first, size_t count, unsigned threads,
                              const narc_kernel_table **out_kernels, narc_error *error) {
-    const narc_pairs *pairs = batch->pairs;
-    const narc_bodies *bodies = batch->bodies;
-    if (!batch->shapes || !bodies || !pairs)
-        return narc_fail_missing(error, !batch->shapes ? "shapes" : !bodies ? "bodies" : "pairs");
-    if (pairs->count > UINT32_MAX)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)pairs->count, "%zu pairs in one batch, at most %lu",
-                         pairs->count, (unsigned long)UINT32_MAX);
-    if (first > pairs->count || count > pairs->count - first)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)count,
-                         "pairs %zu and the %zu from there on, but there are %zu", first, count, pairs->count);
-    if (count > 0) {
-        if (!pairs->a.base || !pairs->b.base)
-            return narc_fail_missing(error, !pairs->a.base ? "pairs.a" : "pairs.b");
-        const narc_status columns = bodies->count > 0 ? narc_check_columns(bodies, error) : NARC_OK;
-        if (columns != NARC_OK)
-            return columns;
-        const size_t bad = narc_find_bad_pair(batch, first, count, threads);
-        if (bad < first + count)
-            return describe_bad_pair(batch, bad, error);
-    }
-    narc_status status = NARC_OK;
-    *out_kernels = narc_kernels(&status, error);
+    narc_status status = narc_check_pairs(batch, first, count, threads, error);
+    if (status == NARC_OK)
+        *out_kernels = narc_kernels(&status, error);
     return status;
 }
 
@@ -90,21 +59,6 @@ narc_status narc_find_overlaps_range(const narc_shapes *shapes, const narc_bodie
         return narc_fail_missing(error, "out_bits");
     if (count > 0)
         kernels->overlap(&batch, first, count, out_bits + first / 64);
-    return NARC_OK;
-}
-
-narc_status narc_list_contacts(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count,
-                               float margin, unsigned threads, const narc_contacts *out_contacts, size_t *out_count,
-                               narc_error *error) {
-    if (!out_contacts || !out_count)
-        return narc_fail_missing(error, !out_contacts ? "out_contacts" : "out_count");
-    if (isnan(margin))
-        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)margin, "margin is not a number");
-    const size_t found = narc_run_contacts(kernel, batch, first, count, margin, threads, out_contacts);
-    *out_count = found;
-    if (found > out_contacts->capacity)
-        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu contacts, but there is room for %zu", found,
-                         out_contacts->capacity);
     return NARC_OK;
 }
 

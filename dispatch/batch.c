@@ -7,14 +7,15 @@
  */
 #include "column.h"
 #include "dispatch.h"
+#include "error.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <string.h>
 
 #ifdef _OPENMP
-#include <omp.h>
 #include <sched.h>
 #endif
 
@@ -29,14 +30,6 @@ enum {
  * the rest of its pairs in vectors that are not full, but several for each thread, so that all end together. */
 enum { MOST_OVERLAPS = 16384, LEAST_OVERLAPS = 1024, CHUNKS_PER_THREAD = 4 };
 
-unsigned narc_default_threads(void) {
-#ifdef _OPENMP
-    return (unsigned)omp_get_max_threads();
-#else
-    return 1;
-#endif
-}
-
 /* OpenMP ends the process if it cannot start as many threads as it was asked for. */
 enum { MOST_THREADS = 256 };
 
@@ -44,12 +37,6 @@ int narc_team_size(unsigned threads, size_t parts) {
     const unsigned asked = threads ? threads : narc_default_threads(),
                    wanted = asked < MOST_THREADS ? asked : MOST_THREADS;
     return (int)(wanted < parts ? wanted : parts);
-}
-
-/* Kernels write only the outcomes of pairs that did not end well. */
-static void clear_outcomes(const narc_batch *batch, size_t first, size_t count) {
-    if (batch->outcomes && count > 0)              /* memset() wants a pointer even for nothing */
-        memset(batch->outcomes + first, 0, count); /* NARC_OUTCOME_DONE */
 }
 
 /* The same batch with a counter of the calling thread's own. */
@@ -63,7 +50,6 @@ void narc_run_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, uns
     const size_t count = batch->pairs->count;
     if (count == 0)
         return;
-    clear_outcomes(batch, 0, count);
     const int team = narc_team_size(threads, (count + LEAST_OVERLAPS - 1) / LEAST_OVERLAPS);
     if (team <= 1) {
         kernel(batch, 0, count, out_bits);
@@ -182,7 +168,6 @@ static __attribute__((noinline)) size_t list_in_team(const narc_lister *lister, 
 
 size_t narc_run_list(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count, unsigned threads,
                      const narc_list *list) {
-    clear_outcomes(batch, first, count);
     const int team = narc_team_size(threads, (count + lister->chunk - 1) / lister->chunk);
     if (team <= 1)
         return list_in_order(lister, batch, first, count, list);
@@ -205,4 +190,19 @@ size_t narc_run_contacts(narc_contact_kernel *kernel, const narc_batch *batch, s
                             .item = {NARC_CONTACT_COLUMNS(NARC_COLUMN_SIZE, out_contacts)},
                             .array = {NARC_CONTACT_COLUMNS(NARC_COLUMN_ARRAY, out_contacts)}};
     return narc_run_list(&lister, batch, first, count, threads, &list);
+}
+
+narc_status narc_list_contacts(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count,
+                               float margin, unsigned threads, const narc_contacts *out_contacts, size_t *out_count,
+                               narc_error *error) {
+    if (!out_contacts || !out_count)
+        return narc_fail_missing(error, !out_contacts ? "out_contacts" : "out_count");
+    if (isnan(margin))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)margin, "margin is not a number");
+    const size_t found = narc_run_contacts(kernel, batch, first, count, margin, threads, out_contacts);
+    *out_count = found;
+    if (found > out_contacts->capacity)
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu contacts, but there is room for %zu", found,
+                         out_contacts->capacity);
+    return NARC_OK;
 }

@@ -10,20 +10,13 @@
 
 #include "error.h"
 
-/* The table of an instruction set, NULL if this build does not have it: cmake/isa.cmake defines NARC_BUILT_<name> as 1
- * or 0 for each. */
-#define TABLE(built, name)    TABLE_IF(built, name)
-#define TABLE_IF(built, name) TABLE_IF_##built(name)
-#define TABLE_IF_1(name)      &narc_kernels_##name
-#define TABLE_IF_0(name)      NULL
-
 /* Best first. */
 static const struct isa {
     const char *name;
     const narc_kernel_table *table;
     unsigned needs;
 } isas[] = {
-#define NARC_ISA(name, needs, processors, flags) {#name, TABLE(NARC_BUILT_##name, name), needs},
+#define NARC_ISA(name, needs, processors, flags) {#name, NARC_ISA_TABLE(NARC_BUILT_##name, narc_kernels_##name), needs},
 #include "isa.def"
 };
 enum { ISA_COUNT = sizeof isas / sizeof isas[0] };
@@ -106,8 +99,7 @@ bool narc_isa_supported(const char *name) {
 }
 
 static const char *const kernel_names[] = {
-#define NARC_KERNEL(type, name, parameters)        #name,
-#define NARC_METHOD_KERNEL(type, name, parameters) #name,
+#define NARC_KERNEL(type, name, parameters) #name,
 #include "kernels.def"
 };
 enum { KERNEL_COUNT = sizeof kernel_names / sizeof kernel_names[0] };

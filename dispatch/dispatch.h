@@ -21,7 +21,8 @@ int narc_team_size(unsigned threads, size_t parts);
 /* "`name` is NULL". */
 narc_status narc_fail_missing(narc_error *error, const char *name);
 
-/* The checks that all batch calls share: for pairs first .. first + count - 1. */
+/* The checks that all batch calls share, for pairs first .. first + count - 1; the second one gives the table, too. */
+narc_status narc_check_pairs(const narc_batch *batch, size_t first, size_t count, unsigned threads, narc_error *error);
 narc_status narc_check_batch(const narc_batch *batch, size_t first, size_t count, unsigned threads,
                              const narc_kernel_table **out_kernels, narc_error *error);
 

@@ -14,7 +14,8 @@
  *
  *   narc_find_contact() is for one pair, without a batch.
  *
- *   Other algorithms, such as GJK and the paper's own, and filters by circles and boxes: narc_methods.h.
+ *   Other algorithms, such as GJK and the paper's own, and filters by circles and boxes: narc_methods.h, a library of
+ *   its own.
  *
  *   Which instruction set runs is chosen at the first call: the best that this build and this processor have. The
  *   environment variable NARC_ISA or narc_set_isa() choose another. The answer is the same to the last bit on
@@ -26,8 +27,8 @@
  *   fall through the floor without a word. Two checks find it:
  *     - narc_validate_bodies() when a scene is loaded, and in debug builds each step: names the body and the number
  *     - narc_query.out_skipped each step: how many pairs the query had no answer for, at no cost. Normally 0; if not,
- *       let narc_validate_bodies() say why. (narc_methods.h: narc_query_contacts() with query {.out_skipped =
- *       &skipped} is narc_find_contacts(); for a sub-range move the bases of the pairs' columns.)
+ *       let narc_validate_bodies() say why. (narc_query_contacts() with query {.out_skipped = &skipped} is
+ *       narc_find_contacts(); for a sub-range move the bases of the pairs' columns.)
  *
  * Precision
  *
@@ -133,6 +134,23 @@ NARC_API narc_status narc_find_contacts_hinted_range(const narc_shapes *shapes, 
                                                      const narc_pairs *pairs, size_t first, size_t count, float margin,
                                                      uint32_t *hints, const narc_contacts *out_contacts,
                                                      size_t *out_count, narc_error *error);
+
+/* What a batch call may take and tell beside its answers; {0}: nothing.
+ *   hints        as in narc_find_contacts_hinted(), of contacts only; NULL: none
+ *   out_skipped  how many pairs have no answer (see narc_bodies), set where out_bits or out_count are; NULL: nobody
+ *                asks */
+typedef struct narc_query {
+    uint32_t *hints;
+    size_t *out_skipped;
+} narc_query;
+
+/* narc_find_overlaps() and narc_find_contacts() with a query. */
+NARC_API narc_status narc_query_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                         const narc_query *query, unsigned threads, uint64_t *out_bits,
+                                         narc_error *error);
+NARC_API narc_status narc_query_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                         const narc_query *query, float margin, unsigned threads,
+                                         const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
 
 /* ------------------------------------------------------------------------------------------------ manifolds */
 

@@ -10,11 +10,8 @@
 #include "sat/contact.inl"
 #include "sat/overlap.inl"
 
-extern const narc_method_table NARC_ISA_SYMBOL(narc_methods_, NARC_ISA_NAME);
-
 const narc_kernel_table NARC_ISA_SYMBOL(narc_kernels_, NARC_ISA_NAME) = {
     .isa = NARC_ISA_TEXT(NARC_ISA_NAME),
-    .methods = &NARC_ISA_SYMBOL(narc_methods_, NARC_ISA_NAME),
 #define NARC_KERNEL(type, name, parameters) .name = name,
 #include "kernels.def"
 };

@@ -16,10 +16,7 @@ typedef struct narc_batch {
     const narc_bodies *bodies;
     const narc_pairs *pairs;
     uint32_t *hints;     /* one for each pair, in and out; may be NULL */
-    uint8_t *outcomes;   /* one for each pair, out; may be NULL. Only methods that can fail write them. */
     size_t *skipped;     /* pairs without an answer are added to it; may be NULL. Two threads may not share one. */
-    float tolerance;     /* of gjk, relative to the sum of both bounding radii */
-    int iterations;      /* of gjk, 1 .. NARC_MAX_ITERATIONS */
     float second_margin; /* of manifolds: of the second point, where it is larger than the first one's */
     float flat_sine;     /* of manifolds: the sine of the flat angle; below 0: no second points */
 } narc_batch;
@@ -35,15 +32,8 @@ typedef struct narc_box_batch {
 /* The most pairs that one call of a contact kernel takes: it collects their contacts before it lists them. */
 enum { NARC_CONTACT_GROUP = 1024 };
 
-/* The kernels of the methods in narc_methods.h. */
-typedef struct narc_method_table {
-#define NARC_METHOD_KERNEL(type, name, parameters) type(*name) parameters;
-#include "kernels.def"
-} narc_method_table;
-
 typedef struct narc_kernel_table {
     const char *isa;
-    const narc_method_table *methods;
 #define NARC_KERNEL(type, name, parameters) type(*name) parameters;
 #include "kernels.def"
 } narc_kernel_table;
@@ -63,5 +53,12 @@ typedef size_t narc_manifold_kernel(const narc_batch *batch, size_t first, size_
 #define NARC_ISA_SYMBOL_(prefix, isa) prefix##isa
 #define NARC_ISA_TEXT(isa)            NARC_ISA_TEXT_(isa)
 #define NARC_ISA_TEXT_(isa)           #isa
+
+/* A table of an instruction set, NULL if this build does not have it: cmake/isa.cmake defines NARC_BUILT_<name> as 1 or
+ * 0 for each. */
+#define NARC_ISA_TABLE(built, table)  NARC_ISA_TABLE_(built, table)
+#define NARC_ISA_TABLE_(built, table) NARC_ISA_TABLE_##built(table)
+#define NARC_ISA_TABLE_1(table)       &table
+#define NARC_ISA_TABLE_0(table)       NULL
 
 #endif

@@ -75,35 +75,6 @@ static narc_shape_header make_header(const narc_outline *o, size_t count, narc_c
     return header;
 }
 
-/* The smallest of the boxes along the junctions' normals: of a polygon, whose junctions are at both ends of every edge
- * and have its normal, the smallest of all, which lies along an edge. Its numbers are rounded to single precision,
- * which NARC_ROUNDING_ROOM has room for. */
-static narc_oriented_box make_box(const narc_outline *o, const narc_arc *arcs, size_t count, double room) {
-    double least = INFINITY;
-    narc_oriented_box box = {0};
-    for (size_t i = 0; i < o->count; i++) {
-        double x = o->normal_x[i], y = o->normal_y[i];
-        double front = narc_find_height(o, x, y), back = narc_find_height(o, -x, -y);
-        double left = narc_find_height(o, -y, x), right = narc_find_height(o, y, -x);
-        double half_x = (front + back) / 2, half_y = (left + right) / 2;
-        if (half_x * half_y < least) {
-            double along = (front - back) / 2, across = (left - right) / 2;
-            least = half_x * half_y;
-            box.center_x = (float)(o->origin_x + along * x - across * y);
-            box.center_y = (float)(o->origin_y + along * y + across * x);
-            box.half_x = round_up(half_x + room);
-            box.half_y = round_up(half_y + room);
-            box.axis_x = (float)x;
-            box.axis_y = (float)y;
-        }
-    }
-    narc_mass mass = {0};
-    narc_compute_mass(arcs, count, &mass);
-    box.centroid_x = (float)mass.centroid_x;
-    box.centroid_y = (float)mass.centroid_y;
-    return box;
-}
-
 /* The diamond angle of a normal, as the kernels compute it. */
 static float find_diamond_angle(float x, float y) {
     float p = x / (fabsf(x) + fabsf(y));
@@ -211,7 +182,5 @@ narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_s
                          (double)header.bound_radius, NARC_MAX_SIZE);
     write_records(&outline, &header, out_shape->records);
     out_shape->header = header;
-    out_shape->records[narc_count_records(outline.count) - 1].box =
-        make_box(&outline, arcs, count, NARC_ROUNDING_ROOM * extent + find_misfit(&outline));
     return NARC_OK;
 }

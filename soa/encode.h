@@ -7,7 +7,7 @@
 
 #include "store.h"
 
-enum { NARC_MAX_RECORDS = NARC_MAX_ARCS / NARC_RECORD_ANGLES + NARC_MAX_ARCS + 1 };
+enum { NARC_MAX_RECORDS = NARC_MAX_ARCS / NARC_RECORD_ANGLES + NARC_MAX_ARCS };
 
 /* A header that lacks its place in the store, and narc_count_records(header.count) records. */
 typedef struct narc_encoded_shape {

@@ -42,6 +42,8 @@ const char *narc_status_name(narc_status status) {
         return "NARC_ERROR_FORMAT";
     case NARC_ERROR_CANCELLED:
         return "NARC_ERROR_CANCELLED";
+    case NARC_ERROR_VERSION:
+        return "NARC_ERROR_VERSION";
     }
     return "unknown status";
 }

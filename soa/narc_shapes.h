@@ -104,7 +104,8 @@ typedef enum narc_status {
     NARC_ERROR_ISA_UNKNOWN = 14,     /* no instruction set has that name */
     NARC_ERROR_ISA_UNSUPPORTED = 15, /* known, but this build or this processor does not have it */
     NARC_ERROR_FORMAT = 16,          /* data that is not in the format it should be in, or damaged */
-    NARC_ERROR_CANCELLED = 17        /* the caller's progress function ended the work */
+    NARC_ERROR_CANCELLED = 17,       /* the caller's progress function ended the work */
+    NARC_ERROR_VERSION = 18          /* libraries of narc that are of different versions */
 } narc_status;
 
 /* The name of a status, such as "NARC_ERROR_INDEX"; "unknown status" for any other value. Static storage. */
@@ -299,7 +300,7 @@ typedef struct narc_allocator {
  * belongs to the kernels. Adding, replacing, removing and reserving need exclusive access; all else, queries above all,
  * may share it between threads. A shape's index stays its own until it is removed. Whatever comes and goes, a store has
  * at most four times the memory that its shapes needed when they needed most (or room was reserved for), also while it
- * moves them; and some KB. A shape needs some 40 bytes for each arc and 100 more; a removed one needs nothing. */
+ * moves them; and some KB. A shape needs some 40 bytes for each arc and 70 more; a removed one needs nothing. */
 typedef struct narc_shapes narc_shapes;
 
 /* What a store knows of a shape, bits of narc_shape_flags(). */
@@ -472,17 +473,6 @@ typedef struct narc_manifold {
 } narc_manifold;
 
 #define NARC_FEATURE_EDGE 0x40
-
-/* How a method came to a pair's answer (see narc_methods.h; the exact one always ends well). */
-typedef enum narc_outcome {
-    NARC_OUTCOME_DONE = 0,     /* the method ended as it should */
-    NARC_OUTCOME_LIMIT = 1,    /* gjk: iterations ran out; the best that was found, "not colliding" if nothing was */
-    NARC_OUTCOME_ROUNDING = 2, /* gjk: rounding left no way on before the tolerance was reached; the best found */
-    NARC_OUTCOME_NONE = 3      /* sat-first: no pair of arcs passes the test */
-} narc_outcome;
-
-/* Most support points in one phase of gjk (see narc_methods.h). */
-#define NARC_MAX_ITERATIONS 128
 
 /* ------------------------------------------------------------------------------------------------ boxes */
 

@@ -22,7 +22,7 @@
 #define MAX_RECORDS (((size_t)1 << 31) / (sizeof(narc_record) / sizeof(float)))
 
 /* The block of removed shapes: a circle, two arcs. */
-enum { SPARE_ARCS = 2, SPARE_RECORDS = 1 + SPARE_ARCS + 1 };
+enum { SPARE_ARCS = 2, SPARE_RECORDS = 1 + SPARE_ARCS };
 
 /* ------------------------------------------------------------------------------------------------ memory */
 
@@ -142,14 +142,12 @@ narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t 
         return NARC_ERROR_ARGUMENT;
     if (shape_count > NARC_MAX_SHAPES || arc_count > MAX_RECORDS)
         return NARC_ERROR_COUNT;
-    /* A record for each arc and one for 16 arcs' angles; for each shape, angles that do not fill their record, a
-     * circle's second half, and the box. */
-    return make_room(shapes, shapes->count + shape_count, arc_count + arc_count / NARC_RECORD_ANGLES + 3 * shape_count);
+    /* A record for each arc and one for 16 arcs' angles; for each shape, angles that do not fill their record, and a
+     * circle's second half. */
+    return make_room(shapes, shapes->count + shape_count, arc_count + arc_count / NARC_RECORD_ANGLES + 2 * shape_count);
 }
 
 /* ------------------------------------------------------------------------------------------------ adding */
-
-static bool is_curved(const narc_shape_header *header) { return !(header->flags & NARC_SHAPE_POLYGON); }
 
 static narc_status fail_room(const narc_shapes *shapes, narc_status status, narc_error *error) {
     if (status == NARC_ERROR_COUNT)
@@ -181,7 +179,7 @@ static narc_status put_shape(narc_shapes *shapes, uint32_t shape, narc_encoded_s
     memcpy(&shapes->records[encoded->header.first_record], encoded->records, size * sizeof *encoded->records);
     shapes->headers[shape] = encoded->header;
     shapes->used_records += size - used_size;
-    shapes->curved_count += is_curved(&encoded->header);
+    shapes->change_count++;
     shapes->count += is_new;
     return NARC_OK;
 }
@@ -230,11 +228,7 @@ narc_status narc_replace_shape(narc_shapes *shapes, uint32_t shape, const narc_a
         status = narc_encode_shape(arcs, count, &encoded, error);
     if (status != NARC_OK)
         return status;
-    const bool was_curved = is_curved(&shapes->headers[shape]);
-    status = put_shape(shapes, shape, &encoded, error);
-    if (status == NARC_OK)
-        shapes->curved_count -= was_curved;
-    return status;
+    return put_shape(shapes, shape, &encoded, error);
 }
 
 narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *error) {
@@ -242,12 +236,12 @@ narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *e
     if (status != NARC_OK)
         return status;
     narc_shape_header *header = &shapes->headers[shape];
-    shapes->curved_count -= is_curved(header);
     shapes->used_records -= narc_count_records(header->count);
     header->bound_radius = 0;
     header->removed_before = shapes->last_removed;
     shapes->last_removed = shape;
     shapes->removed_count++;
+    shapes->change_count++;
     return NARC_OK;
 }
 

@@ -4,7 +4,7 @@
  *
  * Each shape has a HEADER, half a cache line with all that the comparison of circles needs, and a run of RECORDS, half
  * a cache line each: first its junction angles, 16 to a record, then its arcs, one record with all that is known of
- * each, and last its box. A batch meets shapes in any order. It touches one line for a shape that the circles settle,
+ * each. A batch meets shapes in any order. It touches one line for a shape that the circles settle,
  * and two more for most others, however many arcs they have. The headers lie together, so that thousands stay in the
  * cache.
  *
@@ -81,25 +81,16 @@ typedef struct narc_stored_arc {
     float start_x, start_y, end_x, end_y;
 } narc_stored_arc;
 
-/* What only methods other than the exact one ask of a shape: a box around it and its centroid. The half sides have room
- * for the kernels' rounding, NARC_ROUNDING_ROOM times the extent. */
-typedef struct narc_oriented_box {
-    float center_x, center_y, half_x, half_y;
-    float axis_x, axis_y; /* the direction of the side half_x, unit */
-    float centroid_x, centroid_y;
-} narc_oriented_box;
-
 typedef union narc_record {
     int16_t angles[NARC_RECORD_ANGLES];
     narc_stored_arc arc;
-    narc_oriented_box box;
 } narc_record;
 
 /* How many records the junction angles of a shape take: its first arc lies behind them. */
 static inline size_t narc_angle_records(size_t count) { return (count + NARC_RECORD_ANGLES - 1) / NARC_RECORD_ANGLES; }
 
-/* All records of a shape: its angles, its arcs and its box. */
-static inline size_t narc_count_records(size_t count) { return narc_angle_records(count) + count + 1; }
+/* All records of a shape: its angles and its arcs. */
+static inline size_t narc_count_records(size_t count) { return narc_angle_records(count) + count; }
 
 /* 96 roundings, so that the circles stay clear of the deciding formula's error. That error is 32 roundings
  * (NARC_ERROR_BOUND) of the distance between the positions plus both extents, and that distance exceeds the distance
@@ -120,7 +111,7 @@ struct narc_shapes {
     size_t count, capacity;               /* headers, those of removed shapes among them */
     size_t removed_count;                 /* removed shapes */
     uint32_t last_removed;                /* the last of them, if there are any: narc_shape_header.removed_before */
-    size_t curved_count;                  /* shapes without NARC_SHAPE_POLYGON */
+    uint64_t change_count;                /* how often shapes came, changed or went */
     size_t record_count, record_capacity; /* records, with the gaps between blocks */
     size_t used_records;                  /* records in blocks of shapes, and of the circle that removed ones have */
     narc_allocator allocator;

@@ -23,9 +23,10 @@ enum { MANY_PAIRS = 4000000 };
 typedef struct batch {
     const narrow_settings *chosen;
     const narc_shapes *store;
+    narc_methods *methods;
     narc_bodies bodies;
     narc_pairs pairs;
-    narc_query query;
+    narc_method_query query;
 } batch;
 
 narc_method find_method(const char *name) {
@@ -81,13 +82,13 @@ static void call_library(const batch *asked, narrow_result *result) {
     narc_error error;
     const double start = seconds_now();
     if (is_filter(asked->query.method)) {
-        result->call = "narc_query_overlaps";
-        status = narc_query_overlaps(asked->store, &asked->bodies, &asked->pairs, &asked->query, threads,
-                                     result->colliding, &error);
+        result->call = "narc_find_overlaps_by";
+        status = narc_find_overlaps_by(asked->methods, &asked->bodies, &asked->pairs, &asked->query, threads,
+                                       result->colliding, &error);
     } else {
-        result->call = "narc_query_contacts";
-        status = narc_query_contacts(asked->store, &asked->bodies, &asked->pairs, &asked->query, margin, threads,
-                                     &result->contacts, &result->contact_count, &error);
+        result->call = "narc_find_contacts_by";
+        status = narc_find_contacts_by(asked->methods, &asked->bodies, &asked->pairs, &asked->query, margin, threads,
+                                       &result->contacts, &result->contact_count, &error);
     }
     result->seconds = seconds_now() - start;
     check(status, &error);
@@ -115,12 +116,12 @@ static void find_colliding(const batch *asked, narrow_result *result) {
     if (is_filter(asked->query.method))
         return;
     if (margin < 0) {
-        narc_query again = asked->query;
+        narc_method_query again = asked->query;
         again.out_outcomes = NULL;
         again.out_skipped = NULL;
         narc_error error;
-        check(narc_query_overlaps(asked->store, &asked->bodies, &asked->pairs, &again, asked->chosen->threads,
-                                  result->colliding, &error),
+        check(narc_find_overlaps_by(asked->methods, &asked->bodies, &asked->pairs, &again, asked->chosen->threads,
+                                    result->colliding, &error),
               &error);
         return;
     }
@@ -161,15 +162,17 @@ void run_narrow_phase(const narrow_settings *chosen, const narc_shapes *shapes, 
                       const pair_list *pairs, narrow_result *out_result) {
     const size_t count = pairs->count;
     uint8_t *outcomes = allocate(count, sizeof *outcomes);
-    const batch asked = {.chosen = chosen,
-                         .store = shapes,
-                         .bodies = view_bodies(bodies),
-                         .pairs = view_pairs(pairs),
-                         .query = {.method = chosen->method,
-                                   .tolerance = chosen->tolerance,
-                                   .iterations = chosen->iterations,
-                                   .out_outcomes = chosen->method == NARC_METHOD_SAT ? NULL : outcomes,
-                                   .out_skipped = &out_result->skipped}};
+    narc_error error;
+    batch asked = {.chosen = chosen,
+                   .store = shapes,
+                   .bodies = view_bodies(bodies),
+                   .pairs = view_pairs(pairs),
+                   .query = {.method = chosen->method,
+                             .tolerance = chosen->tolerance,
+                             .iterations = chosen->iterations,
+                             .out_outcomes = chosen->method == NARC_METHOD_SAT ? NULL : outcomes,
+                             .out_skipped = &out_result->skipped}};
+    check(narc_create_methods(shapes, NULL, &asked.methods, &error), &error);
     *out_result = (narrow_result){.colliding = allocate(NARC_BIT_WORDS(count), sizeof *out_result->colliding)};
     if (!is_filter(chosen->method))
         allocate_contacts(&out_result->contacts, count);
@@ -182,5 +185,6 @@ void run_narrow_phase(const narrow_settings *chosen, const narc_shapes *shapes, 
         for (size_t k = 0; k < count; k++)
             out_result->outcomes[outcomes[k]]++;
     }
+    narc_destroy_methods(asked.methods);
     free(outcomes);
 }

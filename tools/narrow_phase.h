@@ -23,7 +23,7 @@ typedef struct narrow_result {
     size_t contact_count;
     uint64_t *colliding; /* one bit for each pair, see pair_collides() */
     size_t colliding_count;
-    size_t skipped;                 /* pairs without an answer: see narc_query.out_skipped */
+    size_t skipped;                 /* pairs without an answer: see narc_method_query.out_skipped */
     size_t missed, extra;           /* pairs that collide, or do not, and of which the method says otherwise */
     size_t outcomes[OUTCOME_COUNT]; /* pairs by narc_outcome */
     const char *call;               /* what was timed: the library's function */

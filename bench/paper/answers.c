@@ -40,6 +40,7 @@ struct counts {
 
 struct family_shapes {
     narc_shapes *shapes;
+    narc_methods *methods;
     struct bound bounds[SHAPES];
 };
 
@@ -55,16 +56,17 @@ struct chunk {
 /* ------------------------------------------------------------------------------------------------ pairs */
 
 static struct family_shapes make_shapes(enum family family, uint64_t *random) {
-    struct family_shapes made = {NULL, {{0, 0, 0, 0}}};
+    struct family_shapes made = {NULL, NULL, {{0, 0, 0, 0}}};
     if (narc_create_shapes(NULL, &made.shapes) != NARC_OK)
         fail("out of memory");
+    narc_error error;
     for (size_t k = 0; k < SHAPES; k++) {
         narc_arc arcs[NARC_MAX_ARCS];
-        narc_error error;
         const size_t count = make_shape(family, random, arcs);
         must(narc_add_shape(made.shapes, arcs, count, NULL, &error), &error);
         made.bounds[k] = bound_of(arcs, count);
     }
+    must(narc_create_methods(made.shapes, NULL, &made.methods, &error), &error);
     return made;
 }
 
@@ -161,15 +163,15 @@ static void tally_contact(const struct chunk *chunk, size_t k, narc_method metho
 static void ask_method(const struct family_shapes *made, struct chunk *chunk, narc_method method, struct tally *tally) {
     const narc_bodies bodies = bodies_of(chunk->bodies, 2 * chunk->count);
     const narc_pairs pairs = neighbours(chunk->count);
-    const narc_query query = {.method = method, .out_outcomes = chunk->outcomes};
+    const narc_method_query query = {.method = method, .out_outcomes = chunk->outcomes};
     size_t found;
     narc_error error;
-    must(narc_query_overlaps(made->shapes, &bodies, &pairs, &query, 0, chunk->bits, &error), &error);
+    must(narc_find_overlaps_by(made->methods, &bodies, &pairs, &query, 0, chunk->bits, &error), &error);
     for (size_t k = 0; k < chunk->count; k++) {
         const struct scales scales = scales_of(made, &chunk->bodies[2 * k]);
         tally_overlap(chunk, k, &scales, tally);
     }
-    must(narc_query_contacts(made->shapes, &bodies, &pairs, &query, INFINITY, 0, &chunk->found, &found, &error),
+    must(narc_find_contacts_by(made->methods, &bodies, &pairs, &query, INFINITY, 0, &chunk->found, &found, &error),
          &error);
     for (size_t k = 0; k < chunk->count; k++) {
         const struct scales scales = scales_of(made, &chunk->bodies[2 * k]);
@@ -203,6 +205,7 @@ static struct counts count_family(const struct settings *settings, enum family f
         left -= chunk.count;
         free_chunk(&chunk);
     }
+    narc_destroy_methods(made.methods);
     narc_destroy_shapes(made.shapes);
     return counts;
 }

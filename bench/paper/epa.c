@@ -24,14 +24,14 @@ static struct depth_error measure(const struct paper *paper, enum kind kind, siz
     narc_contacts exact = allocate_contacts(count), found = allocate_contacts(count);
     double *errors = allocate(count, sizeof *errors);
     uint8_t *outcomes = allocate(count, 1);
-    const narc_query query = {
+    const narc_method_query query = {
         .method = NARC_METHOD_GJK, .tolerance = (float)threshold_of(threshold), .out_outcomes = outcomes};
     struct depth_error error = {0, 0, 0, 0, 0};
     size_t found_count;
     narc_error reason;
     separate(scene->templates->shapes[kind], scene->bodies, count, &exact);
-    must(narc_query_contacts(scene->templates->shapes[kind], &bodies, &pairs, &query, INFINITY, 0, &found, &found_count,
-                             &reason),
+    must(narc_find_contacts_by(scene->templates->methods[kind], &bodies, &pairs, &query, INFINITY, 0, &found,
+                               &found_count, &reason),
          &reason);
     for (size_t k = 0; k < count; k++) {
         const double size_of_pair = size_of(scene->templates->bounds[kind], &scene->bodies[2 * k]);

@@ -68,7 +68,7 @@ static struct moving make_moving(const struct paper *paper, size_t size, double 
 
 static size_t add_moving_row(struct paper *paper, const struct moving *moving, enum question question, enum start start,
                              const char *isa) {
-    struct row row = {.shapes = moving->templates->shapes[KIND_ARC],
+    struct row row = {.methods = moving->templates->methods[KIND_ARC],
                       .frame_count = MAX_FRAMES,
                       .pair_count = moving->pair_count,
                       .question = question,
@@ -89,13 +89,13 @@ static size_t count_wrong(const struct moving *moving, bool warm) {
     uint32_t *hints = allocate(count, sizeof *hints);
     uint64_t *bits = allocate(NARC_BIT_WORDS(count), sizeof *bits);
     narc_contacts exact = allocate_contacts(count);
-    const narc_query query = {.method = NARC_METHOD_GJK, .hints = warm ? hints : NULL};
+    const narc_method_query query = {.method = NARC_METHOD_GJK, .hints = warm ? hints : NULL};
     size_t wrong = 0;
     narc_error error;
     for (int frame = 0; frame < 2 * MAX_FRAMES; frame++) {
         const struct body *frame_bodies = moving->frames[frame % MAX_FRAMES];
         const narc_bodies bodies = bodies_of(frame_bodies, 2 * count);
-        must(narc_query_overlaps(moving->templates->shapes[KIND_ARC], &bodies, &pairs, &query, 0, bits, &error),
+        must(narc_find_overlaps_by(moving->templates->methods[KIND_ARC], &bodies, &pairs, &query, 0, bits, &error),
              &error);
         separate(moving->templates->shapes[KIND_ARC], frame_bodies, count, &exact);
         for (size_t k = 0; k < count; k++)

@@ -30,7 +30,7 @@ size_t add_row(struct rows *rows, struct row row) {
 
 struct row row_of(const struct scene *scene, enum kind kind, enum question question, narc_method method,
                   const char *isa) {
-    return (struct row){.shapes = scene->templates->shapes[kind],
+    return (struct row){.methods = scene->templates->methods[kind],
                         .frames = {scene->bodies},
                         .frame_count = 1,
                         .pair_count = scene->pair_count,
@@ -45,9 +45,10 @@ static void ask(const struct row *row, const struct body *list, struct answers *
     const narc_pairs pairs = neighbours(row->pair_count);
     narc_error error;
     if (row->question == QUESTION_OVERLAP)
-        must(narc_query_overlaps(row->shapes, &bodies, &pairs, &row->query, 1, out->bits, &error), &error);
+        must(narc_find_overlaps_by(row->methods, &bodies, &pairs, &row->query, 1, out->bits, &error), &error);
     else
-        must(narc_query_contacts(row->shapes, &bodies, &pairs, &row->query, 0, 1, &out->contacts, &out->found, &error),
+        must(narc_find_contacts_by(row->methods, &bodies, &pairs, &row->query, 0, 1, &out->contacts, &out->found,
+                                   &error),
              &error);
 }
 

@@ -12,11 +12,11 @@ enum question { QUESTION_OVERLAP, QUESTION_CONTACT, QUESTIONS };
 enum { MAX_REPETITIONS = 16, MAX_FRAMES = 8 };
 
 struct row {
-    const narc_shapes *shapes;
+    const narc_methods *methods;
     const struct body *frames[MAX_FRAMES]; /* each is asked about in turn; one frame: a scene that stands still */
     size_t frame_count, pair_count;
     enum question question;
-    narc_query query;
+    narc_method_query query;
     const char *isa;
     int claim; /* what every answer must be: 1 colliding, 0 apart, -1: not known */
 

@@ -59,6 +59,10 @@ struct templates make_templates(size_t n, size_t count, uint64_t *random) {
         fit_n_gon(&outline, junctions, n, arcs);
         add_template(&templates, KIND_GON, k, arcs);
     }
+    for (enum kind kind = 0; kind < KINDS; kind++) {
+        narc_error error;
+        must(narc_create_methods(templates.shapes[kind], NULL, &templates.methods[kind], &error), &error);
+    }
     return templates;
 }
 

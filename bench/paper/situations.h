@@ -20,6 +20,7 @@ struct bound {
 struct templates {
     size_t n, count;
     narc_shapes *shapes[KINDS];
+    narc_methods *methods[KINDS];
     struct bound *bounds[KINDS];
 };
 

@@ -15,19 +15,19 @@ static struct step_count count_scene(const struct scene *scene, enum kind kind, 
     const size_t count = scene->pair_count;
     const narc_bodies bodies = bodies_of(scene->bodies, 2 * count);
     const narc_pairs pairs = neighbours(count);
-    const narc_shapes *shapes = scene->templates->shapes[kind];
+    const narc_methods *methods = scene->templates->methods[kind];
     uint8_t *outcomes = allocate(count, 1);
     uint64_t *bits = allocate(NARC_BIT_WORDS(count), sizeof *bits);
     narc_contacts contacts = allocate_contacts(count);
     size_t sum = count, more = count, found;
-    narc_query query = {.method = NARC_METHOD_GJK, .tolerance = (float)threshold, .out_outcomes = outcomes};
+    narc_method_query query = {.method = NARC_METHOD_GJK, .tolerance = (float)threshold, .out_outcomes = outcomes};
     narc_error error;
     struct step_count steps = {.most = 1};
     for (query.iterations = 1; query.iterations < NARC_MAX_ITERATIONS && more > 0; query.iterations++) {
         if (question == QUESTION_OVERLAP)
-            must(narc_query_overlaps(shapes, &bodies, &pairs, &query, 0, bits, &error), &error);
+            must(narc_find_overlaps_by(methods, &bodies, &pairs, &query, 0, bits, &error), &error);
         else
-            must(narc_query_contacts(shapes, &bodies, &pairs, &query, 0, 0, &contacts, &found, &error), &error);
+            must(narc_find_contacts_by(methods, &bodies, &pairs, &query, 0, 0, &contacts, &found, &error), &error);
         more = 0;
         for (size_t k = 0; k < count; k++)
             more += outcomes[k] == NARC_OUTCOME_LIMIT;

@@ -11,7 +11,7 @@
  */
 #include <math.h>
 
-#include <narc_methods.h>
+#include <narc.h>
 
 #include "internal.h"
 #include "progress.h"

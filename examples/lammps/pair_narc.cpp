@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include <narc_methods.h>
+#include <narc.h>
 
 #include "atom.h"
 #include "comm.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * call.inl - one call of a kernel, and the answers that are written as single bits and bytes.
+ * call.inl - one call of a kernel, and the answers that are written as single bits.
  */
 #ifndef NARC_BASE_CALL_INL
 #define NARC_BASE_CALL_INL
@@ -52,16 +52,6 @@ INLINE void mark_overlaps(const struct call *call, const struct queue *queue, in
         const uint32_t number = (uint32_t)pair[__builtin_ctz(lanes)];
         call->bits[number / 64] |= (uint64_t)1 << number % 64;
     }
-}
-
-/* Notes the outcome of the pairs k ... of a queue in the lanes `which`. */
-INLINE void note_outcome(const struct call *call, const struct queue *queue, int k, vm which, narc_outcome outcome) {
-    int32_t pair[V_WIDTH];
-    if (!call->batch->outcomes || !vm_any(which))
-        return;
-    get_pairs(queue, k, pair);
-    for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1)
-        call->batch->outcomes[call->first + (uint32_t)pair[__builtin_ctz(lanes)]] = (uint8_t)outcome;
 }
 
 #endif

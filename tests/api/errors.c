@@ -70,7 +70,7 @@ struct call {
     const narc_bodies *bodies;
     const narc_pairs *pairs;
     bool no_query;
-    narc_query query; /* hints and outcomes are wanted always */
+    narc_method_query query; /* hints and outcomes are wanted always */
     float margin;
     bool contacts_only;
 };
@@ -120,21 +120,21 @@ static void check_plain_calls(const narc_shapes *shapes, const narc_bodies *bodi
 static void check_call(const struct call *call, narc_status expected, const char *const texts[], size_t text_count) {
     for (unsigned threads = 0; threads < 3; threads++) {
         struct outputs out = create_outputs();
-        narc_query query = call->query;
+        narc_method_query query = call->query;
         query.hints = out.hints;
         query.out_outcomes = out.outcomes;
         query.out_skipped = &out.skipped;
-        const narc_query *passed = call->no_query ? NULL : &query;
+        const narc_method_query *passed = call->no_query ? NULL : &query;
         for (int silent = 0; silent < 2 && !call->contacts_only; silent++) {
-            const narc_status status = narc_query_overlaps(call->shapes, call->bodies, call->pairs, passed, threads,
-                                                           out.bits, silent ? NULL : &out.error);
+            const narc_status status = overlaps_by_method(call->shapes, call->bodies, call->pairs, passed, threads,
+                                                          out.bits, silent ? NULL : &out.error);
             check_error(&out, status, expected, texts, text_count);
         }
         memset(&out.error, 0, sizeof out.error);
         for (int silent = 0; silent < 2 && (has_contacts(query.method) || call->contacts_only); silent++) {
             const narc_status status =
-                narc_query_contacts(call->shapes, call->bodies, call->pairs, passed, call->margin, threads,
-                                    &out.contacts.view, &out.contacts.count, silent ? NULL : &out.error);
+                contacts_by_method(call->shapes, call->bodies, call->pairs, passed, call->margin, threads,
+                                   &out.contacts.view, &out.contacts.count, silent ? NULL : &out.error);
             check_error(&out, status, expected, texts, text_count);
         }
         destroy_untouched(&out);
@@ -177,7 +177,7 @@ static void test_queries(void **state) {
     }
     call.contacts_only = false;
     for (int method = 0; method < METHODS; method++) {
-        call.query = (narc_query){.method = (narc_method)method, .tolerance = NAN};
+        call.query = (narc_method_query){.method = (narc_method)method, .tolerance = NAN};
         check_call(&call, NARC_ERROR_NOT_FINITE, NAMES("tolerance"));
         call.query.tolerance = INFINITY;
         check_call(&call, NARC_ERROR_NOT_FINITE, NAMES("tolerance", "inf"));
@@ -351,26 +351,27 @@ static void test_outputs(void **state) {
         if (method == NARC_METHOD_POLYGON_SAT)
             continue; /* not of these shapes */
         struct outputs out = create_outputs();
-        const narc_query query = {.method = (narc_method)method, .hints = out.hints, .out_outcomes = out.outcomes};
-        check_error(&out, narc_query_overlaps(scene.store, &bodies, &pairs, &query, 1, NULL, &out.error),
+        const narc_method_query query = {
+            .method = (narc_method)method, .hints = out.hints, .out_outcomes = out.outcomes};
+        check_error(&out, overlaps_by_method(scene.store, &bodies, &pairs, &query, 1, NULL, &out.error),
                     NARC_ERROR_ARGUMENT, NAMES("out_bits"));
         if (has_contacts(query.method)) {
             check_error(
                 &out,
-                narc_query_contacts(scene.store, &bodies, &pairs, &query, 0, 1, NULL, &out.contacts.count, &out.error),
+                contacts_by_method(scene.store, &bodies, &pairs, &query, 0, 1, NULL, &out.contacts.count, &out.error),
                 NARC_ERROR_ARGUMENT, NAMES("out_contacts"));
             check_error(
                 &out,
-                narc_query_contacts(scene.store, &bodies, &pairs, &query, 0, 1, &out.contacts.view, NULL, &out.error),
+                contacts_by_method(scene.store, &bodies, &pairs, &query, 0, 1, &out.contacts.view, NULL, &out.error),
                 NARC_ERROR_ARGUMENT, NAMES("out_count"));
             check_error(&out,
-                        narc_query_contacts(scene.store, &bodies, &pairs, &query, NAN, 1, &out.contacts.view,
-                                            &out.contacts.count, &out.error),
+                        contacts_by_method(scene.store, &bodies, &pairs, &query, NAN, 1, &out.contacts.view,
+                                           &out.contacts.count, &out.error),
                         NARC_ERROR_NOT_FINITE, NAMES("margin"));
         } else {
             check_error(&out,
-                        narc_query_contacts(scene.store, &bodies, &pairs, &query, 0, 1, &out.contacts.view,
-                                            &out.contacts.count, &out.error),
+                        contacts_by_method(scene.store, &bodies, &pairs, &query, 0, 1, &out.contacts.view,
+                                           &out.contacts.count, &out.error),
                         NARC_ERROR_ARGUMENT, NAMES(narc_method_name(query.method)));
         }
         destroy_untouched(&out);
@@ -443,12 +444,13 @@ static void test_no_pairs(void **state) {
     pairs.count = 0;
     for (int method = 0; method < METHODS; method++) {
         struct outputs out = create_outputs();
-        const narc_query query = {.method = (narc_method)method, .hints = out.hints, .out_outcomes = out.outcomes};
-        assert_int_equal(narc_query_overlaps(scene.store, &bodies, &pairs, &query, 0, NULL, NULL), NARC_OK);
-        assert_int_equal(narc_query_overlaps(scene.store, &bodies, &pairs, &query, 2, out.bits, NULL), NARC_OK);
+        const narc_method_query query = {
+            .method = (narc_method)method, .hints = out.hints, .out_outcomes = out.outcomes};
+        assert_int_equal(overlaps_by_method(scene.store, &bodies, &pairs, &query, 0, NULL, NULL), NARC_OK);
+        assert_int_equal(overlaps_by_method(scene.store, &bodies, &pairs, &query, 2, out.bits, NULL), NARC_OK);
         if (has_contacts(query.method)) {
-            assert_int_equal(narc_query_contacts(scene.store, &bodies, &pairs, &query, 0, 2, &out.contacts.view,
-                                                 &out.contacts.count, NULL),
+            assert_int_equal(contacts_by_method(scene.store, &bodies, &pairs, &query, 0, 2, &out.contacts.view,
+                                                &out.contacts.count, NULL),
                              NARC_OK);
             assert_int_equal(out.contacts.count, 0);
             out.contacts.count = 12345;
@@ -481,9 +483,9 @@ static void test_capacity(void **state) {
         const narc_pairs pairs = scene_pairs(&scene);
         uint32_t *hints = create_hints(MANY), *enough_hints = create_hints(MANY);
         uint8_t *outcomes = create_outcomes(MANY), *enough_outcomes = create_outcomes(MANY);
-        const narc_query enough = {.method = methods[m], .hints = enough_hints, .out_outcomes = enough_outcomes};
+        const narc_method_query enough = {.method = methods[m], .hints = enough_hints, .out_outcomes = enough_outcomes};
         size_t skipped;
-        const narc_query query = {
+        const narc_method_query query = {
             .method = methods[m], .hints = hints, .out_outcomes = outcomes, .out_skipped = &skipped};
         struct contacts all = query_contacts(&scene, &enough, 0, 1);
         assert_true(all.count > 100);
@@ -493,8 +495,8 @@ static void test_capacity(void **state) {
             narc_error error;
             memset(hints, 0, MANY * sizeof *hints);
             skipped = 12345;
-            assert_int_equal(narc_query_contacts(scene.store, &bodies, &pairs, &query, 0, threads, &shorter.view,
-                                                 &shorter.count, &error),
+            assert_int_equal(contacts_by_method(scene.store, &bodies, &pairs, &query, 0, threads, &shorter.view,
+                                                &shorter.count, &error),
                              NARC_ERROR_CAPACITY);
             assert_int_equal(error.status, NARC_ERROR_CAPACITY);
             assert_int_equal(shorter.count, all.count);
@@ -556,7 +558,7 @@ static void test_invalid_bodies(void **state) {
         uint8_t *outcomes = create_outcomes(count);
         uint32_t *hints = create_hints(count);
         size_t skipped = 0;
-        const narc_query query = {
+        const narc_method_query query = {
             .method = (narc_method)method, .hints = hints, .out_outcomes = outcomes, .out_skipped = &skipped};
         uint64_t *bits = query_overlaps(&scene, &query, 1);
         assert_true(bits[0] == 0);

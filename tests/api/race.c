@@ -21,6 +21,7 @@ enum kind { FIRST_CALL, SWITCHING, ALL_METHODS };
 struct shared {
     enum kind kind;
     struct scene scene;
+    narc_methods *methods;
     pthread_barrier_t start;
 };
 
@@ -60,12 +61,12 @@ static void ask_method(struct worker *w, narc_method method) {
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
     const narc_contacts contacts = {.capacity = PAIRS, .separation = w->separation};
-    const narc_query query = {.method = method, .hints = w->hints, .out_outcomes = w->outcomes};
+    const narc_method_query query = {.method = method, .hints = w->hints, .out_outcomes = w->outcomes};
     for (int frame = 0; frame < 3; frame++) {
-        check(w, narc_query_overlaps(scene->store, &bodies, &pairs, &query, 1, w->bits, NULL) == NARC_OK);
+        check(w, narc_find_overlaps_by(w->shared->methods, &bodies, &pairs, &query, 1, w->bits, NULL) == NARC_OK);
         if (method < NARC_METHOD_CIRCLE) {
-            check(w, narc_query_contacts(scene->store, &bodies, &pairs, &query, INFINITY, 1, &contacts, &w->count,
-                                         NULL) == NARC_OK);
+            check(w, narc_find_contacts_by(w->shared->methods, &bodies, &pairs, &query, INFINITY, 1, &contacts,
+                                           &w->count, NULL) == NARC_OK);
         }
     }
 }
@@ -117,7 +118,8 @@ static bool same_answers(const struct worker *one, const struct worker *other) {
 static bool race(enum kind kind) {
     struct shared shared = {.kind = kind, .scene = make_polygon_scene()};
     struct worker *workers = calloc(THREADS, sizeof *workers);
-    if (!workers || pthread_barrier_init(&shared.start, NULL, THREADS) != 0)
+    if (!workers || narc_create_methods(shared.scene.store, NULL, &shared.methods, NULL) != NARC_OK ||
+        pthread_barrier_init(&shared.start, NULL, THREADS) != 0)
         return false;
     for (int k = 0; k < THREADS; k++) {
         workers[k].shared = &shared;
@@ -134,6 +136,7 @@ static bool race(enum kind kind) {
                workers[k].count == (method < NARC_METHOD_CIRCLE ? PAIRS : 0);
     }
     pthread_barrier_destroy(&shared.start);
+    narc_destroy_methods(shared.methods);
     destroy_scene(&shared.scene);
     free(workers);
     return same;

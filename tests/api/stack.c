@@ -68,25 +68,25 @@ static const narc_manifold_options manifold_options = {.margin = 0.5f, .hints = 
 static const narc_box_options box_options = {
     .margin = 0.1f, .motion_x = NARC_ARRAY_INIT(margins), .motion_y = NARC_ARRAY_INIT(shifts), .out_skipped = &skipped};
 
-static narc_query make_query(narc_method method) {
-    return (narc_query){.method = method, .hints = hints, .out_outcomes = outcomes, .out_skipped = &skipped};
+static narc_method_query make_query(narc_method method) {
+    return (narc_method_query){.method = method, .hints = hints, .out_outcomes = outcomes, .out_skipped = &skipped};
 }
 
 static narc_status query_bits(unsigned threads, narc_method method, narc_error *error) {
-    const narc_query query = make_query(method);
+    const narc_method_query query = make_query(method);
     const struct scene *s = method == NARC_METHOD_POLYGON_SAT ? &polygons : &scene;
     const narc_bodies all = scene_bodies(s);
     const narc_pairs some = scene_pairs(s);
-    return narc_query_overlaps(s->store, &all, &some, &query, threads, bits, error);
+    return overlaps_by_method(s->store, &all, &some, &query, threads, bits, error);
 }
 
 static narc_status query_list(unsigned threads, narc_method method, narc_error *error) {
-    const narc_query query = make_query(method);
+    const narc_method_query query = make_query(method);
     const struct scene *s = method == NARC_METHOD_POLYGON_SAT ? &polygons : &scene;
     const narc_bodies all = scene_bodies(s);
     const narc_pairs some = scene_pairs(s);
     const narc_status status =
-        narc_query_contacts(s->store, &all, &some, &query, INFINITY, threads, &contacts, &found, error);
+        contacts_by_method(s->store, &all, &some, &query, INFINITY, threads, &contacts, &found, error);
     const bool filter = status == NARC_ERROR_ARGUMENT && method >= NARC_METHOD_CIRCLE; /* which have no contacts */
     return filter ? NARC_OK : status;
 }
@@ -213,18 +213,18 @@ static const struct call calls[] = {
     {"narc_find_contact, of broken bodies", fail_to_find, 0},
     {"narc_compute_poses", poses, 0},
     {"the names of things", names, 0},
-    {"narc_query_overlaps, sat", query_bits, NARC_METHOD_SAT},
-    {"narc_query_overlaps, sat-first", query_bits, NARC_METHOD_SAT_FIRST},
-    {"narc_query_overlaps, polygon-sat", query_bits, NARC_METHOD_POLYGON_SAT},
-    {"narc_query_overlaps, gjk", query_bits, NARC_METHOD_GJK},
-    {"narc_query_overlaps, circle", query_bits, NARC_METHOD_CIRCLE},
-    {"narc_query_overlaps, aabb", query_bits, NARC_METHOD_AABB},
-    {"narc_query_overlaps, obb", query_bits, NARC_METHOD_OBB},
-    {"narc_query_contacts, sat", query_list, NARC_METHOD_SAT},
-    {"narc_query_contacts, sat-first", query_list, NARC_METHOD_SAT_FIRST},
-    {"narc_query_contacts, polygon-sat", query_list, NARC_METHOD_POLYGON_SAT},
-    {"narc_query_contacts, gjk", query_list, NARC_METHOD_GJK},
-    {"narc_query_contacts, circle", query_list, NARC_METHOD_CIRCLE},
+    {"narc_find_overlaps_by, sat", query_bits, NARC_METHOD_SAT},
+    {"narc_find_overlaps_by, sat-first", query_bits, NARC_METHOD_SAT_FIRST},
+    {"narc_find_overlaps_by, polygon-sat", query_bits, NARC_METHOD_POLYGON_SAT},
+    {"narc_find_overlaps_by, gjk", query_bits, NARC_METHOD_GJK},
+    {"narc_find_overlaps_by, circle", query_bits, NARC_METHOD_CIRCLE},
+    {"narc_find_overlaps_by, aabb", query_bits, NARC_METHOD_AABB},
+    {"narc_find_overlaps_by, obb", query_bits, NARC_METHOD_OBB},
+    {"narc_find_contacts_by, sat", query_list, NARC_METHOD_SAT},
+    {"narc_find_contacts_by, sat-first", query_list, NARC_METHOD_SAT_FIRST},
+    {"narc_find_contacts_by, polygon-sat", query_list, NARC_METHOD_POLYGON_SAT},
+    {"narc_find_contacts_by, gjk", query_list, NARC_METHOD_GJK},
+    {"narc_find_contacts_by, circle", query_list, NARC_METHOD_CIRCLE},
     {"narc_compute_boxes", all_boxes, 0},
     {"narc_compute_boxes_range", some_boxes, 0},
     {"narc_find_pairs", box_pairs, 0},

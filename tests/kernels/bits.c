@@ -17,7 +17,7 @@ enum { SMALL_COUNTS = 132, BODIES = 67 };
 static const float margins[] = {0.0f, 0.25f, -0.1f, INFINITY};
 enum { MARGINS = sizeof(margins) / sizeof(margins[0]) };
 
-static const narc_query queries[] = {
+static const narc_method_query queries[] = {
     {.method = NARC_METHOD_SAT},
     {.method = NARC_METHOD_SAT_FIRST},
     {.method = NARC_METHOD_POLYGON_SAT},
@@ -30,7 +30,7 @@ static const narc_query queries[] = {
 };
 enum { QUERIES = sizeof(queries) / sizeof(queries[0]) };
 
-static bool has_contacts(const narc_query *query) { return query->method < NARC_METHOD_CIRCLE; }
+static bool has_contacts(const narc_method_query *query) { return query->method < NARC_METHOD_CIRCLE; }
 
 /* Polygon-sat takes nothing else: gives every body a polygon of the scene's. */
 static void keep_polygons(struct scene *scene) {
@@ -44,8 +44,8 @@ static void keep_polygons(struct scene *scene) {
         scene->bodies[k].shape = polygon[k % count];
 }
 
-static struct scene make_query_scene(struct test_random *random, const narc_query *query, narc_precision precision,
-                                     size_t bodies, size_t pairs) {
+static struct scene make_query_scene(struct test_random *random, const narc_method_query *query,
+                                     narc_precision precision, size_t bodies, size_t pairs) {
     struct scene scene = make_random_scene(random, precision, bodies, pairs);
     if (query->method == NARC_METHOD_POLYGON_SAT)
         keep_polygons(&scene);
@@ -62,7 +62,7 @@ struct left {
 
 /* What scalar says of all pairs of a scene, one thread. */
 struct expected {
-    const narc_query *query;
+    const narc_method_query *query;
     uint32_t *hints_before; /* NULL: a call without */
     uint64_t *bits;
     struct left of_bits;
@@ -70,8 +70,8 @@ struct expected {
     struct left of_contacts[MARGINS];
 };
 
-static narc_query prepare(const struct expected *expected, size_t count, struct left *left) {
-    narc_query query = *expected->query;
+static narc_method_query prepare(const struct expected *expected, size_t count, struct left *left) {
+    narc_method_query query = *expected->query;
     left->outcomes = query.out_outcomes = create_outcomes(count);
     left->hints = NULL;
     if (expected->hints_before) {
@@ -81,10 +81,10 @@ static narc_query prepare(const struct expected *expected, size_t count, struct 
     return query;
 }
 
-static struct expected expect(const struct scene *scene, const narc_query *query, uint32_t *hints) {
+static struct expected expect(const struct scene *scene, const narc_method_query *query, uint32_t *hints) {
     struct expected expected = {.query = query, .hints_before = hints};
     test_use_isa("scalar");
-    narc_query prepared = prepare(&expected, scene->pair_count, &expected.of_bits);
+    narc_method_query prepared = prepare(&expected, scene->pair_count, &expected.of_bits);
     expected.bits = query_overlaps(scene, &prepared, 1);
     for (int m = 0; has_contacts(query) && m < MARGINS; m++) {
         prepared = prepare(&expected, scene->pair_count, &expected.of_contacts[m]);
@@ -119,16 +119,16 @@ struct part {
 };
 
 /* Hints and outcomes of a part between guard pages. */
-static narc_query guard_query(const struct expected *expected, const struct part *part) {
+static narc_method_query guard_query(const struct expected *expected, const struct part *part) {
     const size_t count = part->columns.pairs.count;
-    narc_query query = *expected->query;
+    narc_method_query query = *expected->query;
     query.out_outcomes = guard_allocate(count);
     if (expected->hints_before)
         query.hints = guard_copy(expected->hints_before + part->first, count * sizeof(uint32_t));
     return query;
 }
 
-static void check_left(const narc_query *query, const struct left *expected, const struct part *part) {
+static void check_left(const narc_method_query *query, const struct left *expected, const struct part *part) {
     const size_t count = part->columns.pairs.count;
     assert_memory_equal(query->out_outcomes, expected->outcomes + part->first, count);
     guard_release(query->out_outcomes);
@@ -140,10 +140,10 @@ static void check_left(const narc_query *query, const struct left *expected, con
 
 static void check_overlaps(const struct expected *expected, const struct part *part) {
     const size_t count = part->columns.pairs.count, words = NARC_BIT_WORDS(count);
-    const narc_query query = guard_query(expected, part);
+    const narc_method_query query = guard_query(expected, part);
     uint64_t *out = guard_allocate(words * sizeof(uint64_t));
     assert_int_equal(
-        narc_query_overlaps(part->store, &part->columns.bodies, &part->columns.pairs, &query, part->threads, out, NULL),
+        overlaps_by_method(part->store, &part->columns.bodies, &part->columns.pairs, &query, part->threads, out, NULL),
         NARC_OK);
     for (size_t k = 0; k < 64 * words; k++) {
         const bool right = k < count && bit_is_set(expected->bits, part->first + k);
@@ -164,11 +164,11 @@ static void check_contacts(const struct expected *expected, const struct part *p
         from++;
     while (from + found < all->count && all->view.pair[from + found] < part->first + count)
         found++;
-    const narc_query query = guard_query(expected, part);
+    const narc_method_query query = guard_query(expected, part);
     /* No longer than what is found: the guards then lie right behind the last contact. */
     struct contacts out = {.view = create_guarded_contacts(found), .count = SIZE_MAX};
-    assert_int_equal(narc_query_contacts(part->store, &part->columns.bodies, &part->columns.pairs, &query, margins[m],
-                                         part->threads, &out.view, &out.count, NULL),
+    assert_int_equal(contacts_by_method(part->store, &part->columns.bodies, &part->columns.pairs, &query, margins[m],
+                                        part->threads, &out.view, &out.count, NULL),
                      NARC_OK);
     assert_int_equal(out.count, found);
     for (size_t k = 0; k < found; k++)
@@ -203,7 +203,7 @@ static uint32_t *random_hints(struct test_random *random, size_t count) {
 }
 
 /* Every count, each in the next layout; of the exact test, which more kernels answer, each in all of them. */
-static void check_all_counts(const narc_query *query, narc_precision precision, bool hinted) {
+static void check_all_counts(const narc_method_query *query, narc_precision precision, bool hinted) {
     struct test_random random = test_random_named(narc_method_name(query->method));
     struct scene scene = make_query_scene(&random, query, precision, BODIES, 2 * SMALL_COUNTS);
     narc_shapes *store = guard_store(&scene);
@@ -318,7 +318,7 @@ static void test_neighbours(void **state) {
             continue;
         struct scene scene = make_query_scene(&random, &queries[q], NARC_FLOAT32, BODIES, 60);
         uint8_t *outcomes = create_outcomes(60), *again = create_outcomes(40);
-        narc_query query = queries[q], repeat = queries[q];
+        narc_method_query query = queries[q], repeat = queries[q];
         query.out_outcomes = outcomes;
         repeat.out_outcomes = again;
         struct contacts all = query_contacts(&scene, &query, INFINITY, 1);
@@ -395,9 +395,10 @@ static void break_body(struct body *body, size_t way) {
     }
 }
 
-static void check_skipped(const struct scene *scene, const narc_query *asked, size_t expected, unsigned threads) {
+static void check_skipped(const struct scene *scene, const narc_method_query *asked, size_t expected,
+                          unsigned threads) {
     size_t skipped = 12345;
-    narc_query query = *asked;
+    narc_method_query query = *asked;
     query.out_skipped = &skipped;
     free(query_overlaps(scene, &query, threads));
     assert_int_equal(skipped, expected);
@@ -434,9 +435,9 @@ static void test_skipped_pairs(void **state) {
             const narc_pairs pairs = {.count = count, .a = NARC_COLUMN(from, a), .b = NARC_COLUMN(from, b)};
             uint64_t bits[NARC_BIT_WORDS(MANY)];
             size_t skipped;
-            narc_query query = queries[q];
+            narc_method_query query = queries[q];
             query.out_skipped = &skipped;
-            assert_int_equal(narc_query_overlaps(scene.store, &bodies, &pairs, &query, 1, bits, NULL), NARC_OK);
+            assert_int_equal(overlaps_by_method(scene.store, &bodies, &pairs, &query, 1, bits, NULL), NARC_OK);
             sum += skipped;
         }
         assert_int_equal(sum, expected);

@@ -55,7 +55,7 @@ static void show_wrong(const struct corpus *corpus, size_t k, const char *name, 
 
 /* ------------------------------------------------------------------------------------------------ contacts */
 
-static double tolerance_of(const narc_query *query) {
+static double tolerance_of(const narc_method_query *query) {
     return query->tolerance > 0 ? (double)query->tolerance : (double)NARC_DEFAULT_TOLERANCE;
 }
 
@@ -70,7 +70,7 @@ static double allowed_distance(const struct exact_pair *pair, double allowed) {
  * the search ended well. Both but for rounding: the bound for the separation that is told, and as much for the other
  * limit, the distance of the segment from the origin, which is made of two support points. */
 static const char *check_gjk_contact(const struct exact_pair *pair, const narc_contacts *told, size_t k,
-                                     const narc_query *query, unsigned outcome, struct tally *tally) {
+                                     const narc_method_query *query, unsigned outcome, struct tally *tally) {
     const double separation = (double)told->separation[k];
     const double allowed = tolerance_of(query) * pair->size + 2 * pair->bound;
     /* GJK ended before it knew whether they collide, so the separation is not negative. */
@@ -95,7 +95,7 @@ static const char *check_gjk_contact(const struct exact_pair *pair, const narc_c
 }
 
 /* All contacts of a corpus. The query's outcomes must be wanted. */
-static struct tally check_contacts(const struct corpus *corpus, const narc_query *query, const char *name) {
+static struct tally check_contacts(const struct corpus *corpus, const narc_method_query *query, const char *name) {
     const size_t count = corpus->scene.pair_count;
     struct tally tally = {.pairs = count};
     memset(query->out_outcomes, 0xa5, count);
@@ -127,7 +127,8 @@ static void test_tolerances(void **state) {
         for (int c = 0; c < CORPORA; c++) {
             char name[64];
             uint8_t *outcomes = create_outcomes(corpora[c].scene.pair_count);
-            const narc_query query = {.method = NARC_METHOD_GJK, .tolerance = tolerances[t], .out_outcomes = outcomes};
+            const narc_method_query query = {
+                .method = NARC_METHOD_GJK, .tolerance = tolerances[t], .out_outcomes = outcomes};
             snprintf(name, sizeof name, "tolerance %g, scene %d", (double)tolerances[t], c);
             const struct tally tally = check_contacts(&corpora[c], &query, name);
             print_tally(name, &tally);
@@ -147,7 +148,8 @@ static void test_iterations(void **state) {
         for (int c = 0; c < CORPORA; c++) {
             char name[64];
             uint8_t *outcomes = create_outcomes(corpora[c].scene.pair_count);
-            const narc_query query = {.method = NARC_METHOD_GJK, .iterations = iterations[i], .out_outcomes = outcomes};
+            const narc_method_query query = {
+                .method = NARC_METHOD_GJK, .iterations = iterations[i], .out_outcomes = outcomes};
             snprintf(name, sizeof name, "iterations %u, scene %d", iterations[i], c);
             const struct tally tally = check_contacts(&corpora[c], &query, name);
             print_tally(name, &tally);
@@ -175,7 +177,7 @@ static void test_margins(void **state) {
         const struct corpus *corpus = &corpora[c];
         const size_t count = corpus->scene.pair_count;
         uint8_t *outcomes = create_outcomes(count);
-        const narc_query query = {.method = NARC_METHOD_GJK, .out_outcomes = outcomes};
+        const narc_method_query query = {.method = NARC_METHOD_GJK, .out_outcomes = outcomes};
         for (size_t m = 0; m < sizeof margins / sizeof *margins; m++) {
             struct contacts found = query_contacts(&corpus->scene, &query, margins[m], 1);
             struct tally tally = {0};
@@ -216,7 +218,7 @@ static void test_margins(void **state) {
 /* ------------------------------------------------------------------------------------------------ overlaps */
 
 /* Bits and outcomes of a corpus. With a limit on iterations an answer may be missing, and then says so. */
-static struct tally check_overlaps(const struct corpus *corpus, const narc_query *query, const char *name) {
+static struct tally check_overlaps(const struct corpus *corpus, const narc_method_query *query, const char *name) {
     const size_t count = corpus->scene.pair_count;
     struct tally tally = {.pairs = count};
     memset(query->out_outcomes, 0xa5, count);
@@ -254,7 +256,8 @@ static void test_overlaps(void **state) {
         for (int c = 0; c < CORPORA; c++) {
             char name[64];
             uint8_t *outcomes = create_outcomes(corpora[c].scene.pair_count);
-            const narc_query query = {.method = NARC_METHOD_GJK, .iterations = iterations[i], .out_outcomes = outcomes};
+            const narc_method_query query = {
+                .method = NARC_METHOD_GJK, .iterations = iterations[i], .out_outcomes = outcomes};
             snprintf(name, sizeof name, "overlaps, iterations %u, %d", iterations[i], c);
             const struct tally tally = check_overlaps(&corpora[c], &query, name);
             print_tally(name, &tally);
@@ -275,7 +278,7 @@ static size_t check_with_hints(const struct corpus *corpus, uint32_t *hints, con
     uint8_t *outcomes = create_outcomes(count);
     uint32_t *of_overlaps = create_hints(count);
     memcpy(of_overlaps, hints, count * sizeof *hints);
-    narc_query query = {.method = NARC_METHOD_GJK, .hints = of_overlaps, .out_outcomes = outcomes};
+    narc_method_query query = {.method = NARC_METHOD_GJK, .hints = of_overlaps, .out_outcomes = outcomes};
     size_t wrong = 0;
     for (int again = 0; again < 2; again++) { /* the second time with what the first one left */
         const struct tally tally = check_overlaps(corpus, &query, what);
@@ -294,7 +297,7 @@ static size_t check_with_hints(const struct corpus *corpus, uint32_t *hints, con
     return wrong;
 }
 
-static size_t count_limits(const struct corpus *corpus, narc_query query) {
+static size_t count_limits(const struct corpus *corpus, narc_method_query query) {
     const size_t count = corpus->scene.pair_count;
     uint8_t *outcomes = create_outcomes(count);
     size_t limits = 0;
@@ -312,7 +315,7 @@ static void test_warm_start(void **state) {
     (void)state;
     for (int c = 0; c < CORPORA; c++) {
         uint32_t *hints = create_hints(corpora[c].scene.pair_count);
-        narc_query query = {.method = NARC_METHOD_GJK, .iterations = 3};
+        narc_method_query query = {.method = NARC_METHOD_GJK, .iterations = 3};
         const size_t cold = count_limits(&corpora[c], query);
         query.hints = hints;
         query.iterations = 0;

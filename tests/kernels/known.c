@@ -103,9 +103,9 @@ static double allowed_turn(const struct known *known, bool edge, bool exact, dou
 }
 
 static void check_known_contacts(const char *name, const struct scene *scene, const struct known *known, bool edge,
-                                 const narc_query *query) {
+                                 const narc_method_query *query) {
     uint8_t outcomes[2 * FRAMES];
-    narc_query with_outcomes = *query;
+    narc_method_query with_outcomes = *query;
     with_outcomes.out_outcomes = outcomes;
     uint64_t *bits = query_overlaps(scene, query, 1);
     struct contacts all = query_contacts(scene, &with_outcomes, INFINITY, 1);
@@ -153,16 +153,16 @@ static void check_known(const char *name, const struct known *known, bool edge) 
         if (fabs(gap - known->gap) > case_bound(&a, &b))
             fail_msg("%s: the reference says %.12g, not %.12g", name, gap, known->gap);
     }
-    check_known_contacts(name, &scene, known, edge, &(narc_query){.method = NARC_METHOD_SAT});
+    check_known_contacts(name, &scene, known, edge, &(narc_method_query){.method = NARC_METHOD_SAT});
     static const float tolerances[] = {1e-3f, 1e-4f, 1e-5f, 1e-6f};
     for (size_t t = 0; t < sizeof tolerances / sizeof *tolerances; t++) {
         check_known_contacts(name, &scene, known, edge,
-                             &(narc_query){.method = NARC_METHOD_GJK, .tolerance = tolerances[t]});
+                             &(narc_method_query){.method = NARC_METHOD_GJK, .tolerance = tolerances[t]});
     }
     if (edge && is_polygon(&known->a) && is_polygon(&known->b))
-        check_known_contacts(name, &scene, known, edge, &(narc_query){.method = NARC_METHOD_POLYGON_SAT});
+        check_known_contacts(name, &scene, known, edge, &(narc_method_query){.method = NARC_METHOD_POLYGON_SAT});
     for (int f = NARC_METHOD_CIRCLE; known->gap < 0 && f <= NARC_METHOD_OBB; f++) {
-        uint64_t *bits = query_overlaps(&scene, &(narc_query){.method = (narc_method)f}, 1);
+        uint64_t *bits = query_overlaps(&scene, &(narc_method_query){.method = (narc_method)f}, 1);
         for (size_t k = 0; k < scene.pair_count; k++)
             assert_true(bit_is_set(bits, k));
         free(bits);
@@ -219,7 +219,8 @@ static void test_vertices(void **state) {
     const struct known far = {box(2, 2, 0), box(2, 2, 0), 2 + 3, 2 + 4, .gap = 5, .normal_x = 0.6, .normal_y = 0.8};
     check_known("corner to corner", &far, false);
     struct scene scene = make_known_scene(&far);
-    struct contacts found = query_contacts(&scene, &(narc_query){.method = NARC_METHOD_POLYGON_SAT}, INFINITY, 1);
+    struct contacts found =
+        query_contacts(&scene, &(narc_method_query){.method = NARC_METHOD_POLYGON_SAT}, INFINITY, 1);
     for (size_t k = 0; k < found.count; k++) {
         const struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
                                     b = scene_reference(&scene, scene.pairs[k].b);
@@ -264,17 +265,19 @@ static void test_circles_in_one_place(void **state) {
     (void)state;
     const struct known known = {circle(1), circle(1), .gap = -2};
     struct scene scene = make_known_scene(&known);
-    check_known_contacts("circles in one place", &scene, &known, false, &(narc_query){.method = NARC_METHOD_SAT});
     check_known_contacts("circles in one place", &scene, &known, false,
-                         &(narc_query){.method = NARC_METHOD_GJK, .tolerance = 1e-2f});
+                         &(narc_method_query){.method = NARC_METHOD_SAT});
+    check_known_contacts("circles in one place", &scene, &known, false,
+                         &(narc_method_query){.method = NARC_METHOD_GJK, .tolerance = 1e-2f});
     uint8_t outcomes[2 * FRAMES];
     /* 8 points and the triangle's 3 are too few. */
-    const narc_query few = {.method = NARC_METHOD_GJK, .tolerance = 1e-2f, .iterations = 8, .out_outcomes = outcomes};
+    const narc_method_query few = {
+        .method = NARC_METHOD_GJK, .tolerance = 1e-2f, .iterations = 8, .out_outcomes = outcomes};
     struct contacts rough = query_contacts(&scene, &few, INFINITY, 1);
     for (size_t k = 0; k < rough.count; k++)
         assert_int_equal(outcomes[k], NARC_OUTCOME_LIMIT);
     destroy_contacts(&rough);
-    const narc_query query = {.method = NARC_METHOD_GJK, .tolerance = 1e-6f, .out_outcomes = outcomes};
+    const narc_method_query query = {.method = NARC_METHOD_GJK, .tolerance = 1e-6f, .out_outcomes = outcomes};
     struct contacts found = query_contacts(&scene, &query, INFINITY, 1);
     for (size_t k = 0; k < found.count; k++) {
         const struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
@@ -290,7 +293,7 @@ static void test_circles_in_one_place(void **state) {
     }
     free(bits);
     /* The first of Algorithm 2's arcs has no direction to look along. */
-    bits = query_overlaps(&scene, &(narc_query){.method = NARC_METHOD_SAT_FIRST, .out_outcomes = outcomes}, 1);
+    bits = query_overlaps(&scene, &(narc_method_query){.method = NARC_METHOD_SAT_FIRST, .out_outcomes = outcomes}, 1);
     for (size_t k = 0; k < scene.pair_count; k++) {
         assert_false(bit_is_set(bits, k));
         assert_int_equal(outcomes[k], NARC_OUTCOME_NONE);
@@ -428,7 +431,7 @@ static void test_first_at_the_seam(void **state) {
             const uint32_t first = scene_add_body(&scene, a);
             scene_add_pair(&scene, first, scene_add_body(&scene, b));
             uint8_t outcome = 0xa5;
-            const narc_query query = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = &outcome};
+            const narc_method_query query = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = &outcome};
             struct contacts found = query_contacts(&scene, &query, INFINITY, 1);
             assert_int_equal(outcome, NARC_OUTCOME_DONE);
             assert_true(fabs((double)found.view.separation[0] + 1) < 1e-6);

@@ -82,7 +82,8 @@ static void test_sat_is_narc_find(void **state) {
         for (int round = 0; round < 2 * MARGINS; round++) {
             const float margin = margins[round / 2];
             uint8_t *outcomes = create_outcomes(count);
-            narc_query query = {.method = NARC_METHOD_SAT, .hints = round % 2 ? hints : NULL, .out_outcomes = outcomes};
+            narc_method_query query = {
+                .method = NARC_METHOD_SAT, .hints = round % 2 ? hints : NULL, .out_outcomes = outcomes};
             query.tolerance = round % 3 ? 0 : 0.5f;
             query.iterations = round % 3 ? 0 : 1;
             struct contacts found = query_contacts(scene, &query, margin, 1 + (unsigned)round % 3);
@@ -113,7 +114,7 @@ static void test_sat_is_exact(void **state) {
     size_t wrong_pairs = 0;
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
-        const narc_query query = {.method = NARC_METHOD_SAT};
+        const narc_method_query query = {.method = NARC_METHOD_SAT};
         struct contacts all = query_contacts(&corpus->scene, &query, INFINITY, 1);
         for (size_t k = 0; k < all.count; k++) {
             const struct exact_pair *pair = &corpus->pairs[k];
@@ -260,8 +261,8 @@ static void test_first_pair(void **state) {
         const size_t count = corpus->scene.pair_count;
         uint8_t *outcomes = create_outcomes(count), *again = create_outcomes(count);
         uint32_t *hints = create_hints(count), *zeros = create_hints(count);
-        const narc_query query = {.method = NARC_METHOD_SAT_FIRST, .hints = hints, .out_outcomes = outcomes};
-        const narc_query other = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = again};
+        const narc_method_query query = {.method = NARC_METHOD_SAT_FIRST, .hints = hints, .out_outcomes = outcomes};
+        const narc_method_query other = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = again};
         struct contacts all = query_contacts(&corpus->scene, &query, INFINITY, 1);
         assert_int_equal(all.count, count);
         uint64_t *bits = query_overlaps(&corpus->scene, &other, 1);
@@ -322,7 +323,7 @@ static void test_polygons(void **state) {
         const size_t count = corpus->scene.pair_count;
         uint8_t *outcomes = create_outcomes(count);
         uint32_t *hints = create_hints(count), *zeros = create_hints(count);
-        const narc_query query = {.method = NARC_METHOD_POLYGON_SAT, .hints = hints, .out_outcomes = outcomes};
+        const narc_method_query query = {.method = NARC_METHOD_POLYGON_SAT, .hints = hints, .out_outcomes = outcomes};
         struct contacts all = query_contacts(&corpus->scene, &query, INFINITY, 1);
         assert_int_equal(all.count, count);
         check_all_done(outcomes, count);
@@ -411,7 +412,7 @@ static void test_filters(void **state) {
         uint64_t *bits[3];
         uint8_t *outcomes = create_outcomes(count);
         for (int f = 0; f < 3; f++) {
-            const narc_query query = {.method = (narc_method)(NARC_METHOD_CIRCLE + f), .out_outcomes = outcomes};
+            const narc_method_query query = {.method = (narc_method)(NARC_METHOD_CIRCLE + f), .out_outcomes = outcomes};
             memset(outcomes, 0xa5, count);
             bits[f] = query_overlaps(scene, &query, 1);
             check_all_done(outcomes, count);

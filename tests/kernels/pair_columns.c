@@ -9,7 +9,7 @@
 
 #include "guard.h"
 #include "layouts.h"
-#include "narc_methods.h"
+#include "methods.h"
 #include "scene.h"
 
 enum { BODIES = 150, PAIRS = 2000 };
@@ -31,9 +31,9 @@ static struct contacts find_contacts(const struct scene *scene, const narc_pairs
                                      float margin, uint32_t *hints, size_t *out_skipped) {
     struct contacts found = create_contacts(PAIRS);
     const narc_bodies bodies = scene_bodies(scene);
-    const narc_query query = {.method = method, .hints = hints, .out_skipped = out_skipped};
+    const narc_method_query query = {.method = method, .hints = hints, .out_skipped = out_skipped};
     assert_int_equal(
-        narc_query_contacts(scene->store, &bodies, pairs, &query, margin, 2, &found.view, &found.count, NULL), NARC_OK);
+        contacts_by_method(scene->store, &bodies, pairs, &query, margin, 2, &found.view, &found.count, NULL), NARC_OK);
     return found;
 }
 

@@ -10,7 +10,7 @@
 
 #include "hard.h"
 #include "layouts.h"
-#include "narc_methods.h"
+#include "methods.h"
 #include "placements.h"
 #include "plain.h"
 
@@ -368,8 +368,8 @@ static void check_filters(const struct scene *scene) {
     const narc_pairs pairs = scene_pairs(scene);
     uint64_t *exact = scene_overlaps(scene), *passed = scene_overlaps(scene);
     for (narc_method method = NARC_METHOD_CIRCLE; method <= NARC_METHOD_OBB; method++) {
-        const narc_query query = {.method = method};
-        assert_int_equal(narc_query_overlaps(scene->store, &bodies, &pairs, &query, 1, passed, NULL), NARC_OK);
+        const narc_method_query query = {.method = method};
+        assert_int_equal(overlaps_by_method(scene->store, &bodies, &pairs, &query, 1, passed, NULL), NARC_OK);
         for (size_t k = 0; k < NARC_BIT_WORDS(pairs.count); k++)
             assert_true((exact[k] & ~passed[k]) == 0);
     }

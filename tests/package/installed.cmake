@@ -15,7 +15,7 @@ endfunction()
 
 add_step(install)
 set_tests_properties(package_install PROPERTIES FIXTURES_REQUIRED "" FIXTURES_SETUP narc_installed)
-set(kinds shared static)
+set(kinds shared static methods methods_static)
 if(TARGET narc_files)
   list(APPEND kinds files)
   add_step(cmake_files_static_c -DKIND=files_static -DLANGUAGE=c)

@@ -69,9 +69,9 @@ elseif(STEP MATCHES "^pkgconfig_" OR STEP STREQUAL "readme_example")
   endif()
   set(package narc)
   set(source "${SOURCE}/tests/package/consumer/consumer")
-  if(KIND MATCHES "^(files|fit)$")
-    set(package narc-${KIND})
-    set(source "${SOURCE}/tests/package/consumer/consumer_${KIND}")
+  if(KIND MATCHES "^(methods|files|fit)")
+    set(source "${SOURCE}/tests/package/consumer/consumer_${CMAKE_MATCH_1}")
+    string(REPLACE "_" "-" package "narc-${KIND}")
   elseif(KIND STREQUAL "static")
     set(package narc-static)
   endif()
@@ -94,7 +94,7 @@ elseif(STEP MATCHES "^pkgconfig_" OR STEP STREQUAL "readme_example")
   separate_arguments(compile_flags UNIX_COMMAND "${compile_flags}")
   separate_arguments(link_flags UNIX_COMMAND "${link_flags}")
   # Without that path the program runs only if it needs no shared library of narc.
-  if(NOT KIND STREQUAL "static")
+  if(NOT KIND MATCHES "static$")
     list(APPEND link_flags "-Wl,-rpath,${library_folder}")
   endif()
   run("${compile}" ${flag_list} -Wall -Wextra -Werror -c "${source}" -o "${folder}/program.o" ${compile_flags})
@@ -118,7 +118,8 @@ elseif(STEP STREQUAL "documented_shapes")
 elseif(STEP STREQUAL "subproject")
   build_and_test("${SOURCE}/tests/package/consumer" -DKIND=subproject "-DNARC_SOURCE=${SOURCE}" "-DNARC_SLEEF=${SLEEF}"
     -DCMAKE_BUILD_TYPE=Debug)
-  file(GLOB_RECURSE extra "${folder}/narc/files/*" "${folder}/narc/fit/*" "${folder}/narc/tests/*" "${folder}/narc/tools/*")
+  file(GLOB_RECURSE extra "${folder}/narc/files/*" "${folder}/narc/fit/*" "${folder}/narc/methods/*"
+    "${folder}/narc/tests/*" "${folder}/narc/tools/*")
   if(extra)
     message(FATAL_ERROR "a subproject builds more than the library: ${extra}")
   endif()
@@ -152,10 +153,11 @@ elseif(STEP STREQUAL "subproject_flags")
 
 elseif(STEP STREQUAL "compiler_alone")
   # No pkg-config, no OpenMP, no SLEEF: the library itself must not look for anything.
-  run(${configure} -S "${SOURCE}" -B "${folder}" -DCMAKE_BUILD_TYPE=Debug -DNARC_BUILD_FILES=OFF -DNARC_BUILD_FIT=OFF -DNARC_BUILD_TOOLS=OFF
-    -DNARC_BUILD_TESTS=OFF
+  run(${configure} -S "${SOURCE}" -B "${folder}" -DCMAKE_BUILD_TYPE=Debug -DNARC_BUILD_FILES=OFF
+    -DNARC_BUILD_FIT=OFF -DNARC_BUILD_TOOLS=OFF -DNARC_BUILD_TESTS=OFF
     -DNARC_OPENMP=OFF -DNARC_SLEEF=OFF -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON)
-  run(${CMAKE_COMMAND} --build "${folder}" --config "${CONFIG}" --target narc_core narc_isa_scalar)
+  run(${CMAKE_COMMAND} --build "${folder}" --config "${CONFIG}" --target
+    narc_core narc_common narc_isa_scalar narc_methods_core narc_methods_isa_scalar)
 
 else()
   message(FATAL_ERROR "no such step: ${STEP}")

@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "families.h"
+#include "methods.h"
 #include "narc.h"
 #include "narc_broad_phase.h"
-#include "narc_methods.h"
 #include "store.h"
 #include "support.h"
 #include "tests.h"
@@ -77,14 +77,13 @@ struct model {
 };
 
 static void expect_model(const narc_shapes *shapes, const struct model *model) {
-    size_t used = narc_count_records(2), curved = 0; /* the circle that removed shapes have */
+    size_t used = narc_count_records(2); /* the circle that removed shapes have */
     assert_int_equal(narc_count_shapes(shapes), model->count);
     for (uint32_t k = 0; k < model->count; k++) {
         if (model->exists[k]) {
             used += narc_count_records(shapes->headers[k].count);
             assert_int_equal(narc_get_arcs(shapes, k, NULL), model->shape[k].count);
             expect_same_shape(shapes, k, &model->shape[k]);
-            curved += !(narc_shape_flags(shapes, k) & NARC_SHAPE_POLYGON);
         } else {
             narc_aabb box;
             assert_int_equal(narc_get_arcs(shapes, k, NULL), 0);
@@ -93,7 +92,6 @@ static void expect_model(const narc_shapes *shapes, const struct model *model) {
         }
     }
     assert_int_equal(shapes->used_records, used);
-    assert_int_equal(shapes->curved_count, curved);
 }
 
 static void holds_what_was_put_last(void **state) {
@@ -285,16 +283,16 @@ static void expect_no_answers(const narc_shapes *shapes, const narc_bodies *bodi
                               narc_method method) {
     uint64_t bits = 0;
     size_t skipped = 99;
-    const narc_query query = {.method = method, .out_skipped = &skipped};
+    const narc_method_query query = {.method = method, .out_skipped = &skipped};
     narc_error error;
-    expect_ok(narc_query_overlaps(shapes, bodies, pairs, &query, 1, &bits, &error), &error);
+    expect_ok(overlaps_by_method(shapes, bodies, pairs, &query, 1, &bits, &error), &error);
     assert_int_equal(bits & 0xb, 0);
     assert_int_equal(skipped, 3);
     float separation[4];
     size_t found;
     const narc_contacts contacts = {.capacity = 4, .separation = separation};
     if (method < NARC_METHOD_CIRCLE) {
-        expect_ok(narc_query_contacts(shapes, bodies, pairs, &query, INFINITY, 1, &contacts, &found, &error), &error);
+        expect_ok(contacts_by_method(shapes, bodies, pairs, &query, INFINITY, 1, &contacts, &found, &error), &error);
         assert_int_equal(found, 4);
         assert_true(isinf(separation[0]) && isinf(separation[1]) && isinf(separation[3]));
     }
@@ -332,8 +330,8 @@ static void removed_shapes_collide_with_nothing(void **state) {
         test_use_isa(narc_isa_name(run / 7));
         uint64_t bits = 0;
         size_t skipped = 99;
-        const narc_query query = {.method = method, .out_skipped = &skipped};
-        expect_ok(narc_query_overlaps(shapes, &bodies, &pairs, &query, 1, &bits, &error), &error);
+        const narc_method_query query = {.method = method, .out_skipped = &skipped};
+        expect_ok(overlaps_by_method(shapes, &bodies, &pairs, &query, 1, &bits, &error), &error);
         assert_int_equal(skipped, 0);
         if (method != NARC_METHOD_SAT_FIRST) /* a polygon has no arcs for it */
             assert_int_equal(bits, 0xf);
@@ -351,6 +349,73 @@ static void removed_shapes_collide_with_nothing(void **state) {
     narc_destroy_shapes(shapes);
 }
 
+/* Two bodies of shape 0, 3 apart: do their boxes meet, or why is that not told? */
+static narc_status ask_boxes(const narc_methods *methods, bool *out_meet, narc_error *error) {
+    static const uint32_t a = 0, b = 1, shape = 0;
+    static const float x[] = {0, 3}, zero = 0, one = 1;
+    const narc_bodies bodies = {
+        .count = 2, .x = NARC_ARRAY(x), .y = {&zero, 0}, .cosine = {&one, 0}, .sine = {&zero, 0}, .shape = {&shape, 0}};
+    const narc_pairs pairs = {.count = 1, .a = {&a, 0}, .b = {&b, 0}};
+    const narc_method_query query = {.method = NARC_METHOD_OBB};
+    uint64_t bits = 0xa5;
+    const narc_status status = narc_find_overlaps_by(methods, &bodies, &pairs, &query, 1, &bits, error);
+    *out_meet = bits & 1;
+    assert_true(status == NARC_OK ? bits <= 1 : bits == 0xa5);
+    return status;
+}
+
+/* The methods' copy of a store never answers for shapes that the store does not have. */
+static void methods_are_never_stale(void **state) {
+    (void)state;
+    struct ledger ledger = {0};
+    const narc_allocator allocator = {ledger_allocate, ledger_release, &ledger};
+    const struct shape small = make_polygon(4), large = make_polygon(64);
+    struct shape wide = large;
+    narc_shapes *shapes = NULL;
+    narc_methods *methods = NULL;
+    narc_error error;
+    bool meet = false;
+    for (size_t i = 0; i < wide.count; i++) {
+        wide.arcs[i].center_x *= 2;
+        wide.arcs[i].center_y *= 2;
+    }
+    expect_error(narc_create_methods(NULL, NULL, &methods, &error), NARC_ERROR_ARGUMENT, &error, "shapes is NULL");
+    expect_error(narc_refresh_methods(NULL, &error), NARC_ERROR_ARGUMENT, &error, "methods is NULL");
+    expect_error(ask_boxes(NULL, &meet, &error), NARC_ERROR_ARGUMENT, &error, "methods is NULL");
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    expect_error(narc_create_methods(shapes, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_methods is NULL");
+    ledger.refuses = true;
+    expect_error(narc_create_methods(shapes, &allocator, &methods, &error), NARC_ERROR_MEMORY, &error, "no memory");
+    assert_null(methods);
+    ledger.refuses = false;
+    expect_ok(narc_create_methods(shapes, &allocator, &methods, &error), &error);
+    for (int change = 0; change < 4; change++) {
+        if (change == 0)
+            assert_int_equal(narc_add_shape(shapes, small.arcs, small.count, NULL, NULL), NARC_OK);
+        else if (change == 1)
+            assert_int_equal(narc_replace_shape(shapes, 0, wide.arcs, wide.count, NULL), NARC_OK);
+        else if (change == 2)
+            assert_int_equal(narc_remove_shape(shapes, 0, NULL), NARC_OK);
+        else
+            assert_int_equal(narc_add_shape(shapes, wide.arcs, wide.count, NULL, NULL), NARC_OK);
+        expect_error(ask_boxes(methods, &meet, &error), NARC_ERROR_ARGUMENT, &error, "narc_refresh_methods()");
+        ledger.refuses = true;
+        expect_error(narc_refresh_methods(methods, &error), NARC_ERROR_MEMORY, &error, "no memory");
+        expect_error(ask_boxes(methods, &meet, &error), NARC_ERROR_ARGUMENT, &error, "narc_refresh_methods()");
+        ledger.refuses = false;
+        expect_ok(narc_refresh_methods(methods, &error), &error);
+        expect_ok(ask_boxes(methods, &meet, &error), &error);
+        assert_int_equal(meet, change == 1 || change == 3); /* one radius is 1, or 2; removed shapes meet nothing */
+    }
+    const size_t allocations = ledger.allocations;
+    expect_ok(narc_refresh_methods(methods, &error), &error);
+    assert_int_equal(ledger.allocations, allocations);
+    narc_destroy_methods(methods);
+    narc_destroy_methods(NULL);
+    assert_int_equal(ledger.live, 0);
+    narc_destroy_shapes(shapes);
+}
+
 int test_replacing(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(holds_what_was_put_last),
@@ -359,6 +424,7 @@ int test_replacing(void) {
         cmocka_unit_test(same_size_allocates_nothing),
         cmocka_unit_test(refused_replacement_changes_nothing),
         cmocka_unit_test(removed_shapes_collide_with_nothing),
+        cmocka_unit_test(methods_are_never_stale),
     };
     return cmocka_run_group_tests_name("replacing", tests, NULL, NULL);
 }

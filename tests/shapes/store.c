@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "copy.h"
 #include "families.h"
 #include "oracle.h"
 #include "store.h"
@@ -77,12 +78,19 @@ static void find_half_sides(const struct shape *shape, double x, double y, doubl
     *out_half_y = (height_of(shape, -y, x) + height_of(shape, y, -x)) / 2;
 }
 
-/* The box behind the arcs: along a junction's normal, of a polygon an edge's; none along another junction's is smaller;
- * it holds the shape with the room that is promised, but for the rounding of its numbers, and hardly more. */
-static void expect_box(const struct shape *shape, const narc_shape_header *header, const narc_record *arcs,
-                       double extent) {
-    const narc_oriented_box *box = &arcs[header->count].box;
-    const double x = (double)box->axis_x, y = (double)box->axis_y;
+static double extent_of(const struct shape *shape) {
+    double extent = 0;
+    for (size_t i = 0; i < shape->count; i++)
+        extent = fmax(extent, hypot(shape->arcs[i].center_x, shape->arcs[i].center_y) + shape->arcs[i].radius);
+    return extent;
+}
+
+/* The box behind the arcs of the methods' copy: along a junction's normal, of a polygon an edge's; none along another
+ * junction's is smaller; it holds the shape with the room that is promised, but for the rounding of its numbers, and
+ * hardly more. */
+static void expect_box(const struct shape *shape, const narc_shape_header *header, const narc_record *arcs) {
+    const narc_oriented_box *box = (const narc_oriented_box *)&arcs[header->count];
+    const double x = (double)box->axis_x, y = (double)box->axis_y, extent = extent_of(shape);
     const double least = (NARC_ROUNDING_ROOM - 8 * ulp) * extent, most = (NARC_ROUNDING_ROOM + 8 * ulp) * extent;
     double half_x, half_y, area = INFINITY, least_area = INFINITY;
     narc_mass mass;
@@ -97,8 +105,8 @@ static void expect_box(const struct shape *shape, const narc_shape_header *heade
             area = half_x * half_y;
         least_area = fmin(least_area, half_x * half_y);
     }
-    /* That much is rounding in double precision; infinite: along no junction's normal. */
-    assert_true(area <= least_area * (1 + 1e-9));
+    /* Of equal ones it is the first. Infinite: along no junction's normal. */
+    assert_true(area <= least_area * (1 + 1.001e-6));
     const double from_x = (double)box->center_x * x + (double)box->center_y * y,
                  from_y = (double)box->center_y * x - (double)box->center_x * y;
     const double room[4] = {(double)box->half_x - (height_of(shape, x, y) - from_x),
@@ -125,7 +133,7 @@ static void lays_out_blocks(void **state) {
         assert_int_equal((uintptr_t)shapes->records % NARC_CACHE_LINE, 0);
         assert_int_equal(header.count, count);
         assert_true(header.first_arc < count);
-        assert_true((size_t)(arcs - shapes->records) + count + 1 <= shapes->record_count);
+        assert_int_equal((size_t)(arcs - shapes->records) + count, shapes->record_count); /* and nothing behind them */
         assert_ptr_equal(arcs, block + turn_records);
         for (size_t i = 0; i < count; i++) {
             const narc_stored_arc *arc = &arcs[i].arc, *next = &arcs[(i + 1) % count].arc;
@@ -142,13 +150,40 @@ static void lays_out_blocks(void **state) {
         }
         for (size_t i = count; i < NARC_RECORD_ANGLES * turn_records; i++)
             assert_int_equal(block[i / NARC_RECORD_ANGLES].angles[i % NARC_RECORD_ANGLES], NARC_ANGLE_NONE);
-        double extent = 0;
-        for (size_t i = 0; i < shape.count; i++)
-            extent = fmax(extent, hypot(shape.arcs[i].center_x, shape.arcs[i].center_y) + shape.arcs[i].radius);
+        const double extent = extent_of(&shape);
         assert_true(header.extent_ratio == 255 || header.extent_ratio * (double)header.bound_radius >= extent);
         assert_true((header.extent_ratio - 1) * (double)header.bound_radius <= extent * 1.001);
-        expect_box(&shape, &header, arcs, extent);
     }
+    narc_destroy_shapes(shapes);
+}
+
+/* Other methods have a copy of each shape, and its box. */
+static void methods_have_boxes(void **state) {
+    (void)state;
+    enum { SHAPES = 40 * FAMILY_COUNT };
+    struct test_random random = test_random_named("blocks");
+    narc_shapes *shapes = NULL;
+    narc_methods *methods = NULL;
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    for (size_t k = 0; k < SHAPES; k++) {
+        const struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
+        assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+    }
+    assert_int_equal(narc_create_methods(shapes, NULL, &methods, NULL), NARC_OK);
+    assert_int_equal(methods->shapes.count, SHAPES);
+    for (size_t k = 0; k < SHAPES; k++) {
+        narc_shape_header header = methods->shapes.headers[k];
+        const narc_record *arcs = narc_arcs_of(&methods->shapes, &header);
+        assert_memory_equal(&methods->shapes.records[header.first_record],
+                            &shapes->records[shapes->headers[k].first_record],
+                            narc_count_records(header.count) * sizeof *arcs);
+        struct shape stored;
+        stored.count = narc_get_arcs(shapes, (uint32_t)k, stored.arcs);
+        expect_box(&stored, &header, arcs);
+        header.first_record = shapes->headers[k].first_record;
+        assert_memory_equal(&header, &shapes->headers[k], sizeof header);
+    }
+    narc_destroy_methods(methods);
     narc_destroy_shapes(shapes);
 }
 
@@ -379,10 +414,15 @@ static void refuses_bad_arguments(void **state) {
 
 int test_store(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_many_shapes),          cmocka_unit_test(lays_out_blocks),
-        cmocka_unit_test(stores_exact_quarter_turns), cmocka_unit_test(knows_what_shapes_are),
-        cmocka_unit_test(bounds_what_is_stored),      cmocka_unit_test(survives_failing_allocations),
-        cmocka_unit_test(reserve_is_enough),          cmocka_unit_test(refuses_bad_arguments),
+        cmocka_unit_test(keeps_many_shapes),
+        cmocka_unit_test(lays_out_blocks),
+        cmocka_unit_test(methods_have_boxes),
+        cmocka_unit_test(stores_exact_quarter_turns),
+        cmocka_unit_test(knows_what_shapes_are),
+        cmocka_unit_test(bounds_what_is_stored),
+        cmocka_unit_test(survives_failing_allocations),
+        cmocka_unit_test(reserve_is_enough),
+        cmocka_unit_test(refuses_bad_arguments),
     };
     return cmocka_run_group_tests_name("store", tests, NULL, NULL);
 }

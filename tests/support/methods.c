@@ -198,23 +198,46 @@ static void *junk(size_t size) {
     return memset(memory, 0xa5, size + 1);
 }
 
-uint64_t *query_overlaps(const struct scene *scene, const narc_query *query, unsigned threads) {
+narc_status overlaps_by_method(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                               const narc_method_query *query, unsigned threads, uint64_t *out_bits,
+                               narc_error *error) {
+    narc_methods *methods = NULL;
+    narc_status status = narc_create_methods(shapes, NULL, &methods, error);
+    if (status == NARC_OK)
+        status = narc_find_overlaps_by(methods, bodies, pairs, query, threads, out_bits, error);
+    narc_destroy_methods(methods);
+    return status;
+}
+
+narc_status contacts_by_method(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                               const narc_method_query *query, float margin, unsigned threads,
+                               const narc_contacts *out_contacts, size_t *out_count, narc_error *error) {
+    narc_methods *methods = NULL;
+    narc_status status = narc_create_methods(shapes, NULL, &methods, error);
+    if (status == NARC_OK)
+        status = narc_find_contacts_by(methods, bodies, pairs, query, margin, threads, out_contacts, out_count, error);
+    narc_destroy_methods(methods);
+    return status;
+}
+
+uint64_t *query_overlaps(const struct scene *scene, const narc_method_query *query, unsigned threads) {
     uint64_t *bits = junk(NARC_BIT_WORDS(scene->pair_count) * sizeof(uint64_t));
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
     narc_error error;
-    if (narc_query_overlaps(scene->store, &bodies, &pairs, query, threads, bits, &error) != NARC_OK)
-        fail_msg("narc_query_overlaps, %s: %s", narc_method_name(query->method), error.message);
+    if (overlaps_by_method(scene->store, &bodies, &pairs, query, threads, bits, &error) != NARC_OK)
+        fail_msg("narc_find_overlaps_by, %s: %s", narc_method_name(query->method), error.message);
     return bits;
 }
 
-struct contacts query_contacts(const struct scene *scene, const narc_query *query, float margin, unsigned threads) {
+struct contacts query_contacts(const struct scene *scene, const narc_method_query *query, float margin,
+                               unsigned threads) {
     struct contacts found = create_contacts(scene->pair_count);
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
     narc_error error;
-    if (narc_query_contacts(scene->store, &bodies, &pairs, query, margin, threads, &found.view, &found.count, &error))
-        fail_msg("narc_query_contacts, %s: %s", narc_method_name(query->method), error.message);
+    if (contacts_by_method(scene->store, &bodies, &pairs, query, margin, threads, &found.view, &found.count, &error))
+        fail_msg("narc_find_contacts_by, %s: %s", narc_method_name(query->method), error.message);
     return found;
 }
 

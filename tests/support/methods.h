@@ -37,9 +37,17 @@ void move_corpus(struct test_random *random, struct corpus *corpus, double step)
 /* Prints pair k so that it can be put into a test of its own. */
 void print_corpus_pair(const struct corpus *corpus, size_t k);
 
-/* The calls of narc_methods.h on a scene; any error fails the test. Outputs are full of junk before. */
-uint64_t *query_overlaps(const struct scene *scene, const narc_query *query, unsigned threads);
-struct contacts query_contacts(const struct scene *scene, const narc_query *query, float margin, unsigned threads);
+/* The calls of narc_methods.h on a store: with an object made for the call. */
+narc_status overlaps_by_method(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                               const narc_method_query *query, unsigned threads, uint64_t *out_bits, narc_error *error);
+narc_status contacts_by_method(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                               const narc_method_query *query, float margin, unsigned threads,
+                               const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
+
+/* The same on a scene; any error fails the test. Outputs are full of junk before. */
+uint64_t *query_overlaps(const struct scene *scene, const narc_method_query *query, unsigned threads);
+struct contacts query_contacts(const struct scene *scene, const narc_method_query *query, float margin,
+                               unsigned threads);
 
 /* `count` outcomes, all junk. */
 uint8_t *create_outcomes(size_t count);

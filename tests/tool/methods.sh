@@ -12,7 +12,7 @@ check "the report names the exact method" says "method sat"
 check "and does not compare it with itself" sh -c '! grep -q "differs from sat" out.txt'
 works "sat by name" collide $known --method sat --out sat.csv
 check "is the default" cmp sat.csv known.csv
-check "sat: the call that was timed" grep -q "^narrow phase .*(narc_query_contacts, " out.txt
+check "sat: the call that was timed" grep -q "^narrow phase .*(narc_find_contacts_by, " out.txt
 
 # Two flat lenses. From the second to the first, d = (-4, -2), two pairs of arcs pass the test of sat-first. Upper arc
 # of the second against lower arc of the first: u = d + (0, 8) = (-4, 6), 2 sqrt(13) - 10; it comes first. Lower arc
@@ -31,7 +31,7 @@ check "sat-first: wrong where others do" contact lenses.txt 3 "1 0 -2.78889745 -
 check "sat-first: the method" says "method sat-first"
 check "sat-first: colliding" reports "colliding pairs" 1
 check "sat-first: the wrong answer is told" says "differs from sat 1 pairs: 0 missed, 1 extra"
-check "sat-first: the call that was timed" grep -q "^narrow phase .*(narc_query_contacts, " out.txt
+check "sat-first: the call that was timed" grep -q "^narrow phase .*(narc_find_contacts_by, " out.txt
 check "sat-first: both ended well" sh -c '! grep -q "^outcome" out.txt'
 works "sat-first, only deep pairs" collide $lenses --margin -5 --method sat-first --out lenses.txt
 check "sat-first, only deep pairs: none" lines lenses.txt 1
@@ -69,7 +69,7 @@ for tolerance in 0.0001 0.01; do
 done
 works "gjk without settings" collide $known --method gjk
 check "gjk without settings: the library's" says "method gjk, tolerance 0.0001, at most 128 iterations"
-check "gjk: the call that was timed" grep -q "^narrow phase .*(narc_query_contacts, " out.txt
+check "gjk: the call that was timed" grep -q "^narrow phase .*(narc_find_contacts_by, " out.txt
 works "gjk, fine" collide --shapes shapes.json --bodies scene.csv --method gjk --tolerance 1e-5 --out fine.csv
 works "gjk, coarse" collide --shapes shapes.json --bodies scene.csv --method gjk --tolerance 0.5 --out coarse.csv
 check "gjk, coarse: depths are further off" sh -c 'paste -d, fine.csv coarse.csv |
@@ -102,7 +102,7 @@ filter() {
     check "$1: how many pass" reports "passing pairs" "$(($(wc -l <$1.csv) - 1))"
     check "$1: how many of them do not collide" says "differs from sat $2 pairs: 0 missed, $2 extra"
     check "$1: no contacts" sh -c '! grep -q contacts out.txt'
-    check "$1: the call that was timed" grep -q "^narrow phase .*(narc_query_overlaps, " out.txt
+    check "$1: the call that was timed" grep -q "^narrow phase .*(narc_find_overlaps_by, " out.txt
     works "$1: its output as pairs" collide $filters --pairs $1.csv
     check "$1: no collision is lost" reports "colliding pairs" 2
 }

@@ -4,21 +4,27 @@
  *
  * The mental model
  *
- *   narc.h answers exactly, by the method "sat". The methods here work on the same store, bodies and pairs, and give
- *   answers of the same form; each has limits, which are part of its description. They run on every instruction set
- *   and any number of threads, with the same bits, as those of narc.h do. None of them looks at circles first: what
- *   is measured is the algorithm.
+ *   narc.h answers exactly, by the method "sat". The methods here work on the same bodies and pairs, and give answers
+ *   of the same form; each has limits, which are part of its description. They run on the instruction set that narc
+ *   uses and on any number of threads, with the same bits, as those of narc.h do. None of them looks at circles first:
+ *   what is measured is the algorithm.
+ *
+ *   They are a library of their own, narc_methods, which goes with the narc of exactly its version. What they need of
+ *   shapes beside their arcs, boxes and centroids, is in an object that is made from a store.
  *
  *   "The paper" is "Using Piecewise Circular Curves as a 2D Collision Primitive".
  *
  * Example
  *
- *     narc_query query = {.method = NARC_METHOD_GJK, .tolerance = 1e-3f};
- *     narc_query_contacts(shapes, &bodies, &pairs, &query, 0, 0, &contacts, &found, NULL);
+ *     narc_methods *methods;
+ *     narc_create_methods(shapes, NULL, &methods, NULL);
+ *     narc_method_query query = {.method = NARC_METHOD_GJK, .tolerance = 1e-3f};
+ *     narc_find_contacts_by(methods, &bodies, &pairs, &query, 0, 0, &contacts, &found, NULL);
  *
- *   A query of zeros is the exact method without extras: the calls of narc.h are short forms of it.
+ *   A query of zeros is the exact method without extras: the calls of narc.h.
  *
- * Every function here may be called from any number of threads at once, with NARC_STACK_SIZE bytes of stack.
+ * Every function here may be called from any number of threads at once, with NARC_STACK_SIZE bytes of stack, but for
+ * narc_refresh_methods() and narc_destroy_methods(), which need the object for themselves.
  */
 #ifndef NARC_METHODS_H
 #define NARC_METHODS_H
@@ -28,6 +34,23 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* A copy of a store's shapes, each with a box around it and its centroid: as much memory as the store has, and 32 bytes
+ * for each shape more. */
+typedef struct narc_methods narc_methods;
+
+/* Makes one of a store, which must outlive it and not change meanwhile. `allocator` NULL: malloc and free. Errors:
+ * NARC_ERROR_VERSION (this library and narc are not of the same version), NARC_ERROR_ARGUMENT (NULL),
+ * NARC_ERROR_MEMORY, NARC_ERROR_COUNT (more arcs than the copy has room for). `out_methods` is untouched then. */
+NARC_API narc_status narc_create_methods(const narc_shapes *shapes, const narc_allocator *allocator,
+                                         narc_methods **out_methods, narc_error *error);
+
+/* Takes the store as it is now. After shapes were added, replaced or removed, queries are refused until then. On an
+ * error (as narc_create_methods()) they still are. */
+NARC_API narc_status narc_refresh_methods(narc_methods *methods, narc_error *error);
+
+/* Frees it; NULL is fine. */
+NARC_API void narc_destroy_methods(narc_methods *methods);
 
 typedef enum narc_method {
     /* Exact: what narc.h does. The largest gap over all directions (separating axis theorem for arcs), found by a
@@ -76,9 +99,20 @@ typedef enum narc_method {
 /* The method's name, as "sat", "sat-first", "polygon-sat", "gjk", "circle", "aabb", "obb"; NULL for any other value. */
 NARC_API const char *narc_method_name(narc_method method);
 
+/* How a method came to a pair's answer; the exact one always ends well. */
+typedef enum narc_outcome {
+    NARC_OUTCOME_DONE = 0,     /* the method ended as it should */
+    NARC_OUTCOME_LIMIT = 1,    /* gjk: iterations ran out; the best that was found, "not colliding" if nothing was */
+    NARC_OUTCOME_ROUNDING = 2, /* gjk: rounding left no way on before the tolerance was reached; the best found */
+    NARC_OUTCOME_NONE = 3      /* sat-first: no pair of arcs passes the test */
+} narc_outcome;
+
+/* Most support points in one phase of gjk. */
+#define NARC_MAX_ITERATIONS 128
+
 #define NARC_DEFAULT_TOLERANCE 1e-4f
 
-typedef struct narc_query {
+typedef struct narc_method_query {
     narc_method method;
     /* gjk: the largest error of a separation, relative to the sum of both bounding radii, but for rounding, which is up
      * to 2 * NARC_ERROR_BOUND * (D + E_a + E_b) (narc.h); for EPA the paper's termination threshold. 0:
@@ -94,23 +128,24 @@ typedef struct narc_query {
     uint8_t *out_outcomes; /* pairs->count values of narc_outcome, or NULL */
     /* How many pairs have no answer (see narc_bodies), by any method; or NULL. Set where out_bits or out_count are. */
     size_t *out_skipped;
-} narc_query;
+} narc_method_query;
 
 /* narc_find_overlaps() by a method of choice. Further errors: NARC_ERROR_ARGUMENT (no such method, a negative
- * tolerance, polygon-sat and a pair whose shape is not a polygon: `error` names them), NARC_ERROR_NOT_FINITE
- * (tolerance). */
-NARC_API narc_status narc_query_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                                         const narc_query *query, unsigned threads, uint64_t *out_bits,
-                                         narc_error *error);
+ * tolerance, the store has changed, polygon-sat and a pair whose shape is not a polygon: `error` names them),
+ * NARC_ERROR_NOT_FINITE (tolerance). */
+NARC_API narc_status narc_find_overlaps_by(const narc_methods *methods, const narc_bodies *bodies,
+                                           const narc_pairs *pairs, const narc_method_query *query, unsigned threads,
+                                           uint64_t *out_bits, narc_error *error);
 
 /* narc_find_contacts() by a method of choice: the contacts of all pairs whose separation, as the method finds it, is
- * less than `margin`. The arcs are those that the method ended at. Further errors as narc_query_overlaps(), and
+ * less than `margin`. The arcs are those that the method ended at. Further errors as narc_find_overlaps_by(), and
  * NARC_ERROR_ARGUMENT for a method that answers overlaps only. (For a sub-range, move the bases of the pairs' columns.)
- * With margin 0, a pair is reported exactly if narc_query_overlaps() by the same query sets its bit; with hints, if
+ * With margin 0, a pair is reported exactly if narc_find_overlaps_by() by the same query sets its bit; with hints, if
  * both start from the same. */
-NARC_API narc_status narc_query_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                                         const narc_query *query, float margin, unsigned threads,
-                                         const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
+NARC_API narc_status narc_find_contacts_by(const narc_methods *methods, const narc_bodies *bodies,
+                                           const narc_pairs *pairs, const narc_method_query *query, float margin,
+                                           unsigned threads, const narc_contacts *out_contacts, size_t *out_count,
+                                           narc_error *error);
 
 #ifdef __cplusplus
 }

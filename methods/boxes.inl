@@ -18,7 +18,7 @@ struct box {
     vec2 centroid;
 };
 
-/* The box of a shape in its own frame; its record lies behind the arcs. */
+/* The box of a shape in its own frame; its record lies behind the arcs (methods/method_kernels.h). */
 INLINE struct box load_box(const narc_record *records, struct ring ring, vf scale) {
     vf field[8];
     load_records(records, vi_add(ring.base, ring.count), field);

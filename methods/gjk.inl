@@ -13,7 +13,7 @@
  * the difference goes on beyond the segment on both, the bodies collide; if it ends there on one, they touch.
  *
  * Every step but these two brings the segment nearer to the origin, or raises the lower bound with a segment that is as
- * near, or is the last: so the search ends. It never takes more than batch->iterations steps.
+ * near, or is the last: so the search ends. It never takes more than the call's iterations.
  */
 #ifndef NARC_METHODS_GJK_INL
 #define NARC_METHODS_GJK_INL
@@ -30,6 +30,8 @@
 #include "methods/epa.inl"
 #include "methods/gjk_hints.inl"
 #include "methods/lanes.inl"
+#include "methods/method_kernels.h"
+#include "methods/outcomes.inl"
 #include "methods/simplex.inl"
 #include "methods/support.inl"
 #include "simd/simd.h"
@@ -147,7 +149,7 @@ INLINE struct verdict step_search(const narc_batch *batch, const struct lanes *l
 
     /* Known is the separation where the gap along m is as large as the distance of the point that m was the direction
      * of: not where m was the axis or a hint's. */
-    const vf tolerance = v_max(v_mul(v_set(batch->tolerance), get(&lanes->pair, SIZE, 0)), found.noise);
+    const vf tolerance = v_max(v_mul(v_set(narc_call_of(batch)->tolerance), get(&lanes->pair, SIZE, 0)), found.noise);
     const vm reached = vm_and(v_le(zero, found.gap), v_le(v_sub(s->distance, found.gap), tolerance));
     const vm known = vm_and_not(reached, vm_or(fresh, seeded));
     const vm raised = v_lt(s->best.separation, found.gap);
@@ -170,7 +172,7 @@ INLINE struct verdict step_search(const narc_batch *batch, const struct lanes *l
     const vm meets_none = vm_and(positive, v_le(s->distance, found.noise));
     const vm well = vm_or(vm_or(apart, known), vm_or(meets_none, vm_and_not(touches, doubtful)));
     const vm ends = vm_and(busy, vm_or(well, vm_or(touches, stayed)));
-    const vm old = vm_and_not(busy, vi_lt(age, vi_set(batch->iterations - 1)));
+    const vm old = vm_and_not(busy, vi_lt(age, vi_set(narc_call_of(batch)->iterations - 1)));
     struct verdict verdict;
     verdict.collides = vm_and_not(vm_or(inside, both_sides), well);
     verdict.separate = vm_and_not(ends, verdict.collides);

@@ -22,6 +22,7 @@
 #include "kernels.h"
 #include "methods/arc_lists.inl"
 #include "methods/boxes.inl"
+#include "methods/outcomes.inl"
 #include "simd/simd.h"
 
 INLINE vm in_closed_cone(vec2 start, vec2 end, vec2 u) {

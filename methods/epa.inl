@@ -6,7 +6,7 @@
  * A polygon inside the difference that holds the origin: how far its nearest edge is from the origin is a lower bound
  * of the depth. The support point along that edge's normal gives an upper bound, the depth along that normal, and
  * splits the edge in two. A curved difference has no last edge: the search ends when the bounds agree within the
- * tolerance, when the nearest edge is one of the difference itself, or after batch->iterations steps.
+ * tolerance, when the nearest edge is one of the difference itself, or after the call's iterations.
  *
  * Edges lie in no order; what each needs is its distance.
  */
@@ -23,6 +23,8 @@
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "methods/lanes.inl"
+#include "methods/method_kernels.h"
+#include "methods/outcomes.inl"
 #include "methods/simplex.inl"
 #include "methods/support.inl"
 #include "simd/simd.h"
@@ -159,12 +161,12 @@ INLINE struct ending step_expansion(const narc_batch *batch, const struct lanes 
     const struct vertex w = {found.w, found.middle, v_set(0)};
     const struct nearest at = find_nearest(&ends[0], &ends[1]);
     const vf left = v_sub(v_neg(found.gap), e->distance);
-    const vf tolerance = v_max(v_mul(v_set(batch->tolerance), get(&lanes->pair, SIZE, 0)), found.noise);
+    const vf tolerance = v_max(v_mul(v_set(narc_call_of(batch)->tolerance), get(&lanes->pair, SIZE, 0)), found.noise);
     const vm known = v_le(left, tolerance);
     keep_best(&e->best, &found, at.middle, vm_or(fresh, known));
     const vm enough_known = vm_or(known, v_le(enough, e->best.separation));
     const vm final = vm_or(is_near(&w, &ends[0], found.noise), is_near(&w, &ends[1], found.noise));
-    const vm old = vm_and_not(busy, vi_lt(age, vi_set(batch->iterations - 1)));
+    const vm old = vm_and_not(busy, vi_lt(age, vi_set(narc_call_of(batch)->iterations - 1)));
     const vm done = vm_and(busy, vm_or(enough_known, final));
     e->slot = split_edge(p, e->slot, vm_and_not(busy, done), ends, &w, &e->distance);
     return (struct ending){done, vm_and_not(done, enough_known), vm_and_not(old, done)};
