@@ -17,7 +17,7 @@ static narc_status describe_bad_pair(const narc_batch *batch, size_t pair, narc_
         const uint32_t body = narc_index_at(columns[k], pair);
         if (body >= batch->bodies->count)
             return narc_fail(error, NARC_ERROR_INDEX, pair, body, "pair %zu: body %c is %lu, but there are %zu bodies",
-                             pair, "ab"[k], (unsigned long)body, batch->bodies->count);
+                             pair, "ab"[k], (unsigned long)body, batch -> bodies -> count);
         const uint32_t shape = narc_index_at(batch->bodies->shape, body);
         if (shape >= batch->shapes->count)
             return narc_fail(error, NARC_ERROR_INDEX, pair, shape,

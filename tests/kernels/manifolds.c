@@ -727,20 +727,13 @@ static void test_ids_at_all_flat_angles(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_single_positions),
-        cmocka_unit_test(test_double_positions),
-        cmocka_unit_test(test_box_on_box),
-        cmocka_unit_test(test_corner_on_corner),
-        cmocka_unit_test(test_rocking),
-        cmocka_unit_test(test_rolling),
-        cmocka_unit_test(test_second_margin),
-        cmocka_unit_test(test_margin),
-        cmocka_unit_test(test_flat_angle),
-        cmocka_unit_test(test_doubled_corner),
-        cmocka_unit_test(test_far_origin),
-        cmocka_unit_test(test_short_edges_swapped),
-        cmocka_unit_test(test_leaning),
-        cmocka_unit_test(test_ids_at_all_flat_angles),
+        cmocka_unit_test(test_single_positions), cmocka_unit_test(test_double_positions),
+        cmocka_unit_test(test_box_on_box),       cmocka_unit_test(test_corner_on_corner),
+        cmocka_unit_test(test_rocking),          cmocka_unit_test(test_rolling),
+        cmocka_unit_test(test_second_margin),    cmocka_unit_test(test_margin),
+        cmocka_unit_test(test_flat_angle),       cmocka_unit_test(test_doubled_corner),
+        cmocka_unit_test(test_far_origin),       cmocka_unit_test(test_short_edges_swapped),
+        cmocka_unit_test(test_leaning),          cmocka_unit_test(test_ids_at_all_flat_angles),
     };
     return test_begin() ? cmocka_run_group_tests_name("manifolds", tests, NULL, NULL) : TEST_SKIPPED;
 }

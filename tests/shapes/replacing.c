@@ -353,8 +353,12 @@ static void removed_shapes_collide_with_nothing(void **state) {
 static narc_status ask_boxes(const narc_methods *methods, bool *out_meet, narc_error *error) {
     static const uint32_t a = 0, b = 1, shape = 0;
     static const float x[] = {0, 3}, zero = 0, one = 1;
-    const narc_bodies bodies = {
-        .count = 2, .x = NARC_ARRAY(x), .y = {&zero, 0}, .cosine = {&one, 0}, .sine = {&zero, 0}, .shape = {&shape, 0}};
+    const narc_bodies bodies = {.count = 2,
+                                .x = NARC_POSITION_ARRAY(x),
+                                .y = {&zero, 0, NARC_FLOAT32},
+                                .cosine = {&one, 0},
+                                .sine = {&zero, 0},
+                                .shape = {&shape, 0}};
     const narc_pairs pairs = {.count = 1, .a = {&a, 0}, .b = {&b, 0}};
     const narc_method_query query = {.method = NARC_METHOD_OBB};
     uint64_t bits = 0xa5;
