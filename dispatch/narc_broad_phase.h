@@ -5,27 +5,46 @@
  *
  * The mental model
  *
- *   A simulation step goes from boxes around the bodies to pairs of boxes that overlap, and from pairs to contacts:
+ *   A simulation step goes from bodies to pairs that may touch, and from these to contacts (narc.h). One call takes
+ *   the first way:
  *
- *       narc_compute_boxes()      the boxes of all bodies
- *       narc_find_pairs()         all pairs of boxes that overlap and whose filters let them
- *       narc_match_pairs()        which pair of the last step each pair was
- *       narc_gather()             carries hints, impulses, friction history from the last step's pairs to this one's
- *       narc_find_contacts()      (narc.h)
+ *       narc_update_pairs()       the list of all pairs of bodies that are close, and what of it is new
+ *
+ *   A narc_broad_phase keeps the list from step to step. Each body has a box, which is larger than the body by a
+ *   SKIN. While all bodies stay inside their boxes, the list stays as it is: it has all pairs that are close, and some
+ *   that are not. When one has left its box, or the bodies are others, boxes and pairs are made anew, and each pair is
+ *   told its index in the last list. What the caller knows of a pair (hints, impulses, friction history) is carried
+ *   over by that index with narc_gather(), or stays where it is if the list was kept. Pairs that are new or lost are
+ *   listed: they begin and end what depends on being close.
+ *
+ *   The list is what the broad phase owns. It is valid until the next call of narc_update_pairs(),
+ *   narc_update_box_pairs() or narc_forget_pairs() with this object, or until that is destroyed. A call that fails
+ *   leaves the last list as it was, valid still, and the next call continues from there.
+ *
+ *   Bodies come and go, and change their numbers: with a column of ids the broad phase knows them again. Without ids
+ *   body k is body k, so that bodies may only be added and removed at the end.
+ *
+ *   Shapes may be replaced, removed and exchanged at any time: only the boxes of the bodies count. So may filters: a
+ *   body with another filter has another list made.
  *
  *   Pairs come in the order of (a, b) with a < b, which is also the order that keeps memory close: a batch of pairs
  *   that are sorted by their first body loads each body once. The answer is the same for any number of threads and on
  *   every instruction set.
  *
- *   A narc_broad_phase (narc_shapes.h) owns the memory that finding and matching need.
+ *   Those who keep lists themselves have the steps below: narc_compute_boxes(), narc_find_pairs(), narc_match_pairs().
  *
  * Example
  *
- *     narc_compute_boxes(shapes, &bodies, NULL, 0, boxes, &error);
- *     narc_find_pairs(broad, boxes, count, NULL, 0, a, b, capacity, &found, &error);
- *     narc_pairs pairs = {.count = found, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
- *     narc_match_pairs(broad, &last_pairs, &pairs, 0, match, &error);
- *     narc_gather(match, found, sizeof *hints, last_hints, hints);
+ *     narc_pair_filter filter = {.kind = NARC_COLUMN(body, kind)};
+ *     narc_pair_options options = {.margin = 0.02f, .skin = 0.05f, .filter = &filter, .id = NARC_COLUMN(body, id)};
+ *     const narc_pair_list *list;
+ *     narc_update_pairs(broad, shapes, &bodies, &options, 0, &list, &error);
+ *     if (!list->kept) {
+ *         narc_gather(list->previous, list->pairs.count, sizeof *caches, last_caches, caches);
+ *         for (size_t k = 0; k < list->lost_count; k++)
+ *             end_event(list->lost[k].id_a, list->lost[k].id_b);
+ *     }
+ *     narc_find_contacts(shapes, &bodies, &list->pairs, ...);
  */
 #ifndef NARC_BROAD_PHASE_H
 #define NARC_BROAD_PHASE_H
@@ -35,6 +54,70 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* ------------------------------------------------------------------------------------------------ pairs of a step */
+
+/* How pairs are kept; what is 0 or NULL is left out, as all is for {0}.
+ *   margin              at least 0: all pairs of bodies that are closer than this are listed: at least the margin that
+ *                       contacts are then asked for
+ *   skin                at least 0: how much larger than its body the box of a kept list is, on every side. A larger
+ *                       one keeps lists longer, and makes them longer. It counts when a list is made. 0: none is kept
+ *                       but where nothing moves
+ *   motion_x, motion_y  float, world axes: what each body moves in this step, as in narc_box_options. A list has all
+ *                       pairs that come close on the way
+ *   reach               float, at least 0: how far beyond its box a body may reach in this step, such as by rotation
+ *   id                  uint64_t: what a body is known by, whatever its number; no two have the same. A counter that
+ *                       each new body takes its id from, or a handle with its generation. Left out: its number.
+ *   filter              which bodies may form a pair, and which are static, asleep, sensors; NULL: all, and all move
+ * Columns have one item for each body. */
+typedef struct narc_pair_options {
+    float margin, skin;
+    narc_column motion_x, motion_y;
+    narc_column reach;
+    narc_column id;
+    const narc_pair_filter *filter;
+} narc_pair_options;
+
+/* The pairs of bodies that are closer than the margin, and may be some others, none further apart than margin + 2 * skin
+ * and the motion (of boxes, and but for rounding, NARC_BOX_ROOM) when the list was made.
+ *   bodies    at most 2^32 - 2
+ *   options   NULL: defaults
+ *   threads   as in narc_find_overlaps()
+ *   out_list  see narc_pair_list; its arrays belong to `broad`. A broken body (narc_bodies; also one whose motion or
+ *             reach is NaN, infinite, or below 0 as a reach) is in no pair, and counted in `skipped`.
+ * The list depends on the bodies of this call and of those before. For the same calls it is the same, bit by bit.
+ *
+ * Removal and insertion: take the body out of your arrays or put it in, in any way, with its id. If the last one fills
+ * the gap (swap-with-last), its pairs have their `previous` index as all others have. Where bodies of a pair have
+ * changed their order (a was b), its mark NARC_FLIPPED says so: normals, feature ids and impulses that you kept are
+ * those of the pair (b, a). (A hint may be kept: a wrong one changes no bit.) A lost pair names its bodies by their ids
+ * and by their numbers in the last list, whether they still exist or not. Ids that come back, as those of pools without
+ * a generation may, make one body of two.
+ *
+ * Sleep: see narc_pair_filter's table. Boxes of bodies at rest are looked at like others, so that a body that is static
+ * or asleep may be put anywhere.
+ *
+ * Time: with a kept list that of narc_compute_boxes() and a look at each body; else also that of narc_find_pairs() and
+ * narc_match_pairs(), and of a search by ids if bodies have changed their numbers. Memory: 130 to 270 bytes for each
+ * body and some 60 for each pair, kept from step to step.
+ * Errors: as narc_compute_boxes() and narc_find_pairs(), but for NARC_ERROR_CAPACITY; NARC_ERROR_ARGUMENT (a negative
+ * skin, two bodies with the same id: found at the latest when it would match a body wrongly), NARC_ERROR_NOT_FINITE,
+ * NARC_ERROR_MEMORY. On an error `*out_list` is untouched, and the last list is as it was and valid. */
+NARC_API narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
+                                       const narc_pair_options *options, unsigned threads,
+                                       const narc_pair_list **out_list, narc_error *error);
+
+/* The same for boxes that the caller has. `count` boxes, at most 2^32 - 2, each around what it holds in this step:
+ * there are no motion columns. An empty box is in no pair, and counted. */
+NARC_API narc_status narc_update_box_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
+                                           const narc_pair_options *options, unsigned threads,
+                                           const narc_pair_list **out_list, narc_error *error);
+
+/* Forgets the list, and keeps the memory: for another level, or a state that was restored. All pairs of the next list
+ * are new, and none is lost. NULL: nothing happens. */
+NARC_API void narc_forget_pairs(narc_broad_phase *broad);
+
+/* ------------------------------------------------------------------------------------------------ its steps */
 
 /* What narc_compute_boxes() puts boxes around; what is 0 or NULL is left out, as all is for {0}.
  *   margin              at least 0: how far a box reaches beyond its body on every side. To find all pairs that are

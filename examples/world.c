@@ -163,7 +163,7 @@ static narc_status find_boxes(world *w) {
 
 /* All pairs whose boxes overlap. Those of the step before become the last ones. */
 static narc_status find_pairs(world *w) {
-    const narc_pair_filter filter = {.still = NARC_COLUMN(w->bodies, still)};
+    const narc_pair_filter filter = {.kind = NARC_COLUMN(w->bodies, still)};
     const world_pairs last = w->pairs;
     w->pairs = w->last_pairs;
     w->last_pairs = last;

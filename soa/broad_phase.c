@@ -24,7 +24,18 @@ void narc_destroy_broad_phase(narc_broad_phase *broad) {
     if (!broad)
         return;
     const narc_allocator allocator = broad->allocator;
-    void *const memory[] = {broad->box_memory, broad->pair_memory, broad->match_memory, broad};
+    const narc_kept_list *const one = &broad->lists[0], *const other = &broad->lists[1];
+    void *const memory[] = {broad->box_memory,
+                            broad->pair_memory,
+                            broad->match_memory,
+                            broad->body_memory,
+                            one->pair_memory,
+                            one->lost,
+                            one->ids,
+                            other->pair_memory,
+                            other->lost,
+                            other->ids,
+                            broad};
     for (size_t k = 0; k < sizeof memory / sizeof memory[0]; k++)
         if (memory[k])
             allocator.release(memory[k], allocator.context);
@@ -103,5 +114,65 @@ narc_status narc_reserve_matches(narc_broad_phase *broad, size_t first_count, si
     if (!replace(broad, &broad->match_memory, n, sizeof(uint32_t)))
         return NARC_ERROR_MEMORY;
     broad->match_capacity = n;
+    return NARC_OK;
+}
+
+narc_status narc_reserve_bodies(narc_broad_phase *broad, size_t count) {
+    enum { BYTES = 2 * sizeof(narc_box) + sizeof(narc_body_filter) + sizeof(uint32_t) + 1 };
+    if (broad->body_memory && count <= broad->body_capacity)
+        return NARC_OK;
+    const size_t n = with_room(count, 1024);
+    if (n > SIZE_MAX - 64 || !replace(broad, &broad->body_memory, n + 64, BYTES))
+        return NARC_ERROR_MEMORY;
+    char *at = broad->body_memory;
+    broad->boxes_now = take(&at, n, sizeof *broad->boxes_now);
+    broad->kept_boxes = take(&at, n, sizeof *broad->kept_boxes);
+    broad->filters = take(&at, n, sizeof *broad->filters);
+    broad->last_index = take(&at, n, sizeof *broad->last_index);
+    broad->taken = take(&at, n, 1);
+    broad->body_capacity = n;
+    broad->is_current = false;
+    return NARC_OK;
+}
+
+narc_status narc_reserve_pairs(narc_broad_phase *broad, narc_kept_list *list, size_t count) {
+    enum { BYTES = 5 * sizeof(uint32_t) + 2 };
+    if (list->pair_memory && count <= list->pair_capacity)
+        return NARC_OK;
+    const size_t n = with_room(count, 1024);
+    if (!replace(broad, &list->pair_memory, n, BYTES))
+        return NARC_ERROR_MEMORY;
+    list->a = list->pair_memory;
+    list->b = list->a + n;
+    list->previous = list->b + n;
+    list->selected = list->previous + n;
+    list->added = list->selected + n;
+    list->marks = (uint8_t *)(list->added + n);
+    list->matched = list->marks + n;
+    list->pair_capacity = n;
+    return NARC_OK;
+}
+
+narc_status narc_reserve_lost(narc_broad_phase *broad, narc_kept_list *list, size_t count) {
+    void *memory = list->lost;
+    if (count <= list->lost_capacity)
+        return NARC_OK;
+    const size_t n = with_room(count, 64);
+    if (!replace(broad, &memory, n, sizeof *list->lost))
+        return NARC_ERROR_MEMORY;
+    list->lost = memory;
+    list->lost_capacity = n;
+    return NARC_OK;
+}
+
+narc_status narc_reserve_ids(narc_broad_phase *broad, narc_kept_list *list, size_t count) {
+    void *memory = list->ids;
+    if (count <= list->id_capacity)
+        return NARC_OK;
+    const size_t n = with_room(count, 1024);
+    if (!replace(broad, &memory, n, sizeof *list->ids))
+        return NARC_ERROR_MEMORY;
+    list->ids = memory;
+    list->id_capacity = n;
     return NARC_OK;
 }

@@ -55,9 +55,45 @@ typedef struct narc_pair_block {
     uint32_t count, lowest_a, highest_a;
 } narc_pair_block;
 
+/* What a filter says of one body. */
+typedef struct narc_body_filter {
+    uint64_t category, mask;
+    uint32_t group;
+    uint8_t kind;
+} narc_body_filter;
+
+enum { NARC_KINDS = NARC_STATIC | NARC_ASLEEP | NARC_SENSOR };
+
+/* A list of pairs that narc_update_pairs() made, and whose pairs they are. */
+typedef struct narc_kept_list {
+    narc_pair_list list; /* as the caller sees it */
+    void *pair_memory;
+    size_t pair_capacity, lost_capacity, id_capacity;
+    /* for each pair */
+    uint32_t *a, *b, *previous, *selected, *added;
+    uint8_t *marks;
+    uint8_t *matched; /* 1: the next list has it */
+    narc_lost_pair *lost;
+    uint64_t *ids; /* of each body, if has_ids; else they are their numbers */
+    bool has_ids;
+    size_t body_count;
+} narc_kept_list;
+
 struct narc_broad_phase {
     narc_allocator allocator;
-    void *box_memory, *pair_memory, *match_memory;
+    void *box_memory, *pair_memory, *match_memory, *body_memory;
+    /* what narc_update_pairs() keeps */
+    narc_kept_list lists[2]; /* the last one, and memory for the next */
+    int last;
+    bool is_current;      /* the last list holds all pairs of `kept_boxes` and `filters` */
+    bool has_filter;      /* `filters` are in use */
+    bool renewed;         /* lists may say more than that all is kept: new pairs, lost ones, flips */
+    size_t body_capacity; /* for each body: */
+    narc_box *boxes_now, *kept_boxes;
+    narc_body_filter *filters;
+    uint32_t *last_index; /* its number in the last list */
+    uint8_t *taken;       /* for each body of the last list: it has a number in this one */
+    /* what narc_find_pairs() sorts */
     size_t box_capacity, block_capacity, match_capacity; /* match_capacity: of uint32_t */
     /* for each box */
     narc_box_entry *entries, *spare;
@@ -89,5 +125,9 @@ enum { NARC_FULL_BLOCK = NARC_PAIR_BLOCK / 8 * 7 };
 narc_status narc_reserve_boxes(narc_broad_phase *broad, size_t count);
 narc_status narc_reserve_blocks(narc_broad_phase *broad, size_t count);
 narc_status narc_reserve_matches(narc_broad_phase *broad, size_t first_count, size_t second_count);
+narc_status narc_reserve_bodies(narc_broad_phase *broad, size_t count); /* what is lost makes is_current false */
+narc_status narc_reserve_pairs(narc_broad_phase *broad, narc_kept_list *list, size_t count);
+narc_status narc_reserve_lost(narc_broad_phase *broad, narc_kept_list *list, size_t count);
+narc_status narc_reserve_ids(narc_broad_phase *broad, narc_kept_list *list, size_t count);
 
 #endif

@@ -19,6 +19,10 @@ static inline uint32_t narc_index_at(narc_index_column column, size_t index) {
     return *(const uint32_t *)narc_at(column.base, column.stride, index);
 }
 
+static inline uint64_t narc_word_at(narc_word_column column, size_t index) {
+    return *(const uint64_t *)narc_at(column.base, column.stride, index);
+}
+
 static inline uint8_t narc_byte_at(narc_byte_column column, size_t index) {
     return *(const uint8_t *)narc_at(column.base, column.stride, index);
 }

@@ -38,6 +38,11 @@ typedef struct narc_index_column {
     ptrdiff_t stride;
 } narc_index_column;
 
+typedef struct narc_word_column {
+    const uint64_t *base;
+    ptrdiff_t stride;
+} narc_word_column;
+
 typedef struct narc_byte_column {
     const uint8_t *base;
     ptrdiff_t stride;
@@ -71,14 +76,16 @@ typedef struct narc_position_column {
              : NARC_MADE_COLUMN(narc_float_column, pointer, size), const float *                                       \
              : NARC_MADE_COLUMN(narc_float_column, pointer, size), uint32_t *                                          \
              : NARC_MADE_COLUMN(narc_index_column, pointer, size), const uint32_t *                                    \
-             : NARC_MADE_COLUMN(narc_index_column, pointer, size), uint8_t *                                           \
+             : NARC_MADE_COLUMN(narc_index_column, pointer, size), uint64_t * \
+             : NARC_MADE_COLUMN(narc_word_column, pointer, size), const uint64_t * \
+             : NARC_MADE_COLUMN(narc_word_column, pointer, size), uint8_t * \
              : NARC_MADE_COLUMN(narc_byte_column, pointer, size), const uint8_t *                                      \
              : NARC_MADE_COLUMN(narc_byte_column, pointer, size), _Bool *                                              \
              : NARC_MADE_COLUMN(narc_byte_column, pointer, size), const _Bool *                                        \
              : NARC_MADE_COLUMN(narc_byte_column, pointer, size))
 #define NARC_TYPED_POINTER(pointer)                                                                                    \
     _Generic((pointer), float * : (pointer), const float * : (pointer), uint32_t * : (pointer), const uint32_t *       \
-             : (pointer), uint8_t * : (pointer), const uint8_t * : (pointer))
+             : (pointer), uint64_t * : (pointer), const uint64_t * : (pointer), uint8_t * : (pointer), const uint8_t * : (pointer))
 #define NARC_POSITIONS_AT(pointer, size)                                                                                 \
     {                                                                                                                    \
         (pointer), (ptrdiff_t)(size),                                                                                  \
@@ -114,6 +121,10 @@ constexpr narc_float_column make_column(const float *base, size_t stride) {
 }
 
 constexpr narc_index_column make_column(const uint32_t *base, size_t stride) {
+    return {base, static_cast<ptrdiff_t>(stride)};
+}
+
+constexpr narc_word_column make_column(const uint64_t *base, size_t stride) {
     return {base, static_cast<ptrdiff_t>(stride)};
 }
 

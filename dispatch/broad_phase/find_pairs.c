@@ -172,16 +172,16 @@ static narc_status check(const narc_broad_phase *broad, const narc_box *boxes, s
     return NARC_OK;
 }
 
-narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
-                            const narc_pair_filter *filter, unsigned threads, uint32_t *out_a, uint32_t *out_b,
-                            size_t capacity, size_t *out_count, narc_error *error) {
-    narc_status status = check(broad, boxes, count, out_a, out_b, capacity, out_count, error);
-    if (status != NARC_OK)
-        return status;
+/* Threads for so many boxes. */
+static int find_team(unsigned threads, size_t count) { return narc_team_size(threads, count / PART_BOXES + 1); }
+
+narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, size_t count,
+                             const narc_pair_filter *filter, unsigned threads, size_t *out_count, narc_error *error) {
+    narc_status status;
     const narc_kernel_table *const kernels = narc_kernels(&status, error);
     if (!kernels)
         return status;
-    const int team = narc_team_size(threads, count / PART_BOXES + 1);
+    const int team = find_team(threads, count);
     if (narc_reserve_boxes(broad, count) != NARC_OK ||
         narc_reserve_blocks(broad, count_blocks(USUAL_PAIRS * (uint64_t)count, team)) != NARC_OK)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)count, "not enough memory for %zu boxes", count);
@@ -195,18 +195,42 @@ narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size
     if (found > UINT32_MAX)
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)UINT32_MAX, "more than %lu pairs of boxes overlap",
                          (unsigned long)UINT32_MAX);
-    if (found > capacity) {
-        *out_count = (size_t)found;
-        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu pairs, but there is room for %zu",
-                         (size_t)found, capacity);
-    }
+    *out_count = (size_t)found;
+    return NARC_OK;
+}
+
+narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const narc_pair_filter *filter,
+                                  unsigned threads, size_t found, uint32_t *out_a, uint32_t *out_b, narc_error *error) {
+    const int team = find_team(threads, count);
     if (atomic_load_explicit(&broad->block_count, memory_order_relaxed) > broad->block_capacity) {
+        narc_status status;
+        const narc_kernel_table *const kernels = narc_kernels(&status, error);
+        if (!kernels)
+            return status;
         if (narc_reserve_blocks(broad, count_blocks(found, team)) != NARC_OK)
-            return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)found, "not enough memory for %zu pairs",
-                             (size_t)found);
+            return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)found, "not enough memory for %zu pairs", found);
         sweep_all(broad, kernels, filter, team);
     }
-    *out_count = (size_t)found;
     narc_order_pairs(broad, atomic_load_explicit(&broad->block_count, memory_order_relaxed), count, team, out_a, out_b);
     return NARC_OK;
+}
+
+narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
+                            const narc_pair_filter *filter, unsigned threads, uint32_t *out_a, uint32_t *out_b,
+                            size_t capacity, size_t *out_count, narc_error *error) {
+    size_t found = 0;
+    narc_status status = check(broad, boxes, count, out_a, out_b, capacity, out_count, error);
+    if (status == NARC_OK)
+        status = narc_sweep_boxes(broad, boxes, count, filter, threads, &found, error);
+    if (status != NARC_OK)
+        return status;
+    if (found > capacity) {
+        *out_count = found;
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu pairs, but there is room for %zu", found,
+                         capacity);
+    }
+    status = narc_list_found_pairs(broad, count, filter, threads, found, out_a, out_b, error);
+    if (status == NARC_OK)
+        *out_count = found;
+    return status;
 }

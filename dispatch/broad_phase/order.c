@@ -15,19 +15,19 @@ static void put_in_order(uint32_t *one, uint32_t *other) {
 
 /* ------------------------------------------------------------------------------------------------ filter */
 
-static uint32_t bits_at(narc_index_column column, uint32_t body) {
-    return column.base ? narc_index_at(column, body) : UINT32_MAX;
+narc_body_filter narc_read_filter(const narc_pair_filter *filter, size_t body) {
+    const narc_word_column category = filter->category, mask = filter->mask;
+    return (narc_body_filter){.category = category.base ? narc_word_at(category, body) : UINT64_MAX,
+                              .mask = mask.base ? narc_word_at(mask, body) : UINT64_MAX,
+                              .group = filter->group.base ? narc_index_at(filter->group, body) : 0,
+                              .kind = filter->kind.base ? narc_byte_at(filter->kind, body) & NARC_KINDS : 0};
 }
 
+/* Two static bodies do not meet, nor do two sensors. */
 static bool lets(const narc_pair_filter *filter, uint32_t a, uint32_t b) {
-    const narc_byte_column still = filter->still;
-    const narc_index_column group = filter->group;
-    if (still.base && narc_byte_at(still, a) && narc_byte_at(still, b))
-        return false;
-    if (group.base && narc_index_at(group, a) != 0 && narc_index_at(group, a) == narc_index_at(group, b))
-        return false;
-    return (bits_at(filter->category, a) & bits_at(filter->mask, b)) != 0 &&
-           (bits_at(filter->category, b) & bits_at(filter->mask, a)) != 0;
+    const narc_body_filter one = narc_read_filter(filter, a), other = narc_read_filter(filter, b);
+    return !(one.kind & other.kind & (NARC_STATIC | NARC_SENSOR)) && (one.group == 0 || one.group != other.group) &&
+           (one.category & other.mask) != 0 && (other.category & one.mask) != 0;
 }
 
 uint32_t narc_filter_pairs(const narc_pair_filter *filter, uint32_t *a, uint32_t *b, uint32_t first, uint32_t count) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * steps.h - the steps of narc_find_pairs(). Internal.
+ * steps.h - the steps of narc_find_pairs() and narc_update_pairs(). Internal.
  */
 #ifndef NARC_BROAD_PHASE_STEPS_H
 #define NARC_BROAD_PHASE_STEPS_H
@@ -11,6 +11,18 @@
 static inline size_t narc_part_start(size_t count, int part, int parts) {
     return count / (size_t)parts * (size_t)part + count % (size_t)parts * (size_t)part / (size_t)parts;
 }
+
+/* What the filter says of one body. */
+narc_body_filter narc_read_filter(const narc_pair_filter *filter, size_t body);
+
+/* Finds the pairs of boxes that overlap and may form a pair; *out_count is how many. The broad phase holds as many of
+ * them as there is memory for. Errors as narc_find_pairs() has them, but for NARC_ERROR_CAPACITY. */
+narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, size_t count,
+                             const narc_pair_filter *filter, unsigned threads, size_t *out_count, narc_error *error);
+
+/* Lists these `found` pairs in their order, sweeping again if not all were held. NARC_ERROR_MEMORY. */
+narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const narc_pair_filter *filter,
+                                  unsigned threads, size_t found, uint32_t *out_a, uint32_t *out_b, narc_error *error);
 
 /* Lists the levels and strips that `count` boxes lie in, and the entries of the boxes in the order of their strips;
  * returns how many boxes are not empty. There is room for all boxes. */

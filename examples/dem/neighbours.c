@@ -44,7 +44,7 @@ static bool find_boxes(dem *d) {
 
 static bool find_pairs(dem *d) {
     dem_scratch *s = d->scratch;
-    const narc_pair_filter filter = {.still = NARC_ARRAY(s->still)};
+    const narc_pair_filter filter = {.kind = NARC_ARRAY(s->still)};
     const size_t boxes = d->bodies.count + s->image_count;
     narc_error error;
     for (;;) {

@@ -32,15 +32,21 @@ static uint32_t word(narc_index_column column, size_t k, uint32_t none) {
     return base ? *(const uint32_t *)(const void *)(base + (ptrdiff_t)k * column.stride) : none;
 }
 
+static uint64_t long_word(narc_word_column column, size_t k) {
+    const char *const base = (const char *)column.base;
+    return base ? *(const uint64_t *)(const void *)(base + (ptrdiff_t)k * column.stride) : ~(uint64_t)0;
+}
+
 static bool lets(const narc_pair_filter *f, size_t a, size_t b) {
     if (!f)
         return true;
-    const unsigned char *still = f->still.base;
-    if (still && still[(ptrdiff_t)a * f->still.stride] && still[(ptrdiff_t)b * f->still.stride])
+    const unsigned char *kind = f->kind.base;
+    if (kind && (kind[(ptrdiff_t)a * f->kind.stride] & kind[(ptrdiff_t)b * f->kind.stride] &
+                 (NARC_STATIC | NARC_SENSOR)) != 0)
         return false;
     if (word(f->group, a, 0) != 0 && word(f->group, a, 0) == word(f->group, b, 0))
         return false;
-    return (word(f->category, a, ~0u) & word(f->mask, b, ~0u)) && (word(f->category, b, ~0u) & word(f->mask, a, ~0u));
+    return (long_word(f->category, a) & long_word(f->mask, b)) && (long_word(f->category, b) & long_word(f->mask, a));
 }
 
 /* Every pair, one after the other: in the order that is promised. */
@@ -232,22 +238,24 @@ static void filters_pairs(void **state) {
     struct test_random random = test_random_named("filters");
     narc_broad_phase *broad = create();
     struct body {
-        uint32_t category, mask, group;
-        uint8_t still;
+        uint64_t category, mask;
+        uint32_t group;
+        uint8_t kind;
     };
     for (size_t trial = 0; trial < test_trials(30); trial++) {
         narc_box boxes[200];
         struct body bodies[200];
         for (size_t k = 0; k < 200; k++) {
             boxes[k] = random_box(&random, 10, 0.5, 2);
-            bodies[k] = (struct body){(uint32_t)random_bits(&random) & 7, (uint32_t)random_bits(&random) & 7,
-                                      (uint32_t)random_below(&random, 4), (uint8_t)(random_bits(&random) & 2)};
+            bodies[k] =
+                (struct body){(uint64_t)random_below(&random, 8) << 31, (uint64_t)random_below(&random, 8) << 31,
+                              (uint32_t)random_below(&random, 4), (uint8_t)random_below(&random, 256)};
         }
-        const narc_byte_column still = NARC_COLUMN(bodies, still);
-        const narc_index_column category = NARC_COLUMN(bodies, category), mask = NARC_COLUMN(bodies, mask),
-                                group = NARC_COLUMN(bodies, group);
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){still, category, mask, group});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){.still = still});
+        const narc_byte_column kind = NARC_COLUMN(bodies, kind);
+        const narc_word_column category = NARC_COLUMN(bodies, category), mask = NARC_COLUMN(bodies, mask);
+        const narc_index_column group = NARC_COLUMN(bodies, group);
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){kind, category, mask, group});
+        check_pairs(broad, boxes, 200, &(narc_pair_filter){.kind = kind});
         check_pairs(broad, boxes, 200, &(narc_pair_filter){.category = category});
         check_pairs(broad, boxes, 200, &(narc_pair_filter){.mask = mask});
         check_pairs(broad, boxes, 200, &(narc_pair_filter){.group = group});
