@@ -1,0 +1,755 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * pair_lists.c - narc_update_pairs() step by step against all pairs of boxes in double precision: which list is kept,
+ * its pairs, what was added and lost, as bodies come, go, change their numbers, sleep and wake.
+ *
+ * Boxes and margins are eighths, so that single precision has no rounding to hide behind: a box that is a little larger
+ * overlaps no other one. The skin is no whole number of eighths, so that no body is just about to leave its box.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "narc.h"
+#include "narc_broad_phase.h"
+#include "support.h"
+
+enum { THREAD_COUNTS = 4, MOST_BODIES = 9000 };
+static const unsigned thread_counts[THREAD_COUNTS] = {1, 2, 3, 7};
+
+typedef struct body {
+    uint64_t id, category, mask;
+    narc_box box;
+    uint32_t group;
+    float reach;
+    uint8_t kind;
+} body;
+
+typedef struct wide_box {
+    double min_x, min_y, max_x, max_y;
+    bool exists;
+} wide_box;
+
+typedef struct known_pair {
+    uint64_t id_a, id_b; /* of the body with the lower number */
+    uint32_t a, b, index;
+    uint8_t kinds;
+    bool seen;
+} known_pair;
+
+/* The reference: the last list, by ids. */
+typedef struct reference {
+    wide_box kept[MOST_BODIES];
+    body bodies[MOST_BODIES];
+    size_t count;
+    bool begun;
+    known_pair *pairs, *next;
+    size_t pair_count, next_count, capacity;
+    uint32_t *table; /* hash table of pairs: one more than their index */
+} reference;
+
+static double half_of_margin = 0.25, skin = 0.5625;
+
+static bool exists(const narc_box *b) {
+    return isfinite(b->min_x) && isfinite(b->min_y) && isfinite(b->max_x) && isfinite(b->max_y) &&
+           b->min_x <= b->max_x && b->min_y <= b->max_y;
+}
+
+static wide_box widen(const wide_box *b, double by) {
+    return (wide_box){b->min_x - by, b->min_y - by, b->max_x + by, b->max_y + by, b->exists};
+}
+
+static wide_box box_of(const body *b) {
+    const wide_box box = {(double)b->box.min_x, (double)b->box.min_y, (double)b->box.max_x, (double)b->box.max_y,
+                          exists(&b->box) && b->reach >= 0 && isfinite(b->reach)};
+    return widen(&box, half_of_margin + (double)b->reach);
+}
+
+static bool is_inside(const wide_box *box, const wide_box *around) {
+    return box->exists == around->exists &&
+           (!box->exists || (box->min_x >= around->min_x && box->min_y >= around->min_y &&
+                             box->max_x <= around->max_x && box->max_y <= around->max_y));
+}
+
+static bool meet(const wide_box *a, const wide_box *b) {
+    return a->exists && b->exists && a->min_x <= b->max_x && b->min_x <= a->max_x && a->min_y <= b->max_y &&
+           b->min_y <= a->max_y;
+}
+
+static bool may_pair(const body *a, const body *b) {
+    if (a->kind & NARC_STATIC && b->kind & NARC_STATIC)
+        return false;
+    if (a->kind & NARC_SENSOR && b->kind & NARC_SENSOR)
+        return false;
+    if (a->group == b->group && a->group != 0)
+        return false;
+    return (a->category & b->mask) && (b->category & a->mask);
+}
+
+static bool is_at_rest(const body *b) { return b->kind & (NARC_STATIC | NARC_ASLEEP); }
+
+/* ------------------------------------------------------------------------------------------------ sets of pairs */
+
+static size_t find_slot(const reference *r, uint64_t one, uint64_t other) {
+    const uint64_t low = one < other ? one : other, high = one < other ? other : one;
+    size_t slot = (size_t)((low * 31 + high * 0x9e3779b97f4a7c15u) >> 20) % (2 * r->capacity);
+    for (; r->table[slot]; slot = (slot + 1) % (2 * r->capacity)) {
+        const known_pair *p = &r->pairs[r->table[slot] - 1];
+        if ((p->id_a == one && p->id_b == other) || (p->id_a == other && p->id_b == one))
+            break;
+    }
+    return slot;
+}
+
+static void hash_pairs(reference *r) {
+    memset(r->table, 0, 2 * r->capacity * sizeof *r->table);
+    for (size_t k = 0; k < r->pair_count; k++)
+        r->table[find_slot(r, r->pairs[k].id_a, r->pairs[k].id_b)] = (uint32_t)k + 1;
+}
+
+static reference *create_reference(size_t capacity) {
+    reference *r = calloc(1, sizeof *r);
+    assert_non_null(r);
+    r->capacity = capacity;
+    r->pairs = calloc(capacity, sizeof *r->pairs);
+    r->next = calloc(capacity, sizeof *r->next);
+    r->table = calloc(2 * capacity, sizeof *r->table);
+    assert_true(r->pairs && r->next && r->table);
+    return r;
+}
+
+static void destroy_reference(reference *r) {
+    free(r->pairs);
+    free(r->next);
+    free(r->table);
+    free(r);
+}
+
+/* ------------------------------------------------------------------------------------------------ one step */
+
+static bool must_renew(const reference *r, const body *bodies, size_t count) {
+    const uint8_t lasting = NARC_STATIC | NARC_SENSOR;
+    if (!r->begun || count != r->count)
+        return true;
+    for (size_t k = 0; k < count; k++) {
+        const body *now = &bodies[k], *then = &r->bodies[k];
+        const wide_box box = box_of(now);
+        if (now->id != then->id || now->category != then->category || now->mask != then->mask ||
+            now->group != then->group || ((now->kind ^ then->kind) & lasting) || !is_inside(&box, &r->kept[k]))
+            return true;
+    }
+    return false;
+}
+
+/* The pairs of this step into r->next; false: those of the last are kept. */
+static bool find_expected(reference *r, const body *bodies, size_t count) {
+    const bool renew = must_renew(r, bodies, count);
+    r->begun = true;
+    for (size_t k = 0; k < count && renew; k++) {
+        const wide_box box = box_of(&bodies[k]);
+        r->kept[k] = widen(&box, skin);
+    }
+    memcpy(r->bodies, bodies, count * sizeof *bodies);
+    r->count = count;
+    r->next_count = 0;
+    if (!renew) {
+        memcpy(r->next, r->pairs, r->pair_count * sizeof *r->pairs);
+        r->next_count = r->pair_count;
+    }
+    for (size_t a = 0; a < count && renew; a++)
+        for (size_t b = a + 1; b < count; b++)
+            if (meet(&r->kept[a], &r->kept[b]) && may_pair(&bodies[a], &bodies[b])) {
+                assert_true(r->next_count < r->capacity);
+                r->next[r->next_count++] =
+                    (known_pair){.id_a = bodies[a].id, .id_b = bodies[b].id, .a = (uint32_t)a, .b = (uint32_t)b};
+            }
+    for (size_t k = 0; k < r->next_count; k++)
+        r->next[k].kinds = (bodies[r->next[k].a].kind | bodies[r->next[k].b].kind) & 7;
+    return renew;
+}
+
+/* Is it what is expected? Marks in r->pairs the pairs that go on. */
+static void check_pairs(reference *r, const body *bodies, const narc_pair_list *list, bool renew) {
+    const uint32_t *a = list->pairs.a.base, *b = list->pairs.b.base;
+    size_t added = 0, contacts = 0, sensors = 0;
+    assert_int_equal(list->kept, !renew);
+    assert_int_equal(list->pairs.count, r->next_count);
+    for (size_t k = 0; k < r->pair_count; k++)
+        r->pairs[k].seen = false;
+    for (size_t k = 0; k < r->next_count; k++) {
+        const known_pair *p = &r->next[k];
+        const uint32_t found = r->table[find_slot(r, p->id_a, p->id_b)];
+        uint8_t marks = p->kinds;
+        assert_int_equal(a[k], p->a);
+        assert_int_equal(b[k], p->b);
+        assert_int_equal(list->previous[k], found ? found - 1 : NARC_NO_MATCH);
+        if (found) {
+            r->pairs[found - 1].seen = true;
+            marks |= r->pairs[found - 1].id_a == p->id_b ? NARC_FLIPPED : 0;
+        } else
+            assert_int_equal(list->added[added++], k);
+        assert_int_equal(list->marks[k], marks);
+        if (is_at_rest(&bodies[p->a]) && is_at_rest(&bodies[p->b]))
+            continue;
+        if (p->kinds & NARC_SENSOR)
+            assert_int_equal(list->sensors[sensors++], k);
+        else
+            assert_int_equal(list->contacts[contacts++], k);
+    }
+    assert_int_equal(list->added_count, added);
+    assert_int_equal(list->contact_count, contacts);
+    assert_int_equal(list->sensor_count, sensors);
+}
+
+static size_t check_lost(const reference *r, const narc_pair_list *list) {
+    size_t lost = 0;
+    for (size_t k = 0; k < r->pair_count; k++) {
+        const known_pair *p = &r->pairs[k];
+        if (p->seen)
+            continue;
+        assert_true(lost < list->lost_count);
+        const narc_lost_pair *one = &list->lost[lost++];
+        assert_int_equal(one->pair, k);
+        assert_int_equal(one->a, p->a);
+        assert_int_equal(one->b, p->b);
+        assert_int_equal(one->marks, p->kinds);
+        assert_true(one->id_a == p->id_a && one->id_b == p->id_b);
+    }
+    assert_int_equal(list->lost_count, lost);
+    return lost;
+}
+
+static size_t count_broken(const body *bodies, size_t count) {
+    size_t broken = 0;
+    for (size_t k = 0; k < count; k++)
+        broken += !box_of(&bodies[k]).exists;
+    return broken;
+}
+
+typedef struct totals {
+    size_t kept, renewed, flipped, lost, added, sleeping, sensors, broken;
+} totals;
+
+/* Gives all objects the same step. */
+static void check_step(reference *r, narc_broad_phase *const *broads, body *bodies, size_t count, bool with_ids,
+                       totals *sums) {
+    narc_box *boxes = malloc((count + 1) * sizeof *boxes);
+    for (size_t k = 0; k < count; k++)
+        boxes[k] = bodies[k].box;
+    const size_t stride = sizeof *bodies;
+    const narc_pair_filter filter = {.kind = {&bodies->kind, stride},
+                                     .category = {&bodies->category, stride},
+                                     .mask = {&bodies->mask, stride},
+                                     .group = {&bodies->group, stride}};
+    narc_pair_options options = {
+        .margin = 2 * (float)half_of_margin, .skin = (float)skin, .reach = {&bodies->reach, stride}, .filter = &filter};
+    if (with_ids)
+        options.id = (narc_column){&bodies->id, stride};
+    const bool renew = find_expected(r, bodies, count);
+    for (size_t t = 0; t < THREAD_COUNTS; t++) {
+        const narc_pair_list *list = NULL;
+        narc_error error;
+        assert_int_equal(narc_update_box_pairs(broads[t], boxes, count, &options, thread_counts[t], &list, &error),
+                         NARC_OK);
+        check_pairs(r, bodies, list, renew);
+        const size_t lost = check_lost(r, list);
+        assert_int_equal(list->skipped, count_broken(bodies, count));
+        sums->lost += lost;
+        sums->added += list->added_count;
+        sums->sensors += list->sensor_count;
+        sums->broken += list->skipped;
+        sums->sleeping += list->pairs.count - list->contact_count - list->sensor_count;
+        for (size_t k = 0; k < list->pairs.count; k++)
+            sums->flipped += list->marks[k] >> 7;
+    }
+    sums->kept += !renew;
+    sums->renewed += renew;
+    known_pair *const last = r->pairs;
+    r->pairs = r->next;
+    r->next = last;
+    r->pair_count = r->next_count;
+    hash_pairs(r);
+    free(boxes);
+}
+
+/* ------------------------------------------------------------------------------------------------ a world */
+
+static float eighths(struct test_random *random, uint64_t most) { return (float)random_below(random, most + 1) / 8; }
+
+static narc_box random_box(struct test_random *random, uint64_t side) {
+    const float x = eighths(random, 8 * side), y = eighths(random, 8 * side);
+    return (narc_box){x, y, x + eighths(random, 16), y + eighths(random, 16)};
+}
+
+static uint64_t choose_mask(struct test_random *random) {
+    return random_below(random, 8) ? UINT64_MAX : (uint64_t)1 << (31 + random_below(random, 4));
+}
+
+static body random_body(struct test_random *random, uint64_t side, uint64_t id) {
+    return (body){.id = id * 0x9e3779b97f4a7c15u,
+                  .category = choose_mask(random),
+                  .mask = choose_mask(random),
+                  .box = random_box(random, side),
+                  .group = random_below(random, 4) ? 0 : 1 + (uint32_t)random_below(random, 3),
+                  .kind = random_below(random, 2) ? 0 : (uint8_t)random_below(random, 8)};
+}
+
+static void shift(narc_box *box, float x, float y) {
+    *box = (narc_box){box->min_x + x, box->min_y + y, box->max_x + x, box->max_y + y};
+}
+
+/* Something that an engine may do between two steps. */
+static size_t change(struct test_random *random, body *bodies, size_t count, size_t most, uint64_t side, bool with_ids,
+                     uint64_t *next_id) {
+    if (count == 0 || (count < most && random_below(random, 40) == 0)) {
+        bodies[count] = random_body(random, side, *next_id);
+        bodies[count].id = with_ids ? bodies[count].id : count;
+        ++*next_id;
+        return count + 1;
+    }
+    const size_t k = (size_t)random_below(random, count), other = (size_t)random_below(random, count);
+    switch (random_below(random, with_ids ? 28 : 22)) {
+    case 0:
+        bodies[k].kind ^= (uint8_t)(1 << random_below(random, 3));
+        break;
+    case 1:
+        bodies[k].category = choose_mask(random);
+        break;
+    case 2:
+        bodies[k].group = (uint32_t)random_below(random, 3);
+        break;
+    case 3:
+        if (skin > 0) /* without one there is no room for rounding */
+            bodies[k].reach = random_below(random, 6) ? eighths(random, 4) : random_below(random, 2) ? NAN : -1;
+        break;
+    case 4:
+        bodies[k].box.max_y = NAN;
+        break;
+    case 5:
+        return count - 1;
+    case 6:
+    case 7:
+        bodies[k].box = random_box(random, side);
+        break;
+    default: /* within the skin, mostly */
+        shift(&bodies[k].box, eighths(random, 2) - 0.125f, eighths(random, 2) - 0.125f);
+        break;
+    case 22: /* swap with last */
+    case 23:
+        bodies[k] = bodies[count - 1];
+        return count - 1;
+    case 24: /* all behind it move up */
+        memmove(&bodies[k], &bodies[k + 1], (count - k - 1) * sizeof *bodies);
+        return count - 1;
+    case 25: /* one goes and one comes: the count stays */
+        bodies[k] = random_body(random, side, ++*next_id);
+        ++*next_id;
+        break;
+    case 26: {
+        const body moved = bodies[k];
+        bodies[k] = bodies[other];
+        bodies[other] = moved;
+        break;
+    }
+    case 27:
+        bodies[k].kind ^= NARC_ASLEEP;
+        break;
+    }
+    return count;
+}
+
+static totals run_world(const char *name, size_t steps, size_t start, size_t most, uint64_t side, bool with_ids) {
+    struct test_random random = test_random_named(name);
+    reference *r = create_reference(most * 16 + 1000);
+    body *bodies = calloc(most + 1, sizeof *bodies);
+    narc_broad_phase *broads[THREAD_COUNTS];
+    uint64_t next_id = start;
+    totals sums = {0};
+    for (size_t t = 0; t < THREAD_COUNTS; t++)
+        assert_int_equal(narc_create_broad_phase(NULL, &broads[t]), NARC_OK);
+    for (size_t k = 0; k < start; k++) {
+        bodies[k] = random_body(&random, side, k);
+        bodies[k].id = with_ids ? bodies[k].id : k;
+    }
+    size_t count = start;
+    for (size_t step = 0; step < steps; step++) {
+        check_step(r, broads, bodies, count, with_ids, &sums);
+        if (random_below(&random, 3) == 0) { /* sleep alone renews nothing */
+            bodies[random_below(&random, count + 1)].kind ^= NARC_ASLEEP;
+            continue;
+        }
+        for (size_t changes = (size_t)random_below(&random, 4); changes-- > 0;)
+            count = change(&random, bodies, count, most, side, with_ids, &next_id);
+    }
+    for (size_t t = 0; t < THREAD_COUNTS; t++)
+        narc_destroy_broad_phase(broads[t]);
+    free(bodies);
+    destroy_reference(r);
+    return sums;
+}
+
+static void follows_bodies_by_their_ids(void **state) {
+    (void)state;
+    const totals sums = run_world("ids", test_trials(4000), 60, 90, 12, true);
+    assert_true(sums.kept > 100 && sums.renewed > 100 && sums.flipped > 0 && sums.lost > 0 && sums.added > 0);
+    assert_true(sums.sleeping > 0 && sums.sensors > 0 && sums.broken > 0);
+}
+
+static void follows_bodies_by_their_numbers(void **state) {
+    (void)state;
+    const totals sums = run_world("numbers", test_trials(3000), 40, 60, 10, false);
+    assert_true(sums.kept > 100 && sums.renewed > 100 && sums.flipped == 0 && sums.lost > 0 && sums.added > 0);
+}
+
+static void follows_few_bodies_and_none(void **state) {
+    (void)state;
+    run_world("few", test_trials(2000), 0, 4, 2, true);
+}
+
+static void keeps_nothing_without_a_skin(void **state) {
+    (void)state;
+    skin = half_of_margin = 0;
+    run_world("bare", test_trials(1000), 40, 60, 8, true);
+    skin = 0.5625;
+    half_of_margin = 0.25;
+}
+
+/* So many that several threads share the work. */
+static void follows_thousands(void **state) {
+    (void)state;
+    run_world("thousands", 12, MOST_BODIES - 10, MOST_BODIES, 150, true);
+}
+
+/* ------------------------------------------------------------------------------------------------ bodies */
+
+typedef struct disc {
+    float x, y, cosine, sine, motion_x, motion_y;
+    uint32_t shape;
+} disc;
+
+static uint32_t add_circle(narc_shapes *shapes, double radius) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    uint32_t shape;
+    assert_int_equal(narc_build_circle(radius, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(narc_add_shape(shapes, arcs, count, &shape, NULL), NARC_OK);
+    return shape;
+}
+
+static narc_bodies view(const disc *discs, size_t count) {
+    return (narc_bodies){.count = count,
+                         .x = NARC_COLUMN(discs, x),
+                         .y = NARC_COLUMN(discs, y),
+                         .cosine = NARC_COLUMN(discs, cosine),
+                         .sine = NARC_COLUMN(discs, sine),
+                         .shape = NARC_COLUMN(discs, shape)};
+}
+
+static bool is_listed(const narc_pair_list *list, uint32_t a, uint32_t b) {
+    const uint32_t *one = list->pairs.a.base, *other = list->pairs.b.base;
+    for (size_t k = 0; k < list->pairs.count; k++)
+        if (one[k] == a && other[k] == b)
+            return true;
+    return false;
+}
+
+/* How far apart two circles are along the axis where they are further apart: that of their boxes. */
+static double box_gap(const disc *a, const disc *b, const double *radius) {
+    return fmax(fabs((double)a->x - (double)b->x), fabs((double)a->y - (double)b->y)) - radius[a->shape] -
+           radius[b->shape];
+}
+
+/* Circles that fly: all that are close, or will be at the end of the step, and none that is far. */
+static void lists_all_bodies_that_are_close(void **state) {
+    (void)state;
+    enum { COUNT = 80 };
+    static const double radius[] = {0.5, 0.25};
+    const narc_pair_options options = {.margin = 0.25f, .skin = 0.125f};
+    struct test_random random = test_random_named("close");
+    narc_shapes *shapes;
+    narc_broad_phase *broad;
+    disc discs[COUNT];
+    size_t kept = 0, close = 0;
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    add_circle(shapes, radius[0]);
+    add_circle(shapes, radius[1]);
+    for (size_t k = 0; k < COUNT; k++)
+        discs[k] =
+            (disc){(float)random_between(&random, 0, 8), (float)random_between(&random, 0, 8), 1, 0, 0, 0, k % 2};
+    for (size_t step = 0; step < test_trials(300); step++) {
+        narc_pair_options moving = options;
+        const narc_pair_list *list;
+        const double motion = step % 50 == 0 ? 0.5 : 0.003;
+        for (size_t k = 0; k < COUNT; k++) {
+            discs[k].x += discs[k].motion_x;
+            discs[k].y += discs[k].motion_y;
+            discs[k].motion_x = (float)random_between(&random, -motion, motion);
+            discs[k].motion_y = (float)random_between(&random, -motion, motion);
+        }
+        moving.motion_x = NARC_COLUMN(discs, motion_x);
+        moving.motion_y = NARC_COLUMN(discs, motion_y);
+        const narc_bodies bodies = view(discs, COUNT);
+        assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &moving, 1 + (unsigned)step % 3, &list, NULL),
+                         NARC_OK);
+        kept += list->kept;
+        for (uint32_t a = 0; a < COUNT; a++)
+            for (uint32_t b = a + 1; b < COUNT; b++) {
+                disc end_a = discs[a], end_b = discs[b];
+                end_a.x += end_a.motion_x, end_a.y += end_a.motion_y;
+                end_b.x += end_b.motion_x, end_b.y += end_b.motion_y;
+                const double gap = fmin(box_gap(&discs[a], &discs[b], radius), box_gap(&end_a, &end_b, radius));
+                const bool listed = is_listed(list, a, b);
+                close += gap < 0.249;
+                assert_true(listed || gap > 0.249);
+                if (!list->kept)
+                    assert_true(!listed || gap < 0.25 + 0.25 + 2 * 2 * motion);
+            }
+    }
+    assert_true(kept > 20 && close > 1000);
+    narc_destroy_broad_phase(broad);
+    narc_destroy_shapes(shapes);
+}
+
+/* A shape that grows, one that goes, and a body that breaks and mends. */
+static void notices_shapes_that_change(void **state) {
+    (void)state;
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    narc_shapes *shapes;
+    narc_broad_phase *broad;
+    const narc_pair_list *list;
+    const narc_pair_options options = {.skin = 0.125f};
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    const uint32_t small = add_circle(shapes, 0.5), other = add_circle(shapes, 0.5);
+    disc discs[] = {{0, 0, 1, 0, 0, 0, small}, {3, 0, 1, 0, 0, 0, other}};
+    const narc_bodies bodies = view(discs, 2);
+    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    assert_int_equal(list->pairs.count, 0);
+    assert_int_equal(narc_build_circle(2.25, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(narc_replace_shape(shapes, small, arcs, count, NULL), NARC_OK);
+    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    assert_int_equal(list->added_count, 1);
+    discs[1].x = 3.0625f;
+    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    assert_true(list->kept && list->added_count == 0 && list->pairs.count == 1);
+    discs[1].x = NAN;
+    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    assert_true(list->lost_count == 1 && list->skipped == 1 && list->pairs.count == 0);
+    discs[1].x = 3;
+    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    assert_true(list->added_count == 1 && list->skipped == 0);
+    assert_int_equal(narc_remove_shape(shapes, other, NULL), NARC_OK);
+    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    assert_true(list->lost_count == 1 && list->skipped == 1);
+    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    assert_true(list->kept && list->lost_count == 0 && list->skipped == 1);
+    narc_destroy_broad_phase(broad);
+    narc_destroy_shapes(shapes);
+}
+
+/* ------------------------------------------------------------------------------------------------ memory and errors */
+
+struct counter {
+    size_t allocations, left; /* made, and to be made before the next one fails */
+};
+
+static void *counted_allocate(size_t size, void *context) {
+    struct counter *counter = context;
+    if (counter->left == 0)
+        return NULL;
+    counter->left--;
+    counter->allocations++;
+    return malloc(size);
+}
+
+static void counted_release(void *memory, void *context) {
+    (void)context;
+    free(memory);
+}
+
+static narc_broad_phase *create_counted(struct counter *counter) {
+    const narc_allocator allocator = {counted_allocate, counted_release, counter};
+    narc_broad_phase *broad = NULL;
+    assert_int_equal(narc_create_broad_phase(&allocator, &broad), NARC_OK);
+    return broad;
+}
+
+static void allocates_nothing_once_it_has_grown(void **state) {
+    (void)state;
+    enum { COUNT = 3000, STEPS = 30 };
+    struct test_random random = test_random_named("steady lists");
+    struct counter counter = {0, SIZE_MAX};
+    narc_broad_phase *broad = create_counted(&counter);
+    narc_box boxes[COUNT];
+    uint64_t ids[COUNT];
+    size_t after = 0;
+    for (int step = 0; step < STEPS; step++) {
+        const narc_pair_list *list;
+        const narc_pair_options options = {.margin = 0.5f, .skin = 0.125f, .id = NARC_ARRAY(ids)};
+        for (size_t k = 0; k < COUNT && step % 2 == 0; k++) { /* all others, and all in other places */
+            boxes[k] = random_box(&random, 60);
+            ids[k] = random_bits(&random);
+        }
+        assert_int_equal(narc_update_box_pairs(broad, boxes, COUNT, &options, 2, &list, NULL), NARC_OK);
+        assert_int_equal(list->kept, step % 2 == 1);
+        assert_true(list->kept || list->added_count == list->pairs.count);
+        if (step == 7)
+            after = counter.allocations;
+    }
+    assert_int_equal(counter.allocations, after);
+    narc_destroy_broad_phase(broad);
+}
+
+static void check_equal_lists(const narc_pair_list *one, const narc_pair_list *other) {
+    const size_t count = one->pairs.count;
+    assert_int_equal(count, other->pairs.count);
+    assert_memory_equal(one->pairs.a.base, other->pairs.a.base, count * sizeof(uint32_t));
+    assert_memory_equal(one->pairs.b.base, other->pairs.b.base, count * sizeof(uint32_t));
+    assert_memory_equal(one->previous, other->previous, count * sizeof(uint32_t));
+    assert_memory_equal(one->marks, other->marks, count);
+    assert_int_equal(one->added_count, other->added_count);
+    assert_int_equal(one->lost_count, other->lost_count);
+    if (one->lost_count > 0)
+        assert_memory_equal(one->lost, other->lost, one->lost_count * sizeof *one->lost);
+}
+
+/* Every allocation of a step fails once: the last list stays, and the next step is as if nothing had been. */
+static void survives_failing_allocations(void **state) {
+    (void)state;
+    enum { FEW = 300, MANY = 5000 };
+    static narc_box boxes[MANY];
+    static uint64_t ids[MANY], later_ids[MANY];
+    struct test_random random = test_random_named("failing lists");
+    for (size_t k = 0; k < MANY; k++) {
+        boxes[k] = random_box(&random, 30);
+        ids[k] = random_bits(&random);
+        later_ids[k] = k % 3 ? ids[k] : random_bits(&random);
+    }
+    narc_pair_options options = {.skin = 0.125f};
+    size_t failures = 0;
+    for (size_t left = 0;; left++) {
+        struct counter counter = {0, SIZE_MAX}, free_counter = {0, SIZE_MAX};
+        narc_broad_phase *broad = create_counted(&counter), *whole = create_counted(&free_counter);
+        const narc_pair_list *list, *whole_list, *untouched;
+        options.id = (narc_column){ids, sizeof *ids};
+        assert_int_equal(narc_update_box_pairs(broad, boxes, FEW, &options, 1, &list, NULL), NARC_OK);
+        assert_int_equal(narc_update_box_pairs(whole, boxes, FEW, &options, 1, &whole_list, NULL), NARC_OK);
+        options.id = (narc_column){later_ids, sizeof *later_ids};
+        counter.left = left;
+        untouched = list;
+        narc_error error;
+        const narc_status status = narc_update_box_pairs(broad, boxes, MANY, &options, 1, &untouched, &error);
+        if (status != NARC_OK) {
+            failures++;
+            assert_int_equal(status, NARC_ERROR_MEMORY);
+            assert_ptr_equal(untouched, list);
+            check_equal_lists(list, whole_list);
+            counter.left = SIZE_MAX;
+            /* The same bodies again, which must not be taken for those that the step that failed had. */
+            options.id = (narc_column){ids, sizeof *ids};
+            assert_int_equal(narc_update_box_pairs(broad, boxes, FEW, &options, 1, &list, NULL), NARC_OK);
+            assert_true(list->added_count == 0 && list->lost_count == 0);
+            options.id = (narc_column){later_ids, sizeof *later_ids};
+            assert_int_equal(narc_update_box_pairs(broad, boxes, MANY, &options, 1, &list, NULL), NARC_OK);
+        }
+        assert_int_equal(narc_update_box_pairs(whole, boxes, MANY, &options, 1, &whole_list, NULL), NARC_OK);
+        assert_true(whole_list->lost_count > 0 && whole_list->added_count > 0);
+        check_equal_lists(status == NARC_OK ? untouched : list, whole_list);
+        narc_destroy_broad_phase(broad);
+        narc_destroy_broad_phase(whole);
+        if (status == NARC_OK)
+            break;
+    }
+    assert_true(failures >= 5);
+}
+
+static void forgets_its_pairs(void **state) {
+    (void)state;
+    const narc_box boxes[] = {{0, 0, 1, 1}, {1, 0, 2, 1}};
+    const narc_pair_list *list;
+    narc_broad_phase *broad;
+    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    for (int step = 0; step < 3; step++) {
+        assert_int_equal(narc_update_box_pairs(broad, boxes, 2, NULL, 1, &list, NULL), NARC_OK);
+        assert_int_equal(list->kept, step == 1);
+        assert_int_equal(list->added_count, step != 1);
+        assert_int_equal(list->lost_count, 0);
+        if (step == 1)
+            narc_forget_pairs(broad);
+    }
+    narc_forget_pairs(NULL);
+    narc_destroy_broad_phase(broad);
+}
+
+static void refuses_bad_arguments(void **state) {
+    (void)state;
+    narc_box boxes[] = {{0, 0, 1, 1}, {1, 0, 2, 1}, {0, 0, 1, 2}};
+    const uint64_t ids[] = {5, 6, 7}, twice[] = {6, 5, 5};
+    narc_pair_options options = {.id = NARC_ARRAY(ids)};
+    const narc_pair_list *list = NULL, *before = NULL;
+    narc_broad_phase *broad;
+    narc_shapes *shapes;
+    narc_error error;
+    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    assert_int_equal(narc_update_box_pairs(broad, boxes, 3, &options, 1, &before, NULL), NARC_OK);
+    assert_int_equal(before->pairs.count, 3);
+    assert_int_equal(narc_update_box_pairs(NULL, boxes, 3, NULL, 1, &list, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_update_box_pairs(broad, NULL, 3, NULL, 1, &list, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_update_box_pairs(broad, boxes, 3, NULL, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_update_box_pairs(broad, boxes, (size_t)UINT32_MAX, NULL, 1, &list, NULL),
+                     NARC_ERROR_ARGUMENT);
+    const struct {
+        narc_pair_options options;
+        narc_status status;
+        const char *message;
+    } bad[] = {
+        {{.skin = -1}, NARC_ERROR_ARGUMENT, "options.skin is -1, less than 0"},
+        {{.skin = INFINITY}, NARC_ERROR_NOT_FINITE, "options.skin is inf"},
+        {{.margin = NAN}, NARC_ERROR_NOT_FINITE, "options.margin is nan"},
+        {{.margin = -2}, NARC_ERROR_ARGUMENT, "options.margin is -2, less than 0"},
+        {{.motion_x = NARC_COLUMN(boxes, min_x)},
+         NARC_ERROR_ARGUMENT,
+         "options.motion with boxes, which hold their motion"},
+        {{.id = NARC_ARRAY(twice)}, NARC_ERROR_ARGUMENT, "body 2: id 5 is also that of a body before it"},
+    };
+    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
+        assert_int_equal(narc_update_box_pairs(broad, boxes, 3, &bad[k].options, 1, &list, &error), bad[k].status);
+        assert_string_equal(error.message, bad[k].message);
+    }
+    narc_bodies bodies = {.count = 1};
+    assert_int_equal(narc_update_pairs(broad, NULL, &bodies, NULL, 1, &list, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_update_pairs(broad, shapes, NULL, NULL, 1, &list, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, NULL, 1, &list, NULL), NARC_ERROR_ARGUMENT);
+    const disc stray = {.cosine = 1, .shape = 3};
+    bodies = view(&stray, 1);
+    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, NULL, 1, &list, NULL), NARC_ERROR_INDEX);
+    assert_null(list);
+    assert_int_equal(before->pairs.count, 3); /* as it was, and the next step goes on from there */
+    assert_int_equal(narc_update_box_pairs(broad, boxes, 3, &options, 1, &list, NULL), NARC_OK);
+    assert_true(list->kept && list->pairs.count == 3);
+    boxes[0].min_x = -INFINITY;
+    assert_int_equal(narc_update_box_pairs(broad, boxes, 3, &options, 1, &list, NULL), NARC_OK);
+    assert_true(list->lost_count == 2 && list->skipped == 1);
+    narc_destroy_shapes(shapes);
+    narc_destroy_broad_phase(broad);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(follows_bodies_by_their_ids),
+        cmocka_unit_test(follows_bodies_by_their_numbers),
+        cmocka_unit_test(follows_few_bodies_and_none),
+        cmocka_unit_test(keeps_nothing_without_a_skin),
+        cmocka_unit_test(follows_thousands),
+        cmocka_unit_test(lists_all_bodies_that_are_close),
+        cmocka_unit_test(notices_shapes_that_change),
+        cmocka_unit_test(allocates_nothing_once_it_has_grown),
+        cmocka_unit_test(survives_failing_allocations),
+        cmocka_unit_test(forgets_its_pairs),
+        cmocka_unit_test(refuses_bad_arguments),
+    };
+    return test_begin() ? cmocka_run_group_tests_name("pair lists", tests, NULL, NULL) : TEST_SKIPPED;
+}
