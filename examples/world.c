@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * world.c - from bodies to contacts: boxes, pairs, what the last step knew of them, manifolds.
+ * world.c - from bodies to contacts: pairs, what the last step knew of them, manifolds.
  */
 #include "world.h"
 
@@ -14,6 +14,7 @@ const world_settings world_defaults = {
     .substeps = 8,
     .rolling_arm = 0.005f,
     .margin = 0.02f,
+    .skin = 0.02f,
     .flat_angle = NARC_FLAT_ANGLE,
     .threads = 1,
 };
@@ -30,8 +31,7 @@ narc_status world_create(world *w, world_settings settings, size_t capacity) {
     *w = (world){.settings = settings, .capacity = capacity};
     w->shapes = calloc(capacity, sizeof *w->shapes);
     w->bodies = calloc(capacity, sizeof *w->bodies);
-    w->boxes = calloc(capacity, sizeof *w->boxes);
-    if (!w->shapes || !w->bodies || !w->boxes || narc_create_shapes(NULL, &w->store) != NARC_OK ||
+    if (!w->shapes || !w->bodies || narc_create_shapes(NULL, &w->store) != NARC_OK ||
         narc_create_broad_phase(NULL, &w->broad_phase) != NARC_OK)
         return fail(w, NARC_ERROR_MEMORY, "no memory for a world");
     return NARC_OK;
@@ -45,13 +45,10 @@ static void *renew(void *array, size_t count, size_t size) {
 
 static bool resize_pairs(world_pairs *p, size_t capacity) {
     p->capacity = capacity;
-    p->a = renew(p->a, capacity, sizeof *p->a);
-    p->b = renew(p->b, capacity, sizeof *p->b);
     p->margin = renew(p->margin, capacity, sizeof *p->margin);
-    p->match = renew(p->match, capacity, sizeof *p->match);
     p->hints = renew(p->hints, capacity, sizeof *p->hints);
     p->impulses = renew(p->impulses, capacity, sizeof *p->impulses);
-    return p->a && p->b && p->margin && p->match && p->hints && p->impulses;
+    return p->margin && p->hints && p->impulses;
 }
 
 /* Manifolds, and the contacts that are made of them. */
@@ -80,7 +77,6 @@ void world_destroy(world *w) {
     resize_manifolds(w, 0);
     narc_destroy_broad_phase(w->broad_phase);
     narc_destroy_shapes(w->store);
-    free(w->boxes);
     free(w->bodies);
     free(w->shapes);
     *w = (world){.body_count = 0};
@@ -134,85 +130,67 @@ static narc_status find_broken_body(world *w) {
     return status == NARC_OK ? fail(w, NARC_ERROR_NOT_FINITE, "a velocity is out of range") : status;
 }
 
-/* How far a bullet's rotation may carry its points in one step. */
-static float find_turn_reach(const world *w, const world_body *body) {
-    return body->bullet ? w->settings.time_step * fabsf(body->spin) * w->shapes[body->shape].reach : 0;
-}
-
-/* A box around each body and its way in this step, half of the margin larger, with room for a bullet to turn. */
-static narc_status find_boxes(world *w) {
+/* All pairs of bodies that come closer than the margin in this step, rotation of bullets included. Where the list is
+ * another one, hints and impulses of the pairs that were in the last are carried over; zeros for the others. */
+static narc_status update_pairs(world *w) {
     const narc_bodies bodies = view_bodies(w);
-    size_t skipped = 0;
-    const narc_box_options options = {.margin = 0.5f * w->settings.margin,
-                                      .motion_x = NARC_COLUMN(w->bodies, motion.x),
-                                      .motion_y = NARC_COLUMN(w->bodies, motion.y),
-                                      .out_skipped = &skipped};
-    for (size_t k = 0; k < w->body_count; k++)
-        w->bodies[k].motion = scale(w->settings.time_step, w->bodies[k].velocity);
-    const narc_status status =
-        narc_compute_boxes(w->store, &bodies, &options, w->settings.threads, w->boxes, &w->error);
-    if (status != NARC_OK || skipped > 0)
-        return status != NARC_OK ? status : find_broken_body(w);
-    for (size_t k = 0; k < w->body_count; k++) {
-        const float room = find_turn_reach(w, &w->bodies[k]);
-        narc_box *box = &w->boxes[k];
-        *box = (narc_box){box->min_x - room, box->min_y - room, box->max_x + room, box->max_y + room};
-    }
-    return NARC_OK;
-}
-
-/* All pairs whose boxes overlap. Those of the step before become the last ones. */
-static narc_status find_pairs(world *w) {
     const narc_pair_filter filter = {.kind = NARC_COLUMN(w->bodies, still)};
+    const narc_pair_options options = {.margin = w->settings.margin,
+                                       .skin = w->settings.skin,
+                                       .motion_x = NARC_COLUMN(w->bodies, motion.x),
+                                       .motion_y = NARC_COLUMN(w->bodies, motion.y),
+                                       .reach = NARC_COLUMN(w->bodies, turn_reach),
+                                       .filter = &filter};
+    for (size_t k = 0; k < w->body_count; k++) {
+        world_body *body = &w->bodies[k];
+        body->motion = scale(w->settings.time_step, body->velocity);
+        body->turn_reach = body->bullet ? w->settings.time_step * fabsf(body->spin) * w->shapes[body->shape].reach : 0;
+    }
+    const narc_status status =
+        narc_update_pairs(w->broad_phase, w->store, &bodies, &options, w->settings.threads, &w->list, &w->error);
+    if (status != NARC_OK || w->list->skipped > 0)
+        return status != NARC_OK ? status : find_broken_body(w);
+    if (w->list->kept)
+        return NARC_OK;
+    const size_t count = w->list->pairs.count;
     const world_pairs last = w->pairs;
     w->pairs = w->last_pairs;
     w->last_pairs = last;
-    for (;;) {
-        world_pairs *p = &w->pairs;
-        const narc_status status = narc_find_pairs(w->broad_phase, w->boxes, w->body_count, &filter,
-                                                   w->settings.threads, p->a, p->b, p->capacity, &p->count, &w->error);
-        if (status != NARC_ERROR_CAPACITY)
-            return status;
-        if (!resize_pairs(p, p->count + p->count / 2))
-            return fail(w, NARC_ERROR_MEMORY, "no memory for pairs");
-    }
+    if (w->pairs.capacity < count && !resize_pairs(&w->pairs, count + count / 2))
+        return fail(w, NARC_ERROR_MEMORY, "no memory for pairs");
+    narc_gather(w->list->previous, count, sizeof *last.hints, last.hints, w->pairs.hints);
+    narc_gather(w->list->previous, count, sizeof *last.impulses, last.impulses, w->pairs.impulses);
+    return NARC_OK;
 }
 
-/* Hints and impulses of the pairs that were there in the last step; zeros for the others. */
-static narc_status carry_over(world *w) {
-    const world_pairs *p = &w->pairs, *last = &w->last_pairs;
-    const narc_pairs now = {.count = p->count, .a = NARC_ARRAY(p->a), .b = NARC_ARRAY(p->b)};
-    const narc_pairs before = {.count = last->count, .a = NARC_ARRAY(last->a), .b = NARC_ARRAY(last->b)};
-    const narc_status status =
-        narc_match_pairs(w->broad_phase, &before, &now, w->settings.threads, p->match, &w->error);
-    if (status != NARC_OK)
-        return status;
-    narc_gather(p->match, p->count, sizeof *p->hints, last->hints, p->hints);
-    narc_gather(p->match, p->count, sizeof *p->impulses, last->impulses, p->impulses);
-    return NARC_OK;
+/* The bodies of a pair. */
+static const world_body *body_a(const world *w, size_t pair) {
+    return &w->bodies[((const uint32_t *)w->list->pairs.a.base)[pair]];
+}
+
+static const world_body *body_b(const world *w, size_t pair) {
+    return &w->bodies[((const uint32_t *)w->list->pairs.b.base)[pair]];
 }
 
 /* A pair with a bullet has a contact if the two could meet within this step. So the solver stops the bullet where it
  * would touch. For all pairs that would be too much: a contact at a distance is a guess at the normal of the touch. */
 static void find_margins(world *w) {
-    for (size_t k = 0; k < w->pairs.count; k++) {
-        const world_body *a = &w->bodies[w->pairs.a[k]], *b = &w->bodies[w->pairs.b[k]];
+    for (size_t k = 0; k < w->list->pairs.count; k++) {
+        const world_body *a = body_a(w, k), *b = body_b(w, k);
         const vec way = subtract(b->motion, a->motion);
-        const float reach =
-            a->bullet || b->bullet ? sqrtf(dot(way, way)) + find_turn_reach(w, a) + find_turn_reach(w, b) : 0;
+        const float reach = a->bullet || b->bullet ? sqrtf(dot(way, way)) + a->turn_reach + b->turn_reach : 0;
         w->pairs.margin[k] = w->settings.margin + reach;
     }
 }
 
 static narc_status find_manifolds(world *w, size_t *out_count) {
-    const world_pairs *p = &w->pairs;
     const narc_bodies bodies = view_bodies(w);
-    const narc_pairs pairs = {
-        .count = p->count, .a = NARC_ARRAY(p->a), .b = NARC_ARRAY(p->b), .margin = NARC_ARRAY(p->margin)};
+    narc_pairs pairs = w->list->pairs;
+    pairs.margin = NARC_ARRAY(w->pairs.margin);
     size_t skipped = 0;
     const narc_manifold_options options = {
-        .flat_angle = w->settings.flat_angle, .hints = p->hints, .out_skipped = &skipped};
-    if (w->manifolds.capacity < p->count && !resize_manifolds(w, p->capacity))
+        .flat_angle = w->settings.flat_angle, .hints = w->pairs.hints, .out_skipped = &skipped};
+    if (w->manifolds.capacity < pairs.count && !resize_manifolds(w, w->pairs.capacity))
         return fail(w, NARC_ERROR_MEMORY, "no memory for contacts");
     const narc_status status = narc_find_manifolds(w->store, &bodies, &pairs, &options, w->settings.threads,
                                                    &w->manifolds, out_count, &w->error);
@@ -234,21 +212,21 @@ static void start_warm(world_point *point, uint16_t feature, const world_impulse
 static void make_contacts(world *w, size_t count) {
     const narc_manifolds *m = &w->manifolds;
     for (size_t k = 0; k < count; k++) {
-        const uint32_t pair = m->pair[k], a = w->pairs.a[pair], b = w->pairs.b[pair];
-        const world_body *body_a = &w->bodies[a], *body_b = &w->bodies[b];
+        const uint32_t pair = m->pair[k];
+        const world_body *a = body_a(w, pair), *b = body_b(w, pair);
         world_contact *c = &w->contacts[k];
         *c = (world_contact){.pair = pair,
-                             .a = a,
-                             .b = b,
+                             .a = (uint32_t)(a - w->bodies),
+                             .b = (uint32_t)(b - w->bodies),
                              .normal = {m->normal_x[k], m->normal_y[k]},
-                             .friction = sqrtf(body_a->friction * body_b->friction),
-                             .restitution = fmaxf(body_a->restitution, body_b->restitution),
+                             .friction = sqrtf(a->friction * b->friction),
+                             .restitution = fmaxf(a->restitution, b->restitution),
                              .rolling_impulse = w->pairs.impulses[pair].rolling,
                              .point_count = m->point_count[k]};
         for (unsigned i = 0; i < c->point_count; i++) {
             world_point *point = &c->points[i];
             point->anchor_a = (vec){m->point_x[i][k], m->point_y[i][k]}; /* narc's points count from A's position */
-            point->anchor_b = add(point->anchor_a, subtract(body_a->position, body_b->position));
+            point->anchor_b = add(point->anchor_a, subtract(a->position, b->position));
             point->separation = m->separation[i][k];
             start_warm(point, m->feature[i][k], &w->pairs.impulses[pair]);
         }
@@ -258,7 +236,7 @@ static void make_contacts(world *w, size_t count) {
 
 /* The impulses for the next step. A pair without a contact has none. */
 static void keep_impulses(world *w) {
-    for (size_t k = 0; k < w->pairs.count; k++)
+    for (size_t k = 0; k < w->list->pairs.count; k++)
         w->pairs.impulses[k] = (world_impulses){.rolling = 0};
     for (size_t k = 0; k < w->contact_count; k++) {
         const world_contact *c = &w->contacts[k];
@@ -275,8 +253,7 @@ static void keep_impulses(world *w) {
 narc_status world_step(world *w) {
     size_t count = 0;
     narc_status status;
-    if ((status = find_boxes(w)) != NARC_OK || (status = find_pairs(w)) != NARC_OK ||
-        (status = carry_over(w)) != NARC_OK)
+    if ((status = update_pairs(w)) != NARC_OK)
         return status;
     find_margins(w);
     if ((status = find_manifolds(w, &count)) != NARC_OK)

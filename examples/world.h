@@ -24,13 +24,14 @@ typedef struct world_body {
     vec position;       /* of its centre of mass, its shape's origin */
     float cosine, sine; /* next to the position: the kernels load all four at once */
     uint32_t shape;
-    uint8_t still;  /* 1: it never moves */
+    uint8_t still;  /* 1, which is NARC_STATIC: it never moves */
     uint8_t bullet; /* 1: it may be so fast that in one step it would pass through others */
     vec velocity;
     float spin; /* radians per second */
     float friction, restitution;
     float inverse_mass, inverse_inertia; /* 0 if it is still; world_add_body() sets them */
     vec motion;                          /* in this step, if nothing stops it */
+    float turn_reach;                    /* how far rotation may carry a bullet's points in this step */
     vec moved;                           /* since the contacts were found */
     float turned;
 } world_body;
@@ -47,6 +48,7 @@ typedef struct world_settings {
     unsigned substeps; /* the solver's; contacts are found once a step */
     float rolling_arm; /* rolling friction: its torque is this length times the normal force */
     float margin;      /* contacts are kept up to this distance */
+    float skin;        /* bodies may move by this until pairs are found anew */
     float flat_angle;  /* see narc_manifold_options */
     unsigned threads;  /* narc's: see narc_find_overlaps() */
 } world_settings;
@@ -60,12 +62,10 @@ typedef struct world_impulses {
     float normal[2], tangent[2], rolling;
 } world_impulses;
 
-/* Pairs of bodies that are close, in the order of (a, b). */
+/* What the engine knows of each pair in the list of pairs. */
 typedef struct world_pairs {
-    size_t count, capacity;
-    uint32_t *a, *b;
+    size_t capacity;
     float *margin;
-    uint32_t *match; /* which pair of the last step it was */
     uint32_t *hints; /* narc's */
     world_impulses *impulses;
 } world_pairs;
@@ -93,10 +93,10 @@ typedef struct world {
     narc_shapes *store;
     world_shape *shapes;
     world_body *bodies;
-    narc_box *boxes;
     size_t body_count, capacity;
     narc_broad_phase *broad_phase;
-    world_pairs pairs, last_pairs; /* of this step, and of the one before */
+    const narc_pair_list *list;    /* pairs of bodies that are close; the broad phase owns it */
+    world_pairs pairs, last_pairs; /* of this list, and of the one before */
     narc_manifolds manifolds;
     world_contact *contacts;
     size_t contact_count;

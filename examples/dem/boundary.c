@@ -134,21 +134,15 @@ bool dem_add_images(dem *d) {
 
 bool dem_take_image_pairs(dem *d) {
     dem_scratch *s = d->scratch;
-    const size_t bodies = d->bodies.count;
-    size_t kept = 0;
     for (size_t k = 0; k < s->found_count; k++) {
         const uint32_t a = s->found_a[k], image = s->found_b[k];
-        if (image < bodies) {
-            s->found_a[kept] = a;
-            s->found_b[kept++] = image;
+        if (image < d->bodies.count)
             continue;
-        }
         if (!dem_reserve(d, &s->extra, &s->extra_capacity, s->extra_count + 1, sizeof *s->extra))
             return false;
         const uint32_t b = s->image_of[image];
         const float x = s->image_x[image], y = s->image_y[image];
         s->extra[s->extra_count++] = a < b ? (dem_extra){a, b, x, y} : (dem_extra){b, a, -x, -y};
     }
-    s->found_count = kept;
     return true;
 }

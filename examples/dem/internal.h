@@ -37,8 +37,9 @@ typedef struct dem_scratch {
     uint32_t *image_of;
     float *image_x, *image_y; /* where an image is, from its body */
     size_t box_capacity, image_count;
-    uint32_t *found_a, *found_b, *match;
-    size_t found_capacity, found_count;
+    const uint32_t *found_a, *found_b; /* pairs of boxes; the broad phase owns them */
+    size_t found_count;
+    uint32_t *match;
     dem_extra *extra;
     size_t extra_count, extra_capacity;
     uint32_t *slot; /* of a pair: its contact, if contacts.pair there says so */
@@ -78,7 +79,7 @@ bool dem_make_room_for_contacts(dem *d);
 /* boundary.c */
 void dem_wrap_bodies(dem *d);
 bool dem_add_images(dem *d);
-bool dem_take_image_pairs(dem *d); /* moves pairs with images from the found ones to the extra ones */
+bool dem_take_image_pairs(dem *d); /* adds the found pairs with images to the extra ones */
 
 /* walls.c */
 bool dem_steer_walls(dem *d);

@@ -150,8 +150,8 @@ void dem_destroy(dem *d) {
     free_columns(&d->pairs, pair_columns, PAIR_COLUMNS);
     free_columns(&d->last_pairs, pair_columns, PAIR_COLUMNS);
     if (s) {
-        void *const scratch[] = {s->boxes,   s->still, s->image_of, s->image_x, s->image_y, s->found_a,
-                                 s->found_b, s->match, s->extra,    s->slot,    s->sums,    s->poses};
+        void *const scratch[] = {s->boxes, s->still, s->image_of, s->image_x, s->image_y,
+                                 s->match, s->extra, s->slot,     s->sums,    s->poses};
         for (size_t i = 0; i < sizeof scratch / sizeof scratch[0]; i++)
             free(scratch[i]);
         free(s);

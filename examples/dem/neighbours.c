@@ -45,21 +45,16 @@ static bool find_boxes(dem *d) {
 static bool find_pairs(dem *d) {
     dem_scratch *s = d->scratch;
     const narc_pair_filter filter = {.kind = NARC_ARRAY(s->still)};
-    const size_t boxes = d->bodies.count + s->image_count;
+    const narc_pair_options options = {.filter = &filter};
+    const narc_pair_list *list;
     narc_error error;
-    for (;;) {
-        const narc_status status = narc_find_pairs(d->broad, s->boxes, boxes, &filter, dem_team(d), s->found_a,
-                                                   s->found_b, s->found_capacity, &s->found_count, &error);
-        if (status == NARC_OK)
-            break;
-        if (status != NARC_ERROR_CAPACITY)
-            return dem_fail_narc(d, "pairs", &error);
-        const size_t capacity = s->found_count + s->found_count / 4 + 16;
-        if (!dem_resize(d, &s->found_a, capacity, sizeof *s->found_a) ||
-            !dem_resize(d, &s->found_b, capacity, sizeof *s->found_b))
-            return false;
-        s->found_capacity = capacity;
-    }
+    narc_forget_pairs(d->broad); /* pairs are matched when those of images have become those of bodies */
+    if (narc_update_box_pairs(d->broad, s->boxes, d->bodies.count + s->image_count, &options, dem_team(d), &list,
+                              &error) != NARC_OK)
+        return dem_fail_narc(d, "pairs", &error);
+    s->found_a = list->pairs.a.base;
+    s->found_b = list->pairs.b.base;
+    s->found_count = list->pairs.count;
     s->extra_count = 0;
     return (s->image_count == 0 || dem_take_image_pairs(d)) && dem_add_plate_pairs(d);
 }
@@ -82,7 +77,11 @@ static bool merge_pairs(dem *d) {
     if (s->extra_count > 0)
         qsort(s->extra, s->extra_count, sizeof *s->extra, compare_extra);
     size_t i = 0, j = 0;
-    for (p->count = 0; i < s->found_count || j < s->extra_count; p->count++) {
+    for (p->count = 0;; p->count++) {
+        while (i < s->found_count && s->found_b[i] >= d->bodies.count) /* of an image, among the extra ones too */
+            i++;
+        if (i == s->found_count && j == s->extra_count)
+            return true;
         const dem_extra *extra = &s->extra[j];
         const bool is_found = j == s->extra_count ||
                               (i < s->found_count && compare(s->found_a[i], s->found_b[i], extra->a, extra->b) < 0);
@@ -93,7 +92,6 @@ static bool merge_pairs(dem *d) {
         i += is_found;
         j += !is_found;
     }
-    return true;
 }
 
 /* Hints and histories of the pairs that were in the last list; zeros for the others. */
