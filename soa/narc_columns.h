@@ -71,27 +71,30 @@ typedef struct narc_position_column {
 
 /* What those above are made of. Each type of items has a pointer that may write and one that may not. */
 #define NARC_MADE_COLUMN(type, pointer, size) ((type){(const void *)(pointer), (ptrdiff_t)(size)})
+/* clang-format off */
 #define NARC_TYPED_COLUMN(pointer, size)                                                                               \
-    _Generic((pointer), float *                                                                                        \
-             : NARC_MADE_COLUMN(narc_float_column, pointer, size), const float *                                       \
-             : NARC_MADE_COLUMN(narc_float_column, pointer, size), uint32_t *                                          \
-             : NARC_MADE_COLUMN(narc_index_column, pointer, size), const uint32_t *                                    \
-             : NARC_MADE_COLUMN(narc_index_column, pointer, size), uint64_t * \
-             : NARC_MADE_COLUMN(narc_word_column, pointer, size), const uint64_t * \
-             : NARC_MADE_COLUMN(narc_word_column, pointer, size), uint8_t * \
-             : NARC_MADE_COLUMN(narc_byte_column, pointer, size), const uint8_t *                                      \
-             : NARC_MADE_COLUMN(narc_byte_column, pointer, size), _Bool *                                              \
-             : NARC_MADE_COLUMN(narc_byte_column, pointer, size), const _Bool *                                        \
-             : NARC_MADE_COLUMN(narc_byte_column, pointer, size))
+    _Generic((pointer),                                                                                                \
+             float *: NARC_MADE_COLUMN(narc_float_column, pointer, size),                                              \
+             const float *: NARC_MADE_COLUMN(narc_float_column, pointer, size),                                        \
+             uint32_t *: NARC_MADE_COLUMN(narc_index_column, pointer, size),                                           \
+             const uint32_t *: NARC_MADE_COLUMN(narc_index_column, pointer, size),                                     \
+             uint64_t *: NARC_MADE_COLUMN(narc_word_column, pointer, size),                                            \
+             const uint64_t *: NARC_MADE_COLUMN(narc_word_column, pointer, size),                                      \
+             uint8_t *: NARC_MADE_COLUMN(narc_byte_column, pointer, size),                                             \
+             const uint8_t *: NARC_MADE_COLUMN(narc_byte_column, pointer, size),                                       \
+             _Bool *: NARC_MADE_COLUMN(narc_byte_column, pointer, size),                                               \
+             const _Bool *: NARC_MADE_COLUMN(narc_byte_column, pointer, size))
 #define NARC_TYPED_POINTER(pointer)                                                                                    \
-    _Generic((pointer), float * : (pointer), const float * : (pointer), uint32_t * : (pointer), const uint32_t *       \
-             : (pointer), uint64_t * : (pointer), const uint64_t * : (pointer), uint8_t * : (pointer), const uint8_t * : (pointer))
-#define NARC_POSITIONS_AT(pointer, size)                                                                                 \
-    {                                                                                                                    \
+    _Generic((pointer), float *: (pointer), const float *: (pointer), uint32_t *: (pointer),                           \
+             const uint32_t *: (pointer), uint64_t *: (pointer), const uint64_t *: (pointer), uint8_t *: (pointer),    \
+             const uint8_t *: (pointer))
+#define NARC_POSITIONS_AT(pointer, size)                                                                               \
+    {                                                                                                                  \
         (pointer), (ptrdiff_t)(size),                                                                                  \
-            _Generic((pointer), float * : NARC_FLOAT32, const float * : NARC_FLOAT32, double * : NARC_FLOAT64,         \
-                     const double * : NARC_FLOAT64) \
+            _Generic((pointer), float *: NARC_FLOAT32, const float *: NARC_FLOAT32, double *: NARC_FLOAT64,            \
+                     const double *: NARC_FLOAT64)                                                                     \
     }
+/* clang-format on */
 
 #else
 

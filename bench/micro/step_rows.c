@@ -27,7 +27,7 @@ struct step_row {
     struct frame frames[2];
     size_t runs, capacity, manifold_count;
     narc_broad_phase *broad;
-    narc_box *boxes; /* without the skin */
+    const narc_pair_list *list; /* STEP_KEPT: that of the first frame, which serves both */
     uint32_t *match;
 };
 
@@ -49,39 +49,40 @@ static void carry_hints(struct step_row *row, const struct frame *last, struct f
     narc_gather(row->match, frame->pair_count, sizeof *frame->hints, last->hints, frame->hints);
 }
 
-/* The manifolds of the pairs of `listed`, with its hints, where the bodies of `frame` are. */
-static void find_frame_manifolds(struct step_row *row, const struct frame *frame, const struct frame *listed) {
+/* The manifolds of these pairs where the bodies of `frame` are. */
+static void find_frame_manifolds(struct step_row *row, const struct frame *frame, const narc_pairs *pairs,
+                                 uint32_t *hints) {
     const struct workload *workload = frame->workload;
     const narc_bodies bodies = bodies_of(workload->bodies, workload->body_count);
-    const narc_pairs pairs = pairs_of(listed);
-    const narc_manifold_options options = {.hints = listed->hints};
+    const narc_manifold_options options = {.hints = hints};
     narc_error error;
-    must(narc_find_manifolds(workload->shapes, &bodies, &pairs, &options, row->job.threads,
+    must(narc_find_manifolds(workload->shapes, &bodies, pairs, &options, row->job.threads,
                              share_manifolds(row->capacity), &row->manifold_count, &error),
          &error);
-}
-
-static bool are_inside(const narc_box *boxes, const narc_box *around, size_t count) {
-    bool inside = true;
-    for (size_t k = 0; k < count; k++)
-        inside &= (boxes[k].min_x >= around[k].min_x) & (boxes[k].min_y >= around[k].min_y) &
-                  (boxes[k].max_x <= around[k].max_x) & (boxes[k].max_y <= around[k].max_y);
-    return inside;
 }
 
 static void run_whole(struct step_row *row, const struct frame *last, struct frame *frame) {
     find_boxes(frame->workload, SETTLED_SKIN / 2, row->job.threads, frame->boxes);
     find_frame_pairs(row, frame);
     carry_hints(row, last, frame);
-    find_frame_manifolds(row, frame, frame);
+    const narc_pairs pairs = pairs_of(frame);
+    find_frame_manifolds(row, frame, &pairs, frame->hints);
+}
+
+static void update_pairs(struct step_row *row, const struct frame *frame) {
+    const narc_bodies bodies = bodies_of(frame->workload->bodies, frame->workload->body_count);
+    const narc_pair_options options = {.skin = (float)(SETTLED_SKIN / 2)};
+    narc_error error;
+    must(
+        narc_update_pairs(row->broad, frame->workload->shapes, &bodies, &options, row->job.threads, &row->list, &error),
+        &error);
 }
 
 static void run_kept(struct step_row *row, const struct frame *frame) {
-    const struct frame *listed = &row->frames[0];
-    find_boxes(frame->workload, 0, row->job.threads, row->boxes);
-    if (!are_inside(row->boxes, listed->boxes, frame->workload->body_count))
+    update_pairs(row, frame);
+    if (!row->list->kept)
         fail("%s: a body has left its box", row->row.name);
-    find_frame_manifolds(row, frame, listed);
+    find_frame_manifolds(row, frame, &row->list->pairs, row->frames[0].hints);
 }
 
 static void run(struct bench_row *bench_row) {
@@ -144,6 +145,8 @@ static void begin(struct step_row *row) {
     row->row.colliding = (double)row->manifold_count / (double)row->row.pairs;
     run_whole(row, &row->frames[0], &row->frames[1]);
     if (row->job.step == STEP_KEPT) {
+        update_pairs(row, &row->frames[0]);
+        row->row.wrong += (double)(row->list->pairs.count != row->frames[0].pair_count);
         run_kept(row, &row->frames[1]);
         row->row.wrong += count_wrong_manifolds(row, row->frames[1].workload);
     }
@@ -162,7 +165,6 @@ static void prepare(struct bench_row *bench_row) {
     make_frame(&row->frames[0], &key, row->capacity);
     key.moved = true;
     make_frame(&row->frames[1], &key, row->capacity);
-    row->boxes = allocate(row->frames[0].workload->body_count, sizeof *row->boxes);
     row->match = allocate(row->capacity, sizeof *row->match);
     begin(row);
 }

@@ -14,7 +14,7 @@ enum step {
     STEP_PAIRS, /* of boxes that are there */
     STEP_MATCH, /* pairs of one frame with those of the other, and hints carried over */
     STEP_WHOLE, /* all of these, and manifolds */
-    STEP_KEPT,  /* boxes, whether they are still in those that the pairs were found with, and manifolds */
+    STEP_KEPT,  /* pairs that are updated, and kept, and manifolds */
 };
 
 struct step_job {
