@@ -494,10 +494,12 @@ typedef struct narc_box {
  *
  * Which pairs are listed does not depend on sleep. So a pair keeps its place and what the caller knows of it while its
  * bodies sleep, and one that falls asleep or wakes begins and ends nothing. */
-enum { NARC_STATIC = 1, NARC_ASLEEP = 2, NARC_SENSOR = 4 };
-
-/* A mark of a pair beside the kinds of its bodies: they stand in the other order than in the last list. */
-enum { NARC_FLIPPED = 128 };
+enum {
+    NARC_STATIC = 1,
+    NARC_ASLEEP = 2,
+    NARC_SENSOR = 4,
+    NARC_FLIPPED = 128 /* a mark of pairs alone: its bodies stand in the other order than in the last list */
+};
 
 /* Which boxes may form a pair. Every column may be left out (base NULL); a NULL filter lets all boxes.
  *   kind             see the table above; left out: all move
