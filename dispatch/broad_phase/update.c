@@ -206,11 +206,8 @@ static narc_status find_last_indices(const update *u, narc_kept_list *last, narc
     narc_broad_phase *const broad = u->broad;
     made->body_count = u->count;
     made->has_ids = u->options->id.base || last->has_ids;
-    if (!made->has_ids) { /* then body k is body k */
-        for (size_t k = 0; k < u->count && !same; k++)
-            broad->last_index[k] = k < last->body_count ? (uint32_t)k : NARC_NO_MATCH;
-        return NARC_OK;
-    }
+    if (!made->has_ids)
+        return NARC_OK; /* body k is body k */
     if (narc_reserve_ids(broad, made, u->count) != NARC_OK)
         return fail_memory(u, u->count, "bodies");
     for (size_t k = 0; k < u->count; k++)
@@ -360,7 +357,7 @@ static narc_status find(const update *u, bool same, narc_kept_list *last, narc_k
                                   .added = made->added,
                                   .skipped = skipped};
     memset(made->marks, 0, found);
-    if (!same)
+    if (!same && made->has_ids)
         match_by_index(u, last, made);
     else
         status = narc_match_pairs(broad, &last->list.pairs, &made->list.pairs, u->threads, made->previous, u->error);

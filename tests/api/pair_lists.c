@@ -665,6 +665,54 @@ static void survives_failing_allocations(void **state) {
     assert_true(failures >= 5);
 }
 
+/* There is memory for the bodies but not for their pairs. They have moved, and the last list is not theirs, however often
+ * it is tried. */
+static void keeps_no_list_that_was_not_made(void **state) {
+    (void)state;
+    enum { COUNT = 500 };
+    narc_box boxes[COUNT];
+    struct counter counter = {0, SIZE_MAX};
+    const narc_pair_options options = {.skin = 0.125f};
+    const narc_pair_list *list;
+    narc_broad_phase *broad = create_counted(&counter);
+    for (size_t k = 0; k < COUNT; k++)
+        boxes[k] = (narc_box){2 * (float)k, 0, 2 * (float)k + 1, 1};
+    assert_int_equal(narc_update_box_pairs(broad, boxes, COUNT, &options, 1, &list, NULL), NARC_OK);
+    assert_int_equal(list->pairs.count, 0);
+    for (size_t k = 0; k < COUNT; k++)
+        boxes[k] = (narc_box){0, 0, 1, 1};
+    counter.left = 0;
+    for (int trial = 0; trial < 3; trial++)
+        assert_int_equal(narc_update_box_pairs(broad, boxes, COUNT, &options, 1, &list, NULL), NARC_ERROR_MEMORY);
+    assert_int_equal(list->pairs.count, 0);
+    counter.left = SIZE_MAX;
+    assert_int_equal(narc_update_box_pairs(broad, boxes, COUNT, &options, 1, &list, NULL), NARC_OK);
+    assert_int_equal(list->pairs.count, COUNT * (COUNT - 1) / 2);
+    assert_int_equal(list->added_count, list->pairs.count);
+    narc_destroy_broad_phase(broad);
+}
+
+/* A pair whose bodies change their order, and which is lost at once. */
+static void marks_bodies_that_change_their_order(void **state) {
+    (void)state;
+    narc_box boxes[] = {{0, 0, 1, 1}, {0, 0, 1, 1}};
+    const uint64_t ids[] = {7, 9}, others[] = {9, 7};
+    narc_pair_options options = {.id = NARC_ARRAY(ids)};
+    const narc_pair_list *list;
+    narc_broad_phase *broad;
+    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    assert_int_equal(narc_update_box_pairs(broad, boxes, 2, &options, 1, &list, NULL), NARC_OK);
+    assert_int_equal(list->marks[0], 0);
+    options.id = NARC_ARRAY(others);
+    assert_int_equal(narc_update_box_pairs(broad, boxes, 2, &options, 1, &list, NULL), NARC_OK);
+    assert_true(list->marks[0] == NARC_FLIPPED && list->previous[0] == 0);
+    boxes[1].min_x = NAN;
+    assert_int_equal(narc_update_box_pairs(broad, boxes, 2, &options, 1, &list, NULL), NARC_OK);
+    assert_int_equal(list->lost_count, 1);
+    assert_true(list->lost[0].marks == 0 && list->lost[0].id_a == 9 && list->lost[0].id_b == 7);
+    narc_destroy_broad_phase(broad);
+}
+
 static void forgets_its_pairs(void **state) {
     (void)state;
     const narc_box boxes[] = {{0, 0, 1, 1}, {1, 0, 2, 1}};
@@ -748,6 +796,8 @@ int main(void) {
         cmocka_unit_test(notices_shapes_that_change),
         cmocka_unit_test(allocates_nothing_once_it_has_grown),
         cmocka_unit_test(survives_failing_allocations),
+        cmocka_unit_test(keeps_no_list_that_was_not_made),
+        cmocka_unit_test(marks_bodies_that_change_their_order),
         cmocka_unit_test(forgets_its_pairs),
         cmocka_unit_test(refuses_bad_arguments),
     };
