@@ -15,7 +15,7 @@ static uint64_t run_heap(const char *isa, unsigned threads) {
     settings.margin = 0.3f; /* many pairs */
     run r = begin_run("heap", settings, 1);
     continue_run(&r, 4);
-    assert_true(r.world.pairs.count > 512); /* enough for two threads, of chunks of 512 */
+    assert_true(r.world.list->pairs.count > 512); /* enough for two threads, of chunks of 512 */
     const uint64_t hash = world_hash(&r.world);
     print_message("%s, %u threads: %016" PRIx64 "\n", isa, threads, hash);
     end_run(&r);
