@@ -78,7 +78,7 @@ typedef struct narc_pair_options {
     const narc_pair_filter *filter;
 } narc_pair_options;
 
-/* The pairs of bodies that are closer than the margin, and may be some others, none further apart than margin + 2 * skin
+/* The pairs of bodies that are closer than the margin, and perhaps others, none further apart than margin + 2 * skin
  * and the motion (of boxes, and but for rounding, NARC_BOX_ROOM) when the list was made.
  *   bodies    at most 2^32 - 2
  *   options   NULL: defaults

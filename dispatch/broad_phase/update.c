@@ -175,7 +175,7 @@ static void keep(const update *u, const changes *found) {
     mark_pairs(broad, last);
 }
 
-/* ------------------------------------------------------------------------------------------------ bodies by their ids */
+/* ------------------------------------------------------------------------------------------------ bodies by ids */
 
 static narc_status fail_memory(const update *u, size_t count, const char *what) {
     return narc_fail(u->error, NARC_ERROR_MEMORY, 0, (double)count, "not enough memory for %zu %s", count, what);

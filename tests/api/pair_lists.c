@@ -665,8 +665,8 @@ static void survives_failing_allocations(void **state) {
     assert_true(failures >= 5);
 }
 
-/* There is memory for the bodies but not for their pairs. They have moved, and the last list is not theirs, however often
- * it is tried. */
+/* There is memory for the bodies but not for their pairs. They have moved, and the last list is not theirs, however
+ * often it is tried. */
 static void keeps_no_list_that_was_not_made(void **state) {
     (void)state;
     enum { COUNT = 500 };

@@ -45,6 +45,7 @@ static narc_contacts contacts;
 static narc_manifolds manifolds;
 static narc_shapes *store;
 static narc_broad_phase *broad;
+static const narc_pair_list *pair_list;
 static narc_arc arcs[NARC_MAX_ARCS];
 static size_t arc_count;
 static const narc_point ring[RING] = {{4, 0}, {3, 2}, {0, 3}, {-3, 2}, {-4, 0}, {-3, -2}, {0, -3}, {3, -2}};
@@ -132,6 +133,9 @@ CALL(names,
 CALL(all_boxes, narc_compute_boxes(store, &bodies, &box_options, threads, boxes, error))
 CALL(some_boxes, narc_compute_boxes_range(store, &bodies, 3, 100, &box_options, boxes, error))
 CALL(box_pairs, narc_find_pairs(broad, spread, BODIES, NULL, threads, indices[0], indices[1], PAIRS * 2, &found, error))
+
+CALL(updated_pairs, narc_update_pairs(broad, store, &bodies, NULL, threads, &pair_list, error))
+CALL(updated_box_pairs, narc_update_box_pairs(broad, spread, BODIES, NULL, threads, &pair_list, error))
 
 /* ------------------------------------------------------------------------------------------------ shapes */
 
@@ -229,6 +233,8 @@ static const struct call calls[] = {
     {"narc_compute_boxes_range", some_boxes, 0},
     {"narc_find_pairs", box_pairs, 0},
     {"narc_match_pairs", match_lists, 0},
+    {"narc_update_pairs", updated_pairs, 0},
+    {"narc_update_box_pairs", updated_box_pairs, 0},
     {"narc_build_box, refused", refuse, 0},
     {"narc_build_circle", circle, 0},
     {"narc_build_capsule", capsule, 0},
