@@ -63,18 +63,18 @@ extern "C" {
  *   skin                at least 0: how much larger than its body the box of a kept list is, on every side. A larger
  *                       one keeps lists longer, and makes them longer. It counts when a list is made. 0: none is kept
  *                       but where nothing moves
- *   motion_x, motion_y  float, world axes: what each body moves in this step, as in narc_box_options. A list has all
+ *   motion_x, motion_y  world axes: what each body moves in this step, as in narc_box_options. A list has all
  *                       pairs that come close on the way
- *   reach               float, at least 0: how far beyond its box a body may reach in this step, such as by rotation
- *   id                  uint64_t: what a body is known by, whatever its number; no two have the same. A counter that
+ *   reach               at least 0: how far beyond its box a body may reach in this step, such as by rotation
+ *   id                  what a body is known by, whatever its number; no two have the same. A counter that
  *                       each new body takes its id from, or a handle with its generation. Left out: its number.
  *   filter              which bodies may form a pair, and which are static, asleep, sensors; NULL: all, and all move
  * Columns have one item for each body. */
 typedef struct narc_pair_options {
     float margin, skin;
-    narc_column motion_x, motion_y;
-    narc_column reach;
-    narc_column id;
+    narc_float_column motion_x, motion_y;
+    narc_float_column reach;
+    narc_word_column id;
     const narc_pair_filter *filter;
 } narc_pair_options;
 

@@ -53,7 +53,7 @@ static narc_box widen(narc_box box, float by) {
 
 /* The boxes with half of the margin, `half`, and each body's own reach. A body whose reach is broken has none. */
 static void add_room(const update *u, const narc_box *boxes, float half, narc_box *out_boxes) {
-    const narc_column reach = u->options->reach;
+    const narc_float_column reach = u->options->reach;
     for (size_t k = 0; k < u->count; k++) {
         const float own = reach.base ? narc_float_at(reach, k) : 0;
         const bool fine = has_box(&boxes[k]) && own >= 0 && own <= FLT_MAX;
@@ -117,7 +117,7 @@ static changes look_at_all(const update *u) {
 }
 
 static uint64_t id_of(const update *u, size_t body) {
-    return u->options->id.base ? *(const uint64_t *)narc_at(u->options->id, body) : body;
+    return u->options->id.base ? narc_word_at(u->options->id, body) : body;
 }
 
 /* Are body k and body k of the last list the same, for all of both? */
@@ -183,9 +183,10 @@ static narc_status fail_memory(const update *u, size_t count, const char *what) 
 
 /* Ids as pairs of their halves. */
 static narc_pairs view_ids(const narc_kept_list *list) {
+    const uint32_t *halves = (const void *)list->ids;
     return (narc_pairs){.count = list->body_count,
-                        .a = {list->ids, sizeof *list->ids},
-                        .b = {(const char *)list->ids + sizeof(uint32_t), sizeof *list->ids}};
+                        .a = {halves, sizeof *list->ids},
+                        .b = {halves + 1, sizeof *list->ids}};
 }
 
 /* The ids of a list whose bodies had none: their numbers. */

@@ -244,7 +244,7 @@ static void check_step(reference *r, narc_broad_phase *const *broads, body *bodi
     narc_pair_options options = {
         .margin = 2 * (float)half_of_margin, .skin = (float)skin, .reach = {&bodies->reach, stride}, .filter = &filter};
     if (with_ids)
-        options.id = (narc_column){&bodies->id, stride};
+        options.id = (narc_word_column){&bodies->id, stride};
     const bool renew = find_expected(r, bodies, count);
     for (size_t t = 0; t < THREAD_COUNTS; t++) {
         const narc_pair_list *list = NULL;
@@ -438,8 +438,8 @@ static uint32_t add_circle(narc_shapes *shapes, double radius) {
 
 static narc_bodies view(const disc *discs, size_t count) {
     return (narc_bodies){.count = count,
-                         .x = NARC_COLUMN(discs, x),
-                         .y = NARC_COLUMN(discs, y),
+                         .x = NARC_POSITION_COLUMN(discs, x),
+                         .y = NARC_POSITION_COLUMN(discs, y),
                          .cosine = NARC_COLUMN(discs, cosine),
                          .sine = NARC_COLUMN(discs, sine),
                          .shape = NARC_COLUMN(discs, shape)};
@@ -633,10 +633,10 @@ static void survives_failing_allocations(void **state) {
         struct counter counter = {0, SIZE_MAX}, free_counter = {0, SIZE_MAX};
         narc_broad_phase *broad = create_counted(&counter), *whole = create_counted(&free_counter);
         const narc_pair_list *list, *whole_list, *untouched;
-        options.id = (narc_column){ids, sizeof *ids};
+        options.id = (narc_word_column){ids, sizeof *ids};
         assert_int_equal(narc_update_box_pairs(broad, boxes, FEW, &options, 1, &list, NULL), NARC_OK);
         assert_int_equal(narc_update_box_pairs(whole, boxes, FEW, &options, 1, &whole_list, NULL), NARC_OK);
-        options.id = (narc_column){later_ids, sizeof *later_ids};
+        options.id = (narc_word_column){later_ids, sizeof *later_ids};
         counter.left = left;
         untouched = list;
         narc_error error;
@@ -648,10 +648,10 @@ static void survives_failing_allocations(void **state) {
             check_equal_lists(list, whole_list);
             counter.left = SIZE_MAX;
             /* The same bodies again, which must not be taken for those that the step that failed had. */
-            options.id = (narc_column){ids, sizeof *ids};
+            options.id = (narc_word_column){ids, sizeof *ids};
             assert_int_equal(narc_update_box_pairs(broad, boxes, FEW, &options, 1, &list, NULL), NARC_OK);
             assert_true(list->added_count == 0 && list->lost_count == 0);
-            options.id = (narc_column){later_ids, sizeof *later_ids};
+            options.id = (narc_word_column){later_ids, sizeof *later_ids};
             assert_int_equal(narc_update_box_pairs(broad, boxes, MANY, &options, 1, &list, NULL), NARC_OK);
         }
         assert_int_equal(narc_update_box_pairs(whole, boxes, MANY, &options, 1, &whole_list, NULL), NARC_OK);
