@@ -156,7 +156,7 @@ static narc_status fail_room(const narc_shapes *shapes, narc_status status, narc
     return narc_fail(error, status, shapes->count, 0, "no memory for a shape beside the other %zu", shapes->count);
 }
 
-/* How many records the block at an index has that is the index's own: also that of a removed shape, until it is gone. */
+/* How many records an index's own block has: also that of a removed shape, until it is gone. */
 static size_t count_own_records(const narc_shapes *shapes, uint32_t shape) {
     const bool has_block = shape < shapes->count && shapes->headers[shape].first_record > 0;
     return has_block ? narc_count_records(shapes->headers[shape].count) : 0;

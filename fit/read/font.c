@@ -20,7 +20,7 @@ struct narc_font {
 
 static const uint32_t LAST_CHARACTER = 0x10ffff;
 
-/* Some of FreeType's formats tell another error where there is no memory; malloc() tells in errno, 0 before the call. */
+/* Some of FreeType's formats tell another error where there is no memory; malloc() tells in errno, 0 before. */
 static bool ran_out_of_memory(FT_Error problem) { return problem == FT_Err_Out_Of_Memory || errno == ENOMEM; }
 
 static narc_status open_face(narc_font *font, const void *data, size_t size, narc_error *error) {
