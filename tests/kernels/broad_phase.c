@@ -41,8 +41,8 @@ static bool lets(const narc_pair_filter *f, size_t a, size_t b) {
     if (!f)
         return true;
     const unsigned char *kind = f->kind.base;
-    if (kind && (kind[(ptrdiff_t)a * f->kind.stride] & kind[(ptrdiff_t)b * f->kind.stride] &
-                 (NARC_STATIC | NARC_SENSOR)) != 0)
+    if (kind &&
+        (kind[(ptrdiff_t)a * f->kind.stride] & kind[(ptrdiff_t)b * f->kind.stride] & (NARC_STATIC | NARC_SENSOR)) != 0)
         return false;
     if (word(f->group, a, 0) != 0 && word(f->group, a, 0) == word(f->group, b, 0))
         return false;
