@@ -112,6 +112,7 @@ static narc_status build_kind(int kind, double size, narc_arc *out_arcs, size_t 
 /* Bodies fall into a box without a lid. */
 static narc_status build_pile_of(world *w, uint64_t seed, float width, int bodies) {
     const float spacing = 1.3f;
+    uint32_t shapes[KINDS * SIZES] = {0};
     narc_status status = add_block(w, width + 4, 4, 0, -2);
     for (int side = -1; side <= 1 && status == NARC_OK; side += 2)
         status = add_block(w, 4, 60, (float)side * (0.5f * width + 2), 26);
@@ -120,15 +121,14 @@ static narc_status build_pile_of(world *w, uint64_t seed, float width, int bodie
         size_t count;
         status = build_kind(i / SIZES, 0.7 + 0.3 * (i % SIZES), arcs, &count, &w->error);
         if (status == NARC_OK)
-            status = world_add_shape(w, arcs, count, NULL);
+            status = world_add_shape(w, arcs, count, &shapes[i]);
     }
-    const uint32_t first = 3; /* behind the box's shapes */
     const int columns = (int)(width / spacing) - 1;
     for (int k = 0; k < bodies && status == NARC_OK; k++) {
         const uint32_t kind = (uint32_t)random_between(&seed, 0, KINDS * SIZES);
         const float x = spacing * ((float)(k % columns) - 0.5f * (float)(columns - 1));
         const float y = spacing * (1 + (float)(k / columns));
-        status = world_add_body(w, make_body(first + kind, x, y, random_between(&seed, -3, 3)));
+        status = world_add_body(w, make_body(shapes[kind], x, y, random_between(&seed, -3, 3)));
     }
     return status;
 }

@@ -88,16 +88,24 @@ narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32
     narc_arc centered[NARC_MAX_ARCS];
     narc_mass mass;
     narc_circle circle;
-    if (narc_count_shapes(w->store) == w->capacity)
-        return fail(w, NARC_ERROR_CAPACITY, "too many shapes");
-    const narc_status status = narc_center_arcs(arcs, count, centered, NULL, &w->error);
+    uint32_t shape;
+    narc_status status = narc_center_arcs(arcs, count, centered, NULL, &w->error);
+    if (status == NARC_OK)
+        status = narc_add_shape(w->store, centered, count, &shape, &w->error);
     if (status != NARC_OK)
         return status;
+    if (shape >= w->capacity) {
+        narc_remove_shape(w->store, shape, NULL);
+        return fail(w, NARC_ERROR_CAPACITY, "too many shapes");
+    }
     narc_compute_mass(centered, count, &mass);
     narc_compute_bounding_circle(centered, count, &circle);
-    w->shapes[narc_count_shapes(w->store)] =
+    /* Of a shape that the store has already, the same numbers once more. */
+    w->shapes[shape] =
         (world_shape){(float)mass.area, (float)mass.second_moment, (float)(hypot(circle.x, circle.y) + circle.radius)};
-    return narc_add_shape(w->store, centered, count, out_shape, &w->error);
+    if (out_shape)
+        *out_shape = shape;
+    return NARC_OK;
 }
 
 narc_status world_add_body(world *w, world_body body) {
@@ -105,6 +113,8 @@ narc_status world_add_body(world *w, world_body body) {
         return fail(w, NARC_ERROR_CAPACITY, "too many bodies");
     if (body.shape >= narc_count_shapes(w->store))
         return fail(w, NARC_ERROR_INDEX, "a body's shape does not exist");
+    if (!body.still && !(w->shapes[body.shape].mass > 0))
+        return fail(w, NARC_ERROR_SIZE, "a segment has no mass, only what is still may have that shape");
     body.inverse_mass = body.still ? 0 : 1 / w->shapes[body.shape].mass;
     body.inverse_inertia = body.still ? 0 : 1 / w->shapes[body.shape].inertia;
     w->bodies[w->body_count++] = body;

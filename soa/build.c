@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * build.c - arcs of circles, capsules, boxes, convex polygons with round corners, and the four-arc lens.
+ * build.c - arcs of circles, capsules, segments, boxes, convex polygons with round corners, and the four-arc lens.
  */
 #include <math.h>
 #include <string.h>
@@ -69,6 +69,24 @@ narc_status narc_build_capsule(double length, double radius, narc_arc *out_arcs,
     return finish(arcs, 2, out_arcs, out_count, error);
 }
 
+narc_status narc_build_segment(narc_point from, narc_point to, double radius, narc_arc *out_arcs, size_t *out_count,
+                               narc_error *error) {
+    const quantity length = {"radius", radius, RADIUS};
+    narc_status status = check_outputs(out_arcs, out_count, error);
+    if (status == NARC_OK)
+        status = narc_check_points((const narc_point[]){from, to}, 2, error);
+    if (status == NARC_OK)
+        status = check_lengths(&length, 1, error);
+    if (status != NARC_OK)
+        return status;
+    double x = to.x - from.x, y = to.y - from.y;
+    if (x == 0 && y == 0)
+        x = 1;
+    const double right = narc_atan2(-x, y), left = narc_atan2(x, -y);
+    const narc_arc arcs[2] = {{to.x, to.y, radius, right, left}, {from.x, from.y, radius, left, right}};
+    return finish(arcs, 2, out_arcs, out_count, error);
+}
+
 narc_status narc_build_box(double width, double height, double radius, narc_arc *out_arcs, size_t *out_count,
                            narc_error *error) {
     const quantity lengths[] = {{"width", width, POSITIVE}, {"height", height, POSITIVE}, {"radius", radius, RADIUS}};
@@ -129,10 +147,9 @@ static double find_tangent(double angle) {
     return s / c;
 }
 
-narc_status narc_build_polygon(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
-                               size_t *out_count, narc_error *error) {
-    side sides[NARC_MAX_ARCS];
-    narc_arc arcs[NARC_MAX_ARCS];
+/* What all builders of polygons check, and the sides. */
+static narc_status check_polygon(const narc_point *points, size_t count, double radius, const narc_arc *out_arcs,
+                                 const size_t *out_count, side *out_sides, narc_error *error) {
     narc_status status = check_outputs(out_arcs, out_count, error);
     if (status != NARC_OK)
         return status;
@@ -141,8 +158,30 @@ narc_status narc_build_polygon(const narc_point *points, size_t count, double ra
     if (count < 3 || count > NARC_MAX_ARCS)
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)count, "there are %zu points, not 3 to %d", count,
                          NARC_MAX_ARCS);
-    if ((status = check_lengths(&(quantity){"radius", radius, RADIUS}, 1, error)) != NARC_OK ||
-        (status = find_sides(points, count, sides, error)) != NARC_OK)
+    status = check_lengths(&(quantity){"radius", radius, RADIUS}, 1, error);
+    return status == NARC_OK ? find_sides(points, count, out_sides, error) : status;
+}
+
+/* An arc of `radius` at each corner, its centre moved inwards to where it is `inset` away from both sides. */
+static narc_status round_corners(const narc_point *points, const side *sides, size_t count, double radius, double inset,
+                                 narc_arc *out_arcs, size_t *out_count, narc_error *error) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    for (size_t i = 0; i < count; i++) {
+        const side *before = &sides[(i + count - 1) % count], *after = &sides[i];
+        double move = inset / (1 + narc_cos(after->turn));
+        arcs[i] =
+            (narc_arc){points[i].x - move * (before->normal_x + after->normal_x),
+                       points[i].y - move * (before->normal_y + after->normal_y), radius,
+                       narc_atan2(before->normal_y, before->normal_x), narc_atan2(after->normal_y, after->normal_x)};
+    }
+    return finish(arcs, count, out_arcs, out_count, error);
+}
+
+narc_status narc_build_polygon(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
+                               size_t *out_count, narc_error *error) {
+    side sides[NARC_MAX_ARCS];
+    narc_status status = check_polygon(points, count, radius, out_arcs, out_count, sides, error);
+    if (status != NARC_OK)
         return status;
     for (size_t i = 0; i < count; i++) {
         /* A corner that turns by e, rounded with radius r, uses up r tan(e / 2) of both its sides. */
@@ -152,15 +191,69 @@ narc_status narc_build_polygon(const narc_point *points, size_t count, double ra
             return narc_fail(error, NARC_ERROR_RADIUS, i, radius,
                              "side %zu: radius is %.9g, the largest that fits it is %.9g", i, radius, most);
     }
-    for (size_t i = 0; i < count; i++) {
-        const side *before = &sides[(i + count - 1) % count], *after = &sides[i];
-        double inset = radius / (1 + narc_cos(after->turn));
-        arcs[i] =
-            (narc_arc){points[i].x - inset * (before->normal_x + after->normal_x),
-                       points[i].y - inset * (before->normal_y + after->normal_y), radius,
-                       narc_atan2(before->normal_y, before->normal_x), narc_atan2(after->normal_y, after->normal_x)};
+    return round_corners(points, sides, count, radius, radius, out_arcs, out_count, error);
+}
+
+narc_status narc_build_skin_polygon(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
+                                    size_t *out_count, narc_error *error) {
+    side sides[NARC_MAX_ARCS];
+    narc_status status = check_polygon(points, count, radius, out_arcs, out_count, sides, error);
+    return status == NARC_OK ? round_corners(points, sides, count, radius, 0, out_arcs, out_count, error) : status;
+}
+
+static double find_distance(narc_point p, narc_point a, narc_point b) {
+    double x = b.x - a.x, y = b.y - a.y, square = x * x + y * y;
+    double t = square > 0 ? ((p.x - a.x) * x + (p.y - a.y) * y) / square : 0;
+    t = fmin(1, fmax(0, t));
+    return narc_hypot(a.x + t * x - p.x, a.y + t * y - p.y);
+}
+
+/* The largest distance of the corners strictly between two others from the segment that joins these. */
+static double find_loss(const narc_point *points, size_t count, size_t from, size_t to) {
+    double loss = 0;
+    for (size_t i = (from + 1) % count; i != to; i = (i + 1) % count)
+        loss = fmax(loss, find_distance(points[i], points[from], points[to]));
+    return loss;
+}
+
+narc_status narc_weld_polygon(const narc_point *points, size_t count, double tolerance, narc_point *out_points,
+                              size_t *out_count, narc_error *error) {
+    size_t corner[NARC_MAX_ARCS], left = count;
+    if (!points || !out_points || !out_count)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", points ? "an output" : "points");
+    if (count < 3 || count > NARC_MAX_ARCS)
+        return narc_fail(error, NARC_ERROR_COUNT, 0, (double)count, "there are %zu points, not 3 to %d", count,
+                         NARC_MAX_ARCS);
+    narc_status status = check_lengths(&(quantity){"tolerance", tolerance, LENGTH}, 1, error);
+    if (status == NARC_OK)
+        status = narc_check_points(points, count, error);
+    if (status != NARC_OK)
+        return status;
+    for (size_t i = 0; i < count; i++)
+        corner[i] = i;
+    for (;;) {
+        double least = INFINITY;
+        size_t leaving = 0;
+        for (size_t k = 0; k < left; k++) {
+            double loss = find_loss(points, count, corner[(k + left - 1) % left], corner[(k + 1) % left]);
+            if (loss < least) {
+                least = loss;
+                leaving = k;
+            }
+        }
+        if (least > tolerance)
+            break;
+        if (left == 3)
+            return narc_fail(error, NARC_ERROR_COUNT, corner[leaving], least,
+                             "fewer than 3 corners are left: the polygon is within %.9g of a segment", least);
+        left--;
+        for (size_t k = leaving; k < left; k++)
+            corner[k] = corner[k + 1];
     }
-    return finish(arcs, count, out_arcs, out_count, error);
+    for (size_t k = 0; k < left; k++) /* corner[k] >= k: nothing is read that was written */
+        out_points[k] = points[corner[k]];
+    *out_count = left;
+    return NARC_OK;
 }
 
 narc_status narc_build_regular_polygon(size_t corners, double circumradius, double radius, narc_arc *out_arcs,

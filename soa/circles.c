@@ -21,8 +21,7 @@ enum { MAX_STEPS = 100 };
 
 /* ------------------------------------------------------------------------------------------------ around */
 
-/* The point of the outline furthest from (x, y), and its distance. */
-static double find_farthest(const narc_outline *o, double x, double y, narc_point *out_point) {
+double narc_find_farthest(const narc_outline *o, double x, double y, narc_point *out_point) {
     double best = -1;
     *out_point = narc_find_start(o, 0);
     for (size_t i = 0; i < o->count; i++) {
@@ -106,7 +105,7 @@ void narc_bound_outline(const narc_outline *outline, narc_circle *out_circle) {
     double bound = 0;
     for (int step = 0; step < MAX_STEPS; step++) {
         narc_point farthest;
-        double extent = find_farthest(outline, circle.center.x, circle.center.y, &farthest);
+        double extent = narc_find_farthest(outline, circle.center.x, circle.center.y, &farthest);
         if (extent < out_circle->radius)
             *out_circle = (narc_circle){circle.center.x, circle.center.y, extent};
         /* The bound from below cannot shrink, unless points are so nearly equal that it is rounding that decides. */
@@ -147,6 +146,11 @@ void narc_inscribe_outline(const narc_outline *outline, narc_circle *out_circle)
     for (int k = 0; k < 3; k++)
         plane[k].height = narc_find_height(outline, plane[k].x, plane[k].y);
     *out_circle = (narc_circle){0, 0, 0};
+    if (narc_is_segment(outline)) { /* nothing but rounding fits into it */
+        out_circle->x = (outline->center_x[0] + outline->center_x[1]) / 2;
+        out_circle->y = (outline->center_y[0] + outline->center_y[1]) / 2;
+        return;
+    }
     if (!fit_circle(plane, &circle))
         return;
     double bound = circle.radius;

@@ -27,9 +27,16 @@ static inline uint8_t narc_byte_at(narc_byte_column column, size_t index) {
     return *(const uint8_t *)narc_at(column.base, column.stride, index);
 }
 
+static inline float narc_single_at(narc_position_column column, size_t index) {
+    return *(const float *)narc_at(column.base, column.stride, index);
+}
+
+static inline double narc_double_at(narc_position_column column, size_t index) {
+    return *(const double *)narc_at(column.base, column.stride, index);
+}
+
 static inline double narc_position_at(narc_position_column column, size_t index) {
-    const void *item = narc_at(column.base, column.stride, index);
-    return column.precision == NARC_FLOAT64 ? *(const double *)item : (double)*(const float *)item;
+    return column.precision == NARC_FLOAT64 ? narc_double_at(column, index) : (double)narc_single_at(column, index);
 }
 
 /* Has a body all columns that it must have, and are positions of a known type? */

@@ -71,7 +71,11 @@ bool narc_compute_mass(const narc_arc *arcs, size_t count, narc_mass *out_mass) 
         add_segment(&sum, &o, i);
         add_triangle(&sum, end, narc_find_start(&o, (i + 1) % o.count));
     }
-    double x = sum.x / sum.area, y = sum.y / sum.area;
+    double x = (o.center_x[0] + o.center_x[1]) / 2, y = (o.center_y[0] + o.center_y[1]) / 2; /* of a segment */
+    if (sum.area > 0) {
+        x = sum.x / sum.area;
+        y = sum.y / sum.area;
+    }
     *out_mass = (narc_mass){sum.area, x + o.origin_x, y + o.origin_y, sum.square - sum.area * (x * x + y * y)};
     return true;
 }

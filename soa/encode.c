@@ -25,14 +25,15 @@ static float round_down(double value) {
     return (double)rounded > value ? nextafterf(rounded, -INFINITY) : rounded;
 }
 
-static uint8_t find_flags(const narc_outline *o, size_t count, double size) {
+/* `room` is what rounding may have moved. */
+static uint8_t find_flags(const narc_outline *o, size_t count, double size, double room) {
     bool smooth = true, polygon = true, inside = true;
     for (size_t i = 0; i < o->count; i++) {
         narc_point from = narc_find_end(o, i ? i - 1 : o->count - 1), to = narc_find_start(o, i);
-        smooth = smooth && narc_hypot(to.x - from.x, to.y - from.y) <= NARC_TOLERANCE * size;
+        smooth = smooth && narc_hypot(to.x - from.x, to.y - from.y) <= NARC_TOLERANCE * size + room;
         polygon = polygon && o->radius[i] == 0;
-        inside = inside &&
-                 (o->radius[i] == 0 || narc_find_gap(o, o->center_x[i], o->center_y[i], NULL) <= CENTER_SLACK * size);
+        inside = inside && (o->radius[i] == 0 ||
+                            narc_find_gap(o, o->center_x[i], o->center_y[i], NULL) <= CENTER_SLACK * size + room);
     }
     return (uint8_t)((smooth ? NARC_SHAPE_SMOOTH : 0) | (count == 1 ? NARC_SHAPE_CIRCLE : 0) |
                      (polygon ? NARC_SHAPE_POLYGON : 0) | (inside ? NARC_SHAPE_CENTERS_INSIDE : 0));
@@ -59,7 +60,7 @@ static narc_shape_header make_header(const narc_outline *o, size_t count, narc_c
     inner.x += o->origin_x;
     inner.y += o->origin_y;
     narc_shape_header header = {.count = (uint8_t)o->count};
-    header.flags = (uint8_t)(find_flags(o, count, bound.radius) | find_size_class(extent) << NARC_SIZE_CLASS_SHIFT);
+    header.flags = (uint8_t)(find_flags(o, count, bound.radius, 0) | find_size_class(extent) << NARC_SIZE_CLASS_SHIFT);
     header.bound_x = (float)bound.x;
     header.bound_y = (float)bound.y;
     double moved = narc_hypot((double)header.bound_x - bound.x, (double)header.bound_y - bound.y);
@@ -182,5 +183,149 @@ narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_s
                          (double)header.bound_radius, NARC_MAX_SIZE);
     write_records(&outline, &header, out_shape->records);
     out_shape->header = header;
+    return NARC_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------ loading */
+
+/* How far the outline of stored arcs may be from the one that was given: a few roundings of each coordinate, radius and
+ * normal. Relative to the extent; a quarter of what the circles leave as room. */
+#define STORED_ROOM (NARC_ROUNDING_ROOM / 4)
+
+/* A cosine or sine of a stored normal is off by half a rounding. */
+#define UNIT_SLACK 1e-6
+
+static narc_status fail_stored(narc_error *error, const char *what) {
+    return narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "%s", what);
+}
+
+/* The outline of stored arcs, in the caller's order, and their extent. */
+static narc_status read_stored(const narc_shape_header *header, const narc_record *arcs, narc_outline *out_outline,
+                               double *out_extent, narc_error *error) {
+    narc_outline *o = out_outline;
+    double sum = 0, extent = 0;
+    const size_t count = header->count;
+    o->count = count;
+    for (size_t k = 0; k < count; k++) {
+        const narc_stored_arc *a = &arcs[k].arc, *next = &arcs[(k + 1) % count].arc;
+        const size_t i = (k + header->first_arc) % count;
+        const double x = (double)a->start_x, y = (double)a->start_y;
+        if (!isfinite(a->center_x) || !isfinite(a->center_y) || !isfinite(a->radius) || a->radius < 0)
+            return fail_stored(error, "a number that no arc has");
+        if (!(fabs(x * x + y * y - 1) <= UNIT_SLACK) || memcmp(&a->end_x, &next->start_x, 2 * sizeof a->end_x) != 0)
+            return fail_stored(error, "normals that do not join");
+        o->center_x[i] = (double)a->center_x;
+        o->center_y[i] = (double)a->center_y;
+        o->radius[i] = (double)a->radius;
+        o->normal_x[i] = x;
+        o->normal_y[i] = y;
+        const double cross = x * (double)next->start_y - y * (double)next->start_x;
+        const double dot = x * (double)next->start_x + y * (double)next->start_y;
+        o->sweep[i] = dot < 0 && fabs(cross) <= UNIT_SLACK ? NARC_PI : narc_atan2(cross, dot);
+        if (!(o->sweep[i] >= NARC_TOLERANCE / 4))
+            return fail_stored(error, "an arc that does not turn");
+        sum += o->sweep[i];
+        extent = fmax(extent, narc_hypot(o->center_x[i], o->center_y[i]) + o->radius[i]);
+    }
+    if (fabs(sum - 2 * NARC_PI) > 1)
+        return fail_stored(error, "arcs that do not make one turn");
+    if (extent > 4 * NARC_MAX_RADIUS_RATIO * NARC_MAX_SIZE)
+        return fail_stored(error, "arcs that are too large");
+    o->normal_x[count] = o->normal_x[0];
+    o->normal_y[count] = o->normal_y[0];
+    o->origin_x = o->center_x[0] + o->radius[0] * o->normal_x[0];
+    o->origin_y = o->center_y[0] + o->radius[0] * o->normal_y[0];
+    for (size_t i = 0; i < count; i++) {
+        o->center_x[i] -= o->origin_x;
+        o->center_y[i] -= o->origin_y;
+    }
+    *out_extent = extent;
+    return NARC_OK;
+}
+
+/* Is what the stored header says of this outline true? */
+static narc_status check_header(const narc_shape_header *header, const narc_outline *o, const narc_record *arcs,
+                                double extent, narc_error *error) {
+    const double join = (double)o->count * 8 / 16777216 * extent, misfit = find_misfit(o);
+    const double room = NARC_ROUNDING_ROOM * extent - STORED_ROOM * extent + fmax(0, misfit - join);
+    const double bound = (double)header->bound_radius, inner = (double)header->inner_radius;
+    narc_circle circle;
+    narc_point farthest;
+    narc_bound_outline(o, &circle);
+    if (narc_check_edges(o, NARC_TOLERANCE * circle.radius + STORED_ROOM * extent, NULL) != NARC_OK)
+        return fail_stored(error, "arcs that do not meet");
+    for (size_t i = 0; i < o->count; i++)
+        if (o->radius[i] > NARC_MAX_RADIUS_RATIO * circle.radius * (1 + 1e-6) + STORED_ROOM * extent)
+            return fail_stored(error, "an arc that is too flat");
+    if (!(bound >= NARC_MIN_SIZE && bound <= NARC_MAX_BOUND_RADIUS) || !isfinite(header->bound_x) ||
+        !isfinite(header->bound_y) || !isfinite(header->inner_x) || !isfinite(header->inner_y) || !isfinite(inner))
+        return fail_stored(error, "a circle that is out of range");
+    if (!(narc_hypot((double)header->bound_x, (double)header->bound_y) <= NARC_MAX_SIZE * (1 + 1e-6)))
+        return fail_stored(error, "a shape too far from its origin");
+    if (!(narc_find_farthest(o, (double)header->bound_x - o->origin_x, (double)header->bound_y - o->origin_y,
+                             &farthest) +
+              room <=
+          bound))
+        return fail_stored(error, "a circle that does not hold its shape");
+    if (!(inner <=
+          -narc_find_gap(o, (double)header->inner_x - o->origin_x, (double)header->inner_y - o->origin_y, NULL) - room))
+        return fail_stored(error, "a circle that is not in its shape");
+    if (header->extent_ratio != UINT8_MAX &&
+        (extent * (1 + 5e-7) > header->extent_ratio * bound || misfit > NARC_MAX_MISFIT * extent + join))
+        return fail_stored(error, "an extent that is too small");
+    const bool disc = o->count == 2 && arcs[0].arc.radius > 0 &&
+                      memcmp(&arcs[0].arc, &arcs[1].arc, offsetof(narc_stored_arc, inner_radii)) == 0;
+    const unsigned true_flags = find_flags(o, disc ? 1 : 2, circle.radius, STORED_ROOM * extent);
+    const unsigned size_class = header->flags >> NARC_SIZE_CLASS_SHIFT;
+    if ((header->flags & ~true_flags & ((1u << NARC_SIZE_CLASS_SHIFT) - 1)) ||
+        size_class < find_size_class(extent * (1 - 1e-6)) || size_class > find_size_class(extent * (1 + 1e-6)))
+        return fail_stored(error, "flags that are not the shape's");
+    return NARC_OK;
+}
+
+static double read_upper_half(uint32_t half) {
+    const uint32_t bits = half << 16;
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return (double)value;
+}
+
+/* Does a circle of radius `inner` that touches the outline from inside, at a point with the normal n, lie in it? */
+static bool has_room(const narc_outline *o, narc_point p, double n_x, double n_y, double inner, double room) {
+    return -narc_find_gap(o, p.x - inner * n_x, p.y - inner * n_y, NULL) >= inner - room;
+}
+
+/* Are the inner radii of an arc none that it does not have? The windows are narrower than those of the encoder by more
+ * than sums of stored normals are off. */
+static bool has_inner_radii(const narc_outline *o, size_t arc, uint32_t radii, double extent) {
+    const double inner = read_upper_half(radii >> 16), near = read_upper_half(radii & 0xffff);
+    const double room = STORED_ROOM * extent / 3, slack = 1 + 1e-6;
+    return inner >= 0 && near >= 0 && inner <= find_least_radius(o, arc, NARC_INNER_WINDOW - NARC_TOLERANCE) * slack &&
+           near <= find_least_radius(o, arc, NARC_NEAR_WINDOW - NARC_TOLERANCE) * slack &&
+           has_room(o, narc_find_start(o, arc), o->normal_x[arc], o->normal_y[arc], inner, room) &&
+           has_room(o, narc_find_end(o, arc), o->normal_x[arc + 1], o->normal_y[arc + 1], inner, room);
+}
+
+narc_status narc_restore_shape(narc_encoded_shape *shape, narc_error *error) {
+    narc_outline o;
+    narc_record stored[NARC_MAX_ARCS];
+    double extent = 0;
+    const narc_shape_header header = shape->header;
+    if (header.count < 2 || header.count > NARC_MAX_ARCS || header.first_arc >= header.count)
+        return fail_stored(error, "a number of arcs that no shape has");
+    const size_t count = header.count, angles = narc_angle_records(count);
+    memcpy(stored, &shape->records[angles], count * sizeof *stored);
+    narc_status status = read_stored(&header, stored, &o, &extent, error);
+    if (status == NARC_OK)
+        status = check_header(&header, &o, stored, extent, error);
+    if (status != NARC_OK)
+        return status;
+    write_records(&o, &shape->header, shape->records);
+    if (shape->header.first_arc != header.first_arc)
+        return fail_stored(error, "arcs out of order");
+    for (size_t k = 0; k < count; k++)
+        if (!has_inner_radii(&o, (k + header.first_arc) % count, stored[k].arc.inner_radii, extent))
+            return fail_stored(error, "an arc without the room behind it that it should have");
+    memcpy(&shape->records[angles], stored, count * sizeof *stored);
     return NARC_OK;
 }

@@ -18,4 +18,8 @@ typedef struct narc_encoded_shape {
 /* Validates and encodes a list of arcs. Errors: those of narc_validate_arcs(), NARC_ERROR_SIZE. */
 narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_shape *out_shape, narc_error *error);
 
+/* Checks the header and the arcs of a shape that was stored elsewhere, and writes the other records: angles and box.
+ * Nothing that it lets through breaks what kernels rely on. NARC_ERROR_FORMAT. */
+narc_status narc_restore_shape(narc_encoded_shape *shape, narc_error *error);
+
 #endif

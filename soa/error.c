@@ -44,6 +44,8 @@ const char *narc_status_name(narc_status status) {
         return "NARC_ERROR_CANCELLED";
     case NARC_ERROR_VERSION:
         return "NARC_ERROR_VERSION";
+    case NARC_ERROR_IN_USE:
+        return "NARC_ERROR_IN_USE";
     }
     return "unknown status";
 }

@@ -105,7 +105,8 @@ typedef enum narc_status {
     NARC_ERROR_ISA_UNSUPPORTED = 15, /* known, but this build or this processor does not have it */
     NARC_ERROR_FORMAT = 16,          /* data that is not in the format it should be in, or damaged */
     NARC_ERROR_CANCELLED = 17,       /* the caller's progress function ended the work */
-    NARC_ERROR_VERSION = 18          /* libraries of narc that are of different versions */
+    NARC_ERROR_VERSION = 18,         /* libraries of narc that are of different versions */
+    NARC_ERROR_IN_USE = 19           /* a shape that is used more than once, an index that has a shape */
 } narc_status;
 
 /* The name of a status, such as "NARC_ERROR_INDEX"; "unknown status" for any other value. Static storage. */
@@ -136,8 +137,8 @@ typedef struct narc_arc {
 
 /* Is a list of arcs a valid arc shape? Checks, in this order: the count (1 .. NARC_MAX_ARCS), that all is finite, that
  * no radius is negative, each sweep, that normals join and make one turn, that edges run forwards and have their
- * normal (closed, convex), the size, and the largest radius. The message names the arc and the quantity.
- * Thread-safe. */
+ * normal (closed, convex), the size, and the largest radius. A shape encloses some area, or is a segment: two arcs of
+ * radius 0. The message names the arc and the quantity. Thread-safe. */
 NARC_API narc_status narc_validate_arcs(const narc_arc *arcs, size_t count, narc_error *error);
 
 /* Every builder below writes at most NARC_MAX_ARCS arcs to `out_arcs` (the caller's array of that size) and their
@@ -152,6 +153,12 @@ NARC_API narc_status narc_build_circle(double radius, narc_arc *out_arcs, size_t
 NARC_API narc_status narc_build_capsule(double length, double radius, narc_arc *out_arcs, size_t *out_count,
                                         narc_error *error);
 
+/* All points within `radius` of the segment between two points: with radius 0 the segment itself, a shape without area
+ * (two arcs of radius 0, each half a turn, and two edges); else a capsule between the points, which may be one. Arc 0
+ * is at `to`, arc 1 at `from`. NARC_ERROR_SIZE: radius 0, and the points are one (or too near, NARC_MIN_SIZE). */
+NARC_API narc_status narc_build_segment(narc_point from, narc_point to, double radius, narc_arc *out_arcs,
+                                        size_t *out_count, narc_error *error);
+
 /* A box around the origin, `width` by `height` outside measure, its corners rounded with `radius` >= 0 inside that box.
  * NARC_ERROR_RADIUS: the radius is more than half the shorter side. */
 NARC_API narc_status narc_build_box(double width, double height, double radius, narc_arc *out_arcs, size_t *out_count,
@@ -159,12 +166,27 @@ NARC_API narc_status narc_build_box(double width, double height, double radius, 
 
 /* A convex polygon, `points[0 .. count-1]` counter-clockwise, each corner rounded inside the polygon with `radius`
  * >= 0: the shape never leaves the polygon and its sides lie on the polygon's. Corner i is arc i. (Box2D's radius is a
- * skin around the polygon: for that shape move the sides outwards by the radius before.)
+ * skin around the polygon: narc_build_skin_polygon().)
  * NARC_ERROR_COUNT: fewer than 3 or more than NARC_MAX_ARCS points. NARC_ERROR_NOT_CONVEX: a corner does not turn
  * left, or the polygon turns more than once. NARC_ERROR_RADIUS: two rounded corners do not fit on the side between
  * them (the message names the side and the largest radius that fits it). */
 NARC_API narc_status narc_build_polygon(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
                                         size_t *out_count, narc_error *error);
+
+/* A convex polygon with a skin: all points within `radius` >= 0 of the polygon `points[0 .. count-1]`. Its sides are
+ * those of the polygon, moved outwards by the radius, its corners arcs of that radius outside the polygon. Corner i is
+ * arc i. (Box2D's polygons with a radius.) Errors as narc_build_polygon(), but that every radius fits. */
+NARC_API narc_status narc_build_skin_polygon(const narc_point *points, size_t count, double radius, narc_arc *out_arcs,
+                                             size_t *out_count, narc_error *error);
+
+/* Leaves out the corners of a polygon that hardly matter, such as those that nearly lie on another corner or on the
+ * line between their neighbours, for the builders above, which refuse them: one after the other the corner with which
+ * the polygon loses least, as long as every corner that was left out is within `tolerance` >= 0 of the side that came
+ * in its place. The rest stay where they are, in their order. 3 .. NARC_MAX_ARCS `points`; `out_points` has room for
+ * `count` and may be `points`; `out_count` is how many corners are left. NARC_ERROR_COUNT: another count, or all of the
+ * polygon is within the tolerance of a segment, so that fewer than 3 would be left. Thread-safe. */
+NARC_API narc_status narc_weld_polygon(const narc_point *points, size_t count, double tolerance, narc_point *out_points,
+                                       size_t *out_count, narc_error *error);
 
 /* A regular polygon around the origin with 3 .. NARC_MAX_ARCS corners, corner 0 at (circumradius, 0), each rounded
  * inside the polygon with `radius` >= 0. Errors as narc_build_polygon(). */
@@ -248,7 +270,8 @@ NARC_API narc_status narc_mirror_arcs(const narc_arc *arcs, size_t count, narc_a
  * are pure and thread-safe. They return false, outputs untouched, for NULL, a count of 0 or more than NARC_MAX_ARCS. */
 
 /* Area, its centroid and its second moment about the centroid (times a density: mass and moment of inertia). Green's
- * theorem, arc by arc. */
+ * theorem, arc by arc. A segment has area and second moment 0, and its middle is its centroid: a body of that shape is
+ * one that does not move, or has a mass of its own. (Its perimeter is twice its length.) */
 typedef struct narc_mass {
     double area;
     double centroid_x, centroid_y;
@@ -263,7 +286,8 @@ typedef struct narc_circle {
 /* The smallest circle around the shape; relative error below 1e-9. */
 NARC_API bool narc_compute_bounding_circle(const narc_arc *arcs, size_t count, narc_circle *out_circle);
 
-/* A largest circle inside the shape; relative error below 1e-9. (For a stadium there are many: it is one of them.) */
+/* A largest circle inside the shape; relative error below 1e-9. (For a stadium there are many: it is one of them; for a
+ * segment its middle.) */
 NARC_API bool narc_compute_inscribed_circle(const narc_arc *arcs, size_t count, narc_circle *out_circle);
 
 typedef struct narc_aabb {
@@ -298,9 +322,16 @@ typedef struct narc_allocator {
 
 /* A list of arc shapes, each known by its index 0, 1, 2 ... The store keeps single-precision copies in a layout that
  * belongs to the kernels. Adding, replacing, removing and reserving need exclusive access; all else, queries above all,
- * may share it between threads. A shape's index stays its own until it is removed. Whatever comes and goes, a store has
- * at most four times the memory that its shapes needed when they needed most (or room was reserved for), also while it
- * moves them; and some KB. A shape needs some 40 bytes for each arc and 70 more; a removed one needs nothing. */
+ * may share it between threads. A shape's index stays its own until it is removed.
+ *
+ * Equal shapes are stored once: bodies with the same shape make queries faster than bodies with copies of it. Shapes
+ * are equal if all that the store keeps of them is, so that every answer is the same: arcs with the same numbers, and
+ * the same place. (A circle around another centre is another shape.) Each narc_add_shape() is a use, which
+ * narc_remove_shape() gives back; a shape goes with its last use.
+ *
+ * Whatever comes and goes, a store has at most four times the memory that its shapes needed when they needed most (or
+ * room was reserved for), also while it moves them; and some KB. A shape needs some 40 bytes for each arc and 90 more;
+ * a removed one needs nothing, an index that narc_add_shape_at() has left out 52 bytes. */
 typedef struct narc_shapes narc_shapes;
 
 /* What a store knows of a shape, bits of narc_shape_flags(). */
@@ -321,23 +352,42 @@ NARC_API void narc_destroy_shapes(narc_shapes *shapes);
  * does replacing a shape by one of more arcs, as if it were added.) */
 NARC_API narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t arc_count);
 
-/* Validates a shape and adds it: at the index that narc_remove_shape() freed last, else at the next higher one. Its
- * coordinates are kept as they are: a body's position is the place of the shape's origin. It should be in the shape, or
- * near it: errors grow with the distance (see "Precision" in narc.h). Errors: those of narc_validate_arcs(),
- * NARC_ERROR_MEMORY, NARC_ERROR_COUNT (the store is full); the store is unchanged then. `out_shape` may be NULL. */
+/* Validates a shape and adds it. `out_shape` (or NULL) is the index of an equal one that is there, which gets one more
+ * use; else the index that narc_remove_shape() freed last; else the next higher one. So an index is not a count of
+ * calls: who keeps something for each shape keeps it at the index that is returned, and who wants one index for each
+ * call chooses it, with narc_add_shape_at(). How long it takes does not depend on how many shapes there are.
+ *   A shape's coordinates are kept as they are: a body's position is the place of the shape's origin. It should be in
+ * the shape, or near it: errors grow with the distance (see "Precision" in narc.h). Errors: those of
+ * narc_validate_arcs(), NARC_ERROR_MEMORY, NARC_ERROR_COUNT (the store is full; 2^32 - 1 uses of one shape); the store
+ * is unchanged then. */
 NARC_API narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t count, uint32_t *out_shape,
                                     narc_error *error);
 
+/* Validates a shape and puts it at an index of the caller's choice, below NARC_MAX_SHAPES, where there is none: also if
+ * the store has an equal one, which keeps its own index. (narc_add_shape() of one more returns one of the two.) Indices
+ * below it that were never given out are free then, as those of removed shapes; narc_add_shape() begins with the lowest
+ * of them. For engines with numbers of their own. Errors: those of narc_add_shape(), NARC_ERROR_INDEX (out of range),
+ * NARC_ERROR_IN_USE (there is a shape); the store is unchanged then. */
+NARC_API narc_status narc_add_shape_at(narc_shapes *shapes, uint32_t shape, const narc_arc *arcs, size_t count,
+                                       narc_error *error);
+
 /* Puts another shape in the place of one: all bodies with that index have it from now on. If it has as many arcs as the
- * old one, or fewer, it takes the old one's memory. Errors: those of narc_add_shape(), NARC_ERROR_INDEX (there is no
- * such shape, or it was removed); the store is unchanged then. */
+ * old one, or fewer, it takes the old one's memory. It may be equal to a third one; both keep their indices. Errors:
+ * those of narc_add_shape(), NARC_ERROR_INDEX (there is no such shape, or it was removed), NARC_ERROR_IN_USE (it is
+ * used more than once; the message and error->value tell how often: remove this use and add the other shape); the store
+ * is unchanged then. */
 NARC_API narc_status narc_replace_shape(narc_shapes *shapes, uint32_t shape, const narc_arc *arcs, size_t count,
                                         narc_error *error);
 
-/* Removes a shape. The others keep their indices, and narc_add_shape() will use this one again. Until then a body that
- * still has it collides with nothing, as a broken one (see narc_bodies). Errors: NARC_ERROR_ARGUMENT (NULL),
- * NARC_ERROR_INDEX (there is no such shape, or it was removed before). */
+/* Gives back one use of a shape, and with the last one removes it. The others keep their indices, and narc_add_shape()
+ * will use this one again. Until then a body that still has it collides with nothing, as a broken one (see
+ * narc_bodies). Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_INDEX (there is no such shape, or it was removed
+ * before). */
 NARC_API narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *error);
+
+/* How often a shape is used: how many narc_add_shape() and narc_add_shape_at() returned its index, less those that were
+ * removed. 0 if there is no such shape. */
+NARC_API uint32_t narc_count_uses(const narc_shapes *shapes, uint32_t shape);
 
 /* The number of indices that were given out, those of removed shapes included: all are below it. 0 for NULL. */
 NARC_API size_t narc_count_shapes(const narc_shapes *shapes);
@@ -354,6 +404,29 @@ NARC_API unsigned narc_shape_flags(const narc_shapes *shapes, uint32_t shape);
  * sine are 0 or not finite; their length does not matter. Meant for broad phases. */
 NARC_API bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, float sine, float scale,
                             narc_aabb *out_aabb);
+
+/* ------------------------------------------------------------------------------------------------ saving */
+
+/* A store as bytes, the same on every platform: what is stored of its shapes, their indices and uses, and which index
+ * comes next; a version and a checksum. */
+
+/* How many bytes narc_save_shapes() writes. Some 32 for each arc and 32 more for each shape, 8 for a removed one. */
+NARC_API size_t narc_count_saved_bytes(const narc_shapes *shapes);
+
+/* Writes a store to the caller's `out_bytes`, of which there are `size`. Errors: NARC_ERROR_ARGUMENT (NULL),
+ * NARC_ERROR_CAPACITY (size is less than narc_count_saved_bytes()); nothing is written then. May share the store with
+ * other threads. */
+NARC_API narc_status narc_save_shapes(const narc_shapes *shapes, void *out_bytes, size_t size, narc_error *error);
+
+/* A store from the `size` bytes that narc_save_shapes() wrote; they may lie anywhere and may come from anyone. Every
+ * answer is that of the store that was saved, to the last bit (but for methods that use boxes or centroids, see
+ * narc_methods.h: these are computed anew), and a shape that is equal to a saved one is found.
+ *   Nothing in the bytes is believed: size and checksum first, then each shape is checked as narc_add_shape() checks
+ * it, with room for the rounding of what was stored, and so is what the store keeps of it. NARC_ERROR_FORMAT: other
+ * bytes, an unknown version, or damage; the message names the shape. NARC_ERROR_ARGUMENT, NARC_ERROR_MEMORY.
+ * `allocator` as in narc_create_shapes(). On error there is no store. */
+NARC_API narc_status narc_load_shapes(const narc_allocator *allocator, const void *bytes, size_t size,
+                                      narc_shapes **out_shapes, narc_error *error);
 
 /* ------------------------------------------------------------------------------------------------ bodies and pairs */
 

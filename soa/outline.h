@@ -40,6 +40,9 @@ narc_status narc_check_points(const narc_point *points, size_t count, narc_error
 narc_status narc_check_arcs(const narc_arc *arcs, size_t count, narc_outline *out_outline, narc_circle *out_bound,
                             narc_error *error);
 
+/* Do edges run forwards and have their normals, but for this distance? */
+narc_status narc_check_edges(const narc_outline *outline, double tolerance, narc_error *error);
+
 /* Where arc i starts (at normal i) and ends (at normal i + 1). */
 narc_point narc_find_start(const narc_outline *outline, size_t arc);
 narc_point narc_find_end(const narc_outline *outline, size_t arc);
@@ -53,6 +56,14 @@ double narc_find_height(const narc_outline *outline, double x, double y);
 /* The largest of p.n - h(n) over all unit n: the signed distance of the point p to the outline. `out_normal` may be
  * NULL. */
 double narc_find_gap(const narc_outline *outline, double x, double y, narc_point *out_normal);
+
+/* Two points and what lies between them. */
+static inline bool narc_is_segment(const narc_outline *outline) {
+    return outline->count == 2 && outline->radius[0] == 0 && outline->radius[1] == 0;
+}
+
+/* The point of the outline furthest from (x, y), and its distance. */
+double narc_find_farthest(const narc_outline *outline, double x, double y, narc_point *out_point);
 
 /* The circles of narc_shapes.h, for an outline, in the outline's coordinates. */
 void narc_bound_outline(const narc_outline *outline, narc_circle *out_circle);

@@ -6,6 +6,9 @@
  * arcs, leaves a gap; the gaps go when the array is full and moves to a new place. The first block is a circle that
  * belongs to no shape: when its own block is gone, a removed shape has that one, so that kernels may read it as any
  * other.
+ *
+ * Equal shapes are found by a hash of their stored bits, in lists with an average length of at most 1: there are as
+ * many of them as there is room for headers.
  */
 #include "store.h"
 
@@ -38,7 +41,7 @@ narc_status narc_create_shapes(const narc_allocator *allocator, narc_shapes **ou
     narc_shapes *shapes = chosen.allocate(sizeof *shapes, chosen.context);
     if (!shapes)
         return NARC_ERROR_MEMORY;
-    *shapes = (narc_shapes){.used_records = SPARE_RECORDS, .allocator = chosen};
+    *shapes = (narc_shapes){.used_records = SPARE_RECORDS, .last_removed = NARC_NO_SHAPE, .allocator = chosen};
     *out_shapes = shapes;
     return NARC_OK;
 }
@@ -59,26 +62,65 @@ static size_t choose_headers(size_t capacity, size_t needed) {
     return chosen > needed ? chosen : needed;
 }
 
-/* Memory for `count` items that begin at a cache line. */
-static void *allocate(const narc_shapes *shapes, size_t count, size_t item, void **out_array) {
-    if (count > (SIZE_MAX - NARC_CACHE_LINE) / item)
-        return NULL;
-    char *memory = shapes->allocator.allocate(count * item + NARC_CACHE_LINE, shapes->allocator.context);
+/* Memory for `size` bytes that begin at a cache line, and end with the memory but for less than a line. */
+static void *allocate(const narc_shapes *shapes, size_t size, void **out_array) {
+    char *memory = shapes->allocator.allocate(size + NARC_CACHE_LINE, shapes->allocator.context);
     if (memory)
         *out_array = memory + (NARC_CACHE_LINE - (uintptr_t)memory % NARC_CACHE_LINE);
     return memory;
 }
 
+static uint32_t *find_bucket(const narc_shapes *shapes, uint32_t hash) {
+    return &shapes->buckets[(uint64_t)hash * shapes->capacity >> 32];
+}
+
+/* Puts a shape at the head of a list. */
+static void link_shape(narc_shapes *shapes, uint32_t shape, uint32_t *head) {
+    shapes->entries[shape].next = *head;
+    shapes->entries[shape].before = NARC_NO_SHAPE;
+    if (*head != NARC_NO_SHAPE)
+        shapes->entries[*head].before = shape;
+    *head = shape;
+}
+
+static void unlink_shape(narc_shapes *shapes, uint32_t shape, uint32_t *head) {
+    const narc_shape_entry *entry = &shapes->entries[shape];
+    if (entry->before == NARC_NO_SHAPE)
+        *head = entry->next;
+    else
+        shapes->entries[entry->before].next = entry->next;
+    if (entry->next != NARC_NO_SHAPE)
+        shapes->entries[entry->next].before = entry->before;
+}
+
+/* Headers come last, so that what reads past them reads past the memory. */
 static bool grow_headers(narc_shapes *shapes, size_t capacity) {
-    void *headers = NULL, *memory = allocate(shapes, capacity, sizeof(narc_shape_header), &headers);
+    const size_t item = sizeof(uint32_t) + sizeof(narc_shape_entry) + sizeof(narc_shape_header);
+    void *array = NULL, *memory;
+    if (capacity > (SIZE_MAX - 2 * NARC_CACHE_LINE) / item)
+        return false;
+    const size_t links = capacity * (sizeof(uint32_t) + sizeof(narc_shape_entry));
+    const size_t front = (links + NARC_CACHE_LINE - 1) / NARC_CACHE_LINE * NARC_CACHE_LINE;
+    memory = allocate(shapes, front + capacity * sizeof(narc_shape_header), &array);
     if (!memory)
         return false;
-    if (shapes->count)
-        memcpy(headers, shapes->headers, shapes->count * sizeof(narc_shape_header));
+    narc_shape_header *headers = (void *)((char *)array + front);
+    narc_shape_entry *entries = array;
+    if (shapes->count) {
+        memcpy(headers, shapes->headers, shapes->count * sizeof *headers);
+        memcpy(entries, shapes->entries, shapes->count * sizeof *entries);
+    }
     release(shapes, shapes->headers_memory);
     shapes->headers_memory = memory;
     shapes->headers = headers;
+    shapes->entries = entries;
+    shapes->buckets = (void *)(entries + capacity);
     shapes->capacity = capacity;
+    for (size_t k = 0; k < capacity; k++)
+        shapes->buckets[k] = NARC_NO_SHAPE;
+    for (uint32_t k = 0; k < shapes->count; k++)
+        if (entries[k].uses)
+            link_shape(shapes, k, find_bucket(shapes, entries[k].hash));
     return true;
 }
 
@@ -86,7 +128,10 @@ static bool grow_headers(narc_shapes *shapes, size_t capacity) {
 static bool move_records(narc_shapes *shapes, size_t capacity) {
     static const narc_arc circle = {0, 0, 1, 0, 2 * NARC_PI};
     narc_encoded_shape spare;
-    void *array = NULL, *memory = allocate(shapes, capacity, sizeof(narc_record), &array);
+    void *array = NULL, *memory;
+    if (capacity > (SIZE_MAX - NARC_CACHE_LINE) / sizeof(narc_record))
+        return false;
+    memory = allocate(shapes, capacity * sizeof(narc_record), &array);
     if (!memory)
         return false;
     narc_record *records = array;
@@ -126,7 +171,7 @@ static size_t choose_records(const narc_shapes *shapes, size_t used, size_t adde
 
 /* Room for so many headers in all, and so many records behind those that are there. If the second allocation fails the
  * first stays, unseen and unused. */
-static narc_status make_room(narc_shapes *shapes, size_t count, size_t records) {
+narc_status narc_make_room(narc_shapes *shapes, size_t count, size_t records) {
     const size_t used = shapes->used_records;
     if (count > NARC_MAX_SHAPES || records > MAX_RECORDS - used)
         return NARC_ERROR_COUNT;
@@ -144,7 +189,8 @@ narc_status narc_reserve_shapes(narc_shapes *shapes, size_t shape_count, size_t 
         return NARC_ERROR_COUNT;
     /* A record for each arc and one for 16 arcs' angles; for each shape, angles that do not fill their record, and a
      * circle's second half. */
-    return make_room(shapes, shapes->count + shape_count, arc_count + arc_count / NARC_RECORD_ANGLES + 2 * shape_count);
+    return narc_make_room(shapes, shapes->count + shape_count,
+                          arc_count + arc_count / NARC_RECORD_ANGLES + 2 * shape_count);
 }
 
 /* ------------------------------------------------------------------------------------------------ adding */
@@ -162,13 +208,64 @@ static size_t count_own_records(const narc_shapes *shapes, uint32_t shape) {
     return has_block ? narc_count_records(shapes->headers[shape].count) : 0;
 }
 
-/* Puts an encoded shape at an index, or at the next new one: in the place of the block that is there, if it fits. */
-static narc_status put_shape(narc_shapes *shapes, uint32_t shape, narc_encoded_shape *encoded, narc_error *error) {
-    const bool is_new = shape == shapes->count;
+static const size_t hashed_header = offsetof(narc_shape_header, first_record) + sizeof(uint32_t);
+
+/* Mixes the words of an array into a hash: a change of any bit changes all bits of the result about half of the time
+ *. */
+static uint64_t mix(uint64_t hash, const void *words, size_t size) {
+    for (size_t at = 0; at < size; at += sizeof(uint32_t)) {
+        uint32_t word;
+        memcpy(&word, (const char *)words + at, sizeof word);
+        hash = (hash ^ word) * 0xff51afd7ed558ccdu;
+        hash ^= hash >> 32;
+    }
+    return hash;
+}
+
+/* What two equal shapes have in common: all of the header but its place, and all records. */
+static size_t count_hashed_bytes(const narc_shape_header *header) {
+    return narc_count_records(header->count) * sizeof(narc_record);
+}
+
+static uint32_t hash_shape(const narc_encoded_shape *encoded) {
+    const narc_shape_header *header = &encoded->header;
+    const uint64_t hash = mix(0, (const char *)header + hashed_header, sizeof *header - hashed_header);
+    return (uint32_t)mix(hash, encoded->records, count_hashed_bytes(header));
+}
+
+static bool has_bits(const narc_shapes *shapes, uint32_t shape, const narc_encoded_shape *encoded) {
+    const narc_shape_header *a = &shapes->headers[shape], *b = &encoded->header;
+    return memcmp((const char *)a + hashed_header, (const char *)b + hashed_header, sizeof *a - hashed_header) == 0 &&
+           memcmp(&shapes->records[a->first_record], encoded->records, count_hashed_bytes(b)) == 0;
+}
+
+/* A stored shape with these bits, or NARC_NO_SHAPE. */
+static uint32_t find_equal(const narc_shapes *shapes, const narc_encoded_shape *encoded, uint32_t hash) {
+    uint32_t shape = shapes->capacity ? *find_bucket(shapes, hash) : NARC_NO_SHAPE;
+    while (shape != NARC_NO_SHAPE && !(shapes->entries[shape].hash == hash && has_bits(shapes, shape, encoded)))
+        shape = shapes->entries[shape].next;
+    return shape;
+}
+
+void narc_open_indices(narc_shapes *shapes, size_t count) {
+    for (uint32_t k = (uint32_t)count; k-- > shapes->count;) {
+        shapes->headers[k] = (narc_shape_header){.count = SPARE_ARCS};
+        shapes->entries[k] = (narc_shape_entry){.uses = 0};
+        link_shape(shapes, k, &shapes->last_removed);
+        shapes->removed_count++;
+    }
+    shapes->count = count > shapes->count ? count : shapes->count;
+}
+
+/* Puts an encoded shape at an index: in the place of the block that is there, if it fits. */
+narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, narc_encoded_shape *encoded,
+                                   narc_error *error) {
     const size_t size = narc_count_records(encoded->header.count), own_size = count_own_records(shapes, shape);
     const size_t used_size = narc_has_shape(shapes, shape) ? own_size : 0;
+    const size_t count = shape < shapes->count ? shapes->count : (size_t)shape + 1;
+    const uint32_t hash = hash_shape(encoded);
     if (size > own_size) {
-        const narc_status status = make_room(shapes, shapes->count + is_new, size);
+        const narc_status status = narc_make_room(shapes, count, size);
         if (status != NARC_OK)
             return fail_room(shapes, status, error);
         encoded->header.first_record = (uint32_t)shapes->record_count;
@@ -176,11 +273,19 @@ static narc_status put_shape(narc_shapes *shapes, uint32_t shape, narc_encoded_s
     } else {
         encoded->header.first_record = shapes->headers[shape].first_record;
     }
+    narc_open_indices(shapes, count);
+    if (narc_has_shape(shapes, shape)) {
+        unlink_shape(shapes, shape, find_bucket(shapes, shapes->entries[shape].hash));
+    } else {
+        unlink_shape(shapes, shape, &shapes->last_removed);
+        shapes->removed_count--;
+    }
     memcpy(&shapes->records[encoded->header.first_record], encoded->records, size * sizeof *encoded->records);
     shapes->headers[shape] = encoded->header;
+    shapes->entries[shape] = (narc_shape_entry){.uses = 1, .hash = hash};
+    link_shape(shapes, shape, find_bucket(shapes, hash));
     shapes->used_records += size - used_size;
     shapes->change_count++;
-    shapes->count += is_new;
     return NARC_OK;
 }
 
@@ -192,19 +297,33 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
     narc_status status = narc_encode_shape(arcs, count, &encoded, error);
     if (status != NARC_OK)
         return status;
-    const bool is_new = shapes->removed_count == 0;
-    const uint32_t shape = is_new ? (uint32_t)shapes->count : shapes->last_removed;
-    const uint32_t next_removed = is_new ? 0 : shapes->headers[shape].removed_before;
-    status = put_shape(shapes, shape, &encoded, error);
-    if (status != NARC_OK)
-        return status;
-    if (!is_new) {
-        shapes->last_removed = next_removed;
-        shapes->removed_count--;
+    uint32_t shape = find_equal(shapes, &encoded, hash_shape(&encoded));
+    if (shape != NARC_NO_SHAPE) {
+        if (shapes->entries[shape].uses == UINT32_MAX)
+            return narc_fail(error, NARC_ERROR_COUNT, shape, UINT32_MAX, "shape %lu is used %lu times, which is most",
+                             (unsigned long)shape, (unsigned long)UINT32_MAX);
+        shapes->entries[shape].uses++;
+    } else {
+        shape = shapes->removed_count ? shapes->last_removed : (uint32_t)shapes->count;
+        status = narc_put_encoded_shape(shapes, shape, &encoded, error);
     }
-    if (out_shape)
+    if (status == NARC_OK && out_shape)
         *out_shape = shape;
-    return NARC_OK;
+    return status;
+}
+
+narc_status narc_add_shape_at(narc_shapes *shapes, uint32_t shape, const narc_arc *arcs, size_t count,
+                              narc_error *error) {
+    narc_encoded_shape encoded;
+    if (!shapes)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "shapes is NULL");
+    if (shape >= NARC_MAX_SHAPES)
+        return narc_fail(error, NARC_ERROR_INDEX, shape, shape, "shape is %lu, not below %lu", (unsigned long)shape,
+                         (unsigned long)NARC_MAX_SHAPES);
+    if (narc_has_shape(shapes, shape))
+        return narc_fail(error, NARC_ERROR_IN_USE, shape, shape, "there is a shape %lu already", (unsigned long)shape);
+    const narc_status status = narc_encode_shape(arcs, count, &encoded, error);
+    return status == NARC_OK ? narc_put_encoded_shape(shapes, shape, &encoded, error) : status;
 }
 
 /* ------------------------------------------------------------------------------------------------ replacing */
@@ -224,22 +343,25 @@ narc_status narc_replace_shape(narc_shapes *shapes, uint32_t shape, const narc_a
                                narc_error *error) {
     narc_encoded_shape encoded;
     narc_status status = check_shape(shapes, shape, error);
-    if (status == NARC_OK)
-        status = narc_encode_shape(arcs, count, &encoded, error);
     if (status != NARC_OK)
         return status;
-    return put_shape(shapes, shape, &encoded, error);
+    if (shapes->entries[shape].uses > 1)
+        return narc_fail(error, NARC_ERROR_IN_USE, shape, shapes->entries[shape].uses,
+                         "shape %lu is used %lu times, another would come in the place of all", (unsigned long)shape,
+                         (unsigned long)shapes->entries[shape].uses);
+    status = narc_encode_shape(arcs, count, &encoded, error);
+    return status == NARC_OK ? narc_put_encoded_shape(shapes, shape, &encoded, error) : status;
 }
 
 narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *error) {
     const narc_status status = check_shape(shapes, shape, error);
-    if (status != NARC_OK)
+    if (status != NARC_OK || --shapes->entries[shape].uses > 0)
         return status;
     narc_shape_header *header = &shapes->headers[shape];
     shapes->used_records -= narc_count_records(header->count);
     header->bound_radius = 0;
-    header->removed_before = shapes->last_removed;
-    shapes->last_removed = shape;
+    unlink_shape(shapes, shape, find_bucket(shapes, shapes->entries[shape].hash));
+    link_shape(shapes, shape, &shapes->last_removed);
     shapes->removed_count++;
     shapes->change_count++;
     return NARC_OK;
@@ -248,6 +370,10 @@ narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *e
 /* ------------------------------------------------------------------------------------------------ reading */
 
 size_t narc_count_shapes(const narc_shapes *shapes) { return shapes ? shapes->count : 0; }
+
+uint32_t narc_count_uses(const narc_shapes *shapes, uint32_t shape) {
+    return narc_has_shape(shapes, shape) ? shapes->entries[shape].uses : 0;
+}
 
 unsigned narc_shape_flags(const narc_shapes *shapes, uint32_t shape) {
     return narc_has_shape(shapes, shape) ? shapes->headers[shape].flags % (1u << NARC_SIZE_CLASS_SHIFT) : 0;

@@ -49,14 +49,9 @@ typedef struct narc_shape_header {
      * rounding of the kernels, so that a filter that uses them never contradicts the deciding formula. The inner radius
      * is negative where the room is larger than the circle, of shapes far from their own origin: what is missing must
      * come off the other body's radius.
-     *   A removed shape has the bounding radius 0, which is not in range: kernels take no body of that shape. In place
-     * of a number that only bodies in range need, it has the shape that was removed before it, if any. */
+     *   A removed shape has the bounding radius 0, which is not in range: kernels take no body of that shape. */
     float bound_x, bound_y, bound_radius;
-    union {
-        float inner_x;
-        uint32_t removed_before;
-    };
-    float inner_y, inner_radius;
+    float inner_x, inner_y, inner_radius;
 } narc_shape_header;
 
 /* The upper half of a shape's flags is the class of its extent, from 2^(5 class - 32) up to 32 times that, the last one
@@ -105,23 +100,51 @@ static inline size_t narc_count_records(size_t count) { return narc_angle_record
 /* The largest bound_radius, scaled: a centred shape of NARC_MAX_SIZE passes with its room for rounding. */
 #define NARC_MAX_BOUND_RADIUS (NARC_MAX_SIZE * (1 + NARC_TOLERANCE))
 
+/* No shape. */
+#define NARC_NO_SHAPE UINT32_MAX
+
+/* What kernels do not read of a shape: how often it is used, and its place in a list, which is doubly linked so that
+ * any shape leaves it at once. Shapes with the same bucket of their hashes are in one list; removed ones, which have no
+ * use, are in another, the last one first. */
+typedef struct narc_shape_entry {
+    uint32_t uses;
+    uint32_t hash; /* of the stored bits */
+    uint32_t next, before;
+} narc_shape_entry;
+
 struct narc_shapes {
     narc_shape_header *headers;
     narc_record *records;
+    narc_shape_entry *entries;            /* one for each header */
+    uint32_t *buckets;                    /* the first shape in each list, as many lists as there is room for headers */
     size_t count, capacity;               /* headers, those of removed shapes among them */
     size_t removed_count;                 /* removed shapes */
-    uint32_t last_removed;                /* the last of them, if there are any: narc_shape_header.removed_before */
+    uint32_t last_removed;                /* the last of them, or NARC_NO_SHAPE */
     uint64_t change_count;                /* how often shapes came, changed or went */
     size_t record_count, record_capacity; /* records, with the gaps between blocks */
     size_t used_records;                  /* records in blocks of shapes, and of the circle that removed ones have */
     narc_allocator allocator;
-    void *headers_memory, *records_memory; /* what the allocator returned; both arrays begin at cache lines in it */
+    /* What the allocator returned: entries, buckets and headers; and records. Headers and records begin at cache lines,
+     * and end with the memory but for less than one. */
+    void *headers_memory, *records_memory;
 };
 
 /* Is there such a shape, and was it not removed? `shapes` may be NULL. */
 static inline bool narc_has_shape(const narc_shapes *shapes, uint32_t shape) {
     return shape < narc_count_shapes(shapes) && shapes->headers[shape].bound_radius > 0;
 }
+
+/* narc_add_shape_at() for a shape that is encoded. */
+struct narc_encoded_shape;
+narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, struct narc_encoded_shape *encoded,
+                                   narc_error *error);
+
+/* Room for so many shapes in all, with so many more records. */
+narc_status narc_make_room(narc_shapes *shapes, size_t count, size_t records);
+
+/* Makes indices that were never given out, from narc_count_shapes() to below `count`, those of removed shapes; there is
+ * room for them. The lowest is the one that was removed last. */
+void narc_open_indices(narc_shapes *shapes, size_t count);
 
 /* The arcs of a shape, header->count of them. */
 static inline const narc_record *narc_arcs_of(const narc_shapes *shapes, const narc_shape_header *header) {

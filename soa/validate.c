@@ -8,7 +8,8 @@
 
 #include <math.h>
 
-/* An outline flatter than this, relative to its size, is a line segment: what is left of its width is rounding. */
+/* An outline flatter than this, relative to its size, is a line: what is left of its width is rounding. Only a segment
+ * may be. */
 #define FLAT 1e-13
 
 /* No coordinate of a valid shape is larger: its bounding circle has at most NARC_MAX_SIZE as its radius and as its
@@ -66,17 +67,17 @@ static narc_status check_turns(const narc_arc *arcs, size_t count, narc_error *e
 
 /* The vector from the end of one arc to the start of the next must have the direction of the edge between them,
  * which is their common normal turned left; in an n-arc it is zero. */
-static narc_status check_edges(const narc_outline *o, double size, narc_error *error) {
+narc_status narc_check_edges(const narc_outline *o, double tolerance, narc_error *error) {
     for (size_t i = 0; i < o->count; i++) {
         size_t before = (i + o->count - 1) % o->count;
         narc_point from = narc_find_end(o, before), to = narc_find_start(o, i);
         double x = to.x - from.x, y = to.y - from.y;
         double off = x * o->normal_x[i] + y * o->normal_y[i], along = y * o->normal_x[i] - x * o->normal_y[i];
-        if (fabs(off) > NARC_TOLERANCE * size)
+        if (fabs(off) > tolerance)
             return narc_fail(error, NARC_ERROR_NOT_CLOSED, i, off,
                              "arc %zu: starts %.6g away from where the edge from arc %zu should meet it", i, fabs(off),
                              before);
-        if (along < -NARC_TOLERANCE * size)
+        if (along < -tolerance)
             return narc_fail(error, NARC_ERROR_NOT_CONVEX, i, along,
                              "arc %zu: the edge from arc %zu runs backwards, its length is %.6g", i, before, along);
     }
@@ -104,7 +105,7 @@ static narc_status check_size(const narc_outline *o, narc_circle bound, narc_err
     if (away > NARC_MAX_SIZE)
         return narc_fail(error, NARC_ERROR_SIZE, 0, away, "the shape is %g away from its origin, more than %g", away,
                          NARC_MAX_SIZE);
-    if (is_flat(o, size))
+    if (is_flat(o, size) && !narc_is_segment(o))
         return narc_fail(error, NARC_ERROR_SIZE, 0, 0, "the shape encloses no area");
     for (size_t i = 0; i < o->count; i++)
         if (o->radius[i] > NARC_MAX_RADIUS_RATIO * size)
@@ -146,7 +147,7 @@ narc_status narc_check_arcs(const narc_arc *arcs, size_t count, narc_outline *ou
                              "arc %zu: sweep is %.9g rad between its neighbours, it turns by nothing", i,
                              out_outline->sweep[i]);
     narc_bound_outline(out_outline, out_bound);
-    if ((status = check_edges(out_outline, out_bound->radius, error)) != NARC_OK)
+    if ((status = narc_check_edges(out_outline, NARC_TOLERANCE * out_bound->radius, error)) != NARC_OK)
         return status;
     out_bound->x += out_outline->origin_x;
     out_bound->y += out_outline->origin_y;

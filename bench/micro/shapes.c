@@ -147,5 +147,6 @@ void add_outline(narc_shapes *shapes, const struct outline *outline) {
     narc_arc arcs[MAX_EDGES] = {{0}};
     const size_t count = list_arcs(outline, arcs);
     narc_error error;
-    must(narc_add_shape(shapes, arcs, count, NULL, &error), &error);
+    /* Equal outlines too are shapes of their own: what has a shape for each body measures that. */
+    must(narc_add_shape_at(shapes, (uint32_t)narc_count_shapes(shapes), arcs, count, &error), &error);
 }

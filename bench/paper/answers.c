@@ -63,7 +63,7 @@ static struct family_shapes make_shapes(enum family family, uint64_t *random) {
     for (size_t k = 0; k < SHAPES; k++) {
         narc_arc arcs[NARC_MAX_ARCS];
         const size_t count = make_shape(family, random, arcs);
-        must(narc_add_shape(made.shapes, arcs, count, NULL, &error), &error);
+        must(narc_add_shape_at(made.shapes, (uint32_t)k, arcs, count, &error), &error);
         made.bounds[k] = bound_of(arcs, count);
     }
     must(narc_create_methods(made.shapes, NULL, &made.methods, &error), &error);

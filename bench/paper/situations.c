@@ -37,7 +37,7 @@ struct bound bound_of(const narc_arc *arcs, size_t count) {
 
 static void add_template(struct templates *templates, enum kind kind, size_t index, const narc_arc *arcs) {
     narc_error error;
-    must(narc_add_shape(templates->shapes[kind], arcs, templates->n, NULL, &error), &error);
+    must(narc_add_shape_at(templates->shapes[kind], (uint32_t)index, arcs, templates->n, &error), &error);
     templates->bounds[kind][index] = bound_of(arcs, templates->n);
 }
 

@@ -182,10 +182,16 @@ bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count,
     narc_arc centred[NARC_MAX_ARCS];
     narc_error error;
     narc_mass mass;
-    if (narc_center_arcs(arcs, count, centred, NULL, &error) != NARC_OK ||
-        narc_add_shape(d->store, centred, count, out_shape, &error) != NARC_OK)
+    /* One index for each name, also of equal shapes: d->shapes goes with the store. */
+    const uint32_t index = (uint32_t)d->shape_count;
+    if (narc_center_arcs(arcs, count, centred, NULL, &error) != NARC_OK)
         return dem_fail_narc(d, name, &error);
     narc_compute_mass(centred, count, &mass);
+    if (!(mass.area > 0))
+        return dem_fail(d, "%s: the shape encloses no area", name);
+    if (narc_add_shape_at(d->store, index, centred, count, &error) != NARC_OK)
+        return dem_fail_narc(d, name, &error);
+    *out_shape = index;
     if (!dem_reserve(d, &d->shapes, &d->shape_capacity, d->shape_count + 1, sizeof *d->shapes))
         return false;
     dem_shape *shape = &d->shapes[d->shape_count++];

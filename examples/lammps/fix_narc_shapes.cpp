@@ -120,7 +120,8 @@ void FixNarcShapes::read_forms(const char *path, int count, char **names) {
             if (found == all.end())
                 throw std::runtime_error(std::string(path) + ": it has no shape '" + names[i] + "'");
             narc_error failure;
-            if (narc_add_shape(store, found->arcs.data(), found->arcs.size(), nullptr, &failure) != NARC_OK)
+            if (narc_add_shape_at(store, static_cast<uint32_t>(i), found->arcs.data(), found->arcs.size(), &failure) !=
+                NARC_OK)
                 throw std::runtime_error(std::string(path) + ": shape '" + names[i] + "': " + failure.message);
             forms.push_back(*found);
             if (!mesh.empty() && comm->me == 0)

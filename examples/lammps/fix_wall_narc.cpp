@@ -103,10 +103,11 @@ int FixWallNarc::read_wall(int i, int count, char **arguments) {
     if (narc_build_box(width, height, 0, arcs, &arc_count, &failure) != NARC_OK)
         error->all(FLERR, std::string("fix wall/narc: box: ") + failure.message);
     narc_status status = narc_create_shapes(nullptr, &store);
+    uint32_t next = 0; /* the shapes' own indices, also of equal ones, and behind them the box */
     for (const narc_lammps::Form &form : shapes->forms)
         if (status == NARC_OK)
-            status = narc_add_shape(store, form.arcs.data(), form.arcs.size(), nullptr, &failure);
-    if (status != NARC_OK || narc_add_shape(store, arcs, arc_count, nullptr, &failure) != NARC_OK)
+            status = narc_add_shape_at(store, next++, form.arcs.data(), form.arcs.size(), &failure);
+    if (status != NARC_OK || narc_add_shape_at(store, next, arcs, arc_count, &failure) != NARC_OK)
         error->all(FLERR, std::string("fix wall/narc: box: ") + failure.message);
     return end;
 }

@@ -62,6 +62,11 @@ static inline enum pose_layout find_pose_layout(const narc_bodies *bodies) {
     return is_row ? POSE_DOUBLE_ROWS : POSE_COLUMNS;
 }
 
+/* Positions that are float. */
+INLINE narc_float_column get_singles(narc_position_column column) {
+    return (narc_float_column){column.base, column.stride};
+}
+
 INLINE vf load_column(narc_float_column column, const int32_t *index) {
     float lane[V_WIDTH];
     for (int k = 0; k < V_WIDTH; k++)
@@ -85,9 +90,11 @@ INLINE vf load_pair_column(narc_float_column column, size_t first, int count, fl
 /* Position of b minus position of a, plus a shift if there is one, in the precision of the positions (with a shift, in
  * double precision), then rounded. */
 INLINE float find_difference(narc_position_column column, size_t a, size_t b, const float *shift) {
-    const double from = narc_position_at(column, a), to = narc_position_at(column, b);
-    if (column.precision == NARC_FLOAT32 && !shift)
-        return (float)to - (float)from;
+    const bool doubles = column.precision == NARC_FLOAT64;
+    if (!doubles && !shift)
+        return narc_single_at(column, b) - narc_single_at(column, a);
+    const double from = doubles ? narc_double_at(column, a) : (double)narc_single_at(column, a);
+    const double to = doubles ? narc_double_at(column, b) : (double)narc_single_at(column, b);
     return (float)(shift ? to - from + (double)*shift : to - from);
 }
 

@@ -54,7 +54,7 @@ struct placed_bodies {
 INLINE void split_positions(narc_position_column column, const int32_t *index, vf *out_high, vf *out_low) {
     float high[V_WIDTH], low[V_WIDTH];
     for (int l = 0; l < V_WIDTH; l++) {
-        const double whole = narc_position_at(column, (uint32_t)index[l]);
+        const double whole = narc_double_at(column, (uint32_t)index[l]);
         high[l] = (float)whole;
         low[l] = (float)(whole - (double)high[l]);
     }
@@ -73,8 +73,12 @@ INLINE struct placed_bodies load_placed_bodies(const narc_bodies *bodies, enum p
         out.rotation = (vec2){row[2], row[3]};
         return out;
     }
-    split_positions(bodies->x, index, &out.position.x, &out.rest.x);
-    split_positions(bodies->y, index, &out.position.y, &out.rest.y);
+    if (bodies->x.precision == NARC_FLOAT64) {
+        split_positions(bodies->x, index, &out.position.x, &out.rest.x);
+        split_positions(bodies->y, index, &out.position.y, &out.rest.y);
+    } else {
+        out.position = (vec2){load_column(get_singles(bodies->x), index), load_column(get_singles(bodies->y), index)};
+    }
     out.rotation = (vec2){load_column(bodies->cosine, index), load_column(bodies->sine, index)};
     return out;
 }

@@ -122,8 +122,8 @@ static narc_shapes *make_box_store(void) {
     size_t count;
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
     assert_int_equal(narc_build_box(2, 2, 0, arcs, &count, NULL), NARC_OK);
-    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
-    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+    assert_int_equal(narc_add_shape_at(shapes, 0, arcs, count, NULL), NARC_OK);
+    assert_int_equal(narc_add_shape_at(shapes, 1, arcs, count, NULL), NARC_OK);
     return shapes;
 }
 

@@ -522,7 +522,7 @@ static void notices_shapes_that_change(void **state) {
     const narc_pair_options options = {.skin = 0.125f};
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
     assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
-    const uint32_t small = add_circle(shapes, 0.5), other = add_circle(shapes, 0.5);
+    const uint32_t small = add_circle(shapes, 0.5), other = add_circle(shapes, 0.51);
     disc discs[] = {{0, 0, 1, 0, 0, 0, small}, {3, 0, 1, 0, 0, 0, other}};
     const narc_bodies bodies = view(discs, 2);
     assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);

@@ -166,11 +166,30 @@ static narc_status keep_shapes(unsigned threads, narc_method method, narc_error 
                       narc_replace_shape(shapes, shape, arcs, arc_count, error) == NARC_OK &&
                       narc_count_shapes(shapes) == 1 && narc_get_arcs(shapes, shape, arcs) == arc_count &&
                       narc_shape_flags(shapes, shape) != 0 && narc_get_aabb(shapes, shape, 1, 0, 1, &box) &&
-                      narc_remove_shape(shapes, shape, error) == NARC_OK &&
+                      narc_add_shape_at(shapes, shape + 2, arcs, arc_count, error) == NARC_OK &&
+                      narc_count_uses(shapes, shape) == 1 && narc_remove_shape(shapes, shape, error) == NARC_OK &&
                       narc_create_broad_phase(NULL, &other) == NARC_OK;
     narc_destroy_broad_phase(other);
     narc_destroy_shapes(shapes);
     return TRUE(fine);
+}
+
+static narc_status save_and_load(unsigned threads, narc_method method, narc_error *error) {
+    (void)threads, (void)method;
+    static unsigned char bytes[1 << 16];
+    narc_shapes *shapes = NULL;
+    const size_t size = narc_count_saved_bytes(store);
+    const bool fine = size <= sizeof bytes && narc_save_shapes(store, bytes, size, error) == NARC_OK &&
+                      narc_load_shapes(NULL, bytes, size, &shapes, error) == NARC_OK;
+    narc_destroy_shapes(shapes);
+    return TRUE(fine);
+}
+
+static narc_status weld(unsigned threads, narc_method method, narc_error *error) {
+    (void)threads, (void)method;
+    narc_point points[RING];
+    size_t count;
+    return narc_weld_polygon(ring, RING, 1e-3, points, &count, error);
 }
 
 static narc_status range_of_radii(unsigned threads, narc_method method, narc_error *error) {
@@ -189,6 +208,8 @@ static narc_status adjust(unsigned threads, narc_method method, narc_error *erro
 CALL(refuse, TRUE(narc_build_box(1e300, 1, 0, arcs, &arc_count, error) != NARC_OK))
 CALL(circle, narc_build_circle(1, arcs, &arc_count, error))
 CALL(capsule, narc_build_capsule(2, 1, arcs, &arc_count, error))
+CALL(segment, narc_build_segment(ring[0], ring[1], 0, arcs, &arc_count, error))
+CALL(skin, narc_build_skin_polygon(ring, RING, 0.25, arcs, &arc_count, error))
 CALL(box, narc_build_box(4, 3, 0.5, arcs, &arc_count, error))
 CALL(polygon, narc_build_polygon(ring, RING, 0.25, arcs, &arc_count, error))
 CALL(regular, narc_build_regular_polygon(NARC_MAX_ARCS, 1, 0.01, arcs, &arc_count, error))
@@ -238,8 +259,11 @@ static const struct call calls[] = {
     {"narc_build_box, refused", refuse, 0},
     {"narc_build_circle", circle, 0},
     {"narc_build_capsule", capsule, 0},
+    {"narc_build_segment", segment, 0},
     {"narc_build_box", box, 0},
     {"narc_build_polygon", polygon, 0},
+    {"narc_build_skin_polygon", skin, 0},
+    {"narc_weld_polygon", weld, 0},
     {"narc_build_regular_polygon", regular, 0},
     {"narc_build_ellipse", ellipse, 0},
     {"narc_build_four_arc", four_arc, 0},
@@ -253,6 +277,7 @@ static const struct call calls[] = {
     {"narc_validate_bodies", validate_bodies, 0},
     {"the derived quantities", derive, 0},
     {"the store", keep_shapes, 0},
+    {"narc_save_shapes, narc_load_shapes", save_and_load, 0},
 };
 enum { CALLS = sizeof calls / sizeof *calls };
 

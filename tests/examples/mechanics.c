@@ -173,6 +173,43 @@ static void test_errors(void **state) {
     world_destroy(&w);
 }
 
+/* A shape that the world has already needs no room, whatever else it has. */
+static void test_equal_shapes(void **state) {
+    (void)state;
+    world w = create_slope(0);
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    uint32_t shape, first = 0;
+    for (uint32_t k = 1; k < 8; k++) {
+        assert_int_equal(narc_build_box(k, 2, 0, arcs, &count, NULL), NARC_OK);
+        assert_int_equal(world_add_shape(&w, arcs, count, &shape), NARC_OK);
+        first = k == 1 ? shape : first;
+    }
+    assert_int_equal(narc_build_box(9, 2, 0, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(world_add_shape(&w, arcs, count, &shape), NARC_ERROR_CAPACITY);
+    assert_int_equal(narc_build_box(1, 2, 0, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(world_add_shape(&w, arcs, count, &shape), NARC_OK);
+    assert_int_equal(shape, first);
+    for (uint32_t k = 0; k < 7; k++)
+        assert_true(fabsf(w.shapes[first + k].mass - 2 * (float)(k + 1)) < 1e-5f);
+    world_destroy(&w);
+}
+
+/* What has no mass does not move. */
+static void test_segment(void **state) {
+    (void)state;
+    world w = create_slope(0);
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    world_body body = {.cosine = 1};
+    assert_int_equal(narc_build_segment((narc_point){-5, 1}, (narc_point){5, 1}, 0, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(world_add_shape(&w, arcs, count, &body.shape), NARC_OK);
+    assert_int_equal(world_add_body(&w, body), NARC_ERROR_SIZE);
+    body.still = 1;
+    assert_int_equal(world_add_body(&w, body), NARC_OK);
+    world_destroy(&w);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_box_stays_on_slope),
@@ -182,6 +219,8 @@ int main(void) {
         cmocka_unit_test(test_momentum),
         cmocka_unit_test(test_broken_body),
         cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_equal_shapes),
+        cmocka_unit_test(test_segment),
     };
     if (!test_begin())
         return TEST_SKIPPED;

@@ -281,7 +281,7 @@ static void test_no_pairs(void **state) {
     destroy_scene(&scene);
 }
 
-/* A body and itself: as deep as it gets, and still an answer. */
+/* A body and itself: as deep as it gets, and still an answer. (Only a segment has no depth, it touches itself.) */
 static void test_pairs_with_itself(void **state) {
     (void)state;
     struct scene scene = make_scene("itself", 500);
@@ -292,8 +292,9 @@ static void test_pairs_with_itself(void **state) {
     for (uint32_t k = 0; k < 500; k++) {
         struct reference_body body = scene_reference(&scene, k);
         struct fractions errors = {0};
-        assert_true(bit_is_set(bits, k));
-        const char *wrong = check_contact(&body, &body, reference_find_gap(&body, &body).gap, &all.view, k, &errors);
+        const double gap = reference_find_gap(&body, &body).gap;
+        assert_true(bit_is_set(bits, k) || (body.count == 2 && gap >= -separation_bound(&body, &body)));
+        const char *wrong = check_contact(&body, &body, gap, &all.view, k, &errors);
         if (wrong) {
             print_pair(&body, &body);
             fail_msg("%s", wrong);

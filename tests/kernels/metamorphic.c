@@ -200,7 +200,7 @@ static void test_scaled_shapes(void **state) {
             shape.arcs[i].center_y *= 2;
             shape.arcs[i].radius *= 2;
         }
-        assert_int_equal(narc_add_shape(larger, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_add_shape_at(larger, (uint32_t)k, shape.arcs, shape.count, NULL), NARC_OK);
     }
     narc_destroy_shapes(change.scene.store);
     change.scene.store = larger;

@@ -483,6 +483,141 @@ static void moves_arcs(void **state) {
     expect_refused(&o, narc_mirror_arcs(&broken, 65, o.arcs, &o.error), NARC_ERROR_COUNT, "65 arcs");
 }
 
+/* A segment, and with a radius the capsule between its ends, anywhere and in any direction. */
+static void builds_segments(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("segments");
+    for (size_t k = 0; k < test_trials(200); k++) {
+        const narc_point from = {random_between(&random, -3, 3), random_between(&random, -3, 3)};
+        const narc_point to = {k % 3 ? random_between(&random, -3, 3) : from.x, random_between(&random, -3, 3)};
+        const double r = k % 2 ? random_between(&random, 0.1, 2) : 0, l = hypot(to.x - from.x, to.y - from.y);
+        struct output out = make_output();
+        narc_mass mass;
+        double length, distance;
+        expect_ok(narc_build_segment(from, to, r, out.arcs, &out.count, &out.error), &out.error);
+        assert_int_equal(out.count, 2);
+        assert_true(out.arcs[0].center_x == to.x && out.arcs[1].center_y == from.y && out.arcs[0].radius == r);
+        assert_true(narc_compute_mass(out.arcs, 2, &mass) && narc_compute_perimeter(out.arcs, 2, &length));
+        expect_near(mass.area, pi * r * r + 2 * r * l, 1e-12, "area");
+        expect_near(length, 2 * pi * r + 2 * l, 1e-12, "perimeter");
+        expect_near(mass.centroid_x, (from.x + to.x) / 2, 1e-12, "centroid x");
+        expect_near(mass.centroid_y, (from.y + to.y) / 2, 1e-12, "centroid y");
+        const double t = random_unit(&random), side = k % 4 < 2 ? 1 : -1, up = random_between(&random, 0.1, 1);
+        const narc_point p = {from.x + t * (to.x - from.x) - side * up * (to.y - from.y) / l,
+                              from.y + t * (to.y - from.y) + side * up * (to.x - from.x) / l};
+        assert_true(narc_compute_distance(out.arcs, 2, p, &distance));
+        if (up > r)
+            expect_near(distance, up - r, 1e-12, "distance");
+    }
+    struct output o = make_output();
+    const narc_point p = {1, 2}, q = {NAN, 0};
+    expect_refused(&o, narc_build_segment(p, p, 0, o.arcs, &o.count, &o.error), NARC_ERROR_SIZE, "radius is 0");
+    expect_refused(&o, narc_build_segment(p, q, 0, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_FINITE, "point 1");
+    expect_refused(&o, narc_build_segment(p, (narc_point){0, 0}, -1, o.arcs, &o.count, &o.error), NARC_ERROR_RADIUS,
+                   "radius is -1");
+    expect_ok(narc_build_segment(p, p, 2, o.arcs, &o.count, &o.error), &o.error); /* a disc */
+    narc_mass disc;
+    assert_true(narc_compute_mass(o.arcs, o.count, &disc));
+    expect_near(disc.area, 4 * pi, 1e-12, "area");
+}
+
+/* Steiner's formula: area + perimeter r + pi r^2; and the heights are those of the polygon and r more. */
+static void builds_skin_polygons(void **state) {
+    (void)state;
+    const narc_point box[4] = {{-1, -0.5}, {2, -0.5}, {2, 0.5}, {-1, 0.5}}, kite[3] = {{0, 0}, {2, 0.25}, {0.5, 1}};
+    const narc_point *const polygons[2] = {box, kite};
+    for (int k = 0; k < 2; k++) {
+        for (double r = 0; r < 8; r = 2 * r + 0.25) {
+            const size_t n = k ? 3 : 4;
+            struct output sharp = make_output(), skin = make_output();
+            double area, length;
+            narc_mass mass;
+            expect_ok(narc_build_polygon(polygons[k], n, 0, sharp.arcs, &sharp.count, &sharp.error), &sharp.error);
+            expect_ok(narc_build_skin_polygon(polygons[k], n, r, skin.arcs, &skin.count, &skin.error), &skin.error);
+            assert_int_equal(skin.count, n);
+            assert_true(narc_compute_mass(sharp.arcs, n, &mass) && narc_compute_perimeter(sharp.arcs, n, &length));
+            area = mass.area;
+            assert_true(narc_compute_mass(skin.arcs, n, &mass));
+            expect_near(mass.area, area + length * r + pi * r * r, 1e-13 * mass.area, "area");
+            for (size_t i = 0; i < n; i++) {
+                assert_true(skin.arcs[i].center_x == polygons[k][i].x && skin.arcs[i].center_y == polygons[k][i].y);
+                assert_true(skin.arcs[i].radius == r);
+            }
+            for (double angle = 0; angle < 6; angle += 0.1) {
+                narc_point a, b;
+                const double x = cos(angle), y = sin(angle);
+                assert_true(narc_find_support(sharp.arcs, n, x, y, &a, NULL));
+                assert_true(narc_find_support(skin.arcs, n, x, y, &b, NULL));
+                expect_near(b.x * x + b.y * y, a.x * x + a.y * y + r, 1e-13, "height");
+            }
+        }
+    }
+    struct output o = make_output();
+    const narc_point clockwise[3] = {{0, 0}, {0, 1}, {1, 0}};
+    expect_refused(&o, narc_build_skin_polygon(clockwise, 3, 1, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_CONVEX, "");
+    expect_refused(&o, narc_build_skin_polygon(box, 4, -1, o.arcs, &o.count, &o.error), NARC_ERROR_RADIUS, "-1");
+    expect_refused(&o, narc_build_skin_polygon(box, 2, 1, o.arcs, &o.count, &o.error), NARC_ERROR_COUNT, "2 points");
+    expect_refused(&o, narc_build_skin_polygon(NULL, 3, 1, o.arcs, &o.count, &o.error), NARC_ERROR_ARGUMENT, "NULL");
+}
+
+static double distance_to_side(narc_point p, narc_point a, narc_point b) {
+    const double x = b.x - a.x, y = b.y - a.y, t = ((p.x - a.x) * x + (p.y - a.y) * y) / (x * x + y * y);
+    const double along = fmin(1, fmax(0, t));
+    return hypot(p.x - a.x - along * x, p.y - a.y - along * y);
+}
+
+/* Corners are left out, none is moved, and none that is left out is further away than the tolerance. */
+static void welds_polygons(void **state) {
+    (void)state;
+    const narc_point box[7] = {{0, 0}, {1, 0}, {2, 0}, {2, 1e-6}, {2, 1}, {1, 1 + 1e-6}, {0, 1}};
+    narc_point left[NARC_MAX_ARCS];
+    size_t count;
+    narc_error error;
+    struct output o = make_output();
+    expect_refused(&o, narc_build_polygon(box, 7, 0, o.arcs, &o.count, &o.error), NARC_ERROR_NOT_CONVEX, "point 1");
+    expect_ok(narc_weld_polygon(box, 7, 1e-5, left, &count, &error), &error);
+    assert_int_equal(count, 4);
+    assert_true(left[0].x == 0 && left[1].x == 2 && left[2].y == 1 && left[3].x == 0 && left[3].y == 1);
+    expect_ok(narc_build_polygon(left, count, 0, o.arcs, &o.count, &o.error), &o.error);
+    expect_ok(narc_weld_polygon(box, 7, 0, left, &count, &error), &error);
+    assert_int_equal(count, 5); /* without those that lie on a line */
+    struct test_random random = test_random_named("welding");
+    for (size_t k = 0; k < test_trials(300); k++) {
+        const size_t n = 8 + random_below(&random, NARC_MAX_ARCS - 7);
+        const double tolerance = random_log_between(&random, 1e-4, 0.3);
+        narc_point points[NARC_MAX_ARCS];
+        size_t next = 0;
+        for (size_t i = 0; i < n; i++) {
+            const double angle = 2 * pi * ((double)i + 0.4 * random_unit(&random)) / (double)n;
+            points[i] = (narc_point){2 * cos(angle), sin(angle)};
+        }
+        expect_ok(narc_weld_polygon(points, n, tolerance, left, &count, &error), &error);
+        assert_in_range(count, 3, n);
+        for (size_t i = 0; i < n; i++) {
+            if (next < count && points[i].x == left[next].x && points[i].y == left[next].y) {
+                next++;
+                continue;
+            }
+            double least = INFINITY;
+            for (size_t j = 0; j < count; j++)
+                least = fmin(least, distance_to_side(points[i], left[j], left[(j + 1) % count]));
+            assert_true(least <= tolerance * (1 + 1e-12));
+        }
+        assert_int_equal(next, count); /* in their order */
+        size_t in_place;
+        expect_ok(narc_weld_polygon(points, n, tolerance, points, &in_place, &error), &error);
+        assert_int_equal(in_place, count);
+        assert_memory_equal(points, left, count * sizeof *left);
+    }
+    const narc_point flat[4] = {{0, 0}, {1, -1e-7}, {2, 0}, {1, 1e-7}};
+    expect_error(narc_weld_polygon(flat, 4, 1e-3, left, &count, &error), NARC_ERROR_COUNT, &error, "fewer than 3");
+    expect_error(narc_weld_polygon(flat, 2, 1, left, &count, &error), NARC_ERROR_COUNT, &error, "2 points");
+    expect_error(narc_weld_polygon(flat, 4, -1, left, &count, &error), NARC_ERROR_SIZE, &error, "tolerance is -1");
+    expect_error(narc_weld_polygon(flat, 4, NAN, left, &count, &error), NARC_ERROR_NOT_FINITE, &error, "tolerance");
+    expect_error(narc_weld_polygon(NULL, 4, 1, left, &count, &error), NARC_ERROR_ARGUMENT, &error, "points is NULL");
+    expect_error(narc_weld_polygon(flat, 4, 1, NULL, &count, &error), NARC_ERROR_ARGUMENT, &error, "output is NULL");
+}
+
 int test_builders(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(builds_circles),
@@ -497,6 +632,9 @@ int test_builders(void) {
         cmocka_unit_test(builds_ellipses),
         cmocka_unit_test(more_arcs_are_nearer_to_ellipses),
         cmocka_unit_test(builds_rings),
+        cmocka_unit_test(builds_segments),
+        cmocka_unit_test(builds_skin_polygons),
+        cmocka_unit_test(welds_polygons),
         cmocka_unit_test(moves_arcs),
     };
     return cmocka_run_group_tests_name("builders", tests, NULL, NULL);

@@ -102,8 +102,9 @@ static void check_arc(const struct shape *shape, size_t i, uint32_t radii, doubl
 static void check_shape(const struct shape *shape) {
     narc_shapes *shapes = NULL;
     double extent = 0;
+    narc_error error;
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    assert_int_equal(narc_add_shape(shapes, shape->arcs, shape->count, NULL, NULL), NARC_OK);
+    expect_ok(narc_add_shape(shapes, shape->arcs, shape->count, NULL, &error), &error);
     const narc_shape_header *header = shapes->headers;
     for (size_t i = 0; i < shape->count; i++)
         extent = fmax(extent, hypot(shape->arcs[i].center_x, shape->arcs[i].center_y) + shape->arcs[i].radius);

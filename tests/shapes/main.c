@@ -16,6 +16,6 @@ int main(void) {
     if (!test_begin())
         return TEST_SKIPPED;
     return test_validation() + test_builders() + test_junctions() + test_derived() + test_store() + test_replacing() +
-               test_rolls() !=
+               test_rolls() + test_sharing() + test_saving() !=
            0;
 }

@@ -71,6 +71,7 @@ enum { MODEL_SHAPES = 40 };
 struct model {
     struct shape shape[MODEL_SHAPES];
     bool exists[MODEL_SHAPES];
+    uint32_t uses[MODEL_SHAPES];
     size_t count; /* indices given out */
     uint32_t removed[MODEL_SHAPES];
     size_t removed_count;
@@ -80,6 +81,7 @@ static void expect_model(const narc_shapes *shapes, const struct model *model) {
     size_t used = narc_count_records(2); /* the circle that removed shapes have */
     assert_int_equal(narc_count_shapes(shapes), model->count);
     for (uint32_t k = 0; k < model->count; k++) {
+        assert_int_equal(narc_count_uses(shapes, k), model->uses[k]);
         if (model->exists[k]) {
             used += narc_count_records(shapes->headers[k].count);
             assert_int_equal(narc_get_arcs(shapes, k, NULL), model->shape[k].count);
@@ -108,7 +110,17 @@ static void holds_what_was_put_last(void **state) {
             const bool exists = index < model->count && model->exists[index];
             uint32_t added = UINT32_MAX;
             narc_error error;
-            if (!exists) { /* add */
+            uint32_t equal = MODEL_SHAPES;
+            for (uint32_t k = 0; k < model->count; k++)
+                if (model->exists[k] && model->shape[k].count == shape.count &&
+                    memcmp(model->shape[k].arcs, shape.arcs, shape.count * sizeof *shape.arcs) == 0)
+                    equal = k;
+            if (!exists && equal < MODEL_SHAPES) { /* one more use */
+                expect_ok(narc_add_shape(shapes, shape.arcs, shape.count, &added, &error), &error);
+                assert_true(model->exists[added]);
+                expect_same_shape(shapes, added, &shape);
+                model->uses[added]++;
+            } else if (!exists) { /* add */
                 if (model->removed_count == 0 && model->count == MODEL_SHAPES)
                     continue;
                 expect_ok(narc_add_shape(shapes, shape.arcs, shape.count, &added, &error), &error);
@@ -118,8 +130,15 @@ static void holds_what_was_put_last(void **state) {
                     assert_int_equal(added, model->count++);
                 model->shape[added] = shape;
                 model->exists[added] = true;
+                model->uses[added] = 1;
+            } else if (model->uses[index] > 1) {
+                expect_error(narc_replace_shape(shapes, index, shape.arcs, shape.count, &error), NARC_ERROR_IN_USE,
+                             &error, "is used");
+                expect_ok(narc_remove_shape(shapes, index, &error), &error);
+                model->uses[index]--;
             } else if (random_below(&random, 3) == 0) {
                 expect_ok(narc_remove_shape(shapes, index, &error), &error);
+                model->uses[index] = 0;
                 model->exists[index] = false;
                 model->removed[model->removed_count++] = index;
                 expect_error(narc_remove_shape(shapes, index, &error), NARC_ERROR_INDEX, &error, "was removed");
@@ -174,21 +193,19 @@ static void memory_does_not_grow(void **state) {
         size_t corners[SHAPES], need = SHAPES * need_of(3), most_needed = need;
         for (size_t n = 3; n <= NARC_MAX_ARCS; n++)
             polygons[n] = make_polygon(n);
-        for (int k = 0; k < SHAPES; k++) {
-            assert_int_equal(narc_add_shape(shapes, polygons[3].arcs, 3, NULL, NULL), NARC_OK);
+        for (uint32_t k = 0; k < SHAPES; k++) {
+            assert_int_equal(narc_add_shape_at(shapes, k, polygons[3].arcs, 3, NULL), NARC_OK);
             corners[k] = 3;
         }
         for (int step = 0; step < STEPS; step++) {
             const size_t n = 3 + random_below(&random, NARC_MAX_ARCS - 2);
             const uint32_t index = (uint32_t)random_below(&random, SHAPES);
-            uint32_t added = index;
             if (way == 0) {
                 assert_int_equal(narc_replace_shape(shapes, index, polygons[n].arcs, n, NULL), NARC_OK);
             } else {
                 assert_int_equal(narc_remove_shape(shapes, index, NULL), NARC_OK);
-                assert_int_equal(narc_add_shape(shapes, polygons[n].arcs, n, &added, NULL), NARC_OK);
+                assert_int_equal(narc_add_shape_at(shapes, index, polygons[n].arcs, n, NULL), NARC_OK);
             }
-            assert_int_equal(added, index);
             assert_int_equal(narc_get_arcs(shapes, index, NULL), n);
             need += need_of(n) - need_of(corners[index]);
             most_needed = need > most_needed ? need : most_needed;
@@ -210,7 +227,7 @@ static void removed_shapes_need_no_memory(void **state) {
     const struct shape small = make_polygon(3), large = make_polygon(64);
     const size_t most_needed = (SHAPES - 1) * need_of(3) + need_of(64);
     for (uint32_t k = 0; k < SHAPES; k++)
-        assert_int_equal(narc_add_shape(shapes, small.arcs, 3, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_add_shape_at(shapes, k, small.arcs, 3, NULL), NARC_OK);
     for (uint32_t k = 0; k < SHAPES; k++) {
         assert_int_equal(narc_replace_shape(shapes, k, large.arcs, 64, NULL), NARC_OK);
         expect_same_shape(shapes, k, &large);
@@ -218,13 +235,15 @@ static void removed_shapes_need_no_memory(void **state) {
     }
     expect_little_memory(&ledger, most_needed);
     for (uint32_t k = SHAPES; k-- > 0;) {
+        struct shape own = small; /* all different: each a shape of its own, at the index that was freed last */
         uint32_t added;
-        assert_int_equal(narc_add_shape(shapes, small.arcs, 3, &added, NULL), NARC_OK);
+        own.arcs[0].radius = own.arcs[1].radius = own.arcs[2].radius = 0.5 + k;
+        assert_int_equal(narc_add_shape(shapes, own.arcs, 3, &added, NULL), NARC_OK);
         assert_int_equal(added, k);
+        if (k % 97 == 0)
+            expect_same_shape(shapes, k, &own);
     }
     expect_little_memory(&ledger, most_needed);
-    for (uint32_t k = 0; k < SHAPES; k += 97)
-        expect_same_shape(shapes, k, &small);
     narc_destroy_shapes(shapes);
 }
 
@@ -255,7 +274,8 @@ static void refused_replacement_changes_nothing(void **state) {
     narc_error error;
     assert_non_null(model);
     for (uint32_t k = 0; k < 20; k++) {
-        assert_int_equal(narc_add_shape(shapes, small.arcs, 3, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_add_shape_at(shapes, k, small.arcs, 3, NULL), NARC_OK);
+        model->uses[k] = 1;
         model->shape[k] = small;
         model->exists[k] = true;
     }
@@ -321,8 +341,8 @@ static void removed_shapes_collide_with_nothing(void **state) {
     const narc_pairs pairs = {.count = 4, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
     narc_error error;
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    for (int k = 0; k < 3; k++)
-        assert_int_equal(narc_add_shape(shapes, polygon.arcs, polygon.count, NULL, NULL), NARC_OK);
+    for (uint32_t k = 0; k < 3; k++)
+        assert_int_equal(narc_add_shape_at(shapes, k, polygon.arcs, polygon.count, NULL), NARC_OK);
     for (size_t run = 0; narc_isa_name(run / 7); run++) {
         const narc_method method = (narc_method)(run % 7);
         if (!narc_isa_supported(narc_isa_name(run / 7)))
@@ -342,7 +362,7 @@ static void removed_shapes_collide_with_nothing(void **state) {
             assert_int_equal(narc_replace_shape(shapes, 2, polygon.arcs, polygon.count, NULL), NARC_OK);
         }
         expect_no_answers(shapes, &bodies, &pairs, method);
-        assert_int_equal(narc_add_shape(shapes, polygon.arcs, polygon.count, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_add_shape_at(shapes, 1, polygon.arcs, polygon.count, NULL), NARC_OK);
         expect_ok(narc_validate_bodies(shapes, &bodies, &error), &error);
     }
     test_use_isa(test_isa());

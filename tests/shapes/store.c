@@ -46,10 +46,8 @@ static void keeps_many_shapes(void **state) {
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
     assert_int_equal(narc_count_shapes(shapes), 0);
     for (size_t k = 0; k < SHAPES; k++) {
-        uint32_t index = UINT32_MAX;
         const struct shape *kind = &kinds[k % KINDS];
-        expect_ok(narc_add_shape(shapes, kind->arcs, kind->count, &index, &error), &error);
-        assert_int_equal(index, k);
+        expect_ok(narc_add_shape_at(shapes, (uint32_t)k, kind->arcs, kind->count, &error), &error);
     }
     assert_int_equal(narc_count_shapes(shapes), SHAPES);
     for (size_t k = 0; k < SHAPES; k++) {
@@ -105,8 +103,8 @@ static void expect_box(const struct shape *shape, const narc_shape_header *heade
             area = half_x * half_y;
         least_area = fmin(least_area, half_x * half_y);
     }
-    /* Of equal ones it is the first. Infinite: along no junction's normal. */
-    assert_true(area <= least_area * (1 + 1.001e-6));
+    /* Of equal ones it is the first; what was stored is rounded, of both sides. Infinite: along no junction's normal. */
+    assert_true(area <= least_area * (1 + 1.001e-6) + 4 * ulp * extent * extent);
     const double from_x = (double)box->center_x * x + (double)box->center_y * y,
                  from_y = (double)box->center_y * x - (double)box->center_x * y;
     const double room[4] = {(double)box->half_x - (height_of(shape, x, y) - from_x),
@@ -125,7 +123,7 @@ static void lays_out_blocks(void **state) {
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
     for (size_t k = 0; k < 40 * FAMILY_COUNT; k++) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
-        assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_add_shape_at(shapes, (uint32_t)k, shape.arcs, shape.count, NULL), NARC_OK);
         narc_shape_header header = shapes->headers[k];
         size_t count = shape.count == 1 ? 2 : shape.count, turn_records = narc_angle_records(count);
         const narc_record *block = &shapes->records[header.first_record], *arcs = narc_arcs_of(shapes, &header);
@@ -167,7 +165,7 @@ static void methods_have_boxes(void **state) {
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
     for (size_t k = 0; k < SHAPES; k++) {
         const struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
-        assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_add_shape_at(shapes, (uint32_t)k, shape.arcs, shape.count, NULL), NARC_OK);
     }
     assert_int_equal(narc_create_methods(shapes, NULL, &methods, NULL), NARC_OK);
     assert_int_equal(methods->shapes.count, SHAPES);
@@ -268,7 +266,9 @@ static void bounds_what_is_stored(void **state) {
         double reach = oracle_reach(arcs, count, (narc_point){(double)header.bound_x, (double)header.bound_y});
         narc_point middle = {(double)header.inner_x, (double)header.inner_y};
         double room = fabs(oracle_distance(arcs, count, middle)); /* its sign is lost in the rounding of the joins */
-        assert_true(narc_contains_point(arcs, count, middle));
+        /* What was stored of a segment lies on it but for rounding. */
+        const bool segment = count == 2 && arcs[0].radius == 0 && arcs[1].radius == 0;
+        assert_true(narc_contains_point(arcs, count, middle) || (segment && room <= 2 * ulp * extent));
         narc_compute_bounding_circle(shape.arcs, shape.count, &bound);
         narc_compute_inscribed_circle(shape.arcs, shape.count, &inner);
         assert_true((double)header.bound_radius >= reach + least * extent);
@@ -292,7 +292,7 @@ static void bounds_what_is_stored(void **state) {
         assert_true(box.max_y >= max_y + least * size * extent && box.max_y <= max_y + slack);
         assert_true(box.min_x <= min_x - least * size * extent && box.min_x >= min_x - slack);
         assert_true(box.min_y <= min_y - least * size * extent && box.min_y >= min_y - slack);
-        assert_false(narc_get_aabb(shapes, index + 1, c, s, scale, &box));
+        assert_false(narc_get_aabb(shapes, (uint32_t)narc_count_shapes(shapes), c, s, scale, &box));
         assert_false(narc_get_aabb(shapes, index, c, s, scale, NULL));
     }
     narc_destroy_shapes(shapes);
@@ -338,13 +338,11 @@ static void survives_failing_allocations(void **state) {
     counter.allowed = 1;
     assert_int_equal(narc_create_shapes(&allocator, &shapes), NARC_OK);
     for (size_t k = 0; k < 400; k++) {
-        uint32_t index = 12345;
         added[k] = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         narc_status status;
-        while ((status = narc_add_shape(shapes, added[k].arcs, added[k].count, &index, &error)) != NARC_OK) {
+        while ((status = narc_add_shape_at(shapes, (uint32_t)k, added[k].arcs, added[k].count, &error)) != NARC_OK) {
             failures++;
             expect_error(status, NARC_ERROR_MEMORY, &error, "shape ");
-            assert_int_equal(index, 12345);
             assert_int_equal(narc_count_shapes(shapes), k);
             assert_int_equal(narc_get_arcs(shapes, (uint32_t)k, NULL), 0);
             for (size_t j = 0; j < k; j++) {
@@ -353,7 +351,6 @@ static void survives_failing_allocations(void **state) {
             }
             counter.allowed++;
         }
-        assert_int_equal(index, k);
     }
     assert_true(failures >= 10); /* each of the two arrays grew several times */
     narc_destroy_shapes(shapes);
@@ -377,7 +374,7 @@ static void reserve_is_enough(void **state) {
         assert_int_equal(narc_reserve_shapes(shapes, 2 * FAMILY_COUNT, arc_count), NARC_OK);
         assert_int_equal(counter.allocations, 3);
         for (size_t k = 0; k < 2 * FAMILY_COUNT; k++)
-            assert_int_equal(narc_add_shape(shapes, added[k].arcs, added[k].count, NULL, NULL), NARC_OK);
+            assert_int_equal(narc_add_shape_at(shapes, (uint32_t)k, added[k].arcs, added[k].count, NULL), NARC_OK);
         assert_int_equal(narc_reserve_shapes(shapes, 1000000, 8000000), NARC_ERROR_MEMORY);
         assert_int_equal(narc_reserve_shapes(shapes, SIZE_MAX, 0), NARC_ERROR_COUNT);
         assert_int_equal(narc_reserve_shapes(shapes, 0, SIZE_MAX), NARC_ERROR_COUNT);

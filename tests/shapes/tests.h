@@ -13,6 +13,8 @@ int test_junctions(void);
 int test_derived(void);
 int test_store(void);
 int test_replacing(void);
+int test_sharing(void);
+int test_saving(void);
 int test_rolls(void);
 
 /* Fails unless |value - expected| <= tolerance. */

@@ -256,9 +256,25 @@ static struct shape make_fitted(struct test_random *random) {
     }
 }
 
+/* Along x, along y, or anywhere; its middle is not always its origin. */
+static struct shape make_segment(struct test_random *random) {
+    struct shape shape;
+    narc_error error;
+    const double angle =
+        random_below(random, 3) ? random_between(random, -pi, pi) : pi / 2 * (double)random_below(random, 4);
+    const double half = random_between(random, 0.25, 1),
+                 part = random_below(random, 2) ? 1 : random_between(random, 0.2, 1);
+    const double x = random_below(random, 3) ? half * cos(angle) : half, y = x == half ? 0 : half * sin(angle);
+    require_ok(
+        narc_build_segment((narc_point){-x * part, -y * part}, (narc_point){x, y}, 0, shape.arcs, &shape.count, &error),
+        &error);
+    return shape;
+}
+
 const char *family_name(enum family family) {
-    static const char *const names[FAMILY_COUNT] = {"smooth",  "unequal", "thin", "lens",  "polygon", "box",  "capsule",
-                                                    "rounded", "circle",  "half", "mixed", "fitted",  "many", "offset"};
+    static const char *const names[FAMILY_COUNT] = {"smooth", "unequal", "thin",    "lens",    "polygon",
+                                                    "box",    "capsule", "rounded", "circle",  "half",
+                                                    "mixed",  "fitted",  "many",    "segment", "offset"};
     return names[family];
 }
 
@@ -295,6 +311,8 @@ struct shape make_shape(struct test_random *random, enum family family) {
     case FAMILY_MANY:
         return make_outline(random, (struct recipe){17 + random_below(random, 48), 0.7, 0.1, 0.2, 0.1,
                                                     random_below(random, 2) ? 0.5 : 1});
+    case FAMILY_SEGMENT:
+        return make_segment(random);
     default:
         shape = make_shape(random, (enum family)random_below(random, FAMILY_OFFSET));
         move_shape(&shape, random_between(random, -3, 3), random_between(random, -3, 3));

@@ -18,11 +18,12 @@ enum family {
     FAMILY_CAPSULE,
     FAMILY_ROUNDED, /* polygons with rounded corners, each its own radius */
     FAMILY_CIRCLE,
-    FAMILY_HALF,   /* half discs and thicker slices: a large arc closed by an edge */
-    FAMILY_MIXED,  /* arcs and edges, some of either, sharp corners too */
-    FAMILY_FITTED, /* what the builders make of a random, mostly not convex polygon */
-    FAMILY_MANY,   /* 17 .. 64 arcs */
-    FAMILY_OFFSET, /* any of the above, away from its own origin */
+    FAMILY_HALF,    /* half discs and thicker slices: a large arc closed by an edge */
+    FAMILY_MIXED,   /* arcs and edges, some of either, sharp corners too */
+    FAMILY_FITTED,  /* what the builders make of a random, mostly not convex polygon */
+    FAMILY_MANY,    /* 17 .. 64 arcs */
+    FAMILY_SEGMENT, /* two points and what lies between them: no area */
+    FAMILY_OFFSET,  /* any of the above, away from its own origin */
     FAMILY_COUNT
 };
 

@@ -110,7 +110,10 @@ static struct shape make_many(struct test_random *random) {
 }
 
 static struct shape make_split(struct test_random *random) {
-    struct shape shape = make_shape(random, (enum family)random_below(random, FAMILY_OFFSET));
+    struct shape shape;
+    do /* of a segment neither end can be two corners: it would be a polygon without area */
+        shape = make_shape(random, (enum family)random_below(random, FAMILY_OFFSET));
+    while (shape.count == 2 && shape.arcs[0].radius == 0 && shape.arcs[1].radius == 0);
     size_t splits = 1 + random_below(random, 6);
     if (shape.count == 1) { /* a circle: first into halves */
         const double middle = shape.arcs[0].start + pi;

@@ -200,7 +200,7 @@ narc_shapes *guard_store(const struct scene *scene) {
     assert_int_equal(narc_reserve_shapes(store, scene->shape_count, arcs), NARC_OK);
     for (size_t k = 0; k < scene->shape_count; k++) {
         const struct shape *shape = &scene->shapes[k];
-        assert_int_equal(narc_add_shape(store, shape->arcs, shape->count, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_add_shape_at(store, (uint32_t)k, shape->arcs, shape->count, NULL), NARC_OK);
     }
     return store;
 }

@@ -130,7 +130,8 @@ struct smallest_boxes find_boxes(const struct shape *shape) {
         least = fmin(least, all.box[i].half_x * all.box[i].half_y);
     }
     for (size_t i = 0; i < all.count; i++)
-        if (all.box[i].half_x * all.box[i].half_y <= least * (1 + same_area))
+        /* A segment's is nothing but rounding. */
+        if (all.box[i].half_x * all.box[i].half_y <= least * (1 + same_area) + 1e-15)
             smallest.box[smallest.count++] = all.box[i];
     return smallest;
 }

@@ -1,0 +1,313 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * saving.c - a store as bytes: what is loaded is what was saved, the bytes are recorded, and no bytes do harm.
+ */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "families.h"
+#include "narc.h"
+#include "store.h"
+#include "support.h"
+#include "tests.h"
+
+enum { START = 40, AT_VERSION = 8, AT_SIZE = 24, AT_CHECKSUM = 32 };
+
+/* Some shapes of all kinds, some of them used more than once, and holes. */
+static narc_shapes *make_store(struct test_random *random, size_t shapes_per_family) {
+    narc_shapes *shapes = NULL;
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    for (size_t k = 0; k < shapes_per_family * FAMILY_COUNT; k++) {
+        const struct shape shape = make_shape(random, (enum family)(k % FAMILY_COUNT));
+        for (size_t uses = 1 + random_below(random, 2); uses > 0; uses--)
+            assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+    }
+    for (size_t k = 0; k < shapes_per_family; k++) {
+        const uint32_t index = (uint32_t)random_below(random, narc_count_shapes(shapes));
+        while (narc_count_uses(shapes, index))
+            assert_int_equal(narc_remove_shape(shapes, index, NULL), NARC_OK);
+    }
+    return shapes;
+}
+
+static unsigned char *save(const narc_shapes *shapes, size_t *out_size) {
+    *out_size = narc_count_saved_bytes(shapes);
+    unsigned char *bytes = malloc(*out_size);
+    narc_error error;
+    assert_non_null(bytes);
+    expect_ok(narc_save_shapes(shapes, bytes, *out_size, &error), &error);
+    return bytes;
+}
+
+static void expect_same_store(const narc_shapes *a, const narc_shapes *b) {
+    assert_int_equal(a->count, b->count);
+    assert_int_equal(a->removed_count, b->removed_count);
+    assert_int_equal(a->last_removed, b->last_removed);
+    assert_int_equal(a->used_records, b->used_records);
+    for (uint32_t k = 0; k < a->count; k++) {
+        narc_shape_header header = a->headers[k];
+        assert_int_equal(narc_count_uses(a, k), narc_count_uses(b, k));
+        if (!narc_has_shape(a, k)) {
+            assert_int_equal(a->entries[k].next, b->entries[k].next);
+            assert_int_equal(a->entries[k].before, b->entries[k].before);
+            continue;
+        }
+        header.first_record = b->headers[k].first_record;
+        assert_memory_equal(&header, &b->headers[k], sizeof header);
+        assert_memory_equal(&a->records[a->headers[k].first_record], &b->records[header.first_record],
+                            (narc_angle_records(header.count) + header.count) * sizeof(narc_record));
+    }
+}
+
+static void loads_what_was_saved(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("saving");
+    for (size_t round = 0; round < test_trials(20); round++) {
+        narc_shapes *shapes = make_store(&random, 1 + round % 5), *loaded = NULL;
+        size_t size;
+        unsigned char *bytes = save(shapes, &size), *copy = malloc(size + 1);
+        narc_error error;
+        assert_non_null(copy);
+        memcpy(copy + 1, bytes, size); /* anywhere */
+        expect_ok(narc_load_shapes(NULL, copy + 1, size, &loaded, &error), &error);
+        expect_same_store(shapes, loaded);
+        expect_ok(narc_save_shapes(loaded, copy, size, &error), &error);
+        assert_memory_equal(copy, bytes, size);
+        /* It goes on as the saved one does: equal shapes are found, indices come in the same order. */
+        for (int k = 0; k < 20; k++) {
+            const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
+            uint32_t a, b;
+            assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, &a, NULL), NARC_OK);
+            assert_int_equal(narc_add_shape(loaded, shape.arcs, shape.count, &b, NULL), NARC_OK);
+            assert_int_equal(a, b);
+            assert_int_equal(narc_add_shape(loaded, shape.arcs, shape.count, &b, NULL), NARC_OK);
+            assert_int_equal(a, b);
+        }
+        narc_destroy_shapes(shapes);
+        narc_destroy_shapes(loaded);
+        free(bytes);
+        free(copy);
+    }
+}
+
+/* Far from its origin a shape loses most of its digits; what is left is loaded. */
+static void loads_shapes_far_from_their_origin(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("far saving");
+    for (double away = 1; away < 1e9; away *= 10) {
+        narc_shapes *shapes = NULL, *loaded = NULL;
+        size_t size;
+        narc_error error;
+        assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+        for (size_t k = 0; k < 5 * FAMILY_COUNT; k++) {
+            struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
+            for (size_t i = 0; i < shape.count; i++)
+                shape.arcs[i].center_x += away;
+            if (narc_validate_arcs(shape.arcs, shape.count, NULL) == NARC_OK)
+                assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+        }
+        assert_true(narc_count_shapes(shapes) > 0);
+        unsigned char *bytes = save(shapes, &size);
+        expect_ok(narc_load_shapes(NULL, bytes, size, &loaded, &error), &error);
+        assert_int_equal(narc_count_shapes(loaded), narc_count_shapes(shapes));
+        narc_destroy_shapes(shapes);
+        narc_destroy_shapes(loaded);
+        free(bytes);
+    }
+}
+
+/* The bytes of builders' shapes, recorded: the same on every platform. */
+static void saves_recorded_bytes(void **state) {
+    (void)state;
+    narc_shapes *shapes = NULL;
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count, size;
+    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    for (int k = 0; k < 8; k++) {
+        const double length = 1 + k / 8.0;
+        assert_int_equal(narc_build_box(length, 2, k / 16.0, arcs, &count, NULL), NARC_OK);
+        assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_build_ellipse(length, 0.75, 12, arcs, &count, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_build_segment((narc_point){-1, k}, (narc_point){2, 1}, k % 2, arcs, &count, NULL),
+                         NARC_OK);
+        assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+    }
+    assert_int_equal(narc_remove_shape(shapes, 4, NULL), NARC_OK);
+    assert_int_equal(narc_remove_shape(shapes, 9, NULL), NARC_OK);
+    assert_int_equal(narc_add_shape_at(shapes, 30, arcs, count, NULL), NARC_OK);
+    unsigned char *bytes = save(shapes, &size);
+    const uint64_t hash = test_hash(TEST_HASH_START, bytes, size);
+    printf("  %zu bytes, 0x%016" PRIx64 "\n", size, hash);
+    assert_true(hash == 0x916e74ab19dace8du);
+    narc_destroy_shapes(shapes);
+    free(bytes);
+}
+
+static void refuses_bad_arguments(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("saving arguments");
+    narc_shapes *shapes = make_store(&random, 1), *loaded = NULL;
+    size_t size;
+    unsigned char *bytes = save(shapes, &size), junk[8] = {1, 2, 3};
+    narc_error error;
+    expect_error(narc_save_shapes(NULL, bytes, size, &error), NARC_ERROR_ARGUMENT, &error, "shapes is NULL");
+    expect_error(narc_save_shapes(shapes, NULL, size, &error), NARC_ERROR_ARGUMENT, &error, "out_bytes is NULL");
+    expect_error(narc_save_shapes(shapes, junk, sizeof junk, &error), NARC_ERROR_CAPACITY, &error, "room for 8 bytes");
+    assert_true(error.value == (double)size && junk[0] == 1 && junk[1] == 2);
+    expect_error(narc_load_shapes(NULL, NULL, size, &loaded, &error), NARC_ERROR_ARGUMENT, &error, "bytes is NULL");
+    expect_error(narc_load_shapes(NULL, bytes, size, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_shapes is NULL");
+    expect_error(narc_load_shapes(NULL, junk, sizeof junk, &loaded, &error), NARC_ERROR_FORMAT, &error, "no store");
+    bytes[AT_VERSION] = 2;
+    expect_error(narc_load_shapes(NULL, bytes, size, &loaded, &error), NARC_ERROR_FORMAT, &error, "version 2");
+    assert_null(loaded);
+    assert_int_equal(narc_count_saved_bytes(NULL), START);
+    narc_destroy_shapes(shapes);
+    free(bytes);
+}
+
+static void write_checksum(unsigned char *bytes, size_t size) {
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (size_t k = 0; k < size; k++)
+        if (k < AT_CHECKSUM || k >= START)
+            hash = (hash ^ bytes[k]) * 0x100000001b3u;
+    for (int k = 0; k < 8; k++)
+        bytes[AT_CHECKSUM + k] = (unsigned char)(hash >> 8 * k);
+}
+
+static void damaged_bytes_are_refused(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("damage");
+    narc_shapes *shapes = make_store(&random, 2), *loaded = NULL;
+    size_t size;
+    unsigned char *bytes = save(shapes, &size);
+    narc_error error;
+    for (size_t k = 0; k < test_trials(3000); k++) {
+        const size_t at = random_below(&random, size);
+        const unsigned char flip = (unsigned char)(1u << random_below(&random, 8));
+        bytes[at] ^= flip;
+        assert_int_equal(narc_load_shapes(NULL, bytes, size, &loaded, &error), NARC_ERROR_FORMAT);
+        bytes[at] ^= flip;
+        const size_t shorter = random_below(&random, size);
+        unsigned char *part = malloc(shorter ? shorter : 1); /* sanitizers see what reads past it */
+        assert_non_null(part);
+        memcpy(part, bytes, shorter);
+        assert_int_equal(narc_load_shapes(NULL, part, shorter, &loaded, &error), NARC_ERROR_FORMAT);
+        free(part);
+    }
+    assert_null(loaded);
+    narc_destroy_shapes(shapes);
+    free(bytes);
+}
+
+/* All pairs of a store's shapes in one place and near it: answers are numbers, and agree with each other. */
+static void expect_usable(const narc_shapes *shapes) {
+    enum { MOST = 40 };
+    struct {
+        float x, y, c, s;
+        uint32_t shape;
+    } body[MOST];
+    uint32_t a[MOST * MOST], b[MOST * MOST];
+    float separation[MOST * MOST], normal_x[MOST * MOST];
+    uint64_t bits[MOST * MOST / 64 + 1] = {0};
+    size_t count = 0, pairs_count = 0, found;
+    narc_error error;
+    for (uint32_t k = 0; k < narc_count_shapes(shapes) && count < MOST; k++)
+        if (narc_has_shape(shapes, k)) {
+            const narc_shape_header *header = &shapes->headers[k];
+            body[count].x = -header->bound_x + 0.1f * (float)(count % 7);
+            body[count].y = -header->bound_y + 0.1f * (float)(count % 5);
+            body[count].c = 1;
+            body[count].s = 0;
+            body[count++].shape = k;
+        }
+    for (uint32_t i = 0; i < count; i++)
+        for (uint32_t j = 0; j < count; j++) {
+            a[pairs_count] = i;
+            b[pairs_count++] = j;
+        }
+    const narc_bodies bodies = {.count = count,
+                                .x = NARC_POSITION_COLUMN(body, x),
+                                .y = NARC_POSITION_COLUMN(body, y),
+                                .cosine = NARC_COLUMN(body, c),
+                                .sine = NARC_COLUMN(body, s),
+                                .shape = NARC_COLUMN(body, shape)};
+    const narc_pairs pairs = {.count = pairs_count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    const narc_contacts contacts = {.capacity = pairs_count, .separation = separation, .normal_x = normal_x};
+    expect_ok(narc_find_overlaps(shapes, &bodies, &pairs, 1, bits, &error), &error);
+    expect_ok(narc_find_contacts(shapes, &bodies, &pairs, INFINITY, 1, &contacts, &found, &error), &error);
+    assert_int_equal(found, pairs_count);
+    for (size_t k = 0; k < found; k++) {
+        assert_false(isnan(separation[k]) || isnan(normal_x[k]));
+        assert_int_equal(bits[k / 64] >> k % 64 & 1, separation[k] < 0);
+    }
+}
+
+/* Damage with a checksum that fits, as by someone who means it: an error, or a store like any other. */
+static void forged_bytes_do_no_harm(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("forgery");
+    size_t loads = 0;
+    narc_shapes *shapes = make_store(&random, 2);
+    size_t size;
+    unsigned char *bytes = save(shapes, &size), *forged = malloc(size);
+    narc_error error;
+    assert_non_null(forged);
+    for (size_t k = 0; k < test_trials(20000); k++) {
+        narc_shapes *loaded = NULL;
+        memcpy(forged, bytes, size);
+        for (size_t flips = 1 + random_below(&random, 3); flips > 0; flips--) {
+            const size_t at = random_below(&random, 8) ? random_below(&random, size) : random_below(&random, START);
+            forged[at] = (unsigned char)(random_below(&random, 2) ? random_below(&random, 256)
+                                                                  : forged[at] ^ 1u << random_below(&random, 8));
+        }
+        size_t given = size;
+        if (random_below(&random, 4) == 0) {
+            given = START + random_below(&random, size - START);
+            for (int i = 0; i < 8; i++)
+                forged[AT_SIZE + i] = (unsigned char)((uint64_t)given >> 8 * i);
+        }
+        write_checksum(forged, given);
+        const narc_status status = narc_load_shapes(NULL, forged, given, &loaded, &error);
+        if (status != NARC_OK) {
+            assert_int_equal(status, NARC_ERROR_FORMAT);
+            assert_null(loaded);
+            continue;
+        }
+        if (loads++ % 16 == 0)
+            expect_usable(loaded);
+        /* It can be saved, loaded, and added to. */
+        size_t again;
+        narc_shapes *third = NULL;
+        unsigned char *copy = save(loaded, &again);
+        expect_ok(narc_load_shapes(NULL, copy, again, &third, &error), &error);
+        for (size_t i = narc_count_shapes(third); i-- > 0;)
+            while (narc_count_uses(third, (uint32_t)i) > 0 && narc_count_uses(third, (uint32_t)i) < 10)
+                assert_int_equal(narc_remove_shape(third, (uint32_t)i, NULL), NARC_OK);
+        for (int i = 0; i < 3; i++) {
+            const struct shape shape = make_shape(&random, FAMILY_BOX);
+            assert_int_equal(narc_add_shape(third, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+        }
+        narc_destroy_shapes(third);
+        narc_destroy_shapes(loaded);
+        free(copy);
+    }
+    printf("  %zu loads of %zu forgeries\n", loads, test_trials(20000));
+    assert_true(loads > 0);
+    expect_usable(shapes);
+    narc_destroy_shapes(shapes);
+    free(bytes);
+    free(forged);
+}
+
+int test_saving(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(loads_what_was_saved),      cmocka_unit_test(loads_shapes_far_from_their_origin),
+        cmocka_unit_test(saves_recorded_bytes),      cmocka_unit_test(refuses_bad_arguments),
+        cmocka_unit_test(damaged_bytes_are_refused), cmocka_unit_test(forged_bytes_do_no_harm),
+    };
+    return cmocka_run_group_tests_name("saving", tests, NULL, NULL);
+}
