@@ -199,6 +199,13 @@ static narc_status fail_stored(narc_error *error, const char *what) {
     return narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "%s", what);
 }
 
+static bool has_same_bits(float a, float b) {
+    uint32_t bits[2];
+    memcpy(&bits[0], &a, sizeof a);
+    memcpy(&bits[1], &b, sizeof b);
+    return bits[0] == bits[1];
+}
+
 /* The outline of stored arcs, in the caller's order, and their extent. */
 static narc_status read_stored(const narc_shape_header *header, const narc_record *arcs, narc_outline *out_outline,
                                double *out_extent, narc_error *error) {
@@ -212,7 +219,8 @@ static narc_status read_stored(const narc_shape_header *header, const narc_recor
         const double x = (double)a->start_x, y = (double)a->start_y;
         if (!isfinite(a->center_x) || !isfinite(a->center_y) || !isfinite(a->radius) || a->radius < 0)
             return fail_stored(error, "a number that no arc has");
-        if (!(fabs(x * x + y * y - 1) <= UNIT_SLACK) || memcmp(&a->end_x, &next->start_x, 2 * sizeof a->end_x) != 0)
+        if (!(fabs(x * x + y * y - 1) <= UNIT_SLACK) || !has_same_bits(a->end_x, next->start_x) ||
+            !has_same_bits(a->end_y, next->start_y))
             return fail_stored(error, "normals that do not join");
         o->center_x[i] = (double)a->center_x;
         o->center_y[i] = (double)a->center_y;

@@ -493,7 +493,7 @@ static void builds_segments(void **state) {
         const double r = k % 2 ? random_between(&random, 0.1, 2) : 0, l = hypot(to.x - from.x, to.y - from.y);
         struct output out = make_output();
         narc_mass mass;
-        double length, distance;
+        double length = 0, distance;
         expect_ok(narc_build_segment(from, to, r, out.arcs, &out.count, &out.error), &out.error);
         assert_int_equal(out.count, 2);
         assert_true(out.arcs[0].center_x == to.x && out.arcs[1].center_y == from.y && out.arcs[0].radius == r);
@@ -530,7 +530,7 @@ static void builds_skin_polygons(void **state) {
         for (double r = 0; r < 8; r = 2 * r + 0.25) {
             const size_t n = k ? 3 : 4;
             struct output sharp = make_output(), skin = make_output();
-            double area, length;
+            double area, length = 0;
             narc_mass mass;
             expect_ok(narc_build_polygon(polygons[k], n, 0, sharp.arcs, &sharp.count, &sharp.error), &sharp.error);
             expect_ok(narc_build_skin_polygon(polygons[k], n, r, skin.arcs, &skin.count, &skin.error), &skin.error);

@@ -333,8 +333,8 @@ static void removed_shapes_collide_with_nothing(void **state) {
     narc_shapes *shapes = NULL;
     const struct shape polygon = make_polygon(6), large = make_polygon(64);
     const narc_bodies bodies = {.count = 3,
-                                .x = {&zero, 0},
-                                .y = {&zero, 0},
+                                .x = {&zero, 0, NARC_FLOAT32},
+                                .y = {&zero, 0, NARC_FLOAT32},
                                 .cosine = {&one, 0},
                                 .sine = {&zero, 0},
                                 .shape = NARC_ARRAY(shape)};

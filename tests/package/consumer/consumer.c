@@ -13,7 +13,8 @@ int main(void) {
     size_t arc_count = 0;
     uint64_t bits[NARC_BIT_WORDS(2)];
     narc_error error = {NARC_OK, 0, 0.0, ""};
-    narc_bodies bodies = {.count = 3, .y = {&zero, 0}, .cosine = {&one, 0}, .sine = {&zero, 0}, .shape = {&circle, 0}};
+    narc_bodies bodies = {
+        .count = 3, .y = {&zero, 0, NARC_FLOAT32}, .cosine = {&one, 0}, .sine = {&zero, 0}, .shape = {&circle, 0}};
     narc_pairs pairs = {.count = 2, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
     bodies.x = NARC_POSITION_ARRAY(x);
 
