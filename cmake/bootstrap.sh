@@ -318,7 +318,7 @@ check_style() {
     git ls-files '*.c' '*.h' '*.inl' '*.cc' '*.cpp' | xargs clang-format --dry-run -Werror || fail "run clang-format"
     # The compilation database of the build with everything in it, the kernels once for each instruction set. The test of
     # what is installed has builds of its own.
-    git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'bench/*.c' 'tests/*.c' \
+    git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'bench/*.c' 'tests/*.c' \
         ':!tests/package' |
         xargs clang-tidy --quiet -p build/ci || fail "clang-tidy has something to say"
 }
