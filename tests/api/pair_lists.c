@@ -392,7 +392,8 @@ static void follows_bodies_by_their_ids(void **state) {
     (void)state;
     const size_t steps = test_trials(4000);
     const totals sums = run_world("ids", steps, 60, 90, 12, true);
-    assert_true(sums.kept > steps / 40 && sums.renewed > steps / 40 && sums.flipped > 0 && sums.lost > 0 && sums.added > 0);
+    assert_true(sums.kept > steps / 40 && sums.renewed > steps / 40 && sums.flipped > 0 && sums.lost > 0 &&
+                sums.added > 0);
     assert_true(sums.sleeping > 0 && sums.sensors > 0 && sums.broken > 0);
 }
 
@@ -400,7 +401,8 @@ static void follows_bodies_by_their_numbers(void **state) {
     (void)state;
     const size_t steps = test_trials(3000);
     const totals sums = run_world("numbers", steps, 40, 60, 10, false);
-    assert_true(sums.kept > steps / 30 && sums.renewed > steps / 30 && sums.flipped == 0 && sums.lost > 0 && sums.added > 0);
+    assert_true(sums.kept > steps / 30 && sums.renewed > steps / 30 && sums.flipped == 0 && sums.lost > 0 &&
+                sums.added > 0);
 }
 
 static void follows_few_bodies_and_none(void **state) {
@@ -479,7 +481,8 @@ static void lists_all_bodies_that_are_close(void **state) {
     for (size_t k = 0; k < COUNT; k++)
         discs[k] =
             (disc){(float)random_between(&random, 0, 8), (float)random_between(&random, 0, 8), 1, 0, 0, 0, k % 2};
-    for (size_t step = 0; step < test_trials(300); step++) {
+    const size_t steps = test_trials(300);
+    for (size_t step = 0; step < steps; step++) {
         narc_pair_options moving = options;
         const narc_pair_list *list;
         const double motion = step % 50 == 0 ? 0.5 : 0.003;
@@ -508,7 +511,7 @@ static void lists_all_bodies_that_are_close(void **state) {
                     assert_true(!listed || gap < 0.25 + 0.25 + 2 * 2 * motion);
             }
     }
-    assert_true(kept > 20 && close > 1000);
+    assert_true(kept >= steps / 15 && close > 3 * steps);
     narc_destroy_broad_phase(broad);
     narc_destroy_shapes(shapes);
 }
