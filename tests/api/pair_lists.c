@@ -274,9 +274,9 @@ static void check_step(reference *r, narc_broad_phase *const *broads, body *bodi
 
 /* ------------------------------------------------------------------------------------------------ a world */
 
-static float eighths(struct test_random *random, uint64_t most) { return (float)random_below(random, most + 1) / 8; }
+static float eighths(struct test_random *random, size_t most) { return (float)random_below(random, most + 1) / 8; }
 
-static narc_box random_box(struct test_random *random, uint64_t side) {
+static narc_box random_box(struct test_random *random, size_t side) {
     const float x = eighths(random, 8 * side), y = eighths(random, 8 * side);
     return (narc_box){x, y, x + eighths(random, 16), y + eighths(random, 16)};
 }
@@ -285,7 +285,7 @@ static uint64_t choose_mask(struct test_random *random) {
     return random_below(random, 8) ? UINT64_MAX : (uint64_t)1 << (31 + random_below(random, 4));
 }
 
-static body random_body(struct test_random *random, uint64_t side, uint64_t id) {
+static body random_body(struct test_random *random, size_t side, uint64_t id) {
     return (body){.id = id * 0x9e3779b97f4a7c15u,
                   .category = choose_mask(random),
                   .mask = choose_mask(random),
@@ -299,7 +299,7 @@ static void shift(narc_box *box, float x, float y) {
 }
 
 /* Something that an engine may do between two steps. */
-static size_t change(struct test_random *random, body *bodies, size_t count, size_t most, uint64_t side, bool with_ids,
+static size_t change(struct test_random *random, body *bodies, size_t count, size_t most, size_t side, bool with_ids,
                      uint64_t *next_id) {
     if (count == 0 || (count < most && random_below(random, 40) == 0)) {
         bodies[count] = random_body(random, side, *next_id);
@@ -358,7 +358,7 @@ static size_t change(struct test_random *random, body *bodies, size_t count, siz
     return count;
 }
 
-static totals run_world(const char *name, size_t steps, size_t start, size_t most, uint64_t side, bool with_ids) {
+static totals run_world(const char *name, size_t steps, size_t start, size_t most, size_t side, bool with_ids) {
     struct test_random random = test_random_named(name);
     reference *r = create_reference(most * 16 + 1000);
     body *bodies = calloc(most + 1, sizeof *bodies);
