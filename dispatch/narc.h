@@ -9,10 +9,11 @@
  *   directions. There is no approximation and no iteration tolerance. Three forms of answer:
  *
  *       narc_find_overlaps()   one bit per pair
- *       narc_find_contacts()   a compacted list: separation, normal, point and arcs of the pairs that collide
+ *       narc_find_contacts()   a row for each pair that collides: separation, normal, point, features and curvatures
  *       narc_find_manifolds()  the same for solvers: one or two points a pair, with ids that carry impulses over
  *
- *   narc_find_contact() is for one pair, without a batch.
+ *   They share one narc_query, of which all may be left out. A batch may have one pair: below some pairs a call leaves
+ *   out what only large batches need.
  *
  *   Other algorithms, such as GJK and the paper's own, and filters by circles and boxes: narc_methods.h, a library of
  *   its own.
@@ -27,8 +28,7 @@
  *   fall through the floor without a word. Two checks find it:
  *     - narc_validate_bodies() when a scene is loaded, and in debug builds each step: names the body and the number
  *     - narc_query.out_skipped each step: how many pairs the query had no answer for, at no cost. Normally 0; if not,
- *       let narc_validate_bodies() say why. (narc_query_contacts() with query {.out_skipped = &skipped} is
- *       narc_find_contacts(); for a sub-range move the bases of the pairs' columns.)
+ *       let narc_validate_bodies() say why.
  *
  * Precision
  *
@@ -48,13 +48,20 @@
  *
  *     struct body { float x, y, c, s; uint32_t shape; } body[1000];     (the engine's own)
  *     struct pair { uint32_t a, b; } pair[5000];
- *     uint64_t hits[NARC_BIT_WORDS(5000)];
+ *     narc_contact contact[5000];
+ *     size_t found;
  *
  *     narc_bodies bodies = {.count = 1000,
  *         .x = NARC_POSITION_COLUMN(body, x), .y = NARC_POSITION_COLUMN(body, y),
  *         .cosine = NARC_COLUMN(body, c), .sine = NARC_COLUMN(body, s), .shape = NARC_COLUMN(body, shape)};
  *     narc_pairs pairs = {.count = 5000, .a = NARC_COLUMN(pair, a), .b = NARC_COLUMN(pair, b)};
- *     narc_find_overlaps(shapes, &bodies, &pairs, 0, hits, NULL);
+ *     narc_find_contacts(shapes, &bodies, &pairs, NULL, contact, 5000, &found, NULL);
+ *
+ * One pair, of two bodies that it brings along:
+ *
+ *     narc_body two[2] = {{.cosine = 1, .scale = 1, .shape = box}, {.x = 1.5, .cosine = 1, .scale = 1, .shape = lens}};
+ *     narc_bodies bodies = narc_view_bodies(two, 2);
+ *     narc_find_contacts(shapes, &bodies, &(narc_pairs){.count = 1}, NULL, contact, 1, &found, NULL);
  *
  * Every function here may be called from any number of threads at once, with NARC_STACK_SIZE bytes of stack.
  */
@@ -68,10 +75,10 @@ extern "C" {
 #endif
 
 #define NARC_VERSION_MAJOR 0
-#define NARC_VERSION_MINOR 2
+#define NARC_VERSION_MINOR 3
 #define NARC_VERSION_PATCH 0
 
-/* "0.2.0". */
+/* "0.3.0". */
 NARC_API const char *narc_version(void);
 
 /* The number of 64-bit words that hold `count` bits. */
@@ -80,101 +87,80 @@ NARC_API const char *narc_version(void);
 /* See "Precision" above; derived in kernels/sat/normal_fan.inl. */
 #define NARC_ERROR_BOUND (32.0 / 16777216.0)
 
-/* ------------------------------------------------------------------------------------------------ batches */
+/* ------------------------------------------------------------------------------------------------ queries */
 
-/* Which pairs collide? Bit k % 64 of out_bits[k / 64] is set if pair k does; the bits behind the last pair are 0.
- *   out_bits   NARC_BIT_WORDS(pairs->count) words, overlapping none of the inputs
- *   threads    how many to use at most; 0: as OpenMP would; 1: the calling thread, without OpenMP. Never more than 256,
- *              and a build without OpenMP always uses one.
- * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (a needed pointer is NULL, too many pairs),
- * NARC_ERROR_INDEX (`error` names the pair and the body or the shape), NARC_ERROR_ISA_UNKNOWN,
- * NARC_ERROR_ISA_UNSUPPORTED (NARC_ISA is set to something that can't be had). No pairs: NARC_OK. Allocates nothing. */
-NARC_API narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                                        unsigned threads, uint64_t *out_bits, narc_error *error);
-
-/* The same for pairs first .. first + count - 1, in the calling thread, for callers that have their own job system:
- * `first` is a multiple of 64, and so is `count` unless the sub-range is the last. `out_bits` is that of the whole
- * batch; only the words of the sub-range are written. */
-NARC_API narc_status narc_find_overlaps_range(const narc_shapes *shapes, const narc_bodies *bodies,
-                                              const narc_pairs *pairs, size_t first, size_t count, uint64_t *out_bits,
-                                              narc_error *error);
-
-/* The contacts of all pairs whose separation is less than `margin`, in the order of the pairs.
- *   margin        0: the pairs that collide. Above 0: also those that are closer than that (speculative contacts).
- *                 Below 0: only those that are deeper. +INFINITY: every pair, so that contact k is that of pair k; one
- *                 that has no answer (see narc_bodies) has separation +INFINITY and all else 0. NaN is an error.
- *   out_contacts  arrays of out_contacts->capacity items, overlapping none of the inputs
- *   out_count     the number of contacts found, which may be more than the capacity: then the first `capacity` of
- *                 them are written and NARC_ERROR_CAPACITY is returned.
- * Other errors and `threads` as narc_find_overlaps(). With margin 0 a pair is reported exactly if its bit there is
- * set. */
-NARC_API narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                                        float margin, unsigned threads, const narc_contacts *out_contacts,
-                                        size_t *out_count, narc_error *error);
-
-/* The same, faster where bodies have moved little since the last call: each pair leaves a hint that the next call
- * starts from.
- *   hints      pairs->count values, hint k that of pair k, in and out, overlapping nothing else; zeros at first. What
- *              they mean is the library's business. Any value is safe: a hint that is stale, or made up, or another
- *              pair's, costs time and changes no bit of the answer.
- * On an error other than NARC_ERROR_CAPACITY hints are untouched. */
-NARC_API narc_status narc_find_contacts_hinted(const narc_shapes *shapes, const narc_bodies *bodies,
-                                               const narc_pairs *pairs, float margin, unsigned threads, uint32_t *hints,
-                                               const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
-
-/* narc_find_contacts() for pairs first .. first + count - 1 (any first and count), in the calling thread. The list
- * starts at item 0 of out_contacts; `pair` still counts from the start of the batch. */
-NARC_API narc_status narc_find_contacts_range(const narc_shapes *shapes, const narc_bodies *bodies,
-                                              const narc_pairs *pairs, size_t first, size_t count, float margin,
-                                              const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
-
-/* narc_find_contacts_hinted() for a sub-range, as narc_find_contacts_range(). `hints` is that of the whole batch; only
- * those of the sub-range are read and written. */
-NARC_API narc_status narc_find_contacts_hinted_range(const narc_shapes *shapes, const narc_bodies *bodies,
-                                                     const narc_pairs *pairs, size_t first, size_t count, float margin,
-                                                     uint32_t *hints, const narc_contacts *out_contacts,
-                                                     size_t *out_count, narc_error *error);
-
-/* What a batch call may take and tell beside its answers; {0}: nothing.
- *   hints        as in narc_find_contacts_hinted(), of contacts only; NULL: none
- *   out_skipped  how many pairs have no answer (see narc_bodies), set where out_bits or out_count are; NULL: nobody
- *                asks */
-typedef struct narc_query {
-    uint32_t *hints;
-    size_t *out_skipped;
-} narc_query;
-
-/* narc_find_overlaps() and narc_find_contacts() with a query. */
-NARC_API narc_status narc_query_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                                         const narc_query *query, unsigned threads, uint64_t *out_bits,
-                                         narc_error *error);
-NARC_API narc_status narc_query_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                                         const narc_query *query, float margin, unsigned threads,
-                                         const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
-
-/* ------------------------------------------------------------------------------------------------ manifolds */
-
-/* The flat angle, in radians, if a call names none: 26 degrees. With it piles of boxes and rounded boxes come to rest,
+/* The flat angle, in radians, if a query names none: 26 degrees. With it piles of boxes and rounded boxes come to rest,
  * and with less than a degree they do not. */
 #define NARC_FLAT_ANGLE 0.45f
 
 /* The largest flat angle, in radians. An edge that is nearly along the normal has no height across it. */
 #define NARC_MAX_FLAT_ANGLE 1.5f
 
-/* How narc_find_manifolds() answers; what is 0 or NULL has its default, as all has for {0}.
- *   margin         as in narc_find_contacts(), of the deepest point
- *   second_margin  that of the other point, where it is larger: a box that tips meets its second point in time; 0: none
- *   flat_angle     how far an edge's normal may be from the contact's for the edge to count as facing the other body; 0:
- *                  NARC_FLAT_ANGLE; below 0: never a second point; at most NARC_MAX_FLAT_ANGLE
- *   hints          as in narc_find_contacts_hinted(), which may take them from here and the other way round; NULL: none
- *   out_skipped    how many pairs had no answer; NULL: nobody asks */
-typedef struct narc_manifold_options {
+/* How a batch is asked. What is 0 or NULL has its default, as all has for {0}; a query that is NULL is {0}.
+ *
+ *   margin            which pairs have a contact: those whose separation is less. 0: the pairs that collide. Above 0: also
+ *                     those that are closer than that (speculative contacts). Below 0: only those that are deeper.
+ *                     +INFINITY: every pair, also those without an answer (see narc_bodies), which have count 0 and
+ *                     separation +INFINITY. Overlaps have no margin.
+ *   margins           one for each pair instead. A pair with a NaN there has no answer
+ *   second_margin     manifolds: the margin of the point that is not the deepest, where it is larger: a box that tips
+ *                     meets its second point in time
+ *   flat_angle        manifolds: how far an edge's normal may be from the contact's for the edge to count as facing the
+ *                     other body; 0: NARC_FLAT_ANGLE; below 0: never a second point; at most NARC_MAX_FLAT_ANGLE
+ *   hints             contacts and manifolds: a column beside the pairs, in and out, zeros at first. Each pair leaves a
+ *                     hint that the next call starts from, faster where bodies have moved little: shapes with arcs gain
+ *                     most, those with edges less, circles nothing. What hints mean is the library's business. Any value
+ *                     is safe: one that is stale, or made up, or another pair's, costs time and changes no bit of the
+ *                     answer. Untouched on an error other than NARC_ERROR_CAPACITY
+ *   selection         the pairs to ask of, `selection_count` indices of pairs, each at most once; left out: all. Hints,
+ *                     margins, rows' numbers and dense rows stay those of the whole batch; rows are listed in the order
+ *                     of the selection, and bit k of overlaps is that of pair selection[k]
+ *   first, count      a sub-range of the pairs, or of the selection; count 0: to the end. Of overlaps `first` is a
+ *                     multiple of 64, and so is `count` unless it reaches to the end; only its words are written
+ *   dense             contacts and manifolds: row k is that of pair k, with count 0 where there is nothing. Rows of
+ *                     pairs that are not asked of are untouched
+ *   row_stride        bytes from a row to the next, for rows within larger structures: a multiple of 4; 0: no gaps
+ *   workers           threads to use; NULL: the calling one. Lists are made by several only as far as they have room
+ *                     for a row for each pair
+ *   out_skipped       how many pairs have no answer (see narc_bodies); NULL: nobody asks. Set where answers are */
+typedef struct narc_query {
     float margin;
     float second_margin;
     float flat_angle;
-    uint32_t *hints;
+    uint32_t dense;
+    narc_float_column margins;
+    narc_hint_column hints;
+    narc_index_column selection;
+    size_t selection_count;
+    size_t first, count;
+    ptrdiff_t row_stride;
+    const narc_workers *workers;
     size_t *out_skipped;
-} narc_manifold_options;
+    void *reserved[4]; /* NULL */
+} narc_query;
+
+/* Which pairs collide? Bit k % 64 of out_bits[k / 64] is set if pair k does; the bits behind the last pair are 0.
+ *   query      NULL: defaults
+ *   out_bits   NARC_BIT_WORDS(pairs->count) words (of a selection, of its count), overlapping none of the inputs
+ * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (a needed pointer is NULL, too many pairs, a query
+ * out of range), NARC_ERROR_NOT_FINITE (of a query), NARC_ERROR_INDEX (`error` names the pair and the body or the
+ * shape), NARC_ERROR_ISA_UNKNOWN, NARC_ERROR_ISA_UNSUPPORTED (NARC_ISA is set to something that can't be had). No pairs:
+ * NARC_OK. Allocates nothing. */
+NARC_API narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                        const narc_query *query, uint64_t *out_bits, narc_error *error);
+
+/* The contacts of all pairs whose separation is less than the margin, in the order of the pairs.
+ *   query      NULL: defaults
+ *   out_rows   room for `capacity` rows, overlapping none of the inputs. What lies behind the last one may be used, too,
+ *              as far as there is room
+ *   out_count  the number of contacts found, which may be more than the capacity: then the first `capacity` of them are
+ *              written and NARC_ERROR_CAPACITY is returned. Dense rows: how many are contacts; a capacity that ends
+ *              before the last pair is NARC_ERROR_CAPACITY with nothing written.
+ * Fastest where there is room for a row for each pair that is asked of. Other errors as narc_find_overlaps(). With margin
+ * 0 a pair is reported exactly if its bit there is set. Allocates nothing. */
+NARC_API narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                        const narc_query *query, narc_contact *out_rows, size_t capacity,
+                                        size_t *out_count, narc_error *error);
 
 /* The contact manifolds of all pairs whose separation is less than the margin, in the order of the pairs: what a solver
  * wants. One point is the deepest: its normal and separation are those of narc_find_contacts() to the last bit, and so
@@ -182,49 +168,13 @@ typedef struct narc_manifold_options {
  * that faces the other one, next to the arc that touches or itself touching: at the other end of the edges' common
  * stretch, with its own separation along the normal, if that is less than its margin. Swapping A and B turns the
  * normal, the order of the points, and the bytes of a feature id, and nothing else but roundings.
- *   options         NULL: defaults
- *   out_manifolds   arrays of out_manifolds->capacity items, overlapping none of the inputs
- *   out_count       as in narc_find_contacts()
+ *   query, out_rows, capacity, out_count   as in narc_find_contacts()
  * Feature ids tell which features lie at a point, and nothing of who is larger or was found first, of the flat angle or
  * of the other point; so of the same pair at the next step, the same id means the same point (a solver's warm start),
- * and a point keeps its id as long as the same features touch there. docs/algorithm.md, section 11, derives all this.
- * Errors and `threads` as narc_find_contacts(), and NARC_ERROR_ARGUMENT and NARC_ERROR_NOT_FINITE for options out of
- * range. Allocates nothing. Thread-safe. */
+ * and a point keeps its id as long as the same features touch there. docs/algorithm.md, section 11, derives all this. */
 NARC_API narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                                         const narc_manifold_options *options, unsigned threads,
-                                         const narc_manifolds *out_manifolds, size_t *out_count, narc_error *error);
-
-/* The same for pairs first .. first + count - 1 (any first and count), in the calling thread, as
- * narc_find_contacts_range(); options->hints is that of the whole batch. */
-NARC_API narc_status narc_find_manifolds_range(const narc_shapes *shapes, const narc_bodies *bodies,
-                                               const narc_pairs *pairs, size_t first, size_t count,
-                                               const narc_manifold_options *options,
-                                               const narc_manifolds *out_manifolds, size_t *out_count,
-                                               narc_error *error);
-
-/* ------------------------------------------------------------------------------------------------ one pair */
-
-/* The contact of two bodies, near or far: whether they collide (separation below 0), how far apart they are, and where.
- *
- *     narc_contact contact;
- *     narc_body a = {.shape = box}, b = {.x = 1.5, .angle = 0.5f, .shape = capsule};
- *     narc_find_contact(shapes, &a, &b, &contact, &error);
- *
- * It has the bits that narc_find_contacts() finds with margin +INFINITY, and costs some hundred nanoseconds on any
- * instruction set; of many pairs in one batch each costs a tenth of that. Bodies further apart than NARC_MAX_DISTANCE
- * have separation +INFINITY, and all else 0. Errors: NARC_ERROR_ARGUMENT (NULL), those of narc_validate_bodies() (A is
- * body 0, B body 1), with an angle those of narc_compute_poses(). Outputs are untouched then. Allocates nothing.
- * Thread-safe. */
-NARC_API narc_status narc_find_contact(const narc_shapes *shapes, const narc_body *a, const narc_body *b,
-                                       narc_contact *out_contact, narc_error *error);
-
-/* The contact manifold of two bodies, with the bits that narc_find_manifolds() finds; without points, and all 0, if the
- * separation is not less than the margin. With margin +INFINITY that of bodies further apart than NARC_MAX_DISTANCE has
- * separation[0] +INFINITY, no points, and all else 0. `options` as there; options->hints is one value. Errors as
- * narc_find_contact(), and those of the options. */
-NARC_API narc_status narc_find_manifold(const narc_shapes *shapes, const narc_body *a, const narc_body *b,
-                                        const narc_manifold_options *options, narc_manifold *out_manifold,
-                                        narc_error *error);
+                                         const narc_query *query, narc_manifold *out_rows, size_t capacity,
+                                         size_t *out_count, narc_error *error);
 
 /* ------------------------------------------------------------------------------------------------ poses */
 
@@ -257,9 +207,6 @@ NARC_API const char *narc_kernel_name(size_t index);
 /* What the processor and the operating system offer, as far as this library asks: name number `index`, such as "avx2"
  * or "neon", NULL behind the last. */
 NARC_API const char *narc_cpu_feature(size_t index);
-
-/* How many threads `threads` = 0 means now; 1 in a build without OpenMP. */
-NARC_API unsigned narc_default_threads(void);
 
 #ifdef __cplusplus
 }

@@ -38,7 +38,7 @@
  *     narc_pair_filter filter = {.kind = NARC_COLUMN(body, kind)};
  *     narc_pair_options options = {.margin = 0.02f, .skin = 0.05f, .filter = &filter, .id = NARC_COLUMN(body, id)};
  *     const narc_pair_list *list;
- *     narc_update_pairs(broad, shapes, &bodies, &options, 0, &list, &error);
+ *     narc_update_pairs(broad, shapes, &bodies, &options, &list, &error);
  *     if (!list->kept) {
  *         narc_gather(list->previous, list->pairs.count, sizeof *caches, last_caches, caches);
  *         for (size_t k = 0; k < list->lost_count; k++)
@@ -69,6 +69,7 @@ extern "C" {
  *   id                  what a body is known by, whatever its number; no two have the same. A counter that
  *                       each new body takes its id from, or a handle with its generation. Left out: its number.
  *   filter              which bodies may form a pair, and which are static, asleep, sensors; NULL: all, and all move
+ *   workers             threads to use; NULL: the calling one
  * Columns have one item for each body. */
 typedef struct narc_pair_options {
     float margin, skin;
@@ -76,13 +77,14 @@ typedef struct narc_pair_options {
     narc_float_column reach;
     narc_word_column id;
     const narc_pair_filter *filter;
+    const narc_workers *workers;
+    void *reserved[4]; /* NULL */
 } narc_pair_options;
 
 /* The pairs of bodies that are closer than the margin, and perhaps others, none further apart than margin + 2 * skin
  * and the motion (of boxes, and but for rounding, NARC_BOX_ROOM) when the list was made.
  *   bodies    at most 2^32 - 2
  *   options   NULL: defaults
- *   threads   as in narc_find_overlaps()
  *   out_list  see narc_pair_list; its arrays belong to `broad`. A broken body (narc_bodies; also one whose motion or
  *             reach is NaN, infinite, or below 0 as a reach) is in no pair, and counted in `skipped`.
  * The list depends on the bodies of this call and of those before. For the same calls it is the same, bit by bit.
@@ -104,14 +106,14 @@ typedef struct narc_pair_options {
  * skin, two bodies with the same id: found at the latest when it would match a body wrongly), NARC_ERROR_NOT_FINITE,
  * NARC_ERROR_MEMORY. On an error `*out_list` is untouched, and the last list is as it was and valid. */
 NARC_API narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                                       const narc_pair_options *options, unsigned threads,
-                                       const narc_pair_list **out_list, narc_error *error);
+                                       const narc_pair_options *options, const narc_pair_list **out_list,
+                                       narc_error *error);
 
 /* The same for boxes that the caller has. `count` boxes, at most 2^32 - 2, each around what it holds in this step:
  * there are no motion columns. An empty box is in no pair, and counted. */
 NARC_API narc_status narc_update_box_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
-                                           const narc_pair_options *options, unsigned threads,
-                                           const narc_pair_list **out_list, narc_error *error);
+                                           const narc_pair_options *options, const narc_pair_list **out_list,
+                                           narc_error *error);
 
 /* Forgets the list, and keeps the memory: for another level, or a state that was restored. All pairs of the next list
  * are new, and none is lost. NULL: nothing happens. */
@@ -124,11 +126,16 @@ NARC_API void narc_forget_pairs(narc_broad_phase *broad);
  *                       closer than some distance, half of it.
  *   motion_x, motion_y  world axes: what each body moves. Its box holds the body at its position, at position +
  *                       motion, and everywhere between.
+ *   first, count        a sub-range of the bodies; count 0: to the end. Only its boxes are written
+ *   workers             threads to use; NULL: the calling one
  *   out_skipped         how many bodies have no box; NULL: nobody asks */
 typedef struct narc_box_options {
     float margin;
     narc_float_column motion_x, motion_y;
+    size_t first, count;
+    const narc_workers *workers;
     size_t *out_skipped;
+    void *reserved[4]; /* NULL */
 } narc_box_options;
 
 /* The axis-aligned boxes of all bodies in the world, as tight as single precision allows: never too small for the body,
@@ -136,7 +143,6 @@ typedef struct narc_box_options {
  * margin + extent) too large, the extent as in narc.h. (Where a shape's arcs were given a little apart, see
  * NARC_TOLERANCE, that much more is uncertain.)
  *   options    NULL: defaults
- *   threads    as in narc_find_overlaps()
  *   out_boxes  bodies->count items, overlapping none of the inputs. A body that is broken (see narc_bodies), that has a
  *              NaN or an infinity as its motion, or whose box is beyond the range of floats, gets the empty box from
  *              (INFINITY, INFINITY) to (-INFINITY, -INFINITY), which narc_find_pairs() leaves out.
@@ -145,15 +151,7 @@ typedef struct narc_box_options {
  * narc_find_overlaps() for NARC_ISA. No bodies: NARC_OK. Allocates nothing. Thread-safe.
  * Source: the support function of an arc shape (docs/algorithm.md) along four axes; kernels/broad/boxes.inl. */
 NARC_API narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bodies *bodies,
-                                        const narc_box_options *options, unsigned threads, narc_box *out_boxes,
-                                        narc_error *error);
-
-/* The same for bodies first .. first + count - 1 (any first and count), in the calling thread, for callers that have
- * their own job system. `out_boxes` is that of all bodies; only those of the sub-range are written, and out_skipped
- * counts these. */
-NARC_API narc_status narc_compute_boxes_range(const narc_shapes *shapes, const narc_bodies *bodies, size_t first,
-                                              size_t count, const narc_box_options *options, narc_box *out_boxes,
-                                              narc_error *error);
+                                        const narc_box_options *options, narc_box *out_boxes, narc_error *error);
 
 /* 40 roundings; derived in kernels/broad/boxes.inl. */
 #define NARC_BOX_ROOM (40.0 / 16777216.0)
@@ -161,7 +159,7 @@ NARC_API narc_status narc_compute_boxes_range(const narc_shapes *shapes, const n
 /* All pairs a < b of boxes that overlap or touch, in the order of a and then b.
  *   boxes      `count` of them, at most 2^32 - 2; box k is that of body k
  *   filter     see narc_pair_filter; its columns have `count` items
- *   threads    as in narc_find_overlaps()
+ *   workers    threads to use; NULL: the calling one
  *   out_a      `capacity` items each, overlapping nothing else
  *   out_b
  *   out_count  how many there are. If that is more than `capacity`, nothing else is written and NARC_ERROR_CAPACITY is
@@ -175,8 +173,8 @@ NARC_API narc_status narc_compute_boxes_range(const narc_shapes *shapes, const n
  * stops there), NARC_ERROR_MEMORY, NARC_ERROR_CAPACITY.
  * Source: sweep and prune (Baraff 1992; Cohen and others 1995) in strips, by levels of size. */
 NARC_API narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
-                                     const narc_pair_filter *filter, unsigned threads, uint32_t *out_a, uint32_t *out_b,
-                                     size_t capacity, size_t *out_count, narc_error *error);
+                                     const narc_pair_filter *filter, const narc_workers *workers, uint32_t *out_a,
+                                     uint32_t *out_b, size_t capacity, size_t *out_count, narc_error *error);
 
 /* No pair of the old list. */
 #define NARC_NO_MATCH UINT32_MAX
@@ -190,7 +188,7 @@ NARC_API narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *bo
  *   out_match              new_pairs->count items, overlapping nothing else
  * Errors: NARC_ERROR_ARGUMENT (NULL, too many pairs), NARC_ERROR_MEMORY. */
 NARC_API narc_status narc_match_pairs(narc_broad_phase *broad, const narc_pairs *old_pairs, const narc_pairs *new_pairs,
-                                      unsigned threads, uint32_t *out_match, narc_error *error);
+                                      const narc_workers *workers, uint32_t *out_match, narc_error *error);
 
 /* Carries a column over: item k of `out_items` becomes item match[k] of `items`, or all zero bytes where there is no
  * match. Items are `size` bytes, without gaps. `match` has `count` items below the number of items, or NARC_NO_MATCH;

@@ -18,10 +18,10 @@
  *
  *     narc_methods *methods;
  *     narc_create_methods(shapes, NULL, &methods, NULL);
- *     narc_method_query query = {.method = NARC_METHOD_GJK, .tolerance = 1e-3f};
- *     narc_find_contacts_by(methods, &bodies, &pairs, &query, 0, 0, &contacts, &found, NULL);
+ *     narc_method_options gjk = {.method = NARC_METHOD_GJK, .tolerance = 1e-3f};
+ *     narc_find_contacts_by(methods, &bodies, &pairs, &gjk, NULL, rows, capacity, &found, NULL);
  *
- *   A query of zeros is the exact method without extras: the calls of narc.h.
+ *   Options of zeros mean the exact method: the calls of narc.h.
  *
  * Every function here may be called from any number of threads at once, with NARC_STACK_SIZE bytes of stack, but for
  * narc_refresh_methods() and narc_destroy_methods(), which need the object for themselves.
@@ -112,40 +112,40 @@ typedef enum narc_outcome {
 
 #define NARC_DEFAULT_TOLERANCE 1e-4f
 
-typedef struct narc_method_query {
+/* Which method, and how; {0}: the exact one.
+ *   tolerance     gjk: the largest error of a separation, relative to the sum of both bounding radii, but for rounding,
+ *                 which is up to 2 * NARC_ERROR_BOUND * (D + E_a + E_b) (narc.h); for EPA the paper's termination
+ *                 threshold. 0: NARC_DEFAULT_TOLERANCE
+ *   iterations    gjk: most support points of each phase, GJK and EPA; 0, or more than that: NARC_MAX_ITERATIONS. A
+ *                 search that a hint has led astray begins again without it
+ *   out_outcomes  one narc_outcome for each pair, as hints are; or NULL */
+typedef struct narc_method_options {
     narc_method method;
-    /* gjk: the largest error of a separation, relative to the sum of both bounding radii, but for rounding, which is up
-     * to 2 * NARC_ERROR_BOUND * (D + E_a + E_b) (narc.h); for EPA the paper's termination threshold. 0:
-     * NARC_DEFAULT_TOLERANCE. */
     float tolerance;
-    /* gjk: most support points of each phase, GJK and EPA; 0, or more than that: NARC_MAX_ITERATIONS. A search that a
-     * hint has led astray begins again without it. */
     unsigned iterations;
-    /* One value for each pair, in and out, or NULL; zeros at first. sat: see narc_find_contacts_hinted() (contacts
-     * only). gjk: last call's simplex, to start from (a warm start); answers then differ from a cold start's, within
-     * the tolerance. Any value is safe. Other methods leave them alone. A hint belongs to one method. */
-    uint32_t *hints;
-    uint8_t *out_outcomes; /* pairs->count values of narc_outcome, or NULL */
-    /* How many pairs have no answer (see narc_bodies), by any method; or NULL. Set where out_bits or out_count are. */
-    size_t *out_skipped;
-} narc_method_query;
+    uint8_t *out_outcomes;
+    void *reserved[4]; /* NULL */
+} narc_method_options;
 
-/* narc_find_overlaps() by a method of choice. Further errors: NARC_ERROR_ARGUMENT (no such method, a negative
- * tolerance, the store has changed, polygon-sat and a pair whose shape is not a polygon: `error` names them),
- * NARC_ERROR_NOT_FINITE (tolerance). */
+/* narc_find_overlaps() by a method of choice.
+ *   query   as there. Hints: of gjk last call's simplex, to start from (a warm start), of overlaps too; answers then
+ *           differ from a cold start's, within the tolerance. Any value is safe. Other methods leave them alone. A hint
+ *           belongs to one method.
+ * Further errors: NARC_ERROR_ARGUMENT (no such method, a negative tolerance, the store has changed, polygon-sat and a
+ * pair whose shape is not a polygon: `error` names them), NARC_ERROR_NOT_FINITE (tolerance). */
 NARC_API narc_status narc_find_overlaps_by(const narc_methods *methods, const narc_bodies *bodies,
-                                           const narc_pairs *pairs, const narc_method_query *query, unsigned threads,
-                                           uint64_t *out_bits, narc_error *error);
+                                           const narc_pairs *pairs, const narc_method_options *options,
+                                           const narc_query *query, uint64_t *out_bits, narc_error *error);
 
 /* narc_find_contacts() by a method of choice: the contacts of all pairs whose separation, as the method finds it, is
- * less than `margin`. The arcs are those that the method ended at. Further errors as narc_find_overlaps_by(), and
- * NARC_ERROR_ARGUMENT for a method that answers overlaps only. (For a sub-range, move the bases of the pairs' columns.)
- * With margin 0, a pair is reported exactly if narc_find_overlaps_by() by the same query sets its bit; with hints, if
- * both start from the same. */
+ * less than the margin. Features and radii are those of the arcs that the method ended at. Further errors as
+ * narc_find_overlaps_by(), and NARC_ERROR_ARGUMENT for a method that answers overlaps only. With margin 0, a pair is
+ * reported exactly if narc_find_overlaps_by() with the same options sets its bit; with hints, if both start from the
+ * same. */
 NARC_API narc_status narc_find_contacts_by(const narc_methods *methods, const narc_bodies *bodies,
-                                           const narc_pairs *pairs, const narc_method_query *query, float margin,
-                                           unsigned threads, const narc_contacts *out_contacts, size_t *out_count,
-                                           narc_error *error);
+                                           const narc_pairs *pairs, const narc_method_options *options,
+                                           const narc_query *query, narc_contact *out_rows, size_t capacity,
+                                           size_t *out_count, narc_error *error);
 
 #ifdef __cplusplus
 }

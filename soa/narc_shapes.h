@@ -46,6 +46,7 @@
 
 #include "narc_columns.h"
 #include "narc_export.h"
+#include "narc_workers.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -82,7 +83,7 @@ extern "C" {
  * narc_methods.h and narc_broad_phase.h; OpenMP's own threads need as much (OMP_STACKSIZE). Of a library that was
  * compiled with optimisation and without sanitizers: some 30 KB are room for compilers that need more than GCC and
  * clang do. (narc_fit.h calls other libraries and needs what they need.) */
-#define NARC_STACK_SIZE (320 * 1024)
+#define NARC_STACK_SIZE (48 * 1024)
 
 /* ------------------------------------------------------------------------------------------------ status */
 
@@ -442,14 +443,26 @@ NARC_API narc_status narc_load_shapes(const narc_allocator *allocator, const voi
  * found from boxes: there it is narc_box_options.out_skipped that counts.
  *
  * Columns may lie anywhere. Batches of pairs are read fastest where what belongs to a body lies in a row: x, y, cosine
- * and sine, all float; or double x and y, and cosine, sine, scale and shape behind them, 32 bytes. */
+ * and sine, all float; or as in narc_body. */
 typedef struct narc_bodies {
     size_t count;
     narc_position_column x, y; /* both float or both double */
     narc_float_column cosine, sine;
     narc_float_column scale; /* base NULL: all 1 */
     narc_index_column shape; /* in the store */
+    void *reserved[2];       /* NULL */
 } narc_bodies;
+
+/* A body as a row in the form that is read fastest; bodies may as well lie in any other. */
+typedef struct narc_body {
+    double x, y;
+    float cosine, sine; /* not turned: 1, 0 */
+    float scale;        /* 1 */
+    uint32_t shape;
+} narc_body;
+
+/* Columns of such rows, whose memory the caller keeps. */
+NARC_API narc_bodies narc_view_bodies(const narc_body *rows, size_t count);
 
 /* Are all bodies what the kernels expect? Batch calls check indices only; this checks every number: shapes that exist,
  * no NaN or infinity, rotations within NARC_ROTATION_TOLERANCE, and sizes in range. The message names the body
@@ -457,93 +470,82 @@ typedef struct narc_bodies {
  * NARC_ERROR_INDEX, NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE. Thread-safe. */
 NARC_API narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_bodies *bodies, narc_error *error);
 
-/* Pairs of body indices. Both may name the same body (it collides with itself). The other columns are left
- * out with base NULL:
- *   margin            replaces the call's margin for that pair, in contacts and manifolds (overlaps have none)
- *   shift_x, shift_y  world axes; added to the position of B, in double precision: for periodic images
- * A pair with a NaN in them, or an infinite shift, has no answer, as one with a broken body. (Overlaps do not look at
- * the margin.) */
+/* Pairs of bodies, by index. Both may name the same body (it collides with itself).
+ *   a, b              bodies. Both left out (base NULL): a pair brings its own poses, pair k is bodies 2k and 2k + 1; of
+ *                     two sets, body k of each
+ *   other_bodies      the set that `b` names bodies of, such as those that never move; NULL: that of `a`, the call's
+ *   shift_x, shift_y  world axes; added to the position of B, in double precision: for periodic images; left out: 0
+ * A set of which x, y, cosine and sine are all left out stands at the origin, not turned: so the poses of B in the
+ * frames of A, and shapes by pair, are a set of B's poses, and one for A that has shapes only. A pair with a NaN in its
+ * shift, or an infinity, has no answer, as one with a broken body. */
 typedef struct narc_pairs {
     size_t count; /* at most UINT32_MAX */
     narc_index_column a, b;
-    narc_float_column margin;
+    const narc_bodies *other_bodies;
     narc_float_column shift_x, shift_y;
+    void *reserved[2]; /* NULL */
 } narc_pairs;
 
-/* One body, for calls with a single pair. What is 0 has its default, so that {.x = 4, .shape = 1} is enough.
- *   x, y           position of the shape's origin
- *   shape          index in the store
- *   angle          rotation in radians; counts only if cosine and sine are both 0
- *   cosine, sine   the rotation, as in narc_bodies; both 0: that of the angle, from narc_compute_poses()
- *   scale          0: 1 */
-typedef struct narc_body {
-    double x, y;
-    uint32_t shape;
-    float angle;
-    float cosine, sine;
-    float scale;
-} narc_body;
+/* ------------------------------------------------------------------------------------------------ rows */
 
-/* A list of contacts in the caller's memory, one array per property; an array that is NULL is not written. Contact k is
- *   pair         the index of the pair in the batch
- *   separation   signed distance between the bodies, negative: penetration depth
- *   normal       unit, from A to B, world axes
- *   point        halfway between the two surfaces where they are closest (or deepest), in world axes, relative to the
- *                position of body A, so that it is precise in a large world; where two edges touch along a stretch,
- *                the middle of that stretch. The point less half the separation along the normal lies on A, and plus
- *                that on B: the closest points, or the deepest. They are within 1.5 times the separation's error bound.
- *   arc          the arcs of A and B that touch; where an edge touches, the arc at its counter-clockwise end */
-typedef struct narc_contacts {
-    size_t capacity; /* items in each array */
-    uint32_t *pair;
-    float *separation;
-    float *normal_x, *normal_y;
-    float *point_x, *point_y;
-    uint8_t *arc_a, *arc_b;
-} narc_contacts;
+/* What a query answers, one row for each pair. Rows have the same bytes on every platform but for the order of bytes in
+ * a number. */
 
-/* One contact; see narc_contacts. */
+/* A contact.
+ *   pair        the index of the pair in the batch
+ *   feature     what touches: of A in the low byte, of B in the high one. Bits 0 to 5: an arc in the caller's
+ *               numbering, or, with NARC_FEATURE_EDGE, an edge: number i is the one before arc i
+ *   count       1; 0: none, all else 0 (see narc_query.dense), or no answer, and separation +INFINITY
+ *   separation  signed distance between the bodies, negative: penetration depth
+ *   normal      unit, from A to B, world axes
+ *   point       halfway between the two surfaces where they are closest (or deepest), in world axes, relative to the
+ *               position of body A, so that it is precise in a large world; where two edges touch along a stretch,
+ *               the middle of that stretch. The point less half the separation along the normal lies on A, and plus
+ *               that on B: the closest points, or the deepest. They are within 1.5 times the separation's error bound.
+ *   radius_a    radius of curvature of A where it touches, scaled: 0 at a corner, INFINITY on an edge. And of B. */
 typedef struct narc_contact {
+    uint32_t pair;
+    uint16_t feature;
+    uint16_t count;
     float separation;
     float normal_x, normal_y;
     float point_x, point_y;
-    uint8_t arc_a, arc_b;
+    float radius_a, radius_b;
 } narc_contact;
 
-/* A list of contact manifolds in the caller's memory, one array per property; an array that is NULL is not written.
- * Manifold k has one or two points, in the order along the normal turned a quarter turn counter-clockwise:
- *   pair            the index of the pair in the batch
- *   point_count     1 or 2; of a pair without an answer (see narc_find_contacts()) 0
- *   normal          unit, from A to B, world axes
- *   separation[i]   along the normal, at point i. One point is the deepest: its separation is that of the contact.
- *   point[i]        halfway between both surfaces along the normal, in world axes, relative to the position of body A
- *   feature[i]      what lies there: of A in the low byte, of B in the high byte. Bits 0 to 5: an arc in the caller's
- *                   numbering, or, with NARC_FEATURE_EDGE, an edge: number i is the one before arc i. Where corners
- *                   of both bodies lie side by side, up to 1/32 of an edge apart, both are named. The radius tells
- *                   whether an edge, an arc or a corner touches.
- *   radius_a[i]     radius of curvature of A, scaled: 0 at a corner, INFINITY on an edge; at an edge's end that of the
- *   radius_b[i]     arc next to it. And of B.
- * Where there is no point i its items are 0; but of a pair without an answer separation[0] is +INFINITY. */
-typedef struct narc_manifolds {
-    size_t capacity; /* items in each array */
-    uint32_t *pair;
-    uint8_t *point_count;
-    float *normal_x, *normal_y;
-    float *separation[2];
-    float *point_x[2], *point_y[2];
-    uint16_t *feature[2];
-    float *radius_a[2], *radius_b[2];
-} narc_manifolds;
+/* A point of a manifold.
+ *   x, y        halfway between both surfaces along the normal, in world axes, relative to the position of body A
+ *   separation  along the normal
+ *   feature     what lies there, as in narc_contact. Where corners of both bodies lie side by side, up to 1/32 of an
+ *               edge apart, both are named. The radius tells whether an edge, an arc or a corner touches. */
+typedef struct narc_manifold_point {
+    float x, y;
+    float separation;
+    uint32_t feature;
+} narc_manifold_point;
 
-/* One contact manifold; see narc_manifolds. */
+/* A contact manifold, one cache line.
+ *   pair      the index of the pair in the batch
+ *   count     how many points it has, 1 or 2; 0: none, all else 0 (see narc_query.dense), or no answer, and
+ *             point[0].separation +INFINITY
+ *   normal    unit, from A to B, world axes
+ *   radius_a  radius of curvature of A, scaled, at the deepest point: 0 at a corner, INFINITY on an edge; at an edge's
+ *             end that of the arc next to it. And of B
+ *   reach_a   how far the normal may turn clockwise [0] and counter-clockwise [1] until it leaves the arc of A that it
+ *             touches, where both stay in touch by rolling: the sine of that angle, of a quarter turn at most, times
+ *             NARC_REACH_ONE, rounded down. An edge has none. And of B
+ *   point     in the order along the normal turned a quarter turn counter-clockwise. One is the deepest: its separation
+ *             is that of the contact. What is not there is 0. */
 typedef struct narc_manifold {
-    uint8_t point_count;
+    uint32_t pair;
+    uint32_t count;
     float normal_x, normal_y;
-    float separation[2];
-    float point_x[2], point_y[2];
-    uint16_t feature[2];
-    float radius_a[2], radius_b[2];
+    float radius_a, radius_b;
+    uint16_t reach_a[2], reach_b[2];
+    narc_manifold_point point[2];
 } narc_manifold;
+
+#define NARC_REACH_ONE 65535
 
 #define NARC_FEATURE_EDGE 0x40
 
