@@ -74,13 +74,13 @@ static void test_threads(void **state) {
                                                     &found.view, &found.count, NULL),
                                  NARC_OK);
                 assert_int_equal(found.count, expected->count);
-                check_same_items(&expected->view, 0, &found.view, found.count);
+                check_same_items(&expected->rows[0], &found.view, found.count);
                 check_untouched(&found, counts[s], counts[s] + 5);
-                destroy_contacts(&found);
+                free(found.rows);
             }
         }
-        destroy_contacts(&serial);
-        destroy_contacts(&all);
+        free(serial.rows);
+        free(all.rows);
         free(serial_bits);
         free(bits);
         destroy_scene(&scene);
@@ -143,8 +143,8 @@ static void test_contact_ranges(void **state) {
             first += size;
         }
         assert_int_equal(seen, whole.count);
-        destroy_contacts(&whole);
-        destroy_contacts(&part);
+        free(whole.rows);
+        free(part.rows);
         destroy_scene(&scene);
     }
 }
@@ -161,21 +161,21 @@ static void test_margins(void **state) {
         struct contacts some = scene_contacts(&scene, margins[m]);
         size_t next = 0;
         for (size_t k = 0; k < all.count; k++) {
-            if (all.view.separation[k] < margins[m]) {
+            if (all.rows[k].separation < margins[m]) {
                 assert_true(next < some.count);
-                assert_int_equal(some.view.pair[next], k);
-                assert_memory_equal(&some.view.separation[next], &all.view.separation[k], sizeof(float));
-                assert_memory_equal(&some.view.point_x[next], &all.view.point_x[k], sizeof(float));
-                assert_memory_equal(&some.view.normal_y[next], &all.view.normal_y[k], sizeof(float));
+                assert_int_equal(some.rows[next].pair, k);
+                assert_memory_equal(&some.rows[next].separation, &all.rows[k].separation, sizeof(float));
+                assert_memory_equal(&some.rows[next].point_x, &all.rows[k].point_x, sizeof(float));
+                assert_memory_equal(&some.rows[next].normal_y, &all.rows[k].normal_y, sizeof(float));
                 next++;
             }
             if (margins[m] == 0)
-                assert_int_equal(bit_is_set(bits, k), all.view.separation[k] < 0);
+                assert_int_equal(bit_is_set(bits, k), all.rows[k].separation < 0);
         }
         assert_int_equal(next, some.count);
-        destroy_contacts(&some);
+        free(some.rows);
     }
-    destroy_contacts(&all);
+    free(all.rows);
     free(bits);
     destroy_scene(&scene);
 }
@@ -201,20 +201,20 @@ static void test_capacity(void **state) {
         assert_int_equal(status, NARC_ERROR_CAPACITY);
         assert_int_equal(error.status, NARC_ERROR_CAPACITY);
         assert_int_equal(some.count, all.count);
-        check_same_items(&all.view, 0, &some.view, capacity);
+        check_same_items(&all.rows[0], &some.view, capacity);
         check_untouched(&some, capacity, all.count + 64);
         status = narc_find_contacts_range(scene.store, &bodies, &pairs, 0, 4000, 0, &some.view, &some.count, NULL);
         assert_int_equal(status, NARC_ERROR_CAPACITY);
         assert_int_equal(some.count, all.count);
         check_untouched(&some, capacity, all.count + 64);
-        destroy_contacts(&some);
+        free(some.rows);
     }
     struct contacts exact = create_contacts(all.count + 64);
     exact.view.capacity = all.count;
     assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, 0, 2, &exact.view, &exact.count, NULL), NARC_OK);
     check_untouched(&exact, all.count, all.count + 64);
-    destroy_contacts(&exact);
-    destroy_contacts(&all);
+    free(exact.rows);
+    free(all.rows);
     destroy_scene(&scene);
 }
 
@@ -248,14 +248,14 @@ static void test_missing_arrays(void **state) {
         view.point_y = view.point_y ? view.point_y : all.view.point_y;
         view.arc_a = view.arc_a ? view.arc_a : all.view.arc_a;
         view.arc_b = view.arc_b ? view.arc_b : all.view.arc_b;
-        check_same_items(&all.view, 0, &view, all.count);
-        destroy_contacts(&some);
+        check_same_items(&all.rows[0], &view, all.count);
+        free(some.rows);
     }
     narc_contacts none = {0};
     size_t needed = 0;
     assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, 0, 1, &none, &needed, NULL), NARC_ERROR_CAPACITY);
     assert_int_equal(needed, all.count);
-    destroy_contacts(&all);
+    free(all.rows);
     destroy_scene(&scene);
 }
 
@@ -277,7 +277,7 @@ static void test_no_pairs(void **state) {
         assert_int_equal(contacts.count, 0);
         check_untouched(&contacts, 0, 3);
     }
-    destroy_contacts(&contacts);
+    free(contacts.rows);
     destroy_scene(&scene);
 }
 
@@ -294,13 +294,13 @@ static void test_pairs_with_itself(void **state) {
         struct fractions errors = {0};
         const double gap = reference_find_gap(&body, &body).gap;
         assert_true(bit_is_set(bits, k) || (body.count == 2 && gap >= -separation_bound(&body, &body)));
-        const char *wrong = check_contact(&body, &body, gap, &all.view, k, &errors);
+        const char *wrong = check_contact(&body, &body, gap, &all.rows[k], &errors);
         if (wrong) {
             print_pair(&body, &body);
             fail_msg("%s", wrong);
         }
     }
-    destroy_contacts(&all);
+    free(all.rows);
     free(bits);
     destroy_scene(&scene);
 }

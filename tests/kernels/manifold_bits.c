@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "manifold_lists.h"
 #include "plain_kernels.h"
 
 static const float margins[] = {0, 0.3f, -0.1f, INFINITY};
@@ -28,11 +27,11 @@ static struct manifolds find_plain(const struct scene *scene, float margin) {
         const size_t left = pairs.count - first, count = left < NARC_CONTACT_GROUP ? left : NARC_CONTACT_GROUP;
         part.count = narc_kernels_plain.manifold(&batch, first, count, margin, &part.view);
         for (size_t k = 0; k < MANIFOLD_ARRAYS; k++)
-            memcpy((char *)manifold_array(&all.view, k) + all.count * manifold_item[k], manifold_array(&part.view, k),
+            memcpy((char *)manifold_array(&all.rows[k]) + all.count * manifold_item[k], manifold_array(&part.rows[k]),
                    part.count * manifold_item[k]);
         all.count += part.count;
     }
-    destroy_manifolds(&part, false);
+    free(part.rows);
     return all;
 }
 
@@ -64,10 +63,10 @@ static void test_plain(void **state) {
             size_t two = 0;
             check_all(&right, &found);
             for (size_t k = 0; k < right.count; k++)
-                two += right.view.point_count[k] == 2;
+                two += right.rows[k].count == 2;
             assert_true(two > right.count / 20 && two < right.count / 2);
-            destroy_manifolds(&right, false);
-            destroy_manifolds(&found, false);
+            free(right.rows);
+            free(found.rows);
         }
         destroy_scene(&scene);
     }
@@ -100,9 +99,9 @@ static void test_threads_and_hints(void **state) {
             check_all(&right, &found);
             destroy_manifolds(&found, true);
         }
-        destroy_manifolds(&right, false);
+        free(right.rows);
     }
-    destroy_contacts(&contacts);
+    free(contacts.rows);
     destroy_scene(&scene);
 }
 
@@ -119,7 +118,7 @@ static void test_ranges(void **state) {
         const size_t wanted = round < 140 ? round : random_below(&random, 2000), left = PAIRS - first;
         const size_t count = wanted < left ? wanted : left;
         size_t found = 0;
-        while (listed + found < all.count && all.view.pair[listed + found] < first + count)
+        while (listed + found < all.count && all.rows[listed + found].pair < first + count)
             found++;
         struct manifolds part = create_manifolds(found, true);
         assert_int_equal(
@@ -132,7 +131,7 @@ static void test_ranges(void **state) {
         first += round % 2 ? 0 : count; /* every other one is asked for again, longer */
         listed -= round % 2 ? found : 0;
     }
-    destroy_manifolds(&all, false);
+    free(all.rows);
     destroy_scene(&scene);
 }
 
@@ -171,10 +170,10 @@ static void test_arrays_left_out(void **state) {
                 else
                     assert_int_equal(bytes[0], 0xa5);
             }
-            destroy_manifolds(&found, false);
+            free(found.rows);
         }
     }
-    destroy_manifolds(&all, false);
+    free(all.rows);
     destroy_scene(&scene);
 }
 
@@ -199,7 +198,7 @@ static void test_capacity(void **state) {
         check_same_manifolds(&all, 0, &part, 0);
         destroy_manifolds(&part, true);
     }
-    destroy_manifolds(&all, false);
+    free(all.rows);
     destroy_scene(&scene);
 }
 
@@ -220,7 +219,7 @@ static void test_errors(void **state) {
         assert_int_equal(found, 12345);                                                                                \
         assert_int_equal(skipped, 54321);                                                                              \
         for (size_t k = 0; k < MANIFOLD_ARRAYS; k++)                                                                   \
-            assert_memory_equal(manifold_array(&list.view, k), manifold_array(&untouched.view, k),                     \
+            assert_memory_equal(manifold_array(&list.rows[k]), manifold_array(&untouched.rows[k]),                     \
                                 PAIRS *manifold_item[k]);                                                              \
     } while (0)
     const narc_shapes *store = scene.store;
@@ -244,8 +243,8 @@ static void test_errors(void **state) {
     assert_int_equal(narc_find_manifolds(store, &bodies, &pairs, none, 1, &list.view, &found, NULL), NARC_OK);
     assert_int_equal(found, 0);
     assert_int_equal(skipped, 0);
-    destroy_manifolds(&list, false);
-    destroy_manifolds(&untouched, false);
+    free(list.rows);
+    free(untouched.rows);
     destroy_scene(&scene);
 }
 
@@ -266,7 +265,7 @@ static void test_broken_bodies(void **state) {
         assert_int_equal(all.count, PAIRS);
         for (size_t k = 0; k < PAIRS; k++) {
             const bool is_broken = scene.pairs[k].a % 7 == 0 || scene.pairs[k].b % 7 == 0;
-            assert_int_equal(all.view.point_count[k] == 0, is_broken);
+            assert_int_equal(all.rows[k].count == 0, is_broken);
             none += is_broken;
             for (size_t i = 2; i < MANIFOLD_ARRAYS && is_broken; i++) {
                 const char *item = (const char *)manifold_array(&all.view, i) + k * manifold_item[i];
@@ -278,8 +277,8 @@ static void test_broken_bodies(void **state) {
         find(&scene, &(narc_manifold_options){.margin = 0.1f, .out_skipped = &skipped}, threads, &all);
         assert_int_equal(skipped, broken);
         for (size_t k = 0; k < all.count; k++)
-            assert_true(all.view.point_count[k] > 0);
-        destroy_manifolds(&all, false);
+            assert_true(all.rows[k].count > 0);
+        free(all.rows);
     }
     destroy_scene(&scene);
 }

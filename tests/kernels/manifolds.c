@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "check.h"
-#include "manifold_lists.h"
 #include "manifold_reference.h"
 #include "placements.h"
 
@@ -33,12 +32,12 @@ static bool same_radius(double expected, double found) {
 /* Point i of manifold k against one of the reference; NULL, or what is wrong. */
 static const char *check_point(const struct reference_point *right, const narc_manifolds *list, size_t k, size_t i,
                                double bound, bool radii, double *worst) {
-    const double off = hypot((double)list->point_x[i][k] - right->x, (double)list->point_y[i][k] - right->y);
-    const double error = fmax(off, fabs((double)list->separation[i][k] - right->separation));
+    const double off = hypot((double)list->point[i].x - right->x, (double)list->point[i].y - right->y);
+    const double error = fmax(off, fabs((double)list->point[i].separation - right->separation));
     *worst = fmax(*worst, error / bound);
     if (!(error <= bound))
         return "point or separation";
-    if (list->feature[i][k] != right->feature)
+    if (list->point[i].feature != right->feature)
         return "feature";
     if (radii && (!same_radius(right->radius_a, (double)list->radius_a[i][k]) ||
                   !same_radius(right->radius_b, (double)list->radius_b[i][k])))
@@ -55,8 +54,8 @@ static const char *check_manifold(const struct reference_body *a, const struct r
                                           (double)contacts->normal_y[k],
                                           (double)contacts->point_x[k],
                                           (double)contacts->point_y[k],
-                                          contacts->arc_a[k],
-                                          contacts->arc_b[k]};
+                                          arc_of_a(contacts->feature),
+                                          arc_of_b(contacts->feature)};
     const struct reference_manifold right = reference_find_manifold(a, b, &contact, (double)NARC_FLAT_ANGLE);
     const double bound = point_bounds * separation_bound(a, b);
     const size_t count = list->point_count[k];
@@ -68,14 +67,14 @@ static const char *check_manifold(const struct reference_body *a, const struct r
     /* One of the points is the contact, bit for bit; nothing is deeper. */
     bool exact = false, exact_place = false;
     for (size_t i = 0; i < count; i++) {
-        const bool same = memcmp(&list->separation[i][k], &contacts->separation[k], sizeof(float)) == 0;
+        const bool same = memcmp(&list->point[i].separation, &contacts->separation[k], sizeof(float)) == 0;
         exact = exact || same;
-        exact_place = exact_place || (same && memcmp(&list->point_x[i][k], &contacts->point_x[k], sizeof(float)) == 0 &&
-                                      memcmp(&list->point_y[i][k], &contacts->point_y[k], sizeof(float)) == 0);
-        if (list->separation[i][k] < contacts->separation[k])
+        exact_place = exact_place || (same && memcmp(&list->point[i].x, &contacts->point_x[k], sizeof(float)) == 0 &&
+                                      memcmp(&list->point[i].y, &contacts->point_y[k], sizeof(float)) == 0);
+        if (list->point[i].separation < contacts->separation[k])
             return "a point deeper than the contact";
     }
-    if (count == 2 && list->feature[0][k] == list->feature[1][k])
+    if (count == 2 && list->point[0].feature == list->point[1].feature)
         return "id of two points";
     if (!exact)
         return "the deepest separation";
@@ -115,14 +114,14 @@ static const char *check_swapped(const narc_manifolds *list, const narc_manifold
     }
     for (size_t i = 0; i < count; i++) {
         const size_t other = count - 1 - i;
-        const unsigned id = list->feature[i][k], turned = swapped->feature[other][k];
+        const unsigned id = list->point[i].feature, turned = swapped->point[other].feature;
         if ((id >> 8 | (id & 0xff) << 8) != turned) {
             tally->swaps_skipped++;
             return NULL;
         }
-        const double off = hypot((double)(list->point_x[i][k] - swapped->point_x[other][k]) - x,
-                                 (double)(list->point_y[i][k] - swapped->point_y[other][k]) - y);
-        if (fabs((double)(list->separation[i][k] - swapped->separation[other][k])) > bound)
+        const double off = hypot((double)(list->point[i].x - swapped->point[other].x) - x,
+                                 (double)(list->point[i].y - swapped->point[other].y) - y);
+        if (fabs((double)(list->point[i].separation - swapped->point[other].separation)) > bound)
             return "separation, swapped";
         if (turn < 1e-6 && off > 4 * bound)
             return "point, swapped";
@@ -144,25 +143,25 @@ static void check_scene(const struct scene *scene, const char *families, struct 
     for (size_t k = 0; k < scene->pair_count; k++) {
         const struct reference_body a = scene_reference(scene, scene->pairs[k].a);
         const struct reference_body b = scene_reference(scene, scene->pairs[k].b);
-        assert_int_equal(list.view.pair[k], k);
-        const char *wrong = check_manifold(&a, &b, &all.view, &list.view, k, tally);
+        assert_int_equal(list.rows[k].pair, k);
+        const char *wrong = check_manifold(&a, &b, &all.view, &list.rows[k], tally);
         if (!wrong)
-            wrong = check_swapped(&list.view, &swapped.view, k, b.x - a.x, b.y - a.y,
+            wrong = check_swapped(&list.view, &swapped.rows[k], b.x - a.x, b.y - a.y,
                                   point_bounds * separation_bound(&a, &b), tally);
         if (wrong && tally->wrong++ < SHOWN) {
             print_error("%s, %s: wrong %s\n", families, placement_name((enum placement)(k % PLACE_COUNT)), wrong);
-            for (size_t i = 0; i < list.view.point_count[k]; i++)
+            for (size_t i = 0; i < list.rows[k].count; i++)
                 print_error("  point %zu: (%.9g, %.9g), separation %.9g, feature %04x, radii %g and %g\n", i,
-                            (double)list.view.point_x[i][k], (double)list.view.point_y[i][k],
-                            (double)list.view.separation[i][k], list.view.feature[i][k],
-                            (double)list.view.radius_a[i][k], (double)list.view.radius_b[i][k]);
+                            (double)list.rows[k].point[i].x, (double)list.rows[k].point[i].y,
+                            (double)list.rows[k].point[i].separation, list.rows[k].point[i].feature,
+                            (double)list.rows[k].radius_a, (double)list.rows[k].radius_b);
             print_pair(&a, &b);
         }
     }
     free(turned.pairs);
-    destroy_contacts(&all);
-    destroy_manifolds(&list, false);
-    destroy_manifolds(&swapped, false);
+    free(all.rows);
+    free(list.rows);
+    free(swapped.rows);
 }
 
 static void check_all_families(const char *name, narc_precision precision, size_t rounds) {
@@ -273,16 +272,16 @@ static void test_box_on_box(void **state) {
             put(&scene, 1, x, 0.99, tilt);
             struct manifolds list = scene_manifolds(&scene, 0.05f);
             assert_int_equal(list.count, 1);
-            assert_int_equal(list.view.point_count[0], 2);
-            assert_int_equal(list.view.feature[0][0], first);
-            assert_int_equal(list.view.feature[1][0], second);
+            assert_int_equal(list.rows[0].count, 2);
+            assert_int_equal(list.rows[0].point[0].feature, first);
+            assert_int_equal(list.rows[0].point[1].feature, second);
             /* The tangent of a normal that points up points left. The rounded box touches with its arcs' ends. */
             const double half = width / 2, reach = 0.05;
-            assert_true(list.view.normal_y[0] > 0.999f);
-            assert_true(fabs((double)list.view.point_x[0][0] - half) < reach + rounding);
-            assert_true(fabs((double)list.view.point_x[1][0] + half) < reach + rounding);
-            assert_true(fabs((double)list.view.point_y[0][0] - 0.495) < 0.06);
-            destroy_manifolds(&list, false);
+            assert_true(list.rows[0].normal_y > 0.999f);
+            assert_true(fabs((double)list.rows[0].point[0].x - half) < reach + rounding);
+            assert_true(fabs((double)list.rows[0].point[1].x + half) < reach + rounding);
+            assert_true(fabs((double)list.rows[0].point[0].y - 0.495) < 0.06);
+            free(list.rows);
         }
         destroy_scene(&scene);
     }
@@ -311,19 +310,19 @@ static void test_corner_on_corner(void **state) {
         }
         struct manifolds list = scene_manifolds(&scene, 0.5f);
         assert_int_equal(list.count, 2);
-        assert_true(trial > 0 || list.view.point_count[0] == 1);
-        assert_int_equal(list.view.point_count[0], list.view.point_count[1]);
-        if (list.view.point_count[0] == 2) { /* two edges on the same side of the corners */
-            assert_true(hypot((double)list.view.point_x[0][0] - (double)list.view.point_x[1][0],
-                              (double)list.view.point_y[0][0] - (double)list.view.point_y[1][0]) > 1e-5);
+        assert_true(trial > 0 || list.rows[0].count == 1);
+        assert_int_equal(list.rows[0].count, list.rows[1].count);
+        if (list.rows[0].count == 2) { /* two edges on the same side of the corners */
+            assert_true(hypot((double)list.rows[0].point[0].x - (double)list.rows[0].point[1].x,
+                              (double)list.rows[0].point[0].y - (double)list.rows[0].point[1].y) > 1e-5);
             two++;
-            destroy_manifolds(&list, false);
+            free(list.rows);
             continue;
         }
         one++;
-        assert_int_equal(list.view.feature[0][0] & 0xff, list.view.feature[0][1] >> 8);
-        assert_int_equal(list.view.feature[0][0] >> 8, list.view.feature[0][1] & 0xff);
-        destroy_manifolds(&list, false);
+        assert_int_equal(list.rows[0].point[0].feature & 0xff, list.rows[1].point[0].feature >> 8);
+        assert_int_equal(list.rows[0].point[0].feature >> 8, list.rows[1].point[0].feature & 0xff);
+        free(list.rows);
     }
     assert_true(one > two / 100);
     destroy_scene(&scene);
@@ -342,17 +341,17 @@ static void test_rocking(void **state) {
         put(&scene, 1, 0, 1, tilt);
         struct manifolds list = scene_manifolds(&scene, 0.5f);
         assert_int_equal(list.count, 1);
-        assert_int_equal(list.view.point_count[0], 2);
+        assert_int_equal(list.rows[0].count, 2);
         for (size_t i = 0; i < 2; i++) {
-            const float now[3] = {list.view.point_x[i][0], list.view.point_y[i][0], list.view.separation[i][0]};
+            const float now[3] = {list.rows[0].point[i].x, list.rows[0].point[i].y, list.rows[0].point[i].separation};
             for (size_t c = 0; c < 3 && frames > 0; c++)
                 assert_true(fabs((double)(now[c] - last[i][c])) < 3 * step);
             if (frames > 0)
-                assert_int_equal(list.view.feature[i][0], id[i]);
+                assert_int_equal(list.rows[0].point[i].feature, id[i]);
             memcpy(last[i], now, sizeof now);
-            id[i] = list.view.feature[i][0];
+            id[i] = list.rows[0].point[i].feature;
         }
-        destroy_manifolds(&list, false);
+        free(list.rows);
     }
     assert_true(frames > 1000);
     destroy_scene(&scene);
@@ -374,12 +373,12 @@ static void test_rolling(void **state) {
         put(&scene, 0, fmin(way, 1) + 0.5 * sin(turn), 1 + 0.5 * cos(turn) - down, way);
         struct manifolds list = scene_manifolds(&scene, 0.01f);
         assert_int_equal(list.count, 1);
-        assert_int_equal(list.view.point_count[0], 1);
-        const unsigned on_box = list.view.feature[0][0] >> 8;
-        const float curved = list.view.radius_b[0][0];
-        assert_int_equal(list.view.feature[0][0] & 0xff, 0);
-        assert_true(list.view.radius_a[0][0] == 0.5f);
-        assert_true(list.view.separation[1][0] == 0 && list.view.feature[1][0] == 0);
+        assert_int_equal(list.rows[0].count, 1);
+        const unsigned on_box = list.rows[0].point[0].feature >> 8;
+        const float curved = list.rows[0].radius_b;
+        assert_int_equal(list.rows[0].point[0].feature & 0xff, 0);
+        assert_true(list.rows[0].radius_a == 0.5f);
+        assert_true(list.rows[0].point[1].separation == 0 && list.rows[0].point[1].feature == 0);
         if (fabs(way - 1) < 0.02 || fabs(way - 1 - pi / 4) < 0.02) { /* on either side of the corner's end */
             assert_true(on_box == top || on_box == corner || on_box == right);
         } else if (way < 1) {
@@ -395,7 +394,7 @@ static void test_rolling(void **state) {
             assert_true(curved == INFINITY);
             seen[2]++;
         }
-        destroy_manifolds(&list, false);
+        free(list.rows);
     }
     assert_true(seen[0] > 50 && seen[1] > 50 && seen[2] > 50);
     destroy_scene(&scene);
@@ -409,12 +408,12 @@ static void test_margin(void **state) {
     for (int side = -1; side <= 1; side += 2) {
         put(&scene, 1, 0, 1.02, side * 0.05);
         struct manifolds all = scene_manifolds(&scene, INFINITY);
-        assert_int_equal(all.view.point_count[0], 2);
-        const size_t deep = all.view.separation[1][0] < all.view.separation[0][0], other = 1 - deep;
+        assert_int_equal(all.rows[0].count, 2);
+        const size_t deep = all.rows[0].point[1].separation < all.rows[0].point[0].separation, other = 1 - deep;
         assert_int_equal(deep, side < 0 ? 0 : 1);
-        const float limit = all.view.separation[other][0];
-        const float margins[] = {nextafterf(limit, INFINITY), limit, nextafterf(all.view.separation[deep][0], INFINITY),
-                                 all.view.separation[deep][0]};
+        const float limit = all.rows[0].point[other].separation;
+        const float margins[] = {nextafterf(limit, INFINITY), limit, nextafterf(all.rows[0].point[deep].separation, INFINITY),
+                                 all.rows[0].point[deep].separation};
         const size_t points[] = {2, 1, 1, 0};
         for (size_t m = 0; m < 4; m++) {
             struct manifolds list = scene_manifolds(&scene, margins[m]);
@@ -422,15 +421,15 @@ static void test_margin(void **state) {
             if (points[m] == 2) {
                 check_same_manifolds(&all, 0, &list, 0);
             } else if (points[m] == 1) {
-                assert_int_equal(list.view.point_count[0], 1);
-                assert_int_equal(list.view.feature[0][0], all.view.feature[deep][0]);
-                assert_memory_equal(&list.view.separation[0][0], &all.view.separation[deep][0], sizeof(float));
-                assert_memory_equal(&list.view.point_x[0][0], &all.view.point_x[deep][0], sizeof(float));
-                assert_true(list.view.separation[1][0] == 0 && list.view.feature[1][0] == 0);
+                assert_int_equal(list.rows[0].count, 1);
+                assert_int_equal(list.rows[0].point[0].feature, all.rows[0].point[deep].feature);
+                assert_memory_equal(&list.rows[0].point[0].separation, &all.rows[0].point[deep].separation, sizeof(float));
+                assert_memory_equal(&list.rows[0].point[0].x, &all.rows[0].point[deep].x, sizeof(float));
+                assert_true(list.rows[0].point[1].separation == 0 && list.rows[0].point[1].feature == 0);
             }
-            destroy_manifolds(&list, false);
+            free(list.rows);
         }
-        destroy_manifolds(&all, false);
+        free(all.rows);
     }
     destroy_scene(&scene);
 }
@@ -444,9 +443,9 @@ static void test_second_margin(void **state) {
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
     struct manifolds all = scene_manifolds(&scene, INFINITY), list = create_manifolds(1, false);
-    assert_int_equal(all.view.point_count[0], 2);
-    const float first = fminf(all.view.separation[0][0], all.view.separation[1][0]);
-    const float second = fmaxf(all.view.separation[0][0], all.view.separation[1][0]);
+    assert_int_equal(all.rows[0].count, 2);
+    const float first = fminf(all.rows[0].point[0].separation, all.rows[0].point[1].separation);
+    const float second = fmaxf(all.rows[0].point[0].separation, all.rows[0].point[1].separation);
     const float margins[][2] = {{first + 0.01f, 0},
                                 {first + 0.01f, second},
                                 {first + 0.01f, nextafterf(second, 1)},
@@ -462,15 +461,15 @@ static void test_second_margin(void **state) {
                          NARC_OK);
         assert_int_equal(list.count, points[k] > 0);
         if (points[k] > 0)
-            assert_int_equal(list.view.point_count[0], points[k]);
+            assert_int_equal(list.rows[0].count, points[k]);
         if (points[k] == 2)
             check_same_manifolds(&all, 0, &list, 0);
     }
     const narc_manifold_options options = {.second_margin = NAN};
     assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL),
                      NARC_ERROR_NOT_FINITE);
-    destroy_manifolds(&all, false);
-    destroy_manifolds(&list, false);
+    free(all.rows);
+    free(list.rows);
     destroy_scene(&scene);
 }
 
@@ -489,9 +488,9 @@ static void test_flat_angle(void **state) {
         const narc_manifold_options options = {.margin = INFINITY, .flat_angle = angles[k]};
         assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL),
                          NARC_OK);
-        assert_int_equal(list.view.point_count[0], points[k]);
+        assert_int_equal(list.rows[0].count, points[k]);
     }
-    destroy_manifolds(&list, false);
+    free(list.rows);
     destroy_scene(&scene);
 }
 
@@ -499,7 +498,7 @@ static void test_flat_angle(void **state) {
 
 /* Manifold k of a list in one word: its ids, or its deepest point's alone. */
 static unsigned find_ids(const struct manifolds *list, size_t k) {
-    return list->view.feature[0][k] | (unsigned)list->view.feature[1][k] << 16;
+    return list->rows[k].point[0].feature | (unsigned)list->rows[k].point[1].feature << 16;
 }
 
 static unsigned swap_bytes(unsigned id) { return (id >> 8 & 0x00ff00ff) | (id & 0x00ff00ff) << 8; }
@@ -545,17 +544,17 @@ static void test_doubled_corner(void **state) {
                 put(&scene, 1, place - c * x + s * y, 0.49 - s * x - c * y, tilt);
                 struct manifolds list = scene_manifolds(&scene, 1);
                 assert_int_equal(list.count, 2);
-                assert_int_equal(list.view.point_count[0], list.view.point_count[1]);
+                assert_int_equal(list.rows[0].count, list.rows[1].count);
                 ids[moved] = find_ids(&list, 0);
                 const unsigned turned = swap_bytes(find_ids(&list, 1));
-                const bool both = list.view.point_count[0] == 2;
+                const bool both = list.rows[0].count == 2;
                 assert_int_equal(ids[moved], both ? turned >> 16 | turned << 16 : turned);
                 two += both;
-                for (size_t i = 0; i < list.view.point_count[0]; i++) {
-                    assert_true(list.view.feature[i][0] >> 8 != (1 | NARC_FEATURE_EDGE));
-                    assert_true(!isinf(list.view.radius_b[i][0]) || list.view.feature[i][0] >> 8 & NARC_FEATURE_EDGE);
+                for (size_t i = 0; i < list.rows[0].count; i++) {
+                    assert_true(list.rows[0].point[i].feature >> 8 != (1 | NARC_FEATURE_EDGE));
+                    assert_true(!isinf(list.rows[0].radius_b) || list.rows[0].point[i].feature >> 8 & NARC_FEATURE_EDGE);
                 }
-                destroy_manifolds(&list, false);
+                free(list.rows);
             }
             assert_int_equal(ids[0], ids[1]);
             near_joint += fabs(-pi / 2 - normal - tilt) < 0.4;
@@ -584,9 +583,9 @@ static void test_short_edges_swapped(void **state) {
         put(&scene, 1, random_between(&random, -0.2, 0.2) - c + s, 0.49 - s - c, tilt);
         struct manifolds list = scene_manifolds(&scene, 1);
         assert_int_equal(list.count, 2);
-        differ += list.view.point_count[0] != list.view.point_count[1];
-        two += list.view.point_count[0] == 2;
-        destroy_manifolds(&list, false);
+        differ += list.rows[0].count != list.rows[1].count;
+        two += list.rows[0].count == 2;
+        free(list.rows);
         destroy_scene(&scene);
     }
     printf("  %zu of %zu differ, %zu with two points\n", differ, trials, two);
@@ -624,11 +623,11 @@ static void test_far_origin(void **state) {
                 put(&scene, 1, -top_x - reach * out_x, -top_y - reach * out_y, 0);
                 scene_add_pair(&scene, 1, 0);
                 struct manifolds list = scene_manifolds(&scene, INFINITY);
-                for (size_t i = 0; i < list.view.point_count[0]; i++)
-                    assert_true(list.view.feature[i][0] >> 8 != (1 | NARC_FEATURE_EDGE));
-                for (size_t i = 0; i < list.view.point_count[1]; i++)
-                    assert_true((list.view.feature[i][1] & 0xff) != (1 | NARC_FEATURE_EDGE));
-                destroy_manifolds(&list, false);
+                for (size_t i = 0; i < list.rows[0].count; i++)
+                    assert_true(list.rows[0].point[i].feature >> 8 != (1 | NARC_FEATURE_EDGE));
+                for (size_t i = 0; i < list.rows[1].count; i++)
+                    assert_true((list.rows[1].point[i].feature & 0xff) != (1 | NARC_FEATURE_EDGE));
+                free(list.rows);
                 destroy_scene(&scene);
             }
         }
@@ -652,12 +651,12 @@ static void test_leaning(void **state) {
             put(&scene, 1, 0.3 - (c * right - s * low), 0.5 + radius - 0.01 - (s * right + c * low), tilt * pi / 180);
             struct manifolds list = scene_manifolds(&scene, 0.5f);
             assert_int_equal(list.count, 1);
-            const size_t count = list.view.point_count[0];
-            const size_t deep = count == 2 && list.view.separation[1][0] < list.view.separation[0][0];
-            assert_int_equal(list.view.feature[deep][0], top | corner % (unsigned)box.count << 8);
+            const size_t count = list.rows[0].count;
+            const size_t deep = count == 2 && list.rows[0].point[1].separation < list.rows[0].point[0].separation;
+            assert_int_equal(list.rows[0].point[deep].feature, top | corner % (unsigned)box.count << 8);
             one += count == 1;
             two += count == 2;
-            destroy_manifolds(&list, false);
+            free(list.rows);
         }
         assert_true(one > 1000 && two > 1000);
         destroy_scene(&scene);
@@ -666,12 +665,12 @@ static void test_leaning(void **state) {
 
 /* The point of a list that has the place and the separation of the contact, or point_count if neither has. */
 static size_t find_deepest(const struct manifolds *list, const struct contacts *contacts, size_t k) {
-    for (size_t i = 0; i < list->view.point_count[k]; i++)
-        if (list->view.separation[i][k] == contacts->view.separation[k] &&
-            list->view.point_x[i][k] == contacts->view.point_x[k] &&
-            list->view.point_y[i][k] == contacts->view.point_y[k])
+    for (size_t i = 0; i < list->rows[k].count; i++)
+        if (list->rows[k].point[i].separation == contacts->rows[k].separation &&
+            list->rows[k].point[i].x == contacts->rows[k].point_x &&
+            list->rows[k].point[i].y == contacts->rows[k].point_y)
             return i;
-    return list->view.point_count[k];
+    return list->rows[k].count;
 }
 
 /* The flat angle decides whether there is a second point, and nothing of the deepest one's id. */
@@ -710,16 +709,16 @@ static void test_ids_at_all_flat_angles(void **state) {
                 narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL), NARC_OK);
             for (size_t k = 0; k < count; k++) {
                 const size_t i = find_deepest(&usual, &contacts, k), j = find_deepest(&list, &contacts, k);
-                if (i == usual.view.point_count[k] || j == list.view.point_count[k])
+                if (i == usual.rows[k].count || j == list.rows[k].count)
                     continue;
-                assert_int_equal(usual.view.feature[i][k], list.view.feature[j][k]);
+                assert_int_equal(usual.rows[k].point[i].feature, list.rows[k].point[j].feature);
                 compared++;
-                come_and_go += usual.view.point_count[k] != list.view.point_count[k];
+                come_and_go += usual.rows[k].count != list.rows[k].count;
             }
         }
-        destroy_contacts(&contacts);
-        destroy_manifolds(&usual, false);
-        destroy_manifolds(&list, false);
+        free(contacts.rows);
+        free(usual.rows);
+        free(list.rows);
         destroy_scene(&scene);
     }
     printf("  %zu points compared, %zu where the second one comes or goes\n", compared, come_and_go);

@@ -16,13 +16,13 @@ struct plain_batch {
     const narc_shapes *shapes;
     const narc_bodies *bodies;
     const narc_pairs *pairs;
-    const narc_contacts *right;
+    const narc_contact *right;
     const struct scene *scene;
     const char *name;
 };
 
-/* Fail, with the pair, unless the instruction set under test says the same. `hints` may be NULL: a call without. */
-void check_plain_overlaps(const struct plain_batch *batch, unsigned threads);
-void check_plain_contacts(const struct plain_batch *batch, float margin, unsigned threads, uint32_t *hints);
+/* Fail, with the pair, unless the instruction set under test says the same. */
+void check_plain_overlaps(const struct plain_batch *batch, const narc_workers *workers);
+void check_plain_contacts(const struct plain_batch *batch, const narc_query *query);
 
 #endif
