@@ -29,99 +29,96 @@ static bool same_radius(double expected, double found) {
     return expected == found || fabs(expected - found) <= 1e-6 * expected;
 }
 
-/* Point i of manifold k against one of the reference; NULL, or what is wrong. */
-static const char *check_point(const struct reference_point *right, const narc_manifolds *list, size_t k, size_t i,
-                               double bound, bool radii, double *worst) {
-    const double off = hypot((double)list->point[i].x - right->x, (double)list->point[i].y - right->y);
-    const double error = fmax(off, fabs((double)list->point[i].separation - right->separation));
+/* Point i of a manifold against one of the reference; NULL, or what is wrong. */
+static const char *check_point(const struct reference_point *right, const narc_manifold_point *point, double bound,
+                               double *worst) {
+    const double off = hypot((double)point->x - right->x, (double)point->y - right->y);
+    const double error = fmax(off, fabs((double)point->separation - right->separation));
     *worst = fmax(*worst, error / bound);
     if (!(error <= bound))
         return "point or separation";
-    if (list->point[i].feature != right->feature)
-        return "feature";
-    if (radii && (!same_radius(right->radius_a, (double)list->radius_a[i][k]) ||
-                  !same_radius(right->radius_b, (double)list->radius_b[i][k])))
-        return "radius";
-    return NULL;
+    return point->feature != right->feature ? "feature" : NULL;
 }
 
-/* Manifold k of a list with an infinite margin against contact k and the reference. */
+/* Radii are those of the deepest point; of a stretch either end may be it. */
+static bool has_radii(const struct reference_manifold *right, const narc_manifold *m, const narc_contact *contact) {
+    for (size_t i = 0; i < m->count; i++) {
+        const bool deepest = right->stretch ? m->point[i].separation == contact->separation : i == right->deepest;
+        if (deepest && same_radius(right->point[i].radius_a, (double)m->radius_a) &&
+            same_radius(right->point[i].radius_b, (double)m->radius_b))
+            return true;
+    }
+    return false;
+}
+
+/* A manifold found with an infinite margin against the contact and the reference. */
 static const char *check_manifold(const struct reference_body *a, const struct reference_body *b,
-                                  const narc_contacts *contacts, const narc_manifolds *list, size_t k,
-                                  struct tally *tally) {
-    const struct exact_contact contact = {(double)contacts->separation[k],
-                                          (double)contacts->normal_x[k],
-                                          (double)contacts->normal_y[k],
-                                          (double)contacts->point_x[k],
-                                          (double)contacts->point_y[k],
-                                          arc_of_a(contacts->feature),
-                                          arc_of_b(contacts->feature)};
+                                  const narc_contact *found, const narc_manifold *m, struct tally *tally) {
+    const struct exact_contact contact = {
+        (double)found->separation, (double)found->normal_x,   (double)found->normal_y,  (double)found->point_x,
+        (double)found->point_y,    arc_of_a(found->feature), arc_of_b(found->feature)};
     const struct reference_manifold right = reference_find_manifold(a, b, &contact, (double)NARC_FLAT_ANGLE);
     const double bound = point_bounds * separation_bound(a, b);
-    const size_t count = list->point_count[k];
-    if (count < 1 || count > 2)
+    if (m->count < 1 || m->count > 2)
         return "number of points";
-    if (memcmp(&list->normal_x[k], &contacts->normal_x[k], sizeof(float)) != 0 ||
-        memcmp(&list->normal_y[k], &contacts->normal_y[k], sizeof(float)) != 0)
+    if (memcmp(&m->normal_x, &found->normal_x, 2 * sizeof(float)) != 0)
         return "normal";
     /* One of the points is the contact, bit for bit; nothing is deeper. */
     bool exact = false, exact_place = false;
-    for (size_t i = 0; i < count; i++) {
-        const bool same = memcmp(&list->point[i].separation, &contacts->separation[k], sizeof(float)) == 0;
+    for (size_t i = 0; i < m->count; i++) {
+        const narc_manifold_point *point = &m->point[i];
+        const bool same = memcmp(&point->separation, &found->separation, sizeof(float)) == 0;
         exact = exact || same;
-        exact_place = exact_place || (same && memcmp(&list->point[i].x, &contacts->point_x[k], sizeof(float)) == 0 &&
-                                      memcmp(&list->point[i].y, &contacts->point_y[k], sizeof(float)) == 0);
-        if (list->point[i].separation < contacts->separation[k])
+        exact_place = exact_place || (same && memcmp(&point->x, &found->point_x, 2 * sizeof(float)) == 0);
+        if (point->separation < found->separation)
             return "a point deeper than the contact";
     }
-    if (count == 2 && list->point[0].feature == list->point[1].feature)
+    if (m->count == 2 && m->point[0].feature == m->point[1].feature)
         return "id of two points";
     if (!exact)
         return "the deepest separation";
+    if (m->count == 1 && memcmp(&m->radius_a, &found->radius_a, 2 * sizeof(float)) != 0)
+        return "radius, of contact and manifold";
     tally->pairs++;
-    tally->two += count == 2;
+    tally->two += m->count == 2;
     if (right.doubtful) {
         tally->doubtful++;
         return NULL;
     }
-    if (count != right.count)
+    if (m->count != right.count)
         return "number of points";
     tally->stretches += right.stretch;
     if (!exact_place && !right.stretch)
         return "the deepest place";
     /* What is certain but for the radii is which features; of a stretch, not which end is deeper. */
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < m->count; i++) {
         struct reference_point point = right.point[i];
         if (right.stretch)
             point.separation = fmax(point.separation, contact.separation);
-        const char *wrong = check_point(&point, list, k, i, bound, !right.doubtful_radius, &tally->worst);
-        if (wrong && !(right.doubtful_radius && strcmp(wrong, "feature") == 0 && count == 1))
+        const char *wrong = check_point(&point, &m->point[i], bound, &tally->worst);
+        if (wrong && !(right.doubtful_radius && strcmp(wrong, "feature") == 0 && m->count == 1))
             return wrong;
     }
-    return NULL;
+    return right.doubtful_radius || has_radii(&right, m, found) ? NULL : "radius";
 }
 
 /* The manifold of (b, a) against that of (a, b). */
-static const char *check_swapped(const narc_manifolds *list, const narc_manifolds *swapped, size_t k, double x,
-                                 double y, double bound, struct tally *tally) {
-    const size_t count = list->point_count[k];
-    const double turn =
-        hypot((double)(list->normal_x[k] + swapped->normal_x[k]), (double)(list->normal_y[k] + swapped->normal_y[k]));
+static const char *check_swapped(const narc_manifold *m, const narc_manifold *swapped, double x, double y, double bound,
+                                 struct tally *tally) {
+    const double turn = hypot((double)(m->normal_x + swapped->normal_x), (double)(m->normal_y + swapped->normal_y));
     /* Another local maximum of the same value, or a choice within rounding. */
-    if (turn > 1e-4 || swapped->point_count[k] != count) {
+    if (turn > 1e-4 || swapped->count != m->count) {
         tally->swaps_skipped++;
         return NULL;
     }
-    for (size_t i = 0; i < count; i++) {
-        const size_t other = count - 1 - i;
-        const unsigned id = list->point[i].feature, turned = swapped->point[other].feature;
-        if ((id >> 8 | (id & 0xff) << 8) != turned) {
+    for (size_t i = 0; i < m->count; i++) {
+        const narc_manifold_point *point = &m->point[i], *other = &swapped->point[m->count - 1 - i];
+        if ((point->feature >> 8 | (point->feature & 0xff) << 8) != other->feature) {
             tally->swaps_skipped++;
             return NULL;
         }
-        const double off = hypot((double)(list->point[i].x - swapped->point[other].x) - x,
-                                 (double)(list->point[i].y - swapped->point[other].y) - y);
-        if (fabs((double)(list->point[i].separation - swapped->point[other].separation)) > bound)
+        const double off = hypot((double)(point->x - other->x) - x, (double)(point->y - other->y) - y);
+        if (fabs((double)(point->separation - other->separation)) > bound)
             return "separation, swapped";
         if (turn < 1e-6 && off > 4 * bound)
             return "point, swapped";
@@ -143,18 +140,19 @@ static void check_scene(const struct scene *scene, const char *families, struct 
     for (size_t k = 0; k < scene->pair_count; k++) {
         const struct reference_body a = scene_reference(scene, scene->pairs[k].a);
         const struct reference_body b = scene_reference(scene, scene->pairs[k].b);
-        assert_int_equal(list.rows[k].pair, k);
-        const char *wrong = check_manifold(&a, &b, &all.view, &list.rows[k], tally);
+        const narc_manifold *m = &list.rows[k];
+        assert_int_equal(m->pair, k);
+        const char *wrong = check_manifold(&a, &b, &all.rows[k], m, tally);
         if (!wrong)
-            wrong = check_swapped(&list.view, &swapped.rows[k], b.x - a.x, b.y - a.y,
-                                  point_bounds * separation_bound(&a, &b), tally);
+            wrong = check_swapped(m, &swapped.rows[k], b.x - a.x, b.y - a.y, point_bounds * separation_bound(&a, &b),
+                                  tally);
         if (wrong && tally->wrong++ < SHOWN) {
-            print_error("%s, %s: wrong %s\n", families, placement_name((enum placement)(k % PLACE_COUNT)), wrong);
-            for (size_t i = 0; i < list.rows[k].count; i++)
-                print_error("  point %zu: (%.9g, %.9g), separation %.9g, feature %04x, radii %g and %g\n", i,
-                            (double)list.rows[k].point[i].x, (double)list.rows[k].point[i].y,
-                            (double)list.rows[k].point[i].separation, list.rows[k].point[i].feature,
-                            (double)list.rows[k].radius_a, (double)list.rows[k].radius_b);
+            print_error("%s, %s: wrong %s; radii %g and %g\n", families,
+                        placement_name((enum placement)(k % PLACE_COUNT)), wrong, (double)m->radius_a,
+                        (double)m->radius_b);
+            for (size_t i = 0; i < m->count; i++)
+                print_error("  point %zu: (%.9g, %.9g), separation %.9g, feature %04x\n", i, (double)m->point[i].x,
+                            (double)m->point[i].y, (double)m->point[i].separation, m->point[i].feature);
             print_pair(&a, &b);
         }
     }
@@ -419,7 +417,7 @@ static void test_margin(void **state) {
             struct manifolds list = scene_manifolds(&scene, margins[m]);
             assert_int_equal(list.count, points[m] > 0);
             if (points[m] == 2) {
-                check_same_manifolds(&all, 0, &list, 0);
+                assert_memory_equal(list.rows, all.rows, sizeof *list.rows);
             } else if (points[m] == 1) {
                 assert_int_equal(list.rows[0].count, 1);
                 assert_int_equal(list.rows[0].point[0].feature, all.rows[0].point[deep].feature);
@@ -442,7 +440,9 @@ static void test_second_margin(void **state) {
     put(&scene, 1, 0, 1.02, 0.05);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
-    struct manifolds all = scene_manifolds(&scene, INFINITY), list = create_manifolds(1, false);
+    struct manifolds all = scene_manifolds(&scene, INFINITY);
+    narc_manifold found;
+    size_t count;
     assert_int_equal(all.rows[0].count, 2);
     const float first = fminf(all.rows[0].point[0].separation, all.rows[0].point[1].separation);
     const float second = fmaxf(all.rows[0].point[0].separation, all.rows[0].point[1].separation);
@@ -456,20 +456,15 @@ static void test_second_margin(void **state) {
                                 {-1, 0}};
     const uint8_t points[] = {1, 1, 2, 0, 2, 2, 1, 0};
     for (size_t k = 0; k < sizeof points; k++) {
-        const narc_manifold_options options = {.margin = margins[k][0], .second_margin = margins[k][1]};
-        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL),
-                         NARC_OK);
-        assert_int_equal(list.count, points[k] > 0);
+        const narc_query query = {.margin = margins[k][0], .second_margin = margins[k][1]};
+        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &query, &found, 1, &count, NULL), NARC_OK);
+        assert_int_equal(count, points[k] > 0);
         if (points[k] > 0)
-            assert_int_equal(list.rows[0].count, points[k]);
+            assert_int_equal(found.count, points[k]);
         if (points[k] == 2)
-            check_same_manifolds(&all, 0, &list, 0);
+            assert_memory_equal(&found, all.rows, sizeof found);
     }
-    const narc_manifold_options options = {.second_margin = NAN};
-    assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL),
-                     NARC_ERROR_NOT_FINITE);
     free(all.rows);
-    free(list.rows);
     destroy_scene(&scene);
 }
 
@@ -481,16 +476,15 @@ static void test_flat_angle(void **state) {
     put(&scene, 1, 0, 1.2, 0.2);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
-    struct manifolds list = create_manifolds(1, false);
+    narc_manifold found;
+    size_t count;
     const float angles[] = {0, 0.21f, 0.19f, -1, NARC_MAX_FLAT_ANGLE, -INFINITY};
     const uint8_t points[] = {2, 2, 1, 1, 2, 1};
     for (size_t k = 0; k < 6; k++) {
-        const narc_manifold_options options = {.margin = INFINITY, .flat_angle = angles[k]};
-        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL),
-                         NARC_OK);
-        assert_int_equal(list.rows[0].count, points[k]);
+        const narc_query query = {.margin = INFINITY, .flat_angle = angles[k]};
+        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &query, &found, 1, &count, NULL), NARC_OK);
+        assert_int_equal(found.count, points[k]);
     }
-    free(list.rows);
     destroy_scene(&scene);
 }
 
@@ -550,10 +544,11 @@ static void test_doubled_corner(void **state) {
                 const bool both = list.rows[0].count == 2;
                 assert_int_equal(ids[moved], both ? turned >> 16 | turned << 16 : turned);
                 two += both;
-                for (size_t i = 0; i < list.rows[0].count; i++) {
-                    assert_true(list.rows[0].point[i].feature >> 8 != (1 | NARC_FEATURE_EDGE));
-                    assert_true(!isinf(list.rows[0].radius_b) || list.rows[0].point[i].feature >> 8 & NARC_FEATURE_EDGE);
-                }
+                const narc_manifold_point *point = list.rows[0].point;
+                for (size_t i = 0; i < list.rows[0].count; i++)
+                    assert_true(point[i].feature >> 8 != (1 | NARC_FEATURE_EDGE));
+                const size_t deep = both && point[1].separation < point[0].separation;
+                assert_true(!isinf(list.rows[0].radius_b) || point[deep].feature >> 8 & NARC_FEATURE_EDGE);
                 free(list.rows);
             }
             assert_int_equal(ids[0], ids[1]);
@@ -702,11 +697,10 @@ static void test_ids_at_all_flat_angles(void **state) {
         const narc_bodies bodies = scene_bodies(&scene);
         const narc_pairs pairs = scene_pairs(&scene);
         struct contacts contacts = scene_contacts(&scene, INFINITY);
-        struct manifolds usual = scene_manifolds(&scene, INFINITY), list = create_manifolds(count, false);
+        struct manifolds usual = scene_manifolds(&scene, INFINITY);
         for (size_t a = 1; a < ANGLES; a++) {
-            const narc_manifold_options options = {.margin = INFINITY, .flat_angle = angles[a]};
-            assert_int_equal(
-                narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL), NARC_OK);
+            const narc_query query = {.margin = INFINITY, .flat_angle = angles[a]};
+            struct manifolds list = find_manifolds(scene.store, &bodies, &pairs, &query);
             for (size_t k = 0; k < count; k++) {
                 const size_t i = find_deepest(&usual, &contacts, k), j = find_deepest(&list, &contacts, k);
                 if (i == usual.rows[k].count || j == list.rows[k].count)
@@ -715,10 +709,10 @@ static void test_ids_at_all_flat_angles(void **state) {
                 compared++;
                 come_and_go += usual.rows[k].count != list.rows[k].count;
             }
+            free(list.rows);
         }
         free(contacts.rows);
         free(usual.rows);
-        free(list.rows);
         destroy_scene(&scene);
     }
     printf("  %zu points compared, %zu where the second one comes or goes\n", compared, come_and_go);
