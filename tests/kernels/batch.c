@@ -173,7 +173,9 @@ static void test_capacity(void **state) {
     assert_true(all.count > 100);
     for (size_t trial = 0; trial < 60; trial++) {
         static const size_t fixed[] = {0, 1, 63, 64, 65};
-        const size_t capacity = trial < 5 ? fixed[trial] : trial == 5 ? all.count - 1 : random_below(&random, all.count);
+        const size_t capacity = trial < 5    ? fixed[trial]
+                                : trial == 5 ? all.count - 1
+                                             : random_below(&random, all.count);
         const narc_workers workers = narc_openmp_workers((unsigned)(trial % 4));
         narc_contact *some = guard_allocate(capacity * sizeof *some);
         narc_error error = {0};
@@ -181,9 +183,8 @@ static void test_capacity(void **state) {
         narc_query query = {.workers = &workers};
         if (trial % 2)
             query.row_stride = sizeof *some;
-        assert_int_equal(
-            narc_find_contacts(scene.store, &bodies, &pairs, &query, some, capacity, &needed, &error),
-            NARC_ERROR_CAPACITY);
+        assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &query, some, capacity, &needed, &error),
+                         NARC_ERROR_CAPACITY);
         assert_int_equal(error.status, NARC_ERROR_CAPACITY);
         assert_int_equal(needed, all.count);
         check_same_rows(&all, 0, some, capacity);
@@ -317,8 +318,8 @@ static void check_places(const struct place *places, const unsigned char *right,
         const struct place *place = &places[k];
         assert_memory_equal(&place->row, right + k * size, size);
         assert_true(is_junk(place->before, sizeof place->before));
-        assert_true(is_junk((const unsigned char *)&place->row + size,
-                            sizeof *place - offsetof(struct place, row) - size));
+        assert_true(
+            is_junk((const unsigned char *)&place->row + size, sizeof *place - offsetof(struct place, row) - size));
     }
 }
 
@@ -363,12 +364,11 @@ static void check_rows(struct test_random *random, const struct asked *asked, fl
     assert_non_null(is_asked);
     for (size_t k = first; k < first + part; k++)
         is_asked[selection[k]] = true;
-    for (size_t k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++)
         if (is_asked[k])
             assert_memory_equal(rows + k * size, dense + k * size, size);
         else
             assert_true(is_junk(rows + k * size, size));
-    }
     const size_t of_dense = again;
     query.dense = 0;
     assert_int_equal(ask(asked, &query, rows, count, &again), NARC_OK);
@@ -451,9 +451,8 @@ static void test_selected_bits(void **state) {
         uint32_t *selection = make_junk(count * sizeof *selection);
         const size_t selected = select_pairs(&random, count, selection), words = NARC_BIT_WORDS(selected);
         uint64_t *all = scene_overlaps(&scene), *bits = guard_allocate(words * sizeof *bits);
-        narc_query query = {.selection = {selection, sizeof *selection},
-                            .selection_count = selected,
-                            .workers = &workers};
+        narc_query query = {
+            .selection = {selection, sizeof *selection}, .selection_count = selected, .workers = &workers};
         assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, bits, NULL), NARC_OK);
         for (size_t k = 0; k < 64 * words; k++)
             assert_int_equal(bit_is_set(bits, k), k < selected && bit_is_set(all, selection[k]));

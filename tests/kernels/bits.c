@@ -167,9 +167,9 @@ static void check_overlaps(const struct expected *expected, const struct part *p
     const narc_method_options options = set_outcomes(expected->options, left.outcomes);
     const narc_query query = {.hints = hint_column(left.hints), .workers = &part->workers};
     uint64_t *out = guard_allocate(words * sizeof(uint64_t));
-    assert_int_equal(narc_find_overlaps_by(part->methods, &part->columns.bodies, &part->columns.pairs, &options, &query,
-                                           out, NULL),
-                     NARC_OK);
+    assert_int_equal(
+        narc_find_overlaps_by(part->methods, &part->columns.bodies, &part->columns.pairs, &options, &query, out, NULL),
+        NARC_OK);
     for (size_t k = 0; k < 64 * words; k++) {
         const bool right = k < count && bit_is_set(expected->bits, part->first + k);
         if (bit_is_set(out, k) != right) {
@@ -191,8 +191,7 @@ static void check_contacts(const struct expected *expected, const struct part *p
         found++;
     const struct left left = guard_left(expected, part);
     const narc_method_options options = set_outcomes(expected->options, left.outcomes);
-    const narc_query query = {
-        .margin = margins[m], .hints = hint_column(left.hints), .workers = &part->workers};
+    const narc_query query = {.margin = margins[m], .hints = hint_column(left.hints), .workers = &part->workers};
     /* No longer than what is found: the guard then lies right behind the last contact. */
     struct contacts out = {guard_allocate(found * sizeof *out.rows), SIZE_MAX};
     assert_int_equal(narc_find_contacts_by(part->methods, &part->columns.bodies, &part->columns.pairs, &options, &query,

@@ -53,8 +53,9 @@ static struct answer ask_bodies(const struct shape *a, struct body body_a, const
                  (double)all.rows[0].normal_y, (double)all.rows[0].point_x, (double)all.rows[0].point_y,
                  errors.separation, errors.normal, errors.point);
     }
-    struct answer answer = {bit_is_set(bits, 0), all.rows[0].separation, all.rows[0].normal_x, all.rows[0].normal_y,
-                            all.rows[0].point_x, all.rows[0].point_y,    arc_of_a(all.rows[0].feature),    arc_of_b(all.rows[0].feature)};
+    struct answer answer = {bit_is_set(bits, 0),           all.rows[0].separation,       all.rows[0].normal_x,
+                            all.rows[0].normal_y,          all.rows[0].point_x,          all.rows[0].point_y,
+                            arc_of_a(all.rows[0].feature), arc_of_b(all.rows[0].feature)};
     free(all.rows);
     free(bits);
     destroy_scene(&scene);

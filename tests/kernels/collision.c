@@ -85,7 +85,8 @@ static void check_scene(const struct scene *scene, enum family family_a, enum fa
                 "(%.9g, %.9g), point (%.9g, %.9g), arcs %d and %d\n",
                 family_name(family_a), family_name(family_b), placement_name(placement), wrong, gap, bound, overlap,
                 (double)all.rows[k].separation, (double)all.rows[k].normal_x, (double)all.rows[k].normal_y,
-                (double)all.rows[k].point_x, (double)all.rows[k].point_y, arc_of_a(all.rows[k].feature), arc_of_b(all.rows[k].feature));
+                (double)all.rows[k].point_x, (double)all.rows[k].point_y, arc_of_a(all.rows[k].feature),
+                arc_of_b(all.rows[k].feature));
             print_pair(&a, &b);
         }
     }

@@ -100,7 +100,8 @@ static struct tally check_contacts(const struct corpus *corpus, const narc_metho
     const size_t count = corpus->scene.pair_count;
     struct tally tally = {.pairs = count};
     memset(options->out_outcomes, 0xa5, count);
-    struct contacts all = query_contacts(&corpus->scene, options, &(narc_query){.margin = INFINITY, .hints = hint_column(hints)});
+    struct contacts all =
+        query_contacts(&corpus->scene, options, &(narc_query){.margin = INFINITY, .hints = hint_column(hints)});
     assert_int_equal(all.count, count);
     for (size_t k = 0; k < count; k++) {
         const unsigned outcome = options->out_outcomes[k];
@@ -302,8 +303,7 @@ static size_t count_limits(const struct corpus *corpus, unsigned iterations, uin
     const size_t count = corpus->scene.pair_count;
     uint8_t *outcomes = create_outcomes(count);
     size_t limits = 0;
-    const narc_method_options options = {
-        .method = NARC_METHOD_GJK, .iterations = iterations, .out_outcomes = outcomes};
+    const narc_method_options options = {.method = NARC_METHOD_GJK, .iterations = iterations, .out_outcomes = outcomes};
     free(query_overlaps(&corpus->scene, &options, &(narc_query){.hints = hint_column(hints)}));
     for (size_t k = 0; k < count; k++)
         limits += outcomes[k] == NARC_OUTCOME_LIMIT;

@@ -111,7 +111,7 @@ static struct scene make_scene(narc_precision precision) {
 #define HASH_FIELD(hash, list, field)                                                                                  \
     do {                                                                                                               \
         for (size_t hash_k = 0; hash_k < (list).count; hash_k++)                                                       \
-            (hash) = test_hash_items(hash, &(list).rows[hash_k].field, 1, sizeof (list).rows[hash_k].field);           \
+            (hash) = test_hash_items(hash, &(list).rows[hash_k].field, 1, sizeof(list).rows[hash_k].field);            \
     } while (0)
 
 static uint64_t hash_contacts(uint64_t hash, struct contacts list) {
@@ -182,9 +182,9 @@ static uint64_t hash_method(const struct scene *scene, const narc_bodies *bodies
     for (int round = 0; round < 2; round++) {
         assert_int_equal(narc_find_overlaps_by(methods, bodies, pairs, &options, &query, bits, NULL), NARC_OK);
         if (lists)
-            assert_int_equal(narc_find_contacts_by(methods, bodies, pairs, &options, &query, found.rows, PAIRS,
-                                                   &found.count, NULL),
-                             NARC_OK);
+            assert_int_equal(
+                narc_find_contacts_by(methods, bodies, pairs, &options, &query, found.rows, PAIRS, &found.count, NULL),
+                NARC_OK);
         assert_true(!lists || found.count == pairs->count);
         hash = test_hash_items(hash, bits, NARC_BIT_WORDS(pairs->count), sizeof(uint64_t));
         hash = test_hash(hash, outcomes, pairs->count);

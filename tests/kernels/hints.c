@@ -298,8 +298,7 @@ static void test_errors(void **state) {
     scene.pairs[PAIRS - 1].b = 0;
 
     /* Too short a list: what fits is the start of the whole list, and hints are as with enough room. */
-    struct contacts all =
-        find_contacts(scene.store, &bodies, &pairs, &(narc_query){.hints = NARC_HINT_ARRAY(enough)});
+    struct contacts all = find_contacts(scene.store, &bodies, &pairs, &(narc_query){.hints = NARC_HINT_ARRAY(enough)});
     assert_true(all.count > 100);
     for (unsigned threads = 1; threads <= 2; threads++) {
         const narc_workers workers = narc_openmp_workers(threads);
@@ -349,8 +348,8 @@ static void test_discs(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_frames), cmocka_unit_test(test_stale),  cmocka_unit_test(test_garbage),
-        cmocka_unit_test(test_guards), cmocka_unit_test(test_errors), cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_frames), cmocka_unit_test(test_stale),      cmocka_unit_test(test_garbage),
+        cmocka_unit_test(test_guards), cmocka_unit_test(test_errors),     cmocka_unit_test(test_ranges),
         cmocka_unit_test(test_discs),  cmocka_unit_test(test_selections),
     };
     return test_begin() ? cmocka_run_group_tests_name("hints", tests, NULL, NULL) : TEST_SKIPPED;

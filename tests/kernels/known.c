@@ -219,8 +219,8 @@ static void test_vertices(void **state) {
     const struct known far = {box(2, 2, 0), box(2, 2, 0), 2 + 3, 2 + 4, .gap = 5, .normal_x = 0.6, .normal_y = 0.8};
     check_known("corner to corner", &far, false);
     struct scene scene = make_known_scene(&far);
-    struct contacts found =
-        query_contacts(&scene, &(narc_method_options){.method = NARC_METHOD_POLYGON_SAT}, &(narc_query){.margin = INFINITY});
+    struct contacts found = query_contacts(&scene, &(narc_method_options){.method = NARC_METHOD_POLYGON_SAT},
+                                           &(narc_query){.margin = INFINITY});
     for (size_t k = 0; k < found.count; k++) {
         const struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
                                     b = scene_reference(&scene, scene.pairs[k].b);
@@ -293,7 +293,8 @@ static void test_circles_in_one_place(void **state) {
     }
     free(bits);
     /* The first of Algorithm 2's arcs has no direction to look along. */
-    bits = query_overlaps(&scene, &(narc_method_options){.method = NARC_METHOD_SAT_FIRST, .out_outcomes = outcomes}, NULL);
+    bits =
+        query_overlaps(&scene, &(narc_method_options){.method = NARC_METHOD_SAT_FIRST, .out_outcomes = outcomes}, NULL);
     for (size_t k = 0; k < scene.pair_count; k++) {
         assert_false(bit_is_set(bits, k));
         assert_int_equal(outcomes[k], NARC_OUTCOME_NONE);

@@ -54,9 +54,9 @@ static bool has_radii(const struct reference_manifold *right, const narc_manifol
 /* A manifold found with an infinite margin against the contact and the reference. */
 static const char *check_manifold(const struct reference_body *a, const struct reference_body *b,
                                   const narc_contact *found, const narc_manifold *m, struct tally *tally) {
-    const struct exact_contact contact = {
-        (double)found->separation, (double)found->normal_x,   (double)found->normal_y,  (double)found->point_x,
-        (double)found->point_y,    arc_of_a(found->feature), arc_of_b(found->feature)};
+    const struct exact_contact contact = {(double)found->separation, (double)found->normal_x, (double)found->normal_y,
+                                          (double)found->point_x,    (double)found->point_y,  arc_of_a(found->feature),
+                                          arc_of_b(found->feature)};
     const struct reference_manifold right = reference_find_manifold(a, b, &contact, (double)NARC_FLAT_ANGLE);
     const double bound = point_bounds * separation_bound(a, b);
     if (m->count < 1 || m->count > 2)
@@ -410,7 +410,8 @@ static void test_margin(void **state) {
         const size_t deep = all.rows[0].point[1].separation < all.rows[0].point[0].separation, other = 1 - deep;
         assert_int_equal(deep, side < 0 ? 0 : 1);
         const float limit = all.rows[0].point[other].separation;
-        const float margins[] = {nextafterf(limit, INFINITY), limit, nextafterf(all.rows[0].point[deep].separation, INFINITY),
+        const float margins[] = {nextafterf(limit, INFINITY), limit,
+                                 nextafterf(all.rows[0].point[deep].separation, INFINITY),
                                  all.rows[0].point[deep].separation};
         const size_t points[] = {2, 1, 1, 0};
         for (size_t m = 0; m < 4; m++) {
@@ -421,7 +422,8 @@ static void test_margin(void **state) {
             } else if (points[m] == 1) {
                 assert_int_equal(list.rows[0].count, 1);
                 assert_int_equal(list.rows[0].point[0].feature, all.rows[0].point[deep].feature);
-                assert_memory_equal(&list.rows[0].point[0].separation, &all.rows[0].point[deep].separation, sizeof(float));
+                assert_memory_equal(&list.rows[0].point[0].separation, &all.rows[0].point[deep].separation,
+                                    sizeof(float));
                 assert_memory_equal(&list.rows[0].point[0].x, &all.rows[0].point[deep].x, sizeof(float));
                 assert_true(list.rows[0].point[1].separation == 0 && list.rows[0].point[1].feature == 0);
             }

@@ -48,8 +48,8 @@ static void print_contact(const struct exact_pair *pair, const struct contacts *
     print_error("  answer: outcome %u, separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), arcs %d and %d, point "
                 "off %.3g\n",
                 outcome, (double)all->rows[k].separation, (double)all->rows[k].normal_x, (double)all->rows[k].normal_y,
-                (double)all->rows[k].point_x, (double)all->rows[k].point_y, arc_of_a(all->rows[k].feature), arc_of_b(all->rows[k].feature),
-                distance_from_outlines(pair, &all->rows[k]));
+                (double)all->rows[k].point_x, (double)all->rows[k].point_y, arc_of_a(all->rows[k].feature),
+                arc_of_b(all->rows[k].feature), distance_from_outlines(pair, &all->rows[k]));
 }
 
 /* ------------------------------------------------------------------------------------------------ sat */
@@ -72,9 +72,8 @@ static void test_sat_is_narc_find(void **state) {
             const float margin = margins[round / 2];
             uint8_t *outcomes = create_outcomes(count);
             const narc_workers workers = narc_openmp_workers(1 + (unsigned)round % 3);
-            const narc_method_options options = {.tolerance = round % 3 ? 0 : 0.5f,
-                                                 .iterations = round % 3 ? 0 : 1,
-                                                 .out_outcomes = outcomes};
+            const narc_method_options options = {
+                .tolerance = round % 3 ? 0 : 0.5f, .iterations = round % 3 ? 0 : 1, .out_outcomes = outcomes};
             const narc_query query = {
                 .margin = margin, .hints = hint_column(round % 2 ? hints : NULL), .workers = &workers};
             const narc_query own_query = {.margin = margin, .hints = hint_column(round % 2 ? own_hints : NULL)};
@@ -106,7 +105,8 @@ static void test_sat_is_exact(void **state) {
     size_t wrong_pairs = 0;
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
-        struct contacts all = query_contacts(&corpus->scene, &(narc_method_options){0}, &(narc_query){.margin = INFINITY});
+        struct contacts all =
+            query_contacts(&corpus->scene, &(narc_method_options){0}, &(narc_query){.margin = INFINITY});
         for (size_t k = 0; k < all.count; k++) {
             const struct exact_pair *pair = &corpus->pairs[k];
             const char *wrong = check_along_normal(pair, &all.rows[k], false);
@@ -170,8 +170,7 @@ static bool is_first_pair(const struct exact_pair *pair, const struct first_body
 
 /* Goes through all pairs of arcs, those of A outside: the answer is the first that passes for certain, or one in doubt
  * before it, or none. */
-static struct first_verdict judge_first(const struct exact_pair *pair, const narc_contact *told,
-                                        unsigned outcome) {
+static struct first_verdict judge_first(const struct exact_pair *pair, const narc_contact *told, unsigned outcome) {
     const struct first_body a = make_first_body(&pair->a, &pair->a), b = make_first_body(&pair->b, &pair->a);
     struct first_verdict verdict = {.value = INFINITY, .arc_count = a.count * b.count};
     const bool none = outcome == NARC_OUTCOME_NONE;
@@ -220,7 +219,8 @@ static void check_first_pair(const struct corpus *corpus, const struct contacts 
         wrong = "outcome";
     else if (outcome == NARC_OUTCOME_NONE &&
              (!isinf(separation) || all->rows[k].normal_x != 0 || all->rows[k].normal_y != 0 ||
-              all->rows[k].point_x != 0 || all->rows[k].point_y != 0 || arc_of_a(all->rows[k].feature) || arc_of_b(all->rows[k].feature)))
+              all->rows[k].point_x != 0 || all->rows[k].point_y != 0 || arc_of_a(all->rows[k].feature) ||
+              arc_of_b(all->rows[k].feature)))
         wrong = "none, but an answer";
     /* A pair of arcs that passes has the gap along u, which is never more than the largest gap. */
     if (!wrong && sure && verdict.value > pair->gap + pair->bound)

@@ -310,8 +310,8 @@ static const double unit_tolerance = 1e-6;
 
 /* The gap along the normal of the arcs that are told: that of the bodies. Of an edge the arc at its counter-clockwise
  * end is told, the height of which is another by `parallel` times the edge's length, less than the body's diameter. */
-static bool are_touching_arcs(const struct exact_pair *pair, const narc_contact *contact, double x,
-                              double y, double of_bodies) {
+static bool are_touching_arcs(const struct exact_pair *pair, const narc_contact *contact, double x, double y,
+                              double of_bodies) {
     const size_t i = arc_of_a(contact->feature), j = arc_of_b(contact->feature);
     if (i >= pair->a.count || j >= pair->b.count)
         return false;

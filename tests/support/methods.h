@@ -47,9 +47,7 @@ uint8_t *create_outcomes(size_t count);
 uint32_t *create_hints(size_t count); /* zeros */
 
 /* A plain array of hints; NULL: none. */
-static inline narc_hint_column hint_column(uint32_t *hints) {
-    return (narc_hint_column){hints, sizeof *hints};
-}
+static inline narc_hint_column hint_column(uint32_t *hints) { return (narc_hint_column){hints, sizeof *hints}; }
 
 /* Fail unless both lists hold the same bits. */
 void check_same_contacts(const struct contacts *found, const struct contacts *expected, const char *what);
