@@ -1,208 +1,228 @@
 /* SPDX-License-Identifier: MIT
  *
- * batch.c - spreads a batch over threads.
+ * batch.c - runs a batch, part by part: in the calling thread, or by workers.
  *
- * Chunks are fixed ranges of pairs whatever the number of threads, and each pair's answer depends on that pair alone,
- * so the bytes of the result are the same for any split.
+ * Parts are ranges of pairs, and each pair's answer depends on that pair alone, so the bytes of the result are the same
+ * for any workers. A part's rows are written to the place of its first pair, as if every pair had a row; when all parts
+ * before it are in their final place, they are moved to the end of these. No part waits for that: it is done by whoever
+ * ends a part and finds it due, for those behind it that have ended, too.
  */
-#include "column.h"
 #include "dispatch.h"
 #include "error.h"
 
-#include <assert.h>
-#include <math.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <string.h>
 
-#ifdef _OPENMP
-#include <sched.h>
-#endif
+/* Pairs in a part of overlaps, multiples of 64: as many as possible, because at the end of a part the kernel decides the
+ * rest of its pairs in vectors that are not full, but several for each worker, so that all end together. */
+enum { MOST_OVERLAPS = 16384, LEAST_OVERLAPS = 1024, PARTS_PER_WORKER = 4 };
 
-/* Each thread has a buffer for the answers to a chunk on its stack, contacts or manifolds with all columns. */
-enum {
-    CONTACTS = NARC_CONTACT_CHUNK * NARC_CONTACT_BYTES,
-    MANIFOLDS = NARC_MANIFOLD_CHUNK * NARC_MANIFOLD_BYTES,
-    BUFFER = CONTACTS > MANIFOLDS ? CONTACTS : MANIFOLDS
+/* Parts of rows are at most that many, so that what is known of them has room on the stack. */
+enum { MOST_PARTS = 256 };
+
+/* Rows that are found apart where the caller's list is nearly full. */
+enum { APART = 64 };
+
+struct job {
+    const narc_batch *batch;
+    size_t first, count, part_size;
+    atomic_size_t skipped;
+
+    narc_overlap_kernel *overlap;
+    uint64_t *bits;
+
+    narc_row_kernel *kernel;
+    size_t size; /* bytes of a row */
+    narc_rows rows;
+    atomic_flag closing;             /* does someone move rows? */
+    atomic_size_t due;               /* the part to move next */
+    size_t found;                    /* rows in their final place; of who moves them */
+    atomic_uint ended[MOST_PARTS]; /* how many rows a part has and 1; 0: it has not ended */
 };
 
-/* Pairs in a chunk of overlaps, multiples of 64: as many as possible, because at the end of a chunk the kernel decides
- * the rest of its pairs in vectors that are not full, but several for each thread, so that all end together. */
-enum { MOST_OVERLAPS = 16384, LEAST_OVERLAPS = 1024, CHUNKS_PER_THREAD = 4 };
-
-/* OpenMP ends the process if it cannot start as many threads as it was asked for. */
-enum { MOST_THREADS = 256 };
-
-int narc_team_size(unsigned threads, size_t parts) {
-    const unsigned asked = threads ? threads : narc_default_threads(),
-                   wanted = asked < MOST_THREADS ? asked : MOST_THREADS;
-    return (int)(wanted < parts ? wanted : parts);
-}
-
-/* The same batch with a counter of the calling thread's own. */
+/* The same batch with a counter of its own. */
 static narc_batch count_apart(const narc_batch *batch, size_t *skipped) {
     narc_batch part = *batch;
-    part.skipped = batch->skipped ? skipped : NULL;
+    part.skipped = skipped;
     return part;
 }
 
-void narc_run_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, unsigned threads, uint64_t *out_bits) {
-    const size_t count = batch->pairs->count;
-    if (count == 0)
-        return;
-    const int team = narc_team_size(threads, (count + LEAST_OVERLAPS - 1) / LEAST_OVERLAPS);
-    if (team <= 1) {
-        kernel(batch, 0, count, out_bits);
-        return;
-    }
-    size_t chunk_size = count / ((size_t)team * CHUNKS_PER_THREAD) / 64 * 64;
-    if (chunk_size < LEAST_OVERLAPS)
-        chunk_size = LEAST_OVERLAPS;
-    if (chunk_size > MOST_OVERLAPS)
-        chunk_size = MOST_OVERLAPS;
-    const size_t chunks = (count + chunk_size - 1) / chunk_size;
+static size_t size_of_part(const struct job *job, size_t part) {
+    const size_t left = job->count - part * job->part_size;
+    return left < job->part_size ? left : job->part_size;
+}
+
+/* ------------------------------------------------------------------------------------------------ overlaps */
+
+static void find_overlaps(void *argument, size_t part) {
+    struct job *const job = argument;
     size_t skipped = 0;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic) num_threads(team) reduction(+ : skipped)
-#endif
-    for (size_t chunk = 0; chunk < chunks; chunk++) {
-        const narc_batch part = count_apart(batch, &skipped);
-        const size_t start = chunk * chunk_size, left = count - start;
-        kernel(&part, start, left < chunk_size ? left : chunk_size, out_bits + start / 64);
+    const narc_batch own = count_apart(job->batch, &skipped);
+    const size_t start = job->first + part * job->part_size;
+    job->overlap(&own, start, size_of_part(job, part), job->bits + start / 64);
+    atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
+}
+
+narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, uint64_t *out_bits,
+                                 narc_error *error) {
+    const narc_query *query = &batch->query;
+    const size_t first = query->first, count = query->count;
+    if (first % 64 != 0 || (count % 64 != 0 && first + count != batch->asked))
+        return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)count,
+                         "pairs %zu and the %zu from there on do not begin and end at multiples of 64", first, count);
+    if (count > 0 && !out_bits)
+        return narc_fail_missing(error, "out_bits");
+    struct job job = {.batch = batch, .first = first, .count = count, .overlap = kernel, .bits = out_bits};
+    const size_t workers = narc_count_workers(query->workers, count / LEAST_OVERLAPS);
+    const size_t even = count / (workers * PARTS_PER_WORKER) / 64 * 64;
+    job.part_size = workers <= 1             ? count
+                    : even < LEAST_OVERLAPS ? LEAST_OVERLAPS
+                    : even > MOST_OVERLAPS  ? MOST_OVERLAPS
+                                            : even;
+    if (count > 0)
+        narc_run_parts(query->workers, (count - 1) / job.part_size + 1, find_overlaps, &job);
+    if (query->out_skipped)
+        *query->out_skipped = atomic_load(&job.skipped);
+    return NARC_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------ rows */
+
+/* Moves rows to an earlier place; what lies between them stays. */
+static void move_rows(char *to, const char *from, size_t count, const struct job *job) {
+    if (to == from)
+        return;
+    if (job->rows.stride == (ptrdiff_t)job->size) {
+        memmove(to, from, count * job->size);
+        return;
     }
-    if (batch->skipped)
-        *batch->skipped += skipped;
+    for (size_t k = 0; k < count; k++, to += job->rows.stride, from += job->rows.stride)
+        memcpy(to, from, job->size);
 }
 
-/* A list's columns in a buffer, without gaps, for `count` items; those that are not wanted are not wanted there. */
-static narc_list divide_buffer(const narc_list *list, size_t count, char buffer[BUFFER]) {
-    narc_list part = *list;
-    char *next = buffer;
-    part.capacity = count;
-    for (size_t c = 0; c < list->columns; c++) {
-        part.array[c] = list->array[c] ? next : NULL;
-        next += count * list->item[c];
-    }
-    assert(next <= buffer + BUFFER);
-    return part;
+static char *place_of(const struct job *job, size_t row) {
+    return job->rows.base + (ptrdiff_t)row * job->rows.stride;
 }
 
-/* The same list from item `offset` on. */
-static narc_list skip_items(const narc_list *list, size_t offset) {
-    narc_list rest = *list;
-    rest.capacity -= offset;
-    for (size_t c = 0; c < list->columns; c++)
-        if (list->array[c])
-            rest.array[c] = (char *)list->array[c] + offset * list->item[c];
-    return rest;
-}
-
-/* Copies `found` items to items offset ... of the caller's list, as far as they fit. */
-static void copy_items(const narc_list *from, size_t found, size_t offset, const narc_list *to) {
-    const size_t room = offset < to->capacity ? to->capacity - offset : 0, count = found < room ? found : room;
-    for (size_t c = 0; c < to->columns && count > 0; c++)
-        if (to->array[c])
-            memcpy((char *)to->array[c] + offset * to->item[c], from->array[c], count * to->item[c]);
-}
-
-static void give_way(void) {
-#ifdef _OPENMP
-    sched_yield();
-#endif
-}
-
-/* One chunk after the other, straight to the caller's list while it has room for as many answers as a chunk has
- * pairs. */
-static size_t list_in_order(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count,
-                            const narc_list *list) {
-    size_t total = 0;
-    for (size_t start = 0; start < count; start += lister->chunk) {
-        _Alignas(16) char buffer[BUFFER];
-        const size_t size = count - start < lister->chunk ? count - start : lister->chunk;
-        const bool fits = total <= list->capacity && list->capacity - total >= size;
-        const narc_list *to = list; /* as it is, for the first chunk */
-        narc_list part;
-        if (!fits || total > 0) {
-            part = fits ? skip_items(list, total) : divide_buffer(list, lister->chunk, buffer);
-            to = &part;
+/* Moves the rows of all parts that are due. Of several threads one does it; one that ends a part while another is at it
+ * leaves it to that one, which looks again after it has let go. */
+static void close_gaps(struct job *job, size_t parts) {
+    size_t due = atomic_load(&job->due);
+    while (due < parts && atomic_load(&job->ended[due]) && !atomic_flag_test_and_set(&job->closing)) {
+        for (due = atomic_load(&job->due); due < parts && atomic_load(&job->ended[due]); due++) {
+            const size_t count = atomic_load(&job->ended[due]) - 1;
+            move_rows(place_of(job, job->found), place_of(job, due * job->part_size), count, job);
+            job->found += count;
         }
-        const size_t found = lister->find(lister, batch, first + start, size, to);
-        if (!fits)
-            copy_items(to, found, total, list);
-        total += found;
+        atomic_store(&job->due, due);
+        atomic_flag_clear(&job->closing);
     }
-    return total;
 }
 
-/* Several threads. Not inlined: the buffer of list_in_order() would be on the stack beside the thread's own. */
-static __attribute__((noinline)) size_t list_in_team(const narc_lister *lister, const narc_batch *batch, size_t first,
-                                                     size_t count, int team, const narc_list *list) {
-    const size_t chunks = count / lister->chunk + (count % lister->chunk != 0);
-    (void)team;
-    /* Chunks are handed out in the order of the pairs and run at once; only the reservation of their place in the list
-     * waits for its turn. It gives up the processor while it waits: OpenMP's own `ordered` spins, which on a busy
-     * machine keeps the thread that it waits for from running. */
-    atomic_size_t turn = 0;
-    size_t skipped = 0, total = 0;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(monotonic : dynamic) num_threads(team) reduction(+ : skipped)
-#endif
-    for (size_t chunk = 0; chunk < chunks; chunk++) {
-        const narc_batch own = count_apart(batch, &skipped);
-        _Alignas(16) char buffer[BUFFER];
-        const narc_list part = divide_buffer(list, lister->chunk, buffer);
-        const size_t start = chunk * lister->chunk, left = count - start;
-        const size_t found =
-            lister->find(lister, &own, first + start, left < lister->chunk ? left : lister->chunk, &part);
-        while (atomic_load_explicit(&turn, memory_order_acquire) != chunk)
-            give_way();
-        const size_t offset = total;
-        total += found;
-        atomic_store_explicit(&turn, chunk + 1, memory_order_release);
-        copy_items(&part, found, offset, list);
+/* Finds the rows of a part, group by group. */
+static void find_rows(void *argument, size_t part) {
+    struct job *const job = argument;
+    const bool dense = job->batch->query.dense != 0;
+    const size_t start = part * job->part_size, count = size_of_part(job, part);
+    size_t skipped = 0, found = 0;
+    const narc_batch own = count_apart(job->batch, &skipped);
+    for (size_t k = 0; k < count; k += NARC_ROW_GROUP) {
+        const size_t left = count - k;
+        const narc_rows to = {dense ? job->rows.base : place_of(job, start + found), job->rows.stride};
+        found += job->kernel(&own, job->first + start + k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &to);
     }
-    if (batch->skipped)
-        *batch->skipped += skipped;
-    return total;
+    atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
+    atomic_store(&job->ended[part], (unsigned)found + 1);
+    if (!dense)
+        close_gaps(job, (job->count - 1) / job->part_size + 1);
 }
 
-size_t narc_run_list(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count, unsigned threads,
-                     const narc_list *list) {
-    const int team = narc_team_size(threads, (count + lister->chunk - 1) / lister->chunk);
-    if (team <= 1)
-        return list_in_order(lister, batch, first, count, list);
-    return list_in_team(lister, batch, first, count, team, list);
+/* The rows of the pairs of a job, which has room for as many. Returns how many there are. */
+static size_t list_rows(struct job *job, size_t *skipped) {
+    const size_t groups = (job->count - 1) / NARC_ROW_GROUP + 1;
+    job->part_size = ((groups - 1) / MOST_PARTS + 1) * NARC_ROW_GROUP;
+    const size_t parts = (job->count - 1) / job->part_size + 1;
+    atomic_init(&job->skipped, 0);
+    atomic_init(&job->due, 0);
+    job->found = 0;
+    atomic_flag_clear(&job->closing);
+    for (size_t part = 0; part < parts; part++)
+        atomic_init(&job->ended[part], 0);
+    narc_run_parts(job->batch->query.workers, parts, find_rows, job);
+    *skipped += atomic_load(&job->skipped);
+    for (size_t part = 0; part < parts && job->batch->query.dense; part++)
+        job->found += atomic_load(&job->ended[part]) - 1;
+    return job->found;
 }
 
-static size_t find_contacts(const narc_lister *lister, const narc_batch *batch, size_t first, size_t count,
-                            const narc_list *list) {
-    void *const *array = list->array;
-    narc_contacts out = {.capacity = list->capacity};
-    NARC_CONTACT_COLUMNS(NARC_TAKE_ARRAY, &out)
-    return lister->contact(batch, first, count, lister->margin, &out);
+/* The same for a few pairs, with room for `room` rows only. */
+static size_t list_apart(struct job *job, size_t room, size_t *skipped) {
+    _Alignas(16) char rows[APART * sizeof(narc_manifold)];
+    const narc_batch own = count_apart(job->batch, skipped);
+    const narc_rows to = {rows, (ptrdiff_t)job->size};
+    const size_t found = job->kernel(&own, job->first, job->count, &to), kept = found < room ? found : room;
+    for (size_t k = 0; k < kept; k++)
+        memcpy(place_of(job, k), rows + k * job->size, job->size);
+    return found;
 }
 
-size_t narc_run_contacts(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count, float margin,
-                         unsigned threads, const narc_contacts *out_contacts) {
-    const narc_lister lister = {find_contacts, NARC_CONTACT_CHUNK, margin, .contact = kernel};
-    const narc_list list = {.capacity = out_contacts->capacity,
-                            .columns = NARC_CONTACT_COLUMN_COUNT,
-                            .item = {NARC_CONTACT_COLUMNS(NARC_COLUMN_SIZE, out_contacts)},
-                            .array = {NARC_CONTACT_COLUMNS(NARC_COLUMN_ARRAY, out_contacts)}};
-    return narc_run_list(&lister, batch, first, count, threads, &list);
+/* Lists rows as far as there is room, and counts them all: so many pairs at a time as there is room for. */
+static size_t list_all(struct job *job, size_t capacity, size_t *skipped) {
+    const narc_rows rows = job->rows;
+    const size_t end = job->first + job->count;
+    size_t found = 0;
+    while (job->first < end) {
+        const size_t room = found < capacity ? capacity - found : 0, left = end - job->first;
+        const bool direct = room >= left || room >= APART;
+        const size_t most = direct ? room : APART;
+        job->count = left < most ? left : most;
+        if (room > 0)
+            job->rows.base = rows.base + (ptrdiff_t)found * rows.stride;
+        found += direct ? list_rows(job, skipped) : list_apart(job, room, skipped);
+        job->first += job->count;
+    }
+    return found;
 }
 
-narc_status narc_list_contacts(narc_contact_kernel *kernel, const narc_batch *batch, size_t first, size_t count,
-                               float margin, unsigned threads, const narc_contacts *out_contacts, size_t *out_count,
-                               narc_error *error) {
-    if (!out_contacts || !out_count)
-        return narc_fail_missing(error, !out_contacts ? "out_contacts" : "out_count");
-    if (isnan(margin))
-        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)margin, "margin is not a number");
-    const size_t found = narc_run_contacts(kernel, batch, first, count, margin, threads, out_contacts);
+/* Is there room for the rows, and is it used as it may be? */
+static narc_status check_rows(const narc_batch *batch, const void *rows, ptrdiff_t stride, size_t size, size_t capacity,
+                              const size_t *out_count, narc_error *error) {
+    const narc_query *query = &batch->query;
+    const size_t end = query->selection.base ? batch->pairs.count : query->first + query->count;
+    if (!out_count || (!rows && capacity > 0))
+        return narc_fail_missing(error, !out_count ? "out_count" : "out_rows");
+    if (stride % 4 != 0 || (stride < 0 ? -stride : stride) < (ptrdiff_t)size)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)stride,
+                         "query.row_stride is %lld, not a multiple of 4 with room for %zu bytes", (long long)stride, size);
+    if (query->dense && capacity < end)
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)end, "%zu dense rows, but there is room for %zu", end,
+                         capacity);
+    return NARC_OK;
+}
+
+narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t size,
+                             size_t capacity, size_t *out_count, narc_error *error) {
+    const narc_query *query = &batch->query;
+    const ptrdiff_t stride = query->row_stride ? query->row_stride : (ptrdiff_t)size;
+    const narc_status status = check_rows(batch, out_rows, stride, size, capacity, out_count, error);
+    if (status != NARC_OK)
+        return status;
+    struct job job;
+    size_t skipped = 0, found = 0;
+    job.batch = batch;
+    job.kernel = kernel;
+    job.first = query->first;
+    job.count = query->count;
+    job.size = size;
+    job.rows = (narc_rows){out_rows, stride};
+    if (query->count > 0)
+        found = query->dense ? list_rows(&job, &skipped) : list_all(&job, capacity, &skipped);
+    if (query->out_skipped)
+        *query->out_skipped = skipped;
     *out_count = found;
-    if (found > out_contacts->capacity)
-        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu contacts, but there is room for %zu", found,
-                         out_contacts->capacity);
+    if (found > capacity)
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu rows, but there is room for %zu", found,
+                         capacity);
     return NARC_OK;
 }

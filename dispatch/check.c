@@ -6,47 +6,155 @@
 #include "dispatch.h"
 #include "error.h"
 
+#include <math.h>
+
 narc_status narc_fail_missing(narc_error *error, const char *name) {
     return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", name);
 }
 
-/* Says which of pair number `pair`'s indices is out of range. */
-static narc_status describe_bad_pair(const narc_batch *batch, size_t pair, narc_error *error) {
-    const narc_index_column columns[2] = {batch->pairs->a, batch->pairs->b};
-    for (int k = 0; k < 2; k++) {
-        const uint32_t body = narc_index_at(columns[k], pair);
-        if (body >= batch->bodies->count)
-            return narc_fail(error, NARC_ERROR_INDEX, pair, body, "pair %zu: body %c is %lu, but there are %zu bodies",
-                             pair, "ab"[k], (unsigned long)body, batch -> bodies -> count);
-        const uint32_t shape = narc_index_at(batch->bodies->shape, body);
+narc_status narc_check_reserved(void *const *reserved, size_t count, const char *name, narc_error *error) {
+    for (size_t k = 0; k < count; k++)
+        if (reserved[k])
+            return narc_fail(error, NARC_ERROR_ARGUMENT, k, 0, "%s.reserved[%zu] is not NULL", name, k);
+    return NARC_OK;
+}
+#define CHECK_RESERVED(member, name, error)                                                                            \
+    narc_check_reserved((member).reserved, sizeof(member).reserved / sizeof(void *), name, error)
+
+narc_status narc_check_range(size_t first, size_t *count, size_t total, const char *items, narc_error *error) {
+    if (first > total || *count > total - first)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)*count,
+                         "%s %zu and the %zu from there on, but there are %zu", items, first, *count, total);
+    if (*count == 0)
+        *count = total - first;
+    return NARC_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------ bodies */
+
+/* Bodies without poses stand at the origin, not turned. */
+static void stand_at_origin(narc_bodies *bodies) {
+    static const float row[] = {0, 0, 1, 0};
+    bodies->x = (narc_position_column){&row[0], 0, NARC_FLOAT32};
+    bodies->y = (narc_position_column){&row[1], 0, NARC_FLOAT32};
+    bodies->cosine = (narc_float_column){&row[2], 0};
+    bodies->sine = (narc_float_column){&row[3], 0};
+}
+
+/* One side's set of bodies, with all columns. */
+static narc_status fill_set(const narc_bodies *bodies, narc_bodies *out, narc_error *error) {
+    *out = *bodies;
+    if (!bodies->x.base && !bodies->y.base && !bodies->cosine.base && !bodies->sine.base)
+        stand_at_origin(out);
+    const narc_status status = bodies->count > 0 ? narc_check_columns(out, error) : NARC_OK;
+    return status == NARC_OK ? CHECK_RESERVED(*bodies, "bodies", error) : status;
+}
+
+/* Every other body, beginning with the first or the second one. */
+static void take_every_other(narc_bodies *bodies, size_t offset) {
+    bodies->count = (bodies->count + 1 - offset) / 2;
+/* clang-format off */
+#define TAKE(column)                                                                                                   \
+    if (bodies->column.base) {                                                                                         \
+        bodies->column.base = (const void *)((const char *)bodies->column.base + (ptrdiff_t)offset * bodies->column.stride); \
+        bodies->column.stride *= 2;                                                                                    \
+    }
+    TAKE(x) TAKE(y) TAKE(cosine) TAKE(sine) TAKE(scale) TAKE(shape)
+#undef TAKE
+/* clang-format on */
+}
+
+/* The sets that A and B are of. Where pairs have no indices, body k is pair k's. */
+static narc_status fill_sets(const narc_bodies *bodies, const narc_pairs *pairs, narc_batch *batch, narc_error *error) {
+    const bool own = !pairs->a.base && !pairs->b.base && !pairs->other_bodies;
+    narc_status status = fill_set(bodies, &batch->a, error);
+    if (status == NARC_OK && pairs->other_bodies)
+        status = fill_set(pairs->other_bodies, &batch->b, error);
+    if (status != NARC_OK)
+        return status;
+    if (!pairs->other_bodies) {
+        batch->b = batch->a;
+        if (!own && (!pairs->a.base || !pairs->b.base))
+            return narc_fail_missing(error, pairs->a.base ? "pairs.b" : "pairs.a");
+    }
+    if (own) {
+        take_every_other(&batch->a, 0);
+        take_every_other(&batch->b, 1);
+    }
+    const size_t room_a = pairs->a.base ? SIZE_MAX : batch->a.count;
+    const size_t room_b = pairs->b.base ? SIZE_MAX : batch->b.count, room = room_a < room_b ? room_a : room_b;
+    if (room < pairs->count)
+        return narc_fail(error, NARC_ERROR_INDEX, room, (double)pairs->count,
+                         "pair %zu has no indices, and there are bodies for %zu pairs only", room, room);
+    return NARC_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------ a query */
+
+static narc_status check_number(float number, const char *name, narc_error *error) {
+    return isnan(number) ? narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)number, "query.%s is not a number", name)
+                         : NARC_OK;
+}
+
+static narc_status check_query(const narc_query *query, narc_error *error) {
+    narc_status status = check_number(query->margin, "margin", error);
+    if (status == NARC_OK)
+        status = check_number(query->second_margin, "second_margin", error);
+    if (status == NARC_OK)
+        status = check_number(query->flat_angle, "flat_angle", error);
+    if (status == NARC_OK && query->flat_angle > NARC_MAX_FLAT_ANGLE)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)query->flat_angle, "query.flat_angle is %g, more than %g",
+                         (double)query->flat_angle, (double)NARC_MAX_FLAT_ANGLE);
+    if (status == NARC_OK && !query->selection.base && query->selection_count > 0)
+        return narc_fail_missing(error, "query.selection");
+    return status == NARC_OK ? CHECK_RESERVED(*query, "query", error) : status;
+}
+
+/* Says what of the pair at a place is out of range. */
+static narc_status describe_bad_pair(const narc_batch *batch, size_t place, narc_error *error) {
+    const size_t pair = narc_pair_at(batch, place);
+    if (pair >= batch->pairs.count)
+        return narc_fail(error, NARC_ERROR_INDEX, place, (double)pair,
+                         "query.selection[%zu] is pair %zu, but there are %zu pairs", place, pair, batch->pairs.count);
+    const narc_index_column columns[2] = {batch->pairs.a, batch->pairs.b};
+    const narc_bodies *const sets[2] = {&batch->a, &batch->b};
+    const bool own = !columns[0].base && !columns[1].base && !batch->pairs.other_bodies;
+    for (size_t k = 0; k < 2; k++) {
+        const size_t body = columns[k].base ? narc_index_at(columns[k], pair) : pair;
+        if (body >= sets[k]->count)
+            return narc_fail(error, NARC_ERROR_INDEX, pair, (double)body,
+                             "pair %zu: body %c is %zu, but there are %zu bodies", pair, "ab"[k], body, sets[k]->count);
+        const uint32_t shape = narc_index_at(sets[k]->shape, body);
         if (shape >= batch->shapes->count)
             return narc_fail(error, NARC_ERROR_INDEX, pair, shape,
-                             "pair %zu: body %lu has shape %lu, but there are %zu shapes", pair, (unsigned long)body,
+                             "pair %zu: body %zu has shape %lu, but there are %zu shapes", pair, own ? 2 * pair + k : body,
                              (unsigned long)shape, batch->shapes->count);
     }
     return NARC_OK;
 }
 
-narc_status narc_check_pairs(const narc_batch *batch, size_t first, size_t count, unsigned threads, narc_error *error) {
-    const narc_pairs *pairs = batch->pairs;
-    const narc_bodies *bodies = batch->bodies;
-    if (!batch->shapes || !bodies || !pairs)
-        return narc_fail_missing(error, !batch->shapes ? "shapes" : !bodies ? "bodies" : "pairs");
+narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                             const narc_query *query, narc_batch *out_batch, narc_error *error) {
+    static const narc_query defaults = {0};
+    if (!shapes || !bodies || !pairs)
+        return narc_fail_missing(error, !shapes ? "shapes" : !bodies ? "bodies" : "pairs");
     if (pairs->count > UINT32_MAX)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)pairs->count, "%zu pairs in one batch, at most %lu",
                          pairs->count, (unsigned long)UINT32_MAX);
-    if (first > pairs->count || count > pairs->count - first)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)count,
-                         "pairs %zu and the %zu from there on, but there are %zu", first, count, pairs->count);
-    if (count > 0) {
-        if (!pairs->a.base || !pairs->b.base)
-            return narc_fail_missing(error, !pairs->a.base ? "pairs.a" : "pairs.b");
-        const narc_status columns = bodies->count > 0 ? narc_check_columns(bodies, error) : NARC_OK;
-        if (columns != NARC_OK)
-            return columns;
-        const size_t bad = narc_find_bad_pair(batch, first, count, threads);
-        if (bad < first + count)
-            return describe_bad_pair(batch, bad, error);
-    }
-    return NARC_OK;
+    *out_batch = (narc_batch){.shapes = shapes, .pairs = *pairs, .query = query ? *query : defaults};
+    narc_query *const q = &out_batch->query;
+    narc_status status = check_query(q, error);
+    if (status == NARC_OK)
+        status = CHECK_RESERVED(*pairs, "pairs", error);
+    if (status != NARC_OK)
+        return status;
+    out_batch->asked = q->selection.base ? q->selection_count : pairs->count;
+    status = narc_check_range(q->first, &q->count, out_batch->asked, "pairs", error);
+    if (status != NARC_OK || q->count == 0)
+        return status;
+    status = fill_sets(bodies, pairs, out_batch, error);
+    if (status != NARC_OK)
+        return status;
+    const size_t bad = narc_find_bad_pair(out_batch);
+    return bad < q->first + q->count ? describe_bad_pair(out_batch, bad, error) : NARC_OK;
 }

@@ -5,8 +5,9 @@
 #include "column.h"
 #include "dispatch.h"
 
-/* Pairs that one thread looks at in one go: some 50 microseconds of work. A batch of one part needs no threads, and
- * OpenMP is left alone: it takes a quarter of a microsecond even for a team of one. */
+#include <stdatomic.h>
+
+/* Pairs that one worker looks at in one go: some 50 microseconds of work. */
 enum { PART = 65536 };
 
 /* A limit that are_below() can take. What it then finds wrong may be right, and is looked at again. */
@@ -39,112 +40,115 @@ static bool are_below(narc_index_column column, size_t first, size_t last, uint3
     return (~one & every) >> 31;
 }
 
-/* Are all bodies that pairs first .. last - 1 name below `limit`? */
-static bool are_bodies_below(const narc_pairs *pairs, size_t first, size_t last, uint32_t limit) {
-    const narc_index_column a = pairs->a, b = pairs->b;
+/* Are all bodies that pairs first .. last - 1 name there? */
+static bool are_bodies_there(const narc_batch *batch, size_t first, size_t last) {
+    const narc_index_column a = batch->pairs.a, b = batch->pairs.b;
     const ptrdiff_t item = sizeof(uint32_t);
-    if (a.stride == 2 * item && b.stride == 2 * item && b.base == a.base + 1)
-        return are_below((narc_index_column){a.base, item}, 2 * first, 2 * last, limit); /* both columns are one */
-    return are_below(a, first, last, limit) && are_below(b, first, last, limit);
+    if (a.stride == 2 * item && b.stride == 2 * item && b.base == a.base + 1 && batch->a.count == batch->b.count)
+        return are_below((narc_index_column){a.base, item}, 2 * first, 2 * last, clip(batch->a.count)); /* one column */
+    return (!a.base || are_below(a, first, last, clip(batch->a.count))) &&
+           (!b.base || are_below(b, first, last, clip(batch->b.count)));
+}
+
+/* A search for what is wrong, part by part. */
+struct search {
+    const narc_batch *batch;
+    const narc_shapes *shapes;
+    const narc_bodies *bodies; /* with these, of bodies */
+    size_t first, count, parts;
+    atomic_bool fine;
+    atomic_size_t bad; /* the first that was found */
+};
+
+/* The range of a part. */
+static void find_part(const struct search *search, size_t part, size_t *out_first, size_t *out_end) {
+    const size_t start = part * PART, left = search->count - start;
+    *out_first = search->first + start;
+    *out_end = search->first + start + (left < PART ? left : PART);
+}
+
+/* Are the shapes of a part of some bodies there? */
+static bool are_shapes_there(const narc_batch *batch, const narc_bodies *bodies, size_t parts, size_t part) {
+    const size_t bodies_in_part = bodies->count / parts + 1, body = part * bodies_in_part;
+    const size_t rest = bodies->count > body ? bodies->count - body : 0;
+    const size_t end = body + (rest < bodies_in_part ? rest : bodies_in_part);
+    return are_below(bodies->shape, body, end, clip(batch->shapes->count));
 }
 
 /* Are all bodies of a part's pairs in range, and all shapes of a part of the bodies? Reads columns from front to back,
  * which is much faster than looking up every pair's bodies. */
-static bool part_in_range(const narc_batch *batch, size_t first, size_t count, size_t parts, size_t part) {
-    const narc_bodies *bodies = batch->bodies;
-    const size_t bodies_in_part = bodies->count / parts + 1;
-    const size_t start = part * PART, end = count - start < PART ? count : start + PART;
-    const size_t body = part * bodies_in_part, rest = bodies->count > body ? bodies->count - body : 0;
-    const size_t last_body = body + (rest < bodies_in_part ? rest : bodies_in_part);
-    return are_bodies_below(batch->pairs, first + start, first + end, clip(bodies->count)) &&
-           are_below(bodies->shape, body, last_body, clip(batch->shapes->count));
+static void look_at_columns(void *argument, size_t part) {
+    struct search *const search = argument;
+    const narc_batch *batch = search->batch;
+    const bool one_set = batch->a.shape.base == batch->b.shape.base && batch->a.shape.stride == batch->b.shape.stride &&
+                         batch->a.count == batch->b.count;
+    size_t first, end;
+    find_part(search, part, &first, &end);
+    if (!are_bodies_there(batch, first, end) || !are_shapes_there(batch, &batch->a, search->parts, part) ||
+        !(one_set || are_shapes_there(batch, &batch->b, search->parts, part)))
+        atomic_store_explicit(&search->fine, false, memory_order_relaxed);
 }
 
-/* The same for all parts. */
-static bool all_in_range(const narc_batch *batch, size_t first, size_t count, size_t parts, int team) {
-    bool fine = true;
-    if (team <= 1) {
-        for (size_t part = 0; part < parts && fine; part++)
-            fine = part_in_range(batch, first, count, parts, part);
-        return fine;
+static bool is_body_fine(const narc_batch *batch, narc_index_column column, const narc_bodies *bodies, size_t pair) {
+    const size_t body = column.base ? narc_index_at(column, pair) : pair;
+    return body < bodies->count && narc_index_at(bodies->shape, body) < batch->shapes->count;
+}
+
+/* Keeps the first of what is bad. */
+static void keep_first(struct search *search, size_t bad) {
+    size_t known = atomic_load_explicit(&search->bad, memory_order_relaxed);
+    while (bad < known && !atomic_compare_exchange_weak_explicit(&search->bad, &known, bad, memory_order_relaxed,
+                                                                 memory_order_relaxed))
+        continue;
+}
+
+static void look_at_pairs(void *argument, size_t part) {
+    struct search *const search = argument;
+    const narc_batch *batch = search->batch;
+    size_t place, end;
+    for (find_part(search, part, &place, &end); place < end; place++) {
+        const size_t pair = narc_pair_at(batch, place);
+        if (pair >= batch->pairs.count || !is_body_fine(batch, batch->pairs.a, &batch->a, pair) ||
+            !is_body_fine(batch, batch->pairs.b, &batch->b, pair)) {
+            keep_first(search, place);
+            return;
+        }
     }
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) reduction(&& : fine)
-#endif
-    for (size_t part = 0; part < parts; part++)
-        fine = fine && part_in_range(batch, first, count, parts, part);
-    return fine;
 }
 
-/* Are the shapes of all bodies that pairs first .. last - 1 name below `limit`? The bodies exist. */
-static bool are_shapes_below(const narc_batch *batch, size_t first, size_t last, uint32_t limit) {
-    const narc_index_column shape = batch->bodies->shape;
-    uint32_t any = 0, all = UINT32_MAX;
-    for (size_t pair = first; pair < last; pair++) {
-        const uint32_t a = narc_index_at(shape, narc_index_at(batch->pairs->a, pair));
-        const uint32_t b = narc_index_at(shape, narc_index_at(batch->pairs->b, pair));
-        any |= a | b;
-        all &= (a - limit) & (b - limit);
-    }
-    return (~any & all) >> 31;
-}
-
-/* The first of pairs first .. last - 1 that names a body or a shape that does not exist; last if none. */
-static size_t find_bad_pair(const narc_batch *batch, size_t first, size_t last) {
-    const narc_bodies *bodies = batch->bodies;
-    if (are_bodies_below(batch->pairs, first, last, clip(bodies->count)) &&
-        are_shapes_below(batch, first, last, clip(batch->shapes->count)))
-        return last;
-    for (size_t pair = first; pair < last; pair++) {
-        const uint32_t a = narc_index_at(batch->pairs->a, pair);
-        const uint32_t b = narc_index_at(batch->pairs->b, pair);
-        if (a >= bodies->count || b >= bodies->count || narc_index_at(bodies->shape, a) >= batch->shapes->count ||
-            narc_index_at(bodies->shape, b) >= batch->shapes->count)
-            return pair;
-    }
-    return last;
-}
-
-size_t narc_find_bad_pair(const narc_batch *batch, size_t first, size_t count, unsigned threads) {
-    const size_t parts = count / PART + (count % PART != 0);
-    const int team = narc_team_size(threads, parts);
+size_t narc_find_bad_pair(const narc_batch *batch) {
+    const size_t first = batch->query.first, count = batch->query.count;
+    struct search search = {.batch = batch, .first = first, .count = count, .parts = (count - 1) / PART + 1};
+    atomic_init(&search.fine, true);
+    atomic_init(&search.bad, first + count);
     /* With many more bodies than pairs it is better to look up those that are named. A body that no pair names may have
      * any shape, so what the quick way finds wrong is looked at again. */
-    if (batch->bodies->count / 4 <= count && all_in_range(batch, first, count, parts, team))
-        return first + count;
-    size_t bad = first + count;
-    if (team <= 1)
-        return find_bad_pair(batch, first, bad);
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) reduction(min : bad)
-#endif
-    for (size_t part = 0; part < parts; part++) {
-        const size_t start = part * PART, end = count - start < PART ? count : start + PART;
-        const size_t found = find_bad_pair(batch, first + start, first + end);
-        if (found < first + end && found < bad)
-            bad = found;
+    if (!batch->query.selection.base && (batch->a.count + batch->b.count) / 8 <= count) {
+        narc_run_parts(batch->query.workers, search.parts, look_at_columns, &search);
+        if (atomic_load(&search.fine))
+            return first + count;
     }
-    return bad;
+    narc_run_parts(batch->query.workers, search.parts, look_at_pairs, &search);
+    return atomic_load(&search.bad);
+}
+
+static void look_at_bodies(void *argument, size_t part) {
+    struct search *const search = argument;
+    const narc_index_column shape = search->bodies->shape;
+    size_t body, end;
+    find_part(search, part, &body, &end);
+    if (are_below(shape, body, end, clip(search->shapes->count)))
+        return;
+    while (body < end && narc_index_at(shape, body) < search->shapes->count)
+        body++;
+    if (body < end)
+        keep_first(search, body);
 }
 
 size_t narc_find_bad_body(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t count,
-                          unsigned threads) {
-    const size_t parts = count / PART + (count % PART != 0);
-    const int team = narc_team_size(threads, parts);
-    size_t bad = first + count;
-    (void)team;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) reduction(min : bad) if (team > 1)
-#endif
-    for (size_t part = 0; part < parts; part++) {
-        const size_t start = first + part * PART, end = count - part * PART < PART ? first + count : start + PART;
-        if (are_below(bodies->shape, start, end, clip(shapes->count)))
-            continue;
-        size_t body = start;
-        while (body < end && narc_index_at(bodies->shape, body) < shapes->count)
-            body++;
-        if (body < end && body < bad)
-            bad = body;
-    }
-    return bad;
+                          const narc_workers *workers) {
+    struct search search = {.shapes = shapes, .bodies = bodies, .first = first, .count = count};
+    atomic_init(&search.bad, first + count);
+    narc_run_parts(workers, count / PART + (count % PART != 0), look_at_bodies, &search);
+    return atomic_load(&search.bad);
 }

@@ -8,18 +8,32 @@
 #define NARC_KERNELS_H
 
 #include "broad_phase.h"
+#include "column.h"
+#include "narc.h"
 #include "store.h"
 
-/* What a batch call works on. */
+/* What a batch call works on: pairs of a body of `a` and one of `b`, by their indices or, without, by the pair's own.
+ * Asked of are the pairs of the query's selection, or all. */
 typedef struct narc_batch {
     const narc_shapes *shapes;
-    const narc_bodies *bodies;
-    const narc_pairs *pairs;
-    uint32_t *hints;     /* one for each pair, in and out; may be NULL */
-    size_t *skipped;     /* pairs without an answer are added to it; may be NULL. Two threads may not share one. */
-    float second_margin; /* of manifolds: of the second point, where it is larger than the first one's */
-    float flat_sine;     /* of manifolds: the sine of the flat angle; below 0: no second points */
+    narc_bodies a, b; /* all columns are there but perhaps `scale` */
+    narc_pairs pairs;
+    narc_query query;
+    float flat_sine;  /* of manifolds: the sine of the flat angle; below 0: no second points */
+    size_t asked;     /* how many pairs are selected */
+    size_t *skipped;  /* pairs without an answer are added to it. Two threads may not share one. */
 } narc_batch;
+
+/* Where a call's rows go: `base` is the place of its first one; of dense rows, of that of the batch's first pair. */
+typedef struct narc_rows {
+    char *base;
+    ptrdiff_t stride;
+} narc_rows;
+
+/* The batch's number of the pair that is asked of at `place`. */
+static inline size_t narc_pair_at(const narc_batch *batch, size_t place) {
+    return batch->query.selection.base ? narc_index_at(batch->query.selection, place) : place;
+}
 
 /* What the box kernel works on. */
 typedef struct narc_box_batch {
@@ -29,8 +43,8 @@ typedef struct narc_box_batch {
     narc_float_column motion_x, motion_y; /* base NULL: none */
 } narc_box_batch;
 
-/* The most pairs that one call of a contact kernel takes: it collects their contacts before it lists them. */
-enum { NARC_CONTACT_GROUP = 1024 };
+/* The most pairs that one call for rows takes. */
+enum { NARC_ROW_GROUP = 1024 };
 
 typedef struct narc_kernel_table {
     const char *isa;
@@ -40,10 +54,7 @@ typedef struct narc_kernel_table {
 
 /* What the kernels called overlap... and contact... have in common. */
 typedef void narc_overlap_kernel(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits);
-typedef size_t narc_contact_kernel(const narc_batch *batch, size_t first, size_t count, float margin,
-                                   const narc_contacts *out);
-typedef size_t narc_manifold_kernel(const narc_batch *batch, size_t first, size_t count, float margin,
-                                    const narc_manifolds *out);
+typedef size_t narc_row_kernel(const narc_batch *batch, size_t first, size_t count, const narc_rows *out);
 
 #define NARC_ISA(name, needs, processors, flags) extern const narc_kernel_table narc_kernels_##name;
 #include "isa.def"

@@ -111,18 +111,19 @@ INLINE vi split_edge(struct polytope *p, vi slot, vm splits, const struct vertex
     const vf before = find_nearest(&ends[0], w).distance, behind = find_nearest(w, &ends[1]).distance;
     const vf fields[4] = {w->point.x, w->point.y, w->middle.x, w->middle.y};
     int32_t edge[V_WIDTH], vertex[V_WIDTH];
+    char *place[V_WIDTH];
     vi_store(edge, changed);
     vi_store(vertex, added);
     for (int lane = 0; lane < V_WIDTH; lane++) {
         const int split = edge[lane], fresh = vertex[lane];
-        vertex[lane] = fresh * V_WIDTH + lane;
+        place[lane] = (char *)p->vertex[fresh][lane];
         if (split == EDGES)
             continue;
         p->from[fresh][lane] = (uint8_t)fresh;
         p->to[fresh][lane] = p->to[split][lane];
         p->to[split][lane] = (uint8_t)fresh;
     }
-    v_put_rows(p->vertex, sizeof p->vertex[0][0], vertex, fields);
+    v_put_rows(place, 0, fields);
     vi_store(p->count, count);
     vf least = v_set(INFINITY);
     vi nearest = vi_set(0);
@@ -181,7 +182,7 @@ static void expand_all(const struct call *call, const struct collisions *collisi
     memset(polytope.count, 0, sizeof polytope.count);
     memset(polytope.from, 0, 3 * sizeof polytope.from[0]); /* lanes that never begin look at edges, too */
     memset(polytope.to, 0, 3 * sizeof polytope.to[0]);
-    start_lanes(&lanes);
+    start_lanes(&lanes, 0);
     while (fill_lanes(&lanes, &collisions->pairs)) {
         struct ending ending;
         vm done;

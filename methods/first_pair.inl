@@ -14,10 +14,10 @@
 #include <math.h>
 
 #include "base/call.inl"
-#include "base/contact_rows.inl"
 #include "base/gap.inl"
 #include "base/pipeline.inl"
 #include "base/queue.inl"
+#include "base/rows.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "methods/arc_lists.inl"
@@ -110,7 +110,7 @@ static void find_first_pairs(const struct call *call, struct queue *queue, int b
             mark_overlaps(call, queue, k, vm_and(found, v_lt(gap.separation, v_set(0))));
         } else {
             store_first_gap(call, queue, k, found, &gap);
-            store_no_contact(call, get_bits(queue, PAIR, k), none);
+            put_no_answer(call, get_bits(queue, PAIR, k), none);
         }
     }
 }
@@ -119,9 +119,8 @@ static void overlap_first(const narc_batch *batch, size_t first, size_t count, u
     run_overlap_method(find_first_pairs, batch, first, count, out_bits);
 }
 
-static size_t contact_first(const narc_batch *batch, size_t first, size_t count, float margin,
-                            const narc_contacts *out) {
-    return run_contact_method(find_first_pairs, batch, first, count, margin, out);
+static size_t contact_first(const narc_batch *batch, size_t first, size_t count, const narc_rows *out) {
+    return run_contact_method(find_first_pairs, batch, first, count, out);
 }
 
 #endif

@@ -140,7 +140,7 @@ INLINE struct verdict step_search(const narc_batch *batch, const struct lanes *l
     const vm busy = vi_lt(vi_set(-1), age), fresh = vi_lt(age, vi_set(1));
     const vec2 direction = choose_direction(s, lanes, hint, age);
     const struct support found = find_support(batch->shapes, &lanes->pair, 0, busy, direction);
-    const struct vertex w = {found.w, found.middle, batch->hints ? diamond_angle(found.m) : zero};
+    const struct vertex w = {found.w, found.middle, batch->query.hints.base ? diamond_angle(found.m) : zero};
 
     /* What the step was for: a first point, a hint's second, a side of a segment through the origin, or the rule. */
     const vm seeded = vi_lt(age, seeds), second = vm_and_not(vm_and(seeded, vi_lt(age, vi_set(2))), fresh);
@@ -213,16 +213,16 @@ INLINE void pass_on(const struct lanes *lanes, const struct search *s, vm collid
     }
 }
 
-/* Searches with all pairs of a queue. Without `found`, sets the bits of those that collide. With it, those that are
+/* Searches with the pairs `begin` ... of a queue. Without `found`, sets the bits of those that collide. With it, those that are
  * apart go there, and those that collide to `colliding`. */
-INLINE void search_all(const struct call *call, const struct queue *queue, struct collisions *colliding,
+INLINE void search_all(const struct call *call, const struct queue *queue, int begin, struct collisions *colliding,
                        struct queue *found) {
     const narc_batch *batch = call->batch;
     struct lanes lanes;
     struct search s;
     int32_t hint[V_WIDTH] = {0};
     memset(&s, 0, sizeof s);
-    start_lanes(&lanes);
+    start_lanes(&lanes, begin);
     while (fill_lanes(&lanes, queue)) {
         struct verdict verdict;
         read_simplexes(call, &lanes, hint);
@@ -234,9 +234,9 @@ INLINE void search_all(const struct call *call, const struct queue *queue, struc
         } while (!vm_any(is_done(&verdict)));
         note_outcome(call, &lanes.pair, 0, verdict.limit, NARC_OUTCOME_LIMIT);
         note_outcome(call, &lanes.pair, 0, verdict.stuck, NARC_OUTCOME_ROUNDING);
-        if (batch->hints) {
+        if (batch->query.hints.base) {
             const struct vertex *const corners[] = {&s.p, &s.q, &s.third};
-            leave_simplex(batch->hints + call->first, &lanes, corners, s.best.n, verdict.collides, is_done(&verdict));
+            leave_simplex(call, &lanes, corners, s.best.n, verdict.collides, is_done(&verdict));
         }
         if (!found) {
             mark_overlaps(call, &lanes.pair, 0, verdict.collides);
@@ -250,18 +250,16 @@ INLINE void search_all(const struct call *call, const struct queue *queue, struc
 }
 
 static void find_overlaps_gjk(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    (void)begin; /* 0 */
     (void)next;
-    search_all(call, queue, NULL, NULL);
+    search_all(call, queue, begin, NULL, NULL);
 }
 
 static void find_contacts_gjk(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     struct collisions colliding;
     struct queue found;
-    (void)begin; /* 0 */
     (void)next;
     colliding.pairs.count = found.count = 0;
-    search_all(call, queue, &colliding, &found);
+    search_all(call, queue, begin, &colliding, &found);
     expand_all(call, &colliding, &found);
     pad(&found);
     store_found(call, &found);
@@ -271,8 +269,8 @@ static void overlap_gjk(const narc_batch *batch, size_t first, size_t count, uin
     run_overlap_method(find_overlaps_gjk, batch, first, count, out_bits);
 }
 
-static size_t contact_gjk(const narc_batch *batch, size_t first, size_t count, float margin, const narc_contacts *out) {
-    return run_contact_method(find_contacts_gjk, batch, first, count, margin, out);
+static size_t contact_gjk(const narc_batch *batch, size_t first, size_t count, const narc_rows *out) {
+    return run_contact_method(find_contacts_gjk, batch, first, count, out);
 }
 
 #endif

@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "base/call.inl"
+#include "base/hints.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
@@ -50,25 +51,19 @@ INLINE void read_simplexes(const struct call *call, const struct lanes *lanes, i
     int32_t pair[V_WIDTH];
     get_pairs(&lanes->pair, 0, pair);
     for (int lane = 0; lane < V_WIDTH; lane++)
-        if (call->batch->hints && lanes->begins[lane])
-            hint[lane] = (int32_t)call->batch->hints[call->first + (uint32_t)pair[lane]];
+        if (call->batch->query.hints.base && lanes->begins[lane])
+            hint[lane] = (int32_t)*find_hint(call, pair[lane]);
 }
 
 /* Leaves hints for the pairs of the lanes `done`: the corners of a triangle in the lanes `collides`, else an axis. */
-INLINE void leave_simplex(uint32_t *hints, const struct lanes *lanes, const struct vertex *const corners[3], vec2 axis,
+INLINE void leave_simplex(const struct call *call, const struct lanes *lanes, const struct vertex *const corners[3], vec2 axis,
                           vm collides, vm done) {
     const vi triangle = vi_add(ten_bits(corners[0]->angle), vi_add(vi_shift_left(ten_bits(corners[1]->angle), 10),
                                                                    vi_shift_left(ten_bits(corners[2]->angle), 20)));
     const vf angle = v_min(v_mul(diamond_angle(axis), v_set(0x1p28f)), v_set(0x1p30f - 64));
     const vi hint = vi_select(collides, vi_add(vi_shift_left(triangle, 2), vi_set(HINT_TRIANGLE)),
                               vi_add(vi_shift_left(vi_truncate(angle), 2), vi_set(HINT_AXIS)));
-    int32_t lane_hint[V_WIDTH], pair[V_WIDTH];
-    vi_store(lane_hint, hint);
-    get_pairs(&lanes->pair, 0, pair);
-    for (uint32_t bits = vm_bits(done); bits; bits &= bits - 1) {
-        const int lane = __builtin_ctz(bits);
-        hints[(uint32_t)pair[lane]] = (uint32_t)lane_hint[lane];
-    }
+    put_hints(call, get_bits(&lanes->pair, PAIR, 0), done, hint);
 }
 
 #endif

@@ -3,6 +3,9 @@
  * kernels.c - the table of one instruction set's kernels for the methods of narc_methods.h, the only symbol of its
  * object. NARC_ISA_NAME and NARC_SIMD: see kernels/exact.c.
  */
+/* Searches in lanes go best with many pairs at a time. */
+#define NARC_QUEUE_FLUSH 128
+
 #include "methods/bounding.inl"
 #include "methods/first_pair.inl"
 #include "methods/gjk.inl"

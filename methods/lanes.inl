@@ -13,8 +13,8 @@
 
 #include "base/call.inl"
 #include "base/contact_point.inl"
-#include "base/contact_rows.inl"
 #include "base/queue.inl"
+#include "base/rows.inl"
 #include "base/vec2.inl"
 #include "methods/simplex.inl"
 #include "simd/simd.h"
@@ -32,8 +32,8 @@ static inline void copy_item(const struct queue *from, int i, struct queue *to, 
         to->item[f][k] = from->item[f][i];
 }
 
-static inline void start_lanes(struct lanes *lanes) {
-    lanes->next = 0;
+static inline void start_lanes(struct lanes *lanes, int begin) {
+    lanes->next = begin;
     lanes->pair.count = 0;
     pad(&lanes->pair);
     for (int lane = 0; lane < V_WIDTH; lane++)
@@ -85,15 +85,28 @@ INLINE void append_found(const struct lanes *lanes, vm which, const struct best 
     }
 }
 
+/* The radii of the arcs in some records. */
+INLINE vf load_radii(const narc_record *records, const int32_t *record, vf scale) {
+    vf circle[4];
+    v_rows(records, sizeof *records, record, circle);
+    return v_mul(circle[2], scale);
+}
+
 /* Stores the contacts of such a queue. */
 static inline void store_found(const struct call *call, const struct queue *queue) {
+    const narc_record *records = call->batch->shapes->records;
     for (int k = 0; k < queue->count; k += V_WIDTH) {
         const vf separation = get(queue, FOUND_SEPARATION, k);
         const vec2 n = get_vec2(queue, FOUND_NORMAL, k), point = get_vec2(queue, FOUND_POINT, k); /* across, along */
         const struct feature on_a = {
-            .across = point.x, .along_min = point.y, .along_max = point.y, .record = vi_load(queue->record_a + k)};
+            .across = point.x,
+            .along_min = point.y,
+            .along_max = point.y,
+            .record = vi_load(queue->record_a + k),
+            .radius = load_radii(records, queue->record_a + k, get(queue, SCALE_A, k))};
         struct feature on_b = on_a;
         on_b.record = vi_load(queue->record_b + k);
+        on_b.radius = load_radii(records, queue->record_b + k, get(queue, SCALE_B, k));
         const vm keep = vm_and(vm_front(queue->count - k), is_below(separation, get_margins(call, queue, k)));
         store_contacts(call, queue, k, keep, separation, n, &on_a, &on_b);
     }

@@ -22,7 +22,7 @@ _Static_assert(sizeof(narc_oriented_box) == sizeof(narc_record), "a box takes th
 typedef struct narc_method_call {
     narc_shapes shapes;
     narc_overlap_kernel *overlap;
-    narc_contact_kernel *contact; /* NULL: it has none */
+    narc_row_kernel *contact;     /* NULL: it has none */
     uint8_t *outcomes;            /* one for each pair, out; may be NULL. Kernels write those that did not end well */
     float tolerance;              /* of gjk, relative to the sum of both bounding radii */
     int iterations;               /* of gjk, 1 .. NARC_MAX_ITERATIONS */

@@ -16,10 +16,10 @@
 #include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/contact_point.inl"
-#include "base/contact_rows.inl"
 #include "base/gap.inl"
 #include "base/pipeline.inl"
 #include "base/queue.inl"
+#include "base/rows.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "methods/arc_lists.inl"
@@ -102,9 +102,8 @@ static void overlap_polygon(const narc_batch *batch, size_t first, size_t count,
     run_overlap_method(find_polygons, batch, first, count, out_bits);
 }
 
-static size_t contact_polygon(const narc_batch *batch, size_t first, size_t count, float margin,
-                              const narc_contacts *out) {
-    return run_contact_method(find_polygons, batch, first, count, margin, out);
+static size_t contact_polygon(const narc_batch *batch, size_t first, size_t count, const narc_rows *out) {
+    return run_contact_method(find_polygons, batch, first, count, out);
 }
 
 #endif

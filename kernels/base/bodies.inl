@@ -14,21 +14,26 @@
 #include "kernels.h"
 #include "simd/simd.h"
 
-/* The bodies and shapes of a block's pairs. The lanes behind the last pair repeat the first. */
+/* The numbers of a block's pairs, their bodies and shapes. The lanes behind the last pair repeat the first. */
 struct pair_indices {
-    _Alignas(64) int32_t a[BLOCK], b[BLOCK], shape_a[BLOCK], shape_b[BLOCK];
+    _Alignas(64) int32_t number[BLOCK], a[BLOCK], b[BLOCK], shape_a[BLOCK], shape_b[BLOCK];
 };
 
 INLINE void load_indices(const narc_batch *batch, size_t first, int count, struct pair_indices *out) {
-    const narc_index_column column_a = batch->pairs->a, column_b = batch->pairs->b, shape = batch->bodies->shape;
+    const narc_index_column column_a = batch->pairs.a, column_b = batch->pairs.b;
+    const bool plain = column_a.base && column_b.base && !batch->query.selection.base;
     for (int k = 0; k < count; k++) {
-        const uint32_t a = narc_index_at(column_a, first + (size_t)k), b = narc_index_at(column_b, first + (size_t)k);
+        const size_t number = plain ? first + (size_t)k : narc_pair_at(batch, first + (size_t)k);
+        const uint32_t a = plain || column_a.base ? narc_index_at(column_a, number) : (uint32_t)number;
+        const uint32_t b = plain || column_b.base ? narc_index_at(column_b, number) : (uint32_t)number;
+        out->number[k] = (int32_t)(uint32_t)number;
         out->a[k] = (int32_t)a;
         out->b[k] = (int32_t)b;
-        out->shape_a[k] = (int32_t)narc_index_at(shape, a);
-        out->shape_b[k] = (int32_t)narc_index_at(shape, b);
+        out->shape_a[k] = (int32_t)narc_index_at(batch->a.shape, a);
+        out->shape_b[k] = (int32_t)narc_index_at(batch->b.shape, b);
     }
     for (int k = count; k % V_WIDTH != 0; k++) {
+        out->number[k] = out->number[0];
         out->a[k] = out->a[0];
         out->b[k] = out->b[0];
         out->shape_a[k] = out->shape_a[0];
@@ -62,6 +67,13 @@ static inline enum pose_layout find_pose_layout(const narc_bodies *bodies) {
     return is_row ? POSE_DOUBLE_ROWS : POSE_COLUMNS;
 }
 
+/* That of both sets of a batch, where it is the same. Rows of doubles are subtracted within one set only. */
+static inline enum pose_layout find_layout(const narc_batch *batch) {
+    const enum pose_layout a = find_pose_layout(&batch->a), b = find_pose_layout(&batch->b);
+    const bool one_set = batch->a.x.base == batch->b.x.base && batch->a.x.stride == batch->b.x.stride;
+    return a == b && (a != POSE_DOUBLE_ROWS || one_set) ? a : POSE_COLUMNS;
+}
+
 /* Positions that are float. */
 INLINE narc_float_column get_singles(narc_position_column column) {
     return (narc_float_column){column.base, column.stride};
@@ -74,31 +86,22 @@ INLINE vf load_column(narc_float_column column, const int32_t *index) {
     return v_load(lane);
 }
 
-/* The item of a pair's column in each lane, from pair `first` on; the lanes behind `count` repeat the last pair.
- * Without a column, `none`. */
-INLINE vf load_pair_column(narc_float_column column, size_t first, int count, float none) {
-    float lane[V_WIDTH];
-    if (!column.base)
-        return v_set(none);
-    if (column.stride == sizeof(float) && count >= V_WIDTH)
-        return v_load(column.base + first);
-    for (int l = 0; l < V_WIDTH; l++)
-        lane[l] = narc_float_at(column, first + (size_t)(l < count ? l : count - 1));
-    return v_load(lane);
+/* The item of a pair's column in each lane. Without a column, `none`. */
+INLINE vf load_pair_column(narc_float_column column, const int32_t *number, float none) {
+    return column.base ? load_column(column, number) : v_set(none);
 }
 
-/* Position of b minus position of a, plus a shift if there is one, in the precision of the positions (with a shift, in
- * double precision), then rounded. */
-INLINE float find_difference(narc_position_column column, size_t a, size_t b, const float *shift) {
-    const bool doubles = column.precision == NARC_FLOAT64;
-    if (!doubles && !shift)
-        return narc_single_at(column, b) - narc_single_at(column, a);
-    const double from = doubles ? narc_double_at(column, a) : (double)narc_single_at(column, a);
-    const double to = doubles ? narc_double_at(column, b) : (double)narc_single_at(column, b);
+/* Position of b minus position of a, plus a shift if there is one, in the precision of the positions (with a shift, or
+ * where one set has doubles, in double precision), then rounded. */
+INLINE float find_difference(narc_position_column of_a, narc_position_column of_b, size_t a, size_t b,
+                             const float *shift) {
+    if (of_a.precision == NARC_FLOAT32 && of_b.precision == NARC_FLOAT32 && !shift)
+        return narc_single_at(of_b, b) - narc_single_at(of_a, a);
+    const double from = narc_position_at(of_a, a), to = narc_position_at(of_b, b);
     return (float)(shift ? to - from + (double)*shift : to - from);
 }
 
-INLINE vec2 load_differences(const narc_bodies *bodies, const int32_t *a, const int32_t *b, const vec2 *shift) {
+INLINE vec2 load_differences(const narc_batch *batch, const int32_t *a, const int32_t *b, const vec2 *shift) {
     float x[V_WIDTH], y[V_WIDTH], shift_x[V_WIDTH], shift_y[V_WIDTH];
     if (shift) {
         v_store(shift_x, shift->x);
@@ -106,8 +109,8 @@ INLINE vec2 load_differences(const narc_bodies *bodies, const int32_t *a, const 
     }
     for (int k = 0; k < V_WIDTH; k++) {
         const uint32_t from = (uint32_t)a[k], to = (uint32_t)b[k];
-        x[k] = find_difference(bodies->x, from, to, shift ? shift_x + k : NULL);
-        y[k] = find_difference(bodies->y, from, to, shift ? shift_y + k : NULL);
+        x[k] = find_difference(batch->a.x, batch->b.x, from, to, shift ? shift_x + k : NULL);
+        y[k] = find_difference(batch->a.y, batch->b.y, from, to, shift ? shift_y + k : NULL);
     }
     return (vec2){v_load(x), v_load(y)};
 }
@@ -130,38 +133,32 @@ INLINE void load_double_rows(const narc_bodies *bodies, const int32_t *a, const 
     *out = (struct body_pair){{difference[0], difference[1]}, {of_a[0], of_a[1]}, {of_b[0], of_b[1]}, of_a[2], of_b[2]};
 }
 
-INLINE void load_columns(const narc_bodies *bodies, const int32_t *a, const int32_t *b, const vec2 *shift,
+INLINE void load_columns(const narc_batch *batch, const int32_t *a, const int32_t *b, const vec2 *shift,
                          struct body_pair *out) {
-    const narc_float_column scale = bodies->scale;
-    out->difference = load_differences(bodies, a, b, shift);
-    out->rotation_a = (vec2){load_column(bodies->cosine, a), load_column(bodies->sine, a)};
-    out->rotation_b = (vec2){load_column(bodies->cosine, b), load_column(bodies->sine, b)};
-    out->scale_a = scale.base ? load_column(scale, a) : v_set(1);
-    out->scale_b = scale.base ? load_column(scale, b) : v_set(1);
+    out->difference = load_differences(batch, a, b, shift);
+    out->rotation_a = (vec2){load_column(batch->a.cosine, a), load_column(batch->a.sine, a)};
+    out->rotation_b = (vec2){load_column(batch->b.cosine, b), load_column(batch->b.sine, b)};
+    out->scale_a = load_pair_column(batch->a.scale, a, 1);
+    out->scale_b = load_pair_column(batch->b.scale, b, 1);
 }
 
 /* `shift`: of B, or NULL. */
-INLINE struct body_pair load_bodies(const narc_bodies *bodies, enum pose_layout layout, const int32_t *a,
+INLINE struct body_pair load_bodies(const narc_batch *batch, enum pose_layout layout, const int32_t *a,
                                     const int32_t *b, const vec2 *shift) {
-    const narc_float_column scale = bodies->scale;
     struct body_pair pair;
     if (__builtin_expect(layout == POSE_ROWS && !shift, 1)) { /* or compilers keep the vectors of all three in memory */
         vf of_a[4], of_b[4];
-        v_rows(bodies->x.base, bodies->x.stride, a, of_a);
-        v_rows(bodies->x.base, bodies->x.stride, b, of_b);
+        v_rows(batch->a.x.base, batch->a.x.stride, a, of_a);
+        v_rows(batch->b.x.base, batch->b.x.stride, b, of_b);
         pair = (struct body_pair){{v_sub(of_b[0], of_a[0]), v_sub(of_b[1], of_a[1])},
                                   {of_a[2], of_a[3]},
                                   {of_b[2], of_b[3]},
-                                  v_set(1),
-                                  v_set(1)};
-        if (scale.base) {
-            pair.scale_a = load_column(scale, a);
-            pair.scale_b = load_column(scale, b);
-        }
+                                  load_pair_column(batch->a.scale, a, 1),
+                                  load_pair_column(batch->b.scale, b, 1)};
     } else if (layout == POSE_DOUBLE_ROWS) {
-        load_double_rows(bodies, a, b, shift, &pair);
+        load_double_rows(&batch->a, a, b, shift, &pair);
     } else {
-        load_columns(bodies, a, b, shift, &pair);
+        load_columns(batch, a, b, shift, &pair);
     }
     return pair;
 }

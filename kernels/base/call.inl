@@ -15,18 +15,22 @@
 
 struct call {
     const narc_batch *batch;
-    size_t first, count;             /* its pairs in the batch */
-    float margin;                    /* 0 for overlaps */
-    narc_float_column margins;       /* one for each pair of the batch; base NULL: all are `margin` */
-    uint64_t *bits;                  /* overlap kernels: where the answers go; else NULL */
-    struct contact_rows *rows;       /* contact kernels: the same */
-    struct manifold_rows *manifolds; /* the manifold kernel: `rows` and those of second points */
-    struct queue *edges;             /* the manifold kernel: pairs that may have one */
+    size_t first, count;       /* its pairs, of those that are asked of */
+    float margin;              /* 0 for overlaps */
+    narc_float_column margins; /* one for each pair of the batch; base NULL: all are `margin` */
+    uint64_t *bits;            /* overlap kernels: where the answers go; else NULL */
+    struct rows *rows;         /* the others: the same */
+    struct queue *edges;       /* manifolds: pairs that may have a second point; else NULL */
 };
+
+/* The batch's number of a pair. */
+INLINE size_t find_number(const struct call *call, int32_t pair) {
+    return narc_pair_at(call->batch, call->first + (uint32_t)pair);
+}
 
 /* The margin of a pair, counted from the first of the call. */
 INLINE float find_margin(const struct call *call, int32_t pair) {
-    return call->margins.base ? narc_float_at(call->margins, call->first + (uint32_t)pair) : call->margin;
+    return call->margins.base ? narc_float_at(call->margins, find_number(call, pair)) : call->margin;
 }
 
 /* The margins of the pairs k ... of a queue. */

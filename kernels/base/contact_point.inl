@@ -26,7 +26,8 @@ struct feature {
     vf across, along_min, along_max;
     vi record;
     vf radius;
-    vf magnitude; /* what the stretch may be wrong by is in proportion to it */
+    vf magnitude;   /* what the stretch may be wrong by is in proportion to it */
+    vec2 start, end; /* of the arc */
 };
 
 /* What a place along n is computed from: the radius, and an eighth of the centre's coordinates. */
@@ -46,7 +47,8 @@ INLINE struct feature find_feature(const struct arcs *after, const struct arcs *
     const vf along = v2_cross(n, point), other = v2_cross(n, find_point(before, n, is_b));
     const vf magnitude = v_add(find_magnitude(after), find_magnitude(before));
     return (struct feature){v2_dot(n, point), v_min(along, other), v_max(along, other),
-                            record,           after->radius,       magnitude};
+                            record,           after->radius,       magnitude,
+                            after->start,     after->end};
 }
 
 INLINE vm is_parallel(vec2 junction, vec2 n) {
@@ -70,9 +72,23 @@ INLINE struct feature find_feature_at(const narc_record *records, struct ring ri
     f.along_min = v_select(ends, v_min(f.along_min, after), f.along_min);
     f.along_max = v_select(ends, v_max(f.along_max, after), f.along_max);
     f.radius = v_select(ends, after_arc.radius, f.radius);
+    f.start = v2_select(ends, after_arc.start, f.start);
+    f.end = v2_select(ends, after_arc.end, f.end);
     const vf other = v_select(ends, find_magnitude(&after_arc), find_magnitude(&before_arc));
     f.magnitude = v_select(vm_or(starts, ends), v_add(find_magnitude(&arc), other), f.magnitude);
     return f;
+}
+
+/* A stretch longer than this part of its magnitude is an edge: four times what two radii may differ by along a normal
+ * that is PARALLEL to a junction's, and eight roundings of the coordinates. */
+#define LEAST_STRETCH 0x1p-18f
+
+/* Does a body touch with an edge? Its own coordinates may be far larger than those in A's frame: what they lost when
+ * they were stored is no edge either. */
+INLINE vm touches_edge(const struct feature *f, vi info, vf scale) {
+    const vf length = v_sub(f->along_max, f->along_min), least = v_mul(scale, find_least_edge(info));
+    const vm longer = v_lt(v_max(v_mul(v_set(LEAST_STRETCH), f->magnitude), least), length);
+    return vm_and_not(longer, info_has(info, NARC_SHAPE_SMOOTH));
 }
 
 /* The contact point's place across n and along it. */

@@ -8,12 +8,30 @@
 
 #include <stdint.h>
 
+#include "base/call.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "simd/simd.h"
 
 /* The hint of two circles, which need none. */
 #define FIRST_ARCS 0x0101
+
+/* Where a pair's hint is. */
+INLINE uint32_t *find_hint(const struct call *call, int32_t pair) {
+    const narc_hint_column hints = call->batch->query.hints;
+    return (uint32_t *)(void *)((char *)hints.base + (ptrdiff_t)find_number(call, pair) * hints.stride);
+}
+
+/* Leaves hints for pairs in the lanes `ended`. */
+INLINE void put_hints(const struct call *call, vi pairs, vm ended, vi hints) {
+    int32_t pair[V_WIDTH], hint[V_WIDTH];
+    vi_store(pair, pairs);
+    vi_store(hint, hints);
+    for (uint32_t lanes = vm_bits(ended); lanes; lanes &= lanes - 1) {
+        const int lane = __builtin_ctz(lanes);
+        *find_hint(call, pair[lane]) = (uint32_t)hint[lane];
+    }
+}
 
 INLINE vi make_hint(const struct queue *queue, int k, vi record_a, vi record_b) {
     const vi a = vi_sub(record_a, get_ring_a(queue, k).base), b = vi_sub(record_b, get_ring_b(queue, k).base);
@@ -22,14 +40,20 @@ INLINE vi make_hint(const struct queue *queue, int k, vi record_a, vi record_b) 
     return vi_select(info_has(both, NARC_SHAPE_CIRCLE), vi_set(FIRST_ARCS), hint);
 }
 
-/* Takes the arcs of all pairs of a queue from their hints, in lanes where these name arcs that exist. */
-INLINE void read_hints(struct queue *queue, const uint32_t *hints) {
-    for (int k = 0; k < queue->count; k += V_WIDTH) {
+/* Leaves hints for the pairs k ... of a queue in the lanes `ended`, if hints are wanted. */
+INLINE void store_hints(const struct call *call, const struct queue *queue, int k, vm ended, vi record_a, vi record_b) {
+    if (call->batch->query.hints.base)
+        put_hints(call, get_bits(queue, PAIR, k), ended, make_hint(queue, k, record_a, record_b));
+}
+
+/* Takes the arcs of the pairs `begin` ... of a queue from their hints, in lanes where these name arcs that exist. */
+INLINE void read_hints(const struct call *call, struct queue *queue, int begin) {
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
         const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
         int32_t pair[V_WIDTH], lane[V_WIDTH];
         get_pairs(queue, k, pair);
         for (int l = 0; l < V_WIDTH; l++)
-            lane[l] = (int32_t)hints[pair[l]];
+            lane[l] = (int32_t)*find_hint(call, k + l < queue->count ? pair[l] : pair[0]);
         const vi hint = vi_load(lane), zero = vi_set(0), one = vi_set(1);
         const vi a = vi_and(hint, vi_set(0xff)), b = vi_shift_right(hint, 8);
         const vm exists_a = vm_and_not(vi_lt(zero, a), vi_lt(ring_a.count, a));

@@ -67,6 +67,7 @@ struct filter {
     vm valid, invalid; /* are all numbers in range? Only a valid pair has an answer. Neither: there is no pair */
     vm apart;          /* the separation is above the margin, for certain */
     vm deep;           /* the bodies collide, for certain */
+    vf margin;
 };
 
 /* From the centre of a circle of A to that of a circle of B. */
@@ -78,18 +79,17 @@ INLINE vec2 circle_difference(vec2 a, vec2 b, const struct pose *pose) {
 INLINE struct filter set_up_pairs(const struct call *call, const struct pair_indices *in, int k, int count,
                                   enum pose_layout layout, int32_t number, vf item[FIELDS]) {
     const narc_batch *batch = call->batch;
-    const narc_pairs *pairs = batch->pairs;
-    const size_t first = call->first + (uint32_t)number + (uint32_t)k;
+    const narc_pairs *pairs = &batch->pairs;
     const float shrink = 1.0f - 0x1p-16f, grow = 1.0f + 0x1p-16f; /* of a square: 2^-17 of the distance */
     const bool shifted = pairs->shift_x.base || pairs->shift_y.base;
-    const vec2 shift = {load_pair_column(pairs->shift_x, first, count - k, 0),
-                        load_pair_column(pairs->shift_y, first, count - k, 0)};
-    const struct body_pair bodies = load_bodies(batch->bodies, layout, in->a + k, in->b + k, shifted ? &shift : NULL);
-    const vf margin = load_pair_column(call->margins, first, count - k, call->margin);
+    const vec2 shift = {load_pair_column(pairs->shift_x, in->number + k, 0),
+                        load_pair_column(pairs->shift_y, in->number + k, 0)};
+    const struct body_pair bodies = load_bodies(batch, layout, in->a + k, in->b + k, shifted ? &shift : NULL);
+    const vf margin = load_pair_column(call->margins, in->number + k, call->margin);
     const struct headers a = load_headers(batch->shapes->headers, in->shape_a + k);
     const struct headers b = load_headers(batch->shapes->headers, in->shape_b + k);
     const vf scale_a = bodies.scale_a, scale_b = bodies.scale_b;
-    struct filter filter;
+    struct filter filter = {.margin = margin};
     vm valid_a, valid_b;
     const vec2 rotation_a = normalise_rotation(bodies.rotation_a, &valid_a);
     const vec2 rotation_b = normalise_rotation(bodies.rotation_b, &valid_b);

@@ -3,9 +3,8 @@
  * pipeline.inl - what all kernels do with the pairs of a call: block by block through one stage after another.
  *
  * A pair is set up, and its circles are compared. A triage then answers it or puts it into the queue of the first
- * stage, or of a later one (enter()). Each stage answers pairs of its queue, or passes them on to the next one. The
- * first stage takes all pairs of a block. The others, which few pairs reach, wait for FLUSH of them, so that vectors
- * are full; after the last block they take what is left.
+ * stage, or of a later one (enter()). Each stage waits for FLUSH pairs, so that vectors are full, and answers
+ * them or passes them on; after the last block they take what is left.
  */
 #ifndef NARC_BASE_PIPELINE_INL
 #define NARC_BASE_PIPELINE_INL
@@ -16,9 +15,9 @@
 
 #include "base/bodies.inl"
 #include "base/call.inl"
-#include "base/contact_rows.inl"
 #include "base/pair_setup.inl"
 #include "base/queue.inl"
+#include "base/rows.inl"
 #include "kernels.h"
 #include "simd/simd.h"
 
@@ -32,7 +31,7 @@ typedef void stage(const struct call *call, struct queue *queue, int begin, stru
 INLINE vm take_valid(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
     (void)pair;
     if (call->rows)
-        store_no_contact(call, vi_bits(item[PAIR]), circles->invalid);
+        put_no_answer(call, vi_bits(item[PAIR]), circles->invalid);
     return circles->valid;
 }
 
@@ -53,14 +52,23 @@ INLINE void enter(struct queue *queues, vm open, const vf item[FIELDS], int fiel
         push(queues, here, item, fields);
 }
 
+/* The queue that a stage is to take pairs from, or -1. The last one that has FLUSH goes first, so that all before it
+ * find room. Those that have less wait, but for the `end`, when the first one goes first. */
+INLINE int find_due(const struct queue *queues, int stage_count, bool end) {
+    for (int s = stage_count - 1; s >= 0; s--)
+        if (queues[s].count >= FLUSH)
+            return s;
+    for (int s = 0; s < stage_count && end; s++)
+        if (queues[s].count > 0)
+            return s;
+    return -1;
+}
+
 INLINE void run_stages(const struct call *call, stage *const *stages, int stage_count, struct queue *queues, bool end) {
-    for (int s = 0; s < stage_count; s++) {
+    for (int s = find_due(queues, stage_count, end); s >= 0; s = find_due(queues, stage_count, end)) {
         struct queue *queue = &queues[s];
-        const bool all = end || s == 0;
-        const int begin = all ? 0 : queue->count % V_WIDTH;
-        if (queue->count == 0 || (!all && queue->count < FLUSH))
-            continue;
-        if (queue->count % V_WIDTH != 0 && all)
+        const int begin = queue->count >= FLUSH ? queue->count - FLUSH : 0;
+        if (queue->count % V_WIDTH != 0 && begin == 0)
             pad(queue);
         stages[s](call, queue, begin, queue + 1);
         queue->count = begin;
@@ -72,7 +80,7 @@ INLINE void run_stages(const struct call *call, stage *const *stages, int stage_
 INLINE void run_pairs(const struct call *call, triage *settle, int fields, stage *const *stages, int stage_count,
                       int edged_stage, struct queue *queues) {
     const narc_batch *batch = call->batch;
-    const enum pose_layout layout = find_pose_layout(batch->bodies);
+    const enum pose_layout layout = find_layout(batch);
     struct pair_indices indices;
     for (int s = 0; s < stage_count; s++)
         queues[s].count = 0;
@@ -81,16 +89,19 @@ INLINE void run_pairs(const struct call *call, triage *settle, int fields, stage
         load_indices(batch, call->first + block, n, &indices);
         if (edged_stage > 0 && block % REMEMBERED == 0)
             queues->edged = queues->edged_left = 0;
+        if (stage_count > 0)
+            queues->whole = false;
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
             const struct filter circles = set_up_pairs(call, &indices, k, n, layout, (int32_t)(uint32_t)block, item);
             if (batch->skipped)
                 *batch->skipped += (size_t)__builtin_popcount(vm_bits(circles.invalid));
             const vm open = settle(call, block + (size_t)k, &circles, item);
-            if (stage_count > 0 && vm_any(open))
+            if (stage_count > 0 && vm_any(open)) {
                 enter(queues, open, item, fields, edged_stage);
+                run_stages(call, stages, stage_count, queues, false);
+            }
         }
-        run_stages(call, stages, stage_count, queues, false);
     }
     run_stages(call, stages, stage_count, queues, true);
 }
@@ -100,17 +111,14 @@ static inline struct call begin_overlaps(const narc_batch *batch, size_t first, 
     return (struct call){.batch = batch, .first = first, .count = count, .bits = out_bits};
 }
 
-static inline struct call begin_contacts(const narc_batch *batch, size_t first, size_t count, float margin,
-                                         struct contact_rows *rows) {
-    rows->hinted = false;
-    rows->done = rows->listed = 0;
-    /* NOT_LISTED is 0. Lists are read by whole vectors. */
-    memset(rows->keep, 0, (count + V_WIDTH - 1) / V_WIDTH * V_WIDTH * sizeof *rows->keep);
+static inline struct call begin_rows(const narc_batch *batch, size_t first, size_t count, const narc_rows *out,
+                                     struct rows *rows) {
+    start_rows(rows, out, batch->query.dense != 0);
     return (struct call){.batch = batch,
                          .first = first,
                          .count = count,
-                         .margin = margin,
-                         .margins = batch->pairs->margin,
+                         .margin = batch->query.margin,
+                         .margins = batch->query.margins,
                          .rows = rows};
 }
 
@@ -121,13 +129,13 @@ INLINE void run_overlap_method(stage *find, const narc_batch *batch, size_t firs
     run_pairs(&call, take_valid, FIELDS, &find, 1, 0, &queue);
 }
 
-INLINE size_t run_contact_method(stage *find, const narc_batch *batch, size_t first, size_t count, float margin,
-                                 const narc_contacts *out) {
+INLINE size_t run_contact_method(stage *find, const narc_batch *batch, size_t first, size_t count,
+                                 const narc_rows *out) {
     struct queue queue;
-    struct contact_rows rows;
-    const struct call call = begin_contacts(batch, first, count, margin, &rows);
+    struct rows rows;
+    const struct call call = begin_rows(batch, first, count, out, &rows);
     run_pairs(&call, take_valid, FIELDS, &find, 1, 0, &queue);
-    return list_contacts(&call, out);
+    return end_rows(&call, sizeof(narc_contact));
 }
 
 #endif

@@ -5,21 +5,27 @@
 #ifndef NARC_BASE_QUEUE_INL
 #define NARC_BASE_QUEUE_INL
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "simd/simd.h"
 
-/* Pairs that are loaded at once: enough to fill vectors after most pairs are settled, few enough for the first cache.
- * A pair touches 16 bytes of indices, 32 of the bodies' poses, 64 of the shapes' headers and up to 76 in a queue: a
- * block 24 KB. A stage that few pairs reach waits for FLUSH of them. */
-enum { BLOCK = 128, FLUSH = 32, STAGES = 5 };
+/* Pairs that are loaded at once. */
+enum { BLOCK = 128 };
 
-/* A block's pairs enter at the first stage, or a later one, and each stage passes on at most all that it took, to any
- * queue behind its own. It leaves less than FLUSH: so the first of STAGES queues holds up to BLOCK pairs, and each one
- * after it up to FLUSH more. push() and pad() write up to two vectors behind the last pair. */
-enum { CAPACITY = BLOCK + (STAGES - 1) * FLUSH + 2 * V_WIDTH };
+/* A stage waits for FLUSH pairs, so that vectors are full, and takes as many at a time: few enough for all queues
+ * together to lie in the first cache, and on a small stack. */
+#ifndef NARC_QUEUE_FLUSH
+#define NARC_QUEUE_FLUSH 32
+#endif
+enum { FLUSH = NARC_QUEUE_FLUSH, STAGES = 5 };
+
+/* A queue has less than FLUSH pairs when a stage before it, or a vector of new pairs, adds FLUSH at most. push() and
+ * pad() write up to a vector behind the last one. */
+enum { CAPACITY = 2 * FLUSH + V_WIDTH };
+_Static_assert(FLUSH % V_WIDTH == 0, "stages take whole vectors");
 
 /* The fields of a pair. Integers are kept as their bits; the two coordinates of a vector follow each other. */
 enum {
@@ -49,6 +55,7 @@ struct queue {
     int32_t hinted[CAPACITY];                       /* 1 where a hint named these arcs */
     int count;
     int edged, edged_left; /* first stage: pairs with edges that it took, and passed on */
+    bool whole;            /* first stage of overlaps: are whole arcs worth their price? */
 };
 
 INLINE vf get(const struct queue *queue, int field, int k) { return v_load(queue->item[field] + k); }

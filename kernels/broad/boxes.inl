@@ -226,11 +226,13 @@ static size_t box(const narc_box_batch *batch, size_t first, size_t count, narc_
         /* The lanes behind the last body repeat the vector's first. */
         const int lanes = count - k < V_WIDTH ? (int)(count - k) : V_WIDTH;
         const vi lane = vi_select(vm_front(lanes), vi_lanes(), vi_set(0)), place = vi_add(lane, vi_set((int32_t)k));
-        int32_t body[V_WIDTH], shape[V_WIDTH], to[V_WIDTH];
-        vi_store(to, place);
+        int32_t body[V_WIDTH], shape[V_WIDTH];
+        char *to[V_WIDTH];
         vi_store(body, vi_add(place, vi_set((int32_t)(uint32_t)first)));
-        for (int l = 0; l < V_WIDTH; l++)
+        for (int l = 0; l < V_WIDTH; l++) {
             shape[l] = (int32_t)narc_index_at(bodies->shape, (uint32_t)body[l]);
+            to[l] = (char *)(out + k + (l < lanes ? l : 0));
+        }
         const struct headers headers = load_headers(batch->shapes->headers, shape);
         const struct placed_bodies placed = load_placed_bodies(bodies, layout, body);
         vm valid;
@@ -251,7 +253,7 @@ static size_t box(const narc_box_batch *batch, size_t first, size_t count, narc_
             valid, vm_and(vm_and(is_finite(r.right), is_finite(r.up)), vm_and(is_finite(r.left), is_finite(r.down))));
         const vf sides[4] = {v_select(valid, v_neg(r.left), none), v_select(valid, v_neg(r.down), none),
                              v_select(valid, r.right, v_neg(none)), v_select(valid, r.up, v_neg(none))};
-        v_put_rows(out, sizeof *out, to, sides);
+        v_put_rows(to, 0, sides);
         skipped += (size_t)__builtin_popcount(vm_bits(vm_and_not(vm_front(lanes), valid)));
     }
     return skipped;

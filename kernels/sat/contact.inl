@@ -16,11 +16,11 @@
 #include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/contact_point.inl"
-#include "base/contact_rows.inl"
 #include "base/hints.inl"
 #include "base/pair_setup.inl"
 #include "base/pipeline.inl"
 #include "base/queue.inl"
+#include "base/rows.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
@@ -29,55 +29,54 @@
 #include "sat/discs.inl"
 #include "sat/hill_climb.inl"
 #include "sat/manifold_edges.inl"
-#include "sat/manifold_rows.inl"
 #include "sat/normal_fan.inl"
 #include "sat/probe.inl"
 #include "sat/shortcuts.inl"
 #include "simd/simd.h"
 
-/* Answers pairs of two circles, the first of which has the number `pair`, in the lanes `open`; returns those that are
- * left. `in_order`: are the pairs before, and those in the other lanes, done? Manifolds have radii where contacts have
- * nothing. */
-INLINE vm answer_discs(const struct call *call, size_t pair, vm open, const vf item[FIELDS], bool in_order) {
-    struct contact_rows *rows = call->rows;
-    const vf margin = load_pair_column(call->margins, call->first + pair, (int)(call->count - pair), call->margin);
+/* Answers pairs of two circles in the lanes `open`; returns those that are left. `in_order`: are the pairs before, and
+ * those in the other lanes, done? */
+INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf item[FIELDS], bool in_order) {
     const struct probe p = probe_discs(call->batch->shapes->records, item, open, margin);
     const vm answered = vm_and(open, vm_or(p.far, p.only)), left = vm_and_not(open, answered);
     const vec2 to_world = {item[ROTATION_A], item[ROTATION_A + 1]}, n = v2_divide(p.u, p.length);
-    const vec2 normal = v2_rotate(to_world, n);
     const struct feature on_a = find_feature(&p.arcs.a, &p.arcs.a, n, vi_set(0), false);
     const struct feature on_b = find_feature(&p.arcs.b, &p.arcs.b, n, vi_set(0), true);
-    const vec2 point = v2_rotate(to_world, v2_rotate(n, find_contact_place(&on_a, &on_b)));
-    const vf field[ROW] = {p.separation, normal.x, normal.y,        point.x,
-                           point.y,      v_set(0), p.arcs.a.radius, p.arcs.b.radius};
-    const vi pairs = item_bits(item, PAIR);
-    int32_t *const hints = (int32_t *)rows->hint + pair;
+    const vi pairs = item_bits(item, PAIR), all_round = vi_set(-1); /* NARC_REACH_ONE twice */
+    const struct answer answer = {.separation = p.separation,
+                                  .normal = v2_rotate(to_world, n),
+                                  .point = v2_rotate(to_world, v2_rotate(n, find_contact_place(&on_a, &on_b))),
+                                  .feature = vi_set(0),
+                                  .radius_a = p.arcs.a.radius,
+                                  .radius_b = p.arcs.b.radius,
+                                  .reach_a = all_round,
+                                  .reach_b = all_round};
     const vm found = vm_and(vm_and_not(p.only, p.far), is_below(p.separation, margin));
     if (in_order && !vm_any(left))
-        append_to_list(rows, pairs, found, field);
+        append_answers(call, pairs, found, &answer);
     else
-        put_rows(rows, pairs, found, field);
-    if (rows->hinted)
-        vi_store(hints, vi_select(answered, vi_set(FIRST_ARCS), vi_load(hints)));
+        put_answers(call, pairs, found, &answer);
+    if (call->batch->query.hints.base)
+        put_hints(call, pairs, answered, vi_set(FIRST_ARCS));
     return left;
 }
 
-INLINE vm triage_contacts(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
+INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
+    struct rows *rows = call->rows;
     const vm open = vm_and_not(take_valid(call, pair, circles, item), circles->apart);
-    const bool in_order = call->rows->done == (int)pair && !vm_any(circles->invalid);
-    const vm left = are_discs(open, item) ? answer_discs(call, pair, open, item, in_order) : open;
+    const bool in_order = !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid);
+    const vm left = are_discs(open, item) ? answer_discs(call, open, circles->margin, item, in_order) : open;
     if (in_order && !vm_any(left))
-        call->rows->done += V_WIDTH;
+        rows->done += V_WIDTH;
     return left;
 }
 
 /* Stores what was found of the pairs k ... of a queue in the lanes `keep`. */
 INLINE void store_answer(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
-                         const struct feature *on_a, const struct feature *on_b, bool manifolds) {
-    if (manifolds)
-        store_deepest(call, queue, k, keep, separation, n, on_a, on_b);
-    else
-        store_contacts(call, queue, k, keep, separation, n, on_a, on_b);
+                         const struct feature *on_a, const struct feature *on_b) {
+    store_contacts(call, queue, k, keep, separation, n, on_a, on_b);
+    if (call->edges)
+        collect_edges(call, queue, k, keep, separation, n, on_a, on_b);
 }
 
 /* Passes on the pairs k ... of a queue in the lanes `left`. */
@@ -92,8 +91,7 @@ INLINE void pass_on(const struct queue *queue, int k, vm left, struct queue *nex
 /* Probes the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`. If u of these arcs lies
  * between their junctions, it is the direction of a local maximum, mostly the highest. Returns the lanes without an
  * answer; in *out_u, the direction to probe along next. */
-INLINE vm probe(const struct call *call, const struct queue *queue, int k, vm live, bool hints, bool manifolds,
-                vec2 *out_u) {
+INLINE vm probe(const struct call *call, const struct queue *queue, int k, vm live, bool hints, vec2 *out_u) {
     const vi record_a = vi_load(queue->record_a + k), record_b = vi_load(queue->record_b + k);
     const vf margin = get_margins(call, queue, k);
     const struct probe p = probe_arcs(call->batch->shapes->records, queue, k, live, margin);
@@ -108,7 +106,7 @@ INLINE vm probe(const struct call *call, const struct queue *queue, int k, vm li
         const vec2 n = v2_divide(p.u, p.length);
         const struct feature on_a = find_feature(&p.arcs.a, &p.arcs.a, n, record_a, false);
         const struct feature on_b = find_feature(&p.arcs.b, &p.arcs.b, n, record_b, true);
-        store_answer(call, queue, k, keep, p.separation, n, &on_a, &on_b, manifolds);
+        store_answer(call, queue, k, keep, p.separation, n, &on_a, &on_b);
     }
     *out_u = p.u;
     return vm_and_not(live, vm_or(apart, certain));
@@ -116,7 +114,7 @@ INLINE vm probe(const struct call *call, const struct queue *queue, int k, vm li
 
 /* Climbs from the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`; returns those
  * without an answer. In *out_lost, those without even a local maximum. */
-INLINE vm climb_to(const struct call *call, const struct queue *queue, int k, vm live, bool manifolds, vm *out_lost) {
+INLINE vm climb_to(const struct call *call, const struct queue *queue, int k, vm live, vm *out_lost) {
     const vf margin = get_margins(call, queue, k);
     const struct certified_maximum top = climb_and_certify(call->batch->shapes->records, queue, k, live, margin);
     const struct local_maximum *m = &top.maximum;
@@ -125,7 +123,7 @@ INLINE vm climb_to(const struct call *call, const struct queue *queue, int k, vm
     if (vm_any(keep)) {
         const struct feature on_a = find_feature(&m->after.a, &m->before.a, top.normal, m->record_a, false);
         const struct feature on_b = find_feature(&m->after.b, &m->before.b, top.normal, m->record_b, true);
-        store_answer(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b, manifolds);
+        store_answer(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b);
     }
     *out_lost = vm_and_not(live, m->found);
     return vm_and_not(live, vm_or(top.apart, top.certain));
@@ -136,12 +134,12 @@ enum { CLIMB = 2 };
 
 /* First stage: probes along the axis, and hands smooth pairs to the next probe, along u. Near edges u leads astray:
  * other pairs go to the climb, which begins along the axis again. */
-INLINE void probe_axis(const struct call *call, struct queue *queue, int begin, struct queue *next, bool manifolds) {
+static void probe_axis(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     look_up_arcs(call->batch->shapes->records, queue, begin, false);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k), smooth = find_smooth(queue, k);
         vec2 u;
-        const vm left = probe(call, queue, k, live, false, manifolds, &u);
+        const vm left = probe(call, queue, k, live, false, &u);
         store_vec2(queue, DIRECTION, k, v2_select(smooth, u, get_vec2(queue, DIRECTION, k)));
         pass_on(queue, k, vm_and(left, smooth), next);
         pass_on(queue, k, vm_and_not(left, smooth), next + 1);
@@ -152,22 +150,21 @@ INLINE void probe_axis(const struct call *call, struct queue *queue, int begin, 
 /* First stage with hints: probes the arcs of the last call, and the next stage probes along u. Where there are edges,
  * climbs from those arcs. A maximum that is not certain would mostly be found again from the axis: it is left to the
  * formula; those that lost their way begin anew. */
-INLINE void start_from_hints(const struct call *call, struct queue *queue, int begin, struct queue *next,
-                             bool manifolds) {
-    read_hints(queue, call->rows->hint);
+static void start_from_hints(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+    read_hints(call, queue, begin);
     look_up_arcs(call->batch->shapes->records, queue, begin, true);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k), smooth = find_smooth(queue, k);
         const vm round = vm_and(live, smooth), edged = vm_and_not(live, smooth);
         if (vm_any(round)) {
             vec2 u;
-            const vm left = probe(call, queue, k, round, true, manifolds, &u);
+            const vm left = probe(call, queue, k, round, true, &u);
             store_vec2(queue, DIRECTION, k, v2_select(smooth, u, get_vec2(queue, DIRECTION, k)));
             pass_on(queue, k, left, next);
         }
         if (vm_any(edged)) {
             vm lost;
-            const vm left = climb_to(call, queue, k, edged, manifolds, &lost);
+            const vm left = climb_to(call, queue, k, edged, &lost);
             pass_on(queue, k, vm_and(left, lost), next + 1);
             pass_on(queue, k, vm_and_not(left, lost), next + 2);
         }
@@ -175,25 +172,26 @@ INLINE void start_from_hints(const struct call *call, struct queue *queue, int b
 }
 
 /* Probes along DIRECTION. */
-INLINE void probe_again(const struct call *call, struct queue *queue, int begin, struct queue *next, bool manifolds) {
+static void probe_again(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     look_up_arcs(call->batch->shapes->records, queue, begin, false);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         vec2 u;
-        const vm left = probe(call, queue, k, vm_front(queue->count - k), false, manifolds, &u);
+        const vm left = probe(call, queue, k, vm_front(queue->count - k), false, &u);
         store_vec2(queue, DIRECTION, k, v2_select(find_smooth(queue, k), u, get_vec2(queue, DIRECTION, k)));
         pass_on(queue, k, left, next);
     }
 }
 
 /* Climbs from the arcs that hold DIRECTION. */
-INLINE void climb_from(const struct call *call, struct queue *queue, int begin, struct queue *next, bool manifolds) {
+static void climb_from(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     look_up_arcs(call->batch->shapes->records, queue, begin, false);
     vm lost;
     for (int k = begin; k < queue->count; k += V_WIDTH)
-        pass_on(queue, k, climb_to(call, queue, k, vm_front(queue->count - k), manifolds, &lost), next);
+        pass_on(queue, k, climb_to(call, queue, k, vm_front(queue->count - k), &lost), next);
 }
 
-INLINE void decide(const struct call *call, struct queue *queue, int begin, bool manifolds) {
+static void decide(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+    (void)next;
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k);
         const struct gap gap = find_gap(call->batch->shapes, queue, k, live, true);
@@ -202,74 +200,37 @@ INLINE void decide(const struct call *call, struct queue *queue, int begin, bool
         if (vm_any(keep)) {
             struct feature on_a, on_b;
             const vec2 n = find_gap_features(call, queue, k, &gap, &on_a, &on_b);
-            store_answer(call, queue, k, keep, gap.separation, n, &on_a, &on_b, manifolds);
+            store_answer(call, queue, k, keep, gap.separation, n, &on_a, &on_b);
         }
     }
 }
 
-/* The stages of both kernels. */
-#define STAGES_OF(answers, manifolds)                                                                                  \
-    static void probe_axis_##answers(const struct call *call, struct queue *queue, int begin, struct queue *next) {    \
-        probe_axis(call, queue, begin, next, manifolds);                                                               \
-    }                                                                                                                  \
-    static void start_from_hints_##answers(const struct call *call, struct queue *queue, int begin,                    \
-                                           struct queue *next) {                                                       \
-        start_from_hints(call, queue, begin, next, manifolds);                                                         \
-    }                                                                                                                  \
-    static void probe_again_##answers(const struct call *call, struct queue *queue, int begin, struct queue *next) {   \
-        probe_again(call, queue, begin, next, manifolds);                                                              \
-    }                                                                                                                  \
-    static void climb_from_##answers(const struct call *call, struct queue *queue, int begin, struct queue *next) {    \
-        climb_from(call, queue, begin, next, manifolds);                                                               \
-    }                                                                                                                  \
-    static void decide_##answers(const struct call *call, struct queue *queue, int begin, struct queue *next) {        \
-        (void)next;                                                                                                    \
-        decide(call, queue, begin, manifolds);                                                                         \
-    }
-STAGES_OF(contacts, false)
-STAGES_OF(manifolds, true)
-#undef STAGES_OF
-
-/* Runs `stages`, the first of which reads hints if there are any. */
-INLINE void run_with_hints(const struct call *call, stage *const *stages, int stage_count, struct queue *queues) {
-    const narc_batch *batch = call->batch;
-    struct contact_rows *rows = call->rows;
-    rows->hinted = batch->hints != NULL;
-    if (batch->hints)
-        memcpy(rows->hint, batch->hints + call->first, call->count * sizeof *rows->hint);
-    run_pairs(call, triage_contacts, CONTACT_FIELDS, stages, stage_count, batch->hints ? 0 : CLIMB, queues);
-    if (batch->hints)
-        memcpy(batch->hints + call->first, rows->hint, call->count * sizeof *rows->hint);
-}
-
-static size_t contact(const narc_batch *batch, size_t first, size_t count, float margin, const narc_contacts *out) {
-    stage *const start = batch->hints ? start_from_hints_contacts : probe_axis_contacts;
-    stage *const stages[] = {start, probe_again_contacts, climb_from_contacts, decide_contacts};
-    struct queue queues[4];
-    struct contact_rows rows;
-    if (!NARC_SHORTCUTS)
-        return run_contact_method(decide_contacts, batch, first, count, margin, out);
-    const struct call call = begin_contacts(batch, first, count, margin, &rows);
-    run_with_hints(&call, stages, 4, queues);
-    return list_contacts(&call, out);
-}
-
-static size_t manifold(const narc_batch *batch, size_t first, size_t count, float margin, const narc_manifolds *out) {
-    stage *const start = batch->hints ? start_from_hints_manifolds : probe_axis_manifolds;
-    stage *const stages[] = {start, probe_again_manifolds, climb_from_manifolds, decide_manifolds, find_second_points};
-    stage *const all[] = {decide_manifolds, find_second_points};
+/* The rows of a call, of contacts or manifolds. */
+static size_t find_rows(const narc_batch *batch, size_t first, size_t count, const narc_rows *out, bool manifolds) {
+    const bool hinted = batch->query.hints.base != NULL;
+    stage *const stages[STAGES] = {hinted ? start_from_hints : probe_axis, probe_again, climb_from, decide,
+                                   find_second_points};
+    stage *const formula[] = {decide, find_second_points};
+    const int stage_count = manifolds ? STAGES : STAGES - 1;
     struct queue queues[STAGES];
-    struct manifold_rows rows;
-    struct call call = begin_contacts(batch, first, count, margin, &rows.first);
-    call.manifolds = &rows;
+    struct rows rows;
+    struct call call = begin_rows(batch, first, count, out, &rows);
     if (NARC_SHORTCUTS) {
-        call.edges = &queues[STAGES - 1];
-        run_with_hints(&call, stages, STAGES, queues);
+        call.edges = manifolds ? &queues[STAGES - 1] : NULL;
+        run_pairs(&call, triage_rows, CONTACT_FIELDS, stages, stage_count, hinted ? 0 : CLIMB, queues);
     } else {
-        call.edges = &queues[1];
-        run_pairs(&call, take_valid, FIELDS, all, 2, 0, queues);
+        call.edges = manifolds ? &queues[1] : NULL;
+        run_pairs(&call, take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
     }
-    return list_manifolds(&call, out);
+    return end_rows(&call, manifolds ? sizeof(narc_manifold) : sizeof(narc_contact));
+}
+
+static size_t contact(const narc_batch *batch, size_t first, size_t count, const narc_rows *out) {
+    return find_rows(batch, first, count, out, false);
+}
+
+static size_t manifold(const narc_batch *batch, size_t first, size_t count, const narc_rows *out) {
+    return find_rows(batch, first, count, out, true);
 }
 
 #endif

@@ -22,13 +22,44 @@
 #include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/contact_point.inl"
-#include "base/contact_rows.inl"
 #include "base/queue.inl"
+#include "base/rows.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
-#include "sat/manifold_rows.inl"
 #include "simd/simd.h"
+
+/* The fields of pairs that may have a second point, in place of those that are of no more use: what is known of the
+ * deepest point. */
+enum {
+    DEEPEST_NORMAL = AXIS,
+    DEEPEST_SEPARATION = CORE,
+    DEEPEST_ACROSS = SLACK,
+    DEEPEST_ALONG = DIRECTION,
+    DEEPEST_RECORD_A = DIRECTION + 1,
+    DEEPEST_RECORD_B = SIZE
+};
+
+/* Collects the pairs k ... of a queue in the lanes `keep` where both bodies have edges: they may have a second point, and
+ * the first one's id is not final. */
+INLINE void collect_edges(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
+                          const struct feature *on_a, const struct feature *on_b) {
+    const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k);
+    const vm smooth = vm_or(info_has(info_a, NARC_SHAPE_SMOOTH), info_has(info_b, NARC_SHAPE_SMOOTH));
+    const vm edges = vm_and_not(keep, smooth);
+    if (!vm_any(edges))
+        return;
+    const vec2 place = find_contact_place(on_a, on_b);
+    vf item[FIELDS];
+    get_item(queue, k, item, SIZE);
+    set_vec2(item, DEEPEST_NORMAL, n);
+    item[DEEPEST_SEPARATION] = separation;
+    item[DEEPEST_ACROSS] = place.x;
+    item[DEEPEST_ALONG] = place.y;
+    item[DEEPEST_RECORD_A] = v_of_bits(on_a->record);
+    item[DEEPEST_RECORD_B] = v_of_bits(on_b->record);
+    push(call->edges, edges, item, FIELDS);
+}
 
 /* One end of an edge: its place along t and across it, and the radius of the arc next to it. */
 struct edge_end {
@@ -237,16 +268,18 @@ INLINE void store_touching_features(const struct call *call, const struct queue 
     const vf along = get(queue, DEEPEST_ALONG, k);
     const vi of_a = find_touching_feature(queue, k, a, b, along, false);
     const vi of_b = find_touching_feature(queue, k, b, a, along, true);
-    int32_t row[V_WIDTH], id[V_WIDTH];
-    find_rows(get_bits(queue, PAIR, k), which, row);
+    char *place[V_WIDTH];
+    int32_t id[V_WIDTH];
+    find_places(call, get_bits(queue, PAIR, k), which, place);
     vi_store(id, vi_add(of_a, vi_shift_left(of_b, 8)));
     for (int lane = 0; lane < V_WIDTH; lane++)
-        memcpy(&call->rows->row[row[lane]][FEATURES], &id[lane], sizeof id[lane]);
+        put_word(place[lane], FIRST_POINT + offsetof(narc_manifold_point, feature), (uint32_t)id[lane]);
 }
 
 /* Finds the second points of the pairs `begin` ... of a queue, and the ids of all points. */
 static void find_second_points(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    struct manifold_rows *rows = call->manifolds;
+    const float asked = call->batch->query.second_margin;
+    const vf second_margin = v_set(asked == 0 ? -INFINITY : asked);
     (void)next;
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k);
@@ -275,7 +308,7 @@ static void find_second_points(const struct call *call, struct queue *queue, int
         deep = select_end_point(touch, &deep, &exact);
         deep.separation = deepest;
         other.separation = v_max(other.separation, deepest);
-        const vf margin = v_max(get_margins(call, queue, k), v_set(call->batch->second_margin));
+        const vf margin = v_max(get_margins(call, queue, k), second_margin);
         const vm two = vm_and(faces, is_below(other.separation, margin));
         const vm keeps_low = vm_or(two, at_low); /* the first point that is listed is the low one */
         low = select_end_point(at_low, &deep, &other);
@@ -289,22 +322,27 @@ static void find_second_points(const struct call *call, struct queue *queue, int
         const vi high_b = find_edge_feature(queue, k, &b, high.along, none, true);
         const vi first_id = vi_add(first_a, vi_shift_left(first_b, 8));
         const vi high_id = vi_add(high_a, vi_shift_left(high_b, 8));
-        const vec2 to_world = get_vec2(queue, ROTATION_A, k), normal = v2_rotate(to_world, n);
+        const vec2 to_world = get_vec2(queue, ROTATION_A, k), zero = {v_set(0), v_set(0)};
         const vec2 point = v2_rotate(to_world, v2_rotate(n, (vec2){first.across, first.along}));
-        const vec2 second = v2_rotate(to_world, v2_rotate(n, (vec2){high.across, high.along}));
-        const vf of_first[ROW] = {first.separation,    normal.x,       normal.y,      point.x, point.y,
-                                  v_of_bits(first_id), first.radius_a, first.radius_b};
-        const vf of_second[ROW] = {high.separation, second.x,      second.y, v_of_bits(high_id),
-                                   high.radius_a,   high.radius_b, v_set(0), v_set(0)};
-        int32_t row[V_WIDTH], points[V_WIDTH];
-        find_rows(get_bits(queue, PAIR, k), faces, row);
-        vi_store(points, vi_select(two, vi_set(TWO_POINTS), vi_set(ONE_POINT)));
-        v_put_rows(rows->first.row, sizeof rows->first.row[0], row, of_first);
-        v_put_rows((float *)rows->first.row + 4, sizeof rows->first.row[0], row, of_first + 4);
-        v_put_rows(rows->second, sizeof rows->second[0], row, of_second);
-        v_put_rows((float *)rows->second + 4, sizeof rows->second[0], row, of_second + 4);
-        for (int lane = 0; lane < V_WIDTH; lane++)
-            rows->first.keep[row[lane]] = points[lane];
+        const vec2 other_point = v2_rotate(to_world, v2_rotate(n, (vec2){high.across, high.along}));
+        const vec2 second = v2_select(two, other_point, zero);
+        const vf of_first[4] = {point.x, point.y, first.separation, v_of_bits(first_id)};
+        const vf of_second[4] = {second.x, second.y, v_select(two, high.separation, zero.x),
+                                 v_select(two, v_of_bits(high_id), zero.x)};
+        char *place[V_WIDTH];
+        float radius_a[V_WIDTH], radius_b[V_WIDTH];
+        int32_t count[V_WIDTH];
+        find_places(call, get_bits(queue, PAIR, k), faces, place);
+        v_put_rows(place, FIRST_POINT, of_first);
+        v_put_rows(place, SECOND_POINT, of_second);
+        v_store(radius_a, deep.radius_a);
+        v_store(radius_b, deep.radius_b);
+        vi_store(count, vi_select(two, vi_set(2), vi_set(1)));
+        for (int lane = 0; lane < V_WIDTH; lane++) {
+            put_word(place[lane], offsetof(narc_manifold, count), (uint32_t)count[lane]);
+            memcpy(place[lane] + MANIFOLD_RADII, &radius_a[lane], sizeof(float));
+            memcpy(place[lane] + MANIFOLD_RADII + sizeof(float), &radius_b[lane], sizeof(float));
+        }
     }
 }
 

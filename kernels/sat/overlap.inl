@@ -88,20 +88,19 @@ INLINE struct overlap_probe probe_whole_arcs(const narc_record *records, const s
 
 /* Probes along the axis. Smooth pairs are probed along u next. Near edges u leads astray: other pairs climb. Circles
  * settle what overlaps deeply or is well apart. Once they leave more than half of a vector, as among bodies that rest
- * on each other, whole arcs are worth their price for the rest of the block. */
+ * on each other, whole arcs are worth their price for the rest of a block. */
 static void probe_axis_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     const narc_record *records = call->batch->shapes->records;
-    bool whole = false;
     look_up_arcs(records, queue, begin, false);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k), smooth = find_smooth(queue, k);
         const vec2 n = get_vec2(queue, DIRECTION, k);
         const struct overlap_probe p =
-            whole ? probe_whole_arcs(records, queue, k, n, live) : probe_circles(records, queue, k, n);
+            queue->whole ? probe_whole_arcs(records, queue, k, n, live) : probe_circles(records, queue, k, n);
         mark_overlaps(call, queue, k, vm_and(live, p.hit));
         const vm left = vm_and_not(live, vm_or(p.apart, p.hit));
-        if (!whole)
-            whole = 2 * __builtin_popcount(vm_bits(vm_and(left, smooth))) > V_WIDTH;
+        if (!queue->whole)
+            queue->whole = 2 * __builtin_popcount(vm_bits(vm_and(left, smooth))) > V_WIDTH;
         store_vec2(queue, DIRECTION, k, v2_select(smooth, p.u, n));
         pass_on_overlaps(queue, k, vm_and(left, smooth), next);
         pass_on_overlaps(queue, k, vm_and_not(left, smooth), next + 1);

@@ -22,9 +22,6 @@ typedef __m256i vp;
 INLINE vf v_set(float a) { return _mm256_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm256_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm256_storeu_ps(p, a); }
-INLINE void v_store_front(float *p, int n, vf a) {
-    _mm256_maskstore_ps(p, _mm256_cmpgt_epi32(_mm256_set1_epi32(n), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7)), a);
-}
 INLINE __m256 v_two_rows(const char *base, ptrdiff_t stride, const int32_t *index) {
     const __m128 low = _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index[0] * stride));
     const __m128 high = _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index[4] * stride));
@@ -42,17 +39,17 @@ INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf 
     out[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(ab_high, cd_high));
     out[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(ab_high, cd_high));
 }
-INLINE void v_put_two_rows(char *base, ptrdiff_t stride, const int32_t *index, __m256 rows) {
-    _mm_storeu_ps((float *)(void *)(base + (ptrdiff_t)(uint32_t)index[0] * stride), _mm256_castps256_ps128(rows));
-    _mm_storeu_ps((float *)(void *)(base + (ptrdiff_t)(uint32_t)index[4] * stride), _mm256_extractf128_ps(rows, 1));
+INLINE void v_put_two_rows(char *const *place, int offset, __m256 rows) {
+    _mm_storeu_ps((float *)(void *)(place[0] + offset), _mm256_castps256_ps128(rows));
+    _mm_storeu_ps((float *)(void *)(place[4] + offset), _mm256_extractf128_ps(rows, 1));
 }
-INLINE void v_put_rows(void *base, ptrdiff_t stride, const int32_t *index, const vf in[4]) {
+INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     const __m256 low01 = _mm256_unpacklo_ps(in[0], in[1]), high01 = _mm256_unpackhi_ps(in[0], in[1]);
     const __m256 low23 = _mm256_unpacklo_ps(in[2], in[3]), high23 = _mm256_unpackhi_ps(in[2], in[3]);
-    v_put_two_rows(base, stride, index, _mm256_shuffle_ps(low01, low23, 0x44));
-    v_put_two_rows(base, stride, index + 1, _mm256_shuffle_ps(low01, low23, 0xee));
-    v_put_two_rows(base, stride, index + 2, _mm256_shuffle_ps(high01, high23, 0x44));
-    v_put_two_rows(base, stride, index + 3, _mm256_shuffle_ps(high01, high23, 0xee));
+    v_put_two_rows(place, offset, _mm256_shuffle_ps(low01, low23, 0x44));
+    v_put_two_rows(place + 1, offset, _mm256_shuffle_ps(low01, low23, 0xee));
+    v_put_two_rows(place + 2, offset, _mm256_shuffle_ps(high01, high23, 0x44));
+    v_put_two_rows(place + 3, offset, _mm256_shuffle_ps(high01, high23, 0xee));
 }
 INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
                                  const vf *shifts, vf out[2]) {

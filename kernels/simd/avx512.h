@@ -22,7 +22,6 @@ typedef __mmask16 vp;
 INLINE vf v_set(float a) { return _mm512_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm512_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm512_storeu_ps(p, a); }
-INLINE void v_store_front(float *p, int n, vf a) { _mm512_mask_storeu_ps(p, (__mmask16)((1u << n) - 1), a); }
 INLINE __m128 v_row(const char *base, ptrdiff_t stride, int32_t index) {
     return _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index * stride));
 }
@@ -44,19 +43,19 @@ INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf 
     out[2] = _mm512_castpd_ps(_mm512_unpacklo_pd(ab_high, cd_high));
     out[3] = _mm512_castpd_ps(_mm512_unpackhi_pd(ab_high, cd_high));
 }
-INLINE void v_put_four_rows(char *base, ptrdiff_t stride, const int32_t *index, __m512 rows) {
-    _mm_storeu_ps((float *)(void *)(base + (ptrdiff_t)(uint32_t)index[0] * stride), _mm512_castps512_ps128(rows));
-    _mm_storeu_ps((float *)(void *)(base + (ptrdiff_t)(uint32_t)index[4] * stride), _mm512_extractf32x4_ps(rows, 1));
-    _mm_storeu_ps((float *)(void *)(base + (ptrdiff_t)(uint32_t)index[8] * stride), _mm512_extractf32x4_ps(rows, 2));
-    _mm_storeu_ps((float *)(void *)(base + (ptrdiff_t)(uint32_t)index[12] * stride), _mm512_extractf32x4_ps(rows, 3));
+INLINE void v_put_four_rows(char *const *place, int offset, __m512 rows) {
+    _mm_storeu_ps((float *)(void *)(place[0] + offset), _mm512_castps512_ps128(rows));
+    _mm_storeu_ps((float *)(void *)(place[4] + offset), _mm512_extractf32x4_ps(rows, 1));
+    _mm_storeu_ps((float *)(void *)(place[8] + offset), _mm512_extractf32x4_ps(rows, 2));
+    _mm_storeu_ps((float *)(void *)(place[12] + offset), _mm512_extractf32x4_ps(rows, 3));
 }
-INLINE void v_put_rows(void *base, ptrdiff_t stride, const int32_t *index, const vf in[4]) {
+INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     const __m512 low01 = _mm512_unpacklo_ps(in[0], in[1]), high01 = _mm512_unpackhi_ps(in[0], in[1]);
     const __m512 low23 = _mm512_unpacklo_ps(in[2], in[3]), high23 = _mm512_unpackhi_ps(in[2], in[3]);
-    v_put_four_rows(base, stride, index, _mm512_shuffle_ps(low01, low23, 0x44));
-    v_put_four_rows(base, stride, index + 1, _mm512_shuffle_ps(low01, low23, 0xee));
-    v_put_four_rows(base, stride, index + 2, _mm512_shuffle_ps(high01, high23, 0x44));
-    v_put_four_rows(base, stride, index + 3, _mm512_shuffle_ps(high01, high23, 0xee));
+    v_put_four_rows(place, offset, _mm512_shuffle_ps(low01, low23, 0x44));
+    v_put_four_rows(place + 1, offset, _mm512_shuffle_ps(low01, low23, 0xee));
+    v_put_four_rows(place + 2, offset, _mm512_shuffle_ps(high01, high23, 0x44));
+    v_put_four_rows(place + 3, offset, _mm512_shuffle_ps(high01, high23, 0xee));
 }
 /* Of lanes 0, 1, 4, 5, 8 ... (from lane 0 on) or 2, 3, 6, 7 ... */
 INLINE __m512 v_half_differences(const char *base, ptrdiff_t stride, const int32_t *a, const int32_t *b, bool shifted,

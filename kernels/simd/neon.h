@@ -22,7 +22,6 @@ typedef uint8x16_t vp;
 INLINE vf v_set(float a) { return vdupq_n_f32(a); }
 INLINE vf v_load(const float *p) { return vld1q_f32(p); }
 INLINE void v_store(float *p, vf a) { vst1q_f32(p, a); }
-INLINE void v_store_front(float *p, int n, vf a) { memcpy(p, &a, (size_t)n * sizeof *p); }
 INLINE vf v_row(const void *base, ptrdiff_t stride, int32_t index) {
     return vld1q_f32((const float *)(const void *)((const char *)base + (ptrdiff_t)(uint32_t)index * stride));
 }
@@ -36,16 +35,14 @@ INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf 
     out[2] = vzip1q_f32(ac_high, bd_high);
     out[3] = vzip2q_f32(ac_high, bd_high);
 }
-INLINE void v_put_row(void *base, ptrdiff_t stride, int32_t index, vf row) {
-    vst1q_f32((float *)(void *)((char *)base + (ptrdiff_t)(uint32_t)index * stride), row);
-}
-INLINE void v_put_rows(void *base, ptrdiff_t stride, const int32_t *index, const vf in[4]) {
+INLINE void v_put_row(char *place, vf row) { vst1q_f32((float *)(void *)place, row); }
+INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     const vf low02 = vzip1q_f32(in[0], in[2]), high02 = vzip2q_f32(in[0], in[2]);
     const vf low13 = vzip1q_f32(in[1], in[3]), high13 = vzip2q_f32(in[1], in[3]);
-    v_put_row(base, stride, index[0], vzip1q_f32(low02, low13));
-    v_put_row(base, stride, index[1], vzip2q_f32(low02, low13));
-    v_put_row(base, stride, index[2], vzip1q_f32(high02, high13));
-    v_put_row(base, stride, index[3], vzip2q_f32(high02, high13));
+    v_put_row(place[0] + offset, vzip1q_f32(low02, low13));
+    v_put_row(place[1] + offset, vzip2q_f32(low02, low13));
+    v_put_row(place[2] + offset, vzip1q_f32(high02, high13));
+    v_put_row(place[3] + offset, vzip2q_f32(high02, high13));
 }
 /* The differences of one lane. */
 INLINE float32x2_t v_double_difference(const char *base, ptrdiff_t stride, int32_t a, int32_t b, bool shifted,

@@ -21,12 +21,11 @@ typedef int vp;
 INLINE vf v_set(float a) { return a; }
 INLINE vf v_load(const float *p) { return *p; }
 INLINE void v_store(float *p, vf a) { *p = a; }
-INLINE void v_store_front(float *p, int n, vf a) { memcpy(p, &a, (size_t)n * sizeof *p); }
 INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
     memcpy(out, (const char *)base + (ptrdiff_t)(uint32_t)*index * stride, 4 * sizeof(float));
 }
-INLINE void v_put_rows(void *base, ptrdiff_t stride, const int32_t *index, const vf in[4]) {
-    memcpy((char *)base + (ptrdiff_t)(uint32_t)*index * stride, in, 4 * sizeof(float));
+INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
+    memcpy(*place + offset, in, 4 * sizeof(float));
 }
 INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
                                  const vf *shifts, vf out[2]) {

@@ -9,11 +9,9 @@
  * multiply-add and no estimate on purpose.
  *
  *   v_set(float)  v_load(float *)  v_store(float *, vf)         any alignment
- *   v_store_front(float *, int, vf)                             only that many lanes, the front ones
  *   v_rows(void *base, ptrdiff_t stride, int32_t *index, vf out[4])
  *                                                               four floats from byte index[lane] * stride of base
- *   v_put_rows(void *base, ptrdiff_t stride, int32_t *index, vf in[4])
- *                                                               the reverse of v_rows, lane by lane
+ *   v_put_rows(char *const *place, int offset, vf in[4])        four floats to byte `offset` of place[lane], lane by lane
  *   v_double_differences(void *base, ptrdiff_t stride, int32_t *a, int32_t *b, vf *shifts, vf out[2])
  *                                                               of two doubles from byte index[lane] * stride of base
  *                                                               on: those of b less those of a, plus two shifts for

@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * rows.inl - rows of answers, in the caller's memory. Stages find answers in any order: each is written to the place of
+ * its pair, as if every pair had a row. At the end of a call the gaps are closed.
+ */
+#ifndef NARC_BASE_ROWS_INL
+#define NARC_BASE_ROWS_INL
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "base/arcs.inl"
+#include "base/call.inl"
+#include "base/contact_point.inl"
+#include "base/gap.inl"
+#include "base/queue.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "kernels.h"
+#include "simd/simd.h"
+
+/* Bytes of a row's members. */
+enum {
+    CONTACT_WORDS = offsetof(narc_contact, feature), /* eight of them to the end, behind the pair */
+    MANIFOLD_RADII = offsetof(narc_manifold, radius_a),
+    FIRST_POINT = offsetof(narc_manifold, point),
+    SECOND_POINT = FIRST_POINT + sizeof(narc_manifold_point)
+};
+_Static_assert(sizeof(narc_contact) == 36 && CONTACT_WORDS == 4, "two writes of four words follow the pair");
+_Static_assert(sizeof(narc_manifold) == 64 && MANIFOLD_RADII == 16 && FIRST_POINT == 32, "four writes of four words");
+
+/* The rows of a call. The answers of the first pairs may be known in order: then they are listed at once. */
+struct rows {
+    narc_rows out;
+    bool dense;
+    int done, listed;            /* all pairs before `done` are answered, and have `listed` rows */
+    uint32_t without;            /* rows of pairs without an answer */
+    uint64_t known[NARC_ROW_GROUP / 64]; /* the pairs from there on that have a row */
+    _Alignas(16) char spare[sizeof(narc_manifold)]; /* takes what lanes without an answer write */
+};
+
+INLINE void start_rows(struct rows *rows, const narc_rows *out, bool dense) {
+    rows->out = *out;
+    rows->dense = dense;
+    rows->done = rows->listed = 0;
+    rows->without = 0;
+    memset(rows->known, 0, sizeof rows->known);
+}
+
+/* The place of a call's pair, or of item `k` of its list. */
+INLINE char *find_place(const struct call *call, int32_t pair) {
+    const struct rows *rows = call->rows;
+    const size_t item = rows->dense ? find_number(call, pair) : (uint32_t)pair;
+    return rows->out.base + (ptrdiff_t)item * rows->out.stride;
+}
+
+/* The places of pairs in the lanes `keep`; elsewhere the spare one. */
+INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[V_WIDTH]) {
+    int32_t pair[V_WIDTH];
+    vi_store(pair, pairs);
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        place[lane] = call->rows->spare;
+    for (uint32_t lanes = vm_bits(keep); lanes; lanes &= lanes - 1) {
+        const int lane = __builtin_ctz(lanes);
+        place[lane] = find_place(call, pair[lane]);
+    }
+}
+
+INLINE void put_word(char *place, int offset, uint32_t word) { memcpy(place + offset, &word, sizeof word); }
+
+/* Two halves of a word, the one at the lower address first. */
+INLINE vi pack_halves(vi low, vi high) {
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+    return vi_add(high, vi_shift_left(low, 16));
+#else
+    return vi_add(low, vi_shift_left(high, 16));
+#endif
+}
+
+/* What is known of a pair's only point, or its deepest one. */
+struct answer {
+    vf separation;
+    vec2 normal, point; /* in the world's axes */
+    vi feature;
+    vf radius_a, radius_b;
+    vi reach_a, reach_b; /* of manifolds, as in the row */
+};
+
+/* Writes rows of pairs with one point. The pairs' numbers are put in by who knows them. */
+INLINE void write_answers(const struct call *call, char *const *place, const struct answer *answer) {
+    const vi one = vi_set(1);
+    if (call->edges) {
+        const vf zero = v_set(0);
+        const vf head[4] = {zero, v_of_bits(one), answer->normal.x, answer->normal.y};
+        const vf radii[4] = {answer->radius_a, answer->radius_b, v_of_bits(answer->reach_a),
+                             v_of_bits(answer->reach_b)};
+        const vf first[4] = {answer->point.x, answer->point.y, answer->separation, v_of_bits(answer->feature)};
+        const vf second[4] = {zero, zero, zero, zero};
+        v_put_rows(place, 0, head);
+        v_put_rows(place, MANIFOLD_RADII, radii);
+        v_put_rows(place, FIRST_POINT, first);
+        v_put_rows(place, SECOND_POINT, second);
+    } else {
+        const vf front[4] = {v_of_bits(pack_halves(answer->feature, one)), answer->separation, answer->normal.x,
+                             answer->normal.y};
+        const vf rest[4] = {answer->point.x, answer->point.y, answer->radius_a, answer->radius_b};
+        v_put_rows(place, CONTACT_WORDS, front);
+        v_put_rows(place, CONTACT_WORDS + 16, rest);
+    }
+}
+
+/* Writes the rows of pairs in the lanes `keep`. */
+INLINE void put_answers(const struct call *call, vi pairs, vm keep, const struct answer *answer) {
+    int32_t pair[V_WIDTH];
+    char *place[V_WIDTH];
+    find_places(call, pairs, keep, place);
+    write_answers(call, place, answer);
+    vi_store(pair, pairs);
+    for (uint32_t lanes = vm_bits(keep); lanes; lanes &= lanes - 1) {
+        const int lane = __builtin_ctz(lanes);
+        const uint32_t number = (uint32_t)pair[lane];
+        put_word(place[lane], 0, (uint32_t)find_number(call, pair[lane]));
+        call->rows->known[number / 64] |= (uint64_t)1 << number % 64;
+    }
+}
+
+/* Lists the rows of pairs in the lanes `keep`, behind those that are listed. */
+INLINE void append_answers(const struct call *call, vi pairs, vm keep, const struct answer *answer) {
+    struct rows *rows = call->rows;
+    int32_t pair[V_WIDTH];
+    char *place[V_WIDTH];
+    vi_store(pair, pairs);
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        place[lane] = rows->spare;
+    for (uint32_t lanes = vm_bits(keep); lanes; lanes &= lanes - 1)
+        place[__builtin_ctz(lanes)] = rows->out.base + (ptrdiff_t)rows->listed++ * rows->out.stride;
+    write_answers(call, place, answer);
+    for (uint32_t lanes = vm_bits(keep); lanes; lanes &= lanes - 1) {
+        const int lane = __builtin_ctz(lanes);
+        put_word(place[lane], 0, (uint32_t)find_number(call, pair[lane]));
+    }
+}
+
+/* With an infinite margin every pair has a row. Writes that of pairs without an answer, in the lanes `which`. */
+INLINE void put_no_answer(const struct call *call, vi pairs, vm which) {
+    int32_t pair[V_WIDTH];
+    if (!vm_any(which))
+        return;
+    vi_store(pair, pairs);
+    for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
+        const int32_t k = pair[__builtin_ctz(lanes)];
+        const narc_contact contact = {.pair = (uint32_t)find_number(call, k), .separation = INFINITY};
+        const narc_manifold manifold = {.pair = contact.pair, .point = {{.separation = INFINITY}}};
+        if (!(find_margin(call, k) >= INFINITY))
+            continue;
+        memcpy(find_place(call, k), call->edges ? (const void *)&manifold : &contact,
+               call->edges ? sizeof manifold : sizeof contact);
+        call->rows->known[k / 64] |= (uint64_t)1 << k % 64;
+        call->rows->without++;
+    }
+}
+
+/* Rows of pairs that have none: dense ones have all places filled. Returns how many have one. */
+INLINE size_t fill_gaps(const struct call *call, size_t size) {
+    size_t count = 0;
+    for (size_t k = 0; k < call->count; k++) {
+        char *const place = find_place(call, (int32_t)(uint32_t)k);
+        if (call->rows->known[k / 64] >> k % 64 & 1) {
+            count++;
+            continue;
+        }
+        memset(place, 0, size);
+        put_word(place, 0, (uint32_t)find_number(call, (int32_t)(uint32_t)k));
+    }
+    return count - call->rows->without;
+}
+
+/* Ends a call with rows of `size` bytes: moves them together in the order of their pairs. Returns how many there are. */
+INLINE size_t end_rows(const struct call *call, size_t size) {
+    const struct rows *rows = call->rows;
+    const ptrdiff_t stride = rows->out.stride;
+    char *to = rows->out.base + rows->listed * stride;
+    size_t count = (size_t)rows->listed;
+    if (rows->dense)
+        return fill_gaps(call, size);
+    for (size_t word = 0; word < (call->count + 63) / 64; word++)
+        for (uint64_t bits = rows->known[word]; bits; bits &= bits - 1) {
+            const char *from = rows->out.base + (ptrdiff_t)(64 * word + (unsigned)__builtin_ctzll(bits)) * stride;
+            if (from != to)
+                memcpy(to, from, size);
+            to += stride;
+            count++;
+        }
+    return count;
+}
+
+/* The caller's number of an arc from its record; a circle's two halves are both arc 0. */
+INLINE vi find_arc_number(vi record, vi first_record, vi info) {
+    const vi index = vi_sub(record, first_arc_record(first_record, info));
+    const vi number = vi_add(index, info_first_arc(info)), count = info_count(info);
+    const vi wrapped = vi_select(vi_lt(number, count), number, vi_sub(number, count));
+    return vi_select(info_has(info, NARC_SHAPE_CIRCLE), vi_set(0), wrapped);
+}
+
+/* The sine of the angle from one unit vector to another, counter-clockwise and up to half a turn, of a quarter turn at
+ * most. */
+INLINE vf find_capped_sine(vec2 from, vec2 to) {
+    const vf one = v_set(1), sine = v_max(v2_cross(from, to), v_set(0));
+    return v_select(v_lt(v_set(0), v2_dot(from, to)), v_min(sine, one), one);
+}
+
+/* How far n may turn on the arc of a feature, as a manifold's row has it. */
+INLINE vi find_reach(const struct feature *f, vec2 n, vi info, vm edge) {
+    const vf one = v_set(NARC_REACH_ONE), none = v_set(0);
+    const vm circle = info_has(info, NARC_SHAPE_CIRCLE);
+    const vf back = v_mul(one, find_capped_sine(f->start, n)), ahead = v_mul(one, find_capped_sine(n, f->end));
+    return pack_halves(vi_truncate(v_select(circle, one, v_select(edge, none, back))),
+                       vi_truncate(v_select(circle, one, v_select(edge, none, ahead))));
+}
+
+/* The answer to the pairs k ... of a queue that touch along n, in A's frame. In `out_edges`: where both do so with an
+ * edge, or may next to it. */
+INLINE struct answer find_answer(const struct call *call, const struct queue *queue, int k, vf separation, vec2 n,
+                                 const struct feature *on_a, const struct feature *on_b) {
+    const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k), zero = vi_set(0);
+    const vec2 to_world = get_vec2(queue, ROTATION_A, k);
+    const vm edge_a = touches_edge(on_a, info_a, get(queue, SCALE_A, k));
+    const vm edge_b = touches_edge(on_b, info_b, get(queue, SCALE_B, k));
+    const vi number_a = find_arc_number(on_a->record, get_bits(queue, FIRST_RECORD_A, k), info_a);
+    const vi number_b = find_arc_number(on_b->record, get_bits(queue, FIRST_RECORD_B, k), info_b);
+    const vi feature_a = vi_add(number_a, vi_select(edge_a, vi_set(NARC_FEATURE_EDGE), zero));
+    const vi feature_b = vi_add(number_b, vi_select(edge_b, vi_set(NARC_FEATURE_EDGE), zero));
+    struct answer answer = {.separation = separation,
+                            .normal = v2_rotate(to_world, n),
+                            .point = v2_rotate(to_world, v2_rotate(n, find_contact_place(on_a, on_b))),
+                            .feature = vi_add(feature_a, vi_shift_left(feature_b, 8)),
+                            .radius_a = v_select(edge_a, v_set(INFINITY), on_a->radius),
+                            .radius_b = v_select(edge_b, v_set(INFINITY), on_b->radius)};
+    if (call->edges) {
+        answer.reach_a = find_reach(on_a, n, info_a, edge_a);
+        answer.reach_b = find_reach(on_b, n, info_b, edge_b);
+    }
+    return answer;
+}
+
+/* Writes the contacts of the pairs k ... of a queue in the lanes `keep`. */
+INLINE void store_contacts(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
+                           const struct feature *on_a, const struct feature *on_b) {
+    const struct answer answer = find_answer(call, queue, k, separation, n, on_a, on_b);
+    put_answers(call, get_bits(queue, PAIR, k), keep, &answer);
+}
+
+/* The unit normal of the gap of the pairs k ... of a queue, and what touches along it. */
+INLINE vec2 find_gap_features(const struct call *call, const struct queue *queue, int k, const struct gap *gap,
+                              struct feature *out_a, struct feature *out_b) {
+    const narc_record *records = call->batch->shapes->records;
+    const vec2 n = v2_divide(gap->normal, gap->length);
+    const struct pose pose = get_pose(queue, k);
+    *out_a = find_feature_at(records, get_ring_a(queue, k), gap->record_a, &pose, n, false);
+    *out_b = find_feature_at(records, get_ring_b(queue, k), gap->record_b, &pose, n, true);
+    return n;
+}
+
+#endif
