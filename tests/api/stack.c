@@ -117,7 +117,7 @@ static narc_status keep_shapes(narc_error *error) {
     CALL(circle_filter, ask_method(NARC_METHOD_CIRCLE, error))                                                         \
     CALL(aabb_filter, ask_method(NARC_METHOD_AABB, error))                                                             \
     CALL(obb_filter, ask_method(NARC_METHOD_OBB, error))                                                               \
-    CALL(poses, narc_compute_poses(margins, PAIRS, cosines, sines, error))                                              \
+    CALL(poses, narc_compute_poses(margins, PAIRS, cosines, sines, error))                                             \
     CALL(names, TRUE(narc_set_isa(test_isa(), error) == NARC_OK && narc_get_isa() && narc_isa_name(0) &&               \
                      narc_isa_supported("scalar") && !narc_cpu_feature(SIZE_MAX) && narc_version() &&                  \
                      narc_openmp_workers(0).count))                                                                    \

@@ -30,7 +30,7 @@ static struct shape half_disc(void) {
 struct answer {
     bool overlap;
     float separation, normal_x, normal_y, point_x, point_y;
-    int arc_a, arc_b;
+    unsigned arc_a, arc_b;
 };
 
 static struct answer ask_bodies(const struct shape *a, struct body body_a, const struct shape *b, struct body body_b) {

@@ -125,7 +125,7 @@ static void test_capacity(void **state) {
                                              capacity, &found, &error),
                          NARC_ERROR_CAPACITY);
         assert_int_equal(found, all.count);
-        assert_non_null(strstr(error.message, "manifolds"));
+        assert_non_null(strstr(error.message, "rows"));
         assert_memory_equal(part, all.rows, capacity * sizeof *part);
         guard_release(part);
     }
