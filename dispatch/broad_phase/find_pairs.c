@@ -8,9 +8,6 @@
 #include "steps.h"
 #include "workers.h"
 
-/* Strips that are sorted at a time. */
-enum { FEW_STRIPS = 4 };
-
 /* Pairs that a box has, more or less: a call that finds more of them sweeps twice, the first time. */
 enum { USUAL_PAIRS = 3 };
 
@@ -30,7 +27,7 @@ typedef struct own_pairs {
     const sweep *sweep;
     uint32_t filtered; /* pairs of the block that have been */
     uint64_t total;    /* of the blocks before it */
-    uint32_t a[NARC_PAIR_BLOCK], b[NARC_PAIR_BLOCK];
+    uint32_t *a, *b;   /* NARC_PAIR_BLOCK each */
 } own_pairs;
 
 /* Without a filter, pairs that are only counted may stay as they are. */
@@ -132,21 +129,14 @@ static void sweep_strip(const narc_broad_phase *broad, const narc_kernel_table *
     }
 }
 
-static void begin_sweep(own_pairs *own, const sweep *job) {
-    own->pairs = (narc_found_pairs){.room = NARC_PAIR_BLOCK, .get_room = get_room};
-    own->sweep = job;
-    own->filtered = 0;
-    own->total = 0;
-    begin_block(own);
-}
-
 /* One task: sweeps strips that no other does. */
 static void sweep_some(void *argument, size_t task) {
     sweep *job = argument;
     const size_t step = job->strips_at_a_time, count = job->broad->strip_count;
-    own_pairs own;
+    uint32_t a[NARC_PAIR_BLOCK], b[NARC_PAIR_BLOCK];
+    own_pairs own = {{.room = NARC_PAIR_BLOCK, .get_room = get_room}, job, 0, 0, a, b};
     (void)task;
-    begin_sweep(&own, job);
+    begin_block(&own);
     for (size_t first; (first = atomic_fetch_add_explicit(&job->next_strip, step, memory_order_relaxed)) < count;)
         for (size_t k = first; k < count && k - first < step && !own.pairs.enough; k++)
             sweep_strip(job->broad, job->kernels, k, &own.pairs);
@@ -193,18 +183,6 @@ static narc_workers choose_workers(const narc_workers *workers, size_t count) {
     return chosen;
 }
 
-typedef struct strip_job {
-    narc_broad_phase *broad;
-    const narc_box *boxes;
-} strip_job;
-
-static void sort_strips(void *argument, size_t part, size_t first, size_t end) {
-    const strip_job *job = argument;
-    (void)part;
-    for (size_t k = first; k < end; k++)
-        narc_sort_strip(job->broad, &job->broad->strips[k], job->boxes);
-}
-
 narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, size_t count,
                              const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count,
                              narc_error *error) {
@@ -217,8 +195,6 @@ narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, siz
         narc_reserve_blocks(broad, count_blocks(USUAL_PAIRS * (uint64_t)count, chosen.count)) != NARC_OK)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)count, "not enough memory for %zu boxes", count);
     narc_sort_into_strips(broad, boxes, count, &chosen);
-    strip_job job = {broad, boxes};
-    narc_run_ranges(&chosen, broad->strip_count, FEW_STRIPS, sort_strips, &job);
     const uint64_t found = sweep_all(broad, kernels, filter, &chosen);
     if (found > UINT32_MAX)
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)UINT32_MAX, "more than %lu pairs of boxes overlap",

@@ -8,6 +8,8 @@
 #include "broad_phase.h"
 #include "narc_workers.h"
 
+#include <float.h>
+
 /* "options.`name` is ...": it is at least 0 and finite. */
 narc_status narc_check_length(float length, const char *name, narc_error *error);
 
@@ -42,6 +44,12 @@ static inline void narc_sort_by_heap(uint32_t *items, size_t count,
     }
 }
 
+/* A box that is not empty. False for NaN too. */
+static inline bool narc_is_box(const narc_box *box) {
+    return box->min_x >= -FLT_MAX && box->min_y >= -FLT_MAX && box->max_x <= FLT_MAX && box->max_y <= FLT_MAX &&
+           box->min_x <= box->max_x && box->min_y <= box->max_y;
+}
+
 /* What the filter says of one body. */
 narc_body_filter narc_read_filter(const narc_pair_filter *filter, size_t body);
 
@@ -56,12 +64,9 @@ narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const n
                                   const narc_workers *workers, size_t found, uint32_t *out_a, uint32_t *out_b,
                                   narc_error *error);
 
-/* Lists the levels and strips that `count` boxes lie in, and the entries of the boxes in the order of their strips.
- * There is room for all boxes and a part for each worker. */
+/* Lists the levels and strips that `count` boxes lie in, and puts the boxes into the columns, strip by strip, in the
+ * order of min_x. There is room for all boxes and a part for each worker. */
 void narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers);
-
-/* Puts the boxes of one strip into the columns, in the order of min_x. Strips may be sorted by several threads. */
-void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes);
 
 /* The number of the strip of a level that holds `y`, or of one `offset` strips above it; the nearest one that boxes may
  * lie in. */

@@ -11,7 +11,6 @@
 #include "steps.h"
 #include "workers.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -23,11 +22,6 @@
 
 /* Powers of two to a level. */
 enum { HEIGHT_STEP = 2, WIDTH_STEP = 4, EXPONENTS = NARC_EXPONENTS };
-
-static bool is_box(const narc_box *box) {
-    return box->min_x <= box->max_x && box->min_y <= box->max_y && fabsf(box->min_x) <= FLT_MAX &&
-           fabsf(box->max_x) <= FLT_MAX && fabsf(box->min_y) <= FLT_MAX && fabsf(box->max_y) <= FLT_MAX;
-}
 
 static uint32_t bits_of(float value) {
     uint32_t bits;
@@ -76,7 +70,7 @@ static void count_part(void *argument, size_t part, size_t first, size_t end) {
     for (int k = 0; k < EXPONENTS; k++)
         own->heights[k] = own->widths[k] = -1;
     for (size_t k = first; k < end; k++) {
-        if (!is_box(&boxes[k]))
+        if (!narc_is_box(&boxes[k]))
             continue;
         add_size(own->heights, boxes[k].max_y - boxes[k].min_y);
         add_size(own->widths, boxes[k].max_x - boxes[k].min_x);
@@ -160,7 +154,7 @@ static void list_part(void *argument, size_t part, size_t first, size_t end) {
     for (size_t k = 0; k < p->heights.count; k++)
         scale[k] = find_scale(&p->heights, k);
     for (size_t k = first; k < end; k++) {
-        if (!none_empty && !is_box(&boxes[k]))
+        if (!none_empty && !narc_is_box(&boxes[k]))
             continue;
         const size_t height = p->heights.of[exponent_of(boxes[k].max_y - boxes[k].min_y)];
         const size_t width = p->widths.of[exponent_of(boxes[k].max_x - boxes[k].min_x)];
@@ -290,26 +284,6 @@ static void list_levels(const passes *p) {
     }
 }
 
-void narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers) {
-    passes p = {.broad = broad,
-                .boxes = boxes,
-                .workers = workers,
-                .parts = workers->count < NARC_STRIP_PARTS ? workers->count : NARC_STRIP_PARTS};
-    const size_t listed = count_boxes(&p, count);
-    if (listed > 0) {
-        list_entries(&p, count);
-        const uint64_t numbers = (uint64_t)p.heights.count * (uint64_t)p.widths.count * (uint64_t)broad->strip_span;
-        for (; p.shift < 64 && numbers >> p.shift > 0; p.shift += DIGIT_BITS)
-            sort_by_digit(&p, listed);
-    }
-    list_strips(&p, listed);
-    list_levels(&p);
-    for (size_t k = listed; k < listed + NARC_BOX_PADDING; k++) { /* read, and of no use */
-        broad->boxes.min_x[k] = broad->boxes.max_x[k] = broad->boxes.min_y[k] = broad->boxes.max_y[k] = 0;
-        broad->boxes.body[k] = 0;
-    }
-}
-
 /* ------------------------------------------------------------------------------------------------ within a strip */
 
 /* Below so many entries, insertion is the faster sort. More go into buckets first, as many as there are entries; and where
@@ -396,7 +370,7 @@ static narc_box_entry *sort_by_min_x(narc_box_entry *entries, narc_box_entry *sp
     return entries;
 }
 
-void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes) {
+static void sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes) {
     const narc_box_columns *const out = &broad->boxes;
     const size_t count = strip->end - strip->first;
     const narc_box_entry *const sorted =
@@ -417,4 +391,35 @@ void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box 
         width = box.max_x - box.min_x > width ? box.max_x - box.min_x : width;
     }
     strip->width = width * (1 + 0x1p-22f) + FLT_TRUE_MIN; /* no box is wider, for all rounding */
+}
+
+/* Strips that are sorted at a time. */
+enum { FEW_STRIPS = 4 };
+
+static void sort_strips(void *argument, size_t part, size_t first, size_t end) {
+    const passes *p = argument;
+    (void)part;
+    for (size_t k = first; k < end; k++)
+        sort_strip(p->broad, &p->broad->strips[k], p->boxes);
+}
+
+void narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers) {
+    passes p = {.broad = broad,
+                .boxes = boxes,
+                .workers = workers,
+                .parts = workers->count < NARC_STRIP_PARTS ? workers->count : NARC_STRIP_PARTS};
+    const size_t listed = count_boxes(&p, count);
+    if (listed > 0) {
+        list_entries(&p, count);
+        const uint64_t numbers = (uint64_t)p.heights.count * (uint64_t)p.widths.count * (uint64_t)broad->strip_span;
+        for (; p.shift < 64 && numbers >> p.shift > 0; p.shift += DIGIT_BITS)
+            sort_by_digit(&p, listed);
+    }
+    list_strips(&p, listed);
+    list_levels(&p);
+    narc_run_ranges(workers, broad->strip_count, FEW_STRIPS, sort_strips, &p);
+    for (size_t k = listed; k < listed + NARC_BOX_PADDING; k++) { /* read, and of no use */
+        broad->boxes.min_x[k] = broad->boxes.max_x[k] = broad->boxes.min_y[k] = broad->boxes.max_y[k] = 0;
+        broad->boxes.body[k] = 0;
+    }
 }

@@ -12,7 +12,6 @@
 #include "steps.h"
 #include "workers.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -31,12 +30,6 @@ typedef struct update {
 
 static const narc_box empty = {INFINITY, INFINITY, -INFINITY, -INFINITY};
 
-/* False for NaN too. */
-static bool has_box(const narc_box *box) {
-    return box->min_x >= -FLT_MAX && box->min_y >= -FLT_MAX && box->max_x <= FLT_MAX && box->max_y <= FLT_MAX &&
-           box->min_x <= box->max_x && box->min_y <= box->max_y;
-}
-
 /* x - by or less, finite: a rounding errs by half of the step that is added, or less. */
 static float lower(float x, float by) {
     const float rounded = x - by, down = rounded - (fabsf(rounded) * 0x1p-23f + FLT_TRUE_MIN);
@@ -52,7 +45,7 @@ static void add_room(const update *u, const narc_box *boxes, float half, narc_bo
     const narc_float_column reach = u->options->reach;
     for (size_t k = 0; k < u->count; k++) {
         const float own = reach.base ? narc_float_at(reach, k) : 0;
-        const bool fine = has_box(&boxes[k]) && own >= 0 && own <= FLT_MAX;
+        const bool fine = narc_is_box(&boxes[k]) && own >= 0 && own <= FLT_MAX;
         out_boxes[k] = fine ? widen(widen(boxes[k], half), own) : empty;
     }
 }
@@ -86,7 +79,7 @@ static void look(void *argument, size_t part, size_t first, size_t end) {
     bool renew = false, rest = false;
     (void)part;
     for (size_t k = first; k < end; k++) {
-        const bool has = has_box(&u->boxes[k]), had = broad->kept_boxes[k].min_x <= broad->kept_boxes[k].max_x;
+        const bool has = narc_is_box(&u->boxes[k]), had = broad->kept_boxes[k].min_x <= broad->kept_boxes[k].max_x;
         renew |= has ? !is_inside(&u->boxes[k], &broad->kept_boxes[k]) : had;
         if (!all->use_filters)
             continue;
@@ -289,7 +282,7 @@ static size_t keep_bodies(const update *u) {
     size_t skipped = 0;
     broad->has_filter = u->options->filter;
     for (size_t k = 0; k < u->count; k++) {
-        const bool has = has_box(&u->boxes[k]);
+        const bool has = narc_is_box(&u->boxes[k]);
         skipped += !has;
         broad->kept_boxes[k] = has ? widen(u->boxes[k], u->options->skin) : empty;
     }
