@@ -7,7 +7,6 @@
 #include "error.h"
 #include "narc_broad_phase.h"
 #include "steps.h"
-#include "workers.h"
 
 #include <math.h>
 
@@ -23,27 +22,21 @@ narc_status narc_check_length(float length, const char *name, narc_error *error)
     return NARC_OK;
 }
 
-narc_status narc_check_unused(void *const reserved[4], narc_error *error) {
-    for (int k = 0; k < 4; k++)
-        if (reserved[k])
-            return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "options.reserved is not 0");
-    return NARC_OK;
-}
-
-/* Bodies first .. first + count - 1. */
-static narc_status check_bodies(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t count,
+/* Bodies first .. first + *count - 1; 0 of them: to the end. */
+static narc_status check_bodies(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t *count,
                                 const narc_workers *workers, narc_error *error) {
     if (bodies->count > UINT32_MAX)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->count, "%zu bodies, at most %lu", bodies->count,
                          (unsigned long)UINT32_MAX);
-    if (first > bodies->count || count > bodies->count - first)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)count,
-                         "bodies %zu and the %zu from there on, but there are %zu", first, count, bodies->count);
-    const narc_status status = count > 0 ? narc_check_columns(bodies, error) : NARC_OK;
+    narc_status status = narc_check_range(first, count, bodies->count, "bodies", error);
+    if (status == NARC_OK)
+        status = narc_check_reserved(bodies->reserved, 2, "bodies", error);
+    if (status == NARC_OK && *count > 0)
+        status = narc_check_columns(bodies, error);
     if (status != NARC_OK)
         return status;
-    const size_t bad = narc_find_bad_body(shapes, bodies, first, count, workers);
-    if (bad == first + count)
+    const size_t bad = narc_find_bad_body(shapes, bodies, first, *count, workers);
+    if (bad == first + *count)
         return NARC_OK;
     const uint32_t shape = narc_index_at(bodies->shape, bad);
     return narc_fail(error, NARC_ERROR_INDEX, bad, shape, "body %zu: shape is %lu, but there are %zu shapes", bad,
@@ -73,12 +66,12 @@ narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bodies *bod
     const narc_box_options *const o = options ? options : &defaults;
     if (!shapes || !bodies)
         return narc_fail_missing(error, shapes ? "bodies" : "shapes");
-    const size_t rest = bodies->count > o->first ? bodies->count - o->first : 0, count = o->count ? o->count : rest;
+    size_t count = o->count;
     narc_status status = narc_check_length(o->margin, "margin", error);
     if (status == NARC_OK)
-        status = narc_check_unused(o->reserved, error);
+        status = narc_check_reserved(o->reserved, 4, "options", error);
     if (status == NARC_OK)
-        status = check_bodies(shapes, bodies, o->first, count, o->workers, error);
+        status = check_bodies(shapes, bodies, o->first, &count, o->workers, error);
     if (status != NARC_OK)
         return status;
     if (count > 0 && !out_boxes)

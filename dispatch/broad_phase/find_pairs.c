@@ -6,7 +6,6 @@
 #include "error.h"
 #include "narc_broad_phase.h"
 #include "steps.h"
-#include "workers.h"
 
 /* Pairs that a box has, more or less: a call that finds more of them sweeps twice, the first time. */
 enum { USUAL_PAIRS = 3 };

@@ -11,7 +11,6 @@
 #include "error.h"
 #include "narc_broad_phase.h"
 #include "steps.h"
-#include "workers.h"
 
 #include <string.h>
 
@@ -153,7 +152,7 @@ static narc_status check(const narc_pairs *pairs, const char *name, narc_error *
                          pairs->count, (unsigned long)(UINT32_MAX - 1));
     if (pairs->count > 0 && (!pairs->a.base || !pairs->b.base))
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s.%c is NULL", name, pairs->a.base ? 'b' : 'a');
-    return NARC_OK;
+    return narc_check_reserved(pairs->reserved, 2, name, error);
 }
 
 typedef struct matching {

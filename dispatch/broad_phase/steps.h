@@ -13,9 +13,6 @@
 /* "options.`name` is ...": it is at least 0 and finite. */
 narc_status narc_check_length(float length, const char *name, narc_error *error);
 
-/* "options.reserved is not 0". */
-narc_status narc_check_unused(void *const reserved[4], narc_error *error);
-
 /* The items of each of `parts` parts of equal size, at least 1. */
 static inline size_t narc_part_size(size_t count, size_t parts) { return count / parts + (count % parts || !count); }
 

@@ -10,7 +10,6 @@
 #include "error.h"
 #include "narc_broad_phase.h"
 #include "steps.h"
-#include "workers.h"
 
 #include <math.h>
 #include <string.h>
@@ -363,7 +362,7 @@ static narc_status begin(const update *u, const narc_pair_list **out_list) {
     if (status == NARC_OK)
         status = narc_check_length(u->options->skin, "skin", u->error);
     if (status == NARC_OK)
-        status = narc_check_unused(u->options->reserved, u->error);
+        status = narc_check_reserved(u->options->reserved, 4, "options", u->error);
     if (status != NARC_OK)
         return status;
     if (u->count > UINT32_MAX - 1)

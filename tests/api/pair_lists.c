@@ -750,7 +750,7 @@ static void refuses_bad_arguments(void **state) {
         {{.motion_x = NARC_COLUMN(boxes, min_x)},
          NARC_ERROR_ARGUMENT,
          "options.motion with boxes, which hold their motion"},
-        {{.reserved = {boxes}}, NARC_ERROR_ARGUMENT, "options.reserved is not 0"},
+        {{.reserved = {boxes}}, NARC_ERROR_ARGUMENT, "options.reserved[0] is not NULL"},
         {{.id = NARC_ARRAY(twice)}, NARC_ERROR_ARGUMENT, "body 2: id 5 is also that of a body before it"},
     };
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {

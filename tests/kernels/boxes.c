@@ -433,7 +433,7 @@ static void refuses_bad_arguments(void **state) {
     expect_error(narc_compute_boxes(scene.store, &bodies, &behind, boxes, &error), NARC_ERROR_ARGUMENT, &error,
                  "bodies 101 and the 0");
     expect_error(narc_compute_boxes(scene.store, &bodies, &reserved, boxes, &error), NARC_ERROR_ARGUMENT, &error,
-                 "options.reserved is not 0");
+                 "options.reserved[0] is not NULL");
     broken.sine.base = NULL;
     expect_error(narc_compute_boxes(scene.store, &broken, NULL, boxes, &error), NARC_ERROR_ARGUMENT, &error, "sine");
     broken = bodies;
