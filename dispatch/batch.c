@@ -35,9 +35,9 @@ struct job {
     narc_row_kernel *kernel;
     size_t size; /* bytes of a row */
     narc_rows rows;
-    atomic_flag closing;             /* does someone move rows? */
-    atomic_size_t due;               /* the part to move next */
-    size_t found;                    /* rows in their final place; of who moves them */
+    atomic_flag closing;           /* does someone move rows? */
+    atomic_size_t due;             /* the part to move next */
+    size_t found;                  /* rows in their final place; of who moves them */
     atomic_uint ended[MOST_PARTS]; /* how many rows a part has and 1; 0: it has not ended */
 };
 
@@ -76,7 +76,7 @@ narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *
     struct job job = {.batch = batch, .first = first, .count = count, .overlap = kernel, .bits = out_bits};
     const size_t workers = narc_count_workers(query->workers, count / LEAST_OVERLAPS);
     const size_t even = count / (workers * PARTS_PER_WORKER) / 64 * 64;
-    job.part_size = workers <= 1             ? count
+    job.part_size = workers <= 1            ? count
                     : even < LEAST_OVERLAPS ? LEAST_OVERLAPS
                     : even > MOST_OVERLAPS  ? MOST_OVERLAPS
                                             : even;
@@ -101,9 +101,7 @@ static void move_rows(char *to, const char *from, size_t count, const struct job
         memcpy(to, from, job->size);
 }
 
-static char *place_of(const struct job *job, size_t row) {
-    return job->rows.base + (ptrdiff_t)row * job->rows.stride;
-}
+static char *place_of(const struct job *job, size_t row) { return job->rows.base + (ptrdiff_t)row * job->rows.stride; }
 
 /* Moves the rows of all parts that are due. Of several threads one does it; one that ends a part while another is at it
  * leaves it to that one, which looks again after it has let go. */
@@ -141,7 +139,8 @@ static void find_rows(void *argument, size_t part) {
 /* The rows of the pairs of a job, which has room for as many. Returns how many there are. */
 static size_t list_rows(struct job *job, size_t *skipped) {
     const size_t groups = (job->count - 1) / NARC_ROW_GROUP + 1;
-    job->part_size = ((groups - 1) / MOST_PARTS + 1) * NARC_ROW_GROUP;
+    const size_t most = narc_count_workers(job->batch->query.workers, groups) > 1 ? MOST_PARTS : 1;
+    job->part_size = ((groups - 1) / most + 1) * NARC_ROW_GROUP;
     const size_t parts = (job->count - 1) / job->part_size + 1;
     atomic_init(&job->skipped, 0);
     atomic_init(&job->due, 0);
@@ -194,7 +193,8 @@ static narc_status check_rows(const narc_batch *batch, const void *rows, ptrdiff
         return narc_fail_missing(error, !out_count ? "out_count" : "out_rows");
     if (stride % 4 != 0 || (stride < 0 ? -stride : stride) < (ptrdiff_t)size)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)stride,
-                         "query.row_stride is %lld, not a multiple of 4 with room for %zu bytes", (long long)stride, size);
+                         "query.row_stride is %lld, not a multiple of 4 with room for %zu bytes", (long long)stride,
+                         size);
     if (query->dense && capacity < end)
         return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)end, "%zu dense rows, but there is room for %zu", end,
                          capacity);

@@ -61,7 +61,7 @@ static void take_every_other(narc_bodies *bodies, size_t offset) {
     }
     TAKE(x) TAKE(y) TAKE(cosine) TAKE(sine) TAKE(scale) TAKE(shape)
 #undef TAKE
-/* clang-format on */
+    /* clang-format on */
 }
 
 /* The sets that A and B are of. Where pairs have no indices, body k is pair k's. */
@@ -103,8 +103,9 @@ static narc_status check_query(const narc_query *query, narc_error *error) {
     if (status == NARC_OK)
         status = check_number(query->flat_angle, "flat_angle", error);
     if (status == NARC_OK && query->flat_angle > NARC_MAX_FLAT_ANGLE)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)query->flat_angle, "query.flat_angle is %g, more than %g",
-                         (double)query->flat_angle, (double)NARC_MAX_FLAT_ANGLE);
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)query->flat_angle,
+                         "query.flat_angle is %g, more than %g", (double)query->flat_angle,
+                         (double)NARC_MAX_FLAT_ANGLE);
     if (status == NARC_OK && !query->selection.base && query->selection_count > 0)
         return narc_fail_missing(error, "query.selection");
     return status == NARC_OK ? CHECK_RESERVED(*query, "query", error) : status;
@@ -123,12 +124,13 @@ static narc_status describe_bad_pair(const narc_batch *batch, size_t place, narc
         const size_t body = columns[k].base ? narc_index_at(columns[k], pair) : pair;
         if (body >= sets[k]->count)
             return narc_fail(error, NARC_ERROR_INDEX, pair, (double)body,
-                             "pair %zu: body %c is %zu, but there are %zu bodies", pair, "ab"[k], body, sets[k]->count);
+                             "pair %zu: body %c is %zu, but there are %zu bodies", pair, "ab"[k], body,
+                             sets[k] -> count);
         const uint32_t shape = narc_index_at(sets[k]->shape, body);
         if (shape >= batch->shapes->count)
             return narc_fail(error, NARC_ERROR_INDEX, pair, shape,
-                             "pair %zu: body %zu has shape %lu, but there are %zu shapes", pair, own ? 2 * pair + k : body,
-                             (unsigned long)shape, batch->shapes->count);
+                             "pair %zu: body %zu has shape %lu, but there are %zu shapes", pair,
+                             own ? 2 * pair + k : body, (unsigned long)shape, batch->shapes->count);
     }
     return NARC_OK;
 }

@@ -41,3 +41,22 @@ void narc_run_parts(const narc_workers *workers, size_t parts, narc_part *part, 
     atomic_init(&work.next, 0);
     workers->run(workers->context, count, take_parts, &work);
 }
+
+struct ranges {
+    narc_range *range;
+    void *argument;
+    size_t count, size;
+};
+
+static void run_range(void *argument, size_t part) {
+    const struct ranges *ranges = argument;
+    const size_t first = part * ranges->size, left = ranges->count - first;
+    ranges->range(ranges->argument, part, first, first + (left < ranges->size ? left : ranges->size));
+}
+
+size_t narc_run_ranges(const narc_workers *workers, size_t count, size_t size, narc_range *range, void *argument) {
+    struct ranges ranges = {range, argument, count, size};
+    const size_t parts = count / size + (count % size != 0);
+    narc_run_parts(workers, parts, run_range, &ranges);
+    return parts;
+}

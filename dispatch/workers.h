@@ -17,4 +17,9 @@ unsigned narc_count_workers(const narc_workers *workers, size_t parts);
 typedef void narc_part(void *argument, size_t part);
 void narc_run_parts(const narc_workers *workers, size_t parts, narc_part *part, void *argument);
 
+/* The same for items: range(argument, part, first, end) for each part of `size` items first .. end - 1, of which the
+ * last may have fewer. Returns how many parts there are. */
+typedef void narc_range(void *argument, size_t part, size_t first, size_t end);
+size_t narc_run_ranges(const narc_workers *workers, size_t count, size_t size, narc_range *range, void *argument);
+
 #endif

@@ -19,9 +19,9 @@ typedef struct narc_batch {
     narc_bodies a, b; /* all columns are there but perhaps `scale` */
     narc_pairs pairs;
     narc_query query;
-    float flat_sine;  /* of manifolds: the sine of the flat angle; below 0: no second points */
-    size_t asked;     /* how many pairs are selected */
-    size_t *skipped;  /* pairs without an answer are added to it. Two threads may not share one. */
+    float flat_sine; /* of manifolds: the sine of the flat angle; below 0: no second points */
+    size_t asked;    /* how many pairs are selected */
+    size_t *skipped; /* pairs without an answer are added to it. Two threads may not share one. */
 } narc_batch;
 
 /* Where a call's rows go: `base` is the place of its first one; of dense rows, of that of the batch's first pair. */

@@ -56,8 +56,8 @@ INLINE void read_simplexes(const struct call *call, const struct lanes *lanes, i
 }
 
 /* Leaves hints for the pairs of the lanes `done`: the corners of a triangle in the lanes `collides`, else an axis. */
-INLINE void leave_simplex(const struct call *call, const struct lanes *lanes, const struct vertex *const corners[3], vec2 axis,
-                          vm collides, vm done) {
+INLINE void leave_simplex(const struct call *call, const struct lanes *lanes, const struct vertex *const corners[3],
+                          vec2 axis, vm collides, vm done) {
     const vi triangle = vi_add(ten_bits(corners[0]->angle), vi_add(vi_shift_left(ten_bits(corners[1]->angle), 10),
                                                                    vi_shift_left(ten_bits(corners[2]->angle), 20)));
     const vf angle = v_min(v_mul(diamond_angle(axis), v_set(0x1p28f)), v_set(0x1p30f - 64));

@@ -98,12 +98,11 @@ static inline void store_found(const struct call *call, const struct queue *queu
     for (int k = 0; k < queue->count; k += V_WIDTH) {
         const vf separation = get(queue, FOUND_SEPARATION, k);
         const vec2 n = get_vec2(queue, FOUND_NORMAL, k), point = get_vec2(queue, FOUND_POINT, k); /* across, along */
-        const struct feature on_a = {
-            .across = point.x,
-            .along_min = point.y,
-            .along_max = point.y,
-            .record = vi_load(queue->record_a + k),
-            .radius = load_radii(records, queue->record_a + k, get(queue, SCALE_A, k))};
+        const struct feature on_a = {.across = point.x,
+                                     .along_min = point.y,
+                                     .along_max = point.y,
+                                     .record = vi_load(queue->record_a + k),
+                                     .radius = load_radii(records, queue->record_a + k, get(queue, SCALE_A, k))};
         struct feature on_b = on_a;
         on_b.record = vi_load(queue->record_b + k);
         on_b.radius = load_radii(records, queue->record_b + k, get(queue, SCALE_B, k));

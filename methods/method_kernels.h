@@ -22,10 +22,10 @@ _Static_assert(sizeof(narc_oriented_box) == sizeof(narc_record), "a box takes th
 typedef struct narc_method_call {
     narc_shapes shapes;
     narc_overlap_kernel *overlap;
-    narc_row_kernel *contact;     /* NULL: it has none */
-    uint8_t *outcomes;            /* one for each pair, out; may be NULL. Kernels write those that did not end well */
-    float tolerance;              /* of gjk, relative to the sum of both bounding radii */
-    int iterations;               /* of gjk, 1 .. NARC_MAX_ITERATIONS */
+    narc_row_kernel *contact; /* NULL: it has none */
+    uint8_t *outcomes;        /* one for each pair, out; may be NULL. Kernels write those that did not end well */
+    float tolerance;          /* of gjk, relative to the sum of both bounding radii */
+    int iterations;           /* of gjk, 1 .. NARC_MAX_ITERATIONS */
 } narc_method_call;
 
 static inline const narc_method_call *narc_call_of(const narc_batch *batch) {

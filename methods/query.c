@@ -106,8 +106,8 @@ static void clear_outcomes(uint8_t *outcomes, const narc_batch *batch, size_t fi
 
 /* Checks all but the outputs, and fills a call. The batch's shapes are the call's. */
 static narc_status begin_call(const narc_methods *methods, const narc_bodies *bodies, const narc_pairs *pairs,
-                              const narc_method_options *options, const narc_query *query,
-                              narc_method_call *out_call, narc_batch *out_batch, narc_error *error) {
+                              const narc_method_options *options, const narc_query *query, narc_method_call *out_call,
+                              narc_batch *out_batch, narc_error *error) {
     narc_status status = check_options(methods, options, error);
     if (status != NARC_OK)
         return status;

@@ -73,7 +73,7 @@ enum { BYTES_PER_BOX = 128 };
 narc_status narc_reserve_boxes(narc_broad_phase *broad, size_t count) {
     if (broad->box_memory && count <= broad->box_capacity) /* padding needs memory even without boxes */
         return NARC_OK;
-    const size_t n = with_room(count, 1024), padded = n + NARC_BOX_PADDING;
+    const size_t n = with_room(count, 1024), padded = n + NARC_BOX_PADDING, parts = n / NARC_PART_BOXES + 1;
     if (n > SIZE_MAX - 64 || !replace(broad, &broad->box_memory, n + 64, BYTES_PER_BOX))
         return NARC_ERROR_MEMORY;
     char *at = broad->box_memory;
@@ -87,6 +87,7 @@ narc_status narc_reserve_boxes(narc_broad_phase *broad, size_t count) {
     broad->boxes.max_y = take(&at, padded, sizeof(float));
     broad->boxes.body = take(&at, padded, sizeof(uint32_t));
     broad->ends = take(&at, n + 1, sizeof *broad->ends);
+    broad->parts = take(&at, parts < NARC_STRIP_PARTS ? parts : NARC_STRIP_PARTS, sizeof *broad->parts);
     broad->box_capacity = n;
     return NARC_OK;
 }

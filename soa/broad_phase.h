@@ -35,6 +35,21 @@ typedef struct narc_level {
     uint32_t first, end; /* its strips */
 } narc_level;
 
+/* Exponents of floats, and values of a digit that entries are sorted by. */
+enum { NARC_EXPONENTS = 256, NARC_DIGITS = 2048 };
+
+/* What one task finds out while boxes are sorted into strips, and then works by. */
+typedef struct narc_strip_part {
+    union {
+        struct {
+            float heights[NARC_EXPONENTS], widths[NARC_EXPONENTS]; /* of each power of two the largest, or -1 */
+        };
+        uint32_t place[NARC_DIGITS]; /* where the next entry with a digit goes */
+    };
+    size_t start, count;     /* its entries, or strips */
+    int64_t lowest, highest; /* strips, if it has entries */
+} narc_strip_part;
+
 /* Boxes in columns, and the body of each. */
 typedef struct narc_box_columns {
     float *min_x, *max_x, *min_y, *max_y;
@@ -99,13 +114,14 @@ struct narc_broad_phase {
     narc_box_entry *entries, *spare;
     narc_box_columns boxes; /* in the order of their strips, with NARC_BOX_PADDING items behind the last */
     narc_strip *strips;
-    narc_level *levels; /* those that have boxes, the highest strips first */
-    uint32_t *ends;     /* of each body's list of partners; one more than boxes */
+    narc_level *levels;     /* those that have boxes, the highest strips first */
+    uint32_t *ends;         /* of each body's list of partners; one more than boxes */
+    narc_strip_part *parts; /* one for every NARC_PART_BOXES boxes, NARC_STRIP_PARTS at most */
     /* for each block of pairs */
     uint32_t *pair_a, *pair_b; /* NARC_PAIR_BLOCK each */
     narc_pair_block *blocks;
     /* of the last call */
-    atomic_size_t block_count; /* blocks that threads asked for, perhaps more than there are */
+    atomic_size_t block_count; /* blocks that tasks asked for, perhaps more than there are */
     size_t strip_count, level_count;
     uint64_t steps;                   /* of the last sweep */
     int64_t lowest_strip, strip_span; /* of all levels; numbers of strips leave strip_span for each level */
@@ -114,10 +130,13 @@ struct narc_broad_phase {
 /* What a kernel may read behind the last box: the widest vector. */
 enum { NARC_BOX_PADDING = 16 };
 
-/* Pairs that a thread takes room for at a time. */
+/* Boxes that are worth a task, and the most parts that they are divided into for strips. */
+enum { NARC_PART_BOXES = 1024, NARC_STRIP_PARTS = 16 };
+
+/* Pairs that a task takes room for at a time. */
 enum { NARC_PAIR_BLOCK = 4096 };
 
-/* A block with fewer pairs is filled up before a thread takes the next. */
+/* A block with fewer pairs is filled up before a task takes the next. */
 enum { NARC_FULL_BLOCK = NARC_PAIR_BLOCK / 8 * 7 };
 
 /* Make room for so many boxes, blocks of pairs, and numbers in two arrays of 32 bits; what was there is lost, unless

@@ -68,7 +68,7 @@ typedef struct narc_position_column {
 #define NARC_ARRAY(array)         NARC_TYPED_COLUMN(&(array)[0], sizeof((array)[0]))
 #define NARC_POSITION_COLUMN(array, field)                                                                             \
     ((narc_position_column)NARC_POSITIONS_AT(&(array)[0].field, sizeof((array)[0])))
-#define NARC_POSITION_ARRAY(array) ((narc_position_column)NARC_POSITIONS_AT(&(array)[0], sizeof((array)[0])))
+#define NARC_POSITION_ARRAY(array)     ((narc_position_column)NARC_POSITIONS_AT(&(array)[0], sizeof((array)[0])))
 #define NARC_HINT_COLUMN(array, field) NARC_HINTS_AT(&(array)[0].field, sizeof((array)[0]))
 #define NARC_HINT_ARRAY(array)         NARC_HINTS_AT(&(array)[0], sizeof((array)[0]))
 
@@ -82,7 +82,7 @@ typedef struct narc_position_column {
 /* What those above are made of. Each type of items has a pointer that may write and one that may not. */
 #define NARC_MADE_COLUMN(type, pointer, size) ((type){(const void *)(pointer), (ptrdiff_t)(size)})
 #define NARC_HINTS_AT(pointer, size)                                                                                   \
-    _Generic((pointer), uint32_t *: (narc_hint_column){(void *)(pointer), (ptrdiff_t)(size)})
+    _Generic((pointer), uint32_t * : (narc_hint_column){(void *)(pointer), (ptrdiff_t)(size)})
 /* clang-format off */
 #define NARC_TYPED_COLUMN(pointer, size)                                                                               \
     _Generic((pointer),                                                                                                \

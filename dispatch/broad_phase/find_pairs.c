@@ -7,35 +7,41 @@
 #include "narc_broad_phase.h"
 #include "steps.h"
 
-/* Boxes that are worth a thread. */
-enum { PART_BOXES = 1024 };
-
 /* Pairs that a box has, more or less: a call that finds more of them sweeps twice, the first time. */
 enum { USUAL_PAIRS = 3 };
 
-/* A thread's pairs, and where those go for which there is no block: they are only counted. */
+/* A sweep of all strips, and what its tasks share. */
+typedef struct sweep {
+    narc_broad_phase *broad;
+    const narc_kernel_table *kernels;
+    const narc_pair_filter *filter;
+    size_t tasks, strips_at_a_time;
+    atomic_size_t next_strip;
+    atomic_uint_least64_t found, steps;
+} sweep;
+
+/* A task's pairs, and where those go for which there is no block: they are only counted. */
 typedef struct own_pairs {
     narc_found_pairs pairs; /* the kernel's view, first */
-    narc_broad_phase *broad;
-    const narc_pair_filter *filter;
-    int team;
+    const sweep *sweep;
     uint32_t filtered; /* pairs of the block that have been */
     uint64_t total;    /* of the blocks before it */
-    uint32_t a[NARC_PAIR_BLOCK], b[NARC_PAIR_BLOCK];
+    uint32_t *a, *b;   /* NARC_PAIR_BLOCK each */
 } own_pairs;
 
 /* Without a filter, pairs that are only counted may stay as they are. */
 static void filter_new(own_pairs *own) {
     narc_found_pairs *const pairs = &own->pairs;
-    if (pairs->a == own->a && !own->filter)
+    if (pairs->a == own->a && !own->sweep->filter)
         own->filtered = pairs->count;
     else
-        own->filtered = pairs->count = narc_filter_pairs(own->filter, pairs->a, pairs->b, own->filtered, pairs->count);
+        own->filtered = pairs->count =
+            narc_filter_pairs(own->sweep->filter, pairs->a, pairs->b, own->filtered, pairs->count);
 }
 
-/* One thread reads all blocks: then their ranges do not matter. */
-static narc_pair_block describe_block(const narc_found_pairs *pairs, int team) {
-    if (team == 1)
+/* One task reads all blocks: then their ranges do not matter. */
+static narc_pair_block describe_block(const narc_found_pairs *pairs, size_t tasks) {
+    if (tasks == 1)
         return (narc_pair_block){pairs->count, 0, UINT32_MAX};
     narc_pair_block block = {pairs->count, UINT32_MAX, 0};
     for (uint32_t k = 0; k < pairs->count; k++) {
@@ -49,26 +55,26 @@ static void end_block(own_pairs *own) {
     narc_found_pairs *const pairs = &own->pairs;
     filter_new(own);
     if (pairs->a != own->a)
-        own->broad->blocks[(size_t)(pairs->a - own->broad->pair_a) / NARC_PAIR_BLOCK] =
-            describe_block(pairs, own->team);
+        own->sweep->broad->blocks[(size_t)(pairs->a - own->sweep->broad->pair_a) / NARC_PAIR_BLOCK] =
+            describe_block(pairs, own->sweep->tasks);
     own->total += pairs->count;
     own->filtered = pairs->count = 0;
 }
 
 static void begin_block(own_pairs *own) {
-    narc_broad_phase *const broad = own->broad;
+    narc_broad_phase *const broad = own->sweep->broad;
     const size_t block = atomic_fetch_add_explicit(&broad->block_count, 1, memory_order_relaxed);
     const bool exists = block < broad->block_capacity;
     own->pairs.a = exists ? broad->pair_a + block * NARC_PAIR_BLOCK : own->a;
     own->pairs.b = exists ? broad->pair_b + block * NARC_PAIR_BLOCK : own->b;
 }
 
-/* Blocks that hold so many pairs: all are full but the last one of each thread. */
-static size_t count_blocks(uint64_t pairs, int team) { return (size_t)(pairs / NARC_FULL_BLOCK) + (size_t)team; }
+/* Blocks that hold so many pairs: all are full but the last one of each task. */
+static size_t count_blocks(uint64_t pairs, size_t tasks) { return (size_t)(pairs / NARC_FULL_BLOCK) + tasks; }
 
-/* More than the largest number of pairs? Threads have asked for more blocks than hold that many. */
-static bool too_many(const narc_broad_phase *broad, int team) {
-    return atomic_load_explicit(&broad->block_count, memory_order_relaxed) > count_blocks(UINT32_MAX, team) + 1;
+/* More than the largest number of pairs? Tasks have asked for more blocks than hold that many. */
+static bool too_many(const narc_broad_phase *broad, size_t tasks) {
+    return atomic_load_explicit(&broad->block_count, memory_order_relaxed) > count_blocks(UINT32_MAX, tasks) + 1;
 }
 
 /* A block that the filter leaves room in is filled up first. */
@@ -79,7 +85,7 @@ static void get_room(narc_found_pairs *pairs) {
         return;
     end_block(own);
     begin_block(own);
-    pairs->enough = too_many(own->broad, own->team);
+    pairs->enough = too_many(own->sweep->broad, own->sweep->tasks);
 }
 
 /* ------------------------------------------------------------------------------------------------ sweeps */
@@ -122,38 +128,35 @@ static void sweep_strip(const narc_broad_phase *broad, const narc_kernel_table *
     }
 }
 
+/* One task: sweeps strips that no other does. */
+static void sweep_some(void *argument, size_t task) {
+    sweep *job = argument;
+    const size_t step = job->strips_at_a_time, count = job->broad->strip_count;
+    uint32_t a[NARC_PAIR_BLOCK], b[NARC_PAIR_BLOCK];
+    own_pairs own = {{.room = NARC_PAIR_BLOCK, .get_room = get_room}, job, 0, 0, a, b};
+    (void)task;
+    begin_block(&own);
+    for (size_t first; (first = atomic_fetch_add_explicit(&job->next_strip, step, memory_order_relaxed)) < count;)
+        for (size_t k = first; k < count && k - first < step && !own.pairs.enough; k++)
+            sweep_strip(job->broad, job->kernels, k, &own.pairs);
+    end_block(&own);
+    atomic_fetch_add_explicit(&job->found, own.total, memory_order_relaxed);
+    atomic_fetch_add_explicit(&job->steps, own.pairs.steps, memory_order_relaxed);
+}
+
 /* Sweeps all strips; returns how many pairs the filter lets, of which only those are kept for which there are
  * blocks. Beyond UINT32_MAX it stops: then it returns any larger number. */
 static uint64_t sweep_all(narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_pair_filter *filter,
-                          int team) {
-    const int strips_at_a_time = 1 + (int)(broad->strip_count / ((size_t)team * 64));
-    uint64_t found = 0, steps = 0;
+                          const narc_workers *workers) {
+    sweep job = {.broad = broad,
+                 .kernels = kernels,
+                 .filter = filter,
+                 .tasks = workers->count,
+                 .strips_at_a_time = 1 + broad->strip_count / ((size_t)workers->count * 64)};
     atomic_store_explicit(&broad->block_count, 0, memory_order_relaxed);
-    (void)strips_at_a_time;
-#ifdef _OPENMP
-#pragma omp parallel num_threads(team) reduction(+ : found, steps) if (team > 1)
-#endif
-    {
-        own_pairs own;
-        own.pairs = (narc_found_pairs){.room = NARC_PAIR_BLOCK, .get_room = get_room};
-        own.broad = broad;
-        own.filter = filter;
-        own.team = team;
-        own.filtered = 0;
-        own.total = 0;
-        begin_block(&own);
-#ifdef _OPENMP
-#pragma omp for schedule(dynamic, strips_at_a_time)
-#endif
-        for (size_t k = 0; k < broad->strip_count; k++)
-            if (!own.pairs.enough)
-                sweep_strip(broad, kernels, k, &own.pairs);
-        end_block(&own);
-        found += own.total;
-        steps += own.pairs.steps;
-    }
-    broad->steps = steps;
-    return found;
+    narc_run_parts(workers, job.tasks, sweep_some, &job);
+    broad->steps = atomic_load_explicit(&job.steps, memory_order_relaxed);
+    return atomic_load_explicit(&job.found, memory_order_relaxed);
 }
 
 /* ------------------------------------------------------------------------------------------------ the call */
@@ -172,26 +175,26 @@ static narc_status check(const narc_broad_phase *broad, const narc_box *boxes, s
     return NARC_OK;
 }
 
-/* Threads for so many boxes. */
-static int find_team(unsigned threads, size_t count) { return narc_team_size(threads, count / PART_BOXES + 1); }
+/* The workers for so many boxes. */
+static narc_workers choose_workers(const narc_workers *workers, size_t count) {
+    narc_workers chosen = workers ? *workers : (narc_workers){.count = 1};
+    chosen.count = narc_count_workers(workers, count / NARC_PART_BOXES + 1);
+    return chosen;
+}
 
 narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, size_t count,
-                             const narc_pair_filter *filter, unsigned threads, size_t *out_count, narc_error *error) {
+                             const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count,
+                             narc_error *error) {
     narc_status status;
     const narc_kernel_table *const kernels = narc_kernels(&status, error);
     if (!kernels)
         return status;
-    const int team = find_team(threads, count);
+    const narc_workers chosen = choose_workers(workers, count);
     if (narc_reserve_boxes(broad, count) != NARC_OK ||
-        narc_reserve_blocks(broad, count_blocks(USUAL_PAIRS * (uint64_t)count, team)) != NARC_OK)
+        narc_reserve_blocks(broad, count_blocks(USUAL_PAIRS * (uint64_t)count, chosen.count)) != NARC_OK)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)count, "not enough memory for %zu boxes", count);
-    narc_sort_into_strips(broad, boxes, count, team);
-#ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic, 4) num_threads(team) if (team > 1)
-#endif
-    for (size_t k = 0; k < broad->strip_count; k++)
-        narc_sort_strip(broad, &broad->strips[k], boxes);
-    const uint64_t found = sweep_all(broad, kernels, filter, team);
+    narc_sort_into_strips(broad, boxes, count, &chosen);
+    const uint64_t found = sweep_all(broad, kernels, filter, &chosen);
     if (found > UINT32_MAX)
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)UINT32_MAX, "more than %lu pairs of boxes overlap",
                          (unsigned long)UINT32_MAX);
@@ -200,28 +203,30 @@ narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, siz
 }
 
 narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const narc_pair_filter *filter,
-                                  unsigned threads, size_t found, uint32_t *out_a, uint32_t *out_b, narc_error *error) {
-    const int team = find_team(threads, count);
+                                  const narc_workers *workers, size_t found, uint32_t *out_a, uint32_t *out_b,
+                                  narc_error *error) {
+    const narc_workers chosen = choose_workers(workers, count);
     if (atomic_load_explicit(&broad->block_count, memory_order_relaxed) > broad->block_capacity) {
         narc_status status;
         const narc_kernel_table *const kernels = narc_kernels(&status, error);
         if (!kernels)
             return status;
-        if (narc_reserve_blocks(broad, count_blocks(found, team)) != NARC_OK)
+        if (narc_reserve_blocks(broad, count_blocks(found, chosen.count)) != NARC_OK)
             return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)found, "not enough memory for %zu pairs", found);
-        sweep_all(broad, kernels, filter, team);
+        sweep_all(broad, kernels, filter, &chosen);
     }
-    narc_order_pairs(broad, atomic_load_explicit(&broad->block_count, memory_order_relaxed), count, team, out_a, out_b);
+    narc_order_pairs(broad, atomic_load_explicit(&broad->block_count, memory_order_relaxed), count, &chosen, out_a,
+                     out_b);
     return NARC_OK;
 }
 
 narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
-                            const narc_pair_filter *filter, unsigned threads, uint32_t *out_a, uint32_t *out_b,
-                            size_t capacity, size_t *out_count, narc_error *error) {
+                            const narc_pair_filter *filter, const narc_workers *workers, uint32_t *out_a,
+                            uint32_t *out_b, size_t capacity, size_t *out_count, narc_error *error) {
     size_t found = 0;
     narc_status status = check(broad, boxes, count, out_a, out_b, capacity, out_count, error);
     if (status == NARC_OK)
-        status = narc_sweep_boxes(broad, boxes, count, filter, threads, &found, error);
+        status = narc_sweep_boxes(broad, boxes, count, filter, workers, &found, error);
     if (status != NARC_OK)
         return status;
     if (found > capacity) {
@@ -229,7 +234,7 @@ narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size
         return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)found, "%zu pairs, but there is room for %zu", found,
                          capacity);
     }
-    status = narc_list_found_pairs(broad, count, filter, threads, found, out_a, out_b, error);
+    status = narc_list_found_pairs(broad, count, filter, workers, found, out_a, out_b, error);
     if (status == NARC_OK)
         *out_count = found;
     return status;

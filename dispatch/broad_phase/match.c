@@ -6,48 +6,46 @@
  * or two. Many pairs may have one hash, of lists that were made for it all of them; a bucket with more than a few is in
  * order, so that a pair is found in it by halving.
  */
-#include "broad_phase.h"
 #include "column.h"
 #include "dispatch.h"
 #include "error.h"
 #include "narc_broad_phase.h"
+#include "steps.h"
 
 #include <string.h>
 
 /* Pairs that a thread matches at a time. */
 enum { PART = 16384 };
 
-/* Both indices of a pair as one number; pairs in order have rising numbers. */
 static uint64_t pair_at(const narc_pairs *pairs, size_t k) {
-    return (uint64_t)narc_index_at(pairs->a, k) << 32 | narc_index_at(pairs->b, k);
+    return narc_join_pair(narc_index_at(pairs->a, k), narc_index_at(pairs->b, k));
 }
 
-static size_t count_parts(size_t count) { return (count + PART - 1) / PART; }
+typedef struct list_check {
+    const narc_pairs *pairs;
+    atomic_bool disorder;
+} list_check;
 
-static size_t end_of_part(size_t count, size_t part) { return count - part * PART < PART ? count : (part + 1) * PART; }
-
-static bool in_order(const narc_pairs *pairs, unsigned threads) {
-    const size_t parts = count_parts(pairs->count);
-    const int team = narc_team_size(threads, parts);
+static void check_order(void *argument, size_t part, size_t first, size_t end) {
+    list_check *check = argument;
+    uint64_t last = pair_at(check->pairs, part > 0 ? first - 1 : 0);
     bool fine = true;
-    (void)team;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) reduction(&& : fine) if (team > 1)
-#endif
-    for (size_t part = 0; part < parts; part++) {
-        const size_t first = part * PART, end = end_of_part(pairs->count, part);
-        uint64_t last = pair_at(pairs, part > 0 ? first - 1 : 0);
-        for (size_t k = first; k < end; k++) {
-            const uint64_t pair = pair_at(pairs, k);
-            fine &= last <= pair;
-            last = pair;
-        }
+    for (size_t k = first; k < end; k++) {
+        const uint64_t pair = pair_at(check->pairs, k);
+        fine &= last <= pair;
+        last = pair;
     }
-    return fine;
+    if (!fine)
+        atomic_store_explicit(&check->disorder, true, memory_order_relaxed);
 }
 
-/* The first pair of a list in order that is not before `pair`. */
-static size_t find_pair(const narc_pairs *pairs, uint64_t pair) {
+static bool in_order(const narc_pairs *pairs, const narc_workers *workers) {
+    list_check check = {.pairs = pairs};
+    narc_run_ranges(workers, pairs->count, PART, check_order, &check);
+    return !atomic_load_explicit(&check.disorder, memory_order_relaxed);
+}
+
+size_t narc_find_pair(const narc_pairs *pairs, uint64_t pair) {
     size_t first = 0, end = pairs->count;
     while (first < end) {
         const size_t middle = first + (end - first) / 2;
@@ -62,7 +60,7 @@ static size_t find_pair(const narc_pairs *pairs, uint64_t pair) {
 /* New pairs first .. end - 1, both lists in order. */
 static void walk(const narc_pairs *old_pairs, const narc_pairs *new_pairs, size_t first, size_t end,
                  uint32_t *out_match) {
-    size_t at = find_pair(old_pairs, pair_at(new_pairs, first));
+    size_t at = narc_find_pair(old_pairs, pair_at(new_pairs, first));
     uint64_t there = at < old_pairs->count ? pair_at(old_pairs, at) : UINT64_MAX;
     for (size_t k = first; k < end; k++) {
         const uint64_t pair = pair_at(new_pairs, k);
@@ -92,32 +90,9 @@ static size_t find_bucket(const buckets *t, uint64_t pair) {
 
 static uint64_t pair_of(const buckets *t, uint32_t item) { return pair_at(t->pairs, item); }
 
-static bool comes_before(const buckets *t, uint32_t one, uint32_t other) {
-    const uint64_t first = pair_of(t, one), second = pair_of(t, other);
+static bool comes_before(const void *context, uint32_t one, uint32_t other) {
+    const uint64_t first = pair_of(context, one), second = pair_of(context, other);
     return first < second || (first == second && one < other);
-}
-
-/* Moves the item at `root` down a heap with the last in front. */
-static void sift_down(const buckets *t, uint32_t *heap, size_t root, size_t count) {
-    const uint32_t moved = heap[root];
-    for (size_t child; (child = 2 * root + 1) < count; root = child) {
-        child += child + 1 < count && comes_before(t, heap[child], heap[child + 1]);
-        if (!comes_before(t, moved, heap[child]))
-            break;
-        heap[root] = heap[child];
-    }
-    heap[root] = moved;
-}
-
-static void sort_bucket(const buckets *t, uint32_t *items, size_t count) {
-    for (size_t k = count / 2; k-- > 0;)
-        sift_down(t, items, k, count);
-    for (size_t k = count; k-- > 1;) {
-        const uint32_t last = items[0];
-        items[0] = items[k];
-        items[k] = last;
-        sift_down(t, items, 0, k);
-    }
 }
 
 /* A counting sort by bucket. */
@@ -133,7 +108,7 @@ static void fill(const buckets *t) {
         t->items[--t->starts[find_bucket(t, pair_at(t->pairs, k))]] = (uint32_t)k;
     for (size_t k = 0; k < bucket_count; k++)
         if (t->starts[k + 1] - t->starts[k] > FEW)
-            sort_bucket(t, t->items + t->starts[k], t->starts[k + 1] - t->starts[k]);
+            narc_sort_by_heap(t->items + t->starts[k], t->starts[k + 1] - t->starts[k], comes_before, t);
 }
 
 /* The first old pair that is this one. */
@@ -154,17 +129,16 @@ static uint32_t find_match(const buckets *t, uint64_t pair) {
 }
 
 /* NARC_ERROR_MEMORY. */
-static narc_status make_buckets(narc_broad_phase *broad, const narc_pairs *pairs, buckets *out_buckets) {
-    buckets t = {.pairs = pairs};
-    while (t.bits < 31 && pairs->count >> t.bits > 0)
-        t.bits++;
-    const size_t start_count = ((size_t)1 << t.bits) + 1;
+static narc_status make_buckets(narc_broad_phase *broad, const narc_pairs *pairs, buckets *out) {
+    *out = (buckets){.pairs = pairs};
+    while (out->bits < 31 && pairs->count >> out->bits > 0)
+        out->bits++;
+    const size_t start_count = ((size_t)1 << out->bits) + 1;
     if (narc_reserve_matches(broad, start_count, pairs->count) != NARC_OK)
         return NARC_ERROR_MEMORY;
-    t.starts = broad->match_memory;
-    t.items = t.starts + start_count;
-    fill(&t);
-    *out_buckets = t;
+    out->starts = broad->match_memory;
+    out->items = out->starts + start_count;
+    fill(out);
     return NARC_OK;
 }
 
@@ -178,11 +152,28 @@ static narc_status check(const narc_pairs *pairs, const char *name, narc_error *
                          pairs->count, (unsigned long)(UINT32_MAX - 1));
     if (pairs->count > 0 && (!pairs->a.base || !pairs->b.base))
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s.%c is NULL", name, pairs->a.base ? 'b' : 'a');
-    return NARC_OK;
+    return narc_check_reserved(pairs->reserved, 2, name, error);
+}
+
+typedef struct matching {
+    buckets old;
+    const narc_pairs *pairs;
+    uint32_t *out_match;
+} matching;
+
+static void match_part(void *argument, size_t part, size_t first, size_t end) {
+    const matching *m = argument;
+    (void)part;
+    if (!m->old.starts)
+        walk(m->old.pairs, m->pairs, first, end, m->out_match);
+    else
+        for (size_t k = first; k < end; k++)
+            m->out_match[k] = find_match(&m->old, pair_at(m->pairs, k));
 }
 
 narc_status narc_match_pairs(narc_broad_phase *broad, const narc_pairs *old_pairs, const narc_pairs *new_pairs,
-                             unsigned threads, uint32_t *out_match, narc_error *error) {
+                             const narc_workers *workers, uint32_t *out_match, narc_error *error) {
+    matching m = {{.pairs = old_pairs}, new_pairs, out_match};
     narc_status status = check(old_pairs, "old_pairs", error);
     if (status == NARC_OK)
         status = check(new_pairs, "new_pairs", error);
@@ -190,26 +181,11 @@ narc_status narc_match_pairs(narc_broad_phase *broad, const narc_pairs *old_pair
         return status;
     if (!broad || (new_pairs->count > 0 && !out_match))
         return narc_fail_missing(error, broad ? "out_match" : "broad");
-    buckets t = {.starts = NULL};
-    if ((!in_order(old_pairs, threads) || !in_order(new_pairs, threads)) &&
-        make_buckets(broad, old_pairs, &t) != NARC_OK)
+    if ((!in_order(old_pairs, workers) || !in_order(new_pairs, workers)) &&
+        make_buckets(broad, old_pairs, &m.old) != NARC_OK)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)old_pairs->count, "not enough memory for %zu pairs",
                          old_pairs->count);
-    const size_t count = new_pairs->count, parts = count_parts(count);
-    const int team = narc_team_size(threads, parts);
-    (void)team;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
-#endif
-    for (size_t part = 0; part < parts; part++) {
-        const size_t first = part * PART, end = end_of_part(count, part);
-        if (!t.starts) {
-            walk(old_pairs, new_pairs, first, end, out_match);
-            continue;
-        }
-        for (size_t k = first; k < end; k++)
-            out_match[k] = find_match(&t, pair_at(new_pairs, k));
-    }
+    narc_run_ranges(workers, new_pairs->count, PART, match_part, &m);
     return NARC_OK;
 }
 

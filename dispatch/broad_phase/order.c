@@ -4,6 +4,7 @@
  */
 #include "column.h"
 #include "steps.h"
+#include "workers.h"
 
 #include <string.h>
 
@@ -73,32 +74,9 @@ static void insert_all(uint32_t *list, size_t count) {
     }
 }
 
-/* Moves the item at `root` down a heap with the largest in front. */
-static void sift_down(uint32_t *heap, size_t root, size_t count) {
-    const uint32_t moved = heap[root];
-    for (size_t child; (child = 2 * root + 1) < count; root = child) {
-        child += child + 1 < count && heap[child + 1] > heap[child];
-        if (heap[child] <= moved)
-            break;
-        heap[root] = heap[child];
-    }
-    heap[root] = moved;
-}
-
-/* Insertion for short lists; heap sort for those of a body that many others touch. */
-static void sort_list(uint32_t *list, size_t count) {
-    if (count <= FEW) {
-        insert_all(list, count);
-        return;
-    }
-    for (size_t k = count / 2; k-- > 0;)
-        sift_down(list, k, count);
-    for (size_t k = count; k-- > 1;) {
-        const uint32_t largest = list[0];
-        list[0] = list[k];
-        list[k] = largest;
-        sift_down(list, 0, k);
-    }
+static bool is_less(const void *context, uint32_t one, uint32_t other) {
+    (void)context;
+    return one < other;
 }
 
 /* Where bodies are numbered as they lie, few blocks hold pairs of more than one thread's bodies. */
@@ -136,53 +114,58 @@ static void place_partners(const narc_broad_phase *broad, size_t blocks, uint32_
     }
 }
 
-/* The most threads, and so parts of the bodies (narc_team_size()). */
+/* The most parts of the bodies. */
 enum { MOST_PARTS = 256 };
 
-/* Each thread reads all pairs that may be of its own bodies, and works on those that are. */
-void narc_order_pairs(narc_broad_phase *broad, size_t blocks, size_t body_count, int team, uint32_t *out_a,
-                      uint32_t *out_b) {
-    uint32_t *const ends = broad->ends, start[MOST_PARTS + 1] = {0};
-    const int parts = team < MOST_PARTS ? team : MOST_PARTS;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
-#endif
-    for (int part = 0; part < parts; part++) {
-        const size_t first = narc_part_start(body_count, part, parts),
-                     end = narc_part_start(body_count, part + 1, parts);
-        uint32_t sum = 0;
-        memset(ends + first, 0, (end - first) * sizeof *ends);
-        count_partners(broad, blocks, (uint32_t)first, (uint32_t)end);
-        for (size_t k = first; k < end; k++) {
-            const uint32_t here = ends[k];
-            ends[k] = sum;
-            sum += here;
-        }
-        start[part + 1] = sum;
+typedef struct order {
+    narc_broad_phase *broad;
+    size_t blocks;
+    uint32_t *out_a, *out_b;
+    uint32_t start[MOST_PARTS + 1]; /* of each part's pairs; how many the part before has, until all are counted */
+} order;
+
+static void count_part(void *argument, size_t part, size_t first, size_t end) {
+    order *o = argument;
+    uint32_t *const ends = o->broad->ends, sum = 0;
+    memset(ends + first, 0, (end - first) * sizeof *ends);
+    count_partners(o->broad, o->blocks, (uint32_t)first, (uint32_t)end);
+    for (size_t k = first; k < end; k++) {
+        const uint32_t here = ends[k];
+        ends[k] = sum;
+        sum += here;
     }
-    for (int part = 0; part < parts; part++)
-        start[part + 1] += start[part];
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
-#endif
-    for (int part = 0; part < parts; part++) {
-        const size_t first = narc_part_start(body_count, part, parts),
-                     end = narc_part_start(body_count, part + 1, parts);
-        uint32_t *const own_a = out_a + start[part], *const own_b = out_b + start[part];
-        const uint32_t own_count = start[part + 1] - start[part];
-        uint32_t from = 0;
-        place_partners(broad, blocks, (uint32_t)first, (uint32_t)end, own_b);
-        for (size_t body = first; body < end; from = ends[body++]) {
-            const uint32_t count = ends[body] - from;
-            if (count <= FOUR && own_count - from >= FOUR) { /* what is written too much, the next bodies write again */
-                for (uint32_t k = 0; k < FOUR; k++)
-                    own_a[from + k] = (uint32_t)body;
-                sort_four(own_b + from, count);
-                continue;
-            }
-            for (uint32_t k = from; k < ends[body]; k++)
-                own_a[k] = (uint32_t)body;
-            sort_list(own_b + from, count);
+    o->start[part + 1] = sum;
+}
+
+static void order_part(void *argument, size_t part, size_t first, size_t end) {
+    const order *o = argument;
+    const uint32_t *const ends = o->broad->ends, own_count = o->start[part + 1] - o->start[part];
+    uint32_t *const own_a = o->out_a + o->start[part], *const own_b = o->out_b + o->start[part], from = 0;
+    place_partners(o->broad, o->blocks, (uint32_t)first, (uint32_t)end, own_b);
+    for (size_t body = first; body < end; from = ends[body++]) {
+        const uint32_t count = ends[body] - from;
+        if (count <= FOUR && own_count - from >= FOUR) { /* what is written too much, the next bodies write again */
+            for (uint32_t k = 0; k < FOUR; k++)
+                own_a[from + k] = (uint32_t)body;
+            sort_four(own_b + from, count);
+            continue;
         }
+        for (uint32_t k = from; k < ends[body]; k++)
+            own_a[k] = (uint32_t)body;
+        if (count <= FEW)
+            insert_all(own_b + from, count);
+        else
+            narc_sort_by_heap(own_b + from, count, is_less, NULL);
     }
+}
+
+/* Each part reads all pairs that may be of its own bodies, and works on those that are. */
+void narc_order_pairs(narc_broad_phase *broad, size_t blocks, size_t body_count, const narc_workers *workers,
+                      uint32_t *out_a, uint32_t *out_b) {
+    order o = {broad, blocks, out_a, out_b, {0}};
+    const size_t size = narc_part_size(body_count, workers->count < MOST_PARTS ? workers->count : MOST_PARTS);
+    const size_t parts = narc_run_ranges(workers, body_count, size, count_part, &o);
+    for (size_t part = 0; part < parts; part++)
+        o.start[part + 1] += o.start[part];
+    narc_run_ranges(workers, body_count, size, order_part, &o);
 }

@@ -6,10 +6,45 @@
 #define NARC_BROAD_PHASE_STEPS_H
 
 #include "broad_phase.h"
+#include "narc_workers.h"
 
-/* Where part number `part` of `parts` parts of about equal size begins. */
-static inline size_t narc_part_start(size_t count, int part, int parts) {
-    return count / (size_t)parts * (size_t)part + count % (size_t)parts * (size_t)part / (size_t)parts;
+#include <float.h>
+
+/* "options.`name` is ...": it is at least 0 and finite. */
+narc_status narc_check_length(float length, const char *name, narc_error *error);
+
+/* The items of each of `parts` parts of equal size, at least 1. */
+static inline size_t narc_part_size(size_t count, size_t parts) { return count / parts + (count % parts || !count); }
+
+/* Both bodies of a pair as one number; pairs in order have rising numbers. */
+static inline uint64_t narc_join_pair(uint32_t a, uint32_t b) { return (uint64_t)a << 32 | b; }
+
+/* The first pair of a list in order that is not before `pair`. */
+size_t narc_find_pair(const narc_pairs *pairs, uint64_t pair);
+
+/* Sorts in place by a heap with the last in front, in n log n whatever the items are. Compiled for each `before`. */
+static inline void narc_sort_by_heap(uint32_t *items, size_t count,
+                                     bool (*before)(const void *context, uint32_t one, uint32_t other),
+                                     const void *context) {
+    for (size_t root = count / 2, end = count; end > 1;) {
+        const uint32_t moved = root > 0 ? items[--root] : items[--end];
+        if (end < count)
+            items[end] = items[0];
+        size_t to = root;
+        for (size_t child; (child = 2 * to + 1) < end; to = child) {
+            child += child + 1 < end && before(context, items[child], items[child + 1]);
+            if (!before(context, moved, items[child]))
+                break;
+            items[to] = items[child];
+        }
+        items[to] = moved;
+    }
+}
+
+/* A box that is not empty. False for NaN too. */
+static inline bool narc_is_box(const narc_box *box) {
+    return box->min_x >= -FLT_MAX && box->min_y >= -FLT_MAX && box->max_x <= FLT_MAX && box->max_y <= FLT_MAX &&
+           box->min_x <= box->max_x && box->min_y <= box->max_y;
 }
 
 /* What the filter says of one body. */
@@ -18,18 +53,17 @@ narc_body_filter narc_read_filter(const narc_pair_filter *filter, size_t body);
 /* Finds the pairs of boxes that overlap and may form a pair; *out_count is how many. The broad phase holds as many of
  * them as there is memory for. Errors as narc_find_pairs() has them, but for NARC_ERROR_CAPACITY. */
 narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, size_t count,
-                             const narc_pair_filter *filter, unsigned threads, size_t *out_count, narc_error *error);
+                             const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count,
+                             narc_error *error);
 
 /* Lists these `found` pairs in their order, sweeping again if not all were held. NARC_ERROR_MEMORY. */
 narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const narc_pair_filter *filter,
-                                  unsigned threads, size_t found, uint32_t *out_a, uint32_t *out_b, narc_error *error);
+                                  const narc_workers *workers, size_t found, uint32_t *out_a, uint32_t *out_b,
+                                  narc_error *error);
 
-/* Lists the levels and strips that `count` boxes lie in, and the entries of the boxes in the order of their strips;
- * returns how many boxes are not empty. There is room for all boxes. */
-size_t narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, int team);
-
-/* Puts the boxes of one strip into the columns, in the order of min_x. Strips may be sorted by several threads. */
-void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes);
+/* Lists the levels and strips that `count` boxes lie in, and puts the boxes into the columns, strip by strip, in the
+ * order of min_x. There is room for all boxes and a part for each worker. */
+void narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers);
 
 /* The number of the strip of a level that holds `y`, or of one `offset` strips above it; the nearest one that boxes may
  * lie in. */
@@ -40,7 +74,7 @@ uint64_t narc_strip_number(const narc_broad_phase *broad, const narc_level *leve
 uint32_t narc_filter_pairs(const narc_pair_filter *filter, uint32_t *a, uint32_t *b, uint32_t first, uint32_t count);
 
 /* Writes the pairs of `blocks` blocks in their order. There is room for all. */
-void narc_order_pairs(narc_broad_phase *broad, size_t blocks, size_t body_count, int team, uint32_t *out_a,
-                      uint32_t *out_b);
+void narc_order_pairs(narc_broad_phase *broad, size_t blocks, size_t body_count, const narc_workers *workers,
+                      uint32_t *out_a, uint32_t *out_b);
 
 #endif

@@ -9,8 +9,8 @@
  * for rounding: of a box's own height, 2^-24, and of the quotients of two boxes, each 2^-53 of MOST_STRIPS.
  */
 #include "steps.h"
+#include "workers.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -21,15 +21,7 @@
 #define MOST_STRIPS 0x1p26
 
 /* Powers of two to a level. */
-enum { HEIGHT_STEP = 2, WIDTH_STEP = 4, EXPONENTS = 256 };
-
-/* Parts that the boxes are divided into, one for each thread. */
-enum { MOST_PARTS = 16 };
-
-static bool is_box(const narc_box *box) {
-    return box->min_x <= box->max_x && box->min_y <= box->max_y && fabsf(box->min_x) <= FLT_MAX &&
-           fabsf(box->max_x) <= FLT_MAX && fabsf(box->min_y) <= FLT_MAX && fabsf(box->max_y) <= FLT_MAX;
-}
+enum { HEIGHT_STEP = 2, WIDTH_STEP = 4, EXPONENTS = NARC_EXPONENTS };
 
 static uint32_t bits_of(float value) {
     uint32_t bits;
@@ -42,66 +34,6 @@ static uint32_t exponent_of(float value) { return bits_of(value) >> 23 & 0xff; }
 
 /* ------------------------------------------------------------------------------------------------ levels */
 
-/* Of each power of two the largest number, or -1. */
-typedef struct sizes {
-    float largest[EXPONENTS];
-} sizes;
-
-static void clear_sizes(sizes *of) {
-    for (int k = 0; k < EXPONENTS; k++)
-        of->largest[k] = -1;
-}
-
-static void add_size(sizes *to, float size) {
-    float *const largest = &to->largest[exponent_of(size)];
-    if (size > *largest) /* rarely: nothing waits for a store */
-        *largest = size;
-}
-
-static void join_sizes(sizes *to, const sizes *from) {
-    for (int k = 0; k < EXPONENTS; k++)
-        to->largest[k] = from->largest[k] > to->largest[k] ? from->largest[k] : to->largest[k];
-}
-
-/* What all boxes have, and how many of each part are not empty. */
-typedef struct census {
-    sizes heights, widths;
-    size_t start[MOST_PARTS + 1]; /* of each part's entries, if they are listed one part after another */
-} census;
-
-static void count_boxes(const narc_box *boxes, size_t count, int parts, census *out) {
-    clear_sizes(&out->heights);
-    clear_sizes(&out->widths);
-    out->start[0] = 0;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(parts) if (parts > 1)
-#endif
-    for (int part = 0; part < parts; part++) {
-        const size_t end = narc_part_start(count, part + 1, parts);
-        sizes heights, widths;
-        size_t found = 0;
-        clear_sizes(&heights);
-        clear_sizes(&widths);
-        for (size_t k = narc_part_start(count, part, parts); k < end; k++) {
-            if (!is_box(&boxes[k]))
-                continue;
-            add_size(&heights, boxes[k].max_y - boxes[k].min_y);
-            add_size(&widths, boxes[k].max_x - boxes[k].min_x);
-            found++;
-        }
-        out->start[part + 1] = found;
-#ifdef _OPENMP
-#pragma omp critical(narc_count_boxes)
-#endif
-        {
-            join_sizes(&out->heights, &heights);
-            join_sizes(&out->widths, &widths);
-        }
-    }
-    for (int part = 0; part < parts; part++)
-        out->start[part + 1] += out->start[part];
-}
-
 /* Classes of sizes: from the largest down, some powers of two to a class. */
 typedef struct classes {
     uint8_t of[EXPONENTS];
@@ -109,17 +41,76 @@ typedef struct classes {
     size_t count;
 } classes;
 
-static void make_classes(const sizes *from, int step, classes *out) {
+/* What the passes over boxes and entries share. */
+typedef struct passes {
+    narc_broad_phase *broad;
+    const narc_box *boxes;
+    const narc_workers *workers;
+    size_t parts; /* at most */
+    classes heights, widths;
+    int shift; /* of the digits that a pass sorts by */
+} passes;
+
+/* Returns how many parts there are. */
+static size_t run_pass(passes *p, size_t count, narc_range *pass) {
+    return narc_run_ranges(p->workers, count, narc_part_size(count, p->parts), pass, p);
+}
+
+static void add_size(float *largest, float size) {
+    largest += exponent_of(size);
+    if (size > *largest) /* rarely: nothing waits for a store */
+        *largest = size;
+}
+
+static void count_part(void *argument, size_t part, size_t first, size_t end) {
+    const passes *p = argument;
+    const narc_box *const boxes = p->boxes;
+    narc_strip_part *const own = &p->broad->parts[part];
+    size_t found = 0;
+    for (int k = 0; k < EXPONENTS; k++)
+        own->heights[k] = own->widths[k] = -1;
+    for (size_t k = first; k < end; k++) {
+        if (!narc_is_box(&boxes[k]))
+            continue;
+        add_size(own->heights, boxes[k].max_y - boxes[k].min_y);
+        add_size(own->widths, boxes[k].max_x - boxes[k].min_x);
+        found++;
+    }
+    own->count = found;
+}
+
+static void make_classes(const float *largest, int step, classes *out) {
     *out = (classes){.count = 0};
     for (int k = EXPONENTS - 1; k >= 0; k--) {
-        if (from->largest[k] < 0)
+        if (largest[k] < 0)
             continue;
         const int lowest = k >= step ? k - step + 1 : 0;
-        out->largest[out->count] = from->largest[k];
+        out->largest[out->count] = largest[k];
         while (k > lowest)
             out->of[k--] = (uint8_t)out->count;
         out->of[k] = (uint8_t)out->count++;
     }
+}
+
+/* Makes the classes, and returns how many boxes are not empty. The entries of a part stand behind those before. */
+static size_t count_boxes(passes *p, size_t count) {
+    narc_strip_part *const all = p->broad->parts;
+    size_t listed = 0;
+    const size_t parts = run_pass(p, count, count_part);
+    for (size_t part = 0; part < parts; part++) {
+        const narc_strip_part *const own = &all[part];
+        for (int k = 0; k < EXPONENTS; k++) {
+            all->heights[k] = fmaxf(all->heights[k], own->heights[k]);
+            all->widths[k] = fmaxf(all->widths[k], own->widths[k]);
+        }
+        all[part].start = listed;
+        listed += own->count;
+    }
+    if (parts > 0) {
+        make_classes(all->heights, HEIGHT_STEP, &p->heights);
+        make_classes(all->widths, WIDTH_STEP, &p->widths);
+    }
+    return listed;
 }
 
 /* One over the height of the strips of a class. */
@@ -151,38 +142,43 @@ uint64_t narc_strip_number(const narc_broad_phase *broad, const narc_level *leve
 enum { STRIP_BITS = 40 };
 #define STRIP_ZERO ((int64_t)1 << 34)
 
-/* Lists the entries of all boxes that are not empty. */
-static void list_entries(narc_broad_phase *broad, const narc_box *boxes, size_t count, int parts, const census *all,
-                         const classes *heights, const classes *widths) {
+static void list_part(void *argument, size_t part, size_t first, size_t end) {
+    const passes *p = argument;
+    const narc_box *const boxes = p->boxes;
+    const size_t width_count = p->widths.count;
+    narc_strip_part *const own = &p->broad->parts[part];
+    const bool none_empty = own->count == end - first;
+    narc_box_entry *to = p->broad->entries + own->start;
     double scale[EXPONENTS];
     int64_t lowest = INT64_MAX, highest = INT64_MIN;
-    for (size_t k = 0; k < heights->count; k++)
-        scale[k] = find_scale(heights, k);
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(parts) reduction(min                                             \
-                                                                       : lowest) reduction(max                         \
-                                                                                           : highest) if (parts > 1)
-#endif
-    for (int part = 0; part < parts; part++) {
-        const size_t first = narc_part_start(count, part, parts), end = narc_part_start(count, part + 1, parts);
-        const bool none_empty = all->start[part + 1] - all->start[part] == end - first;
-        narc_box_entry *to = broad->entries + all->start[part];
-        for (size_t k = first; k < end; k++) {
-            if (!none_empty && !is_box(&boxes[k]))
-                continue;
-            const size_t height = heights->of[exponent_of(boxes[k].max_y - boxes[k].min_y)];
-            const size_t width = widths->of[exponent_of(boxes[k].max_x - boxes[k].min_x)];
-            const int64_t strip = strip_at(scale[height], boxes[k].min_y);
-            lowest = strip < lowest ? strip : lowest;
-            highest = strip > highest ? strip : highest;
-            *to++ = (narc_box_entry){(uint64_t)(height * widths->count + width) << STRIP_BITS |
-                                         (uint64_t)(strip + STRIP_ZERO),
-                                     boxes[k].min_x, (uint32_t)k};
-        }
+    for (size_t k = 0; k < p->heights.count; k++)
+        scale[k] = find_scale(&p->heights, k);
+    for (size_t k = first; k < end; k++) {
+        if (!none_empty && !narc_is_box(&boxes[k]))
+            continue;
+        const size_t height = p->heights.of[exponent_of(boxes[k].max_y - boxes[k].min_y)];
+        const size_t width = p->widths.of[exponent_of(boxes[k].max_x - boxes[k].min_x)];
+        const int64_t strip = strip_at(scale[height], boxes[k].min_y);
+        lowest = strip < lowest ? strip : lowest;
+        highest = strip > highest ? strip : highest;
+        *to++ =
+            (narc_box_entry){(uint64_t)(height * width_count + width) << STRIP_BITS | (uint64_t)(strip + STRIP_ZERO),
+                             boxes[k].min_x, (uint32_t)k};
     }
-    const bool any = lowest <= highest;
-    broad->lowest_strip = any ? lowest : 0;
-    broad->strip_span = any ? highest - lowest + 2 : 2; /* one more, so that levels are not next to each other */
+    own->lowest = lowest;
+    own->highest = highest;
+}
+
+/* Lists the entries of all boxes that are not empty; there is one. */
+static void list_entries(passes *p, size_t count) {
+    int64_t lowest = INT64_MAX, highest = INT64_MIN;
+    const size_t parts = run_pass(p, count, list_part);
+    for (const narc_strip_part *own = p->broad->parts; own < p->broad->parts + parts; own++) {
+        lowest = own->lowest < lowest ? own->lowest : lowest;
+        highest = own->highest > highest ? own->highest : highest;
+    }
+    p->broad->lowest_strip = lowest;
+    p->broad->strip_span = highest - lowest + 2; /* one more, so that levels are not next to each other */
 }
 
 /* An entry's level and strip as one number, once the range of strips is known. */
@@ -194,71 +190,78 @@ static uint64_t join_strip(uint64_t level_and_strip, int64_t lowest, int64_t spa
 
 /* ------------------------------------------------------------------------------------------------ sorting */
 
-enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
+enum { DIGIT_BITS = 11, DIGITS = NARC_DIGITS };
+_Static_assert(DIGITS == 1 << DIGIT_BITS, "digits have that many bits");
+
+static void exchange(narc_box_entry **one, narc_box_entry **other) {
+    narc_box_entry *const first = *one;
+    *one = *other;
+    *other = first;
+}
+
+/* The first pass joins levels and strips. */
+static void count_digits(void *argument, size_t part, size_t first, size_t end) {
+    const passes *p = argument;
+    narc_box_entry *const from = p->broad->entries;
+    uint32_t *const place = p->broad->parts[part].place;
+    const int64_t lowest = p->broad->lowest_strip, span = p->broad->strip_span;
+    const int shift = p->shift;
+    memset(place, 0, DIGITS * sizeof *place);
+    for (size_t k = first; k < end; k++) {
+        if (shift == 0)
+            from[k].strip = join_strip(from[k].strip, lowest, span);
+        place[from[k].strip >> shift & (DIGITS - 1)]++;
+    }
+}
+
+static void move_entries(void *argument, size_t part, size_t first, size_t end) {
+    const passes *p = argument;
+    const narc_box_entry *const from = p->broad->entries;
+    narc_box_entry *const to = p->broad->spare;
+    uint32_t *const place = p->broad->parts[part].place;
+    const int shift = p->shift;
+    for (size_t k = first; k < end; k++)
+        to[place[from[k].strip >> shift & (DIGITS - 1)]++] = from[k];
+}
 
 /* One pass of a stable radix sort, from `entries` to `spare`, which change places. Each part counts its digits, and then
- * knows where those of the parts before it end. The first pass joins levels and strips. */
-static void sort_by_digit(narc_broad_phase *broad, size_t count, int shift, int parts) {
-    narc_box_entry *const from = broad->entries, *const to = broad->spare;
-    const int64_t lowest = broad->lowest_strip, span = broad->strip_span;
-    const bool first_pass = shift == 0;
-    uint32_t place[MOST_PARTS][DIGITS];
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(parts) if (parts > 1)
-#endif
-    for (int part = 0; part < parts; part++) {
-        const size_t end = narc_part_start(count, part + 1, parts);
-        memset(place[part], 0, sizeof place[part]);
-        for (size_t k = narc_part_start(count, part, parts); k < end; k++) {
-            const uint64_t number = first_pass ? join_strip(from[k].strip, lowest, span) : from[k].strip;
-            place[part][number >> shift & (DIGITS - 1)]++;
-        }
-    }
+ * knows where those of the parts before it end. */
+static void sort_by_digit(passes *p, size_t count) {
+    narc_broad_phase *const broad = p->broad;
+    const size_t parts = run_pass(p, count, count_digits);
     uint32_t sum = 0;
-    for (size_t k = 0; k < DIGITS; k++) {
-        for (int part = 0; part < parts; part++) {
-            const uint32_t here = place[part][k];
-            place[part][k] = sum;
+    for (size_t k = 0; k < DIGITS; k++)
+        for (size_t part = 0; part < parts; part++) {
+            const uint32_t here = broad->parts[part].place[k];
+            broad->parts[part].place[k] = sum;
             sum += here;
         }
-    }
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(parts) if (parts > 1)
-#endif
-    for (int part = 0; part < parts; part++) {
-        const size_t end = narc_part_start(count, part + 1, parts);
-        for (size_t k = narc_part_start(count, part, parts); k < end; k++) {
-            const uint64_t number = first_pass ? join_strip(from[k].strip, lowest, span) : from[k].strip;
-            to[place[part][number >> shift & (DIGITS - 1)]++] = (narc_box_entry){number, from[k].min_x, from[k].body};
-        }
-    }
-    broad->entries = to;
-    broad->spare = from;
+    run_pass(p, count, move_entries);
+    exchange(&broad->entries, &broad->spare);
 }
 
 static bool begins_strip(const narc_box_entry *entries, size_t k) {
     return k == 0 || entries[k].strip != entries[k - 1].strip;
 }
 
+static void list_strips_of_part(void *argument, size_t part, size_t first, size_t end) {
+    narc_broad_phase *const broad = ((const passes *)argument)->broad;
+    narc_strip *to = broad->strips + first;
+    for (size_t k = first; k < end; k++)
+        if (begins_strip(broad->entries, k))
+            *to++ = (narc_strip){.number = broad->entries[k].strip, .first = (uint32_t)k};
+    broad->parts[part].start = first;
+    broad->parts[part].count = (size_t)(to - broad->strips) - first;
+}
+
 /* Each part lists its strips where its entries are; then the lists move together. */
-static void list_strips(narc_broad_phase *broad, size_t listed, int parts) {
-    size_t found[MOST_PARTS] = {0};
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(parts) if (parts > 1)
-#endif
-    for (int part = 0; part < parts; part++) {
-        const size_t first = narc_part_start(listed, part, parts), end = narc_part_start(listed, part + 1, parts);
-        narc_strip *to = broad->strips + first;
-        for (size_t k = first; k < end; k++)
-            if (begins_strip(broad->entries, k))
-                *to++ = (narc_strip){.number = broad->entries[k].strip, .first = (uint32_t)k};
-        found[part] = (size_t)(to - (broad->strips + first));
-    }
+static void list_strips(passes *p, size_t listed) {
+    narc_broad_phase *const broad = p->broad;
+    const size_t parts = run_pass(p, listed, list_strips_of_part);
     size_t count = 0;
-    for (int part = 0; part < parts; part++) {
-        const narc_strip *from = broad->strips + narc_part_start(listed, part, parts);
-        memmove(broad->strips + count, from, found[part] * sizeof *from);
-        count += found[part];
+    for (const narc_strip_part *own = broad->parts; own < broad->parts + parts; own++) {
+        memmove(broad->strips + count, broad->strips + own->start, own->count * sizeof *broad->strips);
+        count += own->count;
     }
     broad->strip_count = count;
     for (size_t k = 0; k < count; k++)
@@ -266,44 +269,26 @@ static void list_strips(narc_broad_phase *broad, size_t listed, int parts) {
 }
 
 /* The levels that have boxes, the highest strips first. */
-static void list_levels(narc_broad_phase *broad, const classes *heights, const classes *widths) {
+static void list_levels(const passes *p) {
+    narc_broad_phase *const broad = p->broad;
     broad->level_count = 0;
     for (size_t k = 0; k < broad->strip_count; k++) {
         const uint64_t number = broad->strips[k].number / (uint64_t)broad->strip_span;
         if (broad->level_count == 0 || broad->levels[broad->level_count - 1].number != number)
-            broad->levels[broad->level_count++] = (narc_level){
-                .number = number, .scale = find_scale(heights, (size_t)number / widths->count), .first = (uint32_t)k};
+            broad->levels[broad->level_count++] =
+                (narc_level){.number = number,
+                             .scale = find_scale(&p->heights, (size_t)number / p->widths.count),
+                             .first = (uint32_t)k};
         broad->levels[broad->level_count - 1].end = (uint32_t)(k + 1);
         broad->strips[k].level = (uint32_t)(broad->level_count - 1);
     }
 }
 
-size_t narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, int team) {
-    const int parts = team < MOST_PARTS ? team : MOST_PARTS;
-    census all;
-    classes heights, widths;
-    count_boxes(boxes, count, parts, &all);
-    make_classes(&all.heights, HEIGHT_STEP, &heights);
-    make_classes(&all.widths, WIDTH_STEP, &widths);
-    list_entries(broad, boxes, count, parts, &all, &heights, &widths);
-    const size_t listed = all.start[parts];
-    const uint64_t numbers = (uint64_t)heights.count * (uint64_t)widths.count * (uint64_t)broad->strip_span;
-    for (int shift = 0; shift < 64 && numbers >> shift > 0; shift += DIGIT_BITS)
-        sort_by_digit(broad, listed, shift, parts);
-    list_strips(broad, listed, parts);
-    list_levels(broad, &heights, &widths);
-    for (size_t k = listed; k < listed + NARC_BOX_PADDING; k++) { /* read, and of no use */
-        broad->boxes.min_x[k] = broad->boxes.max_x[k] = broad->boxes.min_y[k] = broad->boxes.max_y[k] = 0;
-        broad->boxes.body[k] = 0;
-    }
-    return listed;
-}
-
 /* ------------------------------------------------------------------------------------------------ within a strip */
 
 /* Below so many entries, insertion is the faster sort. More go into buckets first, as many as there are entries; and where
- * buckets would hold more than one or two each, bytes are faster. */
-enum { SMALL = 32, BUCKETS = 8192, MOST_FOR_BUCKETS = BUCKETS * 3 / 2, BYTE = 256 };
+ * buckets would hold more than one or two each, digits are faster. */
+enum { SMALL = 32, BUCKETS = 8192, MOST_FOR_BUCKETS = BUCKETS * 3 / 2 };
 
 /* Insertion with at most `moves` moves: false if they are not enough. */
 static bool insert_all(narc_box_entry *entries, size_t count, size_t moves) {
@@ -326,31 +311,36 @@ static uint32_t order_of(float x) {
     return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
-/* Radix sort, byte by byte, of all four; the result is in `entries` again. */
-static void sort_by_bytes(narc_box_entry *entries, narc_box_entry *spare, size_t count) {
-    uint32_t place[4][BYTE] = {0};
+/* Where an entry goes: into buckets of equal widths, or by a digit of its min_x. */
+typedef struct division {
+    float low, scale;
+    int shift;
+} division;
+
+static size_t bucket_of(float x, const division *by) { return (uint32_t)((x - by->low) * by->scale); }
+
+static size_t digit_of(float x, const division *by) { return order_of(x) >> by->shift & (DIGITS - 1); }
+
+/* A counting sort into `places` places. */
+static inline void divide(const narc_box_entry *from, narc_box_entry *to, size_t count, uint32_t *place, size_t places,
+                          size_t (*place_of)(float x, const division *by), const division *by) {
+    uint32_t sum = 0;
+    memset(place, 0, places * sizeof *place);
     for (size_t k = 0; k < count; k++)
-        for (int byte = 0; byte < 4; byte++)
-            place[byte][order_of(entries[k].min_x) >> 8 * byte & 0xff]++;
-    for (int byte = 0; byte < 4; byte++) {
-        uint32_t sum = 0;
-        for (size_t k = 0; k < BYTE; k++) {
-            const uint32_t here = place[byte][k];
-            place[byte][k] = sum;
-            sum += here;
-        }
-        for (size_t k = 0; k < count; k++)
-            spare[place[byte][order_of(entries[k].min_x) >> 8 * byte & 0xff]++] = entries[k];
-        narc_box_entry *const old = entries;
-        entries = spare;
-        spare = old;
+        place[place_of(from[k].min_x, by)]++;
+    for (size_t k = 0; k < places; k++) {
+        const uint32_t here = place[k];
+        place[k] = sum;
+        sum += here;
     }
+    for (size_t k = 0; k < count; k++)
+        to[place[place_of(from[k].min_x, by)]++] = from[k];
 }
 
 /* Sorts entries by buckets of equal widths, which brings those that are spread evenly nearly into their order, and by
- * insertion; others byte by byte. Returns where they are then. */
+ * insertion; others digit by digit. Returns where they are then. */
 static narc_box_entry *sort_by_min_x(narc_box_entry *entries, narc_box_entry *spare, size_t count) {
-    uint32_t place[BUCKETS + 1];
+    uint32_t place[BUCKETS];
     float low = INFINITY, high = -INFINITY;
     bool in_order = true;
     if (count < SMALL) {
@@ -366,25 +356,21 @@ static narc_box_entry *sort_by_min_x(narc_box_entry *entries, narc_box_entry *sp
     if (in_order)
         return entries;
     const size_t buckets = count < BUCKETS ? count : BUCKETS;
-    const float scale = (float)(buckets - 1) / (high - low);
-    /* Too many, nearly all in one place, or too far apart. */
-    if (count > MOST_FOR_BUCKETS || !(scale > 0) || scale > FLT_MAX) {
-        sort_by_bytes(entries, spare, count);
-        return entries;
+    division by = {.low = low, .scale = (float)(buckets - 1) / (high - low)};
+    /* Not too many, nor nearly all in one place, nor too far apart. */
+    if (count <= MOST_FOR_BUCKETS && by.scale > 0 && by.scale <= FLT_MAX) {
+        divide(entries, spare, count, place, buckets, bucket_of, &by);
+        if (insert_all(spare, count, 2 * count))
+            return spare;
     }
-    memset(place, 0, (buckets + 1) * sizeof *place);
-    for (size_t k = 0; k < count; k++)
-        place[1 + (uint32_t)((entries[k].min_x - low) * scale)]++;
-    for (size_t k = 1; k < buckets; k++)
-        place[k] += place[k - 1];
-    for (size_t k = 0; k < count; k++)
-        spare[place[(uint32_t)((entries[k].min_x - low) * scale)]++] = entries[k];
-    if (!insert_all(spare, count, 2 * count))
-        sort_by_bytes(spare, entries, count);
-    return spare;
+    for (; by.shift < 32; by.shift += DIGIT_BITS) {
+        divide(entries, spare, count, place, DIGITS, digit_of, &by);
+        exchange(&entries, &spare);
+    }
+    return entries;
 }
 
-void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes) {
+static void sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes) {
     const narc_box_columns *const out = &broad->boxes;
     const size_t count = strip->end - strip->first;
     const narc_box_entry *const sorted =
@@ -405,4 +391,35 @@ void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box 
         width = box.max_x - box.min_x > width ? box.max_x - box.min_x : width;
     }
     strip->width = width * (1 + 0x1p-22f) + FLT_TRUE_MIN; /* no box is wider, for all rounding */
+}
+
+/* Strips that are sorted at a time. */
+enum { FEW_STRIPS = 4 };
+
+static void sort_strips(void *argument, size_t part, size_t first, size_t end) {
+    const passes *p = argument;
+    (void)part;
+    for (size_t k = first; k < end; k++)
+        sort_strip(p->broad, &p->broad->strips[k], p->boxes);
+}
+
+void narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers) {
+    passes p = {.broad = broad,
+                .boxes = boxes,
+                .workers = workers,
+                .parts = workers->count < NARC_STRIP_PARTS ? workers->count : NARC_STRIP_PARTS};
+    const size_t listed = count_boxes(&p, count);
+    if (listed > 0) {
+        list_entries(&p, count);
+        const uint64_t numbers = (uint64_t)p.heights.count * (uint64_t)p.widths.count * (uint64_t)broad->strip_span;
+        for (; p.shift < 64 && numbers >> p.shift > 0; p.shift += DIGIT_BITS)
+            sort_by_digit(&p, listed);
+    }
+    list_strips(&p, listed);
+    list_levels(&p);
+    narc_run_ranges(workers, broad->strip_count, FEW_STRIPS, sort_strips, &p);
+    for (size_t k = listed; k < listed + NARC_BOX_PADDING; k++) { /* read, and of no use */
+        broad->boxes.min_x[k] = broad->boxes.max_x[k] = broad->boxes.min_y[k] = broad->boxes.max_y[k] = 0;
+        broad->boxes.body[k] = 0;
+    }
 }

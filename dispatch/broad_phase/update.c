@@ -11,7 +11,6 @@
 #include "narc_broad_phase.h"
 #include "steps.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -23,23 +22,12 @@ typedef struct update {
     const narc_box *boxes; /* of the bodies, without the skin */
     size_t count;
     const narc_pair_options *options;
-    unsigned threads;
     narc_error *error;
 } update;
-
-static size_t count_parts(size_t count, size_t part) { return count / part + (count % part != 0); }
-
-static size_t least(size_t one, size_t other) { return one < other ? one : other; }
 
 /* ------------------------------------------------------------------------------------------------ boxes */
 
 static const narc_box empty = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-
-/* False for NaN too. */
-static bool has_box(const narc_box *box) {
-    return box->min_x >= -FLT_MAX && box->min_y >= -FLT_MAX && box->max_x <= FLT_MAX && box->max_y <= FLT_MAX &&
-           box->min_x <= box->max_x && box->min_y <= box->max_y;
-}
 
 /* x - by or less, finite: a rounding errs by half of the step that is added, or less. */
 static float lower(float x, float by) {
@@ -56,17 +44,15 @@ static void add_room(const update *u, const narc_box *boxes, float half, narc_bo
     const narc_float_column reach = u->options->reach;
     for (size_t k = 0; k < u->count; k++) {
         const float own = reach.base ? narc_float_at(reach, k) : 0;
-        const bool fine = has_box(&boxes[k]) && own >= 0 && own <= FLT_MAX;
+        const bool fine = narc_is_box(&boxes[k]) && own >= 0 && own <= FLT_MAX;
         out_boxes[k] = fine ? widen(widen(boxes[k], half), own) : empty;
     }
 }
 
 /* ------------------------------------------------------------------------------------------------ what has changed */
 
-typedef struct changes {
-    bool renew; /* a body has left its kept box, or may form other pairs */
-    bool rest;  /* one fell asleep or woke */
-} changes;
+/* RENEW: a body has left its kept box, or may form other pairs. REST: one fell asleep or woke. */
+enum { RENEW = 1, REST = 2 };
 
 static bool is_inside(const narc_box *box, const narc_box *around) {
     return box->min_x >= around->min_x && box->min_y >= around->min_y && box->max_x <= around->max_x &&
@@ -78,42 +64,41 @@ static narc_body_filter filter_of(const update *u, size_t body) {
     return narc_read_filter(u->options->filter ? u->options->filter : &none, body);
 }
 
+typedef struct changes {
+    const update *update;
+    bool use_filters;
+    atomic_uint found;
+} changes;
+
 /* Bodies first .. end - 1, whose kept boxes and filters are those of the last list. */
-static changes look(const update *u, size_t first, size_t end, bool use_filters) {
+static void look(void *argument, size_t part, size_t first, size_t end) {
+    changes *const all = argument;
+    const update *const u = all->update;
     const narc_broad_phase *const broad = u->broad;
-    changes found = {.renew = false};
+    bool renew = false, rest = false;
+    (void)part;
     for (size_t k = first; k < end; k++) {
-        const bool has = has_box(&u->boxes[k]), had = broad->kept_boxes[k].min_x <= broad->kept_boxes[k].max_x;
-        found.renew |= has ? !is_inside(&u->boxes[k], &broad->kept_boxes[k]) : had;
-        if (!use_filters)
+        const bool has = narc_is_box(&u->boxes[k]), had = broad->kept_boxes[k].min_x <= broad->kept_boxes[k].max_x;
+        renew |= has ? !is_inside(&u->boxes[k], &broad->kept_boxes[k]) : had;
+        if (!all->use_filters)
             continue;
         const narc_body_filter now = filter_of(u, k), *const then = &broad->filters[k];
         const unsigned other = now.kind ^ then->kind;
-        found.renew |= now.category != then->category || now.mask != then->mask || now.group != then->group ||
-                       (other & (NARC_STATIC | NARC_SENSOR));
-        found.rest |= (other & NARC_ASLEEP) != 0;
+        renew |= now.category != then->category || now.mask != then->mask || now.group != then->group ||
+                 (other & (NARC_STATIC | NARC_SENSOR));
+        rest |= (other & NARC_ASLEEP) != 0;
     }
-    return found;
+    if (renew || rest)
+        atomic_fetch_or_explicit(&all->found, (renew ? RENEW : 0u) | (rest ? REST : 0u), memory_order_relaxed);
 }
 
-static changes look_at_all(const update *u) {
-    const bool use_filters = u->broad->has_filter || u->options->filter;
-    const size_t parts = count_parts(u->count, BODY_PART);
-    const int team = narc_team_size(u->threads, parts);
-    bool renew = u->options->filter && !u->broad->has_filter, rest = false;
-    if (renew || !u->broad->is_current)
-        return (changes){.renew = true};
-    (void)team;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) reduction(|| : renew, rest) if (team > 1)
-#endif
-    for (size_t part = 0; part < parts; part++) {
-        const size_t first = part * BODY_PART;
-        const changes found = look(u, first, first + least(BODY_PART, u->count - first), use_filters);
-        renew = renew || found.renew;
-        rest = rest || found.rest;
-    }
-    return (changes){renew, rest};
+static unsigned look_at_all(const update *u) {
+    const bool filter = u->options->filter, had_filter = u->broad->has_filter;
+    changes all = {u, filter || had_filter, 0};
+    if (!u->broad->is_current || (filter && !had_filter))
+        return RENEW;
+    narc_run_ranges(u->options->workers, u->count, BODY_PART, look, &all);
+    return atomic_load_explicit(&all.found, memory_order_relaxed);
 }
 
 static uint64_t id_of(const update *u, size_t body) {
@@ -132,32 +117,32 @@ static bool are_same(const update *u) {
 
 /* ------------------------------------------------------------------------------------------------ marks */
 
-/* Marks of all pairs by the kinds of their bodies, and those to be tested. */
-static void mark_pairs(const narc_broad_phase *broad, narc_kept_list *made) {
-    const size_t count = made->list.pairs.count;
-    const uint8_t rest = NARC_STATIC | NARC_ASLEEP;
-    size_t contacts = 0, sensors = 0;
-    for (size_t k = 0; k < count; k++) {
-        const uint8_t a = broad->has_filter ? broad->filters[made->a[k]].kind : 0;
-        const uint8_t b = broad->has_filter ? broad->filters[made->b[k]].kind : 0;
-        const bool moves = !(a & rest && b & rest), sensor = (a | b) & NARC_SENSOR;
-        made->marks[k] = (made->marks[k] & NARC_FLIPPED) | a | b;
-        contacts += moves && !sensor;
-        sensors += moves && sensor;
+static unsigned kind_of(const narc_broad_phase *broad, uint32_t body) {
+    return broad->has_filter ? broad->filters[body].kind : 0;
+}
+
+/* Marks all pairs by the kinds of their bodies, and lists those to be tested that have a sensor, or have none. */
+static size_t mark_pairs(const narc_broad_phase *broad, const narc_kept_list *made, unsigned sensor, uint32_t *out) {
+    const unsigned rest = NARC_STATIC | NARC_ASLEEP;
+    size_t count = 0;
+    for (size_t k = 0; k < made->list.pairs.count; k++) {
+        const unsigned a = kind_of(broad, made->a[k]), b = kind_of(broad, made->b[k]);
+        made->marks[k] = (uint8_t)((made->marks[k] & NARC_FLIPPED) | a | b);
+        if (!(a & rest && b & rest) && ((a | b) & NARC_SENSOR) == sensor)
+            out[count++] = (uint32_t)k;
     }
-    made->list.contact_count = contacts;
-    made->list.sensor_count = sensors;
-    made->list.sensors = made->selected + contacts;
-    for (size_t k = count; k-- > 0;) {
-        const uint8_t a = broad->has_filter ? broad->filters[made->a[k]].kind : 0;
-        const uint8_t b = broad->has_filter ? broad->filters[made->b[k]].kind : 0;
-        if (!(a & rest && b & rest))
-            made->selected[(a | b) & NARC_SENSOR ? made->list.contact_count + --sensors : --contacts] = (uint32_t)k;
-    }
+    return count;
+}
+
+static void mark_all_pairs(const narc_broad_phase *broad, narc_kept_list *made) {
+    narc_pair_list *const list = &made->list;
+    list->contact_count = mark_pairs(broad, made, 0, made->selected);
+    list->sensors = made->selected + list->contact_count;
+    list->sensor_count = mark_pairs(broad, made, NARC_SENSOR, made->selected + list->contact_count);
 }
 
 /* The last list once more. */
-static void keep(const update *u, const changes *found) {
+static void keep(const update *u, bool rest) {
     narc_broad_phase *const broad = u->broad;
     narc_kept_list *const last = &broad->lists[broad->last];
     if (broad->renewed)
@@ -168,11 +153,11 @@ static void keep(const update *u, const changes *found) {
     broad->renewed = false;
     last->list.kept = true;
     last->list.added_count = last->list.lost_count = 0;
-    if (!found->rest)
+    if (!rest)
         return;
     for (size_t k = 0; k < u->count; k++)
         broad->filters[k].kind = filter_of(u, k).kind;
-    mark_pairs(broad, last);
+    mark_all_pairs(broad, last);
 }
 
 /* ------------------------------------------------------------------------------------------------ bodies by ids */
@@ -217,7 +202,7 @@ static narc_status find_last_indices(const update *u, narc_kept_list *last, narc
     narc_status status = number_bodies(u, last);
     const narc_pairs before = view_ids(last), now = view_ids(made);
     if (status == NARC_OK)
-        status = narc_match_pairs(broad, &before, &now, u->threads, broad->last_index, u->error);
+        status = narc_match_pairs(broad, &before, &now, u->options->workers, broad->last_index, u->error);
     if (status != NARC_OK)
         return status;
     if (last->body_count > 0)
@@ -233,53 +218,29 @@ static narc_status find_last_indices(const update *u, narc_kept_list *last, narc
 
 /* ------------------------------------------------------------------------------------------------ matching */
 
-static bool stands_before(const narc_kept_list *list, size_t k, uint32_t a, uint32_t b) {
-    return list->a[k] != a ? list->a[k] < a : list->b[k] < b;
+static bool is_pair(const narc_kept_list *list, size_t k, uint32_t a, uint32_t b) {
+    return k < list->list.pairs.count && list->a[k] == a && list->b[k] == b;
 }
 
-/* The number of a pair in a list, or NARC_NO_MATCH. It is looked for at `at` first: most bodies keep their numbers. */
-static uint32_t find_pair(const narc_kept_list *list, size_t at, uint32_t a, uint32_t b) {
-    size_t first = 0, end = list->list.pairs.count;
-    if (at < end && list->a[at] == a && list->b[at] == b)
-        return (uint32_t)at;
-    while (first < end) {
-        const size_t middle = first + (end - first) / 2;
-        if (stands_before(list, middle, a, b))
-            first = middle + 1;
-        else
-            end = middle;
-    }
-    return first < list->list.pairs.count && list->a[first] == a && list->b[first] == b ? (uint32_t)first
-                                                                                        : NARC_NO_MATCH;
-}
+typedef struct matching {
+    const narc_kept_list *last;
+    narc_kept_list *made;
+    const uint32_t *last_index;
+} matching;
 
-/* New pairs first .. end - 1 by the numbers that their bodies had. */
-static void match_part(const narc_kept_list *last, narc_kept_list *made, const uint32_t *last_index, size_t first,
-                       size_t end) {
+/* New pairs first .. end - 1 by the numbers that their bodies had. Behind the last match comes the next, mostly. */
+static void match_part(void *argument, size_t part, size_t first, size_t end) {
+    const matching *const m = argument;
     size_t at = first;
+    (void)part;
     for (size_t k = first; k < end; k++) {
-        const uint32_t a = last_index[made->a[k]], b = last_index[made->b[k]];
-        const bool flipped = b < a;
-        made->previous[k] = NARC_NO_MATCH;
-        if (a != NARC_NO_MATCH && b != NARC_NO_MATCH)
-            made->previous[k] = find_pair(last, at, flipped ? b : a, flipped ? a : b);
-        if (made->previous[k] == NARC_NO_MATCH)
-            continue;
-        made->marks[k] = flipped ? NARC_FLIPPED : 0;
-        at = (size_t)made->previous[k] + 1;
-    }
-}
-
-static void match_by_index(const update *u, const narc_kept_list *last, narc_kept_list *made) {
-    const size_t count = made->list.pairs.count, parts = count_parts(count, PAIR_PART);
-    const int team = narc_team_size(u->threads, parts);
-    (void)team;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
-#endif
-    for (size_t part = 0; part < parts; part++) {
-        const size_t first = part * PAIR_PART;
-        match_part(last, made, u->broad->last_index, first, first + least(PAIR_PART, count - first));
+        const uint32_t a = m->last_index[m->made->a[k]], b = m->last_index[m->made->b[k]];
+        const uint32_t low = a < b ? a : b, high = a < b ? b : a;
+        if (!is_pair(m->last, at, low, high))
+            at = narc_find_pair(&m->last->list.pairs, narc_join_pair(low, high));
+        const bool found = high != NARC_NO_MATCH && is_pair(m->last, at, low, high);
+        m->made->previous[k] = found ? (uint32_t)at++ : NARC_NO_MATCH;
+        m->made->marks[k] = found && b < a ? NARC_FLIPPED : 0;
     }
 }
 
@@ -320,7 +281,7 @@ static size_t keep_bodies(const update *u) {
     size_t skipped = 0;
     broad->has_filter = u->options->filter;
     for (size_t k = 0; k < u->count; k++) {
-        const bool has = has_box(&u->boxes[k]);
+        const bool has = narc_is_box(&u->boxes[k]);
         skipped += !has;
         broad->kept_boxes[k] = has ? widen(u->boxes[k], u->options->skin) : empty;
     }
@@ -339,7 +300,7 @@ static narc_status find(const update *u, bool same, narc_kept_list *last, narc_k
         return status;
     broad->is_current = false; /* as long as the kept boxes are not the last list's */
     const size_t skipped = keep_bodies(u);
-    status = narc_sweep_boxes(broad, broad->kept_boxes, u->count, filter, u->threads, &found, u->error);
+    status = narc_sweep_boxes(broad, broad->kept_boxes, u->count, filter, u->options->workers, &found, u->error);
     if (status != NARC_OK)
         return status;
     if (found > UINT32_MAX - 1)
@@ -347,7 +308,7 @@ static narc_status find(const update *u, bool same, narc_kept_list *last, narc_k
                          (unsigned long)(UINT32_MAX - 1));
     if (narc_reserve_pairs(broad, made, found) != NARC_OK || narc_reserve_pairs(broad, last, 0) != NARC_OK)
         return fail_memory(u, found, "pairs");
-    status = narc_list_found_pairs(broad, u->count, filter, u->threads, found, made->a, made->b, u->error);
+    status = narc_list_found_pairs(broad, u->count, filter, u->options->workers, found, made->a, made->b, u->error);
     if (status != NARC_OK)
         return status;
     made->list = (narc_pair_list){.pairs = {.count = found, .a = NARC_ARRAY(made->a), .b = NARC_ARRAY(made->b)},
@@ -357,10 +318,12 @@ static narc_status find(const update *u, bool same, narc_kept_list *last, narc_k
                                   .added = made->added,
                                   .skipped = skipped};
     memset(made->marks, 0, found);
-    if (!same && made->has_ids)
-        match_by_index(u, last, made);
-    else
-        status = narc_match_pairs(broad, &last->list.pairs, &made->list.pairs, u->threads, made->previous, u->error);
+    if (!same && made->has_ids) {
+        matching m = {last, made, broad->last_index};
+        narc_run_ranges(u->options->workers, found, PAIR_PART, match_part, &m);
+    } else
+        status = narc_match_pairs(broad, &last->list.pairs, &made->list.pairs, u->options->workers, made->previous,
+                                  u->error);
     if (status != NARC_OK)
         return status;
     const size_t lost_count = list_added(last, made);
@@ -368,15 +331,15 @@ static narc_status find(const update *u, bool same, narc_kept_list *last, narc_k
         return fail_memory(u, lost_count, "lost pairs");
     list_lost(last, made, lost_count);
     made->list.lost = made->lost;
-    mark_pairs(broad, made);
+    mark_all_pairs(broad, made);
     return NARC_OK;
 }
 
 static narc_status finish(const update *u, const narc_pair_list **out_list) {
     narc_broad_phase *const broad = u->broad;
     const bool same = are_same(u);
-    const changes found = same ? look_at_all(u) : (changes){.renew = true};
-    if (found.renew) {
+    const unsigned found = same ? look_at_all(u) : RENEW;
+    if (found & RENEW) {
         const int next = 1 - broad->last;
         const narc_status status = find(u, same, &broad->lists[broad->last], &broad->lists[next]);
         if (status != NARC_OK)
@@ -384,29 +347,22 @@ static narc_status finish(const update *u, const narc_pair_list **out_list) {
         broad->last = next;
         broad->is_current = broad->renewed = true;
     } else
-        keep(u, &found);
+        keep(u, found & REST);
     *out_list = &broad->lists[broad->last].list;
     return NARC_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------ the calls */
 
-static narc_status check_length(float length, const char *name, narc_error *error) {
-    if (!isfinite(length))
-        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)length, "options.%s is %g", name, (double)length);
-    if (length < 0)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)length, "options.%s is %g, less than 0", name,
-                         (double)length);
-    return NARC_OK;
-}
-
 /* Checks what both calls share, and makes room for the bodies. */
 static narc_status begin(const update *u, const narc_pair_list **out_list) {
     if (!u->broad || !out_list)
         return narc_fail_missing(u->error, u->broad ? "out_list" : "broad");
-    narc_status status = check_length(u->options->margin, "margin", u->error);
+    narc_status status = narc_check_length(u->options->margin, "margin", u->error);
     if (status == NARC_OK)
-        status = check_length(u->options->skin, "skin", u->error);
+        status = narc_check_length(u->options->skin, "skin", u->error);
+    if (status == NARC_OK)
+        status = narc_check_reserved(u->options->reserved, 4, "options", u->error);
     if (status != NARC_OK)
         return status;
     if (u->count > UINT32_MAX - 1)
@@ -421,18 +377,19 @@ static narc_status begin(const update *u, const narc_pair_list **out_list) {
 static const narc_pair_options defaults = {.margin = 0};
 
 narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
-                              const narc_pair_options *options, unsigned threads, const narc_pair_list **out_list,
-                              narc_error *error) {
+                              const narc_pair_options *options, const narc_pair_list **out_list, narc_error *error) {
     if (!shapes || !bodies)
         return narc_fail_missing(error, shapes ? "bodies" : "shapes");
-    update u = {broad, NULL, bodies->count, options ? options : &defaults, threads, error};
+    update u = {broad, NULL, bodies->count, options ? options : &defaults, error};
     narc_status status = begin(&u, out_list);
     if (status != NARC_OK)
         return status;
-    const narc_box_options box_options = {
-        .margin = u.options->margin * 0.5f, .motion_x = u.options->motion_x, .motion_y = u.options->motion_y};
+    const narc_box_options box_options = {.margin = u.options->margin * 0.5f,
+                                          .motion_x = u.options->motion_x,
+                                          .motion_y = u.options->motion_y,
+                                          .workers = u.options->workers};
     narc_box *const boxes = broad->boxes_now;
-    status = narc_compute_boxes(shapes, bodies, &box_options, threads, boxes, error);
+    status = narc_compute_boxes(shapes, bodies, &box_options, boxes, error);
     if (status != NARC_OK)
         return status;
     if (u.options->reach.base)
@@ -442,9 +399,9 @@ narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes
 }
 
 narc_status narc_update_box_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count,
-                                  const narc_pair_options *options, unsigned threads, const narc_pair_list **out_list,
+                                  const narc_pair_options *options, const narc_pair_list **out_list,
                                   narc_error *error) {
-    update u = {broad, boxes, count, options ? options : &defaults, threads, error};
+    update u = {broad, boxes, count, options ? options : &defaults, error};
     const narc_status status = begin(&u, out_list);
     if (status != NARC_OK)
         return status;

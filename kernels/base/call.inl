@@ -6,6 +6,7 @@
 #define NARC_BASE_CALL_INL
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/queue.inl"
@@ -23,9 +24,26 @@ struct call {
     struct queue *edges;       /* manifolds: pairs that may have a second point; else NULL */
 };
 
+/* One of two places, without a branch: which lanes have an answer can't be foreseen. */
+INLINE char *choose(bool first, char *a, char *b) {
+    const uintptr_t mask = (uintptr_t)0 - first;
+    return (char *)(((uintptr_t)a & mask) | ((uintptr_t)b & ~mask));
+}
+
 /* The batch's number of a pair. */
 INLINE size_t find_number(const struct call *call, int32_t pair) {
     return narc_pair_at(call->batch, call->first + (uint32_t)pair);
+}
+
+INLINE vi find_numbers(const struct call *call, vi pairs) {
+    int32_t number[V_WIDTH];
+    if (!call->batch->query.selection.base)
+        return vi_add(pairs, vi_set((int32_t)(uint32_t)call->first));
+    const int32_t last = (int32_t)call->count - 1; /* of a vector, lanes may lie behind it */
+    vi_store(number, pairs);
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        number[lane] = (int32_t)(uint32_t)find_number(call, number[lane] < last ? number[lane] : last);
+    return vi_load(number);
 }
 
 /* The margin of a pair, counted from the first of the call. */

@@ -26,7 +26,7 @@ struct feature {
     vf across, along_min, along_max;
     vi record;
     vf radius;
-    vf magnitude;   /* what the stretch may be wrong by is in proportion to it */
+    vf magnitude;    /* what the stretch may be wrong by is in proportion to it */
     vec2 start, end; /* of the arc */
 };
 
@@ -46,9 +46,8 @@ INLINE struct feature find_feature(const struct arcs *after, const struct arcs *
     const vec2 point = find_point(after, n, is_b);
     const vf along = v2_cross(n, point), other = v2_cross(n, find_point(before, n, is_b));
     const vf magnitude = v_add(find_magnitude(after), find_magnitude(before));
-    return (struct feature){v2_dot(n, point), v_min(along, other), v_max(along, other),
-                            record,           after->radius,       magnitude,
-                            after->start,     after->end};
+    return (struct feature){v2_dot(n, point), v_min(along, other), v_max(along, other), record,
+                            after->radius,    magnitude,           after->start,        after->end};
 }
 
 INLINE vm is_parallel(vec2 junction, vec2 n) {

@@ -24,12 +24,15 @@ INLINE uint32_t *find_hint(const struct call *call, int32_t pair) {
 
 /* Leaves hints for pairs in the lanes `ended`. */
 INLINE void put_hints(const struct call *call, vi pairs, vm ended, vi hints) {
-    int32_t pair[V_WIDTH], hint[V_WIDTH];
-    vi_store(pair, pairs);
+    const narc_hint_column column = call->batch->query.hints;
+    const uint32_t which = vm_bits(ended);
+    int32_t number[V_WIDTH], hint[V_WIDTH];
+    uint32_t spare;
+    vi_store(number, find_numbers(call, pairs));
     vi_store(hint, hints);
-    for (uint32_t lanes = vm_bits(ended); lanes; lanes &= lanes - 1) {
-        const int lane = __builtin_ctz(lanes);
-        *find_hint(call, pair[lane]) = (uint32_t)hint[lane];
+    for (int lane = 0; lane < V_WIDTH; lane++) {
+        char *const place = (char *)column.base + (ptrdiff_t)(uint32_t)number[lane] * column.stride;
+        *(uint32_t *)(void *)choose(which >> lane & 1, place, (char *)&spare) = (uint32_t)hint[lane];
     }
 }
 

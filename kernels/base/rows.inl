@@ -35,9 +35,9 @@ _Static_assert(sizeof(narc_manifold) == 64 && MANIFOLD_RADII == 16 && FIRST_POIN
 struct rows {
     narc_rows out;
     bool dense;
-    int done, listed;            /* all pairs before `done` are answered, and have `listed` rows */
-    uint32_t without;            /* rows of pairs without an answer */
-    uint64_t known[NARC_ROW_GROUP / 64]; /* the pairs from there on that have a row */
+    int done, listed;                               /* all pairs before `done` are answered, and have `listed` rows */
+    int without;                                    /* rows of pairs without an answer */
+    uint8_t known[NARC_ROW_GROUP + 1];              /* 1: a pair from there on that has a row; and one to spare */
     _Alignas(16) char spare[sizeof(narc_manifold)]; /* takes what lanes without an answer write */
 };
 
@@ -49,23 +49,39 @@ INLINE void start_rows(struct rows *rows, const narc_rows *out, bool dense) {
     memset(rows->known, 0, sizeof rows->known);
 }
 
-/* The place of a call's pair, or of item `k` of its list. */
+/* The place of a call's pair. */
 INLINE char *find_place(const struct call *call, int32_t pair) {
     const struct rows *rows = call->rows;
     const size_t item = rows->dense ? find_number(call, pair) : (uint32_t)pair;
     return rows->out.base + (ptrdiff_t)item * rows->out.stride;
 }
 
-/* The places of pairs in the lanes `keep`; elsewhere the spare one. */
+/* Notes that pairs have a row, in the lanes `keep`, and finds their places; elsewhere the spare one. */
 INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[V_WIDTH]) {
-    int32_t pair[V_WIDTH];
-    vi_store(pair, pairs);
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        place[lane] = call->rows->spare;
-    for (uint32_t lanes = vm_bits(keep); lanes; lanes &= lanes - 1) {
-        const int lane = __builtin_ctz(lanes);
-        place[lane] = find_place(call, pair[lane]);
+    struct rows *rows = call->rows;
+    char *const base = rows->out.base + (rows->dense ? (ptrdiff_t)call->first * rows->out.stride : 0);
+    const ptrdiff_t stride = rows->out.stride;
+    int32_t row[V_WIDTH];
+    vi_store(row, vi_select(keep, pairs, vi_set(NARC_ROW_GROUP)));
+    for (int lane = 0; lane < V_WIDTH; lane++) {
+        place[lane] = choose(row[lane] < NARC_ROW_GROUP, base + row[lane] * stride, rows->spare);
+        rows->known[row[lane]] = 1;
     }
+    if (rows->dense && call->batch->query.selection.base)
+        for (int lane = 0; lane < V_WIDTH; lane++)
+            if (row[lane] < NARC_ROW_GROUP)
+                place[lane] = find_place(call, row[lane]);
+}
+
+/* The places behind those that are listed, for the lanes `keep`; elsewhere the spare one. */
+INLINE void find_next_places(struct rows *rows, vm keep, char *place[V_WIDTH]) {
+    const uint32_t kept = vm_bits(keep);
+    char *next = rows->out.base + rows->listed * rows->out.stride;
+    for (uint32_t lane = 0; lane < V_WIDTH; lane++) {
+        place[lane] = choose(kept >> lane & 1, next, rows->spare);
+        next += (ptrdiff_t)(kept >> lane & 1) * rows->out.stride;
+    }
+    rows->listed += __builtin_popcount(kept);
 }
 
 INLINE void put_word(char *place, int offset, uint32_t word) { memcpy(place + offset, &word, sizeof word); }
@@ -88,12 +104,13 @@ struct answer {
     vi reach_a, reach_b; /* of manifolds, as in the row */
 };
 
-/* Writes rows of pairs with one point. The pairs' numbers are put in by who knows them. */
-INLINE void write_answers(const struct call *call, char *const *place, const struct answer *answer) {
+/* Writes rows of pairs with one point. */
+INLINE void write_answers(const struct call *call, char *const *place, vi numbers, const struct answer *answer) {
     const vi one = vi_set(1);
+    int32_t number[V_WIDTH];
     if (call->edges) {
         const vf zero = v_set(0);
-        const vf head[4] = {zero, v_of_bits(one), answer->normal.x, answer->normal.y};
+        const vf head[4] = {v_of_bits(numbers), v_of_bits(one), answer->normal.x, answer->normal.y};
         const vf radii[4] = {answer->radius_a, answer->radius_b, v_of_bits(answer->reach_a),
                              v_of_bits(answer->reach_b)};
         const vf first[4] = {answer->point.x, answer->point.y, answer->separation, v_of_bits(answer->feature)};
@@ -102,45 +119,30 @@ INLINE void write_answers(const struct call *call, char *const *place, const str
         v_put_rows(place, MANIFOLD_RADII, radii);
         v_put_rows(place, FIRST_POINT, first);
         v_put_rows(place, SECOND_POINT, second);
-    } else {
-        const vf front[4] = {v_of_bits(pack_halves(answer->feature, one)), answer->separation, answer->normal.x,
-                             answer->normal.y};
-        const vf rest[4] = {answer->point.x, answer->point.y, answer->radius_a, answer->radius_b};
-        v_put_rows(place, CONTACT_WORDS, front);
-        v_put_rows(place, CONTACT_WORDS + 16, rest);
+        return;
     }
+    const vf front[4] = {v_of_bits(pack_halves(answer->feature, one)), answer->separation, answer->normal.x,
+                         answer->normal.y};
+    const vf rest[4] = {answer->point.x, answer->point.y, answer->radius_a, answer->radius_b};
+    vi_store(number, numbers);
+    v_put_rows(place, CONTACT_WORDS, front);
+    v_put_rows(place, CONTACT_WORDS + 16, rest);
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        put_word(place[lane], 0, (uint32_t)number[lane]);
 }
 
 /* Writes the rows of pairs in the lanes `keep`. */
 INLINE void put_answers(const struct call *call, vi pairs, vm keep, const struct answer *answer) {
-    int32_t pair[V_WIDTH];
     char *place[V_WIDTH];
     find_places(call, pairs, keep, place);
-    write_answers(call, place, answer);
-    vi_store(pair, pairs);
-    for (uint32_t lanes = vm_bits(keep); lanes; lanes &= lanes - 1) {
-        const int lane = __builtin_ctz(lanes);
-        const uint32_t number = (uint32_t)pair[lane];
-        put_word(place[lane], 0, (uint32_t)find_number(call, pair[lane]));
-        call->rows->known[number / 64] |= (uint64_t)1 << number % 64;
-    }
+    write_answers(call, place, find_numbers(call, pairs), answer);
 }
 
 /* Lists the rows of pairs in the lanes `keep`, behind those that are listed. */
 INLINE void append_answers(const struct call *call, vi pairs, vm keep, const struct answer *answer) {
-    struct rows *rows = call->rows;
-    int32_t pair[V_WIDTH];
     char *place[V_WIDTH];
-    vi_store(pair, pairs);
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        place[lane] = rows->spare;
-    for (uint32_t lanes = vm_bits(keep); lanes; lanes &= lanes - 1)
-        place[__builtin_ctz(lanes)] = rows->out.base + (ptrdiff_t)rows->listed++ * rows->out.stride;
-    write_answers(call, place, answer);
-    for (uint32_t lanes = vm_bits(keep); lanes; lanes &= lanes - 1) {
-        const int lane = __builtin_ctz(lanes);
-        put_word(place[lane], 0, (uint32_t)find_number(call, pair[lane]));
-    }
+    find_next_places(call->rows, keep, place);
+    write_answers(call, place, find_numbers(call, pairs), answer);
 }
 
 /* With an infinite margin every pair has a row. Writes that of pairs without an answer, in the lanes `which`. */
@@ -157,43 +159,44 @@ INLINE void put_no_answer(const struct call *call, vi pairs, vm which) {
             continue;
         memcpy(find_place(call, k), call->edges ? (const void *)&manifold : &contact,
                call->edges ? sizeof manifold : sizeof contact);
-        call->rows->known[k / 64] |= (uint64_t)1 << k % 64;
+        call->rows->known[k] = 1;
         call->rows->without++;
     }
 }
 
-/* Rows of pairs that have none: dense ones have all places filled. Returns how many have one. */
+/* Fills the rows of pairs that have none: dense ones have all places filled. Returns how many contacts there are. */
 INLINE size_t fill_gaps(const struct call *call, size_t size) {
-    size_t count = 0;
-    for (size_t k = 0; k < call->count; k++) {
-        char *const place = find_place(call, (int32_t)(uint32_t)k);
-        if (call->rows->known[k / 64] >> k % 64 & 1) {
-            count++;
+    int count = 0;
+    for (int32_t k = 0; k < (int32_t)call->count; k++) {
+        count += call->rows->known[k];
+        if (call->rows->known[k])
             continue;
-        }
+        char *const place = find_place(call, k);
         memset(place, 0, size);
-        put_word(place, 0, (uint32_t)find_number(call, (int32_t)(uint32_t)k));
+        put_word(place, 0, (uint32_t)find_number(call, k));
     }
-    return count - call->rows->without;
+    return (size_t)(count - call->rows->without);
 }
 
 /* Ends a call with rows of `size` bytes: moves them together in the order of their pairs. Returns how many there are. */
 INLINE size_t end_rows(const struct call *call, size_t size) {
     const struct rows *rows = call->rows;
     const ptrdiff_t stride = rows->out.stride;
-    char *to = rows->out.base + rows->listed * stride;
-    size_t count = (size_t)rows->listed;
     if (rows->dense)
         return fill_gaps(call, size);
-    for (size_t word = 0; word < (call->count + 63) / 64; word++)
-        for (uint64_t bits = rows->known[word]; bits; bits &= bits - 1) {
-            const char *from = rows->out.base + (ptrdiff_t)(64 * word + (unsigned)__builtin_ctzll(bits)) * stride;
-            if (from != to)
-                memcpy(to, from, size);
-            to += stride;
-            count++;
-        }
-    return count;
+    int16_t pair[NARC_ROW_GROUP + 1];
+    int count = 0;
+    for (int k = rows->done; k < (int)call->count; k++) {
+        pair[count] = (int16_t)k;
+        count += rows->known[k];
+    }
+    char *to = rows->out.base + rows->listed * stride;
+    for (int k = 0; k < count; k++, to += stride) {
+        const char *from = rows->out.base + pair[k] * stride;
+        if (from != to)
+            memcpy(to, from, size);
+    }
+    return (size_t)(rows->listed + count);
 }
 
 /* The caller's number of an arc from its record; a circle's two halves are both arc 0. */

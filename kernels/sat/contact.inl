@@ -222,7 +222,7 @@ static size_t find_rows(const narc_batch *batch, size_t first, size_t count, con
         call.edges = manifolds ? &queues[1] : NULL;
         run_pairs(&call, take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
     }
-    return end_rows(&call, manifolds ? sizeof(narc_manifold) : sizeof(narc_contact));
+    return manifolds ? end_rows(&call, sizeof(narc_manifold)) : end_rows(&call, sizeof(narc_contact));
 }
 
 static size_t contact(const narc_batch *batch, size_t first, size_t count, const narc_rows *out) {

@@ -4,9 +4,8 @@
  */
 #include <stdlib.h>
 
+#include "counting.h"
 #include "guard.h"
-#include "narc_broad_phase.h"
-#include "support.h"
 
 static int compare_pairs(const void *one, const void *other) {
     const uint32_t *p = one, *q = other;
@@ -19,8 +18,7 @@ static int compare_pairs(const void *one, const void *other) {
 static void matches_as_a_search_does(void **state) {
     (void)state;
     struct test_random random = test_random_named("matches");
-    narc_broad_phase *broad = NULL;
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t trial = 0; trial < test_trials(80); trial++) {
         const size_t old_count = random_below(&random, 400), new_count = random_below(&random, 400);
         const size_t bodies = 2 + random_below(&random, 40), order = random_below(&random, 4);
@@ -37,7 +35,8 @@ static void matches_as_a_search_does(void **state) {
         uint32_t *match = guard_allocate(new_count * sizeof *match);
         const narc_pairs olds = {.count = old_count, .a = {&old_pairs[0][0], 8}, .b = {&old_pairs[0][1], 8}};
         const narc_pairs news = {.count = new_count, .a = {&new_pairs[0][0], 8}, .b = {&new_pairs[0][1], 8}};
-        assert_int_equal(narc_match_pairs(broad, &olds, &news, 1 + (unsigned)trial % 3, match, NULL), NARC_OK);
+        const narc_workers workers = narc_openmp_workers(1 + (unsigned)trial % 3);
+        assert_int_equal(narc_match_pairs(broad, &olds, &news, &workers, match, NULL), NARC_OK);
         for (size_t k = 0; k < new_count; k++) {
             uint32_t expected = NARC_NO_MATCH;
             for (size_t i = 0; i < old_count && expected == NARC_NO_MATCH; i++)
@@ -58,8 +57,7 @@ static void matches_lists_with_one_disorder(void **state) {
     enum { COUNT = 40000, PART = 16384 };
     static uint32_t a[COUNT], b[COUNT], match[COUNT];
     static const size_t places[] = {1, PART - 1, PART, PART + 1, 2 * PART, COUNT - 1};
-    narc_broad_phase *broad = NULL;
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t p = 0; p < sizeof places / sizeof places[0]; p++) {
         for (uint32_t k = 0; k < COUNT; k++) {
             a[k] = k;
@@ -71,7 +69,8 @@ static void matches_lists_with_one_disorder(void **state) {
         b[places[p] - 1] = (uint32_t)places[p] + 1;
         const narc_pairs pairs = {.count = COUNT, .a = {a, sizeof *a}, .b = {b, sizeof *b}};
         for (unsigned threads = 1; threads <= 3; threads++) {
-            assert_int_equal(narc_match_pairs(broad, &pairs, &pairs, threads, match, NULL), NARC_OK);
+            const narc_workers workers = narc_openmp_workers(threads);
+            assert_int_equal(narc_match_pairs(broad, &pairs, &pairs, &workers, match, NULL), NARC_OK);
             for (uint32_t k = 0; k < COUNT; k++)
                 assert_int_equal(match[k], k);
         }
@@ -121,8 +120,7 @@ static void matches_lists_that_were_chosen_badly(void **state) {
         choose_regular,        choose_far_apart,       choose_grid,
         choose_small_products, choose_folded_products, choose_small_second_products};
     static uint32_t a[MANY], b[MANY], match[MANY];
-    narc_broad_phase *broad = NULL;
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t way = 0; way < sizeof choose / sizeof choose[0]; way++) {
         for (size_t k = 0; k < MANY - 1; k++) { /* each once, in disorder */
             const uint64_t pair = choose[way](k * 7 % (MANY - 1));
@@ -135,7 +133,8 @@ static void matches_lists_that_were_chosen_badly(void **state) {
         const narc_pairs news = {
             .count = MANY - SKIPPED - 1, .a = {a + SKIPPED + 1, sizeof *a}, .b = {b + SKIPPED + 1, sizeof *b}};
         for (unsigned threads = 1; threads <= 3; threads += 2) {
-            assert_int_equal(narc_match_pairs(broad, &olds, &news, threads, match, NULL), NARC_OK);
+            const narc_workers workers = narc_openmp_workers(threads);
+            assert_int_equal(narc_match_pairs(broad, &olds, &news, &workers, match, NULL), NARC_OK);
             for (size_t k = 0; k < news.count - 1; k++)
                 assert_int_equal(match[k], k + SKIPPED + 1);
             assert_int_equal(match[news.count - 1], SKIPPED);
@@ -149,26 +148,22 @@ static void *refuse_large(size_t size, void *context) {
     return size < 1 << 20 ? malloc(size) : NULL;
 }
 
-static void release(void *memory, void *context) {
-    (void)context;
-    free(memory);
-}
-
 /* A list for which a 32-bit machine has no memory, nor room to count its bytes. */
 static void tells_that_there_is_no_memory(void **state) {
     (void)state;
     static const uint32_t zero = 0, falling[] = {1, 0};
-    const narc_allocator allocator = {refuse_large, release, NULL};
+    const narc_allocator allocator = {refuse_large, counted_release, NULL};
     narc_broad_phase *broad = NULL;
     uint32_t match[2] = {7, 7};
     narc_error error;
+    const narc_workers workers = narc_openmp_workers(0);
     assert_int_equal(narc_create_broad_phase(&allocator, &broad), NARC_OK);
     const narc_pairs olds = {.count = ((size_t)1 << 30) + 1, .a = {&zero, 0}, .b = {&zero, 0}};
     const narc_pairs news = {.count = 2, .a = {falling, sizeof *falling}, .b = {falling, sizeof *falling}};
-    assert_int_equal(narc_match_pairs(broad, &olds, &news, 0, match, &error), NARC_ERROR_MEMORY);
+    assert_int_equal(narc_match_pairs(broad, &olds, &news, &workers, match, &error), NARC_ERROR_MEMORY);
     assert_string_equal(error.message, "not enough memory for 1073741825 pairs");
     assert_int_equal(match[0], 7);
-    assert_int_equal(narc_match_pairs(broad, &news, &news, 0, match, &error), NARC_OK);
+    assert_int_equal(narc_match_pairs(broad, &news, &news, &workers, match, &error), NARC_OK);
     narc_destroy_broad_phase(broad);
 }
 

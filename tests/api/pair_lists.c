@@ -10,9 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "counting.h"
 #include "narc.h"
-#include "narc_broad_phase.h"
-#include "support.h"
 
 enum { THREAD_COUNTS = 4, MOST_BODIES = 9000 };
 static const unsigned thread_counts[THREAD_COUNTS] = {1, 2, 3, 7};
@@ -47,6 +46,21 @@ typedef struct reference {
     size_t pair_count, next_count, capacity;
     uint32_t *table; /* hash table of pairs: one more than their index */
 } reference;
+
+/* The calls where nothing fails. */
+static const narc_pair_list *update_boxes(narc_broad_phase *broad, const narc_box *boxes, size_t count,
+                                          const narc_pair_options *options) {
+    const narc_pair_list *list = NULL;
+    assert_int_equal(narc_update_box_pairs(broad, boxes, count, options, &list, NULL), NARC_OK);
+    return list;
+}
+
+static const narc_pair_list *update(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
+                                    const narc_pair_options *options) {
+    const narc_pair_list *list = NULL;
+    assert_int_equal(narc_update_pairs(broad, shapes, bodies, options, &list, NULL), NARC_OK);
+    return list;
+}
 
 static double half_of_margin = 0.25, skin = 0.5625;
 
@@ -247,10 +261,9 @@ static void check_step(reference *r, narc_broad_phase *const *broads, body *bodi
         options.id = (narc_word_column){&bodies->id, stride};
     const bool renew = find_expected(r, bodies, count);
     for (size_t t = 0; t < THREAD_COUNTS; t++) {
-        const narc_pair_list *list = NULL;
-        narc_error error;
-        assert_int_equal(narc_update_box_pairs(broads[t], boxes, count, &options, thread_counts[t], &list, &error),
-                         NARC_OK);
+        const narc_workers workers = narc_openmp_workers(thread_counts[t]);
+        options.workers = &workers;
+        const narc_pair_list *const list = update_boxes(broads[t], boxes, count, &options);
         check_pairs(r, bodies, list, renew);
         const size_t lost = check_lost(r, list);
         assert_int_equal(list->skipped, count_broken(bodies, count));
@@ -366,7 +379,7 @@ static totals run_world(const char *name, size_t steps, size_t start, size_t mos
     uint64_t next_id = start;
     totals sums = {0};
     for (size_t t = 0; t < THREAD_COUNTS; t++)
-        assert_int_equal(narc_create_broad_phase(NULL, &broads[t]), NARC_OK);
+        broads[t] = create_broad_phase(NULL);
     for (size_t k = 0; k < start; k++) {
         bodies[k] = random_body(&random, side, k);
         bodies[k].id = with_ids ? bodies[k].id : k;
@@ -471,11 +484,10 @@ static void lists_all_bodies_that_are_close(void **state) {
     const narc_pair_options options = {.margin = 0.25f, .skin = 0.125f};
     struct test_random random = test_random_named("close");
     narc_shapes *shapes;
-    narc_broad_phase *broad;
+    narc_broad_phase *broad = create_broad_phase(NULL);
     disc discs[COUNT];
     size_t kept = 0, close = 0;
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
     add_circle(shapes, radius[0]);
     add_circle(shapes, radius[1]);
     for (size_t k = 0; k < COUNT; k++)
@@ -492,11 +504,12 @@ static void lists_all_bodies_that_are_close(void **state) {
             discs[k].motion_x = (float)random_between(&random, -motion, motion);
             discs[k].motion_y = (float)random_between(&random, -motion, motion);
         }
+        const narc_workers workers = narc_openmp_workers(1 + (unsigned)step % 3);
+        moving.workers = &workers;
         moving.motion_x = NARC_COLUMN(discs, motion_x);
         moving.motion_y = NARC_COLUMN(discs, motion_y);
         const narc_bodies bodies = view(discs, COUNT);
-        assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &moving, 1 + (unsigned)step % 3, &list, NULL),
-                         NARC_OK);
+        list = update(broad, shapes, &bodies, &moving);
         kept += list->kept;
         for (uint32_t a = 0; a < COUNT; a++)
             for (uint32_t b = a + 1; b < COUNT; b++) {
@@ -522,33 +535,32 @@ static void notices_shapes_that_change(void **state) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     narc_shapes *shapes;
-    narc_broad_phase *broad;
+    narc_broad_phase *broad = create_broad_phase(NULL);
     const narc_pair_list *list;
     const narc_pair_options options = {.skin = 0.125f};
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
     const uint32_t small = add_circle(shapes, 0.5), other = add_circle(shapes, 0.51);
     disc discs[] = {{0, 0, 1, 0, 0, 0, small}, {3, 0, 1, 0, 0, 0, other}};
     const narc_bodies bodies = view(discs, 2);
-    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    list = update(broad, shapes, &bodies, &options);
     assert_int_equal(list->pairs.count, 0);
     assert_int_equal(narc_build_circle(2.25, arcs, &count, NULL), NARC_OK);
     assert_int_equal(narc_replace_shape(shapes, small, arcs, count, NULL), NARC_OK);
-    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    list = update(broad, shapes, &bodies, &options);
     assert_int_equal(list->added_count, 1);
     discs[1].x = 3.0625f;
-    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    list = update(broad, shapes, &bodies, &options);
     assert_true(list->kept && list->added_count == 0 && list->pairs.count == 1);
     discs[1].x = NAN;
-    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    list = update(broad, shapes, &bodies, &options);
     assert_true(list->lost_count == 1 && list->skipped == 1 && list->pairs.count == 0);
     discs[1].x = 3;
-    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    list = update(broad, shapes, &bodies, &options);
     assert_true(list->added_count == 1 && list->skipped == 0);
     assert_int_equal(narc_remove_shape(shapes, other, NULL), NARC_OK);
-    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    list = update(broad, shapes, &bodies, &options);
     assert_true(list->lost_count == 1 && list->skipped == 1);
-    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, &options, 1, &list, NULL), NARC_OK);
+    list = update(broad, shapes, &bodies, &options);
     assert_true(list->kept && list->lost_count == 0 && list->skipped == 1);
     narc_destroy_broad_phase(broad);
     narc_destroy_shapes(shapes);
@@ -556,48 +568,24 @@ static void notices_shapes_that_change(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ memory and errors */
 
-struct counter {
-    size_t allocations, left; /* made, and to be made before the next one fails */
-};
-
-static void *counted_allocate(size_t size, void *context) {
-    struct counter *counter = context;
-    if (counter->left == 0)
-        return NULL;
-    counter->left--;
-    counter->allocations++;
-    return malloc(size);
-}
-
-static void counted_release(void *memory, void *context) {
-    (void)context;
-    free(memory);
-}
-
-static narc_broad_phase *create_counted(struct counter *counter) {
-    const narc_allocator allocator = {counted_allocate, counted_release, counter};
-    narc_broad_phase *broad = NULL;
-    assert_int_equal(narc_create_broad_phase(&allocator, &broad), NARC_OK);
-    return broad;
-}
-
 static void allocates_nothing_once_it_has_grown(void **state) {
     (void)state;
     enum { COUNT = 3000, STEPS = 30 };
     struct test_random random = test_random_named("steady lists");
-    struct counter counter = {0, SIZE_MAX};
-    narc_broad_phase *broad = create_counted(&counter);
+    struct counter counter = {.left = SIZE_MAX};
+    narc_broad_phase *broad = create_broad_phase(&counter);
+    const narc_workers workers = narc_openmp_workers(2);
     narc_box boxes[COUNT];
     uint64_t ids[COUNT];
     size_t after = 0;
     for (int step = 0; step < STEPS; step++) {
         const narc_pair_list *list;
-        const narc_pair_options options = {.margin = 0.5f, .skin = 0.125f, .id = NARC_ARRAY(ids)};
+        const narc_pair_options options = {.margin = 0.5f, .skin = 0.125f, .id = NARC_ARRAY(ids), .workers = &workers};
         for (size_t k = 0; k < COUNT && step % 2 == 0; k++) { /* all others, and all in other places */
             boxes[k] = random_box(&random, 60);
             ids[k] = random_bits(&random);
         }
-        assert_int_equal(narc_update_box_pairs(broad, boxes, COUNT, &options, 2, &list, NULL), NARC_OK);
+        list = update_boxes(broad, boxes, COUNT, &options);
         assert_int_equal(list->kept, step % 2 == 1);
         assert_true(list->kept || list->added_count == list->pairs.count);
         if (step == 7)
@@ -635,17 +623,17 @@ static void survives_failing_allocations(void **state) {
     narc_pair_options options = {.skin = 0.125f};
     size_t failures = 0;
     for (size_t left = 0;; left++) {
-        struct counter counter = {0, SIZE_MAX}, free_counter = {0, SIZE_MAX};
-        narc_broad_phase *broad = create_counted(&counter), *whole = create_counted(&free_counter);
+        struct counter counter = {.left = SIZE_MAX}, free_counter = {.left = SIZE_MAX};
+        narc_broad_phase *broad = create_broad_phase(&counter), *whole = create_broad_phase(&free_counter);
         const narc_pair_list *list, *whole_list, *untouched;
         options.id = (narc_word_column){ids, sizeof *ids};
-        assert_int_equal(narc_update_box_pairs(broad, boxes, FEW, &options, 1, &list, NULL), NARC_OK);
-        assert_int_equal(narc_update_box_pairs(whole, boxes, FEW, &options, 1, &whole_list, NULL), NARC_OK);
+        list = update_boxes(broad, boxes, FEW, &options);
+        whole_list = update_boxes(whole, boxes, FEW, &options);
         options.id = (narc_word_column){later_ids, sizeof *later_ids};
         counter.left = left;
         untouched = list;
         narc_error error;
-        const narc_status status = narc_update_box_pairs(broad, boxes, MANY, &options, 1, &untouched, &error);
+        const narc_status status = narc_update_box_pairs(broad, boxes, MANY, &options, &untouched, &error);
         if (status != NARC_OK) {
             failures++;
             assert_int_equal(status, NARC_ERROR_MEMORY);
@@ -654,12 +642,12 @@ static void survives_failing_allocations(void **state) {
             counter.left = SIZE_MAX;
             /* The same bodies again, which must not be taken for those that the step that failed had. */
             options.id = (narc_word_column){ids, sizeof *ids};
-            assert_int_equal(narc_update_box_pairs(broad, boxes, FEW, &options, 1, &list, NULL), NARC_OK);
+            list = update_boxes(broad, boxes, FEW, &options);
             assert_true(list->added_count == 0 && list->lost_count == 0);
             options.id = (narc_word_column){later_ids, sizeof *later_ids};
-            assert_int_equal(narc_update_box_pairs(broad, boxes, MANY, &options, 1, &list, NULL), NARC_OK);
+            list = update_boxes(broad, boxes, MANY, &options);
         }
-        assert_int_equal(narc_update_box_pairs(whole, boxes, MANY, &options, 1, &whole_list, NULL), NARC_OK);
+        whole_list = update_boxes(whole, boxes, MANY, &options);
         assert_true(whole_list->lost_count > 0 && whole_list->added_count > 0);
         check_equal_lists(status == NARC_OK ? untouched : list, whole_list);
         narc_destroy_broad_phase(broad);
@@ -676,22 +664,22 @@ static void keeps_no_list_that_was_not_made(void **state) {
     (void)state;
     enum { COUNT = 500 };
     narc_box boxes[COUNT];
-    struct counter counter = {0, SIZE_MAX};
+    struct counter counter = {.left = SIZE_MAX};
     const narc_pair_options options = {.skin = 0.125f};
     const narc_pair_list *list;
-    narc_broad_phase *broad = create_counted(&counter);
+    narc_broad_phase *broad = create_broad_phase(&counter);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){2 * (float)k, 0, 2 * (float)k + 1, 1};
-    assert_int_equal(narc_update_box_pairs(broad, boxes, COUNT, &options, 1, &list, NULL), NARC_OK);
+    list = update_boxes(broad, boxes, COUNT, &options);
     assert_int_equal(list->pairs.count, 0);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){0, 0, 1, 1};
     counter.left = 0;
     for (int trial = 0; trial < 3; trial++)
-        assert_int_equal(narc_update_box_pairs(broad, boxes, COUNT, &options, 1, &list, NULL), NARC_ERROR_MEMORY);
+        assert_int_equal(narc_update_box_pairs(broad, boxes, COUNT, &options, &list, NULL), NARC_ERROR_MEMORY);
     assert_int_equal(list->pairs.count, 0);
     counter.left = SIZE_MAX;
-    assert_int_equal(narc_update_box_pairs(broad, boxes, COUNT, &options, 1, &list, NULL), NARC_OK);
+    list = update_boxes(broad, boxes, COUNT, &options);
     assert_int_equal(list->pairs.count, COUNT * (COUNT - 1) / 2);
     assert_int_equal(list->added_count, list->pairs.count);
     narc_destroy_broad_phase(broad);
@@ -704,15 +692,14 @@ static void marks_bodies_that_change_their_order(void **state) {
     const uint64_t ids[] = {7, 9}, others[] = {9, 7};
     narc_pair_options options = {.id = NARC_ARRAY(ids)};
     const narc_pair_list *list;
-    narc_broad_phase *broad;
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
-    assert_int_equal(narc_update_box_pairs(broad, boxes, 2, &options, 1, &list, NULL), NARC_OK);
+    narc_broad_phase *broad = create_broad_phase(NULL);
+    list = update_boxes(broad, boxes, 2, &options);
     assert_int_equal(list->marks[0], 0);
     options.id = NARC_ARRAY(others);
-    assert_int_equal(narc_update_box_pairs(broad, boxes, 2, &options, 1, &list, NULL), NARC_OK);
+    list = update_boxes(broad, boxes, 2, &options);
     assert_true(list->marks[0] == NARC_FLIPPED && list->previous[0] == 0);
     boxes[1].min_x = NAN;
-    assert_int_equal(narc_update_box_pairs(broad, boxes, 2, &options, 1, &list, NULL), NARC_OK);
+    list = update_boxes(broad, boxes, 2, &options);
     assert_int_equal(list->lost_count, 1);
     assert_true(list->lost[0].marks == 0 && list->lost[0].id_a == 9 && list->lost[0].id_b == 7);
     narc_destroy_broad_phase(broad);
@@ -722,10 +709,9 @@ static void forgets_its_pairs(void **state) {
     (void)state;
     const narc_box boxes[] = {{0, 0, 1, 1}, {1, 0, 2, 1}};
     const narc_pair_list *list;
-    narc_broad_phase *broad;
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+    narc_broad_phase *broad = create_broad_phase(NULL);
     for (int step = 0; step < 3; step++) {
-        assert_int_equal(narc_update_box_pairs(broad, boxes, 2, NULL, 1, &list, NULL), NARC_OK);
+        list = update_boxes(broad, boxes, 2, NULL);
         assert_int_equal(list->kept, step == 1);
         assert_int_equal(list->added_count, step != 1);
         assert_int_equal(list->lost_count, 0);
@@ -742,18 +728,16 @@ static void refuses_bad_arguments(void **state) {
     const uint64_t ids[] = {5, 6, 7}, twice[] = {6, 5, 5};
     narc_pair_options options = {.id = NARC_ARRAY(ids)};
     const narc_pair_list *list = NULL, *before = NULL;
-    narc_broad_phase *broad;
+    narc_broad_phase *broad = create_broad_phase(NULL);
     narc_shapes *shapes;
     narc_error error;
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    assert_int_equal(narc_update_box_pairs(broad, boxes, 3, &options, 1, &before, NULL), NARC_OK);
+    before = update_boxes(broad, boxes, 3, &options);
     assert_int_equal(before->pairs.count, 3);
-    assert_int_equal(narc_update_box_pairs(NULL, boxes, 3, NULL, 1, &list, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_update_box_pairs(broad, NULL, 3, NULL, 1, &list, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_update_box_pairs(broad, boxes, 3, NULL, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_update_box_pairs(broad, boxes, (size_t)UINT32_MAX, NULL, 1, &list, NULL),
-                     NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_update_box_pairs(NULL, boxes, 3, NULL, &list, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_update_box_pairs(broad, NULL, 3, NULL, &list, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_update_box_pairs(broad, boxes, 3, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_update_box_pairs(broad, boxes, (size_t)UINT32_MAX, NULL, &list, NULL), NARC_ERROR_ARGUMENT);
     const struct {
         narc_pair_options options;
         narc_status status;
@@ -766,25 +750,26 @@ static void refuses_bad_arguments(void **state) {
         {{.motion_x = NARC_COLUMN(boxes, min_x)},
          NARC_ERROR_ARGUMENT,
          "options.motion with boxes, which hold their motion"},
+        {{.reserved = {boxes}}, NARC_ERROR_ARGUMENT, "options.reserved[0] is not NULL"},
         {{.id = NARC_ARRAY(twice)}, NARC_ERROR_ARGUMENT, "body 2: id 5 is also that of a body before it"},
     };
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
-        assert_int_equal(narc_update_box_pairs(broad, boxes, 3, &bad[k].options, 1, &list, &error), bad[k].status);
+        assert_int_equal(narc_update_box_pairs(broad, boxes, 3, &bad[k].options, &list, &error), bad[k].status);
         assert_string_equal(error.message, bad[k].message);
     }
     narc_bodies bodies = {.count = 1};
-    assert_int_equal(narc_update_pairs(broad, NULL, &bodies, NULL, 1, &list, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_update_pairs(broad, shapes, NULL, NULL, 1, &list, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, NULL, 1, &list, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_update_pairs(broad, NULL, &bodies, NULL, &list, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_update_pairs(broad, shapes, NULL, NULL, &list, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, NULL, &list, NULL), NARC_ERROR_ARGUMENT);
     const disc stray = {.cosine = 1, .shape = 3};
     bodies = view(&stray, 1);
-    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, NULL, 1, &list, NULL), NARC_ERROR_INDEX);
+    assert_int_equal(narc_update_pairs(broad, shapes, &bodies, NULL, &list, NULL), NARC_ERROR_INDEX);
     assert_null(list);
     assert_int_equal(before->pairs.count, 3); /* as it was, and the next step goes on from there */
-    assert_int_equal(narc_update_box_pairs(broad, boxes, 3, &options, 1, &list, NULL), NARC_OK);
+    list = update_boxes(broad, boxes, 3, &options);
     assert_true(list->kept && list->pairs.count == 3);
     boxes[0].min_x = -INFINITY;
-    assert_int_equal(narc_update_box_pairs(broad, boxes, 3, &options, 1, &list, NULL), NARC_OK);
+    list = update_boxes(broad, boxes, 3, &options);
     assert_true(list->lost_count == 2 && list->skipped == 1);
     narc_destroy_shapes(shapes);
     narc_destroy_broad_phase(broad);

@@ -73,9 +73,12 @@ static void check_box(const struct reference_body *body, const struct question *
 
 static narc_box *compute(const struct scene *scene, const narc_box_options *options, unsigned threads) {
     const narc_bodies bodies = scene_bodies(scene);
+    const narc_workers workers = narc_openmp_workers(threads);
+    narc_box_options all = options ? *options : (narc_box_options){0};
     narc_box *boxes = guard_allocate(bodies.count * sizeof *boxes);
     narc_error error;
-    expect_ok(narc_compute_boxes(scene->store, &bodies, options, threads, boxes, &error), &error);
+    all.workers = &workers;
+    expect_ok(narc_compute_boxes(scene->store, &bodies, &all, boxes, &error), &error);
     return boxes;
 }
 
@@ -279,17 +282,20 @@ static void same_bits_whatever_the_split(void **state) {
                 narc_shapes *const store = guard_store(&scene);
                 narc_box *const boxes = guard_allocate(count * sizeof *boxes), *const copy = malloc((count + 1) * 16);
                 size_t skipped = 99;
-                const narc_box_options options = {.margin = 0.01f, .out_skipped = &skipped};
-                const size_t first = random_below(&random, count + 1), part = random_below(&random, count - first + 1);
+                const size_t first = random_below(&random, count + 1), rest = count - first;
+                narc_box_options options = {
+                    .margin = 0.01f, .out_skipped = &skipped, .first = first, .count = random_below(&random, rest + 1)};
+                const size_t part = options.count ? options.count : rest;
                 memcpy(copy, boxes, count * sizeof *boxes);
-                expect_ok(narc_compute_boxes_range(store, &columns.bodies, first, part, &options, boxes, NULL), NULL);
+                expect_ok(narc_compute_boxes(store, &columns.bodies, &options, boxes, NULL), NULL);
                 const bool has_broken = layout != LAYOUT_SHARED && first <= 1 && first + part > 1;
                 assert_int_equal(skipped, has_broken ? 1 : 0);
                 assert_memory_equal(boxes, copy, first * sizeof *boxes);
                 assert_memory_equal(boxes + first, right + first, part * sizeof *boxes);
                 assert_memory_equal(boxes + first + part, copy + first + part, (count - first - part) * sizeof *boxes);
-                const unsigned threads = (unsigned)random_below(&random, 5);
-                expect_ok(narc_compute_boxes(store, &columns.bodies, &options, threads, boxes, NULL), NULL);
+                const narc_workers workers = narc_openmp_workers((unsigned)random_below(&random, 5));
+                options = (narc_box_options){.margin = 0.01f, .workers = &workers};
+                expect_ok(narc_compute_boxes(store, &columns.bodies, &options, boxes, NULL), NULL);
                 assert_memory_equal(boxes, right, count * sizeof *boxes);
                 free(copy);
                 guard_release(boxes);
@@ -416,42 +422,50 @@ static void refuses_bad_arguments(void **state) {
     size_t skipped = 5;
     memset(boxes, GUARD_JUNK, sizeof boxes);
     options.out_skipped = &skipped;
-    expect_error(narc_compute_boxes(NULL, &bodies, NULL, 1, boxes, &error), NARC_ERROR_ARGUMENT, &error, "shapes");
-    expect_error(narc_compute_boxes(scene.store, NULL, NULL, 1, boxes, &error), NARC_ERROR_ARGUMENT, &error, "bodies");
-    expect_error(narc_compute_boxes(scene.store, &bodies, NULL, 1, NULL, &error), NARC_ERROR_ARGUMENT, &error,
+    expect_error(narc_compute_boxes(NULL, &bodies, NULL, boxes, &error), NARC_ERROR_ARGUMENT, &error, "shapes");
+    expect_error(narc_compute_boxes(scene.store, NULL, NULL, boxes, &error), NARC_ERROR_ARGUMENT, &error, "bodies");
+    expect_error(narc_compute_boxes(scene.store, &bodies, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error,
                  "out_boxes");
-    expect_error(narc_compute_boxes_range(scene.store, &bodies, 90, 11, NULL, boxes, &error), NARC_ERROR_ARGUMENT,
-                 &error, "bodies 90 and the 11");
+    const narc_box_options beyond = {.first = 90, .count = 11}, behind = {.first = 101},
+                           reserved = {.reserved = {boxes}};
+    expect_error(narc_compute_boxes(scene.store, &bodies, &beyond, boxes, &error), NARC_ERROR_ARGUMENT, &error,
+                 "bodies 90 and the 11");
+    expect_error(narc_compute_boxes(scene.store, &bodies, &behind, boxes, &error), NARC_ERROR_ARGUMENT, &error,
+                 "bodies 101 and the 0");
+    expect_error(narc_compute_boxes(scene.store, &bodies, &reserved, boxes, &error), NARC_ERROR_ARGUMENT, &error,
+                 "options.reserved[0] is not NULL");
     broken.sine.base = NULL;
-    expect_error(narc_compute_boxes(scene.store, &broken, NULL, 1, boxes, &error), NARC_ERROR_ARGUMENT, &error, "sine");
+    expect_error(narc_compute_boxes(scene.store, &broken, NULL, boxes, &error), NARC_ERROR_ARGUMENT, &error, "sine");
     broken = bodies;
 #if SIZE_MAX > UINT32_MAX
     broken.count = (size_t)UINT32_MAX + 1;
-    expect_error(narc_compute_boxes(scene.store, &broken, NULL, 1, boxes, &error), NARC_ERROR_ARGUMENT, &error,
-                 "at most");
+    expect_error(narc_compute_boxes(scene.store, &broken, NULL, boxes, &error), NARC_ERROR_ARGUMENT, &error, "at most");
 #endif
     options.margin = -1;
-    expect_error(narc_compute_boxes(scene.store, &bodies, &options, 1, boxes, &error), NARC_ERROR_ARGUMENT, &error,
+    expect_error(narc_compute_boxes(scene.store, &bodies, &options, boxes, &error), NARC_ERROR_ARGUMENT, &error,
                  "margin");
     options.margin = NAN;
-    expect_error(narc_compute_boxes(scene.store, &bodies, &options, 1, boxes, &error), NARC_ERROR_NOT_FINITE, &error,
+    expect_error(narc_compute_boxes(scene.store, &bodies, &options, boxes, &error), NARC_ERROR_NOT_FINITE, &error,
                  "margin");
     options.margin = INFINITY;
-    expect_error(narc_compute_boxes(scene.store, &bodies, &options, 1, boxes, &error), NARC_ERROR_NOT_FINITE, &error,
+    expect_error(narc_compute_boxes(scene.store, &bodies, &options, boxes, &error), NARC_ERROR_NOT_FINITE, &error,
                  "margin");
     options.margin = 0;
     scene.bodies[70].shape = 1000000;
     scene.bodies[80].shape = 1000001;
     for (unsigned threads = 1; threads < 4; threads++) {
-        expect_error(narc_compute_boxes(scene.store, &bodies, &options, threads, boxes, &error), NARC_ERROR_INDEX,
-                     &error, "body 70");
+        const narc_workers workers = narc_openmp_workers(threads);
+        options.workers = &workers;
+        expect_error(narc_compute_boxes(scene.store, &bodies, &options, boxes, &error), NARC_ERROR_INDEX, &error,
+                     "body 70");
         assert_int_equal(error.index, 70);
     }
     assert_int_equal(skipped, 5);
     for (size_t k = 0; k < sizeof boxes; k++)
         assert_int_equal(((const unsigned char *)boxes)[k], GUARD_JUNK);
-    expect_ok(narc_compute_boxes_range(scene.store, &bodies, 0, 70, NULL, boxes, &error), &error);
-    expect_ok(narc_compute_boxes(scene.store, &none, &options, 1, NULL, &error), &error);
+    expect_ok(narc_compute_boxes(scene.store, &bodies, &(narc_box_options){.count = 70}, boxes, &error), &error);
+    options.workers = NULL;
+    expect_ok(narc_compute_boxes(scene.store, &none, &options, NULL, &error), &error);
     assert_int_equal(skipped, 0);
     destroy_scene(&scene);
 }
@@ -472,10 +486,13 @@ static void names_the_first_wrong_shape(void **state) {
     bodies.shape = NARC_ARRAY(shape);
     shape[70000] = shape[70001] = shape[150000] = 12345;
     for (unsigned threads = 1; threads < 5; threads++) {
-        expect_error(narc_compute_boxes(scene.store, &bodies, NULL, threads, boxes, &error), NARC_ERROR_INDEX, &error,
+        const narc_workers workers = narc_openmp_workers(threads);
+        narc_box_options options = {.workers = &workers};
+        expect_error(narc_compute_boxes(scene.store, &bodies, &options, boxes, &error), NARC_ERROR_INDEX, &error,
                      "body 70000");
-        expect_error(narc_compute_boxes_range(scene.store, &bodies, 70001, 100000, NULL, boxes, &error),
-                     NARC_ERROR_INDEX, &error, "body 70001");
+        options.first = 70001, options.count = 100000;
+        expect_error(narc_compute_boxes(scene.store, &bodies, &options, boxes, &error), NARC_ERROR_INDEX, &error,
+                     "body 70001");
     }
     free(shape);
     free(boxes);

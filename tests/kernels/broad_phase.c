@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * broad_phase.c - pairs of boxes against all pairs: sizes, places, filters, threads, memory, errors.
+ * broad_phase.c - pairs of boxes against all pairs: sizes, places, filters, workers, memory, errors.
  */
 #include <float.h>
 #include <math.h>
@@ -9,9 +9,8 @@
 #include <string.h>
 
 #include "broad_phase.h"
+#include "counting.h"
 #include "guard.h"
-#include "narc_broad_phase.h"
-#include "support.h"
 
 struct pair_list {
     uint32_t *a, *b;
@@ -75,15 +74,16 @@ static void free_list(struct pair_list *list) {
 }
 
 static void check_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_pair_filter *filter) {
-    static const unsigned threads[] = {1, 2, 3, 7};
+    static const unsigned counts[] = {1, 2, 3, 7};
     struct pair_list expected = all_pairs(boxes, count, filter);
     narc_box *guarded = guard_copy(boxes, count * sizeof *boxes);
-    for (size_t t = 0; t < sizeof threads / sizeof threads[0]; t++) {
+    for (size_t t = 0; t < sizeof counts / sizeof counts[0]; t++) {
+        const narc_workers workers = narc_openmp_workers(counts[t]);
         uint32_t *a = guard_allocate(expected.count * sizeof *a), *b = guard_allocate(expected.count * sizeof *b);
         size_t found = 12345;
         narc_error error;
-        assert_int_equal(
-            narc_find_pairs(broad, guarded, count, filter, threads[t], a, b, expected.count, &found, &error), NARC_OK);
+        assert_int_equal(narc_find_pairs(broad, guarded, count, filter, &workers, a, b, expected.count, &found, &error),
+                         NARC_OK);
         assert_int_equal(found, expected.count);
         assert_memory_equal(a, expected.a, found * sizeof *a);
         assert_memory_equal(b, expected.b, found * sizeof *b);
@@ -92,12 +92,6 @@ static void check_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t c
     }
     guard_release(guarded);
     free_list(&expected);
-}
-
-static narc_broad_phase *create(void) {
-    narc_broad_phase *broad = NULL;
-    assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
-    return broad;
 }
 
 static narc_box random_box(struct test_random *random, double side, double smallest, double largest) {
@@ -110,7 +104,7 @@ static narc_box random_box(struct test_random *random, double side, double small
 static void finds_all_pairs_of_random_boxes(void **state) {
     (void)state;
     struct test_random random = test_random_named("random boxes");
-    narc_broad_phase *broad = create();
+    narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t trial = 0; trial < test_trials(60); trial++) {
         const size_t count = random_below(&random, 8) == 0 ? 3000 : random_below(&random, 300);
         const double side = random_log_between(&random, 1, 300), ratio = random_below(&random, 2) ? 1.5 : 1e4;
@@ -127,7 +121,7 @@ static void finds_all_pairs_of_random_boxes(void **state) {
 static void finds_pairs_that_touch(void **state) {
     (void)state;
     struct test_random random = test_random_named("lattice boxes");
-    narc_broad_phase *broad = create();
+    narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t trial = 0; trial < test_trials(60); trial++) {
         narc_box boxes[200];
         for (size_t k = 0; k < 200; k++) {
@@ -146,7 +140,7 @@ static void finds_pairs_among_extremes(void **state) {
                                    -1e9f, 1e30f, -1e30f, FLT_MAX, -FLT_MAX, 1e-20f};
     static const float sizes[] = {0, 1e-45f, 1e-38f, 1e-9f, 1, 100, 1e9f, 1e30f, FLT_MAX};
     struct test_random random = test_random_named("extreme boxes");
-    narc_broad_phase *broad = create();
+    narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t trial = 0; trial < test_trials(100); trial++) {
         narc_box boxes[150];
         for (size_t k = 0; k < 150; k++) {
@@ -165,7 +159,7 @@ static void sorts_rows_of_all_kinds(void **state) {
     static const size_t counts[] = {1, 2, 31, 32, 33, 500, 3000, 17000};
     enum { EVEN, POWERS, CROWD, TWO_CROWDS, ONE_PLACE, FAR_APART, KINDS };
     struct test_random random = test_random_named("rows of boxes");
-    narc_broad_phase *broad = create();
+    narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t trial = 0; trial < KINDS * sizeof counts / sizeof counts[0]; trial++) {
         const size_t count = counts[trial / KINDS];
         if (count > 3000 && trial % KINDS != EVEN) /* they are checked one by one */
@@ -207,10 +201,10 @@ static void leaves_out_empty_boxes(void **state) {
                                      {0, 0, NAN, 1},      {0, 0, 1, NAN},       {1, 0, 0, 1},
                                      {0, 1, 1, 0},        {-INFINITY, 0, 1, 1}, {0, 0, INFINITY, 1},
                                      {0, 0, 1, INFINITY}, {0.5f, 0.5f, 2, 2},   {INFINITY, 0, INFINITY, 1}};
-    narc_broad_phase *broad = create();
+    narc_broad_phase *broad = create_broad_phase(NULL);
     uint32_t a[4], b[4];
     size_t found = 0;
-    assert_int_equal(narc_find_pairs(broad, boxes, 12, NULL, 1, a, b, 4, &found, NULL), NARC_OK);
+    assert_int_equal(narc_find_pairs(broad, boxes, 12, NULL, NULL, a, b, 4, &found, NULL), NARC_OK);
     assert_int_equal(found, 1);
     assert_int_equal(a[0], 0);
     assert_int_equal(b[0], 10);
@@ -223,7 +217,7 @@ static void leaves_out_empty_boxes(void **state) {
 static void orders_the_partners_of_a_floor(void **state) {
     (void)state;
     struct test_random random = test_random_named("floor");
-    narc_broad_phase *broad = create();
+    narc_broad_phase *broad = create_broad_phase(NULL);
     enum { COUNT = 2000 };
     narc_box boxes[COUNT];
     boxes[0] = (narc_box){-1000, -1000, 1000, 1000};
@@ -236,7 +230,7 @@ static void orders_the_partners_of_a_floor(void **state) {
 static void filters_pairs(void **state) {
     (void)state;
     struct test_random random = test_random_named("filters");
-    narc_broad_phase *broad = create();
+    narc_broad_phase *broad = create_broad_phase(NULL);
     struct body {
         uint64_t category, mask;
         uint32_t group;
@@ -269,9 +263,9 @@ static void filters_pairs(void **state) {
 /* Finds the pairs of boxes in memory that it frees. Checks that it takes no more steps than `for_box` for each box and
  * `for_pair` for each pair. */
 static void check_steps(const char *name, narc_box *boxes, size_t count, double for_box, double for_pair) {
-    narc_broad_phase *broad = create();
+    narc_broad_phase *broad = create_broad_phase(NULL);
     size_t found = 0;
-    const narc_status status = narc_find_pairs(broad, boxes, count, NULL, 1, NULL, NULL, 0, &found, NULL);
+    const narc_status status = narc_find_pairs(broad, boxes, count, NULL, NULL, NULL, NULL, 0, &found, NULL);
     const double most = for_box * (double)count + for_pair * (double)found;
     assert_int_equal(status, found > 0 ? NARC_ERROR_CAPACITY : NARC_OK);
     printf("  %s: %.2f steps a box, %.2f pairs\n", name, (double)broad->steps / (double)count,
@@ -345,44 +339,25 @@ static void grows_no_faster_than_boxes_and_pairs(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ memory and errors */
 
-struct counter {
-    size_t allocations, left; /* made, and to be made before the next one fails */
-};
-
-static void *counted_allocate(size_t size, void *context) {
-    struct counter *counter = context;
-    if (counter->left == 0)
-        return NULL;
-    counter->left--;
-    counter->allocations++;
-    return malloc(size);
-}
-
-static void counted_release(void *memory, void *context) {
-    (void)context;
-    free(memory);
-}
-
 static void allocates_nothing_once_it_has_grown(void **state) {
     (void)state;
     struct test_random random = test_random_named("steady state");
-    struct counter counter = {0, SIZE_MAX};
-    const narc_allocator allocator = {counted_allocate, counted_release, &counter};
-    narc_broad_phase *broad = NULL;
+    struct counter counter = {.left = SIZE_MAX};
+    narc_broad_phase *broad = create_broad_phase(&counter);
+    const narc_workers workers = narc_openmp_workers(2);
     enum { COUNT = 5000, CAPACITY = 100000 };
     narc_box *boxes = malloc(COUNT * sizeof *boxes);
     uint32_t *a = malloc(CAPACITY * sizeof *a), *b = malloc(CAPACITY * sizeof *b),
              *match = malloc(CAPACITY * sizeof *match);
-    assert_int_equal(narc_create_broad_phase(&allocator, &broad), NARC_OK);
     size_t after_first = 0;
     for (int step = 0; step < 5; step++) {
         for (size_t k = 0; k < COUNT; k++)
             boxes[k] = random_box(&random, 60, 0.5, 1);
         size_t found;
-        assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, 2, a, b, CAPACITY, &found, NULL), NARC_OK);
+        assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, &workers, a, b, CAPACITY, &found, NULL), NARC_OK);
         assert_true(found > 1000);
         const narc_pairs reversed = {.count = found, .a = {a + found - 1, -4}, .b = {b + found - 1, -4}};
-        assert_int_equal(narc_match_pairs(broad, &reversed, &reversed, 1, match, NULL), NARC_OK);
+        assert_int_equal(narc_match_pairs(broad, &reversed, &reversed, NULL, match, NULL), NARC_OK);
         if (step == 0)
             after_first = counter.allocations;
     }
@@ -397,36 +372,30 @@ static void allocates_nothing_once_it_has_grown(void **state) {
 /* The first call of an object, without boxes: there is no memory yet. */
 static void finds_nothing_among_no_boxes(void **state) {
     (void)state;
-    narc_broad_phase *broad = create();
+    narc_broad_phase *broad = create_broad_phase(NULL);
     const narc_box empty = {NAN, 0, 1, 1};
     size_t found = 9;
-    assert_int_equal(narc_find_pairs(broad, NULL, 0, NULL, 1, NULL, NULL, 0, &found, NULL), NARC_OK);
+    assert_int_equal(narc_find_pairs(broad, NULL, 0, NULL, NULL, NULL, NULL, 0, &found, NULL), NARC_OK);
     assert_int_equal(found, 0);
     found = 9;
-    assert_int_equal(narc_find_pairs(broad, &empty, 1, NULL, 1, NULL, NULL, 0, &found, NULL), NARC_OK);
+    assert_int_equal(narc_find_pairs(broad, &empty, 1, NULL, NULL, NULL, NULL, 0, &found, NULL), NARC_OK);
     assert_int_equal(found, 0);
     narc_destroy_broad_phase(broad);
-}
-
-static void *summing_allocate(size_t size, void *context) {
-    *(size_t *)context += size;
-    return malloc(size);
 }
 
 /* Boxes in a row, none of which overlap: memory is for boxes and pairs, and not for questions without an answer. */
 static void takes_memory_for_pairs_alone(void **state) {
     (void)state;
     enum { COUNT = 4000 };
-    size_t bytes = 0, found = 9;
-    const narc_allocator allocator = {summing_allocate, counted_release, &bytes};
-    narc_broad_phase *broad = NULL;
+    struct counter counter = {.left = SIZE_MAX};
+    narc_broad_phase *broad = create_broad_phase(&counter);
+    size_t found = 9;
     narc_box *boxes = malloc(COUNT * sizeof *boxes);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){2 * (float)k, 0, 2 * (float)k + 1, 1};
-    assert_int_equal(narc_create_broad_phase(&allocator, &broad), NARC_OK);
-    assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, 1, NULL, NULL, 0, &found, NULL), NARC_OK);
+    assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, NULL, NULL, NULL, 0, &found, NULL), NARC_OK);
     assert_int_equal(found, 0);
-    assert_true(bytes < (size_t)1 << 20); /* 128 bytes for a box, and a few blocks of 32 KB */
+    assert_true(counter.bytes < (size_t)1 << 20); /* 128 bytes for a box, and a few blocks of 32 KB */
     narc_destroy_broad_phase(broad);
     free(boxes);
 }
@@ -439,12 +408,11 @@ static void survives_failing_allocations(void **state) {
         boxes[k] = (narc_box){0, 0, 1, 1};
     bool succeeded = false;
     for (size_t left = 0; !succeeded; left++) {
-        struct counter counter = {0, left};
-        const narc_allocator allocator = {counted_allocate, counted_release, &counter};
-        narc_broad_phase *broad = NULL;
-        if (narc_create_broad_phase(&allocator, &broad) == NARC_OK) {
+        struct counter counter = {.left = left};
+        narc_broad_phase *broad = create_broad_phase(&counter);
+        if (broad) {
             size_t found = 77;
-            const narc_status status = narc_find_pairs(broad, boxes, 300, NULL, 1, a, b, 45000, &found, NULL);
+            const narc_status status = narc_find_pairs(broad, boxes, 300, NULL, NULL, a, b, 45000, &found, NULL);
             succeeded = status == NARC_OK;
             assert_true(succeeded || status == NARC_ERROR_MEMORY);
             assert_int_equal(found, succeeded ? 300 * 299 / 2 : 77);
@@ -459,38 +427,39 @@ static void tells_how_much_room_is_needed(void **state) {
     uint32_t a[10] = {7}, b[10] = {7};
     size_t found = 0;
     narc_error error;
-    narc_broad_phase *broad = create();
+    narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t k = 0; k < 100; k++)
         boxes[k] = (narc_box){0, 0, 1, 1};
-    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, 1, a, b, 10, &found, &error), NARC_ERROR_CAPACITY);
+    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, a, b, 10, &found, &error), NARC_ERROR_CAPACITY);
     assert_int_equal(found, 4950);
     assert_int_equal(a[0], 7);
-    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, 1, NULL, NULL, 0, &found, &error), NARC_ERROR_CAPACITY);
+    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, NULL, NULL, 0, &found, &error),
+                     NARC_ERROR_CAPACITY);
     assert_int_equal(found, 4950);
     narc_destroy_broad_phase(broad);
 }
 
 static void refuses_bad_arguments(void **state) {
     (void)state;
-    narc_broad_phase *broad = create();
+    narc_broad_phase *broad = create_broad_phase(NULL);
     const narc_box box = {0, 0, 1, 1};
     uint32_t a, b, match = 5;
     size_t found = 9;
     const narc_pairs none = {0}, one = {.count = 1, .a = {&a, 4}, .b = {&b, 4}};
     const narc_pairs broken = {.count = 1, .b = {&b, 4}};
-    assert_int_equal(narc_find_pairs(NULL, &box, 1, NULL, 1, &a, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_find_pairs(broad, NULL, 1, NULL, 1, &a, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_find_pairs(broad, &box, 1, NULL, 1, NULL, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_find_pairs(broad, &box, 1, NULL, 1, &a, &b, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_find_pairs(broad, &box, (size_t)UINT32_MAX, NULL, 1, &a, &b, 1, &found, NULL),
+    assert_int_equal(narc_find_pairs(NULL, &box, 1, NULL, NULL, &a, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_find_pairs(broad, NULL, 1, NULL, NULL, &a, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_find_pairs(broad, &box, 1, NULL, NULL, NULL, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_find_pairs(broad, &box, 1, NULL, NULL, &a, &b, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_find_pairs(broad, &box, (size_t)UINT32_MAX, NULL, NULL, &a, &b, 1, &found, NULL),
                      NARC_ERROR_ARGUMENT);
     assert_int_equal(found, 9);
-    assert_int_equal(narc_match_pairs(NULL, &none, &none, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, NULL, &none, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, &none, NULL, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, &none, &broken, 1, &match, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, &none, &one, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, &none, &none, 1, NULL, NULL), NARC_OK);
+    assert_int_equal(narc_match_pairs(NULL, &none, &none, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_match_pairs(broad, NULL, &none, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_match_pairs(broad, &none, NULL, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_match_pairs(broad, &none, &broken, NULL, &match, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_match_pairs(broad, &none, &one, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_match_pairs(broad, &none, &none, NULL, NULL, NULL), NARC_OK);
     assert_int_equal(match, 5);
     assert_int_equal(narc_create_broad_phase(NULL, NULL), NARC_ERROR_ARGUMENT);
     narc_destroy_broad_phase(broad);
