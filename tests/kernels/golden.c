@@ -18,7 +18,7 @@
 
 /* One number for both precisions: the double positions are the single ones, 2^30 away, and as exact. */
 static const uint64_t golden_answers = 0x9467dc252df3f63fu;
-static const uint64_t golden_manifolds = 0x1fe97f326534654au;
+static const uint64_t golden_manifolds = 0x1fe97f326534654au, golden_reaches = 0xb20aca8e704ae916u;
 /* Boxes: the doubles 2^30 away are rounded outwards to floats. */
 static const uint64_t golden_boxes[] = {0x82c50e42c4824bc1u, 0xf33d99eef204246fu};
 /* Those of the other methods, in their order. */
@@ -243,9 +243,17 @@ static uint64_t hash_manifolds(uint64_t hash, struct manifolds list) {
     return hash;
 }
 
+static uint64_t hash_reaches(uint64_t hash, struct manifolds list) {
+    for (size_t k = 0; k < list.count; k++) {
+        hash = test_hash_items(hash, list.rows[k].reach_a, 2, sizeof(uint16_t));
+        hash = test_hash_items(hash, list.rows[k].reach_b, 2, sizeof(uint16_t));
+    }
+    return hash;
+}
+
 static void test_manifolds(void **state) {
     (void)state;
-    uint64_t hashes[2];
+    uint64_t hashes[2], reaches[2] = {TEST_HASH_START, TEST_HASH_START};
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_scene((narc_precision)precision);
         const float margins[] = {0, INFINITY};
@@ -254,6 +262,7 @@ static void test_manifolds(void **state) {
             struct manifolds list = scene_manifolds(&scene, margins[m]);
             size_t two = 0;
             hash = hash_manifolds(hash, list);
+            reaches[precision] = hash_reaches(reaches[precision], list);
             for (size_t k = 0; k < list.count; k++)
                 two += list.rows[k].count == 2;
             printf("  %zu of %zu manifolds have two points\n", two, list.count);
@@ -265,6 +274,8 @@ static void test_manifolds(void **state) {
     }
     check_hash("manifolds, single positions", hashes[0], golden_manifolds);
     check_hash("manifolds, double positions", hashes[1], golden_manifolds);
+    check_hash("reaches, single positions", reaches[0], golden_reaches);
+    check_hash("reaches, double positions", reaches[1], golden_reaches);
 }
 
 static void test_boxes(void **state) {

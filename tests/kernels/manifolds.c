@@ -51,6 +51,29 @@ static bool has_radii(const struct reference_manifold *right, const narc_manifol
     return false;
 }
 
+/* How far a contact's normal may be from the one that reaches were computed from, in radians: a dozen roundings of a
+ * float for square root, division and two rotations, as in check.c. */
+static const double normal_doubt = 1e-6;
+
+/* Is that how far the normal may turn on what touches, clockwise and counter-clockwise? `sign`: 1 of A, -1 of B. */
+static bool is_reach(const struct reference_body *body, unsigned feature, double x, double y, double sign,
+                     const uint16_t reach[2]) {
+    if (feature & NARC_FEATURE_EDGE)
+        return reach[0] == 0 && reach[1] == 0;
+    if (body->count == 1)
+        return reach[0] == NARC_REACH_ONE && reach[1] == NARC_REACH_ONE;
+    const narc_arc *arc = &body->arcs[feature];
+    const double angle = atan2(sign * y, sign * x) - atan2(body->sine, body->cosine);
+    for (size_t i = 0; i < 2; i++) {
+        double turn = remainder(i ? arc->end - angle : angle - arc->start, 2 * pi);
+        turn = turn < -pi / 2 ? turn + 2 * pi : turn; /* half a turn, and a rounding */
+        const double right = NARC_REACH_ONE * sin(fmin(fmax(turn, 0), pi / 2)), doubt = NARC_REACH_ONE * normal_doubt;
+        if (reach[i] < right - 1 - doubt || reach[i] > right + doubt)
+            return false;
+    }
+    return true;
+}
+
 /* A manifold found with an infinite margin against the contact and the reference. */
 static const char *check_manifold(const struct reference_body *a, const struct reference_body *b,
                                   const narc_contact *found, const narc_manifold *m, struct tally *tally) {
@@ -79,6 +102,9 @@ static const char *check_manifold(const struct reference_body *a, const struct r
         return "the deepest separation";
     if (m->count == 1 && memcmp(&m->radius_a, &found->radius_a, 2 * sizeof(float)) != 0)
         return "radius, of contact and manifold";
+    if (!is_reach(a, found->feature & 0xff, contact.normal_x, contact.normal_y, 1, m->reach_a) ||
+        !is_reach(b, found->feature >> 8, contact.normal_x, contact.normal_y, -1, m->reach_b))
+        return "reach";
     tally->pairs++;
     tally->two += m->count == 2;
     if (right.doubtful) {
@@ -147,9 +173,9 @@ static void check_scene(const struct scene *scene, const char *families, struct 
             wrong = check_swapped(m, &swapped.rows[k], b.x - a.x, b.y - a.y, point_bounds * separation_bound(&a, &b),
                                   tally);
         if (wrong && tally->wrong++ < SHOWN) {
-            print_error("%s, %s: wrong %s; radii %g and %g\n", families,
+            print_error("%s, %s: wrong %s; radii %g and %g, reaches %u %u and %u %u\n", families,
                         placement_name((enum placement)(k % PLACE_COUNT)), wrong, (double)m->radius_a,
-                        (double)m->radius_b);
+                        (double)m->radius_b, m->reach_a[0], m->reach_a[1], m->reach_b[0], m->reach_b[1]);
             for (size_t i = 0; i < m->count; i++)
                 print_error("  point %zu: (%.9g, %.9g), separation %.9g, feature %04x\n", i, (double)m->point[i].x,
                             (double)m->point[i].y, (double)m->point[i].separation, m->point[i].feature);
@@ -395,6 +421,29 @@ static void test_rolling(void **state) {
         free(list.rows);
     }
     assert_true(seen[0] > 50 && seen[1] > 50 && seen[2] > 50);
+    destroy_scene(&scene);
+}
+
+/* A rounded box's corner that leans on a circle: how far the normal may turn, to the edges on either side, and that of a
+ * circle without end; on the box's edge, not at all. */
+static void test_reach(void **state) {
+    (void)state;
+    const struct shape box = make_box(2, 2, 0.25);
+    struct shape circle;
+    assert_int_equal(narc_build_circle(0.5, circle.arcs, &circle.count, NULL), NARC_OK);
+    struct scene scene = make_duo(&box, &circle);
+    for (double angle = 0; angle <= pi / 2; angle += pi / 64) {
+        put(&scene, 1, 0.75 + 0.7 * cos(angle), 0.75 + 0.7 * sin(angle), 0);
+        struct manifolds list = scene_manifolds(&scene, 0);
+        const narc_manifold *m = list.rows;
+        assert_int_equal(list.count, 1);
+        const bool edge = m->radius_a == INFINITY;
+        assert_true(!edge || angle < 1e-6 || angle > pi / 2 - 1e-6);
+        assert_true(fabs(m->reach_a[0] + 0.5 - (edge ? 0.5 : NARC_REACH_ONE * sin(angle))) < 0.7);
+        assert_true(fabs(m->reach_a[1] + 0.5 - (edge ? 0.5 : NARC_REACH_ONE * cos(angle))) < 0.7);
+        assert_true(m->reach_b[0] == NARC_REACH_ONE && m->reach_b[1] == NARC_REACH_ONE);
+        free(list.rows);
+    }
     destroy_scene(&scene);
 }
 
@@ -723,13 +772,21 @@ static void test_ids_at_all_flat_angles(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_single_positions), cmocka_unit_test(test_double_positions),
-        cmocka_unit_test(test_box_on_box),       cmocka_unit_test(test_corner_on_corner),
-        cmocka_unit_test(test_rocking),          cmocka_unit_test(test_rolling),
-        cmocka_unit_test(test_second_margin),    cmocka_unit_test(test_margin),
-        cmocka_unit_test(test_flat_angle),       cmocka_unit_test(test_doubled_corner),
-        cmocka_unit_test(test_far_origin),       cmocka_unit_test(test_short_edges_swapped),
-        cmocka_unit_test(test_leaning),          cmocka_unit_test(test_ids_at_all_flat_angles),
+        cmocka_unit_test(test_single_positions),
+        cmocka_unit_test(test_double_positions),
+        cmocka_unit_test(test_box_on_box),
+        cmocka_unit_test(test_corner_on_corner),
+        cmocka_unit_test(test_rocking),
+        cmocka_unit_test(test_rolling),
+        cmocka_unit_test(test_reach),
+        cmocka_unit_test(test_second_margin),
+        cmocka_unit_test(test_margin),
+        cmocka_unit_test(test_flat_angle),
+        cmocka_unit_test(test_doubled_corner),
+        cmocka_unit_test(test_far_origin),
+        cmocka_unit_test(test_short_edges_swapped),
+        cmocka_unit_test(test_leaning),
+        cmocka_unit_test(test_ids_at_all_flat_angles),
     };
     return test_begin() ? cmocka_run_group_tests_name("manifolds", tests, NULL, NULL) : TEST_SKIPPED;
 }
