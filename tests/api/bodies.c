@@ -144,22 +144,16 @@ static float separation_of_boxes(float x, float y, float cosine, float sine) {
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
     assert_int_equal(narc_build_box(2, 1, 0.25, arcs, &count, NULL), NARC_OK);
     assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
-    const struct body body[2] = {{0, 0, 1, 0, 1, 0}, {(double)x, (double)y, cosine, sine, 1, 0}};
-    const uint32_t a = 1, b = 0; /* both orders of a rotated body and one that is not */
-    const narc_bodies bodies = {.count = 2,
-                                .x = NARC_POSITION_COLUMN(body, x),
-                                .y = NARC_POSITION_COLUMN(body, y),
-                                .cosine = NARC_COLUMN(body, cosine),
-                                .sine = NARC_COLUMN(body, sine),
-                                .shape = NARC_COLUMN(body, shape)};
-    const narc_pairs forward = {.count = 1, .a = {&a, 0}, .b = {&b, 0}},
-                     backward = {.count = 1, .a = {&b, 0}, .b = {&a, 0}};
+    const narc_body body[] = {
+        {(double)x, (double)y, cosine, sine, 1, 0}, {0, 0, 1, 0, 1, 0}, {(double)x, (double)y, cosine, sine, 1, 0}};
     float separation[2];
-    for (int k = 0; k < 2; k++) {
-        const narc_contacts contacts = {.capacity = 1, .separation = &separation[k]};
+    for (int k = 0; k < 2; k++) { /* both orders of a rotated body and one that is not */
+        const narc_bodies bodies = narc_view_bodies(&body[k], 2);
+        const narc_query query = {.margin = INFINITY};
+        narc_contact contact;
         assert_int_equal(
-            narc_find_contacts(shapes, &bodies, k ? &backward : &forward, INFINITY, 1, &contacts, &count, NULL),
-            NARC_OK);
+            narc_find_contacts(shapes, &bodies, &(narc_pairs){.count = 1}, &query, &contact, 1, &count, NULL), NARC_OK);
+        separation[k] = contact.separation;
     }
     narc_destroy_shapes(shapes);
     assert_true(separation[0] == separation[1] || fabsf(separation[0] - separation[1]) < 2e-6f);

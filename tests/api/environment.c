@@ -50,14 +50,10 @@ struct tiny_batch {
 };
 
 static struct tiny_batch make_batch(void) {
-    static const float zero = 0, one = 1;
+    static const narc_body body = {.cosine = 1, .scale = 1};
     static const uint32_t first = 0;
-    const narc_position_column origin = {&zero, 0, NARC_FLOAT32};
-    const narc_float_column zeros = {&zero, 0}, ones = {&one, 0};
-    const narc_index_column firsts = {&first, 0};
-    struct tiny_batch batch = {
-        .bodies = {.count = 1, .x = origin, .y = origin, .cosine = ones, .sine = zeros, .shape = firsts},
-        .pairs = {.count = 1, .a = firsts, .b = firsts}};
+    struct tiny_batch batch = {.bodies = narc_view_bodies(&body, 1),
+                               .pairs = {.count = 1, .a = {&first, 0}, .b = {&first, 0}}};
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     REQUIRE(narc_create_shapes(NULL, &batch.shapes) == NARC_OK);
@@ -69,20 +65,20 @@ static struct tiny_batch make_batch(void) {
 static void require_error(narc_status expected, const char *name) {
     struct tiny_batch batch = make_batch();
     uint64_t bits = 42;
-    float separation = 42, angle = 1, cosine = 42, sine = 42;
+    float angle = 1, cosine = 42, sine = 42;
     size_t count = 42;
-    narc_contacts contacts = {.capacity = 1, .separation = &separation};
+    narc_contact row = {.separation = 42};
     narc_error error = {0};
-    REQUIRE(narc_find_overlaps(batch.shapes, &batch.bodies, &batch.pairs, 1, &bits, &error) == expected);
+    REQUIRE(narc_find_overlaps(batch.shapes, &batch.bodies, &batch.pairs, NULL, &bits, &error) == expected);
     REQUIRE(error.status == expected && strstr(error.message, name));
-    REQUIRE(narc_find_contacts(batch.shapes, &batch.bodies, &batch.pairs, 0, 1, &contacts, &count, NULL) == expected);
+    REQUIRE(narc_find_contacts(batch.shapes, &batch.bodies, &batch.pairs, NULL, &row, 1, &count, NULL) == expected);
     REQUIRE(narc_compute_poses(&angle, 1, &cosine, &sine, NULL) == expected);
-    REQUIRE(bits == 42 && separation == 42 && count == 42 && cosine == 42 && sine == 42);
+    REQUIRE(bits == 42 && row.separation == 42 && count == 42 && cosine == 42 && sine == 42);
     REQUIRE(narc_get_isa() == NULL);
     /* The program's own word still counts. */
     REQUIRE(narc_set_isa("scalar", NULL) == NARC_OK);
     REQUIRE(strcmp(narc_get_isa(), "scalar") == 0);
-    REQUIRE(narc_find_overlaps(batch.shapes, &batch.bodies, &batch.pairs, 1, &bits, NULL) == NARC_OK && bits == 1);
+    REQUIRE(narc_find_overlaps(batch.shapes, &batch.bodies, &batch.pairs, NULL, &bits, NULL) == NARC_OK && bits == 1);
     narc_destroy_shapes(batch.shapes);
 }
 
@@ -112,7 +108,7 @@ static void test_unsupported(void **state) {
 static void supported_isa(void) {
     struct tiny_batch batch = make_batch();
     uint64_t bits = 42;
-    REQUIRE(narc_find_overlaps(batch.shapes, &batch.bodies, &batch.pairs, 1, &bits, NULL) == NARC_OK && bits == 1);
+    REQUIRE(narc_find_overlaps(batch.shapes, &batch.bodies, &batch.pairs, NULL, &bits, NULL) == NARC_OK && bits == 1);
     REQUIRE(strcmp(narc_get_isa(), getenv("NARC_ISA")) == 0);
     narc_destroy_shapes(batch.shapes);
 }
@@ -216,7 +212,7 @@ static void test_names(void **state) {
     }
     assert_true(overlap && contact && pose);
     assert_null(narc_kernel_name(SIZE_MAX));
-    assert_true(narc_default_threads() >= 1);
+    assert_true(narc_openmp_workers(0).count >= 1);
     assert_string_equal(narc_status_name(NARC_OK), "NARC_OK");
     assert_string_equal(narc_status_name(NARC_ERROR_ISA_UNSUPPORTED), "NARC_ERROR_ISA_UNSUPPORTED");
     assert_string_equal(narc_status_name((narc_status)999), "unknown status");

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * pair.c - one pair without a batch: the bits of a batch, right by the reference with both witness points, defaults and
- * errors.
+ * pair.c - pairs that bring their own poses, alone or many at once; bodies of two sets; sets that stand at the origin.
+ * All have the bits of the same bodies and pairs given by index.
  */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "check.h"
@@ -13,203 +14,298 @@ enum { BODIES = 60, PAIRS = 600 };
 
 static narc_body find_body(const struct scene *scene, uint32_t index) {
     const struct body *body = &scene->bodies[index];
-    return (narc_body){.x = body->x,
-                       .y = body->y,
-                       .shape = body->shape,
-                       .cosine = body->cosine,
-                       .sine = body->sine,
-                       .scale = body->scale};
+    return (narc_body){body->x, body->y, body->cosine, body->sine, body->scale, body->shape};
 }
 
-/* The contact of every pair by itself and in a batch, on every instruction set. */
-static void contact_has_the_bits_of_a_batch(void **state) {
+/* Bodies 2k and 2k + 1 are those of pair k. */
+static narc_body *find_rows(const struct scene *scene) {
+    narc_body *rows = malloc(2 * scene->pair_count * sizeof *rows);
+    assert_non_null(rows);
+    for (size_t k = 0; k < scene->pair_count; k++) {
+        rows[2 * k] = find_body(scene, scene->pairs[k].a);
+        rows[2 * k + 1] = find_body(scene, scene->pairs[k].b);
+    }
+    return rows;
+}
+
+/* Fails unless all three calls have the bits of those for the scene, for all pairs and for some. */
+static void check_same_answers(const struct scene *scene, const narc_bodies *bodies, const narc_pairs *pairs) {
+    static const uint32_t selection[] = {7, PAIRS - 1, 0, 300, 64, 63, 1};
+    const narc_bodies right_bodies = scene_bodies(scene);
+    const narc_pairs right_pairs = scene_pairs(scene);
+    const narc_workers workers = narc_openmp_workers(2);
+    const narc_query queries[] = {
+        {.margin = INFINITY},
+        {.margin = 0.1f, .workers = &workers},
+        {.margin = 0.1f, .first = 64, .count = 128},
+        {.margin = INFINITY, .selection = NARC_ARRAY(selection), .selection_count = 7},
+    };
+    for (size_t q = 0; q < sizeof queries / sizeof *queries; q++) {
+        const narc_query *query = &queries[q];
+        const size_t asked = query->selection_count ? query->selection_count : PAIRS;
+        uint64_t *bits = find_overlaps(scene->store, bodies, pairs, query);
+        uint64_t *right_bits = find_overlaps(scene->store, &right_bodies, &right_pairs, query);
+        assert_memory_equal(bits, right_bits, NARC_BIT_WORDS(asked) * sizeof *bits);
+        struct contacts list = find_contacts(scene->store, bodies, pairs, query);
+        struct contacts right = find_contacts(scene->store, &right_bodies, &right_pairs, query);
+        assert_int_equal(list.count, right.count);
+        assert_memory_equal(list.rows, right.rows, right.count * sizeof *right.rows);
+        struct manifolds points = find_manifolds(scene->store, bodies, pairs, query);
+        struct manifolds right_points = find_manifolds(scene->store, &right_bodies, &right_pairs, query);
+        assert_int_equal(points.count, right_points.count);
+        assert_memory_equal(points.rows, right_points.rows, right_points.count * sizeof *points.rows);
+        free(bits);
+        free(right_bits);
+        free(list.rows);
+        free(right.rows);
+        free(points.rows);
+        free(right_points.rows);
+    }
+}
+
+/* Every pair by itself, with bodies of its own, has the row of its pair in a batch. */
+static void check_each(const struct scene *scene, const narc_body *rows) {
+    struct contacts batch = scene_contacts(scene, INFINITY);
+    struct manifolds points = scene_manifolds(scene, INFINITY);
+    uint64_t *bits = scene_overlaps(scene);
+    const narc_pairs one = {.count = 1};
+    for (size_t k = 0; k < PAIRS; k++) {
+        const narc_bodies two = narc_view_bodies(&rows[2 * k], 2);
+        const narc_query query = {.margin = INFINITY, .flat_angle = k % 4 ? 0 : NARC_FLAT_ANGLE};
+        narc_contact contact;
+        narc_manifold manifold;
+        uint64_t bit;
+        size_t found, found_points;
+        narc_error error;
+        expect_ok(narc_find_overlaps(scene->store, &two, &one, NULL, &bit, &error), &error);
+        expect_ok(narc_find_contacts(scene->store, &two, &one, &query, &contact, 1, &found, &error), &error);
+        expect_ok(narc_find_manifolds(scene->store, &two, &one, &query, &manifold, 1, &found_points, &error), &error);
+        assert_true(bit == bit_is_set(bits, k));
+        assert_true(found == 1 && found_points == 1 && contact.pair == 0 && manifold.pair == 0);
+        contact.pair = manifold.pair = (uint32_t)k;
+        assert_memory_equal(&contact, &batch.rows[k], sizeof contact);
+        assert_memory_equal(&manifold, &points.rows[k], sizeof manifold);
+    }
+    free(batch.rows);
+    free(points.rows);
+    free(bits);
+}
+
+static void own_poses(void **state) {
     (void)state;
-    struct test_random random = test_random_named("one contact");
+    struct test_random random = test_random_named("own poses");
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_random_scene(&random, precision ? NARC_FLOAT64 : NARC_FLOAT32, BODIES, PAIRS);
+        narc_body *rows = find_rows(&scene);
+        const narc_bodies bodies = narc_view_bodies(rows, 2 * PAIRS), few = narc_view_bodies(rows, 2 * PAIRS - 1);
+        const narc_pairs pairs = {.count = PAIRS};
         for (size_t isa = 0; narc_isa_name(isa); isa++) {
             if (!narc_isa_supported(narc_isa_name(isa)))
                 continue;
             test_use_isa(narc_isa_name(isa));
-            struct contacts batch = scene_contacts(&scene, INFINITY);
-            const narc_contacts *c = &batch.view;
-            assert_int_equal(batch.count, PAIRS);
-            for (size_t k = 0; k < PAIRS; k++) {
-                const narc_body a = find_body(&scene, scene.pairs[k].a), b = find_body(&scene, scene.pairs[k].b);
-                narc_contact contact;
-                narc_error error;
-                expect_ok(narc_find_contact(scene.store, &a, &b, &contact, &error), &error);
-                const float one[] = {contact.separation, contact.normal_x, contact.normal_y, contact.point_x,
-                                     contact.point_y};
-                const float many[] = {c->separation[k], c->normal_x[k], c->normal_y[k], c->point_x[k], c->point_y[k]};
-                assert_memory_equal(one, many, sizeof one);
-                assert_int_equal(contact.arc_a, c->arc_a[k]);
-                assert_int_equal(contact.arc_b, c->arc_b[k]);
-            }
-            destroy_contacts(&batch);
+            check_same_answers(&scene, &bodies, &pairs);
+            check_each(&scene, rows);
         }
         test_use_isa(test_isa());
+        uint64_t bits[NARC_BIT_WORDS(PAIRS)];
+        narc_error error;
+        expect_error(narc_find_overlaps(scene.store, &few, &pairs, NULL, bits, &error), NARC_ERROR_INDEX, &error,
+                     "pair 599");
+        free(rows);
         destroy_scene(&scene);
     }
 }
 
 /* The point less half the separation along the normal lies on A, and plus that on B, near and far: check_contact(). */
-static void contact_is_right(void **state) {
+static void one_pair_is_right(void **state) {
     (void)state;
     struct test_random random = test_random_named("one contact, reference");
     struct fractions worst = {0};
     struct scene scene = make_random_scene(&random, NARC_FLOAT64, BODIES, PAIRS);
+    narc_body *rows = find_rows(&scene);
     size_t apart = 0;
     for (size_t k = 0; k < PAIRS; k++) {
         const struct reference_body a = scene_reference(&scene, scene.pairs[k].a);
         const struct reference_body b = scene_reference(&scene, scene.pairs[k].b);
-        const narc_body body_a = find_body(&scene, scene.pairs[k].a), body_b = find_body(&scene, scene.pairs[k].b);
-        narc_contact c;
-        assert_int_equal(narc_find_contact(scene.store, &body_a, &body_b, &c, NULL), NARC_OK);
-        const narc_contacts view = {1,          NULL,       &c.separation, &c.normal_x, &c.normal_y,
-                                    &c.point_x, &c.point_y, &c.arc_a,      &c.arc_b};
-        const char *wrong = check_contact(&a, &b, reference_find_gap(&a, &b).gap, &view, 0, &worst);
+        const narc_bodies two = narc_view_bodies(&rows[2 * k], 2);
+        struct contacts one =
+            find_contacts(scene.store, &two, &(narc_pairs){.count = 1}, &(narc_query){.margin = INFINITY});
+        const char *wrong = check_contact(&a, &b, reference_find_gap(&a, &b).gap, one.rows, &worst);
         if (wrong) {
             print_pair(&a, &b);
             fail_msg("%s", wrong);
         }
-        apart += c.separation > 0;
+        apart += one.rows->separation > 0;
+        free(one.rows);
     }
     assert_true(apart > PAIRS / 10 && apart < PAIRS * 9 / 10);
+    free(rows);
     destroy_scene(&scene);
 }
 
-static void manifold_has_the_bits_of_a_batch(void **state) {
+/* The bodies that `b` names are in another set, in another order there; or body k of each set is of pair k. */
+static void two_sets(void **state) {
     (void)state;
-    struct test_random random = test_random_named("one manifold");
-    struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
-    const narc_bodies bodies = scene_bodies(&scene);
-    for (int k = 0; k < PAIRS; k++) {
-        const narc_manifold_options options = {.margin = k % 3 ? INFINITY : 0, .flat_angle = k % 4 ? 0 : 1.0f};
-        const narc_pairs pairs = {.count = 1, .a = {&scene.pairs[k].a, 0}, .b = {&scene.pairs[k].b, 0}};
-        const narc_body a = find_body(&scene, scene.pairs[k].a), b = find_body(&scene, scene.pairs[k].b);
-        narc_manifold one, many;
+    struct test_random random = test_random_named("two sets");
+    struct scene scene = make_random_scene(&random, NARC_FLOAT64, BODIES, PAIRS);
+    narc_body others[BODIES], of_a[PAIRS], of_b[PAIRS];
+    uint32_t b[PAIRS];
+    for (uint32_t k = 0; k < BODIES; k++)
+        others[BODIES - 1 - k] = find_body(&scene, k);
+    for (size_t k = 0; k < PAIRS; k++) {
+        b[k] = BODIES - 1 - scene.pairs[k].b;
+        of_a[k] = find_body(&scene, scene.pairs[k].a);
+        of_b[k] = find_body(&scene, scene.pairs[k].b);
+    }
+    const narc_bodies bodies = scene_bodies(&scene), other_bodies = narc_view_bodies(others, BODIES);
+    const narc_bodies all_a = narc_view_bodies(of_a, PAIRS), all_b = narc_view_bodies(of_b, PAIRS);
+    const narc_bodies fewer = narc_view_bodies(of_b, PAIRS - 1);
+    narc_pairs pairs = {
+        .count = PAIRS, .a = NARC_COLUMN(scene.pairs, a), .b = NARC_ARRAY(b), .other_bodies = &other_bodies};
+    check_same_answers(&scene, &bodies, &pairs);
+    check_same_answers(&scene, &all_a, &(narc_pairs){.count = PAIRS, .other_bodies = &all_b});
+
+    /* Each index counts in its own set. */
+    uint64_t bits[NARC_BIT_WORDS(PAIRS)];
+    narc_error error;
+    b[500] = BODIES;
+    expect_error(narc_find_overlaps(scene.store, &all_a, &pairs, NULL, bits, &error), NARC_ERROR_INDEX, &error,
+                 "pair 500");
+    pairs = (narc_pairs){.count = PAIRS, .other_bodies = &fewer};
+    expect_error(narc_find_overlaps(scene.store, &all_a, &pairs, NULL, bits, &error), NARC_ERROR_INDEX, &error,
+                 "pair 599");
+    destroy_scene(&scene);
+}
+
+/* A scene in which the bodies A, or B, or both, stand at the origin. */
+static struct scene make_origin_scene(struct test_random *random, bool a, bool b) {
+    const struct scene from = make_random_scene(random, NARC_FLOAT64, BODIES, PAIRS);
+    struct scene scene = create_scene(NARC_FLOAT64, from.shape_count, 2 * PAIRS, PAIRS);
+    for (size_t k = 0; k < from.shape_count; k++)
+        scene_add_shape(&scene, &from.shapes[k]);
+    for (uint32_t k = 0; k < PAIRS; k++) {
+        for (int side = 0; side < 2; side++) {
+            struct body body = from.bodies[side ? from.pairs[k].b : from.pairs[k].a];
+            if (side ? b : a)
+                body = (struct body){.cosine = 1, .scale = body.scale, .shape = body.shape};
+            scene_add_body(&scene, body);
+        }
+        scene_add_pair(&scene, 2 * k, 2 * k + 1);
+    }
+    struct scene done = from;
+    destroy_scene(&done);
+    return scene;
+}
+
+/* Every second body of a scene from `first` on; with `shapes_only`, without poses. */
+static narc_bodies find_side(const struct scene *scene, size_t first, bool shapes_only) {
+    struct two {
+        struct body body[2];
+    } *two = (void *)(scene->bodies + first);
+    narc_bodies side = {
+        .count = PAIRS, .scale = NARC_COLUMN(two, body[0].scale), .shape = NARC_COLUMN(two, body[0].shape)};
+    if (!shapes_only) {
+        side.x = NARC_POSITION_COLUMN(two, body[0].x);
+        side.y = NARC_POSITION_COLUMN(two, body[0].y);
+        side.cosine = NARC_COLUMN(two, body[0].cosine);
+        side.sine = NARC_COLUMN(two, body[0].sine);
+    }
+    return side;
+}
+
+/* Shapes by pair, one side or both without poses. */
+static void sets_at_the_origin(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("sets at the origin");
+    for (int sides = 1; sides < 4; sides++) {
+        struct scene scene = make_origin_scene(&random, sides & 1, sides & 2);
+        const narc_bodies a = find_side(&scene, 0, sides & 1), b = find_side(&scene, 1, sides & 2);
+        check_same_answers(&scene, &a, &(narc_pairs){.count = PAIRS, .other_bodies = &b});
+        uint32_t own[PAIRS]; /* the same by index */
+        for (uint32_t k = 0; k < PAIRS; k++)
+            own[k] = k;
+        const narc_pairs named = {.count = PAIRS, .a = NARC_ARRAY(own), .b = NARC_ARRAY(own), .other_bodies = &b};
+        check_same_answers(&scene, &a, &named);
+        destroy_scene(&scene);
+    }
+    /* In one set, too. */
+    struct scene scene = make_origin_scene(&random, true, true);
+    narc_bodies bodies = scene_bodies(&scene);
+    const narc_bodies all = bodies;
+    bodies.x = bodies.y = (narc_position_column){0};
+    bodies.cosine = bodies.sine = (narc_float_column){0};
+    const narc_pairs pairs = scene_pairs(&scene);
+    check_same_answers(&scene, &bodies, &pairs);
+    check_same_answers(&scene, &bodies, &(narc_pairs){.count = PAIRS});
+
+    /* Some columns, but not all, are an error, of either set; so is one index column without the other. */
+    uint64_t bits[NARC_BIT_WORDS(PAIRS)];
+    for (unsigned mask = 1; mask < 15; mask++) {
+        narc_bodies some = all;
         narc_error error;
-        size_t found;
-        memset(&one, 0, sizeof one);
-        memset(&many, 0, sizeof many);
-        const narc_manifolds list = {.capacity = 1,
-                                     .point_count = &many.point_count,
-                                     .normal_x = &many.normal_x,
-                                     .normal_y = &many.normal_y,
-                                     .separation = {&many.separation[0], &many.separation[1]},
-                                     .point_x = {&many.point_x[0], &many.point_x[1]},
-                                     .point_y = {&many.point_y[0], &many.point_y[1]},
-                                     .feature = {&many.feature[0], &many.feature[1]},
-                                     .radius_a = {&many.radius_a[0], &many.radius_a[1]},
-                                     .radius_b = {&many.radius_b[0], &many.radius_b[1]}};
-        expect_ok(narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list, &found, &error), &error);
-        expect_ok(narc_find_manifold(scene.store, &a, &b, &options, &one, &error), &error);
-        assert_int_equal(one.point_count > 0, found);
-        assert_int_equal(one.point_count, many.point_count);
-        const size_t floats = offsetof(narc_manifold, feature) - offsetof(narc_manifold, normal_x);
-        assert_memory_equal(&one.normal_x, &many.normal_x, floats);
-        assert_memory_equal(one.feature, many.feature, sizeof one.feature);
-        assert_memory_equal(one.radius_a, many.radius_a, sizeof one.radius_a);
-        assert_memory_equal(one.radius_b, many.radius_b, sizeof one.radius_b);
+        some.x.base = mask & 1 ? some.x.base : NULL;
+        some.y.base = mask & 2 ? some.y.base : NULL;
+        some.cosine.base = mask & 4 ? some.cosine.base : NULL;
+        some.sine.base = mask & 8 ? some.sine.base : NULL;
+        const char *missing = mask & 1 ? mask & 2 ? mask & 4 ? "sine" : "cosine" : "y" : "x";
+        narc_pairs of_two = pairs;
+        of_two.other_bodies = &some;
+        expect_error(narc_find_overlaps(scene.store, &some, &pairs, NULL, bits, &error), NARC_ERROR_ARGUMENT, &error,
+                     missing);
+        expect_error(narc_find_overlaps(scene.store, &all, &of_two, NULL, bits, &error), NARC_ERROR_ARGUMENT, &error,
+                     missing);
+    }
+    for (int side = 0; side < 2; side++) {
+        narc_pairs half = pairs;
+        narc_error error;
+        *(side ? &half.b : &half.a) = (narc_index_column){0};
+        expect_error(narc_find_overlaps(scene.store, &all, &half, NULL, bits, &error), NARC_ERROR_ARGUMENT, &error,
+                     side ? "b" : "a");
     }
     destroy_scene(&scene);
 }
 
-static narc_shapes *make_box_store(void) {
+/* Two boxes, by hand. */
+static void boxes(void **state) {
+    (void)state;
     narc_shapes *shapes = NULL;
     narc_arc arcs[NARC_MAX_ARCS];
-    size_t count;
+    size_t arc_count, found;
+    uint32_t box;
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    assert_int_equal(narc_build_box(2, 2, 0, arcs, &count, NULL), NARC_OK);
-    assert_int_equal(narc_add_shape_at(shapes, 0, arcs, count, NULL), NARC_OK);
-    assert_int_equal(narc_add_shape_at(shapes, 1, arcs, count, NULL), NARC_OK);
-    return shapes;
-}
-
-static void zeros_are_defaults(void **state) {
-    (void)state;
-    narc_shapes *shapes = make_box_store();
-    const narc_body a = {.shape = 0}, right = {.x = 2.5}, turned = {.x = 3, .angle = 0.7853982f},
-                    large = {.x = 2.5, .scale = 2};
+    assert_int_equal(narc_build_box(2, 2, 0, arcs, &arc_count, NULL), NARC_OK);
+    assert_int_equal(narc_add_shape(shapes, arcs, arc_count, &box, NULL), NARC_OK);
+    narc_body two[] = {{.cosine = 1, .scale = 1, .shape = box}, {.x = 2.5, .cosine = 1, .scale = 1, .shape = box}};
+    const narc_bodies bodies = narc_view_bodies(two, 2);
+    const narc_pairs pairs = {.count = 1};
+    const narc_query query = {.margin = INFINITY};
     narc_contact c;
     narc_manifold m;
-    assert_int_equal(narc_find_contact(shapes, &a, &right, &c, NULL), NARC_OK);
+    assert_int_equal(narc_find_contacts(shapes, &bodies, &pairs, &query, &c, 1, &found, NULL), NARC_OK);
     assert_true(c.separation == 0.5f && c.normal_x == 1 && c.normal_y == 0 && c.point_x == 1.25f && c.point_y == 0);
-    assert_int_equal(narc_find_contact(shapes, &a, &turned, &c, NULL), NARC_OK);
-    assert_true(fabs((double)c.separation - (2 - sqrt(2))) < 1e-5);
-    assert_int_equal(narc_find_contact(shapes, &a, &large, &c, NULL), NARC_OK);
-    assert_true(c.separation == -0.5f);
-    assert_int_equal(narc_find_manifold(shapes, &a, &large, NULL, &m, NULL), NARC_OK);
-    assert_int_equal(m.point_count, 2);
-    assert_true(m.separation[0] == -0.5f && m.separation[1] == -0.5f);
-    assert_int_equal(narc_find_manifold(shapes, &a, &right, NULL, &m, NULL), NARC_OK);
-    assert_int_equal(m.point_count, 0);
-    const narc_body far = {.x = 1e18};
-    assert_int_equal(narc_find_contact(shapes, &a, &far, &c, NULL), NARC_OK);
-    assert_true(isinf(c.separation) && c.separation > 0 && c.normal_x == 0 && c.point_x == 0);
-    const size_t floats = sizeof m - offsetof(narc_manifold, normal_x);
-    const narc_manifold none = {0}, no_answer = {.separation = {INFINITY, 0}};
-    assert_int_equal(narc_find_manifold(shapes, &a, &far, NULL, &m, NULL), NARC_OK);
-    assert_true(m.point_count == 0 && memcmp(&m.normal_x, &none.normal_x, floats) == 0);
-    assert_int_equal(narc_find_manifold(shapes, &a, &far, &(narc_manifold_options){.margin = INFINITY}, &m, NULL), 0);
-    assert_true(m.point_count == 0 && memcmp(&m.normal_x, &no_answer.normal_x, floats) == 0);
-    narc_destroy_shapes(shapes);
-}
-
-static void bad_bodies_are_errors(void **state) {
-    (void)state;
-    narc_shapes *shapes = make_box_store();
-    const narc_body fine = {.shape = 0};
-    const struct {
-        narc_body body;
-        narc_status status;
-        const char *words;
-    } cases[] = {{{.x = NAN}, NARC_ERROR_NOT_FINITE, "x is nan"},
-                 {{.y = INFINITY}, NARC_ERROR_NOT_FINITE, "y is inf"},
-                 {{.shape = 2}, NARC_ERROR_INDEX, "shape is 2, but there are 2 shapes"},
-                 {{.shape = 1}, NARC_ERROR_INDEX, "shape 1 was removed"},
-                 {{.angle = NAN}, NARC_ERROR_NOT_FINITE, "cosine is nan"},
-                 {{.cosine = 2}, NARC_ERROR_ARGUMENT, "vector of length 2"},
-                 {{.scale = -1}, NARC_ERROR_SIZE, "scale is -1"},
-                 {{.scale = NAN}, NARC_ERROR_SIZE, "scale is "}};
-    narc_error error;
-    narc_contact contact, junk;
-    narc_manifold manifold, junk_manifold;
-    memset(&junk, 0xa5, sizeof junk);
-    memset(&junk_manifold, 0xa5, sizeof junk_manifold);
-    contact = junk;
-    manifold = junk_manifold;
-    assert_int_equal(narc_remove_shape(shapes, 1, NULL), NARC_OK);
-    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-        for (int second = 0; second < 2; second++) {
-            const narc_body *a = second ? &fine : &cases[k].body, *b = second ? &cases[k].body : &fine;
-            expect_error(narc_find_contact(shapes, a, b, &contact, &error), cases[k].status, &error, cases[k].words);
-            assert_int_equal(error.index, second);
-            expect_error(narc_find_manifold(shapes, a, b, NULL, &manifold, &error), cases[k].status, &error,
-                         cases[k].words);
-        }
-    }
-    const narc_body *a = &fine;
-    const narc_manifold_options bad = {.margin = NAN};
-    expect_error(narc_find_contact(NULL, a, a, &contact, &error), NARC_ERROR_ARGUMENT, &error, "shapes is NULL");
-    expect_error(narc_find_contact(shapes, NULL, a, &contact, &error), NARC_ERROR_ARGUMENT, &error, "a is NULL");
-    expect_error(narc_find_contact(shapes, a, NULL, &contact, &error), NARC_ERROR_ARGUMENT, &error, "b is NULL");
-    expect_error(narc_find_contact(shapes, a, a, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_contact is NULL");
-    expect_error(narc_find_manifold(shapes, a, a, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_manifold");
-    expect_error(narc_find_manifold(shapes, a, a, &bad, &manifold, &error), NARC_ERROR_NOT_FINITE, &error, "margin");
-    assert_memory_equal(&contact, &junk, sizeof junk);
-    assert_memory_equal(&manifold, &junk_manifold, sizeof junk_manifold);
+    assert_true(c.feature == 0x4240 && c.radius_a == INFINITY && c.radius_b == INFINITY);
+    assert_int_equal(narc_find_manifolds(shapes, &bodies, &pairs, NULL, &m, 1, &found, NULL), NARC_OK);
+    assert_int_equal(found, 0);
+    two[1].scale = 2;
+    assert_int_equal(narc_find_manifolds(shapes, &bodies, &pairs, NULL, &m, 1, &found, NULL), NARC_OK);
+    assert_int_equal(m.count, 2);
+    assert_true(m.point[0].separation == -0.5f && m.point[1].separation == -0.5f);
+    /* Too far: no answer. */
+    two[1].x = 1e18;
+    const narc_contact no_contact = {.separation = INFINITY};
+    const narc_manifold no_manifold = {.point = {{.separation = INFINITY}}};
+    assert_int_equal(narc_find_contacts(shapes, &bodies, &pairs, &query, &c, 1, &found, NULL), NARC_OK);
+    assert_memory_equal(&c, &no_contact, sizeof c);
+    assert_int_equal(narc_find_manifolds(shapes, &bodies, &pairs, &query, &m, 1, &found, NULL), NARC_OK);
+    assert_memory_equal(&m, &no_manifold, sizeof m);
     narc_destroy_shapes(shapes);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(contact_has_the_bits_of_a_batch),
-        cmocka_unit_test(contact_is_right),
-        cmocka_unit_test(manifold_has_the_bits_of_a_batch),
-        cmocka_unit_test(zeros_are_defaults),
-        cmocka_unit_test(bad_bodies_are_errors),
+        cmocka_unit_test(own_poses), cmocka_unit_test(one_pair_is_right),
+        cmocka_unit_test(two_sets),  cmocka_unit_test(sets_at_the_origin),
+        cmocka_unit_test(boxes),
     };
     if (!test_begin())
         return TEST_SKIPPED;

@@ -21,7 +21,7 @@ enum kind { FIRST_CALL, SWITCHING, ALL_METHODS };
 struct shared {
     enum kind kind;
     struct scene scene;
-    narc_methods *methods;
+    const narc_methods *methods;
     pthread_barrier_t start;
 };
 
@@ -32,7 +32,7 @@ struct worker {
     uint64_t bits[NARC_BIT_WORDS(PAIRS)];
     uint32_t hints[PAIRS];
     uint8_t outcomes[PAIRS];
-    float separation[PAIRS];
+    narc_contact rows[PAIRS];
     size_t count;
     bool failed;
 };
@@ -51,22 +51,23 @@ static void ask(struct worker *w) {
     const struct scene *scene = &w->shared->scene;
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
-    const narc_contacts contacts = {.capacity = PAIRS, .separation = w->separation};
-    check(w, narc_find_overlaps(scene->store, &bodies, &pairs, 1, w->bits, NULL) == NARC_OK);
-    check(w, narc_find_contacts(scene->store, &bodies, &pairs, INFINITY, 1, &contacts, &w->count, NULL) == NARC_OK);
+    const narc_query query = {.margin = INFINITY};
+    check(w, narc_find_overlaps(scene->store, &bodies, &pairs, &query, w->bits, NULL) == NARC_OK);
+    check(w, narc_find_contacts(scene->store, &bodies, &pairs, &query, w->rows, PAIRS, &w->count, NULL) == NARC_OK);
 }
 
 static void ask_method(struct worker *w, narc_method method) {
     const struct scene *scene = &w->shared->scene;
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
-    const narc_contacts contacts = {.capacity = PAIRS, .separation = w->separation};
-    const narc_method_query query = {.method = method, .hints = w->hints, .out_outcomes = w->outcomes};
+    const narc_methods *methods = w->shared->methods;
+    const narc_method_options options = {.method = method, .out_outcomes = w->outcomes};
+    const narc_query query = {.margin = INFINITY, .hints = NARC_HINT_ARRAY(w->hints)};
     for (int frame = 0; frame < 3; frame++) {
-        check(w, narc_find_overlaps_by(w->shared->methods, &bodies, &pairs, &query, 1, w->bits, NULL) == NARC_OK);
+        check(w, narc_find_overlaps_by(methods, &bodies, &pairs, &options, &query, w->bits, NULL) == NARC_OK);
         if (method < NARC_METHOD_CIRCLE) {
-            check(w, narc_find_contacts_by(w->shared->methods, &bodies, &pairs, &query, INFINITY, 1, &contacts,
-                                           &w->count, NULL) == NARC_OK);
+            check(w, narc_find_contacts_by(methods, &bodies, &pairs, &options, &query, w->rows, PAIRS, &w->count,
+                                           NULL) == NARC_OK);
         }
     }
 }
@@ -111,15 +112,15 @@ static bool same_answers(const struct worker *one, const struct worker *other) {
     return one->count == other->count && memcmp(one->bits, other->bits, sizeof one->bits) == 0 &&
            memcmp(one->hints, other->hints, sizeof one->hints) == 0 &&
            memcmp(one->outcomes, other->outcomes, sizeof one->outcomes) == 0 &&
-           memcmp(one->separation, other->separation, sizeof one->separation) == 0;
+           memcmp(one->rows, other->rows, sizeof one->rows) == 0;
 }
 
 /* In a fresh process. Returns whether all threads that asked the same got the same. */
 static bool race(enum kind kind) {
     struct shared shared = {.kind = kind, .scene = make_polygon_scene()};
     struct worker *workers = calloc(THREADS, sizeof *workers);
-    if (!workers || narc_create_methods(shared.scene.store, NULL, &shared.methods, NULL) != NARC_OK ||
-        pthread_barrier_init(&shared.start, NULL, THREADS) != 0)
+    shared.methods = scene_methods(&shared.scene);
+    if (!workers || pthread_barrier_init(&shared.start, NULL, THREADS) != 0)
         return false;
     for (int k = 0; k < THREADS; k++) {
         workers[k].shared = &shared;
@@ -136,7 +137,6 @@ static bool race(enum kind kind) {
                workers[k].count == (method < NARC_METHOD_CIRCLE ? PAIRS : 0);
     }
     pthread_barrier_destroy(&shared.start);
-    narc_destroy_methods(shared.methods);
     destroy_scene(&shared.scene);
     free(workers);
     return same;

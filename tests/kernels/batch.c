@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * batch.c - threads, sub-ranges, margins and capacities: however a batch is cut, the bytes are the same.
+ * batch.c - workers, sub-ranges, selections, margins, capacities and places of rows: however a batch is cut and wherever its
+ * answers go, the bytes are the same.
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "check.h"
+#include "guard.h"
 
 /* Enough for every thread to get several chunks. */
 enum { PAIRS = 20011 };
@@ -16,38 +18,10 @@ static struct scene make_scene(const char *name, size_t pairs) {
     return make_random_scene(&random, NARC_FLOAT32, 500, pairs);
 }
 
-/* Items from .. from + count - 1 of `expected` are items 0 .. count - 1 of `list`. */
-static void check_same_items(const narc_contacts *expected, size_t from, const narc_contacts *list, size_t count) {
-    assert_memory_equal(expected->pair + from, list->pair, count * sizeof(uint32_t));
-    assert_memory_equal(expected->separation + from, list->separation, count * sizeof(float));
-    assert_memory_equal(expected->normal_x + from, list->normal_x, count * sizeof(float));
-    assert_memory_equal(expected->normal_y + from, list->normal_y, count * sizeof(float));
-    assert_memory_equal(expected->point_x + from, list->point_x, count * sizeof(float));
-    assert_memory_equal(expected->point_y + from, list->point_y, count * sizeof(float));
-    assert_memory_equal(expected->arc_a + from, list->arc_a, count);
-    assert_memory_equal(expected->arc_b + from, list->arc_b, count);
-}
-
-static bool is_junk(const void *memory, size_t size) {
-    const unsigned char *byte = memory;
-    for (size_t k = 0; k < size; k++)
-        if (byte[k] != 0xa5)
-            return false;
-    return true;
-}
-
-/* Items from .. capacity - 1 still hold what create_contacts() put there. */
-static void check_untouched(const struct contacts *contacts, size_t from, size_t capacity) {
-    const narc_contacts *c = &contacts->view;
-    size_t count = capacity - from;
-    assert_true(is_junk(c->pair + from, count * sizeof(uint32_t)));
-    assert_true(is_junk(c->separation + from, count * sizeof(float)));
-    assert_true(is_junk(c->normal_x + from, count * sizeof(float)));
-    assert_true(is_junk(c->normal_y + from, count * sizeof(float)));
-    assert_true(is_junk(c->point_x + from, count * sizeof(float)));
-    assert_true(is_junk(c->point_y + from, count * sizeof(float)));
-    assert_true(is_junk(c->arc_a + from, count));
-    assert_true(is_junk(c->arc_b + from, count));
+/* Rows from .. from + count - 1 of `expected` are rows 0 .. count - 1 of `rows`. */
+static void check_same_rows(const struct contacts *expected, size_t from, const narc_contact *rows, size_t count) {
+    assert_true(from + count <= expected->count);
+    assert_memory_equal(expected->rows + from, rows, count * sizeof *rows);
 }
 
 static void test_threads(void **state) {
@@ -62,25 +36,26 @@ static void test_threads(void **state) {
         uint64_t *serial_bits = scene_overlaps(&scene), *bits = calloc(words + 1, sizeof(uint64_t));
         struct contacts serial = scene_contacts(&scene, 0), all = scene_contacts(&scene, INFINITY);
         for (size_t t = 0; t < sizeof(threads) / sizeof(threads[0]); t++) {
+            const narc_workers workers = narc_openmp_workers(threads[t]);
+            narc_query query = {.workers = &workers};
             bits[words] = 0x0123456789abcdefu;
-            assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, threads[t], bits, NULL), NARC_OK);
+            assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, bits, NULL), NARC_OK);
             assert_memory_equal(bits, serial_bits, words * sizeof(uint64_t));
             assert_true(bits[words] == 0x0123456789abcdefu);
             for (int every = 0; every < 2; every++) {
                 const struct contacts *expected = every ? &all : &serial;
-                struct contacts found = create_contacts(counts[s] + 5);
-                found.view.capacity = counts[s];
-                assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, every ? INFINITY : 0, threads[t],
-                                                    &found.view, &found.count, NULL),
-                                 NARC_OK);
-                assert_int_equal(found.count, expected->count);
-                check_same_items(&expected->view, 0, &found.view, found.count);
-                check_untouched(&found, counts[s], counts[s] + 5);
-                destroy_contacts(&found);
+                narc_contact *rows = guard_allocate(counts[s] * sizeof *rows);
+                size_t found = 0;
+                query.margin = every ? INFINITY : 0;
+                assert_int_equal(
+                    narc_find_contacts(scene.store, &bodies, &pairs, &query, rows, counts[s], &found, NULL), NARC_OK);
+                assert_int_equal(found, expected->count);
+                check_same_rows(expected, 0, rows, found);
+                guard_release(rows);
             }
         }
-        destroy_contacts(&serial);
-        destroy_contacts(&all);
+        free(serial.rows);
+        free(all.rows);
         free(serial_bits);
         free(bits);
         destroy_scene(&scene);
@@ -102,8 +77,8 @@ static void test_overlap_ranges(void **state) {
         for (size_t first = 0; first < words;) {
             size_t step = 1 + random_below(&random, 5), last = first + step < words ? first + step : words;
             size_t from = first * 64, pair_count = last == words ? count - from : step * 64;
-            assert_int_equal(narc_find_overlaps_range(scene.store, &bodies, &pairs, from, pair_count, glued, NULL),
-                             NARC_OK);
+            const narc_query query = {.first = from, .count = pair_count};
+            assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, glued, NULL), NARC_OK);
             assert_memory_equal(glued, whole, last * sizeof(uint64_t));
             assert_true(is_junk(glued + last, (words - last) * sizeof(uint64_t)));
             first = last;
@@ -111,10 +86,18 @@ static void test_overlap_ranges(void **state) {
         /* A sub-range in the middle leaves both sides alone. */
         if (words > 2) {
             memset(glued, 0xa5, words * sizeof(uint64_t));
-            assert_int_equal(narc_find_overlaps_range(scene.store, &bodies, &pairs, 64, 64, glued, NULL), NARC_OK);
+            const narc_query query = {.first = 64, .count = 64};
+            assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, glued, NULL), NARC_OK);
             assert_true(is_junk(glued, 8) && glued[1] == whole[1] && is_junk(glued + 2, (words - 2) * 8));
         }
-        assert_int_equal(narc_find_overlaps_range(scene.store, &bodies, &pairs, 0, 0, NULL, NULL), NARC_OK);
+        /* A count of 0 goes to the end. */
+        memset(glued, 0xa5, words * sizeof(uint64_t));
+        const narc_query rest = {.first = words / 2 * 64};
+        if (rest.first < count) {
+            assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &rest, glued, NULL), NARC_OK);
+            assert_true(is_junk(glued, words / 2 * 8));
+            assert_memory_equal(glued + words / 2, whole + words / 2, (words - words / 2) * 8);
+        }
         free(whole);
         free(glued);
         destroy_scene(&scene);
@@ -131,20 +114,21 @@ static void test_contact_ranges(void **state) {
         narc_bodies bodies = scene_bodies(&scene);
         narc_pairs pairs = scene_pairs(&scene);
         float margin = round % 3 ? 0.1f : INFINITY;
-        struct contacts whole = scene_contacts(&scene, margin), part = create_contacts(count);
+        struct contacts whole = scene_contacts(&scene, margin);
+        narc_contact *part = make_junk(count * sizeof *part);
         for (size_t first = 0; first < count;) {
-            size_t step = random_below(&random, 300), size = step < count - first ? step : count - first;
-            assert_int_equal(narc_find_contacts_range(scene.store, &bodies, &pairs, first, size, margin, &part.view,
-                                                      &part.count, NULL),
+            size_t step = 1 + random_below(&random, 300), size = step < count - first ? step : count - first;
+            const narc_query query = {.margin = margin, .first = first, .count = first + size < count ? size : 0};
+            size_t found = 0;
+            assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &query, part, size, &found, NULL),
                              NARC_OK);
-            assert_true(part.count <= size && seen + part.count <= whole.count);
-            check_same_items(&whole.view, seen, &part.view, part.count);
-            seen += part.count;
+            check_same_rows(&whole, seen, part, found);
+            seen += found;
             first += size;
         }
         assert_int_equal(seen, whole.count);
-        destroy_contacts(&whole);
-        destroy_contacts(&part);
+        free(whole.rows);
+        free(part);
         destroy_scene(&scene);
     }
 }
@@ -161,26 +145,24 @@ static void test_margins(void **state) {
         struct contacts some = scene_contacts(&scene, margins[m]);
         size_t next = 0;
         for (size_t k = 0; k < all.count; k++) {
-            if (all.view.separation[k] < margins[m]) {
+            if (all.rows[k].separation < margins[m]) {
                 assert_true(next < some.count);
-                assert_int_equal(some.view.pair[next], k);
-                assert_memory_equal(&some.view.separation[next], &all.view.separation[k], sizeof(float));
-                assert_memory_equal(&some.view.point_x[next], &all.view.point_x[k], sizeof(float));
-                assert_memory_equal(&some.view.normal_y[next], &all.view.normal_y[k], sizeof(float));
+                check_same_rows(&all, k, &some.rows[next], 1);
                 next++;
             }
             if (margins[m] == 0)
-                assert_int_equal(bit_is_set(bits, k), all.view.separation[k] < 0);
+                assert_int_equal(bit_is_set(bits, k), all.rows[k].separation < 0);
         }
         assert_int_equal(next, some.count);
-        destroy_contacts(&some);
+        free(some.rows);
     }
-    destroy_contacts(&all);
+    free(all.rows);
     free(bits);
     destroy_scene(&scene);
 }
 
-/* Too short a list: what fits is there, the needed size is told, nothing behind the list is written. */
+/* Too short a list: what fits is there, the needed size is told, nothing behind the list is written. No list at all: the
+ * call counts. */
 static void test_capacity(void **state) {
     (void)state;
     struct test_random random = test_random_named("capacity");
@@ -191,71 +173,35 @@ static void test_capacity(void **state) {
     assert_true(all.count > 100);
     for (size_t trial = 0; trial < 60; trial++) {
         static const size_t fixed[] = {0, 1, 63, 64, 65};
-        size_t capacity = trial < 5 ? fixed[trial] : trial == 5 ? all.count - 1 : random_below(&random, all.count);
-        unsigned threads = (unsigned)(trial % 4);
-        struct contacts some = create_contacts(all.count + 64);
-        some.view.capacity = capacity;
+        const size_t capacity = trial < 5    ? fixed[trial]
+                                : trial == 5 ? all.count - 1
+                                             : random_below(&random, all.count);
+        const narc_workers workers = narc_openmp_workers((unsigned)(trial % 4));
+        narc_contact *some = guard_allocate(capacity * sizeof *some);
         narc_error error = {0};
-        narc_status status =
-            narc_find_contacts(scene.store, &bodies, &pairs, 0, threads, &some.view, &some.count, &error);
-        assert_int_equal(status, NARC_ERROR_CAPACITY);
+        size_t needed = 0;
+        narc_query query = {.workers = &workers};
+        if (trial % 2)
+            query.row_stride = sizeof *some;
+        assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &query, some, capacity, &needed, &error),
+                         NARC_ERROR_CAPACITY);
         assert_int_equal(error.status, NARC_ERROR_CAPACITY);
-        assert_int_equal(some.count, all.count);
-        check_same_items(&all.view, 0, &some.view, capacity);
-        check_untouched(&some, capacity, all.count + 64);
-        status = narc_find_contacts_range(scene.store, &bodies, &pairs, 0, 4000, 0, &some.view, &some.count, NULL);
-        assert_int_equal(status, NARC_ERROR_CAPACITY);
-        assert_int_equal(some.count, all.count);
-        check_untouched(&some, capacity, all.count + 64);
-        destroy_contacts(&some);
+        assert_int_equal(needed, all.count);
+        check_same_rows(&all, 0, some, capacity);
+        guard_release(some);
     }
-    struct contacts exact = create_contacts(all.count + 64);
-    exact.view.capacity = all.count;
-    assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, 0, 2, &exact.view, &exact.count, NULL), NARC_OK);
-    check_untouched(&exact, all.count, all.count + 64);
-    destroy_contacts(&exact);
-    destroy_contacts(&all);
-    destroy_scene(&scene);
-}
-
-/* Any array of a list may be missing; the others are as ever. With none at all, the call counts. */
-static void test_missing_arrays(void **state) {
-    (void)state;
-    struct scene scene = make_scene("missing arrays", 3000);
-    narc_bodies bodies = scene_bodies(&scene);
-    narc_pairs pairs = scene_pairs(&scene);
-    struct contacts all = scene_contacts(&scene, 0);
-    for (unsigned mask = 0; mask < 256; mask++) {
-        struct contacts some = create_contacts(all.count);
-        narc_contacts view = some.view;
-        view.pair = mask & 1 ? view.pair : NULL;
-        view.separation = mask & 2 ? view.separation : NULL;
-        view.normal_x = mask & 4 ? view.normal_x : NULL;
-        view.normal_y = mask & 8 ? view.normal_y : NULL;
-        view.point_x = mask & 16 ? view.point_x : NULL;
-        view.point_y = mask & 32 ? view.point_y : NULL;
-        view.arc_a = mask & 64 ? view.arc_a : NULL;
-        view.arc_b = mask & 128 ? view.arc_b : NULL;
-        assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, 0, mask % 3, &view, &some.count, NULL),
-                         NARC_OK);
-        assert_int_equal(some.count, all.count);
-        /* What was not given is compared with itself. */
-        view.pair = view.pair ? view.pair : all.view.pair;
-        view.separation = view.separation ? view.separation : all.view.separation;
-        view.normal_x = view.normal_x ? view.normal_x : all.view.normal_x;
-        view.normal_y = view.normal_y ? view.normal_y : all.view.normal_y;
-        view.point_x = view.point_x ? view.point_x : all.view.point_x;
-        view.point_y = view.point_y ? view.point_y : all.view.point_y;
-        view.arc_a = view.arc_a ? view.arc_a : all.view.arc_a;
-        view.arc_b = view.arc_b ? view.arc_b : all.view.arc_b;
-        check_same_items(&all.view, 0, &view, all.count);
-        destroy_contacts(&some);
-    }
-    narc_contacts none = {0};
-    size_t needed = 0;
-    assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, 0, 1, &none, &needed, NULL), NARC_ERROR_CAPACITY);
-    assert_int_equal(needed, all.count);
-    destroy_contacts(&all);
+    narc_contact *exact = guard_allocate(all.count * sizeof *exact);
+    const narc_workers two = narc_openmp_workers(2);
+    size_t found = 0;
+    assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &(narc_query){.workers = &two}, exact, all.count,
+                                        &found, NULL),
+                     NARC_OK);
+    check_same_rows(&all, 0, exact, found);
+    guard_release(exact);
+    assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, NULL, NULL, 0, &found, NULL),
+                     NARC_ERROR_CAPACITY);
+    assert_int_equal(found, all.count);
+    free(all.rows);
     destroy_scene(&scene);
 }
 
@@ -264,20 +210,20 @@ static void test_no_pairs(void **state) {
     struct scene scene = make_scene("no pairs", 1);
     narc_bodies bodies = scene_bodies(&scene), no_bodies = {0};
     narc_pairs none = {0};
-    struct contacts contacts = create_contacts(3);
+    narc_contact row;
     uint64_t word = 42;
+    memset(&row, 0xa5, sizeof row);
     for (unsigned threads = 0; threads < 3; threads++) {
-        assert_int_equal(narc_find_overlaps(scene.store, &bodies, &none, threads, NULL, NULL), NARC_OK);
-        assert_int_equal(narc_find_overlaps(scene.store, &no_bodies, &none, threads, &word, NULL), NARC_OK);
+        const narc_workers workers = narc_openmp_workers(threads);
+        const narc_query query = {.dense = threads % 2, .workers = &workers};
+        size_t found = 7;
+        assert_int_equal(narc_find_overlaps(scene.store, &bodies, &none, &query, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_find_overlaps(scene.store, &no_bodies, &none, &query, &word, NULL), NARC_OK);
         assert_int_equal(word, 42);
-        contacts.count = 7;
-        assert_int_equal(
-            narc_find_contacts(scene.store, &no_bodies, &none, 0, threads, &contacts.view, &contacts.count, NULL),
-            NARC_OK);
-        assert_int_equal(contacts.count, 0);
-        check_untouched(&contacts, 0, 3);
+        assert_int_equal(narc_find_contacts(scene.store, &no_bodies, &none, &query, &row, 1, &found, NULL), NARC_OK);
+        assert_int_equal(found, 0);
+        assert_true(is_junk(&row, sizeof row));
     }
-    destroy_contacts(&contacts);
     destroy_scene(&scene);
 }
 
@@ -294,23 +240,272 @@ static void test_pairs_with_itself(void **state) {
         struct fractions errors = {0};
         const double gap = reference_find_gap(&body, &body).gap;
         assert_true(bit_is_set(bits, k) || (body.count == 2 && gap >= -separation_bound(&body, &body)));
-        const char *wrong = check_contact(&body, &body, gap, &all.view, k, &errors);
+        const char *wrong = check_contact(&body, &body, gap, &all.rows[k], &errors);
         if (wrong) {
             print_pair(&body, &body);
             fail_msg("%s", wrong);
         }
     }
-    destroy_contacts(&all);
+    free(all.rows);
     free(bits);
     destroy_scene(&scene);
+}
+
+/* ------------------------------------------------------------------------------------------------ places of rows */
+
+/* Rows within larger structures. */
+struct place {
+    uint32_t before[3];
+    union {
+        narc_contact contact;
+        narc_manifold manifold;
+    } row;
+    unsigned char after[20];
+};
+
+/* Queries for rows of either kind. */
+struct asked {
+    const struct scene *scene;
+    bool manifolds;
+};
+
+static size_t row_size(const struct asked *asked) {
+    return asked->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact);
+}
+
+static narc_status ask(const struct asked *asked, const narc_query *query, void *rows, size_t capacity,
+                       size_t *out_count) {
+    const narc_bodies bodies = scene_bodies(asked->scene);
+    const narc_pairs pairs = scene_pairs(asked->scene);
+    const narc_shapes *store = asked->scene->store;
+    return asked->manifolds ? narc_find_manifolds(store, &bodies, &pairs, query, rows, capacity, out_count, NULL)
+                            : narc_find_contacts(store, &bodies, &pairs, query, rows, capacity, out_count, NULL);
+}
+
+/* Has a row a point, or is it that of a pair that has no answer? */
+static bool has_point(const struct asked *asked, const unsigned char *row) {
+    narc_contact contact;
+    narc_manifold manifold;
+    memcpy(&contact, row, sizeof contact);
+    memcpy(&manifold, row, row_size(asked));
+    return asked->manifolds ? manifold.count > 0 : contact.count > 0;
+}
+
+/* The answers of a whole batch as dense rows must be: `listed` in their pairs' rows, and zeros but for the pair. */
+static unsigned char *make_dense(const struct asked *asked, const unsigned char *listed, size_t count) {
+    const size_t size = row_size(asked);
+    unsigned char *dense = calloc(asked->scene->pair_count, size);
+    assert_non_null(dense);
+    for (uint32_t k = 0; k < asked->scene->pair_count; k++)
+        memcpy(dense + k * size, &k, sizeof k);
+    for (size_t k = 0; k < count; k++) {
+        uint32_t pair;
+        memcpy(&pair, listed + k * size, sizeof pair);
+        memcpy(dense + pair * size, listed + k * size, size);
+    }
+    return dense;
+}
+
+/* A selection of some pairs in any order, one at least. */
+static size_t select_pairs(struct test_random *random, size_t count, uint32_t *selection) {
+    size_t selected = 0;
+    for (uint32_t k = 0; k < count; k++)
+        if (random_below(random, 3) || k + 1 == count)
+            selection[selected++] = k;
+    for (size_t k = selected; k > 1; k--) {
+        const size_t i = random_below(random, k);
+        const uint32_t last = selection[k - 1];
+        selection[k - 1] = selection[i];
+        selection[i] = last;
+    }
+    return selected;
+}
+
+/* Are `count` rows of a size, each some bytes behind the other, those, and is all that lies between them junk? */
+static void check_places(const struct place *places, const unsigned char *right, size_t count, size_t size) {
+    for (size_t k = 0; k < count; k++) {
+        const struct place *place = &places[k];
+        assert_memory_equal(&place->row, right + k * size, size);
+        assert_true(is_junk(place->before, sizeof place->before));
+        assert_true(
+            is_junk((const unsigned char *)&place->row + size, sizeof *place - offsetof(struct place, row) - size));
+    }
+}
+
+/* Dense rows and listed ones, without gaps and within larger structures, of all pairs, of some of them, of a sub-range;
+ * with one margin and with margins of the pairs, with hints in a structure of the caller's. */
+static void check_rows(struct test_random *random, const struct asked *asked, float margin, unsigned threads) {
+    const size_t count = asked->scene->pair_count, size = row_size(asked);
+    const narc_workers workers = narc_openmp_workers(threads);
+    const narc_query plain = {.margin = margin};
+    unsigned char *listed = make_junk(count * size);
+    uint32_t *selection = make_junk(count * sizeof *selection);
+    size_t found = 0, again = 0, points = 0, part_points = 0;
+    assert_int_equal(ask(asked, &plain, listed, count, &found), NARC_OK);
+    unsigned char *dense = make_dense(asked, listed, found);
+    for (size_t k = 0; k < found; k++)
+        points += has_point(asked, listed + k * size);
+    struct place *places = make_junk(count * sizeof *places);
+
+    narc_query query = {.margin = margin, .row_stride = sizeof *places, .workers = &workers};
+    assert_int_equal(ask(asked, &query, &places->row, found, &again), NARC_OK);
+    assert_int_equal(again, found);
+    check_places(places, listed, found, size);
+    assert_true(is_junk(places + found, (count - found) * sizeof *places));
+    query.dense = 1;
+    assert_int_equal(ask(asked, &query, &places->row, count, &again), NARC_OK);
+    assert_int_equal(again, points);
+    check_places(places, dense, count, size);
+    query.row_stride = 0;
+    unsigned char *rows = guard_allocate(count * size);
+    assert_int_equal(ask(asked, &query, rows, count, &again), NARC_OK);
+    assert_int_equal(again, points);
+    assert_memory_equal(rows, dense, count * size);
+
+    /* From the last one in memory backwards. */
+    struct place *backwards = make_junk(count * sizeof *backwards);
+    query.row_stride = -(ptrdiff_t)sizeof *places;
+    assert_int_equal(ask(asked, &query, &backwards[count - 1].row, count, &again), NARC_OK);
+    for (size_t k = 0; k < count; k++)
+        assert_memory_equal(&backwards[k], &places[count - 1 - k], sizeof *places);
+    free(backwards);
+    query.row_stride = 0;
+
+    /* Some pairs, in any order, and a sub-range of these: listed in that order, dense in the rows of the batch. */
+    const size_t selected = select_pairs(random, count, selection), first = random_below(random, selected);
+    const size_t part = 1 + random_below(random, selected - first);
+    query.selection = (narc_index_column){selection, sizeof *selection};
+    query.selection_count = selected;
+    query.first = first;
+    query.count = first + part < selected ? part : 0;
+    memset(rows, 0xa5, count * size);
+    assert_int_equal(ask(asked, &query, rows, count, &again), NARC_OK);
+    bool *is_asked = calloc(count, sizeof *is_asked);
+    assert_non_null(is_asked);
+    for (size_t k = first; k < first + part; k++) {
+        is_asked[selection[k]] = true;
+        part_points += has_point(asked, dense + selection[k] * size);
+    }
+    assert_int_equal(again, part_points);
+    for (size_t k = 0; k < count; k++)
+        if (is_asked[k])
+            assert_memory_equal(rows + k * size, dense + k * size, size);
+        else
+            assert_true(is_junk(rows + k * size, size));
+    query.dense = 0;
+    assert_int_equal(ask(asked, &query, rows, count, &again), NARC_OK);
+    bool *is_listed = calloc(count, sizeof *is_listed);
+    assert_non_null(is_listed);
+    for (size_t k = 0; k < found; k++) {
+        uint32_t pair;
+        memcpy(&pair, listed + k * size, sizeof pair);
+        is_listed[pair] = true;
+    }
+    size_t at = 0;
+    for (size_t k = first; k < first + part; k++)
+        if (is_listed[selection[k]])
+            assert_memory_equal(rows + size * at++, dense + selection[k] * size, size);
+    assert_int_equal(at, again);
+    free(is_asked);
+    free(is_listed);
+    free(listed);
+    free(dense);
+    free(places);
+    guard_release(rows);
+    free(selection);
+}
+
+static void test_places_of_rows(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("places of rows");
+    static const size_t counts[] = {1, 2, 17, 64, 1000, 1025, 5003};
+    for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+        struct scene scene = make_scene("places of rows", counts[c]);
+        for (size_t k = 0; k < scene.body_count; k += 50)
+            scene.bodies[k].sine = NAN;
+        for (int kind = 0; kind < 2; kind++) {
+            const struct asked asked = {&scene, kind == 1};
+            for (unsigned threads = 1; threads < 4; threads++) {
+                check_rows(&random, &asked, 0, threads);
+                check_rows(&random, &asked, 0.2f, threads);
+                check_rows(&random, &asked, INFINITY, threads);
+            }
+        }
+        destroy_scene(&scene);
+    }
+}
+
+/* Dense rows need room up to the last pair, of a selection that of the batch: less is an error, and nothing is
+ * written. */
+static void test_dense_capacity(void **state) {
+    (void)state;
+    struct scene scene = make_scene("dense capacity", 1500);
+    for (int kind = 0; kind < 2; kind++) {
+        const struct asked asked = {&scene, kind == 1};
+        unsigned char *rows = make_junk(1500 * row_size(&asked));
+        const uint32_t selection[] = {700, 1200, 3};
+        size_t found = 12345;
+        assert_int_equal(ask(&asked, &(narc_query){.dense = 1}, rows, 1499, &found), NARC_ERROR_CAPACITY);
+        assert_true(is_junk(rows, 1500 * row_size(&asked)));
+        const narc_query range = {.dense = 1, .first = 100, .count = 200};
+        assert_int_equal(ask(&asked, &range, rows, 299, &found), NARC_ERROR_CAPACITY);
+        assert_true(is_junk(rows, 1500 * row_size(&asked)));
+        assert_int_equal(ask(&asked, &range, rows, 300, &found), NARC_OK);
+        assert_true(is_junk(rows, 100 * row_size(&asked)));
+        assert_true(is_junk(rows + 300 * row_size(&asked), 1200 * row_size(&asked)));
+        memset(rows, 0xa5, 300 * row_size(&asked));
+        const narc_query some = {.dense = 1, .selection = NARC_ARRAY(selection), .selection_count = 3};
+        assert_int_equal(ask(&asked, &some, rows, 1499, &found), NARC_ERROR_CAPACITY);
+        assert_true(is_junk(rows, 1500 * row_size(&asked)));
+        assert_int_equal(ask(&asked, &some, rows, 1500, &found), NARC_OK);
+        assert_false(is_junk(rows + 1200 * row_size(&asked), row_size(&asked)));
+        free(rows);
+    }
+    destroy_scene(&scene);
+}
+
+/* Bit k of a selection is that of pair selection[k]; the bits behind the last are 0. */
+static void test_selected_bits(void **state) {
+    (void)state;
+    struct test_random random = test_random_named("selected bits");
+    for (size_t round = 0; round < test_trials(20); round++) {
+        const size_t count = 1 + random_below(&random, 5000);
+        struct scene scene = make_scene("selected bits", count);
+        const narc_bodies bodies = scene_bodies(&scene);
+        const narc_pairs pairs = scene_pairs(&scene);
+        const narc_workers workers = narc_openmp_workers((unsigned)(round % 4));
+        uint32_t *selection = make_junk(count * sizeof *selection);
+        const size_t selected = select_pairs(&random, count, selection), words = NARC_BIT_WORDS(selected);
+        uint64_t *all = scene_overlaps(&scene), *bits = guard_allocate(words * sizeof *bits);
+        narc_query query = {
+            .selection = {selection, sizeof *selection}, .selection_count = selected, .workers = &workers};
+        assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, bits, NULL), NARC_OK);
+        for (size_t k = 0; k < 64 * words; k++)
+            assert_int_equal(bit_is_set(bits, k), k < selected && bit_is_set(all, selection[k]));
+        if (words > 2) { /* a sub-range of the selection */
+            uint64_t *part = make_junk(words * sizeof *part);
+            query.first = 64;
+            query.count = 64;
+            assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, part, NULL), NARC_OK);
+            assert_true(is_junk(part, 8) && part[1] == bits[1] && is_junk(part + 2, (words - 2) * 8));
+            free(part);
+        }
+        query = (narc_query){.selection = query.selection}; /* of none */
+        assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, NULL, NULL), NARC_OK);
+        guard_release(bits);
+        free(all);
+        free(selection);
+        destroy_scene(&scene);
+    }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_threads),        cmocka_unit_test(test_overlap_ranges),
         cmocka_unit_test(test_contact_ranges), cmocka_unit_test(test_margins),
-        cmocka_unit_test(test_capacity),       cmocka_unit_test(test_missing_arrays),
-        cmocka_unit_test(test_no_pairs),       cmocka_unit_test(test_pairs_with_itself),
+        cmocka_unit_test(test_capacity),       cmocka_unit_test(test_no_pairs),
+        cmocka_unit_test(test_places_of_rows), cmocka_unit_test(test_dense_capacity),
+        cmocka_unit_test(test_selected_bits),  cmocka_unit_test(test_pairs_with_itself),
     };
     return test_begin() ? cmocka_run_group_tests_name("batch", tests, NULL, NULL) : TEST_SKIPPED;
 }

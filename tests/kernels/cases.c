@@ -30,7 +30,7 @@ static struct shape half_disc(void) {
 struct answer {
     bool overlap;
     float separation, normal_x, normal_y, point_x, point_y;
-    int arc_a, arc_b;
+    unsigned arc_a, arc_b;
 };
 
 static struct answer ask_bodies(const struct shape *a, struct body body_a, const struct shape *b, struct body body_b) {
@@ -45,17 +45,18 @@ static struct answer ask_bodies(const struct shape *a, struct body body_a, const
     struct contacts all = scene_contacts(&scene, INFINITY);
     struct reference_body at_a = scene_reference(&scene, 0), at_b = scene_reference(&scene, 1);
     struct fractions errors = {0};
-    const char *wrong = check_contact(&at_a, &at_b, reference_find_gap(&at_a, &at_b).gap, &all.view, 0, &errors);
+    const char *wrong = check_contact(&at_a, &at_b, reference_find_gap(&at_a, &at_b).gap, &all.rows[0], &errors);
     if (wrong) {
         fail_msg("B at (%a, %a): wrong %s; separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), errors %.3g, "
                  "%.3g, %.3g",
-                 body_b.x, body_b.y, wrong, (double)all.view.separation[0], (double)all.view.normal_x[0],
-                 (double)all.view.normal_y[0], (double)all.view.point_x[0], (double)all.view.point_y[0],
+                 body_b.x, body_b.y, wrong, (double)all.rows[0].separation, (double)all.rows[0].normal_x,
+                 (double)all.rows[0].normal_y, (double)all.rows[0].point_x, (double)all.rows[0].point_y,
                  errors.separation, errors.normal, errors.point);
     }
-    struct answer answer = {bit_is_set(bits, 0), all.view.separation[0], all.view.normal_x[0], all.view.normal_y[0],
-                            all.view.point_x[0], all.view.point_y[0],    all.view.arc_a[0],    all.view.arc_b[0]};
-    destroy_contacts(&all);
+    struct answer answer = {bit_is_set(bits, 0),           all.rows[0].separation,       all.rows[0].normal_x,
+                            all.rows[0].normal_y,          all.rows[0].point_x,          all.rows[0].point_y,
+                            arc_of_a(all.rows[0].feature), arc_of_b(all.rows[0].feature)};
+    free(all.rows);
     free(bits);
     destroy_scene(&scene);
     return answer;

@@ -68,12 +68,12 @@ static void check_scene(const struct scene *scene, enum family family_a, enum fa
         double gap = reference_find_gap(&a, &b).gap, bound = separation_bound(&a, &b);
         bool overlap = bit_is_set(bits, k);
         struct fractions errors = {0};
-        const char *wrong = check_contact(&a, &b, gap, &all.view, k, &errors);
+        const char *wrong = check_contact(&a, &b, gap, &all.rows[k], &errors);
         if (fabs(gap) > bound && overlap != (gap < 0))
             wrong = "overlap";
-        else if (overlap != (all.view.separation[k] < 0))
+        else if (overlap != (all.rows[k].separation < 0))
             wrong = "overlap and contact differ";
-        else if (all.view.pair[k] != k)
+        else if (all.rows[k].pair != k)
             wrong = "pair index";
         enum placement placement = (enum placement)(k % PLACE_COUNT);
         count_pair(&report->family[family_a], gap, bound, &errors);
@@ -84,12 +84,13 @@ static void check_scene(const struct scene *scene, enum family family_a, enum fa
                 "%s - %s, %s: wrong %s; exact gap %.9g, bound %.3g; answer: overlap %d, separation %.9g, normal "
                 "(%.9g, %.9g), point (%.9g, %.9g), arcs %d and %d\n",
                 family_name(family_a), family_name(family_b), placement_name(placement), wrong, gap, bound, overlap,
-                (double)all.view.separation[k], (double)all.view.normal_x[k], (double)all.view.normal_y[k],
-                (double)all.view.point_x[k], (double)all.view.point_y[k], all.view.arc_a[k], all.view.arc_b[k]);
+                (double)all.rows[k].separation, (double)all.rows[k].normal_x, (double)all.rows[k].normal_y,
+                (double)all.rows[k].point_x, (double)all.rows[k].point_y, arc_of_a(all.rows[k].feature),
+                arc_of_b(all.rows[k].feature));
             print_pair(&a, &b);
         }
     }
-    destroy_contacts(&all);
+    free(all.rows);
     free(bits);
 }
 

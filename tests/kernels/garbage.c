@@ -18,19 +18,20 @@ enum { BODIES = 200 };
 static void check_sane(const struct scene *scene, const uint64_t *bits, const struct contacts *all) {
     assert_int_equal(all->count, scene->pair_count);
     for (size_t k = 0; k < all->count; k++) {
-        const narc_contacts *c = &all->view;
-        if (isnan(c->separation[k]) || isnan(c->normal_x[k]) || isnan(c->normal_y[k]) || isnan(c->point_x[k]) ||
-            isnan(c->point_y[k])) {
+        const narc_contact *c = &all->rows[k];
+        if (isnan(c->separation) || isnan(c->normal_x) || isnan(c->normal_y) || isnan(c->point_x) ||
+            isnan(c->point_y) || isnan(c->radius_a) || isnan(c->radius_b)) {
             struct reference_body a = scene_reference(scene, scene->pairs[k].a),
                                   b = scene_reference(scene, scene->pairs[k].b);
             print_pair(&a, &b);
-            fail_msg("NaN: separation %g, normal (%g, %g), point (%g, %g)", (double)c->separation[k],
-                     (double)c->normal_x[k], (double)c->normal_y[k], (double)c->point_x[k], (double)c->point_y[k]);
+            fail_msg("NaN: separation %g, normal (%g, %g), point (%g, %g), radii %g and %g", (double)c->separation,
+                     (double)c->normal_x, (double)c->normal_y, (double)c->point_x, (double)c->point_y,
+                     (double)c->radius_a, (double)c->radius_b);
         }
-        assert_int_equal(bit_is_set(bits, k), c->separation[k] < 0);
+        assert_int_equal(bit_is_set(bits, k), c->separation < 0);
         size_t count_a = scene->shapes[scene->bodies[scene->pairs[k].a].shape].count;
         size_t count_b = scene->shapes[scene->bodies[scene->pairs[k].b].shape].count;
-        assert_true(c->arc_a[k] < count_a && c->arc_b[k] < count_b);
+        assert_true(arc_of_a(c->feature) < count_a && arc_of_b(c->feature) < count_b);
     }
 }
 
@@ -40,22 +41,16 @@ static void check_same_as_scalar(const struct scene *scene, const uint64_t *bits
     struct contacts scalar = scene_contacts(scene, INFINITY);
     test_use_isa(test_isa());
     assert_memory_equal(bits, scalar_bits, NARC_BIT_WORDS(scene->pair_count) * sizeof(uint64_t));
-    assert_memory_equal(all->view.separation, scalar.view.separation, all->count * sizeof(float));
-    assert_memory_equal(all->view.normal_x, scalar.view.normal_x, all->count * sizeof(float));
-    assert_memory_equal(all->view.normal_y, scalar.view.normal_y, all->count * sizeof(float));
-    assert_memory_equal(all->view.point_x, scalar.view.point_x, all->count * sizeof(float));
-    assert_memory_equal(all->view.point_y, scalar.view.point_y, all->count * sizeof(float));
-    destroy_contacts(&scalar);
+    assert_memory_equal(all->rows, scalar.rows, all->count * sizeof *all->rows);
+    free(scalar.rows);
     free(scalar_bits);
 }
 
 /* What the header names: such a body collides with nothing, and has separation +infinity and all else 0. */
 static void check_no_answer(const struct contacts *all, const uint64_t *bits, size_t k) {
-    const narc_contacts *c = &all->view;
+    const narc_contact none = {.pair = (uint32_t)k, .separation = INFINITY};
     assert_false(bit_is_set(bits, k));
-    assert_true(c->separation[k] == INFINITY);
-    assert_true(c->normal_x[k] == 0 && c->normal_y[k] == 0 && c->point_x[k] == 0 && c->point_y[k] == 0);
-    assert_true(c->arc_a[k] == 0 && c->arc_b[k] == 0);
+    assert_memory_equal(&all->rows[k], &none, sizeof none);
 }
 
 /* Good bodies, on half of which one number is spoilt. Pairs of two good ones keep their answer to the last bit. */
@@ -80,14 +75,14 @@ static void check_spoilt(const char *name, narc_precision precision,
             check_no_answer(&all, bits, k);
         } else {
             assert_int_equal(bit_is_set(bits, k), bit_is_set(bits_before, k));
-            assert_memory_equal(&all.view.separation[k], &before.view.separation[k], sizeof(float));
+            assert_memory_equal(&all.rows[k], &before.rows[k], sizeof all.rows[k]);
         }
         found += bit_is_set(bits, k);
     }
     assert_int_equal(found, colliding.count);
-    destroy_contacts(&all);
-    destroy_contacts(&colliding);
-    destroy_contacts(&before);
+    free(all.rows);
+    free(colliding.rows);
+    free(before.rows);
     free(bits);
     free(bits_before);
     destroy_scene(&scene);
@@ -159,8 +154,8 @@ static void test_huge_positions(void **state) {
         check_sane(&scene, bits, &all);
         check_same_as_scalar(&scene, bits, &all);
         for (size_t k = 0; k < scene.pair_count; k++)
-            assert_true(scene.pairs[k].a == scene.pairs[k].b || all.view.separation[k] > 0);
-        destroy_contacts(&all);
+            assert_true(scene.pairs[k].a == scene.pairs[k].b || all.rows[k].separation > 0);
+        free(all.rows);
         free(bits);
         destroy_scene(&scene);
     }
@@ -188,9 +183,9 @@ static void test_denormals(void **state) {
         struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
                               b = scene_reference(&scene, scene.pairs[k].b);
         struct fractions errors = {0};
-        assert_null(check_contact(&a, &b, reference_find_gap(&a, &b).gap, &all.view, k, &errors));
+        assert_null(check_contact(&a, &b, reference_find_gap(&a, &b).gap, &all.rows[k], &errors));
     }
-    destroy_contacts(&all);
+    free(all.rows);
     free(bits);
     destroy_scene(&scene);
 }
@@ -222,7 +217,7 @@ static void test_random_bits(void **state) {
         struct contacts all = scene_contacts(&scene, INFINITY);
         check_sane(&scene, bits, &all);
         check_same_as_scalar(&scene, bits, &all);
-        destroy_contacts(&all);
+        free(all.rows);
         free(bits);
         destroy_scene(&scene);
     }

@@ -55,8 +55,8 @@ static void show_wrong(const struct corpus *corpus, size_t k, const char *name, 
 
 /* ------------------------------------------------------------------------------------------------ contacts */
 
-static double tolerance_of(const narc_method_query *query) {
-    return query->tolerance > 0 ? (double)query->tolerance : (double)NARC_DEFAULT_TOLERANCE;
+static double tolerance_of(const narc_method_options *options) {
+    return options->tolerance > 0 ? (double)options->tolerance : (double)NARC_DEFAULT_TOLERANCE;
 }
 
 /* How far from the outlines the closest points may be. They lie on both support lines, beside points of A and B whose
@@ -69,13 +69,13 @@ static double allowed_distance(const struct exact_pair *pair, double allowed) {
 /* The separation is the gap along the normal, so it is never more than the exact one; less by the tolerance at most if
  * the search ended well. Both but for rounding: the bound for the separation that is told, and as much for the other
  * limit, the distance of the segment from the origin, which is made of two support points. */
-static const char *check_gjk_contact(const struct exact_pair *pair, const narc_contacts *told, size_t k,
-                                     const narc_method_query *query, unsigned outcome, struct tally *tally) {
-    const double separation = (double)told->separation[k];
-    const double allowed = tolerance_of(query) * pair->size + 2 * pair->bound;
+static const char *check_gjk_contact(const struct exact_pair *pair, const narc_contact *told,
+                                     const narc_method_options *options, unsigned outcome, struct tally *tally) {
+    const double separation = (double)told->separation;
+    const double allowed = tolerance_of(options) * pair->size + 2 * pair->bound;
     /* GJK ended before it knew whether they collide, so the separation is not negative. */
     const bool unknown = outcome != NARC_OUTCOME_DONE && separation == 0;
-    const char *wrong = check_along_normal(pair, told, k, unknown);
+    const char *wrong = check_along_normal(pair, told, unknown);
     if (wrong || unknown)
         return wrong;
     if (outcome > NARC_OUTCOME_ROUNDING)
@@ -83,7 +83,7 @@ static const char *check_gjk_contact(const struct exact_pair *pair, const narc_c
     if (separation > pair->gap + pair->bound)
         return "more than the exact separation";
     if (outcome == NARC_OUTCOME_DONE) {
-        const double allowed_off = allowed_distance(pair, allowed), off = distance_from_outlines(pair, told, k);
+        const double allowed_off = allowed_distance(pair, allowed), off = distance_from_outlines(pair, told);
         tally->worst = fmax(tally->worst, (pair->gap - separation) / allowed);
         tally->off = fmax(tally->off, off / allowed_off);
         if (pair->gap - separation > allowed)
@@ -94,28 +94,30 @@ static const char *check_gjk_contact(const struct exact_pair *pair, const narc_c
     return NULL;
 }
 
-/* All contacts of a corpus. The query's outcomes must be wanted. */
-static struct tally check_contacts(const struct corpus *corpus, const narc_method_query *query, const char *name) {
+/* All contacts of a corpus. Outcomes must be wanted. `hints` may be NULL. */
+static struct tally check_contacts(const struct corpus *corpus, const narc_method_options *options, uint32_t *hints,
+                                   const char *name) {
     const size_t count = corpus->scene.pair_count;
     struct tally tally = {.pairs = count};
-    memset(query->out_outcomes, 0xa5, count);
-    struct contacts all = query_contacts(&corpus->scene, query, INFINITY, 1);
+    memset(options->out_outcomes, 0xa5, count);
+    struct contacts all =
+        query_contacts(&corpus->scene, options, &(narc_query){.margin = INFINITY, .hints = hint_column(hints)});
     assert_int_equal(all.count, count);
     for (size_t k = 0; k < count; k++) {
-        const unsigned outcome = query->out_outcomes[k];
-        const char *wrong = check_gjk_contact(&corpus->pairs[k], &all.view, k, query, outcome, &tally);
+        const unsigned outcome = options->out_outcomes[k];
+        const char *wrong = check_gjk_contact(&corpus->pairs[k], &all.rows[k], options, outcome, &tally);
         tally.outcomes[outcome % 4]++;
-        if (all.view.pair[k] != k)
+        if (all.rows[k].pair != k)
             wrong = "pair index";
         if (wrong) {
             show_wrong(corpus, k, name, wrong, &tally.wrong);
             print_error("  answer: outcome %u, separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), arcs %d, %d\n",
-                        outcome, (double)all.view.separation[k], (double)all.view.normal_x[k],
-                        (double)all.view.normal_y[k], (double)all.view.point_x[k], (double)all.view.point_y[k],
-                        all.view.arc_a[k], all.view.arc_b[k]);
+                        outcome, (double)all.rows[k].separation, (double)all.rows[k].normal_x,
+                        (double)all.rows[k].normal_y, (double)all.rows[k].point_x, (double)all.rows[k].point_y,
+                        arc_of_a(all.rows[k].feature), arc_of_b(all.rows[k].feature));
         }
     }
-    destroy_contacts(&all);
+    free(all.rows);
     return tally;
 }
 
@@ -127,10 +129,10 @@ static void test_tolerances(void **state) {
         for (int c = 0; c < CORPORA; c++) {
             char name[64];
             uint8_t *outcomes = create_outcomes(corpora[c].scene.pair_count);
-            const narc_method_query query = {
+            const narc_method_options options = {
                 .method = NARC_METHOD_GJK, .tolerance = tolerances[t], .out_outcomes = outcomes};
             snprintf(name, sizeof name, "tolerance %g, scene %d", (double)tolerances[t], c);
-            const struct tally tally = check_contacts(&corpora[c], &query, name);
+            const struct tally tally = check_contacts(&corpora[c], &options, NULL, name);
             print_tally(name, &tally);
             wrong += tally.wrong;
             free(outcomes);
@@ -148,10 +150,10 @@ static void test_iterations(void **state) {
         for (int c = 0; c < CORPORA; c++) {
             char name[64];
             uint8_t *outcomes = create_outcomes(corpora[c].scene.pair_count);
-            const narc_method_query query = {
+            const narc_method_options options = {
                 .method = NARC_METHOD_GJK, .iterations = iterations[i], .out_outcomes = outcomes};
             snprintf(name, sizeof name, "iterations %u, scene %d", iterations[i], c);
-            const struct tally tally = check_contacts(&corpora[c], &query, name);
+            const struct tally tally = check_contacts(&corpora[c], &options, NULL, name);
             print_tally(name, &tally);
             wrong += tally.wrong;
             limits[i] += tally.outcomes[NARC_OUTCOME_LIMIT];
@@ -177,24 +179,24 @@ static void test_margins(void **state) {
         const struct corpus *corpus = &corpora[c];
         const size_t count = corpus->scene.pair_count;
         uint8_t *outcomes = create_outcomes(count);
-        const narc_method_query query = {.method = NARC_METHOD_GJK, .out_outcomes = outcomes};
+        const narc_method_options options = {.method = NARC_METHOD_GJK, .out_outcomes = outcomes};
         for (size_t m = 0; m < sizeof margins / sizeof *margins; m++) {
-            struct contacts found = query_contacts(&corpus->scene, &query, margins[m], 1);
+            struct contacts found = query_contacts(&corpus->scene, &options, &(narc_query){.margin = margins[m]});
             struct tally tally = {0};
             size_t next = 0;
             for (size_t k = 0; k < count; k++) {
                 const struct exact_pair *pair = &corpus->pairs[k];
-                const bool listed = next < found.count && found.view.pair[next] == k;
+                const bool listed = next < found.count && found.rows[next].pair == k;
                 const double away = pair->gap - (double)margins[m];
                 const char *wrong = NULL;
                 if (listed) {
-                    wrong = check_gjk_contact(pair, &found.view, next, &query, outcomes[k], &tally);
-                    wrong = found.view.separation[next] < margins[m] ? wrong : "reported, but not below the margin";
+                    wrong = check_gjk_contact(pair, &found.rows[next], &options, outcomes[k], &tally);
+                    wrong = found.rows[next].separation < margins[m] ? wrong : "reported, but not below the margin";
                 }
                 if (!listed && away < -pair->bound)
                     wrong = "below the margin, but not reported";
                 else if (listed && outcomes[k] == NARC_OUTCOME_DONE &&
-                         away > tolerance_of(&query) * pair->size + 2 * pair->bound)
+                         away > tolerance_of(&options) * pair->size + 2 * pair->bound)
                     wrong = "above the margin, but reported";
                 if (wrong) {
                     show_wrong(corpus, k, "margin", wrong, &wrong_pairs);
@@ -204,11 +206,11 @@ static void test_margins(void **state) {
             }
             assert_int_equal(next, found.count);
             if (margins[m] == 0) {
-                uint64_t *bits = query_overlaps(&corpus->scene, &query, 1);
+                uint64_t *bits = query_overlaps(&corpus->scene, &options, NULL);
                 check_contacts_are_bits(&found, bits, count, "gjk");
                 free(bits);
             }
-            destroy_contacts(&found);
+            free(found.rows);
         }
         free(outcomes);
     }
@@ -218,23 +220,24 @@ static void test_margins(void **state) {
 /* ------------------------------------------------------------------------------------------------ overlaps */
 
 /* Bits and outcomes of a corpus. With a limit on iterations an answer may be missing, and then says so. */
-static struct tally check_overlaps(const struct corpus *corpus, const narc_method_query *query, const char *name) {
+static struct tally check_overlaps(const struct corpus *corpus, const narc_method_options *options, uint32_t *hints,
+                                   const char *name) {
     const size_t count = corpus->scene.pair_count;
     struct tally tally = {.pairs = count};
-    memset(query->out_outcomes, 0xa5, count);
-    uint64_t *bits = query_overlaps(&corpus->scene, query, 1);
+    memset(options->out_outcomes, 0xa5, count);
+    uint64_t *bits = query_overlaps(&corpus->scene, options, &(narc_query){.hints = hint_column(hints)});
     for (size_t k = 0; k < count; k++) {
         const struct exact_pair *pair = &corpus->pairs[k];
-        const unsigned outcome = query->out_outcomes[k];
+        const unsigned outcome = options->out_outcomes[k];
         const char *wrong = NULL;
         tally.outcomes[outcome % 4]++;
         if (outcome > NARC_OUTCOME_ROUNDING)
             wrong = "no such outcome";
         else if (outcome == NARC_OUTCOME_LIMIT && bit_is_set(bits, k))
             wrong = "iterations ran out, but it collides";
-        else if (outcome == NARC_OUTCOME_LIMIT && query->iterations == 0)
+        else if (outcome == NARC_OUTCOME_LIMIT && options->iterations == 0)
             wrong = "iterations ran out";
-        else if (outcome == NARC_OUTCOME_ROUNDING && !query->hints && fabs(pair->gap) > pair->bound)
+        else if (outcome == NARC_OUTCOME_ROUNDING && !hints && fabs(pair->gap) > pair->bound)
             wrong = "rounding ended the search";
         else if (fabs(pair->gap) > pair->bound && bit_is_set(bits, k) != (pair->gap < 0) &&
                  (outcome == NARC_OUTCOME_DONE || bit_is_set(bits, k)))
@@ -256,10 +259,10 @@ static void test_overlaps(void **state) {
         for (int c = 0; c < CORPORA; c++) {
             char name[64];
             uint8_t *outcomes = create_outcomes(corpora[c].scene.pair_count);
-            const narc_method_query query = {
+            const narc_method_options options = {
                 .method = NARC_METHOD_GJK, .iterations = iterations[i], .out_outcomes = outcomes};
             snprintf(name, sizeof name, "overlaps, iterations %u, %d", iterations[i], c);
-            const struct tally tally = check_overlaps(&corpora[c], &query, name);
+            const struct tally tally = check_overlaps(&corpora[c], &options, NULL, name);
             print_tally(name, &tally);
             wrong += tally.wrong;
             limits += tally.outcomes[NARC_OUTCOME_LIMIT];
@@ -278,17 +281,16 @@ static size_t check_with_hints(const struct corpus *corpus, uint32_t *hints, con
     uint8_t *outcomes = create_outcomes(count);
     uint32_t *of_overlaps = create_hints(count);
     memcpy(of_overlaps, hints, count * sizeof *hints);
-    narc_method_query query = {.method = NARC_METHOD_GJK, .hints = of_overlaps, .out_outcomes = outcomes};
+    const narc_method_options options = {.method = NARC_METHOD_GJK, .out_outcomes = outcomes};
     size_t wrong = 0;
     for (int again = 0; again < 2; again++) { /* the second time with what the first one left */
-        const struct tally tally = check_overlaps(corpus, &query, what);
+        const struct tally tally = check_overlaps(corpus, &options, of_overlaps, what);
         wrong += tally.wrong;
         /* Rounding may leave a search with useless hints no way on; hardly ever. */
         assert_true(tally.outcomes[NARC_OUTCOME_ROUNDING] <= count / 1000);
     }
-    query.hints = hints;
     for (int again = 0; again < 2; again++) {
-        const struct tally tally = check_contacts(corpus, &query, what);
+        const struct tally tally = check_contacts(corpus, &options, hints, what);
         print_tally(what, &tally);
         wrong += tally.wrong;
     }
@@ -297,12 +299,12 @@ static size_t check_with_hints(const struct corpus *corpus, uint32_t *hints, con
     return wrong;
 }
 
-static size_t count_limits(const struct corpus *corpus, narc_method_query query) {
+static size_t count_limits(const struct corpus *corpus, unsigned iterations, uint32_t *hints) {
     const size_t count = corpus->scene.pair_count;
     uint8_t *outcomes = create_outcomes(count);
     size_t limits = 0;
-    query.out_outcomes = outcomes;
-    free(query_overlaps(&corpus->scene, &query, 1));
+    const narc_method_options options = {.method = NARC_METHOD_GJK, .iterations = iterations, .out_outcomes = outcomes};
+    free(query_overlaps(&corpus->scene, &options, &(narc_query){.hints = hint_column(hints)}));
     for (size_t k = 0; k < count; k++)
         limits += outcomes[k] == NARC_OUTCOME_LIMIT;
     free(outcomes);
@@ -315,13 +317,9 @@ static void test_warm_start(void **state) {
     (void)state;
     for (int c = 0; c < CORPORA; c++) {
         uint32_t *hints = create_hints(corpora[c].scene.pair_count);
-        narc_method_query query = {.method = NARC_METHOD_GJK, .iterations = 3};
-        const size_t cold = count_limits(&corpora[c], query);
-        query.hints = hints;
-        query.iterations = 0;
-        assert_int_equal(count_limits(&corpora[c], query), 0);
-        query.iterations = 3;
-        const size_t warm = count_limits(&corpora[c], query);
+        const size_t cold = count_limits(&corpora[c], 3, NULL);
+        assert_int_equal(count_limits(&corpora[c], 0, hints), 0);
+        const size_t warm = count_limits(&corpora[c], 3, hints);
         printf("  three steps are too few for %zu pairs, with hints for %zu\n", cold, warm);
         assert_true(warm < cold / 2);
         free(hints);

@@ -64,18 +64,20 @@ static void check_hints(const struct scene *scene, const uint32_t *hints, uint32
     const narc_pairs pairs = scene_pairs(scene);
     struct contacts right = find_plain_contacts(scene->store, &bodies, &pairs);
     const struct plain_batch batch = {
-        .shapes = scene->store, .bodies = &bodies, .pairs = &pairs, .right = &right.view, .scene = scene, .name = name};
+        .shapes = scene->store, .bodies = &bodies, .pairs = &pairs, .right = right.rows, .scene = scene, .name = name};
     const size_t size = pairs.count * sizeof *hints;
     uint32_t *left = create_hints(pairs.count), *other = create_hints(pairs.count);
+    const narc_workers two = narc_openmp_workers(2);
     for (size_t m = 0; m < MARGINS; m++) {
         memcpy(left, hints, size);
-        check_plain_contacts(&batch, margins[m], 1, left);
+        check_plain_contacts(&batch, &(narc_query){.margin = margins[m], .hints = NARC_HINT_ARRAY(left)});
+        const narc_query query = {.margin = margins[m], .hints = NARC_HINT_ARRAY(other), .workers = &two};
         memcpy(other, hints, size);
-        check_plain_contacts(&batch, margins[m], 2, other);
+        check_plain_contacts(&batch, &query);
         assert_memory_equal(left, other, size);
         test_use_isa("scalar");
         memcpy(other, hints, size);
-        check_plain_contacts(&batch, margins[m], 1, other);
+        check_plain_contacts(&batch, &(narc_query){.margin = margins[m], .hints = NARC_HINT_ARRAY(other)});
         test_use_isa(test_isa());
         assert_memory_equal(left, other, size);
         if (m == 0 && out_hints)
@@ -83,7 +85,7 @@ static void check_hints(const struct scene *scene, const uint32_t *hints, uint32
     }
     free(left);
     free(other);
-    destroy_contacts(&right);
+    free(right.rows);
 }
 
 static void test_frames(void **state) {
@@ -165,21 +167,20 @@ static void test_guards(void **state) {
     for (size_t count = 0; count < 140; count += 1 + count / 20) {
         for (size_t m = 0; m < MARGINS; m++) {
             struct columns columns = create_columns(&scene, LAYOUT_STRUCTURES, random_below(&random, 1000), count);
-            narc_contacts out = create_guarded_contacts(count), again = create_guarded_contacts(count);
+            narc_contact *out = guard_allocate(count * sizeof *out), *again = guard_allocate(count * sizeof *again);
             uint32_t *hints = guard_allocate(count * sizeof *hints); /* junk */
+            const narc_query query = {.margin = margins[m], .hints = NARC_HINT_ARRAY(hints)};
             size_t found = 0, found_again = 0;
-            assert_int_equal(narc_find_contacts_hinted(store, &columns.bodies, &columns.pairs, margins[m], 1, hints,
-                                                       &out, &found, NULL),
-                             NARC_OK);
-            assert_int_equal(narc_find_contacts_hinted(store, &columns.bodies, &columns.pairs, margins[m], 1, hints,
-                                                       &again, &found_again, NULL),
-                             NARC_OK);
+            assert_int_equal(
+                narc_find_contacts(store, &columns.bodies, &columns.pairs, &query, out, count, &found, NULL), NARC_OK);
+            assert_int_equal(
+                narc_find_contacts(store, &columns.bodies, &columns.pairs, &query, again, count, &found_again, NULL),
+                NARC_OK);
             assert_int_equal(found, found_again);
-            assert_memory_equal(out.separation, again.separation, found * sizeof(float));
-            assert_memory_equal(out.arc_a, again.arc_a, found);
+            assert_memory_equal(out, again, found * sizeof *out);
             guard_release(hints);
-            destroy_guarded_contacts(&out);
-            destroy_guarded_contacts(&again);
+            guard_release(out);
+            guard_release(again);
             destroy_columns(&columns);
         }
     }
@@ -187,7 +188,14 @@ static void test_guards(void **state) {
     destroy_scene(&scene);
 }
 
-/* Sub-ranges one by one leave what the whole batch leaves, and touch no hints but their own. */
+/* A hint of a pair within the caller's own structure. */
+struct cache {
+    uint64_t before;
+    uint32_t hint, after;
+};
+
+/* Sub-ranges one by one leave what the whole batch leaves, and touch no hints but their own; a column with a stride has
+ * those of an array. */
 static void test_ranges(void **state) {
     (void)state;
     enum { PAIRS = 3000 };
@@ -195,47 +203,76 @@ static void test_ranges(void **state) {
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, 200, PAIRS);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
-    struct contacts all = create_contacts(PAIRS), part = create_contacts(PAIRS);
-    uint32_t *hints = create_hints(PAIRS), *whole = create_hints(PAIRS), *before = create_hints(PAIRS);
+    static struct cache caches[PAIRS], before[PAIRS];
+    uint32_t *whole = create_hints(PAIRS);
+    narc_contact *part = make_junk(PAIRS * sizeof *part);
+    memset(caches, 0xa5, sizeof caches);
     for (size_t round = 0; round < test_trials(20); round++) {
         size_t first = 0, listed = 0;
         for (size_t k = 0; k < PAIRS; k++)
-            hints[k] = whole[k] = round % 2 ? hints[k] : (uint32_t)random_bits(&random);
-        assert_int_equal(
-            narc_find_contacts_hinted(scene.store, &bodies, &pairs, 0.1f, 1, whole, &all.view, &all.count, NULL),
-            NARC_OK);
+            caches[k].hint = whole[k] = round % 2 ? caches[k].hint : (uint32_t)random_bits(&random);
+        const narc_query asked = {.margin = 0.1f, .hints = NARC_HINT_ARRAY(whole)};
+        struct contacts all = find_contacts(scene.store, &bodies, &pairs, &asked);
         while (first < PAIRS) {
             const size_t wanted = 1 + random_below(&random, round % 3 ? 200 : 2000);
             const size_t count = wanted < PAIRS - first ? wanted : PAIRS - first;
-            memcpy(before, hints, PAIRS * sizeof *hints);
-            assert_int_equal(narc_find_contacts_hinted_range(scene.store, &bodies, &pairs, first, count, 0.1f, hints,
-                                                             &part.view, &part.count, NULL),
+            const narc_query query = {
+                .margin = 0.1f, .hints = NARC_HINT_COLUMN(caches, hint), .first = first, .count = count};
+            size_t found;
+            memcpy(before, caches, sizeof before);
+            for (size_t k = first; k < first + count; k++)
+                before[k].hint = whole[k];
+            assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &query, part, PAIRS, &found, NULL),
                              NARC_OK);
-            assert_memory_equal(hints, before, first * sizeof *hints);
-            assert_memory_equal(hints + first, whole + first, count * sizeof *hints);
-            assert_memory_equal(hints + first + count, before + first + count, (PAIRS - first - count) * sizeof *hints);
-            assert_memory_equal(part.view.pair, all.view.pair + listed, part.count * sizeof(uint32_t));
-            assert_memory_equal(part.view.separation, all.view.separation + listed, part.count * sizeof(float));
-            assert_memory_equal(part.view.arc_b, all.view.arc_b + listed, part.count);
-            listed += part.count;
+            assert_memory_equal(caches, before, sizeof before);
+            assert_true(listed + found <= all.count);
+            assert_memory_equal(part, all.rows + listed, found * sizeof *part);
+            listed += found;
             first += count;
         }
         assert_int_equal(listed, all.count);
+        free(all.rows);
     }
-    narc_error error;
-    assert_int_equal(
-        narc_find_contacts_hinted_range(scene.store, &bodies, &pairs, 0, 10, 0, NULL, &part.view, &part.count, &error),
-        NARC_ERROR_ARGUMENT);
-    assert_non_null(strstr(error.message, "hints"));
-    assert_int_equal(narc_find_contacts_hinted_range(scene.store, &bodies, &pairs, PAIRS - 5, 10, 0, hints, &part.view,
-                                                     &part.count, &error),
-                     NARC_ERROR_ARGUMENT);
+    free(whole);
+    free(part);
+    destroy_scene(&scene);
+}
+
+/* Of a selection, the hints of its pairs alone are read and written, wherever they stand in it. */
+static void test_selections(void **state) {
+    (void)state;
+    enum { PAIRS = 3000, EVERY = 7 };
+    struct test_random random = test_random_named("hinted selections");
+    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 200, PAIRS);
+    const narc_bodies bodies = scene_bodies(&scene);
+    const narc_pairs pairs = scene_pairs(&scene);
+    uint32_t *hints = create_hints(PAIRS), *whole = create_hints(PAIRS), selection[PAIRS];
+    for (uint32_t k = 0; k < PAIRS; k++) {
+        hints[k] = whole[k] = (uint32_t)random_bits(&random) & 0x0f0f;
+        selection[k] = PAIRS - 1 - k;
+    }
+    struct contacts all =
+        find_contacts(scene.store, &bodies, &pairs, &(narc_query){.margin = 0.1f, .hints = NARC_HINT_ARRAY(whole)});
+    for (size_t k = 0; k < PAIRS; k += EVERY)
+        whole[PAIRS - 1 - k] = hints[PAIRS - 1 - k]; /* the pairs that are not asked of keep theirs */
+    size_t selected = 0, expected = 0;
+    for (size_t k = 0; k < PAIRS; k++)
+        if (k % EVERY != 0)
+            selection[selected++] = selection[k];
+    const narc_query query = {.margin = 0.1f,
+                              .hints = NARC_HINT_ARRAY(hints),
+                              .selection = NARC_ARRAY(selection),
+                              .selection_count = selected};
+    struct contacts found = find_contacts(scene.store, &bodies, &pairs, &query);
     assert_memory_equal(hints, whole, PAIRS * sizeof *hints);
+    for (size_t k = all.count; k-- > 0;)
+        if ((PAIRS - 1 - all.rows[k].pair) % EVERY != 0)
+            assert_memory_equal(&found.rows[expected++], &all.rows[k], sizeof *all.rows);
+    assert_int_equal(expected, found.count);
     free(hints);
     free(whole);
-    free(before);
-    destroy_contacts(&all);
-    destroy_contacts(&part);
+    free(all.rows);
+    free(found.rows);
     destroy_scene(&scene);
 }
 
@@ -244,59 +281,41 @@ static void test_errors(void **state) {
     enum { PAIRS = 3000 };
     struct test_random random = test_random_named("hint errors");
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, 200, PAIRS);
-    narc_bodies bodies = scene_bodies(&scene);
-    narc_pairs pairs = scene_pairs(&scene);
-    struct contacts out = create_contacts(PAIRS), shorter = create_contacts(PAIRS);
+    const narc_bodies bodies = scene_bodies(&scene);
+    const narc_pairs pairs = scene_pairs(&scene);
     uint32_t *hints = create_hints(PAIRS), *before = create_hints(PAIRS), *enough = create_hints(PAIRS);
-    size_t found = 12345;
+    narc_contact *rows = make_junk(PAIRS * sizeof *rows);
+    size_t needed = 12345;
     narc_error error;
     for (size_t k = 0; k < PAIRS; k++)
         hints[k] = before[k] = enough[k] = (uint32_t)random_bits(&random);
-#define EXPECT(status, words, ...)                                                                                     \
-    do {                                                                                                               \
-        assert_int_equal(narc_find_contacts_hinted(__VA_ARGS__, &error), status);                                      \
-        assert_non_null(strstr(error.message, words));                                                                 \
-        assert_memory_equal(hints, before, PAIRS * sizeof *hints);                                                     \
-        assert_int_equal(found, 12345);                                                                                \
-    } while (0)
-    EXPECT(NARC_ERROR_ARGUMENT, "hints", scene.store, &bodies, &pairs, 0, 1, NULL, &out.view, &found);
-    EXPECT(NARC_ERROR_ARGUMENT, "shapes", NULL, &bodies, &pairs, 0, 1, hints, &out.view, &found);
-    EXPECT(NARC_ERROR_ARGUMENT, "bodies", scene.store, NULL, &pairs, 0, 1, hints, &out.view, &found);
-    EXPECT(NARC_ERROR_ARGUMENT, "pairs", scene.store, &bodies, NULL, 0, 1, hints, &out.view, &found);
-    EXPECT(NARC_ERROR_ARGUMENT, "out_contacts", scene.store, &bodies, &pairs, 0, 1, hints, NULL, &found);
-    EXPECT(NARC_ERROR_ARGUMENT, "out_count", scene.store, &bodies, &pairs, 0, 1, hints, &out.view, NULL);
-    EXPECT(NARC_ERROR_NOT_FINITE, "margin", scene.store, &bodies, &pairs, NAN, 1, hints, &out.view, &found);
     scene.pairs[PAIRS - 1].b = 200;
-    EXPECT(NARC_ERROR_INDEX, "2999", scene.store, &bodies, &pairs, 0, 1, hints, &out.view, &found);
+    narc_query query = {.hints = NARC_HINT_ARRAY(hints)};
+    assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &query, rows, PAIRS, &needed, &error),
+                     NARC_ERROR_INDEX);
+    assert_memory_equal(hints, before, PAIRS * sizeof *hints);
+    assert_int_equal(needed, 12345);
     scene.pairs[PAIRS - 1].b = 0;
-#undef EXPECT
 
     /* Too short a list: what fits is the start of the whole list, and hints are as with enough room. */
-    assert_int_equal(narc_find_contacts_hinted(scene.store, &bodies, &pairs, 0, 1, enough, &out.view, &found, NULL),
-                     NARC_OK);
-    assert_true(found > 100);
+    struct contacts all = find_contacts(scene.store, &bodies, &pairs, &(narc_query){.hints = NARC_HINT_ARRAY(enough)});
+    assert_true(all.count > 100);
     for (unsigned threads = 1; threads <= 2; threads++) {
-        size_t needed = 0;
-        shorter.view.capacity = found - 1 - random_below(&random, found - 1);
+        const narc_workers workers = narc_openmp_workers(threads);
+        const size_t capacity = all.count - 1 - random_below(&random, all.count - 1);
         memcpy(hints, before, PAIRS * sizeof *hints);
-        assert_int_equal(
-            narc_find_contacts_hinted(scene.store, &bodies, &pairs, 0, threads, hints, &shorter.view, &needed, &error),
-            NARC_ERROR_CAPACITY);
-        assert_int_equal(needed, found);
-        assert_memory_equal(shorter.view.separation, out.view.separation, shorter.view.capacity * sizeof(float));
+        query.workers = &workers;
+        assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &query, rows, capacity, &needed, &error),
+                         NARC_ERROR_CAPACITY);
+        assert_int_equal(needed, all.count);
+        assert_memory_equal(rows, all.rows, capacity * sizeof *rows);
         assert_memory_equal(hints, enough, PAIRS * sizeof *hints);
     }
-
-    /* No pairs: nothing to hint at. */
-    pairs.count = 0;
-    assert_int_equal(narc_find_contacts_hinted(scene.store, &bodies, &pairs, 0, 1, NULL, &out.view, &found, NULL),
-                     NARC_OK);
-    assert_int_equal(found, 0);
+    free(all.rows);
+    free(rows);
     free(hints);
     free(before);
     free(enough);
-    destroy_contacts(&out);
-    destroy_contacts(&shorter);
     destroy_scene(&scene);
 }
 
@@ -329,9 +348,9 @@ static void test_discs(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_frames), cmocka_unit_test(test_stale),  cmocka_unit_test(test_garbage),
-        cmocka_unit_test(test_guards), cmocka_unit_test(test_errors), cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_discs),
+        cmocka_unit_test(test_frames), cmocka_unit_test(test_stale),      cmocka_unit_test(test_garbage),
+        cmocka_unit_test(test_guards), cmocka_unit_test(test_errors),     cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_discs),  cmocka_unit_test(test_selections),
     };
     return test_begin() ? cmocka_run_group_tests_name("hints", tests, NULL, NULL) : TEST_SKIPPED;
 }

@@ -103,36 +103,36 @@ static double allowed_turn(const struct known *known, bool edge, bool exact, dou
 }
 
 static void check_known_contacts(const char *name, const struct scene *scene, const struct known *known, bool edge,
-                                 const narc_method_query *query) {
+                                 const narc_method_options *options) {
     uint8_t outcomes[2 * FRAMES];
-    narc_method_query with_outcomes = *query;
+    narc_method_options with_outcomes = *options;
     with_outcomes.out_outcomes = outcomes;
-    uint64_t *bits = query_overlaps(scene, query, 1);
-    struct contacts all = query_contacts(scene, &with_outcomes, INFINITY, 1);
+    uint64_t *bits = query_overlaps(scene, options, NULL);
+    struct contacts all = query_contacts(scene, &with_outcomes, &(narc_query){.margin = INFINITY});
     for (size_t k = 0; k < all.count; k++) {
         const struct reference_body a = scene_reference(scene, scene->pairs[k].a),
                                     b = scene_reference(scene, scene->pairs[k].b);
-        const double bound = case_bound(&a, &b), separation = (double)all.view.separation[k];
-        const double gjk = query->method == NARC_METHOD_GJK ? (double)query->tolerance : 0;
+        const double bound = case_bound(&a, &b), separation = (double)all.rows[k].separation;
+        const double gjk = options->method == NARC_METHOD_GJK ? (double)options->tolerance : 0;
         /* All sizes are the extents, or less. */
         const double allowed = bound + gjk * (reference_extent(&a) + reference_extent(&b));
         const double angle = frames[k / 2].angle, sign = k % 2 ? -1 : 1;
         const double x = sign * (cos(angle) * known->normal_x - sin(angle) * known->normal_y),
                      y = sign * (sin(angle) * known->normal_x + cos(angle) * known->normal_y);
-        const double along = (double)all.view.normal_x[k] * x + (double)all.view.normal_y[k] * y;
+        const double along = (double)all.rows[k].normal_x * x + (double)all.rows[k].normal_y * y;
         const bool wrong_normal = (x != 0 || y != 0) && along < 1 - allowed_turn(known, edge, gjk == 0, allowed);
         const bool wrong_bit = fabs(known->gap) > bound && bit_is_set(bits, k) != (known->gap < 0);
         if (outcomes[k] != NARC_OUTCOME_DONE || separation > known->gap + bound || separation < known->gap - allowed ||
             wrong_normal || wrong_bit) {
             fail_msg("%s, %s, tolerance %g, pair %zu: outcome %u, bit %d, separation %.9g, not %.9g; normal (%.7g, "
                      "%.7g), not (%.7g, %.7g)",
-                     name, narc_method_name(query->method), (double)query->tolerance, k, outcomes[k],
-                     bit_is_set(bits, k), separation, known->gap, (double)all.view.normal_x[k],
-                     (double)all.view.normal_y[k], x, y);
+                     name, narc_method_name(options->method), (double)options->tolerance, k, outcomes[k],
+                     bit_is_set(bits, k), separation, known->gap, (double)all.rows[k].normal_x,
+                     (double)all.rows[k].normal_y, x, y);
         }
     }
     free(bits);
-    destroy_contacts(&all);
+    free(all.rows);
 }
 
 static bool is_polygon(const struct shape *shape) {
@@ -153,16 +153,16 @@ static void check_known(const char *name, const struct known *known, bool edge) 
         if (fabs(gap - known->gap) > case_bound(&a, &b))
             fail_msg("%s: the reference says %.12g, not %.12g", name, gap, known->gap);
     }
-    check_known_contacts(name, &scene, known, edge, &(narc_method_query){.method = NARC_METHOD_SAT});
+    check_known_contacts(name, &scene, known, edge, &(narc_method_options){.method = NARC_METHOD_SAT});
     static const float tolerances[] = {1e-3f, 1e-4f, 1e-5f, 1e-6f};
     for (size_t t = 0; t < sizeof tolerances / sizeof *tolerances; t++) {
         check_known_contacts(name, &scene, known, edge,
-                             &(narc_method_query){.method = NARC_METHOD_GJK, .tolerance = tolerances[t]});
+                             &(narc_method_options){.method = NARC_METHOD_GJK, .tolerance = tolerances[t]});
     }
     if (edge && is_polygon(&known->a) && is_polygon(&known->b))
-        check_known_contacts(name, &scene, known, edge, &(narc_method_query){.method = NARC_METHOD_POLYGON_SAT});
+        check_known_contacts(name, &scene, known, edge, &(narc_method_options){.method = NARC_METHOD_POLYGON_SAT});
     for (int f = NARC_METHOD_CIRCLE; known->gap < 0 && f <= NARC_METHOD_OBB; f++) {
-        uint64_t *bits = query_overlaps(&scene, &(narc_method_query){.method = (narc_method)f}, 1);
+        uint64_t *bits = query_overlaps(&scene, &(narc_method_options){.method = (narc_method)f}, NULL);
         for (size_t k = 0; k < scene.pair_count; k++)
             assert_true(bit_is_set(bits, k));
         free(bits);
@@ -219,14 +219,14 @@ static void test_vertices(void **state) {
     const struct known far = {box(2, 2, 0), box(2, 2, 0), 2 + 3, 2 + 4, .gap = 5, .normal_x = 0.6, .normal_y = 0.8};
     check_known("corner to corner", &far, false);
     struct scene scene = make_known_scene(&far);
-    struct contacts found =
-        query_contacts(&scene, &(narc_method_query){.method = NARC_METHOD_POLYGON_SAT}, INFINITY, 1);
+    struct contacts found = query_contacts(&scene, &(narc_method_options){.method = NARC_METHOD_POLYGON_SAT},
+                                           &(narc_query){.margin = INFINITY});
     for (size_t k = 0; k < found.count; k++) {
         const struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
                                     b = scene_reference(&scene, scene.pairs[k].b);
-        assert_true(fabs((double)found.view.separation[k] - 4) <= case_bound(&a, &b));
+        assert_true(fabs((double)found.rows[k].separation - 4) <= case_bound(&a, &b));
     }
-    destroy_contacts(&found);
+    free(found.rows);
     destroy_scene(&scene);
 }
 
@@ -266,34 +266,35 @@ static void test_circles_in_one_place(void **state) {
     const struct known known = {circle(1), circle(1), .gap = -2};
     struct scene scene = make_known_scene(&known);
     check_known_contacts("circles in one place", &scene, &known, false,
-                         &(narc_method_query){.method = NARC_METHOD_SAT});
+                         &(narc_method_options){.method = NARC_METHOD_SAT});
     check_known_contacts("circles in one place", &scene, &known, false,
-                         &(narc_method_query){.method = NARC_METHOD_GJK, .tolerance = 1e-2f});
+                         &(narc_method_options){.method = NARC_METHOD_GJK, .tolerance = 1e-2f});
     uint8_t outcomes[2 * FRAMES];
     /* 8 points and the triangle's 3 are too few. */
-    const narc_method_query few = {
+    const narc_method_options few = {
         .method = NARC_METHOD_GJK, .tolerance = 1e-2f, .iterations = 8, .out_outcomes = outcomes};
-    struct contacts rough = query_contacts(&scene, &few, INFINITY, 1);
+    struct contacts rough = query_contacts(&scene, &few, &(narc_query){.margin = INFINITY});
     for (size_t k = 0; k < rough.count; k++)
         assert_int_equal(outcomes[k], NARC_OUTCOME_LIMIT);
-    destroy_contacts(&rough);
-    const narc_method_query query = {.method = NARC_METHOD_GJK, .tolerance = 1e-6f, .out_outcomes = outcomes};
-    struct contacts found = query_contacts(&scene, &query, INFINITY, 1);
+    free(rough.rows);
+    const narc_method_options options = {.method = NARC_METHOD_GJK, .tolerance = 1e-6f, .out_outcomes = outcomes};
+    struct contacts found = query_contacts(&scene, &options, &(narc_query){.margin = INFINITY});
     for (size_t k = 0; k < found.count; k++) {
         const struct reference_body a = scene_reference(&scene, scene.pairs[k].a),
                                     b = scene_reference(&scene, scene.pairs[k].b);
         assert_int_equal(outcomes[k], NARC_OUTCOME_LIMIT);
-        assert_true(fabs((double)found.view.separation[k] + 2) <= case_bound(&a, &b));
+        assert_true(fabs((double)found.rows[k].separation + 2) <= case_bound(&a, &b));
     }
-    destroy_contacts(&found);
-    uint64_t *bits = query_overlaps(&scene, &query, 1);
+    free(found.rows);
+    uint64_t *bits = query_overlaps(&scene, &options, NULL);
     for (size_t k = 0; k < scene.pair_count; k++) {
         assert_true(bit_is_set(bits, k));
         assert_int_equal(outcomes[k], NARC_OUTCOME_DONE);
     }
     free(bits);
     /* The first of Algorithm 2's arcs has no direction to look along. */
-    bits = query_overlaps(&scene, &(narc_method_query){.method = NARC_METHOD_SAT_FIRST, .out_outcomes = outcomes}, 1);
+    bits =
+        query_overlaps(&scene, &(narc_method_options){.method = NARC_METHOD_SAT_FIRST, .out_outcomes = outcomes}, NULL);
     for (size_t k = 0; k < scene.pair_count; k++) {
         assert_false(bit_is_set(bits, k));
         assert_int_equal(outcomes[k], NARC_OUTCOME_NONE);
@@ -431,13 +432,13 @@ static void test_first_at_the_seam(void **state) {
             const uint32_t first = scene_add_body(&scene, a);
             scene_add_pair(&scene, first, scene_add_body(&scene, b));
             uint8_t outcome = 0xa5;
-            const narc_method_query query = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = &outcome};
-            struct contacts found = query_contacts(&scene, &query, INFINITY, 1);
+            const narc_method_options options = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = &outcome};
+            struct contacts found = query_contacts(&scene, &options, &(narc_query){.margin = INFINITY});
             assert_int_equal(outcome, NARC_OUTCOME_DONE);
-            assert_true(fabs((double)found.view.separation[0] + 1) < 1e-6);
-            assert_true(fabs((double)found.view.normal_x[0] - b.x) < 1e-6);
-            assert_true(fabs((double)found.view.normal_y[0] - b.y) < 1e-6);
-            destroy_contacts(&found);
+            assert_true(fabs((double)found.rows[0].separation + 1) < 1e-6);
+            assert_true(fabs((double)found.rows[0].normal_x - b.x) < 1e-6);
+            assert_true(fabs((double)found.rows[0].normal_y - b.y) < 1e-6);
+            free(found.rows);
             destroy_scene(&scene);
         }
     }

@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "check.h"
-#include "manifold_lists.h"
 #include "manifold_reference.h"
 #include "placements.h"
 
@@ -30,99 +29,96 @@ static bool same_radius(double expected, double found) {
     return expected == found || fabs(expected - found) <= 1e-6 * expected;
 }
 
-/* Point i of manifold k against one of the reference; NULL, or what is wrong. */
-static const char *check_point(const struct reference_point *right, const narc_manifolds *list, size_t k, size_t i,
-                               double bound, bool radii, double *worst) {
-    const double off = hypot((double)list->point_x[i][k] - right->x, (double)list->point_y[i][k] - right->y);
-    const double error = fmax(off, fabs((double)list->separation[i][k] - right->separation));
+/* Point i of a manifold against one of the reference; NULL, or what is wrong. */
+static const char *check_point(const struct reference_point *right, const narc_manifold_point *point, double bound,
+                               double *worst) {
+    const double off = hypot((double)point->x - right->x, (double)point->y - right->y);
+    const double error = fmax(off, fabs((double)point->separation - right->separation));
     *worst = fmax(*worst, error / bound);
     if (!(error <= bound))
         return "point or separation";
-    if (list->feature[i][k] != right->feature)
-        return "feature";
-    if (radii && (!same_radius(right->radius_a, (double)list->radius_a[i][k]) ||
-                  !same_radius(right->radius_b, (double)list->radius_b[i][k])))
-        return "radius";
-    return NULL;
+    return point->feature != right->feature ? "feature" : NULL;
 }
 
-/* Manifold k of a list with an infinite margin against contact k and the reference. */
+/* Radii are those of the deepest point; of a stretch either end may be it. */
+static bool has_radii(const struct reference_manifold *right, const narc_manifold *m, const narc_contact *contact) {
+    for (size_t i = 0; i < m->count; i++) {
+        const bool deepest = right->stretch ? m->point[i].separation == contact->separation : i == right->deepest;
+        if (deepest && same_radius(right->point[i].radius_a, (double)m->radius_a) &&
+            same_radius(right->point[i].radius_b, (double)m->radius_b))
+            return true;
+    }
+    return false;
+}
+
+/* A manifold found with an infinite margin against the contact and the reference. */
 static const char *check_manifold(const struct reference_body *a, const struct reference_body *b,
-                                  const narc_contacts *contacts, const narc_manifolds *list, size_t k,
-                                  struct tally *tally) {
-    const struct exact_contact contact = {(double)contacts->separation[k],
-                                          (double)contacts->normal_x[k],
-                                          (double)contacts->normal_y[k],
-                                          (double)contacts->point_x[k],
-                                          (double)contacts->point_y[k],
-                                          contacts->arc_a[k],
-                                          contacts->arc_b[k]};
+                                  const narc_contact *found, const narc_manifold *m, struct tally *tally) {
+    const struct exact_contact contact = {(double)found->separation, (double)found->normal_x, (double)found->normal_y,
+                                          (double)found->point_x,    (double)found->point_y,  arc_of_a(found->feature),
+                                          arc_of_b(found->feature)};
     const struct reference_manifold right = reference_find_manifold(a, b, &contact, (double)NARC_FLAT_ANGLE);
     const double bound = point_bounds * separation_bound(a, b);
-    const size_t count = list->point_count[k];
-    if (count < 1 || count > 2)
+    if (m->count < 1 || m->count > 2)
         return "number of points";
-    if (memcmp(&list->normal_x[k], &contacts->normal_x[k], sizeof(float)) != 0 ||
-        memcmp(&list->normal_y[k], &contacts->normal_y[k], sizeof(float)) != 0)
+    if (memcmp(&m->normal_x, &found->normal_x, 2 * sizeof(float)) != 0)
         return "normal";
     /* One of the points is the contact, bit for bit; nothing is deeper. */
     bool exact = false, exact_place = false;
-    for (size_t i = 0; i < count; i++) {
-        const bool same = memcmp(&list->separation[i][k], &contacts->separation[k], sizeof(float)) == 0;
+    for (size_t i = 0; i < m->count; i++) {
+        const narc_manifold_point *point = &m->point[i];
+        const bool same = memcmp(&point->separation, &found->separation, sizeof(float)) == 0;
         exact = exact || same;
-        exact_place = exact_place || (same && memcmp(&list->point_x[i][k], &contacts->point_x[k], sizeof(float)) == 0 &&
-                                      memcmp(&list->point_y[i][k], &contacts->point_y[k], sizeof(float)) == 0);
-        if (list->separation[i][k] < contacts->separation[k])
+        exact_place = exact_place || (same && memcmp(&point->x, &found->point_x, 2 * sizeof(float)) == 0);
+        if (point->separation < found->separation)
             return "a point deeper than the contact";
     }
-    if (count == 2 && list->feature[0][k] == list->feature[1][k])
+    if (m->count == 2 && m->point[0].feature == m->point[1].feature)
         return "id of two points";
     if (!exact)
         return "the deepest separation";
+    if (m->count == 1 && memcmp(&m->radius_a, &found->radius_a, 2 * sizeof(float)) != 0)
+        return "radius, of contact and manifold";
     tally->pairs++;
-    tally->two += count == 2;
+    tally->two += m->count == 2;
     if (right.doubtful) {
         tally->doubtful++;
         return NULL;
     }
-    if (count != right.count)
+    if (m->count != right.count)
         return "number of points";
     tally->stretches += right.stretch;
     if (!exact_place && !right.stretch)
         return "the deepest place";
     /* What is certain but for the radii is which features; of a stretch, not which end is deeper. */
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < m->count; i++) {
         struct reference_point point = right.point[i];
         if (right.stretch)
             point.separation = fmax(point.separation, contact.separation);
-        const char *wrong = check_point(&point, list, k, i, bound, !right.doubtful_radius, &tally->worst);
-        if (wrong && !(right.doubtful_radius && strcmp(wrong, "feature") == 0 && count == 1))
+        const char *wrong = check_point(&point, &m->point[i], bound, &tally->worst);
+        if (wrong && !(right.doubtful_radius && strcmp(wrong, "feature") == 0 && m->count == 1))
             return wrong;
     }
-    return NULL;
+    return right.doubtful_radius || has_radii(&right, m, found) ? NULL : "radius";
 }
 
 /* The manifold of (b, a) against that of (a, b). */
-static const char *check_swapped(const narc_manifolds *list, const narc_manifolds *swapped, size_t k, double x,
-                                 double y, double bound, struct tally *tally) {
-    const size_t count = list->point_count[k];
-    const double turn =
-        hypot((double)(list->normal_x[k] + swapped->normal_x[k]), (double)(list->normal_y[k] + swapped->normal_y[k]));
+static const char *check_swapped(const narc_manifold *m, const narc_manifold *swapped, double x, double y, double bound,
+                                 struct tally *tally) {
+    const double turn = hypot((double)(m->normal_x + swapped->normal_x), (double)(m->normal_y + swapped->normal_y));
     /* Another local maximum of the same value, or a choice within rounding. */
-    if (turn > 1e-4 || swapped->point_count[k] != count) {
+    if (turn > 1e-4 || swapped->count != m->count) {
         tally->swaps_skipped++;
         return NULL;
     }
-    for (size_t i = 0; i < count; i++) {
-        const size_t other = count - 1 - i;
-        const unsigned id = list->feature[i][k], turned = swapped->feature[other][k];
-        if ((id >> 8 | (id & 0xff) << 8) != turned) {
+    for (size_t i = 0; i < m->count; i++) {
+        const narc_manifold_point *point = &m->point[i], *other = &swapped->point[m->count - 1 - i];
+        if ((point->feature >> 8 | (point->feature & 0xff) << 8) != other->feature) {
             tally->swaps_skipped++;
             return NULL;
         }
-        const double off = hypot((double)(list->point_x[i][k] - swapped->point_x[other][k]) - x,
-                                 (double)(list->point_y[i][k] - swapped->point_y[other][k]) - y);
-        if (fabs((double)(list->separation[i][k] - swapped->separation[other][k])) > bound)
+        const double off = hypot((double)(point->x - other->x) - x, (double)(point->y - other->y) - y);
+        if (fabs((double)(point->separation - other->separation)) > bound)
             return "separation, swapped";
         if (turn < 1e-6 && off > 4 * bound)
             return "point, swapped";
@@ -144,25 +140,26 @@ static void check_scene(const struct scene *scene, const char *families, struct 
     for (size_t k = 0; k < scene->pair_count; k++) {
         const struct reference_body a = scene_reference(scene, scene->pairs[k].a);
         const struct reference_body b = scene_reference(scene, scene->pairs[k].b);
-        assert_int_equal(list.view.pair[k], k);
-        const char *wrong = check_manifold(&a, &b, &all.view, &list.view, k, tally);
+        const narc_manifold *m = &list.rows[k];
+        assert_int_equal(m->pair, k);
+        const char *wrong = check_manifold(&a, &b, &all.rows[k], m, tally);
         if (!wrong)
-            wrong = check_swapped(&list.view, &swapped.view, k, b.x - a.x, b.y - a.y,
-                                  point_bounds * separation_bound(&a, &b), tally);
+            wrong = check_swapped(m, &swapped.rows[k], b.x - a.x, b.y - a.y, point_bounds * separation_bound(&a, &b),
+                                  tally);
         if (wrong && tally->wrong++ < SHOWN) {
-            print_error("%s, %s: wrong %s\n", families, placement_name((enum placement)(k % PLACE_COUNT)), wrong);
-            for (size_t i = 0; i < list.view.point_count[k]; i++)
-                print_error("  point %zu: (%.9g, %.9g), separation %.9g, feature %04x, radii %g and %g\n", i,
-                            (double)list.view.point_x[i][k], (double)list.view.point_y[i][k],
-                            (double)list.view.separation[i][k], list.view.feature[i][k],
-                            (double)list.view.radius_a[i][k], (double)list.view.radius_b[i][k]);
+            print_error("%s, %s: wrong %s; radii %g and %g\n", families,
+                        placement_name((enum placement)(k % PLACE_COUNT)), wrong, (double)m->radius_a,
+                        (double)m->radius_b);
+            for (size_t i = 0; i < m->count; i++)
+                print_error("  point %zu: (%.9g, %.9g), separation %.9g, feature %04x\n", i, (double)m->point[i].x,
+                            (double)m->point[i].y, (double)m->point[i].separation, m->point[i].feature);
             print_pair(&a, &b);
         }
     }
     free(turned.pairs);
-    destroy_contacts(&all);
-    destroy_manifolds(&list, false);
-    destroy_manifolds(&swapped, false);
+    free(all.rows);
+    free(list.rows);
+    free(swapped.rows);
 }
 
 static void check_all_families(const char *name, narc_precision precision, size_t rounds) {
@@ -273,16 +270,16 @@ static void test_box_on_box(void **state) {
             put(&scene, 1, x, 0.99, tilt);
             struct manifolds list = scene_manifolds(&scene, 0.05f);
             assert_int_equal(list.count, 1);
-            assert_int_equal(list.view.point_count[0], 2);
-            assert_int_equal(list.view.feature[0][0], first);
-            assert_int_equal(list.view.feature[1][0], second);
+            assert_int_equal(list.rows[0].count, 2);
+            assert_int_equal(list.rows[0].point[0].feature, first);
+            assert_int_equal(list.rows[0].point[1].feature, second);
             /* The tangent of a normal that points up points left. The rounded box touches with its arcs' ends. */
             const double half = width / 2, reach = 0.05;
-            assert_true(list.view.normal_y[0] > 0.999f);
-            assert_true(fabs((double)list.view.point_x[0][0] - half) < reach + rounding);
-            assert_true(fabs((double)list.view.point_x[1][0] + half) < reach + rounding);
-            assert_true(fabs((double)list.view.point_y[0][0] - 0.495) < 0.06);
-            destroy_manifolds(&list, false);
+            assert_true(list.rows[0].normal_y > 0.999f);
+            assert_true(fabs((double)list.rows[0].point[0].x - half) < reach + rounding);
+            assert_true(fabs((double)list.rows[0].point[1].x + half) < reach + rounding);
+            assert_true(fabs((double)list.rows[0].point[0].y - 0.495) < 0.06);
+            free(list.rows);
         }
         destroy_scene(&scene);
     }
@@ -311,19 +308,19 @@ static void test_corner_on_corner(void **state) {
         }
         struct manifolds list = scene_manifolds(&scene, 0.5f);
         assert_int_equal(list.count, 2);
-        assert_true(trial > 0 || list.view.point_count[0] == 1);
-        assert_int_equal(list.view.point_count[0], list.view.point_count[1]);
-        if (list.view.point_count[0] == 2) { /* two edges on the same side of the corners */
-            assert_true(hypot((double)list.view.point_x[0][0] - (double)list.view.point_x[1][0],
-                              (double)list.view.point_y[0][0] - (double)list.view.point_y[1][0]) > 1e-5);
+        assert_true(trial > 0 || list.rows[0].count == 1);
+        assert_int_equal(list.rows[0].count, list.rows[1].count);
+        if (list.rows[0].count == 2) { /* two edges on the same side of the corners */
+            assert_true(hypot((double)list.rows[0].point[0].x - (double)list.rows[0].point[1].x,
+                              (double)list.rows[0].point[0].y - (double)list.rows[0].point[1].y) > 1e-5);
             two++;
-            destroy_manifolds(&list, false);
+            free(list.rows);
             continue;
         }
         one++;
-        assert_int_equal(list.view.feature[0][0] & 0xff, list.view.feature[0][1] >> 8);
-        assert_int_equal(list.view.feature[0][0] >> 8, list.view.feature[0][1] & 0xff);
-        destroy_manifolds(&list, false);
+        assert_int_equal(list.rows[0].point[0].feature & 0xff, list.rows[1].point[0].feature >> 8);
+        assert_int_equal(list.rows[0].point[0].feature >> 8, list.rows[1].point[0].feature & 0xff);
+        free(list.rows);
     }
     assert_true(one > two / 100);
     destroy_scene(&scene);
@@ -342,17 +339,17 @@ static void test_rocking(void **state) {
         put(&scene, 1, 0, 1, tilt);
         struct manifolds list = scene_manifolds(&scene, 0.5f);
         assert_int_equal(list.count, 1);
-        assert_int_equal(list.view.point_count[0], 2);
+        assert_int_equal(list.rows[0].count, 2);
         for (size_t i = 0; i < 2; i++) {
-            const float now[3] = {list.view.point_x[i][0], list.view.point_y[i][0], list.view.separation[i][0]};
+            const float now[3] = {list.rows[0].point[i].x, list.rows[0].point[i].y, list.rows[0].point[i].separation};
             for (size_t c = 0; c < 3 && frames > 0; c++)
                 assert_true(fabs((double)(now[c] - last[i][c])) < 3 * step);
             if (frames > 0)
-                assert_int_equal(list.view.feature[i][0], id[i]);
+                assert_int_equal(list.rows[0].point[i].feature, id[i]);
             memcpy(last[i], now, sizeof now);
-            id[i] = list.view.feature[i][0];
+            id[i] = list.rows[0].point[i].feature;
         }
-        destroy_manifolds(&list, false);
+        free(list.rows);
     }
     assert_true(frames > 1000);
     destroy_scene(&scene);
@@ -374,12 +371,12 @@ static void test_rolling(void **state) {
         put(&scene, 0, fmin(way, 1) + 0.5 * sin(turn), 1 + 0.5 * cos(turn) - down, way);
         struct manifolds list = scene_manifolds(&scene, 0.01f);
         assert_int_equal(list.count, 1);
-        assert_int_equal(list.view.point_count[0], 1);
-        const unsigned on_box = list.view.feature[0][0] >> 8;
-        const float curved = list.view.radius_b[0][0];
-        assert_int_equal(list.view.feature[0][0] & 0xff, 0);
-        assert_true(list.view.radius_a[0][0] == 0.5f);
-        assert_true(list.view.separation[1][0] == 0 && list.view.feature[1][0] == 0);
+        assert_int_equal(list.rows[0].count, 1);
+        const unsigned on_box = list.rows[0].point[0].feature >> 8;
+        const float curved = list.rows[0].radius_b;
+        assert_int_equal(list.rows[0].point[0].feature & 0xff, 0);
+        assert_true(list.rows[0].radius_a == 0.5f);
+        assert_true(list.rows[0].point[1].separation == 0 && list.rows[0].point[1].feature == 0);
         if (fabs(way - 1) < 0.02 || fabs(way - 1 - pi / 4) < 0.02) { /* on either side of the corner's end */
             assert_true(on_box == top || on_box == corner || on_box == right);
         } else if (way < 1) {
@@ -395,7 +392,7 @@ static void test_rolling(void **state) {
             assert_true(curved == INFINITY);
             seen[2]++;
         }
-        destroy_manifolds(&list, false);
+        free(list.rows);
     }
     assert_true(seen[0] > 50 && seen[1] > 50 && seen[2] > 50);
     destroy_scene(&scene);
@@ -409,28 +406,30 @@ static void test_margin(void **state) {
     for (int side = -1; side <= 1; side += 2) {
         put(&scene, 1, 0, 1.02, side * 0.05);
         struct manifolds all = scene_manifolds(&scene, INFINITY);
-        assert_int_equal(all.view.point_count[0], 2);
-        const size_t deep = all.view.separation[1][0] < all.view.separation[0][0], other = 1 - deep;
+        assert_int_equal(all.rows[0].count, 2);
+        const size_t deep = all.rows[0].point[1].separation < all.rows[0].point[0].separation, other = 1 - deep;
         assert_int_equal(deep, side < 0 ? 0 : 1);
-        const float limit = all.view.separation[other][0];
-        const float margins[] = {nextafterf(limit, INFINITY), limit, nextafterf(all.view.separation[deep][0], INFINITY),
-                                 all.view.separation[deep][0]};
+        const float limit = all.rows[0].point[other].separation;
+        const float margins[] = {nextafterf(limit, INFINITY), limit,
+                                 nextafterf(all.rows[0].point[deep].separation, INFINITY),
+                                 all.rows[0].point[deep].separation};
         const size_t points[] = {2, 1, 1, 0};
         for (size_t m = 0; m < 4; m++) {
             struct manifolds list = scene_manifolds(&scene, margins[m]);
             assert_int_equal(list.count, points[m] > 0);
             if (points[m] == 2) {
-                check_same_manifolds(&all, 0, &list, 0);
+                assert_memory_equal(list.rows, all.rows, sizeof *list.rows);
             } else if (points[m] == 1) {
-                assert_int_equal(list.view.point_count[0], 1);
-                assert_int_equal(list.view.feature[0][0], all.view.feature[deep][0]);
-                assert_memory_equal(&list.view.separation[0][0], &all.view.separation[deep][0], sizeof(float));
-                assert_memory_equal(&list.view.point_x[0][0], &all.view.point_x[deep][0], sizeof(float));
-                assert_true(list.view.separation[1][0] == 0 && list.view.feature[1][0] == 0);
+                assert_int_equal(list.rows[0].count, 1);
+                assert_int_equal(list.rows[0].point[0].feature, all.rows[0].point[deep].feature);
+                assert_memory_equal(&list.rows[0].point[0].separation, &all.rows[0].point[deep].separation,
+                                    sizeof(float));
+                assert_memory_equal(&list.rows[0].point[0].x, &all.rows[0].point[deep].x, sizeof(float));
+                assert_true(list.rows[0].point[1].separation == 0 && list.rows[0].point[1].feature == 0);
             }
-            destroy_manifolds(&list, false);
+            free(list.rows);
         }
-        destroy_manifolds(&all, false);
+        free(all.rows);
     }
     destroy_scene(&scene);
 }
@@ -443,10 +442,12 @@ static void test_second_margin(void **state) {
     put(&scene, 1, 0, 1.02, 0.05);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
-    struct manifolds all = scene_manifolds(&scene, INFINITY), list = create_manifolds(1, false);
-    assert_int_equal(all.view.point_count[0], 2);
-    const float first = fminf(all.view.separation[0][0], all.view.separation[1][0]);
-    const float second = fmaxf(all.view.separation[0][0], all.view.separation[1][0]);
+    struct manifolds all = scene_manifolds(&scene, INFINITY);
+    narc_manifold found;
+    size_t count;
+    assert_int_equal(all.rows[0].count, 2);
+    const float first = fminf(all.rows[0].point[0].separation, all.rows[0].point[1].separation);
+    const float second = fmaxf(all.rows[0].point[0].separation, all.rows[0].point[1].separation);
     const float margins[][2] = {{first + 0.01f, 0},
                                 {first + 0.01f, second},
                                 {first + 0.01f, nextafterf(second, 1)},
@@ -457,20 +458,15 @@ static void test_second_margin(void **state) {
                                 {-1, 0}};
     const uint8_t points[] = {1, 1, 2, 0, 2, 2, 1, 0};
     for (size_t k = 0; k < sizeof points; k++) {
-        const narc_manifold_options options = {.margin = margins[k][0], .second_margin = margins[k][1]};
-        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL),
-                         NARC_OK);
-        assert_int_equal(list.count, points[k] > 0);
+        const narc_query query = {.margin = margins[k][0], .second_margin = margins[k][1]};
+        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &query, &found, 1, &count, NULL), NARC_OK);
+        assert_int_equal(count, points[k] > 0);
         if (points[k] > 0)
-            assert_int_equal(list.view.point_count[0], points[k]);
+            assert_int_equal(found.count, points[k]);
         if (points[k] == 2)
-            check_same_manifolds(&all, 0, &list, 0);
+            assert_memory_equal(&found, all.rows, sizeof found);
     }
-    const narc_manifold_options options = {.second_margin = NAN};
-    assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL),
-                     NARC_ERROR_NOT_FINITE);
-    destroy_manifolds(&all, false);
-    destroy_manifolds(&list, false);
+    free(all.rows);
     destroy_scene(&scene);
 }
 
@@ -482,16 +478,15 @@ static void test_flat_angle(void **state) {
     put(&scene, 1, 0, 1.2, 0.2);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
-    struct manifolds list = create_manifolds(1, false);
+    narc_manifold found;
+    size_t count;
     const float angles[] = {0, 0.21f, 0.19f, -1, NARC_MAX_FLAT_ANGLE, -INFINITY};
     const uint8_t points[] = {2, 2, 1, 1, 2, 1};
     for (size_t k = 0; k < 6; k++) {
-        const narc_manifold_options options = {.margin = INFINITY, .flat_angle = angles[k]};
-        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL),
-                         NARC_OK);
-        assert_int_equal(list.view.point_count[0], points[k]);
+        const narc_query query = {.margin = INFINITY, .flat_angle = angles[k]};
+        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &query, &found, 1, &count, NULL), NARC_OK);
+        assert_int_equal(found.count, points[k]);
     }
-    destroy_manifolds(&list, false);
     destroy_scene(&scene);
 }
 
@@ -499,7 +494,7 @@ static void test_flat_angle(void **state) {
 
 /* Manifold k of a list in one word: its ids, or its deepest point's alone. */
 static unsigned find_ids(const struct manifolds *list, size_t k) {
-    return list->view.feature[0][k] | (unsigned)list->view.feature[1][k] << 16;
+    return list->rows[k].point[0].feature | (unsigned)list->rows[k].point[1].feature << 16;
 }
 
 static unsigned swap_bytes(unsigned id) { return (id >> 8 & 0x00ff00ff) | (id & 0x00ff00ff) << 8; }
@@ -545,17 +540,18 @@ static void test_doubled_corner(void **state) {
                 put(&scene, 1, place - c * x + s * y, 0.49 - s * x - c * y, tilt);
                 struct manifolds list = scene_manifolds(&scene, 1);
                 assert_int_equal(list.count, 2);
-                assert_int_equal(list.view.point_count[0], list.view.point_count[1]);
+                assert_int_equal(list.rows[0].count, list.rows[1].count);
                 ids[moved] = find_ids(&list, 0);
                 const unsigned turned = swap_bytes(find_ids(&list, 1));
-                const bool both = list.view.point_count[0] == 2;
+                const bool both = list.rows[0].count == 2;
                 assert_int_equal(ids[moved], both ? turned >> 16 | turned << 16 : turned);
                 two += both;
-                for (size_t i = 0; i < list.view.point_count[0]; i++) {
-                    assert_true(list.view.feature[i][0] >> 8 != (1 | NARC_FEATURE_EDGE));
-                    assert_true(!isinf(list.view.radius_b[i][0]) || list.view.feature[i][0] >> 8 & NARC_FEATURE_EDGE);
-                }
-                destroy_manifolds(&list, false);
+                const narc_manifold_point *point = list.rows[0].point;
+                for (size_t i = 0; i < list.rows[0].count; i++)
+                    assert_true(point[i].feature >> 8 != (1 | NARC_FEATURE_EDGE));
+                const size_t deep = both && point[1].separation < point[0].separation;
+                assert_true(!isinf(list.rows[0].radius_b) || point[deep].feature >> 8 & NARC_FEATURE_EDGE);
+                free(list.rows);
             }
             assert_int_equal(ids[0], ids[1]);
             near_joint += fabs(-pi / 2 - normal - tilt) < 0.4;
@@ -584,9 +580,9 @@ static void test_short_edges_swapped(void **state) {
         put(&scene, 1, random_between(&random, -0.2, 0.2) - c + s, 0.49 - s - c, tilt);
         struct manifolds list = scene_manifolds(&scene, 1);
         assert_int_equal(list.count, 2);
-        differ += list.view.point_count[0] != list.view.point_count[1];
-        two += list.view.point_count[0] == 2;
-        destroy_manifolds(&list, false);
+        differ += list.rows[0].count != list.rows[1].count;
+        two += list.rows[0].count == 2;
+        free(list.rows);
         destroy_scene(&scene);
     }
     printf("  %zu of %zu differ, %zu with two points\n", differ, trials, two);
@@ -624,11 +620,11 @@ static void test_far_origin(void **state) {
                 put(&scene, 1, -top_x - reach * out_x, -top_y - reach * out_y, 0);
                 scene_add_pair(&scene, 1, 0);
                 struct manifolds list = scene_manifolds(&scene, INFINITY);
-                for (size_t i = 0; i < list.view.point_count[0]; i++)
-                    assert_true(list.view.feature[i][0] >> 8 != (1 | NARC_FEATURE_EDGE));
-                for (size_t i = 0; i < list.view.point_count[1]; i++)
-                    assert_true((list.view.feature[i][1] & 0xff) != (1 | NARC_FEATURE_EDGE));
-                destroy_manifolds(&list, false);
+                for (size_t i = 0; i < list.rows[0].count; i++)
+                    assert_true(list.rows[0].point[i].feature >> 8 != (1 | NARC_FEATURE_EDGE));
+                for (size_t i = 0; i < list.rows[1].count; i++)
+                    assert_true((list.rows[1].point[i].feature & 0xff) != (1 | NARC_FEATURE_EDGE));
+                free(list.rows);
                 destroy_scene(&scene);
             }
         }
@@ -652,12 +648,12 @@ static void test_leaning(void **state) {
             put(&scene, 1, 0.3 - (c * right - s * low), 0.5 + radius - 0.01 - (s * right + c * low), tilt * pi / 180);
             struct manifolds list = scene_manifolds(&scene, 0.5f);
             assert_int_equal(list.count, 1);
-            const size_t count = list.view.point_count[0];
-            const size_t deep = count == 2 && list.view.separation[1][0] < list.view.separation[0][0];
-            assert_int_equal(list.view.feature[deep][0], top | corner % (unsigned)box.count << 8);
+            const size_t count = list.rows[0].count;
+            const size_t deep = count == 2 && list.rows[0].point[1].separation < list.rows[0].point[0].separation;
+            assert_int_equal(list.rows[0].point[deep].feature, top | corner % (unsigned)box.count << 8);
             one += count == 1;
             two += count == 2;
-            destroy_manifolds(&list, false);
+            free(list.rows);
         }
         assert_true(one > 1000 && two > 1000);
         destroy_scene(&scene);
@@ -666,12 +662,12 @@ static void test_leaning(void **state) {
 
 /* The point of a list that has the place and the separation of the contact, or point_count if neither has. */
 static size_t find_deepest(const struct manifolds *list, const struct contacts *contacts, size_t k) {
-    for (size_t i = 0; i < list->view.point_count[k]; i++)
-        if (list->view.separation[i][k] == contacts->view.separation[k] &&
-            list->view.point_x[i][k] == contacts->view.point_x[k] &&
-            list->view.point_y[i][k] == contacts->view.point_y[k])
+    for (size_t i = 0; i < list->rows[k].count; i++)
+        if (list->rows[k].point[i].separation == contacts->rows[k].separation &&
+            list->rows[k].point[i].x == contacts->rows[k].point_x &&
+            list->rows[k].point[i].y == contacts->rows[k].point_y)
             return i;
-    return list->view.point_count[k];
+    return list->rows[k].count;
 }
 
 /* The flat angle decides whether there is a second point, and nothing of the deepest one's id. */
@@ -703,23 +699,22 @@ static void test_ids_at_all_flat_angles(void **state) {
         const narc_bodies bodies = scene_bodies(&scene);
         const narc_pairs pairs = scene_pairs(&scene);
         struct contacts contacts = scene_contacts(&scene, INFINITY);
-        struct manifolds usual = scene_manifolds(&scene, INFINITY), list = create_manifolds(count, false);
+        struct manifolds usual = scene_manifolds(&scene, INFINITY);
         for (size_t a = 1; a < ANGLES; a++) {
-            const narc_manifold_options options = {.margin = INFINITY, .flat_angle = angles[a]};
-            assert_int_equal(
-                narc_find_manifolds(scene.store, &bodies, &pairs, &options, 1, &list.view, &list.count, NULL), NARC_OK);
+            const narc_query query = {.margin = INFINITY, .flat_angle = angles[a]};
+            struct manifolds list = find_manifolds(scene.store, &bodies, &pairs, &query);
             for (size_t k = 0; k < count; k++) {
                 const size_t i = find_deepest(&usual, &contacts, k), j = find_deepest(&list, &contacts, k);
-                if (i == usual.view.point_count[k] || j == list.view.point_count[k])
+                if (i == usual.rows[k].count || j == list.rows[k].count)
                     continue;
-                assert_int_equal(usual.view.feature[i][k], list.view.feature[j][k]);
+                assert_int_equal(usual.rows[k].point[i].feature, list.rows[k].point[j].feature);
                 compared++;
-                come_and_go += usual.view.point_count[k] != list.view.point_count[k];
+                come_and_go += usual.rows[k].count != list.rows[k].count;
             }
+            free(list.rows);
         }
-        destroy_contacts(&contacts);
-        destroy_manifolds(&usual, false);
-        destroy_manifolds(&list, false);
+        free(contacts.rows);
+        free(usual.rows);
         destroy_scene(&scene);
     }
     printf("  %zu points compared, %zu where the second one comes or goes\n", compared, come_and_go);

@@ -47,25 +47,12 @@ static void show_wrong(const struct corpus *corpus, size_t k, const char *wrong,
 static void print_contact(const struct exact_pair *pair, const struct contacts *all, size_t k, unsigned outcome) {
     print_error("  answer: outcome %u, separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), arcs %d and %d, point "
                 "off %.3g\n",
-                outcome, (double)all->view.separation[k], (double)all->view.normal_x[k], (double)all->view.normal_y[k],
-                (double)all->view.point_x[k], (double)all->view.point_y[k], all->view.arc_a[k], all->view.arc_b[k],
-                distance_from_outlines(pair, &all->view, k));
+                outcome, (double)all->rows[k].separation, (double)all->rows[k].normal_x, (double)all->rows[k].normal_y,
+                (double)all->rows[k].point_x, (double)all->rows[k].point_y, arc_of_a(all->rows[k].feature),
+                arc_of_b(all->rows[k].feature), distance_from_outlines(pair, &all->rows[k]));
 }
 
 /* ------------------------------------------------------------------------------------------------ sat */
-
-/* What narc.h answers, with hints or without. */
-static struct contacts find_contacts(const struct scene *scene, float margin, uint32_t *hints) {
-    if (!hints)
-        return scene_contacts(scene, margin);
-    struct contacts found = create_contacts(scene->pair_count);
-    const narc_bodies bodies = scene_bodies(scene);
-    const narc_pairs pairs = scene_pairs(scene);
-    assert_int_equal(
-        narc_find_contacts_hinted(scene->store, &bodies, &pairs, margin, 1, hints, &found.view, &found.count, NULL),
-        NARC_OK);
-    return found;
-}
 
 static void check_all_done(const uint8_t *outcomes, size_t count) {
     for (size_t k = 0; k < count; k++)
@@ -78,21 +65,25 @@ static void test_sat_is_narc_find(void **state) {
     for (int c = 0; c < CORPORA; c++) {
         const struct scene *scene = &corpora[c].scene;
         const size_t count = scene->pair_count;
+        const narc_bodies bodies = scene_bodies(scene);
+        const narc_pairs pairs = scene_pairs(scene);
         uint32_t *hints = create_hints(count), *own_hints = create_hints(count);
         for (int round = 0; round < 2 * MARGINS; round++) {
             const float margin = margins[round / 2];
             uint8_t *outcomes = create_outcomes(count);
-            narc_method_query query = {
-                .method = NARC_METHOD_SAT, .hints = round % 2 ? hints : NULL, .out_outcomes = outcomes};
-            query.tolerance = round % 3 ? 0 : 0.5f;
-            query.iterations = round % 3 ? 0 : 1;
-            struct contacts found = query_contacts(scene, &query, margin, 1 + (unsigned)round % 3);
-            struct contacts expected = find_contacts(scene, margin, round % 2 ? own_hints : NULL);
+            const narc_workers workers = narc_openmp_workers(1 + (unsigned)round % 3);
+            const narc_method_options options = {
+                .tolerance = round % 3 ? 0 : 0.5f, .iterations = round % 3 ? 0 : 1, .out_outcomes = outcomes};
+            const narc_query query = {
+                .margin = margin, .hints = hint_column(round % 2 ? hints : NULL), .workers = &workers};
+            const narc_query own_query = {.margin = margin, .hints = hint_column(round % 2 ? own_hints : NULL)};
+            struct contacts found = query_contacts(scene, &options, &query);
+            struct contacts expected = find_contacts(scene->store, &bodies, &pairs, &own_query);
             check_same_contacts(&found, &expected, "sat");
             assert_memory_equal(hints, own_hints, count * sizeof *hints);
             check_all_done(outcomes, count);
             memset(outcomes, 0xa5, count);
-            uint64_t *bits = query_overlaps(scene, &query, 1 + (unsigned)round % 3);
+            uint64_t *bits = query_overlaps(scene, &options, &query);
             uint64_t *expected_bits = scene_overlaps(scene);
             assert_memory_equal(bits, expected_bits, NARC_BIT_WORDS(count) * sizeof *bits);
             assert_memory_equal(hints, own_hints, count * sizeof *hints);
@@ -100,8 +91,8 @@ static void test_sat_is_narc_find(void **state) {
             free(bits);
             free(expected_bits);
             free(outcomes);
-            destroy_contacts(&found);
-            destroy_contacts(&expected);
+            free(found.rows);
+            free(expected.rows);
         }
         free(hints);
         free(own_hints);
@@ -114,22 +105,22 @@ static void test_sat_is_exact(void **state) {
     size_t wrong_pairs = 0;
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
-        const narc_method_query query = {.method = NARC_METHOD_SAT};
-        struct contacts all = query_contacts(&corpus->scene, &query, INFINITY, 1);
+        struct contacts all =
+            query_contacts(&corpus->scene, &(narc_method_options){0}, &(narc_query){.margin = INFINITY});
         for (size_t k = 0; k < all.count; k++) {
             const struct exact_pair *pair = &corpus->pairs[k];
-            const char *wrong = check_along_normal(pair, &all.view, k, false);
-            wrong = wrong ? wrong : check_between_touches(pair, &all.view, k);
-            if (!wrong && distance_from_outlines(pair, &all.view, k) > point_bounds * pair->bound)
+            const char *wrong = check_along_normal(pair, &all.rows[k], false);
+            wrong = wrong ? wrong : check_between_touches(pair, &all.rows[k]);
+            if (!wrong && distance_from_outlines(pair, &all.rows[k]) > point_bounds * pair->bound)
                 wrong = "sat: the point is not on the outlines";
-            if (!wrong && fabs((double)all.view.separation[k] - pair->gap) > pair->bound)
+            if (!wrong && fabs((double)all.rows[k].separation - pair->gap) > pair->bound)
                 wrong = "sat: not the exact separation";
             if (wrong) {
                 show_wrong(corpus, k, wrong, &wrong_pairs);
                 print_contact(pair, &all, k, 0);
             }
         }
-        destroy_contacts(&all);
+        free(all.rows);
     }
     assert_int_equal(wrong_pairs, 0);
 }
@@ -159,11 +150,11 @@ static bool is_arc(const struct first_body *body, size_t arc, unsigned told, boo
 /* Is this the answer for arcs i and j? Their u is off by less than the bound of a separation, of which its own error is
  * only a part; the normal is u over its length, and a dozen roundings. */
 static bool is_first_pair(const struct exact_pair *pair, const struct first_body *a, const struct first_body *b,
-                          size_t i, size_t j, const narc_contacts *told, size_t k, bool sure) {
+                          size_t i, size_t j, const narc_contact *told, bool sure) {
     const double u_x = b->x[j] - a->x[i], u_y = b->y[j] - a->y[i], length = hypot(u_x, u_y);
-    const double n_x = (double)told->normal_x[k], n_y = (double)told->normal_y[k];
-    if (!is_arc(a, i, told->arc_a[k], sure) || !is_arc(b, j, told->arc_b[k], sure) ||
-        fabs(value_of(a, b, i, j) - (double)told->separation[k]) > pair->bound)
+    const double n_x = (double)told->normal_x, n_y = (double)told->normal_y;
+    if (!is_arc(a, i, arc_of_a(told->feature), sure) || !is_arc(b, j, arc_of_b(told->feature), sure) ||
+        fabs(value_of(a, b, i, j) - (double)told->separation) > pair->bound)
         return false;
     if (hypot(length * n_x - u_x, length * n_y - u_y) > pair->bound + 1e-6 * length)
         return false;
@@ -173,14 +164,13 @@ static bool is_first_pair(const struct exact_pair *pair, const struct first_body
     const double off = length > 0 ? fmin(pair->bound / length + 1e-6, 2) : 2;
     const double p_x = (a->x[i] + b->x[j] + (a->radius[i] - b->radius[j]) * n_x) / 2,
                  p_y = (a->y[i] + b->y[j] + (a->radius[i] - b->radius[j]) * n_y) / 2;
-    return hypot(p_x - (double)told->point_x[k], p_y - (double)told->point_y[k]) <=
+    return hypot(p_x - (double)told->point_x, p_y - (double)told->point_y) <=
            1.5 * pair->bound + off * fmax(a->radius[i], b->radius[j]);
 }
 
 /* Goes through all pairs of arcs, those of A outside: the answer is the first that passes for certain, or one in doubt
  * before it, or none. */
-static struct first_verdict judge_first(const struct exact_pair *pair, const narc_contacts *told, size_t k,
-                                        unsigned outcome) {
+static struct first_verdict judge_first(const struct exact_pair *pair, const narc_contact *told, unsigned outcome) {
     const struct first_body a = make_first_body(&pair->a, &pair->a), b = make_first_body(&pair->b, &pair->a);
     struct first_verdict verdict = {.value = INFINITY, .arc_count = a.count * b.count};
     const bool none = outcome == NARC_OUTCOME_NONE;
@@ -191,7 +181,7 @@ static struct first_verdict judge_first(const struct exact_pair *pair, const nar
         if (sureness == FAILS)
             continue;
         const bool sure = sureness == PASSES && !verdict.doubted;
-        if (!none && is_first_pair(pair, &a, &b, i, j, told, k, sureness == PASSES)) {
+        if (!none && is_first_pair(pair, &a, &b, i, j, told, sureness == PASSES)) {
             verdict.found = true;
             verdict.value = value_of(&a, &b, i, j);
             verdict.doubted = !sure;
@@ -221,15 +211,16 @@ static bool centers_inside(const struct scene *scene, size_t k) {
 static void check_first_pair(const struct corpus *corpus, const struct contacts *all, size_t k, unsigned outcome,
                              struct first_tally *tally) {
     const struct exact_pair *pair = &corpus->pairs[k];
-    const double separation = (double)all->view.separation[k];
-    const struct first_verdict verdict = judge_first(pair, &all->view, k, outcome);
+    const double separation = (double)all->rows[k].separation;
+    const struct first_verdict verdict = judge_first(pair, &all->rows[k], outcome);
     const char *wrong = verdict.wrong;
     const bool sure = !verdict.doubted && verdict.found;
     if (outcome != NARC_OUTCOME_DONE && outcome != NARC_OUTCOME_NONE)
         wrong = "outcome";
     else if (outcome == NARC_OUTCOME_NONE &&
-             (!isinf(separation) || all->view.normal_x[k] != 0 || all->view.normal_y[k] != 0 ||
-              all->view.point_x[k] != 0 || all->view.point_y[k] != 0 || all->view.arc_a[k] || all->view.arc_b[k]))
+             (!isinf(separation) || all->rows[k].normal_x != 0 || all->rows[k].normal_y != 0 ||
+              all->rows[k].point_x != 0 || all->rows[k].point_y != 0 || arc_of_a(all->rows[k].feature) ||
+              arc_of_b(all->rows[k].feature)))
         wrong = "none, but an answer";
     /* A pair of arcs that passes has the gap along u, which is never more than the largest gap. */
     if (!wrong && sure && verdict.value > pair->gap + pair->bound)
@@ -261,24 +252,25 @@ static void test_first_pair(void **state) {
         const size_t count = corpus->scene.pair_count;
         uint8_t *outcomes = create_outcomes(count), *again = create_outcomes(count);
         uint32_t *hints = create_hints(count), *zeros = create_hints(count);
-        const narc_method_query query = {.method = NARC_METHOD_SAT_FIRST, .hints = hints, .out_outcomes = outcomes};
-        const narc_method_query other = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = again};
-        struct contacts all = query_contacts(&corpus->scene, &query, INFINITY, 1);
+        const narc_method_options options = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = outcomes};
+        const narc_method_options other = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = again};
+        const narc_query query = {.margin = INFINITY, .hints = hint_column(hints)};
+        struct contacts all = query_contacts(&corpus->scene, &options, &query);
         assert_int_equal(all.count, count);
-        uint64_t *bits = query_overlaps(&corpus->scene, &other, 1);
+        uint64_t *bits = query_overlaps(&corpus->scene, &other, NULL);
         assert_memory_equal(outcomes, again, count);
         for (size_t k = 0; k < count; k++) {
-            assert_int_equal(bit_is_set(bits, k), all.view.separation[k] < 0);
+            assert_int_equal(bit_is_set(bits, k), all.rows[k].separation < 0);
             check_first_pair(corpus, &all, k, outcomes[k], &tally);
         }
         for (int m = 0; m < MARGINS; m++) {
-            struct contacts found = query_contacts(&corpus->scene, &other, margins[m], 1);
+            struct contacts found = query_contacts(&corpus->scene, &other, &(narc_query){.margin = margins[m]});
             if (margins[m] < INFINITY)
                 check_contacts_below(&found, &all, margins[m], "sat-first");
             else
                 check_same_contacts(&found, &all, "sat-first");
             assert_memory_equal(outcomes, again, count);
-            destroy_contacts(&found);
+            free(found.rows);
         }
         assert_memory_equal(hints, zeros, count * sizeof *hints);
         free(outcomes);
@@ -286,7 +278,7 @@ static void test_first_pair(void **state) {
         free(hints);
         free(zeros);
         free(bits);
-        destroy_contacts(&all);
+        free(all.rows);
     }
     printf("  sat-first: %zu pairs; in doubt %zu, without a pair of arcs %zu, with one that is not the first of all "
            "%zu; sign wrong %zu, of %zu with all centres inside 0\n",
@@ -299,10 +291,10 @@ static void test_first_pair(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ polygon-sat */
 
-static const char *check_polygon_pair(const struct exact_pair *pair, const narc_contacts *told, size_t k) {
-    const double separation = (double)told->separation[k], right = polygon_gap(&pair->a, &pair->b);
-    const char *wrong = check_along_normal(pair, told, k, false);
-    wrong = wrong ? wrong : check_between_touches(pair, told, k);
+static const char *check_polygon_pair(const struct exact_pair *pair, const narc_contact *told) {
+    const double separation = (double)told->separation, right = polygon_gap(&pair->a, &pair->b);
+    const char *wrong = check_along_normal(pair, told, false);
+    wrong = wrong ? wrong : check_between_touches(pair, told);
     if (wrong)
         return wrong;
     if (fabs(separation - right) > pair->bound)
@@ -310,7 +302,7 @@ static const char *check_polygon_pair(const struct exact_pair *pair, const narc_
     if (separation > pair->gap + pair->bound)
         return "more than the exact separation";
     /* Of polygons that are apart, the normal is mostly not that of the closest points. */
-    if (pair->gap <= 0 && distance_from_outlines(pair, told, k) > point_bounds * pair->bound)
+    if (pair->gap <= 0 && distance_from_outlines(pair, told) > point_bounds * pair->bound)
         return "the point is not on the outlines";
     return NULL;
 }
@@ -323,23 +315,24 @@ static void test_polygons(void **state) {
         const size_t count = corpus->scene.pair_count;
         uint8_t *outcomes = create_outcomes(count);
         uint32_t *hints = create_hints(count), *zeros = create_hints(count);
-        const narc_method_query query = {.method = NARC_METHOD_POLYGON_SAT, .hints = hints, .out_outcomes = outcomes};
-        struct contacts all = query_contacts(&corpus->scene, &query, INFINITY, 1);
+        const narc_method_options options = {.method = NARC_METHOD_POLYGON_SAT, .out_outcomes = outcomes};
+        narc_query query = {.margin = INFINITY, .hints = hint_column(hints)};
+        struct contacts all = query_contacts(&corpus->scene, &options, &query);
         assert_int_equal(all.count, count);
         check_all_done(outcomes, count);
         memset(outcomes, 0xa5, count);
-        uint64_t *bits = query_overlaps(&corpus->scene, &query, 1);
+        uint64_t *bits = query_overlaps(&corpus->scene, &options, &query);
         check_all_done(outcomes, count);
         for (size_t k = 0; k < count; k++) {
             const struct exact_pair *pair = &corpus->pairs[k];
-            const char *wrong = check_polygon_pair(pair, &all.view, k);
-            if (bit_is_set(bits, k) != (all.view.separation[k] < 0))
+            const char *wrong = check_polygon_pair(pair, &all.rows[k]);
+            if (bit_is_set(bits, k) != (all.rows[k].separation < 0))
                 wrong = "bit and separation differ";
             else if (fabs(pair->gap) > pair->bound && bit_is_set(bits, k) != (pair->gap < 0))
                 wrong = "overlap";
             apart += pair->gap > pair->bound;
             colliding += pair->gap < -pair->bound;
-            less += (double)all.view.separation[k] < pair->gap - pair->bound;
+            less += (double)all.rows[k].separation < pair->gap - pair->bound;
             if (wrong) {
                 show_wrong(corpus, k, wrong, &wrong_pairs);
                 print_contact(pair, &all, k, outcomes[k]);
@@ -348,16 +341,17 @@ static void test_polygons(void **state) {
         /* It may end early, but reports the same. */
         const float more[] = {0, 0.2f, 1e-6f, -1e-6f, -0.1f, -10, 10};
         for (size_t m = 0; m < sizeof more / sizeof *more; m++) {
-            struct contacts found = query_contacts(&corpus->scene, &query, more[m], 1);
+            query.margin = more[m];
+            struct contacts found = query_contacts(&corpus->scene, &options, &query);
             check_contacts_below(&found, &all, more[m], "polygon-sat");
-            destroy_contacts(&found);
+            free(found.rows);
         }
         assert_memory_equal(hints, zeros, count * sizeof *hints);
         free(outcomes);
         free(hints);
         free(zeros);
         free(bits);
-        destroy_contacts(&all);
+        free(all.rows);
     }
     printf("  polygon-sat: %zu pairs apart, of %zu of them less than the distance; %zu colliding\n", apart, less,
            colliding);
@@ -412,9 +406,10 @@ static void test_filters(void **state) {
         uint64_t *bits[3];
         uint8_t *outcomes = create_outcomes(count);
         for (int f = 0; f < 3; f++) {
-            const narc_method_query query = {.method = (narc_method)(NARC_METHOD_CIRCLE + f), .out_outcomes = outcomes};
+            const narc_method_options options = {.method = (narc_method)(NARC_METHOD_CIRCLE + f),
+                                                 .out_outcomes = outcomes};
             memset(outcomes, 0xa5, count);
-            bits[f] = query_overlaps(scene, &query, 1);
+            bits[f] = query_overlaps(scene, &options, NULL);
             check_all_done(outcomes, count);
         }
         for (size_t k = 0; k < count; k++) {

@@ -17,24 +17,15 @@ enum { BODIES = 150, PAIRS = 2000 };
 static const float margins[] = {0, 0.25f, -0.1f, INFINITY, NAN};
 enum { MARGINS = sizeof margins / sizeof *margins };
 
-static bool same_contact(const narc_contacts *a, size_t i, const narc_contacts *b, size_t k) {
-    return a->pair[i] == b->pair[k] && memcmp(&a->separation[i], &b->separation[k], sizeof(float)) == 0 &&
-           memcmp(&a->normal_x[i], &b->normal_x[k], sizeof(float)) == 0 &&
-           memcmp(&a->normal_y[i], &b->normal_y[k], sizeof(float)) == 0 &&
-           memcmp(&a->point_x[i], &b->point_x[k], sizeof(float)) == 0 &&
-           memcmp(&a->point_y[i], &b->point_y[k], sizeof(float)) == 0 && a->arc_a[i] == b->arc_a[k] &&
-           a->arc_b[i] == b->arc_b[k];
+static void check_same_rows(const narc_contact *found, const narc_contact *right, size_t count) {
+    assert_memory_equal(found, right, count * sizeof *found);
 }
 
-/* The contacts of a method; those of the exact one in two threads, so that chunks meet. */
-static struct contacts find_contacts(const struct scene *scene, const narc_pairs *pairs, narc_method method,
-                                     float margin, uint32_t *hints, size_t *out_skipped) {
-    struct contacts found = create_contacts(PAIRS);
-    const narc_bodies bodies = scene_bodies(scene);
-    const narc_method_query query = {.method = method, .hints = hints, .out_skipped = out_skipped};
-    assert_int_equal(
-        contacts_by_method(scene->store, &bodies, pairs, &query, margin, 2, &found.view, &found.count, NULL), NARC_OK);
-    return found;
+/* The contacts of a method, in two threads, so that chunks meet. */
+static struct contacts find_by(const struct scene *scene, narc_method method, narc_query query) {
+    const narc_workers workers = narc_openmp_workers(2);
+    query.workers = &workers;
+    return query_contacts(scene, &(narc_method_options){.method = method}, &query);
 }
 
 static void check_margins(const struct scene *scene, narc_method method) {
@@ -42,36 +33,65 @@ static void check_margins(const struct scene *scene, narc_method method) {
     float margin[PAIRS + 1];
     size_t skipped = 0, expected_skipped = 0, at = 0, next[MARGINS] = {0};
     struct contacts each[MARGINS];
-    narc_pairs pairs = scene_pairs(scene);
     for (size_t m = 0; m < MARGINS; m++)
-        each[m] = find_contacts(scene, &pairs, method, isnan(margins[m]) ? 0 : margins[m], NULL, NULL);
+        each[m] = find_by(scene, method, (narc_query){.margin = isnan(margins[m]) ? 0 : margins[m]});
     for (size_t k = 0; k < PAIRS; k++) {
         margin[k] = margins[(k * k + k / 3) % MARGINS];
         expected_skipped += isnan(margin[k]) ? 1 : 0;
     }
-    pairs.margin = NARC_ARRAY(margin);
     memset(hints, 0, sizeof hints);
     for (size_t round = 0; round < 3; round++) { /* without hints, with none, with those of the round before */
-        struct contacts found = find_contacts(scene, &pairs, method, -1000, round == 0 ? NULL : hints, &skipped);
+        const narc_query query = {.margin = -1000,
+                                  .margins = NARC_ARRAY(margin),
+                                  .hints = hint_column(round == 0 ? NULL : hints),
+                                  .out_skipped = &skipped};
+        struct contacts found = find_by(scene, method, query);
         assert_int_equal(skipped, expected_skipped);
         at = 0;
         memset(next, 0, sizeof next);
         for (size_t k = 0; k < PAIRS; k++) {
             for (size_t m = 0; m < MARGINS; m++)
-                next[m] += next[m] < each[m].count && each[m].view.pair[next[m]] < k;
+                next[m] += next[m] < each[m].count && each[m].rows[next[m]].pair < k;
             const size_t m = (k * k + k / 3) % MARGINS;
-            const bool wanted = !isnan(margins[m]) && next[m] < each[m].count && each[m].view.pair[next[m]] == k;
-            const bool there = at < found.count && found.view.pair[at] == k;
+            const bool wanted = !isnan(margins[m]) && next[m] < each[m].count && each[m].rows[next[m]].pair == k;
+            const bool there = at < found.count && found.rows[at].pair == k;
             assert_int_equal(there, wanted);
             if (there && round < 2) /* GJK's hints change its roundings */
-                assert_true(same_contact(&found.view, at, &each[m].view, next[m]));
+                check_same_rows(&found.rows[at], &each[m].rows[next[m]], 1);
             at += there;
         }
         assert_int_equal(at, found.count);
-        destroy_contacts(&found);
+        free(found.rows);
     }
     for (size_t m = 0; m < MARGINS; m++)
-        destroy_contacts(&each[m]);
+        free(each[m].rows);
+}
+
+/* Margins are those of the pairs, wherever these stand in a selection. */
+static void check_selected_margins(const struct scene *scene) {
+    const narc_bodies bodies = scene_bodies(scene);
+    const narc_pairs pairs = scene_pairs(scene);
+    struct margin {
+        double before;
+        float margin;
+    } margin[PAIRS];
+    uint32_t selection[PAIRS / 2];
+    for (size_t k = 0; k < PAIRS; k++)
+        margin[k].margin = margins[k % 3];
+    for (uint32_t k = 0; k < PAIRS / 2; k++)
+        selection[k] = PAIRS - 1 - 2 * k;
+    narc_query query = {.margins = NARC_COLUMN(margin, margin)};
+    struct contacts all = find_contacts(scene->store, &bodies, &pairs, &query);
+    query.selection = (narc_index_column){selection, sizeof *selection};
+    query.selection_count = PAIRS / 2;
+    struct contacts found = find_contacts(scene->store, &bodies, &pairs, &query);
+    size_t at = 0;
+    for (size_t k = all.count; k-- > 0;)
+        if (all.rows[k].pair % 2)
+            check_same_rows(&found.rows[at++], &all.rows[k], 1);
+    assert_int_equal(at, found.count);
+    free(all.rows);
+    free(found.rows);
 }
 
 static void test_margins(void **state) {
@@ -81,6 +101,7 @@ static void test_margins(void **state) {
     check_margins(&scene, NARC_METHOD_SAT);
     check_margins(&scene, NARC_METHOD_SAT_FIRST);
     check_margins(&scene, NARC_METHOD_GJK);
+    check_selected_margins(&scene);
     destroy_scene(&scene);
 }
 
@@ -118,52 +139,48 @@ static void test_shifts(void **state) {
         narc_pairs pairs = scene_pairs(&scene);
         pairs.shift_x = (narc_float_column){&shift[0][0], sizeof shift[0]};
         pairs.shift_y = (narc_float_column){&shift[0][1], sizeof shift[0]};
-        struct contacts right = scene_contacts(&moved, 0.2f), found = create_contacts(PAIRS);
-        assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, 0.2f, 1, &found.view, &found.count, NULL),
-                         NARC_OK);
+        const narc_workers workers = narc_openmp_workers(2);
+        struct contacts right = scene_contacts(&moved, 0.2f);
+        struct contacts found = find_contacts(scene.store, &bodies, &pairs, &(narc_query){.margin = 0.2f});
         assert_int_equal(found.count, right.count);
-        for (size_t k = 0; k < found.count; k++)
-            assert_true(same_contact(&found.view, k, &right.view, k));
-        uint64_t bits[NARC_BIT_WORDS(PAIRS)], *right_bits = scene_overlaps(&moved);
-        assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, 2, bits, NULL), NARC_OK);
-        assert_memory_equal(bits, right_bits, sizeof bits);
+        check_same_rows(found.rows, right.rows, right.count);
+        uint64_t *right_bits = scene_overlaps(&moved);
+        uint64_t *bits = find_overlaps(scene.store, &bodies, &pairs, &(narc_query){.workers = &workers});
+        assert_memory_equal(bits, right_bits, NARC_BIT_WORDS(PAIRS) * sizeof *bits);
+        free(bits);
 
         /* A sub-range reads its own items, and a column may be left out. */
-        struct contacts part = create_contacts(PAIRS);
-        assert_int_equal(
-            narc_find_contacts_range(scene.store, &bodies, &pairs, 700, 333, INFINITY, &part.view, &part.count, NULL),
-            NARC_OK);
+        const narc_query range = {.margin = INFINITY, .first = 700, .count = 333};
+        struct contacts part = find_contacts(scene.store, &bodies, &pairs, &range);
         struct contacts all = scene_contacts(&moved, INFINITY);
-        for (size_t k = 0; k < part.count; k++)
-            assert_true(same_contact(&part.view, k, &all.view, 700 + k));
+        assert_int_equal(part.count, 333);
+        check_same_rows(part.rows, &all.rows[700], part.count);
         pairs.shift_y = (narc_float_column){0};
         for (size_t k = 0; k < PAIRS; k++) {
             moved.bodies[BODIES + k].y = scene.bodies[scene.pairs[k].b].y;
             round_position(&moved.bodies[BODIES + k], scene.precision);
         }
         struct contacts along_x = scene_contacts(&moved, INFINITY);
-        assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, INFINITY, 1, &found.view, &found.count, NULL),
-                         NARC_OK);
-        for (size_t k = 0; k < PAIRS; k++)
-            assert_true(same_contact(&found.view, k, &along_x.view, k));
+        free(found.rows);
+        found = find_contacts(scene.store, &bodies, &pairs, &(narc_query){.margin = INFINITY});
+        check_same_rows(found.rows, along_x.rows, PAIRS);
 
         /* A NaN or an infinity: no answer. */
         shift[17][0] = NAN;
         shift[18][0] = INFINITY;
         size_t skipped = 0;
-        const narc_query query = {.out_skipped = &skipped};
-        assert_int_equal(narc_query_overlaps(scene.store, &bodies, &pairs, &query, 1, bits, NULL), NARC_OK);
+        bits = find_overlaps(scene.store, &bodies, &pairs, &(narc_query){.out_skipped = &skipped});
         assert_int_equal(skipped, 2);
         assert_false(bit_is_set(bits, 17) || bit_is_set(bits, 18));
-
+        free(bits);
         free(right_bits);
         free(moved.bodies);
         free(moved.pairs);
-        destroy_contacts(&right);
-        destroy_contacts(&found);
-        destroy_contacts(&part);
-        destroy_contacts(&all);
-        destroy_contacts(&along_x);
+        free(right.rows);
+        free(found.rows);
+        free(part.rows);
+        free(all.rows);
+        free(along_x.rows);
         destroy_scene(&scene);
     }
 }
@@ -208,8 +225,7 @@ static void test_layouts(void **state) {
         }
         struct scene placed = place_differences(&scene, (const float(*)[2])shift);
         const narc_bodies right_bodies = scene_bodies(&placed);
-        narc_pairs right_pairs = scene_pairs(&placed);
-        right_pairs.margin = NARC_ARRAY(margin);
+        const narc_pairs right_pairs = scene_pairs(&placed);
         for (size_t layout = LAYOUT_ARRAYS; layout <= LAYOUT_REVERSED; layout++) {
             for (size_t count = PAIRS - 3; count > PAIRS - 40; count -= 9) {
                 const size_t first = random_below(&random, 40);
@@ -217,21 +233,16 @@ static void test_layouts(void **state) {
                 float *const x = guard_copy(shift_x, count * sizeof *x),
                              *const y = guard_copy(shift_y, count * sizeof *y),
                              *const margins_of = guard_copy(margin, count * sizeof *margins_of);
-                struct contacts found = create_contacts(PAIRS), right = create_contacts(PAIRS);
                 columns.pairs.shift_x = NARC_ARRAY(x);
                 columns.pairs.shift_y = NARC_ARRAY(y);
-                columns.pairs.margin = NARC_ARRAY(margins_of);
-                assert_int_equal(narc_find_contacts_range(scene.store, &columns.bodies, &columns.pairs, first,
-                                                          count - first, 0, &found.view, &found.count, NULL),
-                                 NARC_OK);
-                assert_int_equal(narc_find_contacts_range(scene.store, &right_bodies, &right_pairs, first,
-                                                          count - first, 0, &right.view, &right.count, NULL),
-                                 NARC_OK);
+                narc_query query = {.margins = NARC_ARRAY(margins_of), .first = first, .count = count - first};
+                struct contacts found = find_contacts(scene.store, &columns.bodies, &columns.pairs, &query);
+                query.margins = (narc_float_column){margin, sizeof *margin};
+                struct contacts right = find_contacts(scene.store, &right_bodies, &right_pairs, &query);
                 assert_int_equal(found.count, right.count);
-                for (size_t k = 0; k < found.count; k++)
-                    assert_true(same_contact(&found.view, k, &right.view, k));
-                destroy_contacts(&found);
-                destroy_contacts(&right);
+                check_same_rows(found.rows, right.rows, right.count);
+                free(found.rows);
+                free(right.rows);
                 guard_release(x);
                 guard_release(y);
                 guard_release(margins_of);

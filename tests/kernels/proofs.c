@@ -4,6 +4,7 @@
  * join.
  */
 #include <math.h>
+#include <stdlib.h>
 
 #include "layouts.h"
 #include "plain.h"
@@ -16,13 +17,13 @@ static void check_scene(const struct scene *scene, const char *name) {
     const struct plain_batch batch = {.shapes = scene->store,
                                       .bodies = &columns.bodies,
                                       .pairs = &columns.pairs,
-                                      .right = &plain.view,
+                                      .right = plain.rows,
                                       .scene = scene,
                                       .name = name};
-    check_plain_overlaps(&batch, 1);
-    check_plain_contacts(&batch, 0, 1, NULL);
-    check_plain_contacts(&batch, INFINITY, 1, NULL);
-    destroy_contacts(&plain);
+    check_plain_overlaps(&batch, NULL);
+    check_plain_contacts(&batch, &(narc_query){.margin = 0});
+    check_plain_contacts(&batch, &(narc_query){.margin = INFINITY});
+    free(plain.rows);
     destroy_columns(&columns);
 }
 

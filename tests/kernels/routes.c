@@ -7,9 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "manifold_lists.h"
+#include "guard.h"
 #include "plain.h"
-#include "plain_kernels.h"
 
 static const double pi = 3.14159265358979323846;
 static const float margins[] = {0, 0.3f, -0.1f, INFINITY};
@@ -35,11 +34,8 @@ static struct scene make_discs(struct test_random *random, size_t pairs, size_t 
 static void find_hinted(const struct scene *scene, size_t first, size_t count, float margin, uint32_t *hints) {
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
-    const narc_contacts none = {.capacity = SIZE_MAX};
-    size_t found = 0;
-    assert_int_equal(narc_find_contacts_hinted_range(scene->store, &bodies, &pairs, first, count, margin, hints, &none,
-                                                     &found, NULL),
-                     NARC_OK);
+    const narc_query query = {.margin = margin, .hints = NARC_HINT_ARRAY(hints), .first = first, .count = count};
+    free(find_contacts(scene->store, &bodies, &pairs, &query).rows);
 }
 
 /* Hints of the whole batch against those of scalar, and of parts of all lengths. */
@@ -66,42 +62,21 @@ static void check_hints(struct test_random *random, const struct scene *scene, f
     free(other);
 }
 
-/* Manifolds by the deciding formula, and those found into every other array. `own`: margins of the pairs, or NULL. */
+/* Manifolds by the deciding formula, and those found. `own`: margins of the pairs, or NULL. */
 static void check_manifolds(const struct scene *scene, float margin, const float *own, unsigned threads) {
     const narc_bodies bodies = scene_bodies(scene);
-    narc_pairs pairs = scene_pairs(scene);
-    pairs.margin = (narc_float_column){own, sizeof *own};
-    const narc_batch batch = {.shapes = scene->store,
-                              .bodies = &bodies,
-                              .pairs = &pairs,
-                              .second_margin = -INFINITY,
-                              .flat_sine = (float)sin((double)NARC_FLAT_ANGLE)};
-    const narc_manifold_options options = {.margin = margin};
-    struct manifolds part = create_manifolds(NARC_CONTACT_GROUP, false);
-    struct manifolds found = create_manifolds(pairs.count, true), some = create_manifolds(pairs.count, true);
-    narc_manifolds even = some.view;
-    even.point_count = NULL;
-    even.normal_y = even.separation[1] = even.point_x[1] = even.point_y[1] = even.radius_a[1] = even.radius_b[1] = NULL;
-    even.feature[1] = NULL;
+    const narc_pairs pairs = scene_pairs(scene);
+    const narc_workers workers = narc_openmp_workers(threads);
+    const narc_query query = {.margin = margin, .margins = {own, sizeof *own}, .workers = &workers};
+    struct manifolds right = find_plain_manifolds(scene->store, &bodies, &pairs, margin, own);
+    struct manifolds found = {guard_allocate(pairs.count * sizeof *found.rows), 0};
     assert_int_equal(
-        narc_find_manifolds(scene->store, &bodies, &pairs, &options, threads, &found.view, &found.count, NULL),
+        narc_find_manifolds(scene->store, &bodies, &pairs, &query, found.rows, pairs.count, &found.count, NULL),
         NARC_OK);
-    assert_int_equal(narc_find_manifolds(scene->store, &bodies, &pairs, &options, threads, &even, &some.count, NULL),
-                     NARC_OK);
-    size_t listed = 0;
-    for (size_t first = 0; first < pairs.count; first += NARC_CONTACT_GROUP) {
-        const size_t left = pairs.count - first, count = left < NARC_CONTACT_GROUP ? left : NARC_CONTACT_GROUP;
-        part.count = narc_kernels_plain.manifold(&batch, first, count, margin, &part.view);
-        check_same_manifolds(&found, listed, &part, 0);
-        listed += part.count;
-    }
-    assert_int_equal(found.count, listed);
-    assert_int_equal(some.count, listed);
-    for (size_t k = 0; k < MANIFOLD_ARRAYS; k += 2)
-        assert_memory_equal(manifold_array(&some.view, k), manifold_array(&found.view, k), listed * manifold_item[k]);
-    destroy_manifolds(&part, false);
-    destroy_manifolds(&found, true);
-    destroy_manifolds(&some, true);
+    assert_int_equal(found.count, right.count);
+    assert_memory_equal(found.rows, right.rows, right.count * sizeof *right.rows);
+    guard_release(found.rows);
+    free(right.rows);
 }
 
 static void check_all(struct test_random *random, const struct scene *scene, const char *name) {
@@ -109,7 +84,7 @@ static void check_all(struct test_random *random, const struct scene *scene, con
     const narc_pairs pairs = scene_pairs(scene);
     struct contacts right = find_plain_contacts(scene->store, &bodies, &pairs);
     const struct plain_batch batch = {
-        .shapes = scene->store, .bodies = &bodies, .pairs = &pairs, .right = &right.view, .scene = scene, .name = name};
+        .shapes = scene->store, .bodies = &bodies, .pairs = &pairs, .right = right.rows, .scene = scene, .name = name};
     uint32_t *hints = calloc(pairs.count, sizeof *hints);
     float *own = malloc(pairs.count * sizeof *own);
     assert_non_null(hints);
@@ -118,20 +93,25 @@ static void check_all(struct test_random *random, const struct scene *scene, con
         own[k] = margins[random_below(random, MARGINS)];
     check_manifolds(scene, 1000, own, 1);
     check_manifolds(scene, -1000, own, 2);
-    for (unsigned threads = 1; threads < 3; threads++)
-        check_plain_overlaps(&batch, threads);
+    const narc_workers workers[] = {narc_openmp_workers(1), narc_openmp_workers(2)};
+    for (size_t w = 0; w < 2; w++)
+        check_plain_overlaps(&batch, &workers[w]);
     for (size_t m = 0; m < MARGINS; m++) {
         for (size_t k = 0; k < pairs.count; k++)
             hints[k] = m % 2 ? (uint32_t)random_bits(random) & 0x0f0f : 0;
         check_hints(random, scene, margins[m], hints);
-        check_plain_contacts(&batch, margins[m], 1 + (unsigned)m % 2, NULL);
-        check_plain_contacts(&batch, margins[m], 2 - (unsigned)m % 2, hints);
-        check_plain_contacts(&batch, margins[m], 1, hints);
+        narc_query query = {.margin = margins[m], .workers = &workers[m % 2]};
+        check_plain_contacts(&batch, &query);
+        query.hints = NARC_HINT_ARRAY(hints);
+        query.workers = &workers[1 - m % 2];
+        check_plain_contacts(&batch, &query);
+        query.workers = NULL;
+        check_plain_contacts(&batch, &query);
         check_manifolds(scene, margins[m], NULL, 1 + (unsigned)m % 2);
     }
     free(hints);
     free(own);
-    destroy_contacts(&right);
+    free(right.rows);
 }
 
 /* Discs alone, with few others, with many; with broken bodies between them; around the ends of vectors and calls. */

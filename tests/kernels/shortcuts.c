@@ -37,15 +37,15 @@ static void check_scene(struct test_random *random, const struct scene *scene, e
     const struct plain_batch batch = {.shapes = scene->store,
                                       .bodies = &columns.bodies,
                                       .pairs = &columns.pairs,
-                                      .right = &plain.view,
+                                      .right = plain.rows,
                                       .scene = scene,
                                       .name = name};
-    const float some = plain.view.separation[random_below(random, plain.count)];
+    const float some = plain.rows[random_below(random, plain.count)].separation;
     const float margins[] = {0, INFINITY, 0.25f, 1e-4f, -1e-4f, -0.25f, some, nextafterf(some, INFINITY), -FLT_MAX};
-    check_plain_overlaps(&batch, 1);
+    check_plain_overlaps(&batch, NULL);
     for (size_t k = 0; k < sizeof margins / sizeof *margins; k++)
-        check_plain_contacts(&batch, margins[k], 1, NULL);
-    destroy_contacts(&plain);
+        check_plain_contacts(&batch, &(narc_query){.margin = margins[k]});
+    free(plain.rows);
     destroy_columns(&columns);
 }
 
@@ -207,14 +207,14 @@ static void walk(struct scene *scene, size_t pair, const struct way *way, double
 /* What changes: whether the bodies collide, the arcs that touch, or the side. */
 enum change { CHANGE_VERDICT, CHANGE_ARCS, CHANGE_SIDE, CHANGES };
 
-static bool is_change(enum change change, const narc_contacts *a, const narc_contacts *b, size_t k) {
+static bool is_change(enum change change, const narc_contact *a, const narc_contact *b) {
     switch (change) {
     case CHANGE_VERDICT:
-        return (a->separation[k] < 0) != (b->separation[k] < 0);
+        return (a->separation < 0) != (b->separation < 0);
     case CHANGE_ARCS:
-        return a->arc_a[k] != b->arc_a[k] || a->arc_b[k] != b->arc_b[k];
+        return arc_of_a(a->feature) != arc_of_a(b->feature) || arc_of_b(a->feature) != arc_of_b(b->feature);
     default:
-        return a->normal_x[k] * b->normal_x[k] + a->normal_y[k] * b->normal_y[k] < 0.9f;
+        return a->normal_x * b->normal_x + a->normal_y * b->normal_y < 0.9f;
     }
 }
 
@@ -263,13 +263,13 @@ static void check_changes(struct test_random *random, enum change change) {
             walk(&scene, k, &ways[k], step ? (ways[k].low + ways[k].high) / 2 : 1);
         struct contacts there = find_plain_contacts(scene.store, &bodies, &pairs);
         for (size_t k = 0; k < PAIRS; k++) {
-            const bool changed = is_change(change, &first.view, &there.view, k);
+            const bool changed = is_change(change, &first.rows[k], &there.rows[k]);
             if (step == 0)
                 ways[k].changes = changed;
             else if (ways[k].changes)
                 *(changed ? &ways[k].high : &ways[k].low) = (ways[k].low + ways[k].high) / 2;
         }
-        destroy_contacts(&there);
+        free(there.rows);
     }
     for (size_t point = 0; point < POINTS; point++) {
         const double beside = point ? (point % 2 ? 1 : -1) * 1e-13 * pow(4, (double)point) : 0;
@@ -279,15 +279,15 @@ static void check_changes(struct test_random *random, enum change change) {
         const struct plain_batch batch = {.shapes = scene.store,
                                           .bodies = &bodies,
                                           .pairs = &pairs,
-                                          .right = &plain.view,
+                                          .right = plain.rows,
                                           .scene = &scene,
                                           .name = "change"};
-        check_plain_overlaps(&batch, 1);
-        check_plain_contacts(&batch, 0, 1, NULL);
-        check_plain_contacts(&batch, INFINITY, 1, NULL);
-        destroy_contacts(&plain);
+        check_plain_overlaps(&batch, NULL);
+        check_plain_contacts(&batch, &(narc_query){.margin = 0});
+        check_plain_contacts(&batch, &(narc_query){.margin = INFINITY});
+        free(plain.rows);
     }
-    destroy_contacts(&first);
+    free(first.rows);
     destroy_scene(&scene);
 }
 
@@ -364,17 +364,14 @@ static uint32_t add_near_origin(struct test_random *random, struct scene *scene,
 
 /* No filter says no where the exact method says yes. */
 static void check_filters(const struct scene *scene) {
-    const narc_bodies bodies = scene_bodies(scene);
-    const narc_pairs pairs = scene_pairs(scene);
-    uint64_t *exact = scene_overlaps(scene), *passed = scene_overlaps(scene);
+    uint64_t *exact = scene_overlaps(scene);
     for (narc_method method = NARC_METHOD_CIRCLE; method <= NARC_METHOD_OBB; method++) {
-        const narc_method_query query = {.method = method};
-        assert_int_equal(overlaps_by_method(scene->store, &bodies, &pairs, &query, 1, passed, NULL), NARC_OK);
-        for (size_t k = 0; k < NARC_BIT_WORDS(pairs.count); k++)
+        uint64_t *passed = query_overlaps(scene, &(narc_method_options){.method = method}, NULL);
+        for (size_t k = 0; k < NARC_BIT_WORDS(scene->pair_count); k++)
             assert_true((exact[k] & ~passed[k]) == 0);
+        free(passed);
     }
     free(exact);
-    free(passed);
 }
 
 /* Shapes ever further from their own origin: up to 1e18 times their radius, the smallest radius and the largest shift

@@ -303,23 +303,25 @@ static void expect_no_answers(const narc_shapes *shapes, const narc_bodies *bodi
                               narc_method method) {
     uint64_t bits = 0;
     size_t skipped = 99;
-    const narc_method_query query = {.method = method, .out_skipped = &skipped};
+    const narc_method_options options = {.method = method};
+    const narc_query query = {.margin = INFINITY, .out_skipped = &skipped};
+    narc_methods *methods;
     narc_error error;
-    expect_ok(overlaps_by_method(shapes, bodies, pairs, &query, 1, &bits, &error), &error);
+    expect_ok(narc_create_methods(shapes, NULL, &methods, &error), &error);
+    expect_ok(narc_find_overlaps_by(methods, bodies, pairs, &options, &query, &bits, &error), &error);
     assert_int_equal(bits & 0xb, 0);
     assert_int_equal(skipped, 3);
-    float separation[4];
+    narc_contact rows[4];
     size_t found;
-    const narc_contacts contacts = {.capacity = 4, .separation = separation};
     if (method < NARC_METHOD_CIRCLE) {
-        expect_ok(contacts_by_method(shapes, bodies, pairs, &query, INFINITY, 1, &contacts, &found, &error), &error);
+        expect_ok(narc_find_contacts_by(methods, bodies, pairs, &options, &query, rows, 4, &found, &error), &error);
         assert_int_equal(found, 4);
-        assert_true(isinf(separation[0]) && isinf(separation[1]) && isinf(separation[3]));
+        assert_true(isinf(rows[0].separation) && isinf(rows[1].separation) && isinf(rows[3].separation));
     }
+    narc_destroy_methods(methods);
     expect_error(narc_validate_bodies(shapes, bodies, &error), NARC_ERROR_INDEX, &error, "body 1: shape 1 was removed");
     narc_box boxes[3];
-    const narc_box_options options = {.out_skipped = &skipped};
-    expect_ok(narc_compute_boxes(shapes, bodies, &options, 1, boxes, &error), &error);
+    expect_ok(narc_compute_boxes(shapes, bodies, &(narc_box_options){.out_skipped = &skipped}, boxes, &error), &error);
     assert_int_equal(skipped, 1);
     assert_true(!(boxes[1].min_x <= boxes[1].max_x) && boxes[0].min_x < boxes[0].max_x);
 }
@@ -350,8 +352,12 @@ static void removed_shapes_collide_with_nothing(void **state) {
         test_use_isa(narc_isa_name(run / 7));
         uint64_t bits = 0;
         size_t skipped = 99;
-        const narc_method_query query = {.method = method, .out_skipped = &skipped};
-        expect_ok(overlaps_by_method(shapes, &bodies, &pairs, &query, 1, &bits, &error), &error);
+        const narc_method_options options = {.method = method};
+        const narc_query query = {.out_skipped = &skipped};
+        narc_methods *methods;
+        expect_ok(narc_create_methods(shapes, NULL, &methods, &error), &error);
+        expect_ok(narc_find_overlaps_by(methods, &bodies, &pairs, &options, &query, &bits, &error), &error);
+        narc_destroy_methods(methods);
         assert_int_equal(skipped, 0);
         if (method != NARC_METHOD_SAT_FIRST) /* a polygon has no arcs for it */
             assert_int_equal(bits, 0xf);
@@ -380,9 +386,9 @@ static narc_status ask_boxes(const narc_methods *methods, bool *out_meet, narc_e
                                 .sine = {&zero, 0},
                                 .shape = {&shape, 0}};
     const narc_pairs pairs = {.count = 1, .a = {&a, 0}, .b = {&b, 0}};
-    const narc_method_query query = {.method = NARC_METHOD_OBB};
+    const narc_method_options options = {.method = NARC_METHOD_OBB};
     uint64_t bits = 0xa5;
-    const narc_status status = narc_find_overlaps_by(methods, &bodies, &pairs, &query, 1, &bits, error);
+    const narc_status status = narc_find_overlaps_by(methods, &bodies, &pairs, &options, NULL, &bits, error);
     *out_meet = bits & 1;
     assert_true(status == NARC_OK ? bits <= 1 : bits == 0xa5);
     return status;

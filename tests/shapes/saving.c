@@ -211,7 +211,7 @@ static void expect_usable(const narc_shapes *shapes) {
         uint32_t shape;
     } body[MOST];
     uint32_t a[MOST * MOST], b[MOST * MOST];
-    float separation[MOST * MOST], normal_x[MOST * MOST];
+    narc_contact rows[MOST * MOST];
     uint64_t bits[MOST * MOST / 64 + 1] = {0};
     size_t count = 0, pairs_count = 0, found;
     narc_error error;
@@ -236,13 +236,14 @@ static void expect_usable(const narc_shapes *shapes) {
                                 .sine = NARC_COLUMN(body, s),
                                 .shape = NARC_COLUMN(body, shape)};
     const narc_pairs pairs = {.count = pairs_count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
-    const narc_contacts contacts = {.capacity = pairs_count, .separation = separation, .normal_x = normal_x};
-    expect_ok(narc_find_overlaps(shapes, &bodies, &pairs, 1, bits, &error), &error);
-    expect_ok(narc_find_contacts(shapes, &bodies, &pairs, INFINITY, 1, &contacts, &found, &error), &error);
+    expect_ok(narc_find_overlaps(shapes, &bodies, &pairs, NULL, bits, &error), &error);
+    expect_ok(narc_find_contacts(shapes, &bodies, &pairs, &(narc_query){.margin = INFINITY}, rows, pairs_count, &found,
+                                 &error),
+              &error);
     assert_int_equal(found, pairs_count);
     for (size_t k = 0; k < found; k++) {
-        assert_false(isnan(separation[k]) || isnan(normal_x[k]));
-        assert_int_equal(bits[k / 64] >> k % 64 & 1, separation[k] < 0);
+        assert_false(isnan(rows[k].separation) || isnan(rows[k].normal_x));
+        assert_int_equal(bits[k / 64] >> k % 64 & 1, rows[k].separation < 0);
     }
 }
 

@@ -71,11 +71,19 @@ static double distance_to(const struct reference_body *a, const struct reference
     return distance * scale;
 }
 
+/* Is that the radius of curvature of a feature? A single precision radius, times a scale. */
+static bool is_radius(const struct reference_body *body, unsigned feature, double radius) {
+    if (feature & NARC_FEATURE_EDGE)
+        return radius == INFINITY;
+    const double right = body->scale * body->arcs[feature].radius;
+    return fabs(radius - right) <= unit_tolerance * right;
+}
+
 const char *check_contact(const struct reference_body *a, const struct reference_body *b, double gap,
-                          const narc_contacts *contacts, size_t k, struct fractions *worst) {
-    double bound = separation_bound(a, b), separation = (double)contacts->separation[k];
-    double x = (double)contacts->normal_x[k], y = (double)contacts->normal_y[k], length = hypot(x, y);
-    double point_x = (double)contacts->point_x[k], point_y = (double)contacts->point_y[k];
+                          const narc_contact *contact, struct fractions *worst) {
+    double bound = separation_bound(a, b), separation = (double)contact->separation;
+    double x = (double)contact->normal_x, y = (double)contact->normal_y, length = hypot(x, y);
+    double point_x = (double)contact->point_x, point_y = (double)contact->point_y;
     if (!isfinite(separation) || !isfinite(length) || !isfinite(point_x) || !isfinite(point_y))
         return "not finite";
     double separation_error = fabs(separation - gap);
@@ -100,7 +108,16 @@ const char *check_contact(const struct reference_body *a, const struct reference
         return "point not on A";
     if (off_b > point_bounds * bound)
         return "point not on B";
-    return check_arcs(a, b, gap, contacts->arc_a[k], contacts->arc_b[k], x, y);
+    if (contact->count != 1)
+        return "count";
+    const unsigned on_a = contact->feature & 0xff, on_b = contact->feature >> 8, arc_a = arc_of_a(contact->feature);
+    const unsigned arc_b = arc_of_b(contact->feature);
+    const char *wrong = check_arcs(a, b, gap, arc_a, arc_b, x, y);
+    if (wrong)
+        return wrong;
+    if (!is_radius(a, on_a, (double)contact->radius_a) || !is_radius(b, on_b, (double)contact->radius_b))
+        return "radius";
+    return NULL;
 }
 
 static void print_body(const char *name, const struct reference_body *body) {

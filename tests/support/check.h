@@ -15,10 +15,10 @@ struct fractions {
 /* The documented bound of a separation's error. */
 double separation_bound(const struct reference_body *a, const struct reference_body *b);
 
-/* Checks contact k of a list against the exact gap of its pair: separation, normal, point and arcs. Raises `worst`
- * to this contact's errors where they are larger. Returns NULL, or what is wrong (static storage). */
+/* Checks a contact against the exact gap of its pair: separation, normal, point, arcs and radii. Raises `worst` to this
+ * contact's errors where they are larger. Returns NULL, or what is wrong (static storage). */
 const char *check_contact(const struct reference_body *a, const struct reference_body *b, double gap,
-                          const narc_contacts *contacts, size_t k, struct fractions *worst);
+                          const narc_contact *contact, struct fractions *worst);
 
 /* Prints a pair so that it can be put into a test of its own. */
 void print_pair(const struct reference_body *a, const struct reference_body *b);

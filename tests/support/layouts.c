@@ -204,26 +204,3 @@ narc_shapes *guard_store(const struct scene *scene) {
     }
     return store;
 }
-
-narc_contacts create_guarded_contacts(size_t capacity) {
-    return (narc_contacts){.capacity = capacity,
-                           .pair = guard_allocate(capacity * sizeof(uint32_t)),
-                           .separation = guard_allocate(capacity * sizeof(float)),
-                           .normal_x = guard_allocate(capacity * sizeof(float)),
-                           .normal_y = guard_allocate(capacity * sizeof(float)),
-                           .point_x = guard_allocate(capacity * sizeof(float)),
-                           .point_y = guard_allocate(capacity * sizeof(float)),
-                           .arc_a = guard_allocate(capacity),
-                           .arc_b = guard_allocate(capacity)};
-}
-
-void destroy_guarded_contacts(const narc_contacts *contacts) {
-    guard_release(contacts->pair);
-    guard_release(contacts->separation);
-    guard_release(contacts->normal_x);
-    guard_release(contacts->normal_y);
-    guard_release(contacts->point_x);
-    guard_release(contacts->point_y);
-    guard_release(contacts->arc_a);
-    guard_release(contacts->arc_b);
-}

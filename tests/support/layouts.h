@@ -37,8 +37,4 @@ void unit_scales(struct scene *scene);
 /* A copy of a scene's store in guarded memory, no larger than needed. */
 narc_shapes *guard_store(const struct scene *scene);
 
-/* Arrays for exactly `capacity` contacts in guarded memory, full of junk. */
-narc_contacts create_guarded_contacts(size_t capacity);
-void destroy_guarded_contacts(const narc_contacts *contacts);
-
 #endif

@@ -192,56 +192,28 @@ void print_corpus_pair(const struct corpus *corpus, size_t k) {
 
 /* ------------------------------------------------------------------------------------------------ calls */
 
-static void *junk(size_t size) {
-    void *memory = malloc(size + 1);
-    assert_non_null(memory);
-    return memset(memory, 0xa5, size + 1);
-}
-
-narc_status overlaps_by_method(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                               const narc_method_query *query, unsigned threads, uint64_t *out_bits,
-                               narc_error *error) {
-    narc_methods *methods = NULL;
-    narc_status status = narc_create_methods(shapes, NULL, &methods, error);
-    if (status == NARC_OK)
-        status = narc_find_overlaps_by(methods, bodies, pairs, query, threads, out_bits, error);
-    narc_destroy_methods(methods);
-    return status;
-}
-
-narc_status contacts_by_method(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                               const narc_method_query *query, float margin, unsigned threads,
-                               const narc_contacts *out_contacts, size_t *out_count, narc_error *error) {
-    narc_methods *methods = NULL;
-    narc_status status = narc_create_methods(shapes, NULL, &methods, error);
-    if (status == NARC_OK)
-        status = narc_find_contacts_by(methods, bodies, pairs, query, margin, threads, out_contacts, out_count, error);
-    narc_destroy_methods(methods);
-    return status;
-}
-
-uint64_t *query_overlaps(const struct scene *scene, const narc_method_query *query, unsigned threads) {
-    uint64_t *bits = junk(NARC_BIT_WORDS(scene->pair_count) * sizeof(uint64_t));
+uint64_t *query_overlaps(const struct scene *scene, const narc_method_options *options, const narc_query *query) {
+    uint64_t *bits = make_junk(NARC_BIT_WORDS(scene->pair_count) * sizeof *bits);
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
     narc_error error;
-    if (overlaps_by_method(scene->store, &bodies, &pairs, query, threads, bits, &error) != NARC_OK)
-        fail_msg("narc_find_overlaps_by, %s: %s", narc_method_name(query->method), error.message);
+    if (narc_find_overlaps_by(scene_methods(scene), &bodies, &pairs, options, query, bits, &error) != NARC_OK)
+        fail_msg("narc_find_overlaps_by, %s: %s", narc_method_name(options->method), error.message);
     return bits;
 }
 
-struct contacts query_contacts(const struct scene *scene, const narc_method_query *query, float margin,
-                               unsigned threads) {
-    struct contacts found = create_contacts(scene->pair_count);
+struct contacts query_contacts(const struct scene *scene, const narc_method_options *options, const narc_query *query) {
+    struct contacts found = {make_junk(scene->pair_count * sizeof *found.rows), 0};
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
     narc_error error;
-    if (contacts_by_method(scene->store, &bodies, &pairs, query, margin, threads, &found.view, &found.count, &error))
-        fail_msg("narc_find_contacts_by, %s: %s", narc_method_name(query->method), error.message);
+    if (narc_find_contacts_by(scene_methods(scene), &bodies, &pairs, options, query, found.rows, pairs.count,
+                              &found.count, &error) != NARC_OK)
+        fail_msg("narc_find_contacts_by, %s: %s", narc_method_name(options->method), error.message);
     return found;
 }
 
-uint8_t *create_outcomes(size_t count) { return junk(count); }
+uint8_t *create_outcomes(size_t count) { return make_junk(count); }
 
 uint32_t *create_hints(size_t count) {
     uint32_t *hints = calloc(count + 1, sizeof *hints);
@@ -251,30 +223,21 @@ uint32_t *create_hints(size_t count) {
 
 /* ------------------------------------------------------------------------------------------------ lists */
 
-static bool same_item(const narc_contacts *l, size_t i, const narc_contacts *r, size_t k) {
-    return l->pair[i] == r->pair[k] && memcmp(&l->separation[i], &r->separation[k], sizeof(float)) == 0 &&
-           memcmp(&l->normal_x[i], &r->normal_x[k], sizeof(float)) == 0 &&
-           memcmp(&l->normal_y[i], &r->normal_y[k], sizeof(float)) == 0 &&
-           memcmp(&l->point_x[i], &r->point_x[k], sizeof(float)) == 0 &&
-           memcmp(&l->point_y[i], &r->point_y[k], sizeof(float)) == 0 && l->arc_a[i] == r->arc_a[k] &&
-           l->arc_b[i] == r->arc_b[k];
-}
-
 void check_same_contacts(const struct contacts *found, const struct contacts *expected, const char *what) {
     if (found->count != expected->count)
         fail_msg("%s: %zu contacts, not %zu", what, found->count, expected->count);
     for (size_t k = 0; k < found->count; k++)
-        if (!same_item(&found->view, k, &expected->view, k))
-            fail_msg("%s: contact %zu, of pair %u, differs", what, k, (unsigned)found->view.pair[k]);
+        if (memcmp(&found->rows[k], &expected->rows[k], sizeof *found->rows) != 0)
+            fail_msg("%s: contact %zu, of pair %u, differs", what, k, (unsigned)found->rows[k].pair);
 }
 
 void check_contacts_below(const struct contacts *found, const struct contacts *all, float margin, const char *what) {
     size_t next = 0;
     for (size_t k = 0; k < all->count; k++) {
-        if (all->view.separation[k] < margin) {
-            if (next >= found->count || !same_item(&found->view, next, &all->view, k)) {
+        if (all->rows[k].separation < margin) {
+            if (next >= found->count || memcmp(&found->rows[next], &all->rows[k], sizeof *found->rows) != 0) {
                 fail_msg("%s, margin %g: pair %zu, with separation %.9g, is not reported as it is", what,
-                         (double)margin, k, (double)all->view.separation[k]);
+                         (double)margin, k, (double)all->rows[k].separation);
             }
             next++;
         }
@@ -285,7 +248,7 @@ void check_contacts_below(const struct contacts *found, const struct contacts *a
 void check_contacts_are_bits(const struct contacts *found, const uint64_t *bits, size_t count, const char *what) {
     size_t next = 0;
     for (size_t k = 0; k < count; k++) {
-        const bool listed = next < found->count && found->view.pair[next] == k;
+        const bool listed = next < found->count && found->rows[next].pair == k;
         if (listed != bit_is_set(bits, k)) {
             fail_msg("%s: pair %zu has bit %d, but %s", what, k, bit_is_set(bits, k),
                      listed ? "a contact" : "no contact");
@@ -347,9 +310,9 @@ static const double unit_tolerance = 1e-6;
 
 /* The gap along the normal of the arcs that are told: that of the bodies. Of an edge the arc at its counter-clockwise
  * end is told, the height of which is another by `parallel` times the edge's length, less than the body's diameter. */
-static bool are_touching_arcs(const struct exact_pair *pair, const narc_contacts *contacts, size_t k, double x,
-                              double y, double of_bodies) {
-    const size_t i = contacts->arc_a[k], j = contacts->arc_b[k];
+static bool are_touching_arcs(const struct exact_pair *pair, const narc_contact *contact, double x, double y,
+                              double of_bodies) {
+    const size_t i = arc_of_a(contact->feature), j = arc_of_b(contact->feature);
     if (i >= pair->a.count || j >= pair->b.count)
         return false;
     const narc_arc *a = &pair->a.arcs[i], *b = &pair->b.arcs[j];
@@ -360,10 +323,10 @@ static bool are_touching_arcs(const struct exact_pair *pair, const narc_contacts
     return fabs(gap - of_bodies) <= pair->bound + 2 * parallel * pair->size;
 }
 
-const char *check_along_normal(const struct exact_pair *pair, const narc_contacts *contacts, size_t k, bool unknown) {
-    const double separation = (double)contacts->separation[k];
-    double x = (double)contacts->normal_x[k], y = (double)contacts->normal_y[k];
-    const double length = hypot(x, y), p_x = (double)contacts->point_x[k], p_y = (double)contacts->point_y[k];
+const char *check_along_normal(const struct exact_pair *pair, const narc_contact *contact, bool unknown) {
+    const double separation = (double)contact->separation;
+    double x = (double)contact->normal_x, y = (double)contact->normal_y;
+    const double length = hypot(x, y), p_x = (double)contact->point_x, p_y = (double)contact->point_y;
     if (!isfinite(separation) || !isfinite(length) || !isfinite(p_x) || !isfinite(p_y))
         return "not finite";
     if (fabs(length - 1) > unit_tolerance)
@@ -376,12 +339,12 @@ const char *check_along_normal(const struct exact_pair *pair, const narc_contact
     const double across = reference_height(&pair->a, x, y) + gap / 2;
     if (fabs(p_x * x + p_y * y - across) > point_bounds * pair->bound)
         return "the point does not lie between the support lines";
-    return are_touching_arcs(pair, contacts, k, x, y, gap) ? NULL : "the arcs have another gap along the normal";
+    return are_touching_arcs(pair, contact, x, y, gap) ? NULL : "the arcs have another gap along the normal";
 }
 
-const char *check_between_touches(const struct exact_pair *pair, const narc_contacts *contacts, size_t k) {
-    const bool fine = is_between_touches(pair, (double)contacts->normal_x[k], (double)contacts->normal_y[k],
-                                         (double)contacts->point_x[k], (double)contacts->point_y[k]);
+const char *check_between_touches(const struct exact_pair *pair, const narc_contact *contact) {
+    const bool fine = is_between_touches(pair, (double)contact->normal_x, (double)contact->normal_y,
+                                         (double)contact->point_x, (double)contact->point_y);
     return fine ? NULL : "the point does not lie between the support points";
 }
 
@@ -395,10 +358,10 @@ static double distance_to(const struct exact_pair *pair, const struct reference_
     return fabs(distance * body->scale);
 }
 
-double distance_from_outlines(const struct exact_pair *pair, const narc_contacts *contacts, size_t k) {
-    const double half = (double)contacts->separation[k] / 2;
-    const double half_x = half * (double)contacts->normal_x[k], half_y = half * (double)contacts->normal_y[k];
-    const double x = (double)contacts->point_x[k], y = (double)contacts->point_y[k];
+double distance_from_outlines(const struct exact_pair *pair, const narc_contact *contact) {
+    const double half = (double)contact->separation / 2;
+    const double half_x = half * (double)contact->normal_x, half_y = half * (double)contact->normal_y;
+    const double x = (double)contact->point_x, y = (double)contact->point_y;
     return fmax(distance_to(pair, &pair->a, x - half_x, y - half_y),
                 distance_to(pair, &pair->b, x + half_x, y + half_y));
 }

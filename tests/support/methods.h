@@ -37,21 +37,17 @@ void move_corpus(struct test_random *random, struct corpus *corpus, double step)
 /* Prints pair k so that it can be put into a test of its own. */
 void print_corpus_pair(const struct corpus *corpus, size_t k);
 
-/* The calls of narc_methods.h on a store: with an object made for the call. */
-narc_status overlaps_by_method(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                               const narc_method_query *query, unsigned threads, uint64_t *out_bits, narc_error *error);
-narc_status contacts_by_method(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                               const narc_method_query *query, float margin, unsigned threads,
-                               const narc_contacts *out_contacts, size_t *out_count, narc_error *error);
-
-/* The same on a scene; any error fails the test. Outputs are full of junk before. */
-uint64_t *query_overlaps(const struct scene *scene, const narc_method_query *query, unsigned threads);
-struct contacts query_contacts(const struct scene *scene, const narc_method_query *query, float margin,
-                               unsigned threads);
+/* The calls of narc_methods.h on a scene; any error fails the test. Outputs are full of junk before. `query` may be
+ * NULL. */
+uint64_t *query_overlaps(const struct scene *scene, const narc_method_options *options, const narc_query *query);
+struct contacts query_contacts(const struct scene *scene, const narc_method_options *options, const narc_query *query);
 
 /* `count` outcomes, all junk. */
 uint8_t *create_outcomes(size_t count);
 uint32_t *create_hints(size_t count); /* zeros */
+
+/* A plain array of hints; NULL: none. */
+static inline narc_hint_column hint_column(uint32_t *hints) { return (narc_hint_column){hints, sizeof *hints}; }
 
 /* Fail unless both lists hold the same bits. */
 void check_same_contacts(const struct contacts *found, const struct contacts *expected, const char *what);
@@ -69,14 +65,14 @@ double reference_height(const struct reference_body *body, double x, double y);
  * that of the arcs told, and the point lies halfway between both support lines across it. `unknown`: the method did not
  * get to know whether the bodies collide; then the separation is 0, and the gap not more. Returns NULL or what is
  * wrong. */
-const char *check_along_normal(const struct exact_pair *pair, const narc_contacts *contacts, size_t k, bool unknown);
+const char *check_along_normal(const struct exact_pair *pair, const narc_contact *contact, bool unknown);
 
 /* Does a contact's point lie between the points where the bodies touch these lines? NULL or what is wrong. */
-const char *check_between_touches(const struct exact_pair *pair, const narc_contacts *contacts, size_t k);
+const char *check_between_touches(const struct exact_pair *pair, const narc_contact *contact);
 
 /* Half a separation back and forth along the normal from a contact's point are points of A's and B's outlines: by how
  * much are they not, at worst? */
-double distance_from_outlines(const struct exact_pair *pair, const narc_contacts *contacts, size_t k);
+double distance_from_outlines(const struct exact_pair *pair, const narc_contact *contact);
 
 /* Half a separation back and forth must be as near to the outlines as this many bounds. */
 extern const double point_bounds;

@@ -11,18 +11,22 @@
  * overlaps are the contacts with a separation below 0. */
 struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs);
 
+/* Its manifolds of all pairs whose separation is less than the margin; `margins` of the pairs instead, or NULL. */
+struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                      float margin, const float *margins);
+
 /* A batch with the answers that are right for it. The scene is that of the same pairs, to print one that is wrong. */
 struct plain_batch {
     const narc_shapes *shapes;
     const narc_bodies *bodies;
     const narc_pairs *pairs;
-    const narc_contacts *right;
+    const narc_contact *right;
     const struct scene *scene;
     const char *name;
 };
 
-/* Fail, with the pair, unless the instruction set under test says the same. `hints` may be NULL: a call without. */
-void check_plain_overlaps(const struct plain_batch *batch, unsigned threads);
-void check_plain_contacts(const struct plain_batch *batch, float margin, unsigned threads, uint32_t *hints);
+/* Fail, with the pair, unless the instruction set under test says the same. */
+void check_plain_overlaps(const struct plain_batch *batch, const narc_workers *workers);
+void check_plain_contacts(const struct plain_batch *batch, const narc_query *query);
 
 #endif

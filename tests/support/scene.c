@@ -8,6 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "expect.h"
+#include "guard.h"
+
 static const double pi = 3.14159265358979323846;
 
 static void *allocate(size_t count, size_t size) {
@@ -22,10 +25,12 @@ struct scene create_scene(narc_precision precision, size_t shapes, size_t bodies
                           .bodies = allocate(bodies, sizeof(struct body)),
                           .pairs = allocate(pairs, sizeof(struct pair))};
     assert_int_equal(narc_create_shapes(NULL, &scene.store), NARC_OK);
+    assert_int_equal(narc_create_methods(scene.store, NULL, &scene.methods, NULL), NARC_OK);
     return scene;
 }
 
 void destroy_scene(struct scene *scene) {
+    narc_destroy_methods(scene->methods);
     narc_destroy_shapes(scene->store);
     free(scene->shapes);
     free(scene->bodies);
@@ -98,54 +103,62 @@ void round_position(struct body *body, narc_precision precision) {
     }
 }
 
-static void *junk(size_t count, size_t size) {
-    void *memory = allocate(count, size);
-    memset(memory, 0xa5, count * size);
-    return memory;
+void *make_junk(size_t size) { return memset(allocate(size, 1), GUARD_JUNK, size); }
+
+bool is_junk(const void *memory, size_t size) {
+    const unsigned char *byte = memory;
+    for (size_t k = 0; k < size; k++)
+        if (byte[k] != GUARD_JUNK)
+            return false;
+    return true;
 }
 
-struct contacts create_contacts(size_t capacity) {
-    narc_contacts view = {.capacity = capacity,
-                          .pair = junk(capacity, sizeof(uint32_t)),
-                          .separation = junk(capacity, sizeof(float)),
-                          .normal_x = junk(capacity, sizeof(float)),
-                          .normal_y = junk(capacity, sizeof(float)),
-                          .point_x = junk(capacity, sizeof(float)),
-                          .point_y = junk(capacity, sizeof(float)),
-                          .arc_a = junk(capacity, 1),
-                          .arc_b = junk(capacity, 1)};
-    return (struct contacts){view, 0};
-}
-
-void destroy_contacts(struct contacts *contacts) {
-    free(contacts->view.pair);
-    free(contacts->view.separation);
-    free(contacts->view.normal_x);
-    free(contacts->view.normal_y);
-    free(contacts->view.point_x);
-    free(contacts->view.point_y);
-    free(contacts->view.arc_a);
-    free(contacts->view.arc_b);
-}
-
-uint64_t *scene_overlaps(const struct scene *scene) {
-    uint64_t *bits = junk(NARC_BIT_WORDS(scene->pair_count), sizeof(uint64_t));
-    narc_bodies bodies = scene_bodies(scene);
-    narc_pairs pairs = scene_pairs(scene);
+uint64_t *find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                        const narc_query *query) {
+    uint64_t *bits = make_junk(NARC_BIT_WORDS(pairs->count) * sizeof *bits);
     narc_error error;
-    if (narc_find_overlaps(scene->store, &bodies, &pairs, 1, bits, &error) != NARC_OK)
-        fail_msg("narc_find_overlaps: %s", error.message);
+    expect_ok(narc_find_overlaps(shapes, bodies, pairs, query, bits, &error), &error);
     return bits;
 }
 
-struct contacts scene_contacts(const struct scene *scene, float margin) {
-    struct contacts contacts = create_contacts(scene->pair_count);
-    narc_bodies bodies = scene_bodies(scene);
-    narc_pairs pairs = scene_pairs(scene);
+struct contacts find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                              const narc_query *query) {
+    struct contacts list = {make_junk(pairs->count * sizeof *list.rows), 0};
     narc_error error;
-    if (narc_find_contacts(scene->store, &bodies, &pairs, margin, 1, &contacts.view, &contacts.count, &error))
-        fail_msg("narc_find_contacts: %s", error.message);
-    return contacts;
+    expect_ok(narc_find_contacts(shapes, bodies, pairs, query, list.rows, pairs->count, &list.count, &error), &error);
+    return list;
+}
+
+struct manifolds find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                const narc_query *query) {
+    struct manifolds list = {make_junk(pairs->count * sizeof *list.rows), 0};
+    narc_error error;
+    expect_ok(narc_find_manifolds(shapes, bodies, pairs, query, list.rows, pairs->count, &list.count, &error), &error);
+    return list;
+}
+
+uint64_t *scene_overlaps(const struct scene *scene) {
+    const narc_bodies bodies = scene_bodies(scene);
+    const narc_pairs pairs = scene_pairs(scene);
+    return find_overlaps(scene->store, &bodies, &pairs, NULL);
+}
+
+struct contacts scene_contacts(const struct scene *scene, float margin) {
+    const narc_bodies bodies = scene_bodies(scene);
+    const narc_pairs pairs = scene_pairs(scene);
+    return find_contacts(scene->store, &bodies, &pairs, &(narc_query){.margin = margin});
+}
+
+struct manifolds scene_manifolds(const struct scene *scene, float margin) {
+    const narc_bodies bodies = scene_bodies(scene);
+    const narc_pairs pairs = scene_pairs(scene);
+    return find_manifolds(scene->store, &bodies, &pairs, &(narc_query){.margin = margin});
+}
+
+const narc_methods *scene_methods(const struct scene *scene) {
+    narc_error error;
+    expect_ok(narc_refresh_methods(scene->methods, &error), &error);
+    return scene->methods;
 }
 
 struct scene make_random_scene(struct test_random *random, narc_precision precision, size_t bodies, size_t pairs) {

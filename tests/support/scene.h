@@ -6,7 +6,7 @@
 #define NARC_TEST_SCENE_H
 
 #include "families.h"
-#include "narc.h"
+#include "narc_methods.h"
 #include "reference.h"
 
 /* A position has both precisions, so that one array serves both kinds of batch. In a scene with single-precision
@@ -25,6 +25,7 @@ struct pair {
 
 struct scene {
     narc_shapes *store;
+    narc_methods *methods; /* of the store: see scene_methods() */
     struct shape *shapes;
     size_t shape_count;
     struct body *bodies;
@@ -56,20 +57,43 @@ struct body turned_body(double angle, double scale);
 /* A copy of a position in single precision, in both members. */
 void round_position(struct body *body, narc_precision precision);
 
-/* Arrays for `capacity` contacts, filled with junk. */
+/* Rows and how many of them are used; whoever gets such a list frees its rows. */
 struct contacts {
-    narc_contacts view;
+    narc_contact *rows;
     size_t count;
 };
-struct contacts create_contacts(size_t capacity);
-void destroy_contacts(struct contacts *contacts);
+struct manifolds {
+    narc_manifold *rows;
+    size_t count;
+};
 
-/* The batch calls with one thread; any error fails the test. scene_overlaps() allocates the words. */
+/* `size` bytes of junk. */
+void *make_junk(size_t size);
+bool is_junk(const void *memory, size_t size);
+
+/* The batch calls into new memory, with room for a row for each pair; any error fails the test. The words and rows are
+ * junk before. */
+uint64_t *find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                        const narc_query *query);
+struct contacts find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                              const narc_query *query);
+struct manifolds find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
+                                const narc_query *query);
+
+/* The same for all pairs of a scene, in the calling thread. */
 uint64_t *scene_overlaps(const struct scene *scene);
 struct contacts scene_contacts(const struct scene *scene, float margin);
+struct manifolds scene_manifolds(const struct scene *scene, float margin);
+
+/* What the calls of narc_methods.h want, of the shapes as they are now. */
+const narc_methods *scene_methods(const struct scene *scene);
 
 /* Pairs of random bodies of random families, about half of which collide; no special placements, so it is fast. */
 struct scene make_random_scene(struct test_random *random, narc_precision precision, size_t bodies, size_t pairs);
+
+/* The arcs of a feature, whether they touch or the edges before them. */
+static inline unsigned arc_of_a(unsigned feature) { return feature & 0x3f; }
+static inline unsigned arc_of_b(unsigned feature) { return feature >> 8 & 0x3f; }
 
 static inline bool bit_is_set(const uint64_t *bits, size_t k) { return bits[k / 64] >> (k % 64) & 1; }
 
