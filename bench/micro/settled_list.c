@@ -69,7 +69,7 @@ static void add_step(enum step step, struct workload_key key, const char *isa, u
     char name[BENCH_NAME];
     name_row(titles[step], &key, isa, threads == 2 ? "/2threads" : "", name);
     const struct step_job job = {.step = step, .key = key, .isa = isa, .threads = threads};
-    if (threads > narc_default_threads())
+    if (threads > narc_openmp_workers(0).count)
         bench_skip(name, "fewer threads here");
     else
         list_row(make_step_row(name, &job));
@@ -129,7 +129,7 @@ void list_settled(const struct row_choice *choice) {
                               large = settled(eight, SCENE_SETTLED_LARGE, FEW);
     add_queries(best, FEW);
     add_queries(best, UNIQUE);
-    for (size_t batch = 16; batch <= 65536; batch *= batch == 256 ? 256 : 4)
+    for (size_t batch = 1; batch <= 65536; batch *= batch == 256 ? 256 : 4)
         add_batches(key, best, batch);
     add_steps(small, best, 1);
     add_steps(key, best, 1);
