@@ -44,13 +44,13 @@ typedef struct world_shape {
 
 typedef struct world_settings {
     vec gravity;
-    float time_step;   /* seconds */
-    unsigned substeps; /* the solver's; contacts are found once a step */
-    float rolling_arm; /* rolling friction: its torque is this length times the normal force */
-    float margin;      /* contacts are kept up to this distance */
-    float skin;        /* bodies may move by this until pairs are found anew */
-    float flat_angle;  /* see narc_query */
-    narc_workers workers;
+    float time_step;      /* seconds */
+    unsigned substeps;    /* the solver's; contacts are found once a step */
+    float rolling_arm;    /* rolling friction: its torque is this length times the normal force */
+    float margin;         /* contacts are kept up to this distance */
+    float skin;           /* bodies may move by this until pairs are found anew */
+    float flat_angle;     /* see narc_query */
+    narc_workers workers; /* narc's; none: the calling thread */
 } world_settings;
 
 /* Metres and seconds, for bodies of 0.1 to 10 m: 60 steps a second, 8 sub-steps each. */
