@@ -185,31 +185,33 @@ narc_status world_find_manifolds(world *w, size_t *out_count) {
 
 /* A point starts with the impulses of the point of the last step where the same features touched. */
 static void start_warm(world_point *point, uint32_t feature, const world_impulses *last) {
-    for (int i = 0; i < 2; i++)
-        if (last->feature[i] == feature && last->normal[i] > 0) {
-            point->normal_impulse = last->normal[i];
-            point->tangent_impulse = last->tangent[i];
-        }
+    const int i = last->feature[0] == feature ? 0 : 1;
+    const bool known = last->feature[i] == feature && last->normal[i] > 0;
+    point->normal_impulse = known ? last->normal[i] : 0;
+    point->tangent_impulse = known ? last->tangent[i] : 0;
 }
 
+/* What the solver finds out itself is left as it is. */
 void world_make_contacts(world *w, size_t count) {
     for (size_t k = 0; k < count; k++) {
         const narc_manifold *m = &w->manifolds[k];
         const world_impulses *last = &w->pairs[m->pair].impulses;
         const world_body *a = body_a(w, m->pair), *b = body_b(w, m->pair);
+        const vec to_a = subtract(a->position, b->position);
         world_contact *c = &w->contacts[k];
-        *c = (world_contact){.pair = m->pair,
-                             .a = (uint32_t)(a - w->bodies),
-                             .b = (uint32_t)(b - w->bodies),
-                             .normal = {m->normal_x, m->normal_y},
-                             .friction = sqrtf(a->friction * b->friction),
-                             .restitution = fmaxf(a->restitution, b->restitution),
-                             .rolling_impulse = last->rolling,
-                             .point_count = m->count};
+        c->pair = m->pair;
+        c->a = (uint32_t)(a - w->bodies);
+        c->b = (uint32_t)(b - w->bodies);
+        c->normal = (vec){m->normal_x, m->normal_y};
+        c->friction = sqrtf(a->friction * b->friction);
+        c->restitution = a->restitution > b->restitution ? a->restitution : b->restitution;
+        c->rolling_impulse = last->rolling;
+        c->point_count = m->count;
+        c->points[1].normal_impulse = 0; /* where there is one point */
         for (unsigned i = 0; i < m->count; i++) {
             world_point *point = &c->points[i];
             point->anchor_a = (vec){m->point[i].x, m->point[i].y}; /* narc's points count from A's position */
-            point->anchor_b = add(point->anchor_a, subtract(a->position, b->position));
+            point->anchor_b = add(point->anchor_a, to_a);
             point->separation = m->point[i].separation;
             start_warm(point, m->point[i].feature, last);
         }
