@@ -6,8 +6,8 @@
 
 #include <stdio.h>
 
+#include "../../examples/world.h" /* by its place: both folders have a scenes.h */
 #include "common.h"
-#include "world.h"
 
 struct world_row {
     struct bench_row row;
