@@ -17,7 +17,7 @@ set(below_fit files)
 set(below_tools files)
 set(below_examples tools files)
 set(below_tests soa kernels dispatch methods files fit tools examples)
-set(below_bench soa kernels dispatch methods files fit tools)
+set(below_bench soa kernels dispatch methods files fit tools examples)
 set(public_only files fit tools examples)
 
 # Where each header stands: layer by name.

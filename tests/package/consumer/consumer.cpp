@@ -41,26 +41,25 @@ int main() {
     pairs.a = first_of_pair;
     pairs.b = NARC_COLUMN(pair, b);
 
-    float separation = 0.0f, normal_x = 0.0f;
-    narc_contacts contacts = {};
-    contacts.capacity = 1;
-    contacts.separation = &separation;
-    contacts.normal_x = &normal_x;
+    narc_contact contact = {};
 
     if (narc_create_shapes(nullptr, &shapes) || narc_build_box(2.0, 2.0, 0.25, arcs, &arc_count, &error) ||
         narc_add_shape(shapes, arcs, arc_count, nullptr, &error) ||
-        narc_find_contacts(shapes, &bodies, &pairs, 0.0f, 0, &contacts, &contact_count, &error)) {
+        narc_find_contacts(shapes, &bodies, &pairs, nullptr, &contact, 1, &contact_count, &error)) {
         std::fprintf(stderr, "narc: %s\n", error.message);
         return 1;
     }
-    const bool is_exact =
-        contact_count == 1 && std::fabs(separation + 0.5f) < 1e-5f && std::fabs(normal_x - 1.0f) < 1e-5f;
+    const bool is_exact = contact_count == 1 && std::fabs(contact.separation + 0.5f) < 1e-5f &&
+                          std::fabs(contact.normal_x - 1.0f) < 1e-5f;
 
-    // The same pair without a batch.
-    narc_body a = {}, b = {};
-    b.x = 1.5;
-    narc_contact contact = {};
-    if (narc_find_contact(shapes, &a, &b, &contact, &error) || contact.separation != separation)
+    // The same pair, of bodies that it brings along.
+    const narc_body two[] = {{0.0, 0.0, 1.0f, 0.0f, 1.0f, 0}, {1.5, 0.0, 1.0f, 0.0f, 1.0f, 0}};
+    bodies = narc_view_bodies(two, 2);
+    pairs = {};
+    pairs.count = 1;
+    narc_contact same = {};
+    if (narc_find_contacts(shapes, &bodies, &pairs, nullptr, &same, 1, &contact_count, &error) || contact_count != 1 ||
+        same.separation != contact.separation)
         return 1;
 
     const std::vector<Body> none;
@@ -69,6 +68,6 @@ int main() {
         NARC_POSITION_COLUMN(none, x).precision != NARC_FLOAT64 || NARC_ARRAY(numbers).base != numbers.data())
         return 1;
     narc_destroy_shapes(shapes);
-    std::printf("narc %s, separation %g, normal x %g\n", narc_version(), separation, normal_x);
+    std::printf("narc %s, separation %g, normal x %g\n", narc_version(), contact.separation, contact.normal_x);
     return is_exact ? 0 : 1;
 }
