@@ -14,8 +14,7 @@
 //                                         narc::exception, or ends the program where exceptions are switched off
 //       narc::span                        the caller's array: a container with data() and size(), an array, a pointer
 //                                         and a size. Like columns, it must not outlive what it looks at
-//       narc::query, narc::pair_options,  the structures of C with functions that set their fields
-//       narc::box_options
+//       narc::query, narc::pair_options   the structures of C with functions that set their fields
 //
 //   No call allocates what C would not, but for rows in a std::vector, which is made longer where it is too short and
 //   never shorter: the span that is returned tells how many there are.
@@ -28,9 +27,9 @@
 //     std::vector<narc_manifold> rows;
 //     uint32_t crate = shapes.add(narc::box(1, 1, 0.05)).value();
 //     narc_bodies bodies = narc::bodies_of(entities, &Entity::position, &Entity::rotation, &Entity::shape);
-//     narc::pair_list list = broad.update(shapes, bodies, narc::pair_options().skin(0.05f)).value();
-//     for (narc_manifold &m : narc::find_manifolds(shapes, bodies, list, narc::query().margin(0.02f), rows).value())
-//         build_contact(m, list.previous[m.pair]);
+//     const narc_pair_list *list = broad.update(shapes, bodies, narc::pair_options().skin(0.05f)).value();
+//     for (narc_manifold &m : narc::find_manifolds(shapes, bodies, list->pairs, narc::query().margin(0.02f), rows).value())
+//         build_contact(m, list->previous[m.pair]);
 #ifndef NARC_HPP
 #define NARC_HPP
 
@@ -40,6 +39,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -52,14 +52,10 @@ namespace narc {
 // ------------------------------------------------------------------------------------------------ errors and answers
 
 // What value() throws.
-class exception : public std::exception {
-  public:
-    explicit exception(const narc_error &error) noexcept : error_(error) {}
-    const char *what() const noexcept override { return error_.message; }
-    const narc_error &error() const noexcept { return error_; }
-
-  private:
-    narc_error error_;
+struct exception : std::exception {
+    explicit exception(const narc_error &e) noexcept : error(e) {}
+    const char *what() const noexcept override { return error.message; }
+    narc_error error;
 };
 
 template <class T> class result;
@@ -198,15 +194,22 @@ template <class Run> narc_workers workers_of(unsigned count, Run &run) {
 
 namespace detail {
 
+// A call's arguments, of a span two.
+template <class T> std::tuple<T> unfold(T value) { return {value}; }
+template <class T> std::tuple<T *, size_t> unfold(span<T> items) { return {items.data(), items.size()}; }
+template <class Call, class... Arguments> narc_status apply(Call call, Arguments... arguments) {
+    return std::apply(call, std::tuple_cat(unfold(arguments)...));
+}
+
 // call(arguments ..., out, error), where there is an `out`.
 template <class T, class Call, class... Arguments> result<T> ask(Call call, Arguments... arguments) {
     narc_error error = {};
     if constexpr (std::is_void_v<T>) {
-        call(arguments..., &error);
+        apply(call, arguments..., &error);
         return result<T>(error);
     } else {
         T value{};
-        return call(arguments..., &value, &error) ? result<T>(error) : result<T>(std::move(value));
+        return apply(call, arguments..., &value, &error) ? result<T>(error) : result<T>(std::move(value));
     }
 }
 
@@ -265,41 +268,32 @@ struct outline {
 using arcs = span<const narc_arc>;
 using points = span<const narc_point>;
 
-namespace detail {
+// Any builder of C: build(narc_build_box, 1.0, 2.0, 0.1).
 template <class Build, class... Arguments> result<outline> build(Build call, Arguments... arguments) {
-    return ask<outline>([=](outline *out, narc_error *e) { return call(arguments..., out->arcs, &out->count, e); });
+    outline out;
+    narc_error error = {};
+    return detail::apply(call, arguments..., out.arcs, &out.count, &error) ? result<outline>(error)
+                                                                           : result<outline>(out);
 }
-template <class Build> result<outline> build(Build call, points p, double radius) {
-    return build(call, p.data(), p.size(), radius);
-}
-} // namespace detail
-
-// Each makes a result<outline>.
-inline auto circle(double radius) { return detail::build(narc_build_circle, radius); }
-inline auto capsule(double length, double radius) { return detail::build(narc_build_capsule, length, radius); }
+inline auto circle(double radius) { return build(narc_build_circle, radius); }
+inline auto capsule(double length, double radius) { return build(narc_build_capsule, length, radius); }
 inline auto segment(narc_point from, narc_point to, double radius = 0) {
-    return detail::build(narc_build_segment, from, to, radius);
+    return build(narc_build_segment, from, to, radius);
 }
-inline auto box(double width, double height, double radius = 0) {
-    return detail::build(narc_build_box, width, height, radius);
-}
-inline auto polygon(points corners, double radius = 0) { return detail::build(narc_build_polygon, corners, radius); }
-inline auto skin_polygon(points corners, double radius) {
-    return detail::build(narc_build_skin_polygon, corners, radius);
-}
+inline auto box(double width, double height, double radius = 0) { return build(narc_build_box, width, height, radius); }
+inline auto polygon(points corners, double radius = 0) { return build(narc_build_polygon, corners, radius); }
+inline auto skin_polygon(points corners, double radius) { return build(narc_build_skin_polygon, corners, radius); }
 inline auto regular_polygon(size_t corners, double circumradius, double radius = 0) {
-    return detail::build(narc_build_regular_polygon, corners, circumradius, radius);
+    return build(narc_build_regular_polygon, corners, circumradius, radius);
 }
 inline auto ellipse(double half_x, double half_y, size_t arc_count) {
-    return detail::ask<outline>([=](outline *out, narc_error *error) {
-        return narc_build_ellipse(half_x, half_y, arc_count, out->arcs, &out->count, nullptr, error);
+    return build([=](narc_arc *out, size_t *count, narc_error *error) {
+        return narc_build_ellipse(half_x, half_y, arc_count, out, count, nullptr, error);
     });
 }
-inline auto four_arc(const narc_four_arc &form) { return detail::build(narc_build_four_arc, form); }
-inline auto through_points(points junctions, double radius = 0) {
-    return detail::build(narc_build_points, junctions, radius);
-}
-inline auto ring(points around) { return detail::build(narc_build_ring, around.data(), around.size()); }
+inline auto four_arc(const narc_four_arc &form) { return build(narc_build_four_arc, form); }
+inline auto through_points(points junctions, double radius = 0) { return build(narc_build_points, junctions, radius); }
+inline auto ring(points around) { return build(narc_build_ring, around); }
 
 // A store.
 class shapes : public detail::owner<narc_shapes> {
@@ -311,18 +305,16 @@ class shapes : public detail::owner<narc_shapes> {
         return store ? result<shapes>(shapes(store.value())) : result<shapes>(store.error());
     }
 
-    result<uint32_t> add(arcs shape) {
-        return detail::ask<uint32_t>(narc_add_shape, get(), shape.data(), shape.size());
-    }
+    result<uint32_t> add(arcs shape) { return detail::ask<uint32_t>(narc_add_shape, get(), shape); }
     // With the builder's error, if that has one.
     result<uint32_t> add(const result<outline> &shape) {
         return shape ? add(shape.value()) : result<uint32_t>(shape.error());
     }
     result<void> add_at(uint32_t index, arcs shape) {
-        return detail::ask<void>(narc_add_shape_at, get(), index, shape.data(), shape.size());
+        return detail::ask<void>(narc_add_shape_at, get(), index, shape);
     }
     result<void> replace(uint32_t index, arcs shape) {
-        return detail::ask<void>(narc_replace_shape, get(), index, shape.data(), shape.size());
+        return detail::ask<void>(narc_replace_shape, get(), index, shape);
     }
     result<void> remove(uint32_t index) { return detail::ask<void>(narc_remove_shape, get(), index); }
     size_t size() const noexcept { return narc_count_shapes(get()); }
@@ -333,7 +325,7 @@ class shapes : public detail::owner<narc_shapes> {
     }
 };
 
-inline result<void> validate(arcs shape) { return detail::ask<void>(narc_validate_arcs, shape.data(), shape.size()); }
+inline result<void> validate(arcs shape) { return detail::ask<void>(narc_validate_arcs, shape); }
 inline result<void> validate(const narc_shapes *shapes, const narc_bodies &bodies) {
     return detail::ask<void>(narc_validate_bodies, shapes, &bodies);
 }
@@ -378,7 +370,8 @@ auto find_rows(Call call, const narc_shapes *shapes, const narc_bodies &bodies, 
                narc_query query, Rows &rows, Fields... fields) {
     using item = std::remove_pointer_t<decltype(data_of(rows))>;
     query.row_stride = sizeof(item);
-    make_room(rows, query.dense ? pairs.count : query.count ? query.count : asked(pairs, query));
+    // Room for a row for each pair.
+    make_room(rows, query.dense ? pairs.count : asked(pairs, query));
     for (;;) {
         narc_error error = {};
         size_t found = 0;
@@ -434,55 +427,26 @@ struct pair_options : detail::options<pair_options, narc_pair_options> {
     pair_options &filter(const narc_pair_filter &&) = delete;
 };
 
-struct box_options : detail::options<box_options, narc_box_options> {
-    box_options &margin(float value) noexcept { return set(&narc_box_options::margin, value); }
-    box_options &motion(narc_float_column x, narc_float_column y) noexcept {
-        return set(&narc_box_options::motion_x, x).set(&narc_box_options::motion_y, y);
-    }
-    box_options &range(size_t from, size_t items) noexcept {
-        return set(&narc_box_options::first, from).set(&narc_box_options::count, items);
-    }
-    box_options &skipped(size_t &out) noexcept { return set(&narc_box_options::out_skipped, &out); }
-};
-
-// A narc_pair_list in spans; it is its pairs, too.
-struct pair_list : narc_pairs {
-    pair_list(const narc_pair_list &l) noexcept
-        : narc_pairs(l.pairs), previous(l.previous, count), marks(l.marks, count),
-          contacts(l.contacts, l.contact_count), sensors(l.sensors, l.sensor_count), added(l.added, l.added_count),
-          lost(l.lost, l.lost_count), skipped(l.skipped), kept(l.kept) {}
-    span<const uint32_t> previous;
-    span<const uint8_t> marks;
-    span<const uint32_t> contacts, sensors, added;
-    span<const narc_lost_pair> lost;
-    size_t skipped;
-    bool kept;
-};
-
 class broad_phase : public detail::owner<narc_broad_phase> {
   public:
     using owner::owner;
     explicit broad_phase(const narc_allocator *allocator = nullptr) noexcept
         : owner(narc_create_broad_phase, allocator) {}
 
-    result<pair_list> update(const narc_shapes *shapes, const narc_bodies &bodies,
-                             const narc_pair_options &options = pair_options()) {
-        return viewed(detail::ask<const narc_pair_list *>(narc_update_pairs, get(), shapes, &bodies, &options));
+    // Its arrays stay until the next update.
+    result<const narc_pair_list *> update(const narc_shapes *shapes, const narc_bodies &bodies,
+                                          const narc_pair_options &options = pair_options()) {
+        return detail::ask<const narc_pair_list *>(narc_update_pairs, get(), shapes, &bodies, &options);
     }
-    result<pair_list> update(span<const narc_box> boxes, const narc_pair_options &options = pair_options()) {
-        return viewed(
-            detail::ask<const narc_pair_list *>(narc_update_box_pairs, get(), boxes.data(), boxes.size(), &options));
-    }
-
-  private:
-    static result<pair_list> viewed(const result<const narc_pair_list *> &list) {
-        return list ? result<pair_list>(*list.value()) : result<pair_list>(list.error());
+    result<const narc_pair_list *> update(span<const narc_box> boxes,
+                                          const narc_pair_options &options = pair_options()) {
+        return detail::ask<const narc_pair_list *>(narc_update_box_pairs, get(), boxes, &options);
     }
 };
 
 // One box for each body.
-inline result<void> compute_boxes(const narc_shapes *shapes, const narc_bodies &bodies, const narc_box_options &options,
-                                  span<narc_box> boxes) {
+inline result<void> compute_boxes(const narc_shapes *shapes, const narc_bodies &bodies, span<narc_box> boxes,
+                                  const narc_box_options &options = {}) {
     return boxes.size() < bodies.count ? result<void>(detail::too_short(bodies.count))
                                        : detail::ask<void>(narc_compute_boxes, shapes, &bodies, &options, boxes.data());
 }
@@ -492,7 +456,7 @@ inline result<void> compute_boxes(const narc_shapes *shapes, const narc_bodies &
 inline result<void> compute_poses(span<const float> angles, span<float> cosines, span<float> sines) {
     if (std::min(cosines.size(), sines.size()) < angles.size())
         return result<void>(detail::too_short(angles.size()));
-    return detail::ask<void>(narc_compute_poses, angles.data(), angles.size(), cosines.data(), sines.data());
+    return detail::ask<void>(narc_compute_poses, angles, cosines.data(), sines.data());
 }
 
 inline result<void> set_isa(const char *name) { return detail::ask<void>(narc_set_isa, name); }
