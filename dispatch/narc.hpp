@@ -33,9 +33,7 @@
 #ifndef NARC_HPP
 #define NARC_HPP
 
-#include <algorithm>
 #include <exception>
-#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -110,7 +108,7 @@ template <class Item> class span {
     constexpr Item *begin() const noexcept { return data_; }
     constexpr Item *end() const noexcept { return data_ + size_; }
     constexpr Item &operator[](size_t k) const { return data_[k]; }
-    constexpr span first(size_t count) const noexcept { return {data_, std::min(count, size_)}; }
+    constexpr span first(size_t count) const noexcept { return {data_, count < size_ ? count : size_}; }
 
   private:
     Item *data_ = nullptr;
@@ -119,9 +117,15 @@ template <class Item> class span {
 
 namespace detail {
 
+template <class Item, class Field> auto &get(Item &item, Field field) {
+    if constexpr (std::is_member_object_pointer_v<Field>)
+        return item.*field;
+    else
+        return field(item);
+}
 template <class Item> Item *field_of(Item *item) { return item; }
 template <class Item, class Field, class... Fields> auto *field_of(Item *item, Field field, Fields... fields) {
-    return field_of(item ? std::addressof(std::invoke(field, *item)) : nullptr, fields...);
+    return field_of(item ? &get(*item, field) : nullptr, fields...);
 }
 
 template <class R> auto cosine_of(R &rotation) -> decltype((rotation.c)) { return rotation.c; }
@@ -162,10 +166,10 @@ narc_bodies bodies_of(const Items &items, X x, Y y, Cosine cosine, Sine sine, Sh
 template <class Items, class Position, class Rotation, class Shape>
 narc_bodies bodies_of(const Items &items, Position position, Rotation rotation, Shape shape) {
     return bodies_of(
-        items, [=](auto &item) -> auto & { return std::invoke(position, item).x; },
-        [=](auto &item) -> auto & { return std::invoke(position, item).y; },
-        [=](auto &item) -> auto & { return detail::cosine_of(std::invoke(rotation, item)); },
-        [=](auto &item) -> auto & { return detail::sine_of(std::invoke(rotation, item)); }, shape);
+        items, [=](auto &item) -> auto & { return detail::get(item, position).x; },
+        [=](auto &item) -> auto & { return detail::get(item, position).y; },
+        [=](auto &item) -> auto & { return detail::cosine_of(detail::get(item, rotation)); },
+        [=](auto &item) -> auto & { return detail::sine_of(detail::get(item, rotation)); }, shape);
 }
 inline narc_bodies bodies_of(span<const narc_body> rows) { return narc_view_bodies(rows.data(), rows.size()); }
 
@@ -454,7 +458,7 @@ inline result<void> compute_boxes(const narc_shapes *shapes, const narc_bodies &
 // ------------------------------------------------------------------------------------------------ the rest
 
 inline result<void> compute_poses(span<const float> angles, span<float> cosines, span<float> sines) {
-    if (std::min(cosines.size(), sines.size()) < angles.size())
+    if (cosines.size() < angles.size() || sines.size() < angles.size())
         return result<void>(detail::too_short(angles.size()));
     return detail::ask<void>(narc_compute_poses, angles, cosines.data(), sines.data());
 }
