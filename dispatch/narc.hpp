@@ -34,10 +34,8 @@
 #define NARC_HPP
 
 #include <exception>
-#include <iterator>
 #include <memory>
 #include <optional>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -198,22 +196,15 @@ template <class Run> narc_workers workers_of(unsigned count, Run &run) {
 
 namespace detail {
 
-// A call's arguments, of a span two.
-template <class T> std::tuple<T> unfold(T value) { return {value}; }
-template <class T> std::tuple<T *, size_t> unfold(span<T> items) { return {items.data(), items.size()}; }
-template <class Call, class... Arguments> narc_status apply(Call call, Arguments... arguments) {
-    return std::apply(call, std::tuple_cat(unfold(arguments)...));
-}
-
 // call(arguments ..., out, error), where there is an `out`.
 template <class T, class Call, class... Arguments> result<T> ask(Call call, Arguments... arguments) {
     narc_error error = {};
     if constexpr (std::is_void_v<T>) {
-        apply(call, arguments..., &error);
+        call(arguments..., &error);
         return result<T>(error);
     } else {
         T value{};
-        return apply(call, arguments..., &value, &error) ? result<T>(error) : result<T>(std::move(value));
+        return call(arguments..., &value, &error) ? result<T>(error) : result<T>(std::move(value));
     }
 }
 
@@ -276,8 +267,7 @@ using points = span<const narc_point>;
 template <class Build, class... Arguments> result<outline> build(Build call, Arguments... arguments) {
     outline out;
     narc_error error = {};
-    return detail::apply(call, arguments..., out.arcs, &out.count, &error) ? result<outline>(error)
-                                                                           : result<outline>(out);
+    return call(arguments..., out.arcs, &out.count, &error) ? result<outline>(error) : result<outline>(out);
 }
 inline auto circle(double radius) { return build(narc_build_circle, radius); }
 inline auto capsule(double length, double radius) { return build(narc_build_capsule, length, radius); }
@@ -285,8 +275,12 @@ inline auto segment(narc_point from, narc_point to, double radius = 0) {
     return build(narc_build_segment, from, to, radius);
 }
 inline auto box(double width, double height, double radius = 0) { return build(narc_build_box, width, height, radius); }
-inline auto polygon(points corners, double radius = 0) { return build(narc_build_polygon, corners, radius); }
-inline auto skin_polygon(points corners, double radius) { return build(narc_build_skin_polygon, corners, radius); }
+inline auto polygon(points corners, double radius = 0) {
+    return build(narc_build_polygon, corners.data(), corners.size(), radius);
+}
+inline auto skin_polygon(points corners, double radius) {
+    return build(narc_build_skin_polygon, corners.data(), corners.size(), radius);
+}
 inline auto regular_polygon(size_t corners, double circumradius, double radius = 0) {
     return build(narc_build_regular_polygon, corners, circumradius, radius);
 }
@@ -296,8 +290,10 @@ inline auto ellipse(double half_x, double half_y, size_t arc_count) {
     });
 }
 inline auto four_arc(const narc_four_arc &form) { return build(narc_build_four_arc, form); }
-inline auto through_points(points junctions, double radius = 0) { return build(narc_build_points, junctions, radius); }
-inline auto ring(points around) { return build(narc_build_ring, around); }
+inline auto through_points(points junctions, double radius = 0) {
+    return build(narc_build_points, junctions.data(), junctions.size(), radius);
+}
+inline auto ring(points around) { return build(narc_build_ring, around.data(), around.size()); }
 
 // A store.
 class shapes : public detail::owner<narc_shapes> {
@@ -309,16 +305,18 @@ class shapes : public detail::owner<narc_shapes> {
         return store ? result<shapes>(shapes(store.value())) : result<shapes>(store.error());
     }
 
-    result<uint32_t> add(arcs shape) { return detail::ask<uint32_t>(narc_add_shape, get(), shape); }
+    result<uint32_t> add(arcs shape) {
+        return detail::ask<uint32_t>(narc_add_shape, get(), shape.data(), shape.size());
+    }
     // With the builder's error, if that has one.
     result<uint32_t> add(const result<outline> &shape) {
         return shape ? add(shape.value()) : result<uint32_t>(shape.error());
     }
     result<void> add_at(uint32_t index, arcs shape) {
-        return detail::ask<void>(narc_add_shape_at, get(), index, shape);
+        return detail::ask<void>(narc_add_shape_at, get(), index, shape.data(), shape.size());
     }
     result<void> replace(uint32_t index, arcs shape) {
-        return detail::ask<void>(narc_replace_shape, get(), index, shape);
+        return detail::ask<void>(narc_replace_shape, get(), index, shape.data(), shape.size());
     }
     result<void> remove(uint32_t index) { return detail::ask<void>(narc_remove_shape, get(), index); }
     size_t size() const noexcept { return narc_count_shapes(get()); }
@@ -329,7 +327,7 @@ class shapes : public detail::owner<narc_shapes> {
     }
 };
 
-inline result<void> validate(arcs shape) { return detail::ask<void>(narc_validate_arcs, shape); }
+inline result<void> validate(arcs shape) { return detail::ask<void>(narc_validate_arcs, shape.data(), shape.size()); }
 inline result<void> validate(const narc_shapes *shapes, const narc_bodies &bodies) {
     return detail::ask<void>(narc_validate_bodies, shapes, &bodies);
 }
@@ -444,7 +442,7 @@ class broad_phase : public detail::owner<narc_broad_phase> {
     }
     result<const narc_pair_list *> update(span<const narc_box> boxes,
                                           const narc_pair_options &options = pair_options()) {
-        return detail::ask<const narc_pair_list *>(narc_update_box_pairs, get(), boxes, &options);
+        return detail::ask<const narc_pair_list *>(narc_update_box_pairs, get(), boxes.data(), boxes.size(), &options);
     }
 };
 
@@ -460,7 +458,7 @@ inline result<void> compute_boxes(const narc_shapes *shapes, const narc_bodies &
 inline result<void> compute_poses(span<const float> angles, span<float> cosines, span<float> sines) {
     if (cosines.size() < angles.size() || sines.size() < angles.size())
         return result<void>(detail::too_short(angles.size()));
-    return detail::ask<void>(narc_compute_poses, angles, cosines.data(), sines.data());
+    return detail::ask<void>(narc_compute_poses, angles.data(), angles.size(), cosines.data(), sines.data());
 }
 
 inline result<void> set_isa(const char *name) { return detail::ask<void>(narc_set_isa, name); }

@@ -220,7 +220,7 @@ void test_builders() {
     CHECK(!narc_build_four_arc(lens, a, &n, nullptr) && same_arcs(narc::four_arc(lens), a, n));
     CHECK(!narc_build_points(p, 4, 0, a, &n, nullptr) && same_arcs(narc::through_points(square), a, n));
     CHECK(!narc_build_ring(p, 4, a, &n, nullptr) && same_arcs(narc::ring(square), a, n));
-    CHECK(same_arcs(narc::build(narc_build_ring, narc::points(square)), a, n));
+    CHECK(same_arcs(narc::build(narc_build_ring, p, 4u), a, n));
     CHECK(narc::validate(narc::box(1, 1).value()));
 
     narc_error error;
