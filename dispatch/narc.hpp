@@ -89,7 +89,7 @@ template <class T> class [[nodiscard]] result : public result<void> {
     std::optional<T> value_;
 };
 
-// ------------------------------------------------------------------------------------------------ spans and columns
+// ------------------------------------------------------------------------------------------------ spans
 
 template <class Item> class span {
   public:
@@ -113,6 +113,8 @@ template <class Item> class span {
     size_t size_ = 0;
 };
 
+// ------------------------------------------------------------------------------------------------ what it is made of
+
 namespace detail {
 
 template <class Item, class Field> auto &get(Item &item, Field field) {
@@ -131,7 +133,94 @@ template <class R> auto cosine_of(R &rotation) -> decltype((rotation.cosine)) { 
 template <class R> auto sine_of(R &rotation) -> decltype((rotation.s)) { return rotation.s; }
 template <class R> auto sine_of(R &rotation) -> decltype((rotation.sine)) { return rotation.sine; }
 
+// call(arguments ..., out, error), where there is an `out`.
+template <class T, class Call, class... Arguments> result<T> ask(Call call, Arguments... arguments) {
+    narc_error error = {};
+    if constexpr (std::is_void_v<T>) {
+        call(arguments..., &error);
+        return result<T>(error);
+    } else {
+        T value{};
+        return call(arguments..., &value, &error) ? result<T>(error) : result<T>(std::move(value));
+    }
+}
+
+inline narc_error too_short(size_t needed) {
+    return {NARC_ERROR_CAPACITY, 0, static_cast<double>(needed), "a span is too short"};
+}
+
+// What owns an object of C.
+struct destroy {
+    void operator()(narc_shapes *shapes) const noexcept { narc_destroy_shapes(shapes); }
+    void operator()(narc_broad_phase *broad) const noexcept { narc_destroy_broad_phase(broad); }
+};
+template <class Object> class owner {
+  public:
+    explicit owner(Object *owned) noexcept : object_(owned) {}
+    Object *get() const noexcept { return object_.get(); }
+    operator Object *() noexcept { return get(); }
+    operator const Object *() const noexcept { return get(); }
+
+  protected:
+    template <class Create> owner(Create create, const narc_allocator *allocator) noexcept {
+        Object *object = nullptr;
+        if (create(allocator, &object) == NARC_OK)
+            object_.reset(object);
+    }
+
+  private:
+    std::unique_ptr<Object, destroy> object_;
+};
+
+// A structure of C with functions that set its fields.
+template <class Self, class Structure> class options : public Structure {
+  public:
+    options() noexcept : Structure() {}
+    Self &workers(const narc_workers &value) noexcept { return set(&Structure::workers, &value); }
+    Self &workers(const narc_workers &&) = delete; // they must outlive the call
+
+  protected:
+    template <class Field, class Value> Self &set(Field Structure::*field, Value value) noexcept {
+        this->*field = value;
+        return static_cast<Self &>(*this);
+    }
+};
+
+inline size_t asked(const narc_pairs &pairs, const narc_query &query) {
+    return query.selection.base ? query.selection_count : pairs.count;
+}
+
+template <class Rows> bool make_room(Rows &, size_t) { return false; }
+template <class Row, class Allocator> bool make_room(std::vector<Row, Allocator> &rows, size_t needed) {
+    if (rows.size() >= needed)
+        return false;
+    rows.resize(needed);
+    return true;
+}
+
+template <class Call, class Rows, class... Fields>
+auto find_rows(Call call, const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,
+               narc_query query, Rows &rows, Fields... fields) {
+    using item = std::remove_pointer_t<decltype(data_of(rows))>;
+    query.row_stride = sizeof(item);
+    // Room for a row for each pair.
+    make_room(rows, query.dense ? pairs.count : asked(pairs, query));
+    for (;;) {
+        narc_error error = {};
+        size_t found = 0;
+        const span<item> items(rows);
+        const narc_status status =
+            call(shapes, &bodies, &pairs, &query, field_of(items.data(), fields...), items.size(), &found, &error);
+        if (status == NARC_OK)
+            return result<span<item>>(items.first(query.dense ? pairs.count : found));
+        if (status != NARC_ERROR_CAPACITY || !make_room(rows, found))
+            return result<span<item>>(error);
+    }
+}
+
 } // namespace detail
+
+// ------------------------------------------------------------------------------------------------ columns and bodies
 
 // The column of all items in a container, of a field of each, or of a field of a field: column(entities, &Entity::pose,
 // &Pose::c). A field is a pointer to a member, or a function from an item to a reference. Its type is the column's, so
@@ -191,65 +280,6 @@ template <class Run> narc_workers workers_of(unsigned count, Run &run) {
                     task_count, [=](unsigned index) { task(argument, index); });
             }};
 }
-
-// ------------------------------------------------------------------------------------------------ calls
-
-namespace detail {
-
-// call(arguments ..., out, error), where there is an `out`.
-template <class T, class Call, class... Arguments> result<T> ask(Call call, Arguments... arguments) {
-    narc_error error = {};
-    if constexpr (std::is_void_v<T>) {
-        call(arguments..., &error);
-        return result<T>(error);
-    } else {
-        T value{};
-        return call(arguments..., &value, &error) ? result<T>(error) : result<T>(std::move(value));
-    }
-}
-
-inline narc_error too_short(size_t needed) {
-    return {NARC_ERROR_CAPACITY, 0, static_cast<double>(needed), "a span is too short"};
-}
-
-// What owns an object of C.
-struct destroy {
-    void operator()(narc_shapes *shapes) const noexcept { narc_destroy_shapes(shapes); }
-    void operator()(narc_broad_phase *broad) const noexcept { narc_destroy_broad_phase(broad); }
-};
-template <class Object> class owner {
-  public:
-    explicit owner(Object *owned) noexcept : object_(owned) {}
-    Object *get() const noexcept { return object_.get(); }
-    operator Object *() noexcept { return get(); }
-    operator const Object *() const noexcept { return get(); }
-
-  protected:
-    template <class Create> owner(Create create, const narc_allocator *allocator) noexcept {
-        Object *object = nullptr;
-        if (create(allocator, &object) == NARC_OK)
-            object_.reset(object);
-    }
-
-  private:
-    std::unique_ptr<Object, destroy> object_;
-};
-
-// A structure of C with functions that set its fields.
-template <class Self, class Structure> class options : public Structure {
-  public:
-    options() noexcept : Structure() {}
-    Self &workers(const narc_workers &value) noexcept { return set(&Structure::workers, &value); }
-    Self &workers(const narc_workers &&) = delete; // they must outlive the call
-
-  protected:
-    template <class Field, class Value> Self &set(Field Structure::*field, Value value) noexcept {
-        this->*field = value;
-        return static_cast<Self &>(*this);
-    }
-};
-
-} // namespace detail
 
 // ------------------------------------------------------------------------------------------------ shapes
 
@@ -352,42 +382,6 @@ struct query : detail::options<query, narc_query> {
         return set(&narc_query::selection, make_column(pairs.empty() ? &none : pairs.data(), sizeof none));
     }
 };
-
-namespace detail {
-
-inline size_t asked(const narc_pairs &pairs, const narc_query &query) {
-    return query.selection.base ? query.selection_count : pairs.count;
-}
-
-template <class Rows> bool make_room(Rows &, size_t) { return false; }
-template <class Row, class Allocator> bool make_room(std::vector<Row, Allocator> &rows, size_t needed) {
-    if (rows.size() >= needed)
-        return false;
-    rows.resize(needed);
-    return true;
-}
-
-template <class Call, class Rows, class... Fields>
-auto find_rows(Call call, const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,
-               narc_query query, Rows &rows, Fields... fields) {
-    using item = std::remove_pointer_t<decltype(data_of(rows))>;
-    query.row_stride = sizeof(item);
-    // Room for a row for each pair.
-    make_room(rows, query.dense ? pairs.count : asked(pairs, query));
-    for (;;) {
-        narc_error error = {};
-        size_t found = 0;
-        const span<item> items(rows);
-        const narc_status status =
-            call(shapes, &bodies, &pairs, &query, field_of(items.data(), fields...), items.size(), &found, &error);
-        if (status == NARC_OK)
-            return result<span<item>>(items.first(query.dense ? pairs.count : found));
-        if (status != NARC_ERROR_CAPACITY || !make_room(rows, found))
-            return result<span<item>>(error);
-    }
-}
-
-} // namespace detail
 
 // `rows` is a span, an array or a vector of narc_contact, or of larger structures of which `field` is one. The result is
 // the span of those that were found, of dense rows all. NARC_ERROR_CAPACITY: error().value is how many were found.
