@@ -33,6 +33,10 @@
 #ifndef NARC_HPP
 #define NARC_HPP
 
+#if __cplusplus < 201703L
+#error "narc.hpp is C++17"
+#endif
+
 #include <exception>
 #include <memory>
 #include <optional>
