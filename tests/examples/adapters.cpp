@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// workers.cpp - the adapters of examples/workers: each runs all tasks, and answers are those of the calling thread.
+// adapters.cpp - the adapters of examples/workers: each runs all tasks, and answers are those of the calling thread.
 #include "workers/box2d.h"
 #include "workers/enkits.h"
 #include "workers/threads.h"
