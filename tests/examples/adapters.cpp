@@ -1,12 +1,54 @@
 // SPDX-License-Identifier: MIT
 //
 // adapters.cpp - the adapters of examples/workers: each runs all tasks, and answers are those of the calling thread.
-#include "workers/box2d.h"
-#include "workers/enkits.h"
-#include "workers/threads.h"
-
+//
+// Of Box2D and enkiTS only what the adapters use is here, under empty headers with their names.
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <functional>
+
+extern "C" {
+typedef void b2TaskCallback(int begin, int end, uint32_t worker, void *context);
+typedef void *b2EnqueueTaskCallback(b2TaskCallback *task, int count, int least, void *context, void *user_context);
+typedef void b2FinishTaskCallback(void *pending, void *user_context);
+}
+
+struct b2WorldDef {
+    int workerCount;
+    b2EnqueueTaskCallback *enqueueTask;
+    b2FinishTaskCallback *finishTask;
+    void *userTaskContext;
+};
+
+namespace enki {
+
+struct TaskSetPartition {
+    uint32_t start, end;
+};
+
+struct TaskSet {
+    TaskSet(uint32_t count_, std::function<void(TaskSetPartition, uint32_t)> run_) : count(count_), run(run_) {}
+    uint32_t count;
+    std::function<void(TaskSetPartition, uint32_t)> run;
+    bool added = false;
+};
+
+// Runs ranges of two tasks, the last first, when they are waited for.
+struct TaskScheduler {
+    uint32_t GetNumTaskThreads() const { return 5; }
+    void AddTaskSetToPipe(TaskSet *set) { set->added = true; }
+    void WaitforTask(const TaskSet *set) {
+        for (uint32_t start = (set->count - 1) / 2 * 2 + 2; set->added && start >= 2; start -= 2)
+            set->run({start - 2, start < set->count ? start : set->count}, 0);
+    }
+};
+
+} // namespace enki
+
+#include "workers/box2d_workers.h"
+#include "workers/enkits_workers.h"
+#include "workers/thread_workers.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * threads.h - narc's tasks in threads of the C++ library.
+ * thread_workers.h - narc's tasks in threads of the C++ library.
  */
 /* code: begin */
 #include <narc.h>

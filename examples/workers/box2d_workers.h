@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * box2d.h - narc's tasks through the hooks that an engine has for Box2D's (versions 3.0 and 3.1).
+ * box2d_workers.h - narc's tasks through the hooks that an engine has for Box2D's (versions 3.0 and 3.1).
  */
 /* code: begin */
 #include <box2d/box2d.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * enkits.h - narc's tasks in enkiTS.
+ * enkits_workers.h - narc's tasks in enkiTS.
  */
 /* code: begin */
 #include <TaskScheduler.h>
