@@ -315,7 +315,7 @@ test_release() {
 
 check_style() {
     say "style"
-    git ls-files '*.c' '*.h' '*.inl' '*.cc' '*.cpp' | xargs clang-format --dry-run -Werror || fail "run clang-format"
+    git ls-files '*.c' '*.h' '*.inl' '*.cc' '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror || fail "run clang-format"
     # The compilation database of the build with everything in it, the kernels once for each instruction set. The test of
     # what is installed has builds of its own.
     git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'bench/*.c' 'tests/*.c' \

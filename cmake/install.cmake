@@ -2,8 +2,8 @@
 # What cmake --install writes: headers, the libraries, the CMake package and the pkg-config files.
 include(CMakePackageConfigHelpers)
 
-install(FILES soa/narc_export.h soa/narc_columns.h soa/narc_shapes.h dispatch/narc.h
-  dispatch/narc_broad_phase.h
+install(FILES soa/narc_export.h soa/narc_columns.h soa/narc_workers.h soa/narc_shapes.h soa/narc_pairs.h dispatch/narc.h
+  dispatch/narc_broad_phase.h dispatch/narc.hpp
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 
 # Two export files, because only those who ask for the static library need its dependencies.

@@ -111,26 +111,33 @@ static narc_status check_query(const narc_query *query, narc_error *error) {
     return status == NARC_OK ? CHECK_RESERVED(*query, "query", error) : status;
 }
 
+struct narc_side narc_find_side(const narc_batch *batch, size_t pair, int side) {
+    const narc_pairs *pairs = &batch->pairs;
+    const narc_index_column column = side == 0 ? pairs->a : pairs->b;
+    const size_t item = column.base ? narc_index_at(column, pair) : pair;
+    const bool own = !pairs->a.base && !pairs->b.base && !pairs->other_bodies; /* see fill_sets() */
+    return (struct narc_side){own ? 2 * pair + (size_t)side : item,
+                              narc_index_at(side == 0 ? batch->a.shape : batch->b.shape, item)};
+}
+
 /* Says what of the pair at a place is out of range. */
 static narc_status describe_bad_pair(const narc_batch *batch, size_t place, narc_error *error) {
     const size_t pair = narc_pair_at(batch, place);
     if (pair >= batch->pairs.count)
         return narc_fail(error, NARC_ERROR_INDEX, place, (double)pair,
                          "query.selection[%zu] is pair %zu, but there are %zu pairs", place, pair, batch->pairs.count);
-    const narc_index_column columns[2] = {batch->pairs.a, batch->pairs.b};
-    const narc_bodies *const sets[2] = {&batch->a, &batch->b};
-    const bool own = !columns[0].base && !columns[1].base && !batch->pairs.other_bodies;
-    for (size_t k = 0; k < 2; k++) {
-        const size_t body = columns[k].base ? narc_index_at(columns[k], pair) : pair;
-        if (body >= sets[k]->count)
+    for (int side = 0; side < 2; side++) {
+        const narc_index_column column = side == 0 ? batch->pairs.a : batch->pairs.b;
+        const narc_bodies *set = side == 0 ? &batch->a : &batch->b;
+        const size_t body = column.base ? narc_index_at(column, pair) : pair;
+        if (body >= set->count)
             return narc_fail(error, NARC_ERROR_INDEX, pair, (double)body,
-                             "pair %zu: body %c is %zu, but there are %zu bodies", pair, "ab"[k], body,
-                             sets[k] -> count);
-        const uint32_t shape = narc_index_at(sets[k]->shape, body);
-        if (shape >= batch->shapes->count)
-            return narc_fail(error, NARC_ERROR_INDEX, pair, shape,
-                             "pair %zu: body %zu has shape %lu, but there are %zu shapes", pair,
-                             own ? 2 * pair + k : body, (unsigned long)shape, batch->shapes->count);
+                             "pair %zu: body %c is %zu, but there are %zu bodies", pair, "ab"[side], body, set->count);
+        const struct narc_side s = narc_find_side(batch, pair, side);
+        if (s.shape >= batch->shapes->count)
+            return narc_fail(error, NARC_ERROR_INDEX, pair, s.shape,
+                             "pair %zu: body %zu has shape %lu, but there are %zu shapes", pair, s.body,
+                             (unsigned long)s.shape, batch->shapes->count);
     }
     return NARC_OK;
 }

@@ -30,6 +30,13 @@ narc_status narc_check_range(size_t first, size_t *count, size_t total, const ch
 narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                              const narc_query *query, narc_batch *out_batch, narc_error *error);
 
+/* A pair's body A (side 0) or B (1), by the caller's number, and its shape. The body exists. */
+struct narc_side {
+    size_t body;
+    uint32_t shape;
+};
+struct narc_side narc_find_side(const narc_batch *batch, size_t pair, int side);
+
 /* Checks the outputs, runs a kernel on a batch that was begun, and tells what was skipped. Rows have `size` bytes. */
 narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, uint64_t *out_bits,
                                  narc_error *error);

@@ -4,7 +4,7 @@
  *
  * The mental model
  *
- *   narc_shapes.h says what shapes, bodies and pairs are. A batch call takes all three, and answers for every pair,
+ *   narc_shapes.h says what shapes are, narc_pairs.h what bodies, pairs, queries and rows are. A batch call takes all three, and answers for every pair,
  *   exactly: the shapes collide when no direction separates them, and the separation is the largest gap over all
  *   directions. There is no approximation and no iteration tolerance. Three forms of answer:
  *
@@ -68,7 +68,7 @@
 #ifndef NARC_H
 #define NARC_H
 
-#include "narc_shapes.h"
+#include "narc_pairs.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -88,56 +88,6 @@ NARC_API const char *narc_version(void);
 #define NARC_ERROR_BOUND (32.0 / 16777216.0)
 
 /* ------------------------------------------------------------------------------------------------ queries */
-
-/* The flat angle, in radians, if a query names none: 26 degrees. With it piles of boxes and rounded boxes come to rest,
- * and with less than a degree they do not. */
-#define NARC_FLAT_ANGLE 0.45f
-
-/* The largest flat angle, in radians. An edge that is nearly along the normal has no height across it. */
-#define NARC_MAX_FLAT_ANGLE 1.5f
-
-/* How a batch is asked. What is 0 or NULL has its default, as all has for {0}; a query that is NULL is {0}.
- *
- *   margin            which pairs have a contact: those whose separation is less. 0: the pairs that collide. Above 0: also
- *                     those that are closer than that (speculative contacts). Below 0: only those that are deeper.
- *                     +INFINITY: every pair, also those without an answer (see narc_bodies), which have count 0 and
- *                     separation +INFINITY. Overlaps have no margin.
- *   margins           one for each pair instead. A pair with a NaN there has no answer
- *   second_margin     manifolds: the margin of the point that is not the deepest, where it is larger: a box that tips
- *                     meets its second point in time
- *   flat_angle        manifolds: how far an edge's normal may be from the contact's for the edge to count as facing the
- *                     other body; 0: NARC_FLAT_ANGLE; below 0: never a second point; at most NARC_MAX_FLAT_ANGLE
- *   hints             contacts and manifolds: a column beside the pairs, in and out, zeros at first. Each pair leaves a
- *                     hint that the next call starts from, faster where bodies have moved little: shapes with arcs gain
- *                     most, those with edges less, circles nothing. What hints mean is the library's business. Any value
- *                     is safe: one that is stale, or made up, or another pair's, costs time and changes no bit of the
- *                     answer. Untouched on an error other than NARC_ERROR_CAPACITY
- *   selection         the pairs to ask of, `selection_count` indices of pairs, each at most once; left out: all. Hints,
- *                     margins, rows' numbers and dense rows stay those of the whole batch; rows are listed in the order
- *                     of the selection, and bit k of overlaps is that of pair selection[k]
- *   first, count      a sub-range of the pairs, or of the selection; count 0: to the end. Of overlaps `first` is a
- *                     multiple of 64, and so is `count` unless it reaches to the end; only its words are written
- *   dense             contacts and manifolds: row k is that of pair k, with count 0 where there is nothing. Rows of
- *                     pairs that are not asked of are untouched
- *   row_stride        bytes from a row to the next, for rows within larger structures: a multiple of 4; 0: no gaps
- *   workers           threads to use; NULL: the calling one. Lists are made by several only as far as they have room
- *                     for a row for each pair
- *   out_skipped       how many pairs have no answer (see narc_bodies); NULL: nobody asks. Set where answers are */
-typedef struct narc_query {
-    float margin;
-    float second_margin;
-    float flat_angle;
-    uint32_t dense;
-    narc_float_column margins;
-    narc_hint_column hints;
-    narc_index_column selection;
-    size_t selection_count;
-    size_t first, count;
-    ptrdiff_t row_stride;
-    const narc_workers *workers;
-    size_t *out_skipped;
-    void *reserved[4]; /* NULL */
-} narc_query;
 
 /* Which pairs collide? Bit k % 64 of out_bits[k / 64] is set if pair k does; the bits behind the last pair are 0.
  *   query      NULL: defaults

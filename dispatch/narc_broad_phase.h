@@ -49,7 +49,7 @@
 #ifndef NARC_BROAD_PHASE_H
 #define NARC_BROAD_PHASE_H
 
-#include "narc_shapes.h"
+#include "narc_pairs.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -8,31 +8,20 @@
 #include <stdio.h>
 
 int main(void) {
-    struct {
-        float x, y, c, s;
-        uint32_t shape;
-    } body[] = {{0, 0, 1, 0, 0}, {4, 4, 0, 1, 0}, {20, 0, 1, 0, 0}};
-    struct {
-        uint32_t a, b;
-    } pair[] = {{0, 1}, {1, 2}};
-    narc_bodies bodies = {.count = 3,
-                          .x = NARC_POSITION_COLUMN(body, x),
-                          .y = NARC_POSITION_COLUMN(body, y),
-                          .cosine = NARC_COLUMN(body, c),
-                          .sine = NARC_COLUMN(body, s),
-                          .shape = NARC_COLUMN(body, shape)};
-    narc_pairs pairs = {.count = 2, .a = NARC_COLUMN(pair, a), .b = NARC_COLUMN(pair, b)};
-    float separation[2], normal_x[2], normal_y[2];
-    narc_contacts contacts = {.capacity = 2, .separation = separation, .normal_x = normal_x, .normal_y = normal_y};
+    narc_body body[] = {{0, 0, 1, 0, 1, 0}, {4, 4, 0, 1, 1, 0}, {20, 0, 1, 0, 1, 0}}; /* x y cosine sine scale shape */
+    uint32_t a[] = {0, 1}, b[] = {1, 2};
+    narc_bodies bodies = narc_view_bodies(body, 3);
+    narc_pairs pairs = {.count = 2, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+    narc_contact contact[2];
     narc_arc arcs[NARC_MAX_ARCS];
     narc_shapes *shapes = NULL;
     size_t arc_count, found;
     if (narc_create_shapes(NULL, &shapes) || narc_build_capsule(6, 1, arcs, &arc_count, NULL) ||
         narc_add_shape(shapes, arcs, arc_count, NULL, NULL) ||
-        narc_find_contacts(shapes, &bodies, &pairs, 0, 0, &contacts, &found, NULL))
+        narc_find_contacts(shapes, &bodies, &pairs, NULL, contact, 2, &found, NULL))
         return 1;
     for (size_t k = 0; k < found; k++)
-        printf("separation %g, normal %g %g\n", separation[k], normal_x[k], normal_y[k]);
+        printf("separation %g, normal %g %g\n", contact[k].separation, contact[k].normal_x, contact[k].normal_y);
     narc_destroy_shapes(shapes);
 }
 /* code: end */

@@ -5,7 +5,7 @@
 #include <narc.h>
 
 #include <cstdio>
-#include <future>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -22,29 +22,14 @@ struct Candidate { // from the engine's own broad phase
     float priority;
     uint32_t a, b;
 };
-struct Touch {
-    uint32_t candidate;
-    float separation, normal_x, normal_y;
-};
 
-// One job: some of the candidates, in the thread that it runs on.
-std::vector<Touch> find_touches(const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,
-                                size_t first, size_t count) {
-    std::vector<uint32_t> pair(count);
-    std::vector<float> separation(count), normal_x(count), normal_y(count);
-    narc_manifolds found = {}; // arrays that stay NULL are not written
-    found.capacity = count;
-    found.pair = pair.data();
-    found.separation[0] = separation.data();
-    found.normal_x = normal_x.data();
-    found.normal_y = normal_y.data();
-    size_t found_count = 0;
-    std::vector<Touch> touches;
-    if (narc_find_manifolds_range(shapes, &bodies, &pairs, first, count, nullptr, &found, &found_count, nullptr))
-        return touches;
-    for (size_t k = 0; k < found_count; k++)
-        touches.push_back({pair[k], separation[k], normal_x[k], normal_y[k]});
-    return touches;
+// Tasks for the threads of the engine, which may as well be those of a pool: narc waits until all have ended.
+void run_tasks(void *, unsigned count, void (*task)(void *argument, unsigned index), void *argument) {
+    std::vector<std::thread> threads;
+    for (unsigned index = 0; index < count; index++)
+        threads.emplace_back(task, argument, index);
+    for (std::thread &thread : threads)
+        thread.join();
 }
 } // namespace
 
@@ -72,11 +57,18 @@ int main() {
     pairs.a = NARC_COLUMN(candidates, a);
     pairs.b = NARC_COLUMN(candidates, b);
 
-    auto first_half = std::async(std::launch::async, find_touches, shapes, bodies, pairs, size_t(0), size_t(2));
-    auto second_half = std::async(std::launch::async, find_touches, shapes, bodies, pairs, size_t(2), size_t(1));
-    for (auto *half : {&first_half, &second_half})
-        for (const Touch &t : half->get())
-            std::printf("%s and %s: separation %g, normal %g %g\n", entities[candidates[t.candidate].a].name,
-                        entities[candidates[t.candidate].b].name, t.separation, t.normal_x, t.normal_y);
+    narc_workers workers = {};
+    workers.count = 4;
+    workers.run = run_tasks;
+    narc_query query = {};
+    query.workers = &workers;
+    std::vector<narc_manifold> manifolds(candidates.size());
+    size_t found = 0;
+    if (narc_find_manifolds(shapes, &bodies, &pairs, &query, manifolds.data(), manifolds.size(), &found, nullptr))
+        return 1;
+    manifolds.resize(found);
+    for (const narc_manifold &m : manifolds)
+        std::printf("%s and %s: separation %g, normal %g %g\n", entities[candidates[m.pair].a].name,
+                    entities[candidates[m.pair].b].name, m.point[0].separation, m.normal_x, m.normal_y);
     narc_destroy_shapes(shapes);
 }

@@ -16,7 +16,6 @@ const world_settings world_defaults = {
     .margin = 0.02f,
     .skin = 0.02f,
     .flat_angle = NARC_FLAT_ANGLE,
-    .threads = 1,
 };
 
 /* ------------------------------------------------------------------------------------------------ memory */
@@ -37,44 +36,25 @@ narc_status world_create(world *w, world_settings settings, size_t capacity) {
     return NARC_OK;
 }
 
-/* An array of zeros in place of an old one. */
-static void *renew(void *array, size_t count, size_t size) {
-    free(array);
-    return count > 0 ? calloc(count, size) : NULL;
+static void *resize(void *array, size_t count, size_t size) {
+    void *const resized = count > 0 ? realloc(array, count * size) : NULL;
+    if (!resized)
+        free(array);
+    return resized;
 }
 
-static bool resize_pairs(world_pairs *p, size_t capacity) {
-    p->capacity = capacity;
-    p->margin = renew(p->margin, capacity, sizeof *p->margin);
-    p->hints = renew(p->hints, capacity, sizeof *p->hints);
-    p->impulses = renew(p->impulses, capacity, sizeof *p->impulses);
-    return p->margin && p->hints && p->impulses;
-}
-
-/* Manifolds, and the contacts that are made of them. */
-static bool resize_manifolds(world *w, size_t capacity) {
-    narc_manifolds *m = &w->manifolds;
-    m->capacity = capacity;
-    m->pair = renew(m->pair, capacity, sizeof *m->pair);
-    m->point_count = renew(m->point_count, capacity, sizeof *m->point_count);
-    m->normal_x = renew(m->normal_x, capacity, sizeof *m->normal_x);
-    m->normal_y = renew(m->normal_y, capacity, sizeof *m->normal_y);
-    bool enough = m->pair && m->point_count && m->normal_x && m->normal_y;
-    for (int i = 0; i < 2; i++) {
-        m->separation[i] = renew(m->separation[i], capacity, sizeof *m->separation[i]);
-        m->point_x[i] = renew(m->point_x[i], capacity, sizeof *m->point_x[i]);
-        m->point_y[i] = renew(m->point_y[i], capacity, sizeof *m->point_y[i]);
-        m->feature[i] = renew(m->feature[i], capacity, sizeof *m->feature[i]);
-        enough = enough && m->separation[i] && m->point_x[i] && m->point_y[i] && m->feature[i];
-    }
-    w->contacts = renew(w->contacts, capacity, sizeof *w->contacts);
-    return enough && w->contacts;
+/* Room for pairs, and for a contact of each. */
+static bool resize_pairs(world *w, size_t room) {
+    w->pair_room = room;
+    w->pairs = resize(w->pairs, room, sizeof *w->pairs);
+    w->next_pairs = resize(w->next_pairs, room, sizeof *w->next_pairs);
+    w->manifolds = resize(w->manifolds, room, sizeof *w->manifolds);
+    w->contacts = resize(w->contacts, room, sizeof *w->contacts);
+    return w->pairs && w->next_pairs && w->manifolds && w->contacts;
 }
 
 void world_destroy(world *w) {
-    resize_pairs(&w->pairs, 0);
-    resize_pairs(&w->last_pairs, 0);
-    resize_manifolds(w, 0);
+    resize_pairs(w, 0);
     narc_destroy_broad_phase(w->broad_phase);
     narc_destroy_shapes(w->store);
     free(w->bodies);
@@ -141,7 +121,7 @@ static narc_status find_broken_body(world *w) {
 }
 
 /* All pairs of bodies that come closer than the margin in this step, rotation of bullets included. Where the list is
- * another one, hints and impulses of the pairs that were in the last are carried over; zeros for the others. */
+ * another one, what is known of the pairs that were in the last is carried over; zeros for the others. */
 static narc_status update_pairs(world *w) {
     const narc_bodies bodies = view_bodies(w);
     const narc_pair_filter filter = {.kind = NARC_COLUMN(w->bodies, still)};
@@ -150,37 +130,32 @@ static narc_status update_pairs(world *w) {
                                        .motion_x = NARC_COLUMN(w->bodies, motion.x),
                                        .motion_y = NARC_COLUMN(w->bodies, motion.y),
                                        .reach = NARC_COLUMN(w->bodies, turn_reach),
-                                       .filter = &filter};
+                                       .filter = &filter,
+                                       .workers = &w->settings.workers};
     for (size_t k = 0; k < w->body_count; k++) {
         world_body *body = &w->bodies[k];
         body->motion = scale(w->settings.time_step, body->velocity);
         body->turn_reach = body->bullet ? w->settings.time_step * fabsf(body->spin) * w->shapes[body->shape].reach : 0;
     }
-    const narc_status status =
-        narc_update_pairs(w->broad_phase, w->store, &bodies, &options, w->settings.threads, &w->list, &w->error);
+    const narc_status status = narc_update_pairs(w->broad_phase, w->store, &bodies, &options, &w->list, &w->error);
     if (status != NARC_OK || w->list->skipped > 0)
         return status != NARC_OK ? status : find_broken_body(w);
     if (w->list->kept)
         return NARC_OK;
     const size_t count = w->list->pairs.count;
-    const world_pairs last = w->pairs;
-    w->pairs = w->last_pairs;
-    w->last_pairs = last;
-    if (w->pairs.capacity < count && !resize_pairs(&w->pairs, count + count / 2))
+    if (w->pair_room <= count && !resize_pairs(w, count + count / 2 + 1))
         return fail(w, NARC_ERROR_MEMORY, "no memory for pairs");
-    narc_gather(w->list->previous, count, sizeof *last.hints, last.hints, w->pairs.hints);
-    narc_gather(w->list->previous, count, sizeof *last.impulses, last.impulses, w->pairs.impulses);
+    world_pair *const last = w->pairs;
+    narc_gather(w->list->previous, count, sizeof *last, last, w->next_pairs);
+    w->pairs = w->next_pairs;
+    w->next_pairs = last;
     return NARC_OK;
 }
 
 /* The bodies of a pair. */
-static const world_body *body_a(const world *w, size_t pair) {
-    return &w->bodies[((const uint32_t *)w->list->pairs.a.base)[pair]];
-}
+static const world_body *body_a(const world *w, size_t pair) { return &w->bodies[w->list->pairs.a.base[pair]]; }
 
-static const world_body *body_b(const world *w, size_t pair) {
-    return &w->bodies[((const uint32_t *)w->list->pairs.b.base)[pair]];
-}
+static const world_body *body_b(const world *w, size_t pair) { return &w->bodies[w->list->pairs.b.base[pair]]; }
 
 /* A pair with a bullet has a contact if the two could meet within this step. So the solver stops the bullet where it
  * would touch. For all pairs that would be too much: a contact at a distance is a guess at the normal of the touch. */
@@ -189,56 +164,56 @@ static void find_margins(world *w) {
         const world_body *a = body_a(w, k), *b = body_b(w, k);
         const vec way = subtract(b->motion, a->motion);
         const float reach = a->bullet || b->bullet ? sqrtf(dot(way, way)) + a->turn_reach + b->turn_reach : 0;
-        w->pairs.margin[k] = w->settings.margin + reach;
+        w->pairs[k].margin = w->settings.margin + reach;
     }
 }
 
-static narc_status find_manifolds(world *w, size_t *out_count) {
+narc_status world_find_manifolds(world *w, size_t *out_count) {
     const narc_bodies bodies = view_bodies(w);
-    narc_pairs pairs = w->list->pairs;
-    pairs.margin = NARC_ARRAY(w->pairs.margin);
     size_t skipped = 0;
-    const narc_manifold_options options = {
-        .flat_angle = w->settings.flat_angle, .hints = w->pairs.hints, .out_skipped = &skipped};
-    if (w->manifolds.capacity < pairs.count && !resize_manifolds(w, w->pairs.capacity))
-        return fail(w, NARC_ERROR_MEMORY, "no memory for contacts");
-    const narc_status status = narc_find_manifolds(w->store, &bodies, &pairs, &options, w->settings.threads,
-                                                   &w->manifolds, out_count, &w->error);
+    const narc_query query = {.margins = NARC_COLUMN(w->pairs, margin),
+                              .flat_angle = w->settings.flat_angle,
+                              .hints = NARC_HINT_COLUMN(w->pairs, hint),
+                              .workers = &w->settings.workers,
+                              .out_skipped = &skipped};
+    const narc_status status = narc_find_manifolds(w->store, &bodies, &w->list->pairs, &query, w->manifolds,
+                                                   w->pair_room, out_count, &w->error);
     return status == NARC_OK && skipped > 0 ? find_broken_body(w) : status;
 }
 
 /* ------------------------------------------------------------------------------------------------ contacts */
 
 /* A point starts with the impulses of the point of the last step where the same features touched. */
-static void start_warm(world_point *point, uint16_t feature, const world_impulses *last) {
-    for (int i = 0; i < 2; i++)
-        if (last->feature[i] == feature && last->normal[i] > 0) {
-            point->normal_impulse = last->normal[i];
-            point->tangent_impulse = last->tangent[i];
-        }
+static void start_warm(world_point *point, uint32_t feature, const world_impulses *last) {
+    const int i = last->feature[0] == feature ? 0 : 1;
+    const bool known = last->feature[i] == feature && last->normal[i] > 0;
+    point->normal_impulse = known ? last->normal[i] : 0;
+    point->tangent_impulse = known ? last->tangent[i] : 0;
 }
 
-/* Manifolds, with what a solver wants to know. */
-static void make_contacts(world *w, size_t count) {
-    const narc_manifolds *m = &w->manifolds;
+/* What the solver finds out itself is left as it is. */
+void world_make_contacts(world *w, size_t count) {
     for (size_t k = 0; k < count; k++) {
-        const uint32_t pair = m->pair[k];
-        const world_body *a = body_a(w, pair), *b = body_b(w, pair);
+        const narc_manifold *m = &w->manifolds[k];
+        const world_impulses *last = &w->pairs[m->pair].impulses;
+        const world_body *a = body_a(w, m->pair), *b = body_b(w, m->pair);
+        const vec to_a = subtract(a->position, b->position);
         world_contact *c = &w->contacts[k];
-        *c = (world_contact){.pair = pair,
-                             .a = (uint32_t)(a - w->bodies),
-                             .b = (uint32_t)(b - w->bodies),
-                             .normal = {m->normal_x[k], m->normal_y[k]},
-                             .friction = sqrtf(a->friction * b->friction),
-                             .restitution = fmaxf(a->restitution, b->restitution),
-                             .rolling_impulse = w->pairs.impulses[pair].rolling,
-                             .point_count = m->point_count[k]};
-        for (unsigned i = 0; i < c->point_count; i++) {
+        c->pair = m->pair;
+        c->a = (uint32_t)(a - w->bodies);
+        c->b = (uint32_t)(b - w->bodies);
+        c->normal = (vec){m->normal_x, m->normal_y};
+        c->friction = sqrtf(a->friction * b->friction);
+        c->restitution = a->restitution > b->restitution ? a->restitution : b->restitution;
+        c->rolling_impulse = last->rolling;
+        c->point_count = m->count;
+        c->points[1].normal_impulse = 0; /* where there is one point */
+        for (unsigned i = 0; i < m->count; i++) {
             world_point *point = &c->points[i];
-            point->anchor_a = (vec){m->point_x[i][k], m->point_y[i][k]}; /* narc's points count from A's position */
-            point->anchor_b = add(point->anchor_a, subtract(a->position, b->position));
-            point->separation = m->separation[i][k];
-            start_warm(point, m->feature[i][k], &w->pairs.impulses[pair]);
+            point->anchor_a = (vec){m->point[i].x, m->point[i].y}; /* narc's points count from A's position */
+            point->anchor_b = add(point->anchor_a, to_a);
+            point->separation = m->point[i].separation;
+            start_warm(point, m->point[i].feature, last);
         }
     }
     w->contact_count = count;
@@ -247,13 +222,13 @@ static void make_contacts(world *w, size_t count) {
 /* The impulses for the next step. A pair without a contact has none. */
 static void keep_impulses(world *w) {
     for (size_t k = 0; k < w->list->pairs.count; k++)
-        w->pairs.impulses[k] = (world_impulses){.rolling = 0};
+        w->pairs[k].impulses = (world_impulses){.rolling = 0};
     for (size_t k = 0; k < w->contact_count; k++) {
         const world_contact *c = &w->contacts[k];
-        world_impulses *kept = &w->pairs.impulses[c->pair];
+        world_impulses *kept = &w->pairs[c->pair].impulses;
         kept->rolling = c->rolling_impulse;
         for (unsigned i = 0; i < c->point_count; i++) {
-            kept->feature[i] = w->manifolds.feature[i][k];
+            kept->feature[i] = w->manifolds[k].point[i].feature;
             kept->normal[i] = c->points[i].normal_impulse;
             kept->tangent[i] = c->points[i].tangent_impulse;
         }
@@ -266,9 +241,9 @@ narc_status world_step(world *w) {
     if ((status = update_pairs(w)) != NARC_OK)
         return status;
     find_margins(w);
-    if ((status = find_manifolds(w, &count)) != NARC_OK)
+    if ((status = world_find_manifolds(w, &count)) != NARC_OK)
         return status;
-    make_contacts(w, count);
+    world_make_contacts(w, count);
     world_solve(w);
     keep_impulses(w);
     return NARC_OK;

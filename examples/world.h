@@ -44,13 +44,13 @@ typedef struct world_shape {
 
 typedef struct world_settings {
     vec gravity;
-    float time_step;   /* seconds */
-    unsigned substeps; /* the solver's; contacts are found once a step */
-    float rolling_arm; /* rolling friction: its torque is this length times the normal force */
-    float margin;      /* contacts are kept up to this distance */
-    float skin;        /* bodies may move by this until pairs are found anew */
-    float flat_angle;  /* see narc_manifold_options */
-    unsigned threads;  /* narc's: see narc_find_overlaps() */
+    float time_step;      /* seconds */
+    unsigned substeps;    /* the solver's; contacts are found once a step */
+    float rolling_arm;    /* rolling friction: its torque is this length times the normal force */
+    float margin;         /* contacts are kept up to this distance */
+    float skin;           /* bodies may move by this until pairs are found anew */
+    float flat_angle;     /* see narc_query */
+    narc_workers workers; /* narc's; none: the calling thread */
 } world_settings;
 
 /* Metres and seconds, for bodies of 0.1 to 10 m: 60 steps a second, 8 sub-steps each. */
@@ -58,17 +58,16 @@ extern const world_settings world_defaults;
 
 /* What a pair keeps for its next step: the impulses of its points, by what touches there. */
 typedef struct world_impulses {
-    uint16_t feature[2];
+    uint32_t feature[2];
     float normal[2], tangent[2], rolling;
 } world_impulses;
 
 /* What the engine knows of each pair in the list of pairs. */
-typedef struct world_pairs {
-    size_t capacity;
-    float *margin;
-    uint32_t *hints; /* narc's */
-    world_impulses *impulses;
-} world_pairs;
+typedef struct world_pair {
+    float margin;
+    uint32_t hint; /* narc's */
+    world_impulses impulses;
+} world_pair;
 
 typedef struct world_point {
     vec anchor_a, anchor_b; /* from the centres of mass, world axes */
@@ -95,11 +94,11 @@ typedef struct world {
     world_body *bodies;
     size_t body_count, capacity;
     narc_broad_phase *broad_phase;
-    const narc_pair_list *list;    /* pairs of bodies that are close; the broad phase owns it */
-    world_pairs pairs, last_pairs; /* of this list, and of the one before */
-    narc_manifolds manifolds;
+    const narc_pair_list *list;     /* pairs of bodies that are close; the broad phase owns it */
+    world_pair *pairs, *next_pairs; /* of this list; room for the next one */
+    narc_manifold *manifolds;
     world_contact *contacts;
-    size_t contact_count;
+    size_t pair_room, contact_count;
     narc_error error; /* what went wrong, when a function here says that something did */
 } world;
 
@@ -114,6 +113,10 @@ narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32
 narc_status world_add_body(world *w, world_body body);
 
 narc_status world_step(world *w);
+
+/* Two parts of world_step(): the manifolds of the pairs, and contacts made of `count` manifolds. */
+narc_status world_find_manifolds(world *w, size_t *out_count);
+void world_make_contacts(world *w, size_t count);
 
 /* The solver: from w->contacts, which world_step() finds, to new velocities and positions. */
 void world_solve(world *w);

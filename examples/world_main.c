@@ -46,7 +46,7 @@ static bool read_option(request *wanted, const char *name, const char *value) {
     else if (strcmp(name, "--flat-angle") == 0)
         wanted->settings.flat_angle = (float)(number * 3.14159265 / 180);
     else if (strcmp(name, "--threads") == 0 && number >= 0 && number <= 256)
-        wanted->settings.threads = (unsigned)number;
+        wanted->settings.workers = narc_openmp_workers((unsigned)number);
     else
         return false;
     return true;

@@ -70,6 +70,7 @@ static void prepare(world *w) {
             p->normal_mass = find_mass(a, b, p, c->normal);
             p->tangent_mass = find_mass(a, b, p, quarter_turn(c->normal));
             p->approach = -dot(find_velocity(a, b, p), c->normal);
+            p->greatest_impulse = 0;
         }
     }
 }

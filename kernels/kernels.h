@@ -9,7 +9,6 @@
 
 #include "broad_phase.h"
 #include "column.h"
-#include "narc.h"
 #include "store.h"
 
 /* What a batch call works on: pairs of a body of `a` and one of `b`, by their indices or, without, by the pair's own.

@@ -64,17 +64,14 @@ static const narc_method_table *find_table(narc_status *out_status, narc_error *
 static narc_status check_polygons(const narc_methods *methods, const narc_batch *batch, narc_error *error) {
     if (methods->all_polygons)
         return NARC_OK;
-    const narc_index_column columns[2] = {batch->pairs.a, batch->pairs.b};
-    const narc_bodies *const sets[2] = {&batch->a, &batch->b};
     for (size_t k = 0; k < batch->query.count; k++) {
         const size_t pair = narc_pair_at(batch, batch->query.first + k);
         for (int side = 0; side < 2; side++) {
-            const size_t body = columns[side].base ? narc_index_at(columns[side], pair) : pair;
-            const uint32_t shape = narc_index_at(sets[side]->shape, body);
-            if (narc_has_shape(batch->shapes, shape) && !(batch->shapes->headers[shape].flags & NARC_SHAPE_POLYGON))
-                return narc_fail(error, NARC_ERROR_ARGUMENT, pair, shape,
-                                 "pair %zu: polygon-sat needs polygons, but shape %lu of body %c has arcs", pair,
-                                 (unsigned long)shape, "ab"[side]);
+            const struct narc_side s = narc_find_side(batch, pair, side);
+            if (narc_has_shape(batch->shapes, s.shape) && !(batch->shapes->headers[s.shape].flags & NARC_SHAPE_POLYGON))
+                return narc_fail(error, NARC_ERROR_ARGUMENT, pair, s.shape,
+                                 "pair %zu: polygon-sat needs polygons, but shape %lu of body %zu has arcs", pair,
+                                 (unsigned long)s.shape, s.body);
         }
     }
     return NARC_OK;
@@ -89,7 +86,7 @@ static narc_status check_options(const narc_methods *methods, const narc_method_
     if (methods->change_count != methods->store->change_count)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0,
                          "the store has changed since the last narc_create_methods() or narc_refresh_methods()");
-    if (isnan(options->tolerance))
+    if (!isfinite(options->tolerance))
         return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)options->tolerance, "options.tolerance is %g",
                          (double)options->tolerance);
     if (options->tolerance < 0)
@@ -149,8 +146,10 @@ narc_status narc_find_overlaps_by(const narc_methods *methods, const narc_bodies
     if (status != NARC_OK)
         return status;
     if (options->method == NARC_METHOD_SAT) {
-        clear_outcomes(options->out_outcomes, &batch, batch.query.first, batch.query.count);
-        return narc_find_overlaps(methods->store, bodies, pairs, query, out_bits, error);
+        status = narc_find_overlaps(methods->store, bodies, pairs, query, out_bits, error);
+        if (status == NARC_OK)
+            clear_outcomes(options->out_outcomes, &batch, batch.query.first, batch.query.count);
+        return status;
     }
     return narc_answer_overlaps(run_overlaps, &batch, out_bits, error);
 }
@@ -164,8 +163,10 @@ narc_status narc_find_contacts_by(const narc_methods *methods, const narc_bodies
     if (status != NARC_OK)
         return status;
     if (options->method == NARC_METHOD_SAT) {
-        clear_outcomes(options->out_outcomes, &batch, batch.query.first, batch.query.count);
-        return narc_find_contacts(methods->store, bodies, pairs, query, out_rows, capacity, out_count, error);
+        status = narc_find_contacts(methods->store, bodies, pairs, query, out_rows, capacity, out_count, error);
+        if (status == NARC_OK || status == NARC_ERROR_CAPACITY)
+            clear_outcomes(options->out_outcomes, &batch, batch.query.first, batch.query.count);
+        return status;
     }
     if (!call.contact)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)options->method, "%s answers overlaps only",

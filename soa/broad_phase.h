@@ -11,7 +11,7 @@
 
 #include <stdatomic.h>
 
-#include "narc_shapes.h"
+#include "narc_pairs.h"
 
 /* A box on its way to its strip. */
 typedef struct narc_box_entry {

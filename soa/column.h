@@ -5,7 +5,7 @@
 #ifndef NARC_COLUMN_H
 #define NARC_COLUMN_H
 
-#include "narc_shapes.h"
+#include "narc_pairs.h"
 
 static inline const void *narc_at(const void *base, ptrdiff_t stride, size_t index) {
     return (const char *)base + (ptrdiff_t)index * stride;

@@ -69,8 +69,8 @@ typedef struct narc_position_column {
 #define NARC_POSITION_COLUMN(array, field)                                                                             \
     ((narc_position_column)NARC_POSITIONS_AT(&(array)[0].field, sizeof((array)[0])))
 #define NARC_POSITION_ARRAY(array)     ((narc_position_column)NARC_POSITIONS_AT(&(array)[0], sizeof((array)[0])))
-#define NARC_HINT_COLUMN(array, field) NARC_HINTS_AT(&(array)[0].field, sizeof((array)[0]))
-#define NARC_HINT_ARRAY(array)         NARC_HINTS_AT(&(array)[0], sizeof((array)[0]))
+#define NARC_HINT_COLUMN(array, field) ((narc_hint_column)NARC_HINTS_AT(&(array)[0].field, sizeof((array)[0])))
+#define NARC_HINT_ARRAY(array)         ((narc_hint_column)NARC_HINTS_AT(&(array)[0], sizeof((array)[0])))
 
 #define NARC_COLUMN_INIT(array, field)                                                                                 \
     { NARC_TYPED_POINTER(&(array)[0].field), (ptrdiff_t)sizeof((array)[0]) }
@@ -78,11 +78,13 @@ typedef struct narc_position_column {
     { NARC_TYPED_POINTER(&(array)[0]), (ptrdiff_t)sizeof((array)[0]) }
 #define NARC_POSITION_COLUMN_INIT(array, field) NARC_POSITIONS_AT(&(array)[0].field, sizeof((array)[0]))
 #define NARC_POSITION_ARRAY_INIT(array)         NARC_POSITIONS_AT(&(array)[0], sizeof((array)[0]))
+#define NARC_HINT_COLUMN_INIT(array, field)     NARC_HINTS_AT(&(array)[0].field, sizeof((array)[0]))
+#define NARC_HINT_ARRAY_INIT(array)             NARC_HINTS_AT(&(array)[0], sizeof((array)[0]))
 
 /* What those above are made of. Each type of items has a pointer that may write and one that may not. */
 #define NARC_MADE_COLUMN(type, pointer, size) ((type){(const void *)(pointer), (ptrdiff_t)(size)})
 #define NARC_HINTS_AT(pointer, size)                                                                                   \
-    _Generic((pointer), uint32_t * : (narc_hint_column){(void *)(pointer), (ptrdiff_t)(size)})
+    { _Generic((pointer), uint32_t * : (pointer)), (ptrdiff_t)(size) }
 /* clang-format off */
 #define NARC_TYPED_COLUMN(pointer, size)                                                                               \
     _Generic((pointer),                                                                                                \
@@ -121,6 +123,8 @@ typedef struct narc_position_column {
 #define NARC_ARRAY_INIT           NARC_ARRAY
 #define NARC_POSITION_COLUMN_INIT NARC_POSITION_COLUMN
 #define NARC_POSITION_ARRAY_INIT  NARC_POSITION_ARRAY
+#define NARC_HINT_COLUMN_INIT     NARC_HINT_COLUMN
+#define NARC_HINT_ARRAY_INIT      NARC_HINT_ARRAY
 
 #define NARC_FIELD(make, array, field)                                                                                 \
     make(narc::data_of(array) ? &narc::data_of(array)->field : nullptr, sizeof *narc::data_of(array))

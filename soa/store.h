@@ -21,7 +21,7 @@
 #ifndef NARC_STORE_H
 #define NARC_STORE_H
 
-#include "narc_shapes.h"
+#include "narc_pairs.h"
 
 enum { NARC_CACHE_LINE = 64, NARC_RECORD_ANGLES = 16 };
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * broad_phase.c - pairs of boxes in double precision: narc_find_pairs() for the boxes rounded outwards to single
+ * broad_phase.c - pairs of boxes in double precision: narc_update_box_pairs() for the boxes rounded outwards to single
  * precision, and then those of its pairs whose own boxes overlap.
  */
 #include "broad_phase.h"
@@ -16,9 +16,6 @@
 
 /* More of them may take a second on one thread. */
 enum { MANY_BOXES = 2000000 };
-
-/* Pairs that a box has, more or less: room for so many is made at first. */
-enum { USUAL_PAIRS = 4 };
 
 /* Boxes that the middle is taken from. */
 enum { SAMPLES = 1000 };
@@ -71,7 +68,7 @@ static bool overlap(const narc_aabb *a, const narc_aabb *b) {
     return a->min_x <= b->max_x && b->min_x <= a->max_x && a->min_y <= b->max_y && b->min_y <= a->max_y;
 }
 
-void find_candidates(const char *path, const narc_aabb *boxes, size_t count, uint64_t most, unsigned threads,
+void find_candidates(const char *path, const narc_aabb *boxes, size_t count, uint64_t most, const narc_workers *workers,
                      pair_list *out_pairs) {
     *out_pairs = (pair_list){0};
     out_pairs->items = grow(NULL, &out_pairs->capacity, 0, sizeof *out_pairs->items);
@@ -82,32 +79,23 @@ void find_candidates(const char *path, const narc_aabb *boxes, size_t count, uin
     narc_broad_phase *broad = NULL;
     if (narc_create_broad_phase(NULL, &broad) != NARC_OK)
         fail("not enough memory");
-    uint32_t *a = NULL, *b = NULL;
-    size_t capacity = USUAL_PAIRS * count, found = 0;
-    narc_status status = NARC_ERROR_CAPACITY;
+    const narc_pair_options options = {.workers = workers};
+    const narc_pair_list *list;
     narc_error error;
-    while (status == NARC_ERROR_CAPACITY) {
-        a = allocate(capacity, sizeof *a);
-        b = allocate(capacity, sizeof *b);
-        status = narc_find_pairs(broad, rounded, count, NULL, threads, a, b, capacity, &found, &error);
-        if (status == NARC_ERROR_COUNT)
-            refuse(path, "more than ", UINT32_MAX, most);
-        if (status != NARC_OK && status != NARC_ERROR_CAPACITY)
-            fail("%s", error.message);
-        if (found > most)
-            refuse(path, "", found, most);
-        if (status == NARC_ERROR_CAPACITY) {
-            free(a);
-            free(b);
-            capacity = found;
-        }
+    const narc_status status = narc_update_box_pairs(broad, rounded, count, &options, &list, &error);
+    free(rounded);
+    if (status == NARC_ERROR_COUNT)
+        refuse(path, "more than ", UINT32_MAX, most);
+    if (status != NARC_OK)
+        fail("%s", error.message);
+    const narc_pairs found = list->pairs;
+    if (found.count > most)
+        refuse(path, "", found.count, most);
+    out_pairs->items = grow(out_pairs->items, &out_pairs->capacity, found.count, sizeof *out_pairs->items);
+    for (size_t k = 0; k < found.count; k++) {
+        const pair one = {found.a.base[k], found.b.base[k]};
+        if (overlap(&boxes[one.a], &boxes[one.b]))
+            out_pairs->items[out_pairs->count++] = one;
     }
     narc_destroy_broad_phase(broad);
-    free(rounded);
-    out_pairs->items = grow(out_pairs->items, &out_pairs->capacity, found, sizeof *out_pairs->items);
-    for (size_t k = 0; k < found; k++)
-        if (overlap(&boxes[a[k]], &boxes[b[k]]))
-            out_pairs->items[out_pairs->count++] = (pair){a[k], b[k]};
-    free(a);
-    free(b);
 }

@@ -162,8 +162,9 @@ static settings read_settings(int argc, char **argv) {
     }
     if (options[ALL].value)
         chosen.narrow.margin = INFINITY;
-    if (options[THREADS].value)
-        chosen.narrow.threads = (unsigned)whole_option(&options[THREADS], 1, LARGEST_THREADS);
+    const bool counted = options[THREADS].value;
+    chosen.narrow.workers =
+        narc_openmp_workers(counted ? (unsigned)whole_option(&options[THREADS], 1, LARGEST_THREADS) : 0);
     return chosen;
 }
 
@@ -193,7 +194,7 @@ static void find_pairs(job *work, const settings *chosen) {
                                      nextafter(box.max_x + half, INFINITY), nextafter(box.max_y + half, INFINITY)};
         }
     }
-    find_candidates(chosen->bodies, widened ? widened : work->boxes, count, chosen->most_pairs, chosen->narrow.threads,
+    find_candidates(chosen->bodies, widened ? widened : work->boxes, count, chosen->most_pairs, &chosen->narrow.workers,
                     &work->pairs);
     free(widened);
 }
@@ -239,26 +240,17 @@ static void write_passing(FILE *file, const job *work) {
 /* The library's points are relative to body a, those of the file are in the world. Adding 0 makes a negative zero a
  * plain one. */
 static void write_contacts(FILE *file, const job *work) {
-    const narc_contacts *found = &work->narrow.contacts;
     fprintf(file, "a,b,separation,normal_x,normal_y,point_x,point_y,arc_a,arc_b\n");
     for (size_t k = 0; k < work->narrow.contact_count && !ferror(file); k++) {
-        const pair of = work->pairs.items[found->pair[k]];
+        const narc_contact *found = &work->narrow.contacts[k];
+        const pair of = work->pairs.items[found->pair];
         const body *a = &work->bodies.items[of.a];
-        fprintf(file, "%" PRIu32 ",%" PRIu32 ",%.9g,%.9g,%.9g,%.9g,%.9g,%u,%u\n", of.a, of.b,
-                0 + (double)found->separation[k], 0 + (double)found->normal_x[k], 0 + (double)found->normal_y[k],
-                0 + (a->x + (double)found->point_x[k]), 0 + (a->y + (double)found->point_y[k]),
-                (unsigned)found->arc_a[k], (unsigned)found->arc_b[k]);
+        fprintf(file, "%" PRIu32 ",%" PRIu32 ",%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d\n", of.a, of.b,
+                0 + (double)found->separation, 0 + (double)found->normal_x, 0 + (double)found->normal_y,
+                0 + (a->x + (double)found->point_x), 0 + (a->y + (double)found->point_y),
+                found->feature & (NARC_MAX_ARCS - 1), found->feature >> 8 & (NARC_MAX_ARCS - 1));
         show_progress("writing contacts", k, work->narrow.contact_count);
     }
-}
-
-static void print_threads(FILE *file, unsigned chosen) {
-#ifdef NARC_TOOL_OPENMP
-    fprintf(file, "threads             at most %u\n", chosen ? chosen : narc_default_threads());
-#else
-    (void)chosen;
-    fprintf(file, "threads             1 (built without OpenMP)\n");
-#endif
 }
 
 static void print_method(FILE *file, const narrow_settings *chosen) {
@@ -299,7 +291,10 @@ static void print_report(FILE *file, const job *work, const settings *chosen) {
     print_method(file, &chosen->narrow);
     print_answers(file, found, chosen->narrow.method);
     fprintf(file, "instruction set     %s\n", narc_get_isa());
-    print_threads(file, chosen->narrow.threads);
+    if (chosen->narrow.workers.run)
+        fprintf(file, "threads             at most %u\n", chosen->narrow.workers.count);
+    else
+        fprintf(file, "threads             1 (built without OpenMP)\n");
     if (!chosen->pairs)
         fprintf(file, "broad phase         %.3f ms\n", 1e3 * work->broad_seconds);
     fprintf(file, "narrow phase        %.3f ms (%s, ", 1e3 * found->seconds, found->call);
@@ -349,7 +344,7 @@ static void run(int argc, char **argv) {
                                   work.boxes,
                                   work.colliding,
                                   &work.pairs,
-                                  &work.narrow.contacts,
+                                  work.narrow.contacts,
                                   work.narrow.contact_count,
                                   is_filter(chosen.narrow.method)};
         draw_bodies(chosen.picture, picture, &scene);

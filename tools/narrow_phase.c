@@ -21,12 +21,12 @@ enum { MANY_PAIRS = 4000000 };
 
 /* What every call gets. */
 typedef struct batch {
-    const narrow_settings *chosen;
     const narc_shapes *store;
-    narc_methods *methods;
+    narc_methods *methods; /* NULL: the exact method, which needs none */
     narc_bodies bodies;
     narc_pairs pairs;
-    narc_method_query query;
+    narc_method_options options;
+    narc_query query;
 } batch;
 
 narc_method find_method(const char *name) {
@@ -50,46 +50,31 @@ static void check(narc_status status, const narc_error *error) {
         fail("%s", error->message);
 }
 
-static void allocate_contacts(narc_contacts *contacts, size_t capacity) {
-    *contacts = (narc_contacts){.capacity = capacity,
-                                .pair = allocate(capacity, sizeof(uint32_t)),
-                                .separation = allocate(capacity, sizeof(float)),
-                                .normal_x = allocate(capacity, sizeof(float)),
-                                .normal_y = allocate(capacity, sizeof(float)),
-                                .point_x = allocate(capacity, sizeof(float)),
-                                .point_y = allocate(capacity, sizeof(float)),
-                                .arc_a = allocate(capacity, 1),
-                                .arc_b = allocate(capacity, 1)};
+void free_narrow_result(narrow_result *result) {
+    free(result->contacts);
+    free(result->colliding);
 }
 
-void free_narrow_result(narrow_result *result) {
-    free(result->contacts.pair);
-    free(result->contacts.separation);
-    free(result->contacts.normal_x);
-    free(result->contacts.normal_y);
-    free(result->contacts.point_x);
-    free(result->contacts.point_y);
-    free(result->contacts.arc_a);
-    free(result->contacts.arc_b);
-    free(result->colliding);
+static narc_status find_overlaps(const batch *asked, uint64_t *bits, narc_error *error) {
+    return asked->methods ? narc_find_overlaps_by(asked->methods, &asked->bodies, &asked->pairs, &asked->options,
+                                                  &asked->query, bits, error)
+                          : narc_find_overlaps(asked->store, &asked->bodies, &asked->pairs, &asked->query, bits, error);
+}
+
+static narc_status find_contacts(const batch *asked, narrow_result *result, narc_error *error) {
+    const size_t count = asked->pairs.count;
+    return asked->methods ? narc_find_contacts_by(asked->methods, &asked->bodies, &asked->pairs, &asked->options,
+                                                  &asked->query, result->contacts, count, &result->contact_count, error)
+                          : narc_find_contacts(asked->store, &asked->bodies, &asked->pairs, &asked->query,
+                                               result->contacts, count, &result->contact_count, error);
 }
 
 /* The call that is timed. */
 static void call_library(const batch *asked, narrow_result *result) {
-    const float margin = asked->chosen->margin;
-    const unsigned threads = asked->chosen->threads;
-    narc_status status;
     narc_error error;
     const double start = seconds_now();
-    if (is_filter(asked->query.method)) {
-        result->call = "narc_find_overlaps_by";
-        status = narc_find_overlaps_by(asked->methods, &asked->bodies, &asked->pairs, &asked->query, threads,
-                                       result->colliding, &error);
-    } else {
-        result->call = "narc_find_contacts_by";
-        status = narc_find_contacts_by(asked->methods, &asked->bodies, &asked->pairs, &asked->query, margin, threads,
-                                       &result->contacts, &result->contact_count, &error);
-    }
+    const narc_status status = is_filter(asked->options.method) ? find_overlaps(asked, result->colliding, &error)
+                                                                : find_contacts(asked, result, &error);
     result->seconds = seconds_now() - start;
     check(status, &error);
 }
@@ -112,25 +97,21 @@ static void measure_call(const batch *asked, narrow_result *result) {
 
 /* Which pairs collide, as the method finds it. With a margin below 0 they are not all among the contacts. */
 static void find_colliding(const batch *asked, narrow_result *result) {
-    const float margin = asked->chosen->margin;
-    if (is_filter(asked->query.method))
+    if (is_filter(asked->options.method))
         return;
-    if (margin < 0) {
-        narc_method_query again = asked->query;
-        again.out_outcomes = NULL;
-        again.out_skipped = NULL;
+    if (asked->query.margin < 0) {
+        batch again = *asked;
+        again.options.out_outcomes = NULL;
+        again.query.out_skipped = NULL;
         narc_error error;
-        check(narc_find_overlaps_by(asked->methods, &asked->bodies, &asked->pairs, &again, asked->chosen->threads,
-                                    result->colliding, &error),
-              &error);
+        check(find_overlaps(&again, result->colliding, &error), &error);
         return;
     }
     memset(result->colliding, 0, NARC_BIT_WORDS(asked->pairs.count) * sizeof *result->colliding);
     for (size_t k = 0; k < result->contact_count; k++) {
-        if (result->contacts.separation[k] < 0) {
-            const uint32_t of = result->contacts.pair[k];
-            result->colliding[of / 64] |= (uint64_t)1 << of % 64;
-        }
+        const narc_contact *contact = &result->contacts[k];
+        if (contact->separation < 0)
+            result->colliding[contact->pair / 64] |= (uint64_t)1 << contact->pair % 64;
     }
 }
 
@@ -147,9 +128,9 @@ static void count_colliding(const batch *asked, narrow_result *result) {
 static void compare_with_exact(const batch *asked, narrow_result *result) {
     const size_t count = asked->pairs.count;
     uint64_t *exact = allocate(NARC_BIT_WORDS(count), sizeof *exact);
+    const narc_query query = {.workers = asked->query.workers};
     narc_error error;
-    check(narc_find_overlaps(asked->store, &asked->bodies, &asked->pairs, asked->chosen->threads, exact, &error),
-          &error);
+    check(narc_find_overlaps(asked->store, &asked->bodies, &asked->pairs, &query, exact, &error), &error);
     for (size_t k = 0; k < count; k++) {
         const bool is_told = bit_at(result->colliding, k), is_true = bit_at(exact, k);
         result->missed += is_true && !is_told;
@@ -161,26 +142,30 @@ static void compare_with_exact(const batch *asked, narrow_result *result) {
 void run_narrow_phase(const narrow_settings *chosen, const narc_shapes *shapes, const body_list *bodies,
                       const pair_list *pairs, narrow_result *out_result) {
     const size_t count = pairs->count;
+    const bool is_exact = chosen->method == NARC_METHOD_SAT;
+    *out_result = (narrow_result){.call = is_filter(chosen->method) ? "narc_find_overlaps_by"
+                                          : is_exact                ? "narc_find_contacts"
+                                                                    : "narc_find_contacts_by",
+                                  .contacts = allocate(count, sizeof *out_result->contacts),
+                                  .colliding = allocate(NARC_BIT_WORDS(count), sizeof *out_result->colliding)};
     uint8_t *outcomes = allocate(count, sizeof *outcomes);
+    batch asked = {
+        .store = shapes,
+        .bodies = view_bodies(bodies),
+        .pairs = view_pairs(pairs),
+        .options = {.method = chosen->method,
+                    .tolerance = chosen->tolerance,
+                    .iterations = chosen->iterations,
+                    .out_outcomes = outcomes},
+        .query = {.margin = chosen->margin, .workers = &chosen->workers, .out_skipped = &out_result->skipped}};
     narc_error error;
-    batch asked = {.chosen = chosen,
-                   .store = shapes,
-                   .bodies = view_bodies(bodies),
-                   .pairs = view_pairs(pairs),
-                   .query = {.method = chosen->method,
-                             .tolerance = chosen->tolerance,
-                             .iterations = chosen->iterations,
-                             .out_outcomes = chosen->method == NARC_METHOD_SAT ? NULL : outcomes,
-                             .out_skipped = &out_result->skipped}};
-    check(narc_create_methods(shapes, NULL, &asked.methods, &error), &error);
-    *out_result = (narrow_result){.colliding = allocate(NARC_BIT_WORDS(count), sizeof *out_result->colliding)};
-    if (!is_filter(chosen->method))
-        allocate_contacts(&out_result->contacts, count);
+    if (!is_exact)
+        check(narc_create_methods(shapes, NULL, &asked.methods, &error), &error);
     show_stage("narrow phase", count, "pairs", count > MANY_PAIRS);
     measure_call(&asked, out_result);
     find_colliding(&asked, out_result);
     count_colliding(&asked, out_result);
-    if (chosen->method != NARC_METHOD_SAT) {
+    if (!is_exact) {
         compare_with_exact(&asked, out_result);
         for (size_t k = 0; k < count; k++)
             out_result->outcomes[outcomes[k]]++;

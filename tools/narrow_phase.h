@@ -13,17 +13,17 @@ typedef struct narrow_settings {
     float tolerance;     /* gjk; 0: the library's choice */
     unsigned iterations; /* gjk; 0: the library's choice */
     float margin;        /* +infinity: every pair; filters have none */
-    unsigned threads;    /* 0: the library's choice */
+    narc_workers workers;
 } narrow_settings;
 
 enum { OUTCOME_COUNT = NARC_OUTCOME_NONE + 1 };
 
 typedef struct narrow_result {
-    narc_contacts contacts; /* none from a filter */
+    narc_contact *contacts; /* none from a filter */
     size_t contact_count;
     uint64_t *colliding; /* one bit for each pair, see pair_collides() */
     size_t colliding_count;
-    size_t skipped;                 /* pairs without an answer: see narc_method_query.out_skipped */
+    size_t skipped;                 /* pairs without an answer: see narc_query.out_skipped */
     size_t missed, extra;           /* pairs that collide, or do not, and of which the method says otherwise */
     size_t outcomes[OUTCOME_COUNT]; /* pairs by narc_outcome */
     const char *call;               /* what was timed: the library's function */

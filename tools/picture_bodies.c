@@ -56,8 +56,8 @@ static void find_samples(const body_scene *scene, bool *shown) {
     for (size_t i = 0; i < scene->bodies->count; i++)
         shown[scene->colliding[i] ? HIT : FREE] = true;
     for (size_t k = 0; k < scene->contact_count; k++)
-        if (isfinite(scene->contacts->separation[k]))
-            shown[scene->contacts->separation[k] < 0 ? TOUCHING : APART] = true;
+        if (isfinite(scene->contacts[k].separation))
+            shown[scene->contacts[k].separation < 0 ? TOUCHING : APART] = true;
 }
 
 /* Bodies alone need none. */
@@ -162,13 +162,13 @@ static void paint_contact(canvas *page, narc_point p, narc_point normal, bool to
 
 /* Contact k, sized after the smaller body. */
 static void draw_contact(canvas *page, const view *seen, const body_scene *scene, stamps *made, size_t k) {
-    const narc_contacts *contacts = scene->contacts;
-    const pair of = scene->pairs->items[contacts->pair[k]];
+    const narc_contact *contact = &scene->contacts[k];
+    const pair of = scene->pairs->items[contact->pair];
     const double size = seen->zoom * fmin(box_size(scene->boxes[of.a]), box_size(scene->boxes[of.b]));
     const body *a = &scene->bodies->items[of.a];
-    const narc_point p = to_page(seen, a->x + (double)contacts->point_x[k], a->y + (double)contacts->point_y[k]);
-    const narc_point normal = {(double)contacts->normal_x[k], (double)contacts->normal_y[k]};
-    const bool touching = contacts->separation[k] < 0;
+    const narc_point p = to_page(seen, a->x + (double)contact->point_x, a->y + (double)contact->point_y);
+    const narc_point normal = {(double)contact->normal_x, (double)contact->normal_y};
+    const bool touching = contact->separation < 0;
     canvas *stamp = &made->contacts[touching];
     if (!made->bodies) {
         paint_contact(page, p, normal, touching, size);
@@ -259,7 +259,7 @@ void draw_bodies(const char *path, FILE *file, const body_scene *scene) {
         show_progress("drawing", i, steps);
     }
     for (size_t k = 0; k < scene->contact_count; k++) {
-        if (isfinite(scene->contacts->separation[k]))
+        if (isfinite(scene->contacts[k].separation))
             draw_contact(&page, &seen, scene, &made, k);
         show_progress("drawing", 2 * count + k, steps);
     }

@@ -15,7 +15,7 @@ typedef struct body_scene {
     const narc_aabb *boxes; /* of the bodies */
     const bool *colliding;  /* of the bodies: is it in a colliding pair? */
     const pair_list *pairs;
-    const narc_contacts *contacts;
+    const narc_contact *contacts;
     size_t contact_count;
     bool is_filter; /* the pairs passed a filter: they may collide */
 } body_scene;

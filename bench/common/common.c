@@ -69,28 +69,10 @@ void close_result(FILE *file) {
         fail("a result could not be written");
 }
 
-narc_contacts allocate_contacts(size_t count) {
-    return (narc_contacts){.capacity = count,
-                           .pair = allocate(count, sizeof(uint32_t)),
-                           .separation = allocate(count, sizeof(float)),
-                           .normal_x = allocate(count, sizeof(float)),
-                           .normal_y = allocate(count, sizeof(float)),
-                           .point_x = allocate(count, sizeof(float)),
-                           .point_y = allocate(count, sizeof(float)),
-                           .arc_a = allocate(count, 1),
-                           .arc_b = allocate(count, 1)};
-}
-
-void free_contacts(narc_contacts *contacts) {
-    free(contacts->pair);
-    free(contacts->separation);
-    free(contacts->normal_x);
-    free(contacts->normal_y);
-    free(contacts->point_x);
-    free(contacts->point_y);
-    free(contacts->arc_a);
-    free(contacts->arc_b);
-    memset(contacts, 0, sizeof *contacts);
+const narc_workers *all_workers(void) {
+    static narc_workers workers;
+    workers = narc_openmp_workers(0);
+    return &workers;
 }
 
 const char *processor_name(void) {

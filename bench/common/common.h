@@ -30,9 +30,8 @@ double quantile(double *values, size_t count, double part);
 FILE *open_result(const char *folder, const char *name);
 void close_result(FILE *file);
 
-/* A list with room for `count` contacts, all arrays given. */
-narc_contacts allocate_contacts(size_t count);
-void free_contacts(narc_contacts *contacts);
+/* OpenMP's threads, all of them: for what is not timed. */
+const narc_workers *all_workers(void);
 
 /* The processor's name as the system tells it, the compiler's with its version, and the compiler's flags. */
 const char *processor_name(void);

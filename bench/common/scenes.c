@@ -43,12 +43,13 @@ narc_pairs neighbours(size_t pair_count) {
     return (narc_pairs){.count = pair_count, .a = {list, 2 * sizeof *list}, .b = {list + 1, 2 * sizeof *list}};
 }
 
-void separate(const narc_shapes *shapes, const struct body *bodies, size_t pair_count, narc_contacts *out) {
+void separate(const narc_shapes *shapes, const struct body *bodies, size_t pair_count, narc_contact *out) {
     const narc_bodies columns = bodies_of(bodies, 2 * pair_count);
     const narc_pairs pairs = neighbours(pair_count);
+    const narc_query query = {.margin = INFINITY, .workers = all_workers()};
     narc_error error;
     size_t found = 0;
-    must(narc_find_contacts(shapes, &columns, &pairs, INFINITY, 0, out, &found, &error), &error);
+    must(narc_find_contacts(shapes, &columns, &pairs, &query, out, pair_count, &found, &error), &error);
 }
 
 struct direction random_direction(uint64_t *random) {
@@ -65,21 +66,21 @@ void put_second(struct body *pair, struct direction direction, double distance) 
  * outside without passing it. */
 void find_touching(const narc_shapes *shapes, struct body *bodies, const struct direction *directions,
                    size_t pair_count, double *distances) {
-    narc_contacts contacts = allocate_contacts(pair_count);
+    narc_contact *contacts = allocate(pair_count, sizeof *contacts);
     double most = INFINITY;
     for (int step = 0; step < NEWTON_STEPS && most >= touching; step++) {
         for (size_t k = 0; k < pair_count; k++)
             put_second(&bodies[2 * k], directions[k], distances[k]);
-        separate(shapes, bodies, pair_count, &contacts);
+        separate(shapes, bodies, pair_count, contacts);
         most = 0;
         for (size_t k = 0; k < pair_count; k++) {
-            const double gap = contacts.separation[k];
-            const double slope = contacts.normal_x[k] * directions[k].x + contacts.normal_y[k] * directions[k].y;
+            const double gap = contacts[k].separation;
+            const double slope = contacts[k].normal_x * directions[k].x + contacts[k].normal_y * directions[k].y;
             distances[k] -= gap / slope;
             most = fmax(most, gap);
         }
     }
-    free_contacts(&contacts);
+    free(contacts);
 }
 
 narc_aabb box_of(const narc_shapes *shapes, const struct body *body) {

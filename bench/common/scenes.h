@@ -32,7 +32,7 @@ narc_bodies bodies_of(const struct body *bodies, size_t count);
 narc_pairs neighbours(size_t pair_count);
 
 /* The exact separations and normals of such pairs: contact k is that of pair k. */
-void separate(const narc_shapes *shapes, const struct body *bodies, size_t pair_count, narc_contacts *out);
+void separate(const narc_shapes *shapes, const struct body *bodies, size_t pair_count, narc_contact *out);
 
 /* Where the second body of a pair stands from the first: a unit vector. */
 struct direction {

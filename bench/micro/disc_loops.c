@@ -7,8 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-static size_t find_by_scalar_loop(const struct disc *discs, const struct pair *pairs, size_t count,
-                                  const narc_contacts *out) {
+static size_t find_by_scalar_loop(const struct disc *discs, const struct pair *pairs, size_t count, narc_contact *out) {
     size_t found = 0;
     for (size_t k = 0; k < count; k++) {
         const struct disc *a = &discs[pairs[k].a], *b = &discs[pairs[k].b];
@@ -17,14 +16,15 @@ static size_t find_by_scalar_loop(const struct disc *discs, const struct pair *p
             continue;
         const float length = sqrtf(square), n_x = length > 0 ? x / length : 1, n_y = length > 0 ? y / length : 0;
         const float along = 0.5f * (length + a->radius - b->radius);
-        out->pair[found] = (uint32_t)k;
-        out->separation[found] = length - radii;
-        out->normal_x[found] = n_x;
-        out->normal_y[found] = n_y;
-        out->point_x[found] = n_x * along;
-        out->point_y[found] = n_y * along;
-        out->arc_a[found] = out->arc_b[found] = 0;
-        found++;
+        out[found++] = (narc_contact){.pair = (uint32_t)k,
+                                      .count = 1,
+                                      .separation = length - radii,
+                                      .normal_x = n_x,
+                                      .normal_y = n_y,
+                                      .point_x = n_x * along,
+                                      .point_y = n_y * along,
+                                      .radius_a = a->radius,
+                                      .radius_b = b->radius};
     }
     return found;
 }
@@ -32,7 +32,7 @@ static size_t find_by_scalar_loop(const struct disc *discs, const struct pair *p
 #ifdef __x86_64__
 #include <immintrin.h>
 
-#define AVX2 __attribute__((target("avx2,bmi2,popcnt")))
+#define AVX2 __attribute__((target("avx2")))
 
 /* Discs in lanes. */
 struct eight {
@@ -55,14 +55,26 @@ AVX2 static inline struct eight load_eight(const struct disc *discs, const struc
                           _mm256_shuffle_ps(radius01, radius23, 0x44)};
 }
 
-/* The permutation that packs the lanes of `bits`. */
-AVX2 static inline __m256i find_packing(unsigned bits) {
-    const uint64_t kept = _pdep_u64(bits, 0x0101010101010101u) * 0xff;
-    return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)_pext_u64(0x0706050403020100u, kept)));
+/* Item i of vector k becomes item k of vector i. */
+AVX2 static inline void transpose(__m256 v[8]) {
+    __m256 pairs[8], fours[8];
+    for (int k = 0; k < 8; k += 2) {
+        pairs[k] = _mm256_unpacklo_ps(v[k], v[k + 1]);
+        pairs[k + 1] = _mm256_unpackhi_ps(v[k], v[k + 1]);
+    }
+    for (int k = 0; k < 8; k += 4)
+        for (int high = 0; high < 2; high++) {
+            fours[k + 2 * high] = _mm256_shuffle_ps(pairs[k + high], pairs[k + high + 2], 0x44);
+            fours[k + 2 * high + 1] = _mm256_shuffle_ps(pairs[k + high], pairs[k + high + 2], 0xee);
+        }
+    for (int k = 0; k < 4; k++) {
+        v[k] = _mm256_permute2f128_ps(fours[k], fours[k + 4], 0x20);
+        v[k + 4] = _mm256_permute2f128_ps(fours[k], fours[k + 4], 0x31);
+    }
 }
 
 AVX2 static size_t find_by_avx2_loop(const struct disc *discs, const struct pair *pairs, size_t count,
-                                     const narc_contacts *out) {
+                                     narc_contact *out) {
     const __m256 zero = _mm256_setzero_ps(), one = _mm256_set1_ps(1), half = _mm256_set1_ps(0.5f);
     size_t found = 0, k = 0;
     __m256i number = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
@@ -78,28 +90,26 @@ AVX2 static size_t find_by_avx2_loop(const struct disc *discs, const struct pair
         const __m256 n_x = _mm256_blendv_ps(one, _mm256_mul_ps(x, inverse), some);
         const __m256 n_y = _mm256_and_ps(_mm256_mul_ps(y, inverse), some);
         const __m256 along = _mm256_mul_ps(half, _mm256_sub_ps(_mm256_add_ps(length, a.radius), b.radius));
-        const __m256i packing = find_packing(bits);
-        _mm256_storeu_si256((__m256i *)(void *)&out->pair[found], _mm256_permutevar8x32_epi32(number, packing));
-        _mm256_storeu_ps(&out->separation[found], _mm256_permutevar8x32_ps(_mm256_sub_ps(length, radii), packing));
-        _mm256_storeu_ps(&out->normal_x[found], _mm256_permutevar8x32_ps(n_x, packing));
-        _mm256_storeu_ps(&out->normal_y[found], _mm256_permutevar8x32_ps(n_y, packing));
-        _mm256_storeu_ps(&out->point_x[found], _mm256_permutevar8x32_ps(_mm256_mul_ps(n_x, along), packing));
-        _mm256_storeu_ps(&out->point_y[found], _mm256_permutevar8x32_ps(_mm256_mul_ps(n_y, along), packing));
-        memset(&out->arc_a[found], 0, 8);
-        memset(&out->arc_b[found], 0, 8);
-        found += (size_t)__builtin_popcount(bits);
+        __m256 row[8] = {_mm256_castsi256_ps(number),
+                         _mm256_castsi256_ps(_mm256_set1_epi32(1 << 16)), /* no feature, a count of 1 */
+                         _mm256_sub_ps(length, radii),
+                         n_x,
+                         n_y,
+                         _mm256_mul_ps(n_x, along),
+                         _mm256_mul_ps(n_y, along),
+                         a.radius};
+        float radius_b[8];
+        transpose(row);
+        _mm256_storeu_ps(radius_b, b.radius);
+        for (int lane = 0; lane < 8; lane++) { /* the next one lies over what is none */
+            memcpy(&out[found], &row[lane], sizeof row[lane]);
+            out[found].radius_b = radius_b[lane];
+            found += bits >> lane & 1;
+        }
     }
-    const narc_contacts rest = {.pair = out->pair + found,
-                                .separation = out->separation + found,
-                                .normal_x = out->normal_x + found,
-                                .normal_y = out->normal_y + found,
-                                .point_x = out->point_x + found,
-                                .point_y = out->point_y + found,
-                                .arc_a = out->arc_a + found,
-                                .arc_b = out->arc_b + found};
-    const size_t last = find_by_scalar_loop(discs, pairs + k, count - k, &rest);
+    const size_t last = find_by_scalar_loop(discs, pairs + k, count - k, out + found);
     for (size_t i = 0; i < last; i++)
-        rest.pair[i] += (uint32_t)k;
+        out[found + i].pair += (uint32_t)k;
     return found + last;
 }
 #endif

@@ -15,9 +15,8 @@ struct disc {
     float x, y, radius, unused;
 };
 
-/* Writes the contacts of the pairs that collide, all arrays, in the order of the pairs; returns how many. May write up
- * to eight items behind the last. */
-typedef size_t disc_loop(const struct disc *discs, const struct pair *pairs, size_t count, const narc_contacts *out);
+/* Writes the contacts of the pairs that collide, in the order of the pairs; returns how many. May write one more. */
+typedef size_t disc_loop(const struct disc *discs, const struct pair *pairs, size_t count, narc_contact *out);
 
 /* By name, "scalar-loop" or "avx2-loop"; NULL where it can't run. */
 disc_loop *find_disc_loop(const char *name);

@@ -69,7 +69,7 @@ static void add_narc(const char *title, enum query query, struct workload_key ke
     if (is_listed(name))
         return;
     const struct narc_job job = {.query = query, .key = key, .isa = isa, .threads = threads, .pair_count = part};
-    if (threads > narc_default_threads())
+    if (threads > narc_openmp_workers(0).count)
         bench_skip(name, "fewer threads here");
     else
         list_row(make_narc_row(name, &job));

@@ -7,11 +7,9 @@
 
 #include "narc.h"
 
-/* A list with room for `count` manifolds, all arrays given. There is one for all rows, since they run one after
- * another: a call may move it. */
-const narc_manifolds *share_manifolds(size_t count);
+/* Room for `count` manifolds, one for all rows of the benchmark, since they run one after another: a call may move it. */
+narc_manifold *share_manifolds(size_t count);
 
-/* The separation of manifold k's deepest point. */
-float deepest_separation(const narc_manifolds *manifolds, size_t k);
+float deepest_separation(const narc_manifold *manifold);
 
 #endif

@@ -15,9 +15,10 @@ struct narc_row {
     struct bench_row row;
     struct narc_job job;
     const struct workload *frames[2]; /* in one frame both are the same */
+    narc_workers workers;
     size_t runs;
     uint64_t *bits;
-    narc_contacts contacts;
+    narc_contact *contacts;
     size_t found;
     uint32_t *hints;
     struct disc *discs[2]; /* of the frames */
@@ -25,28 +26,20 @@ struct narc_row {
 
 static bool has_frames(const struct narc_job *job) { return job->query >= QUERY_FRAMES || is_settled(&job->key); }
 
-static narc_contacts contacts_behind(const narc_contacts *contacts, size_t count) {
-    return (narc_contacts){.capacity = contacts->capacity - count,
-                           .pair = contacts->pair + count,
-                           .separation = contacts->separation + count,
-                           .normal_x = contacts->normal_x + count,
-                           .normal_y = contacts->normal_y + count,
-                           .point_x = contacts->point_x + count,
-                           .point_y = contacts->point_y + count,
-                           .arc_a = contacts->arc_a + count,
-                           .arc_b = contacts->arc_b + count};
-}
+static bool has_hints(const struct narc_job *job) { return job->query == QUERY_HINTED || job->query == QUERY_MANIFOLD; }
 
-/* Contacts, so many pairs in a call. */
-static narc_status run_batches(struct narc_row *row, const narc_shapes *shapes, const narc_bodies *bodies,
-                               const narc_pairs *pairs, narc_error *error) {
+/* All pairs in one call, or so many in each. */
+static narc_status find_contacts(struct narc_row *row, const narc_shapes *shapes, const narc_bodies *bodies,
+                                 const narc_pairs *pairs, narc_query query, narc_error *error) {
     narc_status status = NARC_OK;
     row->found = 0;
-    for (size_t first = 0; first < pairs->count && status == NARC_OK; first += row->job.batch) {
-        const size_t left = pairs->count - first, count = left < row->job.batch ? left : row->job.batch;
-        const narc_contacts rest = contacts_behind(&row->contacts, row->found);
+    while (query.first < pairs->count && status == NARC_OK) {
+        const size_t left = pairs->count - query.first, batch = row->job.batch;
         size_t found = 0;
-        status = narc_find_contacts_range(shapes, bodies, pairs, first, count, 0, &rest, &found, error);
+        query.count = batch > 0 && batch < left ? batch : left;
+        status = narc_find_contacts(shapes, bodies, pairs, &query, row->contacts + row->found,
+                                    pairs->count - row->found, &found, error);
+        query.first += query.count;
         row->found += found;
     }
     return status;
@@ -60,24 +53,18 @@ static void run(struct bench_row *bench_row) {
     const narc_bodies bodies = bodies_of(workload->bodies, workload->body_count);
     const narc_pairs pairs = {
         .count = row->row.pairs, .a = NARC_COLUMN(workload->pairs, a), .b = NARC_COLUMN(workload->pairs, b)};
-    const narc_manifold_options options = {.hints = row->hints};
+    const narc_query query = {.hints = NARC_HINT_ARRAY(row->hints), .workers = &row->workers};
     narc_error error;
     narc_status status = NARC_OK;
     if (job->query == QUERY_OVERLAP)
-        status = narc_find_overlaps(workload->shapes, &bodies, &pairs, job->threads, row->bits, &error);
-    else if (job->query == QUERY_HINTED)
-        status = narc_find_contacts_hinted(workload->shapes, &bodies, &pairs, 0, job->threads, row->hints,
-                                           &row->contacts, &row->found, &error);
+        status = narc_find_overlaps(workload->shapes, &bodies, &pairs, &query, row->bits, &error);
     else if (job->query == QUERY_MANIFOLD)
-        status = narc_find_manifolds(workload->shapes, &bodies, &pairs, &options, job->threads,
-                                     share_manifolds(pairs.count), &row->found, &error);
+        status = narc_find_manifolds(workload->shapes, &bodies, &pairs, &query, share_manifolds(pairs.count),
+                                     pairs.count, &row->found, &error);
     else if (job->query == QUERY_DISCS)
-        row->found = find_disc_loop(job->isa)(row->discs[frame], workload->pairs, pairs.count, &row->contacts);
-    else if (job->batch > 0)
-        status = run_batches(row, workload->shapes, &bodies, &pairs, &error);
+        row->found = find_disc_loop(job->isa)(row->discs[frame], workload->pairs, pairs.count, row->contacts);
     else
-        status =
-            narc_find_contacts(workload->shapes, &bodies, &pairs, 0, job->threads, &row->contacts, &row->found, &error);
+        status = find_contacts(row, workload->shapes, &bodies, &pairs, query, &error);
     if (status != NARC_OK)
         fail("%s: %s", row->row.name, error.message);
 }
@@ -85,13 +72,13 @@ static void run(struct bench_row *bench_row) {
 /* Bits from a list of contacts. A separation that is not the exact one counts as a wrong answer. */
 static size_t spread_contacts(struct narc_row *row, const struct workload *workload) {
     const bool manifolds = row->job.query == QUERY_MANIFOLD;
-    const narc_manifolds *list = share_manifolds(row->row.pairs);
+    const narc_manifold *list = share_manifolds(row->row.pairs);
     size_t wrong = 0;
     for (size_t k = 0; k < NARC_BIT_WORDS(row->row.pairs); k++)
         row->bits[k] = 0;
     for (size_t k = 0; k < row->found; k++) {
-        const uint32_t pair = manifolds ? list->pair[k] : row->contacts.pair[k];
-        const double separation = manifolds ? deepest_separation(list, k) : row->contacts.separation[k];
+        const uint32_t pair = manifolds ? list[k].pair : row->contacts[k].pair;
+        const double separation = manifolds ? deepest_separation(&list[k]) : row->contacts[k].separation;
         row->bits[pair / 64] |= (uint64_t)1 << pair % 64;
         wrong += !(fabs(separation - workload->gaps[pair]) < TOUCHING);
     }
@@ -130,8 +117,9 @@ static void make_outputs(struct narc_row *row) {
     if (row->job.query == QUERY_OVERLAP)
         return;
     if (row->job.query != QUERY_MANIFOLD)
-        row->contacts = allocate_contacts(count + 8); /* disc loops write whole vectors */
-    row->hints = allocate(count, sizeof *row->hints);
+        row->contacts = allocate(count + 1, sizeof *row->contacts); /* disc loops write one more */
+    if (has_hints(&row->job))
+        row->hints = allocate(count, sizeof *row->hints);
     for (int frame = 0; frame < 2 && row->job.query == QUERY_DISCS; frame++)
         row->discs[frame] = make_discs(row->frames[frame]);
 }
@@ -157,6 +145,7 @@ static void prepare(struct bench_row *bench_row) {
 struct bench_row *make_narc_row(const char *name, const struct narc_job *job) {
     struct narc_row *row = allocate(1, sizeof *row);
     row->job = *job;
+    row->workers = narc_openmp_workers(job->threads);
     snprintf(row->row.name, sizeof row->row.name, "%s", name);
     row->row.prepare = prepare;
     row->row.run = run;

@@ -20,11 +20,11 @@ enum { STEPS = 400 };
 /* Copies of a pile of more bodies than that. */
 enum { MAX_BODIES = 100000, COPIES = 6 /* in x and in y */ };
 
-void find_boxes(const struct workload *workload, double room, unsigned threads, narc_box *out_boxes) {
+void find_boxes(const struct workload *workload, double room, const narc_workers *workers, narc_box *out_boxes) {
     const narc_bodies bodies = bodies_of(workload->bodies, workload->body_count);
-    const narc_box_options options = {.margin = (float)room};
+    const narc_box_options options = {.margin = (float)room, .workers = workers};
     narc_error error;
-    must(narc_compute_boxes(workload->shapes, &bodies, &options, threads, out_boxes, &error), &error);
+    must(narc_compute_boxes(workload->shapes, &bodies, &options, out_boxes, &error), &error);
 }
 
 /* ------------------------------------------------------------------------------------------------ pairs */
@@ -54,8 +54,8 @@ static void end_search(struct search *search) {
 
 static narc_pairs find_close(struct search *search, const struct workload *workload, double room) {
     narc_error error;
-    find_boxes(workload, room, 0, search->boxes);
-    must(narc_find_pairs(search->broad, search->boxes, workload->body_count, NULL, 0, search->a, search->b,
+    find_boxes(workload, room, all_workers(), search->boxes);
+    must(narc_find_pairs(search->broad, search->boxes, workload->body_count, NULL, all_workers(), search->a, search->b,
                          search->capacity, &search->found, &error),
          &error);
     return (narc_pairs){.count = search->found, .a = NARC_ARRAY(search->a), .b = NARC_ARRAY(search->b)};
@@ -82,13 +82,13 @@ struct motion {
 static const double inertia = 0.4;
 
 /* Splits an overlap between two bodies of equal mass. The point is given from A's position. */
-static void push_apart(const struct body *bodies, uint32_t a, uint32_t b, const narc_contacts *contacts, size_t k,
+static void push_apart(const struct body *bodies, uint32_t a, uint32_t b, const narc_contact *contact,
                        struct motion *motions) {
-    const double x = contacts->normal_x[k], y = contacts->normal_y[k];
-    const double from_b_x = contacts->point_x[k] - (bodies[b].x - bodies[a].x);
-    const double from_b_y = contacts->point_y[k] - (bodies[b].y - bodies[a].y);
-    const double arm_a = contacts->point_x[k] * y - contacts->point_y[k] * x, arm_b = from_b_x * y - from_b_y * x;
-    const double part = -contacts->separation[k] / (2 + (arm_a * arm_a + arm_b * arm_b) / inertia);
+    const double x = contact->normal_x, y = contact->normal_y;
+    const double from_b_x = contact->point_x - (bodies[b].x - bodies[a].x);
+    const double from_b_y = contact->point_y - (bodies[b].y - bodies[a].y);
+    const double arm_a = contact->point_x * y - contact->point_y * x, arm_b = from_b_x * y - from_b_y * x;
+    const double part = -contact->separation / (2 + (arm_a * arm_a + arm_b * arm_b) / inertia);
     motions[a].x -= part * x, motions[a].y -= part * y, motions[a].turn -= part * arm_a / inertia;
     motions[b].x += part * x, motions[b].y += part * y, motions[b].turn += part * arm_b / inertia;
 }
@@ -104,21 +104,23 @@ static void move(struct body *body, const struct motion *motion, double half_wid
 }
 
 /* A step of Jacobi's method for all overlaps; returns their mean before it. */
-static double push_all(struct workload *workload, double half_width, struct search *search, narc_contacts *contacts,
+static double push_all(struct workload *workload, double half_width, struct search *search, narc_contact *contacts,
                        struct motion *motions) {
     const size_t body_count = workload->body_count;
     const narc_bodies bodies = bodies_of(workload->bodies, body_count);
     const narc_pairs pairs = find_close(search, workload, 0);
+    const narc_query query = {.workers = all_workers()};
     narc_error error;
     size_t count = 0;
     double sum = 0;
-    must(narc_find_contacts(workload->shapes, &bodies, &pairs, 0, 0, contacts, &count, &error), &error);
+    must(narc_find_contacts(workload->shapes, &bodies, &pairs, &query, contacts, search->capacity, &count, &error),
+         &error);
     for (size_t k = 0; k < body_count; k++)
         motions[k] = (struct motion){0};
     for (size_t k = 0; k < count; k++) {
-        const uint32_t pair = contacts->pair[k];
-        push_apart(workload->bodies, search->a[pair], search->b[pair], contacts, k, motions);
-        sum -= contacts->separation[k];
+        const uint32_t pair = contacts[k].pair;
+        push_apart(workload->bodies, search->a[pair], search->b[pair], &contacts[k], motions);
+        sum -= contacts[k].separation;
     }
     for (size_t k = 0; k < body_count; k++)
         move(&workload->bodies[k], &motions[k], half_width);
@@ -127,14 +129,14 @@ static double push_all(struct workload *workload, double half_width, struct sear
 
 static void settle(struct workload *workload, double half_width) {
     struct search search = begin_search(workload->body_count);
-    narc_contacts contacts = allocate_contacts(search.capacity);
+    narc_contact *contacts = allocate(search.capacity, sizeof *contacts);
     struct motion *motions = allocate(workload->body_count, sizeof *motions);
     int step = 0;
-    while (push_all(workload, half_width, &search, &contacts, motions) > mean_overlap)
+    while (push_all(workload, half_width, &search, contacts, motions) > mean_overlap)
         if (++step == STEPS)
             fail("a pile that does not settle");
     free(motions);
-    free_contacts(&contacts);
+    free(contacts);
     end_search(&search);
 }
 

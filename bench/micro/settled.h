@@ -17,6 +17,6 @@
 void make_settled(struct workload *workload);
 
 /* Boxes around bodies, with `room` on each side. */
-void find_boxes(const struct workload *workload, double room, unsigned threads, narc_box *out_boxes);
+void find_boxes(const struct workload *workload, double room, const narc_workers *workers, narc_box *out_boxes);
 
 #endif

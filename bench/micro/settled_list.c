@@ -11,6 +11,7 @@
 #include "narc_rows.h"
 #include "peers.h"
 #include "step_rows.h"
+#include "world_rows.h"
 
 /* Bodies of a pile for 65,536 pairs of the other scenes: small, middle and large. */
 static const size_t body_counts[] = {2000, 30000, 1000008};
@@ -69,10 +70,22 @@ static void add_step(enum step step, struct workload_key key, const char *isa, u
     char name[BENCH_NAME];
     name_row(titles[step], &key, isa, threads == 2 ? "/2threads" : "", name);
     const struct step_job job = {.step = step, .key = key, .isa = isa, .threads = threads};
-    if (threads > narc_default_threads())
+    if (threads > narc_openmp_workers(0).count)
         bench_skip(name, "fewer threads here");
     else
         list_row(make_step_row(name, &job));
+}
+
+/* The example world with so many bodies. */
+static void add_world_parts(struct workload_key key, const char *isa, size_t body_count) {
+    static const char *const titles[] = {[WORLD_MANIFOLDS] = "world-manifold", [WORLD_CONTACTS] = "world-contact"};
+    key.body_count = key.body_count * body_count / body_counts[1];
+    for (enum world_part part = WORLD_MANIFOLDS; part <= WORLD_CONTACTS; part++) {
+        char name[BENCH_NAME], suffix[32];
+        snprintf(suffix, sizeof suffix, "/%zubodies", body_count);
+        name_row(titles[part], &key, isa, suffix, name);
+        list_row(make_world_part_row(name, part, &key, isa));
+    }
 }
 
 static void add_loop(const char *loop, struct workload_key key) {
@@ -129,13 +142,15 @@ void list_settled(const struct row_choice *choice) {
                               large = settled(eight, SCENE_SETTLED_LARGE, FEW);
     add_queries(best, FEW);
     add_queries(best, UNIQUE);
-    for (size_t batch = 16; batch <= 65536; batch *= batch == 256 ? 256 : 4)
+    for (size_t batch = 1; batch <= 65536; batch *= batch == 256 ? 256 : 4)
         add_batches(key, best, batch);
     add_steps(small, best, 1);
     add_steps(key, best, 1);
     add_steps(large, best, 1);
     add_steps(large, best, 2);
     add_query(QUERY_MANIFOLD, large, best);
+    add_world_parts(key, best, 10000);
+    add_world_parts(key, best, 30000);
     if (narc_isa_supported("avx2")) {
         add_query(QUERY_CONTACT, settled(four, SCENE_SETTLED, FEW), "avx2");
         add_query(QUERY_HINTED, settled(four, SCENE_SETTLED, FEW), "avx2");

@@ -24,6 +24,7 @@ struct frame {
 struct step_row {
     struct bench_row row;
     struct step_job job;
+    narc_workers workers;
     struct frame frames[2];
     size_t runs, capacity, manifold_count;
     narc_broad_phase *broad;
@@ -33,8 +34,8 @@ struct step_row {
 
 static void find_frame_pairs(struct step_row *row, struct frame *frame) {
     narc_error error;
-    must(narc_find_pairs(row->broad, frame->boxes, frame->workload->body_count, NULL, row->job.threads, frame->a,
-                         frame->b, row->capacity, &frame->pair_count, &error),
+    must(narc_find_pairs(row->broad, frame->boxes, frame->workload->body_count, NULL, &row->workers, frame->a, frame->b,
+                         row->capacity, &frame->pair_count, &error),
          &error);
 }
 
@@ -45,7 +46,7 @@ static narc_pairs pairs_of(const struct frame *frame) {
 static void carry_hints(struct step_row *row, const struct frame *last, struct frame *frame) {
     const narc_pairs old_pairs = pairs_of(last), new_pairs = pairs_of(frame);
     narc_error error;
-    must(narc_match_pairs(row->broad, &old_pairs, &new_pairs, row->job.threads, row->match, &error), &error);
+    must(narc_match_pairs(row->broad, &old_pairs, &new_pairs, &row->workers, row->match, &error), &error);
     narc_gather(row->match, frame->pair_count, sizeof *frame->hints, last->hints, frame->hints);
 }
 
@@ -54,15 +55,15 @@ static void find_frame_manifolds(struct step_row *row, const struct frame *frame
                                  uint32_t *hints) {
     const struct workload *workload = frame->workload;
     const narc_bodies bodies = bodies_of(workload->bodies, workload->body_count);
-    const narc_manifold_options options = {.hints = hints};
+    const narc_query query = {.hints = NARC_HINT_ARRAY(hints), .workers = &row->workers};
     narc_error error;
-    must(narc_find_manifolds(workload->shapes, &bodies, pairs, &options, row->job.threads,
-                             share_manifolds(row->capacity), &row->manifold_count, &error),
+    must(narc_find_manifolds(workload->shapes, &bodies, pairs, &query, share_manifolds(row->capacity), row->capacity,
+                             &row->manifold_count, &error),
          &error);
 }
 
 static void run_whole(struct step_row *row, const struct frame *last, struct frame *frame) {
-    find_boxes(frame->workload, SETTLED_SKIN / 2, row->job.threads, frame->boxes);
+    find_boxes(frame->workload, SETTLED_SKIN / 2, &row->workers, frame->boxes);
     find_frame_pairs(row, frame);
     carry_hints(row, last, frame);
     const narc_pairs pairs = pairs_of(frame);
@@ -71,11 +72,9 @@ static void run_whole(struct step_row *row, const struct frame *last, struct fra
 
 static void update_pairs(struct step_row *row, const struct frame *frame) {
     const narc_bodies bodies = bodies_of(frame->workload->bodies, frame->workload->body_count);
-    const narc_pair_options options = {.skin = (float)(SETTLED_SKIN / 2)};
+    const narc_pair_options options = {.skin = (float)(SETTLED_SKIN / 2), .workers = &row->workers};
     narc_error error;
-    must(
-        narc_update_pairs(row->broad, frame->workload->shapes, &bodies, &options, row->job.threads, &row->list, &error),
-        &error);
+    must(narc_update_pairs(row->broad, frame->workload->shapes, &bodies, &options, &row->list, &error), &error);
 }
 
 static void run_kept(struct step_row *row, const struct frame *frame) {
@@ -91,7 +90,7 @@ static void run(struct bench_row *bench_row) {
     row->runs++;
     switch (row->job.step) {
     case STEP_BOXES:
-        find_boxes(frame->workload, SETTLED_SKIN / 2, row->job.threads, frame->boxes);
+        find_boxes(frame->workload, SETTLED_SKIN / 2, &row->workers, frame->boxes);
         break;
     case STEP_PAIRS:
         find_frame_pairs(row, frame);
@@ -118,10 +117,10 @@ static double count_wrong_pairs(const struct frame *frame) {
 }
 
 static double count_wrong_manifolds(const struct step_row *row, const struct workload *workload) {
-    const narc_manifolds *list = share_manifolds(row->capacity);
+    const narc_manifold *list = share_manifolds(row->capacity);
     size_t wrong = 0, colliding = 0;
     for (size_t k = 0; k < row->manifold_count; k++)
-        wrong += !(fabs(deepest_separation(list, k) - workload->gaps[list->pair[k]]) < TOUCHING);
+        wrong += !(fabs(deepest_separation(&list[k]) - workload->gaps[list[k].pair]) < TOUCHING);
     for (size_t k = 0; k < workload->pair_count; k++)
         colliding += workload->gaps[k] < -TOUCHING;
     return (double)(wrong + (row->manifold_count < colliding));
@@ -172,6 +171,7 @@ static void prepare(struct bench_row *bench_row) {
 struct bench_row *make_step_row(const char *name, const struct step_job *job) {
     struct step_row *row = allocate(1, sizeof *row);
     row->job = *job;
+    row->workers = narc_openmp_workers(job->threads);
     snprintf(row->row.name, sizeof row->row.name, "%s", name);
     row->row.prepare = prepare;
     row->row.run = run;

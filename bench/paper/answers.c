@@ -50,7 +50,7 @@ struct chunk {
     struct body *bodies;
     uint64_t *bits;
     uint8_t *outcomes;
-    narc_contacts exact, found;
+    narc_contact *exact, *found;
 };
 
 /* ------------------------------------------------------------------------------------------------ pairs */
@@ -84,16 +84,16 @@ static struct chunk make_chunk(size_t count) {
                           .bodies = allocate(2 * count, sizeof(struct body)),
                           .bits = allocate(NARC_BIT_WORDS(count), sizeof(uint64_t)),
                           .outcomes = allocate(count, 1),
-                          .exact = allocate_contacts(count),
-                          .found = allocate_contacts(count)};
+                          .exact = allocate(count, sizeof(narc_contact)),
+                          .found = allocate(count, sizeof(narc_contact))};
 }
 
 static void free_chunk(struct chunk *chunk) {
     free(chunk->bodies);
     free(chunk->bits);
     free(chunk->outcomes);
-    free_contacts(&chunk->exact);
-    free_contacts(&chunk->found);
+    free(chunk->exact);
+    free(chunk->found);
 }
 
 /* ------------------------------------------------------------------------------------------------ counting */
@@ -110,7 +110,7 @@ static struct scales scales_of(const struct family_shapes *made, const struct bo
 }
 
 static void tally_overlap(const struct chunk *chunk, size_t k, const struct scales *scales, struct tally *tally) {
-    const double separation = chunk->exact.separation[k];
+    const double separation = chunk->exact[k].separation;
     const bool hit = chunk->bits[k / 64] >> k % 64 & 1;
     tally->outcomes[chunk->outcomes[k]]++;
     if (fabs(separation) <= scales->rounding)
@@ -139,7 +139,7 @@ static bool is_as_promised(narc_method method, double exact, double told, uint8_
 /* The separation of a pair, and the normal if both answers are that it collides. */
 static void tally_contact(const struct chunk *chunk, size_t k, narc_method method, const struct scales *scales,
                           struct tally *tally) {
-    const double exact = chunk->exact.separation[k], told = chunk->found.separation[k];
+    const double exact = chunk->exact[k].separation, told = chunk->found[k].separation;
     const double error = fabs(told - exact) / scales->size;
     const uint8_t outcome = chunk->outcomes[k];
     tally->contact_outcomes[outcome]++;
@@ -155,23 +155,25 @@ static void tally_contact(const struct chunk *chunk, size_t k, narc_method metho
     tally->depth_worst = fmax(tally->depth_worst, error);
     if (told >= 0)
         return;
-    const double dot = (double)chunk->exact.normal_x[k] * chunk->found.normal_x[k] +
-                       (double)chunk->exact.normal_y[k] * chunk->found.normal_y[k];
+    const narc_contact *a = &chunk->exact[k], *b = &chunk->found[k];
+    const double dot = (double)a->normal_x * b->normal_x + (double)a->normal_y * b->normal_y;
     tally->normal_wrong += dot < cos(another_normal);
 }
 
 static void ask_method(const struct family_shapes *made, struct chunk *chunk, narc_method method, struct tally *tally) {
     const narc_bodies bodies = bodies_of(chunk->bodies, 2 * chunk->count);
     const narc_pairs pairs = neighbours(chunk->count);
-    const narc_method_query query = {.method = method, .out_outcomes = chunk->outcomes};
+    const narc_method_options options = {.method = method, .out_outcomes = chunk->outcomes};
+    const narc_query query = {.margin = INFINITY, .workers = all_workers()}; /* overlaps have no margin */
     size_t found;
     narc_error error;
-    must(narc_find_overlaps_by(made->methods, &bodies, &pairs, &query, 0, chunk->bits, &error), &error);
+    must(narc_find_overlaps_by(made->methods, &bodies, &pairs, &options, &query, chunk->bits, &error), &error);
     for (size_t k = 0; k < chunk->count; k++) {
         const struct scales scales = scales_of(made, &chunk->bodies[2 * k]);
         tally_overlap(chunk, k, &scales, tally);
     }
-    must(narc_find_contacts_by(made->methods, &bodies, &pairs, &query, INFINITY, 0, &chunk->found, &found, &error),
+    must(narc_find_contacts_by(made->methods, &bodies, &pairs, &options, &query, chunk->found, chunk->count, &found,
+                               &error),
          &error);
     for (size_t k = 0; k < chunk->count; k++) {
         const struct scales scales = scales_of(made, &chunk->bodies[2 * k]);
@@ -190,13 +192,13 @@ static struct counts count_family(const struct settings *settings, enum family f
     for (size_t left = settings->answer_pairs; left > 0;) {
         struct chunk chunk = make_chunk(left < settings->chunk ? left : settings->chunk);
         place_pairs(&made, &chunk, random);
-        separate(made.shapes, chunk.bodies, chunk.count, &chunk.exact);
+        separate(made.shapes, chunk.bodies, chunk.count, chunk.exact);
         for (size_t k = 0; k < chunk.count; k++) {
             const struct scales scales = scales_of(&made, &chunk.bodies[2 * k]);
-            const bool near = fabs((double)chunk.exact.separation[k]) <= scales.rounding;
+            const bool near = fabs((double)chunk.exact[k].separation) <= scales.rounding;
             counts.near += near;
-            counts.colliding += !near && chunk.exact.separation[k] < 0;
-            counts.apart += !near && chunk.exact.separation[k] > 0;
+            counts.colliding += !near && chunk.exact[k].separation < 0;
+            counts.apart += !near && chunk.exact[k].separation > 0;
         }
         for (size_t method = 0; method < METHODS; method++)
             if (takes(methods[method], family))

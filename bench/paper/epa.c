@@ -11,7 +11,7 @@ double threshold_of(size_t index) { return pow(10, -(double)(index + 1)); }
 
 static struct row row_with(const struct paper *paper, enum kind kind, size_t size, size_t threshold, const char *isa) {
     struct row row = row_of(&paper->scenes[size][COLLIDING], kind, QUESTION_CONTACT, NARC_METHOD_GJK, isa);
-    row.query.tolerance = (float)threshold_of(threshold);
+    row.options.tolerance = (float)threshold_of(threshold);
     return row;
 }
 
@@ -21,21 +21,22 @@ static struct depth_error measure(const struct paper *paper, enum kind kind, siz
     const size_t count = scene->pair_count;
     const narc_bodies bodies = bodies_of(scene->bodies, 2 * count);
     const narc_pairs pairs = neighbours(count);
-    narc_contacts exact = allocate_contacts(count), found = allocate_contacts(count);
+    narc_contact *exact = allocate(count, sizeof *exact), *found = allocate(count, sizeof *found);
     double *errors = allocate(count, sizeof *errors);
     uint8_t *outcomes = allocate(count, 1);
-    const narc_method_query query = {
+    const narc_method_options options = {
         .method = NARC_METHOD_GJK, .tolerance = (float)threshold_of(threshold), .out_outcomes = outcomes};
+    const narc_query query = {.margin = INFINITY, .workers = all_workers()};
     struct depth_error error = {0, 0, 0, 0, 0};
     size_t found_count;
     narc_error reason;
-    separate(scene->templates->shapes[kind], scene->bodies, count, &exact);
-    must(narc_find_contacts_by(scene->templates->methods[kind], &bodies, &pairs, &query, INFINITY, 0, &found,
+    separate(scene->templates->shapes[kind], scene->bodies, count, exact);
+    must(narc_find_contacts_by(scene->templates->methods[kind], &bodies, &pairs, &options, &query, found, count,
                                &found_count, &reason),
          &reason);
     for (size_t k = 0; k < count; k++) {
         const double size_of_pair = size_of(scene->templates->bounds[kind], &scene->bodies[2 * k]);
-        errors[k] = fabs((double)found.separation[k] - (double)exact.separation[k]) / size_of_pair;
+        errors[k] = fabs((double)found[k].separation - (double)exact[k].separation) / size_of_pair;
         error.limit += outcomes[k] == NARC_OUTCOME_LIMIT;
         error.rounding += outcomes[k] == NARC_OUTCOME_ROUNDING;
     }
@@ -44,8 +45,8 @@ static struct depth_error measure(const struct paper *paper, enum kind kind, siz
     error.most = quantile(errors, count, 1);
     free(outcomes);
     free(errors);
-    free_contacts(&exact);
-    free_contacts(&found);
+    free(exact);
+    free(found);
     return error;
 }
 

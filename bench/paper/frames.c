@@ -72,13 +72,13 @@ static size_t add_moving_row(struct paper *paper, const struct moving *moving, e
                       .frame_count = MAX_FRAMES,
                       .pair_count = moving->pair_count,
                       .question = question,
-                      .query = {.method = start < SAT_COLD ? NARC_METHOD_GJK : NARC_METHOD_SAT},
+                      .options = {.method = start < SAT_COLD ? NARC_METHOD_GJK : NARC_METHOD_SAT},
                       .isa = isa,
                       .claim = -1};
     for (int frame = 0; frame < MAX_FRAMES; frame++)
         row.frames[frame] = moving->frames[frame];
     if (start == GJK_WARM || start == SAT_HINTED)
-        row.query.hints = allocate(moving->pair_count, sizeof *row.query.hints);
+        row.query.hints = NARC_HINT_ARRAY((uint32_t *)allocate(moving->pair_count, sizeof(uint32_t)));
     return add_row(&paper->rows, row);
 }
 
@@ -86,24 +86,26 @@ static size_t add_moving_row(struct paper *paper, const struct moving *moving, e
 static size_t count_wrong(const struct moving *moving, bool warm) {
     const size_t count = moving->pair_count;
     const narc_pairs pairs = neighbours(count);
-    uint32_t *hints = allocate(count, sizeof *hints);
+    uint32_t *hints = warm ? allocate(count, sizeof *hints) : NULL;
     uint64_t *bits = allocate(NARC_BIT_WORDS(count), sizeof *bits);
-    narc_contacts exact = allocate_contacts(count);
-    const narc_method_query query = {.method = NARC_METHOD_GJK, .hints = warm ? hints : NULL};
+    narc_contact *exact = allocate(count, sizeof *exact);
+    const narc_method_options options = {.method = NARC_METHOD_GJK};
+    const narc_query query = {.hints = NARC_HINT_ARRAY(hints), .workers = all_workers()};
     size_t wrong = 0;
     narc_error error;
     for (int frame = 0; frame < 2 * MAX_FRAMES; frame++) {
         const struct body *frame_bodies = moving->frames[frame % MAX_FRAMES];
         const narc_bodies bodies = bodies_of(frame_bodies, 2 * count);
-        must(narc_find_overlaps_by(moving->templates->methods[KIND_ARC], &bodies, &pairs, &query, 0, bits, &error),
+        must(narc_find_overlaps_by(moving->templates->methods[KIND_ARC], &bodies, &pairs, &options, &query, bits,
+                                   &error),
              &error);
-        separate(moving->templates->shapes[KIND_ARC], frame_bodies, count, &exact);
+        separate(moving->templates->shapes[KIND_ARC], frame_bodies, count, exact);
         for (size_t k = 0; k < count; k++)
-            wrong += fabs((double)exact.separation[k]) >
+            wrong += fabs((double)exact[k].separation) >
                          rounding_of(moving->templates->bounds[KIND_ARC], &frame_bodies[2 * k]) &&
-                     (exact.separation[k] < 0) != (bits[k / 64] >> k % 64 & 1);
+                     (exact[k].separation < 0) != (bits[k / 64] >> k % 64 & 1);
     }
-    free_contacts(&exact);
+    free(exact);
     free(bits);
     free(hints);
     return wrong;

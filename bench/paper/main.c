@@ -81,9 +81,9 @@ static size_t count_wrong(const struct paper *paper, const struct frames *frames
     size_t wrong = 0;
     for (size_t k = 0; k < paper->rows.count; k++) {
         const struct row *row = &paper->rows.list[k];
-        if (row->query.method != NARC_METHOD_SAT_FIRST && row->wrong > 0) {
-            fprintf(stderr, "bench_paper: %s, %s: %zu of %zu answers are wrong\n", narc_method_name(row->query.method),
-                    row->isa, row->wrong, row->pair_count);
+        if (row->options.method != NARC_METHOD_SAT_FIRST && row->wrong > 0) {
+            fprintf(stderr, "bench_paper: %s, %s: %zu of %zu answers are wrong\n",
+                    narc_method_name(row->options.method), row->isa, row->wrong, row->pair_count);
             wrong += row->wrong;
         }
     }

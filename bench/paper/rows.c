@@ -12,7 +12,7 @@
 /* Where answers go; large enough for any row. */
 struct answers {
     uint64_t *bits;
-    narc_contacts contacts;
+    narc_contact *contacts;
     size_t found;
 };
 
@@ -35,7 +35,7 @@ struct row row_of(const struct scene *scene, enum kind kind, enum question quest
                         .frame_count = 1,
                         .pair_count = scene->pair_count,
                         .question = question,
-                        .query = {.method = method},
+                        .options = {.method = method},
                         .isa = isa,
                         .claim = scene->situation == COLLIDING};
 }
@@ -45,10 +45,11 @@ static void ask(const struct row *row, const struct body *list, struct answers *
     const narc_pairs pairs = neighbours(row->pair_count);
     narc_error error;
     if (row->question == QUESTION_OVERLAP)
-        must(narc_find_overlaps_by(row->methods, &bodies, &pairs, &row->query, 1, out->bits, &error), &error);
+        must(narc_find_overlaps_by(row->methods, &bodies, &pairs, &row->options, &row->query, out->bits, &error),
+             &error);
     else
-        must(narc_find_contacts_by(row->methods, &bodies, &pairs, &row->query, 0, 1, &out->contacts, &out->found,
-                                   &error),
+        must(narc_find_contacts_by(row->methods, &bodies, &pairs, &row->options, &row->query, out->contacts,
+                                   row->pair_count, &out->found, &error),
              &error);
 }
 
@@ -110,7 +111,8 @@ void time_rows(struct rows *rows, int repetitions, double least_time, uint64_t *
         order[k] = k;
         most = rows->list[k].pair_count > most ? rows->list[k].pair_count : most;
     }
-    struct answers answers = {allocate(NARC_BIT_WORDS(most), sizeof(uint64_t)), allocate_contacts(most), 0};
+    struct answers answers = {allocate(NARC_BIT_WORDS(most), sizeof(uint64_t)), allocate(most, sizeof(narc_contact)),
+                              0};
     begin_step("timing: answers, and how often each row fits in a repetition");
     for (size_t k = 0; k < rows->count; k++)
         prepare(&rows->list[k], least_time, &answers);
@@ -123,6 +125,6 @@ void time_rows(struct rows *rows, int repetitions, double least_time, uint64_t *
     for (size_t k = 0; k < rows->count; k++)
         finish(&rows->list[k], repetitions);
     free(answers.bits);
-    free_contacts(&answers.contacts);
+    free(answers.contacts);
     free(order);
 }

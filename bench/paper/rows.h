@@ -16,7 +16,8 @@ struct row {
     const struct body *frames[MAX_FRAMES]; /* each is asked about in turn; one frame: a scene that stands still */
     size_t frame_count, pair_count;
     enum question question;
-    narc_method_query query;
+    narc_method_options options;
+    narc_query query;
     const char *isa;
     int claim; /* what every answer must be: 1 colliding, 0 apart, -1: not known */
 

@@ -130,12 +130,12 @@ static bool put_colliding(struct body *pair, const struct place *place, uint64_t
 }
 
 /* Marks in `bad` which of the pairs are not what the scene claims. */
-static void check_claims(const struct scene *scene, const struct body *bodies, size_t count, narc_contacts *contacts,
+static void check_claims(const struct scene *scene, const struct body *bodies, size_t count, narc_contact *contacts,
                          bool *bad) {
     for (enum kind kind = 0; kind < KINDS; kind++) {
         separate(scene->templates->shapes[kind], bodies, count, contacts);
         for (size_t k = 0; k < count; k++)
-            bad[k] |= (contacts->separation[k] < 0) != (scene->situation == COLLIDING);
+            bad[k] |= (contacts[k].separation < 0) != (scene->situation == COLLIDING);
     }
 }
 
@@ -143,7 +143,7 @@ static void check_claims(const struct scene *scene, const struct body *bodies, s
 static size_t place_round(struct scene *scene, struct body *bodies, size_t count, uint64_t *random) {
     struct place *places = allocate(count, sizeof *places);
     bool *bad = allocate(count, sizeof *bad);
-    narc_contacts contacts = allocate_contacts(count);
+    narc_contact *contacts = allocate(count, sizeof *contacts);
     size_t kept = 0;
     for (size_t k = 0; k < count; k++)
         draw(scene->templates, random, &bodies[2 * k], &places[k]);
@@ -157,13 +157,13 @@ static size_t place_round(struct scene *scene, struct body *bodies, size_t count
     }
     scene->drawn_again += count - kept;
     count = kept;
-    check_claims(scene, bodies, count, &contacts, bad);
+    check_claims(scene, bodies, count, contacts, bad);
     kept = 0;
     for (size_t k = 0; k < count; k++)
         if (!bad[k])
             memmove(&bodies[2 * kept++], &bodies[2 * k], 2 * sizeof *bodies);
     scene->left_out += count - kept;
-    free_contacts(&contacts);
+    free(contacts);
     free(bad);
     free(places);
     return kept;
@@ -191,15 +191,15 @@ double size_of(const struct bound *bounds, const struct body *pair) {
 
 struct spread spread_of(const struct scene *scene) {
     const size_t count = scene->pair_count;
-    narc_contacts contacts = allocate_contacts(count);
+    narc_contact *contacts = allocate(count, sizeof *contacts);
     double *sizes = allocate(count, sizeof *sizes);
-    separate(scene->templates->shapes[KIND_ARC], scene->bodies, count, &contacts);
+    separate(scene->templates->shapes[KIND_ARC], scene->bodies, count, contacts);
     for (size_t k = 0; k < count; k++)
         sizes[k] =
-            fabs((double)contacts.separation[k]) / size_of(scene->templates->bounds[KIND_ARC], &scene->bodies[2 * k]);
+            fabs((double)contacts[k].separation) / size_of(scene->templates->bounds[KIND_ARC], &scene->bodies[2 * k]);
     const struct spread spread = {quantile(sizes, count, 0), quantile(sizes, count, 0.25), quantile(sizes, count, 0.5),
                                   quantile(sizes, count, 0.75), quantile(sizes, count, 1)};
     free(sizes);
-    free_contacts(&contacts);
+    free(contacts);
     return spread;
 }

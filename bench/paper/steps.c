@@ -18,24 +18,26 @@ static struct step_count count_scene(const struct scene *scene, enum kind kind, 
     const narc_methods *methods = scene->templates->methods[kind];
     uint8_t *outcomes = allocate(count, 1);
     uint64_t *bits = allocate(NARC_BIT_WORDS(count), sizeof *bits);
-    narc_contacts contacts = allocate_contacts(count);
+    narc_contact *contacts = allocate(count, sizeof *contacts);
     size_t sum = count, more = count, found;
-    narc_method_query query = {.method = NARC_METHOD_GJK, .tolerance = (float)threshold, .out_outcomes = outcomes};
+    narc_method_options options = {.method = NARC_METHOD_GJK, .tolerance = (float)threshold, .out_outcomes = outcomes};
+    const narc_query query = {.workers = all_workers()};
     narc_error error;
     struct step_count steps = {.most = 1};
-    for (query.iterations = 1; query.iterations < NARC_MAX_ITERATIONS && more > 0; query.iterations++) {
+    for (options.iterations = 1; options.iterations < NARC_MAX_ITERATIONS && more > 0; options.iterations++) {
         if (question == QUESTION_OVERLAP)
-            must(narc_find_overlaps_by(methods, &bodies, &pairs, &query, 0, bits, &error), &error);
+            must(narc_find_overlaps_by(methods, &bodies, &pairs, &options, &query, bits, &error), &error);
         else
-            must(narc_find_contacts_by(methods, &bodies, &pairs, &query, 0, 0, &contacts, &found, &error), &error);
+            must(narc_find_contacts_by(methods, &bodies, &pairs, &options, &query, contacts, count, &found, &error),
+                 &error);
         more = 0;
         for (size_t k = 0; k < count; k++)
             more += outcomes[k] == NARC_OUTCOME_LIMIT;
         sum += more;
         if (more > 0)
-            steps.most = query.iterations + 1;
+            steps.most = options.iterations + 1;
     }
-    free_contacts(&contacts);
+    free(contacts);
     free(bits);
     free(outcomes);
     steps.mean = (double)sum / (double)count;

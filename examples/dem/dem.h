@@ -177,15 +177,17 @@ typedef struct dem_pairs {
     dem_rolling *rolling; /* used only if there is rolling friction */
 } dem_pairs;
 
-/* The contacts of the last step, in the order of the pairs, and their forces on B (on A the opposite). */
+/* The force of a contact on B, on A the opposite, and its torques. */
+typedef struct dem_force {
+    double x, y;
+    double torque_a, torque_b;
+} dem_force;
+
+/* The contacts of the last step, in the order of the pairs. */
 typedef struct dem_contacts {
     size_t count, capacity;
-    uint32_t *pair;
-    float *separation, *normal_x, *normal_y, *point_x, *point_y; /* the point from A's position */
-    float *radius_a, *radius_b;                                  /* Hertz law only */
-    uint8_t *arc_a, *arc_b;
-    double *fx, *fy;
-    double *torque_a, *torque_b; /* of several threads, until they are gathered */
+    narc_contact *rows;
+    dem_force *forces;
 } dem_contacts;
 
 /* Energies, and what was dissipated since the start. kinetic + potential + elastic + damping + friction - walls stays

@@ -40,7 +40,7 @@ static void find_bearing(const dem *d, dem_load *loads) {
         for (size_t k = 0; k < d->bodies.count; k++)
             loads[k].count = 0;
         for (size_t k = 0; k < d->contacts.count; k++) {
-            const size_t p = d->contacts.pair[k];
+            const size_t p = d->contacts.rows[k].pair;
             dem_load *a = &loads[d->pairs.a[p]], *b = &loads[d->pairs.b[p]];
             const bool bears = a->bearing > 0 && b->bearing > 0 && dem_normal_force(d, k) > 0;
             a->count += bears;
@@ -65,12 +65,13 @@ dem_load *dem_find_loads(const dem *d, char *error) {
         return NULL;
     }
     for (size_t k = 0; k < c->count; k++) {
-        const size_t p = c->pair[k], i = d->pairs.a[p], j = d->pairs.b[p];
-        const dem_vec arm_i = {(double)c->point_x[k], (double)c->point_y[k]};
+        const size_t p = c->rows[k].pair, i = d->pairs.a[p], j = d->pairs.b[p];
+        const dem_force f = c->forces[k];
+        const dem_vec arm_i = {(double)c->rows[k].point_x, (double)c->rows[k].point_y};
         const dem_vec arm_j = {arm_i.x + (b->x[i] - b->x[j] - (double)d->pairs.shift_x[p]),
                                arm_i.y + (b->y[i] - b->y[j] - (double)d->pairs.shift_y[p])};
-        add_load(&loads[i], (dem_vec){-c->fx[k], -c->fy[k]}, arm_i);
-        add_load(&loads[j], (dem_vec){c->fx[k], c->fy[k]}, arm_j);
+        add_load(&loads[i], (dem_vec){-f.x, -f.y}, arm_i);
+        add_load(&loads[j], (dem_vec){f.x, f.y}, arm_j);
     }
     find_bearing(d, loads);
     for (size_t k = 0; k < b->count; k++) {
@@ -81,13 +82,15 @@ dem_load *dem_find_loads(const dem *d, char *error) {
 }
 
 double dem_normal_force(const dem *d, size_t k) {
-    const dem_contacts *c = &d->contacts;
-    return c->fx[k] * (double)c->normal_x[k] + c->fy[k] * (double)c->normal_y[k];
+    const narc_contact *row = &d->contacts.rows[k];
+    const dem_force *f = &d->contacts.forces[k];
+    return f->x * (double)row->normal_x + f->y * (double)row->normal_y;
 }
 
 double dem_tangential_force(const dem *d, size_t k) {
-    const dem_contacts *c = &d->contacts;
-    return c->fy[k] * (double)c->normal_x[k] - c->fx[k] * (double)c->normal_y[k];
+    const narc_contact *row = &d->contacts.rows[k];
+    const dem_force *f = &d->contacts.forces[k];
+    return f->y * (double)row->normal_x - f->x * (double)row->normal_y;
 }
 
 /* ------------------------------------------------------------------------------------------------ places */

@@ -20,7 +20,7 @@ void dem_clear_forces(dem *d) {
 /* The contact of a pair, or the count if it has none. */
 static size_t find_contact(const dem *d, size_t pair) {
     const size_t k = d->scratch->slot[pair];
-    return k < d->contacts.count && d->contacts.pair[k] == pair ? k : d->contacts.count;
+    return k < d->contacts.count && d->contacts.rows[k].pair == pair ? k : d->contacts.count;
 }
 
 static void gather_body(const dem *d, size_t body) {
@@ -30,17 +30,17 @@ static void gather_body(const dem *d, size_t body) {
     for (size_t i = n.first_b[body]; i < n.first_b[body + 1]; i++) {
         const size_t k = find_contact(d, n.of_b[i]);
         if (k < c.count) {
-            fx += c.fx[k];
-            fy += c.fy[k];
-            torque += c.torque_b[k];
+            fx += c.forces[k].x;
+            fy += c.forces[k].y;
+            torque += c.forces[k].torque_b;
         }
     }
     for (size_t p = n.first_a[body]; p < n.first_a[body + 1]; p++) {
         const size_t k = find_contact(d, p);
         if (k < c.count) {
-            fx -= c.fx[k];
-            fy -= c.fy[k];
-            torque += c.torque_a[k];
+            fx -= c.forces[k].x;
+            fy -= c.forces[k].y;
+            torque += c.forces[k].torque_a;
         }
     }
     d->bodies.fx[body] = fx;

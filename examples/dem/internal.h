@@ -24,13 +24,6 @@ typedef struct dem_extra {
     float shift_x, shift_y;
 } dem_extra;
 
-/* A body as narc reads it: in a row, which it does fastest. */
-typedef struct dem_pose {
-    double x, y;
-    float cosine, sine, scale;
-    uint32_t shape;
-} dem_pose;
-
 typedef struct dem_scratch {
     narc_box *boxes; /* bodies, then images */
     uint8_t *still;
@@ -42,11 +35,11 @@ typedef struct dem_scratch {
     uint32_t *match;
     dem_extra *extra;
     size_t extra_count, extra_capacity;
-    uint32_t *slot; /* of a pair: its contact, if contacts.pair there says so */
+    uint32_t *slot; /* of a pair: its contact, if the pair of that says so */
     bool adds;      /* a single thread adds forces to bodies as it finds them */
     dem_sums *sums;
     size_t sums_capacity;
-    dem_pose *poses; /* of all bodies, when narc was last asked */
+    narc_body *poses; /* of all bodies, when narc was last asked */
     size_t pose_capacity;
 } dem_scratch;
 
@@ -54,11 +47,13 @@ typedef struct dem_scratch {
 bool dem_reserve(dem *d, void *array_pointer, size_t *capacity, size_t needed, size_t size);
 bool dem_resize(dem *d, void *array_pointer, size_t count, size_t size);
 bool dem_grow_pairs(dem *d, dem_pairs *pairs, size_t needed);
-/* All bodies where they are now, for narc, until the next call. */
+narc_body dem_make_pose(const dem_bodies *b, size_t k); /* a body where it is now, for narc */
+/* All of them, until the next call. */
 bool dem_make_poses(dem *d, narc_bodies *out);
 bool dem_fail_narc(dem *d, const char *what, const narc_error *error);
 bool dem_find_broken_body(dem *d);
 unsigned dem_team(const dem *d); /* threads */
+narc_workers dem_workers(const dem *d);
 bool dem_has_rolling(const dem *d);
 double dem_cell_width(const dem *d);
 double dem_cell_height(const dem *d);

@@ -85,18 +85,18 @@ static double find_radius(const dem *d, const dem_bodies *b, size_t k, size_t i,
     if (d->settings.law == DEM_LINEAR)
         return is_grain ? half_i * half_j / (half_i + half_j) : half_i;
     const double low = d->settings.least_radius, high = d->settings.largest_radius;
-    const double r_a = clamp((double)d->contacts.radius_a[k], low * half_i, high * half_i);
-    const double r_b = clamp((double)d->contacts.radius_b[k], low * half_j, is_grain ? high * half_j : INFINITY);
+    const double r_a = clamp((double)d->contacts.rows[k].radius_a, low * half_i, high * half_i);
+    const double r_b = clamp((double)d->contacts.rows[k].radius_b, low * half_j, is_grain ? high * half_j : INFINITY);
     return r_b < INFINITY ? r_a * r_b / (r_a + r_b) : r_a;
 }
 
 INLINE contact load_contact(const dem *d, size_t k) {
-    const dem_contacts *list = &d->contacts;
+    const narc_contact *row = &d->contacts.rows[k];
     const dem_bodies *b = &d->bodies;
-    const size_t p = list->pair[k], i = d->pairs.a[p], j = d->pairs.b[p];
-    contact c = {.a = i, .b = j, .normal = {(double)list->normal_x[k], (double)list->normal_y[k]}};
-    c.depth = -(double)list->separation[k];
-    c.arm_a = (dem_vec){(double)list->point_x[k], (double)list->point_y[k]};
+    const size_t p = row->pair, i = d->pairs.a[p], j = d->pairs.b[p];
+    contact c = {.a = i, .b = j, .normal = {(double)row->normal_x, (double)row->normal_y}};
+    c.depth = -(double)row->separation;
+    c.arm_a = (dem_vec){(double)row->point_x, (double)row->point_y};
     c.arm_b = (dem_vec){c.arm_a.x + (b->x[i] - b->x[j] - (double)d->pairs.shift_x[p]),
                         c.arm_a.y + (b->y[i] - b->y[j] - (double)d->pairs.shift_y[p])};
     if (j >= d->grain_count) { /* a plate's shift is rounded: what of it is across the plate is no depth */
@@ -137,7 +137,7 @@ INLINE double slide(double *spring, double *spring_force, double stiffness, doub
 /* Returns the torque on A; that on B is opposite. */
 static double apply_rolling(dem *d, const contact *c, size_t k, double stiffness, double bound, bool is_old,
                             dem_sums *sums) {
-    dem_rolling *rolling = &d->pairs.rolling[d->contacts.pair[k]];
+    dem_rolling *rolling = &d->pairs.rolling[d->contacts.rows[k].pair];
     if (!is_old)
         *rolling = (dem_rolling){0, 0};
     sums->old_springs += 0.5 * rolling->torque * rolling->angle;
@@ -164,7 +164,7 @@ static bool is_too_deep(const dem *d, size_t i, size_t j, double depth) {
 INLINE void apply_law(dem *d, size_t k, bool hertz, bool rolls, dem_sums *sums) {
     const contact c = load_contact(d, k);
     const dem_bodies *b = &d->bodies;
-    const size_t p = d->contacts.pair[k];
+    const size_t p = d->contacts.rows[k].pair;
     const double dt = d->settings.time_step;
     const dem_contact_law *law = &d->laws[b->material[c.a]][b->material[c.b]];
     const double radius = hertz || rolls ? find_radius(d, b, k, c.a, c.b) : 0;
@@ -188,8 +188,6 @@ INLINE void apply_law(dem *d, size_t k, bool hertz, bool rolls, dem_sums *sums) 
     d->pairs.memory[p] = memory;
 
     const double fx = push * c.normal.x - drag * c.normal.y, fy = push * c.normal.y + drag * c.normal.x;
-    d->contacts.fx[k] = fx;
-    d->contacts.fy[k] = fy;
     double torque_a = -(c.arm_a.x * fy - c.arm_a.y * fx), torque_b = c.arm_b.x * fy - c.arm_b.y * fx;
     if (rolls) {
         const double bound = law->rolling_friction * radius * fabs(push);
@@ -197,13 +195,12 @@ INLINE void apply_law(dem *d, size_t k, bool hertz, bool rolls, dem_sums *sums) 
         torque_a += torque;
         torque_b -= torque;
     }
+    d->contacts.forces[k] = (dem_force){fx, fy, torque_a, torque_b};
     if (d->scratch->adds) {
         add_to_body(b, c.a, -fx, -fy, torque_a);
         add_to_body(b, c.b, fx, fy, torque_b);
     } else {
         d->scratch->slot[p] = (uint32_t)k;
-        d->contacts.torque_a[k] = torque_a;
-        d->contacts.torque_b[k] = torque_b;
     }
     if (!(c.depth <= d->safe_depth) && sums->too_deep == SIZE_MAX && is_too_deep(d, c.a, c.b, c.depth))
         sums->too_deep = k;
@@ -232,14 +229,14 @@ static dem_sums apply_with_rolling(dem *d, size_t first, size_t end) {
 }
 
 static bool fail_depth(dem *d, size_t k) {
-    const size_t p = d->contacts.pair[k], a = d->pairs.a[p], b = d->pairs.b[p];
+    const size_t p = d->contacts.rows[k].pair, a = d->pairs.a[p], b = d->pairs.b[p];
     const bool is_grain = b < d->grain_count;
     return dem_fail(
         d,
         "step %llu: grain %zu overlaps %s %zu by %g, more than %g of the smaller one's extent. Use a shorter "
         "time step, or stiffer contacts",
         (unsigned long long)d->step, a, is_grain ? "grain" : "wall", is_grain ? b : b - d->grain_count,
-        -(double)d->contacts.separation[k], d->settings.max_overlap);
+        -(double)d->contacts.rows[k].separation, d->settings.max_overlap);
 }
 
 bool dem_apply_laws(dem *d) {

@@ -139,11 +139,8 @@ bool dem_create(dem *d, dem_settings settings) {
 void dem_destroy(dem *d) {
     dem_scratch *s = d->scratch;
     dem_contacts *c = &d->contacts;
-    void *const arrays[] = {
-        d->shapes,        d->walls,    c->pair,  c->separation, c->normal_x,          c->normal_y,
-        c->point_x,       c->point_y,  c->fx,    c->fy,         c->torque_a,          c->torque_b,
-        c->radius_a,      c->radius_b, c->arc_a, c->arc_b,      d->incidence.first_a, d->incidence.first_b,
-        d->incidence.of_b};
+    void *const arrays[] = {d->shapes,        d->walls, c->rows, c->forces, d->incidence.first_a, d->incidence.first_b,
+                            d->incidence.of_b};
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++)
         free(arrays[i]);
     free_columns(&d->bodies, body_columns, BODY_COLUMNS);
@@ -379,26 +376,24 @@ bool dem_start(dem *d) {
 
 /* ------------------------------------------------------------------------------------------------ poses */
 
+narc_body dem_make_pose(const dem_bodies *b, size_t k) {
+    return (narc_body){b->x[k], b->y[k], (float)b->cosine[k], (float)b->sine[k], b->scale[k], b->shape[k]};
+}
+
 bool dem_make_poses(dem *d, narc_bodies *out) {
     const dem_bodies *b = &d->bodies;
     const size_t count = b->count;
     const unsigned team = dem_team(d);
     if (!dem_reserve(d, &d->scratch->poses, &d->scratch->pose_capacity, count, sizeof *d->scratch->poses))
         return false;
-    dem_pose *const pose = d->scratch->poses;
+    narc_body *const pose = d->scratch->poses;
     (void)team;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
 #endif
     for (size_t k = 0; k < count; k++)
-        pose[k] = (dem_pose){b->x[k], b->y[k], (float)b->cosine[k], (float)b->sine[k], b->scale[k], b->shape[k]};
-    *out = (narc_bodies){.count = count,
-                         .x = NARC_POSITION_COLUMN(pose, x),
-                         .y = NARC_POSITION_COLUMN(pose, y),
-                         .cosine = NARC_COLUMN(pose, cosine),
-                         .sine = NARC_COLUMN(pose, sine),
-                         .scale = NARC_COLUMN(pose, scale),
-                         .shape = NARC_COLUMN(pose, shape)};
+        pose[k] = dem_make_pose(b, k);
+    *out = narc_view_bodies(pose, count);
     return true;
 }
 
@@ -419,11 +414,13 @@ bool dem_find_broken_body(dem *d) {
 
 /* As many as the settings say. If they say nothing: as OpenMP would, but a thread for each 2,000 grains at most. */
 unsigned dem_team(const dem *d) {
-    const unsigned most = narc_default_threads(), useful = 1 + (unsigned)(d->grain_count / 2000);
+    const unsigned most = narc_openmp_workers(0).count, useful = 1 + (unsigned)(d->grain_count / 2000);
     if (d->settings.threads > 0)
         return d->settings.threads;
     return most < useful ? most : useful;
 }
+
+narc_workers dem_workers(const dem *d) { return narc_openmp_workers(dem_team(d)); }
 
 bool dem_has_rolling(const dem *d) {
     for (size_t a = 0; a < d->material_count; a++)

@@ -28,11 +28,13 @@ static bool make_room_for_boxes(dem *d) {
 static bool find_boxes(dem *d) {
     narc_bodies bodies;
     size_t skipped = 0;
-    const narc_box_options options = {.margin = (float)(0.5 * d->settings.skin), .out_skipped = &skipped};
+    const narc_workers workers = dem_workers(d);
+    const narc_box_options options = {
+        .margin = (float)(0.5 * d->settings.skin), .workers = &workers, .out_skipped = &skipped};
     narc_error error;
     if (!make_room_for_boxes(d) || !dem_make_poses(d, &bodies))
         return false;
-    if (narc_compute_boxes(d->store, &bodies, &options, dem_team(d), d->scratch->boxes, &error) != NARC_OK)
+    if (narc_compute_boxes(d->store, &bodies, &options, d->scratch->boxes, &error) != NARC_OK)
         return dem_fail_narc(d, "boxes", &error);
     if (skipped > 0)
         return dem_find_broken_body(d);
@@ -45,12 +47,12 @@ static bool find_boxes(dem *d) {
 static bool find_pairs(dem *d) {
     dem_scratch *s = d->scratch;
     const narc_pair_filter filter = {.kind = NARC_ARRAY(s->still)};
-    const narc_pair_options options = {.filter = &filter};
+    const narc_workers workers = dem_workers(d);
+    const narc_pair_options options = {.filter = &filter, .workers = &workers};
     const narc_pair_list *list;
     narc_error error;
     narc_forget_pairs(d->broad); /* pairs are matched when those of images have become those of bodies */
-    if (narc_update_box_pairs(d->broad, s->boxes, d->bodies.count + s->image_count, &options, dem_team(d), &list,
-                              &error) != NARC_OK)
+    if (narc_update_box_pairs(d->broad, s->boxes, d->bodies.count + s->image_count, &options, &list, &error) != NARC_OK)
         return dem_fail_narc(d, "pairs", &error);
     s->found_a = list->pairs.a.base;
     s->found_b = list->pairs.b.base;
@@ -100,10 +102,11 @@ static bool carry_over(dem *d) {
     dem_scratch *s = d->scratch;
     const narc_pairs now = {.count = p->count, .a = NARC_ARRAY(p->a), .b = NARC_ARRAY(p->b)};
     const narc_pairs before = {.count = last->count, .a = NARC_ARRAY(last->a), .b = NARC_ARRAY(last->b)};
+    const narc_workers workers = dem_workers(d);
     narc_error error;
     if (!dem_resize(d, &s->match, p->capacity, sizeof *s->match))
         return false;
-    if (narc_match_pairs(d->broad, &before, &now, dem_team(d), s->match, &error) != NARC_OK)
+    if (narc_match_pairs(d->broad, &before, &now, &workers, s->match, &error) != NARC_OK)
         return dem_fail_narc(d, "pairs", &error);
     narc_gather(s->match, p->count, sizeof *p->hints, last->hints, p->hints);
     narc_gather(s->match, p->count, sizeof *p->memory, last->memory, p->memory);

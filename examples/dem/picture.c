@@ -144,10 +144,10 @@ static void draw_wall(canvas *page, const view *seen, size_t wall) {
 static void draw_force(canvas *page, const view *seen, size_t k, double width) {
     const dem *d = seen->world;
     const dem_bodies *b = &d->bodies;
-    const size_t p = d->contacts.pair[k], i = d->pairs.a[p], j = d->pairs.b[p];
+    const size_t p = d->contacts.rows[k].pair, i = d->pairs.a[p], j = d->pairs.b[p];
     const narc_point from = to_page(seen, b->x[i], b->y[i]);
     const narc_point at =
-        to_page(seen, b->x[i] + (double)d->contacts.point_x[k], b->y[i] + (double)d->contacts.point_y[k]);
+        to_page(seen, b->x[i] + (double)d->contacts.rows[k].point_x, b->y[i] + (double)d->contacts.rows[k].point_y);
     cairo_move_to(page->pen, from.x, from.y);
     cairo_line_to(page->pen, at.x, at.y);
     if (j < d->grain_count) {

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
  * place.c - where grains start. A random filling puts grain after grain at a random place with a random angle, and
- * tries again while it would touch: narc_find_contact() decides, a grid of cells tells whom to ask about.
+ * tries again while it would touch: narc_find_contacts() decides, a grid of cells tells whom to ask about.
  */
 #include "place.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+#include "internal.h"
 
 double dem_random(uint64_t *state) {
     uint64_t bits = *state += 0x9e3779b97f4a7c15;
@@ -115,51 +117,49 @@ static bool open_grid(dem *d, const dem_filling *f, grid *g) {
     return true;
 }
 
-/* Is the grain, moved by a shift, further than the gap from a body? */
-static bool is_clear_of(const dem *d, const dem_grain *grain, narc_body other, double gap, dem_vec shift) {
-    const narc_body body = {.x = grain->x + shift.x,
-                            .y = grain->y + shift.y,
-                            .shape = grain->shape,
-                            .angle = (float)grain->angle,
-                            .scale = (float)grain->scale};
-    narc_contact contact;
-    return narc_find_contact(d->store, &body, &other, &contact, NULL) == NARC_OK && (double)contact.separation > gap;
+static narc_body make_body(uint32_t shape, double x, double y, double angle, double scale) {
+    narc_body body = {.x = x, .y = y, .scale = (float)scale, .shape = shape};
+    const float turn = (float)angle;
+    narc_compute_poses(&turn, 1, &body.cosine, &body.sine, NULL);
+    return body;
 }
 
-static bool is_clear_of_cell(const dem *d, const grid *g, const dem_filling *f, const dem_grain *grain, dem_vec shift) {
+/* Is the grain further than the gap from a body? */
+static bool is_clear_of(const dem *d, narc_body grain, narc_body other, double gap) {
+    const narc_body two[2] = {grain, other};
+    const narc_bodies bodies = narc_view_bodies(two, 2);
+    const narc_pairs pair = {.count = 1};
+    const narc_query query = {.margin = INFINITY};
+    narc_contact contact;
+    size_t found;
+    return narc_find_contacts(d->store, &bodies, &pair, &query, &contact, 1, &found, NULL) == NARC_OK &&
+           contact.count > 0 && (double)contact.separation > gap;
+}
+
+static bool is_clear_of_cell(const dem *d, const grid *g, const dem_filling *f, narc_body grain) {
     const dem_bodies *b = &d->bodies;
-    const double x = grain->x + shift.x, y = grain->y + shift.y;
+    const double x = grain.x, y = grain.y;
     const size_t column = find_cell(x, g->low_x, g->width, g->columns),
                  row = find_cell(y, g->low_y, g->height, g->rows);
-    const double reach = (double)(float)grain->scale * d->shapes[grain->shape].reach;
+    const double reach = (double)grain.scale * d->shapes[grain.shape].reach;
     for (size_t i = row > 0 ? row - 1 : 0; i <= row + 1 && i < g->rows; i++)
         for (size_t j = column > 0 ? column - 1 : 0; j <= column + 1 && j < g->columns; j++)
             for (uint32_t k = g->first[i * g->columns + j]; k != NOBODY; k = g->next[k]) {
                 const double far = reach + b->reach[k] + f->gap;
-                if ((b->x[k] - x) * (b->x[k] - x) + (b->y[k] - y) * (b->y[k] - y) > far * far)
-                    continue;
-                const narc_body other = {.x = b->x[k],
-                                         .y = b->y[k],
-                                         .shape = b->shape[k],
-                                         .cosine = (float)b->cosine[k],
-                                         .sine = (float)b->sine[k],
-                                         .scale = b->scale[k]};
-                if (!is_clear_of(d, grain, other, f->gap, shift))
+                if ((b->x[k] - x) * (b->x[k] - x) + (b->y[k] - y) * (b->y[k] - y) <= far * far &&
+                    !is_clear_of(d, grain, dem_make_pose(b, k), f->gap))
                     return false;
             }
     return true;
 }
 
 /* Of boxes among the walls. */
-static bool is_clear_of_boxes(const dem *d, const dem_filling *f, const dem_grain *grain, dem_vec shift) {
+static bool is_clear_of_boxes(const dem *d, const dem_filling *f, narc_body grain) {
     for (size_t w = 0; w < d->wall_count; w++) {
         const dem_wall *wall = &d->walls[w];
-        const narc_body body = {.x = wall->place.x,
-                                .y = wall->place.y,
-                                .shape = wall->shape,
-                                .angle = (float)wall->angle,
-                                .scale = (float)wall->scale};
-        if (wall->kind == DEM_BOX && !is_clear_of(d, grain, body, f->gap, shift))
+        if (wall->kind == DEM_BOX &&
+            !is_clear_of(d, grain, make_body(wall->shape, wall->place.x, wall->place.y, wall->angle, wall->scale),
+                         f->gap))
             return false;
     }
     return true;
@@ -170,10 +170,12 @@ static bool is_free(const dem *d, const grid *g, const dem_filling *f, const dem
     const dem_settings *s = &d->settings;
     narc_arc arcs[NARC_MAX_ARCS];
     const size_t count = narc_get_arcs(d->store, grain->shape, arcs);
+    narc_body body = make_body(grain->shape, 0, 0, grain->angle, grain->scale);
     for (int i = s->periodic_x ? -1 : 0; i <= (s->periodic_x ? 1 : 0); i++)
         for (int j = s->periodic_y ? -1 : 0; j <= (s->periodic_y ? 1 : 0); j++) {
-            const dem_vec shift = {i * (s->high_x - s->low_x), j * (s->high_y - s->low_y)};
-            if (!is_clear_of_cell(d, g, f, grain, shift) || !is_clear_of_boxes(d, f, grain, shift))
+            body.x = grain->x + i * (s->high_x - s->low_x);
+            body.y = grain->y + j * (s->high_y - s->low_y);
+            if (!is_clear_of_cell(d, g, f, body) || !is_clear_of_boxes(d, f, body))
                 return false;
         }
     for (size_t w = 0; w < d->wall_count; w++) {

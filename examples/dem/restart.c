@@ -21,7 +21,7 @@ typedef struct header {
 } header;
 
 static const char MAGIC[8] = {'n', 'a', 'r', 'c', '-', 'd', 'e', 'm'};
-enum { VERSION = 2, BYTE_ORDER_MARK = 0x01020304 };
+enum { VERSION = 3, BYTE_ORDER_MARK = 0x01020304 };
 
 /* What is not an array. */
 typedef struct sums {
@@ -117,19 +117,8 @@ static void pass_arrays(stream *s, dem *d) {
 /* What the last step found: a run that has no more steps is asked for it. */
 static void pass_contacts(stream *s, const dem *d) {
     const dem_contacts *c = &d->contacts;
-    float *const floats[] = {c->separation, c->normal_x, c->normal_y, c->point_x, c->point_y};
-    pass(s, c->pair, c->count * sizeof *c->pair);
-    for (size_t i = 0; i < sizeof floats / sizeof floats[0]; i++)
-        pass(s, floats[i], c->count * sizeof *floats[i]);
-    if (d->settings.law == DEM_HERTZ) {
-        pass(s, c->radius_a, c->count * sizeof *c->radius_a);
-        pass(s, c->radius_b, c->count * sizeof *c->radius_b);
-    } else {
-        pass(s, c->arc_a, c->count * sizeof *c->arc_a);
-        pass(s, c->arc_b, c->count * sizeof *c->arc_b);
-    }
-    pass(s, c->fx, c->count * sizeof *c->fx);
-    pass(s, c->fy, c->count * sizeof *c->fy);
+    pass(s, c->rows, c->count * sizeof *c->rows);
+    pass(s, c->forces, c->count * sizeof *c->forces);
 }
 
 /* ------------------------------------------------------------------------------------------------ writing */
@@ -234,7 +223,7 @@ static bool check_indices(const dem *d) {
         if (d->pairs.a[k] >= d->pairs.b[k] || d->pairs.b[k] >= d->bodies.count || d->pairs.a[k] >= d->grain_count)
             return false;
     for (size_t k = 0; k < d->contacts.count; k++)
-        if (d->contacts.pair[k] >= d->pairs.count)
+        if (d->contacts.rows[k].pair >= d->pairs.count)
             return false;
     for (size_t k = 0; k < d->bodies.count; k++)
         if (d->bodies.shape[k] >= d->shape_count || d->bodies.material[k] >= d->material_count)

@@ -91,70 +91,28 @@ bool dem_make_room_for_contacts(dem *d) {
     const size_t count = d->pairs.capacity;
     if (count <= c->capacity)
         return true;
-    float **const floats[] = {&c->separation, &c->normal_x, &c->normal_y, &c->point_x,
-                              &c->point_y,    &c->radius_a, &c->radius_b};
-    double **const doubles[] = {&c->fx, &c->fy, &c->torque_a, &c->torque_b};
-    for (size_t i = 0; i < sizeof floats / sizeof floats[0]; i++)
-        if (!dem_resize(d, floats[i], count, sizeof(float)))
-            return false;
-    for (size_t i = 0; i < sizeof doubles / sizeof doubles[0]; i++)
-        if (!dem_resize(d, doubles[i], count, sizeof(double)))
-            return false;
-    if (!dem_resize(d, &c->pair, count, sizeof *c->pair) || !dem_resize(d, &c->arc_a, count, sizeof *c->arc_a) ||
-        !dem_resize(d, &c->arc_b, count, sizeof *c->arc_b))
+    if (!dem_resize(d, &c->rows, count, sizeof *c->rows) || !dem_resize(d, &c->forces, count, sizeof *c->forces))
         return false;
     c->capacity = count;
     return true;
 }
 
-static narc_status query_contacts(dem *d, const narc_bodies *bodies, const narc_pairs *pairs, size_t *skipped,
-                                  narc_error *error) {
-    dem_contacts *c = &d->contacts;
-    const narc_query query = {.hints = d->pairs.hints, .out_skipped = skipped};
-    const narc_contacts list = {.capacity = c->capacity,
-                                .pair = c->pair,
-                                .separation = c->separation,
-                                .normal_x = c->normal_x,
-                                .normal_y = c->normal_y,
-                                .point_x = c->point_x,
-                                .point_y = c->point_y,
-                                .arc_a = c->arc_a,
-                                .arc_b = c->arc_b};
-    return narc_query_contacts(d->store, bodies, pairs, &query, 0, dem_team(d), &list, &c->count, error);
-}
-
-/* The same with radii of curvature: manifolds that are told never to have a second point. */
-static narc_status query_radii(dem *d, const narc_bodies *bodies, const narc_pairs *pairs, size_t *skipped,
-                               narc_error *error) {
-    dem_contacts *c = &d->contacts;
-    const narc_manifold_options options = {.flat_angle = -1, .hints = d->pairs.hints, .out_skipped = skipped};
-    const narc_manifolds list = {.capacity = c->capacity,
-                                 .pair = c->pair,
-                                 .normal_x = c->normal_x,
-                                 .normal_y = c->normal_y,
-                                 .separation = {c->separation},
-                                 .point_x = {c->point_x},
-                                 .point_y = {c->point_y},
-                                 .radius_a = {c->radius_a},
-                                 .radius_b = {c->radius_b}};
-    return narc_find_manifolds(d->store, bodies, pairs, &options, dem_team(d), &list, &c->count, error);
-}
-
 static bool find_contacts(dem *d) {
     const dem_pairs *p = &d->pairs;
+    dem_contacts *c = &d->contacts;
     narc_bodies bodies;
     narc_pairs pairs = {.count = p->count, .a = NARC_ARRAY(p->a), .b = NARC_ARRAY(p->b)};
     if (d->scratch->extra_count > 0) {
         pairs.shift_x = NARC_ARRAY(p->shift_x);
         pairs.shift_y = NARC_ARRAY(p->shift_y);
     }
+    const narc_workers workers = dem_workers(d);
     size_t skipped = 0;
+    const narc_query query = {.hints = NARC_HINT_ARRAY(p->hints), .workers = &workers, .out_skipped = &skipped};
     narc_error error;
     if (!dem_make_room_for_contacts(d) || !dem_make_poses(d, &bodies))
         return false;
-    const narc_status status =
-        (d->settings.law == DEM_HERTZ ? query_radii : query_contacts)(d, &bodies, &pairs, &skipped, &error);
-    if (status != NARC_OK)
+    if (narc_find_contacts(d->store, &bodies, &pairs, &query, c->rows, c->capacity, &c->count, &error) != NARC_OK)
         return dem_fail_narc(d, "contacts", &error);
     return skipped == 0 || dem_find_broken_body(d);
 }

@@ -178,31 +178,12 @@ static bool write_bodies(FILE *file, const dem *d, char *error) {
 
 /* ------------------------------------------------------------------------------------------------ contacts */
 
-/* The radius of curvature of a body where its outward normal is (x, y), on the arc that the contact names or the edge
- * before it: then -1. */
-static double find_radius(const dem *d, size_t k, size_t arc, double x, double y) {
-    const dem_bodies *b = &d->bodies;
-    narc_arc arcs[NARC_MAX_ARCS];
-    const size_t count = narc_get_arcs(d->store, b->shape[k], arcs);
-    if (arc >= count)
-        return -1;
-    const double turn = 6.283185307179586477, slack = 1e-5;
-    const double angle = atan2(y, x) - atan2(b->sine[k], b->cosine[k]) - arcs[arc].start;
-    const double sweep = arcs[arc].end - arcs[arc].start + (arcs[arc].end < arcs[arc].start ? turn : 0);
-    const double along = angle + slack - turn * floor((angle + slack) / turn);
-    return along <= sweep + 2 * slack ? (double)b->scale[k] * arcs[arc].radius : -1;
-}
-
+/* Of an edge: -1. */
 static void write_radii(FILE *file, const dem *d, bool of_b, vtk_column *c) {
-    const dem_contacts *list = &d->contacts;
-    const float *known = of_b ? list->radius_b : list->radius_a;
-    for (size_t k = 0; k < list->count; k++) {
-        const size_t p = list->pair[k], body = of_b ? d->pairs.b[p] : d->pairs.a[p];
-        const double sign = of_b ? -1 : 1, x = sign * (double)list->normal_x[k], y = sign * (double)list->normal_y[k];
-        if (d->settings.law == DEM_HERTZ)
-            vtk_add_number(c, isinf(known[k]) ? -1 : (double)known[k]);
-        else
-            vtk_add_number(c, find_radius(d, body, of_b ? list->arc_b[k] : list->arc_a[k], x, y));
+    for (size_t k = 0; k < d->contacts.count; k++) {
+        const narc_contact *row = &d->contacts.rows[k];
+        const float radius = of_b ? row->radius_b : row->radius_a;
+        vtk_add_number(c, isinf(radius) ? -1 : (double)radius);
     }
     vtk_write_column(file, c, "Float32", of_b ? "radius_b" : "radius_a", 1);
 }
@@ -210,10 +191,10 @@ static void write_radii(FILE *file, const dem *d, bool of_b, vtk_column *c) {
 static void write_forces(FILE *file, const dem *d, vtk_column *c) {
     const dem_contacts *list = &d->contacts;
     for (size_t k = 0; k < list->count; k++)
-        vtk_add_place(c, list->fx[k], list->fy[k]);
+        vtk_add_place(c, list->forces[k].x, list->forces[k].y);
     vtk_write_column(file, c, "Float32", "force", 3);
     for (size_t k = 0; k < list->count; k++)
-        vtk_add_place(c, (double)list->normal_x[k], (double)list->normal_y[k]);
+        vtk_add_place(c, (double)list->rows[k].normal_x, (double)list->rows[k].normal_y);
     vtk_write_column(file, c, "Float32", "normal", 3);
     for (size_t k = 0; k < list->count; k++)
         vtk_add_number(c, dem_normal_force(d, k));
@@ -222,7 +203,7 @@ static void write_forces(FILE *file, const dem *d, vtk_column *c) {
         vtk_add_number(c, dem_tangential_force(d, k));
     vtk_write_column(file, c, "Float32", "tangential_force", 1);
     for (size_t k = 0; k < list->count; k++) {
-        const size_t p = list->pair[k];
+        const size_t p = list->rows[k].pair;
         const uint8_t *material = d->bodies.material;
         const double bound = d->laws[material[d->pairs.a[p]]][material[d->pairs.b[p]]].friction;
         const double most = bound * fabs(dem_normal_force(d, k));
@@ -230,7 +211,7 @@ static void write_forces(FILE *file, const dem *d, vtk_column *c) {
     }
     vtk_write_column(file, c, "Float32", "mobilised_friction", 1);
     for (size_t k = 0; k < list->count; k++)
-        vtk_add_number(c, (double)list->separation[k]);
+        vtk_add_number(c, (double)list->rows[k].separation);
     vtk_write_column(file, c, "Float32", "separation", 1);
 }
 
@@ -239,8 +220,9 @@ static bool write_points(FILE *file, const dem *d, vtk_column *c) {
     vtk_write_head(file, d, list->count, list->count, 0);
     vtk_open_section(file, "Points");
     for (size_t k = 0; k < list->count; k++) {
-        const size_t a = d->pairs.a[list->pair[k]];
-        vtk_add_place(c, d->bodies.x[a] + (double)list->point_x[k], d->bodies.y[a] + (double)list->point_y[k]);
+        const size_t a = d->pairs.a[list->rows[k].pair];
+        vtk_add_place(c, d->bodies.x[a] + (double)list->rows[k].point_x,
+                      d->bodies.y[a] + (double)list->rows[k].point_y);
     }
     vtk_write_column(file, c, "Float32", "points", 3);
     vtk_close_section(file, "Points");
@@ -254,10 +236,10 @@ static bool write_points(FILE *file, const dem *d, vtk_column *c) {
     vtk_close_section(file, "Verts");
     vtk_open_section(file, "PointData");
     for (size_t k = 0; k < list->count; k++)
-        vtk_add_word(c, d->pairs.a[list->pair[k]]);
+        vtk_add_word(c, d->pairs.a[list->rows[k].pair]);
     vtk_write_column(file, c, "Int32", "body_a", 1);
     for (size_t k = 0; k < list->count; k++)
-        vtk_add_word(c, d->pairs.b[list->pair[k]]);
+        vtk_add_word(c, d->pairs.b[list->rows[k].pair]);
     vtk_write_column(file, c, "Int32", "body_b", 1);
     write_forces(file, d, c);
     write_radii(file, d, false, c);

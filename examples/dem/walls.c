@@ -39,9 +39,9 @@ static double find_distance(const dem *d, int first, int second) {
 /* How much more a contact presses a wall that moves with speed 1 for a step: by its spring and its dashpot. Of the
  * Hertz law with half the extent for a radius. */
 static double find_resistance(const dem *d, size_t contact) {
-    const size_t p = d->contacts.pair[contact], a = d->pairs.a[p], b = d->pairs.b[p];
+    const size_t p = d->contacts.rows[contact].pair, a = d->pairs.a[p], b = d->pairs.b[p];
     const dem_contact_law *law = &d->laws[d->bodies.material[a]][d->bodies.material[b]];
-    const double depth = -(double)d->contacts.separation[contact];
+    const double depth = -(double)d->contacts.rows[contact].separation;
     const bool hertz = d->settings.law == DEM_HERTZ;
     const double size = hertz ? sqrt(0.5 * d->bodies.extent[a] * depth) : 1,
                  damped = law->damping_ratio >= 0 ? sqrt(size) : size;
@@ -55,7 +55,7 @@ void dem_find_resistances(dem *d) {
         d->walls[w].resistance = 0;
     }
     for (size_t k = 0; any && k < d->contacts.count; k++) {
-        const size_t b = d->pairs.b[d->contacts.pair[k]];
+        const size_t b = d->pairs.b[d->contacts.rows[k].pair];
         if (b >= d->grain_count)
             d->walls[b - d->grain_count].resistance += find_resistance(d, k);
     }

@@ -201,26 +201,17 @@ void FixNarcShapes::orient(int i) {
     mu[3] = 1;
 }
 
+narc_body FixNarcShapes::body(int i) const {
+    const double *x = atom->x[i], *mu = atom->mu[i];
+    return {x[0],         x[1], static_cast<float>(mu[0]), static_cast<float>(mu[1]), static_cast<float>(scale(i)),
+            form_index(i)};
+}
+
 narc_bodies FixNarcShapes::bodies() {
-    const size_t count = static_cast<size_t>(atom->nlocal) + static_cast<size_t>(atom->nghost);
-    if (rows.size() <= count) /* one more, so that there is always a first */
-        rows.resize(count + 1);
-    for (size_t i = 0; i < count; i++) {
-        const int k = static_cast<int>(i);
-        const double *x = atom->x[i], *mu = atom->mu[i];
-        rows[i] = {
-            x[0],         x[1], static_cast<float>(mu[0]), static_cast<float>(mu[1]), static_cast<float>(scale(k)),
-            form_index(k)};
-    }
-    narc_bodies all = {};
-    all.count = count;
-    all.x = NARC_POSITION_COLUMN(rows, x);
-    all.y = NARC_POSITION_COLUMN(rows, y);
-    all.cosine = {&rows.data()->cosine, sizeof(Row)};
-    all.sine = {&rows.data()->sine, sizeof(Row)};
-    all.scale = {&rows.data()->scale, sizeof(Row)};
-    all.shape = {&rows.data()->shape, sizeof(Row)};
-    return all;
+    rows.clear();
+    for (int i = 0; i < atom->nlocal + atom->nghost; i++)
+        rows.push_back(body(i));
+    return narc_view_bodies(rows.data(), rows.size());
 }
 
 /* ---------------------------------------------------------------------------- memory of contacts */
@@ -353,7 +344,7 @@ int FixNarcShapes::maxsize_restart() {
 }
 
 double FixNarcShapes::memory_usage() {
-    size_t bytes = rows.capacity() * sizeof(Row);
+    size_t bytes = rows.capacity() * sizeof(narc_body);
     for (const std::vector<Memory> &list : memories)
         bytes += sizeof(std::vector<Memory>) + list.capacity() * sizeof(Memory);
     return static_cast<double>(bytes);

@@ -56,7 +56,8 @@ class FixNarcShapes : public Fix {
     /* Sees to it that an atom has an orientation: that of angle 0 if it has none. */
     void orient(int i);
 
-    /* Local and ghost atoms as the library wants them, as they are now. */
+    /* A local or ghost atom as the library wants it, as it is now; and all of them. */
+    narc_body body(int i) const;
     narc_bodies bodies();
 
     narc_shapes *store = nullptr;
@@ -75,13 +76,6 @@ class FixNarcShapes : public Fix {
     unsigned form_index(int i) const;
 
   private:
-    /* A body in the layout that the library reads fastest. */
-    struct Row {
-        double x, y;
-        float cosine, sine, scale;
-        uint32_t shape;
-    };
-
     void read_forms(const char *path, int count, char **names);
     void set_mass(int i);
     void save_memories();
@@ -92,7 +86,7 @@ class FixNarcShapes : public Fix {
     std::string mesh;     /* where meshes of the forms go */
     std::string property; /* without its "i_"; empty: the type decides */
     int property_index = -1;
-    std::vector<Row> rows;
+    std::vector<narc_body> rows;
 };
 
 } // namespace LAMMPS_NS

@@ -165,67 +165,35 @@ void FixWallNarc::find_plate_contacts() {
 }
 
 void FixWallNarc::find_box_contacts() {
+    const narc_body box = {place_x + moved[0],
+                           place_y + moved[1],
+                           static_cast<float>(normal_x),
+                           static_cast<float>(normal_y),
+                           1,
+                           static_cast<uint32_t>(shapes->forms.size())};
     std::vector<int> grains;
-    std::vector<double> x, y;
-    std::vector<float> cosines, sines, scales;
-    std::vector<uint32_t> forms, first;
-    const auto add = [&](double body_x, double body_y, double c, double s, double scale, size_t form) {
-        x.push_back(body_x);
-        y.push_back(body_y);
-        cosines.push_back(static_cast<float>(c));
-        sines.push_back(static_cast<float>(s));
-        scales.push_back(static_cast<float>(scale));
-        forms.push_back(static_cast<uint32_t>(form));
-    };
-    const double box_x = place_x + moved[0], box_y = place_y + moved[1];
+    std::vector<narc_body> bodies; /* each grain that may touch, and the box */
     for (int i = 0; i < atom->nlocal; i++) {
         if (!(atom->mask[i] & groupbit) ||
-            std::hypot(atom->x[i][0] - box_x, atom->x[i][1] - box_y) >= reach + atom->radius[i])
+            std::hypot(atom->x[i][0] - box.x, atom->x[i][1] - box.y) >= reach + atom->radius[i])
             continue;
-        first.push_back(static_cast<uint32_t>(grains.size()));
         grains.push_back(i);
-        add(atom->x[i][0], atom->x[i][1], atom->mu[i][0], atom->mu[i][1], shapes->scale(i), shapes->form_index(i));
+        bodies.push_back(shapes->body(i));
+        bodies.push_back(box);
     }
-    if (grains.empty())
-        return;
-    const uint32_t box = static_cast<uint32_t>(grains.size());
-    add(box_x, box_y, normal_x, normal_y, 1, shapes->forms.size());
-    narc_bodies bodies = {};
-    bodies.count = x.size();
-    bodies.x = NARC_POSITION_ARRAY(x);
-    bodies.y = NARC_POSITION_ARRAY(y);
-    bodies.cosine = {cosines.data(), sizeof(float)};
-    bodies.sine = {sines.data(), sizeof(float)};
-    bodies.scale = {scales.data(), sizeof(float)};
-    bodies.shape = {forms.data(), sizeof(uint32_t)};
+    const narc_bodies view = narc_view_bodies(bodies.data(), bodies.size());
     narc_pairs pairs = {};
     pairs.count = grains.size();
-    pairs.a = {first.data(), sizeof(uint32_t)};
-    pairs.b = {&box, 0};
-    std::vector<uint32_t> pair(grains.size());
-    std::vector<float> columns[7];
-    for (auto &column : columns)
-        column.resize(grains.size());
-    narc_manifolds out = {};
-    out.capacity = grains.size();
-    out.pair = pair.data();
-    out.normal_x = columns[0].data();
-    out.normal_y = columns[1].data();
-    out.separation[0] = columns[2].data();
-    out.point_x[0] = columns[3].data();
-    out.point_y[0] = columns[4].data();
-    out.radius_a[0] = columns[5].data();
-    out.radius_b[0] = columns[6].data();
-    narc_manifold_options options = {};
-    options.flat_angle = -1;
+    std::vector<narc_contact> rows(grains.size());
     size_t found = 0;
     narc_error failure = {};
-    if (narc_find_manifolds(store, &bodies, &pairs, &options, 1, &out, &found, &failure) != NARC_OK)
+    if (narc_find_contacts(store, &view, &pairs, nullptr, rows.data(), rows.size(), &found, &failure) != NARC_OK)
         error->one(FLERR, std::string("fix wall/narc: ") + failure.message);
-    for (size_t k = 0; k < found; k++) {
-        const double overlap = -static_cast<double>(columns[2][k]), nx = columns[0][k], ny = columns[1][k];
-        contacts.push_back({grains[pair[k]], nx, ny, overlap, columns[3][k] + 0.5 * overlap * nx,
-                            columns[4][k] + 0.5 * overlap * ny, columns[5][k], columns[6][k]});
+    rows.resize(found);
+    for (const narc_contact &row : rows) {
+        const double overlap = -static_cast<double>(row.separation), nx = row.normal_x, ny = row.normal_y;
+        contacts.push_back({grains[row.pair], nx, ny, overlap, row.point_x + 0.5 * overlap * nx,
+                            row.point_y + 0.5 * overlap * ny, row.radius_a, row.radius_b});
     }
 }
 

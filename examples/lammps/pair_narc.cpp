@@ -134,6 +134,7 @@ void PairNarc::build_pairs() {
     }
     hints.assign(first.size(), 0);
     slips.assign(2 * first.size(), 0);
+    contacts.resize(first.size());
     const size_t local = static_cast<size_t>(atom->nlocal);
     for (size_t k = 0; k < first.size(); k++) {
         const bool has_first = first[k] < local;
@@ -166,65 +167,21 @@ void PairNarc::save_memories(std::vector<std::vector<FixNarcShapes::Memory>> &me
 
 /* ---------------------------------------------------------------------------- forces */
 
-void PairNarc::Contacts::resize(size_t size, bool hertz) {
-    pair.resize(size);
-    for (auto *column : {&separation, &normal_x, &normal_y, &point_x, &point_y})
-        column->resize(size);
-    if (hertz) {
-        radius_a.resize(size);
-        radius_b.resize(size);
-    }
-}
-
-/* Hertz' law wants the radii of curvature, which manifolds have; a flat angle below 0 leaves them one point. */
-narc_status PairNarc::call_library(const narc_bodies &bodies, const narc_pairs &pairs, size_t &skipped,
-                                   narc_error &failure) {
-    const unsigned threads = static_cast<unsigned>(comm->nthreads);
-    const size_t room = contacts.pair.size();
-    if (law.hertz) {
-        narc_manifold_options options = {};
-        options.flat_angle = -1;
-        options.hints = hints.data();
-        options.out_skipped = &skipped;
-        narc_manifolds out = {};
-        out.capacity = room;
-        out.pair = contacts.pair.data();
-        out.normal_x = contacts.normal_x.data();
-        out.normal_y = contacts.normal_y.data();
-        out.separation[0] = contacts.separation.data();
-        out.point_x[0] = contacts.point_x.data();
-        out.point_y[0] = contacts.point_y.data();
-        out.radius_a[0] = contacts.radius_a.data();
-        out.radius_b[0] = contacts.radius_b.data();
-        return narc_find_manifolds(shapes->store, &bodies, &pairs, &options, threads, &out, &contacts.count, &failure);
-    }
-    narc_query query = {};
-    query.hints = hints.data();
-    query.out_skipped = &skipped;
-    narc_contacts out = {};
-    out.capacity = room;
-    out.pair = contacts.pair.data();
-    out.separation = contacts.separation.data();
-    out.normal_x = contacts.normal_x.data();
-    out.normal_y = contacts.normal_y.data();
-    out.point_x = contacts.point_x.data();
-    out.point_y = contacts.point_y.data();
-    return narc_query_contacts(shapes->store, &bodies, &pairs, &query, 0, threads, &out, &contacts.count, &failure);
-}
-
 void PairNarc::find_contacts() {
     const narc_bodies bodies = shapes->bodies();
     narc_pairs pairs = {};
     pairs.count = first.size();
-    pairs.a = {first.data(), sizeof(uint32_t)};
-    pairs.b = {second.data(), sizeof(uint32_t)};
-    narc_error failure = {};
+    pairs.a = NARC_ARRAY(first);
+    pairs.b = NARC_ARRAY(second);
+    const narc_workers workers = narc_openmp_workers(static_cast<unsigned>(comm->nthreads));
     size_t skipped = 0;
-    narc_status status = call_library(bodies, pairs, skipped, failure);
-    if (status == NARC_ERROR_CAPACITY) {
-        contacts.resize(contacts.count + contacts.count / 4, law.hertz);
-        status = call_library(bodies, pairs, skipped, failure);
-    }
+    narc_query query = {};
+    query.hints = NARC_HINT_ARRAY(hints);
+    query.workers = &workers;
+    query.out_skipped = &skipped;
+    narc_error failure = {};
+    narc_status status = narc_find_contacts(shapes->store, &bodies, &pairs, &query, contacts.data(), contacts.size(),
+                                            &contact_count, &failure);
     if (status == NARC_OK && skipped > 0) /* a number that is none, or so */
         status = narc_validate_bodies(shapes->store, &bodies, &failure);
     if (status != NARC_OK)
@@ -233,20 +190,18 @@ void PairNarc::find_contacts() {
 
 /* gran/hooke/history takes the velocities, and lets the forces act, where the surface of each grain lies deepest in the
  * other: for discs at the end of each radius. So does this, for any form. */
-void PairNarc::apply_contact(size_t k, double step) {
-    const uint32_t pair = contacts.pair[k];
-    const int a = static_cast<int>(first[pair]), b = static_cast<int>(second[pair]);
+void PairNarc::apply_contact(const narc_contact &contact, double step) {
+    const int a = static_cast<int>(first[contact.pair]), b = static_cast<int>(second[contact.pair]);
     const double *x_a = atom->x[a], *x_b = atom->x[b], *v_a = atom->v[a], *v_b = atom->v[b];
     const double spin_a = atom->omega[a][2], spin_b = atom->omega[b][2];
     const double dx = x_a[0] - x_b[0], dy = x_a[1] - x_b[1];
     Touch at = {};
-    at.normal_x = contacts.normal_x[k];
-    at.normal_y = contacts.normal_y[k];
-    at.overlap = -static_cast<double>(contacts.separation[k]);
+    at.normal_x = contact.normal_x;
+    at.normal_y = contact.normal_y;
+    at.overlap = -static_cast<double>(contact.separation);
     const double half = 0.5 * at.overlap;
-    const double arm_a[2] = {contacts.point_x[k] + half * at.normal_x, contacts.point_y[k] + half * at.normal_y};
-    const double arm_b[2] = {contacts.point_x[k] - half * at.normal_x + dx,
-                             contacts.point_y[k] - half * at.normal_y + dy};
+    const double arm_a[2] = {contact.point_x + half * at.normal_x, contact.point_y + half * at.normal_y};
+    const double arm_b[2] = {contact.point_x - half * at.normal_x + dx, contact.point_y - half * at.normal_y + dy};
     at.velocity_x = v_a[0] - spin_a * arm_a[1] - (v_b[0] - spin_b * arm_b[1]);
     at.velocity_y = v_a[1] + spin_a * arm_a[0] - (v_b[1] + spin_b * arm_b[0]);
     const double mass_a = atom->rmass[a], mass_b = atom->rmass[b];
@@ -256,11 +211,12 @@ void PairNarc::apply_contact(size_t k, double step) {
     if (atom->mask[b] & frozen)
         at.mass = mass_a;
     if (law.hertz) {
-        const double radius_a = narc_lammps::limit_curvature_radius(contacts.radius_a[k], atom->radius[a]);
-        const double radius_b = narc_lammps::limit_curvature_radius(contacts.radius_b[k], atom->radius[b]);
+        const double radius_a = narc_lammps::limit_curvature_radius(contact.radius_a, atom->radius[a]);
+        const double radius_b = narc_lammps::limit_curvature_radius(contact.radius_b, atom->radius[b]);
         at.curvature_radius = radius_a * radius_b / (radius_a + radius_b);
     }
-    const narc_lammps::Force on_a = narc_lammps::compute_force(law, at, step, &slips[2 * static_cast<size_t>(pair)]);
+    const narc_lammps::Force on_a =
+        narc_lammps::compute_force(law, at, step, &slips[2 * static_cast<size_t>(contact.pair)]);
     if (force->newton_pair || a < atom->nlocal) {
         atom->f[a][0] += on_a.x;
         atom->f[a][1] += on_a.y;
@@ -284,16 +240,17 @@ void PairNarc::compute(int energy, int virial_kind) {
     /* Both lists rise. What touched and does so no more begins anew. */
     size_t next = 0;
     for (const uint32_t pair : touching) {
-        while (next < contacts.count && contacts.pair[next] < pair)
+        while (next < contact_count && contacts[next].pair < pair)
             next++;
-        if (next == contacts.count || contacts.pair[next] != pair)
+        if (next == contact_count || contacts[next].pair != pair)
             slips[2 * static_cast<size_t>(pair)] = slips[2 * static_cast<size_t>(pair) + 1] = 0;
     }
-    touching.assign(contacts.pair.begin(), contacts.pair.begin() + static_cast<std::ptrdiff_t>(contacts.count));
-
+    touching.clear();
     const double step = update->setupflag ? 0 : update->dt;
-    for (size_t k = 0; k < contacts.count; k++)
-        apply_contact(k, step);
+    for (size_t k = 0; k < contact_count; k++) {
+        touching.push_back(contacts[k].pair);
+        apply_contact(contacts[k], step);
+    }
 }
 
 /* ---------------------------------------------------------------------------- restart */
@@ -339,12 +296,12 @@ void PairNarc::read_restart_settings(FILE *file) {
 void *PairNarc::extract(const char *name, int &dimension) {
     dimension = 0;
     if (!std::strcmp(name, "contact_count"))
-        return &contacts.count;
+        return &contact_count;
     return nullptr;
 }
 
 double PairNarc::memory_usage() {
     return Pair::memory_usage() +
            static_cast<double>(first.capacity() * (3 * sizeof(uint32_t) + 2 * sizeof(double)) +
-                               contacts.pair.capacity() * (sizeof(uint32_t) * 2 + 7 * sizeof(float)));
+                               touching.capacity() * sizeof(uint32_t) + contacts.capacity() * sizeof(narc_contact));
 }

@@ -42,17 +42,9 @@ class PairNarc : public Pair {
     void save_memories(std::vector<std::vector<FixNarcShapes::Memory>> &memories) const;
 
   private:
-    struct Contacts {
-        std::vector<uint32_t> pair;
-        std::vector<float> separation, normal_x, normal_y, point_x, point_y, radius_a, radius_b;
-        size_t count = 0;
-        void resize(size_t size, bool hertz);
-    };
-
     void allocate();
     void find_contacts();
-    narc_status call_library(const narc_bodies &bodies, const narc_pairs &pairs, size_t &skipped, narc_error &failure);
-    void apply_contact(size_t k, double step);
+    void apply_contact(const narc_contact &contact, double step);
 
     narc_lammps::ContactLaw law;
     FixNarcShapes *shapes = nullptr;
@@ -62,9 +54,10 @@ class PairNarc : public Pair {
     /* Pairs, A the grain with the lower ID: the order of a pair does not depend on the ranks, nor do its bits. */
     bool valid = false;
     std::vector<uint32_t> first, second, hints;
-    std::vector<double> slips;      /* two of each pair */
-    std::vector<uint32_t> touching; /* the pairs that touched in the last step */
-    Contacts contacts;
+    std::vector<double> slips;          /* two of each pair */
+    std::vector<uint32_t> touching;     /* the pairs that touched in the last step */
+    std::vector<narc_contact> contacts; /* of the last step, and room for one of each pair */
+    size_t contact_count = 0;
 };
 
 class PairNarcHooke : public PairNarc {

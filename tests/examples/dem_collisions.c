@@ -86,7 +86,7 @@ static void test_elastic_collision(void **state) {
     double deepest = 0;
     step(&d, 1);
     for (size_t i = 0; d.contacts.count > 0; i++) {
-        deepest = fmax(deepest, -(double)d.contacts.separation[0]);
+        deepest = fmax(deepest, -(double)d.contacts.rows[0].separation);
         step(&d, 1);
     }
     assert_true(fabs(d.time / period - 1) < 3e-3); /* steps, and where the first was within the contact */
@@ -132,7 +132,7 @@ static void test_hertz_collision(void **state) {
     double deepest = 0;
     step(&d, 1);
     for (size_t i = 0; d.contacts.count > 0; i++) {
-        deepest = fmax(deepest, -(double)d.contacts.separation[0]);
+        deepest = fmax(deepest, -(double)d.contacts.rows[0].separation);
         step(&d, 1);
     }
     print_message("Hertz: depth %.6g, expected %.6g; duration %.6g, expected %.6g\n", deepest, depth, d.time, duration);
@@ -182,8 +182,8 @@ static void test_hertz_limits(void **state) {
         const double other = corner ? half * settings.least_radius : side;
         const double expected = d.laws[0][0].kn * sqrt(side * other / (side + other) * depth) * depth;
         assert_int_equal(d.contacts.count, 1);
-        print_message("Hertz force %.6g, expected %.6g\n", d.contacts.fx[0], expected);
-        assert_true(fabs(d.contacts.fx[0] / expected - 1) < 5e-3); /* depths are within 2e-6 of 1e-3 */
+        print_message("Hertz force %.6g, expected %.6g\n", d.contacts.forces[0].x, expected);
+        assert_true(fabs(d.contacts.forces[0].x / expected - 1) < 5e-3); /* depths are within 2e-6 of 1e-3 */
         dem_destroy(&d);
     }
 }
@@ -211,13 +211,18 @@ static void test_order_of_time_step(void **state) {
 
 /* Where the second grain just touches the first. */
 static double find_touch(const dem *d, uint32_t shape, double y) {
-    narc_body a = {.shape = shape}, b = {.x = 2.4, .y = y, .shape = shape};
+    narc_body two[2] = {{.cosine = 1, .scale = 1, .shape = shape},
+                        {.x = 2.4, .y = y, .cosine = 1, .scale = 1, .shape = shape}};
+    const narc_bodies bodies = narc_view_bodies(two, 2);
+    const narc_pairs pair = {.count = 1};
+    const narc_query query = {.margin = INFINITY};
     narc_contact contact;
+    size_t found;
     for (int i = 0; i < 20; i++) {
-        assert_int_equal(narc_find_contact(d->store, &a, &b, &contact, NULL), NARC_OK);
-        b.x -= (double)contact.separation / (double)contact.normal_x;
+        assert_int_equal(narc_find_contacts(d->store, &bodies, &pair, &query, &contact, 1, &found, NULL), NARC_OK);
+        two[1].x -= (double)contact.separation / (double)contact.normal_x;
     }
-    return b.x;
+    return two[1].x;
 }
 
 /* The spin of an arc shape that is hit off its centre, while the contact lasts. */

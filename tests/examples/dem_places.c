@@ -76,13 +76,13 @@ static void test_free_places(void **state) {
                               .b = NARC_ARRAY(d.pairs.b),
                               .shift_x = NARC_ARRAY(d.pairs.shift_x),
                               .shift_y = NARC_ARRAY(d.pairs.shift_y)};
-    const narc_contacts none = {.capacity = 0};
+    const narc_query query = {.margin = (float)gap - 1e-4f};
     size_t count = 99, walls = 0, images = 0;
     for (size_t k = 0; k < d.pairs.count; k++) {
         walls += d.pairs.b[k] >= d.grain_count;
         images += d.pairs.b[k] < d.grain_count && d.pairs.shift_x[k] != 0;
     }
-    assert_int_equal(narc_find_contacts(d.store, &bodies, &pairs, (float)gap - 1e-4f, 1, &none, &count, NULL), NARC_OK);
+    assert_int_equal(narc_find_contacts(d.store, &bodies, &pairs, &query, NULL, 0, &count, NULL), NARC_OK);
     print_message("%zu pairs, %zu with walls, %zu across the border\n", d.pairs.count, walls, images);
     assert_int_equal(count, 0);
     assert_true(walls > 5 && images > 0);

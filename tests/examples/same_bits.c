@@ -11,7 +11,7 @@
 static uint64_t run_heap(const char *isa, unsigned threads) {
     test_use_isa(isa);
     world_settings settings = world_defaults;
-    settings.threads = threads;
+    settings.workers = narc_openmp_workers(threads);
     settings.margin = 0.3f; /* many pairs */
     run r = begin_run("heap", settings, 1);
     continue_run(&r, 4);

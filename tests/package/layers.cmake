@@ -5,8 +5,8 @@
 cmake_minimum_required(VERSION 3.22)
 set(root "${SOURCE}")
 
-set(public narc_export.h narc_columns.h narc_shapes.h narc.h narc_methods.h narc_broad_phase.h narc_files.h narc_fit.h error.h
-  memory.h)
+set(public narc_export.h narc_columns.h narc_workers.h narc_shapes.h narc_pairs.h narc.h narc.hpp narc_methods.h narc_broad_phase.h
+  narc_files.h narc_fit.h error.h memory.h)
 set(layers soa kernels dispatch methods files fit tools examples tests bench)
 set(below_soa "")
 set(below_kernels soa)
@@ -17,12 +17,12 @@ set(below_fit files)
 set(below_tools files)
 set(below_examples tools files)
 set(below_tests soa kernels dispatch methods files fit tools examples)
-set(below_bench soa kernels dispatch methods files fit tools)
+set(below_bench soa kernels dispatch methods files fit tools examples)
 set(public_only files fit tools examples)
 
 # Where each header stands: layer by name.
 foreach(layer ${layers})
-  file(GLOB_RECURSE files RELATIVE "${root}" "${root}/${layer}/*.h" "${root}/${layer}/*.inl" "${root}/${layer}/*.def")
+  file(GLOB_RECURSE files RELATIVE "${root}" "${root}/${layer}/*.h" "${root}/${layer}/*.hpp" "${root}/${layer}/*.inl" "${root}/${layer}/*.def")
   list(FILTER files EXCLUDE REGEX "^examples/lammps/")
   foreach(file ${files})
     get_filename_component(name "${file}" NAME)
@@ -34,7 +34,7 @@ set(checked 0)
 set(wrong "")
 foreach(layer ${layers})
   file(GLOB_RECURSE files RELATIVE "${root}" "${root}/${layer}/*.[ch]" "${root}/${layer}/*.inl" "${root}/${layer}/*.cc"
-    "${root}/${layer}/*.cpp")
+    "${root}/${layer}/*.[ch]pp")
   list(FILTER files EXCLUDE REGEX "^examples/lammps/") # a project of its own, whose headers are LAMMPS'
   foreach(file ${files})
     file(STRINGS "${root}/${file}" lines REGEX "^ *# *include +[\"<]")

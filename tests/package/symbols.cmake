@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-# Which symbols and instructions are in objects and libraries. Run as cmake -D ... -P symbols.cmake, with either of
+# Which symbols and instructions are in objects and libraries. Run as cmake -D ... -P symbols.cmake, with one of
 #   NM, OBJECTS, EXPECTED         the objects define EXPECTED and nothing else that the linker sees
 #   NM, LIBRARY, HEADERS          the shared library exports the functions that the headers declare, and nothing else
+#   OBJDUMP, LIBRARY, SONAME      what the shared library calls itself
 #   OBJDUMP, OBJECTS, FORBIDDEN   no disassembled line of the objects matches the regular expression
 
 function(run out)
@@ -38,6 +39,11 @@ if(DEFINED FORBIDDEN)
       message(FATAL_ERROR "${object}: an instruction it must not have: ${CMAKE_MATCH_0}")
     endif()
   endforeach()
+elseif(DEFINED SONAME)
+  run(header "${OBJDUMP}" -p "${LIBRARY}")
+  if(NOT header MATCHES "\n *SONAME +${SONAME}\n")
+    message(FATAL_ERROR "${LIBRARY}: not ${SONAME}: ${header}")
+  endif()
 elseif(DEFINED OBJECTS)
   defined_symbols(names -g ${OBJECTS})
   if(NOT names STREQUAL EXPECTED)

@@ -12,7 +12,7 @@ check "the report names the exact method" says "method sat"
 check "and does not compare it with itself" sh -c '! grep -q "differs from sat" out.txt'
 works "sat by name" collide $known --method sat --out sat.csv
 check "is the default" cmp sat.csv known.csv
-check "sat: the call that was timed" grep -q "^narrow phase .*(narc_find_contacts_by, " out.txt
+check "sat: the call that was timed" grep -q "^narrow phase .*(narc_find_contacts, " out.txt
 
 # Two flat lenses. From the second to the first, d = (-4, -2), two pairs of arcs pass the test of sat-first. Upper arc
 # of the second against lower arc of the first: u = d + (0, 8) = (-4, 6), 2 sqrt(13) - 10; it comes first. Lower arc

@@ -20,7 +20,7 @@ int main(void) {
 
     if (narc_create_shapes(NULL, &shapes) || narc_build_circle(1.0, arcs, &arc_count, &error) ||
         narc_add_shape(shapes, arcs, arc_count, NULL, &error) ||
-        narc_find_overlaps(shapes, &bodies, &pairs, 0, bits, &error)) {
+        narc_find_overlaps(shapes, &bodies, &pairs, NULL, bits, &error)) {
         fprintf(stderr, "narc: %s\n", error.message);
         return 1;
     }

@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: MIT
+//
+// narc.hpp - narc in C++17: owners, columns, queries and answers. Header only, above the headers in C.
+//
+// The mental model
+//
+//   Names are those of C without the prefix, and mean what narc_shapes.h, narc.h and narc_broad_phase.h say there.
+//   Bodies, pairs, columns and rows are the structures of C; beside them there are
+//
+//       narc::shapes, narc::broad_phase   owners: they move, are not copied, and pass as pointers to all functions of C.
+//                                         One that was moved from, or had no memory, is a NULL there
+//       narc::result                      an answer or an error: if (result) ... else result.error().message. value()
+//                                         is for those who want exceptions: without an answer it throws
+//                                         narc::exception, or ends the program where exceptions are switched off
+//       narc::span                        the caller's array: a container with data() and size(), an array, a pointer
+//                                         and a size. Like columns, it must not outlive what it looks at
+//       narc::query, narc::pair_options   the structures of C with functions that set their fields
+//
+//   No call allocates what C would not, but for rows in a std::vector, which is made longer where it is too short and
+//   never shorter: the span that is returned tells how many there are.
+//
+// Example
+//
+//     struct Entity { b2Vec2 position; b2Rot rotation; uint32_t shape; };       (the engine's own)
+//     narc::shapes shapes;
+//     narc::broad_phase broad;
+//     std::vector<narc_manifold> rows;
+//     uint32_t crate = shapes.add(narc::box(1, 1, 0.05)).value();
+//     narc_bodies bodies = narc::bodies_of(entities, &Entity::position, &Entity::rotation, &Entity::shape);
+//     const narc_pair_list *list = broad.update(shapes, bodies, narc::pair_options().skin(0.05f)).value();
+//     for (narc_manifold &m : narc::find_manifolds(shapes, bodies, list->pairs, narc::query().margin(0.02f), rows).value())
+//         build_contact(m, list->previous[m.pair]);
+#ifndef NARC_HPP
+#define NARC_HPP
+
+#if __cplusplus < 201703L
+#error "narc.hpp is C++17"
+#endif
+
+#include <exception>
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "narc.h"
+#include "narc_broad_phase.h"
+
+namespace narc {
+
+// ------------------------------------------------------------------------------------------------ errors and answers
+
+// What value() throws.
+struct exception : std::exception {
+    explicit exception(const narc_error &e) noexcept : error(e) {}
+    const char *what() const noexcept override { return error.message; }
+    narc_error error;
+};
+
+template <class T> class result;
+
+// Whether it went well; its error has status NARC_OK then.
+template <> class [[nodiscard]] result<void> {
+  public:
+    explicit result(const narc_error &error) noexcept : error_(error) {}
+    explicit operator bool() const noexcept { return error_.status == NARC_OK; }
+    const narc_error &error() const noexcept { return error_; }
+    void value() const {
+        if (error_.status == NARC_OK)
+            return;
+#ifdef __cpp_exceptions
+        throw exception(error_);
+#else
+        std::terminate();
+#endif
+    }
+
+  private:
+    narc_error error_;
+};
+
+// The same with an answer.
+template <class T> class [[nodiscard]] result : public result<void> {
+  public:
+    explicit result(const narc_error &error) noexcept : result<void>(error) {}
+    explicit result(T value) : result<void>(narc_error()), value_(std::move(value)) {}
+    T &value() & { return result<void>::value(), *value_; }
+    const T &value() const & { return result<void>::value(), *value_; }
+    T value() && { return result<void>::value(), std::move(*value_); }
+
+  private:
+    std::optional<T> value_;
+};
+
+// ------------------------------------------------------------------------------------------------ spans
+
+template <class Item> class span {
+  public:
+    constexpr span() noexcept = default;
+    constexpr span(Item *data, size_t size) noexcept : data_(data), size_(size) {}
+    template <size_t Size> constexpr span(Item (&items)[Size]) noexcept : span(items, Size) {}
+    template <class Container, class Of = std::remove_pointer_t<decltype(std::declval<Container &>().data())>,
+              class = std::enable_if_t<std::is_convertible_v<Of (*)[], Item (*)[]>>>
+    constexpr span(Container &&items) noexcept : span(items.data(), items.size()) {}
+
+    constexpr Item *data() const noexcept { return data_; }
+    constexpr size_t size() const noexcept { return size_; }
+    constexpr bool empty() const noexcept { return size_ == 0; }
+    constexpr Item *begin() const noexcept { return data_; }
+    constexpr Item *end() const noexcept { return data_ + size_; }
+    constexpr Item &operator[](size_t k) const { return data_[k]; }
+    constexpr span first(size_t count) const noexcept { return {data_, count < size_ ? count : size_}; }
+
+  private:
+    Item *data_ = nullptr;
+    size_t size_ = 0;
+};
+
+// ------------------------------------------------------------------------------------------------ what it is made of
+
+namespace detail {
+
+template <class Item, class Field> auto &get(Item &item, Field field) {
+    if constexpr (std::is_member_object_pointer_v<Field>)
+        return item.*field;
+    else
+        return field(item);
+}
+template <class Item> Item *field_of(Item *item) { return item; }
+template <class Item, class Field, class... Fields> auto *field_of(Item *item, Field field, Fields... fields) {
+    return field_of(item ? &get(*item, field) : nullptr, fields...);
+}
+
+template <class R> auto cosine_of(R &rotation) -> decltype((rotation.c)) { return rotation.c; }
+template <class R> auto cosine_of(R &rotation) -> decltype((rotation.cosine)) { return rotation.cosine; }
+template <class R> auto sine_of(R &rotation) -> decltype((rotation.s)) { return rotation.s; }
+template <class R> auto sine_of(R &rotation) -> decltype((rotation.sine)) { return rotation.sine; }
+
+// call(arguments ..., out, error), where there is an `out`.
+template <class T, class Call, class... Arguments> result<T> ask(Call call, Arguments... arguments) {
+    narc_error error = {};
+    if constexpr (std::is_void_v<T>) {
+        call(arguments..., &error);
+        return result<T>(error);
+    } else {
+        T value{};
+        return call(arguments..., &value, &error) ? result<T>(error) : result<T>(std::move(value));
+    }
+}
+
+inline narc_error too_short(size_t needed) {
+    return {NARC_ERROR_CAPACITY, 0, static_cast<double>(needed), "a span is too short"};
+}
+
+// What owns an object of C.
+struct destroy {
+    void operator()(narc_shapes *shapes) const noexcept { narc_destroy_shapes(shapes); }
+    void operator()(narc_broad_phase *broad) const noexcept { narc_destroy_broad_phase(broad); }
+};
+template <class Object> class owner {
+  public:
+    explicit owner(Object *owned) noexcept : object_(owned) {}
+    Object *get() const noexcept { return object_.get(); }
+    operator Object *() noexcept { return get(); }
+    operator const Object *() const noexcept { return get(); }
+
+  protected:
+    template <class Create> owner(Create create, const narc_allocator *allocator) noexcept {
+        Object *object = nullptr;
+        if (create(allocator, &object) == NARC_OK)
+            object_.reset(object);
+    }
+
+  private:
+    std::unique_ptr<Object, destroy> object_;
+};
+
+// A structure of C with functions that set its fields.
+template <class Self, class Structure> class options : public Structure {
+  public:
+    options() noexcept : Structure() {}
+    Self &workers(const narc_workers &value) noexcept { return set(&Structure::workers, &value); }
+    Self &workers(const narc_workers &&) = delete; // they must outlive the call
+
+  protected:
+    template <class Field, class Value> Self &set(Field Structure::*field, Value value) noexcept {
+        this->*field = value;
+        return static_cast<Self &>(*this);
+    }
+};
+
+inline size_t asked(const narc_pairs &pairs, const narc_query &query) {
+    return query.selection.base ? query.selection_count : pairs.count;
+}
+
+template <class Rows> bool make_room(Rows &, size_t) { return false; }
+template <class Row, class Allocator> bool make_room(std::vector<Row, Allocator> &rows, size_t needed) {
+    if (rows.size() >= needed)
+        return false;
+    rows.resize(needed);
+    return true;
+}
+
+template <class Call, class Rows, class... Fields>
+auto find_rows(Call call, const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,
+               narc_query query, Rows &rows, Fields... fields) {
+    using item = std::remove_pointer_t<decltype(data_of(rows))>;
+    query.row_stride = sizeof(item);
+    // Room for a row for each pair.
+    make_room(rows, query.dense ? pairs.count : asked(pairs, query));
+    for (;;) {
+        narc_error error = {};
+        size_t found = 0;
+        const span<item> items(rows);
+        const narc_status status =
+            call(shapes, &bodies, &pairs, &query, field_of(items.data(), fields...), items.size(), &found, &error);
+        if (status == NARC_OK)
+            return result<span<item>>(items.first(query.dense ? pairs.count : found));
+        if (status != NARC_ERROR_CAPACITY || !make_room(rows, found))
+            return result<span<item>>(error);
+    }
+}
+
+} // namespace detail
+
+// ------------------------------------------------------------------------------------------------ columns and bodies
+
+// The column of all items in a container, of a field of each, or of a field of a field: column(entities, &Entity::pose,
+// &Pose::c). A field is a pointer to a member, or a function from an item to a reference. Its type is the column's, so
+// that doubles where floats are meant do not compile.
+template <class Items, class... Fields> auto column(const Items &items, Fields... fields) {
+    return make_column(detail::field_of(data_of(items), fields...), sizeof *data_of(items));
+}
+// Floats or doubles.
+template <class Items, class... Fields> narc_position_column positions(const Items &items, Fields... fields) {
+    return make_positions(detail::field_of(data_of(items), fields...), sizeof *data_of(items));
+}
+// Written, too.
+template <class Items, class... Fields> narc_hint_column hints(Items &&items, Fields... fields) {
+    return make_hints(detail::field_of(data_of(items), fields...), sizeof *data_of(items));
+}
+
+// Bodies in a container; their `scale` may be set afterwards.
+template <class Items, class X, class Y, class Cosine, class Sine, class Shape>
+narc_bodies bodies_of(const Items &items, X x, Y y, Cosine cosine, Sine sine, Shape shape) {
+    narc_bodies bodies = {};
+    bodies.count = std::size(items);
+    bodies.x = positions(items, x);
+    bodies.y = positions(items, y);
+    bodies.cosine = column(items, cosine);
+    bodies.sine = column(items, sine);
+    bodies.shape = column(items, shape);
+    return bodies;
+}
+// The same of structures: a position has x and y, a rotation c and s, or cosine and sine.
+template <class Items, class Position, class Rotation, class Shape>
+narc_bodies bodies_of(const Items &items, Position position, Rotation rotation, Shape shape) {
+    return bodies_of(
+        items, [=](auto &item) -> auto & { return detail::get(item, position).x; },
+        [=](auto &item) -> auto & { return detail::get(item, position).y; },
+        [=](auto &item) -> auto & { return detail::cosine_of(detail::get(item, rotation)); },
+        [=](auto &item) -> auto & { return detail::sine_of(detail::get(item, rotation)); }, shape);
+}
+inline narc_bodies bodies_of(span<const narc_body> rows) { return narc_view_bodies(rows.data(), rows.size()); }
+
+inline narc_body body(double x, double y, uint32_t shape, float cosine = 1, float sine = 0, float scale = 1) {
+    return {x, y, cosine, sine, scale, shape};
+}
+
+// Pairs in a container.
+template <class Items, class A, class B> narc_pairs pairs_of(const Items &items, A a, B b) {
+    return {std::size(items), column(items, a), column(items, b), nullptr, {}, {}, {}};
+}
+// Pairs that bring their own poses.
+inline narc_pairs pairs_of(size_t count) { return {count, {}, {}, nullptr, {}, {}, {}}; }
+
+// Workers that are the caller's loop: run(8, task) calls task(index) for each index below 8 and returns when all have
+// ended. `run` must outlive the workers and let no exception out.
+template <class Run> narc_workers workers_of(unsigned count, Run &run) {
+    return {const_cast<std::remove_const_t<Run> *>(std::addressof(run)), count,
+            [](void *context, unsigned task_count, void (*task)(void *, unsigned), void *argument) noexcept {
+                (*static_cast<Run *>(context))(
+                    task_count, [=](unsigned index) { task(argument, index); });
+            }};
+}
+
+// ------------------------------------------------------------------------------------------------ shapes
+
+// The arcs of one shape, as builders make them.
+struct outline {
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    const narc_arc *data() const noexcept { return arcs; }
+    size_t size() const noexcept { return count; }
+};
+using arcs = span<const narc_arc>;
+using points = span<const narc_point>;
+
+// Any builder of C: build(narc_build_box, 1.0, 2.0, 0.1).
+template <class Build, class... Arguments> result<outline> build(Build call, Arguments... arguments) {
+    outline out;
+    narc_error error = {};
+    return call(arguments..., out.arcs, &out.count, &error) ? result<outline>(error) : result<outline>(out);
+}
+inline auto circle(double radius) { return build(narc_build_circle, radius); }
+inline auto capsule(double length, double radius) { return build(narc_build_capsule, length, radius); }
+inline auto segment(narc_point from, narc_point to, double radius = 0) {
+    return build(narc_build_segment, from, to, radius);
+}
+inline auto box(double width, double height, double radius = 0) { return build(narc_build_box, width, height, radius); }
+inline auto polygon(points corners, double radius = 0) {
+    return build(narc_build_polygon, corners.data(), corners.size(), radius);
+}
+inline auto skin_polygon(points corners, double radius) {
+    return build(narc_build_skin_polygon, corners.data(), corners.size(), radius);
+}
+inline auto regular_polygon(size_t corners, double circumradius, double radius = 0) {
+    return build(narc_build_regular_polygon, corners, circumradius, radius);
+}
+inline auto ellipse(double half_x, double half_y, size_t arc_count) {
+    return build([=](narc_arc *out, size_t *count, narc_error *error) {
+        return narc_build_ellipse(half_x, half_y, arc_count, out, count, nullptr, error);
+    });
+}
+inline auto four_arc(const narc_four_arc &form) { return build(narc_build_four_arc, form); }
+inline auto through_points(points junctions, double radius = 0) {
+    return build(narc_build_points, junctions.data(), junctions.size(), radius);
+}
+inline auto ring(points around) { return build(narc_build_ring, around.data(), around.size()); }
+
+// A store.
+class shapes : public detail::owner<narc_shapes> {
+  public:
+    using owner::owner; // takes a store that something else has made
+    explicit shapes(const narc_allocator *allocator = nullptr) noexcept : owner(narc_create_shapes, allocator) {}
+    static result<shapes> load(const void *bytes, size_t size, const narc_allocator *allocator = nullptr) {
+        const auto store = detail::ask<narc_shapes *>(narc_load_shapes, allocator, bytes, size);
+        return store ? result<shapes>(shapes(store.value())) : result<shapes>(store.error());
+    }
+
+    result<uint32_t> add(arcs shape) {
+        return detail::ask<uint32_t>(narc_add_shape, get(), shape.data(), shape.size());
+    }
+    // With the builder's error, if that has one.
+    result<uint32_t> add(const result<outline> &shape) {
+        return shape ? add(shape.value()) : result<uint32_t>(shape.error());
+    }
+    result<void> add_at(uint32_t index, arcs shape) {
+        return detail::ask<void>(narc_add_shape_at, get(), index, shape.data(), shape.size());
+    }
+    result<void> replace(uint32_t index, arcs shape) {
+        return detail::ask<void>(narc_replace_shape, get(), index, shape.data(), shape.size());
+    }
+    result<void> remove(uint32_t index) { return detail::ask<void>(narc_remove_shape, get(), index); }
+    size_t size() const noexcept { return narc_count_shapes(get()); }
+    outline operator[](uint32_t index) const noexcept {
+        outline shape;
+        shape.count = narc_get_arcs(get(), index, shape.arcs);
+        return shape;
+    }
+};
+
+inline result<void> validate(arcs shape) { return detail::ask<void>(narc_validate_arcs, shape.data(), shape.size()); }
+inline result<void> validate(const narc_shapes *shapes, const narc_bodies &bodies) {
+    return detail::ask<void>(narc_validate_bodies, shapes, &bodies);
+}
+
+// ------------------------------------------------------------------------------------------------ queries
+
+struct query : detail::options<query, narc_query> {
+    query &margin(float value) noexcept { return set(&narc_query::margin, value); }
+    query &margins(narc_float_column value) noexcept { return set(&narc_query::margins, value); }
+    query &second_margin(float value) noexcept { return set(&narc_query::second_margin, value); }
+    query &flat_angle(float value) noexcept { return set(&narc_query::flat_angle, value); }
+    query &hints(narc_hint_column value) noexcept { return set(&narc_query::hints, value); }
+    query &range(size_t from, size_t items) noexcept {
+        return set(&narc_query::first, from).set(&narc_query::count, items);
+    }
+    query &dense() noexcept { return set(&narc_query::dense, 1u); }
+    query &skipped(size_t &out) noexcept { return set(&narc_query::out_skipped, &out); }
+    // These pairs; of an empty span none.
+    query &selection(span<const uint32_t> pairs) noexcept {
+        static const uint32_t none = 0;
+        set(&narc_query::selection_count, pairs.size());
+        return set(&narc_query::selection, make_column(pairs.empty() ? &none : pairs.data(), sizeof none));
+    }
+};
+
+// `rows` is a span, an array or a vector of narc_contact, or of larger structures of which `field` is one. The result is
+// the span of those that were found, of dense rows all. NARC_ERROR_CAPACITY: error().value is how many were found.
+template <class Rows, class... Field>
+auto find_contacts(const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,
+                   const narc_query &query, Rows &&rows, Field... field) {
+    return detail::find_rows(narc_find_contacts, shapes, bodies, pairs, query, rows, field...);
+}
+// The same of narc_manifold.
+template <class Rows, class... Field>
+auto find_manifolds(const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,
+                    const narc_query &query, Rows &&rows, Field... field) {
+    return detail::find_rows(narc_find_manifolds, shapes, bodies, pairs, query, rows, field...);
+}
+
+// Bit k % 64 of bits[k / 64] is that of pair k.
+template <class Bits>
+result<void> find_overlaps(const narc_shapes *shapes, const narc_bodies &bodies, const narc_pairs &pairs,
+                           const narc_query &query, Bits &&bits) {
+    const size_t words = NARC_BIT_WORDS(detail::asked(pairs, query));
+    detail::make_room(bits, words);
+    const span<uint64_t> room(bits);
+    if (room.size() < words)
+        return result<void>(detail::too_short(words));
+    return detail::ask<void>(narc_find_overlaps, shapes, &bodies, &pairs, &query, room.data());
+}
+
+// ------------------------------------------------------------------------------------------------ pairs of a step
+
+struct pair_options : detail::options<pair_options, narc_pair_options> {
+    pair_options &margin(float value) noexcept { return set(&narc_pair_options::margin, value); }
+    pair_options &skin(float value) noexcept { return set(&narc_pair_options::skin, value); }
+    pair_options &motion(narc_float_column x, narc_float_column y) noexcept {
+        return set(&narc_pair_options::motion_x, x).set(&narc_pair_options::motion_y, y);
+    }
+    pair_options &reach(narc_float_column value) noexcept { return set(&narc_pair_options::reach, value); }
+    pair_options &id(narc_word_column value) noexcept { return set(&narc_pair_options::id, value); }
+    pair_options &filter(const narc_pair_filter &value) noexcept { return set(&narc_pair_options::filter, &value); }
+    pair_options &filter(const narc_pair_filter &&) = delete;
+};
+
+class broad_phase : public detail::owner<narc_broad_phase> {
+  public:
+    using owner::owner;
+    explicit broad_phase(const narc_allocator *allocator = nullptr) noexcept
+        : owner(narc_create_broad_phase, allocator) {}
+
+    // Its arrays stay until the next update.
+    result<const narc_pair_list *> update(const narc_shapes *shapes, const narc_bodies &bodies,
+                                          const narc_pair_options &options = pair_options()) {
+        return detail::ask<const narc_pair_list *>(narc_update_pairs, get(), shapes, &bodies, &options);
+    }
+    result<const narc_pair_list *> update(span<const narc_box> boxes,
+                                          const narc_pair_options &options = pair_options()) {
+        return detail::ask<const narc_pair_list *>(narc_update_box_pairs, get(), boxes.data(), boxes.size(), &options);
+    }
+};
+
+// One box for each body.
+inline result<void> compute_boxes(const narc_shapes *shapes, const narc_bodies &bodies, span<narc_box> boxes,
+                                  const narc_box_options &options = {}) {
+    return boxes.size() < bodies.count ? result<void>(detail::too_short(bodies.count))
+                                       : detail::ask<void>(narc_compute_boxes, shapes, &bodies, &options, boxes.data());
+}
+
+// ------------------------------------------------------------------------------------------------ the rest
+
+inline result<void> compute_poses(span<const float> angles, span<float> cosines, span<float> sines) {
+    if (cosines.size() < angles.size() || sines.size() < angles.size())
+        return result<void>(detail::too_short(angles.size()));
+    return detail::ask<void>(narc_compute_poses, angles.data(), angles.size(), cosines.data(), sines.data());
+}
+
+inline result<void> set_isa(const char *name) { return detail::ask<void>(narc_set_isa, name); }
+
+} // namespace narc
+
+#endif

@@ -1,0 +1,532 @@
+// SPDX-License-Identifier: MIT
+//
+// cpp.cpp - narc.hpp: every part of it, with the answers of the functions in C, in empty containers and after moves.
+#include <narc.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <thread>
+#if __has_include(<span>)
+#include <span>
+#endif
+
+#define CHECK(condition) check(static_cast<bool>(condition), #condition, __LINE__)
+
+namespace {
+
+void check(bool holds, const char *condition, int line) {
+    if (!holds) {
+        std::fprintf(stderr, "cpp.cpp:%d: %s\n", line, condition);
+        std::exit(1);
+    }
+}
+
+struct Vector {
+    double x, y;
+};
+struct Rotation {
+    float c, s;
+};
+struct Pose {
+    Vector position;
+    Rotation rotation;
+};
+struct Entity {
+    char name[12];
+    float scale;
+    Pose pose;
+    Vector position;
+    Rotation rotation;
+    uint32_t shape;
+    float motion;
+    bool is_static;
+};
+struct Flat {
+    float x, y, cosine, sine;
+    uint32_t shape;
+};
+struct Words {
+    float cosine, sine;
+};
+struct Named {
+    Vector position;
+    Words rotation;
+    uint32_t shape;
+};
+struct Pair {
+    uint32_t a, b;
+    uint32_t hint;
+    float margin;
+};
+// A row within what a solver keeps of a pair.
+struct Slot {
+    double impulse;
+    narc_manifold manifold;
+    narc_contact contact;
+    uint32_t age;
+};
+
+narc_status status_of(const narc::result<void> &result) { return result.error().status; }
+
+template <class Row> bool same(const Row &a, const Row &b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same(const narc_float_column &a, const narc_float_column &b) { return a.base == b.base && a.stride == b.stride; }
+bool same(const narc_index_column &a, const narc_index_column &b) { return a.base == b.base && a.stride == b.stride; }
+bool same(const narc_position_column &a, const narc_position_column &b) {
+    return a.base == b.base && a.stride == b.stride && a.precision == b.precision;
+}
+bool same(const narc_bodies &a, const narc_bodies &b) {
+    return a.count == b.count && same(a.x, b.x) && same(a.y, b.y) && same(a.cosine, b.cosine) && same(a.sine, b.sine) &&
+           same(a.scale, b.scale) && same(a.shape, b.shape);
+}
+
+// A few bodies of a box and a circle in a row, each turned a little; every one touches the next.
+struct Scene {
+    narc::shapes shapes;
+    std::vector<Entity> entities;
+    std::vector<Pair> pairs;
+    narc_bodies bodies = {};
+    narc_pairs batch = {};
+};
+
+Scene make_scene(uint32_t count) {
+    Scene scene;
+    const uint32_t box = scene.shapes.add(narc::box(1, 1, 0.05)).value();
+    const uint32_t circle = scene.shapes.add(narc::circle(0.5)).value();
+    for (uint32_t k = 0; k < count; k++) {
+        Entity entity = {};
+        const float angle = 0.1f * static_cast<float>(k);
+        entity.scale = 1;
+        entity.position = {0.98 * k, 0.01 * k};
+        entity.rotation = {std::cos(angle), std::sin(angle)};
+        entity.pose = {entity.position, entity.rotation};
+        entity.shape = k % 3 == 2 ? circle : box;
+        scene.entities.push_back(entity);
+        if (k > 0)
+            scene.pairs.push_back({k - 1, k, 0, 0.5f});
+    }
+    scene.bodies = narc::bodies_of(scene.entities, &Entity::position, &Entity::rotation, &Entity::shape);
+    scene.batch = narc::pairs_of(scene.pairs, &Pair::a, &Pair::b);
+    return scene;
+}
+
+// ---------------------------------------------------------------------------- spans and columns
+
+void test_spans() {
+    std::vector<int> numbers = {1, 2, 3};
+    const std::vector<int> constant = {4, 5};
+    std::array<int, 4> array = {6, 7, 8, 9};
+    int plain[] = {1, 2};
+    const narc::span<const int> of_vector(numbers), of_constant(constant), of_array(array), of_plain(plain),
+        of_pointer(plain, 1), none;
+    CHECK(of_vector.size() == 3 && of_vector.data() == numbers.data() && of_vector[2] == 3);
+    CHECK(of_constant.size() == 2 && of_array.size() == 4 && of_plain.size() == 2 && of_pointer.size() == 1);
+    CHECK(none.empty() && none.begin() == none.end() && none.first(3).empty());
+    CHECK(of_vector.first(2).size() == 2 && of_vector.first(7).size() == 3);
+    const narc::span<int> writes(numbers);
+    const narc::span<const int> reads = writes;
+    writes[0] = 10;
+    int sum = 0;
+    for (const int number : reads)
+        sum += number;
+    CHECK(sum == 15);
+    static_assert(!std::is_convertible_v<std::vector<double> &, narc::span<const float>>, "of another type");
+    static_assert(!std::is_convertible_v<const std::vector<int> &, narc::span<int>>, "not to be written");
+    static_assert(!std::is_constructible_v<narc::span<narc_query>, narc::span<narc::query>>, "of another size");
+#ifdef __cpp_lib_span
+    const std::span<int> standard = writes;
+    const narc::span<const int> back = standard;
+    CHECK(standard.size() == 3 && back.data() == numbers.data() && back.size() == 3);
+#endif
+}
+
+void test_columns() {
+    std::vector<Entity> entities(3);
+    const std::vector<Entity> &constant = entities;
+    const narc_float_column scale = narc::column(constant, &Entity::scale);
+    CHECK(scale.base == &entities[0].scale && scale.stride == sizeof(Entity));
+    const narc_float_column cosine = narc::column(entities, &Entity::pose, &Pose::rotation, &Rotation::c);
+    CHECK(cosine.base == &entities[0].pose.rotation.c && cosine.stride == sizeof(Entity));
+    const narc_byte_column kind = narc::column(entities, &Entity::is_static);
+    CHECK(static_cast<const void *>(kind.base) == &entities[0].is_static);
+    const narc_position_column x = narc::positions(
+        entities, [](const Entity &e) -> auto & { return e.position.x; });
+    CHECK(x.base == &entities[0].position.x && x.precision == NARC_FLOAT64);
+    const float floats[] = {1, 2};
+    CHECK(narc::positions(floats).precision == NARC_FLOAT32 && narc::column(floats).stride == sizeof(float));
+    const std::array<uint64_t, 2> words = {1, 2};
+    CHECK(narc::column(words).base == words.data());
+    Pair pairs[2] = {};
+    CHECK(narc::hints(pairs, &Pair::hint).base == &pairs[0].hint);
+    std::vector<uint32_t> hints(2);
+    CHECK(narc::hints(hints).base == hints.data() && narc::hints(narc::span<uint32_t>(hints)).stride == 4);
+
+    const std::vector<Entity> nobody;
+    CHECK(!narc::column(nobody, &Entity::pose, &Pose::rotation, &Rotation::c).base);
+    CHECK(narc::positions(nobody, &Entity::position, &Vector::y).precision == NARC_FLOAT64);
+    CHECK(!narc::hints(std::vector<Pair>(), &Pair::hint).base);
+}
+
+void test_bodies() {
+    const std::vector<Entity> entities(3);
+    narc_bodies expected = {};
+    expected.count = 3;
+    expected.x = NARC_POSITION_COLUMN(entities, position.x);
+    expected.y = NARC_POSITION_COLUMN(entities, position.y);
+    expected.cosine = NARC_COLUMN(entities, rotation.c);
+    expected.sine = NARC_COLUMN(entities, rotation.s);
+    expected.shape = NARC_COLUMN(entities, shape);
+    CHECK(same(narc::bodies_of(entities, &Entity::position, &Entity::rotation, &Entity::shape), expected));
+
+    const Flat flat[2] = {};
+    narc_bodies bodies = narc::bodies_of(flat, &Flat::x, &Flat::y, &Flat::cosine, &Flat::sine, &Flat::shape);
+    CHECK(bodies.count == 2 && bodies.x.base == &flat[0].x && bodies.x.precision == NARC_FLOAT32);
+    CHECK(bodies.sine.base == &flat[0].sine && bodies.shape.base == &flat[0].shape && !bodies.scale.base);
+    const std::array<Named, 2> named = {};
+    bodies = narc::bodies_of(named, &Named::position, &Named::rotation, &Named::shape);
+    CHECK(bodies.cosine.base == &named[0].rotation.cosine && bodies.sine.base == &named[0].rotation.sine);
+
+    const narc_body rows[] = {narc::body(1, 2, 3), narc::body(4, 5, 6, 0, 1, 2)};
+    CHECK(rows[0].cosine == 1 && rows[0].sine == 0 && rows[0].scale == 1 && rows[0].shape == 3 && rows[0].y == 2);
+    CHECK(rows[1].cosine == 0 && rows[1].sine == 1 && rows[1].scale == 2);
+    CHECK(same(narc::bodies_of(rows), narc_view_bodies(rows, 2)));
+    CHECK(narc::bodies_of(std::vector<narc_body>()).count == 0 && narc::pairs_of(7).count == 7);
+}
+
+// ---------------------------------------------------------------------------- shapes
+
+bool same_arcs(const narc::result<narc::outline> &made, const narc_arc *arcs, size_t count) {
+    return made && made.value().size() == count && std::memcmp(made.value().data(), arcs, count * sizeof *arcs) == 0;
+}
+
+void test_builders() {
+    narc_arc a[NARC_MAX_ARCS];
+    size_t n = 0;
+    const std::vector<narc_point> square = {{0, 0}, {2, 0}, {2, 1}, {0, 1}};
+    const narc_point *p = square.data();
+    CHECK(!narc_build_circle(2, a, &n, nullptr) && same_arcs(narc::circle(2), a, n));
+    CHECK(!narc_build_capsule(3, 2, a, &n, nullptr) && same_arcs(narc::capsule(3, 2), a, n));
+    CHECK(!narc_build_segment(p[0], p[2], 0, a, &n, nullptr) && same_arcs(narc::segment(p[0], p[2]), a, n));
+    CHECK(!narc_build_box(3, 2, 0.5, a, &n, nullptr) && same_arcs(narc::box(3, 2, 0.5), a, n));
+    CHECK(!narc_build_polygon(p, 4, 0.1, a, &n, nullptr) && same_arcs(narc::polygon(square, 0.1), a, n));
+    CHECK(!narc_build_skin_polygon(p, 4, 0.1, a, &n, nullptr) && same_arcs(narc::skin_polygon(square, 0.1), a, n));
+    CHECK(!narc_build_regular_polygon(5, 2, 0.1, a, &n, nullptr) && same_arcs(narc::regular_polygon(5, 2, 0.1), a, n));
+    CHECK(!narc_build_ellipse(2, 1, 8, a, &n, nullptr, nullptr) && same_arcs(narc::ellipse(2, 1, 8), a, n));
+    const narc_four_arc lens = {5, 5, 8, 0.25, 0.25};
+    CHECK(!narc_build_four_arc(lens, a, &n, nullptr) && same_arcs(narc::four_arc(lens), a, n));
+    CHECK(!narc_build_points(p, 4, 0, a, &n, nullptr) && same_arcs(narc::through_points(square), a, n));
+    CHECK(!narc_build_ring(p, 4, a, &n, nullptr) && same_arcs(narc::ring(square), a, n));
+    CHECK(same_arcs(narc::build(narc_build_ring, p, 4u), a, n));
+    CHECK(narc::validate(narc::box(1, 1).value()));
+
+    narc_error error;
+    const auto bad = narc::box(1, 1, 2);
+    CHECK(narc_build_box(1, 1, 2, a, &n, &error) == NARC_ERROR_RADIUS);
+    CHECK(!bad && status_of(bad) == NARC_ERROR_RADIUS && std::string(bad.error().message) == error.message);
+    CHECK(status_of(narc::polygon({})) != NARC_OK && status_of(narc::validate(narc::arcs())) != NARC_OK);
+}
+
+void test_shapes() {
+    narc::shapes shapes;
+    const uint32_t box = shapes.add(narc::box(1, 1)).value();
+    const narc::outline circle = narc::circle(2).value();
+    CHECK(shapes.add(circle).value() != box && shapes.size() == 2 && shapes[1].size() == 1 && shapes[9].size() == 0);
+    CHECK(shapes.add(narc::box(1, 1)).value() == box && narc_count_uses(shapes, box) == 2);
+    CHECK(status_of(shapes.replace(box, circle)) == NARC_ERROR_IN_USE && shapes.remove(box));
+    CHECK(shapes.replace(box, narc::capsule(1, 1).value()) && shapes[box].size() == 2);
+    CHECK(shapes.add_at(7, circle) && status_of(shapes.add_at(7, circle)) == NARC_ERROR_IN_USE && shapes.size() == 8);
+    CHECK(status_of(shapes.remove(5)) == NARC_ERROR_INDEX);
+    CHECK(status_of(shapes.add(narc::box(1, 1, 2))) == NARC_ERROR_RADIUS);
+    CHECK(status_of(shapes.add(std::vector<narc_arc>())) != NARC_OK);
+
+    std::vector<unsigned char> bytes(narc_count_saved_bytes(shapes));
+    CHECK(narc_save_shapes(shapes, bytes.data(), bytes.size(), nullptr) == NARC_OK);
+    narc::shapes loaded = narc::shapes::load(bytes.data(), bytes.size()).value();
+    CHECK(loaded.size() == 8);
+    bytes[bytes.size() / 2] ^= 1;
+    CHECK(status_of(narc::shapes::load(bytes.data(), bytes.size())) == NARC_ERROR_FORMAT);
+
+    narc::shapes moved = std::move(shapes);
+    CHECK(moved.size() == 8 && static_cast<narc_shapes *>(moved));
+    loaded = std::move(moved);
+    CHECK(loaded.size() == 8);
+    // What was moved from is a store that is not there.
+    CHECK(!moved.get() && moved.size() == 0 && moved[0].size() == 0);                         // NOLINT
+    CHECK(status_of(moved.add(circle)) == NARC_ERROR_ARGUMENT && !narc::validate(moved, {})); // NOLINT
+    moved = narc::shapes();
+    CHECK(moved.add(circle));
+    static_assert(!std::is_copy_constructible_v<narc::shapes> && !std::is_copy_assignable_v<narc::shapes>, "owners");
+    static_assert(std::is_nothrow_move_constructible_v<narc::broad_phase>, "owners");
+
+    narc_shapes *raw = nullptr;
+    CHECK(narc_create_shapes(nullptr, &raw) == NARC_OK);
+    const narc::shapes adopted(raw);
+    CHECK(adopted.get() == raw && static_cast<const narc_shapes *>(adopted) == raw);
+    const narc_allocator never = {[](size_t, void *) -> void * { return nullptr; }, [](void *, void *) {}, nullptr};
+    narc::shapes without(&never);
+    CHECK(!without.get() && status_of(without.add(circle)) == NARC_ERROR_ARGUMENT);
+}
+
+// ---------------------------------------------------------------------------- queries
+
+void test_query() {
+    size_t skipped = 0;
+    const narc_workers workers = narc_openmp_workers(2);
+    const float margins[] = {1, 2};
+    uint32_t hints[] = {0, 0};
+    const narc::query q = narc::query()
+                              .margin(1)
+                              .margins(narc::column(margins))
+                              .second_margin(2)
+                              .flat_angle(0.25f)
+                              .hints(narc::hints(hints))
+                              .selection(hints)
+                              .range(3, 4)
+                              .dense()
+                              .workers(workers)
+                              .skipped(skipped);
+    const narc_query &c = q;
+    CHECK(c.margin == 1 && c.margins.base == margins && c.second_margin == 2 && c.flat_angle == 0.25f);
+    CHECK(c.hints.base == hints && c.selection.base == hints && c.selection_count == 2 && c.first == 3 && c.count == 4);
+    CHECK(c.dense == 1 && c.workers == &workers && c.out_skipped == &skipped && c.row_stride == 0 && !c.reserved[0]);
+    const narc_query zero = {};
+    CHECK(same<narc_query>(narc::query(), zero));
+}
+
+void test_contacts() {
+    Scene scene = make_scene(20);
+    const size_t n = scene.pairs.size();
+    std::vector<narc_contact> expected(n), rows;
+    std::vector<narc_manifold> expected_manifolds(n), manifolds;
+    size_t found = 0, manifolds_found = 0;
+    const narc_query plain = {};
+    CHECK(!narc_find_contacts(scene.shapes, &scene.bodies, &scene.batch, &plain, expected.data(), n, &found, nullptr));
+    CHECK(!narc_find_manifolds(scene.shapes, &scene.bodies, &scene.batch, &plain, expected_manifolds.data(), n,
+                               &manifolds_found, nullptr));
+    CHECK(found > 5 && manifolds_found == found && narc::validate(scene.shapes, scene.bodies));
+
+    // A vector grows to its rows, and never shrinks.
+    const auto in_vector = narc::find_contacts(scene.shapes, scene.bodies, scene.batch, {}, rows).value();
+    CHECK(in_vector.size() == found && in_vector.data() == rows.data() && rows.size() == n);
+    CHECK(std::memcmp(rows.data(), expected.data(), found * sizeof rows[0]) == 0);
+    rows.resize(2 * n);
+    CHECK(narc::find_contacts(scene.shapes, scene.bodies, scene.batch, narc::query(), rows).value().size() == found);
+    CHECK(rows.size() == 2 * n);
+    const auto points = narc::find_manifolds(scene.shapes, scene.bodies, scene.batch, narc::query(), manifolds).value();
+    CHECK(points.size() == found && same(points[found - 1], expected_manifolds[found - 1]));
+    size_t counted = 0;
+    for (const narc_manifold &m : narc::find_manifolds(scene.shapes, scene.bodies, scene.batch, {}, manifolds).value())
+        counted += m.count > 0;
+    CHECK(counted == found);
+
+    // Rows in arrays, in spans of the right and of a wrong length, in larger structures.
+    narc_contact array[32];
+    CHECK(narc::find_contacts(scene.shapes, scene.bodies, scene.batch, narc::query(), array).value().size() == found);
+    CHECK(same(array[found - 1], expected[found - 1]));
+    const auto two = narc::find_contacts(scene.shapes, scene.bodies, scene.batch, {}, narc::span(array, 2));
+    CHECK(!two && status_of(two) == NARC_ERROR_CAPACITY && two.error().value == static_cast<double>(found));
+    std::vector<Slot> slots;
+    const auto kept = narc::find_contacts(scene.shapes, scene.bodies, scene.batch, {}, slots, &Slot::contact).value();
+    CHECK(kept.size() == found && slots.size() == n);
+    for (size_t k = 0; k < found; k++)
+        CHECK(same(kept[k].contact, expected[k]) && kept[k].impulse == 0 && kept[k].age == 0);
+    CHECK(narc::find_manifolds(scene.shapes, scene.bodies, scene.batch, {}, slots, &Slot::manifold).value().size() ==
+          found);
+    for (size_t k = 0; k < found; k++)
+        CHECK(same(slots[k].manifold, expected_manifolds[k]) && same(slots[k].contact, expected[k]));
+
+    // Margins, hints, a selection, dense rows.
+    const uint32_t selection[] = {4, 2};
+    size_t skipped = 9;
+    narc::query query = narc::query().margins(narc::column(scene.pairs, &Pair::margin)).skipped(skipped);
+    query.hints(narc::hints(scene.pairs, &Pair::hint)).selection(selection);
+    const auto chosen = narc::find_contacts(scene.shapes, scene.bodies, scene.batch, query, rows).value();
+    CHECK(chosen.size() == 2 && chosen[0].pair == 4 && chosen[1].pair == 2 && skipped == 0);
+    query.dense();
+    std::vector<narc_contact> dense;
+    CHECK(narc::find_contacts(scene.shapes, scene.bodies, scene.batch, query, dense).value().size() == n);
+    CHECK(dense[2].pair == 2 && dense[2].count == 1 && dense[3].count == 0);
+    const auto all = narc::query().dense().margin(0.5f);
+    CHECK(narc::find_contacts(scene.shapes, scene.bodies, scene.batch, all, dense).value().size() == n);
+    const auto none = narc::query().selection(std::vector<uint32_t>());
+    CHECK(narc::find_contacts(scene.shapes, scene.bodies, scene.batch, none, rows).value().empty());
+    const auto part = narc::query().range(3, 4).margin(0.5f);
+    CHECK(narc::find_contacts(scene.shapes, scene.bodies, scene.batch, part, rows).value()[0].pair == 3);
+}
+
+void test_overlaps() {
+    const Scene scene = make_scene(100);
+    std::vector<uint64_t> bits;
+    uint64_t expected[2], array[1];
+    CHECK(!narc_find_overlaps(scene.shapes, &scene.bodies, &scene.batch, nullptr, expected, nullptr));
+    CHECK(narc::find_overlaps(scene.shapes, scene.bodies, scene.batch, narc::query(), bits) && bits.size() == 2);
+    CHECK(bits[0] == expected[0] && bits[1] == expected[1] && bits[0] != 0);
+    const auto short_by_one = narc::find_overlaps(scene.shapes, scene.bodies, scene.batch, narc::query(), array);
+    CHECK(status_of(short_by_one) == NARC_ERROR_CAPACITY && short_by_one.error().value == 2);
+    const uint32_t one[] = {5};
+    CHECK(narc::find_overlaps(scene.shapes, scene.bodies, scene.batch, narc::query().selection(one), array));
+    CHECK(array[0] == (bits[0] >> 5 & 1));
+    CHECK(narc::find_overlaps(scene.shapes, scene.bodies, scene.batch,
+                              narc::query().selection(narc::span<const uint32_t>()), narc::span<uint64_t>()));
+}
+
+void test_small_batches() {
+    const Scene scene = make_scene(2);
+    // Nothing at all.
+    const std::vector<Entity> nobody;
+    const std::vector<Pair> nothing;
+    std::vector<narc_contact> rows;
+    std::vector<narc_manifold> manifolds;
+    std::vector<uint64_t> bits;
+    const narc_bodies bodies = narc::bodies_of(nobody, &Entity::position, &Entity::rotation, &Entity::shape);
+    const narc_pairs pairs = narc::pairs_of(nothing, &Pair::a, &Pair::b);
+    CHECK(narc::find_contacts(scene.shapes, bodies, pairs, narc::query(), rows).value().empty());
+    CHECK(narc::find_manifolds(scene.shapes, bodies, pairs, narc::query(), manifolds).value().empty());
+    CHECK(narc::find_manifolds(scene.shapes, scene.bodies, pairs, narc::query().dense(), manifolds).value().empty());
+    CHECK(narc::find_overlaps(scene.shapes, bodies, pairs, narc::query(), bits) &&
+          narc::validate(scene.shapes, bodies));
+    CHECK(narc::compute_boxes(scene.shapes, bodies, {}) && narc::compute_poses({}, {}, {}));
+    // Pairs, but no rows.
+    const auto no_rows = narc::find_contacts(scene.shapes, scene.bodies, scene.batch, {}, narc::span<narc_contact>());
+    CHECK(status_of(no_rows) == NARC_ERROR_CAPACITY && no_rows.error().value == 1);
+
+    // One pair of bodies of its own.
+    const narc_body two[] = {narc::body(0, 0, 0), narc::body(0.75, 0, 0)};
+    narc_contact contact[1];
+    const auto one = narc::find_contacts(scene.shapes, narc::bodies_of(two), narc::pairs_of(1), {}, contact).value();
+    CHECK(one.size() == 1 && std::fabs(one[0].separation + 0.25f) < 1e-6f && one[0].normal_x == 1);
+
+    // Errors: a body that is not there, a store that is not there.
+    const Pair wrong[] = {{0, 2, 0, 0}};
+    const narc_pairs wrong_pairs = narc::pairs_of(wrong, &Pair::a, &Pair::b);
+    CHECK(status_of(narc::find_contacts(scene.shapes, scene.bodies, wrong_pairs, {}, rows)) == NARC_ERROR_INDEX);
+    CHECK(status_of(narc::find_overlaps(scene.shapes, scene.bodies, wrong_pairs, {}, bits)) == NARC_ERROR_INDEX);
+    CHECK(status_of(narc::find_manifolds(nullptr, scene.bodies, scene.batch, {}, manifolds)) == NARC_ERROR_ARGUMENT);
+}
+
+void test_workers() {
+    Scene scene = make_scene(20000);
+    std::vector<narc_contact> expected, rows;
+    const size_t found = narc::find_contacts(scene.shapes, scene.bodies, scene.batch, {}, expected).value().size();
+    unsigned tasks = 0;
+    auto parallel = [&](unsigned count, auto task) {
+        std::vector<std::thread> threads;
+        for (unsigned index = 0; index < count; index++)
+            threads.emplace_back(task, index);
+        for (std::thread &thread : threads)
+            thread.join();
+        tasks += count;
+    };
+    const narc_workers workers = narc::workers_of(3, parallel);
+    CHECK(workers.count == 3);
+    narc::query query;
+    query.workers(workers);
+    CHECK(narc::find_contacts(scene.shapes, scene.bodies, scene.batch, query, rows).value().size() == found);
+    CHECK(tasks > 1 && std::memcmp(rows.data(), expected.data(), found * sizeof rows[0]) == 0);
+    // A loop that is constant, from the last to the first.
+    const auto backwards = [](unsigned count, const auto &task) {
+        while (count > 0)
+            task(--count);
+    };
+    const narc_workers others = narc::workers_of(8, backwards);
+    CHECK(narc::find_contacts(scene.shapes, scene.bodies, scene.batch, query.workers(others), rows).value().size() ==
+          found);
+    CHECK(std::memcmp(rows.data(), expected.data(), found * sizeof rows[0]) == 0);
+}
+
+// ---------------------------------------------------------------------------- pairs of a step, poses, sets
+
+void test_broad_phase() {
+    Scene scene = make_scene(10);
+    narc::broad_phase broad;
+    const narc_workers workers = narc_openmp_workers(1);
+    narc_pair_filter filter = {};
+    filter.kind = narc::column(scene.entities, &Entity::is_static);
+    const std::vector<uint64_t> ids = {9, 8, 7, 6, 5, 4, 3, 2, 1, 0};
+    const narc_float_column motion = narc::column(scene.entities, &Entity::motion);
+    const auto options = narc::pair_options()
+                             .margin(0.02f)
+                             .skin(0.05f)
+                             .motion(motion, motion)
+                             .reach(motion)
+                             .id(narc::column(ids))
+                             .filter(filter)
+                             .workers(workers);
+    const narc_pair_options &c = options;
+    CHECK(c.margin == 0.02f && c.skin == 0.05f && c.motion_x.base == motion.base && c.motion_y.base == motion.base);
+    CHECK(c.reach.base == motion.base && c.id.base == ids.data() && c.filter == &filter && c.workers == &workers);
+    const narc_pair_list *list = broad.update(scene.shapes, scene.bodies, options).value();
+    CHECK(list->pairs.count >= 9 && !list->kept && list->added_count == list->pairs.count);
+    narc_broad_phase *other = nullptr;
+    const narc_pair_list *expected = nullptr;
+    CHECK(!narc_create_broad_phase(nullptr, &other));
+    const narc::broad_phase owned(other);
+    CHECK(!narc_update_pairs(other, scene.shapes, &scene.bodies, &options, &expected, nullptr));
+    CHECK(expected->pairs.count == list->pairs.count && expected->contact_count == list->contact_count);
+    std::vector<narc_manifold> rows;
+    const auto query = narc::query().margin(0.02f).selection({list->contacts, list->contact_count});
+    CHECK(narc::find_manifolds(scene.shapes, scene.bodies, list->pairs, query, rows).value().size() > 3);
+    CHECK(broad.update(scene.shapes, scene.bodies, options).value()->kept);
+    CHECK(status_of(broad.update(scene.shapes, scene.bodies, narc::pair_options().skin(-1))) == NARC_ERROR_ARGUMENT);
+
+    std::vector<narc_box> boxes(10);
+    CHECK(narc::compute_boxes(scene.shapes, scene.bodies, boxes) && boxes[9].min_x < boxes[9].max_x);
+    CHECK(status_of(narc::compute_boxes(scene.shapes, scene.bodies, narc::span(boxes.data(), 9))) ==
+          NARC_ERROR_CAPACITY);
+    narc_forget_pairs(broad);
+    CHECK(broad.update(boxes).value()->pairs.count >= 9);
+    const narc::broad_phase moved = std::move(broad);
+    CHECK(moved.get() && !broad.get());                           // NOLINT
+    CHECK(status_of(broad.update(boxes)) == NARC_ERROR_ARGUMENT); // NOLINT
+    broad = narc::broad_phase();
+    CHECK(broad.update(std::vector<narc_box>()).value()->pairs.count == 0);
+}
+
+void test_poses_and_sets() {
+    const std::vector<float> angles = {0, 1};
+    std::vector<float> cosines(2), sines(2);
+    CHECK(narc::compute_poses(angles, cosines, sines) && cosines[0] == 1 && std::fabs(sines[1] - 0.841471f) < 1e-6f);
+    CHECK(status_of(narc::compute_poses(angles, cosines, narc::span(sines.data(), 1))) == NARC_ERROR_CAPACITY);
+    CHECK(narc::set_isa("scalar") && std::string(narc_get_isa()) == "scalar");
+    CHECK(status_of(narc::set_isa("none")) == NARC_ERROR_ISA_UNKNOWN && narc::set_isa(nullptr));
+}
+
+void test_exceptions() {
+#ifdef __cpp_exceptions
+    std::string message;
+    try {
+        (void)narc::box(1, 1, 2).value();
+    } catch (const std::exception &exception) {
+        message = exception.what();
+    }
+    CHECK(message == narc::box(1, 1, 2).error().message && !message.empty());
+    try {
+        narc::set_isa("none").value();
+        CHECK(false);
+    } catch (const narc::exception &exception) {
+        CHECK(exception.error.status == NARC_ERROR_ISA_UNKNOWN);
+    }
+#endif
+}
+
+} // namespace
+
+int main() {
+    test_spans();
+    test_columns();
+    test_bodies();
+    test_builders();
+    test_shapes();
+    test_query();
+    test_contacts();
+    test_overlaps();
+    test_small_batches();
+    test_workers();
+    test_broad_phase();
+    test_poses_and_sets();
+    test_exceptions();
+    std::puts("narc.hpp is what it says");
+}

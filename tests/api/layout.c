@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * layout.c - where the fields of public structures lie: what programs that were compiled with another version of the
+ * headers of the same SONAME count on, and what other languages read rows by. There is nothing to run.
+ */
+#include <stdio.h>
+
+#include "narc.h"
+#include "narc_broad_phase.h"
+#include "narc_files.h"
+#include "narc_fit.h"
+#include "narc_methods.h"
+
+#define AT(field, offset) (offsetof(type, field) == (offset))
+#define LAYOUT(structure, size, fields)                                                                                \
+    do {                                                                                                               \
+        typedef structure type;                                                                                        \
+        _Static_assert(sizeof(type) == (size) && (fields), #structure);                                                \
+    } while (0)
+
+/* On every platform: rows, and what is made of numbers alone. */
+static void check_numbers(void) {
+    LAYOUT(narc_contact, 36,
+           AT(pair, 0) && AT(feature, 4) && AT(count, 6) && AT(separation, 8) && AT(normal_x, 12) && AT(normal_y, 16) &&
+               AT(point_x, 20) && AT(point_y, 24) && AT(radius_a, 28) && AT(radius_b, 32));
+    LAYOUT(narc_manifold_point, 16, AT(x, 0) && AT(y, 4) && AT(separation, 8) && AT(feature, 12));
+    LAYOUT(narc_manifold, 64,
+           AT(pair, 0) && AT(count, 4) && AT(normal_x, 8) && AT(normal_y, 12) && AT(radius_a, 16) && AT(radius_b, 20) &&
+               AT(reach_a, 24) && AT(reach_b, 28) && AT(point, 32));
+    LAYOUT(narc_point, 16, AT(x, 0) && AT(y, 8));
+    LAYOUT(narc_arc, 40, AT(center_x, 0) && AT(center_y, 8) && AT(radius, 16) && AT(start, 24) && AT(end, 32));
+    LAYOUT(narc_four_arc, 40,
+           AT(radius_low, 0) && AT(radius_high, 8) && AT(distance, 16) && AT(radius_left, 24) && AT(radius_right, 32));
+    LAYOUT(narc_mass, 32, AT(area, 0) && AT(centroid_x, 8) && AT(centroid_y, 16) && AT(second_moment, 24));
+    LAYOUT(narc_circle, 24, AT(x, 0) && AT(y, 8) && AT(radius, 16));
+    LAYOUT(narc_aabb, 32, AT(min_x, 0) && AT(min_y, 8) && AT(max_x, 16) && AT(max_y, 24));
+    LAYOUT(narc_body, 32, AT(x, 0) && AT(y, 8) && AT(cosine, 16) && AT(sine, 20) && AT(scale, 24) && AT(shape, 28));
+    LAYOUT(narc_box, 16, AT(min_x, 0) && AT(min_y, 4) && AT(max_x, 8) && AT(max_y, 12));
+    LAYOUT(narc_lost_pair, 32, AT(pair, 0) && AT(a, 4) && AT(b, 8) && AT(marks, 12) && AT(id_a, 16) && AT(id_b, 24));
+    LAYOUT(narc_curve_arc, 64, AT(start, 0) && AT(end, 16) && AT(center, 32) && AT(radius, 48) && AT(turn, 56));
+}
+
+/* Where a pointer and a size have 64 bits. A structure that a caller fills grows into its `reserved`, so that its size
+ * stays. */
+static void check_pointers(void) {
+#if UINTPTR_MAX == UINT64_MAX && SIZE_MAX == UINT64_MAX
+    LAYOUT(narc_float_column, 16, AT(base, 0) && AT(stride, 8));
+    LAYOUT(narc_index_column, 16, AT(base, 0) && AT(stride, 8));
+    LAYOUT(narc_word_column, 16, AT(base, 0) && AT(stride, 8));
+    LAYOUT(narc_byte_column, 16, AT(base, 0) && AT(stride, 8));
+    LAYOUT(narc_hint_column, 16, AT(base, 0) && AT(stride, 8));
+    LAYOUT(narc_position_column, 24, AT(base, 0) && AT(stride, 8) && AT(precision, 16));
+    LAYOUT(narc_workers, 24, AT(context, 0) && AT(count, 8) && AT(run, 16));
+    LAYOUT(narc_error, 216, AT(status, 0) && AT(index, 8) && AT(value, 16) && AT(message, 24));
+    LAYOUT(narc_allocator, 24, AT(allocate, 0) && AT(release, 8) && AT(context, 16));
+    LAYOUT(narc_bodies, 136,
+           AT(count, 0) && AT(x, 8) && AT(y, 32) && AT(cosine, 56) && AT(sine, 72) && AT(scale, 88) && AT(shape, 104) &&
+               AT(reserved, 120));
+    LAYOUT(narc_pairs, 96,
+           AT(count, 0) && AT(a, 8) && AT(b, 24) && AT(other_bodies, 40) && AT(shift_x, 48) && AT(shift_y, 64) &&
+               AT(reserved, 80));
+    LAYOUT(narc_pair_filter, 64, AT(kind, 0) && AT(category, 16) && AT(mask, 32) && AT(group, 48));
+    LAYOUT(narc_pair_list, 192,
+           AT(pairs, 0) && AT(previous, 96) && AT(marks, 104) && AT(contacts, 112) && AT(contact_count, 120) &&
+               AT(sensors, 128) && AT(sensor_count, 136) && AT(added, 144) && AT(added_count, 152) && AT(lost, 160) &&
+               AT(lost_count, 168) && AT(skipped, 176) && AT(kept, 184));
+    LAYOUT(narc_query, 144,
+           AT(margin, 0) && AT(second_margin, 4) && AT(flat_angle, 8) && AT(dense, 12) && AT(margins, 16) &&
+               AT(hints, 32) && AT(selection, 48) && AT(selection_count, 64) && AT(first, 72) && AT(count, 80) &&
+               AT(row_stride, 88) && AT(workers, 96) && AT(out_skipped, 104) && AT(reserved, 112));
+    LAYOUT(narc_pair_options, 120,
+           AT(margin, 0) && AT(skin, 4) && AT(motion_x, 8) && AT(motion_y, 24) && AT(reach, 40) && AT(id, 56) &&
+               AT(filter, 72) && AT(workers, 80) && AT(reserved, 88));
+    LAYOUT(narc_box_options, 104,
+           AT(margin, 0) && AT(motion_x, 8) && AT(motion_y, 24) && AT(first, 40) && AT(count, 48) && AT(workers, 56) &&
+               AT(out_skipped, 64) && AT(reserved, 72));
+    LAYOUT(narc_method_options, 56,
+           AT(method, 0) && AT(tolerance, 4) && AT(iterations, 8) && AT(out_outcomes, 16) && AT(reserved, 24));
+    LAYOUT(narc_named_shape, 48, AT(name, 0) && AT(arcs, 8) && AT(arc_count, 16) && AT(origin, 24) && AT(index, 40));
+    LAYOUT(narc_shape_list, 16, AT(count, 0) && AT(items, 8));
+    LAYOUT(narc_contours, 40, AT(points, 0) && AT(point_count, 8) && AT(ends, 16) && AT(count, 24) && AT(flatness, 32));
+    LAYOUT(narc_image_request, 24, AT(silhouette, 0) && AT(threshold, 8) && AT(out_whole, 16));
+    LAYOUT(narc_fit_request, 64,
+           AT(arc_count, 0) && AT(tolerance, 8) && AT(family, 16) && AT(goal, 20) && AT(flatness, 24) &&
+               AT(min_radius, 32) && AT(keep_origin, 40) && AT(starts, 44) && AT(progress, 48) && AT(context, 56));
+    LAYOUT(narc_fit_result, 2672,
+           AT(arcs, 0) && AT(arc_count, 2560) && AT(edge_count, 2568) && AT(origin, 2576) && AT(area, 2592) &&
+               AT(perimeter, 2600) && AT(hull_area, 2608) && AT(hull_perimeter, 2616) && AT(max_distance, 2624) &&
+               AT(mean_distance, 2632) && AT(difference_area, 2640) && AT(clearance, 2648) && AT(flatness, 2656) &&
+               AT(seconds, 2664));
+    LAYOUT(narc_arc_chains, 40, AT(arcs, 0) && AT(arc_count, 8) && AT(ends, 16) && AT(count, 24) && AT(distance, 32));
+#endif
+}
+
+int main(void) {
+    check_numbers();
+    check_pointers();
+    puts("structures are where they were");
+}
