@@ -22,7 +22,7 @@ enum { MOST_OVERLAPS = 16384, LEAST_OVERLAPS = 1024, PARTS_PER_WORKER = 4 };
 enum { MOST_PARTS = 256 };
 
 /* Rows that are found apart where the caller's list is nearly full. */
-enum { APART = 64 };
+enum { APART = 16 };
 
 struct job {
     const narc_batch *batch;

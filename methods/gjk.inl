@@ -257,8 +257,10 @@ static void find_overlaps_gjk(const struct call *call, struct queue *queue, int 
 static void find_contacts_gjk(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     struct collisions colliding;
     struct queue found;
+    struct found_arcs arcs;
     (void)next;
-    colliding.pairs.count = found.count = 0;
+    start_queue(&found, &arcs);
+    colliding.pairs.count = 0;
     search_all(call, queue, begin, &colliding, &found);
     expand_all(call, &colliding, &found);
     pad(&found);

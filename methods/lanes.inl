@@ -86,26 +86,32 @@ INLINE void append_found(const struct lanes *lanes, vm which, const struct best 
 }
 
 /* The radii of the arcs in some records. */
-INLINE vf load_radii(const narc_record *records, const int32_t *record, vf scale) {
+INLINE vf load_radii(const narc_record *records, vi record, vf scale) {
+    int32_t index[V_WIDTH];
     vf circle[4];
-    v_rows(records, sizeof *records, record, circle);
+    vi_store(index, record);
+    v_rows(records, sizeof *records, index, circle);
     return v_mul(circle[2], scale);
+}
+
+/* What was found of the pairs k ... on one body; a point is across and along. */
+INLINE struct feature find_found(const struct call *call, const struct queue *queue, int k, vec2 point,
+                                 const int32_t *records, int scale) {
+    const vi record = vi_select(vm_front(queue->count - k), vi_load(records + k), vi_set(0));
+    return (struct feature){.across = point.x,
+                            .along_min = point.y,
+                            .along_max = point.y,
+                            .record = record,
+                            .radius = load_radii(call->batch->shapes->records, record, get(queue, scale, k))};
 }
 
 /* Stores the contacts of such a queue. */
 static inline void store_found(const struct call *call, const struct queue *queue) {
-    const narc_record *records = call->batch->shapes->records;
     for (int k = 0; k < queue->count; k += V_WIDTH) {
         const vf separation = get(queue, FOUND_SEPARATION, k);
-        const vec2 n = get_vec2(queue, FOUND_NORMAL, k), point = get_vec2(queue, FOUND_POINT, k); /* across, along */
-        const struct feature on_a = {.across = point.x,
-                                     .along_min = point.y,
-                                     .along_max = point.y,
-                                     .record = vi_load(queue->record_a + k),
-                                     .radius = load_radii(records, queue->record_a + k, get(queue, SCALE_A, k))};
-        struct feature on_b = on_a;
-        on_b.record = vi_load(queue->record_b + k);
-        on_b.radius = load_radii(records, queue->record_b + k, get(queue, SCALE_B, k));
+        const vec2 n = get_vec2(queue, FOUND_NORMAL, k), point = get_vec2(queue, FOUND_POINT, k);
+        const struct feature on_a = find_found(call, queue, k, point, queue->record_a, SCALE_A);
+        const struct feature on_b = find_found(call, queue, k, point, queue->record_b, SCALE_B);
         const vm keep = vm_and(vm_front(queue->count - k), is_below(separation, get_margins(call, queue, k)));
         store_contacts(call, queue, k, keep, separation, n, &on_a, &on_b);
     }

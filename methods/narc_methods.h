@@ -23,7 +23,7 @@
  *
  *   Options of zeros mean the exact method: the calls of narc.h.
  *
- * Every function here may be called from any number of threads at once, with NARC_STACK_SIZE bytes of stack, but for
+ * Every function here may be called from any number of threads at once, with NARC_METHODS_STACK_SIZE bytes of stack, but for
  * narc_refresh_methods() and narc_destroy_methods(), which need the object for themselves.
  */
 #ifndef NARC_METHODS_H
@@ -34,6 +34,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Bytes of stack that a thread needs for a call of this library: GJK searches in many pairs at a time. */
+#define NARC_METHODS_STACK_SIZE (320 * 1024)
 
 /* A copy of a store's shapes, each with a box around it and its centroid: as much memory as the store has, and 32 bytes
  * for each shape more. */

@@ -363,6 +363,8 @@ static narc_status begin(const update *u, const narc_pair_list **out_list) {
         status = narc_check_length(u->options->skin, "skin", u->error);
     if (status == NARC_OK)
         status = narc_check_reserved(u->options->reserved, 4, "options", u->error);
+    if (status == NARC_OK && u->options->filter)
+        status = narc_check_reserved(u->options->filter->reserved, 2, "filter", u->error);
     if (status != NARC_OK)
         return status;
     if (u->count > UINT32_MAX - 1)

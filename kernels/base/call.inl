@@ -39,10 +39,10 @@ INLINE vi find_numbers(const struct call *call, vi pairs) {
     int32_t number[V_WIDTH];
     if (!call->batch->query.selection.base)
         return vi_add(pairs, vi_set((int32_t)(uint32_t)call->first));
-    const int32_t last = (int32_t)call->count - 1; /* of a vector, lanes may lie behind it */
+    const uint32_t count = (uint32_t)call->count; /* lanes that are not of a pair may have any */
     vi_store(number, pairs);
     for (int lane = 0; lane < V_WIDTH; lane++)
-        number[lane] = (int32_t)(uint32_t)find_number(call, number[lane] < last ? number[lane] : last);
+        number[lane] = (int32_t)(uint32_t)find_number(call, (uint32_t)number[lane] < count ? number[lane] : 0);
     return vi_load(number);
 }
 

@@ -36,7 +36,7 @@ INLINE vm take_valid(const struct call *call, size_t pair, const struct filter *
 }
 
 /* Pairs after which the first stage is tried anew with pairs that have edges: later ones may lie otherwise. */
-enum { REMEMBERED = 16 * BLOCK };
+enum { REMEMBERED = 32 * BLOCK };
 
 /* Appends the lanes `open` of `item` to the first stage's queue. Where that one can't answer most of the pairs that have
  * edges, as among bodies that rest on each other, these go to the stage that can. */
@@ -82,14 +82,15 @@ INLINE void run_pairs(const struct call *call, triage *settle, int fields, stage
     const narc_batch *batch = call->batch;
     const enum pose_layout layout = find_layout(batch);
     struct pair_indices indices;
+    struct found_arcs arcs;
     for (int s = 0; s < stage_count; s++)
-        queues[s].count = 0;
+        start_queue(&queues[s], &arcs);
     for (size_t block = 0; block < call->count; block += BLOCK) {
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
         load_indices(batch, call->first + block, n, &indices);
         if (edged_stage > 0 && block % REMEMBERED == 0)
             queues->edged = queues->edged_left = 0;
-        if (stage_count > 0)
+        if (stage_count > 0 && block % (2 * BLOCK) == 0)
             queues->whole = false;
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];

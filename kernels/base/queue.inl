@@ -13,7 +13,7 @@
 #include "simd/simd.h"
 
 /* Pairs that are loaded at once. */
-enum { BLOCK = 128 };
+enum { BLOCK = 64 };
 
 /* A stage waits for FLUSH pairs, so that vectors are full, and takes as many at a time: few enough for all queues
  * together to lie in the first cache, and on a small stack. */
@@ -50,13 +50,28 @@ enum {
 };
 
 struct queue {
-    _Alignas(64) float item[FIELDS][CAPACITY];      /* aligned: whole vectors do not lie across cache lines */
-    int32_t record_a[CAPACITY], record_b[CAPACITY]; /* the arcs that a stage found: push() leaves them out */
-    int32_t hinted[CAPACITY];                       /* 1 where a hint named these arcs */
+    _Alignas(64) float item[FIELDS][CAPACITY]; /* aligned: whole vectors do not lie across cache lines */
+    int32_t *record_a, *record_b;              /* the arcs that a stage found: push() leaves them out */
+    int32_t *hinted;                           /* 1 where a hint named these arcs */
     int count;
     int edged, edged_left; /* first stage: pairs with edges that it took, and passed on */
     bool whole;            /* first stage of overlaps: are whole arcs worth their price? */
 };
+
+/* Where a stage keeps what it finds. Queues whose stages take turns share one. */
+struct found_arcs {
+    int32_t record_a[CAPACITY], record_b[CAPACITY], hinted[CAPACITY];
+};
+
+/* An empty queue. */
+INLINE void start_queue(struct queue *queue, struct found_arcs *arcs) {
+    queue->count = 0;
+    queue->edged = queue->edged_left = 0;
+    queue->whole = false;
+    queue->record_a = arcs->record_a;
+    queue->record_b = arcs->record_b;
+    queue->hinted = arcs->hinted;
+}
 
 INLINE vf get(const struct queue *queue, int field, int k) { return v_load(queue->item[field] + k); }
 

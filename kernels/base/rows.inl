@@ -37,7 +37,7 @@ struct rows {
     bool dense;
     int done, listed;                               /* all pairs before `done` are answered, and have `listed` rows */
     int without;                                    /* rows of pairs without an answer */
-    uint8_t known[NARC_ROW_GROUP + 1];              /* 1: a pair from there on that has a row; and one to spare */
+    uint16_t known[NARC_ROW_GROUP + 1];             /* 1: a pair from there on that has a row; and one to spare */
     _Alignas(16) char spare[sizeof(narc_manifold)]; /* takes what lanes without an answer write */
 };
 
@@ -182,21 +182,22 @@ INLINE size_t fill_gaps(const struct call *call, size_t size) {
 INLINE size_t end_rows(const struct call *call, size_t size) {
     const struct rows *rows = call->rows;
     const ptrdiff_t stride = rows->out.stride;
+    char *to = rows->out.base + rows->listed * stride;
+    size_t count = (size_t)rows->listed;
     if (rows->dense)
         return fill_gaps(call, size);
-    int16_t pair[NARC_ROW_GROUP + 1];
-    int count = 0;
-    for (int k = rows->done; k < (int)call->count; k++) {
-        pair[count] = (int16_t)k;
-        count += rows->known[k];
+    for (size_t k = 0; k < call->count; k += 64) {
+        uint64_t bits = 0;
+        for (size_t i = 0; i < 64; i++)
+            bits |= (uint64_t)rows->known[k + i] << i;
+        count += (size_t)__builtin_popcountll(bits);
+        for (; bits; bits &= bits - 1, to += stride) {
+            const char *from = rows->out.base + (ptrdiff_t)(k + (unsigned)__builtin_ctzll(bits)) * stride;
+            if (from != to)
+                memcpy(to, from, size);
+        }
     }
-    char *to = rows->out.base + rows->listed * stride;
-    for (int k = 0; k < count; k++, to += stride) {
-        const char *from = rows->out.base + pair[k] * stride;
-        if (from != to)
-            memcpy(to, from, size);
-    }
-    return (size_t)(rows->listed + count);
+    return count;
 }
 
 /* The caller's number of an arc from its record; a circle's two halves are both arc 0. */

@@ -59,7 +59,7 @@ static void check_pointers(void) {
     LAYOUT(narc_pairs, 96,
            AT(count, 0) && AT(a, 8) && AT(b, 24) && AT(other_bodies, 40) && AT(shift_x, 48) && AT(shift_y, 64) &&
                AT(reserved, 80));
-    LAYOUT(narc_pair_filter, 64, AT(kind, 0) && AT(category, 16) && AT(mask, 32) && AT(group, 48));
+    LAYOUT(narc_pair_filter, 80, AT(kind, 0) && AT(category, 16) && AT(mask, 32) && AT(group, 48) && AT(reserved, 64));
     LAYOUT(narc_pair_list, 192,
            AT(pairs, 0) && AT(previous, 96) && AT(marks, 104) && AT(contacts, 112) && AT(contact_count, 120) &&
                AT(sensors, 128) && AT(sensor_count, 136) && AT(added, 144) && AT(added_count, 152) && AT(lost, 160) &&
