@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-#include "narc_shapes.h"
+#include "narc_pairs.h"
 
 static const double pi = 3.14159265358979323846;
 
