@@ -6,6 +6,7 @@
 #define NARC_TOOL_BODIES_H
 
 #include "narc_files.h"
+#include "narc_pairs.h"
 
 typedef struct body {
     double x, y;
