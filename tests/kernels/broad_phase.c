@@ -248,7 +248,8 @@ static void filters_pairs(void **state) {
         const narc_byte_column kind = NARC_COLUMN(bodies, kind);
         const narc_word_column category = NARC_COLUMN(bodies, category), mask = NARC_COLUMN(bodies, mask);
         const narc_index_column group = NARC_COLUMN(bodies, group);
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){kind, category, mask, group});
+        check_pairs(broad, boxes, 200,
+                    &(narc_pair_filter){.kind = kind, .category = category, .mask = mask, .group = group});
         check_pairs(broad, boxes, 200, &(narc_pair_filter){.kind = kind});
         check_pairs(broad, boxes, 200, &(narc_pair_filter){.category = category});
         check_pairs(broad, boxes, 200, &(narc_pair_filter){.mask = mask});
