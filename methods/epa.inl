@@ -35,7 +35,7 @@ _Static_assert(EDGES <= UINT8_MAX, "the numbers of vertices are bytes");
 /* Pairs that collide, and for each a triangle of three vertices that holds the origin: x, y and the middle. */
 struct collisions {
     struct queue pairs;
-    float corner[BLOCK][3][4];
+    float corner[FLUSH][3][4];
 };
 
 /* The polygon of each lane, vertices and edges between two of them, counter-clockwise; as many of the one as of the

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * bodies.c - are a caller's bodies what the kernels take them for?
+ * bodies.c - rows of bodies; are a caller's bodies what the kernels take them for?
  */
 #include <math.h>
 
@@ -49,4 +49,15 @@ narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_bodies *b
     for (size_t body = 0; body < bodies->count && status == NARC_OK; body++)
         status = check_body(shapes, bodies, body, error);
     return status;
+}
+
+narc_bodies narc_view_bodies(const narc_body *rows, size_t count) {
+    return rows ? (narc_bodies){.count = count,
+                                .x = NARC_POSITION_COLUMN(rows, x),
+                                .y = NARC_POSITION_COLUMN(rows, y),
+                                .cosine = NARC_COLUMN(rows, cosine),
+                                .sine = NARC_COLUMN(rows, sine),
+                                .scale = NARC_COLUMN(rows, scale),
+                                .shape = NARC_COLUMN(rows, shape)}
+                : (narc_bodies){0};
 }

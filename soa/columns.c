@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * columns.c - the columns of a caller's bodies.
+ * columns.c - are the columns of a caller's bodies there?
  */
 #include "column.h"
 #include "error.h"
@@ -22,15 +22,4 @@ narc_status narc_check_columns(const narc_bodies *bodies, narc_error *error) {
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)x,
                          "bodies.x.precision is %d and bodies.y.precision is %d", (int)x, (int)y);
     return NARC_OK;
-}
-
-narc_bodies narc_view_bodies(const narc_body *rows, size_t count) {
-    return rows ? (narc_bodies){.count = count,
-                                .x = NARC_POSITION_COLUMN(rows, x),
-                                .y = NARC_POSITION_COLUMN(rows, y),
-                                .cosine = NARC_COLUMN(rows, cosine),
-                                .sine = NARC_COLUMN(rows, sine),
-                                .scale = NARC_COLUMN(rows, scale),
-                                .shape = NARC_COLUMN(rows, shape)}
-                : (narc_bodies){0};
 }

@@ -84,6 +84,7 @@ typedef struct {
 
 typedef struct {
     column_030 kind, category, mask, group;
+    void *reserved[2];
 } filter_030;
 
 typedef struct {
