@@ -19,7 +19,7 @@
 enum { MOST_OVERLAPS = 16384, LEAST_OVERLAPS = 1024, PARTS_PER_WORKER = 4 };
 
 /* Parts of rows are at most that many, so that what is known of them has room on the stack. */
-enum { MOST_PARTS = 256 };
+enum { MOST_PARTS = 64 };
 
 /* Rows that are found apart where the caller's list is nearly full. */
 enum { APART = 16 };

@@ -4,7 +4,7 @@
  * object. NARC_ISA_NAME and NARC_SIMD: see kernels/exact.c.
  */
 /* Searches in lanes go best with many pairs at a time. */
-#define NARC_QUEUE_FLUSH 128
+#define NARC_QUEUE_PAIRS 128
 
 #include "methods/bounding.inl"
 #include "methods/first_pair.inl"

@@ -107,23 +107,31 @@ static bool solve(matrix rows, size_t n) {
 /* On an arc that spans an angle d the error grows with |derivative of the radius of curvature| d^3: junctions that
  * divide the integral of its cube root evenly, half a part for the halves of arcs at the ends. Steps are even halfway
  * between the angle of the normal and that of the point, so that of a thin ellipse neither end has few. */
+enum { GUESS_STEPS = 4096 };
+
+static double find_step_angle(ellipse e, int step) {
+    const double t = NARC_PI / 2 * step / GUESS_STEPS;
+    if (step == 0 || step == GUESS_STEPS)
+        return t;
+    return narc_atan2(sqrt(e.a) * narc_sin(t), sqrt(e.b) * narc_cos(t));
+}
+
 static void guess_junctions(ellipse e, quadrant *q) {
-    enum { STEPS = 4096 };
-    double sum[STEPS + 1] = {0}, angle[STEPS + 1] = {0};
-    for (int k = 1; k <= STEPS; k++) {
-        const double t = NARC_PI / 2 * k / STEPS;
-        angle[k] = k < STEPS ? narc_atan2(sqrt(e.a) * narc_sin(t), sqrt(e.b) * narc_cos(t)) : NARC_PI / 2;
-        const double width = angle[k] - angle[k - 1];
-        const double change = find_curvature_radius(e, angle[k]) - find_curvature_radius(e, angle[k - 1]);
+    double sum[GUESS_STEPS + 1] = {0}, last = 0;
+    for (int k = 1; k <= GUESS_STEPS; k++) {
+        const double angle = find_step_angle(e, k), width = angle - last;
+        const double change = find_curvature_radius(e, angle) - find_curvature_radius(e, last);
         sum[k] = sum[k - 1] + narc_pow(fabs(change) * width * width, 1.0 / 3);
+        last = angle;
     }
     int step = 1;
     for (size_t junction = 1; junction <= q->junctions; junction++) {
-        const double wanted = sum[STEPS] * ((double)junction - 0.5) / (double)q->junctions;
+        const double wanted = sum[GUESS_STEPS] * ((double)junction - 0.5) / (double)q->junctions;
         while (sum[step] < wanted)
             step++;
         const double part = (wanted - sum[step - 1]) / (sum[step] - sum[step - 1]);
-        q->junction[junction] = angle[step - 1] + part * (angle[step] - angle[step - 1]);
+        const double from = find_step_angle(e, step - 1), to = find_step_angle(e, step);
+        q->junction[junction] = from + part * (to - from);
     }
     q->junction[q->junctions + 1] = NARC_PI / 2;
 }

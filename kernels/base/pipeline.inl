@@ -36,7 +36,7 @@ INLINE vm take_valid(const struct call *call, size_t pair, const struct filter *
 }
 
 /* Pairs after which the first stage is tried anew with pairs that have edges: later ones may lie otherwise. */
-enum { REMEMBERED = 32 * BLOCK };
+enum { REMEMBERED = 64 * BLOCK };
 
 /* Appends the lanes `open` of `item` to the first stage's queue. Where that one can't answer most of the pairs that have
  * edges, as among bodies that rest on each other, these go to the stage that can. */
@@ -65,13 +65,15 @@ INLINE int find_due(const struct queue *queues, int stage_count, bool end) {
 }
 
 INLINE void run_stages(const struct call *call, stage *const *stages, int stage_count, struct queue *queues, bool end) {
-    for (int s = find_due(queues, stage_count, end); s >= 0; s = find_due(queues, stage_count, end)) {
+    for (int s = find_due(queues, stage_count, end); s >= 0;) {
         struct queue *queue = &queues[s];
-        const int begin = queue->count >= FLUSH ? queue->count - FLUSH : 0;
+        const int begin = queue->count > STEP ? queue->count - STEP : 0;
         if (queue->count % V_WIDTH != 0 && begin == 0)
             pad(queue);
         stages[s](call, queue, begin, queue + 1);
         queue->count = begin;
+        const int due = find_due(queues, stage_count, end);
+        s = begin >= STEP && due <= s ? s : due;
     }
 }
 
@@ -90,7 +92,7 @@ INLINE void run_pairs(const struct call *call, triage *settle, int fields, stage
         load_indices(batch, call->first + block, n, &indices);
         if (edged_stage > 0 && block % REMEMBERED == 0)
             queues->edged = queues->edged_left = 0;
-        if (stage_count > 0 && block % (2 * BLOCK) == 0)
+        if (stage_count > 0 && block % (4 * BLOCK) == 0)
             queues->whole = false;
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];

@@ -13,19 +13,20 @@
 #include "simd/simd.h"
 
 /* Pairs that are loaded at once. */
-enum { BLOCK = 64 };
+enum { BLOCK = 32 };
 
-/* A stage waits for FLUSH pairs, so that vectors are full, and takes as many at a time: few enough for all queues
- * together to lie in the first cache, and on a small stack. */
-#ifndef NARC_QUEUE_FLUSH
-#define NARC_QUEUE_FLUSH 32
+/* A stage waits for FLUSH pairs, so that vectors are full and its code is fetched once for several, and takes STEP at a
+ * time as long as the stages behind it have room: so all queues together lie in the first cache, and on a small stack. */
+#ifdef NARC_QUEUE_PAIRS
+enum { FLUSH = NARC_QUEUE_PAIRS, STEP = NARC_QUEUE_PAIRS, STAGES = 1 };
+#else
+enum { FLUSH = V_WIDTH > 8 ? 24 : 32, STEP = 16, STAGES = 5 };
 #endif
-enum { FLUSH = NARC_QUEUE_FLUSH, STAGES = 5 };
 
-/* A queue has less than FLUSH pairs when a stage before it, or a vector of new pairs, adds FLUSH at most. push() and
- * pad() write up to a vector behind the last one. */
-enum { CAPACITY = 2 * FLUSH + V_WIDTH };
-_Static_assert(FLUSH % V_WIDTH == 0, "stages take whole vectors");
+/* A queue has less than FLUSH pairs when a stage before it, or a vector of new pairs, adds STEP at most. push() and pad()
+ * write up to a vector behind the last one. */
+enum { CAPACITY = FLUSH + STEP + V_WIDTH };
+_Static_assert(STEP % V_WIDTH == 0 && STEP <= FLUSH, "stages take whole vectors");
 
 /* The fields of a pair. Integers are kept as their bits; the two coordinates of a vector follow each other. */
 enum {
