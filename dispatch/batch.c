@@ -35,10 +35,10 @@ struct job {
     narc_row_kernel *kernel;
     size_t size; /* bytes of a row */
     narc_rows rows;
-    atomic_flag closing;           /* does someone move rows? */
-    atomic_size_t due;             /* the part to move next */
-    size_t found;                  /* rows in their final place; of who moves them */
-    atomic_uint ended[MOST_PARTS]; /* how many rows a part has and 1; 0: it has not ended */
+    atomic_flag closing;             /* does someone move rows? */
+    atomic_size_t due;               /* the part to move next */
+    size_t found;                    /* rows in their final place; of who moves them */
+    atomic_size_t ended[MOST_PARTS]; /* how many rows a part has and 1; 0: it has not ended */
 };
 
 /* The same batch with a counter of its own. */
@@ -68,7 +68,7 @@ narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *
                                  narc_error *error) {
     const narc_query *query = &batch->query;
     const size_t first = query->first, count = query->count;
-    if (first % 64 != 0 || (count % 64 != 0 && first + count != batch->asked))
+    if (count > 0 && (first % 64 != 0 || (count % 64 != 0 && first + count != batch->asked)))
         return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)count,
                          "pairs %zu and the %zu from there on do not begin and end at multiples of 64", first, count);
     if (count > 0 && !out_bits)
@@ -118,29 +118,37 @@ static void close_gaps(struct job *job, size_t parts) {
     }
 }
 
-/* Finds the rows of a part, group by group. */
-static void find_rows(void *argument, size_t part) {
-    struct job *const job = argument;
-    const bool dense = job->batch->query.dense != 0;
-    const size_t start = part * job->part_size, count = size_of_part(job, part);
-    size_t skipped = 0, found = 0;
-    const narc_batch own = count_apart(job->batch, &skipped);
+/* Finds the rows of `count` pairs from `start` on, group by group; returns how many there are. */
+static size_t find_groups(const struct job *job, const narc_batch *batch, size_t start, size_t count) {
+    const bool dense = batch->query.dense != 0;
+    size_t found = 0;
     for (size_t k = 0; k < count; k += NARC_ROW_GROUP) {
         const size_t left = count - k;
         const narc_rows to = {dense ? job->rows.base : place_of(job, start + found), job->rows.stride};
-        found += job->kernel(&own, job->first + start + k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &to);
+        found += job->kernel(batch, job->first + start + k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &to);
     }
+    return found;
+}
+
+static void find_rows(void *argument, size_t part) {
+    struct job *const job = argument;
+    size_t skipped = 0;
+    const narc_batch own = count_apart(job->batch, &skipped);
+    const size_t found = find_groups(job, &own, part * job->part_size, size_of_part(job, part));
     atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
-    atomic_store(&job->ended[part], (unsigned)found + 1);
-    if (!dense)
+    atomic_store(&job->ended[part], found + 1);
+    if (!own.query.dense)
         close_gaps(job, (job->count - 1) / job->part_size + 1);
 }
 
 /* The rows of the pairs of a job, which has room for as many. Returns how many there are. */
 static size_t list_rows(struct job *job, size_t *skipped) {
     const size_t groups = (job->count - 1) / NARC_ROW_GROUP + 1;
-    const size_t most = narc_count_workers(job->batch->query.workers, groups) > 1 ? MOST_PARTS : 1;
-    job->part_size = ((groups - 1) / most + 1) * NARC_ROW_GROUP;
+    if (narc_count_workers(job->batch->query.workers, groups) <= 1) {
+        const narc_batch own = count_apart(job->batch, skipped);
+        return find_groups(job, &own, 0, job->count);
+    }
+    job->part_size = ((groups - 1) / MOST_PARTS + 1) * NARC_ROW_GROUP;
     const size_t parts = (job->count - 1) / job->part_size + 1;
     atomic_init(&job->skipped, 0);
     atomic_init(&job->due, 0);
@@ -155,8 +163,8 @@ static size_t list_rows(struct job *job, size_t *skipped) {
     return job->found;
 }
 
-/* The same for a few pairs, with room for `room` rows only. */
-static size_t list_apart(struct job *job, size_t room, size_t *skipped) {
+/* The same for a few pairs, with room for `room` rows only. Not inlined: the others need no room for these. */
+static __attribute__((noinline)) size_t list_apart(struct job *job, size_t room, size_t *skipped) {
     _Alignas(16) char rows[APART * sizeof(narc_manifold)];
     const narc_batch own = count_apart(job->batch, skipped);
     const narc_rows to = {rows, (ptrdiff_t)job->size};
@@ -191,11 +199,11 @@ static narc_status check_rows(const narc_batch *batch, const void *rows, ptrdiff
     const size_t end = query->selection.base ? batch->pairs.count : query->first + query->count;
     if (!out_count || (!rows && capacity > 0))
         return narc_fail_missing(error, !out_count ? "out_count" : "out_rows");
-    if (stride % 4 != 0 || (stride < 0 ? -stride : stride) < (ptrdiff_t)size)
+    if (stride % 4 != 0 || (stride < (ptrdiff_t)size && stride > -(ptrdiff_t)size))
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)stride,
                          "query.row_stride is %lld, not a multiple of 4 with room for %zu bytes", (long long)stride,
                          size);
-    if (query->dense && capacity < end)
+    if (query->dense && query->count > 0 && capacity < end)
         return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)end, "%zu dense rows, but there is room for %zu", end,
                          capacity);
     return NARC_OK;

@@ -132,7 +132,8 @@ static narc_status describe_bad_pair(const narc_batch *batch, size_t place, narc
         const size_t body = column.base ? narc_index_at(column, pair) : pair;
         if (body >= set->count)
             return narc_fail(error, NARC_ERROR_INDEX, pair, (double)body,
-                             "pair %zu: body %c is %zu, but there are %zu bodies", pair, "ab"[side], body, set->count);
+                             "pair %zu: body %c is %zu, but there are %zu bodies", pair, "ab"[side], body,
+                             set -> count);
         const struct narc_side s = narc_find_side(batch, pair, side);
         if (s.shape >= batch->shapes->count)
             return narc_fail(error, NARC_ERROR_INDEX, pair, s.shape,
@@ -157,7 +158,7 @@ narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodie
         status = CHECK_RESERVED(*pairs, "pairs", error);
     if (status != NARC_OK)
         return status;
-    out_batch->asked = q->selection.base ? q->selection_count : pairs->count;
+    out_batch->asked = q->selection.base || q->selection.stride ? q->selection_count : pairs->count;
     status = narc_check_range(q->first, &q->count, out_batch->asked, "pairs", error);
     if (status != NARC_OK || q->count == 0)
         return status;

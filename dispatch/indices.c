@@ -10,6 +10,9 @@
 /* Pairs that one worker looks at in one go: some 50 microseconds of work. */
 enum { PART = 65536 };
 
+/* So few pairs are looked at one by one. */
+enum { FEW = 32 };
+
 /* A limit that are_below() can take. What it then finds wrong may be right, and is looked at again. */
 static uint32_t clip(size_t limit) { return limit < 0x80000000u ? (uint32_t)limit : 0x80000000u; }
 
@@ -94,6 +97,17 @@ static bool is_body_fine(const narc_batch *batch, narc_index_column column, cons
     return body < bodies->count && narc_index_at(bodies->shape, body) < batch->shapes->count;
 }
 
+/* The first place from `place` on of a pair that is not fine, or `end`. */
+static size_t find_bad_place(const narc_batch *batch, size_t place, size_t end) {
+    for (; place < end; place++) {
+        const size_t pair = narc_pair_at(batch, place);
+        if (pair >= batch->pairs.count || !is_body_fine(batch, batch->pairs.a, &batch->a, pair) ||
+            !is_body_fine(batch, batch->pairs.b, &batch->b, pair))
+            break;
+    }
+    return place;
+}
+
 /* Keeps the first of what is bad. */
 static void keep_first(struct search *search, size_t bad) {
     size_t known = atomic_load_explicit(&search->bad, memory_order_relaxed);
@@ -104,20 +118,17 @@ static void keep_first(struct search *search, size_t bad) {
 
 static void look_at_pairs(void *argument, size_t part) {
     struct search *const search = argument;
-    const narc_batch *batch = search->batch;
     size_t place, end;
-    for (find_part(search, part, &place, &end); place < end; place++) {
-        const size_t pair = narc_pair_at(batch, place);
-        if (pair >= batch->pairs.count || !is_body_fine(batch, batch->pairs.a, &batch->a, pair) ||
-            !is_body_fine(batch, batch->pairs.b, &batch->b, pair)) {
-            keep_first(search, place);
-            return;
-        }
-    }
+    find_part(search, part, &place, &end);
+    place = find_bad_place(search->batch, place, end);
+    if (place < end)
+        keep_first(search, place);
 }
 
 size_t narc_find_bad_pair(const narc_batch *batch) {
     const size_t first = batch->query.first, count = batch->query.count;
+    if (count < FEW)
+        return find_bad_place(batch, first, first + count);
     struct search search = {.batch = batch, .first = first, .count = count, .parts = (count - 1) / PART + 1};
     atomic_init(&search.fine, true);
     atomic_init(&search.bad, first + count);

@@ -61,7 +61,7 @@ NARC_API narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_
  *                     two sets, body k of each
  *   other_bodies      the set that `b` names bodies of, such as those that never move; NULL: that of `a`, the call's
  *   shift_x, shift_y  world axes; added to the position of B, in double precision: for periodic images; left out: 0
- * A set of which x, y, cosine and sine are all left out stands at the origin, not turned: so the poses of B in the
+ * A set of which x, y, cosine and sine are all left out stands at the origin, not turned (to queries only): so the poses of B in the
  * frames of A, and shapes by pair, are a set of B's poses, and one for A that has shapes only. A pair with a NaN in its
  * shift, or an infinity, has no answer, as one with a broken body. */
 typedef struct narc_pairs {
@@ -97,7 +97,8 @@ typedef struct narc_pairs {
  *                     most, those with edges less, circles nothing. What hints mean is the library's business. Any value
  *                     is safe: one that is stale, or made up, or another pair's, costs time and changes no bit of the
  *                     answer. Untouched on an error other than NARC_ERROR_CAPACITY
- *   selection         the pairs to ask of, `selection_count` indices of pairs, each at most once; left out: all. Hints,
+ *   selection         the pairs to ask of, `selection_count` indices of pairs, each at most once; left out ({0}, base
+ *                     and stride): all. So what NARC_ARRAY() makes of an empty container asks of none. Hints,
  *                     margins, rows' numbers and dense rows stay those of the whole batch; rows are listed in the order
  *                     of the selection, and bit k of overlaps is that of pair selection[k]
  *   first, count      a sub-range of the pairs, or of the selection; count 0: to the end. Of overlaps `first` is a
@@ -135,7 +136,8 @@ typedef struct narc_query {
  *   pair        the index of the pair in the batch
  *   feature     what touches: of A in the low byte, of B in the high one. Bits 0 to 5: an arc in the caller's
  *               numbering, or, with NARC_FEATURE_EDGE, an edge: number i is the one before arc i
- *   count       1; 0: none, all else 0 (see narc_query.dense), or no answer, and separation +INFINITY
+ *   count       1; 0: none, and all else but `pair` 0 (see narc_query.dense); or with a margin of +INFINITY no answer,
+ *               and separation +INFINITY
  *   separation  signed distance between the bodies, negative: penetration depth
  *   normal      unit, from A to B, world axes
  *   point       halfway between the two surfaces where they are closest (or deepest), in world axes, relative to the
@@ -166,8 +168,8 @@ typedef struct narc_manifold_point {
 
 /* A contact manifold, one cache line.
  *   pair      the index of the pair in the batch
- *   count     how many points it has, 1 or 2; 0: none, all else 0 (see narc_query.dense), or no answer, and
- *             point[0].separation +INFINITY
+ *   count     how many points it has, 1 or 2; 0: none, and all else but `pair` 0 (see narc_query.dense); or with a
+ *             margin of +INFINITY no answer, and point[0].separation +INFINITY
  *   normal    unit, from A to B, world axes
  *   radius_a  radius of curvature of A, scaled, at the deepest point: 0 at a corner, INFINITY on an edge; at an edge's
  *             end that of the arc next to it. And of B

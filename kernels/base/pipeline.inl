@@ -116,7 +116,7 @@ static inline struct call begin_overlaps(const narc_batch *batch, size_t first, 
 
 static inline struct call begin_rows(const narc_batch *batch, size_t first, size_t count, const narc_rows *out,
                                      struct rows *rows) {
-    start_rows(rows, out, batch->query.dense != 0);
+    start_rows(rows, count, out, batch->query.dense != 0);
     return (struct call){.batch = batch,
                          .first = first,
                          .count = count,

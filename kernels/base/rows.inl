@@ -37,16 +37,16 @@ struct rows {
     bool dense;
     int done, listed;                               /* all pairs before `done` are answered, and have `listed` rows */
     int without;                                    /* rows of pairs without an answer */
-    uint16_t known[NARC_ROW_GROUP + 1];             /* 1: a pair from there on that has a row; and one to spare */
+    uint8_t known[NARC_ROW_GROUP + 1];              /* 1: a pair from there on that has a row; and one to spare */
     _Alignas(16) char spare[sizeof(narc_manifold)]; /* takes what lanes without an answer write */
 };
 
-INLINE void start_rows(struct rows *rows, const narc_rows *out, bool dense) {
+INLINE void start_rows(struct rows *rows, size_t count, const narc_rows *out, bool dense) {
     rows->out = *out;
     rows->dense = dense;
     rows->done = rows->listed = 0;
     rows->without = 0;
-    memset(rows->known, 0, sizeof rows->known);
+    memset(rows->known, 0, (count + 63) / 64 * 64);
 }
 
 /* The place of a call's pair. */
