@@ -20,8 +20,8 @@ static float find_flat_sine(float angle) {
     return angle == 0 ? FLAT_SINE : angle < 0 ? -1.0f : (float)narc_sin((double)angle);
 }
 
-/* So few pairs are asked one by one, of the kernels with one lane: with one in use a vector takes twice to three times as
- * long. The bits are the same. */
+/* So few pairs are asked one by one, of the kernels with one lane: with one in use a vector takes twice to three times
+ * as long. The bits are the same. */
 enum { FEW = 2 };
 
 /* What all calls begin with; also finds the table. */

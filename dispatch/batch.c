@@ -14,8 +14,8 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* Pairs in a part of overlaps, multiples of 64: as many as possible, because at the end of a part the kernel decides the
- * rest of its pairs in vectors that are not full, but several for each worker, so that all end together. */
+/* Pairs in a part of overlaps, multiples of 64: as many as possible, because at the end of a part the kernel decides
+ * the rest of its pairs in vectors that are not full, but several for each worker, so that all end together. */
 enum { MOST_OVERLAPS = 16384, LEAST_OVERLAPS = 1024, PARTS_PER_WORKER = 4 };
 
 /* Parts of rows are at most that many, so that what is known of them has room on the stack. */
@@ -64,6 +64,16 @@ static void find_overlaps(void *argument, size_t part) {
     atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
 
+/* Several workers; returns how many pairs were skipped. */
+static size_t share_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, uint64_t *out_bits) {
+    const size_t count = batch->query.count, workers = batch->query.workers->count;
+    const size_t even = count / (workers * PARTS_PER_WORKER) / 64 * 64;
+    struct job job = {.batch = batch, .first = batch->query.first, .count = count, .overlap = kernel, .bits = out_bits};
+    job.part_size = even < LEAST_OVERLAPS ? LEAST_OVERLAPS : even > MOST_OVERLAPS ? MOST_OVERLAPS : even;
+    narc_run_parts(batch->query.workers, (count - 1) / job.part_size + 1, find_overlaps, &job);
+    return atomic_load(&job.skipped);
+}
+
 narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, uint64_t *out_bits,
                                  narc_error *error) {
     const narc_query *query = &batch->query;
@@ -73,17 +83,15 @@ narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *
                          "pairs %zu and the %zu from there on do not begin and end at multiples of 64", first, count);
     if (count > 0 && !out_bits)
         return narc_fail_missing(error, "out_bits");
-    struct job job = {.batch = batch, .first = first, .count = count, .overlap = kernel, .bits = out_bits};
-    const size_t workers = narc_count_workers(query->workers, count / LEAST_OVERLAPS);
-    const size_t even = count / (workers * PARTS_PER_WORKER) / 64 * 64;
-    job.part_size = workers <= 1            ? count
-                    : even < LEAST_OVERLAPS ? LEAST_OVERLAPS
-                    : even > MOST_OVERLAPS  ? MOST_OVERLAPS
-                                            : even;
-    if (count > 0)
-        narc_run_parts(query->workers, (count - 1) / job.part_size + 1, find_overlaps, &job);
+    size_t skipped = 0;
+    if (count > 0 && narc_count_workers(query->workers, count / LEAST_OVERLAPS) <= 1) {
+        const narc_batch own = count_apart(batch, &skipped);
+        kernel(&own, first, count, out_bits + first / 64);
+    } else if (count > 0) {
+        skipped = share_overlaps(kernel, batch, out_bits);
+    }
     if (query->out_skipped)
-        *query->out_skipped = atomic_load(&job.skipped);
+        *query->out_skipped = skipped;
     return NARC_OK;
 }
 

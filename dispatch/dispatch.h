@@ -25,8 +25,8 @@ narc_status narc_check_reserved(void *const *reserved, size_t count, const char 
 /* A range of `*count` items from `first` on; 0 of them: to the end of `total`. */
 narc_status narc_check_range(size_t first, size_t *count, size_t total, const char *items, narc_error *error);
 
-/* Checks what a batch call was given, but for its outputs, and fills a batch; its query's `count` is how many pairs there
- * are from `first` on. */
+/* Checks what a batch call was given, but for its outputs, and fills a batch; its query's `count` is how many pairs
+ * there are from `first` on. */
 narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                              const narc_query *query, narc_batch *out_batch, narc_error *error);
 
@@ -43,8 +43,8 @@ narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *
 narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t size,
                              size_t capacity, size_t *out_count, narc_error *error);
 
-/* Of the pairs that a batch asks for, the place of the first that names a pair, a body or a shape that does not exist; the
- * end of the range if none. */
+/* Of the pairs that a batch asks for, the place of the first that names a pair, a body or a shape that does not exist;
+ * the end of the range if none. */
 size_t narc_find_bad_pair(const narc_batch *batch);
 
 /* The first of bodies first .. first + count - 1 whose shape does not exist; first + count if none. */

@@ -16,8 +16,8 @@ enum { FEW = 32 };
 /* A limit that are_below() can take. What it then finds wrong may be right, and is looked at again. */
 static uint32_t clip(size_t limit) { return limit < 0x80000000u ? (uint32_t)limit : 0x80000000u; }
 
-/* Are items first .. last - 1 of a column below `limit`? With limit at most 2^31, the upper bit of k - limit is that of a
- * k below it, if k has none itself. So all that is kept of the items is the union and the intersection of bits: two
+/* Are items first .. last - 1 of a column below `limit`? With limit at most 2^31, the upper bit of k - limit is that of
+ * a k below it, if k has none itself. So all that is kept of the items is the union and the intersection of bits: two
  * operations each, on four items at a time, because one would wait for the other. */
 static bool are_below(narc_index_column column, size_t first, size_t last, uint32_t limit) {
     uint32_t any[4] = {0}, all[4] = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};

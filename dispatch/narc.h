@@ -4,9 +4,9 @@
  *
  * The mental model
  *
- *   narc_shapes.h says what shapes are, narc_pairs.h what bodies, pairs, queries and rows are. A batch call takes all three, and answers for every pair,
- *   exactly: the shapes collide when no direction separates them, and the separation is the largest gap over all
- *   directions. There is no approximation and no iteration tolerance. Three forms of answer:
+ *   narc_shapes.h says what shapes are, narc_pairs.h what bodies, pairs, queries and rows are. A batch call takes all
+ *   three, and answers for every pair, exactly: the shapes collide when no direction separates them, and the separation
+ *   is the largest gap over all directions. There is no approximation and no iteration tolerance. Three forms of answer:
  *
  *       narc_find_overlaps()   one bit per pair
  *       narc_find_contacts()   a row for each pair that collides: separation, normal, point, features and curvatures
@@ -94,20 +94,20 @@ NARC_API const char *narc_version(void);
  *   out_bits   NARC_BIT_WORDS(pairs->count) words (of a selection, of its count), overlapping none of the inputs
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (a needed pointer is NULL, too many pairs, a query
  * out of range), NARC_ERROR_NOT_FINITE (of a query), NARC_ERROR_INDEX (`error` names the pair and the body or the
- * shape), NARC_ERROR_ISA_UNKNOWN, NARC_ERROR_ISA_UNSUPPORTED (NARC_ISA is set to something that can't be had). No pairs:
- * NARC_OK. Allocates nothing. */
+ * shape), NARC_ERROR_ISA_UNKNOWN, NARC_ERROR_ISA_UNSUPPORTED (NARC_ISA is set to something that can't be had). No
+ * pairs: NARC_OK. Allocates nothing. */
 NARC_API narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                         const narc_query *query, uint64_t *out_bits, narc_error *error);
 
 /* The contacts of all pairs whose separation is less than the margin, in the order of the pairs.
  *   query      NULL: defaults
- *   out_rows   room for `capacity` rows, overlapping none of the inputs. What lies behind the last one may be used, too,
- *              as far as there is room
+ *   out_rows   room for `capacity` rows, overlapping none of the inputs. What lies behind the last one may be used,
+ *              too, as far as there is room
  *   out_count  the number of contacts found, which may be more than the capacity: then the first `capacity` of them are
  *              written and NARC_ERROR_CAPACITY is returned. Dense rows: how many are contacts; a capacity that ends
  *              before the last pair is NARC_ERROR_CAPACITY with nothing written.
- * Fastest where there is room for a row for each pair that is asked of. Other errors as narc_find_overlaps(). With margin
- * 0 a pair is reported exactly if its bit there is set. Allocates nothing. */
+ * Fastest where there is room for a row for each pair that is asked of. Other errors as narc_find_overlaps(). With
+ * margin 0 a pair is reported exactly if its bit there is set. Allocates nothing. */
 NARC_API narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                         const narc_query *query, narc_contact *out_rows, size_t capacity,
                                         size_t *out_count, narc_error *error);

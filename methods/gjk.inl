@@ -213,8 +213,8 @@ INLINE void pass_on(const struct lanes *lanes, const struct search *s, vm collid
     }
 }
 
-/* Searches with the pairs `begin` ... of a queue. Without `found`, sets the bits of those that collide. With it, those that are
- * apart go there, and those that collide to `colliding`. */
+/* Searches with the pairs `begin` ... of a queue. Without `found`, sets the bits of those that collide. With it, those
+ * that are apart go there, and those that collide to `colliding`. */
 INLINE void search_all(const struct call *call, const struct queue *queue, int begin, struct collisions *colliding,
                        struct queue *found) {
     const narc_batch *batch = call->batch;

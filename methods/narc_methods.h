@@ -23,8 +23,8 @@
  *
  *   Options of zeros mean the exact method: the calls of narc.h.
  *
- * Every function here may be called from any number of threads at once, with NARC_METHODS_STACK_SIZE bytes of stack, but for
- * narc_refresh_methods() and narc_destroy_methods(), which need the object for themselves.
+ * Every function here may be called from any number of threads at once, with NARC_METHODS_STACK_SIZE bytes of stack,
+ * but for narc_refresh_methods() and narc_destroy_methods(), which need the object for themselves.
  */
 #ifndef NARC_METHODS_H
 #define NARC_METHODS_H

@@ -164,7 +164,7 @@ narc_status narc_find_contacts_by(const narc_methods *methods, const narc_bodies
         return status;
     if (options->method == NARC_METHOD_SAT) {
         status = narc_find_contacts(methods->store, bodies, pairs, query, out_rows, capacity, out_count, error);
-        if (status == NARC_OK || status == NARC_ERROR_CAPACITY)
+        if (status == NARC_OK || (status == NARC_ERROR_CAPACITY && !batch.query.dense))
             clear_outcomes(options->out_outcomes, &batch, batch.query.first, batch.query.count);
         return status;
     }

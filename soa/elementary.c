@@ -67,9 +67,9 @@ static uint32_t read_word(const uint32_t *words, int bit) {
     return (uint32_t)(((uint64_t)words[bit / 32 + 1] << 32 | words[bit / 32]) >> bit % 32);
 }
 
-/* The number of quarter turns nearest to an angle of pi / 4 or more, modulo 4, and what remains, by the digits of 2 / pi
- * (Payne and Hanek). The words left out on the left give whole turns, those on the right less than 2^-137 of a quarter
- * turn; no double is nearer to a multiple of one than 2^-62. */
+/* The number of quarter turns nearest to an angle of pi / 4 or more, modulo 4, and what remains, by the digits of 2 /
+ * pi (Payne and Hanek). The words left out on the left give whole turns, those on the right less than 2^-137 of a
+ * quarter turn; no double is nearer to a multiple of one than 2^-62. */
 static unsigned reduce_by_digits(double angle, two *out_rest) {
     int exponent;
     const uint64_t digits = (uint64_t)ldexp(frexp(angle, &exponent), 53);

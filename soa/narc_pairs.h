@@ -57,13 +57,13 @@ NARC_API narc_bodies narc_view_bodies(const narc_body *rows, size_t count);
 NARC_API narc_status narc_validate_bodies(const narc_shapes *shapes, const narc_bodies *bodies, narc_error *error);
 
 /* Pairs of bodies, by index. Both may name the same body (it collides with itself).
- *   a, b              bodies. Both left out (base NULL): a pair brings its own poses, pair k is bodies 2k and 2k + 1; of
- *                     two sets, body k of each
+ *   a, b              bodies. Both left out (base NULL): a pair brings its own poses, pair k is bodies 2k and 2k + 1.
+ *                     Of two sets one may be left out, too: pair k has body k of it
  *   other_bodies      the set that `b` names bodies of, such as those that never move; NULL: that of `a`, the call's
  *   shift_x, shift_y  world axes; added to the position of B, in double precision: for periodic images; left out: 0
- * A set of which x, y, cosine and sine are all left out stands at the origin, not turned (to queries only): so the poses of B in the
- * frames of A, and shapes by pair, are a set of B's poses, and one for A that has shapes only. A pair with a NaN in its
- * shift, or an infinity, has no answer, as one with a broken body. */
+ * A set of which x, y, cosine and sine are all left out stands at the origin, not turned (to queries only): so the
+ * poses of B in the frames of A, and shapes by pair, are a set of B's poses, and one for A that has shapes only. A pair
+ * with a NaN in its shift, or an infinity, has no answer, as one with a broken body. */
 typedef struct narc_pairs {
     size_t count; /* at most UINT32_MAX */
     narc_index_column a, b;
@@ -83,20 +83,20 @@ typedef struct narc_pairs {
 
 /* How a batch is asked. What is 0 or NULL has its default, as all has for {0}; a query that is NULL is {0}.
  *
- *   margin            which pairs have a contact: those whose separation is less. 0: the pairs that collide. Above 0: also
- *                     those that are closer than that (speculative contacts). Below 0: only those that are deeper.
+ *   margin            which pairs have a contact: those whose separation is less. 0: the pairs that collide. Above 0:
+ *                     also those that are closer than that (speculative contacts). Below 0: only those that are deeper.
  *                     +INFINITY: every pair, also those without an answer (see narc_bodies), which have count 0 and
  *                     separation +INFINITY. Overlaps have no margin.
  *   margins           one for each pair instead. A pair with a NaN there has no answer
  *   second_margin     manifolds: the margin of the point that is not the deepest, where it is larger: a box that tips
- *                     meets its second point in time
+ *                     meets its second point in time; 0: that of all
  *   flat_angle        manifolds: how far an edge's normal may be from the contact's for the edge to count as facing the
  *                     other body; 0: NARC_FLAT_ANGLE; below 0: never a second point; at most NARC_MAX_FLAT_ANGLE
  *   hints             contacts and manifolds: a column beside the pairs, in and out, zeros at first. Each pair leaves a
- *                     hint that the next call starts from, faster where bodies have moved little: shapes with arcs gain
- *                     most, those with edges less, circles nothing. What hints mean is the library's business. Any value
- *                     is safe: one that is stale, or made up, or another pair's, costs time and changes no bit of the
- *                     answer. Untouched on an error other than NARC_ERROR_CAPACITY
+ *                     hint, unless it is far apart, that the next call starts from, faster where bodies have moved
+ *                     little: shapes with arcs gain most, those with edges less, circles nothing. What hints mean is
+ *                     the library's business. Any value is safe: one that is stale, or made up, or another pair's,
+ *                     costs time and changes no bit of the answer. Untouched on an error other than NARC_ERROR_CAPACITY
  *   selection         the pairs to ask of, `selection_count` indices of pairs, each at most once; left out ({0}, base
  *                     and stride): all. So what NARC_ARRAY() makes of an empty container asks of none. Hints,
  *                     margins, rows' numbers and dense rows stay those of the whole batch; rows are listed in the order
@@ -106,8 +106,8 @@ typedef struct narc_pairs {
  *   dense             contacts and manifolds: row k is that of pair k, with count 0 where there is nothing, and there
  *                     must be room up to the last pair that is asked of (of a selection, up to the batch's last). Rows
  *                     of pairs that are not asked of are untouched
- *   row_stride        bytes from a row to the next, for rows within larger structures: a multiple of 4, below 0 where
- *                     they go backwards; 0: no gaps
+ *   row_stride        bytes from a row to the next, for rows within larger structures: a multiple of 4, with room for a
+ *                     row; below 0 they go backwards, from the one at out_rows; 0: no gaps
  *   workers           threads to use; NULL: the calling one. Lists are made by several only as far as they have room
  *                     for a row for each pair
  *   out_skipped       how many pairs have no answer (see narc_bodies); NULL: nobody asks. Set where answers are */

@@ -3,12 +3,12 @@
  * narc_workers.h - the threads that calls may use: the caller's own, or OpenMP's.
  *
  * A call that is given workers divides its work into tasks and has them run; without (NULL) it works in the calling
- * thread. Tasks never wait for each other, so that any `run` will do that calls each task once and returns when all have
- * ended: in a pool's threads, in the calling one, one after the other, in any order. The answer is the same, bit for
- * bit. Each task needs NARC_STACK_SIZE bytes of stack, and the calling thread as many beside what `run` takes.
+ * thread. Tasks never wait for each other, so that any `run` will do that calls each task once and returns when all
+ * have ended: in a pool's threads, in the calling one, one after the other, in any order. The answer is the same, bit
+ * for bit. Each task needs NARC_STACK_SIZE bytes of stack, and the calling thread as many beside what `run` takes.
  *
- *     static void run(void *context, unsigned task_count, void (*task)(void *argument, unsigned index), void *argument) {
- *         for (unsigned index = 0; index < task_count; index++)
+ *     static void run(void *context, unsigned task_count, void (*task)(void *argument, unsigned index), void *argument)
+ *         { for (unsigned index = 0; index < task_count; index++)
  *             submit(context, task, argument, index);
  *         wait(context);
  *     }
@@ -24,8 +24,8 @@ extern "C" {
 #endif
 
 /*   context  handed to `run`
- *   count    how many tasks may run at once: the most that `run` is given. 0 or 1: the calling thread does all, and `run`
- *            is not called
+ *   count    how many tasks may run at once: the most that `run` is given. 0 or 1: the calling thread does all, and
+ *            `run` is not called
  *   run      calls task(argument, index) for each index below task_count, once. It may be called from the calling
  *            thread only, several times in one call, and never within a task. Must not fail */
 typedef struct narc_workers {

@@ -37,9 +37,9 @@ typedef struct narc_shape_header {
      *   count          arcs as stored, 2 .. NARC_MAX_ARCS
      *   first_arc      the caller's arc that is stored first
      *   flags          NARC_SHAPE_..., and in the upper half the size class
-     *   extent_ratio   The extent (the largest |centre| + radius) is at most this many bounding radii. 255: it is more, or
-     *                  the arcs join worse than NARC_MAX_MISFIT; then the kernels prove nothing and go by the deciding
-     *                  formula. */
+     *   extent_ratio   The extent (the largest |centre| + radius) is at most this many bounding radii. 255: it is more,
+     *                  or the arcs join worse than NARC_MAX_MISFIT; then the kernels prove nothing and go by the
+     *                  deciding formula. */
 #if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
     uint8_t extent_ratio, flags, first_arc, count;
 #else

@@ -224,8 +224,8 @@ static void move_entries(void *argument, size_t part, size_t first, size_t end) 
         to[place[from[k].strip >> shift & (DIGITS - 1)]++] = from[k];
 }
 
-/* One pass of a stable radix sort, from `entries` to `spare`, which change places. Each part counts its digits, and then
- * knows where those of the parts before it end. */
+/* One pass of a stable radix sort, from `entries` to `spare`, which change places. Each part counts its digits, and
+ * then knows where those of the parts before it end. */
 static void sort_by_digit(passes *p, size_t count) {
     narc_broad_phase *const broad = p->broad;
     const size_t parts = run_pass(p, count, count_digits);
@@ -286,8 +286,8 @@ static void list_levels(const passes *p) {
 
 /* ------------------------------------------------------------------------------------------------ within a strip */
 
-/* Below so many entries, insertion is the faster sort. More go into buckets first, as many as there are entries; and where
- * buckets would hold more than one or two each, digits are faster. */
+/* Below so many entries, insertion is the faster sort. More go into buckets first, as many as there are entries; and
+ * where buckets would hold more than one or two each, digits are faster. */
 enum { SMALL = 32, BUCKETS = 8192, MOST_FOR_BUCKETS = BUCKETS * 3 / 2 };
 
 /* Insertion with at most `moves` moves: false if they are not enough. */

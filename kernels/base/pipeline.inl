@@ -38,8 +38,8 @@ INLINE vm take_valid(const struct call *call, size_t pair, const struct filter *
 /* Pairs after which the first stage is tried anew with pairs that have edges: later ones may lie otherwise. */
 enum { REMEMBERED = 64 * BLOCK };
 
-/* Appends the lanes `open` of `item` to the first stage's queue. Where that one can't answer most of the pairs that have
- * edges, as among bodies that rest on each other, these go to the stage that can. */
+/* Appends the lanes `open` of `item` to the first stage's queue. Where that one can't answer most of the pairs that
+ * have edges, as among bodies that rest on each other, these go to the stage that can. */
 INLINE void enter(struct queue *queues, vm open, const vf item[FIELDS], int fields, int edged_stage) {
     vm here = open;
     if (edged_stage > 0 && 4 * queues->edged_left > 3 * queues->edged) {

@@ -20,11 +20,11 @@ enum { BLOCK = 32 };
 #ifdef NARC_QUEUE_PAIRS
 enum { FLUSH = NARC_QUEUE_PAIRS, STEP = NARC_QUEUE_PAIRS, STAGES = 1 };
 #else
-enum { FLUSH = V_WIDTH > 8 ? 24 : 32, STEP = 16, STAGES = 5 };
+enum { FLUSH = V_WIDTH > 8 ? 24 : 32, STEP = V_WIDTH > 8 ? 16 : 32, STAGES = 5 };
 #endif
 
-/* A queue has less than FLUSH pairs when a stage before it, or a vector of new pairs, adds STEP at most. push() and pad()
- * write up to a vector behind the last one. */
+/* A queue has less than FLUSH pairs when a stage before it, or a vector of new pairs, adds STEP at most. push() and
+ * pad() write up to a vector behind the last one. */
 enum { CAPACITY = FLUSH + STEP + V_WIDTH };
 _Static_assert(STEP % V_WIDTH == 0 && STEP <= FLUSH, "stages take whole vectors");
 

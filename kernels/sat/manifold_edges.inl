@@ -40,8 +40,8 @@ enum {
     DEEPEST_RECORD_B = SIZE
 };
 
-/* Collects the pairs k ... of a queue in the lanes `keep` where both bodies have edges: they may have a second point, and
- * the first one's id is not final. */
+/* Collects the pairs k ... of a queue in the lanes `keep` where both bodies have edges: they may have a second point,
+ * and the first one's id is not final. */
 INLINE void collect_edges(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
                           const struct feature *on_a, const struct feature *on_b) {
     const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k);
@@ -146,8 +146,8 @@ INLINE struct edge find_edge_of(const narc_record *records, struct ring ring, vi
     return edge;
 }
 
-/* The edge next to the arc in `record`: of two the one closer to n, of equals the one at the arc's end. Where that is none,
- * because the arc and its neighbour have a common tangent, the other one. */
+/* The edge next to the arc in `record`: of two the one closer to n, of equals the one at the arc's end. Where that is
+ * none, because the arc and its neighbour have a common tangent, the other one. */
 INLINE struct edge find_edge(const struct call *call, const struct queue *queue, int k, vi record, vec2 n, bool is_b) {
     const narc_record *records = call->batch->shapes->records;
     const struct ring ring = is_b ? get_ring_b(queue, k) : get_ring_a(queue, k);
@@ -225,10 +225,10 @@ INLINE vm is_stretch(const struct end_point *low, const struct end_point *high, 
     return v_lt(v_mul(v_set(LEAST_STRETCH), sizes), v_sub(high->along, low->along));
 }
 
-/* Ids. A point is at the low or the high end of both bodies' edges. A byte of its id names what of a body lies there: the
- * arc at that end of its edge, if the point is no further from it than this part of the edge, or else the edge. That
- * much is for two corners that face each other, as in a stack of equal boxes: either may end the common stretch, as
- * rounding has it, and so both are named. */
+/* Ids. A point is at the low or the high end of both bodies' edges. A byte of its id names what of a body lies there:
+ * the arc at that end of its edge, if the point is no further from it than this part of the edge, or else the edge.
+ * That much is for two corners that face each other, as in a stack of equal boxes: either may end the common stretch,
+ * as rounding has it, and so both are named. */
 #define AT_END 0x1p-5f
 
 /* The byte of a body's edge, of a point at `along`, at the low end in the lanes `low`. */

@@ -311,7 +311,7 @@ static void test_selections(void **state) {
     expect_ok(run(&f.call, OVERLAPS, out, &error), &error);
     expect_ok(run(&f.call, CONTACTS, out, &error), &error);
     assert_int_equal(out->count, 4);
-    f.call.query.selection.base = NULL;
+    f.call.query.selection = (narc_index_column){0};
     f.call.query.selection_count = 0;
     f.call.query.first = 64;
     expect_ok(run(&f.call, OVERLAPS, out, &error), &error);
