@@ -48,11 +48,14 @@ INLINE vi hint_length(vi hint) {
 
 /* The hints of the pairs that lanes begin with. */
 INLINE void read_simplexes(const struct call *call, const struct lanes *lanes, int32_t *hint) {
-    int32_t pair[V_WIDTH];
-    get_pairs(&lanes->pair, 0, pair);
+    const narc_hint_column column = call->batch->query.hints;
+    int32_t number[V_WIDTH];
+    if (!column.base)
+        return;
+    vi_store(number, find_numbers(call, get_bits(&lanes->pair, PAIR, 0)));
     for (int lane = 0; lane < V_WIDTH; lane++)
-        if (call->batch->query.hints.base && lanes->begins[lane])
-            hint[lane] = (int32_t)*find_hint(call, pair[lane]);
+        if (lanes->begins[lane])
+            hint[lane] = (int32_t)*find_hint(column, number[lane]);
 }
 
 /* Leaves hints for the pairs of the lanes `done`: the corners of a triangle in the lanes `collides`, else an axis. */

@@ -16,10 +16,9 @@
 /* The hint of two circles, which need none. */
 #define FIRST_ARCS 0x0101
 
-/* Where a pair's hint is. */
-INLINE uint32_t *find_hint(const struct call *call, int32_t pair) {
-    const narc_hint_column hints = call->batch->query.hints;
-    return (uint32_t *)(void *)((char *)hints.base + (ptrdiff_t)find_number(call, pair) * hints.stride);
+/* Where the hint of a pair is, by its number in the batch. */
+INLINE uint32_t *find_hint(narc_hint_column column, int32_t number) {
+    return (uint32_t *)(void *)((char *)column.base + (ptrdiff_t)(uint32_t)number * column.stride);
 }
 
 /* Leaves hints for pairs in the lanes `ended`. */
@@ -31,7 +30,7 @@ INLINE void put_hints(const struct call *call, vi pairs, vm ended, vi hints) {
     vi_store(number, find_numbers(call, pairs));
     vi_store(hint, hints);
     for (int lane = 0; lane < V_WIDTH; lane++) {
-        char *const place = (char *)column.base + (ptrdiff_t)(uint32_t)number[lane] * column.stride;
+        char *const place = (char *)find_hint(column, number[lane]);
         *(uint32_t *)(void *)choose(which >> lane & 1, place, (char *)&spare) = (uint32_t)hint[lane];
     }
 }
@@ -51,12 +50,13 @@ INLINE void store_hints(const struct call *call, const struct queue *queue, int 
 
 /* Takes the arcs of the pairs `begin` ... of a queue from their hints, in lanes where these name arcs that exist. */
 INLINE void read_hints(const struct call *call, struct queue *queue, int begin) {
+    const narc_hint_column column = call->batch->query.hints;
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
-        int32_t pair[V_WIDTH], lane[V_WIDTH];
-        get_pairs(queue, k, pair);
+        int32_t number[V_WIDTH], lane[V_WIDTH];
+        vi_store(number, find_numbers(call, get_bits(queue, PAIR, k))); /* lanes behind the last pair have pair 0 */
         for (int l = 0; l < V_WIDTH; l++)
-            lane[l] = (int32_t)*find_hint(call, k + l < queue->count ? pair[l] : pair[0]);
+            lane[l] = (int32_t)*find_hint(column, number[l]);
         const vi hint = vi_load(lane), zero = vi_set(0), one = vi_set(1);
         const vi a = vi_and(hint, vi_set(0xff)), b = vi_shift_right(hint, 8);
         const vm exists_a = vm_and_not(vi_lt(zero, a), vi_lt(ring_a.count, a));
