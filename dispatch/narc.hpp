@@ -83,7 +83,7 @@ template <> class [[nodiscard]] result<void> {
 // The same with an answer.
 template <class T> class [[nodiscard]] result : public result<void> {
   public:
-    explicit result(const narc_error &error) noexcept : result<void>(error) {}
+    using result<void>::result;
     explicit result(T value) : result<void>(narc_error()), value_(std::move(value)) {}
     T &value() & { return result<void>::value(), *value_; }
     const T &value() const & { return result<void>::value(), *value_; }
@@ -153,26 +153,23 @@ inline narc_error too_short(size_t needed) {
     return {NARC_ERROR_CAPACITY, 0, static_cast<double>(needed), "a span is too short"};
 }
 
-// What owns an object of C.
-struct destroy {
-    void operator()(narc_shapes *shapes) const noexcept { narc_destroy_shapes(shapes); }
-    void operator()(narc_broad_phase *broad) const noexcept { narc_destroy_broad_phase(broad); }
-};
-template <class Object> class owner {
+// What owns an object of C: one that something else has made, or a new one.
+template <class Object, auto Create, auto Destroy> class owner {
   public:
     explicit owner(Object *owned) noexcept : object_(owned) {}
+    explicit owner(const narc_allocator *allocator = nullptr) noexcept {
+        Object *object = nullptr;
+        if (Create(allocator, &object) == NARC_OK)
+            object_.reset(object);
+    }
     Object *get() const noexcept { return object_.get(); }
     operator Object *() noexcept { return get(); }
     operator const Object *() const noexcept { return get(); }
 
-  protected:
-    template <class Create> owner(Create create, const narc_allocator *allocator) noexcept {
-        Object *object = nullptr;
-        if (create(allocator, &object) == NARC_OK)
-            object_.reset(object);
-    }
-
   private:
+    struct destroy {
+        void operator()(Object *object) const noexcept { Destroy(object); }
+    };
     std::unique_ptr<Object, destroy> object_;
 };
 
@@ -191,15 +188,13 @@ template <class Self, class Structure> class options : public Structure {
 };
 
 inline size_t asked(const narc_pairs &pairs, const narc_query &query) {
-    return query.selection.base ? query.selection_count : pairs.count;
+    return query.selection.base || query.selection.stride ? query.selection_count : pairs.count;
 }
 
-template <class Rows> bool make_room(Rows &, size_t) { return false; }
-template <class Row, class Allocator> bool make_room(std::vector<Row, Allocator> &rows, size_t needed) {
-    if (rows.size() >= needed)
-        return false;
-    rows.resize(needed);
-    return true;
+template <class Rows> void make_room(Rows &, size_t) {}
+template <class Row, class Allocator> void make_room(std::vector<Row, Allocator> &rows, size_t needed) {
+    if (rows.size() < needed)
+        rows.resize(needed);
 }
 
 template <class Call, class Rows, class... Fields>
@@ -209,17 +204,12 @@ auto find_rows(Call call, const narc_shapes *shapes, const narc_bodies &bodies, 
     query.row_stride = sizeof(item);
     // Room for a row for each pair.
     make_room(rows, query.dense ? pairs.count : asked(pairs, query));
-    for (;;) {
-        narc_error error = {};
-        size_t found = 0;
-        const span<item> items(rows);
-        const narc_status status =
-            call(shapes, &bodies, &pairs, &query, field_of(items.data(), fields...), items.size(), &found, &error);
-        if (status == NARC_OK)
-            return result<span<item>>(items.first(query.dense ? pairs.count : found));
-        if (status != NARC_ERROR_CAPACITY || !make_room(rows, found))
-            return result<span<item>>(error);
-    }
+    const span<item> items(rows);
+    narc_error error = {};
+    size_t found = 0;
+    return call(shapes, &bodies, &pairs, &query, field_of(items.data(), fields...), items.size(), &found, &error)
+               ? result<span<item>>(error)
+               : result<span<item>>(items.first(query.dense ? pairs.count : found));
 }
 
 } // namespace detail
@@ -244,14 +234,10 @@ template <class Items, class... Fields> narc_hint_column hints(Items &&items, Fi
 // Bodies in a container; their `scale` may be set afterwards.
 template <class Items, class X, class Y, class Cosine, class Sine, class Shape>
 narc_bodies bodies_of(const Items &items, X x, Y y, Cosine cosine, Sine sine, Shape shape) {
-    narc_bodies bodies = {};
-    bodies.count = std::size(items);
-    bodies.x = positions(items, x);
-    bodies.y = positions(items, y);
-    bodies.cosine = column(items, cosine);
-    bodies.sine = column(items, sine);
-    bodies.shape = column(items, shape);
-    return bodies;
+    return {std::size(items),     positions(items, x),
+            positions(items, y),  column(items, cosine),
+            column(items, sine),  {},
+            column(items, shape), {}};
 }
 // The same of structures: a position has x and y, a rotation c and s, or cosine and sine.
 template <class Items, class Position, class Rotation, class Shape>
@@ -299,9 +285,8 @@ using points = span<const narc_point>;
 
 // Any builder of C: build(narc_build_box, 1.0, 2.0, 0.1).
 template <class Build, class... Arguments> result<outline> build(Build call, Arguments... arguments) {
-    outline out;
-    narc_error error = {};
-    return call(arguments..., out.arcs, &out.count, &error) ? result<outline>(error) : result<outline>(out);
+    return detail::ask<outline>(
+        [=](outline *out, narc_error *error) { return call(arguments..., out->arcs, &out->count, error); });
 }
 inline auto circle(double radius) { return build(narc_build_circle, radius); }
 inline auto capsule(double length, double radius) { return build(narc_build_capsule, length, radius); }
@@ -330,10 +315,9 @@ inline auto through_points(points junctions, double radius = 0) {
 inline auto ring(points around) { return build(narc_build_ring, around.data(), around.size()); }
 
 // A store.
-class shapes : public detail::owner<narc_shapes> {
+class shapes : public detail::owner<narc_shapes, narc_create_shapes, narc_destroy_shapes> {
   public:
-    using owner::owner; // takes a store that something else has made
-    explicit shapes(const narc_allocator *allocator = nullptr) noexcept : owner(narc_create_shapes, allocator) {}
+    using owner::owner;
     static result<shapes> load(const void *bytes, size_t size, const narc_allocator *allocator = nullptr) {
         const auto store = detail::ask<narc_shapes *>(narc_load_shapes, allocator, bytes, size);
         return store ? result<shapes>(shapes(store.value())) : result<shapes>(store.error());
@@ -381,9 +365,7 @@ struct query : detail::options<query, narc_query> {
     query &skipped(size_t &out) noexcept { return set(&narc_query::out_skipped, &out); }
     // These pairs; of an empty span none.
     query &selection(span<const uint32_t> pairs) noexcept {
-        static const uint32_t none = 0;
-        set(&narc_query::selection_count, pairs.size());
-        return set(&narc_query::selection, make_column(pairs.empty() ? &none : pairs.data(), sizeof none));
+        return set(&narc_query::selection, column(pairs)).set(&narc_query::selection_count, pairs.size());
     }
 };
 
@@ -427,12 +409,9 @@ struct pair_options : detail::options<pair_options, narc_pair_options> {
     pair_options &filter(const narc_pair_filter &&) = delete;
 };
 
-class broad_phase : public detail::owner<narc_broad_phase> {
+class broad_phase : public detail::owner<narc_broad_phase, narc_create_broad_phase, narc_destroy_broad_phase> {
   public:
     using owner::owner;
-    explicit broad_phase(const narc_allocator *allocator = nullptr) noexcept
-        : owner(narc_create_broad_phase, allocator) {}
-
     // Its arrays stay until the next update.
     result<const narc_pair_list *> update(const narc_shapes *shapes, const narc_bodies &bodies,
                                           const narc_pair_options &options = pair_options()) {

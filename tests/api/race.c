@@ -49,11 +49,9 @@ static void switch_sets(struct worker *w) {
 
 static void ask(struct worker *w) {
     const struct scene *scene = &w->shared->scene;
-    const narc_bodies bodies = scene_bodies(scene);
-    const narc_pairs pairs = scene_pairs(scene);
     const narc_query query = {.margin = INFINITY};
-    check(w, narc_find_overlaps(scene->store, &bodies, &pairs, &query, w->bits, NULL) == NARC_OK);
-    check(w, narc_find_contacts(scene->store, &bodies, &pairs, &query, w->rows, PAIRS, &w->count, NULL) == NARC_OK);
+    check(w, ask_overlaps(scene, &query, w->bits, NULL) == NARC_OK);
+    check(w, ask_contacts(scene, &query, w->rows, PAIRS, &w->count, NULL) == NARC_OK);
 }
 
 static void ask_method(struct worker *w, narc_method method) {

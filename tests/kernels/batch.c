@@ -31,15 +31,13 @@ static void test_threads(void **state) {
     for (size_t s = 0; s < sizeof(counts) / sizeof(counts[0]); s++) {
         struct scene scene = make_scene("threads", counts[s]);
         size_t words = NARC_BIT_WORDS(counts[s]);
-        narc_bodies bodies = scene_bodies(&scene);
-        narc_pairs pairs = scene_pairs(&scene);
         uint64_t *serial_bits = scene_overlaps(&scene), *bits = calloc(words + 1, sizeof(uint64_t));
         struct contacts serial = scene_contacts(&scene, 0), all = scene_contacts(&scene, INFINITY);
         for (size_t t = 0; t < sizeof(threads) / sizeof(threads[0]); t++) {
             const narc_workers workers = narc_openmp_workers(threads[t]);
             narc_query query = {.workers = &workers};
             bits[words] = 0x0123456789abcdefu;
-            assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, bits, NULL), NARC_OK);
+            assert_int_equal(ask_overlaps(&scene, &query, bits, NULL), NARC_OK);
             assert_memory_equal(bits, serial_bits, words * sizeof(uint64_t));
             assert_true(bits[words] == 0x0123456789abcdefu);
             for (int every = 0; every < 2; every++) {
@@ -47,8 +45,7 @@ static void test_threads(void **state) {
                 narc_contact *rows = guard_allocate(counts[s] * sizeof *rows);
                 size_t found = 0;
                 query.margin = every ? INFINITY : 0;
-                assert_int_equal(
-                    narc_find_contacts(scene.store, &bodies, &pairs, &query, rows, counts[s], &found, NULL), NARC_OK);
+                assert_int_equal(ask_contacts(&scene, &query, rows, counts[s], &found, NULL), NARC_OK);
                 assert_int_equal(found, expected->count);
                 check_same_rows(expected, 0, rows, found);
                 guard_release(rows);
@@ -70,15 +67,13 @@ static void test_overlap_ranges(void **state) {
     for (size_t round = 0; round < test_trials(40); round++) {
         size_t count = 1 + random_below(&random, 3000), words = NARC_BIT_WORDS(count);
         struct scene scene = make_scene("ranges", count);
-        narc_bodies bodies = scene_bodies(&scene);
-        narc_pairs pairs = scene_pairs(&scene);
         uint64_t *whole = scene_overlaps(&scene), *glued = malloc(words * sizeof(uint64_t));
         memset(glued, 0xa5, words * sizeof(uint64_t));
         for (size_t first = 0; first < words;) {
             size_t step = 1 + random_below(&random, 5), last = first + step < words ? first + step : words;
             size_t from = first * 64, pair_count = last == words ? count - from : step * 64;
             const narc_query query = {.first = from, .count = pair_count};
-            assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, glued, NULL), NARC_OK);
+            assert_int_equal(ask_overlaps(&scene, &query, glued, NULL), NARC_OK);
             assert_memory_equal(glued, whole, last * sizeof(uint64_t));
             assert_true(is_junk(glued + last, (words - last) * sizeof(uint64_t)));
             first = last;
@@ -87,14 +82,14 @@ static void test_overlap_ranges(void **state) {
         if (words > 2) {
             memset(glued, 0xa5, words * sizeof(uint64_t));
             const narc_query query = {.first = 64, .count = 64};
-            assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, glued, NULL), NARC_OK);
+            assert_int_equal(ask_overlaps(&scene, &query, glued, NULL), NARC_OK);
             assert_true(is_junk(glued, 8) && glued[1] == whole[1] && is_junk(glued + 2, (words - 2) * 8));
         }
         /* A count of 0 goes to the end. */
         memset(glued, 0xa5, words * sizeof(uint64_t));
         const narc_query rest = {.first = words / 2 * 64};
         if (rest.first < count) {
-            assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &rest, glued, NULL), NARC_OK);
+            assert_int_equal(ask_overlaps(&scene, &rest, glued, NULL), NARC_OK);
             assert_true(is_junk(glued, words / 2 * 8));
             assert_memory_equal(glued + words / 2, whole + words / 2, (words - words / 2) * 8);
         }
@@ -111,8 +106,6 @@ static void test_contact_ranges(void **state) {
     for (size_t round = 0; round < test_trials(40); round++) {
         size_t count = 1 + random_below(&random, 3000), seen = 0;
         struct scene scene = make_scene("ranges", count);
-        narc_bodies bodies = scene_bodies(&scene);
-        narc_pairs pairs = scene_pairs(&scene);
         float margin = round % 3 ? 0.1f : INFINITY;
         struct contacts whole = scene_contacts(&scene, margin);
         narc_contact *part = make_junk(count * sizeof *part);
@@ -120,8 +113,7 @@ static void test_contact_ranges(void **state) {
             size_t step = 1 + random_below(&random, 300), size = step < count - first ? step : count - first;
             const narc_query query = {.margin = margin, .first = first, .count = first + size < count ? size : 0};
             size_t found = 0;
-            assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &query, part, size, &found, NULL),
-                             NARC_OK);
+            assert_int_equal(ask_contacts(&scene, &query, part, size, &found, NULL), NARC_OK);
             check_same_rows(&whole, seen, part, found);
             seen += found;
             first += size;
@@ -167,8 +159,6 @@ static void test_capacity(void **state) {
     (void)state;
     struct test_random random = test_random_named("capacity");
     struct scene scene = make_scene("capacity", 4000);
-    narc_bodies bodies = scene_bodies(&scene);
-    narc_pairs pairs = scene_pairs(&scene);
     struct contacts all = scene_contacts(&scene, 0);
     assert_true(all.count > 100);
     for (size_t trial = 0; trial < 60; trial++) {
@@ -183,8 +173,7 @@ static void test_capacity(void **state) {
         narc_query query = {.workers = &workers};
         if (trial % 2)
             query.row_stride = sizeof *some;
-        assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &query, some, capacity, &needed, &error),
-                         NARC_ERROR_CAPACITY);
+        assert_int_equal(ask_contacts(&scene, &query, some, capacity, &needed, &error), NARC_ERROR_CAPACITY);
         assert_int_equal(error.status, NARC_ERROR_CAPACITY);
         assert_int_equal(needed, all.count);
         check_same_rows(&all, 0, some, capacity);
@@ -193,13 +182,10 @@ static void test_capacity(void **state) {
     narc_contact *exact = guard_allocate(all.count * sizeof *exact);
     const narc_workers two = narc_openmp_workers(2);
     size_t found = 0;
-    assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &(narc_query){.workers = &two}, exact, all.count,
-                                        &found, NULL),
-                     NARC_OK);
+    assert_int_equal(ask_contacts(&scene, &(narc_query){.workers = &two}, exact, all.count, &found, NULL), NARC_OK);
     check_same_rows(&all, 0, exact, found);
     guard_release(exact);
-    assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, NULL, NULL, 0, &found, NULL),
-                     NARC_ERROR_CAPACITY);
+    assert_int_equal(ask_contacts(&scene, NULL, NULL, 0, &found, NULL), NARC_ERROR_CAPACITY);
     assert_int_equal(found, all.count);
     free(all.rows);
     destroy_scene(&scene);
@@ -471,27 +457,25 @@ static void test_selected_bits(void **state) {
     for (size_t round = 0; round < test_trials(20); round++) {
         const size_t count = 1 + random_below(&random, 5000);
         struct scene scene = make_scene("selected bits", count);
-        const narc_bodies bodies = scene_bodies(&scene);
-        const narc_pairs pairs = scene_pairs(&scene);
         const narc_workers workers = narc_openmp_workers((unsigned)(round % 4));
         uint32_t *selection = make_junk(count * sizeof *selection);
         const size_t selected = select_pairs(&random, count, selection), words = NARC_BIT_WORDS(selected);
         uint64_t *all = scene_overlaps(&scene), *bits = guard_allocate(words * sizeof *bits);
         narc_query query = {
             .selection = {selection, sizeof *selection}, .selection_count = selected, .workers = &workers};
-        assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, bits, NULL), NARC_OK);
+        assert_int_equal(ask_overlaps(&scene, &query, bits, NULL), NARC_OK);
         for (size_t k = 0; k < 64 * words; k++)
             assert_int_equal(bit_is_set(bits, k), k < selected && bit_is_set(all, selection[k]));
         if (words > 2) { /* a sub-range of the selection */
             uint64_t *part = make_junk(words * sizeof *part);
             query.first = 64;
             query.count = 64;
-            assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, part, NULL), NARC_OK);
+            assert_int_equal(ask_overlaps(&scene, &query, part, NULL), NARC_OK);
             assert_true(is_junk(part, 8) && part[1] == bits[1] && is_junk(part + 2, (words - 2) * 8));
             free(part);
         }
         query = (narc_query){.selection = query.selection}; /* of none */
-        assert_int_equal(narc_find_overlaps(scene.store, &bodies, &pairs, &query, NULL, NULL), NARC_OK);
+        assert_int_equal(ask_overlaps(&scene, &query, NULL, NULL), NARC_OK);
         guard_release(bits);
         free(all);
         free(selection);

@@ -222,8 +222,7 @@ static void test_ranges(void **state) {
             memcpy(before, caches, sizeof before);
             for (size_t k = first; k < first + count; k++)
                 before[k].hint = whole[k];
-            assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &query, part, PAIRS, &found, NULL),
-                             NARC_OK);
+            assert_int_equal(ask_contacts(&scene, &query, part, PAIRS, &found, NULL), NARC_OK);
             assert_memory_equal(caches, before, sizeof before);
             assert_true(listed + found <= all.count);
             assert_memory_equal(part, all.rows + listed, found * sizeof *part);
@@ -291,8 +290,7 @@ static void test_errors(void **state) {
         hints[k] = before[k] = enough[k] = (uint32_t)random_bits(&random);
     scene.pairs[PAIRS - 1].b = 200;
     narc_query query = {.hints = NARC_HINT_ARRAY(hints)};
-    assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &query, rows, PAIRS, &needed, &error),
-                     NARC_ERROR_INDEX);
+    assert_int_equal(ask_contacts(&scene, &query, rows, PAIRS, &needed, &error), NARC_ERROR_INDEX);
     assert_memory_equal(hints, before, PAIRS * sizeof *hints);
     assert_int_equal(needed, 12345);
     scene.pairs[PAIRS - 1].b = 0;
@@ -305,8 +303,7 @@ static void test_errors(void **state) {
         const size_t capacity = all.count - 1 - random_below(&random, all.count - 1);
         memcpy(hints, before, PAIRS * sizeof *hints);
         query.workers = &workers;
-        assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &query, rows, capacity, &needed, &error),
-                         NARC_ERROR_CAPACITY);
+        assert_int_equal(ask_contacts(&scene, &query, rows, capacity, &needed, &error), NARC_ERROR_CAPACITY);
         assert_int_equal(needed, all.count);
         assert_memory_equal(rows, all.rows, capacity * sizeof *rows);
         assert_memory_equal(hints, enough, PAIRS * sizeof *hints);

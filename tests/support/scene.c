@@ -137,6 +137,19 @@ struct manifolds find_manifolds(const narc_shapes *shapes, const narc_bodies *bo
     return list;
 }
 
+narc_status ask_overlaps(const struct scene *scene, const narc_query *query, uint64_t *out_bits, narc_error *error) {
+    const narc_bodies bodies = scene_bodies(scene);
+    const narc_pairs pairs = scene_pairs(scene);
+    return narc_find_overlaps(scene->store, &bodies, &pairs, query, out_bits, error);
+}
+
+narc_status ask_contacts(const struct scene *scene, const narc_query *query, narc_contact *out_rows, size_t capacity,
+                         size_t *out_count, narc_error *error) {
+    const narc_bodies bodies = scene_bodies(scene);
+    const narc_pairs pairs = scene_pairs(scene);
+    return narc_find_contacts(scene->store, &bodies, &pairs, query, out_rows, capacity, out_count, error);
+}
+
 uint64_t *scene_overlaps(const struct scene *scene) {
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);

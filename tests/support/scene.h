@@ -80,7 +80,12 @@ struct contacts find_contacts(const narc_shapes *shapes, const narc_bodies *bodi
 struct manifolds find_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                 const narc_query *query);
 
-/* The same for all pairs of a scene, in the calling thread. */
+/* The same for all pairs of a scene, into memory of the caller's. */
+narc_status ask_overlaps(const struct scene *scene, const narc_query *query, uint64_t *out_bits, narc_error *error);
+narc_status ask_contacts(const struct scene *scene, const narc_query *query, narc_contact *out_rows, size_t capacity,
+                         size_t *out_count, narc_error *error);
+
+/* The same into new memory, in the calling thread. */
 uint64_t *scene_overlaps(const struct scene *scene);
 struct contacts scene_contacts(const struct scene *scene, float margin);
 struct manifolds scene_manifolds(const struct scene *scene, float margin);
