@@ -55,8 +55,7 @@ static void expect(struct fixture *f, narc_status status, const char *words) {
     assert_int_equal(narc_validate_bodies(f->shapes, &f->bodies, NULL), status);
 }
 
-static void test_good_bodies(void **state) {
-    (void)state;
+TEST(test_good_bodies) {
     struct fixture f;
     set_up(&f);
     narc_error error = {.status = NARC_ERROR_MEMORY};
@@ -69,8 +68,7 @@ static void test_good_bodies(void **state) {
     narc_destroy_shapes(f.shapes);
 }
 
-static void test_bad_numbers(void **state) {
-    (void)state;
+TEST(test_bad_numbers) {
     struct fixture f;
     set_up(&f);
     struct body good = f.body[BAD], *bad = &f.body[BAD];
@@ -103,8 +101,7 @@ static void test_bad_numbers(void **state) {
     narc_destroy_shapes(f.shapes);
 }
 
-static void test_bad_arguments(void **state) {
-    (void)state;
+TEST(test_bad_arguments) {
     struct fixture f;
     set_up(&f);
     assert_int_equal(narc_validate_bodies(NULL, &f.bodies, NULL), NARC_ERROR_ARGUMENT);
@@ -162,8 +159,7 @@ static float separation_of_boxes(float x, float y, float cosine, float sine) {
 
 /* A rotation that has drifted from the unit circle is taken as the rotation it was; one that is far off has no
  * answer. */
-static void test_drifted_rotations(void **state) {
-    (void)state;
+TEST(test_drifted_rotations) {
     const float exact = separation_of_boxes(1.5f, 0.75f, 0.6f, 0.8f);
     for (float drift = -2.4e-4f; drift < 2.4e-4f; drift += 0.1e-4f) {
         const float drifted = separation_of_boxes(1.5f, 0.75f, 0.6f * (1 + drift), 0.8f * (1 + drift));
@@ -175,8 +171,7 @@ static void test_drifted_rotations(void **state) {
 }
 
 /* The kernels take a drifted rotation as the rotation it was, and so must the box that a broad phase uses. */
-static void test_box_of_drifted_rotation(void **state) {
-    (void)state;
+TEST(test_box_of_drifted_rotation) {
     struct fixture f;
     set_up(&f);
     narc_aabb box;
@@ -208,8 +203,7 @@ static const narc_bodies constant_bodies = {.count = 2,
     } while (0)
 
 /* Columns are values, wherever a value may stand; constants are the initialisers of static objects. */
-static void test_columns(void **state) {
-    (void)state;
+TEST(test_columns) {
     narc_bodies bodies = {.count = 2, .x = NARC_POSITION_COLUMN(two_bodies, x), .sine = NARC_ARRAY(numbers)};
     EXPECT_COLUMN(bodies.x, &two_bodies[0].x, sizeof two_bodies[0]);
     EXPECT_COLUMN(bodies.sine, numbers, sizeof(float));
@@ -228,14 +222,4 @@ static void test_columns(void **state) {
     EXPECT_COLUMN(bytes, flags, 1);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_good_bodies),
-        cmocka_unit_test(test_bad_numbers),
-        cmocka_unit_test(test_bad_arguments),
-        cmocka_unit_test(test_drifted_rotations),
-        cmocka_unit_test(test_box_of_drifted_rotation),
-        cmocka_unit_test(test_columns),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+int main(void) { return test_run("bodies", NULL, NULL); }

@@ -127,8 +127,7 @@ static void set_up(struct fixture *f) {
 
 /* ------------------------------------------------------------------------------------------------ arguments */
 
-static void test_options(void **state) {
-    (void)state;
+TEST(test_options) {
     struct fixture f;
     set_up(&f);
     static const int bad_methods[] = {METHODS, 100, -1, INT32_MAX, INT32_MIN};
@@ -154,8 +153,7 @@ static void test_options(void **state) {
     destroy_scene(&f.scene);
 }
 
-static void test_queries(void **state) {
-    (void)state;
+TEST(test_queries) {
     struct fixture f;
     set_up(&f);
     static const struct {
@@ -187,8 +185,7 @@ static void test_queries(void **state) {
     destroy_scene(&f.scene);
 }
 
-static void test_null_arguments(void **state) {
-    (void)state;
+TEST(test_null_arguments) {
     struct fixture f;
     set_up(&f);
     struct call call = f.call;
@@ -241,8 +238,7 @@ static void test_null_arguments(void **state) {
 }
 
 /* A pair that names a body there is not; the first such pair is the one that is told. */
-static void test_body_index(void **state) {
-    (void)state;
+TEST(test_body_index) {
     static const uint32_t wrong[] = {BODIES, 99991, 0x80000000u, UINT32_MAX};
     for (int k = 0; k < 8; k++) {
         struct fixture f;
@@ -257,8 +253,7 @@ static void test_body_index(void **state) {
 }
 
 /* Several threads look; the first wrong pair of all is still the one that is told. */
-static void test_first_wrong_pair(void **state) {
-    (void)state;
+TEST(test_first_wrong_pair) {
     struct test_random random = test_random_named("first wrong pair");
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, 9000);
     const narc_bodies bodies = scene_bodies(&scene);
@@ -278,8 +273,7 @@ static void test_first_wrong_pair(void **state) {
     destroy_scene(&scene);
 }
 
-static void test_shape_index(void **state) {
-    (void)state;
+TEST(test_shape_index) {
     struct fixture f;
     set_up(&f);
     for (size_t k = 0; k < PAIRS; k++)
@@ -294,8 +288,7 @@ static void test_shape_index(void **state) {
 
 /* A selection that names a pair there is not, or a pair that names a body there is not. What is not asked of may be
  * wrong. */
-static void test_selections(void **state) {
-    (void)state;
+TEST(test_selections) {
     struct fixture f;
     set_up(&f);
     uint32_t selection[] = {150, 3, PAIRS, 7};
@@ -320,8 +313,7 @@ static void test_selections(void **state) {
 }
 
 /* No body at all, and no shape at all. */
-static void test_empty_tables(void **state) {
-    (void)state;
+TEST(test_empty_tables) {
     struct fixture f;
     set_up(&f);
     const struct scene empty = create_scene(NARC_FLOAT32, 0, 0, 0);
@@ -336,8 +328,7 @@ static void test_empty_tables(void **state) {
     destroy_scene(&f.scene);
 }
 
-static void test_too_many_pairs(void **state) {
-    (void)state;
+TEST(test_too_many_pairs) {
 #if SIZE_MAX > UINT32_MAX
     struct fixture f;
     set_up(&f);
@@ -349,8 +340,7 @@ static void test_too_many_pairs(void **state) {
 #endif
 }
 
-static void test_ranges(void **state) {
-    (void)state;
+TEST(test_ranges) {
     struct fixture f;
     set_up(&f);
     static const size_t bad_anywhere[][2] = {{PAIRS, 1},          {0, PAIRS + 1},       {192, 9}, {SIZE_MAX - 63, 64},
@@ -376,8 +366,7 @@ static void test_ranges(void **state) {
     destroy_scene(&f.scene);
 }
 
-static void test_outputs(void **state) {
-    (void)state;
+TEST(test_outputs) {
     struct fixture f;
     set_up(&f);
     const narc_shapes *store = f.scene.store;
@@ -420,8 +409,7 @@ static void test_outputs(void **state) {
 }
 
 /* The first pair whose shape is not a polygon is the one that is told, and the shape and the body. */
-static void test_not_a_polygon(void **state) {
-    (void)state;
+TEST(test_not_a_polygon) {
     struct scene scene = create_scene(NARC_FLOAT32, 2, 40, PAIRS);
     struct shape box, round;
     assert_int_equal(narc_build_box(1, 1, 0, box.arcs, &box.count, NULL), NARC_OK);
@@ -450,8 +438,7 @@ static void test_not_a_polygon(void **state) {
 }
 
 /* No pairs: nothing is needed, nothing is written. */
-static void test_no_pairs(void **state) {
-    (void)state;
+TEST(test_no_pairs) {
     struct fixture f;
     set_up(&f);
     struct outputs *out = make_junk(sizeof *out);
@@ -475,8 +462,7 @@ static void test_no_pairs(void **state) {
     destroy_scene(&f.scene);
 }
 
-static void test_names(void **state) {
-    (void)state;
+TEST(test_names) {
     static const char *const names[METHODS] = {"sat", "sat-first", "polygon-sat", "gjk", "circle", "aabb", "obb"};
     for (int method = 0; method < METHODS; method++)
         assert_string_equal(narc_method_name((narc_method)method), names[method]);
@@ -487,8 +473,7 @@ static void test_names(void **state) {
 /* ------------------------------------------------------------------------------------------------ capacity */
 
 /* What fits is the start of the list; hints and outcomes are as with enough room. */
-static void test_capacity(void **state) {
-    (void)state;
+TEST(test_capacity) {
     enum { MANY = 3000 };
     struct test_random random = test_random_named("method capacity");
     static const narc_method methods[] = {NARC_METHOD_SAT, NARC_METHOD_SAT_FIRST, NARC_METHOD_GJK};
@@ -559,8 +544,7 @@ static struct scene make_spoilt_scene(void) {
     return scene;
 }
 
-static void test_invalid_bodies(void **state) {
-    (void)state;
+TEST(test_invalid_bodies) {
     struct scene scene = make_spoilt_scene();
     const size_t count = scene.pair_count;
     for (int method = 0; method < METHODS; method++) {
@@ -591,16 +575,4 @@ static void test_invalid_bodies(void **state) {
     destroy_scene(&scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_options),          cmocka_unit_test(test_queries),
-        cmocka_unit_test(test_null_arguments),   cmocka_unit_test(test_body_index),
-        cmocka_unit_test(test_first_wrong_pair), cmocka_unit_test(test_shape_index),
-        cmocka_unit_test(test_selections),       cmocka_unit_test(test_empty_tables),
-        cmocka_unit_test(test_too_many_pairs),   cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_outputs),          cmocka_unit_test(test_not_a_polygon),
-        cmocka_unit_test(test_no_pairs),         cmocka_unit_test(test_names),
-        cmocka_unit_test(test_capacity),         cmocka_unit_test(test_invalid_bodies),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("errors", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("errors")

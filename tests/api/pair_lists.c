@@ -401,8 +401,7 @@ static totals run_world(const char *name, size_t steps, size_t start, size_t mos
     return sums;
 }
 
-static void follows_bodies_by_their_ids(void **state) {
-    (void)state;
+TEST(follows_bodies_by_their_ids) {
     const size_t steps = test_trials(4000);
     const totals sums = run_world("ids", steps, 60, 90, 12, true);
     assert_true(sums.kept > steps / 40 && sums.renewed > steps / 40 && sums.flipped > 0 && sums.lost > 0 &&
@@ -410,21 +409,16 @@ static void follows_bodies_by_their_ids(void **state) {
     assert_true(sums.sleeping > 0 && sums.sensors > 0 && sums.broken > 0);
 }
 
-static void follows_bodies_by_their_numbers(void **state) {
-    (void)state;
+TEST(follows_bodies_by_their_numbers) {
     const size_t steps = test_trials(3000);
     const totals sums = run_world("numbers", steps, 40, 60, 10, false);
     assert_true(sums.kept > steps / 30 && sums.renewed > steps / 30 && sums.flipped == 0 && sums.lost > 0 &&
                 sums.added > 0);
 }
 
-static void follows_few_bodies_and_none(void **state) {
-    (void)state;
-    run_world("few", test_trials(2000), 0, 4, 2, true);
-}
+TEST(follows_few_bodies_and_none) { run_world("few", test_trials(2000), 0, 4, 2, true); }
 
-static void keeps_nothing_without_a_skin(void **state) {
-    (void)state;
+TEST(keeps_nothing_without_a_skin) {
     skin = half_of_margin = 0;
     run_world("bare", test_trials(1000), 40, 60, 8, true);
     skin = 0.5625;
@@ -432,10 +426,7 @@ static void keeps_nothing_without_a_skin(void **state) {
 }
 
 /* So many that several threads share the work. */
-static void follows_thousands(void **state) {
-    (void)state;
-    run_world("thousands", 12, MOST_BODIES - 10, MOST_BODIES, 150, true);
-}
+TEST(follows_thousands) { run_world("thousands", 12, MOST_BODIES - 10, MOST_BODIES, 150, true); }
 
 /* ------------------------------------------------------------------------------------------------ bodies */
 
@@ -477,8 +468,7 @@ static double box_gap(const disc *a, const disc *b, const double *radius) {
 }
 
 /* Circles that fly: all that are close, or will be at the end of the step, and none that is far. */
-static void lists_all_bodies_that_are_close(void **state) {
-    (void)state;
+TEST(lists_all_bodies_that_are_close) {
     enum { COUNT = 80 };
     static const double radius[] = {0.5, 0.25};
     const narc_pair_options options = {.margin = 0.25f, .skin = 0.125f};
@@ -530,8 +520,7 @@ static void lists_all_bodies_that_are_close(void **state) {
 }
 
 /* A shape that grows, one that goes, and a body that breaks and mends. */
-static void notices_shapes_that_change(void **state) {
-    (void)state;
+TEST(notices_shapes_that_change) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     narc_shapes *shapes;
@@ -568,8 +557,7 @@ static void notices_shapes_that_change(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ memory and errors */
 
-static void allocates_nothing_once_it_has_grown(void **state) {
-    (void)state;
+TEST(allocates_nothing_once_it_has_grown) {
     enum { COUNT = 3000, STEPS = 30 };
     struct test_random random = test_random_named("steady lists");
     struct counter counter = {.left = SIZE_MAX};
@@ -609,8 +597,7 @@ static void check_equal_lists(const narc_pair_list *one, const narc_pair_list *o
 }
 
 /* Every allocation of a step fails once: the last list stays, and the next step is as if nothing had been. */
-static void survives_failing_allocations(void **state) {
-    (void)state;
+TEST(survives_failing_allocations) {
     enum { FEW = 300, MANY = 5000 };
     static narc_box boxes[MANY];
     static uint64_t ids[MANY], later_ids[MANY];
@@ -660,8 +647,7 @@ static void survives_failing_allocations(void **state) {
 
 /* There is memory for the bodies but not for their pairs. They have moved, and the last list is not theirs, however
  * often it is tried. */
-static void keeps_no_list_that_was_not_made(void **state) {
-    (void)state;
+TEST(keeps_no_list_that_was_not_made) {
     enum { COUNT = 500 };
     narc_box boxes[COUNT];
     struct counter counter = {.left = SIZE_MAX};
@@ -686,8 +672,7 @@ static void keeps_no_list_that_was_not_made(void **state) {
 }
 
 /* A pair whose bodies change their order, and which is lost at once. */
-static void marks_bodies_that_change_their_order(void **state) {
-    (void)state;
+TEST(marks_bodies_that_change_their_order) {
     narc_box boxes[] = {{0, 0, 1, 1}, {0, 0, 1, 1}};
     const uint64_t ids[] = {7, 9}, others[] = {9, 7};
     narc_pair_options options = {.id = NARC_ARRAY(ids)};
@@ -705,8 +690,7 @@ static void marks_bodies_that_change_their_order(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
-static void forgets_its_pairs(void **state) {
-    (void)state;
+TEST(forgets_its_pairs) {
     const narc_box boxes[] = {{0, 0, 1, 1}, {1, 0, 2, 1}};
     const narc_pair_list *list;
     narc_broad_phase *broad = create_broad_phase(NULL);
@@ -722,8 +706,7 @@ static void forgets_its_pairs(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
-static void refuses_bad_arguments(void **state) {
-    (void)state;
+TEST(refuses_bad_arguments) {
     narc_box boxes[] = {{0, 0, 1, 1}, {1, 0, 2, 1}, {0, 0, 1, 2}};
     const uint64_t ids[] = {5, 6, 7}, twice[] = {6, 5, 5};
     narc_pair_options options = {.id = NARC_ARRAY(ids)};
@@ -775,21 +758,4 @@ static void refuses_bad_arguments(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(follows_bodies_by_their_ids),
-        cmocka_unit_test(follows_bodies_by_their_numbers),
-        cmocka_unit_test(follows_few_bodies_and_none),
-        cmocka_unit_test(keeps_nothing_without_a_skin),
-        cmocka_unit_test(follows_thousands),
-        cmocka_unit_test(lists_all_bodies_that_are_close),
-        cmocka_unit_test(notices_shapes_that_change),
-        cmocka_unit_test(allocates_nothing_once_it_has_grown),
-        cmocka_unit_test(survives_failing_allocations),
-        cmocka_unit_test(keeps_no_list_that_was_not_made),
-        cmocka_unit_test(marks_bodies_that_change_their_order),
-        cmocka_unit_test(forgets_its_pairs),
-        cmocka_unit_test(refuses_bad_arguments),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("pair lists", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("pair lists")

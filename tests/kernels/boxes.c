@@ -117,8 +117,7 @@ static void check_scene(const struct scene *scene, struct test_random *random) {
 }
 
 /* Every family, in every placement: right angles, nearly right ones, far away, tiny and huge scales. */
-static void holds_every_shape(void **state) {
-    (void)state;
+TEST(holds_every_shape) {
     struct test_random random = test_random_named("boxes");
     enum { PLACES = 8 };
     for (int precision = 0; precision < 2; precision++) {
@@ -144,8 +143,7 @@ static void holds_every_shape(void **state) {
 }
 
 /* Junctions along the world's axes, within some units of the look-up's 16 bits, and arcs that are no wider than one. */
-static void holds_shapes_with_junctions_along_the_axes(void **state) {
-    (void)state;
+TEST(holds_shapes_with_junctions_along_the_axes) {
     struct test_random random = test_random_named("junctions along axes");
     const double quarter = 1.57079632679489661923;
     const size_t trials = test_trials(400);
@@ -193,8 +191,7 @@ static void holds_shapes_with_junctions_along_the_axes(void **state) {
 }
 
 /* Positions at which a body is less than a rounding, and positions that cancel its extent. */
-static void rounds_outwards_wherever_a_body_is(void **state) {
-    (void)state;
+TEST(rounds_outwards_wherever_a_body_is) {
     struct test_random random = test_random_named("rounding");
     for (int precision = 0; precision < 2; precision++) {
         const size_t trials = test_trials(200);
@@ -223,8 +220,7 @@ static void rounds_outwards_wherever_a_body_is(void **state) {
 }
 
 /* The box of a body that moves is that around its boxes before and after. */
-static void joins_both_ends_of_a_motion(void **state) {
-    (void)state;
+TEST(joins_both_ends_of_a_motion) {
     struct test_random random = test_random_named("motion");
     enum { COUNT = 500 };
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, COUNT, 1);
@@ -260,8 +256,7 @@ static void joins_both_ends_of_a_motion(void **state) {
 
 /* Every layout and every count, each array with a guard page behind it; sub-ranges touch nothing but their own. Scalar
  * in one call decides. */
-static void same_bits_whatever_the_split(void **state) {
-    (void)state;
+TEST(same_bits_whatever_the_split) {
     struct test_random random = test_random_named("splits");
     for (int precision = 0; precision < 2; precision++) {
         for (enum layout layout = 0; layout < LAYOUT_COUNT; layout++) {
@@ -310,8 +305,7 @@ static void same_bits_whatever_the_split(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ broken bodies */
 
-static void gives_broken_bodies_empty_boxes(void **state) {
-    (void)state;
+TEST(gives_broken_bodies_empty_boxes) {
     struct test_random random = test_random_named("broken");
     static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300};
     enum { COUNT = 40, KINDS = 8 };
@@ -371,8 +365,7 @@ static void gives_broken_bodies_empty_boxes(void **state) {
 }
 
 /* Random bits as every number of every body: nothing hangs, crashes, or comes out as NaN. */
-static void survives_garbage(void **state) {
-    (void)state;
+TEST(survives_garbage) {
     struct test_random random = test_random_named("garbage boxes");
     enum { COUNT = 300 };
     for (size_t trial = 0; trial < test_trials(60); trial++) {
@@ -410,8 +403,7 @@ static void survives_garbage(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ errors */
 
-static void refuses_bad_arguments(void **state) {
-    (void)state;
+TEST(refuses_bad_arguments) {
     struct test_random random = test_random_named("errors of boxes");
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, 100, 1);
     const narc_bodies bodies = scene_bodies(&scene), none = {0};
@@ -471,8 +463,7 @@ static void refuses_bad_arguments(void **state) {
 }
 
 /* The bodies of many parts: the first of several wrong shapes is named, whatever thread finds it. */
-static void names_the_first_wrong_shape(void **state) {
-    (void)state;
+TEST(names_the_first_wrong_shape) {
     struct test_random random = test_random_named("wrong shapes");
     enum { COUNT = 200000 };
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, 1, 1);
@@ -499,19 +490,4 @@ static void names_the_first_wrong_shape(void **state) {
     destroy_scene(&scene);
 }
 
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(holds_every_shape),
-        cmocka_unit_test(holds_shapes_with_junctions_along_the_axes),
-        cmocka_unit_test(rounds_outwards_wherever_a_body_is),
-        cmocka_unit_test(joins_both_ends_of_a_motion),
-        cmocka_unit_test(same_bits_whatever_the_split),
-        cmocka_unit_test(gives_broken_bodies_empty_boxes),
-        cmocka_unit_test(survives_garbage),
-        cmocka_unit_test(refuses_bad_arguments),
-        cmocka_unit_test(names_the_first_wrong_shape),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MAIN("boxes")

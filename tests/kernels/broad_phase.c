@@ -101,8 +101,7 @@ static narc_box random_box(struct test_random *random, double side, double small
 }
 
 /* Sizes alike and sizes 1 : 10,000, dense and loose, few and many. */
-static void finds_all_pairs_of_random_boxes(void **state) {
-    (void)state;
+TEST(finds_all_pairs_of_random_boxes) {
     struct test_random random = test_random_named("random boxes");
     narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t trial = 0; trial < test_trials(60); trial++) {
@@ -118,8 +117,7 @@ static void finds_all_pairs_of_random_boxes(void **state) {
 }
 
 /* Small integers: borders that touch, equal boxes, boxes without width or height. */
-static void finds_pairs_that_touch(void **state) {
-    (void)state;
+TEST(finds_pairs_that_touch) {
     struct test_random random = test_random_named("lattice boxes");
     narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t trial = 0; trial < test_trials(60); trial++) {
@@ -134,8 +132,7 @@ static void finds_pairs_that_touch(void **state) {
 }
 
 /* Bodies that were parked far away, denormal sizes, the largest floats, a floor below everything. */
-static void finds_pairs_among_extremes(void **state) {
-    (void)state;
+TEST(finds_pairs_among_extremes) {
     static const float places[] = {0,     -0.0f, 1,      -1,      1e-40f,   -1e-40f, 1e9f,
                                    -1e9f, 1e30f, -1e30f, FLT_MAX, -FLT_MAX, 1e-20f};
     static const float sizes[] = {0, 1e-45f, 1e-38f, 1e-9f, 1, 100, 1e9f, 1e30f, FLT_MAX};
@@ -154,8 +151,7 @@ static void finds_pairs_among_extremes(void **state) {
 
 /* Boxes of one row: spread evenly, over many powers of two, all but one or two in a crowd, in one place, too far apart for
  * a difference in floats; fewer and more than the sort has buckets. */
-static void sorts_rows_of_all_kinds(void **state) {
-    (void)state;
+TEST(sorts_rows_of_all_kinds) {
     static const size_t counts[] = {1, 2, 31, 32, 33, 500, 3000, 17000};
     enum { EVEN, POWERS, CROWD, TWO_CROWDS, ONE_PLACE, FAR_APART, KINDS };
     struct test_random random = test_random_named("rows of boxes");
@@ -195,8 +191,7 @@ static void sorts_rows_of_all_kinds(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
-static void leaves_out_empty_boxes(void **state) {
-    (void)state;
+TEST(leaves_out_empty_boxes) {
     static const narc_box boxes[] = {{0, 0, 1, 1},        {NAN, 0, 1, 1},       {0, NAN, 1, 1},
                                      {0, 0, NAN, 1},      {0, 0, 1, NAN},       {1, 0, 0, 1},
                                      {0, 1, 1, 0},        {-INFINITY, 0, 1, 1}, {0, 0, INFINITY, 1},
@@ -214,8 +209,7 @@ static void leaves_out_empty_boxes(void **state) {
 }
 
 /* One box that all others overlap, in a list of its own that is long. */
-static void orders_the_partners_of_a_floor(void **state) {
-    (void)state;
+TEST(orders_the_partners_of_a_floor) {
     struct test_random random = test_random_named("floor");
     narc_broad_phase *broad = create_broad_phase(NULL);
     enum { COUNT = 2000 };
@@ -227,8 +221,7 @@ static void orders_the_partners_of_a_floor(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
-static void filters_pairs(void **state) {
-    (void)state;
+TEST(filters_pairs) {
     struct test_random random = test_random_named("filters");
     narc_broad_phase *broad = create_broad_phase(NULL);
     struct body {
@@ -288,8 +281,7 @@ static narc_box box_at(double x, double y, double width, double height) {
 }
 
 /* Scenes that a sweep could take the square of the boxes for. `turn`: width for height. */
-static void grows_no_faster_than_boxes_and_pairs(void **state) {
-    (void)state;
+TEST(grows_no_faster_than_boxes_and_pairs) {
     enum { COUNT = 20000, CROWD = 2000 };
     struct test_random random = test_random_named("growth");
     for (int turn = 0; turn < 2; turn++) {
@@ -340,8 +332,7 @@ static void grows_no_faster_than_boxes_and_pairs(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ memory and errors */
 
-static void allocates_nothing_once_it_has_grown(void **state) {
-    (void)state;
+TEST(allocates_nothing_once_it_has_grown) {
     struct test_random random = test_random_named("steady state");
     struct counter counter = {.left = SIZE_MAX};
     narc_broad_phase *broad = create_broad_phase(&counter);
@@ -371,8 +362,7 @@ static void allocates_nothing_once_it_has_grown(void **state) {
 }
 
 /* The first call of an object, without boxes: there is no memory yet. */
-static void finds_nothing_among_no_boxes(void **state) {
-    (void)state;
+TEST(finds_nothing_among_no_boxes) {
     narc_broad_phase *broad = create_broad_phase(NULL);
     const narc_box empty = {NAN, 0, 1, 1};
     size_t found = 9;
@@ -385,8 +375,7 @@ static void finds_nothing_among_no_boxes(void **state) {
 }
 
 /* Boxes in a row, none of which overlap: memory is for boxes and pairs, and not for questions without an answer. */
-static void takes_memory_for_pairs_alone(void **state) {
-    (void)state;
+TEST(takes_memory_for_pairs_alone) {
     enum { COUNT = 4000 };
     struct counter counter = {.left = SIZE_MAX};
     narc_broad_phase *broad = create_broad_phase(&counter);
@@ -401,8 +390,7 @@ static void takes_memory_for_pairs_alone(void **state) {
     free(boxes);
 }
 
-static void survives_failing_allocations(void **state) {
-    (void)state;
+TEST(survives_failing_allocations) {
     narc_box boxes[300];
     uint32_t a[45000], b[45000];
     for (size_t k = 0; k < 300; k++)
@@ -422,8 +410,7 @@ static void survives_failing_allocations(void **state) {
     }
 }
 
-static void tells_how_much_room_is_needed(void **state) {
-    (void)state;
+TEST(tells_how_much_room_is_needed) {
     narc_box boxes[100];
     uint32_t a[10] = {7}, b[10] = {7};
     size_t found = 0;
@@ -440,8 +427,7 @@ static void tells_how_much_room_is_needed(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
-static void refuses_bad_arguments(void **state) {
-    (void)state;
+TEST(refuses_bad_arguments) {
     narc_broad_phase *broad = create_broad_phase(NULL);
     const narc_box box = {0, 0, 1, 1};
     uint32_t a, b, match = 5;
@@ -467,24 +453,4 @@ static void refuses_bad_arguments(void **state) {
     narc_destroy_broad_phase(NULL);
 }
 
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_all_pairs_of_random_boxes),
-        cmocka_unit_test(finds_pairs_that_touch),
-        cmocka_unit_test(finds_pairs_among_extremes),
-        cmocka_unit_test(sorts_rows_of_all_kinds),
-        cmocka_unit_test(leaves_out_empty_boxes),
-        cmocka_unit_test(orders_the_partners_of_a_floor),
-        cmocka_unit_test(filters_pairs),
-        cmocka_unit_test(grows_no_faster_than_boxes_and_pairs),
-        cmocka_unit_test(allocates_nothing_once_it_has_grown),
-        cmocka_unit_test(finds_nothing_among_no_boxes),
-        cmocka_unit_test(takes_memory_for_pairs_alone),
-        cmocka_unit_test(survives_failing_allocations),
-        cmocka_unit_test(tells_how_much_room_is_needed),
-        cmocka_unit_test(refuses_bad_arguments),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MAIN("broad_phase")

@@ -133,20 +133,8 @@ static void check_all_families(const char *name, narc_precision precision, size_
     }
 }
 
-static void test_single_positions(void **state) {
-    (void)state;
-    check_all_families("collision, single positions", NARC_FLOAT32, 4);
-}
+TEST(test_single_positions) { check_all_families("collision, single positions", NARC_FLOAT32, 4); }
 
-static void test_double_positions(void **state) {
-    (void)state;
-    check_all_families("collision, double positions", NARC_FLOAT64, 2);
-}
+TEST(test_double_positions) { check_all_families("collision, double positions", NARC_FLOAT64, 2); }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_single_positions),
-        cmocka_unit_test(test_double_positions),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("collision", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("collision")

@@ -175,8 +175,7 @@ static void check_known(const char *name, const struct known *known, bool edge) 
 static const double tiny_gaps[] = {1e-3, 1e-4, 1e-5, 1e-6, -1e-6, -1e-5, -1e-4, -1e-3};
 enum { TINY_GAPS = sizeof tiny_gaps / sizeof *tiny_gaps };
 
-static void test_nearly_touching(void **state) {
-    (void)state;
+TEST(test_nearly_touching) {
     for (int k = 0; k < TINY_GAPS; k++) {
         const double gap = tiny_gaps[k];
         check_known("circles", &(struct known){circle(1), circle(0.5), 1.5 + gap, 0, .gap = gap, .normal_x = 1}, false);
@@ -195,8 +194,7 @@ static void test_nearly_touching(void **state) {
 }
 
 /* The corner of a box turned by 45 degrees over the middle of another one's side, and over its corner. */
-static void test_vertices(void **state) {
-    (void)state;
+TEST(test_vertices) {
     const double corner = sqrt(0.5);
     for (int k = 0; k < TINY_GAPS; k++) {
         const double gap = tiny_gaps[k];
@@ -232,8 +230,7 @@ static void test_vertices(void **state) {
 
 /* Deep in each other. Of two convex shapes with a middle of symmetry each, at one place, the depth is the least of the
  * widths together, halved. */
-static void test_deep(void **state) {
-    (void)state;
+TEST(test_deep) {
     check_known("small box deep in a large one",
                 &(struct known){box(10, 8, 0), box(1, 1, 0), 2, 1.5, .gap = -(4 - 1.5 + 0.5), .normal_y = 1}, true);
     check_known("small circle deep in a box",
@@ -248,8 +245,7 @@ static void test_deep(void **state) {
 }
 
 /* One in the same place as the other. */
-static void test_equal_places(void **state) {
-    (void)state;
+TEST(test_equal_places) {
     check_known("square in its place", &(struct known){box(2, 2, 0), box(2, 2, 0), .gap = -2}, true);
     check_known("square in its place, turned",
                 &(struct known){box(2, 2, 0), box(2, 2, 0), 0, 0, pi / 4, .gap = -(1 + sqrt(2))}, true);
@@ -261,8 +257,7 @@ static void test_equal_places(void **state) {
 /* Circles in one place: every direction is as good. EPA's polygon with n corners comes as near as 1 - cos(pi / n) of
  * the sum of radii, so that a tolerance of 1e-2 takes 23 of them, and one of 1e-6 more than there may be: it ends with
  * LIMIT then, though what it has found is right. */
-static void test_circles_in_one_place(void **state) {
-    (void)state;
+TEST(test_circles_in_one_place) {
     const struct known known = {circle(1), circle(1), .gap = -2};
     struct scene scene = make_known_scene(&known);
     check_known_contacts("circles in one place", &scene, &known, false,
@@ -304,8 +299,7 @@ static void test_circles_in_one_place(void **state) {
 }
 
 /* Side to side, shifted along it. */
-static void test_parallel_edges(void **state) {
-    (void)state;
+TEST(test_parallel_edges) {
     static const double shifts[] = {0, 0.5, 1.25, 1.49};
     for (size_t s = 0; s < sizeof shifts / sizeof *shifts; s++) {
         for (int k = 0; k < TINY_GAPS; k++) {
@@ -322,8 +316,7 @@ static void test_parallel_edges(void **state) {
 }
 
 /* 1 : 1000, lengthwise, crosswise, and tip to side. */
-static void test_needles(void **state) {
-    (void)state;
+TEST(test_needles) {
     for (int k = 0; k < TINY_GAPS; k++) {
         const double gap = tiny_gaps[k] / 1000;
         check_known("needles side by side",
@@ -350,8 +343,7 @@ static void test_needles(void **state) {
 }
 
 /* A small body at, on and in a large one. */
-static void test_size_ratios(void **state) {
-    (void)state;
+TEST(test_size_ratios) {
     const double ratio = 1e4;
     for (int k = 0; k < TINY_GAPS; k++) {
         const double gap = tiny_gaps[k] * 100;
@@ -373,8 +365,7 @@ static void test_size_ratios(void **state) {
 /* The two polygons of dyn4j's tutorials on GJK and EPA: a triangle and a quadrilateral that collide. Along the
  * triangle's edge from (4, 5) to (9, 9), with the normal (4, -5), the quadrilateral's (5, 7) lies 6 / sqrt(41) inside;
  * along all other edges, more: 2 next. */
-static void test_dyn4j(void **state) {
-    (void)state;
+TEST(test_dyn4j) {
     static const narc_point triangle[] = {{4, 11}, {4, 5}, {9, 9}}, other[] = {{5, 7}, {7, 3}, {10, 2}, {12, 7}};
     check_known("dyn4j",
                 &(struct known){polygon(triangle, 3), polygon(other, 4), .gap = -6 / sqrt(41), .normal_x = 4 / sqrt(41),
@@ -384,16 +375,14 @@ static void test_dyn4j(void **state) {
 
 /* Box2D's unit test of the distance of shapes: a square and a segment beside it, at a distance of 1. A segment is a
  * capsule here: with a radius of 1/8, 7/8 are left. */
-static void test_box2d(void **state) {
-    (void)state;
+TEST(test_box2d) {
     check_known("Box2D", &(struct known){box(2, 2, 0), capsule(2, 0.125), 2, 0, pi / 2, .gap = 0.875, .normal_x = 1},
                 false);
 }
 
 /* libccd's test suite, boxes along x: one of 1 x 2 is led through one of 2 x 1, in steps of a tenth from -5 on. They
  * touch at steps 35 and 65. */
-static void test_libccd(void **state) {
-    (void)state;
+TEST(test_libccd) {
     for (int step = 0; step < 100; step++) {
         const double x = -5 + 0.1 * step, apart = fabs(x) - 1.5;
         struct known known = {box(2, 1, 0), box(1, 2, 0), x, 0, .gap = fmax(apart, -1.5)};
@@ -404,8 +393,7 @@ static void test_libccd(void **state) {
 
 /* The tests of distances in Unreal's Chaos (circles of radius 5 and 2, centres 8 apart: 1; of radius 2, centres 3 and 3
  * apart), of Parry (a box of 2 x 2 and a circle of radius 1, 3 above: 1; 1 above: colliding). */
-static void test_distances(void **state) {
-    (void)state;
+TEST(test_distances) {
     check_known("circles, 8 apart", &(struct known){circle(5), circle(2), -8, 0, .gap = 1, .normal_x = -1}, false);
     check_known(
         "circles, 3 and 3 apart",
@@ -418,8 +406,7 @@ static void test_distances(void **state) {
 
 /* A circle is two cones of half a turn, and the vector between the centres lies on the line where they meet: sat-first
  * must find it in one of them. */
-static void test_first_at_the_seam(void **state) {
-    (void)state;
+TEST(test_first_at_the_seam) {
     static const float turns[][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {0.6f, 0.8f}};
     const struct shape disc = circle(1);
     for (size_t k = 0; k < sizeof turns / sizeof *turns; k++) {
@@ -444,21 +431,4 @@ static void test_first_at_the_seam(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nearly_touching),
-        cmocka_unit_test(test_vertices),
-        cmocka_unit_test(test_deep),
-        cmocka_unit_test(test_equal_places),
-        cmocka_unit_test(test_parallel_edges),
-        cmocka_unit_test(test_circles_in_one_place),
-        cmocka_unit_test(test_needles),
-        cmocka_unit_test(test_size_ratios),
-        cmocka_unit_test(test_dyn4j),
-        cmocka_unit_test(test_box2d),
-        cmocka_unit_test(test_libccd),
-        cmocka_unit_test(test_distances),
-        cmocka_unit_test(test_first_at_the_seam),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("known", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("known")

@@ -227,15 +227,9 @@ static void check_all_families(const char *name, narc_precision precision, size_
     assert_true(tally.swaps_skipped < tally.pairs / 20);
 }
 
-static void test_single_positions(void **state) {
-    (void)state;
-    check_all_families("manifolds, single positions", NARC_FLOAT32, 10);
-}
+TEST(test_single_positions) { check_all_families("manifolds, single positions", NARC_FLOAT32, 10); }
 
-static void test_double_positions(void **state) {
-    (void)state;
-    check_all_families("manifolds, double positions", NARC_FLOAT64, 5);
-}
+TEST(test_double_positions) { check_all_families("manifolds, double positions", NARC_FLOAT64, 5); }
 
 /* ------------------------------------------------------------------------------------------------ small motions */
 
@@ -278,8 +272,7 @@ static unsigned find_edge_with(const struct shape *shape, double normal) {
 /* A box on a box, tilted and moved a little to either side, rounded or not, equal or not: always the same two ids, and
  * points that move no more than the box does, but where they are cut off. Of equal sharp boxes either corner may end the
  * stretch. */
-static void test_box_on_box(void **state) {
-    (void)state;
+TEST(test_box_on_box) {
     struct test_random random = test_random_named("box on box");
     for (size_t round = 0; round < 4; round++) {
         const double rounding = round % 2 ? 0.1 : 0, width = round < 2 ? 2 : 1;
@@ -312,8 +305,7 @@ static void test_box_on_box(void **state) {
 }
 
 /* Two sharp corners that face each other: both boxes' edges end there, which is no stretch. */
-static void test_corner_on_corner(void **state) {
-    (void)state;
+TEST(test_corner_on_corner) {
     struct test_random random = test_random_named("corner on corner");
     const struct shape box = make_box(2, 1, 0);
     struct scene scene = make_duo(&box, &box);
@@ -353,8 +345,7 @@ static void test_corner_on_corner(void **state) {
 }
 
 /* A rounded box that rocks through a tilt of zero: ids stay, and both points and separations are continuous. */
-static void test_rocking(void **state) {
-    (void)state;
+TEST(test_rocking) {
     const struct shape ground = make_box(20, 1, 0), rocker = make_box(2, 1, 0.2);
     struct scene scene = make_duo(&ground, &rocker);
     const double step = 1e-4, largest = 0.1;
@@ -383,8 +374,7 @@ static void test_rocking(void **state) {
 
 /* A circle that rolls along a box's flat top and around its corner: on the edge, then on the arc after the corner, and
  * on the next edge; the kind and the radii say which. */
-static void test_rolling(void **state) {
-    (void)state;
+TEST(test_rolling) {
     const struct shape box = make_box(2, 2, 0);
     struct shape circle;
     assert_int_equal(narc_build_circle(0.5, circle.arcs, &circle.count, NULL), NARC_OK);
@@ -426,8 +416,7 @@ static void test_rolling(void **state) {
 
 /* A rounded box's corner that leans on a circle: how far the normal may turn, to the edges on either side, and that of a
  * circle without end; on the box's edge, not at all. */
-static void test_reach(void **state) {
-    (void)state;
+TEST(test_reach) {
     const struct shape box = make_box(2, 2, 0.25);
     struct shape circle;
     assert_int_equal(narc_build_circle(0.5, circle.arcs, &circle.count, NULL), NARC_OK);
@@ -448,8 +437,7 @@ static void test_reach(void **state) {
 }
 
 /* The second point is listed exactly if its separation is below the margin; the first then keeps its id. */
-static void test_margin(void **state) {
-    (void)state;
+TEST(test_margin) {
     const struct shape ground = make_box(20, 1, 0), box = make_box(2, 1, 0);
     struct scene scene = make_duo(&ground, &box);
     for (int side = -1; side <= 1; side += 2) {
@@ -484,8 +472,7 @@ static void test_margin(void **state) {
 }
 
 /* A second point may be farther than the first one. */
-static void test_second_margin(void **state) {
-    (void)state;
+TEST(test_second_margin) {
     const struct shape ground = make_box(20, 1, 0), box = make_box(2, 1, 0);
     struct scene scene = make_duo(&ground, &box);
     put(&scene, 1, 0, 1.02, 0.05);
@@ -520,8 +507,7 @@ static void test_second_margin(void **state) {
 }
 
 /* The flat angle decides which edges face each other. */
-static void test_flat_angle(void **state) {
-    (void)state;
+TEST(test_flat_angle) {
     const struct shape ground = make_box(20, 1, 0), box = make_box(2, 1, 0);
     struct scene scene = make_duo(&ground, &box);
     put(&scene, 1, 0, 1.2, 0.2);
@@ -560,8 +546,7 @@ static struct shape doubled_corner(double x, double y, double gap, double normal
 
 /* A corner of two arcs of radius 0, a hair apart, on the shape's own origin: the hair is no edge, whatever the shape's
  * coordinates are there. Manifolds are those of the same corner elsewhere, and of the swapped pair. */
-static void test_doubled_corner(void **state) {
-    (void)state;
+TEST(test_doubled_corner) {
     struct test_random random = test_random_named("doubled corner");
     const double gaps[] = {0, 1e-17, 1e-14, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 3e-7};
     const struct shape ground = make_box(10, 1, 0);
@@ -612,8 +597,7 @@ static void test_doubled_corner(void **state) {
 
 /* A corner that is cut off by little more than rounding, far from its shape's origin: as many points for (A, B) as for
  * (B, A), but where roundings decide. */
-static void test_short_edges_swapped(void **state) {
-    (void)state;
+TEST(test_short_edges_swapped) {
     struct test_random random = test_random_named("short edges swapped");
     const struct shape ground = make_box(4, 1, 0);
     const size_t trials = test_trials(2000);
@@ -640,8 +624,7 @@ static void test_short_edges_swapped(void **state) {
 
 /* A corner that is rounded by two arcs has no edge between them, however far from the shape its origin is: what the
  * arcs' centres lose there is rounding. */
-static void test_far_origin(void **state) {
-    (void)state;
+TEST(test_far_origin) {
     struct test_random random = test_random_named("far origin");
     struct shape ball;
     assert_int_equal(narc_build_circle(0.5, ball.arcs, &ball.count, NULL), NARC_OK);
@@ -682,8 +665,7 @@ static void test_far_origin(void **state) {
 
 /* A corner that leans on an edge's middle, sharp or rounded, from lying nearly flat on one side through standing on it
  * to lying on the other: the deepest point keeps its id, which names the corner's arc and the edge. */
-static void test_leaning(void **state) {
-    (void)state;
+TEST(test_leaning) {
     const struct shape ground = make_box(20, 1, 0);
     const unsigned top = find_edge_with(&ground, pi / 2);
     for (int rounded = 0; rounded < 2; rounded++) {
@@ -720,8 +702,7 @@ static size_t find_deepest(const struct manifolds *list, const struct contacts *
 }
 
 /* The flat angle decides whether there is a second point, and nothing of the deepest one's id. */
-static void test_ids_at_all_flat_angles(void **state) {
-    (void)state;
+TEST(test_ids_at_all_flat_angles) {
     enum { ANGLES = 6 };
     const size_t count = test_trials(400);
     const float angles[ANGLES] = {0.45f, -1.0f, 0.001f, 0.1f, 0.8f, 1.5f};
@@ -770,23 +751,4 @@ static void test_ids_at_all_flat_angles(void **state) {
     assert_true(compared > 25 * count && come_and_go > 2 * count);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_single_positions),
-        cmocka_unit_test(test_double_positions),
-        cmocka_unit_test(test_box_on_box),
-        cmocka_unit_test(test_corner_on_corner),
-        cmocka_unit_test(test_rocking),
-        cmocka_unit_test(test_rolling),
-        cmocka_unit_test(test_reach),
-        cmocka_unit_test(test_second_margin),
-        cmocka_unit_test(test_margin),
-        cmocka_unit_test(test_flat_angle),
-        cmocka_unit_test(test_doubled_corner),
-        cmocka_unit_test(test_far_origin),
-        cmocka_unit_test(test_short_edges_swapped),
-        cmocka_unit_test(test_leaning),
-        cmocka_unit_test(test_ids_at_all_flat_angles),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("manifolds", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("manifolds")

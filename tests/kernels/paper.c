@@ -136,8 +136,7 @@ static struct tally compare(const char *name, struct shape (*make)(struct test_r
     return tally;
 }
 
-static void test_flat_lenses(void **state) {
-    (void)state;
+TEST(test_flat_lenses) {
     /* It is a few per cent: even the shortest run needs this many pairs to say that it is more than one. */
     const size_t least = 3000;
     size_t pairs = test_trials(4000);
@@ -146,16 +145,9 @@ static void test_flat_lenses(void **state) {
     assert_true((double)tally.wrong_apart > 0.01 * (double)tally.apart);
 }
 
-static void test_random_n_arcs(void **state) {
-    (void)state;
+TEST(test_random_n_arcs) {
     struct tally tally = compare("random n-arcs", random_n_arc, test_trials(4000));
     assert_int_equal(tally.ours_wrong, 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_flat_lenses),
-        cmocka_unit_test(test_random_n_arcs),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("paper", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("paper")

@@ -115,8 +115,7 @@ static void check_all(struct test_random *random, const struct scene *scene, con
 }
 
 /* Discs alone, with few others, with many; with broken bodies between them; around the ends of vectors and calls. */
-static void test_discs(void **state) {
-    (void)state;
+TEST(test_discs) {
     static const struct {
         size_t other, broken, pairs;
     } mixes[] = {{0, 0, PAIRS}, {0, 0, 1024},    {0, 0, 1025},    {0, 0, 17},   {0, 97, PAIRS},
@@ -130,8 +129,7 @@ static void test_discs(void **state) {
 }
 
 /* One other pair, or one of a broken body, in each lane of each of the first vectors; and discs in one place. */
-static void test_one_other(void **state) {
-    (void)state;
+TEST(test_one_other) {
     enum { FEW = 50 };
     struct test_random random = test_random_named("one other");
     struct scene scene = make_discs(&random, FEW, BODIES - 1, 0); /* bodies 0 and BODIES - 1 are others */
@@ -152,8 +150,7 @@ static void test_one_other(void **state) {
 
 /* Discs whose gap is about what the first proofs that they are apart need. Circles that lie off their origins: of
  * others the bounding circles know. */
-static void test_hints_at_the_limit(void **state) {
-    (void)state;
+TEST(test_hints_at_the_limit) {
     struct test_random random = test_random_named("limit");
     struct scene scene = create_scene(NARC_FLOAT32, 3, 2 * PAIRS, PAIRS);
     const struct shape left = {{{-0.6, -0.8, 1, -pi, pi}}, 1}, right = {{{0.6, 0.8, 1, -pi, pi}}, 1};
@@ -176,8 +173,7 @@ static void test_hints_at_the_limit(void **state) {
 }
 
 /* Blocks of boxes that rest on each other, and blocks that lie anywhere. */
-static void test_resting_edges(void **state) {
-    (void)state;
+TEST(test_resting_edges) {
     struct test_random random = test_random_named("resting");
     struct scene scene = create_scene(NARC_FLOAT32, 3, 2 * PAIRS, PAIRS);
     struct shape shape;
@@ -203,12 +199,4 @@ static void test_resting_edges(void **state) {
     destroy_scene(&scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_discs),
-        cmocka_unit_test(test_one_other),
-        cmocka_unit_test(test_hints_at_the_limit),
-        cmocka_unit_test(test_resting_edges),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("routes", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("routes")

@@ -48,8 +48,7 @@ static void require_long_double(void) {
         skip();
 }
 
-static void test_sines(void **state) {
-    (void)state;
+TEST(test_sines) {
     require_long_double();
     struct test_random random = test_random_named("sines");
     struct worst cosine = {0}, sine = {0};
@@ -86,8 +85,7 @@ static void test_sines(void **state) {
     check_worst("sine", sine, 1);
 }
 
-static void test_arc_tangents(void **state) {
-    (void)state;
+TEST(test_arc_tangents) {
     require_long_double();
     struct test_random random = test_random_named("arc tangents");
     struct worst tangent = {0}, sine = {0};
@@ -113,8 +111,7 @@ static void test_arc_tangents(void **state) {
     check_worst("arc sine", sine, 2);
 }
 
-static void test_lengths_and_powers(void **state) {
-    (void)state;
+TEST(test_lengths_and_powers) {
     require_long_double();
     struct test_random random = test_random_named("lengths and powers");
     struct worst length = {0}, logarithm = {0}, power = {0};
@@ -140,8 +137,7 @@ static void test_lengths_and_powers(void **state) {
 
 static bool is_same(double a, double b) { return a == b && !signbit(a) == !signbit(b); }
 
-static void test_special_values(void **state) {
-    (void)state;
+TEST(test_special_values) {
     const double pi = 3.14159265358979323846;
     double c, s;
     narc_find_cosine(-0.0, &c, &s);
@@ -167,8 +163,7 @@ static void test_special_values(void **state) {
 }
 
 /* The same on every machine. */
-static void test_golden(void **state) {
-    (void)state;
+TEST(test_golden) {
     enum { VALUES = 4096 };
     static double values[7 * VALUES];
     struct test_random random = {4}; /* not of NARC_TEST_SEED */
@@ -188,13 +183,4 @@ static void test_golden(void **state) {
     assert_true(hash == golden_values);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sines),
-        cmocka_unit_test(test_arc_tangents),
-        cmocka_unit_test(test_lengths_and_powers),
-        cmocka_unit_test(test_special_values),
-        cmocka_unit_test(test_golden),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("elementary", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("elementary")

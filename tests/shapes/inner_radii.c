@@ -115,8 +115,7 @@ static void check_shape(const struct shape *shape) {
     narc_destroy_shapes(shapes);
 }
 
-static void holds_for_all_families(void **state) {
-    (void)state;
+TEST(holds_for_all_families) {
     struct test_random random = test_random_named("inner radii");
     for (size_t k = 0; k < test_trials(8); k++) {
         for (int family = 0; family < FAMILY_COUNT; family++) {
@@ -142,8 +141,7 @@ static void expect_inner_radii(narc_shapes *shapes, size_t arc, double inner, do
 }
 
 /* Shapes of which it can be told by hand. */
-static void is_tight_for_known_shapes(void **state) {
-    (void)state;
+TEST(is_tight_for_known_shapes) {
     narc_shapes *shapes = NULL;
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
@@ -180,12 +178,4 @@ static void is_tight_for_known_shapes(void **state) {
         sharpest = fmin(sharpest, arcs[i].radius);
     assert_true(half_float(inner_radii_of(shapes, 3) & 0xffff) > 1.1 * sharpest);
     narc_destroy_shapes(shapes);
-}
-
-int test_rolls(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(holds_for_all_families),
-        cmocka_unit_test(is_tight_for_known_shapes),
-    };
-    return cmocka_run_group_tests_name("rolls", tests, NULL, NULL);
 }

@@ -96,8 +96,7 @@ static void expect_model(const narc_shapes *shapes, const struct model *model) {
     assert_int_equal(shapes->used_records, used);
 }
 
-static void holds_what_was_put_last(void **state) {
-    (void)state;
+TEST(holds_what_was_put_last) {
     struct test_random random = test_random_named("replacing");
     for (size_t round = 0; round < test_trials(20); round++) {
         struct ledger ledger = {0};
@@ -182,8 +181,7 @@ static void expect_little_memory(const struct ledger *ledger, size_t most_needed
 }
 
 /* Replacing for ever, with any number of arcs, takes no more memory than is promised. */
-static void memory_does_not_grow(void **state) {
-    (void)state;
+TEST(memory_does_not_grow) {
     enum { SHAPES = 50, STEPS = 20000 };
     struct test_random random = test_random_named("no growth");
     for (int way = 0; way < 2; way++) { /* replace; remove and add */
@@ -219,8 +217,7 @@ static void memory_does_not_grow(void **state) {
 
 /* A triangle after the other becomes a polygon of 64 corners, which is removed. Then triangles come back, in their
  * places. */
-static void removed_shapes_need_no_memory(void **state) {
-    (void)state;
+TEST(removed_shapes_need_no_memory) {
     enum { SHAPES = 10000 };
     struct ledger ledger = {0};
     narc_shapes *shapes = create_store(&ledger);
@@ -248,8 +245,7 @@ static void removed_shapes_need_no_memory(void **state) {
 }
 
 /* A shape that changes and keeps its number of arcs, or has fewer, allocates nothing. */
-static void same_size_allocates_nothing(void **state) {
-    (void)state;
+TEST(same_size_allocates_nothing) {
     struct ledger ledger = {0};
     narc_shapes *shapes = create_store(&ledger);
     const struct shape eight = make_polygon(8), five = make_polygon(5);
@@ -264,8 +260,7 @@ static void same_size_allocates_nothing(void **state) {
 }
 
 /* Whatever is wrong, the store stays as it was. */
-static void refused_replacement_changes_nothing(void **state) {
-    (void)state;
+TEST(refused_replacement_changes_nothing) {
     struct ledger ledger = {0};
     struct model *model = calloc(1, sizeof *model);
     narc_shapes *shapes = create_store(&ledger);
@@ -328,8 +323,7 @@ static void expect_no_answers(const narc_shapes *shapes, const narc_bodies *bodi
 
 /* Three bodies in one place; the shape of the second is removed, and comes back. By every method, on every instruction
  * set. */
-static void removed_shapes_collide_with_nothing(void **state) {
-    (void)state;
+TEST(removed_shapes_collide_with_nothing) {
     static const uint32_t shape[] = {0, 1, 2}, a[] = {0, 1, 0, 1}, b[] = {1, 2, 2, 1};
     static const float zero = 0, one = 1;
     narc_shapes *shapes = NULL;
@@ -395,8 +389,7 @@ static narc_status ask_boxes(const narc_methods *methods, bool *out_meet, narc_e
 }
 
 /* The methods' copy of a store never answers for shapes that the store does not have. */
-static void methods_are_never_stale(void **state) {
-    (void)state;
+TEST(methods_are_never_stale) {
     struct ledger ledger = {0};
     const narc_allocator allocator = {ledger_allocate, ledger_release, &ledger};
     const struct shape small = make_polygon(4), large = make_polygon(64);
@@ -444,17 +437,4 @@ static void methods_are_never_stale(void **state) {
     narc_destroy_methods(NULL);
     assert_int_equal(ledger.live, 0);
     narc_destroy_shapes(shapes);
-}
-
-int test_replacing(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(holds_what_was_put_last),
-        cmocka_unit_test(memory_does_not_grow),
-        cmocka_unit_test(removed_shapes_need_no_memory),
-        cmocka_unit_test(same_size_allocates_nothing),
-        cmocka_unit_test(refused_replacement_changes_nothing),
-        cmocka_unit_test(removed_shapes_collide_with_nothing),
-        cmocka_unit_test(methods_are_never_stale),
-    };
-    return cmocka_run_group_tests_name("replacing", tests, NULL, NULL);
 }

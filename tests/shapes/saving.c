@@ -62,8 +62,7 @@ static void expect_same_store(const narc_shapes *a, const narc_shapes *b) {
     }
 }
 
-static void loads_what_was_saved(void **state) {
-    (void)state;
+TEST(loads_what_was_saved) {
     struct test_random random = test_random_named("saving");
     for (size_t round = 0; round < test_trials(20); round++) {
         narc_shapes *shapes = make_store(&random, 1 + round % 5), *loaded = NULL;
@@ -94,8 +93,7 @@ static void loads_what_was_saved(void **state) {
 }
 
 /* Far from its origin a shape loses most of its digits; what is left is loaded. */
-static void loads_shapes_far_from_their_origin(void **state) {
-    (void)state;
+TEST(loads_shapes_far_from_their_origin) {
     struct test_random random = test_random_named("far saving");
     for (double away = 1; away < 1e9; away *= 10) {
         narc_shapes *shapes = NULL, *loaded = NULL;
@@ -120,8 +118,7 @@ static void loads_shapes_far_from_their_origin(void **state) {
 }
 
 /* The bytes of builders' shapes, recorded: the same on every platform. */
-static void saves_recorded_bytes(void **state) {
-    (void)state;
+TEST(saves_recorded_bytes) {
     narc_shapes *shapes = NULL;
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count, size;
@@ -147,8 +144,7 @@ static void saves_recorded_bytes(void **state) {
     free(bytes);
 }
 
-static void refuses_bad_arguments(void **state) {
-    (void)state;
+TEST(refuses_bad_arguments) {
     struct test_random random = test_random_named("saving arguments");
     narc_shapes *shapes = make_store(&random, 1), *loaded = NULL;
     size_t size;
@@ -178,8 +174,7 @@ static void write_checksum(unsigned char *bytes, size_t size) {
         bytes[AT_CHECKSUM + k] = (unsigned char)(hash >> 8 * k);
 }
 
-static void damaged_bytes_are_refused(void **state) {
-    (void)state;
+TEST(damaged_bytes_are_refused) {
     struct test_random random = test_random_named("damage");
     narc_shapes *shapes = make_store(&random, 2), *loaded = NULL;
     size_t size;
@@ -248,8 +243,7 @@ static void expect_usable(const narc_shapes *shapes) {
 }
 
 /* Damage with a checksum that fits, as by someone who means it: an error, or a store like any other. */
-static void forged_bytes_do_no_harm(void **state) {
-    (void)state;
+TEST(forged_bytes_do_no_harm) {
     struct test_random random = test_random_named("forgery");
     size_t loads = 0;
     narc_shapes *shapes = make_store(&random, 2);
@@ -302,13 +296,4 @@ static void forged_bytes_do_no_harm(void **state) {
     narc_destroy_shapes(shapes);
     free(bytes);
     free(forged);
-}
-
-int test_saving(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(loads_what_was_saved),      cmocka_unit_test(loads_shapes_far_from_their_origin),
-        cmocka_unit_test(saves_recorded_bytes),      cmocka_unit_test(refuses_bad_arguments),
-        cmocka_unit_test(damaged_bytes_are_refused), cmocka_unit_test(forged_bytes_do_no_harm),
-    };
-    return cmocka_run_group_tests_name("saving", tests, NULL, NULL);
 }

@@ -51,8 +51,7 @@ static struct shape make_box(double width, double height) {
     return shape;
 }
 
-static void equal_shapes_are_stored_once(void **state) {
-    (void)state;
+TEST(equal_shapes_are_stored_once) {
     struct test_random random = test_random_named("sharing");
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
@@ -76,8 +75,7 @@ static void equal_shapes_are_stored_once(void **state) {
 }
 
 /* What answers tell apart is another shape: the place, the numbers of arcs, one bit of one number. */
-static void other_bits_are_another_shape(void **state) {
-    (void)state;
+TEST(other_bits_are_another_shape) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
     const struct shape box = make_box(2, 1);
@@ -104,8 +102,7 @@ static void other_bits_are_another_shape(void **state) {
     narc_destroy_shapes(shapes);
 }
 
-static void last_use_removes(void **state) {
-    (void)state;
+TEST(last_use_removes) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
     const struct shape box = make_box(2, 1), other = make_box(3, 1);
@@ -123,8 +120,7 @@ static void last_use_removes(void **state) {
     narc_destroy_shapes(shapes);
 }
 
-static void shared_shapes_are_not_replaced(void **state) {
-    (void)state;
+TEST(shared_shapes_are_not_replaced) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
     const struct shape box = make_box(2, 1), other = make_box(3, 1);
@@ -151,8 +147,7 @@ static void shared_shapes_are_not_replaced(void **state) {
 
 /* How many shapes a search looks at, on average of all shapes, and at most. Shapes like those of a level: boxes with
  * sides in steps. */
-static void searches_are_short(void **state) {
-    (void)state;
+TEST(searches_are_short) {
     enum { STEPS = 150 };
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
@@ -176,8 +171,7 @@ static void searches_are_short(void **state) {
     narc_destroy_shapes(shapes);
 }
 
-static void added_at_an_index(void **state) {
-    (void)state;
+TEST(added_at_an_index) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
     const struct shape box = make_box(2, 1), other = make_box(3, 1);
@@ -210,8 +204,7 @@ static void added_at_an_index(void **state) {
 }
 
 /* Any order of indices, each in a time that does not depend on how many there are. */
-static void fills_indices_in_any_order(void **state) {
-    (void)state;
+TEST(fills_indices_in_any_order) {
     enum { COUNT = 5000 };
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
@@ -226,17 +219,4 @@ static void fills_indices_in_any_order(void **state) {
     }
     assert_int_equal(narc_count_shapes(shapes), COUNT);
     narc_destroy_shapes(shapes);
-}
-
-int test_sharing(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equal_shapes_are_stored_once),
-        cmocka_unit_test(other_bits_are_another_shape),
-        cmocka_unit_test(last_use_removes),
-        cmocka_unit_test(shared_shapes_are_not_replaced),
-        cmocka_unit_test(searches_are_short),
-        cmocka_unit_test(added_at_an_index),
-        cmocka_unit_test(fills_indices_in_any_order),
-    };
-    return cmocka_run_group_tests_name("sharing", tests, NULL, NULL);
 }
