@@ -3,46 +3,27 @@
  * bodies.c - narc_validate_bodies(): each kind of bad number, and which body the message names; drifted rotations.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "families.h"
 #include "narc.h"
 
 enum { COUNT = 5, BAD = 3 };
 
-struct body {
-    double x, y;
-    float cosine, sine, scale;
-    uint32_t shape;
-};
-
 struct fixture {
     narc_shapes *shapes;
-    struct body body[COUNT];
+    narc_body body[COUNT];
     narc_bodies bodies;
 };
 
 static void set_up(struct fixture *f) {
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t count;
+    const struct shape circle = circle_of(2);
     f->shapes = NULL;
     assert_int_equal(narc_create_shapes(NULL, &f->shapes), NARC_OK);
-    assert_int_equal(narc_build_circle(2, arcs, &count, NULL), NARC_OK);
-    assert_int_equal(narc_add_shape(f->shapes, arcs, count, NULL, NULL), NARC_OK);
+    assert_int_equal(narc_add_shape(f->shapes, circle.arcs, circle.count, NULL, NULL), NARC_OK);
     for (int k = 0; k < COUNT; k++)
-        f->body[k] = (struct body){k, -k, 0.6f, 0.8f, 1, 0};
-    f->bodies = (narc_bodies){.count = COUNT,
-                              .x = NARC_POSITION_COLUMN(f->body, x),
-                              .y = NARC_POSITION_COLUMN(f->body, y),
-                              .cosine = NARC_COLUMN(f->body, cosine),
-                              .sine = NARC_COLUMN(f->body, sine),
-                              .scale = NARC_COLUMN(f->body, scale),
-                              .shape = NARC_COLUMN(f->body, shape)};
+        f->body[k] = (narc_body){k, -k, 0.6f, 0.8f, 1, 0};
+    f->bodies = narc_view_bodies(f->body, COUNT);
 }
 
 static void expect(struct fixture *f, narc_status status, const char *words) {
@@ -71,33 +52,27 @@ TEST(test_good_bodies) {
 TEST(test_bad_numbers) {
     struct fixture f;
     set_up(&f);
-    struct body good = f.body[BAD], *bad = &f.body[BAD];
-    bad->shape = 1;
-    expect(&f, NARC_ERROR_INDEX, "shape is 1");
-    *bad = good;
-    bad->x = NAN;
-    expect(&f, NARC_ERROR_NOT_FINITE, "x is");
-    *bad = good;
-    bad->y = INFINITY;
-    expect(&f, NARC_ERROR_NOT_FINITE, "y is inf");
-    *bad = good;
-    bad->cosine = NAN;
-    expect(&f, NARC_ERROR_NOT_FINITE, "cosine");
-    *bad = good;
-    bad->sine = -INFINITY;
-    expect(&f, NARC_ERROR_NOT_FINITE, "sine");
-    *bad = good;
-    bad->sine = 0.801f;
-    expect(&f, NARC_ERROR_ARGUMENT, "length 1.0008");
-    *bad = good;
-    bad->scale = 0;
-    expect(&f, NARC_ERROR_SIZE, "scale is 0");
-    bad->scale = -1;
-    expect(&f, NARC_ERROR_SIZE, "scale is -1");
-    bad->scale = NAN;
-    expect(&f, NARC_ERROR_SIZE, "scale is");
-    bad->scale = 1e9f;
-    expect(&f, NARC_ERROR_SIZE, "radius is then 2");
+    const float c = 0.6f, s = 0.8f;
+    const struct {
+        narc_body body;
+        narc_status status;
+        const char *words;
+    } cases[] = {
+        {{1, 1, c, s, 1, 1}, NARC_ERROR_INDEX, "shape is 1"},
+        {{NAN, 1, c, s, 1, 0}, NARC_ERROR_NOT_FINITE, "x is"},
+        {{1, INFINITY, c, s, 1, 0}, NARC_ERROR_NOT_FINITE, "y is inf"},
+        {{1, 1, NAN, s, 1, 0}, NARC_ERROR_NOT_FINITE, "cosine"},
+        {{1, 1, c, -INFINITY, 1, 0}, NARC_ERROR_NOT_FINITE, "sine"},
+        {{1, 1, c, 0.801f, 1, 0}, NARC_ERROR_ARGUMENT, "length 1.0008"},
+        {{1, 1, c, s, 0, 0}, NARC_ERROR_SIZE, "scale is 0"},
+        {{1, 1, c, s, -1, 0}, NARC_ERROR_SIZE, "scale is -1"},
+        {{1, 1, c, s, NAN, 0}, NARC_ERROR_SIZE, "scale is"},
+        {{1, 1, c, s, 1e9f, 0}, NARC_ERROR_SIZE, "radius is then 2"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        f.body[BAD] = cases[k].body;
+        expect(&f, cases[k].status, cases[k].words);
+    }
     narc_destroy_shapes(f.shapes);
 }
 
@@ -106,29 +81,16 @@ TEST(test_bad_arguments) {
     set_up(&f);
     assert_int_equal(narc_validate_bodies(NULL, &f.bodies, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_validate_bodies(f.shapes, NULL, NULL), NARC_ERROR_ARGUMENT);
+    const narc_bodies good = f.bodies;
+    const void **const bases[] = {&f.bodies.x.base, &f.bodies.y.base, (const void **)&f.bodies.cosine.base,
+                                  (const void **)&f.bodies.sine.base, (const void **)&f.bodies.shape.base};
     for (int k = 0; k < 6; k++) {
-        narc_bodies bodies = f.bodies;
-        switch (k) {
-        case 0:
-            bodies.x.base = NULL;
-            break;
-        case 1:
-            bodies.y.base = NULL;
-            break;
-        case 2:
-            bodies.cosine.base = NULL;
-            break;
-        case 3:
-            bodies.sine.base = NULL;
-            break;
-        case 4:
-            bodies.shape.base = NULL;
-            break;
-        default:
-            bodies.y.precision = NARC_FLOAT32;
-            break;
-        }
-        assert_int_equal(narc_validate_bodies(f.shapes, &bodies, NULL), NARC_ERROR_ARGUMENT);
+        if (k < 5)
+            *bases[k] = NULL;
+        else
+            f.bodies.y.precision = NARC_FLOAT32;
+        assert_int_equal(narc_validate_bodies(f.shapes, &f.bodies, NULL), NARC_ERROR_ARGUMENT);
+        f.bodies = good;
     }
     narc_destroy_shapes(f.shapes);
 }
@@ -188,7 +150,7 @@ TEST(test_box_of_drifted_rotation) {
 
 /* ------------------------------------------------------------------------------------------------ columns */
 
-static const struct body two_bodies[] = {{1, 2, 1, 0, 1, 0}, {3, 4, 1, 0, 1, 0}};
+static const narc_body two_bodies[] = {{1, 2, 1, 0, 1, 0}, {3, 4, 1, 0, 1, 0}};
 static const float numbers[] = {5, 6, 7};
 static const narc_index_column constant_column = NARC_COLUMN_INIT(two_bodies, shape);
 static const narc_bodies constant_bodies = {.count = 2,

@@ -411,9 +411,7 @@ TEST(test_outputs) {
 /* The first pair whose shape is not a polygon is the one that is told, and the shape and the body. */
 TEST(test_not_a_polygon) {
     struct scene scene = create_scene(NARC_FLOAT32, 2, 40, PAIRS);
-    struct shape box, round;
-    assert_int_equal(narc_build_box(1, 1, 0, box.arcs, &box.count, NULL), NARC_OK);
-    assert_int_equal(narc_build_box(1, 1, 0.1, round.arcs, &round.count, NULL), NARC_OK);
+    const struct shape box = box_of(1, 1, 0), round = box_of(1, 1, 0.1);
     scene_add_shape(&scene, &box);
     scene_add_shape(&scene, &round);
     for (uint32_t k = 0; k < 40; k++) {
@@ -520,8 +518,7 @@ TEST(test_capacity) {
 static struct scene make_spoilt_scene(void) {
     static const float spoilt[] = {NAN, INFINITY, -INFINITY};
     struct scene scene = create_scene(NARC_FLOAT32, 1, 64, 64);
-    struct shape box;
-    assert_int_equal(narc_build_box(1, 1, 0, box.arcs, &box.count, NULL), NARC_OK);
+    const struct shape box = box_of(1, 1, 0);
     scene_add_shape(&scene, &box);
     const uint32_t good = scene_add_body(&scene, turned_body(0.5, 1));
     for (int k = 0; k < 19; k++) {

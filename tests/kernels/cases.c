@@ -10,18 +10,6 @@
 
 static const double pi = 3.14159265358979323846;
 
-static struct shape circle_of(double radius) {
-    struct shape shape;
-    assert_int_equal(narc_build_circle(radius, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
-static struct shape box_of(double width, double height, double radius) {
-    struct shape shape;
-    assert_int_equal(narc_build_box(width, height, radius, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
 static struct shape half_disc(void) {
     return (struct shape){{{0, -1, 0, -pi / 2, 0}, {0, 1, 0, 0, pi / 2}, {0, 0, 1, pi / 2, 3 * pi / 2}}, 3};
 }

@@ -85,8 +85,7 @@ TEST(test_placed_pairs) {
             place_pair(&random, placement, NARC_FLOAT64, &shape_a, &shape_b, &a, &b);
             a.shape = scene_add_shape(&scene, &shape_a);
             b.shape = scene_add_shape(&scene, &shape_b);
-            const uint32_t first = scene_add_body(&scene, a);
-            scene_add_pair(&scene, first, scene_add_body(&scene, b));
+            scene_add_two(&scene, a, b);
         }
         check_kernels(&scene, &worst);
         destroy_scene(&scene);

@@ -12,26 +12,6 @@ static const double pi = 3.14159265358979323846;
 
 /* ------------------------------------------------------------------------------------------------ shapes */
 
-static struct shape circle(double radius) {
-    struct shape shape;
-    assert_int_equal(narc_build_circle(radius, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
-/* Whole width and height; the corners' radius. */
-static struct shape box(double width, double height, double radius) {
-    struct shape shape;
-    assert_int_equal(narc_build_box(width, height, radius, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
-/* A segment along x of that length, with that much around it. */
-static struct shape capsule(double length, double radius) {
-    struct shape shape;
-    assert_int_equal(narc_build_capsule(length, radius, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
 static struct shape polygon(const narc_point *point, size_t count) {
     struct shape shape;
     assert_int_equal(narc_build_polygon(point, count, 0, shape.arcs, &shape.count, NULL), NARC_OK);
@@ -178,18 +158,20 @@ enum { TINY_GAPS = sizeof tiny_gaps / sizeof *tiny_gaps };
 TEST(test_nearly_touching) {
     for (int k = 0; k < TINY_GAPS; k++) {
         const double gap = tiny_gaps[k];
-        check_known("circles", &(struct known){circle(1), circle(0.5), 1.5 + gap, 0, .gap = gap, .normal_x = 1}, false);
-        check_known("boxes", &(struct known){box(2, 2, 0), box(1, 1, 0), 0.25, 1.5 + gap, .gap = gap, .normal_y = 1},
+        check_known("circles", &(struct known){circle_of(1), circle_of(0.5), 1.5 + gap, 0, .gap = gap, .normal_x = 1},
+                    false);
+        check_known("boxes",
+                    &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), 0.25, 1.5 + gap, .gap = gap, .normal_y = 1},
                     true);
         check_known("box and circle",
-                    &(struct known){box(2, 2, 0), circle(1), -2 - gap, 0.3, .gap = gap, .normal_x = -1}, false);
+                    &(struct known){box_of(2, 2, 0), circle_of(1), -2 - gap, 0.3, .gap = gap, .normal_x = -1}, false);
         check_known("lenses", &(struct known){lens(), lens(), 0, -2 - gap, .gap = gap, .normal_y = -1}, false);
-        check_known("lens and box", &(struct known){lens(), box(1, 1, 0.25), 0, 1.5 + gap, .gap = gap, .normal_y = 1},
+        check_known("lens and box",
+                    &(struct known){lens(), box_of(1, 1, 0.25), 0, 1.5 + gap, .gap = gap, .normal_y = 1}, false);
+        check_known("capsules crosswise",
+                    &(struct known){capsule_of(2, 0.25), capsule_of(2, 0.25), 0.5, 1.5 + gap, pi / 2, .gap = gap,
+                                    .normal_y = 1},
                     false);
-        check_known(
-            "capsules crosswise",
-            &(struct known){capsule(2, 0.25), capsule(2, 0.25), 0.5, 1.5 + gap, pi / 2, .gap = gap, .normal_y = 1},
-            false);
     }
 }
 
@@ -200,21 +182,23 @@ TEST(test_vertices) {
         const double gap = tiny_gaps[k];
         check_known(
             "vertex to edge",
-            &(struct known){box(2, 2, 0), box(1, 1, 0), 0.4, 1 + corner + gap, pi / 4, .gap = gap, .normal_y = 1},
+            &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), 0.4, 1 + corner + gap, pi / 4, .gap = gap, .normal_y = 1},
             true);
         check_known("edge to vertex",
-                    &(struct known){box(2, 2, 0), box(1, 1, 0), 1 + corner * (0.5 + gap), 1 + corner * (0.5 + gap),
-                                    pi / 4, .gap = gap, .normal_x = corner, .normal_y = corner},
+                    &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), 1 + corner * (0.5 + gap),
+                                    1 + corner * (0.5 + gap), pi / 4, .gap = gap, .normal_x = corner,
+                                    .normal_y = corner},
                     true);
         if (gap > 0) {
             check_known("vertex to vertex",
-                        &(struct known){box(2, 2, 0), box(1, 1, 0), 1.5 + 0.6 * gap, 1.5 + 0.8 * gap, .gap = gap,
+                        &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), 1.5 + 0.6 * gap, 1.5 + 0.8 * gap, .gap = gap,
                                         .normal_x = 0.6, .normal_y = 0.8},
                         false);
         }
     }
     /* Apart by 3 and 4: corner to corner is 5, along an edge's normal it is 4. */
-    const struct known far = {box(2, 2, 0), box(2, 2, 0), 2 + 3, 2 + 4, .gap = 5, .normal_x = 0.6, .normal_y = 0.8};
+    const struct known far = {box_of(2, 2, 0), box_of(2, 2, 0), 2 + 3,          2 + 4,
+                              .gap = 5,        .normal_x = 0.6, .normal_y = 0.8};
     check_known("corner to corner", &far, false);
     struct scene scene = make_known_scene(&far);
     struct contacts found = query_contacts(&scene, &(narc_method_options){.method = NARC_METHOD_POLYGON_SAT},
@@ -232,33 +216,34 @@ TEST(test_vertices) {
  * widths together, halved. */
 TEST(test_deep) {
     check_known("small box deep in a large one",
-                &(struct known){box(10, 8, 0), box(1, 1, 0), 2, 1.5, .gap = -(4 - 1.5 + 0.5), .normal_y = 1}, true);
+                &(struct known){box_of(10, 8, 0), box_of(1, 1, 0), 2, 1.5, .gap = -(4 - 1.5 + 0.5), .normal_y = 1},
+                true);
     check_known("small circle deep in a box",
-                &(struct known){box(10, 8, 0), circle(0.5), -4, 0.25, .gap = -1.5, .normal_x = -1}, false);
-    check_known(
-        "circle in a circle",
-        &(struct known){circle(4), circle(1), 1, 1, .gap = sqrt(2) - 5, .normal_x = sqrt(0.5), .normal_y = sqrt(0.5)},
-        false);
-    check_known("box across a box", &(struct known){box(4, 1, 0), box(1, 4, 0), .gap = -2.5}, true);
-    check_known("capsule across a capsule", &(struct known){capsule(4, 0.5), capsule(4, 0.5), 0, 0, pi / 2, .gap = -3},
+                &(struct known){box_of(10, 8, 0), circle_of(0.5), -4, 0.25, .gap = -1.5, .normal_x = -1}, false);
+    check_known("circle in a circle",
+                &(struct known){circle_of(4), circle_of(1), 1, 1, .gap = sqrt(2) - 5, .normal_x = sqrt(0.5),
+                                .normal_y = sqrt(0.5)},
                 false);
+    check_known("box across a box", &(struct known){box_of(4, 1, 0), box_of(1, 4, 0), .gap = -2.5}, true);
+    check_known("capsule across a capsule",
+                &(struct known){capsule_of(4, 0.5), capsule_of(4, 0.5), 0, 0, pi / 2, .gap = -3}, false);
 }
 
 /* One in the same place as the other. */
 TEST(test_equal_places) {
-    check_known("square in its place", &(struct known){box(2, 2, 0), box(2, 2, 0), .gap = -2}, true);
+    check_known("square in its place", &(struct known){box_of(2, 2, 0), box_of(2, 2, 0), .gap = -2}, true);
     check_known("square in its place, turned",
-                &(struct known){box(2, 2, 0), box(2, 2, 0), 0, 0, pi / 4, .gap = -(1 + sqrt(2))}, true);
-    check_known("rounded box in its place", &(struct known){box(4, 2, 0.5), box(4, 2, 0.5), .gap = -2}, false);
+                &(struct known){box_of(2, 2, 0), box_of(2, 2, 0), 0, 0, pi / 4, .gap = -(1 + sqrt(2))}, true);
+    check_known("rounded box in its place", &(struct known){box_of(4, 2, 0.5), box_of(4, 2, 0.5), .gap = -2}, false);
     check_known("lens in its place", &(struct known){lens(), lens(), .gap = -2}, false);
-    check_known("capsule in its place", &(struct known){capsule(2, 0.5), capsule(2, 0.5), .gap = -1}, false);
+    check_known("capsule in its place", &(struct known){capsule_of(2, 0.5), capsule_of(2, 0.5), .gap = -1}, false);
 }
 
 /* Circles in one place: every direction is as good. EPA's polygon with n corners comes as near as 1 - cos(pi / n) of
  * the sum of radii, so that a tolerance of 1e-2 takes 23 of them, and one of 1e-6 more than there may be: it ends with
  * LIMIT then, though what it has found is right. */
 TEST(test_circles_in_one_place) {
-    const struct known known = {circle(1), circle(1), .gap = -2};
+    const struct known known = {circle_of(1), circle_of(1), .gap = -2};
     struct scene scene = make_known_scene(&known);
     check_known_contacts("circles in one place", &scene, &known, false,
                          &(narc_method_options){.method = NARC_METHOD_SAT});
@@ -305,39 +290,41 @@ TEST(test_parallel_edges) {
         for (int k = 0; k < TINY_GAPS; k++) {
             const double gap = tiny_gaps[k], shift = shifts[s];
             check_known("face to face",
-                        &(struct known){box(2, 2, 0), box(1, 1, 0), shift, 1.5 + gap, .gap = gap, .normal_y = 1}, true);
+                        &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), shift, 1.5 + gap, .gap = gap, .normal_y = 1},
+                        true);
             check_known("capsule on a box",
-                        &(struct known){capsule(2, 0.5), box(2, 1, 0), shift, 1 + gap, .gap = gap, .normal_y = 1},
+                        &(struct known){capsule_of(2, 0.5), box_of(2, 1, 0), shift, 1 + gap, .gap = gap, .normal_y = 1},
                         true);
         }
     }
     check_known("face to face, half inside",
-                &(struct known){box(2, 2, 0), box(2, 2, 0), 0.5, 1.5, .gap = -0.5, .normal_y = 1}, true);
+                &(struct known){box_of(2, 2, 0), box_of(2, 2, 0), 0.5, 1.5, .gap = -0.5, .normal_y = 1}, true);
 }
 
 /* 1 : 1000, lengthwise, crosswise, and tip to side. */
 TEST(test_needles) {
     for (int k = 0; k < TINY_GAPS; k++) {
         const double gap = tiny_gaps[k] / 1000;
-        check_known("needles side by side",
-                    &(struct known){capsule(2, 1e-3), capsule(2, 1e-3), 0.3, 2e-3 + gap, .gap = gap, .normal_y = 1},
-                    false);
-        check_known("thin boxes side by side",
-                    &(struct known){box(2, 2e-3, 0), box(2, 2e-3, 0), -0.7, 2e-3 + gap, .gap = gap, .normal_y = 1},
-                    true);
         check_known(
-            "needle's tip to a needle's side",
-            &(struct known){capsule(2, 1e-3), capsule(2, 1e-3), 0.2, 1 + 2e-3 + gap, pi / 2, .gap = gap, .normal_y = 1},
+            "needles side by side",
+            &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 0.3, 2e-3 + gap, .gap = gap, .normal_y = 1},
             false);
         check_known(
-            "thin box's end to a side",
-            &(struct known){box(2, 2e-3, 0), box(2, 2e-3, 0), 0.2, 1 + 1e-3 + gap, pi / 2, .gap = gap, .normal_y = 1},
-            true);
+            "thin boxes side by side",
+            &(struct known){box_of(2, 2e-3, 0), box_of(2, 2e-3, 0), -0.7, 2e-3 + gap, .gap = gap, .normal_y = 1}, true);
+        check_known("needle's tip to a needle's side",
+                    &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 0.2, 1 + 2e-3 + gap, pi / 2, .gap = gap,
+                                    .normal_y = 1},
+                    false);
+        check_known("thin box's end to a side",
+                    &(struct known){box_of(2, 2e-3, 0), box_of(2, 2e-3, 0), 0.2, 1 + 1e-3 + gap, pi / 2, .gap = gap,
+                                    .normal_y = 1},
+                    true);
     }
-    check_known("needles crosswise", &(struct known){capsule(2, 1e-3), capsule(2, 1e-3), 0, 0, pi / 2, .gap = -1.002},
-                false);
+    check_known("needles crosswise",
+                &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 0, 0, pi / 2, .gap = -1.002}, false);
     check_known("needles far apart",
-                &(struct known){capsule(2, 1e-3), capsule(2, 1e-3), 5, 3, .gap = hypot(3, 3) - 2e-3,
+                &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 5, 3, .gap = hypot(3, 3) - 2e-3,
                                 .normal_x = sqrt(0.5), .normal_y = sqrt(0.5)},
                 false);
 }
@@ -347,15 +334,15 @@ TEST(test_size_ratios) {
     const double ratio = 1e4;
     for (int k = 0; k < TINY_GAPS; k++) {
         const double gap = tiny_gaps[k] * 100;
-        const struct known on_circle = {circle(1),  circle(1),    0, ratio + 1 + gap, .scale_a = ratio,
-                                        .gap = gap, .normal_y = 1};
-        const struct known on_box = {box(2, 2, 0),     box(2, 2, 0), 17,           ratio + 1 + gap,
-                                     .scale_a = ratio, .gap = gap,   .normal_y = 1};
+        const struct known on_circle = {circle_of(1), circle_of(1), 0, ratio + 1 + gap, .scale_a = ratio,
+                                        .gap = gap,   .normal_y = 1};
+        const struct known on_box = {box_of(2, 2, 0),  box_of(2, 2, 0), 17,           ratio + 1 + gap,
+                                     .scale_a = ratio, .gap = gap,      .normal_y = 1};
         check_known("on a large circle", &on_circle, false);
         check_known("on a large box", &on_box, true);
     }
     check_known("deep in a large box",
-                &(struct known){box(2, 2, 0), lens(), -ratio / 2, 0, .scale_a = ratio, .angle = pi / 2,
+                &(struct known){box_of(2, 2, 0), lens(), -ratio / 2, 0, .scale_a = ratio, .angle = pi / 2,
                                 .gap = -ratio / 2 - 1, .normal_x = -1},
                 false);
 }
@@ -376,7 +363,8 @@ TEST(test_dyn4j) {
 /* Box2D's unit test of the distance of shapes: a square and a segment beside it, at a distance of 1. A segment is a
  * capsule here: with a radius of 1/8, 7/8 are left. */
 TEST(test_box2d) {
-    check_known("Box2D", &(struct known){box(2, 2, 0), capsule(2, 0.125), 2, 0, pi / 2, .gap = 0.875, .normal_x = 1},
+    check_known("Box2D",
+                &(struct known){box_of(2, 2, 0), capsule_of(2, 0.125), 2, 0, pi / 2, .gap = 0.875, .normal_x = 1},
                 false);
 }
 
@@ -385,7 +373,7 @@ TEST(test_box2d) {
 TEST(test_libccd) {
     for (int step = 0; step < 100; step++) {
         const double x = -5 + 0.1 * step, apart = fabs(x) - 1.5;
-        struct known known = {box(2, 1, 0), box(1, 2, 0), x, 0, .gap = fmax(apart, -1.5)};
+        struct known known = {box_of(2, 1, 0), box_of(1, 2, 0), x, 0, .gap = fmax(apart, -1.5)};
         known.normal_x = apart > -1.5 + 1e-9 ? (x > 0 ? 1 : -1) : 0;
         check_known("libccd", &known, true);
     }
@@ -394,21 +382,23 @@ TEST(test_libccd) {
 /* The tests of distances in Unreal's Chaos (circles of radius 5 and 2, centres 8 apart: 1; of radius 2, centres 3 and 3
  * apart), of Parry (a box of 2 x 2 and a circle of radius 1, 3 above: 1; 1 above: colliding). */
 TEST(test_distances) {
-    check_known("circles, 8 apart", &(struct known){circle(5), circle(2), -8, 0, .gap = 1, .normal_x = -1}, false);
-    check_known(
-        "circles, 3 and 3 apart",
-        &(struct known){circle(2), circle(2), 3, 3, .gap = sqrt(18) - 4, .normal_x = sqrt(0.5), .normal_y = sqrt(0.5)},
-        false);
-    check_known("circle over a box", &(struct known){box(2, 2, 0), circle(1), 0, 3, .gap = 1, .normal_y = 1}, false);
-    check_known("circle in a box's side", &(struct known){box(2, 2, 0), circle(1), 0, 1, .gap = -1, .normal_y = 1},
+    check_known("circles, 8 apart", &(struct known){circle_of(5), circle_of(2), -8, 0, .gap = 1, .normal_x = -1},
                 false);
+    check_known("circles, 3 and 3 apart",
+                &(struct known){circle_of(2), circle_of(2), 3, 3, .gap = sqrt(18) - 4, .normal_x = sqrt(0.5),
+                                .normal_y = sqrt(0.5)},
+                false);
+    check_known("circle over a box", &(struct known){box_of(2, 2, 0), circle_of(1), 0, 3, .gap = 1, .normal_y = 1},
+                false);
+    check_known("circle in a box's side",
+                &(struct known){box_of(2, 2, 0), circle_of(1), 0, 1, .gap = -1, .normal_y = 1}, false);
 }
 
 /* A circle is two cones of half a turn, and the vector between the centres lies on the line where they meet: sat-first
  * must find it in one of them. */
 TEST(test_first_at_the_seam) {
     static const float turns[][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {0.6f, 0.8f}};
-    const struct shape disc = circle(1);
+    const struct shape disc = circle_of(1);
     for (size_t k = 0; k < sizeof turns / sizeof *turns; k++) {
         for (int side = -1; side <= 1; side += 2) {
             struct scene scene = create_scene(NARC_FLOAT64, 1, 2, 1);
@@ -416,8 +406,7 @@ TEST(test_first_at_the_seam) {
             struct body a = {.cosine = turns[k][0], .sine = turns[k][1], .scale = 1}, b = a;
             b.x = side * (double)a.cosine;
             b.y = side * (double)a.sine;
-            const uint32_t first = scene_add_body(&scene, a);
-            scene_add_pair(&scene, first, scene_add_body(&scene, b));
+            scene_add_two(&scene, a, b);
             uint8_t outcome = 0xa5;
             const narc_method_options options = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = &outcome};
             struct contacts found = query_contacts(&scene, &options, &(narc_query){.margin = INFINITY});

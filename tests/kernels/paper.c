@@ -108,8 +108,7 @@ static struct tally compare(const char *name, struct shape (*make)(struct test_r
         place_at_gap(&shape_a, &shape_b, random_between(&random, -pi, pi), random_between(&random, -0.3, 0.5), &a, &b);
         a.shape = scene_add_shape(&scene, &shape_a);
         b.shape = scene_add_shape(&scene, &shape_b);
-        uint32_t index_a = scene_add_body(&scene, a);
-        scene_add_pair(&scene, index_a, scene_add_body(&scene, b));
+        scene_add_two(&scene, a, b);
     }
     uint64_t *bits = scene_overlaps(&scene);
     for (size_t k = 0; k < pairs; k++) {

@@ -30,8 +30,7 @@ static void check_scene(const struct scene *scene, const char *name) {
 static void add_pair(struct scene *scene, struct body a, struct body b) {
     round_position(&a, scene->precision);
     round_position(&b, scene->precision);
-    const uint32_t first = scene_add_body(scene, a);
-    scene_add_pair(scene, first, scene_add_body(scene, b));
+    scene_add_two(scene, a, b);
 }
 
 /* The square of a short direction is 0 or has lost its digits, and then its length does not scale anything. */

@@ -154,8 +154,7 @@ TEST(test_hints_at_the_limit) {
     struct test_random random = test_random_named("limit");
     struct scene scene = create_scene(NARC_FLOAT32, 3, 2 * PAIRS, PAIRS);
     const struct shape left = {{{-0.6, -0.8, 1, -pi, pi}}, 1}, right = {{{0.6, 0.8, 1, -pi, pi}}, 1};
-    struct shape box;
-    assert_int_equal(narc_build_box(2, 2, 0.2, box.arcs, &box.count, NULL), NARC_OK);
+    const struct shape box = box_of(2, 2, 0.2);
     scene_add_shape(&scene, &left);
     scene_add_shape(&scene, &right);
     scene_add_shape(&scene, &box);
@@ -165,8 +164,7 @@ TEST(test_hints_at_the_limit) {
         b.x = 0.6 * (gap + 1 - cos(turn)) + 0.8 * sin(turn);
         b.y = 0.8 * (gap + 1 - cos(turn)) - 0.6 * sin(turn);
         b.shape = k % 16 == 15 ? 2 : 1;
-        const uint32_t first = scene_add_body(&scene, a);
-        scene_add_pair(&scene, first, scene_add_body(&scene, b));
+        scene_add_two(&scene, a, b);
     }
     check_all(&random, &scene, "limit");
     destroy_scene(&scene);
@@ -176,13 +174,12 @@ TEST(test_hints_at_the_limit) {
 TEST(test_resting_edges) {
     struct test_random random = test_random_named("resting");
     struct scene scene = create_scene(NARC_FLOAT32, 3, 2 * PAIRS, PAIRS);
-    struct shape shape;
-    assert_int_equal(narc_build_box(2, 1, 0, shape.arcs, &shape.count, NULL), NARC_OK);
-    scene_add_shape(&scene, &shape);
-    assert_int_equal(narc_build_box(2, 1, 0.2, shape.arcs, &shape.count, NULL), NARC_OK);
-    scene_add_shape(&scene, &shape);
-    assert_int_equal(narc_build_ellipse(1, 0.5, 8, shape.arcs, &shape.count, NULL, NULL), NARC_OK);
-    scene_add_shape(&scene, &shape);
+    const struct shape sharp = box_of(2, 1, 0), round = box_of(2, 1, 0.2);
+    struct shape ellipse;
+    assert_int_equal(narc_build_ellipse(1, 0.5, 8, ellipse.arcs, &ellipse.count, NULL, NULL), NARC_OK);
+    scene_add_shape(&scene, &sharp);
+    scene_add_shape(&scene, &round);
+    scene_add_shape(&scene, &ellipse);
     for (uint32_t k = 0; k < PAIRS; k++) {
         const bool rests = k / 100 % 3 < 2;
         const double angle = random_between(&random, -pi, pi), along = random_between(&random, -1.5, 1.5);
@@ -192,8 +189,7 @@ TEST(test_resting_edges) {
         b.shape = (uint32_t)random_below(&random, k % 5 ? 2 : 3);
         b.x = cos(angle) * along - sin(angle) * across;
         b.y = sin(angle) * along + cos(angle) * across;
-        const uint32_t first = scene_add_body(&scene, a);
-        scene_add_pair(&scene, first, scene_add_body(&scene, b));
+        scene_add_two(&scene, a, b);
     }
     check_all(&random, &scene, "resting");
     destroy_scene(&scene);

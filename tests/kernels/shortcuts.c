@@ -97,8 +97,7 @@ TEST(test_all_places) {
             place_pair(&random, (enum placement)place, precision, &shape_a, &shape_b, &a, &b);
             a.shape = scene_add_shape(&scene, &shape_a);
             b.shape = scene_add_shape(&scene, &shape_b);
-            const uint32_t first = scene_add_body(&scene, a);
-            scene_add_pair(&scene, first, scene_add_body(&scene, b));
+            scene_add_two(&scene, a, b);
         }
         check_scene(&random, &scene, any_layout(&random), placement_name((enum placement)place));
         destroy_scene(&scene);
@@ -225,8 +224,7 @@ static struct way add_way(struct test_random *random, struct scene *scene) {
         way.y[end] = s_a * inner_a.x + c_a * inner_a.y - s_b * inner_b.x - c_b * inner_b.y +
                      reach * random_between(random, -1, 1);
     }
-    const uint32_t first = scene_add_body(scene, a);
-    scene_add_pair(scene, first, scene_add_body(scene, b));
+    scene_add_two(scene, a, b);
     return way;
 }
 
@@ -311,8 +309,7 @@ TEST(test_specks) {
             assert_true(narc_find_support(speck->arcs, speck->count, -c * x - s * y, s * x - c * y, &p, NULL));
             b.x = c * p.x - s * p.y - gap * x + way * y;
             b.y = s * p.x + c * p.y - gap * y - way * x;
-            const uint32_t first = scene_add_body(&scene, a);
-            scene_add_pair(&scene, first, scene_add_body(&scene, b));
+            scene_add_two(&scene, a, b);
         }
         check_scene(&random, &scene, LAYOUT_STRUCTURES, "specks");
         destroy_scene(&scene);

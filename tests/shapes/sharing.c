@@ -45,12 +45,6 @@ static uint32_t add(narc_shapes *shapes, const struct shape *shape) {
     return index;
 }
 
-static struct shape make_box(double width, double height) {
-    struct shape shape;
-    assert_int_equal(narc_build_box(width, height, 0, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
 TEST(equal_shapes_are_stored_once) {
     struct test_random random = test_random_named("sharing");
     struct counter counter = {0};
@@ -78,7 +72,7 @@ TEST(equal_shapes_are_stored_once) {
 TEST(other_bits_are_another_shape) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
-    const struct shape box = make_box(2, 1);
+    const struct shape box = box_of(2, 1, 0);
     struct shape other = box;
     assert_int_equal(add(shapes, &box), 0);
     for (size_t i = 0; i < 4; i++)
@@ -105,7 +99,7 @@ TEST(other_bits_are_another_shape) {
 TEST(last_use_removes) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
-    const struct shape box = make_box(2, 1), other = make_box(3, 1);
+    const struct shape box = box_of(2, 1, 0), other = box_of(3, 1, 0);
     narc_error error;
     for (int k = 0; k < 3; k++)
         assert_int_equal(add(shapes, &box), 0);
@@ -123,7 +117,7 @@ TEST(last_use_removes) {
 TEST(shared_shapes_are_not_replaced) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
-    const struct shape box = make_box(2, 1), other = make_box(3, 1);
+    const struct shape box = box_of(2, 1, 0), other = box_of(3, 1, 0);
     narc_arc arcs[NARC_MAX_ARCS];
     narc_error error;
     for (int k = 0; k < 3; k++)
@@ -153,7 +147,7 @@ TEST(searches_are_short) {
     narc_shapes *shapes = create_store(&counter);
     for (int w = 1; w <= STEPS; w++)
         for (int h = 1; h <= STEPS; h++) {
-            const struct shape box = make_box(0.125 * w, 0.125 * h);
+            const struct shape box = box_of(0.125 * w, 0.125 * h, 0);
             assert_int_equal(add(shapes, &box), (w - 1) * STEPS + h - 1);
         }
     size_t looks = 0, longest = 0, all = 0;
@@ -174,7 +168,7 @@ TEST(searches_are_short) {
 TEST(added_at_an_index) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
-    const struct shape box = make_box(2, 1), other = make_box(3, 1);
+    const struct shape box = box_of(2, 1, 0), other = box_of(3, 1, 0);
     narc_error error;
     expect_ok(narc_add_shape_at(shapes, 5, box.arcs, 4, &error), &error); /* extends */
     assert_int_equal(narc_count_shapes(shapes), 6);
@@ -197,7 +191,7 @@ TEST(added_at_an_index) {
     assert_true((found == 2 || found == 5) && narc_count_uses(shapes, found) == 2);
     static const uint32_t free_ones[] = {1, 3, 4, 6};
     for (uint32_t k = 0; k < 4; k++) {
-        const struct shape next = make_box(4 + k, 1);
+        const struct shape next = box_of(4 + k, 1, 0);
         assert_int_equal(add(shapes, &next), free_ones[k]);
     }
     narc_destroy_shapes(shapes);
@@ -209,12 +203,12 @@ TEST(fills_indices_in_any_order) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
     for (uint32_t k = COUNT; k-- > 0;) {
-        const struct shape box = make_box(1 + k, 1);
+        const struct shape box = box_of(1 + k, 1, 0);
         assert_int_equal(narc_add_shape_at(shapes, k, box.arcs, 4, NULL), NARC_OK);
     }
     assert_int_equal(shapes->removed_count, 0);
     for (uint32_t k = 0; k < COUNT; k++) {
-        const struct shape box = make_box(1 + k, 1);
+        const struct shape box = box_of(1 + k, 1, 0);
         assert_int_equal(add(shapes, &box), k);
     }
     assert_int_equal(narc_count_shapes(shapes), COUNT);

@@ -34,6 +34,11 @@ struct shape {
 
 const char *family_name(enum family family);
 
+/* What the builders make. Whole width and height, the corners' radius; a capsule is as long as its segment. */
+struct shape circle_of(double radius);
+struct shape box_of(double width, double height, double radius);
+struct shape capsule_of(double length, double radius);
+
 /* A random shape with a bounding radius of about 1. */
 struct shape make_shape(struct test_random *random, enum family family);
 
