@@ -17,10 +17,8 @@ struct fixture {
 };
 
 static void set_up(struct fixture *f) {
-    const struct shape circle = circle_of(2);
-    f->shapes = NULL;
-    assert_int_equal(narc_create_shapes(NULL, &f->shapes), NARC_OK);
-    assert_int_equal(narc_add_shape(f->shapes, circle.arcs, circle.count, NULL, NULL), NARC_OK);
+    f->shapes = empty_store();
+    store_shape(f->shapes, circle_of(2));
     for (int k = 0; k < COUNT; k++)
         f->body[k] = (narc_body){k, -k, 0.6f, 0.8f, 1, 0};
     f->bodies = narc_view_bodies(f->body, COUNT);
@@ -97,12 +95,8 @@ TEST(test_bad_arguments) {
 
 /* The separation of two boxes, B at the given place and rotation, A at the origin; +infinity if they have none. */
 static float separation_of_boxes(float x, float y, float cosine, float sine) {
-    narc_shapes *shapes = NULL;
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t count;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    assert_int_equal(narc_build_box(2, 1, 0.25, arcs, &count, NULL), NARC_OK);
-    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+    narc_shapes *shapes = empty_store();
+    store_shape(shapes, box_of(2, 1, 0.25));
     const narc_body body[] = {
         {(double)x, (double)y, cosine, sine, 1, 0}, {0, 0, 1, 0, 1, 0}, {(double)x, (double)y, cosine, sine, 1, 0}};
     float separation[2];
@@ -110,6 +104,7 @@ static float separation_of_boxes(float x, float y, float cosine, float sine) {
         const narc_bodies bodies = narc_view_bodies(&body[k], 2);
         const narc_query query = {.margin = INFINITY};
         narc_contact contact;
+        size_t count;
         assert_int_equal(
             narc_find_contacts(shapes, &bodies, &(narc_pairs){.count = 1}, &query, &contact, 1, &count, NULL), NARC_OK);
         separation[k] = contact.separation;

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "counting.h"
+#include "families.h"
 #include "narc.h"
 
 enum { THREAD_COUNTS = 4, MOST_BODIES = 9000 };
@@ -73,7 +74,7 @@ static wide_box widen(const wide_box *b, double by) {
     return (wide_box){b->min_x - by, b->min_y - by, b->max_x + by, b->max_y + by, b->exists};
 }
 
-static wide_box box_of(const body *b) {
+static wide_box reach_of(const body *b) {
     const wide_box box = {(double)b->box.min_x, (double)b->box.min_y, (double)b->box.max_x, (double)b->box.max_y,
                           exists(&b->box) && b->reach >= 0 && isfinite(b->reach)};
     return widen(&box, half_of_margin + (double)b->reach);
@@ -147,7 +148,7 @@ static bool must_renew(const reference *r, const body *bodies, size_t count) {
         return true;
     for (size_t k = 0; k < count; k++) {
         const body *now = &bodies[k], *then = &r->bodies[k];
-        const wide_box box = box_of(now);
+        const wide_box box = reach_of(now);
         if (now->id != then->id || now->category != then->category || now->mask != then->mask ||
             now->group != then->group || ((now->kind ^ then->kind) & lasting) || !is_inside(&box, &r->kept[k]))
             return true;
@@ -160,7 +161,7 @@ static bool find_expected(reference *r, const body *bodies, size_t count) {
     const bool renew = must_renew(r, bodies, count);
     r->begun = true;
     for (size_t k = 0; k < count && renew; k++) {
-        const wide_box box = box_of(&bodies[k]);
+        const wide_box box = reach_of(&bodies[k]);
         r->kept[k] = widen(&box, skin);
     }
     memcpy(r->bodies, bodies, count * sizeof *bodies);
@@ -236,7 +237,7 @@ static size_t check_lost(const reference *r, const narc_pair_list *list) {
 static size_t count_broken(const body *bodies, size_t count) {
     size_t broken = 0;
     for (size_t k = 0; k < count; k++)
-        broken += !box_of(&bodies[k]).exists;
+        broken += !reach_of(&bodies[k]).exists;
     return broken;
 }
 
@@ -435,15 +436,6 @@ typedef struct disc {
     uint32_t shape;
 } disc;
 
-static uint32_t add_circle(narc_shapes *shapes, double radius) {
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t count;
-    uint32_t shape;
-    assert_int_equal(narc_build_circle(radius, arcs, &count, NULL), NARC_OK);
-    assert_int_equal(narc_add_shape(shapes, arcs, count, &shape, NULL), NARC_OK);
-    return shape;
-}
-
 static narc_bodies view(const disc *discs, size_t count) {
     return (narc_bodies){.count = count,
                          .x = NARC_POSITION_COLUMN(discs, x),
@@ -473,20 +465,18 @@ TEST(lists_all_bodies_that_are_close) {
     static const double radius[] = {0.5, 0.25};
     const narc_pair_options options = {.margin = 0.25f, .skin = 0.125f};
     struct test_random random = test_random_named("close");
-    narc_shapes *shapes;
     narc_broad_phase *broad = create_broad_phase(NULL);
     disc discs[COUNT];
     size_t kept = 0, close = 0;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    add_circle(shapes, radius[0]);
-    add_circle(shapes, radius[1]);
+    narc_shapes *shapes = empty_store();
+    store_shape(shapes, circle_of(radius[0]));
+    store_shape(shapes, circle_of(radius[1]));
     for (size_t k = 0; k < COUNT; k++)
         discs[k] =
             (disc){(float)random_between(&random, 0, 8), (float)random_between(&random, 0, 8), 1, 0, 0, 0, k % 2};
     const size_t steps = test_trials(300);
     for (size_t step = 0; step < steps; step++) {
         narc_pair_options moving = options;
-        const narc_pair_list *list;
         const double motion = step % 50 == 0 ? 0.5 : 0.003;
         for (size_t k = 0; k < COUNT; k++) {
             discs[k].x += discs[k].motion_x;
@@ -499,7 +489,7 @@ TEST(lists_all_bodies_that_are_close) {
         moving.motion_x = NARC_COLUMN(discs, motion_x);
         moving.motion_y = NARC_COLUMN(discs, motion_y);
         const narc_bodies bodies = view(discs, COUNT);
-        list = update(broad, shapes, &bodies, &moving);
+        const narc_pair_list *const list = update(broad, shapes, &bodies, &moving);
         kept += list->kept;
         for (uint32_t a = 0; a < COUNT; a++)
             for (uint32_t b = a + 1; b < COUNT; b++) {
@@ -521,20 +511,17 @@ TEST(lists_all_bodies_that_are_close) {
 
 /* A shape that grows, one that goes, and a body that breaks and mends. */
 TEST(notices_shapes_that_change) {
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t count;
-    narc_shapes *shapes;
+    const struct shape large = circle_of(2.25);
     narc_broad_phase *broad = create_broad_phase(NULL);
     const narc_pair_list *list;
     const narc_pair_options options = {.skin = 0.125f};
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    const uint32_t small = add_circle(shapes, 0.5), other = add_circle(shapes, 0.51);
+    narc_shapes *shapes = empty_store();
+    const uint32_t small = store_shape(shapes, circle_of(0.5)), other = store_shape(shapes, circle_of(0.51));
     disc discs[] = {{0, 0, 1, 0, 0, 0, small}, {3, 0, 1, 0, 0, 0, other}};
     const narc_bodies bodies = view(discs, 2);
     list = update(broad, shapes, &bodies, &options);
     assert_int_equal(list->pairs.count, 0);
-    assert_int_equal(narc_build_circle(2.25, arcs, &count, NULL), NARC_OK);
-    assert_int_equal(narc_replace_shape(shapes, small, arcs, count, NULL), NARC_OK);
+    assert_int_equal(narc_replace_shape(shapes, small, large.arcs, large.count, NULL), NARC_OK);
     list = update(broad, shapes, &bodies, &options);
     assert_int_equal(list->added_count, 1);
     discs[1].x = 3.0625f;
@@ -712,9 +699,8 @@ TEST(refuses_bad_arguments) {
     narc_pair_options options = {.id = NARC_ARRAY(ids)};
     const narc_pair_list *list = NULL, *before = NULL;
     narc_broad_phase *broad = create_broad_phase(NULL);
-    narc_shapes *shapes;
     narc_error error;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     before = update_boxes(broad, boxes, 3, &options);
     assert_int_equal(before->pairs.count, 3);
     assert_int_equal(narc_update_box_pairs(NULL, boxes, 3, NULL, &list, NULL), NARC_ERROR_ARGUMENT);

@@ -55,9 +55,8 @@ static void expect_arcs(const narc_named_shape *shape, const char *name, const n
 }
 
 TEST(reads_every_form) {
-    narc_shapes *store = NULL;
     const narc_arc circle = {0, 0, 1, 0, 6.283185307179586};
-    assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+    narc_shapes *store = empty_store();
     assert_int_equal(narc_add_shape(store, &circle, 1, NULL, NULL), NARC_OK);
     narc_shape_list *list = read_text(every_form, store);
     assert_int_equal(list->count, FORMS);
@@ -218,10 +217,9 @@ TEST(names_lines) {
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
         narc_shape_list *list = (narc_shape_list *)(void *)&list;
         const void *before = list;
-        narc_shapes *store = NULL;
         narc_error error = {.message = "?"};
         uint32_t index = 99;
-        assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+        narc_shapes *store = empty_store();
         const narc_status status = read_exactly(wrong[k].text, strlen(wrong[k].text), NULL, store, &list, &error);
         expect_error(status, wrong[k].status, &error, wrong[k].message);
         assert_int_equal(error.index, wrong[k].line);
@@ -317,10 +315,9 @@ TEST(survives_damage) {
         char text[sizeof every_form + 8];
         memcpy(text, every_form, sizeof every_form);
         const size_t size = damage(&random, text, sizeof every_form - 1);
-        narc_shapes *store = NULL;
         narc_shape_list *list = NULL;
         narc_error error = {.status = NARC_OK};
-        assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+        narc_shapes *store = empty_store();
         const narc_status status = read_exactly(text, size, NULL, store, &list, &error);
         size_t lines = 1;
         for (size_t i = 0; i < size; i++)

@@ -100,6 +100,22 @@ static narc_box random_box(struct test_random *random, double side, double small
     return (narc_box){(float)(x - w), (float)(y - h), (float)(x + w), (float)(y + h)};
 }
 
+static narc_box *allocate_boxes(size_t count) {
+    narc_box *boxes = malloc(count * sizeof *boxes);
+    assert_non_null(boxes);
+    return boxes;
+}
+
+static narc_box box_at(double x, double y, double width, double height) {
+    return (narc_box){(float)x, (float)y, (float)(x + width), (float)(y + height)};
+}
+
+/* Boxes that all overlap. */
+static void fill_one_place(narc_box *boxes, size_t count) {
+    for (size_t k = 0; k < count; k++)
+        boxes[k] = box_at(0, 0, 1, 1);
+}
+
 /* Sizes alike and sizes 1 : 10,000, dense and loose, few and many. */
 TEST(finds_all_pairs_of_random_boxes) {
     struct test_random random = test_random_named("random boxes");
@@ -163,27 +179,15 @@ TEST(sorts_rows_of_all_kinds) {
         narc_box *boxes = malloc(count * sizeof *boxes);
         for (size_t k = 0; k < count; k++) {
             const double part = random_unit(&random), sign = random_below(&random, 2) ? 1 : -1;
-            double x = part * (double)count;
-            switch (trial % KINDS) {
-            case POWERS:
-                x = sign * random_log_between(&random, 1e-30, 1e6);
-                break;
-            case CROWD:
-                x = k == 0 ? 1e30 : x;
-                break;
-            case TWO_CROWDS:
-                x += k % 2 ? 1e20 : 0;
-                break;
-            case ONE_PLACE:
-                x = 5;
-                break;
-            case FAR_APART:
-                x = k < 2 ? (k ? 3e38 : -3e38) : x;
-                break;
-            default:
-                break;
-            }
-            boxes[k] = (narc_box){(float)x, (float)part, (float)(x + 0.5), (float)part + 1};
+            const double x = part * (double)count;
+            const double far = k ? 3e38 : -3e38, powers = sign * random_log_between(&random, 1e-30, 1e6);
+            const double places[KINDS] = {[EVEN] = x,
+                                          [POWERS] = powers,
+                                          [CROWD] = k == 0 ? 1e30 : x,
+                                          [TWO_CROWDS] = x + (k % 2 ? 1e20 : 0),
+                                          [ONE_PLACE] = 5,
+                                          [FAR_APART] = k < 2 ? far : x};
+            boxes[k] = box_at(places[trial % KINDS], part, 0.5, 1);
         }
         check_pairs(broad, boxes, count, NULL);
         free(boxes);
@@ -241,13 +245,14 @@ TEST(filters_pairs) {
         const narc_byte_column kind = NARC_COLUMN(bodies, kind);
         const narc_word_column category = NARC_COLUMN(bodies, category), mask = NARC_COLUMN(bodies, mask);
         const narc_index_column group = NARC_COLUMN(bodies, group);
-        check_pairs(broad, boxes, 200,
-                    &(narc_pair_filter){.kind = kind, .category = category, .mask = mask, .group = group});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){.kind = kind});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){.category = category});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){.mask = mask});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){.group = group});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){0});
+        const narc_pair_filter filters[] = {{.kind = kind, .category = category, .mask = mask, .group = group},
+                                            {.kind = kind},
+                                            {.category = category},
+                                            {.mask = mask},
+                                            {.group = group},
+                                            {.kind = {0}}};
+        for (size_t f = 0; f < sizeof filters / sizeof *filters; f++)
+            check_pairs(broad, boxes, 200, &filters[f]);
     }
     narc_destroy_broad_phase(broad);
 }
@@ -268,16 +273,6 @@ static void check_steps(const char *name, narc_box *boxes, size_t count, double 
         fail_msg("%s: %zu boxes with %zu pairs took %.0f steps", name, count, found, (double)broad->steps);
     narc_destroy_broad_phase(broad);
     free(boxes);
-}
-
-static narc_box *allocate_boxes(size_t count) {
-    narc_box *boxes = malloc(count * sizeof *boxes);
-    assert_non_null(boxes);
-    return boxes;
-}
-
-static narc_box box_at(double x, double y, double width, double height) {
-    return (narc_box){(float)x, (float)y, (float)(x + width), (float)(y + height)};
 }
 
 /* Scenes that a sweep could take the square of the boxes for. `turn`: width for height. */
@@ -324,8 +319,7 @@ TEST(grows_no_faster_than_boxes_and_pairs) {
             check_steps("all sizes", slim, COUNT, 100, 20);
         }
         narc_box *const crowd = allocate_boxes(CROWD);
-        for (size_t k = 0; k < CROWD; k++)
-            crowd[k] = box_at(0, 0, 1, 1);
+        fill_one_place(crowd, CROWD);
         check_steps("one place", crowd, CROWD, 2, 1);
     }
 }
@@ -393,8 +387,7 @@ TEST(takes_memory_for_pairs_alone) {
 TEST(survives_failing_allocations) {
     narc_box boxes[300];
     uint32_t a[45000], b[45000];
-    for (size_t k = 0; k < 300; k++)
-        boxes[k] = (narc_box){0, 0, 1, 1};
+    fill_one_place(boxes, 300);
     bool succeeded = false;
     for (size_t left = 0; !succeeded; left++) {
         struct counter counter = {.left = left};
@@ -416,13 +409,11 @@ TEST(tells_how_much_room_is_needed) {
     size_t found = 0;
     narc_error error;
     narc_broad_phase *broad = create_broad_phase(NULL);
-    for (size_t k = 0; k < 100; k++)
-        boxes[k] = (narc_box){0, 0, 1, 1};
+    fill_one_place(boxes, 100);
     assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, a, b, 10, &found, &error), NARC_ERROR_CAPACITY);
     assert_int_equal(found, 4950);
     assert_int_equal(a[0], 7);
-    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, NULL, NULL, 0, &found, &error),
-                     NARC_ERROR_CAPACITY);
+    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, NULL, NULL, 0, &found, NULL), NARC_ERROR_CAPACITY);
     assert_int_equal(found, 4950);
     narc_destroy_broad_phase(broad);
 }
@@ -434,21 +425,22 @@ TEST(refuses_bad_arguments) {
     size_t found = 9;
     const narc_pairs none = {0}, one = {.count = 1, .a = {&a, 4}, .b = {&b, 4}};
     const narc_pairs broken = {.count = 1, .b = {&b, 4}};
-    assert_int_equal(narc_find_pairs(NULL, &box, 1, NULL, NULL, &a, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_find_pairs(broad, NULL, 1, NULL, NULL, &a, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_find_pairs(broad, &box, 1, NULL, NULL, NULL, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_find_pairs(broad, &box, 1, NULL, NULL, &a, &b, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_find_pairs(broad, &box, (size_t)UINT32_MAX, NULL, NULL, &a, &b, 1, &found, NULL),
-                     NARC_ERROR_ARGUMENT);
+#define REFUSED(call) assert_int_equal(call, NARC_ERROR_ARGUMENT)
+    REFUSED(narc_find_pairs(NULL, &box, 1, NULL, NULL, &a, &b, 1, &found, NULL));
+    REFUSED(narc_find_pairs(broad, NULL, 1, NULL, NULL, &a, &b, 1, &found, NULL));
+    REFUSED(narc_find_pairs(broad, &box, 1, NULL, NULL, NULL, &b, 1, &found, NULL));
+    REFUSED(narc_find_pairs(broad, &box, 1, NULL, NULL, &a, &b, 1, NULL, NULL));
+    REFUSED(narc_find_pairs(broad, &box, UINT32_MAX, NULL, NULL, &a, &b, 1, &found, NULL));
+    REFUSED(narc_match_pairs(NULL, &none, &none, NULL, NULL, NULL));
+    REFUSED(narc_match_pairs(broad, NULL, &none, NULL, NULL, NULL));
+    REFUSED(narc_match_pairs(broad, &none, NULL, NULL, NULL, NULL));
+    REFUSED(narc_match_pairs(broad, &none, &broken, NULL, &match, NULL));
+    REFUSED(narc_match_pairs(broad, &none, &one, NULL, NULL, NULL));
+    REFUSED(narc_create_broad_phase(NULL, NULL));
+#undef REFUSED
     assert_int_equal(found, 9);
-    assert_int_equal(narc_match_pairs(NULL, &none, &none, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, NULL, &none, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, &none, NULL, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, &none, &broken, NULL, &match, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, &none, &one, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_match_pairs(broad, &none, &none, NULL, NULL, NULL), NARC_OK);
     assert_int_equal(match, 5);
-    assert_int_equal(narc_create_broad_phase(NULL, NULL), NARC_ERROR_ARGUMENT);
     narc_destroy_broad_phase(broad);
     narc_destroy_broad_phase(NULL);
 }

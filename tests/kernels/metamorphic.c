@@ -175,8 +175,7 @@ TEST(test_scale_down) { scale_world("scale down", 0x1p-10f); }
 /* A scale of 2 says the same as a shape twice as large. */
 TEST(test_scaled_shapes) {
     struct change change = begin_change("scaled shapes");
-    narc_shapes *larger;
-    assert_int_equal(narc_create_shapes(NULL, &larger), NARC_OK);
+    narc_shapes *larger = empty_store();
     for (size_t k = 0; k < change.scene.shape_count; k++) {
         struct shape shape = change.scene.shapes[k];
         for (size_t i = 0; i < shape.count; i++) {

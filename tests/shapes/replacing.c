@@ -53,9 +53,8 @@ static narc_shapes *create_store(struct ledger *ledger) {
 
 /* A shape that was added to a store of its own has the same bits wherever it is. */
 static void expect_same_shape(const narc_shapes *shapes, uint32_t index, const struct shape *shape) {
-    narc_shapes *fresh = NULL;
-    assert_int_equal(narc_create_shapes(NULL, &fresh), NARC_OK);
-    assert_int_equal(narc_add_shape(fresh, shape->arcs, shape->count, NULL, NULL), NARC_OK);
+    narc_shapes *fresh = empty_store();
+    store_shape(fresh, *shape);
     narc_shape_header header = shapes->headers[index];
     assert_true(header.first_record + narc_count_records(header.count) <= shapes->record_count);
     assert_memory_equal(&shapes->records[header.first_record], &fresh->records[fresh->headers[0].first_record],
@@ -115,14 +114,14 @@ TEST(holds_what_was_put_last) {
                     memcmp(model->shape[k].arcs, shape.arcs, shape.count * sizeof *shape.arcs) == 0)
                     equal = k;
             if (!exists && equal < MODEL_SHAPES) { /* one more use */
-                expect_ok(narc_add_shape(shapes, shape.arcs, shape.count, &added, &error), &error);
+                added = store_shape(shapes, shape);
                 assert_true(model->exists[added]);
                 expect_same_shape(shapes, added, &shape);
                 model->uses[added]++;
             } else if (!exists) { /* add */
                 if (model->removed_count == 0 && model->count == MODEL_SHAPES)
                     continue;
-                expect_ok(narc_add_shape(shapes, shape.arcs, shape.count, &added, &error), &error);
+                added = store_shape(shapes, shape);
                 if (model->removed_count > 0)
                     assert_int_equal(added, model->removed[--model->removed_count]);
                 else
@@ -326,7 +325,6 @@ static void expect_no_answers(const narc_shapes *shapes, const narc_bodies *bodi
 TEST(removed_shapes_collide_with_nothing) {
     static const uint32_t shape[] = {0, 1, 2}, a[] = {0, 1, 0, 1}, b[] = {1, 2, 2, 1};
     static const float zero = 0, one = 1;
-    narc_shapes *shapes = NULL;
     const struct shape polygon = make_polygon(6), large = make_polygon(64);
     const narc_bodies bodies = {.count = 3,
                                 .x = {&zero, 0, NARC_FLOAT32},
@@ -336,7 +334,7 @@ TEST(removed_shapes_collide_with_nothing) {
                                 .shape = NARC_ARRAY(shape)};
     const narc_pairs pairs = {.count = 4, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
     narc_error error;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     for (uint32_t k = 0; k < 3; k++)
         assert_int_equal(narc_add_shape_at(shapes, k, polygon.arcs, polygon.count, NULL), NARC_OK);
     for (size_t run = 0; narc_isa_name(run / 7); run++) {
@@ -414,13 +412,13 @@ TEST(methods_are_never_stale) {
     expect_ok(narc_create_methods(shapes, &allocator, &methods, &error), &error);
     for (int change = 0; change < 4; change++) {
         if (change == 0)
-            assert_int_equal(narc_add_shape(shapes, small.arcs, small.count, NULL, NULL), NARC_OK);
+            store_shape(shapes, small);
         else if (change == 1)
             assert_int_equal(narc_replace_shape(shapes, 0, wide.arcs, wide.count, NULL), NARC_OK);
         else if (change == 2)
             assert_int_equal(narc_remove_shape(shapes, 0, NULL), NARC_OK);
         else
-            assert_int_equal(narc_add_shape(shapes, wide.arcs, wide.count, NULL, NULL), NARC_OK);
+            store_shape(shapes, wide);
         expect_error(ask_boxes(methods, &meet, &error), NARC_ERROR_ARGUMENT, &error, "narc_refresh_methods()");
         ledger.refuses = true;
         expect_error(narc_refresh_methods(methods, &error), NARC_ERROR_MEMORY, &error, "no memory");

@@ -18,12 +18,11 @@ enum { START = 40, AT_VERSION = 8, AT_SIZE = 24, AT_CHECKSUM = 32 };
 
 /* Some shapes of all kinds, some of them used more than once, and holes. */
 static narc_shapes *make_store(struct test_random *random, size_t shapes_per_family) {
-    narc_shapes *shapes = NULL;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     for (size_t k = 0; k < shapes_per_family * FAMILY_COUNT; k++) {
         const struct shape shape = make_shape(random, (enum family)(k % FAMILY_COUNT));
         for (size_t uses = 1 + random_below(random, 2); uses > 0; uses--)
-            assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+            store_shape(shapes, shape);
     }
     for (size_t k = 0; k < shapes_per_family; k++) {
         const uint32_t index = (uint32_t)random_below(random, narc_count_shapes(shapes));
@@ -78,12 +77,9 @@ TEST(loads_what_was_saved) {
         /* It goes on as the saved one does: equal shapes are found, indices come in the same order. */
         for (int k = 0; k < 20; k++) {
             const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
-            uint32_t a, b;
-            assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, &a, NULL), NARC_OK);
-            assert_int_equal(narc_add_shape(loaded, shape.arcs, shape.count, &b, NULL), NARC_OK);
-            assert_int_equal(a, b);
-            assert_int_equal(narc_add_shape(loaded, shape.arcs, shape.count, &b, NULL), NARC_OK);
-            assert_int_equal(a, b);
+            const uint32_t index = store_shape(shapes, shape);
+            assert_int_equal(store_shape(loaded, shape), index);
+            assert_int_equal(store_shape(loaded, shape), index);
         }
         narc_destroy_shapes(shapes);
         narc_destroy_shapes(loaded);
@@ -105,7 +101,7 @@ TEST(loads_shapes_far_from_their_origin) {
             for (size_t i = 0; i < shape.count; i++)
                 shape.arcs[i].center_x += away;
             if (narc_validate_arcs(shape.arcs, shape.count, NULL) == NARC_OK)
-                assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+                store_shape(shapes, shape);
         }
         assert_true(narc_count_shapes(shapes) > 0);
         unsigned char *bytes = save(shapes, &size);
@@ -119,14 +115,12 @@ TEST(loads_shapes_far_from_their_origin) {
 
 /* The bytes of builders' shapes, recorded: the same on every platform. */
 TEST(saves_recorded_bytes) {
-    narc_shapes *shapes = NULL;
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count, size;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     for (int k = 0; k < 8; k++) {
         const double length = 1 + k / 8.0;
-        assert_int_equal(narc_build_box(length, 2, k / 16.0, arcs, &count, NULL), NARC_OK);
-        assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+        store_shape(shapes, box_of(length, 2, k / 16.0));
         assert_int_equal(narc_build_ellipse(length, 0.75, 12, arcs, &count, NULL, NULL), NARC_OK);
         assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
         assert_int_equal(narc_build_segment((narc_point){-1, k}, (narc_point){2, 1}, k % 2, arcs, &count, NULL),
@@ -284,7 +278,7 @@ TEST(forged_bytes_do_no_harm) {
                 assert_int_equal(narc_remove_shape(third, (uint32_t)i, NULL), NARC_OK);
         for (int i = 0; i < 3; i++) {
             const struct shape shape = make_shape(&random, FAMILY_BOX);
-            assert_int_equal(narc_add_shape(third, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+            store_shape(third, shape);
         }
         narc_destroy_shapes(third);
         narc_destroy_shapes(loaded);

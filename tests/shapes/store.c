@@ -38,11 +38,10 @@ TEST(keeps_many_shapes) {
     enum { KINDS = 20 * FAMILY_COUNT, SHAPES = 70000 };
     struct test_random random = test_random_named("many shapes");
     struct shape *kinds = malloc(KINDS * sizeof *kinds);
-    narc_shapes *shapes = NULL;
     narc_error error;
     for (size_t k = 0; k < KINDS; k++)
         kinds[k] = make_shape(&random, (enum family)(k % FAMILY_COUNT));
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     assert_int_equal(narc_count_shapes(shapes), 0);
     for (size_t k = 0; k < SHAPES; k++) {
         const struct shape *kind = &kinds[k % KINDS];
@@ -117,8 +116,7 @@ static void expect_box(const struct shape *shape, const narc_shape_header *heade
 /* The layout that the kernels rely on. */
 TEST(lays_out_blocks) {
     struct test_random random = test_random_named("blocks");
-    narc_shapes *shapes = NULL;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     for (size_t k = 0; k < 40 * FAMILY_COUNT; k++) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         assert_int_equal(narc_add_shape_at(shapes, (uint32_t)k, shape.arcs, shape.count, NULL), NARC_OK);
@@ -157,9 +155,8 @@ TEST(lays_out_blocks) {
 TEST(methods_have_boxes) {
     enum { SHAPES = 40 * FAMILY_COUNT };
     struct test_random random = test_random_named("blocks");
-    narc_shapes *shapes = NULL;
     narc_methods *methods = NULL;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     for (size_t k = 0; k < SHAPES; k++) {
         const struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         assert_int_equal(narc_add_shape_at(shapes, (uint32_t)k, shape.arcs, shape.count, NULL), NARC_OK);
@@ -184,11 +181,10 @@ TEST(methods_have_boxes) {
 
 /* Multiples of a quarter turn are stored as exact zeros and ones, whole turns added or not. */
 TEST(stores_exact_quarter_turns) {
-    narc_shapes *shapes = NULL;
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     const float x[4] = {1, 0, -1, 0}, y[4] = {0, 1, 0, -1};
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     assert_int_equal(narc_build_box(2, 1, 0.25, arcs, &count, NULL), NARC_OK);
     for (int turns = -3; turns <= 3; turns++) {
         narc_arc turned[4];
@@ -215,11 +211,10 @@ static unsigned add_and_get_flags(narc_shapes *shapes, const narc_arc *arcs, siz
 }
 
 TEST(knows_what_shapes_are) {
-    narc_shapes *shapes = NULL;
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     const narc_point rhombus[4] = {{2, 0}, {0, 1}, {-2, 0}, {0, -1}}, square[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     narc_build_circle(1, arcs, &count, NULL);
     assert_int_equal(add_and_get_flags(shapes, arcs, count),
                      NARC_SHAPE_SMOOTH | NARC_SHAPE_CIRCLE | NARC_SHAPE_CENTERS_INSIDE);
@@ -242,17 +237,15 @@ TEST(knows_what_shapes_are) {
 /* The filters' circles hold for the shape that was stored, and are not much larger or smaller than they must be. */
 TEST(bounds_what_is_stored) {
     struct test_random random = test_random_named("bounds");
-    narc_shapes *shapes = NULL;
     /* The room that is promised, less or more what rounding the arcs and the circle itself takes. */
     const double least = NARC_ROUNDING_ROOM - 8 * ulp, most = NARC_ROUNDING_ROOM + 8 * ulp;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     for (size_t k = 0; k < test_trials(100) * FAMILY_COUNT; k++) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         narc_arc arcs[NARC_MAX_ARCS];
-        uint32_t index;
         narc_circle bound, inner;
         double extent = 0;
-        assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, &index, NULL), NARC_OK);
+        const uint32_t index = store_shape(shapes, shape);
         size_t count = narc_get_arcs(shapes, index, arcs);
         for (size_t i = 0; i < count; i++)
             extent = fmax(extent, hypot(arcs[i].center_x, arcs[i].center_y) + arcs[i].radius);

@@ -172,6 +172,19 @@ struct shape capsule_of(double length, double radius) {
     return shape;
 }
 
+narc_shapes *empty_store(void) {
+    narc_shapes *store = NULL;
+    assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+    return store;
+}
+
+uint32_t store_shape(narc_shapes *store, struct shape shape) {
+    uint32_t index = UINT32_MAX;
+    narc_error error;
+    require_ok(narc_add_shape(store, shape.arcs, shape.count, &index, &error), &error);
+    return index;
+}
+
 static struct shape make_box(struct test_random *random, double width, double height) {
     return box_of(width, height, random_below(random, 3) ? 0 : fmin(width, height) * random_between(random, 0.0, 0.5));
 }
