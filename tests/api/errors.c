@@ -14,11 +14,6 @@
 
 enum { PAIRS = 200, BODIES = 30, METHODS = 7 };
 
-static struct scene make_scene(void) {
-    struct test_random random = test_random_named("errors");
-    return make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
-}
-
 static bool has_contacts(narc_method method) { return method < NARC_METHOD_CIRCLE; }
 
 /* Outputs of all calls. */
@@ -115,7 +110,8 @@ struct fixture {
 };
 
 static void set_up(struct fixture *f) {
-    f->scene = make_scene();
+    struct test_random random = test_random_named("errors");
+    f->scene = make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
     f->bodies = scene_bodies(&f->scene);
     f->pairs = scene_pairs(&f->scene);
     f->call = (struct call){.shapes = f->scene.store,

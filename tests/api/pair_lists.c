@@ -92,13 +92,8 @@ static bool meet(const wide_box *a, const wide_box *b) {
 }
 
 static bool may_pair(const body *a, const body *b) {
-    if (a->kind & NARC_STATIC && b->kind & NARC_STATIC)
-        return false;
-    if (a->kind & NARC_SENSOR && b->kind & NARC_SENSOR)
-        return false;
-    if (a->group == b->group && a->group != 0)
-        return false;
-    return (a->category & b->mask) && (b->category & a->mask);
+    return !(a->kind & b->kind & (NARC_STATIC | NARC_SENSOR)) && (a->group != b->group || a->group == 0) &&
+           (a->category & b->mask) && (b->category & a->mask);
 }
 
 static bool is_at_rest(const body *b) { return b->kind & (NARC_STATIC | NARC_ASLEEP); }
@@ -513,13 +508,12 @@ TEST(lists_all_bodies_that_are_close) {
 TEST(notices_shapes_that_change) {
     const struct shape large = circle_of(2.25);
     narc_broad_phase *broad = create_broad_phase(NULL);
-    const narc_pair_list *list;
     const narc_pair_options options = {.skin = 0.125f};
     narc_shapes *shapes = empty_store();
     const uint32_t small = store_shape(shapes, circle_of(0.5)), other = store_shape(shapes, circle_of(0.51));
     disc discs[] = {{0, 0, 1, 0, 0, 0, small}, {3, 0, 1, 0, 0, 0, other}};
     const narc_bodies bodies = view(discs, 2);
-    list = update(broad, shapes, &bodies, &options);
+    const narc_pair_list *list = update(broad, shapes, &bodies, &options);
     assert_int_equal(list->pairs.count, 0);
     assert_int_equal(narc_replace_shape(shapes, small, large.arcs, large.count, NULL), NARC_OK);
     list = update(broad, shapes, &bodies, &options);
@@ -554,13 +548,12 @@ TEST(allocates_nothing_once_it_has_grown) {
     uint64_t ids[COUNT];
     size_t after = 0;
     for (int step = 0; step < STEPS; step++) {
-        const narc_pair_list *list;
         const narc_pair_options options = {.margin = 0.5f, .skin = 0.125f, .id = NARC_ARRAY(ids), .workers = &workers};
         for (size_t k = 0; k < COUNT && step % 2 == 0; k++) { /* all others, and all in other places */
             boxes[k] = random_box(&random, 60);
             ids[k] = random_bits(&random);
         }
-        list = update_boxes(broad, boxes, COUNT, &options);
+        const narc_pair_list *list = update_boxes(broad, boxes, COUNT, &options);
         assert_int_equal(list->kept, step % 2 == 1);
         assert_true(list->kept || list->added_count == list->pairs.count);
         if (step == 7)
@@ -639,11 +632,10 @@ TEST(keeps_no_list_that_was_not_made) {
     narc_box boxes[COUNT];
     struct counter counter = {.left = SIZE_MAX};
     const narc_pair_options options = {.skin = 0.125f};
-    const narc_pair_list *list;
     narc_broad_phase *broad = create_broad_phase(&counter);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){2 * (float)k, 0, 2 * (float)k + 1, 1};
-    list = update_boxes(broad, boxes, COUNT, &options);
+    const narc_pair_list *list = update_boxes(broad, boxes, COUNT, &options);
     assert_int_equal(list->pairs.count, 0);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){0, 0, 1, 1};
@@ -663,9 +655,8 @@ TEST(marks_bodies_that_change_their_order) {
     narc_box boxes[] = {{0, 0, 1, 1}, {0, 0, 1, 1}};
     const uint64_t ids[] = {7, 9}, others[] = {9, 7};
     narc_pair_options options = {.id = NARC_ARRAY(ids)};
-    const narc_pair_list *list;
     narc_broad_phase *broad = create_broad_phase(NULL);
-    list = update_boxes(broad, boxes, 2, &options);
+    const narc_pair_list *list = update_boxes(broad, boxes, 2, &options);
     assert_int_equal(list->marks[0], 0);
     options.id = NARC_ARRAY(others);
     list = update_boxes(broad, boxes, 2, &options);
@@ -697,11 +688,11 @@ TEST(refuses_bad_arguments) {
     narc_box boxes[] = {{0, 0, 1, 1}, {1, 0, 2, 1}, {0, 0, 1, 2}};
     const uint64_t ids[] = {5, 6, 7}, twice[] = {6, 5, 5};
     narc_pair_options options = {.id = NARC_ARRAY(ids)};
-    const narc_pair_list *list = NULL, *before = NULL;
+    const narc_pair_list *list = NULL;
     narc_broad_phase *broad = create_broad_phase(NULL);
     narc_error error;
     narc_shapes *shapes = empty_store();
-    before = update_boxes(broad, boxes, 3, &options);
+    const narc_pair_list *const before = update_boxes(broad, boxes, 3, &options);
     assert_int_equal(before->pairs.count, 3);
     assert_int_equal(narc_update_box_pairs(NULL, boxes, 3, NULL, &list, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_update_box_pairs(broad, NULL, 3, NULL, &list, NULL), NARC_ERROR_ARGUMENT);

@@ -54,22 +54,14 @@ TEST(test_sines) {
     struct worst cosine = {0}, sine = {0};
     const size_t trials = test_trials(400000);
     for (size_t k = 0; k < trials; k++) {
-        double x = 0, c, s;
-        switch (k % 4) {
-        case 0:
-            x = random_between(&random, -7, 7);
-            break;
-        case 1:
-            x = random_size(&random, -40, 20);
-            break;
-        case 2:
-            x = random_size(&random, 20, 1024);
-            break;
-        case 3: /* next to multiples of a quarter turn */
+        double x = k % 4 == 0   ? random_between(&random, -7, 7)
+                   : k % 4 == 1 ? random_size(&random, -40, 20)
+                                : random_size(&random, 20, 1024);
+        double c, s;
+        if (k % 4 == 3) { /* next to multiples of a quarter turn */
             x = (double)random_below(&random, k % 8 == 3 ? 16 : 1 << 24) * 1.57079632679489662;
             for (size_t i = random_below(&random, 3); i > 0; i--)
                 x = nextafter(x, INFINITY);
-            break;
         }
         x = random_sign(&random, x);
         narc_find_cosine(x, &c, &s);
@@ -96,13 +88,10 @@ TEST(test_arc_tangents) {
             y = x * random_size(&random, -60, 2);
         if (k % 3 == 1) /* about the places where the eighth changes */
             y = x * (double)(1 + random_below(&random, 16)) / 16 * (1 + (random_unit(&random) - 0.5) * 0x1p-50);
-        if (random_below(&random, 2)) {
-            const double kept = x;
-            x = y;
-            y = kept;
-        }
-        x = random_sign(&random, x);
-        y = random_sign(&random, y);
+        const bool turned = random_below(&random, 2);
+        const double longer = random_sign(&random, x), shorter = random_sign(&random, y);
+        x = turned ? shorter : longer;
+        y = turned ? longer : shorter;
         look(&tangent, narc_atan2(y, x), atan2l((long double)y, (long double)x), y, x);
         const double s = random_sign(&random, k % 2 ? random_unit(&random) : 1 - random_size(&random, -52, -1));
         look(&sine, narc_asin(s), asinl((long double)s), s, 0);
