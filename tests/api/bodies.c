@@ -3,46 +3,25 @@
  * bodies.c - narc_validate_bodies(): each kind of bad number, and which body the message names; drifted rotations.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "families.h"
 #include "narc.h"
 
 enum { COUNT = 5, BAD = 3 };
 
-struct body {
-    double x, y;
-    float cosine, sine, scale;
-    uint32_t shape;
-};
-
 struct fixture {
     narc_shapes *shapes;
-    struct body body[COUNT];
+    narc_body body[COUNT];
     narc_bodies bodies;
 };
 
 static void set_up(struct fixture *f) {
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t count;
-    f->shapes = NULL;
-    assert_int_equal(narc_create_shapes(NULL, &f->shapes), NARC_OK);
-    assert_int_equal(narc_build_circle(2, arcs, &count, NULL), NARC_OK);
-    assert_int_equal(narc_add_shape(f->shapes, arcs, count, NULL, NULL), NARC_OK);
+    f->shapes = empty_store();
+    store_shape(f->shapes, circle_of(2));
     for (int k = 0; k < COUNT; k++)
-        f->body[k] = (struct body){k, -k, 0.6f, 0.8f, 1, 0};
-    f->bodies = (narc_bodies){.count = COUNT,
-                              .x = NARC_POSITION_COLUMN(f->body, x),
-                              .y = NARC_POSITION_COLUMN(f->body, y),
-                              .cosine = NARC_COLUMN(f->body, cosine),
-                              .sine = NARC_COLUMN(f->body, sine),
-                              .scale = NARC_COLUMN(f->body, scale),
-                              .shape = NARC_COLUMN(f->body, shape)};
+        f->body[k] = (narc_body){k, -k, 0.6f, 0.8f, 1, 0};
+    f->bodies = narc_view_bodies(f->body, COUNT);
 }
 
 static void expect(struct fixture *f, narc_status status, const char *words) {
@@ -55,8 +34,7 @@ static void expect(struct fixture *f, narc_status status, const char *words) {
     assert_int_equal(narc_validate_bodies(f->shapes, &f->bodies, NULL), status);
 }
 
-static void test_good_bodies(void **state) {
-    (void)state;
+TEST(test_good_bodies) {
     struct fixture f;
     set_up(&f);
     narc_error error = {.status = NARC_ERROR_MEMORY};
@@ -69,81 +47,56 @@ static void test_good_bodies(void **state) {
     narc_destroy_shapes(f.shapes);
 }
 
-static void test_bad_numbers(void **state) {
-    (void)state;
+TEST(test_bad_numbers) {
     struct fixture f;
     set_up(&f);
-    struct body good = f.body[BAD], *bad = &f.body[BAD];
-    bad->shape = 1;
-    expect(&f, NARC_ERROR_INDEX, "shape is 1");
-    *bad = good;
-    bad->x = NAN;
-    expect(&f, NARC_ERROR_NOT_FINITE, "x is");
-    *bad = good;
-    bad->y = INFINITY;
-    expect(&f, NARC_ERROR_NOT_FINITE, "y is inf");
-    *bad = good;
-    bad->cosine = NAN;
-    expect(&f, NARC_ERROR_NOT_FINITE, "cosine");
-    *bad = good;
-    bad->sine = -INFINITY;
-    expect(&f, NARC_ERROR_NOT_FINITE, "sine");
-    *bad = good;
-    bad->sine = 0.801f;
-    expect(&f, NARC_ERROR_ARGUMENT, "length 1.0008");
-    *bad = good;
-    bad->scale = 0;
-    expect(&f, NARC_ERROR_SIZE, "scale is 0");
-    bad->scale = -1;
-    expect(&f, NARC_ERROR_SIZE, "scale is -1");
-    bad->scale = NAN;
-    expect(&f, NARC_ERROR_SIZE, "scale is");
-    bad->scale = 1e9f;
-    expect(&f, NARC_ERROR_SIZE, "radius is then 2");
+    const float c = 0.6f, s = 0.8f;
+    const struct {
+        narc_body body;
+        narc_status status;
+        const char *words;
+    } cases[] = {
+        {{1, 1, c, s, 1, 1}, NARC_ERROR_INDEX, "shape is 1"},
+        {{NAN, 1, c, s, 1, 0}, NARC_ERROR_NOT_FINITE, "x is"},
+        {{1, INFINITY, c, s, 1, 0}, NARC_ERROR_NOT_FINITE, "y is inf"},
+        {{1, 1, NAN, s, 1, 0}, NARC_ERROR_NOT_FINITE, "cosine"},
+        {{1, 1, c, -INFINITY, 1, 0}, NARC_ERROR_NOT_FINITE, "sine"},
+        {{1, 1, c, 0.801f, 1, 0}, NARC_ERROR_ARGUMENT, "length 1.0008"},
+        {{1, 1, c, s, 0, 0}, NARC_ERROR_SIZE, "scale is 0"},
+        {{1, 1, c, s, -1, 0}, NARC_ERROR_SIZE, "scale is -1"},
+        {{1, 1, c, s, NAN, 0}, NARC_ERROR_SIZE, "scale is"},
+        {{1, 1, c, s, 1e9f, 0}, NARC_ERROR_SIZE, "radius is then 2"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        f.body[BAD] = cases[k].body;
+        expect(&f, cases[k].status, cases[k].words);
+    }
     narc_destroy_shapes(f.shapes);
 }
 
-static void test_bad_arguments(void **state) {
-    (void)state;
+TEST(test_bad_arguments) {
     struct fixture f;
     set_up(&f);
     assert_int_equal(narc_validate_bodies(NULL, &f.bodies, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_validate_bodies(f.shapes, NULL, NULL), NARC_ERROR_ARGUMENT);
+    const narc_bodies good = f.bodies;
+    const void **const bases[] = {&f.bodies.x.base, &f.bodies.y.base, (const void **)&f.bodies.cosine.base,
+                                  (const void **)&f.bodies.sine.base, (const void **)&f.bodies.shape.base};
     for (int k = 0; k < 6; k++) {
-        narc_bodies bodies = f.bodies;
-        switch (k) {
-        case 0:
-            bodies.x.base = NULL;
-            break;
-        case 1:
-            bodies.y.base = NULL;
-            break;
-        case 2:
-            bodies.cosine.base = NULL;
-            break;
-        case 3:
-            bodies.sine.base = NULL;
-            break;
-        case 4:
-            bodies.shape.base = NULL;
-            break;
-        default:
-            bodies.y.precision = NARC_FLOAT32;
-            break;
-        }
-        assert_int_equal(narc_validate_bodies(f.shapes, &bodies, NULL), NARC_ERROR_ARGUMENT);
+        if (k < 5)
+            *bases[k] = NULL;
+        else
+            f.bodies.y.precision = NARC_FLOAT32;
+        assert_int_equal(narc_validate_bodies(f.shapes, &f.bodies, NULL), NARC_ERROR_ARGUMENT);
+        f.bodies = good;
     }
     narc_destroy_shapes(f.shapes);
 }
 
 /* The separation of two boxes, B at the given place and rotation, A at the origin; +infinity if they have none. */
 static float separation_of_boxes(float x, float y, float cosine, float sine) {
-    narc_shapes *shapes = NULL;
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t count;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    assert_int_equal(narc_build_box(2, 1, 0.25, arcs, &count, NULL), NARC_OK);
-    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+    narc_shapes *shapes = empty_store();
+    store_shape(shapes, box_of(2, 1, 0.25));
     const narc_body body[] = {
         {(double)x, (double)y, cosine, sine, 1, 0}, {0, 0, 1, 0, 1, 0}, {(double)x, (double)y, cosine, sine, 1, 0}};
     float separation[2];
@@ -151,6 +104,7 @@ static float separation_of_boxes(float x, float y, float cosine, float sine) {
         const narc_bodies bodies = narc_view_bodies(&body[k], 2);
         const narc_query query = {.margin = INFINITY};
         narc_contact contact;
+        size_t count;
         assert_int_equal(
             narc_find_contacts(shapes, &bodies, &(narc_pairs){.count = 1}, &query, &contact, 1, &count, NULL), NARC_OK);
         separation[k] = contact.separation;
@@ -162,8 +116,7 @@ static float separation_of_boxes(float x, float y, float cosine, float sine) {
 
 /* A rotation that has drifted from the unit circle is taken as the rotation it was; one that is far off has no
  * answer. */
-static void test_drifted_rotations(void **state) {
-    (void)state;
+TEST(test_drifted_rotations) {
     const float exact = separation_of_boxes(1.5f, 0.75f, 0.6f, 0.8f);
     for (float drift = -2.4e-4f; drift < 2.4e-4f; drift += 0.1e-4f) {
         const float drifted = separation_of_boxes(1.5f, 0.75f, 0.6f * (1 + drift), 0.8f * (1 + drift));
@@ -175,8 +128,7 @@ static void test_drifted_rotations(void **state) {
 }
 
 /* The kernels take a drifted rotation as the rotation it was, and so must the box that a broad phase uses. */
-static void test_box_of_drifted_rotation(void **state) {
-    (void)state;
+TEST(test_box_of_drifted_rotation) {
     struct fixture f;
     set_up(&f);
     narc_aabb box;
@@ -193,7 +145,7 @@ static void test_box_of_drifted_rotation(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ columns */
 
-static const struct body two_bodies[] = {{1, 2, 1, 0, 1, 0}, {3, 4, 1, 0, 1, 0}};
+static const narc_body two_bodies[] = {{1, 2, 1, 0, 1, 0}, {3, 4, 1, 0, 1, 0}};
 static const float numbers[] = {5, 6, 7};
 static const narc_index_column constant_column = NARC_COLUMN_INIT(two_bodies, shape);
 static const narc_bodies constant_bodies = {.count = 2,
@@ -208,8 +160,7 @@ static const narc_bodies constant_bodies = {.count = 2,
     } while (0)
 
 /* Columns are values, wherever a value may stand; constants are the initialisers of static objects. */
-static void test_columns(void **state) {
-    (void)state;
+TEST(test_columns) {
     narc_bodies bodies = {.count = 2, .x = NARC_POSITION_COLUMN(two_bodies, x), .sine = NARC_ARRAY(numbers)};
     EXPECT_COLUMN(bodies.x, &two_bodies[0].x, sizeof two_bodies[0]);
     EXPECT_COLUMN(bodies.sine, numbers, sizeof(float));
@@ -228,14 +179,4 @@ static void test_columns(void **state) {
     EXPECT_COLUMN(bytes, flags, 1);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_good_bodies),
-        cmocka_unit_test(test_bad_numbers),
-        cmocka_unit_test(test_bad_arguments),
-        cmocka_unit_test(test_drifted_rotations),
-        cmocka_unit_test(test_box_of_drifted_rotation),
-        cmocka_unit_test(test_columns),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+int main(void) { return test_run("bodies", NULL, NULL); }

@@ -84,10 +84,7 @@ static void require_error(narc_status expected, const char *name) {
 
 static void unknown_isa(void) { require_error(NARC_ERROR_ISA_UNKNOWN, "sse9"); }
 
-static void test_unknown(void **state) {
-    (void)state;
-    run_child("sse9", unknown_isa);
-}
+TEST(test_unknown) { run_child("sse9", unknown_isa); }
 
 static const char *unsupported_name(void) {
     for (size_t k = 0; narc_isa_name(k); k++)
@@ -99,8 +96,7 @@ static const char *unsupported_name(void) {
 static void unsupported_isa(void) { require_error(NARC_ERROR_ISA_UNSUPPORTED, unsupported_name()); }
 
 /* No processor has both NEON and AVX. */
-static void test_unsupported(void **state) {
-    (void)state;
+TEST(test_unsupported) {
     assert_non_null(unsupported_name());
     run_child(unsupported_name(), unsupported_isa);
 }
@@ -113,8 +109,7 @@ static void supported_isa(void) {
     narc_destroy_shapes(batch.shapes);
 }
 
-static void test_supported(void **state) {
-    (void)state;
+TEST(test_supported) {
     for (size_t k = 0; narc_isa_name(k); k++)
         if (narc_isa_supported(narc_isa_name(k)))
             run_child(narc_isa_name(k), supported_isa);
@@ -131,10 +126,7 @@ static void best_isa(void) {
     REQUIRE(strcmp(narc_get_isa(), narc_isa_name(best)) == 0);
 }
 
-static void test_best(void **state) {
-    (void)state;
-    run_child(NULL, best_isa);
-}
+TEST(test_best) { run_child(NULL, best_isa); }
 
 /* A choice that fails leaves the one before. */
 static void set_isa(void) {
@@ -153,10 +145,7 @@ static void set_isa(void) {
     }
 }
 
-static void test_set_isa(void **state) {
-    (void)state;
-    run_child(NULL, set_isa);
-}
+TEST(test_set_isa) { run_child(NULL, set_isa); }
 
 static bool has_feature(const char *name) {
     for (size_t k = 0; narc_cpu_feature(k); k++)
@@ -166,8 +155,7 @@ static bool has_feature(const char *name) {
 }
 
 /* As the compiler's own library finds them. */
-static void test_features(void **state) {
-    (void)state;
+TEST(test_features) {
 #if defined(__x86_64__)
     assert_int_equal(has_feature("avx2"), __builtin_cpu_supports("avx2") != 0);
     assert_int_equal(has_feature("bmi2"), __builtin_cpu_supports("bmi2") != 0);
@@ -182,8 +170,7 @@ static void test_features(void **state) {
     assert_null(narc_cpu_feature(SIZE_MAX));
 }
 
-static void test_names(void **state) {
-    (void)state;
+TEST(test_names) {
     char version[32];
     snprintf(version, sizeof(version), "%d.%d.%d", NARC_VERSION_MAJOR, NARC_VERSION_MINOR, NARC_VERSION_PATCH);
     assert_string_equal(narc_version(), version);
@@ -218,11 +205,4 @@ static void test_names(void **state) {
     assert_string_equal(narc_status_name((narc_status)999), "unknown status");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_unknown),  cmocka_unit_test(test_unsupported), cmocka_unit_test(test_supported),
-        cmocka_unit_test(test_best),     cmocka_unit_test(test_set_isa),     cmocka_unit_test(test_names),
-        cmocka_unit_test(test_features),
-    };
-    return cmocka_run_group_tests_name("environment", tests, NULL, NULL);
-}
+int main(void) { return test_run("environment", NULL, NULL); }

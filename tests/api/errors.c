@@ -14,11 +14,6 @@
 
 enum { PAIRS = 200, BODIES = 30, METHODS = 7 };
 
-static struct scene make_scene(void) {
-    struct test_random random = test_random_named("errors");
-    return make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
-}
-
 static bool has_contacts(narc_method method) { return method < NARC_METHOD_CIRCLE; }
 
 /* Outputs of all calls. */
@@ -115,7 +110,8 @@ struct fixture {
 };
 
 static void set_up(struct fixture *f) {
-    f->scene = make_scene();
+    struct test_random random = test_random_named("errors");
+    f->scene = make_random_scene(&random, NARC_FLOAT32, BODIES, PAIRS);
     f->bodies = scene_bodies(&f->scene);
     f->pairs = scene_pairs(&f->scene);
     f->call = (struct call){.shapes = f->scene.store,
@@ -127,8 +123,7 @@ static void set_up(struct fixture *f) {
 
 /* ------------------------------------------------------------------------------------------------ arguments */
 
-static void test_options(void **state) {
-    (void)state;
+TEST(test_options) {
     struct fixture f;
     set_up(&f);
     static const int bad_methods[] = {METHODS, 100, -1, INT32_MAX, INT32_MIN};
@@ -154,8 +149,7 @@ static void test_options(void **state) {
     destroy_scene(&f.scene);
 }
 
-static void test_queries(void **state) {
-    (void)state;
+TEST(test_queries) {
     struct fixture f;
     set_up(&f);
     static const struct {
@@ -187,8 +181,7 @@ static void test_queries(void **state) {
     destroy_scene(&f.scene);
 }
 
-static void test_null_arguments(void **state) {
-    (void)state;
+TEST(test_null_arguments) {
     struct fixture f;
     set_up(&f);
     struct call call = f.call;
@@ -241,8 +234,7 @@ static void test_null_arguments(void **state) {
 }
 
 /* A pair that names a body there is not; the first such pair is the one that is told. */
-static void test_body_index(void **state) {
-    (void)state;
+TEST(test_body_index) {
     static const uint32_t wrong[] = {BODIES, 99991, 0x80000000u, UINT32_MAX};
     for (int k = 0; k < 8; k++) {
         struct fixture f;
@@ -257,8 +249,7 @@ static void test_body_index(void **state) {
 }
 
 /* Several threads look; the first wrong pair of all is still the one that is told. */
-static void test_first_wrong_pair(void **state) {
-    (void)state;
+TEST(test_first_wrong_pair) {
     struct test_random random = test_random_named("first wrong pair");
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, 9000);
     const narc_bodies bodies = scene_bodies(&scene);
@@ -278,8 +269,7 @@ static void test_first_wrong_pair(void **state) {
     destroy_scene(&scene);
 }
 
-static void test_shape_index(void **state) {
-    (void)state;
+TEST(test_shape_index) {
     struct fixture f;
     set_up(&f);
     for (size_t k = 0; k < PAIRS; k++)
@@ -294,8 +284,7 @@ static void test_shape_index(void **state) {
 
 /* A selection that names a pair there is not, or a pair that names a body there is not. What is not asked of may be
  * wrong. */
-static void test_selections(void **state) {
-    (void)state;
+TEST(test_selections) {
     struct fixture f;
     set_up(&f);
     uint32_t selection[] = {150, 3, PAIRS, 7};
@@ -320,8 +309,7 @@ static void test_selections(void **state) {
 }
 
 /* No body at all, and no shape at all. */
-static void test_empty_tables(void **state) {
-    (void)state;
+TEST(test_empty_tables) {
     struct fixture f;
     set_up(&f);
     const struct scene empty = create_scene(NARC_FLOAT32, 0, 0, 0);
@@ -336,8 +324,7 @@ static void test_empty_tables(void **state) {
     destroy_scene(&f.scene);
 }
 
-static void test_too_many_pairs(void **state) {
-    (void)state;
+TEST(test_too_many_pairs) {
 #if SIZE_MAX > UINT32_MAX
     struct fixture f;
     set_up(&f);
@@ -349,8 +336,7 @@ static void test_too_many_pairs(void **state) {
 #endif
 }
 
-static void test_ranges(void **state) {
-    (void)state;
+TEST(test_ranges) {
     struct fixture f;
     set_up(&f);
     static const size_t bad_anywhere[][2] = {{PAIRS, 1},          {0, PAIRS + 1},       {192, 9}, {SIZE_MAX - 63, 64},
@@ -376,8 +362,7 @@ static void test_ranges(void **state) {
     destroy_scene(&f.scene);
 }
 
-static void test_outputs(void **state) {
-    (void)state;
+TEST(test_outputs) {
     struct fixture f;
     set_up(&f);
     const narc_shapes *store = f.scene.store;
@@ -420,12 +405,9 @@ static void test_outputs(void **state) {
 }
 
 /* The first pair whose shape is not a polygon is the one that is told, and the shape and the body. */
-static void test_not_a_polygon(void **state) {
-    (void)state;
+TEST(test_not_a_polygon) {
     struct scene scene = create_scene(NARC_FLOAT32, 2, 40, PAIRS);
-    struct shape box, round;
-    assert_int_equal(narc_build_box(1, 1, 0, box.arcs, &box.count, NULL), NARC_OK);
-    assert_int_equal(narc_build_box(1, 1, 0.1, round.arcs, &round.count, NULL), NARC_OK);
+    const struct shape box = box_of(1, 1, 0), round = box_of(1, 1, 0.1);
     scene_add_shape(&scene, &box);
     scene_add_shape(&scene, &round);
     for (uint32_t k = 0; k < 40; k++) {
@@ -450,8 +432,7 @@ static void test_not_a_polygon(void **state) {
 }
 
 /* No pairs: nothing is needed, nothing is written. */
-static void test_no_pairs(void **state) {
-    (void)state;
+TEST(test_no_pairs) {
     struct fixture f;
     set_up(&f);
     struct outputs *out = make_junk(sizeof *out);
@@ -475,8 +456,7 @@ static void test_no_pairs(void **state) {
     destroy_scene(&f.scene);
 }
 
-static void test_names(void **state) {
-    (void)state;
+TEST(test_names) {
     static const char *const names[METHODS] = {"sat", "sat-first", "polygon-sat", "gjk", "circle", "aabb", "obb"};
     for (int method = 0; method < METHODS; method++)
         assert_string_equal(narc_method_name((narc_method)method), names[method]);
@@ -487,8 +467,7 @@ static void test_names(void **state) {
 /* ------------------------------------------------------------------------------------------------ capacity */
 
 /* What fits is the start of the list; hints and outcomes are as with enough room. */
-static void test_capacity(void **state) {
-    (void)state;
+TEST(test_capacity) {
     enum { MANY = 3000 };
     struct test_random random = test_random_named("method capacity");
     static const narc_method methods[] = {NARC_METHOD_SAT, NARC_METHOD_SAT_FIRST, NARC_METHOD_GJK};
@@ -535,8 +514,7 @@ static void test_capacity(void **state) {
 static struct scene make_spoilt_scene(void) {
     static const float spoilt[] = {NAN, INFINITY, -INFINITY};
     struct scene scene = create_scene(NARC_FLOAT32, 1, 64, 64);
-    struct shape box;
-    assert_int_equal(narc_build_box(1, 1, 0, box.arcs, &box.count, NULL), NARC_OK);
+    const struct shape box = box_of(1, 1, 0);
     scene_add_shape(&scene, &box);
     const uint32_t good = scene_add_body(&scene, turned_body(0.5, 1));
     for (int k = 0; k < 19; k++) {
@@ -559,8 +537,7 @@ static struct scene make_spoilt_scene(void) {
     return scene;
 }
 
-static void test_invalid_bodies(void **state) {
-    (void)state;
+TEST(test_invalid_bodies) {
     struct scene scene = make_spoilt_scene();
     const size_t count = scene.pair_count;
     for (int method = 0; method < METHODS; method++) {
@@ -591,16 +568,4 @@ static void test_invalid_bodies(void **state) {
     destroy_scene(&scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_options),          cmocka_unit_test(test_queries),
-        cmocka_unit_test(test_null_arguments),   cmocka_unit_test(test_body_index),
-        cmocka_unit_test(test_first_wrong_pair), cmocka_unit_test(test_shape_index),
-        cmocka_unit_test(test_selections),       cmocka_unit_test(test_empty_tables),
-        cmocka_unit_test(test_too_many_pairs),   cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_outputs),          cmocka_unit_test(test_not_a_polygon),
-        cmocka_unit_test(test_no_pairs),         cmocka_unit_test(test_names),
-        cmocka_unit_test(test_capacity),         cmocka_unit_test(test_invalid_bodies),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("errors", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("errors")

@@ -15,8 +15,7 @@ static int compare_pairs(const void *one, const void *other) {
 }
 
 /* Lists in order and not, with pairs that stand twice, and their reverses. */
-static void matches_as_a_search_does(void **state) {
-    (void)state;
+TEST(matches_as_a_search_does) {
     struct test_random random = test_random_named("matches");
     narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t trial = 0; trial < test_trials(80); trial++) {
@@ -52,8 +51,7 @@ static void matches_as_a_search_does(void **state) {
 }
 
 /* Lists whose only disorder is anywhere, where parts for threads meet among others. */
-static void matches_lists_with_one_disorder(void **state) {
-    (void)state;
+TEST(matches_lists_with_one_disorder) {
     enum { COUNT = 40000, PART = 16384 };
     static uint32_t a[COUNT], b[COUNT], match[COUNT];
     static const size_t places[] = {1, PART - 1, PART, PART + 1, 2 * PART, COUNT - 1};
@@ -114,8 +112,7 @@ static uint64_t choose_small_second_products(uint64_t k) {
 }
 
 /* Whoever chooses the pairs of a list, matching does not look at all old pairs for each, which would not end here. */
-static void matches_lists_that_were_chosen_badly(void **state) {
-    (void)state;
+TEST(matches_lists_that_were_chosen_badly) {
     static uint64_t (*const choose[])(uint64_t) = {
         choose_regular,        choose_far_apart,       choose_grid,
         choose_small_products, choose_folded_products, choose_small_second_products};
@@ -149,8 +146,7 @@ static void *refuse_large(size_t size, void *context) {
 }
 
 /* A list for which a 32-bit machine has no memory, nor room to count its bytes. */
-static void tells_that_there_is_no_memory(void **state) {
-    (void)state;
+TEST(tells_that_there_is_no_memory) {
     static const uint32_t zero = 0, falling[] = {1, 0};
     const narc_allocator allocator = {refuse_large, counted_release, NULL};
     narc_broad_phase *broad = NULL;
@@ -167,8 +163,7 @@ static void tells_that_there_is_no_memory(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
-static void gathers_columns(void **state) {
-    (void)state;
+TEST(gathers_columns) {
     const uint32_t match[] = {2, NARC_NO_MATCH, 0, 2};
     const uint32_t hints[] = {10, 11, 12};
     const struct { float normal, tangent[2]; } impulses[] = {{1, {2, 3}}, {4, {5, 6}}, {7, {8, 9}}};
@@ -183,13 +178,4 @@ static void gathers_columns(void **state) {
     guard_release(out_impulses);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(matches_as_a_search_does),
-        cmocka_unit_test(matches_lists_with_one_disorder),
-        cmocka_unit_test(matches_lists_that_were_chosen_badly),
-        cmocka_unit_test(tells_that_there_is_no_memory),
-        cmocka_unit_test(gathers_columns),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("match", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("match")

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "counting.h"
+#include "families.h"
 #include "narc.h"
 
 enum { THREAD_COUNTS = 4, MOST_BODIES = 9000 };
@@ -73,7 +74,7 @@ static wide_box widen(const wide_box *b, double by) {
     return (wide_box){b->min_x - by, b->min_y - by, b->max_x + by, b->max_y + by, b->exists};
 }
 
-static wide_box box_of(const body *b) {
+static wide_box reach_of(const body *b) {
     const wide_box box = {(double)b->box.min_x, (double)b->box.min_y, (double)b->box.max_x, (double)b->box.max_y,
                           exists(&b->box) && b->reach >= 0 && isfinite(b->reach)};
     return widen(&box, half_of_margin + (double)b->reach);
@@ -91,13 +92,8 @@ static bool meet(const wide_box *a, const wide_box *b) {
 }
 
 static bool may_pair(const body *a, const body *b) {
-    if (a->kind & NARC_STATIC && b->kind & NARC_STATIC)
-        return false;
-    if (a->kind & NARC_SENSOR && b->kind & NARC_SENSOR)
-        return false;
-    if (a->group == b->group && a->group != 0)
-        return false;
-    return (a->category & b->mask) && (b->category & a->mask);
+    return !(a->kind & b->kind & (NARC_STATIC | NARC_SENSOR)) && (a->group != b->group || a->group == 0) &&
+           (a->category & b->mask) && (b->category & a->mask);
 }
 
 static bool is_at_rest(const body *b) { return b->kind & (NARC_STATIC | NARC_ASLEEP); }
@@ -147,7 +143,7 @@ static bool must_renew(const reference *r, const body *bodies, size_t count) {
         return true;
     for (size_t k = 0; k < count; k++) {
         const body *now = &bodies[k], *then = &r->bodies[k];
-        const wide_box box = box_of(now);
+        const wide_box box = reach_of(now);
         if (now->id != then->id || now->category != then->category || now->mask != then->mask ||
             now->group != then->group || ((now->kind ^ then->kind) & lasting) || !is_inside(&box, &r->kept[k]))
             return true;
@@ -160,7 +156,7 @@ static bool find_expected(reference *r, const body *bodies, size_t count) {
     const bool renew = must_renew(r, bodies, count);
     r->begun = true;
     for (size_t k = 0; k < count && renew; k++) {
-        const wide_box box = box_of(&bodies[k]);
+        const wide_box box = reach_of(&bodies[k]);
         r->kept[k] = widen(&box, skin);
     }
     memcpy(r->bodies, bodies, count * sizeof *bodies);
@@ -236,7 +232,7 @@ static size_t check_lost(const reference *r, const narc_pair_list *list) {
 static size_t count_broken(const body *bodies, size_t count) {
     size_t broken = 0;
     for (size_t k = 0; k < count; k++)
-        broken += !box_of(&bodies[k]).exists;
+        broken += !reach_of(&bodies[k]).exists;
     return broken;
 }
 
@@ -401,8 +397,7 @@ static totals run_world(const char *name, size_t steps, size_t start, size_t mos
     return sums;
 }
 
-static void follows_bodies_by_their_ids(void **state) {
-    (void)state;
+TEST(follows_bodies_by_their_ids) {
     const size_t steps = test_trials(4000);
     const totals sums = run_world("ids", steps, 60, 90, 12, true);
     assert_true(sums.kept > steps / 40 && sums.renewed > steps / 40 && sums.flipped > 0 && sums.lost > 0 &&
@@ -410,21 +405,16 @@ static void follows_bodies_by_their_ids(void **state) {
     assert_true(sums.sleeping > 0 && sums.sensors > 0 && sums.broken > 0);
 }
 
-static void follows_bodies_by_their_numbers(void **state) {
-    (void)state;
+TEST(follows_bodies_by_their_numbers) {
     const size_t steps = test_trials(3000);
     const totals sums = run_world("numbers", steps, 40, 60, 10, false);
     assert_true(sums.kept > steps / 30 && sums.renewed > steps / 30 && sums.flipped == 0 && sums.lost > 0 &&
                 sums.added > 0);
 }
 
-static void follows_few_bodies_and_none(void **state) {
-    (void)state;
-    run_world("few", test_trials(2000), 0, 4, 2, true);
-}
+TEST(follows_few_bodies_and_none) { run_world("few", test_trials(2000), 0, 4, 2, true); }
 
-static void keeps_nothing_without_a_skin(void **state) {
-    (void)state;
+TEST(keeps_nothing_without_a_skin) {
     skin = half_of_margin = 0;
     run_world("bare", test_trials(1000), 40, 60, 8, true);
     skin = 0.5625;
@@ -432,10 +422,7 @@ static void keeps_nothing_without_a_skin(void **state) {
 }
 
 /* So many that several threads share the work. */
-static void follows_thousands(void **state) {
-    (void)state;
-    run_world("thousands", 12, MOST_BODIES - 10, MOST_BODIES, 150, true);
-}
+TEST(follows_thousands) { run_world("thousands", 12, MOST_BODIES - 10, MOST_BODIES, 150, true); }
 
 /* ------------------------------------------------------------------------------------------------ bodies */
 
@@ -443,15 +430,6 @@ typedef struct disc {
     float x, y, cosine, sine, motion_x, motion_y;
     uint32_t shape;
 } disc;
-
-static uint32_t add_circle(narc_shapes *shapes, double radius) {
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t count;
-    uint32_t shape;
-    assert_int_equal(narc_build_circle(radius, arcs, &count, NULL), NARC_OK);
-    assert_int_equal(narc_add_shape(shapes, arcs, count, &shape, NULL), NARC_OK);
-    return shape;
-}
 
 static narc_bodies view(const disc *discs, size_t count) {
     return (narc_bodies){.count = count,
@@ -477,26 +455,23 @@ static double box_gap(const disc *a, const disc *b, const double *radius) {
 }
 
 /* Circles that fly: all that are close, or will be at the end of the step, and none that is far. */
-static void lists_all_bodies_that_are_close(void **state) {
-    (void)state;
+TEST(lists_all_bodies_that_are_close) {
     enum { COUNT = 80 };
     static const double radius[] = {0.5, 0.25};
     const narc_pair_options options = {.margin = 0.25f, .skin = 0.125f};
     struct test_random random = test_random_named("close");
-    narc_shapes *shapes;
     narc_broad_phase *broad = create_broad_phase(NULL);
     disc discs[COUNT];
     size_t kept = 0, close = 0;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    add_circle(shapes, radius[0]);
-    add_circle(shapes, radius[1]);
+    narc_shapes *shapes = empty_store();
+    store_shape(shapes, circle_of(radius[0]));
+    store_shape(shapes, circle_of(radius[1]));
     for (size_t k = 0; k < COUNT; k++)
         discs[k] =
             (disc){(float)random_between(&random, 0, 8), (float)random_between(&random, 0, 8), 1, 0, 0, 0, k % 2};
     const size_t steps = test_trials(300);
     for (size_t step = 0; step < steps; step++) {
         narc_pair_options moving = options;
-        const narc_pair_list *list;
         const double motion = step % 50 == 0 ? 0.5 : 0.003;
         for (size_t k = 0; k < COUNT; k++) {
             discs[k].x += discs[k].motion_x;
@@ -509,7 +484,7 @@ static void lists_all_bodies_that_are_close(void **state) {
         moving.motion_x = NARC_COLUMN(discs, motion_x);
         moving.motion_y = NARC_COLUMN(discs, motion_y);
         const narc_bodies bodies = view(discs, COUNT);
-        list = update(broad, shapes, &bodies, &moving);
+        const narc_pair_list *const list = update(broad, shapes, &bodies, &moving);
         kept += list->kept;
         for (uint32_t a = 0; a < COUNT; a++)
             for (uint32_t b = a + 1; b < COUNT; b++) {
@@ -530,22 +505,17 @@ static void lists_all_bodies_that_are_close(void **state) {
 }
 
 /* A shape that grows, one that goes, and a body that breaks and mends. */
-static void notices_shapes_that_change(void **state) {
-    (void)state;
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t count;
-    narc_shapes *shapes;
+TEST(notices_shapes_that_change) {
+    const struct shape large = circle_of(2.25);
     narc_broad_phase *broad = create_broad_phase(NULL);
-    const narc_pair_list *list;
     const narc_pair_options options = {.skin = 0.125f};
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    const uint32_t small = add_circle(shapes, 0.5), other = add_circle(shapes, 0.51);
+    narc_shapes *shapes = empty_store();
+    const uint32_t small = store_shape(shapes, circle_of(0.5)), other = store_shape(shapes, circle_of(0.51));
     disc discs[] = {{0, 0, 1, 0, 0, 0, small}, {3, 0, 1, 0, 0, 0, other}};
     const narc_bodies bodies = view(discs, 2);
-    list = update(broad, shapes, &bodies, &options);
+    const narc_pair_list *list = update(broad, shapes, &bodies, &options);
     assert_int_equal(list->pairs.count, 0);
-    assert_int_equal(narc_build_circle(2.25, arcs, &count, NULL), NARC_OK);
-    assert_int_equal(narc_replace_shape(shapes, small, arcs, count, NULL), NARC_OK);
+    assert_int_equal(narc_replace_shape(shapes, small, large.arcs, large.count, NULL), NARC_OK);
     list = update(broad, shapes, &bodies, &options);
     assert_int_equal(list->added_count, 1);
     discs[1].x = 3.0625f;
@@ -568,8 +538,7 @@ static void notices_shapes_that_change(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ memory and errors */
 
-static void allocates_nothing_once_it_has_grown(void **state) {
-    (void)state;
+TEST(allocates_nothing_once_it_has_grown) {
     enum { COUNT = 3000, STEPS = 30 };
     struct test_random random = test_random_named("steady lists");
     struct counter counter = {.left = SIZE_MAX};
@@ -579,13 +548,12 @@ static void allocates_nothing_once_it_has_grown(void **state) {
     uint64_t ids[COUNT];
     size_t after = 0;
     for (int step = 0; step < STEPS; step++) {
-        const narc_pair_list *list;
         const narc_pair_options options = {.margin = 0.5f, .skin = 0.125f, .id = NARC_ARRAY(ids), .workers = &workers};
         for (size_t k = 0; k < COUNT && step % 2 == 0; k++) { /* all others, and all in other places */
             boxes[k] = random_box(&random, 60);
             ids[k] = random_bits(&random);
         }
-        list = update_boxes(broad, boxes, COUNT, &options);
+        const narc_pair_list *list = update_boxes(broad, boxes, COUNT, &options);
         assert_int_equal(list->kept, step % 2 == 1);
         assert_true(list->kept || list->added_count == list->pairs.count);
         if (step == 7)
@@ -609,8 +577,7 @@ static void check_equal_lists(const narc_pair_list *one, const narc_pair_list *o
 }
 
 /* Every allocation of a step fails once: the last list stays, and the next step is as if nothing had been. */
-static void survives_failing_allocations(void **state) {
-    (void)state;
+TEST(survives_failing_allocations) {
     enum { FEW = 300, MANY = 5000 };
     static narc_box boxes[MANY];
     static uint64_t ids[MANY], later_ids[MANY];
@@ -660,17 +627,15 @@ static void survives_failing_allocations(void **state) {
 
 /* There is memory for the bodies but not for their pairs. They have moved, and the last list is not theirs, however
  * often it is tried. */
-static void keeps_no_list_that_was_not_made(void **state) {
-    (void)state;
+TEST(keeps_no_list_that_was_not_made) {
     enum { COUNT = 500 };
     narc_box boxes[COUNT];
     struct counter counter = {.left = SIZE_MAX};
     const narc_pair_options options = {.skin = 0.125f};
-    const narc_pair_list *list;
     narc_broad_phase *broad = create_broad_phase(&counter);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){2 * (float)k, 0, 2 * (float)k + 1, 1};
-    list = update_boxes(broad, boxes, COUNT, &options);
+    const narc_pair_list *list = update_boxes(broad, boxes, COUNT, &options);
     assert_int_equal(list->pairs.count, 0);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){0, 0, 1, 1};
@@ -686,14 +651,12 @@ static void keeps_no_list_that_was_not_made(void **state) {
 }
 
 /* A pair whose bodies change their order, and which is lost at once. */
-static void marks_bodies_that_change_their_order(void **state) {
-    (void)state;
+TEST(marks_bodies_that_change_their_order) {
     narc_box boxes[] = {{0, 0, 1, 1}, {0, 0, 1, 1}};
     const uint64_t ids[] = {7, 9}, others[] = {9, 7};
     narc_pair_options options = {.id = NARC_ARRAY(ids)};
-    const narc_pair_list *list;
     narc_broad_phase *broad = create_broad_phase(NULL);
-    list = update_boxes(broad, boxes, 2, &options);
+    const narc_pair_list *list = update_boxes(broad, boxes, 2, &options);
     assert_int_equal(list->marks[0], 0);
     options.id = NARC_ARRAY(others);
     list = update_boxes(broad, boxes, 2, &options);
@@ -705,8 +668,7 @@ static void marks_bodies_that_change_their_order(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
-static void forgets_its_pairs(void **state) {
-    (void)state;
+TEST(forgets_its_pairs) {
     const narc_box boxes[] = {{0, 0, 1, 1}, {1, 0, 2, 1}};
     const narc_pair_list *list;
     narc_broad_phase *broad = create_broad_phase(NULL);
@@ -722,17 +684,15 @@ static void forgets_its_pairs(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
-static void refuses_bad_arguments(void **state) {
-    (void)state;
+TEST(refuses_bad_arguments) {
     narc_box boxes[] = {{0, 0, 1, 1}, {1, 0, 2, 1}, {0, 0, 1, 2}};
     const uint64_t ids[] = {5, 6, 7}, twice[] = {6, 5, 5};
     narc_pair_options options = {.id = NARC_ARRAY(ids)};
-    const narc_pair_list *list = NULL, *before = NULL;
+    const narc_pair_list *list = NULL;
     narc_broad_phase *broad = create_broad_phase(NULL);
-    narc_shapes *shapes;
     narc_error error;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    before = update_boxes(broad, boxes, 3, &options);
+    narc_shapes *shapes = empty_store();
+    const narc_pair_list *const before = update_boxes(broad, boxes, 3, &options);
     assert_int_equal(before->pairs.count, 3);
     assert_int_equal(narc_update_box_pairs(NULL, boxes, 3, NULL, &list, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_update_box_pairs(broad, NULL, 3, NULL, &list, NULL), NARC_ERROR_ARGUMENT);
@@ -775,21 +735,4 @@ static void refuses_bad_arguments(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(follows_bodies_by_their_ids),
-        cmocka_unit_test(follows_bodies_by_their_numbers),
-        cmocka_unit_test(follows_few_bodies_and_none),
-        cmocka_unit_test(keeps_nothing_without_a_skin),
-        cmocka_unit_test(follows_thousands),
-        cmocka_unit_test(lists_all_bodies_that_are_close),
-        cmocka_unit_test(notices_shapes_that_change),
-        cmocka_unit_test(allocates_nothing_once_it_has_grown),
-        cmocka_unit_test(survives_failing_allocations),
-        cmocka_unit_test(keeps_no_list_that_was_not_made),
-        cmocka_unit_test(marks_bodies_that_change_their_order),
-        cmocka_unit_test(forgets_its_pairs),
-        cmocka_unit_test(refuses_bad_arguments),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("pair lists", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("pair lists")

@@ -155,26 +155,10 @@ static void race_in_children(enum kind kind) {
     }
 }
 
-static void test_first_call(void **state) {
-    (void)state;
-    race_in_children(FIRST_CALL);
-}
+TEST(test_first_call) { race_in_children(FIRST_CALL); }
 
-static void test_switching(void **state) {
-    (void)state;
-    race_in_children(SWITCHING);
-}
+TEST(test_switching) { race_in_children(SWITCHING); }
 
-static void test_all_methods(void **state) {
-    (void)state;
-    race_in_children(ALL_METHODS);
-}
+TEST(test_all_methods) { race_in_children(ALL_METHODS); }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_first_call),
-        cmocka_unit_test(test_switching),
-        cmocka_unit_test(test_all_methods),
-    };
-    return cmocka_run_group_tests_name("race", tests, NULL, NULL);
-}
+int main(void) { return test_run("race", NULL, NULL); }

@@ -260,22 +260,15 @@ static void run_calls(const narc_workers *workers) {
     }
 }
 
-static void test_calling_thread(void **state) {
-    (void)state;
-    run_calls(NULL);
-}
+TEST(test_calling_thread) { run_calls(NULL); }
 
 /* The calling thread is one of them. */
-static void test_openmp(void **state) {
-    (void)state;
+TEST(test_openmp) {
     const narc_workers workers = narc_openmp_workers(3);
     run_calls(&workers);
 }
 
-static void test_tasks(void **state) {
-    (void)state;
-    run_calls(&(narc_workers){.count = 3, .run = run_tasks});
-}
+TEST(test_tasks) { run_calls(&(narc_workers){.count = 3, .run = run_tasks}); }
 
 static void make_polygons(struct test_random *random) {
     polygons = create_scene(NARC_FLOAT32, RING, BODIES, PAIRS);
@@ -333,9 +326,7 @@ static int set_up(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_calling_thread), cmocka_unit_test(test_openmp),
-                                       cmocka_unit_test(test_tasks)};
     if (LARGE_FRAMES || !test_begin())
         return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("stack", tests, set_up, NULL);
+    return test_run("stack", set_up, NULL);
 }

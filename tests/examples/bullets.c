@@ -18,8 +18,7 @@ static size_t count_through(run *r, int steps) {
     return count;
 }
 
-static void test_wall_holds(void **state) {
-    (void)state;
+TEST(test_wall_holds) {
     for (uint64_t seed = 1; seed <= test_trials(40); seed++) {
         run r = begin_run("bullets", world_defaults, seed);
         const size_t through = count_through(&r, 60);
@@ -30,8 +29,7 @@ static void test_wall_holds(void **state) {
 }
 
 /* Without a bullet's margin most fly through: the wall is a twentieth of their step. */
-static void test_without_margins(void **state) {
-    (void)state;
+TEST(test_without_margins) {
     size_t through = 0;
     for (uint64_t seed = 1; seed <= 10; seed++) {
         run r = begin_run("bullets", world_defaults, seed);
@@ -45,8 +43,7 @@ static void test_without_margins(void **state) {
 }
 
 /* Two that fly at each other, 120 m/s apart, stay on their sides. */
-static void test_head_on(void **state) {
-    (void)state;
+TEST(test_head_on) {
     for (uint64_t seed = 1; seed <= test_trials(20); seed++) {
         run r = begin_run("bullets", world_defaults, seed);
         world *w = &r.world;
@@ -66,13 +63,4 @@ static void test_head_on(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_wall_holds),
-        cmocka_unit_test(test_without_margins),
-        cmocka_unit_test(test_head_on),
-    };
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("bullets", tests, NULL, NULL);
-}
+TEST_MAIN("bullets")

@@ -39,8 +39,7 @@ static void check_same(const dem *d, const dem *reference) {
     assert_true(fabs(e.damping - f.damping) < 1e-3 && fabs(e.friction - f.friction) < 1e-3);
 }
 
-static void test_collision_across_borders(void **state) {
-    (void)state;
+TEST(test_collision_across_borders) {
     static const double places[][4] = {{8, 8, 0, 0},       {0, 8, 0, 0},      {16, 8, 0, 0},
                                        {8, 0, 0, 0},       {16, 16, 0, 0},    {8, 15.65, 0, 40},
                                        {15.65, 8, 100, 0}, {2.8, 8, -100, 0}, {15.76, 1.72, 90, -90}};
@@ -68,8 +67,7 @@ static void test_collision_across_borders(void **state) {
 }
 
 /* A wall across the border: a box, found from both sides. */
-static void test_wall_across_border(void **state) {
-    (void)state;
+TEST(test_wall_across_border) {
     for (int side = 0; side < 2; side++) {
         dem_settings settings = plain_settings();
         settings.periodic_x = true;
@@ -100,8 +98,7 @@ static void expect_refusal(dem *d, const char *message) {
 }
 
 /* A cell in which two images of a grain could both touch another one is refused, and so is what crosses a border. */
-static void test_refusals(void **state) {
-    (void)state;
+TEST(test_refusals) {
     dem_settings settings = plain_settings();
     settings.periodic_x = true;
     settings.high_x = 4.3; /* two discs of width 2, and the skin 0.2 for each */
@@ -119,10 +116,4 @@ static void test_refusals(void **state) {
     expect_refusal(&tilted, "wall 'ramp': a plate with normal");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_collision_across_borders),
-                                       cmocka_unit_test(test_wall_across_border), cmocka_unit_test(test_refusals)};
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("dem_borders", tests, NULL, NULL);
-}
+TEST_MAIN("dem_borders")

@@ -63,8 +63,7 @@ static double find_restitution(double wanted, double time_step, double *out_imba
 
 /* The dashpot sees the velocity half a step late, so the error is of first order: with half the step, half of it. Of
  * the energy only what the last step dissipates is missing, at most half its power times the step. */
-static void test_restitution(void **state) {
-    (void)state;
+TEST(test_restitution) {
     const double wanted[] = {0.9, 0.5, 0.1}, duration = PI * sqrt(0.5 * PI / 1e5);
     for (size_t i = 0; i < 3; i++) {
         double imbalance, power;
@@ -79,8 +78,7 @@ static void test_restitution(void **state) {
 }
 
 /* Without damping: half a period of the spring, depth v sqrt(m / kn), all energy back. */
-static void test_elastic_collision(void **state) {
-    (void)state;
+TEST(test_elastic_collision) {
     const double period = PI * sqrt(0.5 * PI / 1e5);
     dem d = make_collision(DISC, DEM_LINEAR, plain_law(), period / 1000, 1, 0);
     double deepest = 0;
@@ -96,8 +94,7 @@ static void test_elastic_collision(void **state) {
 }
 
 /* Whatever the law: forces are opposite and share their point, and so do kicks. */
-static void test_conservation(void **state) {
-    (void)state;
+TEST(test_conservation) {
     for (int kind = 0; kind < 4; kind++) {
         dem_contact_law law = plain_law();
         law.damping_ratio = dem_damping_ratio(kind % 2 ? DEM_HERTZ : DEM_LINEAR, 0.5);
@@ -122,8 +119,7 @@ static void test_conservation(void **state) {
 /* ------------------------------------------------------------------------------------------------ the Hertz law */
 
 /* Spheres: force k h^(3/2), k = 4/3 E* sqrt(R). Depth (5 m v^2 / (4 k))^(2/5), duration 2.943275 times that over v. */
-static void test_hertz_collision(void **state) {
-    (void)state;
+TEST(test_hertz_collision) {
     const double stiffness = 4.0 / 3 * (1e6 / (2 * (1 - 0.0625))) * sqrt(0.5), mass = 0.5 * PI;
     const double depth = pow(5 * mass / (4 * stiffness), 0.4), duration = 2.943275 * depth;
     dem_contact_law law = plain_law();
@@ -142,8 +138,7 @@ static void test_hertz_collision(void **state) {
 }
 
 /* The same at any speed. */
-static void test_hertz_restitution(void **state) {
-    (void)state;
+TEST(test_hertz_restitution) {
     for (double speed = 0.1; speed < 20; speed *= 10)
         for (double wanted = 0.3; wanted < 1; wanted += 0.3) {
             dem_contact_law law = plain_law();
@@ -158,8 +153,7 @@ static void test_hertz_restitution(void **state) {
 }
 
 /* A radius of 0 or infinity is brought within the limits: a square's side against a side, and against a corner. */
-static void test_hertz_limits(void **state) {
-    (void)state;
+TEST(test_hertz_limits) {
     for (int corner = 0; corner < 2; corner++) {
         dem_contact_law law = plain_law();
         law.damping_ratio = 0;
@@ -201,8 +195,7 @@ static double find_error(double step_angle) {
     return fabs(depth / (speed / rate * sin(2)) - 1);
 }
 
-static void test_order_of_time_step(void **state) {
-    (void)state;
+TEST(test_order_of_time_step) {
     const double coarse = find_error(0.25), middle = find_error(0.125), fine = find_error(0.0625);
     print_message("errors %.3g, %.3g, %.3g: ratios %.3f, %.3f\n", coarse, middle, fine, coarse / middle, middle / fine);
     assert_true(fabs(coarse / middle - 4) < 0.3);
@@ -250,19 +243,9 @@ static void check_order(const char *name, uint32_t shape, double friction, size_
 
 /* A quarter of the step: a sixteenth of the error without friction. The tangential spring adds what the contact slips
  * along the tangent at the step's end, which is of first order as the contact turns: a quarter, or less. */
-static void test_order_with_rotation(void **state) {
-    (void)state;
+TEST(test_order_with_rotation) {
     check_order("arcs", ARCS, 0, 32, 14, 18);
     check_order("friction", DISC, 1e6, 32, 3.9, 18);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_restitution),        cmocka_unit_test(test_elastic_collision),
-        cmocka_unit_test(test_conservation),       cmocka_unit_test(test_hertz_collision),
-        cmocka_unit_test(test_hertz_restitution),  cmocka_unit_test(test_hertz_limits),
-        cmocka_unit_test(test_order_of_time_step), cmocka_unit_test(test_order_with_rotation)};
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("dem_collisions", tests, NULL, NULL);
-}
+TEST_MAIN("dem_collisions")

@@ -48,8 +48,7 @@ static double find_drift(double time_step, double *out_first, size_t *out_most) 
 /* A contact lasts some 0.01, 100 steps: while it lasts, Verlet's energy swings by (w dt)^2 / 8, 1e-4 of its own. What
  * is left behind by a contact that begins or ends within a step is of that size, and of either sign. So some hundred
  * collisions stay within 1e-3 of the gas's energy, and a fourth of the step within a fourth of that. */
-static void test_gas_keeps_its_energy(void **state) {
-    (void)state;
+TEST(test_gas_keeps_its_energy) {
     double energy;
     size_t contacts;
     const double coarse = find_drift(1e-4, &energy, &contacts), fine = find_drift(2.5e-5, &energy, &contacts);
@@ -61,8 +60,7 @@ static void test_gas_keeps_its_energy(void **state) {
 }
 
 /* The sum of all accounts stays what it was, to the first order of dashpots. */
-static void test_all_energy_is_accounted_for(void **state) {
-    (void)state;
+TEST(test_all_energy_is_accounted_for) {
     double imbalance[2];
     for (int i = 0; i < 2; i++) {
         dem d = make_busy_world(1);
@@ -81,10 +79,4 @@ static void test_all_energy_is_accounted_for(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_gas_keeps_its_energy),
-                                       cmocka_unit_test(test_all_energy_is_accounted_for)};
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("dem_gas", tests, NULL, NULL);
-}
+TEST_MAIN("dem_gas")

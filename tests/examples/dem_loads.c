@@ -25,8 +25,7 @@ static double sample_reach(const dem *d, uint32_t shape) {
 }
 
 /* Flat arcs too, whose circles reach far. */
-static void test_reach(void **state) {
-    (void)state;
+TEST(test_reach) {
     dem d = make_world(plain_settings(), plain_law());
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
@@ -64,8 +63,7 @@ static dem make_column(double friction, double aside) {
     return d;
 }
 
-static void test_loads(void **state) {
-    (void)state;
+TEST(test_loads) {
     char error[512];
     dem d = make_column(0.5, 1.99);
     dem_load *loads = dem_find_loads(&d, error);
@@ -86,8 +84,7 @@ static void test_loads(void **state) {
 }
 
 /* Alone and without friction nobody has three; with friction the column stands and the third, on the floor alone, rattles. */
-static void test_rattlers(void **state) {
-    (void)state;
+TEST(test_rattlers) {
     char error[512];
     static const uint32_t expected[2][3] = {{0, 0, 0}, {2, 2, 0}};
     for (int friction = 0; friction < 2; friction++) {
@@ -102,10 +99,4 @@ static void test_rattlers(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_reach), cmocka_unit_test(test_loads),
-                                       cmocka_unit_test(test_rattlers)};
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("dem_loads", tests, NULL, NULL);
-}
+TEST_MAIN("dem_loads")

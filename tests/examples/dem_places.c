@@ -10,8 +10,7 @@
 #include "place.h"
 
 /* The mean of many draws is within five deviations of the mean of one, over the root of their number. */
-static void test_sizes(void **state) {
-    (void)state;
+TEST(test_sizes) {
     enum { DRAWS = 100000 };
     static const dem_sizes sizes[] = {
         {DEM_FIXED, 3, 0, 0, 0}, {DEM_UNIFORM, 0, 0, 2, 4}, {DEM_NORMAL, 3, 0.2, 2, 4}, {DEM_LOGNORMAL, 3, 0.3, 1, 9}};
@@ -59,8 +58,7 @@ static dem make_room(void) {
 }
 
 /* Every pair of the list is apart by the gap, by the exact test, borders and walls among them. */
-static void test_free_places(void **state) {
-    (void)state;
+TEST(test_free_places) {
     const double gap = 0.05;
     dem d = make_room();
     dem_filling filling = plain_filling(180);
@@ -89,8 +87,7 @@ static void test_free_places(void **state) {
     dem_destroy(&d);
 }
 
-static void test_full_region(void **state) {
-    (void)state;
+TEST(test_full_region) {
     dem d = make_room();
     const dem_filling filling = plain_filling(2000);
     uint64_t random = 5;
@@ -99,8 +96,7 @@ static void test_full_region(void **state) {
     dem_destroy(&d);
 }
 
-static void test_lattice(void **state) {
-    (void)state;
+TEST(test_lattice) {
     dem d = make_world(plain_settings(), plain_law());
     dem_filling filling = plain_filling(0);
     uint64_t random = 5;
@@ -117,10 +113,4 @@ static void test_lattice(void **state) {
     dem_destroy(&d);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sizes), cmocka_unit_test(test_free_places),
-                                       cmocka_unit_test(test_full_region), cmocka_unit_test(test_lattice)};
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("dem_places", tests, NULL, NULL);
-}
+TEST_MAIN("dem_places")

@@ -39,8 +39,7 @@ static void check_same_measures(const dem *d, const dem *other) {
 }
 
 /* Borders, history, rolling friction, walls that move, turn and are controlled: all of it goes on. */
-static void test_bit_for_bit(void **state) {
-    (void)state;
+TEST(test_bit_for_bit) {
     char error[512];
     dem d = make_busy_world(1), again = make_busy_world(2);
     const dem_place place = {.input = 5, .stage = 1, .stage_step = 17, .csv_position = 99, .frame = 3, .random = 4};
@@ -96,8 +95,7 @@ static void expect_refusal(const char *message, uint64_t input) {
     dem_destroy(&d);
 }
 
-static void test_damage(void **state) {
-    (void)state;
+TEST(test_damage) {
     static const struct {
         size_t offset;
         const char *message;
@@ -131,8 +129,7 @@ static void test_damage(void **state) {
 }
 
 /* A file that cannot be written leaves the old one. */
-static void test_no_place_to_write(void **state) {
-    (void)state;
+TEST(test_no_place_to_write) {
     char error[512] = "";
     dem d = make_busy_world(1);
     start(&d);
@@ -142,9 +139,7 @@ static void test_no_place_to_write(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_bit_for_bit), cmocka_unit_test(test_damage),
-                                       cmocka_unit_test(test_no_place_to_write)};
     if (!test_begin())
         return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("dem_restart", tests, make_file, remove_file);
+    return test_run("dem_restart", make_file, remove_file);
 }

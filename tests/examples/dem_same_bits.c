@@ -19,8 +19,7 @@ static uint64_t run_world(const char *isa, unsigned threads) {
     return hash;
 }
 
-static void test_same_bits(void **state) {
-    (void)state;
+TEST(test_same_bits) {
     const uint64_t expected = run_world("scalar", 1);
     assert_int_equal(run_world("scalar", 2), expected);
     for (size_t i = 0; narc_isa_name(i); i++)
@@ -29,8 +28,7 @@ static void test_same_bits(void **state) {
 }
 
 /* The hash sees a last bit. */
-static void test_hash_sees_all(void **state) {
-    (void)state;
+TEST(test_hash_sees_all) {
     dem d = make_busy_world(1);
     start(&d);
     const uint64_t before = dem_hash(&d);
@@ -39,9 +37,4 @@ static void test_hash_sees_all(void **state) {
     dem_destroy(&d);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_same_bits), cmocka_unit_test(test_hash_sees_all)};
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("dem_same_bits", tests, NULL, NULL);
-}
+TEST_MAIN("dem_same_bits")

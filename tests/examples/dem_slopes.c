@@ -48,18 +48,11 @@ static void check_rolling(uint32_t shape, bool periodic) {
     dem_destroy(&d);
 }
 
-static void test_disc_rolls(void **state) {
-    (void)state;
-    check_rolling(DISC, false);
-}
+TEST(test_disc_rolls) { check_rolling(DISC, false); }
 
-static void test_round_grain_rolls(void **state) {
-    (void)state;
-    check_rolling(ROUND, false);
-}
+TEST(test_round_grain_rolls) { check_rolling(ROUND, false); }
 
-static void test_history_survives_borders(void **state) {
-    (void)state;
+TEST(test_history_survives_borders) {
     check_rolling(DISC, true);
     check_rolling(ROUND, true);
 }
@@ -80,16 +73,14 @@ static void check_sliding(uint32_t shape) {
     dem_destroy(&d);
 }
 
-static void test_grains_slide(void **state) {
-    (void)state;
+TEST(test_grains_slide) {
     check_sliding(DISC);
     check_sliding(ROUND);
 }
 
 /* Rolling friction above tan(angle) holds a disc (its torque can be mu_r R m g cos, gravity's is m g sin R), and below
  * it takes away its share. */
-static void test_rolling_friction(void **state) {
-    (void)state;
+TEST(test_rolling_friction) {
     dem held = make_slope(DISC, 1, 1.2 * tan(ANGLE), false), slower = make_slope(DISC, 1, 0.5 * tan(ANGLE), false);
     step(&held, 20000);
     step(&slower, 10000); /* until the springs are loaded */
@@ -106,11 +97,4 @@ static void test_rolling_friction(void **state) {
     dem_destroy(&slower);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_disc_rolls), cmocka_unit_test(test_round_grain_rolls),
-                                       cmocka_unit_test(test_history_survives_borders),
-                                       cmocka_unit_test(test_grains_slide), cmocka_unit_test(test_rolling_friction)};
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("dem_slopes", tests, NULL, NULL);
-}
+TEST_MAIN("dem_slopes")

@@ -10,8 +10,7 @@
 #define PI 3.14159265358979323846
 
 /* A plate that moves at a constant speed throws a grain at twice that speed, and its work is the grain's energy. */
-static void test_work_of_a_wall(void **state) {
-    (void)state;
+TEST(test_work_of_a_wall) {
     dem_settings settings = plain_settings();
     settings.time_step = 1e-5;
     dem d = make_world(settings, plain_law());
@@ -29,8 +28,7 @@ static void test_work_of_a_wall(void **state) {
 }
 
 /* The depth in a plate that is neither level nor upright, far along it, before the first step. */
-static void test_oblique_plate_far_away(void **state) {
-    (void)state;
+TEST(test_oblique_plate_far_away) {
     const double depth = 1e-3;
     for (int k = 0; k < 20; k++) {
         const double along = 1e4 + 7.7 * k;
@@ -46,8 +44,7 @@ static void test_oblique_plate_far_away(void **state) {
 }
 
 /* A box on an arm: after one turn it is where it was, and its surface moves as it turns. */
-static void test_turning_wall(void **state) {
-    (void)state;
+TEST(test_turning_wall) {
     dem_settings settings = plain_settings();
     settings.time_step = 1e-3;
     dem d = make_world(settings, plain_law());
@@ -90,8 +87,7 @@ static dem make_press(dem_servo servo) {
 
 /* The lid comes down until it presses as it should. In series three discs have four contacts, each F / kn deep. Depths
  * are floats, within 2e-6 of some 1e-3, so forces are within 0.2 %. */
-static void test_servo_force(void **state) {
-    (void)state;
+TEST(test_servo_force) {
     const double force = 150;
     dem d = make_press((dem_servo){
         .on = true, .direction = {0, -1}, .force = force, .between = {-1, -1}, .gain = 0.1, .max_speed = 0.5});
@@ -113,8 +109,7 @@ static void test_servo_force(void **state) {
 }
 
 /* A stress acts on the length between two walls. */
-static void test_servo_stress(void **state) {
-    (void)state;
+TEST(test_servo_stress) {
     dem d = make_press(
         (dem_servo){.on = true, .direction = {0, -1}, .stress = 25, .between = {0, 1}, .gain = 0.1, .max_speed = 0.5});
     step(&d, 20000);
@@ -123,8 +118,7 @@ static void test_servo_stress(void **state) {
 }
 
 /* A lid that finds nothing to press goes as far as it may, 0.01 a step, then the run ends. */
-static void test_servo_without_grains(void **state) {
-    (void)state;
+TEST(test_servo_without_grains) {
     const dem_servo servo = {
         .on = true, .direction = {0, 1}, .force = 1, .between = {-1, -1}, .gain = 0.1, .max_speed = 100};
     const double travels[] = {0, 2.495, 39.995};
@@ -143,8 +137,7 @@ static void test_servo_without_grains(void **state) {
 }
 
 /* A gap that is shorter than the travel is crossed; after a contact the way counts anew. */
-static void test_servo_touches_in_time(void **state) {
-    (void)state;
+TEST(test_servo_touches_in_time) {
     dem d = make_press((dem_servo){.on = true,
                                    .direction = {0, -1},
                                    .force = 150,
@@ -158,8 +151,7 @@ static void test_servo_touches_in_time(void **state) {
 }
 
 /* Who is to press with no force, and touches nothing, stays. */
-static void test_servo_of_no_force(void **state) {
-    (void)state;
+TEST(test_servo_of_no_force) {
     dem d = make_press(
         (dem_servo){.on = true, .direction = {0, -1}, .force = 0, .between = {-1, -1}, .gain = 0.1, .max_speed = 0.5});
     const double before = d.bodies.y[4];
@@ -169,8 +161,7 @@ static void test_servo_of_no_force(void **state) {
 }
 
 /* A plate's own velocity along itself drags a grain by friction until both move alike. */
-static void test_conveyor(void **state) {
-    (void)state;
+TEST(test_conveyor) {
     dem_settings settings = plain_settings();
     settings.gravity = (dem_vec){0, -10};
     dem_contact_law law = plain_law();
@@ -189,17 +180,4 @@ static void test_conveyor(void **state) {
     dem_destroy(&d);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_work_of_a_wall),
-                                       cmocka_unit_test(test_oblique_plate_far_away),
-                                       cmocka_unit_test(test_turning_wall),
-                                       cmocka_unit_test(test_servo_force),
-                                       cmocka_unit_test(test_servo_stress),
-                                       cmocka_unit_test(test_servo_without_grains),
-                                       cmocka_unit_test(test_servo_touches_in_time),
-                                       cmocka_unit_test(test_servo_of_no_force),
-                                       cmocka_unit_test(test_conveyor)};
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("dem_walls", tests, NULL, NULL);
-}
+TEST_MAIN("dem_walls")

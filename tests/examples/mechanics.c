@@ -59,8 +59,7 @@ static void assert_near(double value, double expected, double tolerance) {
 }
 
 /* Friction 0.5 holds a box on any slope below atan 0.5. It may give way by what a soft contact does. */
-static void test_box_stays_on_slope(void **state) {
-    (void)state;
+TEST(test_box_stays_on_slope) {
     world w = create_slope(0.95 * atan(0.5));
     const world_body *box = add_box(&w, 0, 0.5f);
     step_for(&w, 10);
@@ -69,8 +68,7 @@ static void test_box_stays_on_slope(void **state) {
 }
 
 /* On a steeper one it slides with g (sin - 0.5 cos). */
-static void test_box_slides(void **state) {
-    (void)state;
+TEST(test_box_slides) {
     const double angle = 0.7;
     world w = create_slope(angle);
     const world_body *box = add_box(&w, 0, 0.5f);
@@ -82,8 +80,7 @@ static void test_box_slides(void **state) {
 }
 
 /* A disc's moment of inertia leaves it two thirds of the acceleration, after the torque of rolling friction. */
-static void test_circle_rolls(void **state) {
-    (void)state;
+TEST(test_circle_rolls) {
     const double angle = 0.2, radius = 0.5;
     world w = create_slope(angle);
     const world_body *circle = add_circle(&w, radius, -90, (float)radius);
@@ -96,8 +93,7 @@ static void test_circle_rolls(void **state) {
 }
 
 /* A ball that falls from h rises to e^2 h. */
-static void test_ball_bounces(void **state) {
-    (void)state;
+TEST(test_ball_bounces) {
     world w = create_slope(0);
     world_body *ball = add_circle(&w, 0.5, 0, 4.5f);
     ball->restitution = 0.7f;
@@ -115,8 +111,7 @@ static void test_ball_bounces(void **state) {
 }
 
 /* Where nothing pulls, momentum and angular momentum stay. */
-static void test_momentum(void **state) {
-    (void)state;
+TEST(test_momentum) {
     world w = create_slope(0);
     w.settings.gravity = (vec){0, 0};
     w.settings.rolling_arm = 0.02f;
@@ -148,8 +143,7 @@ static void test_momentum(void **state) {
 }
 
 /* A step names the body that is broken: no pair would ever show it, because its box overlaps nothing. */
-static void test_broken_body(void **state) {
-    (void)state;
+TEST(test_broken_body) {
     world w = create_slope(0);
     world_body *box = add_box(&w, 0, 0.5f);
     step_for(&w, 0.1);
@@ -160,8 +154,7 @@ static void test_broken_body(void **state) {
     world_destroy(&w);
 }
 
-static void test_errors(void **state) {
-    (void)state;
+TEST(test_errors) {
     world w = create_slope(0);
     narc_arc arcs[NARC_MAX_ARCS] = {{0, 0, -1, 0, 1}};
     assert_int_equal(world_add_shape(&w, arcs, 1, NULL), NARC_ERROR_RADIUS);
@@ -174,8 +167,7 @@ static void test_errors(void **state) {
 }
 
 /* A shape that the world has already needs no room, whatever else it has. */
-static void test_equal_shapes(void **state) {
-    (void)state;
+TEST(test_equal_shapes) {
     world w = create_slope(0);
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
@@ -196,8 +188,7 @@ static void test_equal_shapes(void **state) {
 }
 
 /* What has no mass does not move. */
-static void test_segment(void **state) {
-    (void)state;
+TEST(test_segment) {
     world w = create_slope(0);
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
@@ -210,19 +201,4 @@ static void test_segment(void **state) {
     world_destroy(&w);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_box_stays_on_slope),
-        cmocka_unit_test(test_box_slides),
-        cmocka_unit_test(test_circle_rolls),
-        cmocka_unit_test(test_ball_bounces),
-        cmocka_unit_test(test_momentum),
-        cmocka_unit_test(test_broken_body),
-        cmocka_unit_test(test_errors),
-        cmocka_unit_test(test_equal_shapes),
-        cmocka_unit_test(test_segment),
-    };
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("mechanics", tests, NULL, NULL);
-}
+TEST_MAIN("mechanics")

@@ -24,20 +24,13 @@ static void check_rests(const char *name, float half_width, float seconds, doubl
 }
 
 /* 12 layers; bodies of 0.4 to 1.2 m. */
-static void test_heap(void **state) {
-    (void)state;
-    check_rests("heap", 8, 12, 0.03, test_trials(10));
-}
+TEST(test_heap) { check_rests("heap", 8, 12, 0.03, test_trials(10)); }
 
 /* 25 layers, which press more. */
-static void test_pile(void **state) {
-    (void)state;
-    check_rests("pile", 40, 15, 0.06, test_trials(2));
-}
+TEST(test_pile) { check_rests("pile", 40, 15, 0.06, test_trials(2)); }
 
 /* The test can fail: with one point for each pair nothing comes to rest. */
-static void test_one_point_never_rests(void **state) {
-    (void)state;
+TEST(test_one_point_never_rests) {
     world_settings settings = world_defaults;
     settings.flat_angle = -1;
     run r = begin_run("heap", settings, 1);
@@ -46,13 +39,4 @@ static void test_one_point_never_rests(void **state) {
     end_run(&r);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_heap),
-        cmocka_unit_test(test_pile),
-        cmocka_unit_test(test_one_point_never_rests),
-    };
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("piles", tests, NULL, NULL);
-}
+TEST_MAIN("piles")

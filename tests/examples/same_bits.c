@@ -22,8 +22,7 @@ static uint64_t run_heap(const char *isa, unsigned threads) {
     return hash;
 }
 
-static void test_same_bits(void **state) {
-    (void)state;
+TEST(test_same_bits) {
     const uint64_t expected = run_heap("scalar", 1);
     for (size_t i = 0; narc_isa_name(i); i++)
         if (narc_isa_supported(narc_isa_name(i)))
@@ -31,8 +30,7 @@ static void test_same_bits(void **state) {
 }
 
 /* The hash sees a last bit. */
-static void test_hash_sees_all(void **state) {
-    (void)state;
+TEST(test_hash_sees_all) {
     run r = begin_run("stack", world_defaults, 1);
     const uint64_t before = world_hash(&r.world);
     r.world.bodies[5].spin = nextafterf(r.world.bodies[5].spin, 1);
@@ -40,9 +38,4 @@ static void test_hash_sees_all(void **state) {
     end_run(&r);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_same_bits), cmocka_unit_test(test_hash_sees_all)};
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("same_bits", tests, NULL, NULL);
-}
+TEST_MAIN("same_bits")

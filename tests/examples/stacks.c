@@ -19,24 +19,14 @@ static void check_stands(const char *name, float seconds, size_t trials) {
     }
 }
 
-static void test_stack(void **state) {
-    (void)state;
-    check_stands("stack", 60, test_trials(5));
-}
+TEST(test_stack) { check_stands("stack", 60, test_trials(5)); }
 
-static void test_pyramid(void **state) {
-    (void)state;
-    check_stands("pyramid", 15, test_trials(2));
-}
+TEST(test_pyramid) { check_stands("pyramid", 15, test_trials(2)); }
 
-static void test_rounded_pyramid(void **state) {
-    (void)state;
-    check_stands("rounded", 15, test_trials(2));
-}
+TEST(test_rounded_pyramid) { check_stands("rounded", 15, test_trials(2)); }
 
 /* The test can fail: with one point for each pair the stack is on the floor within 4 seconds. */
-static void test_one_point_does_not_hold(void **state) {
-    (void)state;
+TEST(test_one_point_does_not_hold) {
     world_settings settings = world_defaults;
     settings.flat_angle = -1;
     run r = begin_run("stack", settings, 1);
@@ -46,8 +36,7 @@ static void test_one_point_does_not_hold(void **state) {
 }
 
 /* Other flat angles do as well: docs/solver.md has the table. */
-static void test_flat_angles(void **state) {
-    (void)state;
+TEST(test_flat_angles) {
     const float degree = 0.017453293f, angles[] = {5 * degree, 15 * degree, 40 * degree};
     for (size_t i = 0; i < sizeof angles / sizeof angles[0]; i++) {
         world_settings settings = world_defaults;
@@ -61,13 +50,4 @@ static void test_flat_angles(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stack),           cmocka_unit_test(test_pyramid),
-        cmocka_unit_test(test_rounded_pyramid), cmocka_unit_test(test_one_point_does_not_hold),
-        cmocka_unit_test(test_flat_angles),
-    };
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("stacks", tests, NULL, NULL);
-}
+TEST_MAIN("stacks")

@@ -54,11 +54,9 @@ static void expect_arcs(const narc_named_shape *shape, const char *name, const n
     assert_memory_equal(shape->arcs, arcs, count * sizeof *arcs);
 }
 
-static void reads_every_form(void **state) {
-    (void)state;
-    narc_shapes *store = NULL;
+TEST(reads_every_form) {
     const narc_arc circle = {0, 0, 1, 0, 6.283185307179586};
-    assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+    narc_shapes *store = empty_store();
     assert_int_equal(narc_add_shape(store, &circle, 1, NULL, NULL), NARC_OK);
     narc_shape_list *list = read_text(every_form, store);
     assert_int_equal(list->count, FORMS);
@@ -129,8 +127,7 @@ static double random_finite(struct test_random *random) {
     }
 }
 
-static void keeps_bits(void **state) {
-    (void)state;
+TEST(keeps_bits) {
     enum { SHAPES = 60 };
     struct test_random random = test_random_named("shapes there and back");
     for (size_t trial = 0; trial < test_trials(20); trial++) {
@@ -150,8 +147,7 @@ static void keeps_bits(void **state) {
 }
 
 /* Where the decimal point is a comma, files are the same. Skipped without such a locale. */
-static void same_in_any_locale(void **state) {
-    (void)state;
+TEST(same_in_any_locale) {
     static const char *const names[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE", "fr_FR"};
     narc_shape_list *list = read_text(every_form, NULL);
     char *text = NULL, *other = NULL;
@@ -179,8 +175,7 @@ static void same_in_any_locale(void **state) {
 /* ---------------------------------------------------------------------------- what is refused */
 
 /* The line is that of the value, or of the object that lacks one. */
-static void names_lines(void **state) {
-    (void)state;
+TEST(names_lines) {
     static const struct {
         const char *text;
         narc_status status;
@@ -222,10 +217,9 @@ static void names_lines(void **state) {
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
         narc_shape_list *list = (narc_shape_list *)(void *)&list;
         const void *before = list;
-        narc_shapes *store = NULL;
         narc_error error = {.message = "?"};
         uint32_t index = 99;
-        assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+        narc_shapes *store = empty_store();
         const narc_status status = read_exactly(wrong[k].text, strlen(wrong[k].text), NULL, store, &list, &error);
         expect_error(status, wrong[k].status, &error, wrong[k].message);
         assert_int_equal(error.index, wrong[k].line);
@@ -244,8 +238,7 @@ static void *never(size_t size, void *context) {
     return NULL;
 }
 
-static void writes_nothing_wrong(void **state) {
-    (void)state;
+TEST(writes_nothing_wrong) {
     const narc_arc disc = {0, 0, 1, 0, 6.283185307179586}, half = {0, 0, 1, 0, 3};
     const narc_named_shape good = {"a", &disc, 1, {0, 0}, 0};
     narc_named_shape shapes[2] = {good, good};
@@ -314,8 +307,7 @@ static size_t damage(struct test_random *random, char *text, size_t size) {
 
 /* Whatever the bytes, shapes come out that can be written and read again, or an error whose line there is; then the store
  * is as before. */
-static void survives_damage(void **state) {
-    (void)state;
+TEST(survives_damage) {
     struct test_random random = test_random_named("damaged shapes files");
     size_t read = 0;
     const size_t trials = test_trials(20000);
@@ -323,10 +315,9 @@ static void survives_damage(void **state) {
         char text[sizeof every_form + 8];
         memcpy(text, every_form, sizeof every_form);
         const size_t size = damage(&random, text, sizeof every_form - 1);
-        narc_shapes *store = NULL;
         narc_shape_list *list = NULL;
         narc_error error = {.status = NARC_OK};
-        assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+        narc_shapes *store = empty_store();
         const narc_status status = read_exactly(text, size, NULL, store, &list, &error);
         size_t lines = 1;
         for (size_t i = 0; i < size; i++)
@@ -370,8 +361,7 @@ static void give_back(void *memory, void *context) {
 }
 
 /* Each of the caller's allocations fails, and all behind it: those of the list, then those of the store. */
-static void tells_missing_memory(void **state) {
-    (void)state;
+TEST(tells_missing_memory) {
     for (int of_store = 0; of_store < 2; of_store++) {
         size_t failures = 0;
         for (narc_status status = NARC_ERROR_MEMORY; status; failures += status != NARC_OK) {
@@ -428,8 +418,7 @@ static void *take_for_json(size_t size) {
 }
 
 /* So does each of cJSON's. */
-static void tells_missing_memory_of_json(void **state) {
-    (void)state;
+TEST(tells_missing_memory_of_json) {
     size_t failures = 0;
     cJSON_InitHooks(&(cJSON_Hooks){take_for_json, free});
     for (narc_status status = NARC_ERROR_MEMORY; status; failures += status != NARC_OK) {
@@ -445,12 +434,4 @@ static void tells_missing_memory_of_json(void **state) {
     assert_true(failures > 50);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_every_form),     cmocka_unit_test(keeps_bits),
-        cmocka_unit_test(same_in_any_locale),   cmocka_unit_test(names_lines),
-        cmocka_unit_test(writes_nothing_wrong), cmocka_unit_test(survives_damage),
-        cmocka_unit_test(tells_missing_memory), cmocka_unit_test(tells_missing_memory_of_json),
-    };
-    return test_begin() ? cmocka_run_group_tests(tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("shapes_files")

@@ -297,8 +297,7 @@ static bool is_ordinary(const struct curve *curve) {
     return least > 0.2 * extent_of(curve);
 }
 
-static void test_random_curves(void **state) {
-    (void)state;
+TEST(test_random_curves) {
     struct test_random random = test_random_named("random curves");
     size_t ordinary = 0;
     double worst = 0;
@@ -317,8 +316,7 @@ static void test_random_curves(void **state) {
     assert_true(worst <= 1.05);
 }
 
-static void test_small_tolerances(void **state) {
-    (void)state;
+TEST(test_small_tolerances) {
     struct test_random random = test_random_named("small tolerances");
     for (size_t trial = 0, trials = test_trials(10); trial < trials; trial++) {
         struct curve curve = random_curve(&random);
@@ -363,8 +361,7 @@ static const struct nasty {
     {"very uneven speed", {{{0, 0}, {1e-4, 1e-4}, {1, 2e-4}, {1.0001, 1}}, 3, 0}, 0},
 };
 
-static void test_nasty_curves(void **state) {
-    (void)state;
+TEST(test_nasty_curves) {
     for (size_t k = 0; k < sizeof NASTY / sizeof *NASTY; k++) {
         for (double tolerance = 10; tolerance > 5e-7; tolerance /= 20) {
             struct curve curve = NASTY[k].curve;
@@ -408,8 +405,7 @@ static struct curve random_nasty(struct test_random *random) {
     return curve;
 }
 
-static void test_random_nasty(void **state) {
-    (void)state;
+TEST(test_random_nasty) {
     struct test_random random = test_random_named("nasty curves");
     for (size_t trial = 0, trials = test_trials(150); trial < trials; trial++) {
         const struct curve curve = random_nasty(&random);
@@ -458,8 +454,7 @@ static double least_arcs(const struct curve *curve) {
     return cbrt(sqrt(3) / 216) * sum / cbrt(curve->tolerance);
 }
 
-static void test_arc_numbers(void **state) {
-    (void)state;
+TEST(test_arc_numbers) {
     for (size_t k = 0; k < SMOOTH_COUNT; k++) {
         struct curve curve = SMOOTH[k];
         double counts[7];
@@ -540,8 +535,7 @@ static size_t count_by_force(const struct curve *curve) {
     return best[GRID];
 }
 
-static void test_brute_force(void **state) {
-    (void)state;
+TEST(test_brute_force) {
     for (size_t k = 0; k < SMOOTH_COUNT; k++) {
         for (double tolerance = 1e-2; tolerance > 5e-5; tolerance /= 10) {
             struct curve curve = SMOOTH[k];
@@ -554,8 +548,7 @@ static void test_brute_force(void **state) {
     }
 }
 
-static void test_known_counts(void **state) {
-    (void)state;
+TEST(test_known_counts) {
     /* Symmetric and one circle nearly: the usual quarter circle is off by 2.7e-4, one arc through its ends is
      * enough. */
     struct curve quarter = {{{1, 0}, {1, 0.5522847498}, {0.5522847498, 1}, {0, 1}}, 3, 1e-3};
@@ -596,8 +589,7 @@ static void check_alike(const struct curve *a, const struct curve *b) {
         describe(a, "count of arcs changes by", off, 2);
 }
 
-static void test_invariance(void **state) {
-    (void)state;
+TEST(test_invariance) {
     struct test_random random = test_random_named("invariance");
     for (size_t trial = 0, trials = test_trials(60); trial < trials; trial++) {
         struct curve curve = random_curve(&random), moved = curve;
@@ -623,8 +615,7 @@ static void test_invariance(void **state) {
     }
 }
 
-static void test_degrees_agree(void **state) {
-    (void)state;
+TEST(test_degrees_agree) {
     struct test_random random = test_random_named("degrees");
     for (size_t trial = 0, trials = test_trials(100); trial < trials; trial++) {
         struct curve curve = random_curve(&random), raised = curve;
@@ -640,8 +631,7 @@ static void test_degrees_agree(void **state) {
 
 /* The same bits again. And more tolerance, no more arcs: but the furthest cuts are not always the best, where a curve
  * turns sharply, so that one in a hundred may fail (one in a thousand was seen to). */
-static void test_order(void **state) {
-    (void)state;
+TEST(test_order) {
     struct test_random random = test_random_named("order");
     size_t failures = 0;
     for (size_t trial = 0, trials = test_trials(100); trial < trials; trial++) {
@@ -673,8 +663,7 @@ static void expect(narc_status expected, const point *c, size_t degree, double t
     assert_int_equal(narc_fit_bezier(c, degree, tolerance, arcs, 4, &count, &told, NULL), expected);
 }
 
-static void test_errors(void **state) {
-    (void)state;
+TEST(test_errors) {
     const point good[4] = {{0, 0}, {1, 1}, {2, -1}, {3, 0}};
     expect(NARC_ERROR_ARGUMENT, NULL, 3, 0.1, "controls");
     expect(NARC_ERROR_ARGUMENT, good, 0, 0.1, "degree is 0");
@@ -706,8 +695,7 @@ static void test_errors(void **state) {
     assert_int_equal(narc_fit_bezier(good, 3, 0.1, NULL, 64, &count, &told, NULL), NARC_ERROR_ARGUMENT);
 }
 
-static void test_capacity(void **state) {
-    (void)state;
+TEST(test_capacity) {
     const struct curve curve = {{{0, 0}, {1, 1}, {2, -1}, {3, 0}}, 3, 1e-3};
     fit(&curve, &the_fit);
     size_t count = 0;
@@ -735,8 +723,7 @@ static void test_capacity(void **state) {
 
 /* A square with one round side, given open, and a triangle that is closed by hand: each chain is closed, its curves are
  * the arcs of narc_fit_bezier(), its lines are lines. A contour that is a point is left out. */
-static void test_chains(void **state) {
-    (void)state;
+TEST(test_chains) {
     const point bend[4] = {{0, 0}, {1, -1}, {3, -1}, {4, 0}};
     size_t count;
     double told;
@@ -777,17 +764,4 @@ static void test_chains(void **state) {
     narc_destroy_path(path);
 }
 
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random_curves), cmocka_unit_test(test_small_tolerances),
-        cmocka_unit_test(test_nasty_curves),  cmocka_unit_test(test_random_nasty),
-        cmocka_unit_test(test_arc_numbers),   cmocka_unit_test(test_brute_force),
-        cmocka_unit_test(test_known_counts),  cmocka_unit_test(test_invariance),
-        cmocka_unit_test(test_degrees_agree), cmocka_unit_test(test_order),
-        cmocka_unit_test(test_errors),        cmocka_unit_test(test_capacity),
-        cmocka_unit_test(test_chains),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MAIN("bezier")

@@ -52,8 +52,4 @@ double measure_area(const narc_contours *contours, size_t k);
  * three points. */
 double measure_distance(narc_point p, narc_point a, narc_point b);
 
-/* The groups of tests, each returning cmocka's number of failures. */
-int test_flattening(void);
-int test_points(void);
-
 #endif

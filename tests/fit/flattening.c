@@ -151,8 +151,7 @@ static void check_thrift(const struct curve *c, const narc_contours *flat) {
         fail_msg("%zu points where %g chords do", flat->point_count, chords);
 }
 
-static void stays_within_flatness(void **state) {
-    (void)state;
+TEST(stays_within_flatness) {
     struct test_random random = test_random_named("flattening");
     const size_t trials = test_trials(400);
     for (size_t trial = 0; trial < trials; trial++) {
@@ -180,8 +179,7 @@ static void stays_within_flatness(void **state) {
 
 /* The default is NARC_FLATNESS times the larger side of the box around the curves, not around their control points.
  * The box around samples is smaller by up to the curve's bend between two of them, on either side. */
-static void measures_the_extent(void **state) {
-    (void)state;
+TEST(measures_the_extent) {
     struct test_random random = test_random_named("extent");
     for (size_t trial = 0; trial < test_trials(300); trial++) {
         const struct curve c = make_curve(&random, 2 + trial % (KINDS - 2));
@@ -204,8 +202,7 @@ static void measures_the_extent(void **state) {
 }
 
 /* A speck so far out that doubles cannot tell NARC_FLATNESS of it: the flatness is what they can tell. */
-static void flattens_specks_far_out(void **state) {
-    (void)state;
+TEST(flattens_specks_far_out) {
     const double far = 9e8;
     struct curve c = {{{far, far}, {far + 1e-6, far}, {far + 1e-6, far + 1e-6}, {far, far + 1e-6}}, 3};
     narc_path *path = draw_curve(&c);
@@ -218,8 +215,7 @@ static void flattens_specks_far_out(void **state) {
     narc_destroy_path(path);
 }
 
-static void refuses_wrong_flatness(void **state) {
-    (void)state;
+TEST(refuses_wrong_flatness) {
     static const double wrong[] = {-1, -1e-300, NAN, INFINITY, -INFINITY};
     narc_path *path = make_occupied_path();
     narc_contours out, untouched;
@@ -235,8 +231,7 @@ static void refuses_wrong_flatness(void **state) {
 }
 
 /* A tiny flatness is refused; the one that the message names is fine, a little less is not. */
-static void names_the_least_flatness(void **state) {
-    (void)state;
+TEST(names_the_least_flatness) {
     struct test_random random = test_random_named("least flatness");
     for (size_t trial = 0; trial < test_trials(40); trial++) {
         const struct curve c = make_curve(&random, trial % 2 ? 7 : trial / 2 % 3);
@@ -258,8 +253,7 @@ static void names_the_least_flatness(void **state) {
 }
 
 /* Lines and curves, several contours: each has the points of its own curves. */
-static void flattens_mixed_contours(void **state) {
-    (void)state;
+TEST(flattens_mixed_contours) {
     narc_path *path = make_path();
     narc_error error;
     draw_polygon(path, (narc_point[]){{10, 0}, {10, 5}}, 2);
@@ -280,13 +274,4 @@ static void flattens_mixed_contours(void **state) {
     assert_true(flat.points[flat.ends[0]].x == 1 && flat.points[flat.ends[0]].y == 1);
     narc_release_contours(&flat);
     narc_destroy_path(path);
-}
-
-int test_flattening(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stays_within_flatness),    cmocka_unit_test(measures_the_extent),
-        cmocka_unit_test(flattens_specks_far_out),  cmocka_unit_test(refuses_wrong_flatness),
-        cmocka_unit_test(names_the_least_flatness), cmocka_unit_test(flattens_mixed_contours),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -90,8 +90,7 @@ static void expect_same_contours(const narc_path *path, const narc_path *expecte
     narc_release_contours(&b);
 }
 
-static void reads_cubic_curves(void **state) {
-    (void)state;
+TEST(reads_cubic_curves) {
     size_t size;
     char *data = make_type1_font(operators, steps, &size);
     narc_font *font = open_bytes(data, size);
@@ -107,8 +106,7 @@ static void reads_cubic_curves(void **state) {
     free(data);
 }
 
-static void names_what_is_wrong_with_a_glyph(void **state) {
-    (void)state;
+TEST(names_what_is_wrong_with_a_glyph) {
     size_t size;
     char *data = make_type1_font("mlz", (int[]){10, 10, 0, 0}, &size);
     narc_font *font = open_bytes(data, size);
@@ -145,8 +143,7 @@ static void expect_no_font(const void *data, size_t size, narc_status expected, 
     assert_int_equal(narc_open_font(data, size, &font, NULL), expected);
 }
 
-static void refuses_what_is_no_font(void **state) {
-    (void)state;
+TEST(refuses_what_is_no_font) {
     narc_error error;
     expect_no_font("", 0, NARC_ERROR_FORMAT, "not a font that FreeType can read (0 bytes)");
     expect_no_font("glyphs", 6, NARC_ERROR_FORMAT, "not a font");
@@ -158,8 +155,7 @@ static void refuses_what_is_no_font(void **state) {
 
 /* A font whose character maps all say that they are of a platform that there is not, and whose glyphs have no names,
  * from which FreeType would make a map. */
-static void refuses_fonts_without_unicode(void **state) {
-    (void)state;
+TEST(refuses_fonts_without_unicode) {
     for (int k = 0; k < file_count; k++) {
         file copy = {files[k].name, malloc(files[k].size), files[k].size};
         assert_non_null(copy.data);
@@ -176,8 +172,7 @@ static void refuses_fonts_without_unicode(void **state) {
 /* ---------------------------------------------------------------------------- real ones */
 
 /* Against a reader of the format's own: those glyphs that are not composed of others. */
-static void agrees_with_the_format(void **state) {
-    (void)state;
+TEST(agrees_with_the_format) {
     for (int k = 0; k < file_count; k++) {
         narc_font *font = open_bytes(files[k].data, files[k].size);
         size_t compared = 0;
@@ -201,8 +196,7 @@ static void agrees_with_the_format(void **state) {
 /* ---------------------------------------------------------------------------- damaged */
 
 /* Any bytes end in glyphs or errors, and an error leaves the path as it was. */
-static void survives_damage(void **state) {
-    (void)state;
+TEST(survives_damage) {
     struct test_random random = test_random_named("damaged Type 1");
     size_t size, trials = test_trials(200), opened = 0;
     char *data = make_type1_font(operators, steps, &size);
@@ -232,16 +226,11 @@ static void survives_damage(void **state) {
 }
 
 int main(int argument_count, char **arguments) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_cubic_curves),      cmocka_unit_test(names_what_is_wrong_with_a_glyph),
-        cmocka_unit_test(refuses_what_is_no_font), cmocka_unit_test(refuses_fonts_without_unicode),
-        cmocka_unit_test(agrees_with_the_format),  cmocka_unit_test(survives_damage),
-    };
     if (!test_begin())
         return TEST_SKIPPED;
     for (int k = 1; k < argument_count && file_count < 8; k++)
         read_file(arguments[k]);
-    const int failures = cmocka_run_group_tests(tests, NULL, NULL);
+    const int failures = test_run("fonts", NULL, NULL);
     for (int k = 0; k < file_count; k++)
         free(files[k].data);
     if (failures == 0 && file_count == 0) {

@@ -98,8 +98,7 @@ static void fit_glyph(narc_font *font, uint32_t character, size_t arcs, struct t
     free_outline(&of);
 }
 
-static void test_glyphs(void **state) {
-    (void)state;
+TEST(test_glyphs) {
     enum { ARCS = 8, USUAL = 12 };
     for (int k = 0; k < file_count; k++) {
         struct font_file file = open_font(files[k]);
@@ -127,6 +126,5 @@ int main(int argc, char **argv) {
         return TEST_SKIPPED;
     files = (const char **)argv + 1;
     file_count = argc - 1;
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_glyphs)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return test_run("glyphs", NULL, NULL);
 }

@@ -177,13 +177,12 @@ static narc_status read_letter(const void *data, size_t size, narc_path *path, n
 
 static void read_glyph(const void *input, struct outcome *out) { read_with(read_letter, input, out); }
 
-static void test_readers(void **state) {
+TEST(test_readers) {
     static const char csv[] = "x,y\n0,0\n4,0\n4,3\n\n7,7\n8,7\n8,9\n";
     static const char json[] =
         "{\"name\": \"two\", \"contours\": [[[0, 0], [4, 0], [4, 3]], [[7, 7], [8, 7], [8, 9]]]}";
     enum { WIDTH = 24, HEIGHT = 20 };
     uint16_t gray[WIDTH * HEIGHT], alpha[WIDTH * HEIGHT];
-    (void)state;
     if (!CAN_FAIL)
         skip();
     for (size_t k = 0; k < WIDTH * HEIGHT; k++) {
@@ -203,8 +202,7 @@ static void test_readers(void **state) {
 
 static const char *font_name;
 
-static void test_fonts(void **state) {
-    (void)state;
+TEST(test_fonts) {
     if (!CAN_FAIL || !font_name)
         skip();
     FILE *file = fopen(font_name, "rb");
@@ -269,8 +267,7 @@ static void fit_chains(const void *input, struct outcome *out) {
     out->untouched = out->chains.arc_count == 0 && !out->chains.arcs;
 }
 
-static void test_paths(void **state) {
-    (void)state;
+TEST(test_paths) {
     if (!CAN_FAIL)
         skip();
     struct test_random random = test_random_named("memory");
@@ -301,7 +298,7 @@ static void fit_path(const void *input, struct outcome *out) {
     out->untouched = memcmp(&before, &out->fit, sizeof before) == 0;
 }
 
-static void test_fits(void **state) {
+TEST(test_fits) {
     static const narc_fit_request requests[] = {
         {.arc_count = 4, .starts = 1},
         {.arc_count = 4, .starts = 1, .family = NARC_FIT_EDGES, .goal = NARC_FIT_DISTANCE},
@@ -310,7 +307,6 @@ static void test_fits(void **state) {
         {.arc_count = 4, .starts = 1, .goal = NARC_FIT_DIFFERENCE, .min_radius = 0.1},
         {.tolerance = 0.2, .starts = 1, .goal = NARC_FIT_BOUND_DISTANCE},
     };
-    (void)state;
     if (!CAN_FAIL)
         skip();
     struct outline star = make_star();
@@ -323,12 +319,6 @@ static void test_fits(void **state) {
 }
 
 int main(int count, char **arguments) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_readers),
-        cmocka_unit_test(test_fonts),
-        cmocka_unit_test(test_paths),
-        cmocka_unit_test(test_fits),
-    };
     font_name = count > 1 ? arguments[1] : NULL;
-    return test_begin() ? cmocka_run_group_tests_name("memory", tests, NULL, NULL) : TEST_SKIPPED;
+    return test_begin() ? test_run("memory", NULL, NULL) : TEST_SKIPPED;
 }

@@ -34,8 +34,7 @@ static void expect_exact(const char *what, double told, double known) {
 
 /* ---------------------------------------------------------------------------- known optima */
 
-static void test_hulls(void **state) {
-    (void)state;
+TEST(test_hulls) {
     /* With as many edges as the hull has, the hull itself. */
     struct outline of[] = {make_box(1, 1), make_box(7, 2), make_regular("triangle", 3, 0.2, 1),
                            make_regular("hexagon", 6, 0.2, 0.7)};
@@ -54,8 +53,7 @@ static void test_hulls(void **state) {
     }
 }
 
-static void test_polygons(void **state) {
-    (void)state;
+TEST(test_polygons) {
     /* Every k-gon around a circle of radius s has an area of k tan(pi / k) s^2 or more. A regular m k-gon holds its
      * inscribed circle, and every m-th of its sides make a regular k-gon around it: this is the optimum. */
     for (size_t k = 3; k <= 6; k++) {
@@ -79,8 +77,7 @@ static void test_polygons(void **state) {
     free_outline(&square);
 }
 
-static void test_circles(void **state) {
-    (void)state;
+TEST(test_circles) {
     struct test_random random = test_random_named("circles");
     for (size_t trial = 0, trials = test_trials(10); trial < trials; trial++) {
         struct outline of = make_random_points(&random, 3 + random_below(&random, 12));
@@ -103,8 +100,7 @@ static void test_circles(void **state) {
     free_outline(&round);
 }
 
-static void test_stadium(void **state) {
-    (void)state;
+TEST(test_stadium) {
     struct outline of = make_stadium(4, 60);
     const double area = PI + 8, perimeter = 2 * PI + 8;
     for (size_t arcs = 2; arcs <= 4; arcs++) {
@@ -117,8 +113,7 @@ static void test_stadium(void **state) {
     free_outline(&of);
 }
 
-static void test_reuleaux(void **state) {
-    (void)state;
+TEST(test_reuleaux) {
     struct outline of = make_reuleaux(24);
     /* Three arcs and three corners. */
     expect_least("Reuleaux triangle by area", fit_shape(&of, NARC_FIT_N_ARC, NARC_FIT_BOUND_AREA, 6).area,
@@ -176,8 +171,7 @@ static double find_four_arcs(const struct reference_hull *hull, int what) {
     return best;
 }
 
-static void test_four_arcs(void **state) {
-    (void)state;
+TEST(test_four_arcs) {
     struct outline of = make_regular("ellipse", 48, PI / 48, 0.5);
     struct reference_hull hull = reference_wrap(of.points, of.count, (narc_point){0, 0});
     const double best[3] = {find_four_arcs(&hull, AREA), find_four_arcs(&hull, PERIMETER),
@@ -245,8 +239,7 @@ static size_t check_order(const struct outline *of) {
     return all.failures;
 }
 
-static void test_order(void **state) {
-    (void)state;
+TEST(test_order) {
     struct test_random random = test_random_named("order");
     struct outline of = make_regular("ellipse", 14, 0, 0.6);
     size_t failures = check_order(&of);
@@ -280,8 +273,7 @@ static void check_starts(const struct outline *of, narc_fit_request request) {
     }
 }
 
-static void test_starts(void **state) {
-    (void)state;
+TEST(test_starts) {
     struct test_random random = test_random_named("starts");
     for (size_t trial = 0; trial < test_trials(2); trial++) {
         struct outline of = make_random_points(&random, 12);
@@ -313,8 +305,7 @@ static void check_moved(const struct outline *of, const narc_fit_result *fits, d
     free_outline(&moved);
 }
 
-static void test_invariance(void **state) {
-    (void)state;
+TEST(test_invariance) {
     struct test_random random = test_random_named("invariance");
     struct outline outlines[] = {make_regular("ellipse", 20, 0.1, 0.6), make_random_points(&random, 8)};
     for (size_t k = 0; k < 2; k++) {
@@ -334,13 +325,4 @@ static void test_invariance(void **state) {
     }
 }
 
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_hulls),   cmocka_unit_test(test_polygons), cmocka_unit_test(test_circles),
-        cmocka_unit_test(test_stadium), cmocka_unit_test(test_reuleaux), cmocka_unit_test(test_four_arcs),
-        cmocka_unit_test(test_order),   cmocka_unit_test(test_starts),   cmocka_unit_test(test_invariance),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MAIN("optima")

@@ -23,8 +23,7 @@ static narc_status draw(narc_path *path, unsigned degree, const narc_point *poin
     }
 }
 
-static void refuses_to_draw_without_contour(void **state) {
-    (void)state;
+TEST(refuses_to_draw_without_contour) {
     static const narc_point points[] = {{1, 2}, {3, 4}, {5, 6}};
     narc_path *path = make_path();
     for (unsigned degree = 0; degree <= 3; degree++) {
@@ -46,8 +45,7 @@ static void refuses_to_draw_without_contour(void **state) {
 }
 
 /* One coordinate after the other of every move gets a value that it cannot have. */
-static void refuses_wrong_coordinates(void **state) {
-    (void)state;
+TEST(refuses_wrong_coordinates) {
     static const struct {
         double value;
         narc_status status;
@@ -79,8 +77,7 @@ static void refuses_wrong_coordinates(void **state) {
     narc_destroy_path(path);
 }
 
-static void takes_the_largest_coordinates(void **state) {
-    (void)state;
+TEST(takes_the_largest_coordinates) {
     const double most = NARC_MAX_COORDINATE;
     const narc_point square[] = {{-most, -most}, {most, -most}, {most, most}, {-most, most}};
     narc_path *path = make_path();
@@ -93,8 +90,7 @@ static void takes_the_largest_coordinates(void **state) {
 
 /* ---------------------------------------------------------------------------- contours */
 
-static void closes_contours(void **state) {
-    (void)state;
+TEST(closes_contours) {
     static const narc_point open[] = {{0, 0}, {2, 0}, {2, 2}}, closed[] = {{5, 5}, {6, 5}, {6, 6}, {5, 5}, {5, 5}};
     static const narc_point expected[] = {{0, 0}, {2, 0}, {2, 2}, {5, 5}, {6, 5}, {6, 6}, {7, 7}};
     narc_path *path = make_path();
@@ -126,8 +122,7 @@ static void closes_contours(void **state) {
 }
 
 /* Points that repeat the one before stay, so that polygons come out as they were drawn. */
-static void keeps_repeated_points(void **state) {
-    (void)state;
+TEST(keeps_repeated_points) {
     static const narc_point points[] = {{0, 0}, {0, 0}, {2, 0}, {2, 0}, {2, 2}, {1, 1}, {1, 1}};
     narc_path *path = make_path();
     draw_polygon(path, points, 7);
@@ -138,17 +133,4 @@ static void keeps_repeated_points(void **state) {
     narc_destroy_path(path);
 }
 
-static int test_pen(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(refuses_to_draw_without_contour), cmocka_unit_test(refuses_wrong_coordinates),
-        cmocka_unit_test(takes_the_largest_coordinates),   cmocka_unit_test(closes_contours),
-        cmocka_unit_test(keeps_repeated_points),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return test_pen() + test_flattening() + test_points() != 0;
-}
+TEST_MAIN("paths")

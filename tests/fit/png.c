@@ -33,8 +33,7 @@ static void expect_points(struct png_file file, double threshold, const narc_poi
 /* Values between two samples are linear: from `value` at a pixel's centre to 0 at its neighbour's, a threshold is
  * passed (value - threshold) / value behind the centre. The level is between two of 65535 steps, at most half of one
  * off. */
-static void passes_between_centres(void **state) {
-    (void)state;
+TEST(passes_between_centres) {
     static const struct {
         unsigned value;
         double threshold, reach;
@@ -77,8 +76,7 @@ static double cover_half_plane(double angle, double s) {
  * grid. */
 static const double EDGE_ERROR = 1.5 - 1.4142135623730951;
 
-static void knows_its_error_at_straight_edges(void **state) {
-    (void)state;
+TEST(knows_its_error_at_straight_edges) {
     double most = 0;
     for (int k = 1; k <= 90; k++) {
         const double angle = k * (3.14159265358979323846 / 180), step = sin(angle);
@@ -112,8 +110,7 @@ static double cover_disc(double x, double y, double radius) {
  * rounded to `step`, half of it at most, which the slope of 1/2 or more turns into as much of a pixel as a step is. A
  * sum over 256 strips is off by at most half a strip's width times how much the heights vary, which is 1 at each of two
  * sides: 1/256, and twice that of a pixel. */
-static void keeps_the_place_of_discs(void **state) {
-    (void)state;
+TEST(keeps_the_place_of_discs) {
     enum { SIZE = 64 };
     struct test_random random = test_random_named("png discs");
     static const struct {
@@ -191,8 +188,7 @@ static bool is_near(narc_point a, narc_point b) { return fabs(a.x - b.x) < 1e-9 
 
 /* On random small images: the contours' sides are exactly the segments of all cells, each once, with what is above the
  * level on their left. */
-static void follows_all_cells(void **state) {
-    (void)state;
+TEST(follows_all_cells) {
     enum { WIDTH = 9, HEIGHT = 7, MOST = 2 * (WIDTH + 1) * (HEIGHT + 1) };
     struct test_random random = test_random_named("png cells");
     for (size_t trial = 0; trial < test_trials(500); trial++) {
@@ -237,8 +233,7 @@ static void follows_all_cells(void **state) {
 
 /* A ring of 5 x 5 pixels round a hole of 1, at the border of the image: a square of 5 with corners cut by 1/8 each, and
  * a diamond of area 1/2 the other way round. Contours do not cross. */
-static void turns_round_holes_the_other_way(void **state) {
-    (void)state;
+TEST(turns_round_holes_the_other_way) {
     uint16_t alpha[25], gray[25] = {0};
     for (size_t k = 0; k < 25; k++)
         alpha[k] = k == 12 ? 0 : FULL;
@@ -279,8 +274,7 @@ static void expect_same(const narc_contours *expected, struct png_file file, nar
 /* The same blob in formats of each kind: as alpha, dark, and light; opaque, and on nothing. Grays of 16 bits are known
  * to 11 bits; where neighbouring values differ by 1/15 or more, as on both sides of the threshold, that is up to 15
  * / 2^11 of a pixel. */
-static void reads_each_kind_of_format(void **state) {
-    (void)state;
+TEST(reads_each_kind_of_format) {
     enum { WIDTH = 13, HEIGHT = 11, COUNT = WIDTH * HEIGHT };
     for (int two = 0; two < 2; two++) {
         uint16_t blob[COUNT], inverse[COUNT], full[COUNT], none[COUNT] = {0};
@@ -349,8 +343,7 @@ static unsigned paint_tile(int texture, size_t x, size_t y, size_t size, struct 
 }
 
 /* Whatever an opaque tile shows, and however it is stored, its outline is the tile, and the caller is told. */
-static void takes_opaque_tiles_whole(void **state) {
-    (void)state;
+TEST(takes_opaque_tiles_whole) {
     enum { SIZE = 32, TEXTURES = 8 };
     static const struct png_format formats[] = {
         {8, PNG_COLOR_TYPE_GRAY, false}, {8, PNG_COLOR_TYPE_RGB, true},        {8, PNG_COLOR_TYPE_RGB_ALPHA, false},
@@ -381,8 +374,7 @@ static void takes_opaque_tiles_whole(void **state) {
 }
 
 /* One transparent pixel, and the image is not opaque; dark and light count apart, in opaque tiles too. */
-static void tells_what_is_whole(void **state) {
-    (void)state;
+TEST(tells_what_is_whole) {
     enum { SIZE = 8, COUNT = SIZE * SIZE };
     uint16_t gray[COUNT], alpha[COUNT], dark[COUNT] = {0};
     for (size_t k = 0; k < COUNT; k++) {
@@ -415,15 +407,4 @@ static void tells_what_is_whole(void **state) {
     free(file.bytes);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(passes_between_centres),          cmocka_unit_test(knows_its_error_at_straight_edges),
-        cmocka_unit_test(keeps_the_place_of_discs),        cmocka_unit_test(follows_all_cells),
-        cmocka_unit_test(turns_round_holes_the_other_way), cmocka_unit_test(reads_each_kind_of_format),
-        cmocka_unit_test(takes_opaque_tiles_whole),        cmocka_unit_test(tells_what_is_whole),
-    };
-    if (!test_begin())
-        return TEST_SKIPPED;
-    const int failures = cmocka_run_group_tests_name("PNG", tests, NULL, NULL);
-    return failures + test_png_damage();
-}
+TEST_MAIN("PNG")

@@ -44,8 +44,7 @@ static struct png_file write_square(struct png_format format) {
     return write_png(format, 8, 8, gray, alpha);
 }
 
-static void refuses_damaged_files(void **state) {
-    (void)state;
+TEST(refuses_damaged_files) {
     struct png_file file = write_square(gray_8);
     expect_png_error("", 0, 0, NARC_ERROR_FORMAT, "the PNG file is empty");
     expect_png_error("GIF89a_____________________________", 35, 0, NARC_ERROR_FORMAT, "not PNG, or damaged");
@@ -71,8 +70,7 @@ static void put_word(unsigned char *bytes, unsigned long word) {
 }
 
 /* The header, 13 bytes from byte 16 on, tells a huge image, with the right checksum. */
-static void refuses_huge_images(void **state) {
-    (void)state;
+TEST(refuses_huge_images) {
     static const struct {
         unsigned long width, height;
         narc_status status;
@@ -94,8 +92,7 @@ static void refuses_huge_images(void **state) {
     free(file.bytes);
 }
 
-static void refuses_what_has_no_outline(void **state) {
-    (void)state;
+TEST(refuses_what_has_no_outline) {
     uint16_t none[4] = {0}, some[4] = {30000, 0, 0, 0}, full[4] = {FULL, FULL, FULL, FULL};
     struct png_file file = write_png(gray_alpha_8, 2, 2, full, none);
     expect_png_error(file.bytes, file.size, 0, NARC_ERROR_FORMAT, "no pixel of the image reaches the threshold");
@@ -118,13 +115,4 @@ static void refuses_what_has_no_outline(void **state) {
     expect_error(narc_read_png(file.bytes, file.size, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error, "path is NULL");
     narc_destroy_path(path);
     free(file.bytes);
-}
-
-int test_png_damage(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(refuses_damaged_files),
-        cmocka_unit_test(refuses_huge_images),
-        cmocka_unit_test(refuses_what_has_no_outline),
-    };
-    return cmocka_run_group_tests_name("PNG damage", tests, NULL, NULL);
 }

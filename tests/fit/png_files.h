@@ -28,6 +28,4 @@ struct png_file write_png(struct png_format format, size_t width, size_t height,
 narc_contours read_png(struct png_file file, double threshold);
 narc_contours read_silhouette(struct png_file file, narc_image_request request);
 
-int test_png_damage(void);
-
 #endif

@@ -43,8 +43,7 @@ static const narc_point one_point[] = {{3, 4}, END, END};
 
 /* ---------------------------------------------------------------------------- CSV */
 
-static void reads_csv(void **state) {
-    (void)state;
+TEST(reads_csv) {
     expect_points(narc_read_csv, "0,0\n1.5,0\n1.5,2e1\n-.25,+20\n", square);
     expect_points(narc_read_csv, "x,y\r\n0,0\r\n1.5,0\r\n1.5,2e1\r\n-0.25,20", square); /* no line end at the end */
     expect_points(narc_read_csv, "\xef\xbb\xbf\n\n X , Y\n 0 ,\t0 \n1.50,0e0\n15e-1,20.\n-25e-2,20\n\n\n", square);
@@ -55,8 +54,7 @@ static void reads_csv(void **state) {
 }
 
 /* What LibreOffice, Excel and pandas write. */
-static void reads_tables_of_spreadsheets(void **state) {
-    (void)state;
+TEST(reads_tables_of_spreadsheets) {
     expect_points(narc_read_csv, "\"x\",\"y\"\r\n\"0\",\"0\"\r\n\"1.5\",0\r\n1.5,\"2e1\" \r\n-0.25,20\r\n", square);
     expect_points(narc_read_csv, "0;0\n1,5;0\n\"1,5\";2e1\n-,25;20\n", square);
     expect_points(narc_read_csv, "X\tY\n0\t0\n1,5\t 0\n1,5\t20\n-0,25\t20\n", square);
@@ -71,8 +69,7 @@ static void reads_tables_of_spreadsheets(void **state) {
     expect_points(narc_read_csv, "x;y;;\n0;0;;\n1;0;;\n1;1;;\n;;;\n5;5;;\n6;5;;\n", two);
 }
 
-static void names_lines_of_csv(void **state) {
-    (void)state;
+TEST(names_lines_of_csv) {
     static const struct wrong wrong[] = {
         {"", NARC_ERROR_FORMAT, 0, "empty"},
         {" \r\n\n\t", NARC_ERROR_FORMAT, 0, "empty"},
@@ -120,8 +117,7 @@ static void names_lines_of_csv(void **state) {
 }
 
 /* A NUL byte, and numbers that are too long to be any. */
-static void refuses_odd_csv(void **state) {
-    (void)state;
+TEST(refuses_odd_csv) {
     narc_path *path = make_occupied_path();
     narc_error error;
     expect_error(read_exactly(narc_read_csv, "0,0\n1,\0 2\n", 10, path, &error), NARC_ERROR_FORMAT, &error,
@@ -137,8 +133,7 @@ static void refuses_odd_csv(void **state) {
 
 /* ---------------------------------------------------------------------------- JSON */
 
-static void reads_json(void **state) {
-    (void)state;
+TEST(reads_json) {
     expect_points(narc_read_json, "[[0, 0], [1.5, 0], [1.5, 2e1], [-0.25, 20]]", square);
     expect_points(narc_read_json, "\xef\xbb\xbf\n[[0,0],[1.5,0],\n[1.5,20],[-0.25,20],[0,0]]\n\n", square);
     expect_points(narc_read_json, "[[[0, 0], [1.5, 0], [1.5, 20], [-0.25, 20]]]", square);
@@ -151,8 +146,7 @@ static void reads_json(void **state) {
     expect_points(narc_read_json, "[[3, 4]]", one_point);
 }
 
-static void names_places_of_json(void **state) {
-    (void)state;
+TEST(names_places_of_json) {
     static const struct wrong wrong[] = {
         {"", NARC_ERROR_FORMAT, 0, "empty"},
         {"\n \n", NARC_ERROR_FORMAT, 0, "empty"},
@@ -182,8 +176,7 @@ static void names_places_of_json(void **state) {
     expect_wrong(narc_read_json, wrong, sizeof wrong / sizeof wrong[0]);
 }
 
-static void refuses_odd_json(void **state) {
-    (void)state;
+TEST(refuses_odd_json) {
     narc_path *path = make_occupied_path();
     narc_error error;
     expect_error(read_exactly(narc_read_json, "[[0,\n\0 0]]", 10, path, &error), NARC_ERROR_FORMAT, &error,
@@ -210,8 +203,7 @@ static void refuses_odd_json(void **state) {
 
 /* ---------------------------------------------------------------------------- both */
 
-static void refuses_null(void **state) {
-    (void)state;
+TEST(refuses_null) {
     reader *const readers[] = {narc_read_csv, narc_read_json};
     narc_path *path = make_occupied_path();
     for (size_t k = 0; k < 2; k++) {
@@ -224,8 +216,7 @@ static void refuses_null(void **state) {
 }
 
 /* Where the decimal point is a comma, files mean the same. Skipped without such a locale. */
-static void reads_in_any_locale(void **state) {
-    (void)state;
+TEST(reads_in_any_locale) {
     static const char *const names[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE", "fr_FR"};
     const char *chosen = NULL;
     for (size_t k = 0; k < 4 && !chosen; k++)
@@ -241,8 +232,7 @@ static void reads_in_any_locale(void **state) {
 
 /* ---------------------------------------------------------------------------- their hull */
 
-static void computes_the_hull(void **state) {
-    (void)state;
+TEST(computes_the_hull) {
     const narc_point corners[] = {{0, 0}, {4, 0}, {4, 3}, {0, 3}};
     narc_point points[] = {{4, 3}, {2, 0}, {0, 3}, {1, 1}, {0, 0}, {4, 3}, {4, 0}, {4, 1}};
     size_t count = 0;
@@ -287,8 +277,7 @@ static size_t damage(struct test_random *random, char *text, size_t size) {
 }
 
 /* Whatever the bytes, points come out, or an error whose line there is; then the path is as before. */
-static void survives_damage(void **state) {
-    (void)state;
+TEST(survives_damage) {
     static const char *const texts[] = {
         "x,y\n0,0\n1.5,0\n\n1.5,2e1\n-.25,+20\n",
         "x;\"y\";\n0;0;\n\"1,5\";0;\n\n1,5;2e1;\"\"\n",
@@ -314,21 +303,4 @@ static void survives_damage(void **state) {
         read += finish_any_bytes(status, &error, allowed, 100, path);
     }
     assert_true(read > trials / 20 && read < trials - trials / 4); /* both sorts are really met */
-}
-
-int test_points(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_tables_of_spreadsheets),
-        cmocka_unit_test(reads_csv),
-        cmocka_unit_test(names_lines_of_csv),
-        cmocka_unit_test(refuses_odd_csv),
-        cmocka_unit_test(reads_json),
-        cmocka_unit_test(names_places_of_json),
-        cmocka_unit_test(refuses_odd_json),
-        cmocka_unit_test(refuses_null),
-        cmocka_unit_test(reads_in_any_locale),
-        cmocka_unit_test(survives_damage),
-        cmocka_unit_test(computes_the_hull),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

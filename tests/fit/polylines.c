@@ -90,8 +90,7 @@ static size_t fit_ring(const char *name, const narc_point *points, size_t count,
 enum { COUNT = 600 };
 
 /* A circle is four arcs, an ellipse some more: of q, the change of curvature along it, follows their least number. */
-static void test_smooth_rings(void **state) {
-    (void)state;
+TEST(test_smooth_rings) {
     static const double tolerances[] = {0.02, 0.002};
     static const size_t most[2][2] = {{4, 12}, {6, 24}};
     for (size_t t = 0; t < 2; t++) {
@@ -109,8 +108,7 @@ static void test_smooth_rings(void **state) {
 }
 
 /* Sides of many lines are one line each, wherever the chain begins. */
-static void test_square(void **state) {
-    (void)state;
+TEST(test_square) {
     static const narc_point corners[] = {{0, 0}, {3, 1}, {2, 4}, {-1, 3}};
     for (size_t first = 0; first < COUNT; first += 75) {
         narc_point points[COUNT];
@@ -125,8 +123,7 @@ static void test_square(void **state) {
 }
 
 /* Waves of several lengths, and noise below the tolerance: whatever comes out is near. */
-static void test_random_rings(void **state) {
-    (void)state;
+TEST(test_random_rings) {
     struct test_random random = test_random_named("rings");
     for (size_t trial = 0, trials = test_trials(12); trial < trials; trial++) {
         const double tolerance = pow(10, -1 - 3 * random_unit(&random)), noise = 0.2 * tolerance * (double)(trial % 2);
@@ -147,13 +144,4 @@ static void test_random_rings(void **state) {
     }
 }
 
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_smooth_rings),
-        cmocka_unit_test(test_square),
-        cmocka_unit_test(test_random_rings),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MAIN("polylines")

@@ -29,8 +29,7 @@ static void check_families(const struct outline *of, size_t arcs) {
             check_goals(of, (narc_fit_family)family, arcs);
 }
 
-static void test_fields(void **state) {
-    (void)state;
+TEST(test_fields) {
     struct test_random random = test_random_named("fields");
     struct outline outlines[] = {make_regular("triangle", 3, 0.3, 1), make_box(3, 1),
                                  make_regular("ellipse", 24, 0, 0.5), make_star(), make_blob(&random, 5)};
@@ -40,8 +39,7 @@ static void test_fields(void **state) {
     }
 }
 
-static void test_random_outlines(void **state) {
-    (void)state;
+TEST(test_random_outlines) {
     struct test_random random = test_random_named("outlines");
     for (size_t trial = 0, trials = test_trials(30); trial < trials; trial++) {
         struct outline of = random_below(&random, 2) ? make_random_points(&random, 3 + random_below(&random, 30))
@@ -56,8 +54,7 @@ static void test_random_outlines(void **state) {
 
 /* Every count, each family and goal in turn; of the large counts, which take seconds, some unless there is more
  * time. */
-static void test_counts(void **state) {
-    (void)state;
+TEST(test_counts) {
     struct outline of = make_regular("pentagon", 5, 0.1, 0.8);
     for (size_t arcs = 1; arcs <= NARC_MAX_FIT_ARCS; arcs++) {
         if (arcs > 12 && arcs % 5 != 2 && test_trials(1) == 1)
@@ -68,8 +65,7 @@ static void test_counts(void **state) {
     free_outline(&of);
 }
 
-static void test_circles(void **state) {
-    (void)state;
+TEST(test_circles) {
     struct outline of = make_regular("heptagon", 7, 0.1, 0.8);
     for (size_t arcs = 1; arcs <= 3; arcs++) {
         const narc_fit_result fit = fit_shape(&of, NARC_FIT_N_ARC, NARC_FIT_BOUND_AREA, arcs);
@@ -102,8 +98,7 @@ static void check_tolerance(const struct outline *of, narc_fit_family family, na
     }
 }
 
-static void test_tolerances(void **state) {
-    (void)state;
+TEST(test_tolerances) {
     struct test_random random = test_random_named("tolerances");
     struct outline outlines[] = {make_box(2, 1), make_regular("ellipse", 20, 0, 0.5), make_blob(&random, 3)};
     for (size_t k = 0; k < sizeof outlines / sizeof *outlines; k++) {
@@ -135,8 +130,7 @@ static void refuse(const narc_path *path, narc_fit_request request, narc_status 
     assert_int_equal(narc_fit_path(path, &request, &fit, NULL), expected);
 }
 
-static void test_errors(void **state) {
-    (void)state;
+TEST(test_errors) {
     struct outline good = make_box(2, 1);
     narc_fit_result fit;
     const narc_fit_request four = {.arc_count = 4};
@@ -162,8 +156,7 @@ static void test_errors(void **state) {
     free_outline(&good);
 }
 
-static void test_bad_paths(void **state) {
-    (void)state;
+TEST(test_bad_paths) {
     const narc_fit_request four = {.arc_count = 4};
     struct outline empty = make_outline("empty");
     refuse(empty.path, four, NARC_ERROR_COUNT, "point");
@@ -201,8 +194,7 @@ static bool look(size_t done, size_t total, void *context) {
     return ++watch->calls < watch->most;
 }
 
-static void test_progress(void **state) {
-    (void)state;
+TEST(test_progress) {
     struct outline of = make_regular("ellipse", 16, 0, 0.5);
     struct watch all = {.most = SIZE_MAX, .in_order = true};
     narc_fit_request request = {.arc_count = 5, .starts = 4, .progress = look, .context = &all};
@@ -232,8 +224,7 @@ static void test_progress(void **state) {
     free_outline(&of);
 }
 
-static void test_same_bits(void **state) {
-    (void)state;
+TEST(test_same_bits) {
     struct outline of = make_star();
     for (int family = NARC_FIT_N_ARC; family <= NARC_FIT_PAPER; family++) {
         narc_fit_result a, b;
@@ -252,13 +243,4 @@ static void test_same_bits(void **state) {
     free_outline(&of);
 }
 
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fields),    cmocka_unit_test(test_random_outlines), cmocka_unit_test(test_counts),
-        cmocka_unit_test(test_circles),   cmocka_unit_test(test_tolerances),      cmocka_unit_test(test_errors),
-        cmocka_unit_test(test_bad_paths), cmocka_unit_test(test_progress),        cmocka_unit_test(test_same_bits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MAIN("results")

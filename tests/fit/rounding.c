@@ -253,8 +253,7 @@ static struct outline make_closed_by_hand(void) {
     return made;
 }
 
-static void test_closed_by_hand(void **state) {
-    (void)state;
+TEST(test_closed_by_hand) {
     struct outline of = make_closed_by_hand();
     for (int family = NARC_FIT_N_ARC; family <= NARC_FIT_PAPER; family++) {
         const int last = family == NARC_FIT_PAPER ? NARC_FIT_BOUND_AREA : NARC_FIT_DIFFERENCE;
@@ -292,8 +291,7 @@ static struct outline make_steps(struct test_random *random) {
     return made;
 }
 
-static void test_relative_steps(void **state) {
-    (void)state;
+TEST(test_relative_steps) {
     struct test_random random = test_random_named("relative steps");
     for (size_t trial = 0, trials = test_trials(20); trial < trials; trial++) {
         struct outline of = make_steps(&random);
@@ -395,8 +393,7 @@ static void fit_at_random(struct test_random *random, const struct outline *of) 
     check_fit(what, of, request.goal <= NARC_FIT_BOUND_DISTANCE, &fit);
 }
 
-static void test_hard_outlines(void **state) {
-    (void)state;
+TEST(test_hard_outlines) {
     struct test_random random = test_random_named("hard outlines");
     for (size_t trial = 0, trials = test_trials(16); trial < trials; trial++) {
         struct outline of = random_below(&random, 4) ? make_hard(&random) : make_hard_curves(&random);
@@ -415,8 +412,7 @@ static struct outline make_rhombus(double aspect) {
 }
 
 /* A part of all families, goals and counts, unless there is more time. */
-static void test_rhombi(void **state) {
-    (void)state;
+TEST(test_rhombi) {
     static const double aspects[] = {1, 2, 4, 8, 11, 12, 13, 16, 32, 100, 316, 1000};
     const bool all = test_trials(1) > 1;
     for (size_t k = 0; k < sizeof aspects / sizeof *aspects; k++) {
@@ -435,8 +431,7 @@ static void test_rhombi(void **state) {
 }
 
 /* Sides are moved out by what single precision takes, and no more: a polygon is the rhombus itself. */
-static void test_thin_is_close(void **state) {
-    (void)state;
+TEST(test_thin_is_close) {
     struct outline of = make_rhombus(1000);
     const narc_fit_result fit = fit_shape(&of, NARC_FIT_POLYGON, NARC_FIT_BOUND_AREA, 6);
     assert_true(fit.area <= fit.hull_area * 1.0005);
@@ -445,8 +440,7 @@ static void test_thin_is_close(void **state) {
     free_outline(&of);
 }
 
-static void test_without_area(void **state) {
-    (void)state;
+TEST(test_without_area) {
     static const double widths[] = {0, 1e-300, 1e-17, 1e-12, 1e-7, 1e-6};
     for (size_t k = 0; k < sizeof widths / sizeof *widths; k++) {
         const narc_point p[] = {{0, 0}, {1, 1}, {2 - widths[k], 2 + widths[k]}, {3, 3}, {1, 1 + widths[k]}};
@@ -476,8 +470,7 @@ static struct outline make_far(struct test_random *random, double away) {
 
 /* Coordinates that are kept are rounded by the store, and the shape holds the outline there. Its distance is told of
  * centres that are rounded by up to 2^-24 of theirs. */
-static void test_kept_origin(void **state) {
-    (void)state;
+TEST(test_kept_origin) {
     struct test_random random = test_random_named("kept origin");
     for (size_t trial = 0, trials = test_trials(12); trial < trials; trial++) {
         const double away = pow(10, (double)(trial % 6));
@@ -500,8 +493,7 @@ static void test_kept_origin(void **state) {
     }
 }
 
-static void test_too_far_to_keep(void **state) {
-    (void)state;
+TEST(test_too_far_to_keep) {
     struct test_random random = test_random_named("too far");
     struct outline of = make_far(&random, 9e8);
     const narc_fit_request request = {.arc_count = 4, .starts = 1, .keep_origin = true};
@@ -516,8 +508,7 @@ static void test_too_far_to_keep(void **state) {
 
 /* What is told of a tolerance that is not reached is how close fits came, also if there is none with the most arcs: the
  * paper's route finds no n-arc with 32 arcs here. */
-static void test_closest(void **state) {
-    (void)state;
+TEST(test_closest) {
     struct outline of = make_rhombus(316);
     const narc_fit_request request = {.tolerance = 4, .family = NARC_FIT_PAPER, .starts = 1};
     narc_fit_result fit;
@@ -528,15 +519,4 @@ static void test_closest(void **state) {
     free_outline(&of);
 }
 
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_closed_by_hand),  cmocka_unit_test(test_relative_steps),
-        cmocka_unit_test(test_hard_outlines),   cmocka_unit_test(test_rhombi),
-        cmocka_unit_test(test_thin_is_close),   cmocka_unit_test(test_without_area),
-        cmocka_unit_test(test_closest),         cmocka_unit_test(test_kept_origin),
-        cmocka_unit_test(test_too_far_to_keep),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MAIN("rounding")

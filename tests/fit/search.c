@@ -21,15 +21,13 @@ static void expect_known(const struct outline *of, size_t arcs, double known) {
     check_contained(of, &fit, "known");
 }
 
-static void test_square(void **state) {
-    (void)state;
+TEST(test_square) {
     struct outline square = make_box(1, 1);
     expect_known(&square, 4, 1.53461);
     free_outline(&square);
 }
 
-static void test_thin_rhombus(void **state) {
-    (void)state;
+TEST(test_thin_rhombus) {
     const narc_point corners[4] = {{-16, 0}, {0, -1}, {16, 0}, {0, 1}};
     struct outline rhombus = make_outline("rhombus");
     add_corners(&rhombus, corners, 4);
@@ -72,8 +70,7 @@ static void check_flat_arcs(const char *name, const narc_point *corners, size_t 
     free_outline(&of);
 }
 
-static void test_twice_as_many_arcs_as_sides(void **state) {
-    (void)state;
+TEST(test_twice_as_many_arcs_as_sides) {
     static const double ratios[] = {3, 8, 16, 32, 50, 64, 80, 100};
     for (size_t k = 0; k < sizeof ratios / sizeof ratios[0]; k++) {
         const double a = ratios[k];
@@ -90,8 +87,7 @@ static void test_twice_as_many_arcs_as_sides(void **state) {
 
 /* Its tips turn by nearly half a turn. The certificate moves sides out by some 2^-23 of the length, which is 1e-4 of the
  * width. */
-static void test_thinnest_rhombus(void **state) {
-    (void)state;
+TEST(test_thinnest_rhombus) {
     const narc_point corners[4] = {{-1000, 0}, {0, -1}, {1000, 0}, {0, 1}};
     struct outline rhombus = make_outline("thinnest rhombus");
     add_corners(&rhombus, corners, 4);
@@ -106,8 +102,7 @@ static void test_thinnest_rhombus(void **state) {
 
 /* The least k-gons around an ellipse are those around a circle, squeezed. Its hull has far more sides than the flush
  * polygons choose from, so that it is thinned first. */
-static void test_fine_ellipse(void **state) {
-    (void)state;
+TEST(test_fine_ellipse) {
     enum { CORNERS = 1800 };
     const double pi = 3.14159265358979323846, squeeze = 0.5;
     struct outline ellipse = make_regular("fine ellipse", CORNERS, 0, squeeze);
@@ -130,8 +125,7 @@ struct hard_polygon {
     double known[3]; /* 6, 7 and 8 arcs */
 };
 
-static void test_hard_polygons(void **state) {
-    (void)state;
+TEST(test_hard_polygons) {
     static const struct hard_polygon hard[] = {
         {"hexagon",
          6,
@@ -201,8 +195,7 @@ static void check_never_worse(const struct outline *of, narc_fit_goal goal) {
     }
 }
 
-static void test_more_is_never_worse(void **state) {
-    (void)state;
+TEST(test_more_is_never_worse) {
     struct test_random random = test_random_named("never worse");
     for (size_t trial = 0, trials = test_trials(2); trial < trials; trial++) {
         struct outline of = make_random_points(&random, 5 + random_below(&random, 12));
@@ -211,8 +204,7 @@ static void test_more_is_never_worse(void **state) {
     }
 }
 
-static void test_turned_and_mirrored(void **state) {
-    (void)state;
+TEST(test_turned_and_mirrored) {
     struct test_random random = test_random_named("turned");
     struct outline of = make_random_points(&random, 10);
     const double area = fit_shape(&of, NARC_FIT_N_ARC, NARC_FIT_BOUND_AREA, 6).area;
@@ -246,8 +238,7 @@ static void check_least_radius(const struct outline *of, narc_fit_family family,
     assert_true(goal_value(&fit, goal) >= goal_value(&free_fit, goal) * 0.9);
 }
 
-static void test_least_radius(void **state) {
-    (void)state;
+TEST(test_least_radius) {
     struct outline of = make_star();
     static const double radii[] = {1e-9, 0.3, 4};
     for (int goal = NARC_FIT_BOUND_AREA; goal <= NARC_FIT_DIFFERENCE; goal++) {
@@ -260,8 +251,7 @@ static void test_least_radius(void **state) {
 }
 
 /* The least area around a box with rounded corners of that radius, and edges: known in closed form. */
-static void test_least_radius_of_a_box(void **state) {
-    (void)state;
+TEST(test_least_radius_of_a_box) {
     struct outline box = make_box(3, 1);
     const narc_fit_result fit =
         fit_outline(&box, (narc_fit_request){.arc_count = 4, .family = NARC_FIT_EDGES, .min_radius = 0.1});
@@ -277,8 +267,7 @@ static void refuse(const struct outline *of, narc_fit_request request, narc_stat
     expect_error(narc_fit_path(of->path, &request, &fit, &error), expected, &error, words);
 }
 
-static void test_least_radius_errors(void **state) {
-    (void)state;
+TEST(test_least_radius_errors) {
     struct outline box = make_box(2, 1);
     refuse(&box, (narc_fit_request){.arc_count = 4, .min_radius = -1}, NARC_ERROR_SIZE, "-1");
     refuse(&box, (narc_fit_request){.arc_count = 4, .min_radius = NAN}, NARC_ERROR_SIZE, "nan");
@@ -293,21 +282,4 @@ static void test_least_radius_errors(void **state) {
     free_outline(&box);
 }
 
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_square),
-        cmocka_unit_test(test_thin_rhombus),
-        cmocka_unit_test(test_twice_as_many_arcs_as_sides),
-        cmocka_unit_test(test_thinnest_rhombus),
-        cmocka_unit_test(test_fine_ellipse),
-        cmocka_unit_test(test_hard_polygons),
-        cmocka_unit_test(test_more_is_never_worse),
-        cmocka_unit_test(test_turned_and_mirrored),
-        cmocka_unit_test(test_least_radius),
-        cmocka_unit_test(test_least_radius_of_a_box),
-        cmocka_unit_test(test_least_radius_errors),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MAIN("search")

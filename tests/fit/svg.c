@@ -107,8 +107,7 @@ static narc_point random_middle(struct test_random *random) {
     return (narc_point){random_between(random, 45, 55), random_between(random, -55, -45)};
 }
 
-static void keeps_near_boxes(void **state) {
-    (void)state;
+TEST(keeps_near_boxes) {
     struct test_random random = test_random_named("svg boxes");
     for (size_t trial = 0; trial < test_trials(12); trial++) {
         narc_point corners[4];
@@ -122,8 +121,7 @@ static void keeps_near_boxes(void **state) {
 }
 
 /* Needles with an angle of 8 degrees or more at the tip, pointing anywhere, and along rows and columns. */
-static void keeps_near_needles(void **state) {
-    (void)state;
+TEST(keeps_near_needles) {
     struct test_random random = test_random_named("svg needles");
     for (size_t trial = 0; trial < test_trials(12); trial++) {
         const narc_point middle = random_middle(&random);
@@ -137,8 +135,7 @@ static void keeps_near_needles(void **state) {
     }
 }
 
-static void keeps_near_circles_and_strokes(void **state) {
-    (void)state;
+TEST(keeps_near_circles_and_strokes) {
     struct test_random random = test_random_named("svg circles");
     for (size_t trial = 0; trial < test_trials(8); trial++) {
         const narc_point a = random_middle(&random), b = random_middle(&random);
@@ -158,8 +155,7 @@ static void keeps_near_circles_and_strokes(void **state) {
 }
 
 /* The flatness counts: a bounding fit holds the drawing itself, not only the outline that was traced. */
-static void bounds_what_is_drawn(void **state) {
-    (void)state;
+TEST(bounds_what_is_drawn) {
     struct test_random random = test_random_named("svg fits");
     for (size_t trial = 0; trial < test_trials(6); trial++) {
         narc_point corners[4];
@@ -188,8 +184,7 @@ static void bounds_what_is_drawn(void **state) {
 }
 
 /* Small ink on a large page is drawn as large as the page may become: 8192 pixels. */
-static void tells_a_pixel(void **state) {
-    (void)state;
+TEST(tells_a_pixel) {
     narc_contours contours = read_contours("viewBox='0 0 1000 500'", "<circle cx='600' cy='200' r='1'/>");
     assert_true(fabs(contours.flatness - 1000.0 / 8192) < 1e-9);
     narc_release_contours(&contours);
@@ -223,8 +218,7 @@ static void expect_seen(const struct seen *cases, size_t count) {
     }
 }
 
-static void keeps_user_units(void **state) {
-    (void)state;
+TEST(keeps_user_units) {
     static const char rectangle[] = "<rect x='1' y='2' width='3' height='4'/>";
     static const struct seen cases[] = {
         {"viewBox='0 0 10 10'", rectangle, 1, -6, 4, -2},
@@ -245,8 +239,7 @@ static void keeps_user_units(void **state) {
     expect_seen(cases, sizeof cases / sizeof cases[0]);
 }
 
-static void sees_what_is_drawn(void **state) {
-    (void)state;
+TEST(sees_what_is_drawn) {
     static const char page[] = "viewBox='0 0 20 20'";
     static const struct seen cases[] = {
         /* Strokes have width, corners are mitred; what is outside of the page is cut off. */
@@ -294,8 +287,7 @@ static narc_point measure_reach(const char *body, narc_image_request request) {
 
 /* A shadow, even or blurred, apart or behind, counts if it is not fainter than the threshold, which usually is a quarter.
  * What is near ink counts with it, by up to 8 pixels of a 4096th of the ink, and the outline is a pixel away. */
-static void leaves_out_faint_shadows(void **state) {
-    (void)state;
+TEST(leaves_out_faint_shadows) {
     static const double near = 9 * 70.0 / 4096;
     static const struct {
         const char *shadow;
@@ -334,8 +326,7 @@ static void leaves_out_faint_shadows(void **state) {
 }
 
 /* Ink of full strength is where it is whatever the threshold; tips of 30 degrees too. */
-static void keeps_strong_ink_at_any_threshold(void **state) {
-    (void)state;
+TEST(keeps_strong_ink_at_any_threshold) {
     static const char body[] = "<path d='M20 20H80L50 76z'/><path d='M10 90L90 79V90z'/>";
     for (double threshold = 0.05; threshold < 1; threshold += 0.15) {
         const narc_point reach = measure_reach(body, (narc_image_request){.threshold = threshold});
@@ -344,8 +335,7 @@ static void keeps_strong_ink_at_any_threshold(void **state) {
 }
 
 /* Darkness and lightness of what is drawn, also on a background; a page that is covered is its rectangle, and told. */
-static void takes_dark_and_light(void **state) {
-    (void)state;
+TEST(takes_dark_and_light) {
     static const char on_white[] = "<rect width='100' height='100' fill='white'/><rect x='20' y='20' width='30' "
                                    "height='30' fill='#402010'/><circle cx='80' cy='80' r='9' fill='#ffff80'/>";
     static const char on_black[] = "<rect width='100' height='100'/><rect x='20' y='20' width='30' height='30' "
@@ -373,8 +363,7 @@ static void takes_dark_and_light(void **state) {
 
 /* Text too large for FreeType is left out, and no later text suffers for it, in this file or in the next. Without a font
  * that says nothing. */
-static void leaves_out_huge_text(void **state) {
-    (void)state;
+TEST(leaves_out_huge_text) {
     static const char huge[] =
         "<rect width='9' height='9'/><text transform='scale(56,26)' font-size='12' x='2.2' y='14.2'>l</text>";
     for (int trial = 0; trial < 2; trial++) {
@@ -388,8 +377,7 @@ static void leaves_out_huge_text(void **state) {
 
 /* ---------------------------------------------------------------------------- files that are wrong */
 
-static void tells_what_is_wrong(void **state) {
-    (void)state;
+TEST(tells_what_is_wrong) {
     static const struct wrong wrong[] = {
         {"", NARC_ERROR_FORMAT, 0, "the SVG file is empty"},
         {"M0 0h1v1z", NARC_ERROR_FORMAT, 1, "not SVG: "},
@@ -439,8 +427,7 @@ static void tells_what_is_wrong(void **state) {
 }
 
 /* What a file shows of others is not read, though they are there. */
-static void reads_no_other_file(void **state) {
-    (void)state;
+TEST(reads_no_other_file) {
     static const char name[] = "test_fit_svg.tmp.svg";
     static const struct {
         const char *format;
@@ -472,8 +459,7 @@ static void reads_no_other_file(void **state) {
 }
 
 /* A file of a kilobyte that would be 10^10 times its path; elements 100,000 deep. */
-static void ends_what_multiplies(void **state) {
-    (void)state;
+TEST(ends_what_multiplies) {
     enum { DEEP = 100000 };
     char *text = malloc(DEEP * 3 + 100);
     assert_non_null(text);
@@ -493,8 +479,7 @@ static void ends_what_multiplies(void **state) {
     free(text);
 }
 
-static void survives_changed_bytes(void **state) {
-    (void)state;
+TEST(survives_changed_bytes) {
     static const char good[] =
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 10 10' width='10' height='10'>\n<style>.a{fill:none}#b,"
         "path{stroke:red}</style>\n<g transform='translate(1,2)rotate(30 1 1)'><path id='b' class='a' d='M1.5.5-3e2 4"
@@ -516,25 +501,4 @@ static void survives_changed_bytes(void **state) {
     assert_true(read > 0 && read < trials);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_near_boxes),
-        cmocka_unit_test(keeps_near_needles),
-        cmocka_unit_test(keeps_near_circles_and_strokes),
-        cmocka_unit_test(bounds_what_is_drawn),
-        cmocka_unit_test(tells_a_pixel),
-        cmocka_unit_test(keeps_user_units),
-        cmocka_unit_test(sees_what_is_drawn),
-        cmocka_unit_test(leaves_out_faint_shadows),
-        cmocka_unit_test(keeps_strong_ink_at_any_threshold),
-        cmocka_unit_test(takes_dark_and_light),
-        cmocka_unit_test(leaves_out_huge_text),
-        cmocka_unit_test(tells_what_is_wrong),
-        cmocka_unit_test(reads_no_other_file),
-        cmocka_unit_test(ends_what_multiplies),
-        cmocka_unit_test(survives_changed_bytes),
-    };
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return cmocka_run_group_tests_name("SVG", tests, NULL, NULL);
-}
+TEST_MAIN("SVG")

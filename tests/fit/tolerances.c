@@ -28,8 +28,7 @@ static double refuse(const struct outline *of, narc_fit_request request, const c
     return error.value;
 }
 
-static void test_less_than_single_precision(void **state) {
-    (void)state;
+TEST(test_less_than_single_precision) {
     struct outline thin = make_box(100, 0.3), circle = make_regular("circle", 200, 0, 1);
     for (int family = NARC_FIT_N_ARC; family <= NARC_FIT_PAPER; family++) {
         const bool has_edges = family == NARC_FIT_EDGES || family == NARC_FIT_POLYGON;
@@ -44,8 +43,7 @@ static void test_less_than_single_precision(void **state) {
     free_outline(&circle);
 }
 
-static void test_less_than_flatness(void **state) {
-    (void)state;
+TEST(test_less_than_flatness) {
     struct test_random random = test_random_named("flatness");
     struct outline blob = make_blob(&random, 4);
     for (int goal = NARC_FIT_BOUND_DISTANCE; goal <= NARC_FIT_DISTANCE; goal++) {
@@ -57,8 +55,7 @@ static void test_less_than_flatness(void **state) {
 
 /* Around the square of side 2, at a distance t, radii are at most 64 (sqrt(2) + t). A side is a chord of such a circle
  * with a sagitta of at most t: 1 <= 2 * 64 (sqrt(2) + t) t. */
-static void test_bulge_of_a_square(void **state) {
-    (void)state;
+TEST(test_bulge_of_a_square) {
     struct outline square = make_box(2, 2);
     const double told = refuse(&square, (narc_fit_request){.tolerance = 1e-3}, "straight edges", 0);
     assert_true(128 * (sqrt(2) + told) * told <= 1 && told >= 0.0054);
@@ -66,8 +63,7 @@ static void test_bulge_of_a_square(void **state) {
 }
 
 /* What is told beforehand is less than what is found. */
-static void test_bulge_is_a_lower_bound(void **state) {
-    (void)state;
+TEST(test_bulge_is_a_lower_bound) {
     struct test_random random = test_random_named("bulges");
     for (size_t trial = 0, trials = test_trials(4); trial < trials; trial++) {
         struct outline of =
@@ -81,8 +77,7 @@ static void test_bulge_is_a_lower_bound(void **state) {
 }
 
 /* The hull itself, but for roundings, has four arcs; a circle of 200 corners is too fine for 32. */
-static void test_few_searches(void **state) {
-    (void)state;
+TEST(test_few_searches) {
     struct outline thin = make_box(100, 0.3), circle = make_regular("circle", 200, 0, 1);
     refuse(&thin, (narc_fit_request){.tolerance = 1e-5, .family = NARC_FIT_EDGES}, "up to 32 arcs come within", 1000);
     refuse(&circle, (narc_fit_request){.tolerance = 1e-6, .family = NARC_FIT_EDGES}, "up to 32 arcs come within", 20);
@@ -90,15 +85,4 @@ static void test_few_searches(void **state) {
     free_outline(&circle);
 }
 
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_less_than_single_precision),
-        cmocka_unit_test(test_less_than_flatness),
-        cmocka_unit_test(test_bulge_of_a_square),
-        cmocka_unit_test(test_bulge_is_a_lower_bound),
-        cmocka_unit_test(test_few_searches),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MAIN("tolerances")

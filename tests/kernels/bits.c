@@ -243,8 +243,7 @@ static void check_all_counts(const narc_method_options *options, narc_precision 
     destroy_scene(&scene);
 }
 
-static void test_all_counts(void **state) {
-    (void)state;
+TEST(test_all_counts) {
     for (size_t q = 0; q < SETTINGS; q++) {
         check_all_counts(&settings[q], NARC_FLOAT32, q % 2);
         check_all_counts(&settings[q], NARC_FLOAT64, q % 2 == 0);
@@ -252,8 +251,7 @@ static void test_all_counts(void **state) {
 }
 
 /* Values that are one for all bodies, and no scales. */
-static void test_shared_values(void **state) {
-    (void)state;
+TEST(test_shared_values) {
     for (size_t q = 0; q < SETTINGS; q++) {
         for (enum layout layout = LAYOUT_SHARED; layout <= LAYOUT_UNSCALED; layout++) {
             struct test_random random = test_random_named("shared");
@@ -275,8 +273,7 @@ static void test_shared_values(void **state) {
 }
 
 /* Several threads, each with several chunks. */
-static void test_threads(void **state) {
-    (void)state;
+TEST(test_threads) {
     static const size_t counts[] = {1000, 1025, 5003, 20000};
     struct test_random random = test_random_named("threads of methods");
     for (size_t q = 0; q < SETTINGS; q++) {
@@ -325,15 +322,13 @@ static void check_corpus(const char *name, narc_precision precision, bool polygo
     destroy_corpus(&corpus);
 }
 
-static void test_hard_places(void **state) {
-    (void)state;
+TEST(test_hard_places) {
     check_corpus("bits", NARC_FLOAT32, false);
     check_corpus("bits, polygons", NARC_FLOAT64, true);
 }
 
 /* A pair's answer depends on that pair alone: not on those in the other lanes, nor on how many there are. */
-static void test_neighbours(void **state) {
-    (void)state;
+TEST(test_neighbours) {
     struct test_random random = test_random_named("neighbours of methods");
     for (size_t q = 0; q < SETTINGS; q++) {
         if (!has_contacts(&settings[q]))
@@ -367,8 +362,7 @@ static void test_neighbours(void **state) {
 }
 
 /* Any bits at all as bodies, scales and margins: equal bits, no crash, and no endless loop. */
-static void test_garbage_bodies(void **state) {
-    (void)state;
+TEST(test_garbage_bodies) {
     struct test_random random = test_random_named("garbage of methods");
     for (size_t q = 0; q < SETTINGS; q++) {
         struct scene scene = make_query_scene(&random, &settings[q], NARC_FLOAT32, 200, 1000);
@@ -432,8 +426,7 @@ static void check_skipped(const struct scene *scene, const narc_method_options *
 
 /* A body off by a little collides with nothing: every method counts the pairs that it is in, whatever the number of
  * threads and the split. */
-static void test_skipped_pairs(void **state) {
-    (void)state;
+TEST(test_skipped_pairs) {
     enum { MANY = 6001 };
     struct test_random random = test_random_named("skipped pairs");
     for (size_t q = 0; q < SETTINGS; q++) {
@@ -465,12 +458,4 @@ static void test_skipped_pairs(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_all_counts),    cmocka_unit_test(test_shared_values),
-        cmocka_unit_test(test_threads),       cmocka_unit_test(test_hard_places),
-        cmocka_unit_test(test_neighbours),    cmocka_unit_test(test_garbage_bodies),
-        cmocka_unit_test(test_skipped_pairs),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("bits", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("bits")

@@ -117,8 +117,7 @@ static void check_scene(const struct scene *scene, struct test_random *random) {
 }
 
 /* Every family, in every placement: right angles, nearly right ones, far away, tiny and huge scales. */
-static void holds_every_shape(void **state) {
-    (void)state;
+TEST(holds_every_shape) {
     struct test_random random = test_random_named("boxes");
     enum { PLACES = 8 };
     for (int precision = 0; precision < 2; precision++) {
@@ -144,8 +143,7 @@ static void holds_every_shape(void **state) {
 }
 
 /* Junctions along the world's axes, within some units of the look-up's 16 bits, and arcs that are no wider than one. */
-static void holds_shapes_with_junctions_along_the_axes(void **state) {
-    (void)state;
+TEST(holds_shapes_with_junctions_along_the_axes) {
     struct test_random random = test_random_named("junctions along axes");
     const double quarter = 1.57079632679489661923;
     const size_t trials = test_trials(400);
@@ -193,8 +191,7 @@ static void holds_shapes_with_junctions_along_the_axes(void **state) {
 }
 
 /* Positions at which a body is less than a rounding, and positions that cancel its extent. */
-static void rounds_outwards_wherever_a_body_is(void **state) {
-    (void)state;
+TEST(rounds_outwards_wherever_a_body_is) {
     struct test_random random = test_random_named("rounding");
     for (int precision = 0; precision < 2; precision++) {
         const size_t trials = test_trials(200);
@@ -223,8 +220,7 @@ static void rounds_outwards_wherever_a_body_is(void **state) {
 }
 
 /* The box of a body that moves is that around its boxes before and after. */
-static void joins_both_ends_of_a_motion(void **state) {
-    (void)state;
+TEST(joins_both_ends_of_a_motion) {
     struct test_random random = test_random_named("motion");
     enum { COUNT = 500 };
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, COUNT, 1);
@@ -235,9 +231,8 @@ static void joins_both_ends_of_a_motion(void **state) {
         round_position(&scene.bodies[k], scene.precision);
         motion[k] = ((float)random_below(&random, 201) - 100) / 16;
     }
-    narc_box *const before = compute(&scene, NULL, 1), *const both = compute(
-                                                           &scene, &(narc_box_options){.motion_x = NARC_ARRAY(motion)},
-                                                           1);
+    const narc_box_options moving = {.motion_x = NARC_ARRAY(motion)};
+    narc_box *const before = compute(&scene, NULL, 1), *const both = compute(&scene, &moving, 1);
     for (size_t k = 0; k < COUNT; k++) {
         scene.bodies[k].x += (double)motion[k];
         round_position(&scene.bodies[k], scene.precision);
@@ -260,8 +255,7 @@ static void joins_both_ends_of_a_motion(void **state) {
 
 /* Every layout and every count, each array with a guard page behind it; sub-ranges touch nothing but their own. Scalar
  * in one call decides. */
-static void same_bits_whatever_the_split(void **state) {
-    (void)state;
+TEST(same_bits_whatever_the_split) {
     struct test_random random = test_random_named("splits");
     for (int precision = 0; precision < 2; precision++) {
         for (enum layout layout = 0; layout < LAYOUT_COUNT; layout++) {
@@ -310,10 +304,11 @@ static void same_bits_whatever_the_split(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ broken bodies */
 
-static void gives_broken_bodies_empty_boxes(void **state) {
-    (void)state;
+TEST(gives_broken_bodies_empty_boxes) {
     struct test_random random = test_random_named("broken");
     static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300};
+    static const float worse[][4] = {{0, -1, 1e-30f, 1e12f},
+                                     {0, 1.001f, 2, 1e20f}}; /* scales, cosines without a sine */
     enum { COUNT = 40, KINDS = 8 };
     static const narc_box none = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     for (int precision = 0; precision < 2; precision++) {
@@ -325,37 +320,14 @@ static void gives_broken_bodies_empty_boxes(void **state) {
                 const size_t k = random_below(&random, COUNT);
                 struct body *const body = &scene.bodies[k];
                 const struct body whole = *body;
-                const float single = (float)bad[value];
                 size_t skipped = 9;
-                switch (kind) {
-                case 0:
-                    body->x = bad[value], body->x_single = single;
-                    break;
-                case 1:
-                    body->y = bad[value], body->y_single = single;
-                    break;
-                case 2:
-                    body->cosine = single;
-                    break;
-                case 3:
-                    body->sine = single;
-                    break;
-                case 4:
-                    body->scale = single;
-                    break;
-                case 5:
-                    motion[k] = single;
-                    break;
-                case 6:
-                    body->scale = ((const float[]){0, -1, 1e-30f, 1e12f})[value];
-                    break;
-                case 7:
-                    body->cosine = ((const float[]){0, 1.001f, 2, 1e20f})[value];
+                float *const numbers[] = {&body->x_single, &body->y_single, &body->cosine, &body->sine,
+                                          &body->scale,    &motion[k],      &body->scale,  &body->cosine};
+                *numbers[kind] = kind < 6 ? (float)bad[value] : worse[kind - 6][value];
+                if (kind < 2)
+                    *(kind ? &body->y : &body->x) = bad[value];
+                if (kind == 7)
                     body->sine = 0;
-                    break;
-                default:
-                    break;
-                }
                 narc_box *const found =
                     compute(&scene, &(narc_box_options){.motion_y = NARC_ARRAY(motion), .out_skipped = &skipped}, 1);
                 assert_int_equal(skipped, 1);
@@ -371,8 +343,7 @@ static void gives_broken_bodies_empty_boxes(void **state) {
 }
 
 /* Random bits as every number of every body: nothing hangs, crashes, or comes out as NaN. */
-static void survives_garbage(void **state) {
-    (void)state;
+TEST(survives_garbage) {
     struct test_random random = test_random_named("garbage boxes");
     enum { COUNT = 300 };
     for (size_t trial = 0; trial < test_trials(60); trial++) {
@@ -390,11 +361,9 @@ static void survives_garbage(void **state) {
             }
             memcpy(&motion[k], (const char *)words + 4, sizeof motion[k]);
         }
-        narc_box *const boxes =
-            compute(&scene,
-                    &(narc_box_options){
-                        .motion_x = NARC_ARRAY(motion), .motion_y = NARC_ARRAY(motion), .out_skipped = &skipped},
-                    1);
+        const narc_float_column moves = NARC_ARRAY(motion);
+        const narc_box_options moving = {.motion_x = moves, .motion_y = moves, .out_skipped = &skipped};
+        narc_box *const boxes = compute(&scene, &moving, 1);
         for (size_t k = 0; k < COUNT; k++) {
             const narc_box *const box = &boxes[k];
             const bool whole = box->min_x <= box->max_x && box->min_y <= box->max_y && fabsf(box->min_x) <= FLT_MAX &&
@@ -410,59 +379,46 @@ static void survives_garbage(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ errors */
 
-static void refuses_bad_arguments(void **state) {
-    (void)state;
+TEST(refuses_bad_arguments) {
     struct test_random random = test_random_named("errors of boxes");
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, 100, 1);
     const narc_bodies bodies = scene_bodies(&scene), none = {0};
     narc_bodies broken = bodies;
     narc_box boxes[100];
-    narc_box_options options = {0};
     narc_error error;
     size_t skipped = 5;
+    narc_box_options options = {.out_skipped = &skipped};
     memset(boxes, GUARD_JUNK, sizeof boxes);
-    options.out_skipped = &skipped;
-    expect_error(narc_compute_boxes(NULL, &bodies, NULL, boxes, &error), NARC_ERROR_ARGUMENT, &error, "shapes");
-    expect_error(narc_compute_boxes(scene.store, NULL, NULL, boxes, &error), NARC_ERROR_ARGUMENT, &error, "bodies");
-    expect_error(narc_compute_boxes(scene.store, &bodies, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error,
-                 "out_boxes");
-    const narc_box_options beyond = {.first = 90, .count = 11}, behind = {.first = 101},
-                           reserved = {.reserved = {boxes}};
-    expect_error(narc_compute_boxes(scene.store, &bodies, &beyond, boxes, &error), NARC_ERROR_ARGUMENT, &error,
-                 "bodies 90 and the 11");
-    expect_error(narc_compute_boxes(scene.store, &bodies, &behind, boxes, &error), NARC_ERROR_ARGUMENT, &error,
-                 "bodies 101 and the 0");
-    expect_error(narc_compute_boxes(scene.store, &bodies, &reserved, boxes, &error), NARC_ERROR_ARGUMENT, &error,
-                 "options.reserved[0] is not NULL");
     broken.sine.base = NULL;
-    expect_error(narc_compute_boxes(scene.store, &broken, NULL, boxes, &error), NARC_ERROR_ARGUMENT, &error, "sine");
-    broken = bodies;
+#define EXPECT(shapes, bodies, options, boxes, status, words)                                                          \
+    expect_error(narc_compute_boxes(shapes, bodies, options, boxes, &error), status, &error, words)
+#define WRONG(status, words, ...)                                                                                      \
+    EXPECT(scene.store, &bodies, (&(narc_box_options){.out_skipped = &skipped, __VA_ARGS__}), boxes, status, words)
+    EXPECT(NULL, &bodies, NULL, boxes, NARC_ERROR_ARGUMENT, "shapes");
+    EXPECT(scene.store, NULL, NULL, boxes, NARC_ERROR_ARGUMENT, "bodies");
+    EXPECT(scene.store, &bodies, NULL, NULL, NARC_ERROR_ARGUMENT, "out_boxes");
+    EXPECT(scene.store, &broken, NULL, boxes, NARC_ERROR_ARGUMENT, "sine");
 #if SIZE_MAX > UINT32_MAX
-    broken.count = (size_t)UINT32_MAX + 1;
-    expect_error(narc_compute_boxes(scene.store, &broken, NULL, boxes, &error), NARC_ERROR_ARGUMENT, &error, "at most");
+    narc_bodies many = bodies;
+    many.count = (size_t)UINT32_MAX + 1;
+    EXPECT(scene.store, &many, NULL, boxes, NARC_ERROR_ARGUMENT, "at most");
 #endif
-    options.margin = -1;
-    expect_error(narc_compute_boxes(scene.store, &bodies, &options, boxes, &error), NARC_ERROR_ARGUMENT, &error,
-                 "margin");
-    options.margin = NAN;
-    expect_error(narc_compute_boxes(scene.store, &bodies, &options, boxes, &error), NARC_ERROR_NOT_FINITE, &error,
-                 "margin");
-    options.margin = INFINITY;
-    expect_error(narc_compute_boxes(scene.store, &bodies, &options, boxes, &error), NARC_ERROR_NOT_FINITE, &error,
-                 "margin");
-    options.margin = 0;
+    WRONG(NARC_ERROR_ARGUMENT, "bodies 90 and the 11", .first = 90, .count = 11);
+    WRONG(NARC_ERROR_ARGUMENT, "bodies 101 and the 0", .first = 101);
+    WRONG(NARC_ERROR_ARGUMENT, "options.reserved[0] is not NULL", .reserved = {boxes});
+    WRONG(NARC_ERROR_ARGUMENT, "margin", .margin = -1);
+    WRONG(NARC_ERROR_NOT_FINITE, "margin", .margin = NAN);
+    WRONG(NARC_ERROR_NOT_FINITE, "margin", .margin = INFINITY);
     scene.bodies[70].shape = 1000000;
     scene.bodies[80].shape = 1000001;
     for (unsigned threads = 1; threads < 4; threads++) {
         const narc_workers workers = narc_openmp_workers(threads);
         options.workers = &workers;
-        expect_error(narc_compute_boxes(scene.store, &bodies, &options, boxes, &error), NARC_ERROR_INDEX, &error,
-                     "body 70");
+        EXPECT(scene.store, &bodies, &options, boxes, NARC_ERROR_INDEX, "body 70");
         assert_int_equal(error.index, 70);
     }
     assert_int_equal(skipped, 5);
-    for (size_t k = 0; k < sizeof boxes; k++)
-        assert_int_equal(((const unsigned char *)boxes)[k], GUARD_JUNK);
+    assert_true(is_junk(boxes, sizeof boxes));
     expect_ok(narc_compute_boxes(scene.store, &bodies, &(narc_box_options){.count = 70}, boxes, &error), &error);
     options.workers = NULL;
     expect_ok(narc_compute_boxes(scene.store, &none, &options, NULL, &error), &error);
@@ -471,8 +427,7 @@ static void refuses_bad_arguments(void **state) {
 }
 
 /* The bodies of many parts: the first of several wrong shapes is named, whatever thread finds it. */
-static void names_the_first_wrong_shape(void **state) {
-    (void)state;
+TEST(names_the_first_wrong_shape) {
     struct test_random random = test_random_named("wrong shapes");
     enum { COUNT = 200000 };
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, 1, 1);
@@ -488,30 +443,13 @@ static void names_the_first_wrong_shape(void **state) {
     for (unsigned threads = 1; threads < 5; threads++) {
         const narc_workers workers = narc_openmp_workers(threads);
         narc_box_options options = {.workers = &workers};
-        expect_error(narc_compute_boxes(scene.store, &bodies, &options, boxes, &error), NARC_ERROR_INDEX, &error,
-                     "body 70000");
+        EXPECT(scene.store, &bodies, &options, boxes, NARC_ERROR_INDEX, "body 70000");
         options.first = 70001, options.count = 100000;
-        expect_error(narc_compute_boxes(scene.store, &bodies, &options, boxes, &error), NARC_ERROR_INDEX, &error,
-                     "body 70001");
+        EXPECT(scene.store, &bodies, &options, boxes, NARC_ERROR_INDEX, "body 70001");
     }
     free(shape);
     free(boxes);
     destroy_scene(&scene);
 }
 
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(holds_every_shape),
-        cmocka_unit_test(holds_shapes_with_junctions_along_the_axes),
-        cmocka_unit_test(rounds_outwards_wherever_a_body_is),
-        cmocka_unit_test(joins_both_ends_of_a_motion),
-        cmocka_unit_test(same_bits_whatever_the_split),
-        cmocka_unit_test(gives_broken_bodies_empty_boxes),
-        cmocka_unit_test(survives_garbage),
-        cmocka_unit_test(refuses_bad_arguments),
-        cmocka_unit_test(names_the_first_wrong_shape),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MAIN("boxes")

@@ -100,9 +100,24 @@ static narc_box random_box(struct test_random *random, double side, double small
     return (narc_box){(float)(x - w), (float)(y - h), (float)(x + w), (float)(y + h)};
 }
 
+static narc_box *allocate_boxes(size_t count) {
+    narc_box *boxes = malloc(count * sizeof *boxes);
+    assert_non_null(boxes);
+    return boxes;
+}
+
+static narc_box box_at(double x, double y, double width, double height) {
+    return (narc_box){(float)x, (float)y, (float)(x + width), (float)(y + height)};
+}
+
+/* Boxes that all overlap. */
+static void fill_one_place(narc_box *boxes, size_t count) {
+    for (size_t k = 0; k < count; k++)
+        boxes[k] = box_at(0, 0, 1, 1);
+}
+
 /* Sizes alike and sizes 1 : 10,000, dense and loose, few and many. */
-static void finds_all_pairs_of_random_boxes(void **state) {
-    (void)state;
+TEST(finds_all_pairs_of_random_boxes) {
     struct test_random random = test_random_named("random boxes");
     narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t trial = 0; trial < test_trials(60); trial++) {
@@ -118,8 +133,7 @@ static void finds_all_pairs_of_random_boxes(void **state) {
 }
 
 /* Small integers: borders that touch, equal boxes, boxes without width or height. */
-static void finds_pairs_that_touch(void **state) {
-    (void)state;
+TEST(finds_pairs_that_touch) {
     struct test_random random = test_random_named("lattice boxes");
     narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t trial = 0; trial < test_trials(60); trial++) {
@@ -134,8 +148,7 @@ static void finds_pairs_that_touch(void **state) {
 }
 
 /* Bodies that were parked far away, denormal sizes, the largest floats, a floor below everything. */
-static void finds_pairs_among_extremes(void **state) {
-    (void)state;
+TEST(finds_pairs_among_extremes) {
     static const float places[] = {0,     -0.0f, 1,      -1,      1e-40f,   -1e-40f, 1e9f,
                                    -1e9f, 1e30f, -1e30f, FLT_MAX, -FLT_MAX, 1e-20f};
     static const float sizes[] = {0, 1e-45f, 1e-38f, 1e-9f, 1, 100, 1e9f, 1e30f, FLT_MAX};
@@ -154,8 +167,7 @@ static void finds_pairs_among_extremes(void **state) {
 
 /* Boxes of one row: spread evenly, over many powers of two, all but one or two in a crowd, in one place, too far apart for
  * a difference in floats; fewer and more than the sort has buckets. */
-static void sorts_rows_of_all_kinds(void **state) {
-    (void)state;
+TEST(sorts_rows_of_all_kinds) {
     static const size_t counts[] = {1, 2, 31, 32, 33, 500, 3000, 17000};
     enum { EVEN, POWERS, CROWD, TWO_CROWDS, ONE_PLACE, FAR_APART, KINDS };
     struct test_random random = test_random_named("rows of boxes");
@@ -167,27 +179,15 @@ static void sorts_rows_of_all_kinds(void **state) {
         narc_box *boxes = malloc(count * sizeof *boxes);
         for (size_t k = 0; k < count; k++) {
             const double part = random_unit(&random), sign = random_below(&random, 2) ? 1 : -1;
-            double x = part * (double)count;
-            switch (trial % KINDS) {
-            case POWERS:
-                x = sign * random_log_between(&random, 1e-30, 1e6);
-                break;
-            case CROWD:
-                x = k == 0 ? 1e30 : x;
-                break;
-            case TWO_CROWDS:
-                x += k % 2 ? 1e20 : 0;
-                break;
-            case ONE_PLACE:
-                x = 5;
-                break;
-            case FAR_APART:
-                x = k < 2 ? (k ? 3e38 : -3e38) : x;
-                break;
-            default:
-                break;
-            }
-            boxes[k] = (narc_box){(float)x, (float)part, (float)(x + 0.5), (float)part + 1};
+            const double x = part * (double)count;
+            const double far = k ? 3e38 : -3e38, powers = sign * random_log_between(&random, 1e-30, 1e6);
+            const double places[KINDS] = {[EVEN] = x,
+                                          [POWERS] = powers,
+                                          [CROWD] = k == 0 ? 1e30 : x,
+                                          [TWO_CROWDS] = x + (k % 2 ? 1e20 : 0),
+                                          [ONE_PLACE] = 5,
+                                          [FAR_APART] = k < 2 ? far : x};
+            boxes[k] = box_at(places[trial % KINDS], part, 0.5, 1);
         }
         check_pairs(broad, boxes, count, NULL);
         free(boxes);
@@ -195,8 +195,7 @@ static void sorts_rows_of_all_kinds(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
-static void leaves_out_empty_boxes(void **state) {
-    (void)state;
+TEST(leaves_out_empty_boxes) {
     static const narc_box boxes[] = {{0, 0, 1, 1},        {NAN, 0, 1, 1},       {0, NAN, 1, 1},
                                      {0, 0, NAN, 1},      {0, 0, 1, NAN},       {1, 0, 0, 1},
                                      {0, 1, 1, 0},        {-INFINITY, 0, 1, 1}, {0, 0, INFINITY, 1},
@@ -214,8 +213,7 @@ static void leaves_out_empty_boxes(void **state) {
 }
 
 /* One box that all others overlap, in a list of its own that is long. */
-static void orders_the_partners_of_a_floor(void **state) {
-    (void)state;
+TEST(orders_the_partners_of_a_floor) {
     struct test_random random = test_random_named("floor");
     narc_broad_phase *broad = create_broad_phase(NULL);
     enum { COUNT = 2000 };
@@ -227,8 +225,7 @@ static void orders_the_partners_of_a_floor(void **state) {
     narc_destroy_broad_phase(broad);
 }
 
-static void filters_pairs(void **state) {
-    (void)state;
+TEST(filters_pairs) {
     struct test_random random = test_random_named("filters");
     narc_broad_phase *broad = create_broad_phase(NULL);
     struct body {
@@ -248,13 +245,14 @@ static void filters_pairs(void **state) {
         const narc_byte_column kind = NARC_COLUMN(bodies, kind);
         const narc_word_column category = NARC_COLUMN(bodies, category), mask = NARC_COLUMN(bodies, mask);
         const narc_index_column group = NARC_COLUMN(bodies, group);
-        check_pairs(broad, boxes, 200,
-                    &(narc_pair_filter){.kind = kind, .category = category, .mask = mask, .group = group});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){.kind = kind});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){.category = category});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){.mask = mask});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){.group = group});
-        check_pairs(broad, boxes, 200, &(narc_pair_filter){0});
+        const narc_pair_filter filters[] = {{.kind = kind, .category = category, .mask = mask, .group = group},
+                                            {.kind = kind},
+                                            {.category = category},
+                                            {.mask = mask},
+                                            {.group = group},
+                                            {.kind = {0}}};
+        for (size_t f = 0; f < sizeof filters / sizeof *filters; f++)
+            check_pairs(broad, boxes, 200, &filters[f]);
     }
     narc_destroy_broad_phase(broad);
 }
@@ -277,19 +275,8 @@ static void check_steps(const char *name, narc_box *boxes, size_t count, double 
     free(boxes);
 }
 
-static narc_box *allocate_boxes(size_t count) {
-    narc_box *boxes = malloc(count * sizeof *boxes);
-    assert_non_null(boxes);
-    return boxes;
-}
-
-static narc_box box_at(double x, double y, double width, double height) {
-    return (narc_box){(float)x, (float)y, (float)(x + width), (float)(y + height)};
-}
-
 /* Scenes that a sweep could take the square of the boxes for. `turn`: width for height. */
-static void grows_no_faster_than_boxes_and_pairs(void **state) {
-    (void)state;
+TEST(grows_no_faster_than_boxes_and_pairs) {
     enum { COUNT = 20000, CROWD = 2000 };
     struct test_random random = test_random_named("growth");
     for (int turn = 0; turn < 2; turn++) {
@@ -332,16 +319,14 @@ static void grows_no_faster_than_boxes_and_pairs(void **state) {
             check_steps("all sizes", slim, COUNT, 100, 20);
         }
         narc_box *const crowd = allocate_boxes(CROWD);
-        for (size_t k = 0; k < CROWD; k++)
-            crowd[k] = box_at(0, 0, 1, 1);
+        fill_one_place(crowd, CROWD);
         check_steps("one place", crowd, CROWD, 2, 1);
     }
 }
 
 /* ------------------------------------------------------------------------------------------------ memory and errors */
 
-static void allocates_nothing_once_it_has_grown(void **state) {
-    (void)state;
+TEST(allocates_nothing_once_it_has_grown) {
     struct test_random random = test_random_named("steady state");
     struct counter counter = {.left = SIZE_MAX};
     narc_broad_phase *broad = create_broad_phase(&counter);
@@ -371,8 +356,7 @@ static void allocates_nothing_once_it_has_grown(void **state) {
 }
 
 /* The first call of an object, without boxes: there is no memory yet. */
-static void finds_nothing_among_no_boxes(void **state) {
-    (void)state;
+TEST(finds_nothing_among_no_boxes) {
     narc_broad_phase *broad = create_broad_phase(NULL);
     const narc_box empty = {NAN, 0, 1, 1};
     size_t found = 9;
@@ -385,8 +369,7 @@ static void finds_nothing_among_no_boxes(void **state) {
 }
 
 /* Boxes in a row, none of which overlap: memory is for boxes and pairs, and not for questions without an answer. */
-static void takes_memory_for_pairs_alone(void **state) {
-    (void)state;
+TEST(takes_memory_for_pairs_alone) {
     enum { COUNT = 4000 };
     struct counter counter = {.left = SIZE_MAX};
     narc_broad_phase *broad = create_broad_phase(&counter);
@@ -401,12 +384,10 @@ static void takes_memory_for_pairs_alone(void **state) {
     free(boxes);
 }
 
-static void survives_failing_allocations(void **state) {
-    (void)state;
+TEST(survives_failing_allocations) {
     narc_box boxes[300];
     uint32_t a[45000], b[45000];
-    for (size_t k = 0; k < 300; k++)
-        boxes[k] = (narc_box){0, 0, 1, 1};
+    fill_one_place(boxes, 300);
     bool succeeded = false;
     for (size_t left = 0; !succeeded; left++) {
         struct counter counter = {.left = left};
@@ -422,69 +403,46 @@ static void survives_failing_allocations(void **state) {
     }
 }
 
-static void tells_how_much_room_is_needed(void **state) {
-    (void)state;
+TEST(tells_how_much_room_is_needed) {
     narc_box boxes[100];
     uint32_t a[10] = {7}, b[10] = {7};
     size_t found = 0;
     narc_error error;
     narc_broad_phase *broad = create_broad_phase(NULL);
-    for (size_t k = 0; k < 100; k++)
-        boxes[k] = (narc_box){0, 0, 1, 1};
+    fill_one_place(boxes, 100);
     assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, a, b, 10, &found, &error), NARC_ERROR_CAPACITY);
     assert_int_equal(found, 4950);
     assert_int_equal(a[0], 7);
-    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, NULL, NULL, 0, &found, &error),
-                     NARC_ERROR_CAPACITY);
+    assert_int_equal(narc_find_pairs(broad, boxes, 100, NULL, NULL, NULL, NULL, 0, &found, NULL), NARC_ERROR_CAPACITY);
     assert_int_equal(found, 4950);
     narc_destroy_broad_phase(broad);
 }
 
-static void refuses_bad_arguments(void **state) {
-    (void)state;
+TEST(refuses_bad_arguments) {
     narc_broad_phase *broad = create_broad_phase(NULL);
     const narc_box box = {0, 0, 1, 1};
     uint32_t a, b, match = 5;
     size_t found = 9;
     const narc_pairs none = {0}, one = {.count = 1, .a = {&a, 4}, .b = {&b, 4}};
     const narc_pairs broken = {.count = 1, .b = {&b, 4}};
-    assert_int_equal(narc_find_pairs(NULL, &box, 1, NULL, NULL, &a, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_find_pairs(broad, NULL, 1, NULL, NULL, &a, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_find_pairs(broad, &box, 1, NULL, NULL, NULL, &b, 1, &found, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_find_pairs(broad, &box, 1, NULL, NULL, &a, &b, 1, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_find_pairs(broad, &box, (size_t)UINT32_MAX, NULL, NULL, &a, &b, 1, &found, NULL),
-                     NARC_ERROR_ARGUMENT);
+#define REFUSED(call) assert_int_equal(call, NARC_ERROR_ARGUMENT)
+    REFUSED(narc_find_pairs(NULL, &box, 1, NULL, NULL, &a, &b, 1, &found, NULL));
+    REFUSED(narc_find_pairs(broad, NULL, 1, NULL, NULL, &a, &b, 1, &found, NULL));
+    REFUSED(narc_find_pairs(broad, &box, 1, NULL, NULL, NULL, &b, 1, &found, NULL));
+    REFUSED(narc_find_pairs(broad, &box, 1, NULL, NULL, &a, &b, 1, NULL, NULL));
+    REFUSED(narc_find_pairs(broad, &box, UINT32_MAX, NULL, NULL, &a, &b, 1, &found, NULL));
+    REFUSED(narc_match_pairs(NULL, &none, &none, NULL, NULL, NULL));
+    REFUSED(narc_match_pairs(broad, NULL, &none, NULL, NULL, NULL));
+    REFUSED(narc_match_pairs(broad, &none, NULL, NULL, NULL, NULL));
+    REFUSED(narc_match_pairs(broad, &none, &broken, NULL, &match, NULL));
+    REFUSED(narc_match_pairs(broad, &none, &one, NULL, NULL, NULL));
+    REFUSED(narc_create_broad_phase(NULL, NULL));
+#undef REFUSED
     assert_int_equal(found, 9);
-    assert_int_equal(narc_match_pairs(NULL, &none, &none, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, NULL, &none, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, &none, NULL, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, &none, &broken, NULL, &match, NULL), NARC_ERROR_ARGUMENT);
-    assert_int_equal(narc_match_pairs(broad, &none, &one, NULL, NULL, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_match_pairs(broad, &none, &none, NULL, NULL, NULL), NARC_OK);
     assert_int_equal(match, 5);
-    assert_int_equal(narc_create_broad_phase(NULL, NULL), NARC_ERROR_ARGUMENT);
     narc_destroy_broad_phase(broad);
     narc_destroy_broad_phase(NULL);
 }
 
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_all_pairs_of_random_boxes),
-        cmocka_unit_test(finds_pairs_that_touch),
-        cmocka_unit_test(finds_pairs_among_extremes),
-        cmocka_unit_test(sorts_rows_of_all_kinds),
-        cmocka_unit_test(leaves_out_empty_boxes),
-        cmocka_unit_test(orders_the_partners_of_a_floor),
-        cmocka_unit_test(filters_pairs),
-        cmocka_unit_test(grows_no_faster_than_boxes_and_pairs),
-        cmocka_unit_test(allocates_nothing_once_it_has_grown),
-        cmocka_unit_test(finds_nothing_among_no_boxes),
-        cmocka_unit_test(takes_memory_for_pairs_alone),
-        cmocka_unit_test(survives_failing_allocations),
-        cmocka_unit_test(tells_how_much_room_is_needed),
-        cmocka_unit_test(refuses_bad_arguments),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_MAIN("broad_phase")

@@ -10,18 +10,6 @@
 
 static const double pi = 3.14159265358979323846;
 
-static struct shape circle_of(double radius) {
-    struct shape shape;
-    assert_int_equal(narc_build_circle(radius, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
-static struct shape box_of(double width, double height, double radius) {
-    struct shape shape;
-    assert_int_equal(narc_build_box(width, height, radius, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
 static struct shape half_disc(void) {
     return (struct shape){{{0, -1, 0, -pi / 2, 0}, {0, 1, 0, 0, pi / 2}, {0, 0, 1, pi / 2, 3 * pi / 2}}, 3};
 }
@@ -71,8 +59,7 @@ static struct answer ask(const struct shape *a, const struct shape *b, double x,
 }
 
 /* Touching is not colliding, and the next float closer is. */
-static void test_circles_touch(void **state) {
-    (void)state;
+TEST(test_circles_touch) {
     struct shape one = circle_of(1);
     struct answer apart = ask(&one, &one, 2, 0), deeper = ask(&one, &one, 2 - 0x1p-22, 0);
     assert_false(apart.overlap);
@@ -82,8 +69,7 @@ static void test_circles_touch(void **state) {
 }
 
 /* Side on side, corner on corner, and corner on side. */
-static void test_boxes_touch(void **state) {
-    (void)state;
+TEST(test_boxes_touch) {
     struct shape box = box_of(2, 1, 0);
     assert_false(ask(&box, &box, 2, 0).overlap);
     assert_false(ask(&box, &box, 0, 1).overlap);
@@ -93,8 +79,7 @@ static void test_boxes_touch(void **state) {
 }
 
 /* Where sides lie on each other, the point is the middle of what they share; the arc is the one after the side. */
-static void test_faces_share_a_stretch(void **state) {
-    (void)state;
+TEST(test_faces_share_a_stretch) {
     struct shape wide = box_of(4, 1, 0), narrow = box_of(1, 1, 0.25);
     /* Tops of A from x = -2 to 2; the side of B without its round corners is 0.5 wide. */
     const struct {
@@ -123,8 +108,7 @@ static void test_faces_share_a_stretch(void **state) {
 }
 
 /* The same with both turned, B's shape by another angle than B: then rounding leaves the normals of the sides apart. */
-static void test_turned_faces_share_a_stretch(void **state) {
-    (void)state;
+TEST(test_turned_faces_share_a_stretch) {
     struct test_random random = test_random_named("turned faces");
     struct shape wide = box_of(4, 1, 0), narrow;
     for (size_t trial = 0; trial < test_trials(2000); trial++) {
@@ -148,8 +132,7 @@ static void test_turned_faces_share_a_stretch(void **state) {
 /* A circle in another, its three arcs off by a rounding or two so that the gap grows along each of them and falls back
  * where the next begins: no local maximum is to be seen anywhere, and the gap is the same in all directions but for
  * that. */
-static void test_gap_rises_all_around(void **state) {
-    (void)state;
+TEST(test_gap_rises_all_around) {
     struct shape spiral = {.count = 3}, circle = circle_of(1.5);
     for (size_t k = 0; k < 3; k++) {
         double start = 0.1 + 2 * pi / 3 * (double)k, end = start + 2 * pi / 3, ahead = end + 0.5;
@@ -161,8 +144,7 @@ static void test_gap_rises_all_around(void **state) {
     }
 }
 
-static void test_coincident_circles(void **state) {
-    (void)state;
+TEST(test_coincident_circles) {
     struct shape one = circle_of(1), two = circle_of(2);
     struct answer same = ask(&one, &one, 0, 0), other = ask(&one, &two, 0, 0);
     assert_true(same.overlap && other.overlap);
@@ -174,8 +156,7 @@ static void test_coincident_circles(void **state) {
 
 /* A circle beyond the end of an edge, but so little that the edge's normal has the same gap up to a rounding. The
  * contact is at the edge's end, and must not be looked for on the edge's continuation. */
-static void test_just_beyond_an_edge(void **state) {
-    (void)state;
+TEST(test_just_beyond_an_edge) {
     struct shape half = half_disc(), circle = circle_of(1);
     for (double beyond = 1e-5; beyond < 0.1; beyond *= 1.004) {
         ask(&half, &circle, 1.3, -1 - beyond);
@@ -186,8 +167,7 @@ static void test_just_beyond_an_edge(void **state) {
 }
 
 /* The same at a smooth junction: a tip of a flat lens, whose large arc ends where the tip begins. */
-static void test_just_beyond_a_junction(void **state) {
-    (void)state;
+TEST(test_just_beyond_a_junction) {
     struct test_random random = test_random_named("just beyond a junction");
     struct shape lens, circle = circle_of(1);
     narc_four_arc form = {25, 25, 49.96, 0.002, 0.002};
@@ -205,8 +185,7 @@ static void test_just_beyond_a_junction(void **state) {
 
 /* Arcs of half a turn: where the normal is at one end of them, the opposite direction is at the other, and rounding may
  * make them a little longer than half a turn. The largest gap must not be lost to the one on the opposite side. */
-static void test_half_turns(void **state) {
-    (void)state;
+TEST(test_half_turns) {
     struct test_random random = test_random_named("half turns");
     struct shape shapes[3] = {circle_of(1), half_disc()};
     assert_int_equal(narc_build_capsule(1, 0.5, shapes[2].arcs, &shapes[2].count, NULL), NARC_OK);
@@ -224,8 +203,7 @@ static void test_half_turns(void **state) {
 
 /* The first junctions of A and B, counter-clockwise from A's x axis, agree up to rounding, and the normal is theirs:
  * the interval that ends with them must end with the one that the first interval began with. */
-static void test_last_interval_meets_first(void **state) {
-    (void)state;
+TEST(test_last_interval_meets_first) {
     struct shape lens,
         mixed = {{{0x1.56102fd2c42edp-2, -0x1.d9db3b05cfe4ep-2, 0, -0x1.9589d6a800c3cp-1, -0x1.f7028ddcac9fep-2},
                   {0x1.bfb62b95f33e4p-2, 0x1.c4f6721a0f70cp-2, 0x1.5806d3f61a82ap-2, -0x1.f7028ddcac9fep-2,
@@ -257,18 +235,4 @@ static void test_last_interval_meets_first(void **state) {
     assert_false(ask_bodies(&mixed, at_a, &lens, at_b).overlap);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_circles_touch),
-        cmocka_unit_test(test_boxes_touch),
-        cmocka_unit_test(test_faces_share_a_stretch),
-        cmocka_unit_test(test_turned_faces_share_a_stretch),
-        cmocka_unit_test(test_gap_rises_all_around),
-        cmocka_unit_test(test_coincident_circles),
-        cmocka_unit_test(test_just_beyond_an_edge),
-        cmocka_unit_test(test_just_beyond_a_junction),
-        cmocka_unit_test(test_half_turns),
-        cmocka_unit_test(test_last_interval_meets_first),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("cases", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("cases")

@@ -11,8 +11,6 @@
 #include "placements.h"
 
 /* One pair of families: for every placement some pairs, each of shapes picked from a few. */
-enum { SHAPES_PER_FAMILY = 5 };
-
 /* How many wrong pairs are shown in full. */
 enum { SHOWN = 5 };
 
@@ -100,25 +98,8 @@ static void check_all_families(const char *name, narc_precision precision, size_
     size_t pairs = PLACE_COUNT * test_trials(rounds);
     for (int family_a = 0; family_a < FAMILY_COUNT; family_a++) {
         for (int family_b = 0; family_b < FAMILY_COUNT; family_b++) {
-            struct scene scene = create_scene(precision, 2 * SHAPES_PER_FAMILY, 2 * pairs, pairs);
-            for (size_t k = 0; k < 2 * SHAPES_PER_FAMILY; k++) {
-                struct shape shape = make_shape(&random, (enum family)(k % 2 ? family_b : family_a));
-                scene_add_shape(&scene, &shape);
-            }
-            for (size_t k = 0; k < pairs; k++) {
-                uint32_t shape_a = 2 * (uint32_t)random_below(&random, SHAPES_PER_FAMILY);
-                uint32_t shape_b = 2 * (uint32_t)random_below(&random, SHAPES_PER_FAMILY) + 1;
-                /* Within a family, now and then, a shape against itself. */
-                if (family_a == family_b && random_below(&random, 3) == 0)
-                    shape_b = shape_a;
-                struct body a, b;
-                place_pair(&random, (enum placement)(k % PLACE_COUNT), precision, &scene.shapes[shape_a],
-                           &scene.shapes[shape_b], &a, &b);
-                a.shape = shape_a;
-                b.shape = shape_b;
-                uint32_t index_a = scene_add_body(&scene, a);
-                scene_add_pair(&scene, index_a, scene_add_body(&scene, b));
-            }
+            struct scene scene =
+                make_placed_scene(&random, precision, (enum family)family_a, (enum family)family_b, pairs);
             check_scene(&scene, (enum family)family_a, (enum family)family_b, &report);
             destroy_scene(&scene);
         }
@@ -133,20 +114,8 @@ static void check_all_families(const char *name, narc_precision precision, size_
     }
 }
 
-static void test_single_positions(void **state) {
-    (void)state;
-    check_all_families("collision, single positions", NARC_FLOAT32, 4);
-}
+TEST(test_single_positions) { check_all_families("collision, single positions", NARC_FLOAT32, 4); }
 
-static void test_double_positions(void **state) {
-    (void)state;
-    check_all_families("collision, double positions", NARC_FLOAT64, 2);
-}
+TEST(test_double_positions) { check_all_families("collision, double positions", NARC_FLOAT64, 2); }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_single_positions),
-        cmocka_unit_test(test_double_positions),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("collision", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("collision")

@@ -59,8 +59,7 @@ static void check_kernels(const struct scene *scene, double *worst) {
     free(contacts.rows);
 }
 
-static void test_random_pairs(void **state) {
-    (void)state;
+TEST(test_random_pairs) {
     struct test_random random = test_random_named("formula");
     double worst = 0;
     for (int precision = 0; precision < 2; precision++) {
@@ -73,8 +72,7 @@ static void test_random_pairs(void **state) {
 }
 
 /* All kinds of shapes in all the places where collision tests go wrong. */
-static void test_placed_pairs(void **state) {
-    (void)state;
+TEST(test_placed_pairs) {
     struct test_random random = test_random_named("placed formula");
     const size_t per_pair = test_trials(3), pairs = (size_t)FAMILY_COUNT * FAMILY_COUNT * per_pair;
     double worst = 0;
@@ -87,8 +85,7 @@ static void test_placed_pairs(void **state) {
             place_pair(&random, placement, NARC_FLOAT64, &shape_a, &shape_b, &a, &b);
             a.shape = scene_add_shape(&scene, &shape_a);
             b.shape = scene_add_shape(&scene, &shape_b);
-            const uint32_t first = scene_add_body(&scene, a);
-            scene_add_pair(&scene, first, scene_add_body(&scene, b));
+            scene_add_two(&scene, a, b);
         }
         check_kernels(&scene, &worst);
         destroy_scene(&scene);
@@ -97,8 +94,7 @@ static void test_placed_pairs(void **state) {
 }
 
 /* In double precision the formula and a search of all directions agree far below what the kernels promise. */
-static void test_against_search(void **state) {
-    (void)state;
+TEST(test_against_search) {
     struct test_random random = test_random_named("formula and search");
     for (size_t k = 0; k < test_trials(3000); k++) {
         struct shape shape_a = make_shape(&random, (enum family)(k % FAMILY_COUNT));
@@ -122,8 +118,4 @@ static void test_against_search(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_random_pairs), cmocka_unit_test(test_placed_pairs),
-                                       cmocka_unit_test(test_against_search)};
-    return test_begin() ? cmocka_run_group_tests_name("formula", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("formula")

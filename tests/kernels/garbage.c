@@ -116,8 +116,7 @@ static void spoil_with_not_finite(struct test_random *random, struct body *body)
     }
 }
 
-static void test_not_finite(void **state) {
-    (void)state;
+TEST(test_not_finite) {
     check_spoilt("not finite", NARC_FLOAT32, spoil_with_not_finite);
     check_spoilt("not finite, double", NARC_FLOAT64, spoil_with_not_finite);
 }
@@ -128,15 +127,13 @@ static void spoil_scale(struct test_random *random, struct body *body) {
     body->scale = scales[random_below(random, sizeof(scales) / sizeof(scales[0]))];
 }
 
-static void test_scales(void **state) {
-    (void)state;
+TEST(test_scales) {
     check_spoilt("scales", NARC_FLOAT32, spoil_scale);
     check_spoilt("scales, double", NARC_FLOAT64, spoil_scale);
 }
 
 /* Finite, so there may be an answer; but far from all others, so nothing collides, and no number gets out of hand. */
-static void test_huge_positions(void **state) {
-    (void)state;
+TEST(test_huge_positions) {
     static const double distances[] = {1e6, 1e9, 1e12, 1e15, 1e18, 1e19, 1e25, 1e38, (double)FLT_MAX, 1e60, 1e300};
     struct test_random random = test_random_named("huge positions");
     for (size_t d = 0; d < sizeof(distances) / sizeof(distances[0]); d++) {
@@ -162,8 +159,7 @@ static void test_huge_positions(void **state) {
 }
 
 /* Denormals and both zeros are numbers like others: the answer is that of 0. */
-static void test_denormals(void **state) {
-    (void)state;
+TEST(test_denormals) {
     static const float tiny[] = {0.0f, -0.0f, FLT_TRUE_MIN, -FLT_TRUE_MIN, FLT_MIN / 2, -FLT_MIN};
     struct test_random random = test_random_named("denormals");
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, 5000);
@@ -198,8 +194,7 @@ static float random_pattern(struct test_random *random) {
 }
 
 /* Any bits anywhere. There is no right answer, but there is one, and it is a number. */
-static void test_random_bits(void **state) {
-    (void)state;
+TEST(test_random_bits) {
     struct test_random random = test_random_named("random bits");
     for (size_t round = 0; round < test_trials(20); round++) {
         struct scene scene = make_random_scene(&random, NARC_FLOAT32, BODIES, 1000);
@@ -223,10 +218,4 @@ static void test_random_bits(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_not_finite), cmocka_unit_test(test_scales),      cmocka_unit_test(test_huge_positions),
-        cmocka_unit_test(test_denormals),  cmocka_unit_test(test_random_bits),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("garbage", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("garbage")

@@ -121,8 +121,7 @@ static struct tally check_contacts(const struct corpus *corpus, const narc_metho
     return tally;
 }
 
-static void test_tolerances(void **state) {
-    (void)state;
+TEST(test_tolerances) {
     static const float tolerances[] = {0, 1e-1f, 1e-2f, 1e-3f, 1e-4f, 1e-5f, 1e-6f, 1e-30f, 1e30f};
     size_t wrong = 0;
     for (size_t t = 0; t < sizeof tolerances / sizeof *tolerances; t++) {
@@ -142,8 +141,7 @@ static void test_tolerances(void **state) {
 }
 
 /* Few iterations: less exact, and told so, but never more than exact. */
-static void test_iterations(void **state) {
-    (void)state;
+TEST(test_iterations) {
     static const unsigned iterations[] = {1, 2, 3, 4, 5, 8, 16, 128, 129, UINT32_MAX};
     size_t wrong = 0, limits[sizeof iterations / sizeof *iterations] = {0};
     for (size_t i = 0; i < sizeof iterations / sizeof *iterations; i++) {
@@ -171,8 +169,7 @@ static void test_iterations(void **state) {
 
 /* A margin only saves work: a pair that is closer is reported, one that is further by more than the tolerance is not.
  * With margin 0 it is reported exactly if its bit is set. */
-static void test_margins(void **state) {
-    (void)state;
+TEST(test_margins) {
     static const float margins[] = {0, 0.25f, 1e-3f, -1e-3f, -0.1f};
     size_t wrong_pairs = 0;
     for (int c = 0; c < CORPORA; c++) {
@@ -251,8 +248,7 @@ static struct tally check_overlaps(const struct corpus *corpus, const narc_metho
     return tally;
 }
 
-static void test_overlaps(void **state) {
-    (void)state;
+TEST(test_overlaps) {
     static const unsigned iterations[] = {0, 1, 2, 3, 5, 10};
     size_t wrong = 0, limits = 0;
     for (size_t i = 0; i < sizeof iterations / sizeof *iterations; i++) {
@@ -313,8 +309,7 @@ static size_t count_limits(const struct corpus *corpus, unsigned iterations, uin
 
 /* What hints are for: where nothing has moved, of the pairs for which some steps are too few, most need no more
  * of them with hints. */
-static void test_warm_start(void **state) {
-    (void)state;
+TEST(test_warm_start) {
     for (int c = 0; c < CORPORA; c++) {
         uint32_t *hints = create_hints(corpora[c].scene.pair_count);
         const size_t cold = count_limits(&corpora[c], 3, NULL);
@@ -327,8 +322,7 @@ static void test_warm_start(void **state) {
 }
 
 /* Hints of a scene in motion. */
-static void test_frames(void **state) {
-    (void)state;
+TEST(test_frames) {
     struct test_random random = test_random_named("gjk frames");
     struct corpus corpus = make_corpus("gjk frames", NARC_FLOAT64, 0.3, false);
     solve_corpus(&corpus);
@@ -347,8 +341,7 @@ static void test_frames(void **state) {
     assert_int_equal(wrong, 0);
 }
 
-static void test_garbage_hints(void **state) {
-    (void)state;
+TEST(test_garbage_hints) {
     struct test_random random = test_random_named("gjk garbage");
     size_t wrong = 0;
     for (int c = 0; c < CORPORA; c++) {
@@ -374,12 +367,4 @@ static void test_garbage_hints(void **state) {
     assert_int_equal(wrong, 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_overlaps),   cmocka_unit_test(test_tolerances), cmocka_unit_test(test_iterations),
-        cmocka_unit_test(test_margins),    cmocka_unit_test(test_frames),     cmocka_unit_test(test_garbage_hints),
-        cmocka_unit_test(test_warm_start),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("methods_gjk", tests, make_corpora, destroy_corpora)
-                        : TEST_SKIPPED;
-}
+int main(void) { return test_begin() ? test_run("methods_gjk", make_corpora, destroy_corpora) : TEST_SKIPPED; }

@@ -156,15 +156,9 @@ static void check_scene(const char *name, narc_precision precision, uint64_t gol
     destroy_scene(&scene);
 }
 
-static void test_single_positions(void **state) {
-    (void)state;
-    check_scene("single positions", NARC_FLOAT32, golden_answers);
-}
+TEST(test_single_positions) { check_scene("single positions", NARC_FLOAT32, golden_answers); }
 
-static void test_double_positions(void **state) {
-    (void)state;
-    check_scene("double positions", NARC_FLOAT64, golden_answers);
-}
+TEST(test_double_positions) { check_scene("double positions", NARC_FLOAT64, golden_answers); }
 
 /* Answers by one of the methods of narc_methods.h; by GJK twice, the second time from the first one's hints. */
 static uint64_t hash_method(const struct scene *scene, const narc_bodies *bodies, const narc_pairs *pairs,
@@ -199,8 +193,7 @@ static bool is_polygon(const struct scene *scene, uint32_t body) {
     return narc_shape_flags(scene->store, scene->bodies[body].shape) & NARC_SHAPE_POLYGON;
 }
 
-static void test_methods(void **state) {
-    (void)state;
+TEST(test_methods) {
     struct scene scene = make_scene(NARC_FLOAT32);
     const narc_bodies bodies = scene_bodies(&scene);
     struct pair *polygons = malloc(PAIRS * sizeof *polygons);
@@ -251,8 +244,7 @@ static uint64_t hash_reaches(uint64_t hash, struct manifolds list) {
     return hash;
 }
 
-static void test_manifolds(void **state) {
-    (void)state;
+TEST(test_manifolds) {
     uint64_t hashes[2], reaches[2] = {TEST_HASH_START, TEST_HASH_START};
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_scene((narc_precision)precision);
@@ -278,8 +270,7 @@ static void test_manifolds(void **state) {
     check_hash("reaches, double positions", reaches[1], golden_reaches);
 }
 
-static void test_boxes(void **state) {
-    (void)state;
+TEST(test_boxes) {
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_scene((narc_precision)precision);
         const narc_bodies bodies = scene_bodies(&scene);
@@ -300,8 +291,7 @@ static void test_boxes(void **state) {
 }
 
 #ifdef NARC_TEST_POSES
-static void test_poses(void **state) {
-    (void)state;
+TEST(test_poses) {
     enum { ANGLES = 100000 };
     static float angles[ANGLES], cosines[ANGLES], sines[ANGLES];
     struct test_random random = {2};
@@ -313,16 +303,4 @@ static void test_poses(void **state) {
 }
 #endif
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_single_positions),
-        cmocka_unit_test(test_double_positions),
-        cmocka_unit_test(test_methods),
-        cmocka_unit_test(test_manifolds),
-        cmocka_unit_test(test_boxes),
-#ifdef NARC_TEST_POSES
-        cmocka_unit_test(test_poses),
-#endif
-    };
-    return test_begin() ? cmocka_run_group_tests_name("golden", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("golden")

@@ -88,8 +88,7 @@ static void check_hints(const struct scene *scene, const uint32_t *hints, uint32
     free(right.rows);
 }
 
-static void test_frames(void **state) {
-    (void)state;
+TEST(test_frames) {
     struct test_random random = test_random_named("frames");
     for (size_t round = 0; round < test_trials(2); round++) {
         struct scene scene = make_scene(&random, 2500);
@@ -107,8 +106,7 @@ static void test_frames(void **state) {
 }
 
 /* Those of other pairs, of other places, and of other shapes. */
-static void test_stale(void **state) {
-    (void)state;
+TEST(test_stale) {
     struct test_random random = test_random_named("stale");
     for (size_t round = 0; round < test_trials(4); round++) {
         struct scene scene = make_scene(&random, 2500), other = make_scene(&random, 2500);
@@ -132,8 +130,7 @@ static void test_stale(void **state) {
     }
 }
 
-static void test_garbage(void **state) {
-    (void)state;
+TEST(test_garbage) {
     struct test_random random = test_random_named("garbage hints");
     for (size_t round = 0; round < test_trials(4); round++) {
         struct scene scene = make_scene(&random, 2500);
@@ -159,8 +156,7 @@ static void test_garbage(void **state) {
 }
 
 /* Hints between forbidden pages, for batches of every small size. */
-static void test_guards(void **state) {
-    (void)state;
+TEST(test_guards) {
     struct test_random random = test_random_named("guarded hints");
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, 60, 1200);
     narc_shapes *store = guard_store(&scene);
@@ -196,8 +192,7 @@ struct cache {
 
 /* Sub-ranges one by one leave what the whole batch leaves, and touch no hints but their own; a column with a stride has
  * those of an array. */
-static void test_ranges(void **state) {
-    (void)state;
+TEST(test_ranges) {
     enum { PAIRS = 3000 };
     struct test_random random = test_random_named("hinted ranges");
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, 200, PAIRS);
@@ -238,8 +233,7 @@ static void test_ranges(void **state) {
 }
 
 /* Of a selection, the hints of its pairs alone are read and written, wherever they stand in it. */
-static void test_selections(void **state) {
-    (void)state;
+TEST(test_selections) {
     enum { PAIRS = 3000, EVERY = 7 };
     struct test_random random = test_random_named("hinted selections");
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, 200, PAIRS);
@@ -275,8 +269,7 @@ static void test_selections(void **state) {
     destroy_scene(&scene);
 }
 
-static void test_errors(void **state) {
-    (void)state;
+TEST(test_errors) {
     enum { PAIRS = 3000 };
     struct test_random random = test_random_named("hint errors");
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, 200, PAIRS);
@@ -317,8 +310,7 @@ static void test_errors(void **state) {
 }
 
 /* Circles alone, as far from each other as not: pairs that are apart keep their hints. */
-static void test_discs(void **state) {
-    (void)state;
+TEST(test_discs) {
     enum { SHAPES = 8, DISCS = 200, DISC_PAIRS = 1003 };
     struct test_random random = test_random_named("hints of discs");
     struct scene scene = create_scene(NARC_FLOAT32, SHAPES, DISCS, DISC_PAIRS);
@@ -343,11 +335,4 @@ static void test_discs(void **state) {
     destroy_scene(&scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_frames), cmocka_unit_test(test_stale),      cmocka_unit_test(test_garbage),
-        cmocka_unit_test(test_guards), cmocka_unit_test(test_errors),     cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_discs),  cmocka_unit_test(test_selections),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("hints", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("hints")

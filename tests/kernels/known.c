@@ -12,26 +12,6 @@ static const double pi = 3.14159265358979323846;
 
 /* ------------------------------------------------------------------------------------------------ shapes */
 
-static struct shape circle(double radius) {
-    struct shape shape;
-    assert_int_equal(narc_build_circle(radius, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
-/* Whole width and height; the corners' radius. */
-static struct shape box(double width, double height, double radius) {
-    struct shape shape;
-    assert_int_equal(narc_build_box(width, height, radius, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
-/* A segment along x of that length, with that much around it. */
-static struct shape capsule(double length, double radius) {
-    struct shape shape;
-    assert_int_equal(narc_build_capsule(length, radius, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
 static struct shape polygon(const narc_point *point, size_t count) {
     struct shape shape;
     assert_int_equal(narc_build_polygon(point, count, 0, shape.arcs, &shape.count, NULL), NARC_OK);
@@ -175,48 +155,50 @@ static void check_known(const char *name, const struct known *known, bool edge) 
 static const double tiny_gaps[] = {1e-3, 1e-4, 1e-5, 1e-6, -1e-6, -1e-5, -1e-4, -1e-3};
 enum { TINY_GAPS = sizeof tiny_gaps / sizeof *tiny_gaps };
 
-static void test_nearly_touching(void **state) {
-    (void)state;
+TEST(test_nearly_touching) {
     for (int k = 0; k < TINY_GAPS; k++) {
         const double gap = tiny_gaps[k];
-        check_known("circles", &(struct known){circle(1), circle(0.5), 1.5 + gap, 0, .gap = gap, .normal_x = 1}, false);
-        check_known("boxes", &(struct known){box(2, 2, 0), box(1, 1, 0), 0.25, 1.5 + gap, .gap = gap, .normal_y = 1},
+        check_known("circles", &(struct known){circle_of(1), circle_of(0.5), 1.5 + gap, 0, .gap = gap, .normal_x = 1},
+                    false);
+        check_known("boxes",
+                    &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), 0.25, 1.5 + gap, .gap = gap, .normal_y = 1},
                     true);
         check_known("box and circle",
-                    &(struct known){box(2, 2, 0), circle(1), -2 - gap, 0.3, .gap = gap, .normal_x = -1}, false);
+                    &(struct known){box_of(2, 2, 0), circle_of(1), -2 - gap, 0.3, .gap = gap, .normal_x = -1}, false);
         check_known("lenses", &(struct known){lens(), lens(), 0, -2 - gap, .gap = gap, .normal_y = -1}, false);
-        check_known("lens and box", &(struct known){lens(), box(1, 1, 0.25), 0, 1.5 + gap, .gap = gap, .normal_y = 1},
+        check_known("lens and box",
+                    &(struct known){lens(), box_of(1, 1, 0.25), 0, 1.5 + gap, .gap = gap, .normal_y = 1}, false);
+        check_known("capsules crosswise",
+                    &(struct known){capsule_of(2, 0.25), capsule_of(2, 0.25), 0.5, 1.5 + gap, pi / 2, .gap = gap,
+                                    .normal_y = 1},
                     false);
-        check_known(
-            "capsules crosswise",
-            &(struct known){capsule(2, 0.25), capsule(2, 0.25), 0.5, 1.5 + gap, pi / 2, .gap = gap, .normal_y = 1},
-            false);
     }
 }
 
 /* The corner of a box turned by 45 degrees over the middle of another one's side, and over its corner. */
-static void test_vertices(void **state) {
-    (void)state;
+TEST(test_vertices) {
     const double corner = sqrt(0.5);
     for (int k = 0; k < TINY_GAPS; k++) {
         const double gap = tiny_gaps[k];
         check_known(
             "vertex to edge",
-            &(struct known){box(2, 2, 0), box(1, 1, 0), 0.4, 1 + corner + gap, pi / 4, .gap = gap, .normal_y = 1},
+            &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), 0.4, 1 + corner + gap, pi / 4, .gap = gap, .normal_y = 1},
             true);
         check_known("edge to vertex",
-                    &(struct known){box(2, 2, 0), box(1, 1, 0), 1 + corner * (0.5 + gap), 1 + corner * (0.5 + gap),
-                                    pi / 4, .gap = gap, .normal_x = corner, .normal_y = corner},
+                    &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), 1 + corner * (0.5 + gap),
+                                    1 + corner * (0.5 + gap), pi / 4, .gap = gap, .normal_x = corner,
+                                    .normal_y = corner},
                     true);
         if (gap > 0) {
             check_known("vertex to vertex",
-                        &(struct known){box(2, 2, 0), box(1, 1, 0), 1.5 + 0.6 * gap, 1.5 + 0.8 * gap, .gap = gap,
+                        &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), 1.5 + 0.6 * gap, 1.5 + 0.8 * gap, .gap = gap,
                                         .normal_x = 0.6, .normal_y = 0.8},
                         false);
         }
     }
     /* Apart by 3 and 4: corner to corner is 5, along an edge's normal it is 4. */
-    const struct known far = {box(2, 2, 0), box(2, 2, 0), 2 + 3, 2 + 4, .gap = 5, .normal_x = 0.6, .normal_y = 0.8};
+    const struct known far = {box_of(2, 2, 0), box_of(2, 2, 0), 2 + 3,          2 + 4,
+                              .gap = 5,        .normal_x = 0.6, .normal_y = 0.8};
     check_known("corner to corner", &far, false);
     struct scene scene = make_known_scene(&far);
     struct contacts found = query_contacts(&scene, &(narc_method_options){.method = NARC_METHOD_POLYGON_SAT},
@@ -232,38 +214,36 @@ static void test_vertices(void **state) {
 
 /* Deep in each other. Of two convex shapes with a middle of symmetry each, at one place, the depth is the least of the
  * widths together, halved. */
-static void test_deep(void **state) {
-    (void)state;
+TEST(test_deep) {
     check_known("small box deep in a large one",
-                &(struct known){box(10, 8, 0), box(1, 1, 0), 2, 1.5, .gap = -(4 - 1.5 + 0.5), .normal_y = 1}, true);
+                &(struct known){box_of(10, 8, 0), box_of(1, 1, 0), 2, 1.5, .gap = -(4 - 1.5 + 0.5), .normal_y = 1},
+                true);
     check_known("small circle deep in a box",
-                &(struct known){box(10, 8, 0), circle(0.5), -4, 0.25, .gap = -1.5, .normal_x = -1}, false);
-    check_known(
-        "circle in a circle",
-        &(struct known){circle(4), circle(1), 1, 1, .gap = sqrt(2) - 5, .normal_x = sqrt(0.5), .normal_y = sqrt(0.5)},
-        false);
-    check_known("box across a box", &(struct known){box(4, 1, 0), box(1, 4, 0), .gap = -2.5}, true);
-    check_known("capsule across a capsule", &(struct known){capsule(4, 0.5), capsule(4, 0.5), 0, 0, pi / 2, .gap = -3},
+                &(struct known){box_of(10, 8, 0), circle_of(0.5), -4, 0.25, .gap = -1.5, .normal_x = -1}, false);
+    check_known("circle in a circle",
+                &(struct known){circle_of(4), circle_of(1), 1, 1, .gap = sqrt(2) - 5, .normal_x = sqrt(0.5),
+                                .normal_y = sqrt(0.5)},
                 false);
+    check_known("box across a box", &(struct known){box_of(4, 1, 0), box_of(1, 4, 0), .gap = -2.5}, true);
+    check_known("capsule across a capsule",
+                &(struct known){capsule_of(4, 0.5), capsule_of(4, 0.5), 0, 0, pi / 2, .gap = -3}, false);
 }
 
 /* One in the same place as the other. */
-static void test_equal_places(void **state) {
-    (void)state;
-    check_known("square in its place", &(struct known){box(2, 2, 0), box(2, 2, 0), .gap = -2}, true);
+TEST(test_equal_places) {
+    check_known("square in its place", &(struct known){box_of(2, 2, 0), box_of(2, 2, 0), .gap = -2}, true);
     check_known("square in its place, turned",
-                &(struct known){box(2, 2, 0), box(2, 2, 0), 0, 0, pi / 4, .gap = -(1 + sqrt(2))}, true);
-    check_known("rounded box in its place", &(struct known){box(4, 2, 0.5), box(4, 2, 0.5), .gap = -2}, false);
+                &(struct known){box_of(2, 2, 0), box_of(2, 2, 0), 0, 0, pi / 4, .gap = -(1 + sqrt(2))}, true);
+    check_known("rounded box in its place", &(struct known){box_of(4, 2, 0.5), box_of(4, 2, 0.5), .gap = -2}, false);
     check_known("lens in its place", &(struct known){lens(), lens(), .gap = -2}, false);
-    check_known("capsule in its place", &(struct known){capsule(2, 0.5), capsule(2, 0.5), .gap = -1}, false);
+    check_known("capsule in its place", &(struct known){capsule_of(2, 0.5), capsule_of(2, 0.5), .gap = -1}, false);
 }
 
 /* Circles in one place: every direction is as good. EPA's polygon with n corners comes as near as 1 - cos(pi / n) of
  * the sum of radii, so that a tolerance of 1e-2 takes 23 of them, and one of 1e-6 more than there may be: it ends with
  * LIMIT then, though what it has found is right. */
-static void test_circles_in_one_place(void **state) {
-    (void)state;
-    const struct known known = {circle(1), circle(1), .gap = -2};
+TEST(test_circles_in_one_place) {
+    const struct known known = {circle_of(1), circle_of(1), .gap = -2};
     struct scene scene = make_known_scene(&known);
     check_known_contacts("circles in one place", &scene, &known, false,
                          &(narc_method_options){.method = NARC_METHOD_SAT});
@@ -304,66 +284,65 @@ static void test_circles_in_one_place(void **state) {
 }
 
 /* Side to side, shifted along it. */
-static void test_parallel_edges(void **state) {
-    (void)state;
+TEST(test_parallel_edges) {
     static const double shifts[] = {0, 0.5, 1.25, 1.49};
     for (size_t s = 0; s < sizeof shifts / sizeof *shifts; s++) {
         for (int k = 0; k < TINY_GAPS; k++) {
             const double gap = tiny_gaps[k], shift = shifts[s];
             check_known("face to face",
-                        &(struct known){box(2, 2, 0), box(1, 1, 0), shift, 1.5 + gap, .gap = gap, .normal_y = 1}, true);
+                        &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), shift, 1.5 + gap, .gap = gap, .normal_y = 1},
+                        true);
             check_known("capsule on a box",
-                        &(struct known){capsule(2, 0.5), box(2, 1, 0), shift, 1 + gap, .gap = gap, .normal_y = 1},
+                        &(struct known){capsule_of(2, 0.5), box_of(2, 1, 0), shift, 1 + gap, .gap = gap, .normal_y = 1},
                         true);
         }
     }
     check_known("face to face, half inside",
-                &(struct known){box(2, 2, 0), box(2, 2, 0), 0.5, 1.5, .gap = -0.5, .normal_y = 1}, true);
+                &(struct known){box_of(2, 2, 0), box_of(2, 2, 0), 0.5, 1.5, .gap = -0.5, .normal_y = 1}, true);
 }
 
 /* 1 : 1000, lengthwise, crosswise, and tip to side. */
-static void test_needles(void **state) {
-    (void)state;
+TEST(test_needles) {
     for (int k = 0; k < TINY_GAPS; k++) {
         const double gap = tiny_gaps[k] / 1000;
-        check_known("needles side by side",
-                    &(struct known){capsule(2, 1e-3), capsule(2, 1e-3), 0.3, 2e-3 + gap, .gap = gap, .normal_y = 1},
-                    false);
-        check_known("thin boxes side by side",
-                    &(struct known){box(2, 2e-3, 0), box(2, 2e-3, 0), -0.7, 2e-3 + gap, .gap = gap, .normal_y = 1},
-                    true);
         check_known(
-            "needle's tip to a needle's side",
-            &(struct known){capsule(2, 1e-3), capsule(2, 1e-3), 0.2, 1 + 2e-3 + gap, pi / 2, .gap = gap, .normal_y = 1},
+            "needles side by side",
+            &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 0.3, 2e-3 + gap, .gap = gap, .normal_y = 1},
             false);
         check_known(
-            "thin box's end to a side",
-            &(struct known){box(2, 2e-3, 0), box(2, 2e-3, 0), 0.2, 1 + 1e-3 + gap, pi / 2, .gap = gap, .normal_y = 1},
-            true);
+            "thin boxes side by side",
+            &(struct known){box_of(2, 2e-3, 0), box_of(2, 2e-3, 0), -0.7, 2e-3 + gap, .gap = gap, .normal_y = 1}, true);
+        check_known("needle's tip to a needle's side",
+                    &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 0.2, 1 + 2e-3 + gap, pi / 2, .gap = gap,
+                                    .normal_y = 1},
+                    false);
+        check_known("thin box's end to a side",
+                    &(struct known){box_of(2, 2e-3, 0), box_of(2, 2e-3, 0), 0.2, 1 + 1e-3 + gap, pi / 2, .gap = gap,
+                                    .normal_y = 1},
+                    true);
     }
-    check_known("needles crosswise", &(struct known){capsule(2, 1e-3), capsule(2, 1e-3), 0, 0, pi / 2, .gap = -1.002},
-                false);
+    check_known("needles crosswise",
+                &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 0, 0, pi / 2, .gap = -1.002}, false);
     check_known("needles far apart",
-                &(struct known){capsule(2, 1e-3), capsule(2, 1e-3), 5, 3, .gap = hypot(3, 3) - 2e-3,
+                &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 5, 3, .gap = hypot(3, 3) - 2e-3,
                                 .normal_x = sqrt(0.5), .normal_y = sqrt(0.5)},
                 false);
 }
 
 /* A small body at, on and in a large one. */
-static void test_size_ratios(void **state) {
-    (void)state;
+TEST(test_size_ratios) {
     const double ratio = 1e4;
     for (int k = 0; k < TINY_GAPS; k++) {
         const double gap = tiny_gaps[k] * 100;
-        const struct known on_circle = {circle(1),  circle(1),    0, ratio + 1 + gap, .scale_a = ratio,
-                                        .gap = gap, .normal_y = 1};
-        const struct known on_box = {box(2, 2, 0),     box(2, 2, 0), 17,           ratio + 1 + gap,
-                                     .scale_a = ratio, .gap = gap,   .normal_y = 1};
+        const struct known on_circle = {circle_of(1), circle_of(1), 0, ratio + 1 + gap, .scale_a = ratio,
+                                        .gap = gap,   .normal_y = 1};
+        const struct known on_box = {box_of(2, 2, 0),  box_of(2, 2, 0), 17,           ratio + 1 + gap,
+                                     .scale_a = ratio, .gap = gap,      .normal_y = 1};
         check_known("on a large circle", &on_circle, false);
         check_known("on a large box", &on_box, true);
     }
     check_known("deep in a large box",
-                &(struct known){box(2, 2, 0), lens(), -ratio / 2, 0, .scale_a = ratio, .angle = pi / 2,
+                &(struct known){box_of(2, 2, 0), lens(), -ratio / 2, 0, .scale_a = ratio, .angle = pi / 2,
                                 .gap = -ratio / 2 - 1, .normal_x = -1},
                 false);
 }
@@ -373,8 +352,7 @@ static void test_size_ratios(void **state) {
 /* The two polygons of dyn4j's tutorials on GJK and EPA: a triangle and a quadrilateral that collide. Along the
  * triangle's edge from (4, 5) to (9, 9), with the normal (4, -5), the quadrilateral's (5, 7) lies 6 / sqrt(41) inside;
  * along all other edges, more: 2 next. */
-static void test_dyn4j(void **state) {
-    (void)state;
+TEST(test_dyn4j) {
     static const narc_point triangle[] = {{4, 11}, {4, 5}, {9, 9}}, other[] = {{5, 7}, {7, 3}, {10, 2}, {12, 7}};
     check_known("dyn4j",
                 &(struct known){polygon(triangle, 3), polygon(other, 4), .gap = -6 / sqrt(41), .normal_x = 4 / sqrt(41),
@@ -384,19 +362,18 @@ static void test_dyn4j(void **state) {
 
 /* Box2D's unit test of the distance of shapes: a square and a segment beside it, at a distance of 1. A segment is a
  * capsule here: with a radius of 1/8, 7/8 are left. */
-static void test_box2d(void **state) {
-    (void)state;
-    check_known("Box2D", &(struct known){box(2, 2, 0), capsule(2, 0.125), 2, 0, pi / 2, .gap = 0.875, .normal_x = 1},
+TEST(test_box2d) {
+    check_known("Box2D",
+                &(struct known){box_of(2, 2, 0), capsule_of(2, 0.125), 2, 0, pi / 2, .gap = 0.875, .normal_x = 1},
                 false);
 }
 
 /* libccd's test suite, boxes along x: one of 1 x 2 is led through one of 2 x 1, in steps of a tenth from -5 on. They
  * touch at steps 35 and 65. */
-static void test_libccd(void **state) {
-    (void)state;
+TEST(test_libccd) {
     for (int step = 0; step < 100; step++) {
         const double x = -5 + 0.1 * step, apart = fabs(x) - 1.5;
-        struct known known = {box(2, 1, 0), box(1, 2, 0), x, 0, .gap = fmax(apart, -1.5)};
+        struct known known = {box_of(2, 1, 0), box_of(1, 2, 0), x, 0, .gap = fmax(apart, -1.5)};
         known.normal_x = apart > -1.5 + 1e-9 ? (x > 0 ? 1 : -1) : 0;
         check_known("libccd", &known, true);
     }
@@ -404,24 +381,24 @@ static void test_libccd(void **state) {
 
 /* The tests of distances in Unreal's Chaos (circles of radius 5 and 2, centres 8 apart: 1; of radius 2, centres 3 and 3
  * apart), of Parry (a box of 2 x 2 and a circle of radius 1, 3 above: 1; 1 above: colliding). */
-static void test_distances(void **state) {
-    (void)state;
-    check_known("circles, 8 apart", &(struct known){circle(5), circle(2), -8, 0, .gap = 1, .normal_x = -1}, false);
-    check_known(
-        "circles, 3 and 3 apart",
-        &(struct known){circle(2), circle(2), 3, 3, .gap = sqrt(18) - 4, .normal_x = sqrt(0.5), .normal_y = sqrt(0.5)},
-        false);
-    check_known("circle over a box", &(struct known){box(2, 2, 0), circle(1), 0, 3, .gap = 1, .normal_y = 1}, false);
-    check_known("circle in a box's side", &(struct known){box(2, 2, 0), circle(1), 0, 1, .gap = -1, .normal_y = 1},
+TEST(test_distances) {
+    check_known("circles, 8 apart", &(struct known){circle_of(5), circle_of(2), -8, 0, .gap = 1, .normal_x = -1},
                 false);
+    check_known("circles, 3 and 3 apart",
+                &(struct known){circle_of(2), circle_of(2), 3, 3, .gap = sqrt(18) - 4, .normal_x = sqrt(0.5),
+                                .normal_y = sqrt(0.5)},
+                false);
+    check_known("circle over a box", &(struct known){box_of(2, 2, 0), circle_of(1), 0, 3, .gap = 1, .normal_y = 1},
+                false);
+    check_known("circle in a box's side",
+                &(struct known){box_of(2, 2, 0), circle_of(1), 0, 1, .gap = -1, .normal_y = 1}, false);
 }
 
 /* A circle is two cones of half a turn, and the vector between the centres lies on the line where they meet: sat-first
  * must find it in one of them. */
-static void test_first_at_the_seam(void **state) {
-    (void)state;
+TEST(test_first_at_the_seam) {
     static const float turns[][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {0.6f, 0.8f}};
-    const struct shape disc = circle(1);
+    const struct shape disc = circle_of(1);
     for (size_t k = 0; k < sizeof turns / sizeof *turns; k++) {
         for (int side = -1; side <= 1; side += 2) {
             struct scene scene = create_scene(NARC_FLOAT64, 1, 2, 1);
@@ -429,8 +406,7 @@ static void test_first_at_the_seam(void **state) {
             struct body a = {.cosine = turns[k][0], .sine = turns[k][1], .scale = 1}, b = a;
             b.x = side * (double)a.cosine;
             b.y = side * (double)a.sine;
-            const uint32_t first = scene_add_body(&scene, a);
-            scene_add_pair(&scene, first, scene_add_body(&scene, b));
+            scene_add_two(&scene, a, b);
             uint8_t outcome = 0xa5;
             const narc_method_options options = {.method = NARC_METHOD_SAT_FIRST, .out_outcomes = &outcome};
             struct contacts found = query_contacts(&scene, &options, &(narc_query){.margin = INFINITY});
@@ -444,21 +420,4 @@ static void test_first_at_the_seam(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nearly_touching),
-        cmocka_unit_test(test_vertices),
-        cmocka_unit_test(test_deep),
-        cmocka_unit_test(test_equal_places),
-        cmocka_unit_test(test_parallel_edges),
-        cmocka_unit_test(test_circles_in_one_place),
-        cmocka_unit_test(test_needles),
-        cmocka_unit_test(test_size_ratios),
-        cmocka_unit_test(test_dyn4j),
-        cmocka_unit_test(test_box2d),
-        cmocka_unit_test(test_libccd),
-        cmocka_unit_test(test_distances),
-        cmocka_unit_test(test_first_at_the_seam),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("known", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("known")

@@ -25,8 +25,7 @@ static struct scene make_scene(const char *name, narc_precision precision) {
     return make_random_scene(&random, precision, BODIES, PAIRS);
 }
 
-static void test_plain(void **state) {
-    (void)state;
+TEST(test_plain) {
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_scene("plain manifolds", (narc_precision)precision);
         const narc_bodies bodies = scene_bodies(&scene);
@@ -58,8 +57,7 @@ static void find_and_check(const struct scene *scene, const narc_query *query, c
     guard_release(found.rows);
 }
 
-static void test_threads_and_hints(void **state) {
-    (void)state;
+TEST(test_threads_and_hints) {
     struct test_random random = test_random_named("manifold hints");
     struct scene scene = make_scene("manifold hints", NARC_FLOAT32);
     const narc_bodies bodies = scene_bodies(&scene);
@@ -86,8 +84,7 @@ static void test_threads_and_hints(void **state) {
 }
 
 /* Sub-ranges of all lengths. */
-static void test_ranges(void **state) {
-    (void)state;
+TEST(test_ranges) {
     struct test_random random = test_random_named("manifold ranges");
     struct scene scene = make_scene("manifold ranges", NARC_FLOAT32);
     struct manifolds all = scene_manifolds(&scene, 0);
@@ -108,8 +105,7 @@ static void test_ranges(void **state) {
     destroy_scene(&scene);
 }
 
-static void test_capacity(void **state) {
-    (void)state;
+TEST(test_capacity) {
     struct test_random random = test_random_named("manifold capacity");
     struct scene scene = make_scene("manifold capacity", NARC_FLOAT32);
     const narc_bodies bodies = scene_bodies(&scene);
@@ -134,8 +130,7 @@ static void test_capacity(void **state) {
 }
 
 /* Pairs with a broken body are counted, and listed with an infinite margin: infinitely far, without a point. */
-static void test_broken_bodies(void **state) {
-    (void)state;
+TEST(test_broken_bodies) {
     struct scene scene = make_scene("manifolds of broken bodies", NARC_FLOAT32);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
@@ -171,10 +166,4 @@ static void test_broken_bodies(void **state) {
     destroy_scene(&scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_plain),    cmocka_unit_test(test_threads_and_hints), cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_capacity), cmocka_unit_test(test_broken_bodies),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("manifold_bits", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("manifold_bits")

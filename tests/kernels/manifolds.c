@@ -14,7 +14,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-enum { SHAPES_PER_FAMILY = 4, SHOWN = 5 };
+enum { SHOWN = 5 };
 
 /* A point's place and separation may be off by that many bounds of a separation: both edges' ends, a rotated normal,
  * and the slope of an edge at the flat angle. */
@@ -194,23 +194,9 @@ static void check_all_families(const char *name, narc_precision precision, size_
     const size_t pairs = PLACE_COUNT * test_trials(rounds);
     for (int family_a = 0; family_a < FAMILY_COUNT; family_a++) {
         for (int family_b = 0; family_b < FAMILY_COUNT; family_b++) {
-            struct scene scene = create_scene(precision, 2 * SHAPES_PER_FAMILY, 2 * pairs, pairs);
+            struct scene scene =
+                make_placed_scene(&random, precision, (enum family)family_a, (enum family)family_b, pairs);
             char families[64];
-            for (size_t k = 0; k < 2 * SHAPES_PER_FAMILY; k++) {
-                const struct shape shape = make_shape(&random, (enum family)(k % 2 ? family_b : family_a));
-                scene_add_shape(&scene, &shape);
-            }
-            for (size_t k = 0; k < pairs; k++) {
-                const uint32_t shape_a = 2 * (uint32_t)random_below(&random, SHAPES_PER_FAMILY);
-                const uint32_t shape_b = 2 * (uint32_t)random_below(&random, SHAPES_PER_FAMILY) + 1;
-                struct body a, b;
-                place_pair(&random, (enum placement)(k % PLACE_COUNT), precision, &scene.shapes[shape_a],
-                           &scene.shapes[shape_b], &a, &b);
-                a.shape = shape_a;
-                b.shape = shape_b;
-                const uint32_t body_a = scene_add_body(&scene, a);
-                scene_add_pair(&scene, body_a, scene_add_body(&scene, b));
-            }
             snprintf(families, sizeof families, "%s - %s", family_name((enum family)family_a),
                      family_name((enum family)family_b));
             check_scene(&scene, families, &tally);
@@ -227,15 +213,9 @@ static void check_all_families(const char *name, narc_precision precision, size_
     assert_true(tally.swaps_skipped < tally.pairs / 20);
 }
 
-static void test_single_positions(void **state) {
-    (void)state;
-    check_all_families("manifolds, single positions", NARC_FLOAT32, 10);
-}
+TEST(test_single_positions) { check_all_families("manifolds, single positions", NARC_FLOAT32, 10); }
 
-static void test_double_positions(void **state) {
-    (void)state;
-    check_all_families("manifolds, double positions", NARC_FLOAT64, 5);
-}
+TEST(test_double_positions) { check_all_families("manifolds, double positions", NARC_FLOAT64, 5); }
 
 /* ------------------------------------------------------------------------------------------------ small motions */
 
@@ -260,12 +240,6 @@ static void put(struct scene *scene, uint32_t index, double x, double y, double 
     scene->bodies[index] = body;
 }
 
-static struct shape make_box(double width, double height, double radius) {
-    struct shape shape;
-    assert_int_equal(narc_build_box(width, height, radius, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
 /* The edge of a box whose normal points up, and the one whose normal points down. */
 static unsigned find_edge_with(const struct shape *shape, double normal) {
     for (size_t i = 0; i < shape->count; i++)
@@ -278,12 +252,11 @@ static unsigned find_edge_with(const struct shape *shape, double normal) {
 /* A box on a box, tilted and moved a little to either side, rounded or not, equal or not: always the same two ids, and
  * points that move no more than the box does, but where they are cut off. Of equal sharp boxes either corner may end the
  * stretch. */
-static void test_box_on_box(void **state) {
-    (void)state;
+TEST(test_box_on_box) {
     struct test_random random = test_random_named("box on box");
     for (size_t round = 0; round < 4; round++) {
         const double rounding = round % 2 ? 0.1 : 0, width = round < 2 ? 2 : 1;
-        const struct shape below = make_box(2, 1, 0), above = make_box(width, 1, rounding);
+        const struct shape below = box_of(2, 1, 0), above = box_of(width, 1, rounding);
         struct scene scene = make_duo(&below, &above);
         const unsigned up = find_edge_with(&below, pi / 2), down = find_edge_with(&above, -pi / 2);
         const unsigned up_arc = up & 0x3f, down_arc = down & 0x3f; /* counter-clockwise behind these edges */
@@ -312,10 +285,9 @@ static void test_box_on_box(void **state) {
 }
 
 /* Two sharp corners that face each other: both boxes' edges end there, which is no stretch. */
-static void test_corner_on_corner(void **state) {
-    (void)state;
+TEST(test_corner_on_corner) {
     struct test_random random = test_random_named("corner on corner");
-    const struct shape box = make_box(2, 1, 0);
+    const struct shape box = box_of(2, 1, 0);
     struct scene scene = make_duo(&box, &box);
     scene_add_pair(&scene, 1, 0);
     size_t one = 0, two = 0;
@@ -353,9 +325,8 @@ static void test_corner_on_corner(void **state) {
 }
 
 /* A rounded box that rocks through a tilt of zero: ids stay, and both points and separations are continuous. */
-static void test_rocking(void **state) {
-    (void)state;
-    const struct shape ground = make_box(20, 1, 0), rocker = make_box(2, 1, 0.2);
+TEST(test_rocking) {
+    const struct shape ground = box_of(20, 1, 0), rocker = box_of(2, 1, 0.2);
     struct scene scene = make_duo(&ground, &rocker);
     const double step = 1e-4, largest = 0.1;
     float last[2][3] = {{0}};
@@ -383,11 +354,9 @@ static void test_rocking(void **state) {
 
 /* A circle that rolls along a box's flat top and around its corner: on the edge, then on the arc after the corner, and
  * on the next edge; the kind and the radii say which. */
-static void test_rolling(void **state) {
-    (void)state;
-    const struct shape box = make_box(2, 2, 0);
-    struct shape circle;
-    assert_int_equal(narc_build_circle(0.5, circle.arcs, &circle.count, NULL), NARC_OK);
+TEST(test_rolling) {
+    const struct shape box = box_of(2, 2, 0);
+    const struct shape circle = circle_of(0.5);
     struct scene scene = make_duo(&circle, &box);
     const unsigned top = find_edge_with(&box, pi / 2), right = find_edge_with(&box, 0), corner = right & 0x3f;
     size_t seen[3] = {0};
@@ -426,11 +395,9 @@ static void test_rolling(void **state) {
 
 /* A rounded box's corner that leans on a circle: how far the normal may turn, to the edges on either side, and that of a
  * circle without end; on the box's edge, not at all. */
-static void test_reach(void **state) {
-    (void)state;
-    const struct shape box = make_box(2, 2, 0.25);
-    struct shape circle;
-    assert_int_equal(narc_build_circle(0.5, circle.arcs, &circle.count, NULL), NARC_OK);
+TEST(test_reach) {
+    const struct shape box = box_of(2, 2, 0.25);
+    const struct shape circle = circle_of(0.5);
     struct scene scene = make_duo(&box, &circle);
     for (double angle = 0; angle <= pi / 2; angle += pi / 64) {
         put(&scene, 1, 0.75 + 0.7 * cos(angle), 0.75 + 0.7 * sin(angle), 0);
@@ -448,9 +415,8 @@ static void test_reach(void **state) {
 }
 
 /* The second point is listed exactly if its separation is below the margin; the first then keeps its id. */
-static void test_margin(void **state) {
-    (void)state;
-    const struct shape ground = make_box(20, 1, 0), box = make_box(2, 1, 0);
+TEST(test_margin) {
+    const struct shape ground = box_of(20, 1, 0), box = box_of(2, 1, 0);
     struct scene scene = make_duo(&ground, &box);
     for (int side = -1; side <= 1; side += 2) {
         put(&scene, 1, 0, 1.02, side * 0.05);
@@ -484,9 +450,8 @@ static void test_margin(void **state) {
 }
 
 /* A second point may be farther than the first one. */
-static void test_second_margin(void **state) {
-    (void)state;
-    const struct shape ground = make_box(20, 1, 0), box = make_box(2, 1, 0);
+TEST(test_second_margin) {
+    const struct shape ground = box_of(20, 1, 0), box = box_of(2, 1, 0);
     struct scene scene = make_duo(&ground, &box);
     put(&scene, 1, 0, 1.02, 0.05);
     const narc_bodies bodies = scene_bodies(&scene);
@@ -520,9 +485,8 @@ static void test_second_margin(void **state) {
 }
 
 /* The flat angle decides which edges face each other. */
-static void test_flat_angle(void **state) {
-    (void)state;
-    const struct shape ground = make_box(20, 1, 0), box = make_box(2, 1, 0);
+TEST(test_flat_angle) {
+    const struct shape ground = box_of(20, 1, 0), box = box_of(2, 1, 0);
     struct scene scene = make_duo(&ground, &box);
     put(&scene, 1, 0, 1.2, 0.2);
     const narc_bodies bodies = scene_bodies(&scene);
@@ -560,11 +524,10 @@ static struct shape doubled_corner(double x, double y, double gap, double normal
 
 /* A corner of two arcs of radius 0, a hair apart, on the shape's own origin: the hair is no edge, whatever the shape's
  * coordinates are there. Manifolds are those of the same corner elsewhere, and of the swapped pair. */
-static void test_doubled_corner(void **state) {
-    (void)state;
+TEST(test_doubled_corner) {
     struct test_random random = test_random_named("doubled corner");
     const double gaps[] = {0, 1e-17, 1e-14, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 3e-7};
-    const struct shape ground = make_box(10, 1, 0);
+    const struct shape ground = box_of(10, 1, 0);
     size_t two = 0, near_joint = 0;
     for (size_t g = 0; g < sizeof gaps / sizeof gaps[0]; g++) {
         const double normal = -random_between(&random, 0.3, 1.3);
@@ -612,10 +575,9 @@ static void test_doubled_corner(void **state) {
 
 /* A corner that is cut off by little more than rounding, far from its shape's origin: as many points for (A, B) as for
  * (B, A), but where roundings decide. */
-static void test_short_edges_swapped(void **state) {
-    (void)state;
+TEST(test_short_edges_swapped) {
     struct test_random random = test_random_named("short edges swapped");
-    const struct shape ground = make_box(4, 1, 0);
+    const struct shape ground = box_of(4, 1, 0);
     const size_t trials = test_trials(2000);
     size_t differ = 0, two = 0;
     for (size_t trial = 0; trial < trials; trial++) {
@@ -640,12 +602,9 @@ static void test_short_edges_swapped(void **state) {
 
 /* A corner that is rounded by two arcs has no edge between them, however far from the shape its origin is: what the
  * arcs' centres lose there is rounding. */
-static void test_far_origin(void **state) {
-    (void)state;
+TEST(test_far_origin) {
     struct test_random random = test_random_named("far origin");
-    struct shape ball;
-    assert_int_equal(narc_build_circle(0.5, ball.arcs, &ball.count, NULL), NARC_OK);
-    const struct shape flat = make_box(2, 2, 0);
+    const struct shape ball = circle_of(0.5), flat = box_of(2, 2, 0);
     for (double far = 1; far < 2e6; far *= 10) {
         for (size_t trial = 0; trial < test_trials(100); trial++) {
             const double x = far * random_between(&random, -1, 1), y = far * random_between(&random, -1, 1);
@@ -682,13 +641,12 @@ static void test_far_origin(void **state) {
 
 /* A corner that leans on an edge's middle, sharp or rounded, from lying nearly flat on one side through standing on it
  * to lying on the other: the deepest point keeps its id, which names the corner's arc and the edge. */
-static void test_leaning(void **state) {
-    (void)state;
-    const struct shape ground = make_box(20, 1, 0);
+TEST(test_leaning) {
+    const struct shape ground = box_of(20, 1, 0);
     const unsigned top = find_edge_with(&ground, pi / 2);
     for (int rounded = 0; rounded < 2; rounded++) {
         const double radius = rounded ? 0.2 : 0;
-        const struct shape box = make_box(2, 1, radius);
+        const struct shape box = box_of(2, 1, radius);
         struct scene scene = make_duo(&ground, &box);
         size_t one = 0, two = 0;
         const unsigned corner = (find_edge_with(&box, 0) & 0x3f) - 1 + (unsigned)box.count; /* the lower right arc */
@@ -720,31 +678,15 @@ static size_t find_deepest(const struct manifolds *list, const struct contacts *
 }
 
 /* The flat angle decides whether there is a second point, and nothing of the deepest one's id. */
-static void test_ids_at_all_flat_angles(void **state) {
-    (void)state;
+TEST(test_ids_at_all_flat_angles) {
     enum { ANGLES = 6 };
     const size_t count = test_trials(400);
     const float angles[ANGLES] = {0.45f, -1.0f, 0.001f, 0.1f, 0.8f, 1.5f};
     struct test_random random = test_random_named("ids at all flat angles");
     size_t compared = 0, come_and_go = 0;
     for (int family = 0; family < FAMILY_COUNT * FAMILY_COUNT; family++) {
-        struct scene scene = create_scene(NARC_FLOAT32, 8, 2 * count, count);
-        for (int k = 0; k < 8; k++) {
-            const struct shape shape =
-                make_shape(&random, (enum family)(k % 2 ? family % FAMILY_COUNT : family / FAMILY_COUNT));
-            scene_add_shape(&scene, &shape);
-        }
-        for (size_t k = 0; k < count; k++) {
-            struct body a, b;
-            const uint32_t shape_a = 2 * (uint32_t)random_below(&random, 4),
-                           shape_b = 2 * (uint32_t)random_below(&random, 4) + 1;
-            place_pair(&random, (enum placement)(k % PLACE_COUNT), NARC_FLOAT32, &scene.shapes[shape_a],
-                       &scene.shapes[shape_b], &a, &b);
-            a.shape = shape_a;
-            b.shape = shape_b;
-            const uint32_t body_a = scene_add_body(&scene, a);
-            scene_add_pair(&scene, body_a, scene_add_body(&scene, b));
-        }
+        struct scene scene = make_placed_scene(&random, NARC_FLOAT32, (enum family)(family / FAMILY_COUNT),
+                                               (enum family)(family % FAMILY_COUNT), count);
         const narc_bodies bodies = scene_bodies(&scene);
         const narc_pairs pairs = scene_pairs(&scene);
         struct contacts contacts = scene_contacts(&scene, INFINITY);
@@ -770,23 +712,4 @@ static void test_ids_at_all_flat_angles(void **state) {
     assert_true(compared > 25 * count && come_and_go > 2 * count);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_single_positions),
-        cmocka_unit_test(test_double_positions),
-        cmocka_unit_test(test_box_on_box),
-        cmocka_unit_test(test_corner_on_corner),
-        cmocka_unit_test(test_rocking),
-        cmocka_unit_test(test_rolling),
-        cmocka_unit_test(test_reach),
-        cmocka_unit_test(test_second_margin),
-        cmocka_unit_test(test_margin),
-        cmocka_unit_test(test_flat_angle),
-        cmocka_unit_test(test_doubled_corner),
-        cmocka_unit_test(test_far_origin),
-        cmocka_unit_test(test_short_edges_swapped),
-        cmocka_unit_test(test_leaning),
-        cmocka_unit_test(test_ids_at_all_flat_angles),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("manifolds", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("manifolds")

@@ -78,8 +78,7 @@ static void check_same_bits(const struct change *change) {
     assert_memory_equal(change->before.rows, change->after.rows, count * sizeof(narc_contact));
 }
 
-static void test_swap(void **state) {
-    (void)state;
+TEST(test_swap) {
     struct change change = begin_change("swap");
     for (size_t k = 0; k < change.scene.pair_count; k++) {
         struct pair *pair = &change.scene.pairs[k];
@@ -92,8 +91,7 @@ static void test_swap(void **state) {
 }
 
 /* The differences of the positions are exact before and after, so nothing may change. */
-static void test_translate(void **state) {
-    (void)state;
+TEST(test_translate) {
     struct change change = begin_change("translate");
     for (size_t k = 0; k < change.scene.body_count; k++) {
         change.scene.bodies[k].x += 1234 + 7 * grid;
@@ -106,8 +104,7 @@ static void test_translate(void **state) {
 }
 
 /* Single precision positions given as doubles are the same positions. */
-static void test_double_positions(void **state) {
-    (void)state;
+TEST(test_double_positions) {
     struct change change = begin_change("double positions");
     change.scene.precision = NARC_FLOAT64;
     apply_change(&change);
@@ -116,8 +113,7 @@ static void test_double_positions(void **state) {
 }
 
 /* 2^30 away, where doubles are still as fine as the grid. */
-static void test_translate_far(void **state) {
-    (void)state;
+TEST(test_translate_far) {
     struct change change = begin_change("translate far");
     change.scene.precision = NARC_FLOAT64;
     for (size_t k = 0; k < change.scene.body_count; k++) {
@@ -130,8 +126,7 @@ static void test_translate_far(void **state) {
 }
 
 /* By any angle. Turning the rounded positions rounds them again, hence doubles. */
-static void test_rotate(void **state) {
-    (void)state;
+TEST(test_rotate) {
     struct change change = begin_change("rotate");
     struct test_random random = test_random_named("angle");
     double angle = random_between(&random, -pi, pi), c = cos(angle), s = sin(angle);
@@ -173,22 +168,14 @@ static void scale_world(const char *name, float factor) {
     end_change(&change);
 }
 
-static void test_scale_up(void **state) {
-    (void)state;
-    scale_world("scale up", 0x1p10f);
-}
+TEST(test_scale_up) { scale_world("scale up", 0x1p10f); }
 
-static void test_scale_down(void **state) {
-    (void)state;
-    scale_world("scale down", 0x1p-10f);
-}
+TEST(test_scale_down) { scale_world("scale down", 0x1p-10f); }
 
 /* A scale of 2 says the same as a shape twice as large. */
-static void test_scaled_shapes(void **state) {
-    (void)state;
+TEST(test_scaled_shapes) {
     struct change change = begin_change("scaled shapes");
-    narc_shapes *larger;
-    assert_int_equal(narc_create_shapes(NULL, &larger), NARC_OK);
+    narc_shapes *larger = empty_store();
     for (size_t k = 0; k < change.scene.shape_count; k++) {
         struct shape shape = change.scene.shapes[k];
         for (size_t i = 0; i < shape.count; i++) {
@@ -207,16 +194,4 @@ static void test_scaled_shapes(void **state) {
     end_change(&change);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_swap),
-        cmocka_unit_test(test_translate),
-        cmocka_unit_test(test_double_positions),
-        cmocka_unit_test(test_translate_far),
-        cmocka_unit_test(test_rotate),
-        cmocka_unit_test(test_scale_up),
-        cmocka_unit_test(test_scale_down),
-        cmocka_unit_test(test_scaled_shapes),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("metamorphic", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("metamorphic")

@@ -60,8 +60,7 @@ static void check_all_done(const uint8_t *outcomes, size_t count) {
 }
 
 /* Settings that mean nothing to it change nothing. */
-static void test_sat_is_narc_find(void **state) {
-    (void)state;
+TEST(test_sat_is_narc_find) {
     for (int c = 0; c < CORPORA; c++) {
         const struct scene *scene = &corpora[c].scene;
         const size_t count = scene->pair_count;
@@ -100,8 +99,7 @@ static void test_sat_is_narc_find(void **state) {
 }
 
 /* Exact, in the hard places too. */
-static void test_sat_is_exact(void **state) {
-    (void)state;
+TEST(test_sat_is_exact) {
     size_t wrong_pairs = 0;
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
@@ -244,8 +242,7 @@ static void check_first_pair(const struct corpus *corpus, const struct contacts 
     }
 }
 
-static void test_first_pair(void **state) {
-    (void)state;
+TEST(test_first_pair) {
     struct first_tally tally = {0};
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
@@ -307,8 +304,7 @@ static const char *check_polygon_pair(const struct exact_pair *pair, const narc_
     return NULL;
 }
 
-static void test_polygons(void **state) {
-    (void)state;
+TEST(test_polygons) {
     size_t wrong_pairs = 0, apart = 0, colliding = 0, less = 0;
     for (int c = POLYGONS; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
@@ -392,8 +388,7 @@ static void check_filter(const struct corpus *corpus, size_t k, bool told, doubl
     }
 }
 
-static void test_filters(void **state) {
-    (void)state;
+TEST(test_filters) {
     struct filter_tally tally[3] = {{0}};
     for (int c = 0; c < CORPORA; c++) {
         const struct corpus *corpus = &corpora[c];
@@ -446,10 +441,4 @@ static void test_filters(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sat_is_narc_find), cmocka_unit_test(test_sat_is_exact), cmocka_unit_test(test_first_pair),
-        cmocka_unit_test(test_polygons),         cmocka_unit_test(test_filters),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("methods", tests, make_corpora, destroy_corpora) : TEST_SKIPPED;
-}
+int main(void) { return test_begin() ? test_run("methods", make_corpora, destroy_corpora) : TEST_SKIPPED; }

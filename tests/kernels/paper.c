@@ -108,8 +108,7 @@ static struct tally compare(const char *name, struct shape (*make)(struct test_r
         place_at_gap(&shape_a, &shape_b, random_between(&random, -pi, pi), random_between(&random, -0.3, 0.5), &a, &b);
         a.shape = scene_add_shape(&scene, &shape_a);
         b.shape = scene_add_shape(&scene, &shape_b);
-        uint32_t index_a = scene_add_body(&scene, a);
-        scene_add_pair(&scene, index_a, scene_add_body(&scene, b));
+        scene_add_two(&scene, a, b);
     }
     uint64_t *bits = scene_overlaps(&scene);
     for (size_t k = 0; k < pairs; k++) {
@@ -136,8 +135,7 @@ static struct tally compare(const char *name, struct shape (*make)(struct test_r
     return tally;
 }
 
-static void test_flat_lenses(void **state) {
-    (void)state;
+TEST(test_flat_lenses) {
     /* It is a few per cent: even the shortest run needs this many pairs to say that it is more than one. */
     const size_t least = 3000;
     size_t pairs = test_trials(4000);
@@ -146,16 +144,9 @@ static void test_flat_lenses(void **state) {
     assert_true((double)tally.wrong_apart > 0.01 * (double)tally.apart);
 }
 
-static void test_random_n_arcs(void **state) {
-    (void)state;
+TEST(test_random_n_arcs) {
     struct tally tally = compare("random n-arcs", random_n_arc, test_trials(4000));
     assert_int_equal(tally.ours_wrong, 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_flat_lenses),
-        cmocka_unit_test(test_random_n_arcs),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("paper", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("paper")

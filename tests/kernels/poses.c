@@ -48,8 +48,7 @@ static float random_angle(struct test_random *random) {
     }
 }
 
-static void test_accuracy(void **state) {
-    (void)state;
+TEST(test_accuracy) {
     struct test_random random = test_random_named("pose accuracy");
     size_t count = test_trials(200000);
     float *angles = malloc(count * sizeof(float)), *cosines = malloc(count * sizeof(float)),
@@ -107,8 +106,7 @@ static void check_count(struct test_random *random, size_t count) {
     guard_release(copy);
 }
 
-static void test_counts(void **state) {
-    (void)state;
+TEST(test_counts) {
     struct test_random random = test_random_named("pose counts");
     for (size_t count = 0; count < 132; count++)
         check_count(&random, count);
@@ -116,8 +114,7 @@ static void test_counts(void **state) {
 }
 
 /* Exact where a table of special values would be: no angle, either zero. */
-static void test_special_angles(void **state) {
-    (void)state;
+TEST(test_special_angles) {
     const float angles[] = {0.0f, -0.0f, 0x1p-149f, -0x1p-126f};
     float cosines[4], sines[4];
     assert_int_equal(narc_compute_poses(angles, 4, cosines, sines, NULL), NARC_OK);
@@ -128,11 +125,4 @@ static void test_special_angles(void **state) {
     assert_int_equal(narc_compute_poses(NULL, 0, NULL, NULL, NULL), NARC_OK);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_accuracy),
-        cmocka_unit_test(test_counts),
-        cmocka_unit_test(test_special_angles),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("poses", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("poses")

@@ -30,13 +30,11 @@ static void check_scene(const struct scene *scene, const char *name) {
 static void add_pair(struct scene *scene, struct body a, struct body b) {
     round_position(&a, scene->precision);
     round_position(&b, scene->precision);
-    const uint32_t first = scene_add_body(scene, a);
-    scene_add_pair(scene, first, scene_add_body(scene, b));
+    scene_add_two(scene, a, b);
 }
 
 /* The square of a short direction is 0 or has lost its digits, and then its length does not scale anything. */
-static void test_vanishing_axes(void **state) {
-    (void)state;
+TEST(test_vanishing_axes) {
     struct test_random random = test_random_named("vanishing axes");
     enum { SHAPES = 24, PAIRS = 4000 };
     struct scene scene = create_scene(NARC_FLOAT32, SHAPES, 2 * PAIRS, PAIRS);
@@ -77,8 +75,7 @@ static struct shape make_loose_rhombus(double slope, double radius, double overl
 }
 
 /* Arcs may be given with joins that are off by NARC_TOLERANCE: two maxima of one value, next to each other. */
-static void test_loose_joins(void **state) {
-    (void)state;
+TEST(test_loose_joins) {
     struct test_random random = test_random_named("loose joins");
     enum { PAIRS = 1000 };
     for (size_t round = 0; round < test_trials(40); round++) {
@@ -104,7 +101,4 @@ static void test_loose_joins(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_vanishing_axes), cmocka_unit_test(test_loose_joins)};
-    return test_begin() ? cmocka_run_group_tests_name("proofs", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("proofs")

@@ -33,8 +33,7 @@ static void check_gap(const struct reference_body *a, const struct reference_bod
         fail_msg("gap %.17g and, swapped, %.17g instead of %.17g", gap, swapped, expected);
 }
 
-static void test_circles(void **state) {
-    (void)state;
+TEST(test_circles) {
     struct test_random random = test_random_named("circles");
     for (size_t trial = 0; trial < test_trials(200); trial++) {
         struct shape shape_a = circle_shape(random_unit(&random)), shape_b = circle_shape(random_unit(&random));
@@ -50,8 +49,7 @@ static double box_distance(double half_width, double half_height, double x, doub
     return hypot(fmax(out_x, 0), fmax(out_y, 0)) + fmin(fmax(out_x, out_y), 0);
 }
 
-static void test_circle_and_box(void **state) {
-    (void)state;
+TEST(test_circle_and_box) {
     struct test_random random = test_random_named("circle and box");
     for (size_t trial = 0; trial < test_trials(200); trial++) {
         double width = random_unit(&random), height = random_unit(&random), corner = random_unit(&random) / 4;
@@ -92,8 +90,7 @@ static double box_gap(const narc_point a[4], const narc_point b[4]) {
     return deepest > 0 ? distance : deepest;
 }
 
-static void test_boxes(void **state) {
-    (void)state;
+TEST(test_boxes) {
     struct test_random random = test_random_named("boxes");
     for (size_t trial = 0; trial < test_trials(200); trial++) {
         struct shape shape[2];
@@ -113,8 +110,7 @@ static void test_boxes(void **state) {
     }
 }
 
-static void test_capsules(void **state) {
-    (void)state;
+TEST(test_capsules) {
     struct test_random random = test_random_named("capsules");
     for (size_t trial = 0; trial < test_trials(200); trial++) {
         struct shape shape[2];
@@ -165,8 +161,7 @@ static double sample_outline(const struct reference_body *body, narc_point out[O
 
 /* Disjoint smooth shapes: the closest of all sampled points are further apart than the gap, by at most what the steps
  * along the outlines can cost. */
-static void test_sampled_points(void **state) {
-    (void)state;
+TEST(test_sampled_points) {
     static const enum family families[] = {FAMILY_SMOOTH, FAMILY_UNEQUAL, FAMILY_LENS, FAMILY_FITTED};
     static narc_point point_a[OUTLINE_POINTS], point_b[OUTLINE_POINTS];
     struct test_random random = test_random_named("sampled points");
@@ -192,8 +187,7 @@ static void test_sampled_points(void **state) {
 }
 
 /* g at the returned direction is the returned gap, and no direction of many has more. */
-static void test_maximum(void **state) {
-    (void)state;
+TEST(test_maximum) {
     struct test_random random = test_random_named("maximum");
     for (size_t trial = 0; trial < test_trials(300); trial++) {
         struct shape shape_a = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
@@ -213,8 +207,7 @@ static void test_maximum(void **state) {
 }
 
 /* The distance from a point by search against the library's closed form. */
-static void test_point_distance(void **state) {
-    (void)state;
+TEST(test_point_distance) {
     struct test_random random = test_random_named("point distance");
     for (size_t trial = 0; trial < test_trials(1000); trial++) {
         struct shape shape = make_shape(&random, (enum family)(trial % FAMILY_COUNT));
@@ -230,11 +223,4 @@ static void test_point_distance(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_circles),        cmocka_unit_test(test_circle_and_box), cmocka_unit_test(test_boxes),
-        cmocka_unit_test(test_capsules),       cmocka_unit_test(test_sampled_points), cmocka_unit_test(test_maximum),
-        cmocka_unit_test(test_point_distance),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("reference", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("reference")

@@ -115,8 +115,7 @@ static void check_all(struct test_random *random, const struct scene *scene, con
 }
 
 /* Discs alone, with few others, with many; with broken bodies between them; around the ends of vectors and calls. */
-static void test_discs(void **state) {
-    (void)state;
+TEST(test_discs) {
     static const struct {
         size_t other, broken, pairs;
     } mixes[] = {{0, 0, PAIRS}, {0, 0, 1024},    {0, 0, 1025},    {0, 0, 17},   {0, 97, PAIRS},
@@ -130,8 +129,7 @@ static void test_discs(void **state) {
 }
 
 /* One other pair, or one of a broken body, in each lane of each of the first vectors; and discs in one place. */
-static void test_one_other(void **state) {
-    (void)state;
+TEST(test_one_other) {
     enum { FEW = 50 };
     struct test_random random = test_random_named("one other");
     struct scene scene = make_discs(&random, FEW, BODIES - 1, 0); /* bodies 0 and BODIES - 1 are others */
@@ -152,13 +150,11 @@ static void test_one_other(void **state) {
 
 /* Discs whose gap is about what the first proofs that they are apart need. Circles that lie off their origins: of
  * others the bounding circles know. */
-static void test_hints_at_the_limit(void **state) {
-    (void)state;
+TEST(test_hints_at_the_limit) {
     struct test_random random = test_random_named("limit");
     struct scene scene = create_scene(NARC_FLOAT32, 3, 2 * PAIRS, PAIRS);
     const struct shape left = {{{-0.6, -0.8, 1, -pi, pi}}, 1}, right = {{{0.6, 0.8, 1, -pi, pi}}, 1};
-    struct shape box;
-    assert_int_equal(narc_build_box(2, 2, 0.2, box.arcs, &box.count, NULL), NARC_OK);
+    const struct shape box = box_of(2, 2, 0.2);
     scene_add_shape(&scene, &left);
     scene_add_shape(&scene, &right);
     scene_add_shape(&scene, &box);
@@ -168,25 +164,22 @@ static void test_hints_at_the_limit(void **state) {
         b.x = 0.6 * (gap + 1 - cos(turn)) + 0.8 * sin(turn);
         b.y = 0.8 * (gap + 1 - cos(turn)) - 0.6 * sin(turn);
         b.shape = k % 16 == 15 ? 2 : 1;
-        const uint32_t first = scene_add_body(&scene, a);
-        scene_add_pair(&scene, first, scene_add_body(&scene, b));
+        scene_add_two(&scene, a, b);
     }
     check_all(&random, &scene, "limit");
     destroy_scene(&scene);
 }
 
 /* Blocks of boxes that rest on each other, and blocks that lie anywhere. */
-static void test_resting_edges(void **state) {
-    (void)state;
+TEST(test_resting_edges) {
     struct test_random random = test_random_named("resting");
     struct scene scene = create_scene(NARC_FLOAT32, 3, 2 * PAIRS, PAIRS);
-    struct shape shape;
-    assert_int_equal(narc_build_box(2, 1, 0, shape.arcs, &shape.count, NULL), NARC_OK);
-    scene_add_shape(&scene, &shape);
-    assert_int_equal(narc_build_box(2, 1, 0.2, shape.arcs, &shape.count, NULL), NARC_OK);
-    scene_add_shape(&scene, &shape);
-    assert_int_equal(narc_build_ellipse(1, 0.5, 8, shape.arcs, &shape.count, NULL, NULL), NARC_OK);
-    scene_add_shape(&scene, &shape);
+    const struct shape sharp = box_of(2, 1, 0), round = box_of(2, 1, 0.2);
+    struct shape ellipse;
+    assert_int_equal(narc_build_ellipse(1, 0.5, 8, ellipse.arcs, &ellipse.count, NULL, NULL), NARC_OK);
+    scene_add_shape(&scene, &sharp);
+    scene_add_shape(&scene, &round);
+    scene_add_shape(&scene, &ellipse);
     for (uint32_t k = 0; k < PAIRS; k++) {
         const bool rests = k / 100 % 3 < 2;
         const double angle = random_between(&random, -pi, pi), along = random_between(&random, -1.5, 1.5);
@@ -196,19 +189,10 @@ static void test_resting_edges(void **state) {
         b.shape = (uint32_t)random_below(&random, k % 5 ? 2 : 3);
         b.x = cos(angle) * along - sin(angle) * across;
         b.y = sin(angle) * along + cos(angle) * across;
-        const uint32_t first = scene_add_body(&scene, a);
-        scene_add_pair(&scene, first, scene_add_body(&scene, b));
+        scene_add_two(&scene, a, b);
     }
     check_all(&random, &scene, "resting");
     destroy_scene(&scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_discs),
-        cmocka_unit_test(test_one_other),
-        cmocka_unit_test(test_hints_at_the_limit),
-        cmocka_unit_test(test_resting_edges),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("routes", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("routes")

@@ -75,29 +75,16 @@ static void check_hard_places(enum hard_placement placement, size_t trials) {
     }
 }
 
-static void test_touch(void **state) {
-    (void)state;
-    check_hard_places(HARD_TOUCH, 2);
-}
+TEST(test_touch) { check_hard_places(HARD_TOUCH, 2); }
 
-static void test_junction(void **state) {
-    (void)state;
-    check_hard_places(HARD_JUNCTION, 3);
-}
+TEST(test_junction) { check_hard_places(HARD_JUNCTION, 3); }
 
-static void test_aligned(void **state) {
-    (void)state;
-    check_hard_places(HARD_ALIGNED, 3);
-}
+TEST(test_aligned) { check_hard_places(HARD_ALIGNED, 3); }
 
-static void test_concentric(void **state) {
-    (void)state;
-    check_hard_places(HARD_CONCENTRIC, 3);
-}
+TEST(test_concentric) { check_hard_places(HARD_CONCENTRIC, 3); }
 
 /* The places of the other tests: every kind, random families. */
-static void test_all_places(void **state) {
-    (void)state;
+TEST(test_all_places) {
     struct test_random random = test_random_named("all places");
     for (size_t place = 0; place < PLACE_COUNT; place++) {
         const narc_precision precision = place % 2 ? NARC_FLOAT64 : NARC_FLOAT32;
@@ -110,8 +97,7 @@ static void test_all_places(void **state) {
             place_pair(&random, (enum placement)place, precision, &shape_a, &shape_b, &a, &b);
             a.shape = scene_add_shape(&scene, &shape_a);
             b.shape = scene_add_shape(&scene, &shape_b);
-            const uint32_t first = scene_add_body(&scene, a);
-            scene_add_pair(&scene, first, scene_add_body(&scene, b));
+            scene_add_two(&scene, a, b);
         }
         check_scene(&random, &scene, any_layout(&random), placement_name((enum placement)place));
         destroy_scene(&scene);
@@ -119,8 +105,7 @@ static void test_all_places(void **state) {
 }
 
 /* Many random pairs of few shapes, packed, so that every answer of a batch is spread over all stages and vectors. */
-static void test_crowds(void **state) {
-    (void)state;
+TEST(test_crowds) {
     struct test_random random = test_random_named("crowds");
     enum { SHAPES = 60, BODIES = 2000, PAIRS = 40000 };
     const enum layout layouts[] = {LAYOUT_STRUCTURES, LAYOUT_ARRAYS, LAYOUT_SHARED, LAYOUT_UNSCALED};
@@ -159,8 +144,7 @@ static void test_crowds(void **state) {
 }
 
 /* Runs of one pair after the other: whatever stage settles it, between stages as many wait as ever can. */
-static void test_runs(void **state) {
-    (void)state;
+TEST(test_runs) {
     struct test_random random = test_random_named("runs");
     enum { KINDS = 16, PAIRS = 12000, LONGEST = 320 };
     for (size_t round = 0; round < test_trials(24); round++) {
@@ -240,8 +224,7 @@ static struct way add_way(struct test_random *random, struct scene *scene) {
         way.y[end] = s_a * inner_a.x + c_a * inner_a.y - s_b * inner_b.x - c_b * inner_b.y +
                      reach * random_between(random, -1, 1);
     }
-    const uint32_t first = scene_add_body(scene, a);
-    scene_add_pair(scene, first, scene_add_body(scene, b));
+    scene_add_two(scene, a, b);
     return way;
 }
 
@@ -291,8 +274,7 @@ static void check_changes(struct test_random *random, enum change change) {
     destroy_scene(&scene);
 }
 
-static void test_changes(void **state) {
-    (void)state;
+TEST(test_changes) {
     struct test_random random = test_random_named("changes");
     for (size_t round = 0; round < test_trials(12); round++)
         check_changes(&random, (enum change)(round % CHANGES));
@@ -300,8 +282,7 @@ static void test_changes(void **state) {
 
 /* Specks at the flat side of a half disc, near a corner. Seen along that side the far corner is where the large arc
  * begins: a hair beside it, a point of the arc's circle is no longer one of the shape. */
-static void test_specks(void **state) {
-    (void)state;
+TEST(test_specks) {
     enum { PAIRS = 6000, SHAPES = 60 };
     struct test_random random = test_random_named("specks");
     for (size_t round = 0; round < test_trials(2); round++) {
@@ -328,8 +309,7 @@ static void test_specks(void **state) {
             assert_true(narc_find_support(speck->arcs, speck->count, -c * x - s * y, s * x - c * y, &p, NULL));
             b.x = c * p.x - s * p.y - gap * x + way * y;
             b.y = s * p.x + c * p.y - gap * y - way * x;
-            const uint32_t first = scene_add_body(&scene, a);
-            scene_add_pair(&scene, first, scene_add_body(&scene, b));
+            scene_add_two(&scene, a, b);
         }
         check_scene(&random, &scene, LAYOUT_STRUCTURES, "specks");
         destroy_scene(&scene);
@@ -377,8 +357,7 @@ static void check_filters(const struct scene *scene) {
 /* Shapes ever further from their own origin: up to 1e18 times their radius, the smallest radius and the largest shift
  * that a store takes. From 2e5 on the room for rounding is larger than the shape, and from 2e7 on single precision
  * leaves nothing of it but a speck. From 1e10 on only circles still join up. */
-static void test_far_from_origin(void **state) {
-    (void)state;
+TEST(test_far_from_origin) {
     enum { SHAPES = 40, PAIRS = 4000, DECADES = 18 };
     struct test_random random = test_random_named("far from origin");
     for (int decade = 3; decade <= DECADES; decade++) {
@@ -402,13 +381,4 @@ static void test_far_from_origin(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_touch),      cmocka_unit_test(test_junction),
-        cmocka_unit_test(test_aligned),    cmocka_unit_test(test_concentric),
-        cmocka_unit_test(test_all_places), cmocka_unit_test(test_crowds),
-        cmocka_unit_test(test_runs),       cmocka_unit_test(test_changes),
-        cmocka_unit_test(test_specks),     cmocka_unit_test(test_far_from_origin),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("shortcuts", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("shortcuts")

@@ -43,8 +43,7 @@ static void expect_measures(const struct output *out, double area, double second
     expect_near(hypot(mass.centroid_x, mass.centroid_y), 0, 1e-14 * perimeter, "centroid");
 }
 
-static void builds_circles(void **state) {
-    (void)state;
+TEST(builds_circles) {
     struct output out = make_output();
     expect_ok(narc_build_circle(3, out.arcs, &out.count, &out.error), &out.error);
     assert_int_equal(out.count, 1);
@@ -52,8 +51,7 @@ static void builds_circles(void **state) {
     expect_measures(&out, 9 * pi, 81 * pi / 2, 6 * pi);
 }
 
-static void builds_capsules(void **state) {
-    (void)state;
+TEST(builds_capsules) {
     for (double length = 0; length < 9; length += 2) {
         struct output out = make_output();
         double r = 1.5, l = length;
@@ -67,8 +65,7 @@ static void builds_capsules(void **state) {
     }
 }
 
-static void builds_boxes(void **state) {
-    (void)state;
+TEST(builds_boxes) {
     const double w = 3, h = 2, radii[] = {0, 0.25, 0.7, 1};
     for (size_t k = 0; k < 4; k++) {
         struct output out = make_output();
@@ -88,8 +85,7 @@ static void builds_boxes(void **state) {
 }
 
 /* A regular polygon with n corners on a circle of radius R, and rounded corners. */
-static void builds_polygons(void **state) {
-    (void)state;
+TEST(builds_polygons) {
     for (size_t n = 3; n <= NARC_MAX_ARCS; n++) {
         narc_point points[NARC_MAX_ARCS];
         double turn = 2 * pi / (double)n, apothem = 2 * cos(turn / 2), side = 4 * sin(turn / 2), count = (double)n;
@@ -120,8 +116,7 @@ static void builds_polygons(void **state) {
     }
 }
 
-static void rounded_polygon_stays_inside(void **state) {
-    (void)state;
+TEST(rounded_polygon_stays_inside) {
     struct test_random random = test_random_named("rounded polygons");
     for (size_t k = 0; k < test_trials(500); k++) {
         narc_point points[16];
@@ -151,8 +146,7 @@ static void rounded_polygon_stays_inside(void **state) {
     }
 }
 
-static void builds_four_arcs(void **state) {
-    (void)state;
+TEST(builds_four_arcs) {
     struct test_random random = test_random_named("four arcs");
     for (size_t k = 0; k < test_trials(1000); k++) {
         narc_four_arc f = {random_between(&random, 3, 6), random_between(&random, 3, 6), 0, 0, 0};
@@ -188,8 +182,7 @@ static void builds_four_arcs(void **state) {
     expect_near(mass.area, 25 * (2 * a - sin(2 * a)), 1e-13, "area of a lens");
 }
 
-static void refuses_bad_lengths(void **state) {
-    (void)state;
+TEST(refuses_bad_lengths) {
     const struct {
         double value;
         narc_status circle;
@@ -215,8 +208,7 @@ static void refuses_bad_lengths(void **state) {
     }
 }
 
-static void refuses_what_does_not_fit(void **state) {
-    (void)state;
+TEST(refuses_what_does_not_fit) {
     const narc_point square[4] = {{0, 0}, {2, 0}, {2, 1}, {0, 1}}, clockwise[4] = {{0, 0}, {0, 1}, {2, 1}, {2, 0}};
     const narc_point dent[5] = {{0, 0}, {2, 0}, {1, 0.5}, {2, 1}, {0, 1}}, flat[4] = {{0, 0}, {1, 0}, {2, 0}, {1, 1}};
     const narc_point twice[5] = {{0, 0}, {2, 0}, {2, 1}, {2, 1}, {0, 1}}, nan[3] = {{0, 0}, {1, NAN}, {0, 1}};
@@ -268,8 +260,7 @@ static void refuses_what_does_not_fit(void **state) {
 }
 
 /* The same outline as the polygon with corners at equal angles, whose measures are checked above. */
-static void builds_regular_polygons(void **state) {
-    (void)state;
+TEST(builds_regular_polygons) {
     for (size_t n = 3; n <= NARC_MAX_ARCS; n++) {
         const double turn = 2 * pi / (double)n, apothem = 3 * cos(turn / 2), r = 0.4 * apothem, count = (double)n;
         struct output out = make_output();
@@ -341,8 +332,7 @@ static double measure_changed(const narc_arc *arcs, size_t count, double half_x,
 }
 
 /* Smooth, as near as it says, and no small change brings it nearer. */
-static void builds_ellipses(void **state) {
-    (void)state;
+TEST(builds_ellipses) {
     const double ratio[] = {1.001, 1.2, 2, 4.5, 11, 35};
     struct test_random random = test_random_named("ellipses");
     for (size_t r = 0; r < 2 * sizeof ratio / sizeof *ratio; r++) {
@@ -391,8 +381,7 @@ static void builds_ellipses(void **state) {
 }
 
 /* What narc_build_ellipse() says of the number of arcs. */
-static void more_arcs_are_nearer_to_ellipses(void **state) {
-    (void)state;
+TEST(more_arcs_are_nearer_to_ellipses) {
     const double ratio[] = {1.01, 1.5, 3, 7, 12};
     for (size_t r = 0; r < sizeof ratio / sizeof *ratio; r++) {
         double last = 0, least = 4.15;
@@ -408,8 +397,7 @@ static void more_arcs_are_nearer_to_ellipses(void **state) {
 }
 
 /* Random rings: convex ones, stars in either direction; each has an n-arc with as many arcs. */
-static void builds_rings(void **state) {
-    (void)state;
+TEST(builds_rings) {
     struct test_random random = test_random_named("rings");
     for (size_t k = 0; k < test_trials(1000); k++) {
         const size_t n = 3 + random_below(&random, 14);
@@ -442,8 +430,7 @@ static void builds_rings(void **state) {
 }
 
 /* Heights of shapes of all kinds: of the mirror image along (-x, y), of the centred one less by what it moved. */
-static void moves_arcs(void **state) {
-    (void)state;
+TEST(moves_arcs) {
     struct test_random random = test_random_named("moved arcs");
     for (size_t k = 0; k < test_trials(20) * FAMILY_COUNT; k++) {
         const struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
@@ -484,8 +471,7 @@ static void moves_arcs(void **state) {
 }
 
 /* A segment, and with a radius the capsule between its ends, anywhere and in any direction. */
-static void builds_segments(void **state) {
-    (void)state;
+TEST(builds_segments) {
     struct test_random random = test_random_named("segments");
     for (size_t k = 0; k < test_trials(200); k++) {
         const narc_point from = {random_between(&random, -3, 3), random_between(&random, -3, 3)};
@@ -522,8 +508,7 @@ static void builds_segments(void **state) {
 }
 
 /* Steiner's formula: area + perimeter r + pi r^2; and the heights are those of the polygon and r more. */
-static void builds_skin_polygons(void **state) {
-    (void)state;
+TEST(builds_skin_polygons) {
     const narc_point box[4] = {{-1, -0.5}, {2, -0.5}, {2, 0.5}, {-1, 0.5}}, kite[3] = {{0, 0}, {2, 0.25}, {0.5, 1}};
     const narc_point *const polygons[2] = {box, kite};
     for (int k = 0; k < 2; k++) {
@@ -567,8 +552,7 @@ static double distance_to_side(narc_point p, narc_point a, narc_point b) {
 }
 
 /* Corners are left out, none is moved, and none that is left out is further away than the tolerance. */
-static void welds_polygons(void **state) {
-    (void)state;
+TEST(welds_polygons) {
     const narc_point box[7] = {{0, 0}, {1, 0}, {2, 0}, {2, 1e-6}, {2, 1}, {1, 1 + 1e-6}, {0, 1}};
     narc_point left[NARC_MAX_ARCS];
     size_t count;
@@ -616,26 +600,4 @@ static void welds_polygons(void **state) {
     expect_error(narc_weld_polygon(flat, 4, NAN, left, &count, &error), NARC_ERROR_NOT_FINITE, &error, "tolerance");
     expect_error(narc_weld_polygon(NULL, 4, 1, left, &count, &error), NARC_ERROR_ARGUMENT, &error, "points is NULL");
     expect_error(narc_weld_polygon(flat, 4, 1, NULL, &count, &error), NARC_ERROR_ARGUMENT, &error, "output is NULL");
-}
-
-int test_builders(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(builds_circles),
-        cmocka_unit_test(builds_capsules),
-        cmocka_unit_test(builds_boxes),
-        cmocka_unit_test(builds_polygons),
-        cmocka_unit_test(builds_four_arcs),
-        cmocka_unit_test(rounded_polygon_stays_inside),
-        cmocka_unit_test(refuses_bad_lengths),
-        cmocka_unit_test(refuses_what_does_not_fit),
-        cmocka_unit_test(builds_regular_polygons),
-        cmocka_unit_test(builds_ellipses),
-        cmocka_unit_test(more_arcs_are_nearer_to_ellipses),
-        cmocka_unit_test(builds_rings),
-        cmocka_unit_test(builds_segments),
-        cmocka_unit_test(builds_skin_polygons),
-        cmocka_unit_test(welds_polygons),
-        cmocka_unit_test(moves_arcs),
-    };
-    return cmocka_run_group_tests_name("builders", tests, NULL, NULL);
 }

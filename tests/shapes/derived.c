@@ -49,10 +49,7 @@ static void check_mass(struct test_random *random, const struct shape *shape, co
     assert_true(lack < 1e-3 * mass.area); /* or nothing was tested */
 }
 
-static void mass_matches_samples(void **state) {
-    (void)state;
-    for_all_families("mass", 20, check_mass);
-}
+TEST(mass_matches_samples) { for_all_families("mass", 20, check_mass); }
 
 static void check_perimeter(struct test_random *random, const struct shape *shape, const struct samples *samples) {
     (void)random;
@@ -62,10 +59,7 @@ static void check_perimeter(struct test_random *random, const struct shape *shap
     assert_true(length >= sampled - rounding && length <= sampled + samples->length_error + rounding);
 }
 
-static void perimeter_matches_samples(void **state) {
-    (void)state;
-    for_all_families("perimeter", 20, check_perimeter);
-}
+TEST(perimeter_matches_samples) { for_all_families("perimeter", 20, check_perimeter); }
 
 static void check_support(struct test_random *random, const struct shape *shape, const struct samples *samples) {
     double rounding = 1e-13 + 2 * samples->defect, error = samples->height_error + rounding;
@@ -93,14 +87,10 @@ static void check_support(struct test_random *random, const struct shape *shape,
     }
 }
 
-static void support_matches_samples(void **state) {
-    (void)state;
-    for_all_families("support", 8, check_support);
-}
+TEST(support_matches_samples) { for_all_families("support", 8, check_support); }
 
 /* On an edge's normal the counter-clockwise end is reported. */
-static void support_of_an_edge_is_its_end(void **state) {
-    (void)state;
+TEST(support_of_an_edge_is_its_end) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count, arc;
     narc_point point;
@@ -133,10 +123,7 @@ static void check_distance(struct test_random *random, const struct shape *shape
     }
 }
 
-static void distance_matches_arcs_and_edges(void **state) {
-    (void)state;
-    for_all_families("distance", 50, check_distance);
-}
+TEST(distance_matches_arcs_and_edges) { for_all_families("distance", 50, check_distance); }
 
 static void check_circles(struct test_random *random, const struct shape *shape, const struct samples *samples) {
     (void)random;
@@ -156,10 +143,7 @@ static void check_circles(struct test_random *random, const struct shape *shape,
     assert_true(inner.radius >= most * (1 - 1e-9));
 }
 
-static void circles_match_searches(void **state) {
-    (void)state;
-    for_all_families("circles", 4, check_circles);
-}
+TEST(circles_match_searches) { for_all_families("circles", 4, check_circles); }
 
 /* Everything moves and scales with the shape. */
 static void check_motion(struct test_random *random, const struct shape *shape, const struct samples *samples) {
@@ -196,13 +180,9 @@ static void check_motion(struct test_random *random, const struct shape *shape, 
     expect_near(moved_length / scale, length, 1e-11, "perimeter");
 }
 
-static void quantities_follow_motion(void **state) {
-    (void)state;
-    for_all_families("motion", 50, check_motion);
-}
+TEST(quantities_follow_motion) { for_all_families("motion", 50, check_motion); }
 
-static void refuses_bad_arguments(void **state) {
-    (void)state;
+TEST(refuses_bad_arguments) {
     narc_arc arcs[NARC_MAX_ARCS + 1] = {{0, 0, 1, -1, 1}};
     narc_mass mass;
     narc_circle circle;
@@ -228,18 +208,4 @@ static void refuses_bad_arguments(void **state) {
     assert_false(narc_compute_perimeter(arcs, 1, NULL));
     assert_false(narc_compute_distance(arcs, 1, (narc_point){0, 0}, NULL));
     assert_false(narc_find_support(arcs, 1, 0, 0, NULL, NULL));
-}
-
-int test_derived(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mass_matches_samples),
-        cmocka_unit_test(perimeter_matches_samples),
-        cmocka_unit_test(support_matches_samples),
-        cmocka_unit_test(support_of_an_edge_is_its_end),
-        cmocka_unit_test(distance_matches_arcs_and_edges),
-        cmocka_unit_test(circles_match_searches),
-        cmocka_unit_test(quantities_follow_motion),
-        cmocka_unit_test(refuses_bad_arguments),
-    };
-    return cmocka_run_group_tests_name("derived quantities", tests, NULL, NULL);
 }

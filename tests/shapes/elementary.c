@@ -48,29 +48,20 @@ static void require_long_double(void) {
         skip();
 }
 
-static void test_sines(void **state) {
-    (void)state;
+TEST(test_sines) {
     require_long_double();
     struct test_random random = test_random_named("sines");
     struct worst cosine = {0}, sine = {0};
     const size_t trials = test_trials(400000);
     for (size_t k = 0; k < trials; k++) {
-        double x = 0, c, s;
-        switch (k % 4) {
-        case 0:
-            x = random_between(&random, -7, 7);
-            break;
-        case 1:
-            x = random_size(&random, -40, 20);
-            break;
-        case 2:
-            x = random_size(&random, 20, 1024);
-            break;
-        case 3: /* next to multiples of a quarter turn */
+        double x = k % 4 == 0   ? random_between(&random, -7, 7)
+                   : k % 4 == 1 ? random_size(&random, -40, 20)
+                                : random_size(&random, 20, 1024);
+        double c, s;
+        if (k % 4 == 3) { /* next to multiples of a quarter turn */
             x = (double)random_below(&random, k % 8 == 3 ? 16 : 1 << 24) * 1.57079632679489662;
             for (size_t i = random_below(&random, 3); i > 0; i--)
                 x = nextafter(x, INFINITY);
-            break;
         }
         x = random_sign(&random, x);
         narc_find_cosine(x, &c, &s);
@@ -86,8 +77,7 @@ static void test_sines(void **state) {
     check_worst("sine", sine, 1);
 }
 
-static void test_arc_tangents(void **state) {
-    (void)state;
+TEST(test_arc_tangents) {
     require_long_double();
     struct test_random random = test_random_named("arc tangents");
     struct worst tangent = {0}, sine = {0};
@@ -98,13 +88,10 @@ static void test_arc_tangents(void **state) {
             y = x * random_size(&random, -60, 2);
         if (k % 3 == 1) /* about the places where the eighth changes */
             y = x * (double)(1 + random_below(&random, 16)) / 16 * (1 + (random_unit(&random) - 0.5) * 0x1p-50);
-        if (random_below(&random, 2)) {
-            const double kept = x;
-            x = y;
-            y = kept;
-        }
-        x = random_sign(&random, x);
-        y = random_sign(&random, y);
+        const bool turned = random_below(&random, 2);
+        const double longer = random_sign(&random, x), shorter = random_sign(&random, y);
+        x = turned ? shorter : longer;
+        y = turned ? longer : shorter;
         look(&tangent, narc_atan2(y, x), atan2l((long double)y, (long double)x), y, x);
         const double s = random_sign(&random, k % 2 ? random_unit(&random) : 1 - random_size(&random, -52, -1));
         look(&sine, narc_asin(s), asinl((long double)s), s, 0);
@@ -113,8 +100,7 @@ static void test_arc_tangents(void **state) {
     check_worst("arc sine", sine, 2);
 }
 
-static void test_lengths_and_powers(void **state) {
-    (void)state;
+TEST(test_lengths_and_powers) {
     require_long_double();
     struct test_random random = test_random_named("lengths and powers");
     struct worst length = {0}, logarithm = {0}, power = {0};
@@ -140,8 +126,7 @@ static void test_lengths_and_powers(void **state) {
 
 static bool is_same(double a, double b) { return a == b && !signbit(a) == !signbit(b); }
 
-static void test_special_values(void **state) {
-    (void)state;
+TEST(test_special_values) {
     const double pi = 3.14159265358979323846;
     double c, s;
     narc_find_cosine(-0.0, &c, &s);
@@ -167,8 +152,7 @@ static void test_special_values(void **state) {
 }
 
 /* The same on every machine. */
-static void test_golden(void **state) {
-    (void)state;
+TEST(test_golden) {
     enum { VALUES = 4096 };
     static double values[7 * VALUES];
     struct test_random random = {4}; /* not of NARC_TEST_SEED */
@@ -188,13 +172,4 @@ static void test_golden(void **state) {
     assert_true(hash == golden_values);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sines),
-        cmocka_unit_test(test_arc_tangents),
-        cmocka_unit_test(test_lengths_and_powers),
-        cmocka_unit_test(test_special_values),
-        cmocka_unit_test(test_golden),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("elementary", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("elementary")

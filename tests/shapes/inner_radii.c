@@ -100,11 +100,9 @@ static void check_arc(const struct shape *shape, size_t i, uint32_t radii, doubl
 }
 
 static void check_shape(const struct shape *shape) {
-    narc_shapes *shapes = NULL;
     double extent = 0;
-    narc_error error;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    expect_ok(narc_add_shape(shapes, shape->arcs, shape->count, NULL, &error), &error);
+    narc_shapes *shapes = empty_store();
+    store_shape(shapes, *shape);
     const narc_shape_header *header = shapes->headers;
     for (size_t i = 0; i < shape->count; i++)
         extent = fmax(extent, hypot(shape->arcs[i].center_x, shape->arcs[i].center_y) + shape->arcs[i].radius);
@@ -115,8 +113,7 @@ static void check_shape(const struct shape *shape) {
     narc_destroy_shapes(shapes);
 }
 
-static void holds_for_all_families(void **state) {
-    (void)state;
+TEST(holds_for_all_families) {
     struct test_random random = test_random_named("inner radii");
     for (size_t k = 0; k < test_trials(8); k++) {
         for (int family = 0; family < FAMILY_COUNT; family++) {
@@ -142,23 +139,17 @@ static void expect_inner_radii(narc_shapes *shapes, size_t arc, double inner, do
 }
 
 /* Shapes of which it can be told by hand. */
-static void is_tight_for_known_shapes(void **state) {
-    (void)state;
-    narc_shapes *shapes = NULL;
+TEST(is_tight_for_known_shapes) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
-    narc_build_circle(3, arcs, &count, NULL);
-    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+    narc_shapes *shapes = empty_store();
+    store_shape(shapes, circle_of(3));
     expect_inner_radii(shapes, 0, 3, 3);
-    narc_build_capsule(4, 0.3, arcs, &count, NULL);
-    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+    store_shape(shapes, capsule_of(4, 0.3));
     expect_inner_radii(shapes, 0, 0.3, 0.3);
-    narc_build_box(2, 1, 0.25, arcs, &count, NULL);
-    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+    store_shape(shapes, box_of(2, 1, 0.25));
     expect_inner_radii(shapes, 2, 0.25, 0.25);
-    narc_build_box(2, 1, 0, arcs, &count, NULL);
-    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+    store_shape(shapes, box_of(2, 1, 0));
     expect_inner_radii(shapes, 1, 0, 0);
     /* A lens with round tips of 0.25: next to them the large arcs have no more room than they. */
     narc_build_four_arc((narc_four_arc){5, 5, 8, 0.25, 0.25}, arcs, &count, NULL);
@@ -180,12 +171,4 @@ static void is_tight_for_known_shapes(void **state) {
         sharpest = fmin(sharpest, arcs[i].radius);
     assert_true(half_float(inner_radii_of(shapes, 3) & 0xffff) > 1.1 * sharpest);
     narc_destroy_shapes(shapes);
-}
-
-int test_rolls(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(holds_for_all_families),
-        cmocka_unit_test(is_tight_for_known_shapes),
-    };
-    return cmocka_run_group_tests_name("rolls", tests, NULL, NULL);
 }

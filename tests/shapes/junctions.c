@@ -43,8 +43,7 @@ static void walk(const double *turns, const double *sides, size_t count, narc_po
     expect_near(hypot(at.x, at.y), 0, 1e-9, "gap of the outline");
 }
 
-static void three_points_give_their_circle(void **state) {
-    (void)state;
+TEST(three_points_give_their_circle) {
     const narc_point points[3] = {{1, 2}, {5, 2.5}, {3, 5}};
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
@@ -65,8 +64,7 @@ static void three_points_give_their_circle(void **state) {
 }
 
 /* Pentagons with convex corners near a circle: always one solution, and giving another radius is an error. */
-static void random_pentagons_have_one_solution(void **state) {
-    (void)state;
+TEST(random_pentagons_have_one_solution) {
     struct test_random random = test_random_named("pentagons");
     for (size_t k = 0; k < test_trials(2000); k++) {
         narc_point points[5];
@@ -102,8 +100,7 @@ static double spread_of(const narc_arc *arcs, size_t count) {
 
 /* The junctions of a random n-arc with an even number of arcs: its first radius gives the n-arc back, every radius in
  * the range gives one, none outside it does, and none makes the radii more alike than the chosen one. */
-static void even_counts_have_a_range(void **state) {
-    (void)state;
+TEST(even_counts_have_a_range) {
     struct test_random random = test_random_named("even counts");
     size_t built = 0;
     for (size_t k = 0; k < test_trials(2000); k++) {
@@ -149,8 +146,7 @@ static void even_counts_have_a_range(void **state) {
 }
 
 /* Exterior angles 100, 40, 40, 100, 40, 40: the sums agree, and there is still no solution. */
-static void tells_when_there_is_no_solution(void **state) {
-    (void)state;
+TEST(tells_when_there_is_no_solution) {
     const double turns[6] = {100, 40, 40, 100, 40, 40}, sides[6] = {1, 1, 1, 1, 1, 1};
     narc_point points[6], trapezoid[4] = {{0, 0}, {4, 0}, {3, 1}, {0, 1}};
     narc_arc arcs[NARC_MAX_ARCS], pattern[NARC_MAX_ARCS];
@@ -172,8 +168,7 @@ static void tells_when_there_is_no_solution(void **state) {
     assert_memory_equal(arcs, pattern, sizeof arcs);
 }
 
-static void refuses_bad_points(void **state) {
-    (void)state;
+TEST(refuses_bad_points) {
     const narc_point square[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, clockwise[4] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
     const narc_point same[4] = {{0, 0}, {1, 0}, {1, 0}, {0, 1}}, bad[3] = {{0, 0}, {1, 0}, {0, INFINITY}};
     narc_arc arcs[NARC_MAX_ARCS];
@@ -223,8 +218,7 @@ static void expect_adjusted(const narc_point *polygon, size_t count, const char 
 }
 
 /* Stars around a point, convex and not, of either orientation; simple because the angles increase by less than pi. */
-static void adjusts_random_polygons(void **state) {
-    (void)state;
+TEST(adjusts_random_polygons) {
     struct test_random random = test_random_named("polygons");
     for (size_t k = 0; k < test_trials(1000); k++) {
         narc_point p[NARC_MAX_ARCS];
@@ -241,8 +235,7 @@ static void adjusts_random_polygons(void **state) {
     }
 }
 
-static void adjusts_nasty_polygons(void **state) {
-    (void)state;
+TEST(adjusts_nasty_polygons) {
     struct test_random random = test_random_named("nasty polygons");
     narc_point p[NARC_MAX_ARCS];
     for (size_t n = 3; n <= NARC_MAX_ARCS; n++) {
@@ -279,8 +272,7 @@ static void adjusts_nasty_polygons(void **state) {
 }
 
 /* Where there is an n-arc already, nothing moves: acute triangles, regular polygons, and the junctions of n-arcs. */
-static void leaves_good_polygons_alone(void **state) {
-    (void)state;
+TEST(leaves_good_polygons_alone) {
     struct test_random random = test_random_named("good polygons");
     size_t tested = 0;
     for (size_t k = 0; k < test_trials(1000); k++) {
@@ -314,8 +306,7 @@ static void find_turns(const narc_point *p, size_t count, double *turns) {
 
 /* Near a regular polygon with an even count no alpha is at a limit. The nearest angles whose even and odd sums agree
  * are then those from which the difference is taken in equal parts; new sides go through the middles of the old. */
-static void changes_angles_least(void **state) {
-    (void)state;
+TEST(changes_angles_least) {
     struct test_random random = test_random_named("least change");
     for (size_t k = 0; k < test_trials(500); k++) {
         narc_point points[12], adjusted[12];
@@ -342,8 +333,7 @@ static void changes_angles_least(void **state) {
 }
 
 /* The same polygon backwards gives the same outline, still counter-clockwise and from the same corner. */
-static void takes_either_orientation(void **state) {
-    (void)state;
+TEST(takes_either_orientation) {
     struct test_random random = test_random_named("orientation");
     for (size_t k = 0; k < test_trials(500); k++) {
         narc_point points[16], backwards[16], a[16], b[16];
@@ -361,8 +351,7 @@ static void takes_either_orientation(void **state) {
     }
 }
 
-static void refuses_bad_polygons(void **state) {
-    (void)state;
+TEST(refuses_bad_polygons) {
     const narc_point square[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, bow[4] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
     const narc_point same[4] = {{0, 0}, {1, 0}, {1, 0}, {0, 1}}, flat[3] = {{0, 0}, {1, 0}, {2, 0}};
     const narc_point spike[4] = {{0, 0}, {2, 0}, {1, 0}, {1, 1}}, bad[3] = {{0, 0}, {NAN, 0}, {0, 1}};
@@ -384,21 +373,4 @@ static void refuses_bad_polygons(void **state) {
     expect_error(narc_adjust_polygon(twice, 6, out, &error), NARC_ERROR_NOT_SIMPLE, &error, "sides 0 and 2");
     expect_error(narc_adjust_polygon(one, 3, out, &error), NARC_ERROR_NOT_SIMPLE, &error, "all points");
     assert_true(out[0].x == 7 && out[0].y == 7);
-}
-
-int test_junctions(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(three_points_give_their_circle),
-        cmocka_unit_test(random_pentagons_have_one_solution),
-        cmocka_unit_test(even_counts_have_a_range),
-        cmocka_unit_test(tells_when_there_is_no_solution),
-        cmocka_unit_test(refuses_bad_points),
-        cmocka_unit_test(adjusts_random_polygons),
-        cmocka_unit_test(adjusts_nasty_polygons),
-        cmocka_unit_test(leaves_good_polygons_alone),
-        cmocka_unit_test(changes_angles_least),
-        cmocka_unit_test(takes_either_orientation),
-        cmocka_unit_test(refuses_bad_polygons),
-    };
-    return cmocka_run_group_tests_name("junctions", tests, NULL, NULL);
 }

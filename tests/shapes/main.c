@@ -12,10 +12,4 @@ void expect_near(double value, double expected, double tolerance, const char *wh
         fail_msg("%s is %.17g, expected %.17g within %g", what, value, expected, tolerance);
 }
 
-int main(void) {
-    if (!test_begin())
-        return TEST_SKIPPED;
-    return test_validation() + test_builders() + test_junctions() + test_derived() + test_store() + test_replacing() +
-               test_rolls() + test_sharing() + test_saving() !=
-           0;
-}
+TEST_MAIN("shapes")

@@ -53,9 +53,8 @@ static narc_shapes *create_store(struct ledger *ledger) {
 
 /* A shape that was added to a store of its own has the same bits wherever it is. */
 static void expect_same_shape(const narc_shapes *shapes, uint32_t index, const struct shape *shape) {
-    narc_shapes *fresh = NULL;
-    assert_int_equal(narc_create_shapes(NULL, &fresh), NARC_OK);
-    assert_int_equal(narc_add_shape(fresh, shape->arcs, shape->count, NULL, NULL), NARC_OK);
+    narc_shapes *fresh = empty_store();
+    store_shape(fresh, *shape);
     narc_shape_header header = shapes->headers[index];
     assert_true(header.first_record + narc_count_records(header.count) <= shapes->record_count);
     assert_memory_equal(&shapes->records[header.first_record], &fresh->records[fresh->headers[0].first_record],
@@ -96,8 +95,7 @@ static void expect_model(const narc_shapes *shapes, const struct model *model) {
     assert_int_equal(shapes->used_records, used);
 }
 
-static void holds_what_was_put_last(void **state) {
-    (void)state;
+TEST(holds_what_was_put_last) {
     struct test_random random = test_random_named("replacing");
     for (size_t round = 0; round < test_trials(20); round++) {
         struct ledger ledger = {0};
@@ -116,14 +114,14 @@ static void holds_what_was_put_last(void **state) {
                     memcmp(model->shape[k].arcs, shape.arcs, shape.count * sizeof *shape.arcs) == 0)
                     equal = k;
             if (!exists && equal < MODEL_SHAPES) { /* one more use */
-                expect_ok(narc_add_shape(shapes, shape.arcs, shape.count, &added, &error), &error);
+                added = store_shape(shapes, shape);
                 assert_true(model->exists[added]);
                 expect_same_shape(shapes, added, &shape);
                 model->uses[added]++;
             } else if (!exists) { /* add */
                 if (model->removed_count == 0 && model->count == MODEL_SHAPES)
                     continue;
-                expect_ok(narc_add_shape(shapes, shape.arcs, shape.count, &added, &error), &error);
+                added = store_shape(shapes, shape);
                 if (model->removed_count > 0)
                     assert_int_equal(added, model->removed[--model->removed_count]);
                 else
@@ -182,8 +180,7 @@ static void expect_little_memory(const struct ledger *ledger, size_t most_needed
 }
 
 /* Replacing for ever, with any number of arcs, takes no more memory than is promised. */
-static void memory_does_not_grow(void **state) {
-    (void)state;
+TEST(memory_does_not_grow) {
     enum { SHAPES = 50, STEPS = 20000 };
     struct test_random random = test_random_named("no growth");
     for (int way = 0; way < 2; way++) { /* replace; remove and add */
@@ -219,8 +216,7 @@ static void memory_does_not_grow(void **state) {
 
 /* A triangle after the other becomes a polygon of 64 corners, which is removed. Then triangles come back, in their
  * places. */
-static void removed_shapes_need_no_memory(void **state) {
-    (void)state;
+TEST(removed_shapes_need_no_memory) {
     enum { SHAPES = 10000 };
     struct ledger ledger = {0};
     narc_shapes *shapes = create_store(&ledger);
@@ -248,8 +244,7 @@ static void removed_shapes_need_no_memory(void **state) {
 }
 
 /* A shape that changes and keeps its number of arcs, or has fewer, allocates nothing. */
-static void same_size_allocates_nothing(void **state) {
-    (void)state;
+TEST(same_size_allocates_nothing) {
     struct ledger ledger = {0};
     narc_shapes *shapes = create_store(&ledger);
     const struct shape eight = make_polygon(8), five = make_polygon(5);
@@ -264,8 +259,7 @@ static void same_size_allocates_nothing(void **state) {
 }
 
 /* Whatever is wrong, the store stays as it was. */
-static void refused_replacement_changes_nothing(void **state) {
-    (void)state;
+TEST(refused_replacement_changes_nothing) {
     struct ledger ledger = {0};
     struct model *model = calloc(1, sizeof *model);
     narc_shapes *shapes = create_store(&ledger);
@@ -328,11 +322,9 @@ static void expect_no_answers(const narc_shapes *shapes, const narc_bodies *bodi
 
 /* Three bodies in one place; the shape of the second is removed, and comes back. By every method, on every instruction
  * set. */
-static void removed_shapes_collide_with_nothing(void **state) {
-    (void)state;
+TEST(removed_shapes_collide_with_nothing) {
     static const uint32_t shape[] = {0, 1, 2}, a[] = {0, 1, 0, 1}, b[] = {1, 2, 2, 1};
     static const float zero = 0, one = 1;
-    narc_shapes *shapes = NULL;
     const struct shape polygon = make_polygon(6), large = make_polygon(64);
     const narc_bodies bodies = {.count = 3,
                                 .x = {&zero, 0, NARC_FLOAT32},
@@ -342,7 +334,7 @@ static void removed_shapes_collide_with_nothing(void **state) {
                                 .shape = NARC_ARRAY(shape)};
     const narc_pairs pairs = {.count = 4, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
     narc_error error;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     for (uint32_t k = 0; k < 3; k++)
         assert_int_equal(narc_add_shape_at(shapes, k, polygon.arcs, polygon.count, NULL), NARC_OK);
     for (size_t run = 0; narc_isa_name(run / 7); run++) {
@@ -395,8 +387,7 @@ static narc_status ask_boxes(const narc_methods *methods, bool *out_meet, narc_e
 }
 
 /* The methods' copy of a store never answers for shapes that the store does not have. */
-static void methods_are_never_stale(void **state) {
-    (void)state;
+TEST(methods_are_never_stale) {
     struct ledger ledger = {0};
     const narc_allocator allocator = {ledger_allocate, ledger_release, &ledger};
     const struct shape small = make_polygon(4), large = make_polygon(64);
@@ -421,13 +412,13 @@ static void methods_are_never_stale(void **state) {
     expect_ok(narc_create_methods(shapes, &allocator, &methods, &error), &error);
     for (int change = 0; change < 4; change++) {
         if (change == 0)
-            assert_int_equal(narc_add_shape(shapes, small.arcs, small.count, NULL, NULL), NARC_OK);
+            store_shape(shapes, small);
         else if (change == 1)
             assert_int_equal(narc_replace_shape(shapes, 0, wide.arcs, wide.count, NULL), NARC_OK);
         else if (change == 2)
             assert_int_equal(narc_remove_shape(shapes, 0, NULL), NARC_OK);
         else
-            assert_int_equal(narc_add_shape(shapes, wide.arcs, wide.count, NULL, NULL), NARC_OK);
+            store_shape(shapes, wide);
         expect_error(ask_boxes(methods, &meet, &error), NARC_ERROR_ARGUMENT, &error, "narc_refresh_methods()");
         ledger.refuses = true;
         expect_error(narc_refresh_methods(methods, &error), NARC_ERROR_MEMORY, &error, "no memory");
@@ -444,17 +435,4 @@ static void methods_are_never_stale(void **state) {
     narc_destroy_methods(NULL);
     assert_int_equal(ledger.live, 0);
     narc_destroy_shapes(shapes);
-}
-
-int test_replacing(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(holds_what_was_put_last),
-        cmocka_unit_test(memory_does_not_grow),
-        cmocka_unit_test(removed_shapes_need_no_memory),
-        cmocka_unit_test(same_size_allocates_nothing),
-        cmocka_unit_test(refused_replacement_changes_nothing),
-        cmocka_unit_test(removed_shapes_collide_with_nothing),
-        cmocka_unit_test(methods_are_never_stale),
-    };
-    return cmocka_run_group_tests_name("replacing", tests, NULL, NULL);
 }

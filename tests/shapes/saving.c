@@ -18,12 +18,11 @@ enum { START = 40, AT_VERSION = 8, AT_SIZE = 24, AT_CHECKSUM = 32 };
 
 /* Some shapes of all kinds, some of them used more than once, and holes. */
 static narc_shapes *make_store(struct test_random *random, size_t shapes_per_family) {
-    narc_shapes *shapes = NULL;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     for (size_t k = 0; k < shapes_per_family * FAMILY_COUNT; k++) {
         const struct shape shape = make_shape(random, (enum family)(k % FAMILY_COUNT));
         for (size_t uses = 1 + random_below(random, 2); uses > 0; uses--)
-            assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+            store_shape(shapes, shape);
     }
     for (size_t k = 0; k < shapes_per_family; k++) {
         const uint32_t index = (uint32_t)random_below(random, narc_count_shapes(shapes));
@@ -62,8 +61,7 @@ static void expect_same_store(const narc_shapes *a, const narc_shapes *b) {
     }
 }
 
-static void loads_what_was_saved(void **state) {
-    (void)state;
+TEST(loads_what_was_saved) {
     struct test_random random = test_random_named("saving");
     for (size_t round = 0; round < test_trials(20); round++) {
         narc_shapes *shapes = make_store(&random, 1 + round % 5), *loaded = NULL;
@@ -79,12 +77,9 @@ static void loads_what_was_saved(void **state) {
         /* It goes on as the saved one does: equal shapes are found, indices come in the same order. */
         for (int k = 0; k < 20; k++) {
             const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
-            uint32_t a, b;
-            assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, &a, NULL), NARC_OK);
-            assert_int_equal(narc_add_shape(loaded, shape.arcs, shape.count, &b, NULL), NARC_OK);
-            assert_int_equal(a, b);
-            assert_int_equal(narc_add_shape(loaded, shape.arcs, shape.count, &b, NULL), NARC_OK);
-            assert_int_equal(a, b);
+            const uint32_t index = store_shape(shapes, shape);
+            assert_int_equal(store_shape(loaded, shape), index);
+            assert_int_equal(store_shape(loaded, shape), index);
         }
         narc_destroy_shapes(shapes);
         narc_destroy_shapes(loaded);
@@ -94,8 +89,7 @@ static void loads_what_was_saved(void **state) {
 }
 
 /* Far from its origin a shape loses most of its digits; what is left is loaded. */
-static void loads_shapes_far_from_their_origin(void **state) {
-    (void)state;
+TEST(loads_shapes_far_from_their_origin) {
     struct test_random random = test_random_named("far saving");
     for (double away = 1; away < 1e9; away *= 10) {
         narc_shapes *shapes = NULL, *loaded = NULL;
@@ -107,7 +101,7 @@ static void loads_shapes_far_from_their_origin(void **state) {
             for (size_t i = 0; i < shape.count; i++)
                 shape.arcs[i].center_x += away;
             if (narc_validate_arcs(shape.arcs, shape.count, NULL) == NARC_OK)
-                assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+                store_shape(shapes, shape);
         }
         assert_true(narc_count_shapes(shapes) > 0);
         unsigned char *bytes = save(shapes, &size);
@@ -120,16 +114,13 @@ static void loads_shapes_far_from_their_origin(void **state) {
 }
 
 /* The bytes of builders' shapes, recorded: the same on every platform. */
-static void saves_recorded_bytes(void **state) {
-    (void)state;
-    narc_shapes *shapes = NULL;
+TEST(saves_recorded_bytes) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count, size;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     for (int k = 0; k < 8; k++) {
         const double length = 1 + k / 8.0;
-        assert_int_equal(narc_build_box(length, 2, k / 16.0, arcs, &count, NULL), NARC_OK);
-        assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+        store_shape(shapes, box_of(length, 2, k / 16.0));
         assert_int_equal(narc_build_ellipse(length, 0.75, 12, arcs, &count, NULL, NULL), NARC_OK);
         assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
         assert_int_equal(narc_build_segment((narc_point){-1, k}, (narc_point){2, 1}, k % 2, arcs, &count, NULL),
@@ -147,8 +138,7 @@ static void saves_recorded_bytes(void **state) {
     free(bytes);
 }
 
-static void refuses_bad_arguments(void **state) {
-    (void)state;
+TEST(refuses_bad_arguments) {
     struct test_random random = test_random_named("saving arguments");
     narc_shapes *shapes = make_store(&random, 1), *loaded = NULL;
     size_t size;
@@ -178,8 +168,7 @@ static void write_checksum(unsigned char *bytes, size_t size) {
         bytes[AT_CHECKSUM + k] = (unsigned char)(hash >> 8 * k);
 }
 
-static void damaged_bytes_are_refused(void **state) {
-    (void)state;
+TEST(damaged_bytes_are_refused) {
     struct test_random random = test_random_named("damage");
     narc_shapes *shapes = make_store(&random, 2), *loaded = NULL;
     size_t size;
@@ -248,8 +237,7 @@ static void expect_usable(const narc_shapes *shapes) {
 }
 
 /* Damage with a checksum that fits, as by someone who means it: an error, or a store like any other. */
-static void forged_bytes_do_no_harm(void **state) {
-    (void)state;
+TEST(forged_bytes_do_no_harm) {
     struct test_random random = test_random_named("forgery");
     size_t loads = 0;
     narc_shapes *shapes = make_store(&random, 2);
@@ -290,7 +278,7 @@ static void forged_bytes_do_no_harm(void **state) {
                 assert_int_equal(narc_remove_shape(third, (uint32_t)i, NULL), NARC_OK);
         for (int i = 0; i < 3; i++) {
             const struct shape shape = make_shape(&random, FAMILY_BOX);
-            assert_int_equal(narc_add_shape(third, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+            store_shape(third, shape);
         }
         narc_destroy_shapes(third);
         narc_destroy_shapes(loaded);
@@ -302,13 +290,4 @@ static void forged_bytes_do_no_harm(void **state) {
     narc_destroy_shapes(shapes);
     free(bytes);
     free(forged);
-}
-
-int test_saving(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(loads_what_was_saved),      cmocka_unit_test(loads_shapes_far_from_their_origin),
-        cmocka_unit_test(saves_recorded_bytes),      cmocka_unit_test(refuses_bad_arguments),
-        cmocka_unit_test(damaged_bytes_are_refused), cmocka_unit_test(forged_bytes_do_no_harm),
-    };
-    return cmocka_run_group_tests_name("saving", tests, NULL, NULL);
 }

@@ -38,31 +38,17 @@ static narc_shapes *create_store(struct counter *counter) {
     return shapes;
 }
 
-static uint32_t add(narc_shapes *shapes, const struct shape *shape) {
-    uint32_t index = UINT32_MAX;
-    narc_error error;
-    expect_ok(narc_add_shape(shapes, shape->arcs, shape->count, &index, &error), &error);
-    return index;
-}
-
-static struct shape make_box(double width, double height) {
-    struct shape shape;
-    assert_int_equal(narc_build_box(width, height, 0, shape.arcs, &shape.count, NULL), NARC_OK);
-    return shape;
-}
-
-static void equal_shapes_are_stored_once(void **state) {
-    (void)state;
+TEST(equal_shapes_are_stored_once) {
     struct test_random random = test_random_named("sharing");
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
     for (size_t k = 0; k < 20 * FAMILY_COUNT; k++) {
         const struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
-        const uint32_t index = add(shapes, &shape), uses = narc_count_uses(shapes, index);
+        const uint32_t index = store_shape(shapes, shape), uses = narc_count_uses(shapes, index);
         const size_t count = narc_count_shapes(shapes), records = shapes->record_count,
                      allocations = counter.allocations;
         for (uint32_t again = 1; again <= 3; again++) {
-            assert_int_equal(add(shapes, &shape), index);
+            assert_int_equal(store_shape(shapes, shape), index);
             assert_int_equal(narc_count_uses(shapes, index), uses + again);
         }
         assert_int_equal(narc_count_shapes(shapes), count);
@@ -76,16 +62,15 @@ static void equal_shapes_are_stored_once(void **state) {
 }
 
 /* What answers tell apart is another shape: the place, the numbers of arcs, one bit of one number. */
-static void other_bits_are_another_shape(void **state) {
-    (void)state;
+TEST(other_bits_are_another_shape) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
-    const struct shape box = make_box(2, 1);
+    const struct shape box = box_of(2, 1, 0);
     struct shape other = box;
-    assert_int_equal(add(shapes, &box), 0);
+    assert_int_equal(store_shape(shapes, box), 0);
     for (size_t i = 0; i < 4; i++)
         other.arcs[i] = box.arcs[(i + 1) % 4];
-    assert_int_equal(add(shapes, &other), 1);
+    assert_int_equal(store_shape(shapes, other), 1);
     narc_arc arcs[NARC_MAX_ARCS];
     assert_int_equal(narc_get_arcs(shapes, 1, arcs), 4);
     for (size_t i = 0; i < 4; i++)
@@ -93,45 +78,43 @@ static void other_bits_are_another_shape(void **state) {
     other = box;
     for (size_t i = 0; i < 4; i++)
         other.arcs[i].center_x += 0.5;
-    assert_int_equal(add(shapes, &other), 2);
+    assert_int_equal(store_shape(shapes, other), 2);
     other = box;
     other.arcs[0].center_x = other.arcs[3].center_x = (double)nextafterf(1, 2);
-    assert_int_equal(add(shapes, &other), 3);
+    assert_int_equal(store_shape(shapes, other), 3);
     for (uint32_t k = 0; k < 2; k++) {
         const struct shape circle = {{{k, 0, 1, -pi, pi}}, 1};
-        assert_int_equal(add(shapes, &circle), 4 + k);
+        assert_int_equal(store_shape(shapes, circle), 4 + k);
     }
     narc_destroy_shapes(shapes);
 }
 
-static void last_use_removes(void **state) {
-    (void)state;
+TEST(last_use_removes) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
-    const struct shape box = make_box(2, 1), other = make_box(3, 1);
+    const struct shape box = box_of(2, 1, 0), other = box_of(3, 1, 0);
     narc_error error;
     for (int k = 0; k < 3; k++)
-        assert_int_equal(add(shapes, &box), 0);
+        assert_int_equal(store_shape(shapes, box), 0);
     for (uint32_t uses = 3; uses-- > 0;) {
         expect_ok(narc_remove_shape(shapes, 0, &error), &error);
         assert_int_equal(narc_count_uses(shapes, 0), uses);
         assert_int_equal(narc_get_arcs(shapes, 0, NULL), uses ? 4 : 0);
     }
     expect_error(narc_remove_shape(shapes, 0, &error), NARC_ERROR_INDEX, &error, "shape 0 was removed");
-    assert_int_equal(add(shapes, &other), 0); /* the removed one is not found */
-    assert_int_equal(add(shapes, &box), 1);
+    assert_int_equal(store_shape(shapes, other), 0); /* the removed one is not found */
+    assert_int_equal(store_shape(shapes, box), 1);
     narc_destroy_shapes(shapes);
 }
 
-static void shared_shapes_are_not_replaced(void **state) {
-    (void)state;
+TEST(shared_shapes_are_not_replaced) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
-    const struct shape box = make_box(2, 1), other = make_box(3, 1);
+    const struct shape box = box_of(2, 1, 0), other = box_of(3, 1, 0);
     narc_arc arcs[NARC_MAX_ARCS];
     narc_error error;
     for (int k = 0; k < 3; k++)
-        assert_int_equal(add(shapes, &box), 0);
+        assert_int_equal(store_shape(shapes, box), 0);
     expect_error(narc_replace_shape(shapes, 0, other.arcs, 4, &error), NARC_ERROR_IN_USE, &error,
                  "shape 0 is used 3 times");
     assert_true(error.value == 3 && error.index == 0);
@@ -140,27 +123,24 @@ static void shared_shapes_are_not_replaced(void **state) {
     assert_int_equal(narc_remove_shape(shapes, 0, NULL), NARC_OK);
     assert_int_equal(narc_remove_shape(shapes, 0, NULL), NARC_OK);
     expect_ok(narc_replace_shape(shapes, 0, other.arcs, 4, &error), &error);
-    assert_int_equal(add(shapes, &other), 0); /* what came in its place is found, */
-    assert_int_equal(add(shapes, &box), 1);   /* what was there is not */
+    assert_int_equal(store_shape(shapes, other), 0); /* what came in its place is found, */
+    assert_int_equal(store_shape(shapes, box), 1);   /* what was there is not */
     /* A third one that becomes equal keeps its index; and one of the two is found. */
     expect_ok(narc_replace_shape(shapes, 1, other.arcs, 4, &error), &error);
-    assert_in_range(add(shapes, &other), 0, 1);
+    assert_in_range(store_shape(shapes, other), 0, 1);
     assert_int_equal(narc_count_uses(shapes, 0) + narc_count_uses(shapes, 1), 4);
     narc_destroy_shapes(shapes);
 }
 
 /* How many shapes a search looks at, on average of all shapes, and at most. Shapes like those of a level: boxes with
  * sides in steps. */
-static void searches_are_short(void **state) {
-    (void)state;
+TEST(searches_are_short) {
     enum { STEPS = 150 };
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
     for (int w = 1; w <= STEPS; w++)
-        for (int h = 1; h <= STEPS; h++) {
-            const struct shape box = make_box(0.125 * w, 0.125 * h);
-            assert_int_equal(add(shapes, &box), (w - 1) * STEPS + h - 1);
-        }
+        for (int h = 1; h <= STEPS; h++)
+            assert_int_equal(store_shape(shapes, box_of(0.125 * w, 0.125 * h, 0)), (w - 1) * STEPS + h - 1);
     size_t looks = 0, longest = 0, all = 0;
     for (size_t bucket = 0; bucket < shapes->capacity; bucket++) {
         size_t length = 0;
@@ -176,11 +156,10 @@ static void searches_are_short(void **state) {
     narc_destroy_shapes(shapes);
 }
 
-static void added_at_an_index(void **state) {
-    (void)state;
+TEST(added_at_an_index) {
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
-    const struct shape box = make_box(2, 1), other = make_box(3, 1);
+    const struct shape box = box_of(2, 1, 0), other = box_of(3, 1, 0);
     narc_error error;
     expect_ok(narc_add_shape_at(shapes, 5, box.arcs, 4, &error), &error); /* extends */
     assert_int_equal(narc_count_shapes(shapes), 6);
@@ -198,45 +177,27 @@ static void added_at_an_index(void **state) {
     expect_error(narc_add_shape_at(NULL, 0, box.arcs, 4, &error), NARC_ERROR_ARGUMENT, &error, "shapes is NULL");
     expect_error(narc_add_shape_at(shapes, 0, NULL, 4, &error), NARC_ERROR_ARGUMENT, &error, "arcs is NULL");
     assert_int_equal(narc_count_shapes(shapes), 6);
-    assert_int_equal(add(shapes, &other), 0);
-    const uint32_t found = add(shapes, &box);
+    assert_int_equal(store_shape(shapes, other), 0);
+    const uint32_t found = store_shape(shapes, box);
     assert_true((found == 2 || found == 5) && narc_count_uses(shapes, found) == 2);
     static const uint32_t free_ones[] = {1, 3, 4, 6};
-    for (uint32_t k = 0; k < 4; k++) {
-        const struct shape next = make_box(4 + k, 1);
-        assert_int_equal(add(shapes, &next), free_ones[k]);
-    }
+    for (uint32_t k = 0; k < 4; k++)
+        assert_int_equal(store_shape(shapes, box_of(4 + k, 1, 0)), free_ones[k]);
     narc_destroy_shapes(shapes);
 }
 
 /* Any order of indices, each in a time that does not depend on how many there are. */
-static void fills_indices_in_any_order(void **state) {
-    (void)state;
+TEST(fills_indices_in_any_order) {
     enum { COUNT = 5000 };
     struct counter counter = {0};
     narc_shapes *shapes = create_store(&counter);
     for (uint32_t k = COUNT; k-- > 0;) {
-        const struct shape box = make_box(1 + k, 1);
+        const struct shape box = box_of(1 + k, 1, 0);
         assert_int_equal(narc_add_shape_at(shapes, k, box.arcs, 4, NULL), NARC_OK);
     }
     assert_int_equal(shapes->removed_count, 0);
-    for (uint32_t k = 0; k < COUNT; k++) {
-        const struct shape box = make_box(1 + k, 1);
-        assert_int_equal(add(shapes, &box), k);
-    }
+    for (uint32_t k = 0; k < COUNT; k++)
+        assert_int_equal(store_shape(shapes, box_of(1 + k, 1, 0)), k);
     assert_int_equal(narc_count_shapes(shapes), COUNT);
     narc_destroy_shapes(shapes);
-}
-
-int test_sharing(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equal_shapes_are_stored_once),
-        cmocka_unit_test(other_bits_are_another_shape),
-        cmocka_unit_test(last_use_removes),
-        cmocka_unit_test(shared_shapes_are_not_replaced),
-        cmocka_unit_test(searches_are_short),
-        cmocka_unit_test(added_at_an_index),
-        cmocka_unit_test(fills_indices_in_any_order),
-    };
-    return cmocka_run_group_tests_name("sharing", tests, NULL, NULL);
 }

@@ -34,16 +34,14 @@ static void expect_same_arcs(const struct shape *shape, const narc_arc *stored, 
 }
 
 /* Hundreds of thousands of shapes, each found again afterwards. */
-static void keeps_many_shapes(void **state) {
-    (void)state;
+TEST(keeps_many_shapes) {
     enum { KINDS = 20 * FAMILY_COUNT, SHAPES = 70000 };
     struct test_random random = test_random_named("many shapes");
     struct shape *kinds = malloc(KINDS * sizeof *kinds);
-    narc_shapes *shapes = NULL;
     narc_error error;
     for (size_t k = 0; k < KINDS; k++)
         kinds[k] = make_shape(&random, (enum family)(k % FAMILY_COUNT));
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     assert_int_equal(narc_count_shapes(shapes), 0);
     for (size_t k = 0; k < SHAPES; k++) {
         const struct shape *kind = &kinds[k % KINDS];
@@ -116,11 +114,9 @@ static void expect_box(const struct shape *shape, const narc_shape_header *heade
 }
 
 /* The layout that the kernels rely on. */
-static void lays_out_blocks(void **state) {
-    (void)state;
+TEST(lays_out_blocks) {
     struct test_random random = test_random_named("blocks");
-    narc_shapes *shapes = NULL;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     for (size_t k = 0; k < 40 * FAMILY_COUNT; k++) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         assert_int_equal(narc_add_shape_at(shapes, (uint32_t)k, shape.arcs, shape.count, NULL), NARC_OK);
@@ -156,13 +152,11 @@ static void lays_out_blocks(void **state) {
 }
 
 /* Other methods have a copy of each shape, and its box. */
-static void methods_have_boxes(void **state) {
-    (void)state;
+TEST(methods_have_boxes) {
     enum { SHAPES = 40 * FAMILY_COUNT };
     struct test_random random = test_random_named("blocks");
-    narc_shapes *shapes = NULL;
     narc_methods *methods = NULL;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     for (size_t k = 0; k < SHAPES; k++) {
         const struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         assert_int_equal(narc_add_shape_at(shapes, (uint32_t)k, shape.arcs, shape.count, NULL), NARC_OK);
@@ -186,13 +180,11 @@ static void methods_have_boxes(void **state) {
 }
 
 /* Multiples of a quarter turn are stored as exact zeros and ones, whole turns added or not. */
-static void stores_exact_quarter_turns(void **state) {
-    (void)state;
-    narc_shapes *shapes = NULL;
+TEST(stores_exact_quarter_turns) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     const float x[4] = {1, 0, -1, 0}, y[4] = {0, 1, 0, -1};
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     assert_int_equal(narc_build_box(2, 1, 0.25, arcs, &count, NULL), NARC_OK);
     for (int turns = -3; turns <= 3; turns++) {
         narc_arc turned[4];
@@ -218,13 +210,11 @@ static unsigned add_and_get_flags(narc_shapes *shapes, const narc_arc *arcs, siz
     return narc_shape_flags(shapes, index);
 }
 
-static void knows_what_shapes_are(void **state) {
-    (void)state;
-    narc_shapes *shapes = NULL;
+TEST(knows_what_shapes_are) {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     const narc_point rhombus[4] = {{2, 0}, {0, 1}, {-2, 0}, {0, -1}}, square[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     narc_build_circle(1, arcs, &count, NULL);
     assert_int_equal(add_and_get_flags(shapes, arcs, count),
                      NARC_SHAPE_SMOOTH | NARC_SHAPE_CIRCLE | NARC_SHAPE_CENTERS_INSIDE);
@@ -245,20 +235,17 @@ static void knows_what_shapes_are(void **state) {
 }
 
 /* The filters' circles hold for the shape that was stored, and are not much larger or smaller than they must be. */
-static void bounds_what_is_stored(void **state) {
-    (void)state;
+TEST(bounds_what_is_stored) {
     struct test_random random = test_random_named("bounds");
-    narc_shapes *shapes = NULL;
     /* The room that is promised, less or more what rounding the arcs and the circle itself takes. */
     const double least = NARC_ROUNDING_ROOM - 8 * ulp, most = NARC_ROUNDING_ROOM + 8 * ulp;
-    assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+    narc_shapes *shapes = empty_store();
     for (size_t k = 0; k < test_trials(100) * FAMILY_COUNT; k++) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         narc_arc arcs[NARC_MAX_ARCS];
-        uint32_t index;
         narc_circle bound, inner;
         double extent = 0;
-        assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, &index, NULL), NARC_OK);
+        const uint32_t index = store_shape(shapes, shape);
         size_t count = narc_get_arcs(shapes, index, arcs);
         for (size_t i = 0; i < count; i++)
             extent = fmax(extent, hypot(arcs[i].center_x, arcs[i].center_y) + arcs[i].radius);
@@ -324,8 +311,7 @@ static void count_release(void *memory, void *context) {
 }
 
 /* Whichever allocation fails, the store stays as it was, and the same shape can be added once there is memory. */
-static void survives_failing_allocations(void **state) {
-    (void)state;
+TEST(survives_failing_allocations) {
     struct test_random random = test_random_named("failing allocations");
     struct shape added[400];
     struct counter counter = {0};
@@ -357,8 +343,7 @@ static void survives_failing_allocations(void **state) {
     assert_int_equal(counter.live, 0);
 }
 
-static void reserve_is_enough(void **state) {
-    (void)state;
+TEST(reserve_is_enough) {
     struct test_random random = test_random_named("reserve");
     for (size_t round = 0; round < 50; round++) {
         struct shape added[2 * FAMILY_COUNT];
@@ -385,8 +370,7 @@ static void reserve_is_enough(void **state) {
     }
 }
 
-static void refuses_bad_arguments(void **state) {
-    (void)state;
+TEST(refuses_bad_arguments) {
     narc_shapes *shapes = NULL;
     narc_error error;
     narc_allocator incomplete = {NULL, count_release, NULL};
@@ -407,19 +391,4 @@ static void refuses_bad_arguments(void **state) {
     assert_int_equal(narc_reserve_shapes(NULL, 1, 1), NARC_ERROR_ARGUMENT);
     narc_destroy_shapes(NULL);
     narc_destroy_shapes(shapes);
-}
-
-int test_store(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_many_shapes),
-        cmocka_unit_test(lays_out_blocks),
-        cmocka_unit_test(methods_have_boxes),
-        cmocka_unit_test(stores_exact_quarter_turns),
-        cmocka_unit_test(knows_what_shapes_are),
-        cmocka_unit_test(bounds_what_is_stored),
-        cmocka_unit_test(survives_failing_allocations),
-        cmocka_unit_test(reserve_is_enough),
-        cmocka_unit_test(refuses_bad_arguments),
-    };
-    return cmocka_run_group_tests_name("store", tests, NULL, NULL);
 }

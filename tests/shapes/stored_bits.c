@@ -108,8 +108,7 @@ static uint64_t hash_derived(uint64_t hash, const narc_shapes *shapes, const nar
     return test_hash_items(hash, stored, stored_count * 5, sizeof(double));
 }
 
-static void test_builders(void **state) {
-    (void)state;
+TEST(test_builders) {
     bool same = true;
     for (enum builder builder = 0; builder < BUILDERS; builder++) {
         struct test_random random = {builder}; /* not of NARC_TEST_SEED */
@@ -142,7 +141,4 @@ static void test_builders(void **state) {
     assert_true(same);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_builders)};
-    return test_begin() ? cmocka_run_group_tests_name("stored bits", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("stored bits")

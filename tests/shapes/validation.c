@@ -19,8 +19,7 @@ static void make_box(narc_arc arcs[NARC_MAX_ARCS]) {
     assert_int_equal(count, 4);
 }
 
-static void refuses_bad_counts(void **state) {
-    (void)state;
+TEST(refuses_bad_counts) {
     narc_arc arcs[NARC_MAX_ARCS + 1] = {{0}};
     narc_error error;
     expect_error(narc_validate_arcs(NULL, 4, &error), NARC_ERROR_ARGUMENT, &error, "arcs is NULL");
@@ -29,8 +28,7 @@ static void refuses_bad_counts(void **state) {
     assert_int_equal(narc_validate_arcs(arcs, 0, NULL), NARC_ERROR_COUNT);
 }
 
-static void refuses_bad_numbers(void **state) {
-    (void)state;
+TEST(refuses_bad_numbers) {
     static const char *const names[] = {"arc 2: center x is", "arc 2: center y is", "arc 2: radius is",
                                         "arc 2: start is", "arc 2: end is"};
     static const double values[] = {NAN, INFINITY, -INFINITY};
@@ -47,8 +45,7 @@ static void refuses_bad_numbers(void **state) {
     }
 }
 
-static void refuses_bad_radii(void **state) {
-    (void)state;
+TEST(refuses_bad_radii) {
     narc_arc arcs[NARC_MAX_ARCS];
     narc_error error;
     make_box(arcs);
@@ -73,8 +70,7 @@ static void refuses_bad_radii(void **state) {
     }
 }
 
-static void refuses_bad_sweeps(void **state) {
-    (void)state;
+TEST(refuses_bad_sweeps) {
     narc_arc arcs[NARC_MAX_ARCS];
     narc_error error;
     make_box(arcs);
@@ -102,8 +98,7 @@ static void refuses_bad_sweeps(void **state) {
     assert_int_equal(narc_validate_arcs(sliver, 3, &error), NARC_OK);
 }
 
-static void refuses_what_does_not_meet(void **state) {
-    (void)state;
+TEST(refuses_what_does_not_meet) {
     narc_arc arcs[NARC_MAX_ARCS];
     narc_error error;
     /* Normals that do not join. */
@@ -129,8 +124,7 @@ static void refuses_what_does_not_meet(void **state) {
     expect_ok(narc_validate_arcs(arcs, 4, &error), &error);
 }
 
-static void refuses_bad_sizes(void **state) {
-    (void)state;
+TEST(refuses_bad_sizes) {
     static const double radii[] = {0, 0.5e-9, 2e9, 1e200, DBL_MAX, DBL_MIN};
     narc_error error;
     for (size_t k = 0; k < sizeof radii / sizeof radii[0]; k++) {
@@ -156,8 +150,7 @@ static void refuses_bad_sizes(void **state) {
     expect_ok(narc_validate_arcs(thin, 2, &error), &error);
 }
 
-static void accepts_whole_turns(void **state) {
-    (void)state;
+TEST(accepts_whole_turns) {
     struct test_random random = test_random_named("whole turns");
     for (size_t k = 0; k < test_trials(2000); k++) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
@@ -176,8 +169,7 @@ static void accepts_whole_turns(void **state) {
 }
 
 /* Lists with few digits, as files have, pass, if no number is so large that these digits end before the tolerance. */
-static void accepts_seven_digits(void **state) {
-    (void)state;
+TEST(accepts_seven_digits) {
     struct test_random random = test_random_named("seven digits");
     size_t tested = 0;
     for (size_t k = 0; k < test_trials(2000); k++) {
@@ -204,8 +196,7 @@ static void accepts_seven_digits(void **state) {
 }
 
 /* Anything in, no crash and no hang; what passes has finite properties. */
-static void survives_random_bits(void **state) {
-    (void)state;
+TEST(survives_random_bits) {
     struct test_random random = test_random_named("random bits");
     for (size_t k = 0; k < test_trials(20000); k++) {
         struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
@@ -222,8 +213,7 @@ static void survives_random_bits(void **state) {
     }
 }
 
-static void names_every_status(void **state) {
-    (void)state;
+TEST(names_every_status) {
     for (int k = 0; k <= NARC_ERROR_IN_USE; k++) {
         const char *name = narc_status_name((narc_status)k);
         assert_int_equal(strncmp(name, k ? "NARC_ERROR_" : "NARC_OK", k ? 11 : 7), 0);
@@ -231,15 +221,4 @@ static void names_every_status(void **state) {
             assert_string_not_equal(name, narc_status_name((narc_status)j));
     }
     assert_string_equal(narc_status_name((narc_status)99), "unknown status");
-}
-
-int test_validation(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(refuses_bad_counts),         cmocka_unit_test(refuses_bad_numbers),
-        cmocka_unit_test(refuses_bad_radii),          cmocka_unit_test(refuses_bad_sweeps),
-        cmocka_unit_test(refuses_what_does_not_meet), cmocka_unit_test(refuses_bad_sizes),
-        cmocka_unit_test(accepts_whole_turns),        cmocka_unit_test(accepts_seven_digits),
-        cmocka_unit_test(survives_random_bits),       cmocka_unit_test(names_every_status),
-    };
-    return cmocka_run_group_tests_name("validation", tests, NULL, NULL);
 }

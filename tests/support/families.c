@@ -151,30 +151,52 @@ static void require_ok(narc_status status, const narc_error *error) {
         fail_msg("a builder refused a valid shape: %s", error->message);
 }
 
-static struct shape make_box(struct test_random *random, double width, double height) {
+struct shape circle_of(double radius) {
     struct shape shape;
     narc_error error;
-    double radius = random_below(random, 3) ? 0 : fmin(width, height) * random_between(random, 0.0, 0.5);
+    require_ok(narc_build_circle(radius, shape.arcs, &shape.count, &error), &error);
+    return shape;
+}
+
+struct shape box_of(double width, double height, double radius) {
+    struct shape shape;
+    narc_error error;
     require_ok(narc_build_box(width, height, radius, shape.arcs, &shape.count, &error), &error);
     return shape;
 }
 
-static struct shape make_capsule(struct test_random *random, double thinnest) {
+struct shape capsule_of(double length, double radius) {
     struct shape shape;
     narc_error error;
-    double length = random_below(random, 8) ? random_between(random, 0.5, 2) : 0;
-    double radius = length > 0 ? length * random_log_between(random, thinnest, 1) : 1;
     require_ok(narc_build_capsule(length, radius, shape.arcs, &shape.count, &error), &error);
     return shape;
 }
 
-static struct shape make_circle(struct test_random *random) {
-    struct shape shape;
+narc_shapes *empty_store(void) {
+    narc_shapes *store = NULL;
+    assert_int_equal(narc_create_shapes(NULL, &store), NARC_OK);
+    return store;
+}
+
+uint32_t store_shape(narc_shapes *store, struct shape shape) {
+    uint32_t index = UINT32_MAX;
     narc_error error;
-    double radius =
-        random_below(random, 2) ? random_log_between(random, 0.1, 2) : 0.125 * (double)(1 + random_below(random, 8));
-    require_ok(narc_build_circle(radius, shape.arcs, &shape.count, &error), &error);
-    return shape;
+    require_ok(narc_add_shape(store, shape.arcs, shape.count, &index, &error), &error);
+    return index;
+}
+
+static struct shape make_box(struct test_random *random, double width, double height) {
+    return box_of(width, height, random_below(random, 3) ? 0 : fmin(width, height) * random_between(random, 0.0, 0.5));
+}
+
+static struct shape make_capsule(struct test_random *random, double thinnest) {
+    const double length = random_below(random, 8) ? random_between(random, 0.5, 2) : 0;
+    return capsule_of(length, length > 0 ? length * random_log_between(random, thinnest, 1) : 1);
+}
+
+static struct shape make_circle(struct test_random *random) {
+    return circle_of(random_below(random, 2) ? random_log_between(random, 0.1, 2)
+                                             : 0.125 * (double)(1 + random_below(random, 8)));
 }
 
 /* Half as wide as 1 and `flatness` thick: two large arcs of radius R that cross, the sagitta of each is `flatness` /

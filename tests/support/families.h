@@ -34,6 +34,15 @@ struct shape {
 
 const char *family_name(enum family family);
 
+/* What the builders make. Whole width and height, the corners' radius; a capsule is as long as its segment. */
+struct shape circle_of(double radius);
+struct shape box_of(double width, double height, double radius);
+struct shape capsule_of(double length, double radius);
+
+/* A store, and a shape that it must take; its index. */
+narc_shapes *empty_store(void);
+uint32_t store_shape(narc_shapes *store, struct shape shape);
+
 /* A random shape with a bounding radius of about 1. */
 struct shape make_shape(struct test_random *random, enum family family);
 

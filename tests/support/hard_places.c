@@ -79,8 +79,7 @@ static void add_pair(struct place *place) {
         drift(place->random, &a);
         drift(place->random, &b);
     }
-    const uint32_t first = scene_add_body(place->scene, a);
-    scene_add_pair(place->scene, first, scene_add_body(place->scene, b));
+    scene_add_two(place->scene, a, b);
 }
 
 /* The support points across a normal meet, but for a gap and a shift along the tangent. */

@@ -100,17 +100,6 @@ static void name_pairs(struct corpus *corpus, size_t first, size_t kind_a, size_
     }
 }
 
-static void add_placed_pair(struct test_random *random, struct corpus *corpus, enum placement placement,
-                            uint32_t shape_a, uint32_t shape_b) {
-    struct scene *scene = &corpus->scene;
-    struct body a, b;
-    place_pair(random, placement, scene->precision, &scene->shapes[shape_a], &scene->shapes[shape_b], &a, &b);
-    a.shape = shape_a;
-    b.shape = shape_b;
-    const uint32_t index_a = scene_add_body(scene, a);
-    scene_add_pair(scene, index_a, scene_add_body(scene, b));
-}
-
 static uint32_t pick_shape(struct test_random *random, size_t kind_number) {
     return (uint32_t)(kind_number * SHAPES_PER_KIND + random_below(random, SHAPES_PER_KIND));
 }
@@ -141,7 +130,7 @@ struct corpus make_corpus(const char *name, narc_precision precision, double rou
         const size_t first = corpus.scene.pair_count;
         const enum placement placement = (enum placement)(k / kinds / kinds);
         const uint32_t shape_a = pick_shape(&random, a), shape_b = pick_shape(&random, b);
-        add_placed_pair(&random, &corpus, placement, shape_a, shape_b);
+        scene_add_placed(&random, &corpus.scene, placement, shape_a, shape_b);
         name_pairs(&corpus, first, kind[a], kind[b], placement_name(placement));
     }
     for (size_t i = 0; i < hard; i++) {

@@ -186,3 +186,29 @@ void place_pair(struct test_random *random, enum placement placement, narc_preci
     round_position(out_a, precision);
     round_position(out_b, precision);
 }
+
+void scene_add_placed(struct test_random *random, struct scene *scene, enum placement placement, uint32_t shape_a,
+                      uint32_t shape_b) {
+    struct body a, b;
+    place_pair(random, placement, scene->precision, &scene->shapes[shape_a], &scene->shapes[shape_b], &a, &b);
+    a.shape = shape_a;
+    b.shape = shape_b;
+    scene_add_two(scene, a, b);
+}
+
+struct scene make_placed_scene(struct test_random *random, narc_precision precision, enum family a, enum family b,
+                               size_t count) {
+    enum { SHAPES_PER_FAMILY = 5 };
+    struct scene scene = create_scene(precision, 2 * SHAPES_PER_FAMILY, 2 * count, count);
+    for (size_t k = 0; k < 2 * SHAPES_PER_FAMILY; k++) {
+        const struct shape shape = make_shape(random, k % 2 ? b : a);
+        scene_add_shape(&scene, &shape);
+    }
+    for (size_t k = 0; k < count; k++) {
+        const uint32_t of_a = 2 * (uint32_t)random_below(random, SHAPES_PER_FAMILY);
+        const uint32_t of_b = 2 * (uint32_t)random_below(random, SHAPES_PER_FAMILY) + 1;
+        const bool itself = a == b && random_below(random, 3) == 0;
+        scene_add_placed(random, &scene, (enum placement)(k % PLACE_COUNT), of_a, itself ? of_a : of_b);
+    }
+    return scene;
+}

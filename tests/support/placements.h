@@ -28,6 +28,15 @@ const char *placement_name(enum placement placement);
 void place_pair(struct test_random *random, enum placement placement, narc_precision precision, const struct shape *a,
                 const struct shape *b, struct body *out_a, struct body *out_b);
 
+/* Two bodies of a scene's shapes, so placed, and their pair. */
+void scene_add_placed(struct test_random *random, struct scene *scene, enum placement placement, uint32_t shape_a,
+                      uint32_t shape_b);
+
+/* Two shapes of either family, and `count` pairs of them in all placements in turn; within a family, now and then, a
+ * shape against itself. */
+struct scene make_placed_scene(struct test_random *random, narc_precision precision, enum family a, enum family b,
+                               size_t count);
+
 /* Moves B along a direction through A's position until the separation is `target`, or as near to it as it gets. */
 void place_at_gap(const struct shape *a, const struct shape *b, double direction, double target,
                   const struct body *body_a, struct body *body_b);

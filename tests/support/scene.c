@@ -57,6 +57,11 @@ uint32_t scene_add_pair(struct scene *scene, uint32_t a, uint32_t b) {
     return (uint32_t)scene->pair_count++;
 }
 
+void scene_add_two(struct scene *scene, struct body a, struct body b) {
+    const uint32_t first = scene_add_body(scene, a);
+    scene_add_pair(scene, first, scene_add_body(scene, b));
+}
+
 narc_bodies scene_bodies(const struct scene *scene) {
     const struct body *body = scene->bodies;
     narc_bodies bodies = {.count = scene->body_count,

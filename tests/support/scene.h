@@ -44,6 +44,9 @@ uint32_t scene_add_shape(struct scene *scene, const struct shape *shape);
 uint32_t scene_add_body(struct scene *scene, struct body body);
 uint32_t scene_add_pair(struct scene *scene, uint32_t a, uint32_t b);
 
+/* Two bodies and their pair. */
+void scene_add_two(struct scene *scene, struct body a, struct body b);
+
 narc_bodies scene_bodies(const struct scene *scene);
 narc_pairs scene_pairs(const struct scene *scene);
 

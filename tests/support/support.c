@@ -12,6 +12,19 @@
 
 #include "narc.h"
 
+static struct CMUnitTest tests[200]; /* those without a name are none to cmocka */
+static size_t test_count;
+
+void test_add(const char *name, CMUnitTestFunction test) {
+    if (test_count == sizeof tests / sizeof *tests)
+        abort();
+    tests[test_count++] = (struct CMUnitTest){.name = name, .test_func = test};
+}
+
+int test_run(const char *program, CMFixtureFunction set_up, CMFixtureFunction tear_down) {
+    return cmocka_run_group_tests_name(program, tests, set_up, tear_down);
+}
+
 static const uint64_t default_seed = 20250101;
 
 static uint64_t seed(void) {

@@ -20,6 +20,20 @@
 
 #include <cmocka.h>
 
+/* A test of this program: TEST_MAIN() or test_run() runs all, those of a file in their order there. */
+#define TEST(name)                                                                                                     \
+    static void name(void **state);                                                                                    \
+    __attribute__((constructor)) static void add_##name(void) { test_add(#name, name); }                               \
+    static void name(__attribute__((unused)) void **state)
+void test_add(const char *name, CMUnitTestFunction test);
+
+/* The number of tests that failed; set_up and tear_down may be NULL. */
+int test_run(const char *program, CMFixtureFunction set_up, CMFixtureFunction tear_down);
+
+/* main() of a program that has nothing to do but run its tests. */
+#define TEST_MAIN(program)                                                                                             \
+    int main(void) { return test_begin() ? test_run(program, NULL, NULL) : TEST_SKIPPED; }
+
 /* What ctest takes for "skipped" (SKIP_RETURN_CODE). */
 enum { TEST_SKIPPED = 77 };
 
