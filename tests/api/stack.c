@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include "guard.h"
 #include "methods.h"
@@ -176,15 +177,23 @@ static const struct call {
 
 /* ------------------------------------------------------------------------------------------------ threads */
 
+/* What a thread is given: on some platforms none may have as little as calls are promised to need. */
+static size_t thread_size(size_t size) {
+    const long least = sysconf(_SC_THREAD_STACK_MIN);
+    return least > 0 && (size_t)least > size ? (size_t)least : size;
+}
+
 static unsigned char *map_stack(size_t size) {
+    size = thread_size(size);
     unsigned char *map = mmap(NULL, FORBIDDEN + size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     assert_true(map != MAP_FAILED);
     assert_int_equal(mprotect(map, FORBIDDEN, PROT_NONE), 0);
     return map + FORBIDDEN;
 }
 
-/* Runs a thread on a stack of `size` bytes and returns how much of that it used. */
-static size_t run_thread(unsigned char *stack, size_t size, void *(*work)(void *), void *argument) {
+/* Runs a thread that may use `promised` bytes of a stack and returns how much of that it used. */
+static size_t run_thread(unsigned char *stack, size_t promised, void *(*work)(void *), void *argument) {
+    const size_t size = thread_size(promised);
     pthread_attr_t attributes;
     pthread_t thread;
     size_t left = 0;
@@ -196,6 +205,8 @@ static size_t run_thread(unsigned char *stack, size_t size, void *(*work)(void *
     assert_int_equal(pthread_attr_destroy(&attributes), 0);
     while (left < size && stack[left] == GUARD_JUNK)
         left++;
+    if (size - left > promised)
+        fail_msg("%zu of %zu bytes", size - left, promised);
     return size - left;
 }
 
