@@ -224,8 +224,7 @@ INLINE vi find_reach(const struct feature *f, vec2 n, vi info, vm edge) {
                        vi_truncate(v_select(circle, one, v_select(edge, none, ahead))));
 }
 
-/* The answer to the pairs k ... of a queue that touch along n, in A's frame. In `out_edges`: where both do so with an
- * edge, or may next to it. */
+/* The answer to the pairs k ... of a queue that touch along n, in A's frame. */
 INLINE struct answer find_answer(const struct call *call, const struct queue *queue, int k, vf separation, vec2 n,
                                  const struct feature *on_a, const struct feature *on_b) {
     const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k), zero = vi_set(0);
