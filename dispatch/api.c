@@ -31,7 +31,7 @@ static narc_status begin(const narc_shapes *shapes, const narc_bodies *bodies, c
     narc_status status = narc_begin_batch(shapes, bodies, pairs, query, out_batch, error);
     if (status == NARC_OK)
         *out_kernels = narc_kernels(&status, error);
-    if (status == NARC_OK && out_batch->query.count <= FEW)
+    if (status == NARC_OK && out_batch->count <= FEW)
         *out_kernels = &narc_kernels_scalar;
     return status;
 }
@@ -63,7 +63,7 @@ narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_bodies *bo
     const narc_status status = begin(shapes, bodies, pairs, query, &batch, &kernels, error);
     if (status != NARC_OK)
         return status;
-    batch.flat_sine = find_flat_sine(batch.query.flat_angle);
+    batch.flat_sine = find_flat_sine(batch.query->flat_angle);
     return narc_answer_rows(kernels->manifold, &batch, out_rows, sizeof *out_rows, capacity, out_count, error);
 }
 

@@ -41,13 +41,6 @@ struct job {
     atomic_size_t ended[MOST_PARTS]; /* how many rows a part has and 1; 0: it has not ended */
 };
 
-/* The same batch with a counter of its own. */
-static narc_batch count_apart(const narc_batch *batch, size_t *skipped) {
-    narc_batch part = *batch;
-    part.skipped = skipped;
-    return part;
-}
-
 static size_t size_of_part(const struct job *job, size_t part) {
     const size_t left = job->count - part * job->part_size;
     return left < job->part_size ? left : job->part_size;
@@ -58,38 +51,35 @@ static size_t size_of_part(const struct job *job, size_t part) {
 static void find_overlaps(void *argument, size_t part) {
     struct job *const job = argument;
     size_t skipped = 0;
-    const narc_batch own = count_apart(job->batch, &skipped);
     const size_t start = job->first + part * job->part_size;
-    job->overlap(&own, start, size_of_part(job, part), job->bits + start / 64);
+    job->overlap(job->batch, start, size_of_part(job, part), &skipped, job->bits + start / 64);
     atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
 
 /* Several workers; returns how many pairs were skipped. */
 static size_t share_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, uint64_t *out_bits) {
-    const size_t count = batch->query.count, workers = batch->query.workers->count;
+    const size_t count = batch->count, workers = batch->query->workers->count;
     const size_t even = count / (workers * PARTS_PER_WORKER) / 64 * 64;
-    struct job job = {.batch = batch, .first = batch->query.first, .count = count, .overlap = kernel, .bits = out_bits};
+    struct job job = {.batch = batch, .first = batch->first, .count = count, .overlap = kernel, .bits = out_bits};
     job.part_size = even < LEAST_OVERLAPS ? LEAST_OVERLAPS : even > MOST_OVERLAPS ? MOST_OVERLAPS : even;
-    narc_run_parts(batch->query.workers, (count - 1) / job.part_size + 1, find_overlaps, &job);
+    narc_run_parts(batch->query->workers, (count - 1) / job.part_size + 1, find_overlaps, &job);
     return atomic_load(&job.skipped);
 }
 
 narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, uint64_t *out_bits,
                                  narc_error *error) {
-    const narc_query *query = &batch->query;
-    const size_t first = query->first, count = query->count;
+    const narc_query *query = batch->query;
+    const size_t first = batch->first, count = batch->count;
     if (count > 0 && (first % 64 != 0 || (count % 64 != 0 && first + count != batch->asked)))
         return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)count,
                          "pairs %zu and the %zu from there on do not begin and end at multiples of 64", first, count);
     if (count > 0 && !out_bits)
         return narc_fail_missing(error, "out_bits");
     size_t skipped = 0;
-    if (count > 0 && narc_count_workers(query->workers, count / LEAST_OVERLAPS) <= 1) {
-        const narc_batch own = count_apart(batch, &skipped);
-        kernel(&own, first, count, out_bits + first / 64);
-    } else if (count > 0) {
+    if (count > 0 && narc_count_workers(query->workers, count / LEAST_OVERLAPS) <= 1)
+        kernel(batch, first, count, &skipped, out_bits + first / 64);
+    else if (count > 0)
         skipped = share_overlaps(kernel, batch, out_bits);
-    }
     if (query->out_skipped)
         *query->out_skipped = skipped;
     return NARC_OK;
@@ -127,13 +117,14 @@ static void close_gaps(struct job *job, size_t parts) {
 }
 
 /* Finds the rows of `count` pairs from `start` on, group by group; returns how many there are. */
-static size_t find_groups(const struct job *job, const narc_batch *batch, size_t start, size_t count) {
-    const bool dense = batch->query.dense != 0;
+static size_t find_groups(const struct job *job, size_t start, size_t count, size_t *skipped) {
+    const bool dense = job->batch->query->dense != 0;
     size_t found = 0;
     for (size_t k = 0; k < count; k += NARC_ROW_GROUP) {
         const size_t left = count - k;
         const narc_rows to = {dense ? job->rows.base : place_of(job, start + found), job->rows.stride};
-        found += job->kernel(batch, job->first + start + k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &to);
+        found += job->kernel(job->batch, job->first + start + k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, skipped,
+                             &to);
     }
     return found;
 }
@@ -141,21 +132,18 @@ static size_t find_groups(const struct job *job, const narc_batch *batch, size_t
 static void find_rows(void *argument, size_t part) {
     struct job *const job = argument;
     size_t skipped = 0;
-    const narc_batch own = count_apart(job->batch, &skipped);
-    const size_t found = find_groups(job, &own, part * job->part_size, size_of_part(job, part));
+    const size_t found = find_groups(job, part * job->part_size, size_of_part(job, part), &skipped);
     atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
     atomic_store(&job->ended[part], found + 1);
-    if (!own.query.dense)
+    if (!job->batch->query->dense)
         close_gaps(job, (job->count - 1) / job->part_size + 1);
 }
 
 /* The rows of the pairs of a job, which has room for as many. Returns how many there are. */
 static size_t list_rows(struct job *job, size_t *skipped) {
     const size_t groups = (job->count - 1) / NARC_ROW_GROUP + 1;
-    if (narc_count_workers(job->batch->query.workers, groups) <= 1) {
-        const narc_batch own = count_apart(job->batch, skipped);
-        return find_groups(job, &own, 0, job->count);
-    }
+    if (narc_count_workers(job->batch->query->workers, groups) <= 1)
+        return find_groups(job, 0, job->count, skipped);
     job->part_size = ((groups - 1) / MOST_PARTS + 1) * NARC_ROW_GROUP;
     const size_t parts = (job->count - 1) / job->part_size + 1;
     atomic_init(&job->skipped, 0);
@@ -164,9 +152,9 @@ static size_t list_rows(struct job *job, size_t *skipped) {
     atomic_flag_clear(&job->closing);
     for (size_t part = 0; part < parts; part++)
         atomic_init(&job->ended[part], 0);
-    narc_run_parts(job->batch->query.workers, parts, find_rows, job);
+    narc_run_parts(job->batch->query->workers, parts, find_rows, job);
     *skipped += atomic_load(&job->skipped);
-    for (size_t part = 0; part < parts && job->batch->query.dense; part++)
+    for (size_t part = 0; part < parts && job->batch->query->dense; part++)
         job->found += atomic_load(&job->ended[part]) - 1;
     return job->found;
 }
@@ -174,9 +162,9 @@ static size_t list_rows(struct job *job, size_t *skipped) {
 /* The same for a few pairs, with room for `room` rows only. Not inlined: the others need no room for these. */
 static __attribute__((noinline)) size_t list_apart(struct job *job, size_t room, size_t *skipped) {
     _Alignas(16) char rows[APART * sizeof(narc_manifold)];
-    const narc_batch own = count_apart(job->batch, skipped);
     const narc_rows to = {rows, (ptrdiff_t)job->size};
-    const size_t found = job->kernel(&own, job->first, job->count, &to), kept = found < room ? found : room;
+    const size_t found = job->kernel(job->batch, job->first, job->count, skipped, &to);
+    const size_t kept = found < room ? found : room;
     for (size_t k = 0; k < kept; k++)
         memcpy(place_of(job, k), rows + k * job->size, job->size);
     return found;
@@ -203,15 +191,15 @@ static size_t list_all(struct job *job, size_t capacity, size_t *skipped) {
 /* Is there room for the rows, and is it used as it may be? */
 static narc_status check_rows(const narc_batch *batch, const void *rows, ptrdiff_t stride, size_t size, size_t capacity,
                               const size_t *out_count, narc_error *error) {
-    const narc_query *query = &batch->query;
-    const size_t end = query->selection.base ? batch->pairs.count : query->first + query->count;
+    const narc_query *query = batch->query;
+    const size_t end = query->selection.base ? batch->pairs->count : batch->first + batch->count;
     if (!out_count || (!rows && capacity > 0))
         return narc_fail_missing(error, !out_count ? "out_count" : "out_rows");
     if (stride % 4 != 0 || (stride < (ptrdiff_t)size && stride > -(ptrdiff_t)size))
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)stride,
                          "query.row_stride is %lld, not a multiple of 4 with room for %zu bytes", (long long)stride,
                          size);
-    if (query->dense && query->count > 0 && capacity < end)
+    if (query->dense && batch->count > 0 && capacity < end)
         return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)end, "%zu dense rows, but there is room for %zu", end,
                          capacity);
     return NARC_OK;
@@ -219,7 +207,7 @@ static narc_status check_rows(const narc_batch *batch, const void *rows, ptrdiff
 
 narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t size,
                              size_t capacity, size_t *out_count, narc_error *error) {
-    const narc_query *query = &batch->query;
+    const narc_query *query = batch->query;
     const ptrdiff_t stride = query->row_stride ? query->row_stride : (ptrdiff_t)size;
     const narc_status status = check_rows(batch, out_rows, stride, size, capacity, out_count, error);
     if (status != NARC_OK)
@@ -228,11 +216,11 @@ narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, v
     size_t skipped = 0, found = 0;
     job.batch = batch;
     job.kernel = kernel;
-    job.first = query->first;
-    job.count = query->count;
+    job.first = batch->first;
+    job.count = batch->count;
     job.size = size;
     job.rows = (narc_rows){out_rows, stride};
-    if (query->count > 0)
+    if (batch->count > 0)
         found = query->dense ? list_rows(&job, &skipped) : list_all(&job, capacity, &skipped);
     if (query->out_skipped)
         *query->out_skipped = skipped;

@@ -41,18 +41,23 @@ static void stand_at_origin(narc_bodies *bodies) {
     bodies->sine = (narc_float_column){&row[3], 0};
 }
 
-/* One side's set of bodies, with all columns. */
-static narc_status fill_set(const narc_bodies *bodies, narc_bodies *out, narc_error *error) {
-    *out = *bodies;
-    if (!bodies->x.base && !bodies->y.base && !bodies->cosine.base && !bodies->sine.base)
-        stand_at_origin(out);
-    const narc_status status = bodies->count > 0 ? narc_check_columns(out, error) : NARC_OK;
+/* One side's set of bodies, with all columns: the caller's own, or `filled`. */
+static narc_status find_set(const narc_bodies *bodies, narc_bodies *filled, const narc_bodies **out,
+                            narc_error *error) {
+    *out = bodies;
+    if (!bodies->x.base && !bodies->y.base && !bodies->cosine.base && !bodies->sine.base) {
+        *filled = *bodies;
+        stand_at_origin(filled);
+        *out = filled;
+    }
+    const narc_status status = bodies->count > 0 ? narc_check_columns(*out, error) : NARC_OK;
     return status == NARC_OK ? CHECK_RESERVED(*bodies, "bodies", error) : status;
 }
 
-/* Every other body, beginning with the first or the second one. */
-static void take_every_other(narc_bodies *bodies, size_t offset) {
-    bodies->count = (bodies->count + 1 - offset) / 2;
+/* Every other body of a set, beginning with the first or the second one. */
+static void take_every_other(const narc_bodies *set, size_t offset, narc_bodies *bodies) {
+    *bodies = *set;
+    bodies->count = (set->count + 1 - offset) / 2;
 /* clang-format off */
 #define TAKE(column)                                                                                                   \
     if (bodies->column.base) {                                                                                         \
@@ -65,11 +70,11 @@ static void take_every_other(narc_bodies *bodies, size_t offset) {
 }
 
 /* The sets that A and B are of. Where pairs have no indices, body k is pair k's. */
-static narc_status fill_sets(const narc_bodies *bodies, const narc_pairs *pairs, narc_batch *batch, narc_error *error) {
+static narc_status find_sets(const narc_bodies *bodies, const narc_pairs *pairs, narc_batch *batch, narc_error *error) {
     const bool own = !pairs->a.base && !pairs->b.base && !pairs->other_bodies;
-    narc_status status = fill_set(bodies, &batch->a, error);
+    narc_status status = find_set(bodies, &batch->filled[0], &batch->a, error);
     if (status == NARC_OK && pairs->other_bodies)
-        status = fill_set(pairs->other_bodies, &batch->b, error);
+        status = find_set(pairs->other_bodies, &batch->filled[1], &batch->b, error);
     if (status != NARC_OK)
         return status;
     if (!pairs->other_bodies) {
@@ -78,11 +83,13 @@ static narc_status fill_sets(const narc_bodies *bodies, const narc_pairs *pairs,
             return narc_fail_missing(error, pairs->a.base ? "pairs.b" : "pairs.a");
     }
     if (own) {
-        take_every_other(&batch->a, 0);
-        take_every_other(&batch->b, 1);
+        take_every_other(batch->a, 1, &batch->filled[1]); /* first: `a` may be filled[0] */
+        take_every_other(batch->a, 0, &batch->filled[0]);
+        batch->a = &batch->filled[0];
+        batch->b = &batch->filled[1];
     }
-    const size_t room_a = pairs->a.base ? SIZE_MAX : batch->a.count;
-    const size_t room_b = pairs->b.base ? SIZE_MAX : batch->b.count, room = room_a < room_b ? room_a : room_b;
+    const size_t room_a = pairs->a.base ? SIZE_MAX : batch->a->count;
+    const size_t room_b = pairs->b.base ? SIZE_MAX : batch->b->count, room = room_a < room_b ? room_a : room_b;
     if (room < pairs->count)
         return narc_fail(error, NARC_ERROR_INDEX, room, (double)pairs->count,
                          "pair %zu has no indices, and there are bodies for %zu pairs only", room, room);
@@ -112,23 +119,23 @@ static narc_status check_query(const narc_query *query, narc_error *error) {
 }
 
 struct narc_side narc_find_side(const narc_batch *batch, size_t pair, int side) {
-    const narc_pairs *pairs = &batch->pairs;
+    const narc_pairs *pairs = batch->pairs;
     const narc_index_column column = side == 0 ? pairs->a : pairs->b;
     const size_t item = column.base ? narc_index_at(column, pair) : pair;
-    const bool own = !pairs->a.base && !pairs->b.base && !pairs->other_bodies; /* see fill_sets() */
+    const bool own = !pairs->a.base && !pairs->b.base && !pairs->other_bodies; /* see find_sets() */
     return (struct narc_side){own ? 2 * pair + (size_t)side : item,
-                              narc_index_at(side == 0 ? batch->a.shape : batch->b.shape, item)};
+                              narc_index_at(side == 0 ? batch->a->shape : batch->b->shape, item)};
 }
 
 /* Says what of the pair at a place is out of range. */
 static narc_status describe_bad_pair(const narc_batch *batch, size_t place, narc_error *error) {
     const size_t pair = narc_pair_at(batch, place);
-    if (pair >= batch->pairs.count)
+    if (pair >= batch->pairs->count)
         return narc_fail(error, NARC_ERROR_INDEX, place, (double)pair,
-                         "query.selection[%zu] is pair %zu, but there are %zu pairs", place, pair, batch->pairs.count);
+                         "query.selection[%zu] is pair %zu, but there are %zu pairs", place, pair, batch->pairs->count);
     for (int side = 0; side < 2; side++) {
-        const narc_index_column column = side == 0 ? batch->pairs.a : batch->pairs.b;
-        const narc_bodies *set = side == 0 ? &batch->a : &batch->b;
+        const narc_index_column column = side == 0 ? batch->pairs->a : batch->pairs->b;
+        const narc_bodies *set = side == 0 ? batch->a : batch->b;
         const size_t body = column.base ? narc_index_at(column, pair) : pair;
         if (body >= set->count)
             return narc_fail(error, NARC_ERROR_INDEX, pair, (double)body,
@@ -151,20 +158,24 @@ narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodie
     if (pairs->count > UINT32_MAX)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)pairs->count, "%zu pairs in one batch, at most %lu",
                          pairs->count, (unsigned long)UINT32_MAX);
-    *out_batch = (narc_batch){.shapes = shapes, .pairs = *pairs, .query = query ? *query : defaults};
-    narc_query *const q = &out_batch->query;
+    const narc_query *const q = query ? query : &defaults;
     narc_status status = check_query(q, error);
     if (status == NARC_OK)
         status = CHECK_RESERVED(*pairs, "pairs", error);
     if (status != NARC_OK)
         return status;
+    out_batch->shapes = shapes; /* one by one: `filled` is large, and mostly not needed */
+    out_batch->pairs = pairs;
+    out_batch->query = q;
+    out_batch->first = q->first;
+    out_batch->count = q->count;
     out_batch->asked = q->selection.base || q->selection.stride ? q->selection_count : pairs->count;
-    status = narc_check_range(q->first, &q->count, out_batch->asked, "pairs", error);
-    if (status != NARC_OK || q->count == 0)
+    status = narc_check_range(q->first, &out_batch->count, out_batch->asked, "pairs", error);
+    if (status != NARC_OK || out_batch->count == 0)
         return status;
-    status = fill_sets(bodies, pairs, out_batch, error);
+    status = find_sets(bodies, pairs, out_batch, error);
     if (status != NARC_OK)
         return status;
     const size_t bad = narc_find_bad_pair(out_batch);
-    return bad < q->first + q->count ? describe_bad_pair(out_batch, bad, error) : NARC_OK;
+    return bad < out_batch->first + out_batch->count ? describe_bad_pair(out_batch, bad, error) : NARC_OK;
 }

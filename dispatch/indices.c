@@ -45,12 +45,13 @@ static bool are_below(narc_index_column column, size_t first, size_t last, uint3
 
 /* Are all bodies that pairs first .. last - 1 name there? */
 static bool are_bodies_there(const narc_batch *batch, size_t first, size_t last) {
-    const narc_index_column a = batch->pairs.a, b = batch->pairs.b;
+    const narc_index_column a = batch->pairs->a, b = batch->pairs->b;
     const ptrdiff_t item = sizeof(uint32_t);
-    if (a.stride == 2 * item && b.stride == 2 * item && b.base == a.base + 1 && batch->a.count == batch->b.count)
-        return are_below((narc_index_column){a.base, item}, 2 * first, 2 * last, clip(batch->a.count)); /* one column */
-    return (!a.base || are_below(a, first, last, clip(batch->a.count))) &&
-           (!b.base || are_below(b, first, last, clip(batch->b.count)));
+    if (a.stride == 2 * item && b.stride == 2 * item && b.base == a.base + 1 && batch->a->count == batch->b->count)
+        return are_below((narc_index_column){a.base, item}, 2 * first, 2 * last,
+                         clip(batch->a->count)); /* one column */
+    return (!a.base || are_below(a, first, last, clip(batch->a->count))) &&
+           (!b.base || are_below(b, first, last, clip(batch->b->count)));
 }
 
 /* A search for what is wrong, part by part. */
@@ -83,12 +84,12 @@ static bool are_shapes_there(const narc_batch *batch, const narc_bodies *bodies,
 static void look_at_columns(void *argument, size_t part) {
     struct search *const search = argument;
     const narc_batch *batch = search->batch;
-    const bool one_set = batch->a.shape.base == batch->b.shape.base && batch->a.shape.stride == batch->b.shape.stride &&
-                         batch->a.count == batch->b.count;
+    const bool one_set = batch->a->shape.base == batch->b->shape.base &&
+                         batch->a->shape.stride == batch->b->shape.stride && batch->a->count == batch->b->count;
     size_t first, end;
     find_part(search, part, &first, &end);
-    if (!are_bodies_there(batch, first, end) || !are_shapes_there(batch, &batch->a, search->parts, part) ||
-        !(one_set || are_shapes_there(batch, &batch->b, search->parts, part)))
+    if (!are_bodies_there(batch, first, end) || !are_shapes_there(batch, batch->a, search->parts, part) ||
+        !(one_set || are_shapes_there(batch, batch->b, search->parts, part)))
         atomic_store_explicit(&search->fine, false, memory_order_relaxed);
 }
 
@@ -101,8 +102,8 @@ static bool is_body_fine(const narc_batch *batch, narc_index_column column, cons
 static size_t find_bad_place(const narc_batch *batch, size_t place, size_t end) {
     for (; place < end; place++) {
         const size_t pair = narc_pair_at(batch, place);
-        if (pair >= batch->pairs.count || !is_body_fine(batch, batch->pairs.a, &batch->a, pair) ||
-            !is_body_fine(batch, batch->pairs.b, &batch->b, pair))
+        if (pair >= batch->pairs->count || !is_body_fine(batch, batch->pairs->a, batch->a, pair) ||
+            !is_body_fine(batch, batch->pairs->b, batch->b, pair))
             break;
     }
     return place;
@@ -126,7 +127,7 @@ static void look_at_pairs(void *argument, size_t part) {
 }
 
 size_t narc_find_bad_pair(const narc_batch *batch) {
-    const size_t first = batch->query.first, count = batch->query.count;
+    const size_t first = batch->first, count = batch->count;
     if (count < FEW)
         return find_bad_place(batch, first, first + count);
     struct search search = {.batch = batch, .first = first, .count = count, .parts = (count - 1) / PART + 1};
@@ -134,12 +135,12 @@ size_t narc_find_bad_pair(const narc_batch *batch) {
     atomic_init(&search.bad, first + count);
     /* With many more bodies than pairs it is better to look up those that are named. A body that no pair names may have
      * any shape, so what the quick way finds wrong is looked at again. */
-    if (!batch->query.selection.base && (batch->a.count + batch->b.count) / 8 <= count) {
-        narc_run_parts(batch->query.workers, search.parts, look_at_columns, &search);
+    if (!batch->query->selection.base && (batch->a->count + batch->b->count) / 8 <= count) {
+        narc_run_parts(batch->query->workers, search.parts, look_at_columns, &search);
         if (atomic_load(&search.fine))
             return first + count;
     }
-    narc_run_parts(batch->query.workers, search.parts, look_at_pairs, &search);
+    narc_run_parts(batch->query->workers, search.parts, look_at_pairs, &search);
     return atomic_load(&search.bad);
 }
 

@@ -12,15 +12,16 @@
 #include "store.h"
 
 /* What a batch call works on: pairs of a body of `a` and one of `b`, by their indices or, without, by the pair's own.
- * Asked of are the pairs of the query's selection, or all. */
+ * Asked of are pairs first .. first + count - 1 of the query's selection, or of all. */
 typedef struct narc_batch {
     const narc_shapes *shapes;
-    narc_bodies a, b; /* all columns are there but perhaps `scale` */
-    narc_pairs pairs;
-    narc_query query;
-    float flat_sine; /* of manifolds: the sine of the flat angle; below 0: no second points */
+    const narc_bodies *a, *b; /* the caller's, or `filled`: all columns are there but perhaps `scale` */
+    const narc_pairs *pairs;
+    const narc_query *query;
+    size_t first, count;
     size_t asked;    /* how many pairs are selected */
-    size_t *skipped; /* pairs without an answer are added to it. Two threads may not share one. */
+    float flat_sine; /* of manifolds: the sine of the flat angle; below 0: no second points */
+    narc_bodies filled[2];
 } narc_batch;
 
 /* Where a call's rows go: `base` is the place of its first one; of dense rows, of that of the batch's first pair. */
@@ -31,7 +32,7 @@ typedef struct narc_rows {
 
 /* The batch's number of the pair that is asked of at `place`. */
 static inline size_t narc_pair_at(const narc_batch *batch, size_t place) {
-    return batch->query.selection.base ? narc_index_at(batch->query.selection, place) : place;
+    return batch->query->selection.base ? narc_index_at(batch->query->selection, place) : place;
 }
 
 /* What the box kernel works on. */
@@ -52,8 +53,10 @@ typedef struct narc_kernel_table {
 } narc_kernel_table;
 
 /* What the kernels called overlap... and contact... have in common. */
-typedef void narc_overlap_kernel(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits);
-typedef size_t narc_row_kernel(const narc_batch *batch, size_t first, size_t count, const narc_rows *out);
+typedef void narc_overlap_kernel(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
+                                 uint64_t *out_bits);
+typedef size_t narc_row_kernel(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
+                               const narc_rows *out);
 
 #define NARC_ISA(name, needs, processors, flags) extern const narc_kernel_table narc_kernels_##name;
 #include "isa.def"

@@ -115,12 +115,13 @@ static void find_first_pairs(const struct call *call, struct queue *queue, int b
     }
 }
 
-static void overlap_first(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
-    run_overlap_method(find_first_pairs, batch, first, count, out_bits);
+static void overlap_first(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
+    run_overlap_method(find_first_pairs, batch, first, count, skipped, out_bits);
 }
 
-static size_t contact_first(const narc_batch *batch, size_t first, size_t count, const narc_rows *out) {
-    return run_contact_method(find_first_pairs, batch, first, count, out);
+static size_t contact_first(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
+                            const narc_rows *out) {
+    return run_contact_method(find_first_pairs, batch, first, count, skipped, out);
 }
 
 #endif

@@ -140,7 +140,7 @@ INLINE struct verdict step_search(const narc_batch *batch, const struct lanes *l
     const vm busy = vi_lt(vi_set(-1), age), fresh = vi_lt(age, vi_set(1));
     const vec2 direction = choose_direction(s, lanes, hint, age);
     const struct support found = find_support(batch->shapes, &lanes->pair, 0, busy, direction);
-    const struct vertex w = {found.w, found.middle, batch->query.hints.base ? diamond_angle(found.m) : zero};
+    const struct vertex w = {found.w, found.middle, batch->query->hints.base ? diamond_angle(found.m) : zero};
 
     /* What the step was for: a first point, a hint's second, a side of a segment through the origin, or the rule. */
     const vm seeded = vi_lt(age, seeds), second = vm_and_not(vm_and(seeded, vi_lt(age, vi_set(2))), fresh);
@@ -234,7 +234,7 @@ INLINE void search_all(const struct call *call, const struct queue *queue, int b
         } while (!vm_any(is_done(&verdict)));
         note_outcome(call, &lanes.pair, 0, verdict.limit, NARC_OUTCOME_LIMIT);
         note_outcome(call, &lanes.pair, 0, verdict.stuck, NARC_OUTCOME_ROUNDING);
-        if (batch->query.hints.base) {
+        if (batch->query->hints.base) {
             const struct vertex *const corners[] = {&s.p, &s.q, &s.third};
             leave_simplex(call, &lanes, corners, s.best.n, verdict.collides, is_done(&verdict));
         }
@@ -267,12 +267,12 @@ static void find_contacts_gjk(const struct call *call, struct queue *queue, int 
     store_found(call, &found);
 }
 
-static void overlap_gjk(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
-    run_overlap_method(find_overlaps_gjk, batch, first, count, out_bits);
+static void overlap_gjk(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
+    run_overlap_method(find_overlaps_gjk, batch, first, count, skipped, out_bits);
 }
 
-static size_t contact_gjk(const narc_batch *batch, size_t first, size_t count, const narc_rows *out) {
-    return run_contact_method(find_contacts_gjk, batch, first, count, out);
+static size_t contact_gjk(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
+    return run_contact_method(find_contacts_gjk, batch, first, count, skipped, out);
 }
 
 #endif

@@ -48,7 +48,7 @@ INLINE vi hint_length(vi hint) {
 
 /* The hints of the pairs that lanes begin with. */
 INLINE void read_simplexes(const struct call *call, const struct lanes *lanes, int32_t *hint) {
-    const narc_hint_column column = call->batch->query.hints;
+    const narc_hint_column column = call->batch->query->hints;
     int32_t number[V_WIDTH];
     if (!column.base)
         return;

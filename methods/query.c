@@ -64,8 +64,8 @@ static const narc_method_table *find_table(narc_status *out_status, narc_error *
 static narc_status check_polygons(const narc_methods *methods, const narc_batch *batch, narc_error *error) {
     if (methods->all_polygons)
         return NARC_OK;
-    for (size_t k = 0; k < batch->query.count; k++) {
-        const size_t pair = narc_pair_at(batch, batch->query.first + k);
+    for (size_t k = 0; k < batch->count; k++) {
+        const size_t pair = narc_pair_at(batch, batch->first + k);
         for (int side = 0; side < 2; side++) {
             const struct narc_side s = narc_find_side(batch, pair, side);
             if (narc_has_shape(batch->shapes, s.shape) && !(batch->shapes->headers[s.shape].flags & NARC_SHAPE_POLYGON))
@@ -127,14 +127,14 @@ static narc_status begin_call(const narc_methods *methods, const narc_bodies *bo
     return NARC_OK;
 }
 
-static void run_overlaps(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
+static void run_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
     clear_outcomes(narc_call_of(batch)->outcomes, batch, first, count);
-    narc_call_of(batch)->overlap(batch, first, count, out_bits);
+    narc_call_of(batch)->overlap(batch, first, count, skipped, out_bits);
 }
 
-static size_t run_contacts(const narc_batch *batch, size_t first, size_t count, const narc_rows *out) {
+static size_t run_contacts(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
     clear_outcomes(narc_call_of(batch)->outcomes, batch, first, count);
-    return narc_call_of(batch)->contact(batch, first, count, out);
+    return narc_call_of(batch)->contact(batch, first, count, skipped, out);
 }
 
 narc_status narc_find_overlaps_by(const narc_methods *methods, const narc_bodies *bodies, const narc_pairs *pairs,
@@ -148,7 +148,7 @@ narc_status narc_find_overlaps_by(const narc_methods *methods, const narc_bodies
     if (options->method == NARC_METHOD_SAT) {
         status = narc_find_overlaps(methods->store, bodies, pairs, query, out_bits, error);
         if (status == NARC_OK)
-            clear_outcomes(options->out_outcomes, &batch, batch.query.first, batch.query.count);
+            clear_outcomes(options->out_outcomes, &batch, batch.first, batch.count);
         return status;
     }
     return narc_answer_overlaps(run_overlaps, &batch, out_bits, error);
@@ -164,8 +164,8 @@ narc_status narc_find_contacts_by(const narc_methods *methods, const narc_bodies
         return status;
     if (options->method == NARC_METHOD_SAT) {
         status = narc_find_contacts(methods->store, bodies, pairs, query, out_rows, capacity, out_count, error);
-        if (status == NARC_OK || (status == NARC_ERROR_CAPACITY && !batch.query.dense))
-            clear_outcomes(options->out_outcomes, &batch, batch.query.first, batch.query.count);
+        if (status == NARC_OK || (status == NARC_ERROR_CAPACITY && !batch.query->dense))
+            clear_outcomes(options->out_outcomes, &batch, batch.first, batch.count);
         return status;
     }
     if (!call.contact)

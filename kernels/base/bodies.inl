@@ -19,19 +19,26 @@ struct pair_indices {
     _Alignas(64) int32_t number[BLOCK], a[BLOCK], b[BLOCK], shape_a[BLOCK], shape_b[BLOCK];
 };
 
+/* Item k of a block: a pair, its bodies and their shapes. */
+INLINE void load_pair(const narc_batch *batch, size_t number, size_t a, size_t b, int k, struct pair_indices *out) {
+    out->number[k] = (int32_t)(uint32_t)number;
+    out->a[k] = (int32_t)(uint32_t)a;
+    out->b[k] = (int32_t)(uint32_t)b;
+    out->shape_a[k] = (int32_t)narc_index_at(batch->a->shape, a);
+    out->shape_b[k] = (int32_t)narc_index_at(batch->b->shape, b);
+}
+
 INLINE void load_indices(const narc_batch *batch, size_t first, int count, struct pair_indices *out) {
-    const narc_index_column column_a = batch->pairs.a, column_b = batch->pairs.b;
-    const bool plain = column_a.base && column_b.base && !batch->query.selection.base;
-    for (int k = 0; k < count; k++) {
-        const size_t number = plain ? first + (size_t)k : narc_pair_at(batch, first + (size_t)k);
-        const uint32_t a = plain || column_a.base ? narc_index_at(column_a, number) : (uint32_t)number;
-        const uint32_t b = plain || column_b.base ? narc_index_at(column_b, number) : (uint32_t)number;
-        out->number[k] = (int32_t)(uint32_t)number;
-        out->a[k] = (int32_t)a;
-        out->b[k] = (int32_t)b;
-        out->shape_a[k] = (int32_t)narc_index_at(batch->a.shape, a);
-        out->shape_b[k] = (int32_t)narc_index_at(batch->b.shape, b);
-    }
+    const narc_index_column a = batch->pairs->a, b = batch->pairs->b;
+    if (a.base && b.base && !batch->query->selection.base)
+        for (size_t k = 0; k < (size_t)count; k++)
+            load_pair(batch, first + k, narc_index_at(a, first + k), narc_index_at(b, first + k), (int)k, out);
+    else
+        for (int k = 0; k < count; k++) {
+            const size_t number = narc_pair_at(batch, first + (size_t)k);
+            load_pair(batch, number, a.base ? narc_index_at(a, number) : number,
+                      b.base ? narc_index_at(b, number) : number, k, out);
+        }
     for (int k = count; k % V_WIDTH != 0; k++) {
         out->number[k] = out->number[0];
         out->a[k] = out->a[0];
@@ -69,8 +76,8 @@ static inline enum pose_layout find_pose_layout(const narc_bodies *bodies) {
 
 /* That of both sets of a batch, where it is the same. Rows of doubles are subtracted within one set only. */
 static inline enum pose_layout find_layout(const narc_batch *batch) {
-    const enum pose_layout a = find_pose_layout(&batch->a), b = find_pose_layout(&batch->b);
-    const bool one_set = batch->a.x.base == batch->b.x.base && batch->a.x.stride == batch->b.x.stride;
+    const enum pose_layout a = find_pose_layout(batch->a), b = find_pose_layout(batch->b);
+    const bool one_set = batch->a->x.base == batch->b->x.base && batch->a->x.stride == batch->b->x.stride;
     return a == b && (a != POSE_DOUBLE_ROWS || one_set) ? a : POSE_COLUMNS;
 }
 
@@ -109,8 +116,8 @@ INLINE vec2 load_differences(const narc_batch *batch, const int32_t *a, const in
     }
     for (int k = 0; k < V_WIDTH; k++) {
         const uint32_t from = (uint32_t)a[k], to = (uint32_t)b[k];
-        x[k] = find_difference(batch->a.x, batch->b.x, from, to, shift ? shift_x + k : NULL);
-        y[k] = find_difference(batch->a.y, batch->b.y, from, to, shift ? shift_y + k : NULL);
+        x[k] = find_difference(batch->a->x, batch->b->x, from, to, shift ? shift_x + k : NULL);
+        y[k] = find_difference(batch->a->y, batch->b->y, from, to, shift ? shift_y + k : NULL);
     }
     return (vec2){v_load(x), v_load(y)};
 }
@@ -136,10 +143,10 @@ INLINE void load_double_rows(const narc_bodies *bodies, const int32_t *a, const 
 INLINE void load_columns(const narc_batch *batch, const int32_t *a, const int32_t *b, const vec2 *shift,
                          struct body_pair *out) {
     out->difference = load_differences(batch, a, b, shift);
-    out->rotation_a = (vec2){load_column(batch->a.cosine, a), load_column(batch->a.sine, a)};
-    out->rotation_b = (vec2){load_column(batch->b.cosine, b), load_column(batch->b.sine, b)};
-    out->scale_a = load_pair_column(batch->a.scale, a, 1);
-    out->scale_b = load_pair_column(batch->b.scale, b, 1);
+    out->rotation_a = (vec2){load_column(batch->a->cosine, a), load_column(batch->a->sine, a)};
+    out->rotation_b = (vec2){load_column(batch->b->cosine, b), load_column(batch->b->sine, b)};
+    out->scale_a = load_pair_column(batch->a->scale, a, 1);
+    out->scale_b = load_pair_column(batch->b->scale, b, 1);
 }
 
 /* `shift`: of B, or NULL. */
@@ -148,15 +155,15 @@ INLINE struct body_pair load_bodies(const narc_batch *batch, enum pose_layout la
     struct body_pair pair;
     if (__builtin_expect(layout == POSE_ROWS && !shift, 1)) { /* or compilers keep the vectors of all three in memory */
         vf of_a[4], of_b[4];
-        v_rows(batch->a.x.base, batch->a.x.stride, a, of_a);
-        v_rows(batch->b.x.base, batch->b.x.stride, b, of_b);
+        v_rows(batch->a->x.base, batch->a->x.stride, a, of_a);
+        v_rows(batch->b->x.base, batch->b->x.stride, b, of_b);
         pair = (struct body_pair){{v_sub(of_b[0], of_a[0]), v_sub(of_b[1], of_a[1])},
                                   {of_a[2], of_a[3]},
                                   {of_b[2], of_b[3]},
-                                  load_pair_column(batch->a.scale, a, 1),
-                                  load_pair_column(batch->b.scale, b, 1)};
+                                  load_pair_column(batch->a->scale, a, 1),
+                                  load_pair_column(batch->b->scale, b, 1)};
     } else if (layout == POSE_DOUBLE_ROWS) {
-        load_double_rows(&batch->a, a, b, shift, &pair);
+        load_double_rows(batch->a, a, b, shift, &pair);
     } else {
         load_columns(batch, a, b, shift, &pair);
     }

@@ -19,6 +19,7 @@ struct call {
     size_t first, count;       /* its pairs, of those that are asked of */
     float margin;              /* 0 for overlaps */
     narc_float_column margins; /* one for each pair of the batch; base NULL: all are `margin` */
+    size_t *skipped;           /* pairs without an answer are added to it */
     uint64_t *bits;            /* overlap kernels: where the answers go; else NULL */
     struct rows *rows;         /* the others: the same */
     struct queue *edges;       /* manifolds: pairs that may have a second point; else NULL */
@@ -37,7 +38,7 @@ INLINE size_t find_number(const struct call *call, int32_t pair) {
 
 INLINE vi find_numbers(const struct call *call, vi pairs) {
     int32_t number[V_WIDTH];
-    if (!call->batch->query.selection.base)
+    if (!call->batch->query->selection.base)
         return vi_add(pairs, vi_set((int32_t)(uint32_t)call->first));
     const uint32_t count = (uint32_t)call->count; /* lanes that are not of a pair may have any */
     vi_store(number, pairs);

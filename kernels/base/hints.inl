@@ -23,7 +23,7 @@ INLINE uint32_t *find_hint(narc_hint_column column, int32_t number) {
 
 /* Leaves hints for pairs in the lanes `ended`. */
 INLINE void put_hints(const struct call *call, vi pairs, vm ended, vi hints) {
-    const narc_hint_column column = call->batch->query.hints;
+    const narc_hint_column column = call->batch->query->hints;
     const uint32_t which = vm_bits(ended);
     int32_t number[V_WIDTH], hint[V_WIDTH];
     uint32_t spare;
@@ -44,13 +44,13 @@ INLINE vi make_hint(const struct queue *queue, int k, vi record_a, vi record_b) 
 
 /* Leaves hints for the pairs k ... of a queue in the lanes `ended`, if hints are wanted. */
 INLINE void store_hints(const struct call *call, const struct queue *queue, int k, vm ended, vi record_a, vi record_b) {
-    if (call->batch->query.hints.base)
+    if (call->batch->query->hints.base)
         put_hints(call, get_bits(queue, PAIR, k), ended, make_hint(queue, k, record_a, record_b));
 }
 
 /* Takes the arcs of the pairs `begin` ... of a queue from their hints, in lanes where these name arcs that exist. */
 INLINE void read_hints(const struct call *call, struct queue *queue, int begin) {
-    const narc_hint_column column = call->batch->query.hints;
+    const narc_hint_column column = call->batch->query->hints;
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
         int32_t number[V_WIDTH], lane[V_WIDTH];

@@ -79,7 +79,7 @@ INLINE vec2 circle_difference(vec2 a, vec2 b, const struct pose *pose) {
 INLINE struct filter set_up_pairs(const struct call *call, const struct pair_indices *in, int k, int count,
                                   enum pose_layout layout, int32_t number, vf item[FIELDS]) {
     const narc_batch *batch = call->batch;
-    const narc_pairs *pairs = &batch->pairs;
+    const narc_pairs *pairs = batch->pairs;
     const float shrink = 1.0f - 0x1p-16f, grow = 1.0f + 0x1p-16f; /* of a square: 2^-17 of the distance */
     const bool shifted = pairs->shift_x.base || pairs->shift_y.base;
     const vec2 shift = {load_pair_column(pairs->shift_x, in->number + k, 0),

@@ -97,46 +97,49 @@ INLINE void run_pairs(const struct call *call, triage *settle, int fields, stage
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
             const struct filter circles = set_up_pairs(call, &indices, k, n, layout, (int32_t)(uint32_t)block, item);
-            if (batch->skipped)
-                *batch->skipped += (size_t)__builtin_popcount(vm_bits(circles.invalid));
+            *call->skipped += (size_t)__builtin_popcount(vm_bits(circles.invalid));
             const vm open = settle(call, block + (size_t)k, &circles, item);
             if (stage_count > 0 && vm_any(open)) {
                 enter(queues, open, item, fields, edged_stage);
-                run_stages(call, stages, stage_count, queues, false);
+                if (queues->count >= FLUSH || queues[edged_stage].count >= FLUSH)
+                    run_stages(call, stages, stage_count, queues, false);
             }
         }
     }
     run_stages(call, stages, stage_count, queues, true);
 }
 
-static inline struct call begin_overlaps(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
+static inline struct call begin_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
+                                         uint64_t *out_bits) {
     memset(out_bits, 0, (count + 63) / 64 * sizeof *out_bits);
-    return (struct call){.batch = batch, .first = first, .count = count, .bits = out_bits};
+    return (struct call){.batch = batch, .first = first, .count = count, .skipped = skipped, .bits = out_bits};
 }
 
-static inline struct call begin_rows(const narc_batch *batch, size_t first, size_t count, const narc_rows *out,
-                                     struct rows *rows) {
-    start_rows(rows, count, out, batch->query.dense != 0);
+static inline struct call begin_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
+                                     const narc_rows *out, struct rows *rows) {
+    start_rows(rows, count, out, batch->query->dense != 0);
     return (struct call){.batch = batch,
                          .first = first,
                          .count = count,
-                         .margin = batch->query.margin,
-                         .margins = batch->query.margins,
+                         .skipped = skipped,
+                         .margin = batch->query->margin,
+                         .margins = batch->query->margins,
                          .rows = rows};
 }
 
 /* The kernels of a method with one stage. */
-INLINE void run_overlap_method(stage *find, const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
+INLINE void run_overlap_method(stage *find, const narc_batch *batch, size_t first, size_t count, size_t *skipped,
+                               uint64_t *out_bits) {
     struct queue queue;
-    const struct call call = begin_overlaps(batch, first, count, out_bits);
+    const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
     run_pairs(&call, take_valid, FIELDS, &find, 1, 0, &queue);
 }
 
-INLINE size_t run_contact_method(stage *find, const narc_batch *batch, size_t first, size_t count,
+INLINE size_t run_contact_method(stage *find, const narc_batch *batch, size_t first, size_t count, size_t *skipped,
                                  const narc_rows *out) {
     struct queue queue;
     struct rows rows;
-    const struct call call = begin_rows(batch, first, count, out, &rows);
+    const struct call call = begin_rows(batch, first, count, skipped, out, &rows);
     run_pairs(&call, take_valid, FIELDS, &find, 1, 0, &queue);
     return end_rows(&call, sizeof(narc_contact));
 }

@@ -67,7 +67,7 @@ INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[
         place[lane] = choose(row[lane] < NARC_ROW_GROUP, base + row[lane] * stride, rows->spare);
         rows->known[row[lane]] = 1;
     }
-    if (rows->dense && call->batch->query.selection.base)
+    if (rows->dense && call->batch->query->selection.base)
         for (int lane = 0; lane < V_WIDTH; lane++)
             if (row[lane] < NARC_ROW_GROUP)
                 place[lane] = find_place(call, row[lane]);
@@ -178,6 +178,16 @@ INLINE size_t fill_gaps(const struct call *call, size_t size) {
     return (size_t)(count - call->rows->without);
 }
 
+/* Eight bytes that are 0 or 1 as bits, the first one the lowest: a product that adds each, shifted, to the top byte. */
+INLINE uint32_t pack_bytes(const uint8_t *bytes) {
+    uint64_t word;
+    memcpy(&word, bytes, sizeof word);
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+    word = __builtin_bswap64(word);
+#endif
+    return (uint32_t)(word * 0x0102040810204080u >> 56);
+}
+
 /* Ends a call with rows of `size` bytes: moves them together in the order of their pairs. Returns how many there are. */
 INLINE size_t end_rows(const struct call *call, size_t size) {
     const struct rows *rows = call->rows;
@@ -186,17 +196,12 @@ INLINE size_t end_rows(const struct call *call, size_t size) {
     size_t count = (size_t)rows->listed;
     if (rows->dense)
         return fill_gaps(call, size);
-    for (size_t k = 0; k < call->count; k += 64) {
-        uint64_t bits = 0;
-        for (size_t i = 0; i < 64; i++)
-            bits |= (uint64_t)rows->known[k + i] << i;
-        count += (size_t)__builtin_popcountll(bits);
-        for (; bits; bits &= bits - 1, to += stride) {
-            const char *from = rows->out.base + (ptrdiff_t)(k + (unsigned)__builtin_ctzll(bits)) * stride;
+    for (size_t k = 0; k < call->count; k += 8)
+        for (uint32_t bits = pack_bytes(rows->known + k); bits; bits &= bits - 1, to += stride, count++) {
+            const char *from = rows->out.base + (ptrdiff_t)(k + (unsigned)__builtin_ctz(bits)) * stride;
             if (from != to)
                 memcpy(to, from, size);
         }
-    }
     return count;
 }
 

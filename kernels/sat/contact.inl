@@ -56,7 +56,7 @@ INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf ite
         append_answers(call, pairs, found, &answer);
     else
         put_answers(call, pairs, found, &answer);
-    if (call->batch->query.hints.base)
+    if (call->batch->query->hints.base)
         put_hints(call, pairs, answered, vi_set(FIRST_ARCS));
     return left;
 }
@@ -206,15 +206,16 @@ static void decide(const struct call *call, struct queue *queue, int begin, stru
 }
 
 /* The rows of a call, of contacts or manifolds. */
-static size_t find_rows(const narc_batch *batch, size_t first, size_t count, const narc_rows *out, bool manifolds) {
-    const bool hinted = batch->query.hints.base != NULL;
+static size_t find_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out,
+                        bool manifolds) {
+    const bool hinted = batch->query->hints.base != NULL;
     stage *const stages[STAGES] = {hinted ? start_from_hints : probe_axis, probe_again, climb_from, decide,
                                    find_second_points};
     stage *const formula[] = {decide, find_second_points};
     const int stage_count = manifolds ? STAGES : STAGES - 1;
     struct queue queues[STAGES];
     struct rows rows;
-    struct call call = begin_rows(batch, first, count, out, &rows);
+    struct call call = begin_rows(batch, first, count, skipped, out, &rows);
     if (NARC_SHORTCUTS) {
         call.edges = manifolds ? &queues[STAGES - 1] : NULL;
         run_pairs(&call, triage_rows, CONTACT_FIELDS, stages, stage_count, hinted ? 0 : CLIMB, queues);
@@ -225,12 +226,12 @@ static size_t find_rows(const narc_batch *batch, size_t first, size_t count, con
     return manifolds ? end_rows(&call, sizeof(narc_manifold)) : end_rows(&call, sizeof(narc_contact));
 }
 
-static size_t contact(const narc_batch *batch, size_t first, size_t count, const narc_rows *out) {
-    return find_rows(batch, first, count, out, false);
+static size_t contact(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
+    return find_rows(batch, first, count, skipped, out, false);
 }
 
-static size_t manifold(const narc_batch *batch, size_t first, size_t count, const narc_rows *out) {
-    return find_rows(batch, first, count, out, true);
+static size_t manifold(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
+    return find_rows(batch, first, count, skipped, out, true);
 }
 
 #endif

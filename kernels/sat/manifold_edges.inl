@@ -278,7 +278,7 @@ INLINE void store_touching_features(const struct call *call, const struct queue 
 
 /* Finds the second points of the pairs `begin` ... of a queue, and the ids of all points. */
 static void find_second_points(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    const float asked = call->batch->query.second_margin;
+    const float asked = call->batch->query->second_margin;
     const vf second_margin = v_set(asked == 0 ? -INFINITY : asked);
     (void)next;
     for (int k = begin; k < queue->count; k += V_WIDTH) {

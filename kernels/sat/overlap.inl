@@ -141,14 +141,14 @@ static void decide_overlaps(const struct call *call, struct queue *queue, int be
     }
 }
 
-static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
+static void overlap(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
     static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_to_overlaps, decide_overlaps};
     struct queue queues[4];
     if (!NARC_SHORTCUTS) {
-        run_overlap_method(decide_overlaps, batch, first, count, out_bits);
+        run_overlap_method(decide_overlaps, batch, first, count, skipped, out_bits);
         return;
     }
-    const struct call call = begin_overlaps(batch, first, count, out_bits);
+    const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
     run_pairs(&call, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
 }
 

@@ -14,35 +14,36 @@
 
 /* Runs a kernel group by group into rows of `size` bytes; returns how many. */
 static size_t run_kernel(narc_row_kernel *kernel, const narc_batch *batch, void *rows, size_t size) {
-    size_t found = 0;
+    size_t found = 0, skipped = 0;
     for (size_t k = 0; k < batch->asked; k += NARC_ROW_GROUP) {
         const size_t left = batch->asked - k;
         const narc_rows out = {(char *)rows + found * size, (ptrdiff_t)size};
-        found += kernel(batch, k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &out);
+        found += kernel(batch, k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &skipped, &out);
     }
     return found;
 }
 
 static narc_batch begin_plain(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                              const narc_query *query, size_t *skipped) {
+                              const narc_query *query) {
     return (narc_batch){.shapes = shapes,
-                        .a = *bodies,
-                        .b = *bodies,
-                        .pairs = *pairs,
-                        .query = *query,
+                        .a = bodies,
+                        .b = bodies,
+                        .pairs = pairs,
+                        .query = query,
                         .flat_sine = (float)sin((double)NARC_FLAT_ANGLE),
-                        .asked = pairs->count,
-                        .skipped = skipped};
+                        .count = pairs->count,
+                        .asked = pairs->count};
 }
 
 struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs) {
     size_t skipped = 0;
-    const narc_batch batch = begin_plain(shapes, bodies, pairs, &(narc_query){.margin = INFINITY}, &skipped);
+    const narc_query query = {.margin = INFINITY};
+    const narc_batch batch = begin_plain(shapes, bodies, pairs, &query);
     const size_t count = pairs->count;
     struct contacts plain = {make_junk(count * sizeof *plain.rows), count};
     uint64_t *bits = make_junk(NARC_BIT_WORDS(count) * sizeof *bits);
     assert_int_equal(run_kernel(narc_kernels_plain.contact, &batch, plain.rows, sizeof *plain.rows), count);
-    narc_kernels_plain.overlap(&batch, 0, count, bits);
+    narc_kernels_plain.overlap(&batch, 0, count, &skipped, bits);
     for (size_t k = 0; k < count; k++) {
         assert_int_equal(plain.rows[k].pair, k);
         assert_int_equal(bit_is_set(bits, k), plain.rows[k].separation < 0);
@@ -53,9 +54,8 @@ struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies
 
 struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                       float margin, const float *margins) {
-    size_t skipped = 0;
     const narc_query query = {.margin = margin, .margins = {margins, sizeof *margins}};
-    const narc_batch batch = begin_plain(shapes, bodies, pairs, &query, &skipped);
+    const narc_batch batch = begin_plain(shapes, bodies, pairs, &query);
     struct manifolds plain = {make_junk(pairs->count * sizeof *plain.rows), 0};
     plain.count = run_kernel(narc_kernels_plain.manifold, &batch, plain.rows, sizeof *plain.rows);
     return plain;
