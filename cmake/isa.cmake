@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The instruction sets of kernels/isa.def: for each that this processor's kind can have and the compiler takes the flags
 # of, one object library narc_isa_<name> with the kernels compiled for it. Sets
+#   NARC_KERNEL_SOURCES   the kernels' files
 #   NARC_ISA_LIST         all names, best first
 #   NARC_ISA_NAMES        those that are built
 #   NARC_ISA_OBJECTS      their objects
@@ -9,17 +10,22 @@
 # tests/kernels/CMakeLists.txt makes tests of every name, tests/package/CMakeLists.txt tests the symbols of what is built.
 include(CheckCSourceCompiles)
 
-# narc_add_isa_objects(TARGET ISA SOURCE ...)
-function(narc_add_isa_objects target isa)
+set(NARC_KERNEL_SOURCES)
+foreach(file sat/overlap sat/contact broad/boxes broad/sweep pose table)
+  list(APPEND NARC_KERNEL_SOURCES "${PROJECT_SOURCE_DIR}/kernels/${file}.c")
+endforeach()
+
+# narc_add_isa_objects(TARGET NAME ISA SOURCE ...): symbols have the name, instructions are those of the set.
+function(narc_add_isa_objects target name isa)
   add_library(${target} OBJECT ${ARGN})
-  target_compile_definitions(${target} PRIVATE NARC_ISA_NAME=${isa} NARC_SIMD="simd/${isa}.h")
+  target_compile_definitions(${target} PRIVATE NARC_ISA_NAME=${name} NARC_SIMD="simd/${isa}.h")
   # No LTO, whoever asks for it: inlining must not carry these instructions across the processor check.
   set_target_properties(${target} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
   separate_arguments(flag_list UNIX_COMMAND "${NARC_ISA_FLAGS_${isa}}")
   target_compile_options(${target} PRIVATE ${flag_list} -fno-lto)
-  # Clang 14 crashes over variables in the debug information of optimised AVX-512 kernels (in LLVM's salvageDebugInfo):
-  # lines, but no variables.
-  target_compile_options(${target} PRIVATE
+  # Where each variable of an optimised kernel lives takes half of GCC's time to find out, and Clang 14 crashes over it
+  # (in LLVM's salvageDebugInfo): lines, but no variables.
+  target_compile_options(${target} PRIVATE $<$<C_COMPILER_ID:GNU>:-fno-var-tracking>
     $<$<AND:$<C_COMPILER_ID:Clang>,$<VERSION_LESS:$<C_COMPILER_VERSION>,16>>:-gline-tables-only>)
   target_link_libraries(${target} PRIVATE narc_flags)
 endfunction()
@@ -44,7 +50,7 @@ foreach(line IN LISTS isa_lines)
     check_c_source_compiles("int main(void) { return 0; }" NARC_COMPILES_${name})
     if(NARC_COMPILES_${name})
       set(NARC_ISA_FLAGS_${name} "${CMAKE_REQUIRED_FLAGS}")
-      narc_add_isa_objects(narc_isa_${name} ${name} "${PROJECT_SOURCE_DIR}/kernels/exact.c")
+      narc_add_isa_objects(narc_isa_${name} ${name} ${name} ${NARC_KERNEL_SOURCES})
       if(NARC_SLEEF)
         target_link_libraries(narc_isa_${name} PRIVATE PkgConfig::SLEEF)
         target_compile_definitions(narc_isa_${name} PRIVATE NARC_WITH_SLEEF=1)

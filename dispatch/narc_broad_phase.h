@@ -149,11 +149,11 @@ typedef struct narc_box_options {
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (a needed pointer is NULL, 2^32 bodies or more, a
  * negative margin), NARC_ERROR_NOT_FINITE (margin), NARC_ERROR_INDEX (`error` names the body and the shape), and as
  * narc_find_overlaps() for NARC_ISA. No bodies: NARC_OK. Allocates nothing. Thread-safe.
- * Source: the support function of an arc shape (docs/algorithm.md) along four axes; kernels/broad/boxes.inl. */
+ * Source: the support function of an arc shape (docs/algorithm.md) along four axes; kernels/broad/boxes.c. */
 NARC_API narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bodies *bodies,
                                         const narc_box_options *options, narc_box *out_boxes, narc_error *error);
 
-/* 40 roundings; derived in kernels/broad/boxes.inl. */
+/* 40 roundings; derived in kernels/broad/boxes.c. */
 #define NARC_BOX_ROOM (40.0 / 16777216.0)
 
 /* All pairs a < b of boxes that overlap or touch, in the order of a and then b.

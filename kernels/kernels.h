@@ -61,11 +61,17 @@ typedef size_t narc_row_kernel(const narc_batch *batch, size_t first, size_t cou
 #define NARC_ISA(name, needs, processors, flags) extern const narc_kernel_table narc_kernels_##name;
 #include "isa.def"
 
-/* narc_kernels_avx2 from narc_kernels_ and a macro whose value is avx2, and that value in quotes. */
-#define NARC_ISA_SYMBOL(prefix, isa)  NARC_ISA_SYMBOL_(prefix, isa)
-#define NARC_ISA_SYMBOL_(prefix, isa) prefix##isa
-#define NARC_ISA_TEXT(isa)            NARC_ISA_TEXT_(isa)
-#define NARC_ISA_TEXT_(isa)           #isa
+/* Within the kernels of an instruction set, what it calls its own: of avx2, NARC_NAMED(contact) is narc_contact_avx2. */
+#define NARC_NAMED(name)             NARC_ISA_SYMBOL(narc_##name##_, NARC_ISA_NAME)
+#define NARC_ISA_SYMBOL(prefix, isa) NARC_ISA_JOIN(prefix, isa)
+#define NARC_ISA_JOIN(prefix, isa)   prefix##isa
+#define NARC_ISA_TEXT(isa)           NARC_ISA_QUOTE(isa)
+#define NARC_ISA_QUOTE(isa)          #isa
+
+#ifdef NARC_ISA_NAME
+#define NARC_KERNEL(type, name, parameters) type NARC_NAMED(name) parameters;
+#include "kernels.def"
+#endif
 
 /* A table of an instruction set, NULL if this build does not have it: cmake/isa.cmake defines NARC_BUILT_<name> as 1 or
  * 0 for each. */

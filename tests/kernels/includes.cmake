@@ -2,7 +2,7 @@
 # Does every kernel file include what it uses? Compiles each one alone, for its syntax only. Run as
 #   cmake -D COMPILER=... -D FLAGS=... -D SOURCE=<the project's folder> -P includes.cmake
 separate_arguments(flags UNIX_COMMAND "${FLAGS}")
-file(GLOB_RECURSE files "${SOURCE}/kernels/*.inl" "${SOURCE}/methods/*.inl")
+file(GLOB_RECURSE files "${SOURCE}/kernels/*.inl" "${SOURCE}/kernels/*.c" "${SOURCE}/methods/*.inl")
 list(LENGTH files count)
 if(count LESS 20)
   message(FATAL_ERROR "only ${count} files in ${SOURCE}")

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * boxes.inl - the box kernel: axis-aligned boxes of bodies in the world.
+ * boxes.c - the box kernel: axis-aligned boxes of bodies in the world.
  *
  * A body reaches as far along a direction as its support function says, which for the arc that holds the direction m is
  * height = scale (centre.m + radius). The directions are the world's four axes in the body's frame, each a quarter turn
@@ -23,9 +23,6 @@
  * times the centre's distance from the origin, and add_upwards() adds up to 4 e of its sum, twice if the body moves:
  * all that is below 40 e (NARC_BOX_ROOM).
  */
-#ifndef NARC_BROAD_BOXES_INL
-#define NARC_BROAD_BOXES_INL
-
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -216,7 +213,7 @@ INLINE struct reaches find_reaches(const narc_shapes *shapes, const struct heade
 
 /* The boxes of bodies first .. first + count - 1, to the front of `out`; returns how many have
  * none. */
-static size_t box(const narc_box_batch *batch, size_t first, size_t count, narc_box *out) {
+size_t NARC_NAMED(box)(const narc_box_batch *batch, size_t first, size_t count, narc_box *out) {
     const narc_bodies *const bodies = batch->bodies;
     const enum pose_layout layout = find_pose_layout(bodies);
     /* Room for the sum with a height, and for underflow: less than any rounding of NARC_MIN_SIZE. */
@@ -258,5 +255,3 @@ static size_t box(const narc_box_batch *batch, size_t first, size_t count, narc_
     }
     return skipped;
 }
-
-#endif

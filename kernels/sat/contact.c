@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * contact.inl - the contact kernel: separation, normal, point and arcs of the pairs closer than a margin, in their
+ * contact.c - the contact kernel: separation, normal, point and arcs of the pairs closer than a margin, in their
  * order; and the manifold kernel, which goes on from there to a second point (manifold_edges.inl).
  *
  * Pairs pass through stages until one of them knows the answer that the deciding formula (normal_fan.inl) would give,
  * to the last bit: circles, a probe along the axis (or of the arcs of the last call), another along u, a climb to a
  * local maximum, and the formula itself. The normal n and the arcs are those of the highest local maximum of the gap.
  */
-#ifndef NARC_SAT_CONTACT_INL
-#define NARC_SAT_CONTACT_INL
-
 #include <stdbool.h>
 #include <string.h>
 
@@ -226,12 +223,11 @@ static size_t find_rows(const narc_batch *batch, size_t first, size_t count, siz
     return manifolds ? end_rows(&call, sizeof(narc_manifold)) : end_rows(&call, sizeof(narc_contact));
 }
 
-static size_t contact(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
+size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
     return find_rows(batch, first, count, skipped, out, false);
 }
 
-static size_t manifold(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
+size_t NARC_NAMED(manifold)(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
+                            const narc_rows *out) {
     return find_rows(batch, first, count, skipped, out, true);
 }
-
-#endif

@@ -1,18 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * pose.inl - the pose kernel: cosines and sines of many angles.
+ * pose.c - the pose kernel: cosines and sines of many angles.
  *
  * SLEEF's `cinz` functions promise equal bits on every instruction set and use no fused multiply-add, so that the
  * scalar table runs on any processor. Without SLEEF every table takes one angle at a time, in double precision, by
  * soa/elementary.h.
  */
-#ifndef NARC_POSE_INL
-#define NARC_POSE_INL
-
 #include <math.h>
 #include <string.h>
 
 #include "elementary.h"
+#include "kernels.h"
 #include "simd/simd.h"
 
 #if defined(NARC_WITH_SLEEF)
@@ -26,7 +24,7 @@ static inline void sincos_lanes(const float *angles, float *out_cosines, float *
     v_store(out_sines, v_select(finite, sincos.x, v_set(NAN)));
 }
 
-static void pose(const float *angles, size_t count, float *out_cosines, float *out_sines) {
+void NARC_NAMED(pose)(const float *angles, size_t count, float *out_cosines, float *out_sines) {
     size_t k = 0;
     for (; count - k >= V_WIDTH; k += V_WIDTH)
         sincos_lanes(angles + k, out_cosines + k, out_sines + k);
@@ -41,7 +39,7 @@ static void pose(const float *angles, size_t count, float *out_cosines, float *o
 
 #else
 
-static void pose(const float *angles, size_t count, float *out_cosines, float *out_sines) {
+void NARC_NAMED(pose)(const float *angles, size_t count, float *out_cosines, float *out_sines) {
     for (size_t k = 0; k < count; k++) {
         double cosine, sine;
         narc_find_cosine((double)angles[k], &cosine, &sine);
@@ -49,7 +47,5 @@ static void pose(const float *angles, size_t count, float *out_cosines, float *o
         out_sines[k] = (float)sine;
     }
 }
-
-#endif
 
 #endif

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * overlap.inl - the overlap kernel: one bit per pair, set where the separation is below 0.
+ * overlap.c - the overlap kernel: one bit per pair, set where the separation is below 0.
  *
  * Circles settle some pairs, and two probes most others: one along the axis between the inscribed circles, and one
  * along u of the arcs that the first one found. A probe ends with a proof (certificates.inl) that the bodies are apart
  * or have a common point, or passes the pair on. The rest climb to a local maximum of the gap. What is left then goes
  * to the deciding formula.
  */
-#ifndef NARC_SAT_OVERLAP_INL
-#define NARC_SAT_OVERLAP_INL
-
 #include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/pair_setup.inl"
@@ -141,7 +138,7 @@ static void decide_overlaps(const struct call *call, struct queue *queue, int be
     }
 }
 
-static void overlap(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
+void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
     static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_to_overlaps, decide_overlaps};
     struct queue queues[4];
     if (!NARC_SHORTCUTS) {
@@ -151,5 +148,3 @@ static void overlap(const narc_batch *batch, size_t first, size_t count, size_t 
     const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
     run_pairs(&call, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
 }
-
-#endif

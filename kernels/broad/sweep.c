@@ -1,18 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * sweep.inl - the sweep of the broad phase: pairs of boxes that overlap, of two lists in the order of min_x, or of one
+ * sweep.c - the sweep of the broad phase: pairs of boxes that overlap, of two lists in the order of min_x, or of one
  * list with itself.
  *
  * A box of one list overlaps boxes of the other whose min_x is at most its own max_x, and at least its own min_x less
  * the widest box's width. The first of these moves on from box to box. They are looked at a vector at a time.
  */
-#ifndef NARC_SWEEP_INL
-#define NARC_SWEEP_INL
-
 #include <stdbool.h>
 #include <stdint.h>
 
 #include "broad_phase.h"
+#include "kernels.h"
 #include "simd/simd.h"
 
 /* Where a sweep puts pairs, its numbers in registers. */
@@ -86,8 +84,8 @@ INLINE uint32_t find_min_x(const float *min_x, uint32_t from, uint32_t end, floa
 
 /* All pairs of one box of places first_a .. end_a - 1 and one of first_b .. end_b - 1, none of which is wider than
  * width_b. The lists have no box in common, or are the same. */
-static void sweep(const narc_box_columns *boxes, uint32_t first_a, uint32_t end_a, uint32_t first_b, uint32_t end_b,
-                  float width_b, narc_found_pairs *out) {
+void NARC_NAMED(sweep)(const narc_box_columns *boxes, uint32_t first_a, uint32_t end_a, uint32_t first_b,
+                       uint32_t end_b, float width_b, narc_found_pairs *out) {
     struct pair_writer to = {out, out->count, 0};
     uint32_t from = first_b;
     if (first_a == first_b) {
@@ -102,5 +100,3 @@ static void sweep(const narc_box_columns *boxes, uint32_t first_a, uint32_t end_
     out->count = to.count;
     out->steps += to.steps;
 }
-
-#endif
