@@ -4,7 +4,7 @@
  */
 #include "dispatch.h"
 #include "elementary.h"
-#include "error.h"
+#include "fail.h"
 
 #define TEXT_(a) #a
 #define TEXT(a)  TEXT_(a)

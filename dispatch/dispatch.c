@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "error.h"
+#include "fail.h"
 
 /* Best first. */
 static const struct isa {

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "error.h"
+#include "fail.h"
 #include "number.h"
 
 static const char BLANKS[] = " \t\r";

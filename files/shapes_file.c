@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "error.h"
+#include "fail.h"
 #include "json.h"
 
 #include "memory.h"

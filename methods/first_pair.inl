@@ -13,8 +13,8 @@
 
 #include <math.h>
 
+#include "base/arcs.inl"
 #include "base/call.inl"
-#include "base/gap.inl"
 #include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/rows.inl"

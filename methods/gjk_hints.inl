@@ -11,7 +11,6 @@
 #include <stdint.h>
 
 #include "base/call.inl"
-#include "base/hints.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"

@@ -16,7 +16,6 @@
 #include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/contact_point.inl"
-#include "base/gap.inl"
 #include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/rows.inl"

@@ -5,7 +5,7 @@
 #include "column.h"
 #include "copy.h"
 #include "dispatch.h"
-#include "error.h"
+#include "fail.h"
 
 #include <math.h>
 #include <string.h>

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "elementary.h"
-#include "error.h"
+#include "fail.h"
 #include "outline.h"
 
 /* How far outside, relative to the size, an arc's centre may be found and still count as inside: a few dozen

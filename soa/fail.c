@@ -3,7 +3,7 @@
  * fail.c - the one place that fills a narc_error. The fitting library has its own copy of this file's object, so that
  * the function stays hidden in both.
  */
-#include "error.h"
+#include "fail.h"
 
 #include <stdarg.h>
 #include <stdio.h>

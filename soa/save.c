@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "encode.h"
-#include "error.h"
+#include "fail.h"
 
 static const char magic[8] = "NARCSHPS";
 

@@ -17,7 +17,7 @@
 
 #include "elementary.h"
 #include "encode.h"
-#include "error.h"
+#include "fail.h"
 #include "memory.h"
 #include "outline.h"
 

@@ -3,7 +3,7 @@
  * validate.c - is a list of arcs a closed convex outline?
  */
 #include "elementary.h"
-#include "error.h"
+#include "fail.h"
 #include "outline.h"
 
 #include <math.h>

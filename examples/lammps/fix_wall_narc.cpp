@@ -10,7 +10,7 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "error.h"
+#include "fail.h"
 #include "fix_narc_shapes.h"
 #include "force.h"
 #include "input.h"

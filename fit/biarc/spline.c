@@ -35,7 +35,7 @@
 #include <stdlib.h>
 
 #include "biarc/biarc.h"
-#include "error.h"
+#include "fail.h"
 #include "outline/path.h"
 
 enum { SHARES = 5 };

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "csv.h"
-#include "error.h"
+#include "fail.h"
 #include "json.h"
 #include "outline/path.h"
 

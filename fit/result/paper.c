@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "error.h"
+#include "fail.h"
 #include "model/chain.h"
 #include "outline/vector.h"
 

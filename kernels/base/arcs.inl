@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * arcs.inl - an arc of A and of B in each lane, in A's frame at world scale.
+ * arcs.inl - an arc of A and of B in each lane, in A's frame at world scale; and the gap along a direction.
  */
 #ifndef NARC_BASE_ARCS_INL
 #define NARC_BASE_ARCS_INL
@@ -85,5 +85,22 @@ INLINE struct arc_pair select_arc_pair(vm m, const struct arc_pair *a, const str
 
 /* u, from the centre of A's arc to that of B's. */
 INLINE vec2 center_difference(const struct arc_pair *arcs) { return v2_sub(arcs->b.center, arcs->a.center); }
+
+/* The least normal float: a smaller square has lost its digits. */
+#define LEAST_SQUARE 0x1p-126f
+
+/* The largest gap that a search has found in each lane, with its direction and arcs. */
+struct gap {
+    vf separation;
+    vec2 normal; /* not yet divided by its length */
+    vf length;
+    vi record_a, record_b;
+};
+
+INLINE struct gap select_gap(vm m, const struct gap *a, const struct gap *b) {
+    return (struct gap){v_select(m, a->separation, b->separation), v2_select(m, a->normal, b->normal),
+                        v_select(m, a->length, b->length), vi_select(m, a->record_a, b->record_a),
+                        vi_select(m, a->record_b, b->record_b)};
+}
 
 #endif

@@ -14,7 +14,6 @@
 #include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/contact_point.inl"
-#include "base/gap.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"

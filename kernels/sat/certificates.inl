@@ -18,12 +18,19 @@
 #define NARC_SAT_CERTIFICATES_INL
 
 #include "base/arcs.inl"
-#include "base/gap.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
-#include "sat/local_maximum.inl"
 #include "simd/simd.h"
+
+/* A local maximum of the gap over all directions (normal_fan.inl). It lies between two junctions, where `after` and `before` are both the arcs that hold it, or (`kink`) at a junction,
+ * with the arcs after it and those before. */
+struct local_maximum {
+    vm found, kink;
+    vec2 direction; /* not yet of length 1 */
+    struct arc_pair after, before;
+    vi record_a, record_b; /* of the arcs after it */
+};
 
 /* ------------------------------------------------------------------------------------------------ 1. apart
  *

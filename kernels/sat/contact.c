@@ -13,7 +13,6 @@
 #include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/contact_point.inl"
-#include "base/hints.inl"
 #include "base/pair_setup.inl"
 #include "base/pipeline.inl"
 #include "base/queue.inl"
@@ -23,12 +22,10 @@
 #include "kernels.h"
 #include "sat/certificates.inl"
 #include "sat/direction_lookup.inl"
-#include "sat/discs.inl"
 #include "sat/hill_climb.inl"
 #include "sat/manifold_edges.inl"
 #include "sat/normal_fan.inl"
 #include "sat/probe.inl"
-#include "sat/shortcuts.inl"
 #include "simd/simd.h"
 
 /* Answers pairs of two circles in the lanes `open`; returns those that are left. `in_order`: are the pairs before, and

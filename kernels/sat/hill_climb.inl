@@ -6,12 +6,10 @@
 #define NARC_SAT_HILL_CLIMB_INL
 
 #include "base/arcs.inl"
-#include "base/gap.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "sat/certificates.inl"
-#include "sat/local_maximum.inl"
 #include "simd/simd.h"
 
 /* Most climbs end at the first step, and nearly all within four. */

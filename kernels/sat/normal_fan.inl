@@ -53,7 +53,6 @@
 #include <stdint.h>
 
 #include "base/arcs.inl"
-#include "base/gap.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"

@@ -16,11 +16,9 @@
 #include "kernels.h"
 #include "sat/certificates.inl"
 #include "sat/direction_lookup.inl"
-#include "sat/discs.inl"
 #include "sat/hill_climb.inl"
 #include "sat/normal_fan.inl"
 #include "sat/probe.inl"
-#include "sat/shortcuts.inl"
 #include "simd/simd.h"
 
 INLINE vm triage_overlaps(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * error.c - names of status codes.
+ * status.c - names of status codes.
  */
 #include "narc_shapes.h"
 

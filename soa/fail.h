@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * error.h - fills a narc_error. Internal.
+ * fail.h - fills a narc_error. Internal.
  */
-#ifndef NARC_ERROR_H
-#define NARC_ERROR_H
+#ifndef NARC_FAIL_H
+#define NARC_FAIL_H
 
 #include "narc_shapes.h"
 
