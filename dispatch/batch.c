@@ -48,7 +48,7 @@ static size_t size_of_part(const struct job *job, size_t part) {
 
 /* ------------------------------------------------------------------------------------------------ overlaps */
 
-static void find_overlaps(void *argument, size_t part) {
+static void find_part_of_overlaps(void *argument, size_t part) {
     struct job *const job = argument;
     size_t skipped = 0;
     const size_t start = job->first + part * job->part_size;
@@ -62,7 +62,7 @@ static size_t share_overlaps(narc_overlap_kernel *kernel, const narc_batch *batc
     const size_t even = count / (workers * PARTS_PER_WORKER) / 64 * 64;
     struct job job = {.batch = batch, .first = batch->first, .count = count, .overlap = kernel, .bits = out_bits};
     job.part_size = even < LEAST_OVERLAPS ? LEAST_OVERLAPS : even > MOST_OVERLAPS ? MOST_OVERLAPS : even;
-    narc_run_parts(batch->query->workers, (count - 1) / job.part_size + 1, find_overlaps, &job);
+    narc_run_parts(batch->query->workers, (count - 1) / job.part_size + 1, find_part_of_overlaps, &job);
     return atomic_load(&job.skipped);
 }
 
@@ -129,7 +129,7 @@ static size_t find_groups(const struct job *job, size_t start, size_t count, siz
     return found;
 }
 
-static void find_rows(void *argument, size_t part) {
+static void find_part_of_rows(void *argument, size_t part) {
     struct job *const job = argument;
     size_t skipped = 0;
     const size_t found = find_groups(job, part * job->part_size, size_of_part(job, part), &skipped);
@@ -152,7 +152,7 @@ static size_t list_rows(struct job *job, size_t *skipped) {
     atomic_flag_clear(&job->closing);
     for (size_t part = 0; part < parts; part++)
         atomic_init(&job->ended[part], 0);
-    narc_run_parts(job->batch->query->workers, parts, find_rows, job);
+    narc_run_parts(job->batch->query->workers, parts, find_part_of_rows, job);
     *skipped += atomic_load(&job->skipped);
     for (size_t part = 0; part < parts && job->batch->query->dense; part++)
         job->found += atomic_load(&job->ended[part]) - 1;

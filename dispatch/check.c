@@ -96,6 +96,26 @@ static narc_status find_sets(const narc_bodies *bodies, const narc_pairs *pairs,
     return NARC_OK;
 }
 
+narc_status narc_check_bodies(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t *count,
+                              const narc_workers *workers, narc_error *error) {
+    if (bodies->count > UINT32_MAX)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->count, "%zu bodies, at most %lu", bodies->count,
+                         (unsigned long)UINT32_MAX);
+    narc_status status = narc_check_range(first, count, bodies->count, "bodies", error);
+    if (status == NARC_OK)
+        status = CHECK_RESERVED(*bodies, "bodies", error);
+    if (status == NARC_OK && *count > 0)
+        status = narc_check_columns(bodies, error);
+    if (status != NARC_OK)
+        return status;
+    const size_t bad = narc_find_bad_index(bodies->shape, first, *count, shapes->count, workers);
+    if (bad == first + *count)
+        return NARC_OK;
+    const uint32_t shape = narc_index_at(bodies->shape, bad);
+    return narc_fail(error, NARC_ERROR_INDEX, bad, shape, "body %zu: shape is %lu, but there are %zu shapes", bad,
+                     (unsigned long)shape, shapes->count);
+}
+
 /* ------------------------------------------------------------------------------------------------ a query */
 
 static narc_status check_number(float number, const char *name, narc_error *error) {

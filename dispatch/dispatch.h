@@ -47,8 +47,12 @@ narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, v
  * the end of the range if none. */
 size_t narc_find_bad_pair(const narc_batch *batch);
 
-/* The first of bodies first .. first + count - 1 whose shape does not exist; first + count if none. */
-size_t narc_find_bad_body(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t count,
-                          const narc_workers *workers);
+/* The first of items first .. first + count - 1 of a column that is not below `limit`; first + count if all are. */
+size_t narc_find_bad_index(narc_index_column column, size_t first, size_t count, size_t limit,
+                           const narc_workers *workers);
+
+/* Checks bodies first .. first + *count - 1 as far as kernels rely on it: columns and shapes. *count 0: to the end. */
+narc_status narc_check_bodies(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t *count,
+                              const narc_workers *workers, narc_error *error);
 
 #endif

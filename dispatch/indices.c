@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * indices.c - do all pairs name bodies, and all bodies shapes, that exist?
+ * indices.c - do all indices that a caller gave name something that exists: pairs bodies, bodies shapes?
  */
 #include "column.h"
 #include "dispatch.h"
@@ -57,8 +57,8 @@ static bool are_bodies_there(const narc_batch *batch, size_t first, size_t last)
 /* A search for what is wrong, part by part. */
 struct search {
     const narc_batch *batch;
-    const narc_shapes *shapes;
-    const narc_bodies *bodies; /* with these, of bodies */
+    narc_index_column column; /* or without a batch: are all of its items below the limit? */
+    size_t limit;
     size_t first, count, parts;
     atomic_bool fine;
     atomic_size_t bad; /* the first that was found */
@@ -144,23 +144,22 @@ size_t narc_find_bad_pair(const narc_batch *batch) {
     return atomic_load(&search.bad);
 }
 
-static void look_at_bodies(void *argument, size_t part) {
+static void look_at_items(void *argument, size_t part) {
     struct search *const search = argument;
-    const narc_index_column shape = search->bodies->shape;
-    size_t body, end;
-    find_part(search, part, &body, &end);
-    if (are_below(shape, body, end, clip(search->shapes->count)))
+    size_t item, end;
+    find_part(search, part, &item, &end);
+    if (are_below(search->column, item, end, clip(search->limit)))
         return;
-    while (body < end && narc_index_at(shape, body) < search->shapes->count)
-        body++;
-    if (body < end)
-        keep_first(search, body);
+    while (item < end && narc_index_at(search->column, item) < search->limit)
+        item++;
+    if (item < end)
+        keep_first(search, item);
 }
 
-size_t narc_find_bad_body(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t count,
-                          const narc_workers *workers) {
-    struct search search = {.shapes = shapes, .bodies = bodies, .first = first, .count = count};
+size_t narc_find_bad_index(narc_index_column column, size_t first, size_t count, size_t limit,
+                           const narc_workers *workers) {
+    struct search search = {.column = column, .limit = limit, .first = first, .count = count};
     atomic_init(&search.bad, first + count);
-    narc_run_parts(workers, count / PART + (count % PART != 0), look_at_bodies, &search);
+    narc_run_parts(workers, count / PART + (count % PART != 0), look_at_items, &search);
     return atomic_load(&search.bad);
 }

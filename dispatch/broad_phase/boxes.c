@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * boxes.c - narc_compute_boxes(): argument checks, then bodies chunk by chunk to the kernel.
+ * boxes.c - narc_compute_boxes(): argument checks, then bodies part by part to the kernel.
  */
 #include "column.h"
 #include "dispatch.h"
@@ -10,8 +10,8 @@
 
 #include <math.h>
 
-/* Bodies in a chunk: some 20 microseconds of work. */
-enum { CHUNK = 1024 };
+/* Bodies in a part: some 20 microseconds of work. */
+enum { PART = 1024 };
 
 narc_status narc_check_length(float length, const char *name, narc_error *error) {
     if (!isfinite(length))
@@ -22,27 +22,6 @@ narc_status narc_check_length(float length, const char *name, narc_error *error)
     return NARC_OK;
 }
 
-/* Bodies first .. first + *count - 1; 0 of them: to the end. */
-static narc_status check_bodies(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t *count,
-                                const narc_workers *workers, narc_error *error) {
-    if (bodies->count > UINT32_MAX)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->count, "%zu bodies, at most %lu", bodies->count,
-                         (unsigned long)UINT32_MAX);
-    narc_status status = narc_check_range(first, count, bodies->count, "bodies", error);
-    if (status == NARC_OK)
-        status = narc_check_reserved(bodies->reserved, 2, "bodies", error);
-    if (status == NARC_OK && *count > 0)
-        status = narc_check_columns(bodies, error);
-    if (status != NARC_OK)
-        return status;
-    const size_t bad = narc_find_bad_body(shapes, bodies, first, *count, workers);
-    if (bad == first + *count)
-        return NARC_OK;
-    const uint32_t shape = narc_index_at(bodies->shape, bad);
-    return narc_fail(error, NARC_ERROR_INDEX, bad, shape, "body %zu: shape is %lu, but there are %zu shapes", bad,
-                     (unsigned long)shape, shapes->count);
-}
-
 typedef struct box_job {
     narc_box_batch batch;
     const narc_kernel_table *kernels;
@@ -51,11 +30,11 @@ typedef struct box_job {
     atomic_size_t skipped;
 } box_job;
 
-static void compute_chunk(void *argument, size_t chunk, size_t start, size_t end) {
+static void compute_part(void *argument, size_t part, size_t start, size_t end) {
     box_job *job = argument;
     const size_t first = job->first + start;
     const size_t skipped = job->kernels->box(&job->batch, first, end - start, job->out_boxes + first);
-    (void)chunk;
+    (void)part;
     if (skipped > 0)
         atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
@@ -71,7 +50,7 @@ narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bodies *bod
     if (status == NARC_OK)
         status = narc_check_reserved(o->reserved, 4, "options", error);
     if (status == NARC_OK)
-        status = check_bodies(shapes, bodies, o->first, &count, o->workers, error);
+        status = narc_check_bodies(shapes, bodies, o->first, &count, o->workers, error);
     if (status != NARC_OK)
         return status;
     if (count > 0 && !out_boxes)
@@ -82,7 +61,7 @@ narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bodies *bod
                    .out_boxes = out_boxes};
     if (!job.kernels)
         return status;
-    narc_run_ranges(o->workers, count, CHUNK, compute_chunk, &job);
+    narc_run_ranges(o->workers, count, PART, compute_part, &job);
     if (o->out_skipped)
         *o->out_skipped = atomic_load_explicit(&job.skipped, memory_order_relaxed);
     return NARC_OK;

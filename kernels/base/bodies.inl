@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * bodies.inl - the two bodies of a pair in each lane, from the caller's columns.
+ * bodies.inl - the two bodies of a pair in each lane, or a body alone, from the caller's columns.
  */
 #ifndef NARC_BASE_BODIES_INL
 #define NARC_BASE_BODIES_INL
@@ -168,6 +168,45 @@ INLINE struct body_pair load_bodies(const narc_batch *batch, enum pose_layout la
         load_columns(batch, a, b, shift, &pair);
     }
     return pair;
+}
+
+/* Bodies in the world, one in each lane. A position is the sum of a float and what that lacks of a double. */
+struct placed_bodies {
+    vec2 position, rest, rotation;
+    vf scale;
+};
+
+/* Splits the positions along one axis. */
+INLINE void split_positions(narc_position_column column, const int32_t *index, vf *out_high, vf *out_low) {
+    float high[V_WIDTH], low[V_WIDTH];
+    for (int l = 0; l < V_WIDTH; l++) {
+        const double whole = narc_double_at(column, (uint32_t)index[l]);
+        high[l] = (float)whole;
+        low[l] = (float)(whole - (double)high[l]);
+    }
+    *out_high = v_load(high);
+    *out_low = v_load(low);
+}
+
+INLINE struct placed_bodies load_placed_bodies(const narc_bodies *bodies, enum pose_layout layout,
+                                               const int32_t *index) {
+    struct placed_bodies out = {.rest = {v_set(0), v_set(0)}};
+    out.scale = bodies->scale.base ? load_column(bodies->scale, index) : v_set(1);
+    if (layout == POSE_ROWS) {
+        vf row[4];
+        v_rows(bodies->x.base, bodies->x.stride, index, row);
+        out.position = (vec2){row[0], row[1]};
+        out.rotation = (vec2){row[2], row[3]};
+        return out;
+    }
+    if (bodies->x.precision == NARC_FLOAT64) {
+        split_positions(bodies->x, index, &out.position.x, &out.rest.x);
+        split_positions(bodies->y, index, &out.position.y, &out.rest.y);
+    } else {
+        out.position = (vec2){load_column(get_singles(bodies->x), index), load_column(get_singles(bodies->y), index)};
+    }
+    out.rotation = (vec2){load_column(bodies->cosine, index), load_column(bodies->sine, index)};
+    return out;
 }
 
 #endif

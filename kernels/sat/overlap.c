@@ -117,7 +117,7 @@ static void probe_again_overlaps(const struct call *call, struct queue *queue, i
 }
 
 /* Climbs from the arcs that hold DIRECTION. */
-static void climb_to_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+static void climb_from_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     const narc_record *records = call->batch->shapes->records;
     look_up_arcs(records, queue, begin, false);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
@@ -137,7 +137,7 @@ static void decide_overlaps(const struct call *call, struct queue *queue, int be
 }
 
 void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
-    static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_to_overlaps, decide_overlaps};
+    static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_from_overlaps, decide_overlaps};
     struct queue queues[4];
     if (!NARC_SHORTCUTS) {
         run_overlap_method(decide_overlaps, batch, first, count, skipped, out_bits);
