@@ -72,17 +72,6 @@ INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[
                 place[lane] = find_place(call, row[lane]);
 }
 
-/* The places behind those that are listed, for the lanes `keep`; elsewhere the spare one. */
-INLINE void find_next_places(struct rows *rows, vm keep, char *place[V_WIDTH]) {
-    const uint32_t kept = vm_bits(keep);
-    char *next = rows->out.base + rows->listed * rows->out.stride;
-    for (uint32_t lane = 0; lane < V_WIDTH; lane++) {
-        place[lane] = choose(kept >> lane & 1, next, rows->spare);
-        next += (ptrdiff_t)(kept >> lane & 1) * rows->out.stride;
-    }
-    rows->listed += __builtin_popcount(kept);
-}
-
 INLINE void put_word(char *place, int offset, uint32_t word) { memcpy(place + offset, &word, sizeof word); }
 
 /* Two halves of a word, the one at the lower address first. */
@@ -137,11 +126,23 @@ INLINE void put_answers(const struct call *call, vi pairs, vm keep, const struct
     write_answers(call, place, find_numbers(call, pairs), answer);
 }
 
-/* Lists the rows of pairs in the lanes `keep`, behind those that are listed. */
+/* Lists the rows of pairs in the lanes `keep` behind those that are listed, where there is room for all lanes: packed, so
+ * that their places follow each other. What is written behind the last one is overwritten. */
 INLINE void append_answers(const struct call *call, vi pairs, vm keep, const struct answer *answer) {
+    struct rows *rows = call->rows;
+    const vp packing = vm_packing(keep);
+    const vi numbers = vi_bits(v_pack(packing, v_of_bits(find_numbers(call, pairs))));
+    struct answer packed = *answer; /* feature and reach of circles are all the same */
+    packed.separation = v_pack(packing, answer->separation);
+    packed.normal = (vec2){v_pack(packing, answer->normal.x), v_pack(packing, answer->normal.y)};
+    packed.point = (vec2){v_pack(packing, answer->point.x), v_pack(packing, answer->point.y)};
+    packed.radius_a = v_pack(packing, answer->radius_a);
+    packed.radius_b = v_pack(packing, answer->radius_b);
     char *place[V_WIDTH];
-    find_next_places(call->rows, keep, place);
-    write_answers(call, place, find_numbers(call, pairs), answer);
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        place[lane] = rows->out.base + (rows->listed + lane) * rows->out.stride;
+    write_answers(call, place, numbers, &packed);
+    rows->listed += __builtin_popcount(vm_bits(keep));
 }
 
 /* With an infinite margin every pair has a row. Writes that of pairs without an answer, in the lanes `which`. */

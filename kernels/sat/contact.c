@@ -58,7 +58,8 @@ INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf ite
 INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
     struct rows *rows = call->rows;
     const vm open = vm_and_not(take_valid(call, pair, circles, item), circles->apart);
-    const bool in_order = !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid);
+    const bool room = (size_t)rows->listed + V_WIDTH <= call->count;
+    const bool in_order = room && !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid);
     const vm left = are_discs(open, item) ? answer_discs(call, open, circles->margin, item, in_order) : open;
     if (in_order && !vm_any(left))
         rows->done += V_WIDTH;
