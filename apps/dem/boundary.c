@@ -90,16 +90,8 @@ static bool add_image(dem *d, size_t body, float x, float y, narc_box all) {
     const size_t k = d->bodies.count + s->image_count;
     if (!overlap(image, all))
         return true;
-    if (k >= s->box_capacity) {
-        const size_t capacity = k + k / 2 + 16;
-        if (!dem_resize(d, &s->boxes, capacity, sizeof *s->boxes) ||
-            !dem_resize(d, &s->still, capacity, sizeof *s->still) ||
-            !dem_resize(d, &s->image_of, capacity, sizeof *s->image_of) ||
-            !dem_resize(d, &s->image_x, capacity, sizeof *s->image_x) ||
-            !dem_resize(d, &s->image_y, capacity, sizeof *s->image_y))
-            return false;
-        s->box_capacity = capacity;
-    }
+    if (!dem_make_room_for_boxes(d, k + 1))
+        return false;
     s->boxes[k] = image;
     s->still[k] = 1;
     s->image_of[k] = (uint32_t)body;

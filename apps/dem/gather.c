@@ -50,13 +50,9 @@ static void gather_body(const dem *d, size_t body) {
 
 void dem_gather_forces(dem *d) {
     const size_t count = d->bodies.count;
-    const unsigned team = dem_team(d);
-    (void)team;
     if (d->scratch->adds)
         return;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team)
-#endif
+#pragma omp parallel for schedule(static) num_threads(dem_team(d))
     for (size_t k = 0; k < count; k++)
         gather_body(d, k);
 }

@@ -154,9 +154,9 @@ static dem_law read_law_name(const json_value *root) {
                                        "kt",
                                        "gamma_n",
                                        "gamma_t",
-                                       "restitution",
-                                       "friction",
                                        "pairs",
+                                       "friction",
+                                       "restitution",
                                        "rolling_friction",
                                        "least_radius",
                                        "largest_radius",
@@ -176,15 +176,14 @@ static dem_law read_law_name(const json_value *root) {
 
 static void read_cell(const json_value *boundary, const char *axis, bool *out_on, double *out_low, double *out_high) {
     const json_value cell = json_member(boundary, axis);
-    double ends[2];
     if (!cell.item)
         return;
-    json_numbers(&cell, 2, ends);
-    if (!(ends[1] > ends[0]))
+    const dem_vec ends = json_vec(&cell);
+    if (!(ends.y > ends.x))
         json_fail(&cell, "is not a range [low, high]");
     *out_on = true;
-    *out_low = ends[0];
-    *out_high = ends[1];
+    *out_low = ends.x;
+    *out_high = ends.y;
 }
 
 static dem_settings read_settings(const json_value *root, unsigned threads) {
@@ -195,12 +194,8 @@ static dem_settings read_settings(const json_value *root, unsigned threads) {
     s.time_step = json_positive(root, "time_step");
     s.skin = json_positive(root, "skin");
     s.thickness = json_member(root, "thickness").item ? json_positive(root, "thickness") : 1;
-    const json_value gravity = json_member(root, "gravity"), boundary = json_member(root, "boundary");
-    if (gravity.item) {
-        double g[2];
-        json_numbers(&gravity, 2, g);
-        s.gravity = (dem_vec){g[0], g[1]};
-    }
+    s.gravity = json_vec_or(root, "gravity", s.gravity);
+    const json_value boundary = json_member(root, "boundary");
     if (boundary.item) {
         json_check_object(&boundary, boundary_keys);
         read_cell(&boundary, "x", &s.periodic_x, &s.low_x, &s.high_x);

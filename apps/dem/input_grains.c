@@ -76,22 +76,21 @@ static dem_sizes read_sizes(const json_value *value) {
     const json_value lognormal = json_member(value, "lognormal");
     if ((uniform.item != NULL) + (normal.item != NULL) + (lognormal.item != NULL) != 1)
         json_fail(value, "is not one of uniform, normal and lognormal");
-    double n[2];
     const json_value *given = uniform.item ? &uniform : normal.item ? &normal : &lognormal;
-    json_numbers(given, 2, n);
+    const dem_vec n = json_vec(given);
     if (uniform.item) {
         const json_value low = json_member(value, "low"), high = json_member(value, "high");
         if (low.item || high.item)
             json_fail(low.item ? &low : &high, "is not for uniform, which has limits");
-        if (!(n[0] > 0 && n[1] >= n[0]))
+        if (!(n.x > 0 && n.y >= n.x))
             json_fail(&uniform, "is not a range of sizes [low, high]");
-        return (dem_sizes){.kind = DEM_UNIFORM, .low = n[0], .high = n[1]};
+        return (dem_sizes){.kind = DEM_UNIFORM, .low = n.x, .high = n.y};
     }
-    if (!(n[0] > 0 && n[1] > 0))
+    if (!(n.x > 0 && n.y > 0))
         json_fail(given, "is not a size and a deviation above 0");
     const dem_sizes sizes = {.kind = normal.item ? DEM_NORMAL : DEM_LOGNORMAL,
-                             .mean = n[0],
-                             .deviation = n[1],
+                             .mean = n.x,
+                             .deviation = n.y,
                              .low = json_positive(value, "low"),
                              .high = json_positive(value, "high")};
     if (!(sizes.low < sizes.mean && sizes.mean < sizes.high))
@@ -148,11 +147,9 @@ static void read_lattice(const json_value *item, dem *d, uint64_t *random) {
     json_check_object(item, keys);
     dem_filling f = read_filling(item, d);
     const json_value spacing = json_require(item, "spacing");
-    double n[2];
-    json_numbers(&spacing, 2, n);
-    if (!(n[0] > 0 && n[1] > 0))
+    f.spacing = json_vec(&spacing);
+    if (!(f.spacing.x > 0 && f.spacing.y > 0))
         json_fail(&spacing, "is not two lengths above 0");
-    f.spacing = (dem_vec){n[0], n[1]};
     f.jitter = json_number_or(item, "jitter", 0, 1, 0);
     if (!dem_fill_lattice(d, &f, random))
         dem_fail_at(item, d);
@@ -162,18 +159,15 @@ static void read_grain(const json_value *item, dem *d) {
     static const char *const keys[] = {"shape", "material", "at", "angle", "size", "velocity", "spin", NULL};
     json_check_object(item, keys);
     const json_value form = json_require(item, "shape"), material = json_require(item, "material");
-    const json_value at = json_require(item, "at"), velocity = json_member(item, "velocity");
-    double place[2], speed[2] = {0, 0};
-    json_numbers(&at, 2, place);
-    if (velocity.item)
-        json_numbers(&velocity, 2, speed);
+    const json_value at = json_require(item, "at");
+    const dem_vec place = json_vec(&at), velocity = json_vec_or(item, "velocity", (dem_vec){0, 0});
     dem_grain grain = {.shape = dem_find_shape(&form, d),
                        .material = dem_find_material(&material, d),
-                       .x = place[0],
-                       .y = place[1],
+                       .x = place.x,
+                       .y = place.y,
                        .angle = json_number_or(item, "angle", -1e6, 1e6, 0),
-                       .vx = speed[0],
-                       .vy = speed[1],
+                       .vx = velocity.x,
+                       .vy = velocity.y,
                        .spin = json_number_or(item, "spin", -1e300, 1e300, 0)};
     grain.scale = json_positive(item, "size") / d->shapes[grain.shape].extent;
     if (!dem_add_grain(d, grain))

@@ -66,22 +66,15 @@ void dem_read_stages(const json_value *root, dem *d, dem_input *input) {
         const json_value item = json_at(&list, i);
         json_check_object(&item, keys);
         const json_value name = json_member(&item, "name"), duration = json_require(&item, "duration");
-        const json_value gravity = json_member(&item, "gravity"), friction = json_member(&item, "friction");
         const json_value walls = json_member(&item, "walls");
-        dem_stage stage = {.steps = read_steps(&duration, d)};
+        dem_stage stage = {.steps = read_steps(&duration, d),
+                           .sets_gravity = json_member(&item, "gravity").item != NULL,
+                           .gravity = json_vec_or(&item, "gravity", (dem_vec){0, 0}),
+                           .sets_friction = json_member(&item, "friction").item != NULL,
+                           .friction = json_number_or(&item, "friction", 0, 1e6, 0)};
         snprintf(stage.name, sizeof stage.name, "stage %zu", i);
         if (name.item)
             json_name(&name, stage.name, sizeof stage.name);
-        if (gravity.item) {
-            double n[2];
-            json_numbers(&gravity, 2, n);
-            stage.sets_gravity = true;
-            stage.gravity = (dem_vec){n[0], n[1]};
-        }
-        if (friction.item) {
-            stage.sets_friction = true;
-            stage.friction = json_number(&friction, 0, 1e6, false);
-        }
         if (walls.item)
             read_changes(&walls, d, has_servo, &stage);
         input->stages[input->stage_count++] = stage;

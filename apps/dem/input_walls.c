@@ -33,17 +33,16 @@ static void read_between(const json_value *between, const dem *d, size_t wall, i
 static dem_servo read_servo(const json_value *value, const dem *d, size_t wall) {
     static const char *const keys[] = {"direction", "force", "stress", "between", "gain", "max_speed", "travel", NULL};
     dem_servo servo = {.on = true, .between = {-1, -1}};
-    double n[2];
     if (cJSON_IsNull(value->item))
         return (dem_servo){.between = {-1, -1}};
     json_check_object(value, keys);
     const json_value direction = json_require(value, "direction");
     const json_value force = json_member(value, "force"), stress = json_member(value, "stress");
-    json_numbers(&direction, 2, n);
-    const double length = hypot(n[0], n[1]);
+    const dem_vec along = json_vec(&direction);
+    const double length = hypot(along.x, along.y);
     if (!(length > 0))
         json_fail(&direction, "has no length");
-    servo.direction = (dem_vec){n[0] / length, n[1] / length};
+    servo.direction = (dem_vec){along.x / length, along.y / length};
     const dem_vec normal = d->walls[wall].normal;
     if (d->walls[wall].kind == DEM_PLATE &&
         fabs(servo.direction.x * normal.x + servo.direction.y * normal.y) < LEAST_ACROSS)
@@ -69,21 +68,14 @@ static dem_servo read_servo(const json_value *value, const dem *d, size_t wall) 
 void dem_read_motion(const json_value *object, const dem *d, bool has_servo, dem_wall_change *out_change) {
     const json_value velocity = json_member(object, "velocity"), spin = json_member(object, "spin");
     const json_value servo = json_member(object, "servo");
-    dem_wall_change change = {.wall = out_change->wall};
-    if (velocity.item) {
-        double n[2];
-        json_numbers(&velocity, 2, n);
-        change.sets_velocity = true;
-        change.velocity = (dem_vec){n[0], n[1]};
-    }
-    if (spin.item) {
-        change.sets_spin = true;
-        change.spin = json_number(&spin, -1e300, 1e300, false);
-    }
-    if (servo.item) {
-        change.sets_servo = true;
+    dem_wall_change change = {.wall = out_change->wall,
+                              .sets_velocity = velocity.item != NULL,
+                              .velocity = json_vec_or(object, "velocity", (dem_vec){0, 0}),
+                              .sets_spin = spin.item != NULL,
+                              .spin = json_number_or(object, "spin", -1e300, 1e300, 0),
+                              .sets_servo = servo.item != NULL};
+    if (change.sets_servo)
         change.servo = read_servo(&servo, d, change.wall);
-    }
     if (velocity.item && (change.sets_servo ? change.servo.on : has_servo))
         json_fail(&velocity, "is of a wall that its servo moves");
     if (change.sets_spin && d->walls[change.wall].kind == DEM_PLATE && change.spin != 0)
@@ -107,16 +99,13 @@ void dem_apply_change(dem *d, const dem_wall_change *change) {
 
 static void read_plate(const json_value *value, dem_wall *wall) {
     static const char *const keys[] = {"point", "normal", NULL};
-    double point[2], normal[2];
     json_check_object(value, keys);
     const json_value at = json_require(value, "point"), direction = json_require(value, "normal");
-    json_numbers(&at, 2, point);
-    json_numbers(&direction, 2, normal);
-    if (!(hypot(normal[0], normal[1]) > 0))
-        json_fail(&direction, "has no length");
     wall->kind = DEM_PLATE;
-    wall->place = (dem_vec){point[0], point[1]};
-    wall->normal = (dem_vec){normal[0], normal[1]};
+    wall->place = json_vec(&at);
+    wall->normal = json_vec(&direction);
+    if (!(hypot(wall->normal.x, wall->normal.y) > 0))
+        json_fail(&direction, "has no length");
 }
 
 static uint32_t add_box_shape(const json_value *value, dem *d, const char *name) {
@@ -139,10 +128,8 @@ static uint32_t add_box_shape(const json_value *value, dem *d, const char *name)
 /* A box, or any shape of the shapes file. */
 static void read_block(const json_value *item, dem *d, dem_wall *wall) {
     const json_value box = json_member(item, "box"), form = json_member(item, "shape"), at = json_require(item, "at");
-    double n[2];
-    json_numbers(&at, 2, n);
     wall->kind = DEM_BOX;
-    wall->place = wall->pivot = (dem_vec){n[0], n[1]};
+    wall->place = wall->pivot = json_vec(&at);
     wall->angle = json_number_or(item, "angle", -1e6, 1e6, 0);
     wall->scale = 1;
     if (box.item) {
@@ -163,7 +150,7 @@ static void refuse_keys(const json_value *item, const char *const *keys, const c
 
 static void read_wall(const json_value *item, dem *d) {
     const json_value name = json_require(item, "name"), material = json_require(item, "material");
-    const json_value plate = json_member(item, "plate"), pivot = json_member(item, "pivot");
+    const json_value plate = json_member(item, "plate");
     dem_wall wall = {.servo = {.between = {-1, -1}}};
     json_name(&name, wall.name, sizeof wall.name);
     for (size_t w = 0; w < d->wall_count; w++)
@@ -180,11 +167,7 @@ static void read_wall(const json_value *item, dem *d) {
         read_plate(&plate, &wall);
     else
         read_block(item, d, &wall);
-    if (pivot.item) {
-        double n[2];
-        json_numbers(&pivot, 2, n);
-        wall.pivot = (dem_vec){n[0], n[1]};
-    }
+    wall.pivot = json_vec_or(item, "pivot", wall.pivot);
     if (!dem_add_wall(d, wall))
         dem_fail_at(item, d);
 }

@@ -67,6 +67,7 @@ uint64_t dem_hash_bytes(uint64_t hash, const void *bytes, size_t size);
 
 /* neighbours.c */
 bool dem_index_pairs(dem *d);
+bool dem_make_room_for_boxes(dem *d, size_t count);
 
 /* step.c: as many as there is room for pairs */
 bool dem_make_room_for_contacts(dem *d);

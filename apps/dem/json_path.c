@@ -10,8 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dem.h"
-
 enum { LONGEST = 40 }; /* of what is shown of a file */
 
 /* _Exit() drops what is still buffered: nothing more gets written. */
@@ -158,6 +156,17 @@ void json_numbers(const json_value *list, size_t count, double *out_numbers) {
         const json_value item = json_at(list, i);
         out_numbers[i] = json_number(&item, -1e300, 1e300, false);
     }
+}
+
+dem_vec json_vec(const json_value *list) {
+    double n[2];
+    json_numbers(list, 2, n);
+    return (dem_vec){n[0], n[1]};
+}
+
+dem_vec json_vec_or(const json_value *object, const char *key, dem_vec otherwise) {
+    const json_value member = json_member(object, key);
+    return member.item ? json_vec(&member) : otherwise;
 }
 
 void json_text(const json_value *value, char *out_text, size_t size) {

@@ -11,6 +11,8 @@
 
 #include <cjson/cJSON.h>
 
+#include "dem.h"
+
 /* Ends the program with status 2: "dem: message", one line on standard error. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 1, 2)))
@@ -51,8 +53,10 @@ double json_number_or(const json_value *object, const char *key, double low, dou
 size_t json_whole(const json_value *value, size_t low, size_t high);
 bool json_bool_or(const json_value *object, const char *key, bool otherwise);
 
-/* A list of `count` finite numbers. */
+/* A list of `count` finite numbers; of two of them; of two that may be missing. */
 void json_numbers(const json_value *list, size_t count, double *out_numbers);
+dem_vec json_vec(const json_value *list);
+dem_vec json_vec_or(const json_value *object, const char *key, dem_vec otherwise);
 
 /* A string, not empty, shorter than `size`, copied; and one that can stand in the head of a table and on a terminal. */
 void json_text(const json_value *value, char *out_text, size_t size);

@@ -206,26 +206,17 @@ INLINE void apply_law(dem *d, size_t k, bool hertz, bool rolls, dem_sums *sums) 
         sums->too_deep = k;
 }
 
-static dem_sums apply_linear(dem *d, size_t first, size_t end) {
+INLINE dem_sums apply_laws(dem *d, size_t first, size_t end, bool hertz, bool rolls) {
     dem_sums sums = {.too_deep = SIZE_MAX};
     for (size_t k = first; k < end; k++)
-        apply_law(d, k, false, false, &sums);
+        apply_law(d, k, hertz, rolls, &sums);
     return sums;
 }
 
-static dem_sums apply_hertz(dem *d, size_t first, size_t end) {
-    dem_sums sums = {.too_deep = SIZE_MAX};
-    for (size_t k = first; k < end; k++)
-        apply_law(d, k, true, false, &sums);
-    return sums;
-}
-
-static dem_sums apply_with_rolling(dem *d, size_t first, size_t end) {
-    dem_sums sums = {.too_deep = SIZE_MAX};
-    const bool hertz = d->settings.law == DEM_HERTZ;
-    for (size_t k = first; k < end; k++)
-        apply_law(d, k, hertz, true, &sums);
-    return sums;
+static dem_sums apply_block(dem *d, size_t first, size_t end, bool hertz, bool rolls) {
+    return rolls   ? apply_laws(d, first, end, hertz, true)
+           : hertz ? apply_laws(d, first, end, true, false)
+                   : apply_laws(d, first, end, false, false);
 }
 
 static bool fail_depth(dem *d, size_t k) {
@@ -242,21 +233,17 @@ static bool fail_depth(dem *d, size_t k) {
 bool dem_apply_laws(dem *d) {
     dem_scratch *s = d->scratch;
     const size_t count = d->contacts.count, blocks = (count + DEM_BLOCK - 1) / DEM_BLOCK;
-    dem_sums (*const apply)(dem *, size_t, size_t) = dem_has_rolling(d)             ? apply_with_rolling
-                                                     : d->settings.law == DEM_HERTZ ? apply_hertz
-                                                                                    : apply_linear;
+    const bool hertz = d->settings.law == DEM_HERTZ, rolls = dem_has_rolling(d);
     const unsigned team = dem_team(d);
     s->adds = team == 1;
     if (s->adds)
         dem_clear_forces(d);
     if (!dem_reserve(d, &s->sums, &s->sums_capacity, blocks, sizeof *s->sums))
         return false;
-#ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
-#endif
     for (size_t block = 0; block < blocks; block++) {
         const size_t first = block * DEM_BLOCK, end = block + 1 < blocks ? first + DEM_BLOCK : count;
-        s->sums[block] = apply(d, first, end);
+        s->sums[block] = apply_block(d, first, end, hertz, rolls);
     }
     dem_sums all = {.too_deep = SIZE_MAX};
     for (size_t block = blocks; block-- > 0;) {

@@ -56,41 +56,21 @@ typedef struct column {
     size_t offset, size;
 } column;
 
-#define DEM_COLUMN(type, field)                                                                                        \
-    { offsetof(type, field), sizeof(*((type *)0)->field) }
+#define BODY(field)                                                                                                    \
+    { offsetof(dem_bodies, field), sizeof(*((dem_bodies *)0)->field) }
+#define PAIR(field)                                                                                                    \
+    { offsetof(dem_pairs, field), sizeof(*((dem_pairs *)0)->field) }
 
-static const column body_columns[] = {DEM_COLUMN(dem_bodies, x),
-                                      DEM_COLUMN(dem_bodies, y),
-                                      DEM_COLUMN(dem_bodies, cosine),
-                                      DEM_COLUMN(dem_bodies, sine),
-                                      DEM_COLUMN(dem_bodies, vx),
-                                      DEM_COLUMN(dem_bodies, vy),
-                                      DEM_COLUMN(dem_bodies, spin),
-                                      DEM_COLUMN(dem_bodies, fx),
-                                      DEM_COLUMN(dem_bodies, fy),
-                                      DEM_COLUMN(dem_bodies, torque),
-                                      DEM_COLUMN(dem_bodies, list_x),
-                                      DEM_COLUMN(dem_bodies, list_y),
-                                      DEM_COLUMN(dem_bodies, list_cosine),
-                                      DEM_COLUMN(dem_bodies, list_sine),
-                                      DEM_COLUMN(dem_bodies, cell_x),
-                                      DEM_COLUMN(dem_bodies, cell_y),
-                                      DEM_COLUMN(dem_bodies, scale),
-                                      DEM_COLUMN(dem_bodies, shape),
-                                      DEM_COLUMN(dem_bodies, material),
-                                      DEM_COLUMN(dem_bodies, still),
-                                      DEM_COLUMN(dem_bodies, mass),
-                                      DEM_COLUMN(dem_bodies, inertia),
-                                      DEM_COLUMN(dem_bodies, inverse_mass),
-                                      DEM_COLUMN(dem_bodies, inverse_inertia),
-                                      DEM_COLUMN(dem_bodies, reach),
-                                      DEM_COLUMN(dem_bodies, extent)};
+static const column body_columns[] = {
+    BODY(x),           BODY(y),         BODY(cosine), BODY(sine),    BODY(vx),           BODY(vy),
+    BODY(spin),        BODY(fx),        BODY(fy),     BODY(torque),  BODY(list_x),       BODY(list_y),
+    BODY(list_cosine), BODY(list_sine), BODY(cell_x), BODY(cell_y),  BODY(scale),        BODY(shape),
+    BODY(material),    BODY(still),     BODY(mass),   BODY(inertia), BODY(inverse_mass), BODY(inverse_inertia),
+    BODY(reach),       BODY(extent)};
 enum { BODY_COLUMNS = sizeof body_columns / sizeof body_columns[0] };
 
-static const column pair_columns[] = {DEM_COLUMN(dem_pairs, a),       DEM_COLUMN(dem_pairs, b),
-                                      DEM_COLUMN(dem_pairs, shift_x), DEM_COLUMN(dem_pairs, shift_y),
-                                      DEM_COLUMN(dem_pairs, hints),   DEM_COLUMN(dem_pairs, memory),
-                                      DEM_COLUMN(dem_pairs, dashpot), DEM_COLUMN(dem_pairs, rolling)};
+static const column pair_columns[] = {PAIR(a),     PAIR(b),      PAIR(shift_x), PAIR(shift_y),
+                                      PAIR(hints), PAIR(memory), PAIR(dashpot), PAIR(rolling)};
 enum { PAIR_COLUMNS = sizeof pair_columns / sizeof pair_columns[0] };
 
 void *dem_body_column(const dem *d, size_t index, size_t *out_item_size) {
@@ -383,14 +363,10 @@ narc_body dem_make_pose(const dem_bodies *b, size_t k) {
 bool dem_make_poses(dem *d, narc_bodies *out) {
     const dem_bodies *b = &d->bodies;
     const size_t count = b->count;
-    const unsigned team = dem_team(d);
     if (!dem_reserve(d, &d->scratch->poses, &d->scratch->pose_capacity, count, sizeof *d->scratch->poses))
         return false;
     narc_body *const pose = d->scratch->poses;
-    (void)team;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
-#endif
+#pragma omp parallel for schedule(static) num_threads(dem_team(d)) if (dem_team(d) > 1)
     for (size_t k = 0; k < count; k++)
         pose[k] = dem_make_pose(b, k);
     *out = narc_view_bodies(pose, count);

@@ -6,22 +6,22 @@
  * cannot touch before one of them has moved half of it (step.c watches that, rotation included).
  */
 #include <stdlib.h>
+#include <string.h>
 
 #include "internal.h"
 
-static bool make_room_for_boxes(dem *d) {
+bool dem_make_room_for_boxes(dem *d, size_t count) {
     dem_scratch *s = d->scratch;
-    const size_t count = d->bodies.count;
-    if (count > s->box_capacity) {
-        if (!dem_resize(d, &s->boxes, count, sizeof *s->boxes) || !dem_resize(d, &s->still, count, sizeof *s->still) ||
-            !dem_resize(d, &s->image_of, count, sizeof *s->image_of) ||
-            !dem_resize(d, &s->image_x, count, sizeof *s->image_x) ||
-            !dem_resize(d, &s->image_y, count, sizeof *s->image_y))
-            return false;
-        s->box_capacity = count;
-    }
-    for (size_t k = 0; k < count; k++)
-        s->still[k] = d->bodies.still[k];
+    const size_t capacity = count + count / 2 + 16;
+    if (count <= s->box_capacity)
+        return true;
+    if (!dem_resize(d, &s->boxes, capacity, sizeof *s->boxes) ||
+        !dem_resize(d, &s->still, capacity, sizeof *s->still) ||
+        !dem_resize(d, &s->image_of, capacity, sizeof *s->image_of) ||
+        !dem_resize(d, &s->image_x, capacity, sizeof *s->image_x) ||
+        !dem_resize(d, &s->image_y, capacity, sizeof *s->image_y))
+        return false;
+    s->box_capacity = capacity;
     return true;
 }
 
@@ -32,8 +32,9 @@ static bool find_boxes(dem *d) {
     const narc_box_options options = {
         .margin = (float)(0.5 * d->settings.skin), .workers = &workers, .out_skipped = &skipped};
     narc_error error;
-    if (!make_room_for_boxes(d) || !dem_make_poses(d, &bodies))
+    if (!dem_make_room_for_boxes(d, d->bodies.count) || !dem_make_poses(d, &bodies))
         return false;
+    memcpy(d->scratch->still, d->bodies.still, d->bodies.count * sizeof *d->bodies.still);
     if (narc_compute_boxes(d->store, &bodies, &options, d->scratch->boxes, &error) != NARC_OK)
         return dem_fail_narc(d, "boxes", &error);
     if (skipped > 0)
@@ -129,16 +130,14 @@ bool dem_index_pairs(dem *d) {
             next++;
         n->first_a[k] = (uint32_t)next;
     }
-    for (size_t k = 0; k < bodies + 2; k++)
-        n->first_b[k] = 0;
+    memset(n->first_b, 0, (bodies + 2) * sizeof *n->first_b);
     for (size_t k = 0; k < p->count; k++)
         n->first_b[p->b[k] + 2]++;
     for (size_t k = 2; k < bodies + 2; k++)
         n->first_b[k] += n->first_b[k - 1];
     for (size_t k = 0; k < p->count; k++) /* moves each beginning to the next body's */
         n->of_b[n->first_b[p->b[k] + 1]++] = (uint32_t)k;
-    for (size_t k = 0; k < p->count; k++)
-        d->scratch->slot[k] = 0;
+    memset(d->scratch->slot, 0, p->count * sizeof *d->scratch->slot);
     dem_find_dashpots(d);
     return true;
 }
@@ -146,12 +145,11 @@ bool dem_index_pairs(dem *d) {
 /* From where bodies move. */
 static void remember_places(dem *d) {
     dem_bodies *b = &d->bodies;
-    for (size_t k = 0; k < b->count; k++) {
-        b->list_x[k] = b->x[k];
-        b->list_y[k] = b->y[k];
-        b->list_cosine[k] = b->cosine[k];
-        b->list_sine[k] = b->sine[k];
-    }
+    const size_t size = b->count * sizeof *b->x;
+    memcpy(b->list_x, b->x, size);
+    memcpy(b->list_y, b->y, size);
+    memcpy(b->list_cosine, b->cosine, size);
+    memcpy(b->list_sine, b->sine, size);
 }
 
 bool dem_renew_lists(dem *d) {

@@ -23,28 +23,16 @@ typedef struct header {
 static const char MAGIC[8] = {'n', 'a', 'r', 'c', '-', 'd', 'e', 'm'};
 enum { VERSION = 3, BYTE_ORDER_MARK = 0x01020304 };
 
-/* What is not an array. */
-typedef struct sums {
-    uint64_t bodies, walls, pairs, contacts, extra, step, list_builds;
-    double time, damping, friction, normal_energy, tangential_energy, rolling_energy;
-    dem_vec gravity;
-    dem_contact_law laws[DEM_MAX_MATERIALS][DEM_MAX_MATERIALS];
-    dem_place place;
-} sums;
-
-/* A wall without its name and whatever else does not change. Every byte is told. */
-typedef struct wall_state {
-    dem_vec velocity, pivot, direction;
-    double spin, work, resistance, idle_way, force, stress, gain, max_speed, travel;
-    int32_t between[2], on, padding;
-} wall_state;
+typedef struct counts {
+    uint64_t bodies, walls, pairs, contacts, extra;
+} counts;
 
 /* ------------------------------------------------------------------------------------------------ one way for both */
 
 /* Writing, `file`; reading, from `bytes`; or only counting and hashing. */
 typedef struct stream {
     FILE *file;
-    const unsigned char *bytes; /* reading */
+    const char *bytes; /* reading */
     size_t size, used;
     uint64_t hash;
     bool reads, ok;
@@ -63,39 +51,35 @@ static void pass(stream *s, void *data, size_t size) {
     s->used += size;
 }
 
+/* What is not an array. */
+static void pass_sums(stream *s, dem *d, dem_place *place) {
+    pass(s, &d->step, sizeof d->step);
+    pass(s, &d->list_builds, sizeof d->list_builds);
+    double *const sums[] = {&d->time,          &d->damping,           &d->friction,
+                            &d->normal_energy, &d->tangential_energy, &d->rolling_energy};
+    for (size_t i = 0; i < sizeof sums / sizeof sums[0]; i++)
+        pass(s, sums[i], sizeof *sums[i]);
+    pass(s, &d->settings.gravity, sizeof d->settings.gravity);
+    pass(s, d->laws, sizeof d->laws);
+    pass(s, place, sizeof *place);
+}
+
+/* Walls without their names and whatever else does not change. */
 static void pass_walls(stream *s, dem *d) {
-    for (size_t i = 0; i < d->wall_count && s->ok; i++) {
+    for (size_t i = 0; i < d->wall_count; i++) {
         dem_wall *w = &d->walls[i];
         dem_servo *servo = &w->servo;
-        wall_state state = {.velocity = w->velocity,
-                            .pivot = w->pivot,
-                            .direction = servo->direction,
-                            .spin = w->spin,
-                            .work = w->work,
-                            .resistance = w->resistance,
-                            .idle_way = w->idle_way,
-                            .force = servo->force,
-                            .stress = servo->stress,
-                            .gain = servo->gain,
-                            .max_speed = servo->max_speed,
-                            .travel = servo->travel,
-                            .between = {servo->between[0], servo->between[1]},
-                            .on = servo->on};
-        pass(s, &state, sizeof state);
-        w->velocity = state.velocity;
-        w->pivot = state.pivot;
-        w->spin = state.spin;
-        w->work = state.work;
-        w->resistance = state.resistance;
-        w->idle_way = state.idle_way;
-        *servo = (dem_servo){.on = state.on != 0,
-                             .direction = state.direction,
-                             .force = state.force,
-                             .stress = state.stress,
-                             .between = {state.between[0], state.between[1]},
-                             .gain = state.gain,
-                             .max_speed = state.max_speed,
-                             .travel = state.travel};
+        int32_t on[2] = {servo->on, 0};
+        double *const numbers[] = {&w->spin,       &w->work,     &w->resistance,    &w->idle_way,  &servo->force,
+                                   &servo->stress, &servo->gain, &servo->max_speed, &servo->travel};
+        pass(s, &w->velocity, sizeof w->velocity);
+        pass(s, &w->pivot, sizeof w->pivot);
+        pass(s, &servo->direction, sizeof servo->direction);
+        for (size_t k = 0; k < sizeof numbers / sizeof numbers[0]; k++)
+            pass(s, numbers[k], sizeof *numbers[k]);
+        pass(s, servo->between, sizeof servo->between);
+        pass(s, on, sizeof on);
+        servo->on = on[0] != 0;
     }
 }
 
@@ -112,51 +96,26 @@ static void pass_arrays(stream *s, dem *d) {
     pass(s, p->hints, p->count * sizeof *p->hints);
     pass(s, p->memory, p->count * sizeof *p->memory);
     pass(s, p->rolling, p->count * sizeof *p->rolling);
+    /* What the last step found: a run that has no more steps is asked for it. */
+    pass(s, d->contacts.rows, d->contacts.count * sizeof *d->contacts.rows);
+    pass(s, d->contacts.forces, d->contacts.count * sizeof *d->contacts.forces);
 }
 
-/* What the last step found: a run that has no more steps is asked for it. */
-static void pass_contacts(stream *s, const dem *d) {
-    const dem_contacts *c = &d->contacts;
-    pass(s, c->rows, c->count * sizeof *c->rows);
-    pass(s, c->forces, c->count * sizeof *c->forces);
+static void pass_all(stream *s, dem *d, dem_place *place) {
+    pass_sums(s, d, place);
+    pass_walls(s, d);
+    pass_arrays(s, d);
 }
 
 /* ------------------------------------------------------------------------------------------------ writing */
 
-static sums collect_sums(const dem *d, const dem_place *place) {
-    sums all;
-    memset(&all, 0, sizeof all);
-    all.bodies = d->bodies.count;
-    all.walls = d->wall_count;
-    all.pairs = d->pairs.count;
-    all.contacts = d->contacts.count;
-    all.extra = d->scratch->extra_count;
-    all.step = d->step;
-    all.list_builds = d->list_builds;
-    all.time = d->time;
-    all.damping = d->damping;
-    all.friction = d->friction;
-    all.normal_energy = d->normal_energy;
-    all.tangential_energy = d->tangential_energy;
-    all.rolling_energy = d->rolling_energy;
-    all.gravity = d->settings.gravity;
-    memcpy(all.laws, d->laws, sizeof all.laws);
-    all.place = *place;
-    return all;
-}
-
-static void pass_all(stream *s, dem *d, sums *all) {
-    pass(s, all, sizeof *all);
-    pass_walls(s, d);
-    pass_arrays(s, d);
-    pass_contacts(s, d);
-}
-
 bool dem_write_restart(const dem *d, const dem_place *place, const char *path, char *error) {
-    sums all = collect_sums(d, place);
+    counts n = {d->bodies.count, d->wall_count, d->pairs.count, d->contacts.count, d->scratch->extra_count};
     dem state = *d; /* pass() reads it only */
+    dem_place where = *place;
     stream count = {.hash = DEM_HASH_START, .ok = true}, out = {.hash = DEM_HASH_START, .ok = true};
-    pass_all(&count, &state, &all);
+    pass(&count, &n, sizeof n);
+    pass_all(&count, &state, &where);
     header head = {.version = VERSION,
                    .byte_order = BYTE_ORDER_MARK,
                    .size = count.used,
@@ -168,37 +127,14 @@ bool dem_write_restart(const dem *d, const dem_place *place, const char *path, c
         return false;
     out.file = file.file;
     pass(&out, &head, sizeof head);
-    pass_all(&out, &state, &all);
+    pass(&out, &n, sizeof n);
+    pass_all(&out, &state, &where);
     return dem_close_file(&file, true, error);
 }
 
 /* ------------------------------------------------------------------------------------------------ reading */
 
-static unsigned char *read_all(dem *d, const char *path, size_t *out_size) {
-    unsigned char *bytes = NULL;
-    size_t capacity = 0, size = 0;
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        dem_fail(d, "%s: it cannot be read", path);
-        return NULL;
-    }
-    for (size_t got = 1; got > 0; size += got) {
-        if (!dem_reserve(d, &bytes, &capacity, size + 65536, 1))
-            break;
-        got = fread(bytes + size, 1, capacity - size, file);
-    }
-    const bool ok = !ferror(file) && feof(file);
-    fclose(file);
-    if (!ok) {
-        dem_fail(d, "%s: it cannot be read", path);
-        free(bytes);
-        return NULL;
-    }
-    *out_size = size;
-    return bytes;
-}
-
-static bool check_header(dem *d, const char *path, const unsigned char *bytes, size_t size, uint64_t input) {
+static bool check_header(dem *d, const char *path, const char *bytes, size_t size, uint64_t input) {
     header head;
     if (size < sizeof head || memcmp(bytes, MAGIC, sizeof MAGIC) != 0)
         return dem_fail(d, "%s: it is not a restart file", path);
@@ -238,43 +174,29 @@ static bool check_indices(const dem *d) {
     return true;
 }
 
-static bool take_sums(dem *d, const sums *all) {
-    if (all->bodies != d->bodies.count || all->walls != d->wall_count || all->pairs >= UINT32_MAX ||
-        all->contacts > all->pairs || !dem_grow_pairs(d, &d->pairs, all->pairs) || !dem_make_room_for_contacts(d))
+static bool make_room(dem *d, const counts *n) {
+    if (n->bodies != d->bodies.count || n->walls != d->wall_count || n->pairs >= UINT32_MAX || n->contacts > n->pairs ||
+        !dem_grow_pairs(d, &d->pairs, n->pairs) || !dem_make_room_for_contacts(d))
         return false;
-    d->pairs.count = all->pairs;
-    d->contacts.count = all->contacts;
-    d->scratch->extra_count = all->extra;
-    d->step = all->step;
-    d->list_builds = all->list_builds;
-    d->time = all->time;
-    d->damping = all->damping;
-    d->friction = all->friction;
-    d->normal_energy = all->normal_energy;
-    d->tangential_energy = all->tangential_energy;
-    d->rolling_energy = all->rolling_energy;
-    d->settings.gravity = all->gravity;
-    memcpy(d->laws, all->laws, sizeof d->laws);
+    d->pairs.count = n->pairs;
+    d->contacts.count = n->contacts;
+    d->scratch->extra_count = n->extra;
     return true;
 }
 
 bool dem_read_restart(dem *d, dem_place *place, const char *path) {
     size_t size;
-    unsigned char *bytes = read_all(d, path, &size);
+    char *bytes = dem_read_file(path, &size, d->error);
     if (!bytes)
         return false;
     bool ok = check_header(d, path, bytes, size, place->input);
     if (ok) {
         stream in = {.bytes = bytes + sizeof(header), .size = size - sizeof(header), .reads = true, .ok = true};
-        sums all;
-        pass(&in, &all, sizeof all);
-        ok = in.ok && take_sums(d, &all);
-        if (ok) {
-            pass_walls(&in, d);
-            pass_arrays(&in, d);
-            pass_contacts(&in, d);
-            *place = all.place;
-        }
+        counts n;
+        pass(&in, &n, sizeof n);
+        ok = in.ok && make_room(d, &n);
+        if (ok)
+            pass_all(&in, d, place);
         if (!ok || !in.ok || in.used != in.size || !check_indices(d) || !dem_index_pairs(d))
             ok = dem_fail(d, "%s: its counts do not fit the input", path);
     }

@@ -53,7 +53,7 @@ struct discs {
     double dt, skin, gx, gy;
 };
 
-static bool copy_arrays(discs *s, const dem *d) {
+static void copy_arrays(discs *s, const dem *d) {
     const dem_pairs *p = &d->pairs;
     const size_t n = s->count;
     for (size_t k = 0; k < n; k++) {
@@ -78,7 +78,6 @@ static bool copy_arrays(discs *s, const dem *d) {
     memcpy(s->first_a, d->incidence.first_a, (n + 1) * sizeof *s->first_a);
     memcpy(s->first_b, d->incidence.first_b, (n + 1) * sizeof *s->first_b);
     memcpy(s->of_b, d->incidence.of_b, p->count * sizeof *s->of_b);
-    return true;
 }
 
 discs *discs_copy(const dem *d) {
@@ -112,8 +111,10 @@ discs *discs_copy(const dem *d) {
     s->gx = d->settings.gravity.x;
     s->gy = d->settings.gravity.y;
     if (s->disc && s->force && s->pushes && s->list_x && s->list_y && s->pairs && s->shift_x && s->memory &&
-        s->first_a && s->first_b && s->of_b && copy_arrays(s, d))
+        s->first_a && s->first_b && s->of_b) {
+        copy_arrays(s, d);
         return s;
+    }
     discs_free(s);
     return NULL;
 }
@@ -145,9 +146,7 @@ static bool move(discs *s, unsigned threads) {
     const size_t count = s->count;
     int moved = 0;
     (void)threads;
-#ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1) reduction(| : moved)
-#endif
     for (size_t k = 0; k < count; k++) {
         disc *b = &s->disc[k];
         kick_disc(s, k);
@@ -162,9 +161,7 @@ static bool move(discs *s, unsigned threads) {
 static void kick(discs *s, unsigned threads) {
     const size_t count = s->count;
     (void)threads;
-#ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-#endif
     for (size_t k = 0; k < count; k++)
         kick_disc(s, k);
 }
@@ -244,15 +241,11 @@ static void push_one_thread(discs *s) {
 static void push_threads(discs *s, unsigned threads) {
     const size_t pairs = s->pair_count, count = s->count;
     (void)threads;
-#ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(threads)
-#endif
     for (size_t k = 0; k < pairs; k++)
         if (!find_push(s, k, &s->pushes[k]))
             s->pushes[k] = (push){0, 0, 0, 0};
-#ifdef _OPENMP
 #pragma omp parallel for schedule(static) num_threads(threads)
-#endif
     for (size_t i = 0; i < count; i++) {
         force sum = {0, 0, 0};
         for (size_t j = s->first_b[i]; j < s->first_b[i + 1]; j++) {

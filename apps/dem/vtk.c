@@ -89,46 +89,25 @@ static void add_outline(const dem *d, const outline *outlines, const dem_region 
     }
 }
 
-static void write_whole_fields(FILE *file, const dem *d, const dem_load *loads, vtk_column *c) {
-    const dem_bodies *b = &d->bodies;
-    for (size_t k = 0; k < b->count; k++)
-        vtk_add_word(c, (uint32_t)k);
-    vtk_write_column(file, c, "Int32", "id", 1);
-    for (size_t k = 0; k < b->count; k++)
-        vtk_add_word(c, k >= d->grain_count);
-    vtk_write_column(file, c, "Int32", "wall", 1);
-    for (size_t k = 0; k < b->count; k++)
-        vtk_add_word(c, b->shape[k]);
-    vtk_write_column(file, c, "Int32", "shape", 1);
-    for (size_t k = 0; k < b->count; k++)
-        vtk_add_word(c, b->material[k]);
-    vtk_write_column(file, c, "Int32", "material", 1);
-    for (size_t k = 0; k < b->count; k++)
-        vtk_add_word(c, loads[k].contacts);
-    vtk_write_column(file, c, "Int32", "coordination", 1);
-    for (size_t k = 0; k < b->count; k++)
-        vtk_add_word(c, loads[k].bearing);
-    vtk_write_column(file, c, "Int32", "bearing", 1);
-}
-
 static void write_fields(FILE *file, const dem *d, const dem_load *loads, vtk_column *c) {
+    static const char *const words[] = {"id", "wall", "shape", "material", "coordination", "bearing"};
+    static const char *const numbers[] = {"speed", "spin", "size", "pressure"};
     const dem_bodies *b = &d->bodies;
-    write_whole_fields(file, d, loads, c);
+    for (size_t i = 0; i < 6; i++) {
+        for (size_t k = 0; k < b->count; k++)
+            vtk_add_word(c, (const uint32_t[]){(uint32_t)k, k >= d->grain_count, b->shape[k], b->material[k],
+                                               loads[k].contacts, loads[k].bearing}[i]);
+        vtk_write_column(file, c, "Int32", words[i], 1);
+    }
     for (size_t k = 0; k < b->count; k++)
         vtk_add_place(c, b->vx[k], b->vy[k]);
     vtk_write_column(file, c, "Float32", "velocity", 3);
-    for (size_t k = 0; k < b->count; k++)
-        vtk_add_number(c, hypot(b->vx[k], b->vy[k]));
-    vtk_write_column(file, c, "Float32", "speed", 1);
-    for (size_t k = 0; k < b->count; k++)
-        vtk_add_number(c, b->spin[k]);
-    vtk_write_column(file, c, "Float32", "spin", 1);
-    for (size_t k = 0; k < b->count; k++)
-        vtk_add_number(c, b->extent[k]);
-    vtk_write_column(file, c, "Float32", "size", 1);
-    for (size_t k = 0; k < b->count; k++)
-        vtk_add_number(c, 0.5 * (loads[k].stress_xx + loads[k].stress_yy));
-    vtk_write_column(file, c, "Float32", "pressure", 1);
+    for (size_t i = 0; i < 4; i++) {
+        for (size_t k = 0; k < b->count; k++)
+            vtk_add_number(c, (const double[]){hypot(b->vx[k], b->vy[k]), b->spin[k], b->extent[k],
+                                               0.5 * (loads[k].stress_xx + loads[k].stress_yy)}[i]);
+        vtk_write_column(file, c, "Float32", numbers[i], 1);
+    }
     for (size_t k = 0; k < b->count; k++) { /* a full tensor: ParaView's filters want nine */
         const dem_load *l = &loads[k];
         const double nine[9] = {l->stress_xx, l->stress_xy, 0, l->stress_yx, l->stress_yy, 0, 0, 0, 0};
@@ -178,41 +157,36 @@ static bool write_bodies(FILE *file, const dem *d, char *error) {
 
 /* ------------------------------------------------------------------------------------------------ contacts */
 
-/* Of an edge: -1. */
-static void write_radii(FILE *file, const dem *d, bool of_b, vtk_column *c) {
-    for (size_t k = 0; k < d->contacts.count; k++) {
-        const narc_contact *row = &d->contacts.rows[k];
-        const float radius = of_b ? row->radius_b : row->radius_a;
-        vtk_add_number(c, isinf(radius) ? -1 : (double)radius);
-    }
-    vtk_write_column(file, c, "Float32", of_b ? "radius_b" : "radius_a", 1);
+/* A radius of curvature; of an edge -1. */
+static double show_radius(float radius) { return isinf(radius) ? -1 : (double)radius; }
+
+/* Tangential by friction times normal force. */
+static double find_mobilised_friction(const dem *d, size_t k) {
+    const size_t p = d->contacts.rows[k].pair;
+    const uint8_t *material = d->bodies.material;
+    const double bound = d->laws[material[d->pairs.a[p]]][material[d->pairs.b[p]]].friction;
+    const double most = bound * fabs(dem_normal_force(d, k));
+    return most > 0 ? fmin(fabs(dem_tangential_force(d, k)) / most, 1) : 0;
 }
 
 static void write_forces(FILE *file, const dem *d, vtk_column *c) {
+    static const char *const numbers[] = {"normal_force", "tangential_force", "mobilised_friction",
+                                          "separation",   "radius_a",         "radius_b"};
     const dem_contacts *list = &d->contacts;
+    const narc_contact *row = list->rows;
     for (size_t k = 0; k < list->count; k++)
         vtk_add_place(c, list->forces[k].x, list->forces[k].y);
     vtk_write_column(file, c, "Float32", "force", 3);
     for (size_t k = 0; k < list->count; k++)
-        vtk_add_place(c, (double)list->rows[k].normal_x, (double)list->rows[k].normal_y);
+        vtk_add_place(c, (double)row[k].normal_x, (double)row[k].normal_y);
     vtk_write_column(file, c, "Float32", "normal", 3);
-    for (size_t k = 0; k < list->count; k++)
-        vtk_add_number(c, dem_normal_force(d, k));
-    vtk_write_column(file, c, "Float32", "normal_force", 1);
-    for (size_t k = 0; k < list->count; k++)
-        vtk_add_number(c, dem_tangential_force(d, k));
-    vtk_write_column(file, c, "Float32", "tangential_force", 1);
-    for (size_t k = 0; k < list->count; k++) {
-        const size_t p = list->rows[k].pair;
-        const uint8_t *material = d->bodies.material;
-        const double bound = d->laws[material[d->pairs.a[p]]][material[d->pairs.b[p]]].friction;
-        const double most = bound * fabs(dem_normal_force(d, k));
-        vtk_add_number(c, most > 0 ? fmin(fabs(dem_tangential_force(d, k)) / most, 1) : 0);
+    for (size_t i = 0; i < 6; i++) {
+        for (size_t k = 0; k < list->count; k++)
+            vtk_add_number(c, (const double[]){dem_normal_force(d, k), dem_tangential_force(d, k),
+                                               find_mobilised_friction(d, k), (double)row[k].separation,
+                                               show_radius(row[k].radius_a), show_radius(row[k].radius_b)}[i]);
+        vtk_write_column(file, c, "Float32", numbers[i], 1);
     }
-    vtk_write_column(file, c, "Float32", "mobilised_friction", 1);
-    for (size_t k = 0; k < list->count; k++)
-        vtk_add_number(c, (double)list->rows[k].separation);
-    vtk_write_column(file, c, "Float32", "separation", 1);
 }
 
 static bool write_points(FILE *file, const dem *d, vtk_column *c) {
@@ -242,8 +216,6 @@ static bool write_points(FILE *file, const dem *d, vtk_column *c) {
         vtk_add_word(c, d->pairs.b[list->rows[k].pair]);
     vtk_write_column(file, c, "Int32", "body_b", 1);
     write_forces(file, d, c);
-    write_radii(file, d, false, c);
-    write_radii(file, d, true, c);
     vtk_close_section(file, "PointData");
     vtk_write_tail(file);
     return !c->failed;
