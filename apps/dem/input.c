@@ -28,24 +28,14 @@ uint8_t dem_find_material(const json_value *name, const dem *d) {
     return (uint8_t)json_find(name, d->materials, d->material_count, sizeof *d->materials, "is not a material");
 }
 
-static void refuse_elasticity(const json_value *material) {
-    static const char *const keys[] = {"young", "poisson"};
-    for (size_t i = 0; i < 2; i++) {
-        const json_value member = json_member(material, keys[i]);
-        if (member.item)
-            json_fail(&member, "is of the Hertz law: the linear law's stiffness is kn");
-    }
-}
-
-void dem_read_materials(const json_value *root, dem *d) {
-    static const char *const keys[] = {"name", "density", "young", "poisson", NULL};
+static void read_materials(const json_value *root, dem *d) {
     const json_value list = json_require(root, "materials");
     const size_t count = json_list(&list);
     if (count == 0)
         json_fail(&list, "is empty");
     for (size_t i = 0; i < count; i++) {
         const json_value item = json_at(&list, i);
-        json_check_object(&item, keys);
+        json_check_object(&item, "name density young poisson");
         dem_material material = {.density = json_positive(&item, "density")};
         const json_value name = json_require(&item, "name");
         uint8_t index;
@@ -54,7 +44,7 @@ void dem_read_materials(const json_value *root, dem *d) {
             if (strcmp(d->materials[m].name, material.name) == 0)
                 json_fail(&name, "is the name of another material");
         if (d->settings.law == DEM_LINEAR)
-            refuse_elasticity(&item);
+            json_refuse(&item, "young poisson", "is of the Hertz law: the linear law's stiffness is kn");
         else {
             material.young = json_positive(&item, "young");
             const json_value poisson = json_require(&item, "poisson");
@@ -91,9 +81,9 @@ static void read_damping(const json_value *object, const dem *d, dem_contact_law
 
 /* What is there replaces what `law` has. */
 static void read_law(const json_value *object, const dem *d, dem_contact_law *law) {
-    const json_value kn = json_member(object, "kn"), kt = json_member(object, "kt");
-    if ((kn.item || kt.item) && d->settings.law == DEM_HERTZ)
-        json_fail(kn.item ? &kn : &kt, "is not of the Hertz law: stiffness comes from the materials");
+    const json_value kn = json_member(object, "kn");
+    if (d->settings.law == DEM_HERTZ)
+        json_refuse(object, "kn kt", "is not of the Hertz law: stiffness comes from the materials");
     if (kn.item) {
         law->kn = json_number(&kn, 0, 1e300, true);
         law->kt = 2.0 / 7 * law->kn; /* as LAMMPS has it */
@@ -105,15 +95,13 @@ static void read_law(const json_value *object, const dem *d, dem_contact_law *la
 }
 
 static void read_pair_laws(const json_value *contact, dem *d, dem_contact_law common) {
-    static const char *const keys[] = {
-        "materials",          "kn", "kt", "gamma_n", "gamma_t", "restitution", "friction", "rolling_friction",
-        "tangential_damping", NULL};
     const json_value list = json_member(contact, "pairs");
     const size_t count = list.item ? json_list(&list) : 0;
     bool seen[DEM_MAX_MATERIALS][DEM_MAX_MATERIALS] = {{false}};
     for (size_t i = 0; i < count; i++) {
         const json_value item = json_at(&list, i);
-        json_check_object(&item, keys);
+        json_check_object(&item,
+                          "materials kn kt gamma_n gamma_t restitution friction rolling_friction tangential_damping");
         const json_value names = json_require(&item, "materials");
         if (json_list(&names) != 2)
             json_fail(&names, "is not a list of two materials");
@@ -128,14 +116,13 @@ static void read_pair_laws(const json_value *contact, dem *d, dem_contact_law co
     }
 }
 
-void dem_read_contact(const json_value *root, dem *d) {
+static void read_contact(const json_value *root, dem *d) {
     const json_value contact = json_require(root, "contact");
     dem_contact_law law = {.damping_ratio = -1, .gamma_n = -1, .tangential_share = 0.5};
-    const json_value least = json_member(&contact, "least_radius"), largest = json_member(&contact, "largest_radius");
-    if ((least.item || largest.item) && d->settings.law == DEM_LINEAR)
-        json_fail(least.item ? &least : &largest, "is of the Hertz law");
-    if (d->settings.law == DEM_LINEAR)
+    if (d->settings.law == DEM_LINEAR) {
+        json_refuse(&contact, "least_radius largest_radius", "is of the Hertz law");
         json_require(&contact, "kn");
+    }
     json_require(&contact, "friction");
     read_law(&contact, d, &law);
     for (size_t a = 0; a < d->material_count; a++)
@@ -149,21 +136,9 @@ void dem_read_contact(const json_value *root, dem *d) {
 
 /* The law is asked before the materials, which depend on it. */
 static dem_law read_law_name(const json_value *root) {
-    static const char *const keys[] = {"law",
-                                       "kn",
-                                       "kt",
-                                       "gamma_n",
-                                       "gamma_t",
-                                       "pairs",
-                                       "friction",
-                                       "restitution",
-                                       "rolling_friction",
-                                       "least_radius",
-                                       "largest_radius",
-                                       "tangential_damping",
-                                       NULL};
     const json_value contact = json_require(root, "contact");
-    json_check_object(&contact, keys);
+    json_check_object(&contact, "law kn kt gamma_n gamma_t pairs friction restitution rolling_friction least_radius "
+                                "largest_radius tangential_damping");
     const json_value law = json_require(&contact, "law");
     char name[DEM_NAME_SIZE];
     json_text(&law, name, sizeof name);
@@ -187,7 +162,6 @@ static void read_cell(const json_value *boundary, const char *axis, bool *out_on
 }
 
 static dem_settings read_settings(const json_value *root, unsigned threads) {
-    static const char *const boundary_keys[] = {"x", "y", NULL};
     dem_settings s = dem_defaults;
     s.threads = threads;
     s.law = read_law_name(root);
@@ -197,7 +171,7 @@ static dem_settings read_settings(const json_value *root, unsigned threads) {
     s.gravity = json_vec_or(root, "gravity", s.gravity);
     const json_value boundary = json_member(root, "boundary");
     if (boundary.item) {
-        json_check_object(&boundary, boundary_keys);
+        json_check_object(&boundary, "x y");
         read_cell(&boundary, "x", &s.periodic_x, &s.low_x, &s.high_x);
         read_cell(&boundary, "y", &s.periodic_y, &s.low_y, &s.high_y);
     }
@@ -227,18 +201,16 @@ static uint64_t hash_input(const json_value *root, const dem *d) {
 }
 
 void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *out_input) {
-    static const char *const keys[] = {"materials", "shapes",    "grains",  "walls",     "boundary",    "gravity",
-                                       "contact",   "time_step", "skin",    "thickness", "max_overlap", "seed",
-                                       "stages",    "output",    "comment", NULL};
     json_value root = json_read(path);
-    json_check_object(&root, keys);
+    json_check_object(&root, "materials shapes grains walls boundary gravity contact time_step skin thickness "
+                             "max_overlap seed stages output comment");
     if (!dem_create(d, read_settings(&root, threads)))
         dem_fail_at(&root, d);
     *out_input = (dem_input){.stage_count = 0};
     const json_value seed = json_member(&root, "seed");
     out_input->random = seed.item ? json_whole(&seed, 0, (size_t)1 << 53) : 1;
-    dem_read_materials(&root, d);
-    dem_read_contact(&root, d);
+    read_materials(&root, d);
+    read_contact(&root, d);
     dem_read_shapes(&root, d);
     dem_read_walls(&root, d);
     dem_read_grains(&root, d, &out_input->random);

@@ -48,8 +48,6 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *out_i
 void dem_free_input(dem_input *input);
 
 /* Its parts: input_grains.c, input_walls.c, input_run.c. */
-void dem_read_materials(const json_value *root, dem *d);
-void dem_read_contact(const json_value *root, dem *d);
 void dem_read_shapes(const json_value *root, dem *d);
 enum { DEM_SHAPES_PATH_SIZE = 2 * DEM_PATH_SIZE };
 void dem_find_shapes_file(const json_value *root, char path[DEM_SHAPES_PATH_SIZE]);

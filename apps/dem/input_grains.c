@@ -68,10 +68,9 @@ static double find_share(const dem_sizes *sizes) {
 }
 
 static dem_sizes read_sizes(const json_value *value) {
-    static const char *const keys[] = {"uniform", "normal", "lognormal", "low", "high", NULL};
     if (cJSON_IsNumber(value->item))
         return (dem_sizes){.kind = DEM_FIXED, .mean = json_number(value, 0, 1e300, true)};
-    json_check_object(value, keys);
+    json_check_object(value, "uniform normal lognormal low high");
     const json_value uniform = json_member(value, "uniform"), normal = json_member(value, "normal");
     const json_value lognormal = json_member(value, "lognormal");
     if ((uniform.item != NULL) + (normal.item != NULL) + (lognormal.item != NULL) != 1)
@@ -79,9 +78,7 @@ static dem_sizes read_sizes(const json_value *value) {
     const json_value *given = uniform.item ? &uniform : normal.item ? &normal : &lognormal;
     const dem_vec n = json_vec(given);
     if (uniform.item) {
-        const json_value low = json_member(value, "low"), high = json_member(value, "high");
-        if (low.item || high.item)
-            json_fail(low.item ? &low : &high, "is not for uniform, which has limits");
+        json_refuse(value, "low high", "is not for uniform, which has limits");
         if (!(n.x > 0 && n.y >= n.x))
             json_fail(&uniform, "is not a range of sizes [low, high]");
         return (dem_sizes){.kind = DEM_UNIFORM, .low = n.x, .high = n.y};
@@ -131,9 +128,7 @@ static dem_filling read_filling(const json_value *item, const dem *d) {
 }
 
 static void read_random(const json_value *item, dem *d, uint64_t *random) {
-    static const char *const keys[] = {"place", "count", "region",  "shapes", "size",  "material",
-                                       "speed", "spin",  "upright", "gap",    "tries", NULL};
-    json_check_object(item, keys);
+    json_check_object(item, "place count region shapes size material speed spin upright gap tries");
     dem_filling f = read_filling(item, d);
     json_require(item, "count");
     f.gap = json_number_or(item, "gap", 0, 1e300, 0);
@@ -142,9 +137,7 @@ static void read_random(const json_value *item, dem *d, uint64_t *random) {
 }
 
 static void read_lattice(const json_value *item, dem *d, uint64_t *random) {
-    static const char *const keys[] = {"place", "count", "region",  "shapes",  "size",   "material",
-                                       "speed", "spin",  "upright", "spacing", "jitter", NULL};
-    json_check_object(item, keys);
+    json_check_object(item, "place count region shapes size material speed spin upright spacing jitter");
     dem_filling f = read_filling(item, d);
     const json_value spacing = json_require(item, "spacing");
     f.spacing = json_vec(&spacing);
@@ -156,8 +149,7 @@ static void read_lattice(const json_value *item, dem *d, uint64_t *random) {
 }
 
 static void read_grain(const json_value *item, dem *d) {
-    static const char *const keys[] = {"shape", "material", "at", "angle", "size", "velocity", "spin", NULL};
-    json_check_object(item, keys);
+    json_check_object(item, "shape material at angle size velocity spin");
     const json_value form = json_require(item, "shape"), material = json_require(item, "material");
     const json_value at = json_require(item, "at");
     const dem_vec place = json_vec(&at), velocity = json_vec_or(item, "velocity", (dem_vec){0, 0});
@@ -175,8 +167,7 @@ static void read_grain(const json_value *item, dem *d) {
 }
 
 static void read_list(const json_value *item, dem *d) {
-    static const char *const keys[] = {"place", "grains", NULL};
-    json_check_object(item, keys);
+    json_check_object(item, "place grains");
     const json_value list = json_require(item, "grains");
     json_value grain = {.file = list.file};
     size_t k = 0;

@@ -21,7 +21,6 @@ static void *allocate(size_t count, size_t size) {
 
 /* {"floor": {"velocity": [0, 1]}, ...} has_servo: of each wall, kept up to date. */
 static void read_changes(const json_value *walls, const dem *d, bool *has_servo, dem_stage *stage) {
-    static const char *const keys[] = {"velocity", "spin", "servo", NULL};
     const cJSON *item;
     if (!cJSON_IsObject(walls->item))
         json_fail(walls, "is not an object");
@@ -36,7 +35,7 @@ static void read_changes(const json_value *walls, const dem *d, bool *has_servo,
         for (size_t i = 0; i < stage->change_count; i++)
             if (stage->changes[i].wall == w)
                 json_fail(&change, "is there twice, the first time as");
-        json_check_object(&change, keys);
+        json_check_object(&change, "velocity spin servo");
         dem_wall_change *added = &stage->changes[stage->change_count++];
         added->wall = w;
         dem_read_motion(&change, d, has_servo[w], added);
@@ -53,7 +52,6 @@ static uint64_t read_steps(const json_value *value, const dem *d) {
 }
 
 void dem_read_stages(const json_value *root, dem *d, dem_input *input) {
-    static const char *const keys[] = {"name", "duration", "gravity", "friction", "walls", NULL};
     const json_value list = json_require(root, "stages");
     const size_t count = json_list(&list);
     if (count == 0)
@@ -64,7 +62,7 @@ void dem_read_stages(const json_value *root, dem *d, dem_input *input) {
         has_servo[w] = d->walls[w].servo.on;
     for (size_t i = 0; i < count; i++) {
         const json_value item = json_at(&list, i);
-        json_check_object(&item, keys);
+        json_check_object(&item, "name duration gravity friction walls");
         const json_value name = json_member(&item, "name"), duration = json_require(&item, "duration");
         const json_value walls = json_member(&item, "walls");
         dem_stage stage = {.steps = read_steps(&duration, d),
@@ -128,15 +126,12 @@ static dem_look read_look(const json_value *output) {
 }
 
 void dem_read_output(const json_value *root, const dem *d, dem_output *out_output) {
-    static const char *const keys[] = {
-        "every",          "csv",     "grains",         "vtk",           "restart",       "restart_every",
-        "region",         "picture", "picture_region", "picture_width", "picture_color", "picture_top",
-        "picture_forces", NULL};
     const json_value output = json_member(root, "output");
     *out_output = (dem_output){.every = UINT64_MAX, .restart_every = UINT64_MAX};
     if (!output.item)
         return;
-    json_check_object(&output, keys);
+    json_check_object(&output, "every csv grains vtk restart restart_every region picture picture_region picture_width "
+                               "picture_color picture_top picture_forces");
     const json_value every = json_require(&output, "every"), restart_every = json_member(&output, "restart_every");
     const json_value region = json_member(&output, "region"), picture = json_member(&output, "picture");
     out_output->every = read_steps(&every, d);

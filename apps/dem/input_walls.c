@@ -10,9 +10,6 @@
 /* A plate moves across itself. A servo's direction has at least this share across it. */
 static const double LEAST_ACROSS = 1e-6;
 
-static const char *const WALL_KEYS[] = {"name",  "material", "plate", "box",   "shape", "size", "at",
-                                        "angle", "velocity", "spin",  "pivot", "servo", NULL};
-
 /* ------------------------------------------------------------------------------------------------ motion */
 
 /* The two walls that a stress acts between. */
@@ -31,11 +28,10 @@ static void read_between(const json_value *between, const dem *d, size_t wall, i
 }
 
 static dem_servo read_servo(const json_value *value, const dem *d, size_t wall) {
-    static const char *const keys[] = {"direction", "force", "stress", "between", "gain", "max_speed", "travel", NULL};
     dem_servo servo = {.on = true, .between = {-1, -1}};
     if (cJSON_IsNull(value->item))
         return (dem_servo){.between = {-1, -1}};
-    json_check_object(value, keys);
+    json_check_object(value, "direction force stress between gain max_speed travel");
     const json_value direction = json_require(value, "direction");
     const json_value force = json_member(value, "force"), stress = json_member(value, "stress");
     const dem_vec along = json_vec(&direction);
@@ -98,8 +94,7 @@ void dem_apply_change(dem *d, const dem_wall_change *change) {
 /* ------------------------------------------------------------------------------------------------ walls */
 
 static void read_plate(const json_value *value, dem_wall *wall) {
-    static const char *const keys[] = {"point", "normal", NULL};
-    json_check_object(value, keys);
+    json_check_object(value, "point normal");
     const json_value at = json_require(value, "point"), direction = json_require(value, "normal");
     wall->kind = DEM_PLATE;
     wall->place = json_vec(&at);
@@ -109,12 +104,11 @@ static void read_plate(const json_value *value, dem_wall *wall) {
 }
 
 static uint32_t add_box_shape(const json_value *value, dem *d, const char *name) {
-    static const char *const keys[] = {"width", "height", "radius", NULL};
     narc_arc arcs[NARC_MAX_ARCS];
     narc_error error;
     size_t count;
     uint32_t index;
-    json_check_object(value, keys);
+    json_check_object(value, "width height radius");
     if (narc_build_box(json_positive(value, "width"), json_positive(value, "height"),
                        json_number_or(value, "radius", 0, 1e300, 0), arcs, &count, &error) != NARC_OK) {
         dem_fail(d, "%s", error.message);
@@ -140,14 +134,6 @@ static void read_block(const json_value *item, dem *d, dem_wall *wall) {
     wall->scale = json_positive(item, "size") / d->shapes[wall->shape].extent;
 }
 
-static void refuse_keys(const json_value *item, const char *const *keys, const char *problem) {
-    for (size_t i = 0; keys[i]; i++) {
-        const json_value member = json_member(item, keys[i]);
-        if (member.item)
-            json_fail(&member, problem);
-    }
-}
-
 static void read_wall(const json_value *item, dem *d) {
     const json_value name = json_require(item, "name"), material = json_require(item, "material");
     const json_value plate = json_member(item, "plate");
@@ -160,9 +146,9 @@ static void read_wall(const json_value *item, dem *d) {
     if ((plate.item != NULL) + (json_member(item, "box").item != NULL) + (json_member(item, "shape").item != NULL) != 1)
         json_fail(item, "is not one of plate, box and shape");
     if (plate.item)
-        refuse_keys(item, (const char *const[]){"at", "angle", "size", "pivot", NULL}, "is not for a plate");
+        json_refuse(item, "at angle size pivot", "is not for a plate");
     if (json_member(item, "box").item)
-        refuse_keys(item, (const char *const[]){"size", NULL}, "is not for a box, which has width and height");
+        json_refuse(item, "size", "is not for a box, which has width and height");
     if (plate.item)
         read_plate(&plate, &wall);
     else
@@ -177,7 +163,7 @@ void dem_read_walls(const json_value *root, dem *d) {
     const size_t count = list.item ? json_list(&list) : 0;
     for (size_t i = 0; i < count; i++) {
         const json_value item = json_at(&list, i);
-        json_check_object(&item, WALL_KEYS);
+        json_check_object(&item, "name material plate box shape size at angle velocity spin pivot servo");
         read_wall(&item, d);
     }
     for (size_t i = 0; i < count; i++) { /* when all names are known */

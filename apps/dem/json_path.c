@@ -79,18 +79,34 @@ json_value json_at(const json_value *list, size_t index) {
     return item;
 }
 
-void json_check_object(const json_value *object, const char *const *keys) {
+static bool is_among(const char *keys, const char *key) {
+    const size_t length = strlen(key);
+    if (length == 0 || strchr(key, ' '))
+        return false;
+    for (const char *at = keys; (at = strstr(at, key)); at += length)
+        if ((at == keys || at[-1] == ' ') && (at[length] == ' ' || at[length] == 0))
+            return true;
+    return false;
+}
+
+void json_refuse(const json_value *object, const char *keys, const char *problem) {
+    const cJSON *item;
+    cJSON_ArrayForEach(item, object->item) {
+        const json_value member = json_member(object, item->string);
+        if (is_among(keys, item->string))
+            json_fail(&member, problem);
+    }
+}
+
+void json_check_object(const json_value *object, const char *keys) {
     const cJSON *item, *other;
     if (!cJSON_IsObject(object->item))
         json_fail(object, "is not an object");
     cJSON_ArrayForEach(item, object->item) {
-        size_t k = 0;
-        while (keys[k] && strcmp(keys[k], item->string) != 0)
-            k++;
         json_value member = {.file = object->file, .item = item};
         snprintf(member.place, sizeof member.place, "%.80s%s%.36s", object->place, object->place[0] ? "." : "",
                  item->string);
-        if (!keys[k])
+        if (!is_among(keys, item->string))
             json_fail(&member, "is an unknown key with the value");
         for (other = object->item->child; other != item; other = other->next)
             if (strcmp(other->string, item->string) == 0)

@@ -40,8 +40,11 @@ json_value json_member(const json_value *object, const char *key);
 json_value json_require(const json_value *object, const char *key);
 json_value json_at(const json_value *list, size_t index);
 
-/* The value is an object whose keys are among `keys`, NULL behind the last, each there once. */
-void json_check_object(const json_value *object, const char *const *keys);
+/* The value is an object whose keys are among `keys`, words with blanks between them, each there once. */
+void json_check_object(const json_value *object, const char *keys);
+
+/* The object has none of these keys. */
+void json_refuse(const json_value *object, const char *keys, const char *problem);
 
 /* How many items a list has. */
 size_t json_list(const json_value *list);

@@ -10,7 +10,8 @@
 
 #include "internal.h"
 
-double dem_random(uint64_t *state) {
+/* SplitMix64: the state counts, its mixture is the number, 0 <= x < 1. */
+static double draw_unit(uint64_t *state) {
     uint64_t bits = *state += 0x9e3779b97f4a7c15;
     bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9;
     bits = (bits ^ bits >> 27) * 0x94d049bb133111eb;
@@ -18,13 +19,11 @@ double dem_random(uint64_t *state) {
     return (double)(bits >> 11) * 0x1p-53;
 }
 
-static double draw_between(uint64_t *random, double low, double high) {
-    return low + (high - low) * dem_random(random);
-}
+static double draw_between(uint64_t *random, double low, double high) { return low + (high - low) * draw_unit(random); }
 
 /* Box and Muller 1958. */
 static double draw_normal(uint64_t *random) {
-    const double u = 1 - dem_random(random), angle = 6.283185307179586477 * dem_random(random);
+    const double u = 1 - draw_unit(random), angle = 6.283185307179586477 * draw_unit(random);
     return sqrt(-2 * log(u)) * cos(angle);
 }
 
@@ -43,7 +42,7 @@ double dem_draw_size(const dem_sizes *sizes, uint64_t *random) {
 
 /* All but the place. */
 static dem_grain draw_grain(const dem *d, const dem_filling *f, uint64_t *random) {
-    const size_t choice = (size_t)(dem_random(random) * (double)f->shape_count);
+    const size_t choice = (size_t)(draw_unit(random) * (double)f->shape_count);
     dem_grain grain = {.shape = f->shapes[choice], .material = f->material};
     grain.scale = (double)(float)(dem_draw_size(&f->sizes, random) / d->shapes[grain.shape].extent);
     grain.angle = f->upright ? 0 : draw_between(random, -3.14159265358979324, 3.14159265358979324);

@@ -34,8 +34,7 @@ typedef struct dem_filling {
     size_t tries;    /* for one grain, before a random filling gives up */
 } dem_filling;
 
-/* SplitMix64: the state counts, its mixture is the number. */
-double dem_random(uint64_t *state); /* 0 <= x < 1 */
+/* `random` is the state of a generator. */
 double dem_draw_size(const dem_sizes *sizes, uint64_t *random);
 
 /* Walls must have been added before. */

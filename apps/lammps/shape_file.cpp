@@ -13,28 +13,25 @@
 namespace narc_lammps {
 namespace {
 
-/* Distance of the furthest point of an outline from the origin. Along an arc the distance rises towards the direction
- * of the centre, so it is largest there, if the arc has that normal, or else at an end. */
+/* Distance of the furthest point of an outline from the origin. There the normal points away from the origin, so the
+ * arc's centre is on the same line: the point is the support in that direction, or in the opposite one if the arc is
+ * flatter. */
 double find_reach(const std::vector<narc_arc> &arcs) {
-    const double turn = 2 * std::acos(-1.0);
     double reach = 0;
-    for (const narc_arc &arc : arcs) {
-        const double out = std::atan2(arc.center_y, arc.center_x);
-        const double after_start = std::fmod(std::fmod(out - arc.start, turn) + turn, turn);
-        const double sweep = arc.end > arc.start ? arc.end - arc.start : arc.end - arc.start + turn;
-        if (after_start <= sweep)
-            reach = std::fmax(reach, std::hypot(arc.center_x, arc.center_y) + arc.radius);
-        for (const double angle : {arc.start, arc.end})
-            reach = std::fmax(reach, std::hypot(arc.center_x + arc.radius * std::cos(angle),
-                                                arc.center_y + arc.radius * std::sin(angle)));
-    }
+    for (const narc_arc &arc : arcs)
+        for (const double sign : {1.0, -1.0}) {
+            const bool central = arc.center_x == 0 && arc.center_y == 0;
+            narc_point p = {0, 0};
+            narc_find_support(arcs.data(), arcs.size(), central ? 1 : sign * arc.center_x, sign * arc.center_y, &p,
+                              nullptr);
+            reach = std::fmax(reach, std::hypot(p.x, p.y));
+        }
     return reach;
 }
 
-} // namespace
-
+/* Throws std::runtime_error with the library's message. */
 Form make_form(const std::string &name, const std::vector<narc_arc> &arcs) {
-    Form form = {name, arcs, 0, 0, 0, 0};
+    Form form = {name, arcs, 0, 0, 0};
     narc_error error;
     if (narc_center_arcs(arcs.data(), arcs.size(), form.arcs.data(), nullptr, &error) != NARC_OK)
         throw std::runtime_error(error.message);
@@ -46,6 +43,8 @@ Form make_form(const std::string &name, const std::vector<narc_arc> &arcs) {
     form.inertia_ratio = mass.second_moment / (mass.area * form.reach * form.reach);
     return form;
 }
+
+} // namespace
 
 std::vector<Form> parse_forms(const std::string &path, const std::string &text) {
     narc_shape_list *list;
@@ -61,7 +60,6 @@ std::vector<Form> parse_forms(const std::string &path, const std::string &text) 
         } catch (const std::runtime_error &wrong) {
             throw std::runtime_error(path + ": shape '" + shape.name + "': " + wrong.what());
         }
-        forms.back().index = static_cast<unsigned>(k);
     }
     return forms;
 }

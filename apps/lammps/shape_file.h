@@ -19,15 +19,11 @@ struct Form {
     double area;
     double reach; /* distance of the furthest point from the centroid: a grain's radius is `reach` times its size */
     double inertia_ratio; /* moment of inertia of unit mass and unit radius: I = inertia_ratio * mass * radius^2 */
-    unsigned index;       /* in the file, from 0 */
 };
 
 /* The forms of a shapes file, in its order. `path` is for messages only. Throws std::runtime_error, whose message names
  * file, line, shape and arc. */
 std::vector<Form> parse_forms(const std::string &path, const std::string &text);
-
-/* The form of a list of arcs; throws std::runtime_error with the library's message. */
-Form make_form(const std::string &name, const std::vector<narc_arc> &arcs);
 
 /* Writes a form as a Wavefront OBJ file: its outline as one polygon, scaled so that it reaches 1 from the centroid. A
  * particle's mesh is this one times its radius. Throws std::runtime_error. */
