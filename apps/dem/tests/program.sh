@@ -175,6 +175,7 @@ fails "no object" "dem: bad.json: is not an object '\[1\]'" bad.json
 wrong 's/"skin": 0.1/"skn": 0.1/' "skn: is an unknown key"
 wrong 's/"skin": 0.1/"skin": 0.1, "skin thickness": 2/' "skin thickness: is an unknown key with the value '2'"
 wrong 's/"skin": 0.1/"skin": 0.1, "kin": 2/' "kin: is an unknown key"
+wrong 's/"skin": 0.1/"skin": 0.1, "ski": 2/' "ski: is an unknown key"
 wrong 's/"skin": 0.1/"skin": 0.1, "": 2/' "is an unknown key"
 wrong 's/"skin": 0.1/"skin": 0.1, "skin": 2/' "skin: is there twice"
 wrong '/"skin"/d' "skin: is missing"

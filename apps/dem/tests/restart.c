@@ -24,12 +24,33 @@ static void check_same_measures(const dem *d, const dem *other) {
     assert_memory_equal(numbers, others, sizeof numbers);
 }
 
+static void check_same_walls(const dem *d, const dem *other) {
+    for (size_t w = 0; w < d->wall_count; w++) {
+        const dem_wall *a = &d->walls[w], *b = &other->walls[w];
+        const dem_servo *s = &a->servo, *t = &b->servo;
+        const double numbers[] = {a->velocity.x, a->velocity.y,  a->pivot.x,     a->pivot.y, a->spin,
+                                  a->work,       a->resistance,  a->idle_way,    s->force,   s->stress,
+                                  s->gain,       s->direction.x, s->direction.y, s->travel,  s->max_speed};
+        const double others[] = {b->velocity.x, b->velocity.y,  b->pivot.x,     b->pivot.y, b->spin,
+                                 b->work,       b->resistance,  b->idle_way,    t->force,   t->stress,
+                                 t->gain,       t->direction.x, t->direction.y, t->travel,  t->max_speed};
+        assert_memory_equal(numbers, others, sizeof numbers);
+        assert_memory_equal(s->between, t->between, sizeof s->between);
+        assert_true(s->on == t->on);
+    }
+}
+
 /* Borders, history, rolling friction, walls that move, turn and are controlled: all of it goes on. */
 TEST(test_bit_for_bit) {
     char error[512];
     dem d = make_busy_world(1), again = make_busy_world(2);
     const dem_place place = {.input = 5, .stage = 1, .stage_step = 17, .csv_position = 99, .frame = 3, .random = 4};
     dem_place found = {.input = 5};
+    d.walls[2].velocity = (dem_vec){0.01, 0.02};
+    d.walls[2].spin = 2.5;
+    d.walls[2].idle_way = 1;
+    d.walls[2].servo = (dem_servo){false, {0.6, 0.8}, 3, 4, {1, 0}, 0.5, 6, 7};
+    again.walls[0].servo = (dem_servo){.between = {-1, -1}};
     start(&d);
     start(&again);
     step(&d, 3000);
@@ -38,6 +59,7 @@ TEST(test_bit_for_bit) {
     assert_memory_equal(&place, &found, sizeof place);
     assert_true(dem_hash(&d) == dem_hash(&again));
     check_same_measures(&d, &again);
+    check_same_walls(&d, &again);
     for (int i = 0; i < 10; i++) {
         step(&d, 100);
         step(&again, 100);
