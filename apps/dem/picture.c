@@ -271,8 +271,10 @@ dem_picture dem_picture_kind(const char *path) {
     return strcasecmp(suffix, ".png") == 0 ? DEM_PNG : strcasecmp(suffix, ".svg") == 0 ? DEM_SVG : DEM_NO_PICTURE;
 }
 
+/* What cannot be written dem_close_file() tells. */
 static cairo_status_t write_bytes(void *file, const unsigned char *bytes, unsigned count) {
-    return fwrite(bytes, 1, count, file) == count ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+    fwrite(bytes, 1, count, file);
+    return CAIRO_STATUS_SUCCESS;
 }
 
 static cairo_status_t write_page(FILE *file, const view *seen, double width, bool is_svg) {
@@ -314,8 +316,7 @@ bool dem_draw_picture(const dem *d, const dem_look *look, const char *path, char
     seen.top = find_top(&seen);
     const cairo_status_t status = write_page(file.file, &seen, width, dem_picture_kind(path) == DEM_SVG);
     free(loads);
-    const bool ok = status == CAIRO_STATUS_SUCCESS || status == CAIRO_STATUS_WRITE_ERROR; /* of which the file knows */
-    if (!ok)
+    if (status != CAIRO_STATUS_SUCCESS)
         snprintf(error, 512, "%.400s: %s", path, cairo_status_to_string(status));
-    return dem_close_file(&file, ok, error);
+    return dem_close_file(&file, status == CAIRO_STATUS_SUCCESS, error);
 }

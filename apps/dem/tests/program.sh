@@ -89,6 +89,13 @@ cp elsewhere/real kept.real
 grep -q "linked: Permission denied" err.txt || miss "a read-only file is not told: $(cat err.txt)"
 cmp -s elsewhere/real kept.real || miss "a read-only file is replaced"
 [ -z "$(find . -name '.narc-*')" ] || miss "a temporary file stays beside a read-only one"
+# Where there is no room for a file the reason is told, and nothing stays.
+for output in picture.png picture.svg grains.csv; do
+    sed "s/\"csv\": \"out.csv\"/\"${output%.*}\": \"$output\"/" first.json >full.json
+    (ulimit -f 1 && exec "$dem" full.json --threads 1) >/dev/null 2>err.txt && miss "a full disk: $output"
+    grep -q "^dem: ${output%.*}-000000.${output#*.}: File too large$" err.txt || miss "a full disk is not told: $(cat err.txt)"
+    [ -z "$(find . -name '.narc-*' -o -name "${output%.*}-0*")" ] || miss "a file stays on a full disk: $output"
+done
 # At a restart outputs may have other names, and files of theirs may be gone: they begin anew.
 "$dem" first.json --threads 1 >/dev/null 2>err.txt || miss "the first stage again"
 cp out.restart first.restart
