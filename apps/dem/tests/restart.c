@@ -18,7 +18,7 @@ static void check_same_measures(const dem *d, const dem *other) {
     dem_measure(other, NULL, &b);
     assert_true(a.contacts > 0 && a.stress_yy > 0);
     assert_int_equal(a.contacts, b.contacts);
-    assert_true(memcmp(&a.energy, &b.energy, sizeof a.energy) == 0);
+    assert_memory_equal(&a.energy, &b.energy, sizeof a.energy);
     const double numbers[] = {a.coordination, a.stress_xx, a.stress_xy, a.stress_yx, a.stress_yy, a.deepest, a.fastest};
     const double others[] = {b.coordination, b.stress_xx, b.stress_xy, b.stress_yx, b.stress_yy, b.deepest, b.fastest};
     assert_memory_equal(numbers, others, sizeof numbers);
