@@ -20,7 +20,7 @@ file(MAKE_DIRECTORY "${folder}")
 separate_arguments(flag_list UNIX_COMMAND "${FLAGS}")
 
 find_program(CXX_COMPILER NAMES c++ g++ clang++)
-if(LANGUAGE STREQUAL "cxx" AND (TOOLCHAIN OR NOT CXX_COMPILER))
+if((LANGUAGE STREQUAL "cxx" OR PROGRAM MATCHES "pp$") AND (TOOLCHAIN OR NOT CXX_COMPILER))
   skip("no C++ compiler for the target")
   return()
 endif()
