@@ -17,34 +17,34 @@
 
 /* ------------------------------------------------------------------------------------------------ motion */
 
-static inline void kick_body(dem_bodies b, size_t k, double half, dem_vec gravity) {
-    b.vx[k] += half * (b.fx[k] * b.inverse_mass[k] + gravity.x);
-    b.vy[k] += half * (b.fy[k] * b.inverse_mass[k] + gravity.y);
-    b.spin[k] += half * (b.torque[k] * b.inverse_inertia[k]);
-}
-
 static void kick(dem *d) {
     const dem_bodies b = d->bodies;
-    const double half = 0.5 * d->settings.time_step;
-    const dem_vec gravity = d->settings.gravity;
+    const double half = 0.5 * d->settings.time_step, gx = d->settings.gravity.x, gy = d->settings.gravity.y;
     const size_t count = d->grain_count;
 #pragma omp parallel for simd schedule(static) num_threads(dem_team(d)) if (parallel : dem_team(d) > 1)
-    for (size_t k = 0; k < count; k++)
-        kick_body(b, k, half, gravity);
+    for (size_t k = 0; k < count; k++) {
+        b.vx[k] += half * (b.fx[k] * b.inverse_mass[k] + gx);
+        b.vy[k] += half * (b.fy[k] * b.inverse_mass[k] + gy);
+        b.spin[k] += half * (b.torque[k] * b.inverse_inertia[k]);
+    }
 }
 
 /* A kick, and the way. */
 static void kick_and_drift(dem *d) {
     const dem_bodies b = d->bodies;
-    const double dt = d->settings.time_step;
-    const dem_vec gravity = d->settings.gravity;
+    const double dt = d->settings.time_step, kick = 0.5 * dt, gx = d->settings.gravity.x, gy = d->settings.gravity.y;
     const size_t count = d->grain_count;
 #pragma omp parallel for simd schedule(static) num_threads(dem_team(d)) if (parallel : dem_team(d) > 1)
     for (size_t k = 0; k < count; k++) {
-        kick_body(b, k, 0.5 * dt, gravity);
-        b.x[k] += dt * b.vx[k];
-        b.y[k] += dt * b.vy[k];
-        const double half = 0.5 * dt * b.spin[k], share = 1 / (1 + half * half);
+        const double vx = b.vx[k] + kick * (b.fx[k] * b.inverse_mass[k] + gx);
+        const double vy = b.vy[k] + kick * (b.fy[k] * b.inverse_mass[k] + gy);
+        const double spin = b.spin[k] + kick * (b.torque[k] * b.inverse_inertia[k]);
+        b.vx[k] = vx;
+        b.vy[k] = vy;
+        b.spin[k] = spin;
+        b.x[k] += dt * vx;
+        b.y[k] += dt * vy;
+        const double half = 0.5 * dt * spin, share = 1 / (1 + half * half);
         const double cosine = (1 - half * half) * share, sine = 2 * half * share;
         const double c = b.cosine[k] * cosine - b.sine[k] * sine, s = b.sine[k] * cosine + b.cosine[k] * sine;
         const double unit = 1.5 - 0.5 * (c * c + s * s);
