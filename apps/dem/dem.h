@@ -9,7 +9,7 @@
  *
  *       main.c        the command line, stages, progress, signals
  *       input.c       the JSON file; its sections: input_grains.c, input_walls.c, input_run.c
- *       json_path.c   checked access to it, with messages
+ *       json_path.c   checked access to it and to options, with messages
  *       model.c       memory, shapes, bodies
  *       place.c       where grains start
  *       neighbours.c  boxes, pairs with a skin, history

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * json_path.c - checked access to JSON.
+ * json_path.c - checked numbers of options, checked access to JSON.
  */
 #include "json_path.h"
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * json_path.h - values of a JSON file with their places in it, and checked access. Whatever is wrong ends the program
- * with a message that names file, place and value: "dem: pile.json: stages[1].duration: is not above 0 '-1'".
+ * json_path.h - what the user gives, checked: numbers of options, and values of a JSON file with their places in it.
+ * Whatever is wrong ends the program with a message that names file, place and value:
+ * "dem: pile.json: stages[1].duration: is not above 0 '-1'".
  */
 #ifndef DEM_JSON_PATH_H
 #define DEM_JSON_PATH_H
@@ -14,11 +15,7 @@
 #include "dem.h"
 
 /* Ends the program with status 2: "dem: message", one line on standard error. */
-#if defined(__GNUC__)
-__attribute__((format(printf, 1, 2)))
-#endif
-_Noreturn void
-fail(const char *format, ...);
+__attribute__((format(printf, 1, 2))) _Noreturn void fail(const char *format, ...);
 
 /* A whole number, of an option with this name. */
 unsigned long long read_whole(const char *option, const char *text, unsigned long long low, unsigned long long high);
