@@ -21,7 +21,7 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   dem        a pile of 5,000 sand grains with the discrete element program: pictures, files for ParaView, tables and the
              angle of repose go to out/dem/, in some minutes. dem cases: slopes, collisions, piles of discs and long
              grains, biaxial tests, hoppers besides, in 10 to 20 minutes on two cores. dem speed: what a step
-             costs. docs/dem.md says what they mean
+             costs. apps/dem/README.md says what they mean
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.
@@ -198,13 +198,14 @@ fit_study() {
     ls -l out/fit-*
 }
 
-# A project of its own, examples/lammps, on the release build. More ranks than cores are fine for tests.
+# A project of its own, apps/lammps, on the installed package. More ranks than cores are fine for tests.
 build_lammps() {
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 \
         OMP_NUM_THREADS=1
     build release all
+    cmake --install build/release --prefix build/installed >/dev/null || fail "installing build/release failed"
     say "build/lammps"
-    cmake -S examples/lammps -B build/lammps -DNARC_BUILD="$PWD/build/release" -DNARC_LAMMPS_WERROR=ON ||
+    cmake -S apps/lammps -B build/lammps -DCMAKE_PREFIX_PATH="$PWD/build/installed" -DNARC_WERROR=ON ||
         fail "configuring build/lammps failed"
     cmake --build build/lammps || fail "building build/lammps failed"
 }
@@ -238,7 +239,7 @@ lammps() {
     say "a packing of some thousand 8-arcs"
     (
         cd out/lammps
-        inputs=../../examples/lammps
+        inputs=../../apps/lammps
         program=../../build/lammps/narc_lammps
         mpirun -np 1 $program -in $inputs/prepare.in -var shapes $inputs/grains.json -log prepare.log
         for ranks in 1 2; do
@@ -294,13 +295,13 @@ dem_all() {
 
 dem() {
     require_packages $dem_packages
-    build release narc_tool example_dem dem_speed
-    dem_program=$PWD/build/release/examples/dem/example_dem dem_cases=examples/dem/cases
+    build release narc_tool dem dem_speed
+    dem_program=$PWD/build/release/apps/dem/dem dem_cases=apps/dem/cases
     mkdir -p out
     case ${1:-pile} in
     pile) rm -rf out/dem && dem_pile ;;
     cases) rm -rf out/dem && dem_all ;;
-    speed) build/release/examples/dem/dem_speed ;;
+    speed) build/release/apps/dem/dem_speed ;;
     *) fail "dem $1: it is pile, cases or speed" ;;
     esac
     [ ! -d out/dem ] || ls -ld out/dem/*
@@ -318,7 +319,7 @@ check_style() {
     git ls-files '*.c' '*.h' '*.inl' '*.cc' '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror || fail "run clang-format"
     # The compilation database of the build with everything in it, the kernels once for each instruction set. The test of
     # what is installed has builds of its own.
-    git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'bench/*.c' 'tests/*.c' \
+    git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'apps/*.c' 'bench/*.c' 'tests/*.c' \
         ':!tests/package' |
         xargs clang-tidy --quiet -p build/ci || fail "clang-tidy has something to say"
 }

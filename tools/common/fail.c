@@ -16,11 +16,8 @@
 
 enum { LINE_SIZE = 2048 };
 
-static const char *program = "narc";
 static bool going_on;
 static size_t report_count;
-
-void name_program(const char *name) { program = name; }
 
 /* _Exit() drops what is still buffered: nothing more gets written. */
 _Noreturn void abandon(void) {
@@ -42,15 +39,14 @@ static size_t print_place(char *line, const char *path, size_t line_number) {
     const char *shown = strcmp(path, "-") == 0 ? "standard input" : path;
     /* Half the line is kept for the message, however long the path. */
     return (size_t)(line_number ? snprintf(line, LINE_SIZE, "%.*s:%zu: ", LINE_SIZE / 2, shown, line_number)
-                                : snprintf(line, LINE_SIZE, "%s: %.*s: ", program, LINE_SIZE / 2, shown));
+                                : snprintf(line, LINE_SIZE, "narc: %.*s: ", LINE_SIZE / 2, shown));
 }
 
 void fail(const char *format, ...) {
-    char line[LINE_SIZE];
-    const int used = snprintf(line, sizeof line, "%s: ", program);
+    char line[LINE_SIZE] = "narc: ";
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(line + used, sizeof line - (size_t)used, format, arguments);
+    vsnprintf(line + 6, sizeof line - 6, format, arguments);
     va_end(arguments);
     print_line(line);
     abandon();

@@ -16,9 +16,6 @@
 
 enum { PARTIAL_STATUS = 1, FAILURE_STATUS = 2 };
 
-/* The name that messages begin with, instead of "narc"; it must stay. */
-void name_program(const char *name);
-
 /* "narc: message". Bytes that would break the line are shown as '?'. */
 PRINTF_LIKE(1, 2) _Noreturn void fail(const char *format, ...);
 

@@ -2,7 +2,7 @@
  *
  * output.c - temporary files beside their targets, renamed at the end.
  */
-#define _XOPEN_SOURCE 700
+#define _XOPEN_SOURCE 700 /* realpath, mkstemp */
 #include "output.h"
 
 #include <errno.h>
@@ -15,7 +15,6 @@
 
 #include "fail.h"
 #include "progress.h"
-#include "temporary.h"
 
 enum { MAX_OUTPUTS = 4 };
 
@@ -30,6 +29,65 @@ static output outputs[MAX_OUTPUTS];
 static size_t output_count;
 static char **inputs;
 static size_t input_count, input_capacity;
+
+/* `suffix` behind the first `length` bytes of `text`. */
+static char *join(const char *text, size_t length, const char *suffix) {
+    char *joined = allocate(length + strlen(suffix) + 1, 1);
+    memcpy(joined, text, length);
+    strcpy(joined + length, suffix);
+    return joined;
+}
+
+/* The length of the part of a path that names its folder: up to the last slash, or 0. */
+static size_t folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* The file that a path means, symbolic links followed, always by the same name; the caller's to free. NULL, and errno, if
+ * neither it nor its folder exists. */
+static char *find_target(const char *path) {
+    char *found = realpath(path, NULL);
+    if (found || errno != ENOENT)
+        return found;
+    const size_t length = folder_length(path);
+    char *as_given = join(path, length, "."), *folder = realpath(as_given, NULL);
+    if (folder) {
+        char *with_slash = join(folder, strlen(folder), "/");
+        found = join(with_slash, strlen(with_slash), path + length);
+        free(with_slash);
+    }
+    free(as_given);
+    free(folder);
+    return found;
+}
+
+/* rename() would replace a file that may not be written to, and root may write to all. */
+static bool is_read_only(const char *target, const struct stat *old) {
+    if (!(old->st_mode & 0222))
+        errno = EACCES;
+    return !(old->st_mode & 0222) || access(target, W_OK) != 0;
+}
+
+/* Opens a temporary file beside a target, with owner (where that is allowed) and permissions of the file that it will
+ * replace, or (`old` NULL) with those that the user's mask allows. A file that is read-only is not replaced: EACCES or
+ * EROFS. The new file's name, the caller's to remove and to free, is told before the file is there, so that a signal
+ * handler can remove it. NULL, and errno, if it cannot be opened. */
+static FILE *open_temporary(const char *target, const struct stat *old, char *volatile *out_name) {
+    if (old && is_read_only(target, old))
+        return NULL;
+    const mode_t mask = umask(0);
+    umask(mask);
+    char *name = join(target, folder_length(target), ".narc-XXXXXX"); /* short: the target's may be as long as can be */
+    *out_name = name;
+    const int descriptor = mkstemp(name);
+    if (descriptor < 0)
+        return NULL;
+    if (old && fchown(descriptor, old->st_uid, old->st_gid) != 0 && fchown(descriptor, (uid_t)-1, old->st_gid) != 0)
+        errno = 0; /* only root gives files to others */
+    fchmod(descriptor, old ? old->st_mode & 0777 : 0666 & ~mask);
+    return fdopen(descriptor, "wb");
+}
 
 void discard_outputs(void) {
     for (size_t i = 0; i < MAX_OUTPUTS; i++) {

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * boundary.c - periodic borders. Bodies are wrapped into the cell when pairs are found, and only then. For pairs across
+ * a border some bodies get images: boxes, a cell's width away, which only take part in finding pairs. A pair then has a
+ * shift, which narc adds to B's position.
+ *
+ * Of the eight neighbours of a cell, four are enough for pairs of grains: what is missing is found from the other
+ * grain's side. Walls have all eight, for two bodies that are marked "still" form no pair, and images are so marked.
+ *
+ * A pair of bodies must stand in the list once, so that its history can find it: two images of B that both are near A
+ * would be two. This cannot be if the cell is as wide as the boxes of the two together, which find_widths() demands.
+ */
+#include <math.h>
+
+#include "internal.h"
+
+/* Where a coordinate is in [low, low + width): by steps of whole widths. What is lost stays so. */
+static double wrap(double value, double low, double width, int32_t *cell) {
+    const double turns = floor((value - low) / width);
+    if (!(fabs(turns) < 1e9))
+        return INFINITY;
+    *cell += (int32_t)turns;
+    return value - turns * width;
+}
+
+void dem_wrap_bodies(dem *d) {
+    const dem_settings *s = &d->settings;
+    dem_bodies *b = &d->bodies;
+    if (!s->periodic_x && !s->periodic_y)
+        return;
+    for (size_t k = 0; k < b->count; k++) {
+        const double old_x = b->x[k], old_y = b->y[k];
+        dem_wall *wall = k < d->grain_count ? NULL : &d->walls[k - d->grain_count];
+        if ((wall && wall->kind == DEM_PLATE))
+            continue;
+        if (s->periodic_x)
+            b->x[k] = wrap(old_x, s->low_x, dem_cell_width(d), &b->cell_x[k]);
+        if (s->periodic_y)
+            b->y[k] = wrap(old_y, s->low_y, dem_cell_height(d), &b->cell_y[k]);
+        if (wall)
+            wall->pivot = (dem_vec){wall->pivot.x + (b->x[k] - old_x), wall->pivot.y + (b->y[k] - old_y)};
+    }
+}
+
+static bool is_empty(narc_box box) { return !(box.min_x <= box.max_x); }
+
+/* The box around the boxes of all grains; and is the cell wide enough for each body and the largest grain? */
+static bool find_widths(dem *d, narc_box *out_all) {
+    const narc_box *boxes = d->scratch->boxes;
+    narc_box all = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    float grain_width = 0, grain_height = 0;
+    for (size_t k = 0; k < d->bodies.count; k++) {
+        const narc_box box = boxes[k];
+        if (is_empty(box))
+            continue;
+        if (k < d->grain_count) {
+            all = (narc_box){fminf(all.min_x, box.min_x), fminf(all.min_y, box.min_y), fmaxf(all.max_x, box.max_x),
+                             fmaxf(all.max_y, box.max_y)};
+            grain_width = fmaxf(grain_width, box.max_x - box.min_x);
+            grain_height = fmaxf(grain_height, box.max_y - box.min_y);
+        }
+    }
+    for (size_t k = 0; k < d->bodies.count; k++) {
+        const double width = (double)(boxes[k].max_x - boxes[k].min_x) + (double)grain_width;
+        const double height = (double)(boxes[k].max_y - boxes[k].min_y) + (double)grain_height;
+        if ((d->settings.periodic_x && !is_empty(boxes[k]) && width >= dem_cell_width(d)) ||
+            (d->settings.periodic_y && !is_empty(boxes[k]) && height >= dem_cell_height(d)))
+            return dem_fail(d,
+                            "the periodic cell is too small: %s %zu and the largest grain, with the skin, are %g by %g "
+                            "together",
+                            k < d->grain_count ? "grain" : "wall", k < d->grain_count ? k : k - d->grain_count, width,
+                            height);
+    }
+    *out_all = all;
+    return true;
+}
+
+static bool overlap(narc_box a, narc_box b) {
+    return a.min_x <= b.max_x && b.min_x <= a.max_x && a.min_y <= b.max_y && b.min_y <= a.max_y;
+}
+
+static bool add_image(dem *d, size_t body, float x, float y, narc_box all) {
+    dem_scratch *s = d->scratch;
+    const narc_box box = s->boxes[body];
+    const narc_box moved = {box.min_x + x, box.min_y + y, box.max_x + x, box.max_y + y};
+    /* Rounding of the sums may take away what it is of a coordinate: give it back. */
+    const float room = 4e-7f * (fabsf(x) + fabsf(y) + fabsf(moved.max_x) + fabsf(moved.max_y) + fabsf(moved.min_x) +
+                                fabsf(moved.min_y));
+    const narc_box image = {moved.min_x - room, moved.min_y - room, moved.max_x + room, moved.max_y + room};
+    const size_t k = d->bodies.count + s->image_count;
+    if (!overlap(image, all))
+        return true;
+    if (!dem_make_room_for_boxes(d, k + 1))
+        return false;
+    s->boxes[k] = image;
+    s->still[k] = 1;
+    s->image_of[k] = (uint32_t)body;
+    s->image_x[k] = x;
+    s->image_y[k] = y;
+    s->image_count++;
+    return true;
+}
+
+bool dem_add_images(dem *d) {
+    static const struct { int x, y; } steps[] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {-1, 0}, {0, -1}, {-1, -1}, {-1, 1}};
+    const dem_settings *s = &d->settings;
+    narc_box all = {0};
+    d->scratch->image_count = 0;
+    if (!s->periodic_x && !s->periodic_y)
+        return true;
+    if (!find_widths(d, &all))
+        return false;
+    for (size_t k = 0; k < d->bodies.count; k++) {
+        const int count = k < d->grain_count ? 4 : 8;
+        for (int i = 0; i < count && !is_empty(d->scratch->boxes[k]); i++) {
+            if ((steps[i].x != 0 && !s->periodic_x) || (steps[i].y != 0 && !s->periodic_y))
+                continue;
+            const float x = steps[i].x != 0 ? (float)steps[i].x * (float)dem_cell_width(d) : 0;
+            const float y = steps[i].y != 0 ? (float)steps[i].y * (float)dem_cell_height(d) : 0;
+            if (!add_image(d, k, x, y, all))
+                return false;
+        }
+    }
+    return true;
+}
+
+bool dem_take_image_pairs(dem *d) {
+    dem_scratch *s = d->scratch;
+    for (size_t k = 0; k < s->found_count; k++) {
+        const uint32_t a = s->found_a[k], image = s->found_b[k];
+        if (image < d->bodies.count)
+            continue;
+        if (!dem_reserve(d, &s->extra, &s->extra_capacity, s->extra_count + 1, sizeof *s->extra))
+            return false;
+        const uint32_t b = s->image_of[image];
+        const float x = s->image_x[image], y = s->image_y[image];
+        s->extra[s->extra_count++] = a < b ? (dem_extra){a, b, x, y} : (dem_extra){b, a, -x, -y};
+    }
+    return true;
+}

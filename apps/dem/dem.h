@@ -1,0 +1,399 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * dem.h - a small discrete element program in two dimensions: grains that are arc shapes, walls, contact laws.
+ *
+ * The mental model
+ *
+ *   A step goes from positions to forces and back. narc answers which grains touch, where and how deep; all else is
+ *   here, a file for each part:
+ *
+ *       main.c        the command line, stages, progress, signals
+ *       input.c       the JSON file; its sections: input_grains.c, input_walls.c, input_run.c
+ *       json_path.c   checked access to it and to options, with messages
+ *       model.c       memory, shapes, bodies
+ *       place.c       where grains start
+ *       neighbours.c  boxes, pairs with a skin, history
+ *       boundary.c    periodic images, wrapping
+ *       step.c        velocity Verlet, the narrow phase
+ *       laws.c        forces of contacts
+ *       gather.c      forces of bodies
+ *       walls.c       motion of walls, servo control
+ *       measures.c    energies, stress, counts
+ *       csv.c         tables of measures, and of grains
+ *       restart.c     the state in a file, bit for bit
+ *       files.c       files that are read, or appear, as a whole
+ *       frames.c      what pictures, files for ParaView and tables of grains have in common
+ *       vtk.c         files for ParaView; vtk_xml.c their XML
+ *       picture.c     pictures
+ *
+ * Conventions
+ *
+ *   Grains are bodies 0 .. grain_count - 1, walls follow. All state is double. narc reads positions as doubles in place
+ *   (it subtracts them before it rounds) and rotations as floats, which are rounded copies of the doubles here. So the
+ *   depth of a contact is within NARC_ERROR_BOUND times a few sizes of the two bodies, wherever they are.
+ *
+ *   Grains touch each other in one point, the deepest.
+ *
+ *   A contact's normal points from A to B, and A < B. Its tangent is the normal turned by a quarter turn. In two
+ *   dimensions the tangential spring is one number along the tangent, so it turns with the contact by itself.
+ *
+ *   Every sum is taken in an order that does not depend on threads, and no operation but + - * / sqrt touches the
+ *   state: a run has the same bits on every instruction set and with any number of threads.
+ */
+#ifndef DEM_H
+#define DEM_H
+
+#include <narc.h>
+#include <narc_broad_phase.h>
+
+#include <stdio.h>
+
+enum { DEM_MAX_MATERIALS = 16, DEM_NAME_SIZE = 64, DEM_PATH_SIZE = 1024 };
+
+typedef struct dem_vec {
+    double x, y;
+} dem_vec;
+
+/* ---------------------------------------------------------------------------------------- what it is made of */
+
+typedef struct dem_material {
+    char name[DEM_NAME_SIZE];
+    double density;
+    double young, poisson; /* of the Hertz law; else 0 */
+} dem_material;
+
+/* A shape of the store, its centroid at the origin, for scale 1 and density * thickness 1. */
+typedef struct dem_shape {
+    char name[DEM_NAME_SIZE];
+    double area, second_moment;
+    double reach;  /* the largest distance of a point from the origin */
+    double extent; /* the diameter of the disc of equal area */
+} dem_shape;
+
+typedef enum dem_law { DEM_LINEAR, DEM_HERTZ } dem_law;
+
+/* What two materials do to each other; see laws.c for the formulae. */
+typedef struct dem_contact_law {
+    double kn, kt;           /* stiffness; of the Hertz law 4/3 E* and 8 G* */
+    double gamma_n, gamma_t; /* damping per effective mass; not used where there is a damping ratio */
+    double damping_ratio;    /* of a restitution: damping is this times sqrt(stiffness * effective mass); below 0: gamma
+                                counts */
+    double tangential_share; /* with a damping ratio: tangential damping, as a share of the normal one */
+    double friction;
+    double rolling_friction; /* 0: none. Torque at most this times Reff |Fn| */
+} dem_contact_law;
+
+typedef struct dem_settings {
+    double time_step;
+    double skin;      /* pairs are kept while nothing has moved half of it */
+    double thickness; /* of the grains, across the plane */
+    dem_vec gravity;
+    dem_law law;
+    double max_overlap;    /* a deeper contact stops the run; a share of the smaller body's extent */
+    double least_radius;   /* Hertz: a radius of curvature is at least, */
+    double largest_radius; /* and at most, this share of half the grain's extent */
+    bool periodic_x, periodic_y;
+    double low_x, high_x, low_y, high_y; /* the periodic cell; also the region of pictures if it is not empty */
+    unsigned threads;                    /* 0: as OpenMP would, fewer for few grains */
+} dem_settings;
+
+/* Bodies: `count` of each array, grains first. */
+typedef struct dem_bodies {
+    size_t count, capacity;
+    double *x, *y;                          /* of the centre of mass, the shape's origin */
+    double *cosine, *sine;                  /* the rotation, a unit vector */
+    double *vx, *vy, *spin;                 /* velocities */
+    double *fx, *fy, *torque;               /* of contacts alone; gravity is added where velocities change */
+    double *inverse_mass, *inverse_inertia; /* 0 for walls */
+    double *mass, *inertia;
+    double *list_x, *list_y, *list_cosine, *list_sine; /* where they were when the pairs were found */
+    double *reach, *extent;                            /* of the scaled shape */
+    float *scale;
+    uint32_t *shape;
+    uint8_t *material, *still; /* still: a wall. Two of them form no pair */
+    int32_t *cell_x, *cell_y;  /* how often it crossed the periodic border, for true displacements */
+} dem_bodies;
+
+typedef enum dem_wall_kind { DEM_BOX, DEM_PLATE } dem_wall_kind;
+
+/* Holds a wall's force along one axis at a target. */
+typedef struct dem_servo {
+    bool on;
+    dem_vec direction;      /* unit; the wall moves along it */
+    double force;           /* the target: what grains press against the direction with. Used if `between` is empty */
+    double stress;          /* times the distance of the two walls of `between` times the thickness */
+    int between[2];         /* walls, or -1 */
+    double gain, max_speed; /* the share of a step's error that the next step removes */
+    double travel; /* the run ends if the wall moves further without touching a grain; 0: the world's diagonal */
+} dem_servo;
+
+/* A wall is body grain_count + its index. A box (any convex arc shape) is where it is; a plate is a half plane: its
+ * body is a block that goes along with each grain it may touch (the pair's shift), so that it is precise at any
+ * length. */
+typedef struct dem_wall {
+    char name[DEM_NAME_SIZE];
+    dem_wall_kind kind;
+    uint32_t shape; /* as it begins: dem_start() makes it a body */
+    uint8_t material;
+    double scale;
+    dem_vec place;
+    double angle;
+    dem_vec normal;   /* a plate's, into the grains' half plane */
+    dem_vec velocity; /* prescribed */
+    double spin;      /* about the pivot, which moves with the velocity */
+    dem_vec pivot;
+    dem_servo servo;
+    double work;       /* done on the grains since the start */
+    double resistance; /* how its force grows with its speed in a step, if some wall has servo control */
+    double idle_way;   /* how far servo control has moved it since it touched a grain */
+} dem_wall;
+
+/* The memory of a pair that touches. It counts only if `step` is the step before. */
+typedef struct dem_memory {
+    double slide;   /* of the tangential spring */
+    double spring;  /* its force */
+    double damping; /* the normal damping force */
+    uint64_t step;
+} dem_memory;
+
+/* The damping of a pair, per velocity; for contacts of unit size. */
+typedef struct dem_dashpot {
+    double normal, tangential;
+} dem_dashpot;
+
+typedef struct dem_rolling {
+    double angle, torque;
+} dem_rolling;
+
+/* Pairs whose boxes, half the skin larger, overlap, in the order of (a, b). No pair stands there twice. */
+typedef struct dem_pairs {
+    size_t count, capacity;
+    uint32_t *a, *b;
+    float *shift_x, *shift_y; /* added to B's position */
+    uint32_t *hints;          /* narc's */
+    dem_dashpot *dashpot;
+    dem_memory *memory;
+    dem_rolling *rolling; /* used only if there is rolling friction */
+} dem_pairs;
+
+/* The force of a contact on B, on A the opposite, and its torques. */
+typedef struct dem_force {
+    double x, y;
+    double torque_a, torque_b;
+} dem_force;
+
+/* The contacts of the last step, in the order of the pairs. */
+typedef struct dem_contacts {
+    size_t count, capacity;
+    narc_contact *rows;
+    dem_force *forces;
+} dem_contacts;
+
+/* Energies, and what was dissipated since the start. kinetic + potential + elastic + damping + friction - walls stays
+ * what it was. */
+typedef struct dem_energies {
+    double kinetic, potential;
+    double elastic;           /* of normal, tangential and rolling springs */
+    double damping, friction; /* dissipated; friction with what tangential springs hold when their contact opens */
+    double walls;             /* work of moving walls on the grains */
+} dem_energies;
+
+typedef struct dem_measures {
+    dem_energies energy;
+    size_t contacts;     /* of grains with grains and walls */
+    double coordination; /* contacts of a grain: with grains count twice, with walls once, over the grains */
+    double stress_xx, stress_xy, stress_yx,
+        stress_yy;  /* compression is positive; contacts whose point is in the region */
+    double deepest; /* the largest overlap, as a share of the smaller body's extent */
+    double fastest; /* the largest speed of a grain */
+} dem_measures;
+
+/* A region of the plane: that of stresses. */
+typedef struct dem_region {
+    bool given;
+    double low_x, high_x, low_y, high_y;
+} dem_region;
+
+/* Seconds spent in each part, for speed.c; counted only if `on`. */
+typedef struct dem_clock {
+    bool on;
+    double lists, narrow, forces, motion;
+} dem_clock;
+
+/* An incidence list: which pairs have body i as B, ascending: of[first[i]] .. of[first[i + 1] - 1]; and where the pairs
+ * that have it as A begin. */
+typedef struct dem_incidence {
+    uint32_t *first_b, *of_b, *first_a;
+    size_t capacity;
+} dem_incidence;
+
+typedef struct dem {
+    dem_settings settings;
+    dem_material materials[DEM_MAX_MATERIALS];
+    size_t material_count;
+    dem_contact_law laws[DEM_MAX_MATERIALS][DEM_MAX_MATERIALS];
+
+    narc_shapes *store;
+    dem_shape *shapes; /* shape k of the store */
+    size_t shape_count, shape_capacity;
+
+    dem_bodies bodies;
+    size_t grain_count;
+    dem_wall *walls;
+    size_t wall_count, wall_capacity;
+    double grain_reach, grain_extent; /* the largest */
+    double safe_depth;                /* a contact that is not deeper is allowed for all grains */
+    double diagonal;                  /* of the box around all grains and the places of walls, at the start */
+    bool started;                     /* no body can be added any more */
+
+    uint64_t step;
+    double time; /* step * time_step, summed over stages with their own steps */
+    uint64_t list_builds;
+    dem_pairs pairs, last_pairs;
+    dem_incidence incidence; /* of the pairs */
+    dem_contacts contacts;
+
+    /* Summed up since the start. */
+    double damping, friction;
+    double normal_energy, tangential_energy, rolling_energy; /* of the springs now */
+
+    narc_broad_phase *broad;
+    struct dem_scratch *scratch; /* memory of the neighbour list and of sums */
+    dem_clock clock;
+    char error[512]; /* what went wrong, when a function here says that something did */
+} dem;
+
+/* ------------------------------------------------------------------------------------------------ model.c */
+
+extern const dem_settings dem_defaults;
+
+/* An empty world. Everything that returns bool tells of an error by false, and says what in d->error. dem_destroy()
+ * frees what there is, after an error too. */
+bool dem_create(dem *d, dem_settings settings);
+void dem_destroy(dem *d);
+
+/* Adds a shape, moved so that its centroid is its origin. */
+bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count, uint32_t *out_shape);
+
+/* Adds a material. Laws with it are set in d->laws by dem_set_law(). */
+bool dem_add_material(dem *d, dem_material material, uint8_t *out_material);
+
+/* A grain as it is added. */
+typedef struct dem_grain {
+    uint32_t shape;
+    uint8_t material;
+    double x, y, angle, scale; /* the scale is rounded to float */
+    double vx, vy, spin;
+} dem_grain;
+
+/* Grains and walls in any order. A wall as it is added: {.name, .kind, .material, .place}, and of a box .shape, .scale
+ * and .angle, of a plate .normal (of any length); its place is a point of its border. */
+bool dem_add_grain(dem *d, dem_grain grain);
+bool dem_add_wall(dem *d, dem_wall wall);
+
+/* Checks the whole, makes room. To be called once, before the first step. */
+bool dem_start(dem *d);
+
+/* Reports an error; returns false. */
+bool dem_fail(dem *d, const char *format, ...);
+
+/* ---------------------------------------------------------------------------------------- laws.c, step.c ... */
+
+/* The damping ratio that gives a restitution, above 0 and at most 1. */
+double dem_damping_ratio(dem_law law, double restitution);
+
+/* The law between two materials, in both orders. With the Hertz law kn and kt come from the materials. */
+void dem_set_law(dem *d, uint8_t a, uint8_t b, dem_contact_law law);
+
+/* One step. */
+bool dem_step(dem *d);
+
+/* Seconds on a clock that never goes back. */
+double dem_seconds(void);
+
+bool dem_renew_lists(dem *d); /* neighbours.c */
+
+void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measures);
+
+/* The force of the grains on a wall. */
+dem_vec dem_wall_force(const dem *d, size_t wall);
+
+/* The box around all grains: squares as large as they reach. */
+dem_region dem_bound_grains(const dem *d);
+
+/* How far the face of a plate is from its body's place: half the side of its block. */
+double dem_half_block(const dem *d, const dem_wall *plate);
+
+/* FNV-1a over the whole state. */
+uint64_t dem_hash(const dem *d);
+
+/* ------------------------------------------------------------------------------------------------ files.c */
+
+/* All bytes of a file, and a NUL behind them: memory that the caller frees. NULL, with an error. */
+char *dem_read_file(const char *path, size_t *out_size, char *error);
+
+/* A file that is written under a temporary name and gets its own when it is closed. */
+typedef struct dem_file {
+    FILE *file;
+    const char *path; /* as it was given: must last as long */
+    char *target;
+    char *temporary;
+} dem_file;
+
+/* Errors, with the system's reason, go to `error` (512 bytes). dem_close_file() with ok = false removes what was
+ * written. */
+bool dem_open_file(dem_file *out, const char *path, char *error);
+bool dem_close_file(dem_file *out, bool ok, char *error);
+
+/* ------------------------------------------------------------------------------------------------ frames */
+
+/* Writes the state for ParaView, and adds it to the lists of frames. Frame 12 of "out/pile" is out/pile-000012.vtp and
+ * out/pile-contacts-000012.vtp, the lists are out/pile.pvd and out/pile-contacts.pvd. Errors as above, into `error`
+ * (512 bytes). */
+bool dem_write_vtk(const dem *d, const char *stem, uint64_t frame, char *error);
+
+/* What the colours of grains tell. */
+typedef enum dem_coloring { DEM_PLAIN, DEM_SPEED, DEM_COORDINATION, DEM_PRESSURE } dem_coloring;
+
+typedef struct dem_look {
+    dem_region region; /* if it is not given: of all bodies */
+    double width;      /* in pixels */
+    dem_coloring coloring;
+    double top;  /* the value that has the last colour; 0: the largest one of the frame */
+    bool forces; /* lines from centre to contact to centre */
+} dem_look;
+
+/* By the path's suffix, .png or .svg. */
+typedef enum dem_picture { DEM_NO_PICTURE, DEM_PNG, DEM_SVG } dem_picture;
+dem_picture dem_picture_kind(const char *path);
+bool dem_draw_picture(const dem *d, const dem_look *look, const char *path, char *error);
+
+/* The table of measures, a line for each time, which grows while the run goes on. A new one; or, if the position is
+ * above 0 and the file is there, an old one, cut off there: if it is one of this input, and the line that ends there is
+ * not of a later step than the world's. Sets the position to its end. */
+FILE *dem_open_csv(const dem *d, const char *path, uint64_t *position, char *error);
+
+/* Adds a line; false if it cannot be written. */
+bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m);
+
+/* A line of CSV for each grain. */
+bool dem_write_grains(const dem *d, const char *path, char *error);
+
+/* ------------------------------------------------------------------------------------------------ restart.c */
+
+/* What a run is beside the state: kept in a restart file, so that it goes on where it was. */
+typedef struct dem_place {
+    uint64_t input;        /* hash of what the input says of bodies, laws and boundaries */
+    uint64_t stage;        /* index */
+    uint64_t stage_step;   /* steps done in it */
+    uint64_t csv_position; /* bytes */
+    uint64_t frame;        /* number of the next VTK file or picture */
+    uint64_t random;       /* the generator's state */
+} dem_place;
+
+bool dem_write_restart(const dem *d, const dem_place *place, const char *path, char *error);
+
+/* Into a world with the same input, after dem_start(). */
+bool dem_read_restart(dem *d, dem_place *place, const char *path);
+
+#endif

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * internal.h - what the parts of the program call of each other.
+ */
+#ifndef DEM_INTERNAL_H
+#define DEM_INTERNAL_H
+
+#include "dem.h"
+
+/* Contacts are worked on in blocks of this many. A block's sums do not depend on who makes them. */
+enum { DEM_BLOCK = 256 };
+
+/* What a block of contacts adds up to. */
+typedef struct dem_sums {
+    double normal_energy, tangential_energy, rolling_energy;
+    double old_springs; /* what the springs of these contacts held in the last step */
+    double damping, friction;
+    size_t too_deep; /* the first contact that is, or SIZE_MAX */
+} dem_sums;
+
+/* A pair that narc does not find: across a periodic border, or with a plate. */
+typedef struct dem_extra {
+    uint32_t a, b;
+    float shift_x, shift_y;
+} dem_extra;
+
+typedef struct dem_scratch {
+    narc_box *boxes; /* bodies, then images */
+    uint8_t *still;
+    uint32_t *image_of;
+    float *image_x, *image_y; /* where an image is, from its body */
+    size_t box_capacity, image_count;
+    const uint32_t *found_a, *found_b; /* pairs of boxes; the broad phase owns them */
+    size_t found_count;
+    uint32_t *match;
+    dem_extra *extra;
+    size_t extra_count, extra_capacity;
+    uint32_t *slot; /* of a pair: its contact, if the pair of that says so */
+    bool adds;      /* a single thread adds forces to bodies as it finds them */
+    dem_sums *sums;
+    size_t sums_capacity;
+    narc_body *poses; /* of all bodies, when narc was last asked */
+    size_t pose_capacity;
+} dem_scratch;
+
+/* model.c: an array with room for `needed` items; grows by halves. The items that there are stay. */
+bool dem_reserve(dem *d, void *array_pointer, size_t *capacity, size_t needed, size_t size);
+bool dem_resize(dem *d, void *array_pointer, size_t count, size_t size);
+bool dem_grow_pairs(dem *d, dem_pairs *pairs, size_t needed);
+narc_body dem_make_pose(const dem_bodies *b, size_t k); /* a body where it is now, for narc */
+/* All of them, until the next call. */
+bool dem_make_poses(dem *d, narc_bodies *out);
+bool dem_fail_narc(dem *d, const char *what, const narc_error *error);
+bool dem_find_broken_body(dem *d);
+unsigned dem_team(const dem *d); /* threads */
+narc_workers dem_workers(const dem *d);
+bool dem_has_rolling(const dem *d);
+double dem_cell_width(const dem *d);
+double dem_cell_height(const dem *d);
+
+/* The arrays of bodies, as bytes: for the restart and the hash. NULL behind the last. */
+void *dem_body_column(const dem *d, size_t index, size_t *out_item_size);
+
+/* measures.c: FNV-1a, 64 bits, continued */
+#define DEM_HASH_START 0xcbf29ce484222325u
+uint64_t dem_hash_bytes(uint64_t hash, const void *bytes, size_t size);
+
+/* neighbours.c */
+bool dem_index_pairs(dem *d);
+bool dem_make_room_for_boxes(dem *d, size_t count);
+
+/* step.c: as many as there is room for pairs */
+bool dem_make_room_for_contacts(dem *d);
+
+/* boundary.c */
+void dem_wrap_bodies(dem *d);
+bool dem_add_images(dem *d);
+bool dem_take_image_pairs(dem *d); /* adds the found pairs with images to the extra ones */
+
+/* walls.c */
+bool dem_steer_walls(dem *d);
+void dem_move_walls(dem *d);
+void dem_count_wall_work(dem *d);
+void dem_find_resistances(dem *d);
+bool dem_add_plate_pairs(dem *d);
+
+/* laws.c, gather.c */
+void dem_find_dashpots(dem *d);
+bool dem_apply_laws(dem *d);
+void dem_clear_forces(dem *d);
+bool dem_find_first_forces(dem *d); /* of where bodies begin */
+void dem_gather_forces(dem *d);     /* unless they were added before */
+
+#endif

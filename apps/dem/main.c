@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * main.c - runs an input: stages, outputs, progress, signals.
+ *
+ * Exit status: 0 the run is complete; 2 an error; 128 + the signal's number if SIGINT or SIGTERM ended it, after a
+ * restart was written.
+ */
+#define _XOPEN_SOURCE 700
+#include <getopt.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "input.h"
+
+static volatile sig_atomic_t caught;
+
+static void on_signal(int number) { caught = number; }
+
+static void watch_signals(void) {
+    struct sigaction action;
+    memset(&action, 0, sizeof action);
+    action.sa_handler = on_signal;
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit is an error of writing */
+}
+
+/* ------------------------------------------------------------------------------------------------ a run */
+
+typedef struct run {
+    dem world;
+    dem_input input;
+    dem_place place;
+    FILE *csv;
+    uint64_t total_steps, first_step;
+    double began, shown; /* seconds */
+    bool terminal;
+} run;
+
+static void end_badly(const run *r) { fail("%s", r->world.error); }
+
+static void write_restart(run *r) {
+    const dem_output *o = &r->input.output;
+    if (o->restart[0] && !dem_write_restart(&r->world, &r->place, o->restart, r->world.error))
+        end_badly(r);
+}
+
+/* "out/pile.png" and 12 make "out/pile-000012.png". */
+static void number_name(const char *name, uint64_t number, char *out_name, size_t size) {
+    const char *slash = strrchr(name, '/'), *dot = strrchr(slash ? slash : name, '.');
+    const int stem = (int)(dot ? (size_t)(dot - name) : strlen(name));
+    snprintf(out_name, size, "%.*s-%06" PRIu64 "%s", stem, name, number, dot ? dot : "");
+}
+
+static void write_frame(run *r) {
+    const dem_output *o = &r->input.output;
+    dem *d = &r->world;
+    char name[DEM_PATH_SIZE];
+    if (r->csv) {
+        dem_measures measures;
+        dem_measure(d, &o->region, &measures);
+        if (!dem_write_csv(r->csv, d, &measures))
+            fail("%s: it cannot be written", o->csv);
+        r->place.csv_position = (uint64_t)ftell(r->csv);
+    }
+    if (o->vtk[0] && !dem_write_vtk(d, o->vtk, r->place.frame, d->error))
+        end_badly(r);
+    number_name(o->grains, r->place.frame, name, sizeof name);
+    if (o->grains[0] && !dem_write_grains(d, name, d->error))
+        end_badly(r);
+    number_name(o->picture, r->place.frame, name, sizeof name);
+    if (o->picture[0] && !dem_draw_picture(d, &o->look, name, d->error))
+        end_badly(r);
+    r->place.frame++;
+}
+
+/* Once a second on a terminal: how far it is, and how long it will take. */
+static void show_run(run *r, const dem_stage *stage) {
+    const double now = r->terminal ? dem_seconds() : 0;
+    if (!r->terminal || now - r->shown < 0.5)
+        return;
+    const uint64_t done = r->world.step - r->first_step;
+    const double left = (now - r->began) * (double)(r->total_steps - r->world.step) / (double)(done > 0 ? done : 1);
+    r->shown = now;
+    fprintf(stderr, "\r\033[K%s: step %" PRIu64 " of %" PRIu64 ", %zu contacts, %.0f s to go", stage->name,
+            r->world.step, r->total_steps, r->world.contacts.count, left);
+    fflush(stderr);
+}
+
+/* What a stage changes, at its beginning. Other gravity gives grains another potential energy at once. */
+static void enter_stage(run *r, const dem_stage *stage) {
+    dem *d = &r->world;
+    if (stage->sets_gravity)
+        d->settings.gravity = stage->gravity;
+    for (size_t a = 0; stage->sets_friction && a < d->material_count; a++)
+        for (size_t b = 0; b < d->material_count; b++)
+            d->laws[a][b].friction = stage->friction;
+    for (size_t i = 0; i < stage->change_count; i++)
+        dem_apply_change(d, &stage->changes[i]);
+}
+
+/* A signal came: the step is complete. */
+static _Noreturn void stop(run *r) {
+    const dem_output *o = &r->input.output;
+    const int number = caught;
+    if (r->terminal)
+        fprintf(stderr, "\r\033[K");
+    write_restart(r);
+    if (o->restart[0])
+        fprintf(stderr, "dem: signal %d at step %" PRIu64 ": go on with --restart %s\n", number, r->world.step,
+                o->restart);
+    else
+        fprintf(stderr, "dem: signal %d at step %" PRIu64 ": no restart, the input's output names none\n", number,
+                r->world.step);
+    exit(128 + number);
+}
+
+static void run_stage(run *r, const dem_stage *stage) {
+    const dem_output *o = &r->input.output;
+    dem *d = &r->world;
+    if (r->place.stage_step == 0)
+        enter_stage(r, stage);
+    while (r->place.stage_step < stage->steps) {
+        if (caught)
+            stop(r);
+        if (!dem_step(d))
+            end_badly(r);
+        r->place.stage_step++;
+        if (d->step % o->every == 0)
+            write_frame(r);
+        if (d->step % o->restart_every == 0)
+            write_restart(r);
+        show_run(r, stage);
+    }
+    r->place.stage++;
+    r->place.stage_step = 0;
+}
+
+static void begin(run *r, const char *restart) {
+    const dem_output *o = &r->input.output;
+    r->place.input = r->input.hash;
+    r->place.random = r->input.random;
+    if (restart && !dem_read_restart(&r->world, &r->place, restart))
+        end_badly(r);
+    const uint64_t stage = r->place.stage;
+    if (restart && stage > r->input.stage_count)
+        fail("%s: it is at stage %" PRIu64 ", the input has %zu", restart, stage, r->input.stage_count);
+    if (restart && stage < r->input.stage_count && r->place.stage_step > r->input.stages[stage].steps)
+        fail("%s: it has done %" PRIu64 " steps of stage %" PRIu64 ", which has %" PRIu64 " in the input", restart,
+             r->place.stage_step, stage, r->input.stages[stage].steps);
+    if (o->csv[0] && !(r->csv = dem_open_csv(&r->world, o->csv, &r->place.csv_position, r->world.error)))
+        end_badly(r);
+    if (!restart)
+        write_frame(r);
+    r->first_step = r->total_steps = r->world.step;
+    for (size_t i = (size_t)r->place.stage; i < r->input.stage_count; i++)
+        r->total_steps += r->input.stages[i].steps - (i == r->place.stage ? r->place.stage_step : 0);
+    r->terminal = isatty(STDERR_FILENO);
+    r->began = r->shown = dem_seconds();
+}
+
+static void report(const run *r) {
+    dem_measures m;
+    dem_measure(&r->world, &r->input.output.region, &m);
+    const double steps = (double)(r->world.step - r->first_step), seconds = dem_seconds() - r->began;
+    if (r->terminal)
+        fprintf(stderr, "\r\033[K");
+    if (r->total_steps == r->first_step)
+        fprintf(stderr, "dem: nothing was left to run: all stages of the input were over\n");
+    printf("steps %" PRIu64 ", time %g, lists %" PRIu64 "\n", r->world.step, r->world.time, r->world.list_builds);
+    printf("grains %zu, walls %zu, contacts %zu, coordination %.3f\n", r->world.grain_count, r->world.wall_count,
+           m.contacts, m.coordination);
+    printf("kinetic %.6g, potential %.6g, elastic %.6g, damping %.6g, friction %.6g, walls %.6g\n", m.energy.kinetic,
+           m.energy.potential, m.energy.elastic, m.energy.damping, m.energy.friction, m.energy.walls);
+    printf("state %016" PRIx64 "\n", dem_hash(&r->world));
+    fprintf(stderr, "dem: %.1f s, %.1f microseconds a step\n", seconds, steps > 0 ? 1e6 * seconds / steps : 0);
+}
+
+static int print_usage(FILE *to) {
+    fprintf(to, "usage: dem INPUT.json [--restart FILE] [--threads N]\n\n"
+                "Runs the discrete element simulation that the input describes (apps/dem/README.md).\n"
+                "  --restart FILE   go on from a restart file\n"
+                "  --threads N      1 to 256; otherwise as OpenMP would\n");
+    return to == stdout ? 0 : 2;
+}
+
+int main(int argc, char **argv) {
+    static const struct option options[] = {{"help", no_argument, NULL, 'h'},
+                                            {"restart", required_argument, NULL, 'r'},
+                                            {"threads", required_argument, NULL, 't'},
+                                            {NULL, 0, NULL, 0}};
+    const char *restart = NULL;
+    unsigned threads = 0;
+    argv[0] = (char[]){"dem"}; /* with which getopt_long() begins its messages */
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        if (option == 'h')
+            return print_usage(stdout);
+        if (option == '?')
+            return 2;
+        if (option == 'r')
+            restart = optarg;
+        else
+            threads = (unsigned)read_whole("--threads", optarg, 1, 256);
+    }
+    if (optind == argc)
+        fail("INPUT is missing");
+    if (optind + 1 < argc)
+        return print_usage(stderr);
+    run *r = calloc(1, sizeof *r);
+    if (!r)
+        fail("not enough memory");
+    dem_read_input(argv[optind], threads, &r->world, &r->input);
+    watch_signals(); /* before that a signal ends the program at once: a filling may take long */
+    begin(r, restart);
+    while (r->place.stage < r->input.stage_count)
+        run_stage(r, &r->input.stages[r->place.stage]);
+    write_restart(r);
+    if (r->csv && fclose(r->csv) != 0)
+        fail("%s: it cannot be written", r->input.output.csv);
+    report(r);
+    dem_destroy(&r->world);
+    dem_free_input(&r->input);
+    free(r);
+    return 0;
+}

@@ -1,0 +1,410 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * model.c - the world's memory, its shapes, materials and bodies.
+ */
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "internal.h"
+
+const dem_settings dem_defaults = {.time_step = 1e-5,
+                                   .skin = 0.1,
+                                   .thickness = 1,
+                                   .gravity = {0, -9.81},
+                                   .max_overlap = 0.05,
+                                   .least_radius = 0.02,
+                                   .largest_radius = 2};
+
+bool dem_fail(dem *d, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(d->error, sizeof d->error, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+bool dem_fail_narc(dem *d, const char *what, const narc_error *error) {
+    return dem_fail(d, "%s: %s", what, error->message);
+}
+
+/* ------------------------------------------------------------------------------------------------ memory */
+
+bool dem_resize(dem *d, void *array_pointer, size_t count, size_t size) {
+    void *array;
+    memcpy(&array, array_pointer, sizeof array);
+    void *larger = count <= SIZE_MAX / size ? realloc(array, count > 0 ? count * size : 1) : NULL;
+    if (!larger)
+        return dem_fail(d, "not enough memory for %zu items of %zu bytes", count, size);
+    memcpy(array_pointer, &larger, sizeof larger);
+    return true;
+}
+
+bool dem_reserve(dem *d, void *array_pointer, size_t *capacity, size_t needed, size_t size) {
+    if (needed <= *capacity)
+        return true;
+    const size_t larger = needed + needed / 2 + 16;
+    if (!dem_resize(d, array_pointer, larger, size))
+        return false;
+    *capacity = larger;
+    return true;
+}
+
+/* Where the arrays of a structure are in it, and what they hold. */
+typedef struct column {
+    size_t offset, size;
+} column;
+
+#define BODY(field)                                                                                                    \
+    { offsetof(dem_bodies, field), sizeof(*((dem_bodies *)0)->field) }
+#define PAIR(field)                                                                                                    \
+    { offsetof(dem_pairs, field), sizeof(*((dem_pairs *)0)->field) }
+
+static const column body_columns[] = {
+    BODY(x),           BODY(y),         BODY(cosine), BODY(sine),    BODY(vx),           BODY(vy),
+    BODY(spin),        BODY(fx),        BODY(fy),     BODY(torque),  BODY(list_x),       BODY(list_y),
+    BODY(list_cosine), BODY(list_sine), BODY(cell_x), BODY(cell_y),  BODY(scale),        BODY(shape),
+    BODY(material),    BODY(still),     BODY(mass),   BODY(inertia), BODY(inverse_mass), BODY(inverse_inertia),
+    BODY(reach),       BODY(extent)};
+enum { BODY_COLUMNS = sizeof body_columns / sizeof body_columns[0] };
+
+static const column pair_columns[] = {PAIR(a),     PAIR(b),      PAIR(shift_x), PAIR(shift_y),
+                                      PAIR(hints), PAIR(memory), PAIR(dashpot), PAIR(rolling)};
+enum { PAIR_COLUMNS = sizeof pair_columns / sizeof pair_columns[0] };
+
+void *dem_body_column(const dem *d, size_t index, size_t *out_item_size) {
+    if (index >= BODY_COLUMNS)
+        return NULL;
+    void *array;
+    memcpy(&array, (const char *)&d->bodies + body_columns[index].offset, sizeof array);
+    *out_item_size = body_columns[index].size;
+    return array;
+}
+
+static bool resize_columns(dem *d, void *structure, const column *columns, size_t column_count, size_t count) {
+    for (size_t i = 0; i < column_count; i++)
+        if (!dem_resize(d, (char *)structure + columns[i].offset, count, columns[i].size))
+            return false;
+    return true;
+}
+
+static void free_columns(void *structure, const column *columns, size_t column_count) {
+    for (size_t i = 0; i < column_count; i++) {
+        void *array;
+        memcpy(&array, (char *)structure + columns[i].offset, sizeof array);
+        free(array);
+    }
+}
+
+bool dem_grow_pairs(dem *d, dem_pairs *pairs, size_t needed) {
+    if (needed <= pairs->capacity)
+        return true;
+    const size_t capacity = needed + needed / 2 + 16;
+    if (!resize_columns(d, pairs, pair_columns, PAIR_COLUMNS, capacity))
+        return false;
+    pairs->capacity = capacity;
+    return true;
+}
+
+bool dem_create(dem *d, dem_settings settings) {
+    memset(d, 0, sizeof *d);
+    d->settings = settings;
+    d->scratch = calloc(1, sizeof *d->scratch);
+    if (!d->scratch || narc_create_shapes(NULL, &d->store) != NARC_OK || narc_create_broad_phase(NULL, &d->broad))
+        return dem_fail(d, "not enough memory");
+    return true;
+}
+
+void dem_destroy(dem *d) {
+    dem_scratch *s = d->scratch;
+    dem_contacts *c = &d->contacts;
+    void *const arrays[] = {d->shapes,        d->walls, c->rows, c->forces, d->incidence.first_a, d->incidence.first_b,
+                            d->incidence.of_b};
+    for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++)
+        free(arrays[i]);
+    free_columns(&d->bodies, body_columns, BODY_COLUMNS);
+    free_columns(&d->pairs, pair_columns, PAIR_COLUMNS);
+    free_columns(&d->last_pairs, pair_columns, PAIR_COLUMNS);
+    if (s) {
+        void *const scratch[] = {s->boxes, s->still, s->image_of, s->image_x, s->image_y,
+                                 s->match, s->extra, s->slot,     s->sums,    s->poses};
+        for (size_t i = 0; i < sizeof scratch / sizeof scratch[0]; i++)
+            free(scratch[i]);
+        free(s);
+    }
+    narc_destroy_shapes(d->store);
+    narc_destroy_broad_phase(d->broad);
+    memset(d, 0, sizeof *d);
+}
+
+/* ------------------------------------------------------------------------------------------------ shapes, materials */
+
+/* At the point that is furthest from the origin the normal points away from the origin, so the arc's centre is on the
+ * same line: the point is the support in that direction, or in the opposite one if the arc is flatter. */
+static double find_reach(const narc_arc *arcs, size_t count) {
+    double reach = 0;
+    for (size_t i = 0; i < 2 * count; i++) {
+        const narc_arc *arc = &arcs[i / 2];
+        const double sign = i % 2 ? -1 : 1;
+        const bool central = arc->center_x == 0 && arc->center_y == 0;
+        narc_point p = {0, 0};
+        narc_find_support(arcs, count, central ? 1 : sign * arc->center_x, sign * arc->center_y, &p, NULL);
+        reach = fmax(reach, hypot(p.x, p.y));
+    }
+    return reach;
+}
+
+bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count, uint32_t *out_shape) {
+    narc_arc centred[NARC_MAX_ARCS];
+    narc_error error;
+    narc_mass mass;
+    /* One index for each name, also of equal shapes: d->shapes goes with the store. */
+    const uint32_t index = (uint32_t)d->shape_count;
+    if (narc_center_arcs(arcs, count, centred, NULL, &error) != NARC_OK)
+        return dem_fail_narc(d, name, &error);
+    narc_compute_mass(centred, count, &mass);
+    if (!(mass.area > 0))
+        return dem_fail(d, "%s: the shape encloses no area", name);
+    if (narc_add_shape_at(d->store, index, centred, count, &error) != NARC_OK)
+        return dem_fail_narc(d, name, &error);
+    *out_shape = index;
+    if (!dem_reserve(d, &d->shapes, &d->shape_capacity, d->shape_count + 1, sizeof *d->shapes))
+        return false;
+    dem_shape *shape = &d->shapes[d->shape_count++];
+    *shape = (dem_shape){.area = mass.area,
+                         .second_moment = mass.second_moment,
+                         .reach = find_reach(centred, count),
+                         .extent = 2 * sqrt(mass.area / 3.14159265358979323846)};
+    snprintf(shape->name, sizeof shape->name, "%s", name);
+    return true;
+}
+
+bool dem_add_material(dem *d, dem_material material, uint8_t *out_material) {
+    if (d->material_count == DEM_MAX_MATERIALS)
+        return dem_fail(d, "material '%s': at most %d materials are possible", material.name, DEM_MAX_MATERIALS);
+    *out_material = (uint8_t)d->material_count;
+    d->materials[d->material_count++] = material;
+    return true;
+}
+
+/* ------------------------------------------------------------------------------------------------ bodies */
+
+/* A body of scale 1 and mass 0, without speed. */
+static bool add_body(dem *d, uint32_t shape, uint8_t material, double x, double y, double angle, float scale) {
+    dem_bodies *b = &d->bodies;
+    if (b->count + 1 > b->capacity) {
+        const size_t capacity = 2 * b->capacity + 64;
+        if (!resize_columns(d, b, body_columns, BODY_COLUMNS, capacity))
+            return false;
+        b->capacity = capacity;
+    }
+    const size_t k = b->count++;
+    for (size_t i = 0; i < BODY_COLUMNS; i++) {
+        size_t size;
+        char *array = dem_body_column(d, i, &size);
+        memset(array + k * size, 0, size);
+    }
+    b->x[k] = x;
+    b->y[k] = y;
+    b->cosine[k] = cos(angle);
+    b->sine[k] = sin(angle);
+    b->scale[k] = scale;
+    b->shape[k] = shape;
+    b->material[k] = material;
+    b->reach[k] = (double)scale * d->shapes[shape].reach;
+    b->extent[k] = (double)scale * d->shapes[shape].extent;
+    return true;
+}
+
+bool dem_add_grain(dem *d, dem_grain grain) {
+    const double numbers[] = {grain.x, grain.y, grain.angle, grain.scale, grain.vx, grain.vy, grain.spin};
+    const size_t k = d->bodies.count;
+    if (d->started || grain.shape >= d->shape_count || grain.material >= d->material_count)
+        return dem_fail(d, "grain %zu: %s", k, d->started ? "the run has begun" : "no such shape or material");
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        if (!isfinite(numbers[i]))
+            return dem_fail(d, "grain %zu: a number is not finite", k);
+    const float scale = (float)grain.scale;
+    if (!(scale > 0) || !isfinite(scale))
+        return dem_fail(d, "grain %zu: scale %g is not above 0", k, grain.scale);
+    if (!add_body(d, grain.shape, grain.material, grain.x, grain.y, grain.angle, scale))
+        return false;
+    dem_bodies *b = &d->bodies;
+    const dem_shape *shape = &d->shapes[grain.shape];
+    const double s = (double)scale, pillar = d->materials[grain.material].density * d->settings.thickness;
+    b->vx[k] = grain.vx;
+    b->vy[k] = grain.vy;
+    b->spin[k] = grain.spin;
+    b->mass[k] = pillar * shape->area * s * s;
+    b->inertia[k] = pillar * shape->second_moment * s * s * s * s;
+    b->inverse_mass[k] = 1 / b->mass[k];
+    b->inverse_inertia[k] = 1 / b->inertia[k];
+    if (!isfinite(b->inverse_mass[k]) || !isfinite(b->inverse_inertia[k]) || !isfinite(b->inertia[k]))
+        return dem_fail(d, "grain %zu: mass %g is out of range", k, b->mass[k]);
+    d->grain_count++;
+    d->grain_reach = fmax(d->grain_reach, b->reach[k]);
+    d->grain_extent = fmax(d->grain_extent, b->extent[k]);
+    const double allowed = d->settings.max_overlap * b->extent[k];
+    d->safe_depth = k == 0 ? allowed : fmin(d->safe_depth, allowed);
+    return true;
+}
+
+bool dem_add_wall(dem *d, dem_wall wall) {
+    const double length = hypot(wall.normal.x, wall.normal.y);
+    if (d->started || wall.material >= d->material_count)
+        return dem_fail(d, "wall '%s': %s", wall.name, d->started ? "the run has begun" : "no such material");
+    if (wall.kind == DEM_BOX && (wall.shape >= d->shape_count || !((float)wall.scale > 0)))
+        return dem_fail(d, "wall '%s': no such shape, or scale %g", wall.name, wall.scale);
+    if (wall.kind == DEM_PLATE && !(isfinite(length) && length > 0))
+        return dem_fail(d, "wall '%s': the normal has no direction", wall.name);
+    if (!isfinite(wall.place.x) || !isfinite(wall.place.y) || !isfinite(wall.angle))
+        return dem_fail(d, "wall '%s': a number is not finite", wall.name);
+    if (!dem_reserve(d, &d->walls, &d->wall_capacity, d->wall_count + 1, sizeof *d->walls))
+        return false;
+    if (wall.kind == DEM_PLATE)
+        wall.normal = (dem_vec){wall.normal.x / length, wall.normal.y / length};
+    d->walls[d->wall_count++] = wall;
+    return true;
+}
+
+/* The block of plates: four times the largest grain's reach and the skin in half its side, so that it goes on further
+ * than any grain that may touch it, whatever both move before the next list. */
+static bool add_block(dem *d, uint32_t *out_shape, double *out_half) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    narc_error error;
+    const double half = 4 * (d->grain_reach + d->settings.skin);
+    if (narc_build_box(2 * half, 2 * half, 0, arcs, &count, &error) != NARC_OK)
+        return dem_fail_narc(d, "the block of a plate", &error);
+    *out_half = half;
+    return dem_add_shape(d, "plate", arcs, count, out_shape);
+}
+
+static bool add_walls(dem *d) {
+    uint32_t block = 0;
+    double half = 0;
+    for (size_t w = 0; w < d->wall_count; w++) {
+        dem_wall *wall = &d->walls[w];
+        dem_vec place = wall->place;
+        if (wall->kind == DEM_PLATE) {
+            if (half <= 0 && !add_block(d, &block, &half))
+                return false;
+            wall->shape = block;
+            wall->scale = 1;
+            place = (dem_vec){place.x - half * wall->normal.x, place.y - half * wall->normal.y};
+        }
+        const size_t k = d->bodies.count;
+        if (!add_body(d, wall->shape, wall->material, place.x, place.y, wall->angle, (float)wall->scale))
+            return false;
+        if (wall->kind == DEM_PLATE) { /* the block's upper side is the plate */
+            d->bodies.cosine[k] = wall->normal.y;
+            d->bodies.sine[k] = -wall->normal.x;
+        }
+        d->bodies.still[k] = 1;
+    }
+    return true;
+}
+
+dem_region dem_bound_grains(const dem *d) {
+    const dem_bodies *b = &d->bodies;
+    dem_region r = {.low_x = INFINITY, .low_y = INFINITY, .high_x = -INFINITY, .high_y = -INFINITY};
+    for (size_t k = 0; k < d->grain_count; k++) {
+        r.low_x = fmin(r.low_x, b->x[k] - b->reach[k]);
+        r.high_x = fmax(r.high_x, b->x[k] + b->reach[k]);
+        r.low_y = fmin(r.low_y, b->y[k] - b->reach[k]);
+        r.high_y = fmax(r.high_y, b->y[k] + b->reach[k]);
+    }
+    return r;
+}
+
+/* Of the box around all grains and the places of walls. */
+static double find_diagonal(const dem *d) {
+    dem_region r = dem_bound_grains(d);
+    for (size_t w = 0; w < d->wall_count; w++) {
+        const dem_vec place = d->walls[w].place;
+        r.low_x = fmin(r.low_x, place.x);
+        r.high_x = fmax(r.high_x, place.x);
+        r.low_y = fmin(r.low_y, place.y);
+        r.high_y = fmax(r.high_y, place.y);
+    }
+    return hypot(r.high_x - r.low_x, r.high_y - r.low_y);
+}
+
+/* A periodic cell's width is rounded to a float: the shift of an image is one. */
+static bool check_cell(dem *d, const char *axis, double low, double *high) {
+    const float width = (float)(*high - low);
+    if (!(width > 0) || !isfinite(width))
+        return dem_fail(d, "the periodic cell's width in %s is %g", axis, *high - low);
+    *high = low + (double)width;
+    return true;
+}
+
+bool dem_start(dem *d) {
+    dem_settings *s = &d->settings;
+    if (d->started || d->grain_count == 0)
+        return dem_fail(d, d->started ? "the run has begun" : "there are no grains");
+    if (!(s->time_step > 0) || !(s->skin > 0) || !isfinite(s->skin) || !isfinite(s->time_step))
+        return dem_fail(d, "time step %g and skin %g are not both above 0", s->time_step, s->skin);
+    if ((s->periodic_x && !check_cell(d, "x", s->low_x, &s->high_x)) ||
+        (s->periodic_y && !check_cell(d, "y", s->low_y, &s->high_y)) || !add_walls(d))
+        return false;
+    d->started = true;
+    d->diagonal = find_diagonal(d);
+    return dem_renew_lists(d) && dem_find_first_forces(d);
+}
+
+/* ------------------------------------------------------------------------------------------------ poses */
+
+narc_body dem_make_pose(const dem_bodies *b, size_t k) {
+    return (narc_body){b->x[k], b->y[k], (float)b->cosine[k], (float)b->sine[k], b->scale[k], b->shape[k]};
+}
+
+bool dem_make_poses(dem *d, narc_bodies *out) {
+    const dem_bodies *b = &d->bodies;
+    const size_t count = b->count;
+    if (!dem_reserve(d, &d->scratch->poses, &d->scratch->pose_capacity, count, sizeof *d->scratch->poses))
+        return false;
+    narc_body *const pose = d->scratch->poses;
+#pragma omp parallel for schedule(static) num_threads(dem_team(d)) if (dem_team(d) > 1)
+    for (size_t k = 0; k < count; k++)
+        pose[k] = dem_make_pose(b, k);
+    *out = narc_view_bodies(pose, count);
+    return true;
+}
+
+bool dem_find_broken_body(dem *d) {
+    narc_bodies bodies;
+    narc_error error = {.message = "its place is out of range"};
+    if (!dem_make_poses(d, &bodies))
+        return false;
+    if (narc_validate_bodies(d->store, &bodies, &error) == NARC_OK)
+        while (error.index + 1 < d->bodies.count &&
+               fabs(d->bodies.x[error.index]) + fabs(d->bodies.y[error.index]) < NARC_MAX_DISTANCE)
+            error.index++;
+    const bool is_grain = error.index < d->grain_count;
+    return dem_fail(d, "step %llu: %s %zu is lost (%s): forces became too large. Use a shorter time step",
+                    (unsigned long long)d->step, is_grain ? "grain" : "wall",
+                    is_grain ? error.index : error.index - d->grain_count, error.message);
+}
+
+/* As many as the settings say. If they say nothing: as OpenMP would, but a thread for each 2,000 grains at most. */
+unsigned dem_team(const dem *d) {
+    const unsigned most = narc_openmp_workers(0).count, useful = 1 + (unsigned)(d->grain_count / 2000);
+    if (d->settings.threads > 0)
+        return d->settings.threads;
+    return most < useful ? most : useful;
+}
+
+narc_workers dem_workers(const dem *d) { return narc_openmp_workers(dem_team(d)); }
+
+bool dem_has_rolling(const dem *d) {
+    for (size_t a = 0; a < d->material_count; a++)
+        for (size_t b = 0; b < d->material_count; b++)
+            if (d->laws[a][b].rolling_friction > 0)
+                return true;
+    return false;
+}
+
+double dem_cell_width(const dem *d) { return d->settings.high_x - d->settings.low_x; }
+double dem_cell_height(const dem *d) { return d->settings.high_y - d->settings.low_y; }

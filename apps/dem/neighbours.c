@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * neighbours.c - which pairs may touch before the next list, and what the last list knew of them.
+ *
+ * Boxes are half the skin larger than bodies. Two bodies whose boxes are apart are at least the skin apart, so they
+ * cannot touch before one of them has moved half of it (step.c watches that, rotation included).
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "internal.h"
+
+bool dem_make_room_for_boxes(dem *d, size_t count) {
+    dem_scratch *s = d->scratch;
+    const size_t capacity = count + count / 2 + 16;
+    if (count <= s->box_capacity)
+        return true;
+    if (!dem_resize(d, &s->boxes, capacity, sizeof *s->boxes) ||
+        !dem_resize(d, &s->still, capacity, sizeof *s->still) ||
+        !dem_resize(d, &s->image_of, capacity, sizeof *s->image_of) ||
+        !dem_resize(d, &s->image_x, capacity, sizeof *s->image_x) ||
+        !dem_resize(d, &s->image_y, capacity, sizeof *s->image_y))
+        return false;
+    s->box_capacity = capacity;
+    return true;
+}
+
+static bool find_boxes(dem *d) {
+    narc_bodies bodies;
+    size_t skipped = 0;
+    const narc_workers workers = dem_workers(d);
+    const narc_box_options options = {
+        .margin = (float)(0.5 * d->settings.skin), .workers = &workers, .out_skipped = &skipped};
+    narc_error error;
+    if (!dem_make_room_for_boxes(d, d->bodies.count) || !dem_make_poses(d, &bodies))
+        return false;
+    memcpy(d->scratch->still, d->bodies.still, d->bodies.count * sizeof *d->bodies.still);
+    if (narc_compute_boxes(d->store, &bodies, &options, d->scratch->boxes, &error) != NARC_OK)
+        return dem_fail_narc(d, "boxes", &error);
+    if (skipped > 0)
+        return dem_find_broken_body(d);
+    for (size_t w = 0; w < d->wall_count; w++) /* plates have pairs of their own */
+        if (d->walls[w].kind == DEM_PLATE)
+            d->scratch->boxes[d->grain_count + w] = (narc_box){1, 1, -1, -1};
+    return dem_add_images(d);
+}
+
+static bool find_pairs(dem *d) {
+    dem_scratch *s = d->scratch;
+    const narc_pair_filter filter = {.kind = NARC_ARRAY(s->still)};
+    const narc_workers workers = dem_workers(d);
+    const narc_pair_options options = {.filter = &filter, .workers = &workers};
+    const narc_pair_list *list;
+    narc_error error;
+    narc_forget_pairs(d->broad); /* pairs are matched when those of images have become those of bodies */
+    if (narc_update_box_pairs(d->broad, s->boxes, d->bodies.count + s->image_count, &options, &list, &error) != NARC_OK)
+        return dem_fail_narc(d, "pairs", &error);
+    s->found_a = list->pairs.a.base;
+    s->found_b = list->pairs.b.base;
+    s->found_count = list->pairs.count;
+    s->extra_count = 0;
+    return (s->image_count == 0 || dem_take_image_pairs(d)) && dem_add_plate_pairs(d);
+}
+
+static int compare(uint32_t a, uint32_t b, uint32_t other_a, uint32_t other_b) {
+    return a != other_a ? (a > other_a) - (a < other_a) : (b > other_b) - (b < other_b);
+}
+
+static int compare_extra(const void *left, const void *right) {
+    const dem_extra *l = left, *r = right;
+    return compare(l->a, l->b, r->a, r->b);
+}
+
+/* Merges found and extra pairs in the order of (a, b). */
+static bool merge_pairs(dem *d) {
+    dem_scratch *s = d->scratch;
+    dem_pairs *p = &d->pairs;
+    if (!dem_grow_pairs(d, p, s->found_count + s->extra_count))
+        return false;
+    if (s->extra_count > 0)
+        qsort(s->extra, s->extra_count, sizeof *s->extra, compare_extra);
+    size_t i = 0, j = 0;
+    for (p->count = 0;; p->count++) {
+        while (i < s->found_count && s->found_b[i] >= d->bodies.count) /* of an image, among the extra ones too */
+            i++;
+        if (i == s->found_count && j == s->extra_count)
+            return true;
+        const dem_extra *extra = &s->extra[j];
+        const bool is_found = j == s->extra_count ||
+                              (i < s->found_count && compare(s->found_a[i], s->found_b[i], extra->a, extra->b) < 0);
+        p->a[p->count] = is_found ? s->found_a[i] : extra->a;
+        p->b[p->count] = is_found ? s->found_b[i] : extra->b;
+        p->shift_x[p->count] = is_found ? 0 : extra->shift_x;
+        p->shift_y[p->count] = is_found ? 0 : extra->shift_y;
+        i += is_found;
+        j += !is_found;
+    }
+}
+
+/* Hints and histories of the pairs that were in the last list; zeros for the others. */
+static bool carry_over(dem *d) {
+    dem_pairs *p = &d->pairs, *last = &d->last_pairs;
+    dem_scratch *s = d->scratch;
+    const narc_pairs now = {.count = p->count, .a = NARC_ARRAY(p->a), .b = NARC_ARRAY(p->b)};
+    const narc_pairs before = {.count = last->count, .a = NARC_ARRAY(last->a), .b = NARC_ARRAY(last->b)};
+    const narc_workers workers = dem_workers(d);
+    narc_error error;
+    if (!dem_resize(d, &s->match, p->capacity, sizeof *s->match))
+        return false;
+    if (narc_match_pairs(d->broad, &before, &now, &workers, s->match, &error) != NARC_OK)
+        return dem_fail_narc(d, "pairs", &error);
+    narc_gather(s->match, p->count, sizeof *p->hints, last->hints, p->hints);
+    narc_gather(s->match, p->count, sizeof *p->memory, last->memory, p->memory);
+    narc_gather(s->match, p->count, sizeof *p->rolling, last->rolling, p->rolling);
+    return true;
+}
+
+/* Which pairs a body has, and what of them depends on the bodies alone. */
+bool dem_index_pairs(dem *d) {
+    const dem_pairs *p = &d->pairs;
+    dem_incidence *n = &d->incidence;
+    const size_t bodies = d->bodies.count;
+    if (!dem_resize(d, &n->first_a, bodies + 1, sizeof *n->first_a) ||
+        !dem_resize(d, &n->first_b, bodies + 2, sizeof *n->first_b) ||
+        !dem_reserve(d, &n->of_b, &n->capacity, p->count, sizeof *n->of_b) ||
+        !dem_resize(d, &d->scratch->slot, p->capacity + 1, sizeof *d->scratch->slot))
+        return false;
+    for (size_t k = 0, next = 0; k <= bodies; k++) {
+        while (next < p->count && p->a[next] < k)
+            next++;
+        n->first_a[k] = (uint32_t)next;
+    }
+    memset(n->first_b, 0, (bodies + 2) * sizeof *n->first_b);
+    for (size_t k = 0; k < p->count; k++)
+        n->first_b[p->b[k] + 2]++;
+    for (size_t k = 2; k < bodies + 2; k++)
+        n->first_b[k] += n->first_b[k - 1];
+    for (size_t k = 0; k < p->count; k++) /* moves each beginning to the next body's */
+        n->of_b[n->first_b[p->b[k] + 1]++] = (uint32_t)k;
+    memset(d->scratch->slot, 0, p->count * sizeof *d->scratch->slot);
+    dem_find_dashpots(d);
+    return true;
+}
+
+/* From where bodies move. */
+static void remember_places(dem *d) {
+    dem_bodies *b = &d->bodies;
+    const size_t size = b->count * sizeof *b->x;
+    memcpy(b->list_x, b->x, size);
+    memcpy(b->list_y, b->y, size);
+    memcpy(b->list_cosine, b->cosine, size);
+    memcpy(b->list_sine, b->sine, size);
+}
+
+bool dem_renew_lists(dem *d) {
+    const dem_pairs last = d->pairs;
+    dem_wrap_bodies(d);
+    if (!find_boxes(d) || !find_pairs(d))
+        return false;
+    d->pairs = d->last_pairs;
+    d->last_pairs = last;
+    if (!merge_pairs(d) || !carry_over(d) || !dem_index_pairs(d))
+        return false;
+    remember_places(d);
+    d->list_builds++;
+    return true;
+}

@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * place.c - where grains start. A random filling puts grain after grain at a random place with a random angle, and
+ * tries again while it would touch: narc_find_contacts() decides, a grid of cells tells whom to ask about.
+ */
+#include "place.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "internal.h"
+
+/* SplitMix64: the state counts, its mixture is the number, 0 <= x < 1. */
+static double draw_unit(uint64_t *state) {
+    uint64_t bits = *state += 0x9e3779b97f4a7c15;
+    bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9;
+    bits = (bits ^ bits >> 27) * 0x94d049bb133111eb;
+    bits ^= bits >> 31;
+    return (double)(bits >> 11) * 0x1p-53;
+}
+
+static double draw_between(uint64_t *random, double low, double high) { return low + (high - low) * draw_unit(random); }
+
+/* Box and Muller 1958. */
+static double draw_normal(uint64_t *random) {
+    const double u = 1 - draw_unit(random), angle = 6.283185307179586477 * draw_unit(random);
+    return sqrt(-2 * log(u)) * cos(angle);
+}
+
+double dem_draw_size(const dem_sizes *sizes, uint64_t *random) {
+    if (sizes->kind == DEM_FIXED)
+        return sizes->mean;
+    if (sizes->kind == DEM_UNIFORM)
+        return draw_between(random, sizes->low, sizes->high);
+    for (;;) {
+        const double normal = sizes->deviation * draw_normal(random);
+        const double size = sizes->kind == DEM_NORMAL ? sizes->mean + normal : sizes->mean * exp(normal);
+        if (size >= sizes->low && size <= sizes->high)
+            return size;
+    }
+}
+
+/* All but the place. */
+static dem_grain draw_grain(const dem *d, const dem_filling *f, uint64_t *random) {
+    const size_t choice = (size_t)(draw_unit(random) * (double)f->shape_count);
+    dem_grain grain = {.shape = f->shapes[choice], .material = f->material};
+    grain.scale = (double)(float)(dem_draw_size(&f->sizes, random) / d->shapes[grain.shape].extent);
+    grain.angle = f->upright ? 0 : draw_between(random, -3.14159265358979324, 3.14159265358979324);
+    grain.vx = draw_between(random, -f->speed, f->speed);
+    grain.vy = draw_between(random, -f->speed, f->speed);
+    grain.spin = draw_between(random, -f->spin, f->spin);
+    return grain;
+}
+
+/* ------------------------------------------------------------------------------------------------ random */
+
+/* A grid over the region's grains: the first one of each cell, and the next one of the same cell. Cells are at least as
+ * wide as two largest grains reach, so that who touches is in a neighbouring one. */
+typedef struct grid {
+    double low_x, low_y, width, height;
+    size_t columns, rows;
+    uint32_t *first, *next;
+    size_t next_capacity;
+    double reach; /* of the largest grain that can be */
+} grid;
+
+static const uint32_t NOBODY = UINT32_MAX;
+
+static size_t find_cell(double value, double low, double width, size_t count) {
+    const double cell = floor((value - low) / width);
+    return cell < 0 ? 0 : cell >= (double)count ? count - 1 : (size_t)cell;
+}
+
+static bool add_to_grid(dem *d, grid *g, uint32_t body) {
+    const size_t cell = find_cell(d->bodies.y[body], g->low_y, g->height, g->rows) * g->columns +
+                        find_cell(d->bodies.x[body], g->low_x, g->width, g->columns);
+    if (body >= g->next_capacity) {
+        const size_t capacity = 2 * (size_t)body + 64;
+        uint32_t *larger = realloc(g->next, capacity * sizeof *larger);
+        if (!larger)
+            return dem_fail(d, "not enough memory for %zu grains", capacity);
+        g->next = larger;
+        g->next_capacity = capacity;
+    }
+    g->next[body] = g->first[cell];
+    g->first[cell] = body;
+    return true;
+}
+
+static double largest_reach(const dem *d, const dem_filling *f) {
+    const double largest = f->sizes.kind == DEM_FIXED ? f->sizes.mean : f->sizes.high;
+    double reach = d->grain_reach;
+    for (size_t i = 0; i < f->shape_count; i++)
+        reach = fmax(reach, d->shapes[f->shapes[i]].reach * largest / d->shapes[f->shapes[i]].extent);
+    return reach;
+}
+
+static bool open_grid(dem *d, const dem_filling *f, grid *g) {
+    const dem_region r = f->region;
+    enum { MOST_CELLS = 4096 };
+    g->reach = largest_reach(d, f);
+    g->low_x = r.low_x;
+    g->low_y = r.low_y;
+    g->columns = (size_t)fmin(fmax(floor((r.high_x - r.low_x) / (2 * g->reach + f->gap)), 1), MOST_CELLS);
+    g->rows = (size_t)fmin(fmax(floor((r.high_y - r.low_y) / (2 * g->reach + f->gap)), 1), MOST_CELLS);
+    g->width = (r.high_x - r.low_x) / (double)g->columns;
+    g->height = (r.high_y - r.low_y) / (double)g->rows;
+    g->first = malloc(g->columns * g->rows * sizeof *g->first);
+    if (!g->first)
+        return dem_fail(d, "not enough memory for a grid");
+    for (size_t i = 0; i < g->columns * g->rows; i++)
+        g->first[i] = NOBODY;
+    for (size_t k = 0; k < d->grain_count; k++)
+        if (!add_to_grid(d, g, (uint32_t)k))
+            return false;
+    return true;
+}
+
+static narc_body make_body(uint32_t shape, double x, double y, double angle, double scale) {
+    narc_body body = {.x = x, .y = y, .scale = (float)scale, .shape = shape};
+    const float turn = (float)angle;
+    narc_compute_poses(&turn, 1, &body.cosine, &body.sine, NULL);
+    return body;
+}
+
+/* Is the grain further than the gap from a body? */
+static bool is_clear_of(const dem *d, narc_body grain, narc_body other, double gap) {
+    const narc_body two[2] = {grain, other};
+    const narc_bodies bodies = narc_view_bodies(two, 2);
+    const narc_pairs pair = {.count = 1};
+    const narc_query query = {.margin = INFINITY};
+    narc_contact contact;
+    size_t found;
+    return narc_find_contacts(d->store, &bodies, &pair, &query, &contact, 1, &found, NULL) == NARC_OK &&
+           contact.count > 0 && (double)contact.separation > gap;
+}
+
+static bool is_clear_of_cell(const dem *d, const grid *g, const dem_filling *f, narc_body grain) {
+    const dem_bodies *b = &d->bodies;
+    const double x = grain.x, y = grain.y;
+    const size_t column = find_cell(x, g->low_x, g->width, g->columns),
+                 row = find_cell(y, g->low_y, g->height, g->rows);
+    const double reach = (double)grain.scale * d->shapes[grain.shape].reach;
+    for (size_t i = row > 0 ? row - 1 : 0; i <= row + 1 && i < g->rows; i++)
+        for (size_t j = column > 0 ? column - 1 : 0; j <= column + 1 && j < g->columns; j++)
+            for (uint32_t k = g->first[i * g->columns + j]; k != NOBODY; k = g->next[k]) {
+                const double far = reach + b->reach[k] + f->gap;
+                if ((b->x[k] - x) * (b->x[k] - x) + (b->y[k] - y) * (b->y[k] - y) <= far * far &&
+                    !is_clear_of(d, grain, dem_make_pose(b, k), f->gap))
+                    return false;
+            }
+    return true;
+}
+
+/* Of boxes among the walls. */
+static bool is_clear_of_boxes(const dem *d, const dem_filling *f, narc_body grain) {
+    for (size_t w = 0; w < d->wall_count; w++) {
+        const dem_wall *wall = &d->walls[w];
+        if (wall->kind == DEM_BOX &&
+            !is_clear_of(d, grain, make_body(wall->shape, wall->place.x, wall->place.y, wall->angle, wall->scale),
+                         f->gap))
+            return false;
+    }
+    return true;
+}
+
+/* Also of images, and of walls. A plate is asked by the grain's support. */
+static bool is_free(const dem *d, const grid *g, const dem_filling *f, const dem_grain *grain) {
+    const dem_settings *s = &d->settings;
+    narc_arc arcs[NARC_MAX_ARCS];
+    const size_t count = narc_get_arcs(d->store, grain->shape, arcs);
+    narc_body body = make_body(grain->shape, 0, 0, grain->angle, grain->scale);
+    for (int i = s->periodic_x ? -1 : 0; i <= (s->periodic_x ? 1 : 0); i++)
+        for (int j = s->periodic_y ? -1 : 0; j <= (s->periodic_y ? 1 : 0); j++) {
+            body.x = grain->x + i * (s->high_x - s->low_x);
+            body.y = grain->y + j * (s->high_y - s->low_y);
+            if (!is_clear_of_cell(d, g, f, body) || !is_clear_of_boxes(d, f, body))
+                return false;
+        }
+    for (size_t w = 0; w < d->wall_count; w++) {
+        const dem_wall *wall = &d->walls[w];
+        if (wall->kind != DEM_PLATE)
+            continue;
+        const double c = cos(grain->angle), e = sin(grain->angle), x = -wall->normal.x, y = -wall->normal.y;
+        narc_point lowest;
+        narc_find_support(arcs, count, c * x + e * y, c * y - e * x, &lowest, NULL);
+        const double depth = grain->scale * (lowest.x * (c * x + e * y) + lowest.y * (c * y - e * x));
+        if ((grain->x - wall->place.x) * -x + (grain->y - wall->place.y) * -y - depth <= f->gap)
+            return false;
+    }
+    return true;
+}
+
+static bool insert(dem *d, grid *g, const dem_filling *f, uint64_t *random, size_t index) {
+    dem_grain grain = draw_grain(d, f, random);
+    for (size_t tries = 0; tries < f->tries; tries++) {
+        grain.x = draw_between(random, f->region.low_x, f->region.high_x);
+        grain.y = draw_between(random, f->region.low_y, f->region.high_y);
+        grain.angle = f->upright ? 0 : draw_between(random, -3.14159265358979324, 3.14159265358979324);
+        if (is_free(d, g, f, &grain))
+            return dem_add_grain(d, grain) && add_to_grid(d, g, (uint32_t)(d->grain_count - 1));
+    }
+    return dem_fail(d, "grain %zu of %zu found no free place in %zu tries: the region is full", index, f->count,
+                    f->tries);
+}
+
+bool dem_fill_randomly(dem *d, const dem_filling *f, uint64_t *random) {
+    grid g = {.first = NULL};
+    bool ok = open_grid(d, f, &g);
+    for (size_t i = 0; i < f->count && ok; i++)
+        ok = insert(d, &g, f, random, i);
+    free(g.first);
+    free(g.next);
+    return ok;
+}
+
+/* ------------------------------------------------------------------------------------------------ lattice */
+
+bool dem_fill_lattice(dem *d, const dem_filling *f, uint64_t *random) {
+    const dem_region r = f->region;
+    const double columns = floor((r.high_x - r.low_x) / f->spacing.x + 1e-9);
+    const double rows = floor((r.high_y - r.low_y) / f->spacing.y + 1e-9);
+    if (columns * rows > 1e8)
+        return dem_fail(d, "a lattice of %g by %g places is too large", columns, rows);
+    if (columns * rows < (double)f->count || columns * rows < 1)
+        return dem_fail(d, "a lattice of %g by %g places has no room for %zu grains", columns, rows, f->count);
+    const size_t count = f->count > 0 ? f->count : (size_t)(columns * rows);
+    for (size_t k = 0; k < count; k++) {
+        const size_t row = k / (size_t)columns, column = k % (size_t)columns;
+        dem_grain grain = draw_grain(d, f, random);
+        const double off_x = 0.5 * f->jitter * draw_between(random, -1, 1);
+        const double off_y = 0.5 * f->jitter * draw_between(random, -1, 1);
+        grain.x = r.low_x + f->spacing.x * ((double)column + 0.5 + off_x);
+        grain.y = r.low_y + f->spacing.y * ((double)row + 0.5 + off_y);
+        if (!dem_add_grain(d, grain))
+            return false;
+    }
+    return true;
+}

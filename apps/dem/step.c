@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * step.c - a step of velocity Verlet: half of the velocity's change, the way, the forces at its end, the other half.
+ *
+ * The forces see the velocity in the middle of the step, and the place at its end. So springs are of second order in
+ * the time step, dashpots of first. (So is the tangential spring where the contact turns: it takes the tangent of the
+ * step's end.) Forces before the first step are those of where grains begin.
+ *
+ * A rotation is a unit vector, and turns within a step by 2 atan(spin dt / 2), which is spin dt to the third order and
+ * needs no sine. What rounding takes from its length is given back each time.
+ */
+#define _XOPEN_SOURCE 700 /* clock_gettime */
+#include <math.h>
+#include <time.h>
+
+#include "internal.h"
+
+/* ------------------------------------------------------------------------------------------------ motion */
+
+static void kick(dem *d) {
+    const dem_bodies b = d->bodies;
+    const double half = 0.5 * d->settings.time_step, gx = d->settings.gravity.x, gy = d->settings.gravity.y;
+    const size_t count = d->grain_count;
+#pragma omp parallel for simd schedule(static) num_threads(dem_team(d)) if (parallel : dem_team(d) > 1)
+    for (size_t k = 0; k < count; k++) {
+        b.vx[k] += half * (b.fx[k] * b.inverse_mass[k] + gx);
+        b.vy[k] += half * (b.fy[k] * b.inverse_mass[k] + gy);
+        b.spin[k] += half * (b.torque[k] * b.inverse_inertia[k]);
+    }
+}
+
+/* A kick, and the way. */
+static void kick_and_drift(dem *d) {
+    const dem_bodies b = d->bodies;
+    const double dt = d->settings.time_step, kick = 0.5 * dt, gx = d->settings.gravity.x, gy = d->settings.gravity.y;
+    const size_t count = d->grain_count;
+#pragma omp parallel for simd schedule(static) num_threads(dem_team(d)) if (parallel : dem_team(d) > 1)
+    for (size_t k = 0; k < count; k++) {
+        const double vx = b.vx[k] + kick * (b.fx[k] * b.inverse_mass[k] + gx);
+        const double vy = b.vy[k] + kick * (b.fy[k] * b.inverse_mass[k] + gy);
+        const double spin = b.spin[k] + kick * (b.torque[k] * b.inverse_inertia[k]);
+        b.vx[k] = vx;
+        b.vy[k] = vy;
+        b.spin[k] = spin;
+        b.x[k] += dt * vx;
+        b.y[k] += dt * vy;
+        const double half = 0.5 * dt * spin, share = 1 / (1 + half * half);
+        const double cosine = (1 - half * half) * share, sine = 2 * half * share;
+        const double c = b.cosine[k] * cosine - b.sine[k] * sine, s = b.sine[k] * cosine + b.cosine[k] * sine;
+        const double unit = 1.5 - 0.5 * (c * c + s * s);
+        b.cosine[k] = c * unit;
+        b.sine[k] = s * unit;
+    }
+}
+
+/* Has a point of any body moved half of the skin since the pairs were found? A turn moves it by at most the body's
+ * reach times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below
+ * the limit so has not moved, and only if all is not, roots are drawn. A NaN has moved. */
+static bool have_moved(const dem *d, bool exactly) {
+    const dem_bodies b = d->bodies;
+    const double limit = 0.5 * d->settings.skin;
+    const size_t count = b.count;
+    int moved = 0;
+#pragma omp parallel for schedule(static) num_threads(dem_team(d)) if (dem_team(d) > 1) reduction(| : moved)
+    for (size_t k = 0; k < count; k++) {
+        const double x = b.x[k] - b.list_x[k], y = b.y[k] - b.list_y[k];
+        const double c = b.cosine[k] - b.list_cosine[k], s = b.sine[k] - b.list_sine[k];
+        const double way = x * x + y * y, turn = b.reach[k] * b.reach[k] * (c * c + s * s);
+        moved |= exactly ? !(sqrt(way) + sqrt(turn) <= limit) : !(2 * (way + turn) <= limit * limit);
+    }
+    return moved != 0;
+}
+
+/* ------------------------------------------------------------------------------------------------ contacts */
+
+bool dem_make_room_for_contacts(dem *d) {
+    dem_contacts *c = &d->contacts;
+    const size_t count = d->pairs.capacity;
+    if (count <= c->capacity)
+        return true;
+    if (!dem_resize(d, &c->rows, count, sizeof *c->rows) || !dem_resize(d, &c->forces, count, sizeof *c->forces))
+        return false;
+    c->capacity = count;
+    return true;
+}
+
+static bool find_contacts(dem *d) {
+    const dem_pairs *p = &d->pairs;
+    dem_contacts *c = &d->contacts;
+    narc_bodies bodies;
+    narc_pairs pairs = {.count = p->count, .a = NARC_ARRAY(p->a), .b = NARC_ARRAY(p->b)};
+    if (d->scratch->extra_count > 0) {
+        pairs.shift_x = NARC_ARRAY(p->shift_x);
+        pairs.shift_y = NARC_ARRAY(p->shift_y);
+    }
+    const narc_workers workers = dem_workers(d);
+    size_t skipped = 0;
+    const narc_query query = {.hints = NARC_HINT_ARRAY(p->hints), .workers = &workers, .out_skipped = &skipped};
+    narc_error error;
+    if (!dem_make_room_for_contacts(d) || !dem_make_poses(d, &bodies))
+        return false;
+    if (narc_find_contacts(d->store, &bodies, &pairs, &query, c->rows, c->capacity, &c->count, &error) != NARC_OK)
+        return dem_fail_narc(d, "contacts", &error);
+    return skipped == 0 || dem_find_broken_body(d);
+}
+
+/* ------------------------------------------------------------------------------------------------ the step */
+
+/* With a time step of 0 no spring stretches and no work is done. */
+bool dem_find_first_forces(dem *d) {
+    const double time_step = d->settings.time_step;
+    d->settings.time_step = 0;
+    dem_move_walls(d); /* walls get their velocities */
+    const bool found = find_contacts(d) && dem_apply_laws(d);
+    d->settings.time_step = time_step;
+    if (!found)
+        return false;
+    dem_gather_forces(d);
+    dem_find_resistances(d);
+    return true;
+}
+
+double dem_seconds(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+bool dem_step(dem *d) {
+    const bool timed = d->clock.on;
+    const double start = timed ? dem_seconds() : 0;
+    d->step++;
+    d->time += d->settings.time_step;
+    if (!dem_steer_walls(d))
+        return false;
+    kick_and_drift(d);
+    dem_move_walls(d);
+    const bool renew = have_moved(d, false) && have_moved(d, true);
+    const double moved = timed ? dem_seconds() : 0;
+    if (renew && !dem_renew_lists(d))
+        return false;
+    const double listed = timed ? dem_seconds() : 0;
+    if (!find_contacts(d))
+        return false;
+    const double found = timed ? dem_seconds() : 0;
+    dem_count_wall_work(d);
+    if (!dem_apply_laws(d))
+        return false;
+    dem_gather_forces(d);
+    dem_count_wall_work(d);
+    dem_find_resistances(d);
+    const double pushed = timed ? dem_seconds() : 0;
+    kick(d);
+    if (timed) {
+        d->clock.motion += moved - start + (dem_seconds() - pushed);
+        d->clock.lists += listed - moved;
+        d->clock.narrow += found - listed;
+        d->clock.forces += pushed - found;
+    }
+    return true;
+}

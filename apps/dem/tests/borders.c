@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * borders.c - a periodic border is nowhere: what happens across it happens as in the middle of the cell.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "worlds.h"
+
+/* Two grains that collide off their centres, while both move on together, with friction and damping; in a cell of 16 by
+ * 16 or in the plane. Times and places are chosen so that the contact, soft and long, is carried across the border. */
+static dem collide_at(double x, double y, bool periodic, double drift_x, double drift_y) {
+    dem_settings settings = plain_settings();
+    dem_contact_law law = plain_law();
+    settings.periodic_x = settings.periodic_y = periodic;
+    settings.high_x = settings.high_y = 16;
+    settings.max_overlap = 0.5;
+    settings.time_step = 5e-5;
+    settings.skin = 0.1; /* lists are renewed within the contact */
+    law.friction = 0.3;
+    law.damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.7);
+    law.rolling_friction = 0.1;
+    dem d = make_world(settings, law);
+    add_grain(&d, ARCS, x - 1.25, y - 0.3, 3 + drift_x, 1 + drift_y);
+    add_grain(&d, OCTAGON, x + 0.95, y + 0.2, -2 + drift_x, drift_y);
+    start(&d);
+    return d;
+}
+
+/* Places are sums of other numbers there, so roundings differ: 1e-16 of 16 in each step, and the float of a difference
+ * of places may be the next one, 1e-7 of it, which changes a force by 1e-5 at this depth. */
+static void check_same(const dem *d, const dem *reference) {
+    for (size_t k = 0; k < 2; k++) {
+        assert_true(fabs(d->bodies.vx[k] - reference->bodies.vx[k]) < 1e-4);
+        assert_true(fabs(d->bodies.vy[k] - reference->bodies.vy[k]) < 1e-4);
+        assert_true(fabs(d->bodies.spin[k] - reference->bodies.spin[k]) < 1e-4);
+    }
+    const dem_energies e = energies(d), f = energies(reference);
+    assert_true(fabs(e.damping - f.damping) < 1e-3 && fabs(e.friction - f.friction) < 1e-3);
+}
+
+TEST(test_collision_across_borders) {
+    static const double places[][4] = {{8, 8, 0, 0},       {0, 8, 0, 0},      {16, 8, 0, 0},
+                                       {8, 0, 0, 0},       {16, 16, 0, 0},    {8, 15.65, 0, 40},
+                                       {15.65, 8, 100, 0}, {2.8, 8, -100, 0}, {15.76, 1.72, 90, -90}};
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        const double *p = places[i];
+        dem d = collide_at(p[0], p[1], true, p[2], p[3]), reference = collide_at(p[0], p[1], false, p[2], p[3]);
+        size_t crossings = 0, contacts = 0;
+        for (int s = 0; s < 1000; s++) {
+            const int32_t before = d.bodies.cell_x[0] + d.bodies.cell_y[0];
+            const bool touched = d.contacts.count > 0;
+            step(&d, 1);
+            step(&reference, 1);
+            contacts += d.contacts.count;
+            crossings += touched && d.contacts.count > 0 && d.bodies.cell_x[0] + d.bodies.cell_y[0] != before;
+            assert_int_equal(d.contacts.count, reference.contacts.count);
+        }
+        print_message("at %g, %g: %zu steps in contact, border crossed %zu times in contact\n", p[0], p[1], contacts,
+                      crossings);
+        assert_true(contacts > 100);
+        assert_true(crossings > 0 || (p[2] == 0 && p[3] == 0));
+        check_same(&d, &reference);
+        dem_destroy(&d);
+        dem_destroy(&reference);
+    }
+}
+
+/* A wall across the border: a box, found from both sides. */
+TEST(test_wall_across_border) {
+    for (int side = 0; side < 2; side++) {
+        dem_settings settings = plain_settings();
+        settings.periodic_x = true;
+        settings.high_x = 16;
+        settings.gravity = (dem_vec){0, -10};
+        dem_contact_law law = plain_law();
+        law.damping_ratio = 1;
+        dem d = make_world(settings, law);
+        assert_true(dem_add_wall(&d, (dem_wall){.name = "box",
+                                                .kind = DEM_BOX,
+                                                .shape = OCTAGON,
+                                                .scale = 2,
+                                                .place = {side ? 0.5 : 15.5, 0},
+                                                .servo = {.between = {-1, -1}}}));
+        add_grain(&d, DISC, side ? 15.9 : 0.1, 2 * cos(3.14159265358979324 / 8) + 1, 0, 0);
+        start(&d);
+        step(&d, 2000);
+        assert_int_equal(d.contacts.count, 1);
+        dem_destroy(&d);
+    }
+}
+
+static void expect_refusal(dem *d, const char *message) {
+    assert_false(dem_start(d));
+    if (!strstr(d->error, message))
+        fail_msg("'%s' instead of '%s'", d->error, message);
+    dem_destroy(d);
+}
+
+/* A cell in which two images of a grain could both touch another one is refused, and so is what crosses a border. */
+TEST(test_refusals) {
+    dem_settings settings = plain_settings();
+    settings.periodic_x = true;
+    settings.high_x = 4.3; /* two discs of width 2, and the skin 0.2 for each */
+    dem small = make_world(settings, plain_law());
+    add_grain(&small, DISC, 1, 0, 0, 0);
+    expect_refusal(&small, "the periodic cell is too small");
+    settings.high_x = 4.5;
+    dem enough = make_world(settings, plain_law());
+    add_grain(&enough, DISC, 1, 0, 0, 0);
+    start(&enough);
+    dem_destroy(&enough);
+    dem tilted = make_world(settings, plain_law());
+    add_grain(&tilted, DISC, 1, 0, 0, 0);
+    add_plate(&tilted, "ramp", 0, 0, 1, 1);
+    expect_refusal(&tilted, "wall 'ramp': a plate with normal");
+}

@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * collisions.c - two grains collide: closed forms, conservation, and the order of the time step.
+ */
+#include <math.h>
+
+#include "worlds.h"
+
+#define PI 3.14159265358979323846
+
+/* Two grains that are about to touch, with the given velocity of the left one. Depths may be large. */
+static dem make_collision(uint32_t shape, dem_law kind, dem_contact_law law, double time_step, double vx, double vy) {
+    dem_settings settings = plain_settings();
+    settings.time_step = time_step;
+    settings.max_overlap = 0.5;
+    settings.law = kind;
+    dem d = make_world(settings, law);
+    add_grain(&d, shape, 0, 0, vx, vy);
+    add_grain(&d, shape, shape == DISC ? 2 - 1e-9 : 2.7, 0, 0, 0);
+    start(&d);
+    return d;
+}
+
+/* Until they are apart. */
+static void collide(dem *d) {
+    bool touched = false;
+    for (size_t i = 0; i < 1000000 && !(touched && d->contacts.count == 0); i++) {
+        step(d, 1);
+        touched |= d->contacts.count > 0;
+    }
+    assert_int_equal(d->contacts.count, 0);
+}
+
+static double momentum_x(const dem *d) {
+    return d->bodies.mass[0] * d->bodies.vx[0] + d->bodies.mass[1] * d->bodies.vx[1];
+}
+static double momentum_y(const dem *d) {
+    return d->bodies.mass[0] * d->bodies.vy[0] + d->bodies.mass[1] * d->bodies.vy[1];
+}
+
+static double angular_momentum(const dem *d) {
+    const dem_bodies *b = &d->bodies;
+    double sum = 0;
+    for (size_t k = 0; k < 2; k++)
+        sum += b->mass[k] * (b->x[k] * b->vy[k] - b->y[k] * b->vx[k]) + b->inertia[k] * b->spin[k];
+    return sum;
+}
+
+/* ------------------------------------------------------------------------------------------------ the linear law */
+
+static double find_restitution(double wanted, double time_step, double *out_imbalance, double *out_last_power) {
+    dem_contact_law law = plain_law();
+    law.damping_ratio = dem_damping_ratio(DEM_LINEAR, wanted);
+    dem d = make_collision(DISC, DEM_LINEAR, law, time_step, 1, 0);
+    const double before = total_energy(&d), mass = 0.5 * d.bodies.mass[0];
+    collide(&d);
+    const double after = d.bodies.vx[1] - d.bodies.vx[0];
+    *out_imbalance = total_energy(&d) - before;
+    *out_last_power = law.damping_ratio * sqrt(law.kn * mass) * after * after;
+    dem_destroy(&d);
+    return after;
+}
+
+/* The dashpot sees the velocity half a step late, so the error is of first order: with half the step, half of it. Of
+ * the energy only what the last step dissipates is missing, at most half its power times the step. */
+TEST(test_restitution) {
+    const double wanted[] = {0.9, 0.5, 0.1}, duration = PI * sqrt(0.5 * PI / 1e5);
+    for (size_t i = 0; i < 3; i++) {
+        double imbalance, power;
+        const double coarse = find_restitution(wanted[i], duration / 400, &imbalance, &power);
+        const double fine = find_restitution(wanted[i], duration / 1600, &imbalance, &power);
+        print_message("restitution %g: %.6f, %.6f; energy off by %.3g, last power %.3g\n", wanted[i], coarse, fine,
+                      imbalance, power * duration / 1600);
+        assert_true(fabs(coarse - wanted[i]) < 0.01);
+        assert_true(fabs(fine - wanted[i]) < 0.0025);
+        assert_true(fabs(imbalance) < power * duration / 1600);
+    }
+}
+
+/* Without damping: half a period of the spring, depth v sqrt(m / kn), all energy back. */
+TEST(test_elastic_collision) {
+    const double period = PI * sqrt(0.5 * PI / 1e5);
+    dem d = make_collision(DISC, DEM_LINEAR, plain_law(), period / 1000, 1, 0);
+    double deepest = 0;
+    step(&d, 1);
+    for (size_t i = 0; d.contacts.count > 0; i++) {
+        deepest = fmax(deepest, -(double)d.contacts.rows[0].separation);
+        step(&d, 1);
+    }
+    assert_true(fabs(d.time / period - 1) < 3e-3); /* steps, and where the first was within the contact */
+    assert_true(fabs(deepest / sqrt(0.5 * PI / 1e5) - 1) < 1e-3);
+    assert_true(fabs(d.bodies.vx[1] - 1) < 1e-3 && fabs(d.bodies.vx[0]) < 1e-3);
+    dem_destroy(&d);
+}
+
+/* Whatever the law: forces are opposite and share their point, and so do kicks. */
+TEST(test_conservation) {
+    for (int kind = 0; kind < 4; kind++) {
+        dem_contact_law law = plain_law();
+        law.damping_ratio = dem_damping_ratio(kind % 2 ? DEM_HERTZ : DEM_LINEAR, 0.5);
+        law.friction = 0.4;
+        law.rolling_friction = 0.1;
+        dem d = make_collision(kind / 2 ? ARCS : DISC, kind % 2 ? DEM_HERTZ : DEM_LINEAR, law, 1e-5, 3, 2);
+        d.bodies.spin[0] = 4;
+        d.bodies.spin[1] = 1;
+        const double x = momentum_x(&d), y = momentum_y(&d), turn = angular_momentum(&d), energy = total_energy(&d);
+        collide(&d);
+        print_message("momentum off by %.3g, %.3g, %.3g; energy by %.3g of %.3g\n", momentum_x(&d) - x,
+                      momentum_y(&d) - y, angular_momentum(&d) - turn, total_energy(&d) - energy, energy);
+        assert_true(fabs(momentum_x(&d) - x) < 1e-12 && fabs(momentum_y(&d) - y) < 1e-12);
+        assert_true(fabs(angular_momentum(&d) - turn) < 1e-11);
+        const dem_energies e = energies(&d);
+        assert_true(e.damping > 0 && e.friction > 0);
+        assert_true(fabs(total_energy(&d) - energy) < 2e-3 * energy);
+        dem_destroy(&d);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ the Hertz law */
+
+/* Spheres: force k h^(3/2), k = 4/3 E* sqrt(R). Depth (5 m v^2 / (4 k))^(2/5), duration 2.943275 times that over v. */
+TEST(test_hertz_collision) {
+    const double stiffness = 4.0 / 3 * (1e6 / (2 * (1 - 0.0625))) * sqrt(0.5), mass = 0.5 * PI;
+    const double depth = pow(5 * mass / (4 * stiffness), 0.4), duration = 2.943275 * depth;
+    dem_contact_law law = plain_law();
+    law.damping_ratio = 0;
+    dem d = make_collision(DISC, DEM_HERTZ, law, duration / 2000, 1, 0);
+    double deepest = 0;
+    step(&d, 1);
+    for (size_t i = 0; d.contacts.count > 0; i++) {
+        deepest = fmax(deepest, -(double)d.contacts.rows[0].separation);
+        step(&d, 1);
+    }
+    print_message("Hertz: depth %.6g, expected %.6g; duration %.6g, expected %.6g\n", deepest, depth, d.time, duration);
+    assert_true(fabs(deepest / depth - 1) < 1e-3);
+    assert_true(fabs(d.time / duration - 1) < 3e-3);
+    dem_destroy(&d);
+}
+
+/* The same at any speed. */
+TEST(test_hertz_restitution) {
+    for (double speed = 0.1; speed < 20; speed *= 10)
+        for (double wanted = 0.3; wanted < 1; wanted += 0.3) {
+            dem_contact_law law = plain_law();
+            law.damping_ratio = dem_damping_ratio(DEM_HERTZ, wanted);
+            dem d = make_collision(DISC, DEM_HERTZ, law, 2e-6 * pow(speed, -0.2), speed, 0);
+            collide(&d);
+            const double found = (d.bodies.vx[1] - d.bodies.vx[0]) / speed;
+            print_message("Hertz restitution %g at %g: %.6f\n", wanted, speed, found);
+            assert_true(fabs(found - wanted) < 2e-3);
+            dem_destroy(&d);
+        }
+}
+
+/* A radius of 0 or infinity is brought within the limits: a square's side against a side, and against a corner. */
+TEST(test_hertz_limits) {
+    for (int corner = 0; corner < 2; corner++) {
+        dem_contact_law law = plain_law();
+        law.damping_ratio = 0;
+        dem_settings settings = plain_settings();
+        settings.law = DEM_HERTZ;
+        settings.time_step = 1e-6;
+        dem d = make_world(settings, law);
+        narc_arc arcs[NARC_MAX_ARCS];
+        size_t count;
+        uint32_t square;
+        const double depth = 1e-3, reach = corner ? sqrt(0.5) : 0.5;
+        assert_int_equal(narc_build_box(1, 1, 0, arcs, &count, NULL), NARC_OK);
+        assert_true(dem_add_shape(&d, "square", arcs, count, &square));
+        assert_true(dem_add_grain(&d, (dem_grain){.shape = square, .scale = 1}));
+        assert_true(dem_add_grain(
+            &d, (dem_grain){.shape = square, .x = 0.5 + reach - depth, .angle = corner ? PI / 4 : 0, .scale = 1}));
+        start(&d);
+        step(&d, 1);
+        const double half = 0.5 * d.bodies.extent[0], side = half * settings.largest_radius;
+        const double other = corner ? half * settings.least_radius : side;
+        const double expected = d.laws[0][0].kn * sqrt(side * other / (side + other) * depth) * depth;
+        assert_int_equal(d.contacts.count, 1);
+        print_message("Hertz force %.6g, expected %.6g\n", d.contacts.forces[0].x, expected);
+        assert_true(fabs(d.contacts.forces[0].x / expected - 1) < 5e-3); /* depths are within 2e-6 of 1e-3 */
+        dem_destroy(&d);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ order */
+
+/* Within the contact of two discs, h = v / w sin(w t). */
+static double find_error(double step_angle) {
+    const double rate = sqrt(1e5 / (0.5 * PI)), speed = 8;
+    dem d = make_collision(DISC, DEM_LINEAR, plain_law(), step_angle / rate, speed, 0);
+    d.bodies.x[1] = 2;
+    step(&d, (size_t)lround(2 / step_angle));
+    const double depth = 2 - (d.bodies.x[1] - d.bodies.x[0]);
+    dem_destroy(&d);
+    return fabs(depth / (speed / rate * sin(2)) - 1);
+}
+
+TEST(test_order_of_time_step) {
+    const double coarse = find_error(0.25), middle = find_error(0.125), fine = find_error(0.0625);
+    print_message("errors %.3g, %.3g, %.3g: ratios %.3f, %.3f\n", coarse, middle, fine, coarse / middle, middle / fine);
+    assert_true(fabs(coarse / middle - 4) < 0.3);
+    assert_true(fabs(middle / fine - 4) < 0.3);
+}
+
+/* Where the second grain just touches the first. */
+static double find_touch(const dem *d, uint32_t shape, double y) {
+    narc_body two[2] = {{.cosine = 1, .scale = 1, .shape = shape},
+                        {.x = 2.4, .y = y, .cosine = 1, .scale = 1, .shape = shape}};
+    const narc_bodies bodies = narc_view_bodies(two, 2);
+    const narc_pairs pair = {.count = 1};
+    const narc_query query = {.margin = INFINITY};
+    narc_contact contact;
+    size_t found;
+    for (int i = 0; i < 20; i++) {
+        assert_int_equal(narc_find_contacts(d->store, &bodies, &pair, &query, &contact, 1, &found, NULL), NARC_OK);
+        two[1].x -= (double)contact.separation / (double)contact.normal_x;
+    }
+    return two[1].x;
+}
+
+/* The spin of an arc shape that is hit off its centre, while the contact lasts. */
+static double spin_at(uint32_t shape, double friction, size_t steps) {
+    const double end = 0.008;
+    dem_contact_law law = plain_law();
+    law.friction = friction;
+    dem d = make_collision(shape, DEM_LINEAR, law, end / (double)steps, 6, 4);
+    d.bodies.y[1] = shape == DISC ? 0 : 0.4;
+    d.bodies.x[1] = find_touch(&d, shape, d.bodies.y[1]);
+    step(&d, steps);
+    assert_int_equal(d.contacts.count, 1);
+    const double spin = d.bodies.spin[1];
+    dem_destroy(&d);
+    return spin;
+}
+
+static void check_order(const char *name, uint32_t shape, double friction, size_t steps, double low, double high) {
+    const double exact = spin_at(shape, friction, 64 * steps);
+    const double coarse = fabs(spin_at(shape, friction, steps) - exact);
+    const double fine = fabs(spin_at(shape, friction, 4 * steps) - exact);
+    print_message("%s: errors %.3g, %.3g of %.3g: ratio %.3f\n", name, coarse, fine, exact, coarse / fine);
+    assert_true(coarse / fine > low && coarse / fine < high);
+}
+
+/* A quarter of the step: a sixteenth of the error without friction. The tangential spring adds what the contact slips
+ * along the tangent at the step's end, which is of first order as the contact turns: a quarter, or less. */
+TEST(test_order_with_rotation) {
+    check_order("arcs", ARCS, 0, 32, 14, 18);
+    check_order("friction", DISC, 1e6, 32, 3.9, 18);
+}

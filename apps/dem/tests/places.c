@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * places.c - where grains start: free places, sizes as they are distributed, lattices.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "internal.h"
+#include "place.h"
+#include "worlds.h"
+
+/* The mean of many draws is within five deviations of the mean of one, over the root of their number. */
+TEST(test_sizes) {
+    enum { DRAWS = 100000 };
+    static const dem_sizes sizes[] = {
+        {DEM_FIXED, 3, 0, 0, 0}, {DEM_UNIFORM, 0, 0, 2, 4}, {DEM_NORMAL, 3, 0.2, 2, 4}, {DEM_LOGNORMAL, 3, 0.3, 1, 9}};
+    uint64_t random = 3;
+    for (size_t i = 0; i < 4; i++) {
+        const dem_sizes *s = &sizes[i];
+        const bool lognormal = s->kind == DEM_LOGNORMAL;
+        const double deviation = s->kind == DEM_UNIFORM ? 2 / sqrt(12.0) : s->deviation;
+        double sum = 0, squares = 0;
+        for (int k = 0; k < DRAWS; k++) {
+            const double size = dem_draw_size(s, &random), x = lognormal ? log(size / 3) : size - 3;
+            assert_true(s->kind == DEM_FIXED ? size == 3 : size >= s->low && size <= s->high);
+            sum += x;
+            squares += x * x;
+        }
+        print_message("distribution %zu: mean off by %.2g, deviation %.6g, expected %.6g\n", i, sum / DRAWS,
+                      sqrt(squares / DRAWS), deviation);
+        assert_true(fabs(sum / DRAWS) <= 5 * deviation / sqrt(DRAWS));
+        assert_true(fabs(sqrt(squares / DRAWS) - deviation) <= 0.01 * deviation);
+    }
+}
+
+static dem_filling plain_filling(size_t count) {
+    return (dem_filling){.count = count,
+                         .region = {true, 0, 30, 0, 30},
+                         .shapes = {DISC, ROUND, OCTAGON, ARCS},
+                         .shape_count = 4,
+                         .sizes = {DEM_UNIFORM, 0, 0, 0.5, 2.5},
+                         .tries = 5000};
+}
+
+static dem make_room(void) {
+    dem_settings settings = plain_settings();
+    settings.periodic_x = true;
+    settings.high_x = 30;
+    dem d = make_world(settings, plain_law());
+    add_plate(&d, "floor", 0, 1, 0, 1);
+    assert_true(dem_add_wall(&d, (dem_wall){.name = "rock",
+                                            .kind = DEM_BOX,
+                                            .shape = OCTAGON,
+                                            .scale = 4,
+                                            .place = {15, 15},
+                                            .servo = {.between = {-1, -1}}}));
+    return d;
+}
+
+/* Every pair of the list is apart by the gap, by the exact test, borders and walls among them. */
+TEST(test_free_places) {
+    const double gap = 0.05;
+    dem d = make_room();
+    dem_filling filling = plain_filling(180);
+    uint64_t random = 5;
+    filling.gap = gap;
+    assert_true(dem_fill_randomly(&d, &filling, &random));
+    assert_int_equal(d.grain_count, 180);
+    start(&d);
+    narc_bodies bodies;
+    assert_true(dem_make_poses(&d, &bodies));
+    const narc_pairs pairs = {.count = d.pairs.count,
+                              .a = NARC_ARRAY(d.pairs.a),
+                              .b = NARC_ARRAY(d.pairs.b),
+                              .shift_x = NARC_ARRAY(d.pairs.shift_x),
+                              .shift_y = NARC_ARRAY(d.pairs.shift_y)};
+    const narc_query query = {.margin = (float)gap - 1e-4f};
+    size_t count = 99, walls = 0, images = 0;
+    for (size_t k = 0; k < d.pairs.count; k++) {
+        walls += d.pairs.b[k] >= d.grain_count;
+        images += d.pairs.b[k] < d.grain_count && d.pairs.shift_x[k] != 0;
+    }
+    assert_int_equal(narc_find_contacts(d.store, &bodies, &pairs, &query, NULL, 0, &count, NULL), NARC_OK);
+    print_message("%zu pairs, %zu with walls, %zu across the border\n", d.pairs.count, walls, images);
+    assert_int_equal(count, 0);
+    assert_true(walls > 5 && images > 0);
+    dem_destroy(&d);
+}
+
+TEST(test_full_region) {
+    dem d = make_room();
+    const dem_filling filling = plain_filling(2000);
+    uint64_t random = 5;
+    assert_false(dem_fill_randomly(&d, &filling, &random));
+    assert_non_null(strstr(d.error, "found no free place in 5000 tries"));
+    dem_destroy(&d);
+}
+
+TEST(test_lattice) {
+    dem d = make_world(plain_settings(), plain_law());
+    dem_filling filling = plain_filling(0);
+    uint64_t random = 5;
+    filling.spacing = (dem_vec){3, 5};
+    filling.jitter = 0.5;
+    assert_true(dem_fill_lattice(&d, &filling, &random));
+    assert_int_equal(d.grain_count, 60);
+    for (size_t k = 0; k < 60; k++) {
+        assert_true(fabs(d.bodies.x[k] - 3 * ((double)(k % 10) + 0.5)) <= 0.75);
+        assert_true(fabs(d.bodies.y[k] - 5 * ((double)(k / 10) + 0.5)) <= 1.25);
+    }
+    filling.count = 61;
+    assert_false(dem_fill_lattice(&d, &filling, &random));
+    dem_destroy(&d);
+}

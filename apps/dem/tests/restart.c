@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * restart.c - a run that goes on from a file has the bits of one that was not interrupted; damaged files are told.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "worlds.h"
+
+static const char path[] = "test.restart"; /* in the folder of the build */
+
+/* A run that has no more steps tells what the last one found: contacts and stresses too. */
+static void check_same_measures(const dem *d, const dem *other) {
+    dem_measures a, b;
+    memset(&a, 0, sizeof a);
+    memset(&b, 0, sizeof b);
+    dem_measure(d, NULL, &a);
+    dem_measure(other, NULL, &b);
+    assert_true(a.contacts > 0 && a.stress_yy > 0);
+    assert_int_equal(a.contacts, b.contacts);
+    assert_memory_equal(&a.energy, &b.energy, sizeof a.energy);
+    const double numbers[] = {a.coordination, a.stress_xx, a.stress_xy, a.stress_yx, a.stress_yy, a.deepest, a.fastest};
+    const double others[] = {b.coordination, b.stress_xx, b.stress_xy, b.stress_yx, b.stress_yy, b.deepest, b.fastest};
+    assert_memory_equal(numbers, others, sizeof numbers);
+}
+
+static void check_same_walls(const dem *d, const dem *other) {
+    for (size_t w = 0; w < d->wall_count; w++) {
+        const dem_wall *a = &d->walls[w], *b = &other->walls[w];
+        const dem_servo *s = &a->servo, *t = &b->servo;
+        const double numbers[] = {a->velocity.x, a->velocity.y,  a->pivot.x,     a->pivot.y, a->spin,
+                                  a->work,       a->resistance,  a->idle_way,    s->force,   s->stress,
+                                  s->gain,       s->direction.x, s->direction.y, s->travel,  s->max_speed};
+        const double others[] = {b->velocity.x, b->velocity.y,  b->pivot.x,     b->pivot.y, b->spin,
+                                 b->work,       b->resistance,  b->idle_way,    t->force,   t->stress,
+                                 t->gain,       t->direction.x, t->direction.y, t->travel,  t->max_speed};
+        assert_memory_equal(numbers, others, sizeof numbers);
+        assert_memory_equal(s->between, t->between, sizeof s->between);
+        assert_true(s->on == t->on);
+    }
+}
+
+/* Borders, history, rolling friction, walls that move, turn and are controlled: all of it goes on. */
+TEST(test_bit_for_bit) {
+    char error[512];
+    dem d = make_busy_world(1), again = make_busy_world(2);
+    const dem_place place = {.input = 5, .stage = 1, .stage_step = 17, .csv_position = 99, .frame = 3, .random = 4};
+    dem_place found = {.input = 5};
+    d.walls[2].velocity = (dem_vec){0.01, 0.02};
+    d.walls[2].spin = 2.5;
+    d.walls[2].idle_way = 1;
+    d.walls[2].servo = (dem_servo){false, {0.6, 0.8}, 3, 4, {1, 0}, 0.5, 6, 7};
+    again.walls[0].servo = (dem_servo){.between = {-1, -1}};
+    start(&d);
+    start(&again);
+    step(&d, 3000);
+    assert_true(dem_write_restart(&d, &place, path, error));
+    assert_true(dem_read_restart(&again, &found, path));
+    assert_memory_equal(&place, &found, sizeof place);
+    assert_true(dem_hash(&d) == dem_hash(&again));
+    check_same_measures(&d, &again);
+    check_same_walls(&d, &again);
+    for (int i = 0; i < 10; i++) {
+        step(&d, 100);
+        step(&again, 100);
+        assert_true(dem_hash(&d) == dem_hash(&again));
+    }
+    assert_true(d.list_builds > 10 && d.walls[0].work != 0 && d.rolling_energy > 0);
+    assert_true(d.list_builds == again.list_builds);
+    dem_destroy(&d);
+    dem_destroy(&again);
+}
+
+static void write_file(const char *bytes, size_t size) {
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    fclose(file);
+}
+
+static void expect_refusal(const char *message, uint64_t input) {
+    dem d = make_busy_world(1);
+    dem_place place = {.input = input};
+    start(&d);
+    const uint64_t before = dem_hash(&d);
+    assert_false(dem_read_restart(&d, &place, path));
+    if (!strstr(d.error, message) || !strstr(d.error, path))
+        fail_msg("'%s' instead of '%s'", d.error, message);
+    assert_true(dem_hash(&d) == before);
+    dem_destroy(&d);
+}
+
+TEST(test_damage) {
+    static const struct {
+        size_t offset;
+        const char *message;
+    } flips[] = {{0, "not a restart file"}, {7, "not a restart file"}, {8, "its version is"},
+                 {12, "order of bytes"},    {16, "and should have"},   {24, "damaged"},
+                 {32, "another input"},     {40, "damaged"},           {5000, "damaged"}};
+    char error[512];
+    dem d = make_busy_world(1);
+    size_t size;
+    start(&d);
+    step(&d, 10);
+    assert_true(dem_write_restart(&d, &(dem_place){.input = 5}, path, error));
+    char *bytes = dem_read_file(path, &size, error);
+    assert_non_null(bytes);
+    for (size_t i = 0; i < sizeof flips / sizeof flips[0]; i++) {
+        bytes[flips[i].offset] ^= 1;
+        write_file(bytes, size);
+        bytes[flips[i].offset] ^= 1;
+        expect_refusal(flips[i].message, 5);
+    }
+    static const size_t sizes[] = {0, 1, 39};
+    for (size_t i = 0; i < 3; i++) {
+        write_file(bytes, sizes[i]);
+        expect_refusal("not a restart file", 5);
+    }
+    write_file(bytes, size - 1);
+    expect_refusal("and should have", 5);
+    write_file(bytes, size);
+    expect_refusal("another input", 6);
+    free(bytes);
+    dem_destroy(&d);
+}
+
+/* A file that cannot be written leaves the old one. */
+TEST(test_no_place_to_write) {
+    char error[512] = "";
+    dem d = make_busy_world(1);
+    start(&d);
+    assert_false(dem_write_restart(&d, &(dem_place){.input = 1}, "/nonexistent/folder/file", error));
+    assert_non_null(strstr(error, "/nonexistent/folder/file: "));
+    dem_destroy(&d);
+}

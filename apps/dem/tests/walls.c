@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * walls.c - walls that move, turn, work and press; and stresses.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "worlds.h"
+
+#define PI 3.14159265358979323846
+
+/* A plate that moves at a constant speed throws a grain at twice that speed, and its work is the grain's energy. */
+TEST(test_work_of_a_wall) {
+    dem_settings settings = plain_settings();
+    settings.time_step = 1e-5;
+    dem d = make_world(settings, plain_law());
+    add_plate(&d, "piston", 0, 0, 1, 0);
+    add_grain(&d, DISC, 1.01, 0, 0, 0);
+    d.walls[0].velocity = (dem_vec){2, 0};
+    start(&d);
+    step(&d, 5000);
+    print_message("speed %.9g, work %.9g of %.9g\n", d.bodies.vx[0], d.walls[0].work, energies(&d).kinetic);
+    assert_int_equal(d.contacts.count, 0);
+    assert_true(fabs(d.bodies.vx[0] - 4) < 4e-3);
+    assert_true(fabs(d.walls[0].work - energies(&d).kinetic) < 1e-4); /* 1e-7 of a depth, in each of some steps */
+    assert_true(fabs(d.bodies.x[1] + 4 * (d.grain_reach + settings.skin) - 2 * d.time) < 1e-9);
+    dem_destroy(&d);
+}
+
+/* The depth in a plate that is neither level nor upright, far along it, before the first step. */
+TEST(test_oblique_plate_far_away) {
+    const double depth = 1e-3;
+    for (int k = 0; k < 20; k++) {
+        const double along = 1e4 + 7.7 * k;
+        dem d = make_world(plain_settings(), plain_law());
+        const double above = d.shapes[DISC].reach - depth;
+        add_plate(&d, "slope", 0, 0, 0.6, 0.8);
+        add_grain(&d, DISC, 0.8 * along + 0.6 * above, -0.6 * along + 0.8 * above, 0, 0);
+        start(&d);
+        assert_int_equal(d.contacts.count, 1);
+        assert_true(fabs(hypot(d.bodies.fx[0], d.bodies.fy[0]) / (plain_law().kn * depth) - 1) < 2e-3);
+        dem_destroy(&d);
+    }
+}
+
+/* A box on an arm: after one turn it is where it was, and its surface moves as it turns. */
+TEST(test_turning_wall) {
+    dem_settings settings = plain_settings();
+    settings.time_step = 1e-3;
+    dem d = make_world(settings, plain_law());
+    assert_true(dem_add_wall(&d, (dem_wall){.name = "blade",
+                                            .kind = DEM_BOX,
+                                            .shape = OCTAGON,
+                                            .scale = 1,
+                                            .place = {5, 1},
+                                            .angle = 0.25,
+                                            .pivot = {2, 1},
+                                            .spin = 2 * PI,
+                                            .velocity = {0, 1},
+                                            .servo = {.between = {-1, -1}}}));
+    add_grain(&d, DISC, 100, 0, 0, 0);
+    start(&d);
+    step(&d, 250);
+    /* A quarter of a turn: 2 atan(h) for each step of 2 h, less by a third of h^2, 3.3e-6. */
+    assert_true(fabs(d.bodies.x[1] - 2) < 1e-4 && fabs(d.bodies.y[1] - 4.25) < 1e-4);
+    assert_true(fabs(d.bodies.vx[1] + 3 * 2 * PI) < 1e-3 && fabs(d.bodies.vy[1] - 1) < 1e-3);
+    assert_true(fabs(atan2(d.bodies.sine[1], d.bodies.cosine[1]) - 0.25 - PI / 2) < 1e-4);
+    step(&d, 750);
+    assert_true(fabs(d.bodies.x[1] - 5) < 1e-3 && fabs(d.bodies.y[1] - 2) < 1e-3);
+    assert_true(fabs(hypot(d.bodies.cosine[1], d.bodies.sine[1]) - 1) < 1e-14);
+    dem_destroy(&d);
+}
+
+/* A tower of three discs between plates, without gravity. */
+static dem make_press(dem_servo servo) {
+    dem_contact_law law = plain_law();
+    law.damping_ratio = 1;
+    dem d = make_world(plain_settings(), law);
+    add_plate(&d, "floor", 0, 0, 0, 1);
+    add_plate(&d, "lid", 0, 6.01, 0, -1);
+    for (int k = 0; k < 3; k++)
+        add_grain(&d, DISC, 0, 1 + 2 * k, 0, 0);
+    d.walls[1].servo = servo;
+    start(&d);
+    return d;
+}
+
+/* The lid comes down until it presses as it should. In series three discs have four contacts, each F / kn deep. Depths
+ * are floats, within 2e-6 of some 1e-3, so forces are within 0.2 %. */
+TEST(test_servo_force) {
+    const double force = 150;
+    dem d = make_press((dem_servo){
+        .on = true, .direction = {0, -1}, .force = force, .between = {-1, -1}, .gain = 0.1, .max_speed = 0.5});
+    step(&d, 20000);
+    print_message("forces %.6g and %.6g\n", dem_wall_force(&d, 0).y, dem_wall_force(&d, 1).y);
+    assert_true(fabs(dem_wall_force(&d, 1).y / force - 1) < 1e-3);
+    assert_true(fabs(dem_wall_force(&d, 0).y / -force - 1) < 1e-3);
+    assert_true(fabs(d.walls[1].work / (4 * 0.5 * force * force / 1e5) - 1) < 0.3); /* and what dashpots took */
+    /* Compression of the tower: the force over its length in the volume of a region of 2 by 6. */
+    const dem_region region = {true, -1, 1, -1, 7};
+    dem_measures m;
+    dem_measure(&d, &region, &m);
+    const double length = 6 - 4 * 0.5 * force / 1e5 - 2 * 0.5 * force / 1e5;
+    assert_true(fabs(m.stress_yy / (force * length / 16) - 1) < 2e-3);
+    assert_true(fabs(m.stress_xx) < 1e-9 && fabs(m.stress_xy) < 1e-6 && fabs(m.stress_yx) < 1e-6);
+    assert_int_equal(m.contacts, 4);
+    assert_true(fabs(m.coordination - 2) < 1e-12); /* two ends of two contacts, and two with walls, of three grains */
+    dem_destroy(&d);
+}
+
+/* A stress acts on the length between two walls. */
+TEST(test_servo_stress) {
+    dem d = make_press(
+        (dem_servo){.on = true, .direction = {0, -1}, .stress = 25, .between = {0, 1}, .gain = 0.1, .max_speed = 0.5});
+    step(&d, 20000);
+    assert_true(fabs(dem_wall_force(&d, 1).y / (25 * 6) - 1) < 2e-3);
+    dem_destroy(&d);
+}
+
+/* A lid that finds nothing to press goes as far as it may, 0.01 a step, then the run ends. */
+TEST(test_servo_without_grains) {
+    const dem_servo servo = {
+        .on = true, .direction = {0, 1}, .force = 1, .between = {-1, -1}, .gain = 0.1, .max_speed = 100};
+    const double travels[] = {0, 2.495, 39.995};
+    for (size_t i = 0; i < 3; i++) {
+        dem_servo up = servo;
+        up.travel = travels[i];
+        dem d = make_press(up); /* grains from 0 to 6, 2 wide; the lid at 6.01, the floor at 0 */
+        const double travel = i > 0 ? travels[i] : hypot(2, 6.01);
+        while (d.step < 100000 && dem_step(&d)) {
+        }
+        print_message("%s\n", d.error);
+        assert_int_equal(d.step, (uint64_t)ceil(travel / 0.01));
+        assert_non_null(strstr(d.error, "wall 'lid' has moved by more than"));
+        dem_destroy(&d);
+    }
+}
+
+/* A gap that is shorter than the travel is crossed; after a contact the way counts anew. */
+TEST(test_servo_touches_in_time) {
+    dem d = make_press((dem_servo){.on = true,
+                                   .direction = {0, -1},
+                                   .force = 150,
+                                   .between = {-1, -1},
+                                   .gain = 0.1,
+                                   .max_speed = 0.5,
+                                   .travel = 0.011});
+    step(&d, 20000);
+    assert_true(d.walls[1].idle_way == 0 && fabs(dem_wall_force(&d, 1).y / 150 - 1) < 1e-3);
+    dem_destroy(&d);
+}
+
+/* Who is to press with no force, and touches nothing, stays. */
+TEST(test_servo_of_no_force) {
+    dem d = make_press(
+        (dem_servo){.on = true, .direction = {0, -1}, .force = 0, .between = {-1, -1}, .gain = 0.1, .max_speed = 0.5});
+    const double before = d.bodies.y[4];
+    step(&d, 1000);
+    assert_true(d.bodies.y[4] == before);
+    dem_destroy(&d);
+}
+
+/* A plate's own velocity along itself drags a grain by friction until both move alike. */
+TEST(test_conveyor) {
+    dem_settings settings = plain_settings();
+    settings.gravity = (dem_vec){0, -10};
+    dem_contact_law law = plain_law();
+    law.friction = 0.3;
+    law.damping_ratio = 1;
+    dem d = make_world(settings, law);
+    add_plate(&d, "belt", 0, 0, 0, 1);
+    add_grain(&d, OCTAGON, 0, cos(PI / 8), 0, 0); /* it lies on a side, */
+    d.bodies.cosine[0] = cos(PI / 8);             /* after an eighth of a turn */
+    d.bodies.sine[0] = sin(PI / 8);
+    d.walls[0].velocity = (dem_vec){-2, 0};
+    start(&d);
+    step(&d, 20000);
+    assert_true(fabs(d.bodies.vx[0] + 2) < 0.02);
+    assert_true(fabs(d.bodies.x[1]) < 1e-12); /* the plate's body stays */
+    dem_destroy(&d);
+}

@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * worlds.c - small worlds of grains.
+ */
+#include "worlds.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "place.h"
+
+#define PI 3.14159265358979323846
+
+static struct CMUnitTest tests[40]; /* those without a name are none to cmocka */
+
+void test_add(const char *name, CMUnitTestFunction test) {
+    size_t k = 0;
+    while (tests[k].name)
+        if (++k == sizeof tests / sizeof *tests)
+            abort();
+    tests[k] = (struct CMUnitTest){.name = name, .test_func = test};
+}
+
+int main(void) { return cmocka_run_group_tests(tests, NULL, NULL); }
+
+dem_settings plain_settings(void) {
+    dem_settings s = dem_defaults;
+    s.gravity = (dem_vec){0, 0};
+    s.time_step = 1e-4;
+    s.skin = 0.2;
+    s.threads = 1;
+    return s;
+}
+
+dem_contact_law plain_law(void) {
+    return (dem_contact_law){.kn = 1e5, .kt = 2e5 / 7, .damping_ratio = -1, .gamma_n = 0, .tangential_share = 0.5};
+}
+
+static void check(const dem *d, bool ok) {
+    if (!ok)
+        fail_msg("%s", d->error);
+}
+
+static void add_shapes(dem *d) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    narc_point points[8];
+    size_t count;
+    uint32_t index;
+    assert_int_equal(narc_build_circle(1, arcs, &count, NULL), NARC_OK);
+    check(d, dem_add_shape(d, "disc", arcs, count, &index));
+    for (int i = 0; i < 8; i++)
+        arcs[i] = (narc_arc){0, 0, 1, i * PI / 4, (i + 1) * PI / 4};
+    check(d, dem_add_shape(d, "round", arcs, 8, &index));
+    assert_int_equal(narc_build_regular_polygon(8, 1, 0.2, arcs, &count, NULL), NARC_OK);
+    check(d, dem_add_shape(d, "octagon", arcs, count, &index));
+    for (int i = 0; i < 8; i++)
+        points[i] = (narc_point){1.3 * cos(i * PI / 4), sin(i * PI / 4)};
+    assert_int_equal(narc_build_ring(points, 8, arcs, &count, NULL), NARC_OK);
+    check(d, dem_add_shape(d, "arcs", arcs, count, &index));
+    assert_int_equal(index, ARCS);
+}
+
+dem make_world(dem_settings settings, dem_contact_law law) {
+    dem d;
+    uint8_t material;
+    check(&d, dem_create(&d, settings));
+    add_shapes(&d);
+    check(&d, dem_add_material(&d, (dem_material){"stuff", 1, 1e6, 0.25}, &material));
+    dem_set_law(&d, material, material, law);
+    return d;
+}
+
+void add_grain(dem *d, uint32_t shape, double x, double y, double vx, double vy) {
+    check(d, dem_add_grain(d, (dem_grain){.shape = shape, .x = x, .y = y, .scale = 1, .vx = vx, .vy = vy}));
+}
+
+void add_plate(dem *d, const char *name, double x, double y, double normal_x, double normal_y) {
+    dem_wall wall = {
+        .kind = DEM_PLATE, .place = {x, y}, .normal = {normal_x, normal_y}, .servo = {.between = {-1, -1}}};
+    snprintf(wall.name, sizeof wall.name, "%s", name);
+    check(d, dem_add_wall(d, wall));
+}
+
+dem make_busy_world(unsigned threads) {
+    dem_settings settings = plain_settings();
+    dem_contact_law law = plain_law();
+    settings.gravity = (dem_vec){1, -40};
+    settings.periodic_x = true;
+    settings.high_x = 24;
+    settings.threads = threads;
+    law.kn = 1e6;
+    law.kt = 3e5;
+    law.damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.6);
+    law.friction = 0.5;
+    law.rolling_friction = 0.05;
+    dem d = make_world(settings, law);
+    add_plate(&d, "floor", 0, 0, 0, 1);
+    add_plate(&d, "lid", 0, 22.5, 0, -1);
+    d.walls[1].velocity = (dem_vec){3, 0};
+    check(&d, dem_add_wall(&d, (dem_wall){.name = "paddle",
+                                          .kind = DEM_BOX,
+                                          .shape = OCTAGON,
+                                          .scale = 1.5,
+                                          .place = {12, 3},
+                                          .pivot = {12.5, 3},
+                                          .spin = 2,
+                                          .servo = {.between = {-1, -1}}}));
+    d.walls[0].servo =
+        (dem_servo){.on = true, .direction = {0, 1}, .stress = 100, .between = {0, 1}, .gain = 0.1, .max_speed = 2};
+    const dem_filling filling = {.count = 120,
+                                 .region = {true, 0, 24, 1.2, 21.3},
+                                 .shapes = {DISC, ROUND, OCTAGON, ARCS},
+                                 .shape_count = 4,
+                                 .sizes = {DEM_UNIFORM, 0, 0, 1.2, 2},
+                                 .speed = 3,
+                                 .spin = 1,
+                                 .tries = 20000};
+    uint64_t random = 7;
+    check(&d, dem_fill_randomly(&d, &filling, &random));
+    return d;
+}
+
+void start(dem *d) { check(d, dem_start(d)); }
+
+void step(dem *d, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        check(d, dem_step(d));
+}
+
+dem_energies energies(const dem *d) {
+    dem_measures m;
+    dem_measure(d, NULL, &m);
+    return m.energy;
+}
+
+double total_energy(const dem *d) {
+    const dem_energies e = energies(d);
+    return e.kinetic + e.potential + e.elastic + e.damping + e.friction - e.walls;
+}

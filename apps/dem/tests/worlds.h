@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * worlds.h - small worlds of grains for the tests of the discrete element program.
+ */
+#ifndef DEM_WORLDS_H
+#define DEM_WORLDS_H
+
+/* cmocka.h needs these before it. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "dem.h"
+
+/* A test of this program: main() runs all, those of a file in their order there. */
+#define TEST(name)                                                                                                     \
+    static void name(void **state);                                                                                    \
+    __attribute__((constructor)) static void add_##name(void) { test_add(#name, name); }                               \
+    static void name(__attribute__((unused)) void **state)
+void test_add(const char *name, CMUnitTestFunction test);
+
+/* Shapes of every world, in this order: a disc of radius 1; the same circle, given as eight arcs; an octagon with
+ * rounded corners; eight arcs of two radii. */
+enum { DISC, ROUND, OCTAGON, ARCS };
+
+/* No gravity, thickness 1, one thread, a material of density 1 (and E = 1e6, nu = 0.25), no damping or friction. */
+dem_settings plain_settings(void);
+dem make_world(dem_settings settings, dem_contact_law law);
+
+/* With kn = 1e5, kt = 2/7 kn. */
+dem_contact_law plain_law(void);
+
+void add_grain(dem *d, uint32_t shape, double x, double y, double vx, double vy);
+void add_plate(dem *d, const char *name, double x, double y, double normal_x, double normal_y);
+
+/* 120 grains of all shapes in a cell that is periodic in x, between two plates of which the upper one moves along and
+ * is held at a stress, with a box that turns. */
+dem make_busy_world(unsigned threads);
+
+void start(dem *d);
+void step(dem *d, size_t count);
+
+dem_energies energies(const dem *d);
+
+/* Kinetic, potential and elastic energy, and what was dissipated, less what walls gave. */
+double total_energy(const dem *d);
+
+#endif
