@@ -107,7 +107,7 @@ size_t world_find_body(const world *w, uint64_t id) {
 
 /* ------------------------------------------------------------------------------------------------ the step */
 
-/* What each body will move, so that pairs that meet on the way are found. */
+/* What each body will move, so that pairs that meet on the way are found; nothing has moved so far. */
 static void predict_motion(world *w) {
     const float time = w->settings.time_step;
     for (size_t k = 0; k < w->body_count; k++) {
@@ -116,6 +116,9 @@ static void predict_motion(world *w) {
         const vec fall = falls ? scale(time, w->settings.gravity) : (vec){0, 0};
         body->motion = scale(time, add(body->velocity, fall));
         body->turn_reach = time * fabsf(body->spin) * w->shapes[body->shape].reach;
+        body->moved = (vec){0, 0};
+        body->turned = 0;
+        body->stopped = false;
     }
 }
 

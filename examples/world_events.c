@@ -64,8 +64,11 @@ static uint32_t find_root(world_body *bodies, uint32_t k) {
 /* Bodies that touch, directly or through others that move, are an island. It sleeps when all of its bodies have been
  * slow for a while, and is awake as long as one has not. */
 void world_sleep(world *w) {
-    for (uint32_t k = 0; k < w->body_count; k++)
-        w->bodies[k].island = k;
+    for (uint32_t k = 0; k < w->body_count; k++) {
+        world_body *body = &w->bodies[k];
+        body->island = k;
+        body->rest = world_speed(w, body) > w->settings.sleep_speed ? 0 : body->rest + w->settings.time_step;
+    }
     for (size_t k = 0; k < w->list->pairs.count; k++) {
         const world_contact *c = &w->contacts[k];
         if ((c->point_count == 0 && !c->touching) || (w->list->marks[k] & (NARC_STATIC | NARC_SENSOR)))

@@ -47,11 +47,6 @@ static float find_mass(const world_body *a, const world_body *b, const world_poi
                 b->inverse_inertia * turn_b * turn_b);
 }
 
-static void find_masses(const world_body *a, const world_body *b, const world_contact *c, world_point *p) {
-    p->normal_mass = find_mass(a, b, p, c->normal);
-    p->tangent_mass = find_mass(a, b, p, quarter_turn(c->normal));
-}
-
 static void apply(world_body *a, world_body *b, const world_point *p, vec impulse) {
     a->velocity = subtract(a->velocity, scale(a->inverse_mass, impulse));
     a->spin -= a->inverse_inertia * cross(p->anchor_a, impulse);
@@ -70,7 +65,8 @@ static void prepare(world *w) {
         const world_body *a = &w->bodies[c->a], *b = &w->bodies[c->b];
         for (unsigned i = 0; i < c->point_count; i++) {
             world_point *p = &c->points[i];
-            find_masses(a, b, c, p);
+            p->normal_mass = find_mass(a, b, p, c->normal);
+            p->tangent_mass = find_mass(a, b, p, quarter_turn(c->normal));
             p->approach = -dot(find_velocity(a, b, p), c->normal);
             p->greatest_impulse = 0;
         }
@@ -115,27 +111,22 @@ static void walk(world_body *a, world_body *b, world_contact *c) {
         p->anchor_a = add(p->anchor_b, between);
     }
     p->separation = separation - dot(find_movement(a, b, p), normal);
-    find_masses(a, b, c, p);
+    p->normal_mass = find_mass(a, b, p, normal);
+    p->tangent_mass = find_mass(a, b, p, quarter_turn(normal));
 }
 
-static void walk_all(world *w) {
+/* The impulses of the last sub-step again, where the points are now. */
+static void warm_start(world *w, bool first) {
     for (size_t k = 0; k < w->active_count; k++) {
         world_contact *c = &w->contacts[w->active[k]];
-        if (c->walks)
-            walk(&w->bodies[c->a], &w->bodies[c->b], c);
-    }
-}
-
-/* The impulses of the last sub-step again. */
-static void warm_start(world *w) {
-    for (size_t k = 0; k < w->active_count; k++) {
-        world_contact *c = &w->contacts[w->active[k]];
-        const vec tangent = quarter_turn(c->normal);
-        apply_rotation(&w->bodies[c->a], &w->bodies[c->b], c->rolling_impulse);
+        world_body *a = &w->bodies[c->a], *b = &w->bodies[c->b];
+        if (c->walks && !first)
+            walk(a, b, c);
+        apply_rotation(a, b, c->rolling_impulse);
         for (unsigned i = 0; i < c->point_count; i++) {
             const world_point *p = &c->points[i];
-            apply(&w->bodies[c->a], &w->bodies[c->b], p,
-                  add(scale(p->normal_impulse, c->normal), scale(p->tangent_impulse, tangent)));
+            const vec along = scale(p->normal_impulse, c->normal);
+            apply(a, b, p, add(along, scale(p->tangent_impulse, quarter_turn(c->normal))));
         }
     }
 }
@@ -237,33 +228,16 @@ static void bounce(world *w) {
     }
 }
 
-/* How long has it been slow? */
-static void find_rest(world *w) {
-    for (size_t k = 0; k < w->body_count; k++) {
-        world_body *body = &w->bodies[k];
-        const bool slow = world_speed(w, body) <= w->settings.sleep_speed;
-        body->rest = slow ? body->rest + w->settings.time_step : 0;
-    }
-}
-
 void world_solve(world *w) {
     const float time = w->settings.time_step / (float)w->settings.substeps;
     const spring soft = make_spring(1 / (6 * time), time); /* a sixth of the rate of sub-steps */
-    for (size_t k = 0; k < w->body_count; k++) {
-        w->bodies[k].moved = (vec){0, 0};
-        w->bodies[k].turned = 0;
-        w->bodies[k].stopped = false;
-    }
     prepare(w);
     for (unsigned step = 0; step < w->settings.substeps; step++) {
         integrate_velocities(w, time);
-        if (step > 0)
-            walk_all(w);
-        warm_start(w);
+        warm_start(w, step == 0);
         solve_contacts(w, &soft, time, false);
         integrate_positions(w, time);
         solve_contacts(w, &rigid, time, true);
     }
     bounce(w);
-    find_rest(w);
 }

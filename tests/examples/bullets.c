@@ -104,6 +104,30 @@ TEST(test_head_on) {
     }
 }
 
+/* A bar that turns by half a radian in a step does not sweep through a thin wall. */
+TEST(test_sweep) {
+    for (uint64_t seed = 0; seed < test_trials(100); seed++) {
+        run r = begin_run("bullets", world_defaults, 1);
+        world *w = &r.world;
+        narc_arc arcs[NARC_MAX_ARCS];
+        size_t count;
+        struct test_random random = {seed};
+        const double angle = random_between(&random, 1.1, 2.0);
+        world_body bar = {.position = {-0.5f, 20}, .cosine = (float)cos(angle), .sine = (float)sin(angle), .spin = 30};
+        w->settings.gravity = (vec){0, 0};
+        w->body_count = 2; /* ground and wall */
+        assert_int_equal(narc_build_capsule(1.6, 0.05, arcs, &count, NULL), NARC_OK);
+        assert_int_equal(world_add_shape(w, arcs, count, &bar.shape), NARC_OK);
+        assert_int_equal(world_add_body(w, bar), NARC_OK);
+        for (int step = 0; step < 60; step++) {
+            assert_int_equal(world_step(w), NARC_OK);
+            assert_true(measure_scene(w, r.start).overlap < 0.025); /* half of the wall */
+        }
+        assert_true(w->bodies[2].position.x < 0);
+        end_run(&r);
+    }
+}
+
 /* A fall that begins in this step counts: a body at rest under 600 g stops on a thin floor below it. */
 TEST(test_gravity_counts) {
     run r = begin_run("bullets", world_defaults, 1);

@@ -167,6 +167,28 @@ TEST(test_ellipse_rocks) {
     world_destroy(&w);
 }
 
+/* Bodies that have turned together, as in a column that falls over, have another normal. */
+TEST(test_turned_together) {
+    world w = create_slope(0);
+    w.settings.gravity = (vec){0, 0};
+    w.settings.sleep_time = INFINITY;
+    add_box(&w, 0, 10);
+    add_box(&w, 0, 11);
+    world_body *const boxes[] = {&w.bodies[1], &w.bodies[2]};
+    step_for(&w, 0.1);
+    assert_int_equal(w.active_count, 1);
+    assert_near((double)w.contacts[w.active[0]].normal.y, 1, 1e-6);
+    for (int k = 0; k < 2; k++) {
+        boxes[k]->cosine = 0.8f;
+        boxes[k]->sine = 0.6f;
+    }
+    boxes[1]->position = (vec){-0.6f, 10.8f};
+    step_for(&w, 1.0 / 60);
+    assert_int_equal(w.active_count, 1);
+    assert_near((double)w.contacts[w.active[0]].normal.x, -0.6, 1e-4);
+    world_destroy(&w);
+}
+
 /* A step names the body that is broken: no pair would ever show it, because its box overlaps nothing. */
 TEST(test_broken_body) {
     world w = create_slope(0);
