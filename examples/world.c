@@ -11,6 +11,7 @@ const world_settings world_defaults = {
     .gravity = {0, -9.81f},
     .time_step = 1 / 60.0f,
     .substeps = 4,
+    .spring_rate = 1 / 6.0f,
     .rolling_arm = 0.005f,
     .margin = 0.02f,
     .skin = 0.02f,

@@ -57,6 +57,7 @@ typedef struct world_settings {
     vec gravity;
     float time_step;      /* seconds */
     unsigned substeps;    /* the solver's; contacts are found once a step */
+    float spring_rate;    /* of contacts, by the rate of sub-steps */
     float rolling_arm;    /* rolling friction: its torque is this length times the normal force */
     float margin;         /* contacts are kept up to this distance */
     float skin;           /* bodies may move by this until pairs are found anew */

@@ -119,7 +119,7 @@ void world_recycle_contacts(world *w) {
     for (size_t k = 0; k < w->list->contact_count; k++) {
         world_contact *c = &w->contacts[w->list->contacts[k]];
         find_margin(w, c);
-        if (c->point_count > 0 && !c->walks && !c->fast && find_change(w, c) < w->settings.recycling)
+        if (c->point_count > 0 && !c->fast && find_change(w, c) < w->settings.recycling)
             for (unsigned i = 0; i < c->point_count; i++) {
                 world_point *p = &c->points[i];
                 p->separation = p->gap + dot(find_drift(&w->bodies[c->a], &w->bodies[c->b], p), c->normal);

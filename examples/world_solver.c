@@ -116,11 +116,11 @@ static void walk(world_body *a, world_body *b, world_contact *c) {
 }
 
 /* The impulses of the last sub-step again, where the points are now. */
-static void warm_start(world *w, bool first) {
+static void warm_start(world *w) {
     for (size_t k = 0; k < w->active_count; k++) {
         world_contact *c = &w->contacts[w->active[k]];
         world_body *a = &w->bodies[c->a], *b = &w->bodies[c->b];
-        if (c->walks && !first)
+        if (c->walks)
             walk(a, b, c);
         apply_rotation(a, b, c->rolling_impulse);
         for (unsigned i = 0; i < c->point_count; i++) {
@@ -230,11 +230,11 @@ static void bounce(world *w) {
 
 void world_solve(world *w) {
     const float time = w->settings.time_step / (float)w->settings.substeps;
-    const spring soft = make_spring(1 / (6 * time), time); /* a sixth of the rate of sub-steps */
+    const spring soft = make_spring(w->settings.spring_rate / time, time);
     prepare(w);
     for (unsigned step = 0; step < w->settings.substeps; step++) {
         integrate_velocities(w, time);
-        warm_start(w, step == 0);
+        warm_start(w);
         solve_contacts(w, &soft, time, false);
         integrate_positions(w, time);
         solve_contacts(w, &rigid, time, true);

@@ -14,7 +14,10 @@ static uint64_t run_scene(const char *name, float margin, const char *isa, unsig
     world_settings settings = world_defaults;
     settings.workers = narc_openmp_workers(threads);
     settings.margin = margin;
-    settings.recycling = margin < 0.1f ? settings.recycling : 0; /* all are asked */
+    if (margin > 0.1f) { /* all are asked */
+        settings.recycling = 0;
+        settings.sleep_time = INFINITY;
+    }
     run r = begin_run(name, settings, 1);
     uint64_t hash = TEST_HASH_START;
     for (int step = 0; step < 240; step++) {

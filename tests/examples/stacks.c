@@ -34,6 +34,17 @@ TEST(test_pyramid) { check_stands("pyramid", 15, 0.03, 0.02, test_trials(2)); }
 
 TEST(test_rounded_pyramid) { check_stands("rounded", 15, 0.03, 0.02, test_trials(2)); }
 
+/* A spring of a fifth of the rate of sub-steps is still soft enough, as friction acts in the relaxing pass alone. In both
+ * passes all boxes hum with it. */
+TEST(test_stiffer_spring) {
+    world_settings settings = stay_awake();
+    settings.spring_rate = 1 / 5.0f;
+    run r = begin_run("rounded", settings, 1);
+    continue_run(&r, 15);
+    assert_int_equal(measure_run(&r).moving, 0);
+    end_run(&r);
+}
+
 /* How long until the stack has fallen, at most `most` seconds? */
 static int find_fall(world_settings settings, int most) {
     run r = begin_run("stack", settings, 1);
