@@ -113,7 +113,7 @@ static float find_change(const world *w, const world_contact *c) {
 
 /* A contact of bodies that have hardly moved since it was found serves again: normal and anchors stay as they are in
  * world axes, and only its separations are new. So lever arms do not grow while a column leans a little, and the normal
- * is not now that of one body's edge and now that of the other's. */
+ * is not now that of one body's edge and now that of the other's. A point that walks goes on from there. */
 void world_recycle_contacts(world *w) {
     w->asked_count = 0;
     for (size_t k = 0; k < w->list->contact_count; k++) {

@@ -143,7 +143,7 @@ TEST(test_momentum) {
 }
 
 /* An ellipse that rocks on its flat side keeps its energy: it gains none, and loses 15 % at most in ten seconds, 5 times
- * in and out. If its point stayed where it was at the beginning of each step it would gain 11 %. */
+ * in and out. If its point stayed where it was at the beginning of each step it would gain 19 %. */
 TEST(test_ellipse_rocks) {
     world w = create_slope(0);
     w.settings.rolling_arm = 0;
