@@ -94,21 +94,23 @@ static narc_status run(const request *wanted, world *w, world_body *start) {
     const long steps = lroundf(wanted->seconds / w->settings.time_step);
     const long second = lroundf(1 / w->settings.time_step);
     memcpy(start, w->bodies, w->body_count * sizeof *start);
-    size_t events = 0;
-    printf("%8s %14s %12s %12s %8s %8s %9s %8s %8s\n", "seconds", "energy", "displacement", "overlap", "moving",
-           "awake", "contacts", "points", "events");
+    size_t events = 0, kept = 0, asked = 0; /* in a second: events, lists of pairs that were kept, contacts found */
+    printf("%8s %14s %12s %9s %7s %6s %9s %7s %7s %5s %8s\n", "seconds", "energy", "displacement", "overlap", "moving",
+           "awake", "contacts", "points", "events", "kept", "found");
     for (long step = 1; step <= steps; step++) {
         const narc_status status = step_scene(wanted->scene, w, step);
         if (status != NARC_OK)
             return status;
         events += w->event_count;
+        kept += w->list->kept;
+        asked += w->asked_count;
         if (step % second != 0 && step != steps)
             continue;
         const scene_state state = measure_scene(w, start);
-        printf("%8.2f %14.4f %12.6f %12.6f %8zu %8zu %9zu %8zu %8zu\n", (double)((float)step * w->settings.time_step),
-               state.energy, state.displacement, state.overlap, state.moving, state.awake, state.contacts, state.points,
-               events);
-        events = 0;
+        printf("%8.2f %14.4f %12.6f %9.6f %7zu %6zu %9zu %7zu %7zu %5zu %8zu\n",
+               (double)((float)step * w->settings.time_step), state.energy, state.displacement, state.overlap,
+               state.moving, state.awake, state.contacts, state.points, events, kept, asked);
+        events = kept = asked = 0;
     }
     printf("state %016" PRIx64 "\n", world_hash(w));
     return NARC_OK;
