@@ -2,7 +2,7 @@
 //
 // engine.cpp - a C++ engine's loop by narc.hpp: its own structures through columns, its own threads, pairs that are kept
 // from step to step, and a solver that starts with the impulses of the last one. world.c is a larger world, in C.
-//   c++ -std=c++17 engine.cpp -o engine $(pkg-config --cflags --libs narc)
+//   c++ -std=c++17 -pthread engine.cpp -o engine $(pkg-config --cflags --libs narc)
 #include <narc.hpp>
 
 #include <algorithm>

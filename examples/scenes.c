@@ -189,7 +189,10 @@ static narc_status act_rain(world *w, long step) {
     if (step % 10 != 0 || w->body_count == w->capacity)
         return NARC_OK;
     const uint32_t shape = (uint32_t)random_between(&seed, 2, 2 + KINDS);
-    return world_add_body(w, make_body(shape, random_between(&seed, -3, 3), 12, random_between(&seed, -3, 3)));
+    const float x = random_between(&seed, -3, 3), angle = random_between(&seed, -3, 3);
+    world_body body = make_body(shape, x, 12, angle);
+    body.velocity.y = -8; /* out of the way of the next one */
+    return world_add_body(w, body);
 }
 
 /* ------------------------------------------------------------------------------------------------ the list */

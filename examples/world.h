@@ -94,8 +94,7 @@ typedef struct world_contact {
     unsigned point_count;
     vec normal, normal_in_a, normal_in_b; /* world axes; the frames of A and B */
     vec center_a, center_b;               /* of the arcs that touch, in the bodies' frames, or a point on the edge */
-    float radius_a, radius_b;             /* INFINITY on an edge */
-    uint16_t reach_a[2], reach_b[2];      /* see narc_manifold */
+    narc_manifold row;                    /* as it was found: radii and reaches */
     float friction, restitution;
     float rolling_impulse; /* of rotation */
     world_point points[2];

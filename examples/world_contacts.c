@@ -61,11 +61,9 @@ narc_status world_update_pairs(world *w) {
                                        .filter = &filter,
                                        .workers = &w->settings.workers};
     narc_status status = narc_update_pairs(w->broad_phase, w->store, &bodies, &options, &w->list, &w->error);
-    if (status != NARC_OK || w->list->skipped > 0)
-        return status != NARC_OK ? status : find_broken_body(w);
     w->event_count = 0;
-    if (w->list->kept)
-        return NARC_OK;
+    if (status != NARC_OK || w->list->kept)
+        return status == NARC_OK && w->list->skipped > 0 ? find_broken_body(w) : status;
     const size_t count = w->list->pairs.count;
     if (w->pair_room <= count && (status = resize_pairs(w, count + count / 2 + 1)) != NARC_OK)
         return status;
@@ -81,7 +79,7 @@ narc_status world_update_pairs(world *w) {
         c->a = w->list->pairs.a.base[k];
         c->b = w->list->pairs.b.base[k];
     }
-    return NARC_OK;
+    return w->list->skipped > 0 ? find_broken_body(w) : NARC_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------ which to ask of */
@@ -174,6 +172,7 @@ static void make_contact(const world *w, world_contact *c, const narc_manifold *
     const world_body *a = &w->bodies[c->a], *b = &w->bodies[c->b];
     const vec to_a = subtract(a->position, b->position);
     const world_point last[2] = {c->points[0], c->points[1]};
+    c->row = *m;
     c->normal = (vec){m->normal_x, m->normal_y};
     c->normal_in_a = to_local(a, c->normal);
     c->normal_in_b = to_local(b, c->normal);
@@ -191,16 +190,10 @@ static void make_contact(const world *w, world_contact *c, const narc_manifold *
         p->separation = p->gap;
         start_warm(p, last);
     }
-    c->radius_a = m->radius_a;
-    c->radius_b = m->radius_b;
-    c->walks = m->count == 1 && !(isinf(m->radius_a) && isinf(m->radius_b));
-    for (int i = 0; i < 2; i++) {
-        c->reach_a[i] = m->reach_a[i];
-        c->reach_b[i] = m->reach_b[i];
-    }
     const world_point *p = &c->points[0];
-    c->center_a = to_local(a, find_center(p->anchor_a, p->gap, c->radius_a, -1, c->normal));
-    c->center_b = to_local(b, find_center(p->anchor_b, p->gap, c->radius_b, 1, c->normal));
+    c->walks = m->count == 1 && !(isinf(m->radius_a) && isinf(m->radius_b));
+    c->center_a = to_local(a, find_center(p->anchor_a, p->gap, m->radius_a, -1, c->normal));
+    c->center_b = to_local(b, find_center(p->anchor_b, p->gap, m->radius_b, 1, c->normal));
 }
 
 /* A pair that was asked and has no manifold keeps nothing. */

@@ -88,14 +88,14 @@ static void walk(world_body *a, world_body *b, world_contact *c) {
     const vec between = subtract(b->position, a->position);
     const vec center_a = to_world(a, c->center_a), center_b = to_world(b, c->center_b);
     const vec way = add(between, subtract(center_b, center_a));
-    const bool edge_a = isinf(c->radius_a), edge_b = isinf(c->radius_b);
-    const float radius_a = edge_a ? 0 : c->radius_a, radius_b = edge_b ? 0 : c->radius_b;
+    const bool edge_a = isinf(c->row.radius_a), edge_b = isinf(c->row.radius_b);
+    const float radius_a = edge_a ? 0 : c->row.radius_a, radius_b = edge_b ? 0 : c->row.radius_b;
     const float distance = copysignf(length(way), dot(way, c->normal));
     const vec normal = edge_a   ? to_world(a, c->normal_in_a)
                        : edge_b ? to_world(b, c->normal_in_b)
                                 : scale(1 / distance, way);
-    if (!is_in_fan(c->normal_in_a, to_local(a, normal), c->reach_a) ||
-        !is_in_fan(c->normal_in_b, to_local(b, normal), c->reach_b)) {
+    if (!is_in_fan(c->normal_in_a, to_local(a, normal), c->row.reach_a) ||
+        !is_in_fan(c->normal_in_b, to_local(b, normal), c->row.reach_b)) {
         if (c->fast && c->points[0].greatest_impulse > 0)
             a->stopped = b->stopped = true;
         return;
