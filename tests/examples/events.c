@@ -133,6 +133,34 @@ TEST(test_events) {
         check_events(seed % 2 == 0 ? INFINITY : 0.1f, seed);
 }
 
+/* Of 100 bodies beside a sensor those begin that overlap it, each third one, and no other. */
+TEST(test_many_at_a_sensor) {
+    world_settings settings = world_defaults;
+    settings.gravity = (vec){0, 0};
+    run r = begin_run("rain", settings, 1);
+    world *w = &r.world;
+    world_body sensor = w->bodies[1]; /* a bar, 1 high */
+    sensor.kind = NARC_SENSOR;
+    sensor.position = (vec){0, 50};
+    assert_int_equal(world_add_body(w, sensor), NARC_OK);
+    for (int k = 0; k < 100; k++) { /* circles of radius 0.4 */
+        const world_body body = {
+            .position = {0.07f * (float)k - 3.5f, k % 3 == 0 ? 50.89f : 50.91f}, .cosine = 1, .shape = 2};
+        assert_int_equal(world_add_body(w, body), NARC_OK);
+    }
+    assert_int_equal(world_step(w), NARC_OK);
+    assert_int_equal(w->list->sensor_count, 100);
+    size_t begun = 0;
+    for (size_t k = 0; k < w->event_count; k++)
+        if (w->events[k].sensor) {
+            const uint64_t id = w->events[k].id_b; /* the sensor has id 3, and the first circle 4 */
+            assert_true(w->events[k].begins && w->events[k].id_a == 3 && (id - 4) % 3 == 0);
+            begun++;
+        }
+    assert_int_equal(begun, 34);
+    end_run(&r);
+}
+
 /* ------------------------------------------------------------------------------------------------ sleep */
 
 static size_t count_awake(const run *r) { return measure_scene(&r->world, r->start).awake; }
