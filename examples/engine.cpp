@@ -1,74 +1,213 @@
 // SPDX-License-Identifier: MIT
 //
-// engine.cpp - narc from C++: an engine's own structures through columns, nothing copied, and its own threads.
-//   c++ -std=c++17 engine.cpp $(pkg-config --cflags --libs narc)
-#include <narc.h>
+// engine.cpp - a C++ engine's loop by narc.hpp: its own structures through columns, its own threads, pairs that are kept
+// from step to step, and a solver that starts with the impulses of the last one. world.c is a larger world, in C.
+//   c++ -std=c++17 -pthread engine.cpp -o engine $(pkg-config --cflags --libs narc)
+#include <narc.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <complex>
 #include <cstdio>
 #include <thread>
-#include <vector>
 
 namespace {
-struct Transform {
+
+using Vec = std::complex<float>;
+float dot(Vec a, Vec b) { return a.real() * b.real() + a.imag() * b.imag(); }
+float cross(Vec a, Vec b) { return a.real() * b.imag() - a.imag() * b.real(); }
+Vec quarter_turn(Vec a) { return {-a.imag(), a.real()}; }
+
+struct Position {
     double x, y; // far from the origin too: narc subtracts positions before it rounds
+};
+struct Rotation {
     float cosine, sine;
 };
 struct Entity {
-    const char *name;
-    Transform transform;
+    uint64_t id; // what its pairs are known by, whatever its place in the array
     uint32_t shape;
-};
-struct Candidate { // from the engine's own broad phase
-    float priority;
-    uint32_t a, b;
+    uint8_t kind; // 0 or NARC_STATIC
+    Position position;
+    Rotation rotation;
+    float inverse_mass, inverse_inertia;
+    Vec velocity;
+    float spin;
 };
 
-// Tasks for the threads of the engine, which may as well be those of a pool: narc waits until all have ended.
-void run_tasks(void *, unsigned count, void (*task)(void *argument, unsigned index), void *argument) {
+struct Point {
+    uint32_t feature;
+    float normal_impulse, tangent_impulse;
+    Vec anchor_a, anchor_b;
+};
+struct Known { // of a pair of the list; it goes with the pair to the next list
+    uint32_t hint;
+    Point points[2];
+};
+struct Contact { // a row of narc's answer within the engine's own
+    narc_manifold manifold;
+    Entity *a, *b;
+    Vec normal;
+    Point points[2];
+};
+
+// The threads of the engine, which may as well be those of a pool: returns when all tasks have ended.
+const auto run_tasks = [](unsigned count, const auto &task) {
     std::vector<std::thread> threads;
     for (unsigned index = 0; index < count; index++)
-        threads.emplace_back(task, argument, index);
+        threads.emplace_back(task, index);
     for (std::thread &thread : threads)
         thread.join();
+};
+
+// ------------------------------------------------------------------------------------------------ a solver
+
+// B's speed at a point relative to A's.
+Vec velocity(const Contact &c, const Point &p) {
+    return c.b->velocity + c.b->spin * quarter_turn(p.anchor_b) - c.a->velocity - c.a->spin * quarter_turn(p.anchor_a);
 }
+void push(const Contact &c, const Point &p, Vec impulse) {
+    c.a->velocity -= c.a->inverse_mass * impulse;
+    c.a->spin -= c.a->inverse_inertia * cross(p.anchor_a, impulse);
+    c.b->velocity += c.b->inverse_mass * impulse;
+    c.b->spin += c.b->inverse_inertia * cross(p.anchor_b, impulse);
+}
+// Pushes along a direction towards a speed, with an impulse in all between `least` and `most`.
+void drive(const Contact &c, const Point &p, Vec direction, float speed, float least, float most, float &impulse) {
+    const float turn_a = cross(p.anchor_a, direction), turn_b = cross(p.anchor_b, direction);
+    const float inverse_mass = c.a->inverse_mass + c.b->inverse_mass + c.a->inverse_inertia * turn_a * turn_a +
+                               c.b->inverse_inertia * turn_b * turn_b;
+    const float wanted = impulse + (speed - dot(velocity(c, p), direction)) / inverse_mass;
+    const float before = impulse;
+    impulse = std::clamp(wanted, least, most);
+    push(c, p, (impulse - before) * direction);
+}
+// Friction 0.6; a gap may close within the step, and of an overlap of more than 5 mm a fifth goes.
+void solve(Contact &c, uint32_t i, float time) {
+    Point &p = c.points[i];
+    const float limit = 0.6f * p.normal_impulse, separation = c.manifold.point[i].separation;
+    drive(c, p, quarter_turn(c.normal), 0, -limit, limit, p.tangent_impulse);
+    const float change = separation > 0 ? separation : 0.2f * std::min(0.0f, separation + 0.005f);
+    drive(c, p, c.normal, -change / time, 0, INFINITY, p.normal_impulse);
+}
+
+// ------------------------------------------------------------------------------------------------ the world
+
+// What is wrong throws narc::exception: value() does, where there is none.
+class World {
+  public:
+    std::vector<Entity> entities; // which come and go in any way
+
+    void add(const narc::outline &outline, Position position, uint8_t kind) {
+        narc_mass mass;
+        narc_compute_mass(outline.data(), outline.size(), &mass);
+        const float movable = kind == NARC_STATIC ? 0 : 1;
+        entities.push_back({++last_id,
+                            shapes.add(outline).value(),
+                            kind,
+                            position,
+                            {1, 0},
+                            movable / static_cast<float>(mass.area),
+                            movable / static_cast<float>(mass.second_moment),
+                            0,
+                            0});
+    }
+    void step(float time) {
+        find_contacts();
+        for (Entity &entity : entities)
+            entity.velocity -= Vec(0, entity.kind == NARC_STATIC ? 0 : 9.81f * time);
+        for (Contact &contact : contacts)
+            start(contact);
+        for (int round = 0; round < 12; round++)
+            for (Contact &contact : contacts)
+                for (uint32_t i = 0; i < contact.manifold.count; i++)
+                    solve(contact, i, time);
+        for (Entity &entity : entities) {
+            const Vec r = Vec(entity.rotation.cosine, entity.rotation.sine) * Vec(1, time * entity.spin);
+            entity.rotation = {r.real() / std::abs(r), r.imag() / std::abs(r)};
+            entity.position.x += static_cast<double>(time * entity.velocity.real());
+            entity.position.y += static_cast<double>(time * entity.velocity.imag());
+        }
+        for (Known &pair : known) // one without a contact keeps its hint alone
+            pair = {pair.hint, {}};
+        for (const Contact &contact : contacts)
+            std::copy(contact.points, contact.points + contact.manifold.count, known[contact.manifold.pair].points);
+    }
+
+  private:
+    void find_contacts() {
+        const narc_bodies bodies = narc::bodies_of(entities, &Entity::position, &Entity::rotation, &Entity::shape);
+        const narc_workers workers = narc::workers_of(2, run_tasks);
+        narc_pair_filter filter = {};
+        filter.kind = narc::column(entities, &Entity::kind);
+        narc::pair_options options;
+        options.margin(margin).skin(0.05f).id(narc::column(entities, &Entity::id)).filter(filter).workers(workers);
+        list = broad.update(shapes, bodies, options).value();
+        if (!list->kept) { // what is known goes to where the pairs are now, and zeros to new ones
+            std::vector<Known> next(list->pairs.count);
+            narc_gather(list->previous, next.size(), sizeof(Known), known.data(), next.data());
+            known.swap(next);
+        }
+        for (size_t k = 0; k < list->lost_count; k++)
+            std::printf("%d and %d part\n", static_cast<int>(list->lost[k].id_a), static_cast<int>(list->lost[k].id_b));
+        size_t skipped = 0;
+        narc::query query;
+        query.margin(margin).hints(narc::hints(known, &Known::hint)).workers(workers).skipped(skipped);
+        contacts = narc::find_manifolds(shapes, bodies, list->pairs, query, rows, &Contact::manifold).value();
+        if (list->skipped + skipped > 0)
+            narc::validate(shapes, bodies).value(); // throws: names the broken body
+    }
+
+    // A point starts with the impulses of the point of the last step where the same features touched; but not where the
+    // pair's bodies stand in the other order than then.
+    void start(Contact &c) {
+        const narc_manifold &m = c.manifold;
+        const Known &last = known[m.pair];
+        c.a = &entities[list->pairs.a.base[m.pair]];
+        c.b = &entities[list->pairs.b.base[m.pair]];
+        c.normal = {m.normal_x, m.normal_y};
+        const Vec to_a(static_cast<float>(c.a->position.x - c.b->position.x),
+                       static_cast<float>(c.a->position.y - c.b->position.y));
+        for (uint32_t i = 0; i < m.count; i++) {
+            const Point &same = last.points[last.points[0].feature == m.point[i].feature ? 0 : 1];
+            const bool warm = same.feature == m.point[i].feature && !(list->marks[m.pair] & NARC_FLIPPED);
+            const Vec anchor(m.point[i].x, m.point[i].y);
+            c.points[i] = {m.point[i].feature, warm ? same.normal_impulse : 0, warm ? same.tangent_impulse : 0, anchor,
+                           anchor + to_a};
+            push(c, c.points[i], Vec(c.points[i].normal_impulse, c.points[i].tangent_impulse) * c.normal);
+        }
+    }
+
+    static constexpr float margin = 0.02f;
+    narc::shapes shapes;
+    narc::broad_phase broad;
+    const narc_pair_list *list = nullptr; // the broad phase's, until the next step
+    std::vector<Known> known;             // of each pair in the list
+    std::vector<Contact> rows;
+    narc::span<Contact> contacts; // those of `rows` that were found
+    uint64_t last_id = 0;
+};
+
 } // namespace
 
-int main() {
-    narc_shapes *shapes = nullptr;
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t arc_count = 0;
-    if (narc_create_shapes(nullptr, &shapes) || narc_build_box(2, 2, 0.25, arcs, &arc_count, nullptr) ||
-        narc_add_shape(shapes, arcs, arc_count, nullptr, nullptr))
-        return 1;
+// A stack of crates comes to rest, one is taken out from between the others, and they come to rest again.
+int main() try {
+    World world;
     const double far = 1e9;
-    const std::vector<Entity> entities = {
-        {"crate", {far, 0, 1, 0}, 0}, {"door", {far + 1.75, 0.5, 1, 0}, 0}, {"cloud", {far, 9, 1, 0}, 0}};
-    const std::vector<Candidate> candidates = {{1, 0, 1}, {2, 0, 2}, {3, 1, 2}};
-
-    narc_bodies bodies = {};
-    bodies.count = entities.size();
-    bodies.x = NARC_POSITION_COLUMN(entities, transform.x);
-    bodies.y = NARC_POSITION_COLUMN(entities, transform.y);
-    bodies.cosine = NARC_COLUMN(entities, transform.cosine);
-    bodies.sine = NARC_COLUMN(entities, transform.sine);
-    bodies.shape = NARC_COLUMN(entities, shape);
-    narc_pairs pairs = {};
-    pairs.count = candidates.size();
-    pairs.a = NARC_COLUMN(candidates, a);
-    pairs.b = NARC_COLUMN(candidates, b);
-
-    narc_workers workers = {};
-    workers.count = 4;
-    workers.run = run_tasks;
-    narc_query query = {};
-    query.workers = &workers;
-    std::vector<narc_manifold> manifolds(candidates.size());
-    size_t found = 0;
-    if (narc_find_manifolds(shapes, &bodies, &pairs, &query, manifolds.data(), manifolds.size(), &found, nullptr))
-        return 1;
-    manifolds.resize(found);
-    for (const narc_manifold &m : manifolds)
-        std::printf("%s and %s: separation %g, normal %g %g\n", entities[candidates[m.pair].a].name,
-                    entities[candidates[m.pair].b].name, m.point[0].separation, m.normal_x, m.normal_y);
-    narc_destroy_shapes(shapes);
+    world.add(narc::box(20, 2).value(), {far, -1}, NARC_STATIC);
+    for (int k = 0; k < 5; k++)
+        world.add(narc::box(1, 1, 0.05).value(), {far + 0.02 * k, 0.5 + k}, 0);
+    for (int step = 0; step < 360; step++) {
+        if (step == 120) { // the last one takes its place
+            world.entities[2] = world.entities.back();
+            world.entities.pop_back();
+        }
+        world.step(1 / 60.0f);
+    }
+    for (const Entity &entity : world.entities)
+        std::printf("%d: height %.2f, speed %.1f\n", static_cast<int>(entity.id), entity.position.y,
+                    static_cast<double>(std::abs(entity.velocity)));
+} catch (const narc::exception &problem) {
+    std::fprintf(stderr, "engine: %s\n", problem.what());
+    return 1;
 }

@@ -12,6 +12,7 @@ typedef struct scene {
     float seconds; /* how long it is worth watching */
     size_t capacity;
     narc_status (*build)(world *w, uint64_t seed);
+    narc_status (*act)(world *w, long step); /* before each step, from 1 on; or NULL */
 } scene;
 
 /* Number `index`, or NULL behind the last; and by name. */
@@ -27,11 +28,15 @@ narc_status build_scene(const scene *chosen, world_settings settings, uint64_t s
 typedef struct scene_state {
     double energy;       /* J */
     double displacement; /* the largest distance of a body from where it was at first, m */
+    double sideways;     /* the same along x alone */
     double overlap;      /* the deepest at the last step, m */
-    size_t moving, contacts, points;
+    size_t moving, awake, contacts, points;
 } scene_state;
 
-/* `start` has the bodies as they were at first. */
+/* One step, after what the scene does in it. */
+narc_status step_scene(const scene *chosen, world *w, long step);
+
+/* `start` has the bodies as they were at first; a body that has another number is not measured for its way. */
 scene_state measure_scene(const world *w, const world_body *start);
 
 #endif

@@ -2,15 +2,20 @@
  *
  * world.h - a small world of rigid bodies: what a physics engine does between two frames, made to be read.
  *
- *     world.c         from bodies to contacts: everything that narc is for
- *     world_solver.c  from contacts to velocities and positions
- *     scenes.c        worlds to look at; world_main.c runs them
+ *     world.c           shapes and bodies, which come and go; the step
+ *     world_contacts.c  from bodies to contacts: everything that narc is for
+ *     world_solver.c    from contacts to velocities and positions
+ *     world_events.c    what begins and ends, what sleeps and wakes
+ *     scenes.c          worlds to look at; world_main.c runs them
  *
- * It has friction, restitution and bullets, and leaves out joints, sleeping and a solver on several threads.
- * docs/solver.md tells why everything is as it is.
+ *     cc -std=c17 -O2 -ffp-contract=off world*.c scenes.c -o world $(pkg-config --cflags --libs narc) -lm
+ *
+ * It leaves out joints and a solver on several threads. docs/solver.md tells why everything is as it is.
  */
 #ifndef WORLD_H
 #define WORLD_H
+
+#include <math.h>
 
 #include <narc.h>
 #include <narc_broad_phase.h>
@@ -19,73 +24,87 @@ typedef struct vec {
     float x, y;
 } vec;
 
-/* A body as this engine likes it. narc reads pose and shape in place, through columns. */
+/* A body as this engine likes it. narc reads pose, shape, id and kind in place, through columns. */
 typedef struct world_body {
     vec position;       /* of its centre of mass, its shape's origin */
     float cosine, sine; /* next to the position: the kernels load all four at once */
     uint32_t shape;
-    uint8_t still;  /* 1, which is NARC_STATIC: it never moves */
-    uint8_t bullet; /* 1: it may be so fast that in one step it would pass through others */
+    uint8_t kind; /* 0: it moves; NARC_STATIC; NARC_SENSOR: it goes where its velocity takes it, and pushes nothing */
     vec velocity;
     float spin; /* radians per second */
     float friction, restitution;
-    float inverse_mass, inverse_inertia; /* 0 if it is still; world_add_body() sets them */
+
+    /* What follows is the world's. */
+    uint64_t id;                         /* never given twice, whatever number the body has */
+    float inverse_mass, inverse_inertia; /* 0 if contacts do not move it */
     vec motion;                          /* in this step, if nothing stops it */
-    float turn_reach;                    /* how far rotation may carry a bullet's points in this step */
+    float turn_reach;                    /* how far rotation may carry its points in this step */
+    float rest;                          /* for how long it has been slow, seconds */
+    uint32_t island;                     /* a body of the same island, in the end its root */
     vec moved;                           /* since the contacts were found */
     float turned;
+    bool stopped; /* it has hit, and goes on in the next step */
 } world_body;
 
 /* With density 1. */
 typedef struct world_shape {
     float mass, inertia;
-    float reach; /* the largest distance of a point from the origin */
+    float reach;     /* the largest distance of a point from the origin */
+    float thickness; /* between a quarter of its least width and that */
 } world_shape;
 
 typedef struct world_settings {
     vec gravity;
     float time_step;      /* seconds */
     unsigned substeps;    /* the solver's; contacts are found once a step */
+    float spring_rate;    /* of contacts, by the rate of sub-steps */
     float rolling_arm;    /* rolling friction: its torque is this length times the normal force */
     float margin;         /* contacts are kept up to this distance */
     float skin;           /* bodies may move by this until pairs are found anew */
     float flat_angle;     /* see narc_query */
+    float recycling;      /* a contact serves again while its bodies have moved less than this; 0: never */
+    float sleep_speed;    /* of a body's fastest point */
+    float sleep_time;     /* what is slower for so long sleeps; INFINITY: nothing does */
     narc_workers workers; /* narc's; none: the calling thread */
 } world_settings;
 
-/* Metres and seconds, for bodies of 0.1 to 10 m: 60 steps a second, 8 sub-steps each. */
+/* Metres and seconds, for bodies of 0.1 to 10 m: 60 steps a second, 4 sub-steps each. */
 extern const world_settings world_defaults;
 
-/* What a pair keeps for its next step: the impulses of its points, by what touches there. */
-typedef struct world_impulses {
-    uint32_t feature[2];
-    float normal[2], tangent[2], rolling;
-} world_impulses;
-
-/* What the engine knows of each pair in the list of pairs. */
-typedef struct world_pair {
-    float margin;
-    uint32_t hint; /* narc's */
-    world_impulses impulses;
-} world_pair;
-
 typedef struct world_point {
+    uint32_t feature;
+    vec local_a, local_b;   /* anchors in the frames of A and B */
+    float gap;              /* separation when it was found */
     vec anchor_a, anchor_b; /* from the centres of mass, world axes */
-    float separation;
-    float approach; /* the speed at which it closes as the step begins */
+    float separation;       /* as the step begins */
+    float approach;         /* the speed at which it closes then */
     float normal_mass, tangent_mass;
-    float normal_impulse, tangent_impulse;
-    float greatest_impulse;
+    float normal_impulse, tangent_impulse; /* the next step starts with them */
+    float greatest_impulse;                /* in this step */
 } world_point;
 
+/* What the engine knows of a pair in the list of pairs; zeros for one that is new. */
 typedef struct world_contact {
-    uint32_t pair, a, b;
-    vec normal;
+    uint32_t hint; /* narc's */
+    uint32_t a, b;
+    float margin;
+    bool fast;     /* the bodies could pass through each other within the step */
+    bool touching; /* has begun and has not ended */
+    bool walks;    /* its point walks along arcs while the bodies roll */
+    unsigned point_count;
+    vec normal, normal_in_a, normal_in_b; /* world axes; the frames of A and B */
+    vec center_a, center_b;               /* of the arcs that touch, in the bodies' frames, or a point on the edge */
+    narc_manifold row;                    /* as it was found: radii and reaches */
     float friction, restitution;
     float rolling_impulse; /* of rotation */
-    unsigned point_count;
     world_point points[2];
 } world_contact;
+
+typedef struct world_event {
+    uint64_t id_a, id_b;
+    bool begins; /* else it ends */
+    bool sensor; /* one of them is */
+} world_event;
 
 typedef struct world {
     world_settings settings;
@@ -93,12 +112,16 @@ typedef struct world {
     world_shape *shapes;
     world_body *bodies;
     size_t body_count, capacity;
+    uint64_t last_id;
     narc_broad_phase *broad_phase;
-    const narc_pair_list *list;     /* pairs of bodies that are close; the broad phase owns it */
-    world_pair *pairs, *next_pairs; /* of this list; room for the next one */
+    const narc_pair_list *list;              /* pairs of bodies that are close; the broad phase owns it */
+    world_contact *contacts, *next_contacts; /* one for each pair of this list; room for the next one */
     narc_manifold *manifolds;
-    world_contact *contacts;
-    size_t pair_room, contact_count;
+    uint64_t *overlaps; /* of sensors, as bits */
+    uint32_t *asked;    /* pairs to find contacts of */
+    uint32_t *active;   /* pairs with a contact and a body that moves: what the solver goes through */
+    world_event *events;
+    size_t pair_room, asked_count, active_count, event_count;
     narc_error error; /* what went wrong, when a function here says that something did */
 } world;
 
@@ -109,17 +132,43 @@ void world_destroy(world *w);
 /* Adds a shape, moved so that its centroid is its origin. */
 narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32_t *out_shape);
 
-/* Adds a body of density 1. */
+/* Adds a body of density 1, and gives it an id, from 1 on. */
 narc_status world_add_body(world *w, world_body body);
 
+/* Body `index` goes, and the last one takes its number. */
+void world_remove_body(world *w, size_t index);
+
+/* The number of the body with this id, or SIZE_MAX. */
+size_t world_find_body(const world *w, uint64_t id);
+
+/* Who pushes a body wakes it. What it lies among wakes with it. */
+void world_wake_body(world_body *body);
+
+/* Afterwards w->events are what began and ended in it. */
 narc_status world_step(world *w);
 
-/* Two parts of world_step(): the manifolds of the pairs, and contacts made of `count` manifolds. */
+/* ------------------------------------------------------------------------------------------------ parts of the step */
+
+/* Notes what went wrong, and returns the status. */
+narc_status world_fail(world *w, narc_status status, const char *message);
+
+/* world_contacts.c: pairs, with what is known of them; which of them to ask of; their manifolds; contacts made of
+ * `count` manifolds; overlaps of sensors. */
+narc_status world_update_pairs(world *w);
+void world_recycle_contacts(world *w);
 narc_status world_find_manifolds(world *w, size_t *out_count);
 void world_make_contacts(world *w, size_t count);
+narc_status world_find_overlaps(world *w);
 
-/* The solver: from w->contacts, which world_step() finds, to new velocities and positions. */
+/* world_solver.c: from active contacts to new velocities and positions. */
 void world_solve(world *w);
+
+/* world_events.c. */
+void world_end_lost_pairs(world *w);
+void world_sleep(world *w);
+void world_list_events(world *w);
+
+/* ------------------------------------------------------------------------------------------------ measures */
 
 /* Of motion and height, in joules. */
 double world_energy(const world *w);
@@ -127,11 +176,23 @@ double world_energy(const world *w);
 /* Another number for another state, but for one in 2^64. */
 uint64_t world_hash(const world *w);
 
+/* Of the fastest point of a body. */
+float world_speed(const world *w, const world_body *body);
+
 static inline vec add(vec a, vec b) { return (vec){a.x + b.x, a.y + b.y}; }
 static inline vec subtract(vec a, vec b) { return (vec){a.x - b.x, a.y - b.y}; }
 static inline vec scale(float s, vec a) { return (vec){s * a.x, s * a.y}; }
 static inline float dot(vec a, vec b) { return a.x * b.x + a.y * b.y; }
 static inline float cross(vec a, vec b) { return a.x * b.y - a.y * b.x; }
+static inline float length(vec a) { return sqrtf(dot(a, a)); }
 static inline vec quarter_turn(vec a) { return (vec){-a.y, a.x}; }
+
+/* From a body's axes to the world's, and back. */
+static inline vec to_world(const world_body *body, vec v) {
+    return (vec){body->cosine * v.x - body->sine * v.y, body->sine * v.x + body->cosine * v.y};
+}
+static inline vec to_local(const world_body *body, vec v) {
+    return (vec){body->cosine * v.x + body->sine * v.y, body->cosine * v.y - body->sine * v.x};
+}
 
 #endif

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * world_main.c - runs a scene, tells each second how it does, and writes files from which the narc command draws it.
+ *   cc world*.c scenes.c -o world $(pkg-config --cflags --libs narc) -lm
  */
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,10 +20,11 @@ typedef struct request {
 
 static int print_usage(FILE *to) {
     fprintf(to, "usage: world SCENE [--seconds T] [--seed N] [--substeps N] [--flat-angle DEGREES] [--threads N]\n"
-                "                   [--out FOLDER]\n\n");
+                "                   [--recycling METRES] [--sleep SECONDS] [--out FOLDER]\n\n");
     for (size_t i = 0; get_scene(i); i++)
         fprintf(to, "  %-10s %s\n", get_scene(i)->name, get_scene(i)->purpose);
-    fprintf(to, "\nWith --out, shapes.json and bodies.csv show the end:\n"
+    fprintf(to, "\nWith --recycling 0 all contacts are found anew, with --sleep 0 nothing sleeps. With --out, "
+                "shapes.json and bodies.csv show the end:\n"
                 "  narc collide --shapes shapes.json --bodies bodies.csv --picture world.png\n");
     return to == stdout ? 0 : 2;
 }
@@ -45,6 +46,10 @@ static bool read_option(request *wanted, const char *name, const char *value) {
         wanted->settings.substeps = (unsigned)number;
     else if (strcmp(name, "--flat-angle") == 0)
         wanted->settings.flat_angle = (float)(number * 3.14159265 / 180);
+    else if (strcmp(name, "--recycling") == 0 && number >= 0)
+        wanted->settings.recycling = (float)number;
+    else if (strcmp(name, "--sleep") == 0 && number >= 0)
+        wanted->settings.sleep_time = number > 0 ? (float)number : INFINITY;
     else if (strcmp(name, "--threads") == 0 && number >= 0 && number <= 256)
         wanted->settings.workers = narc_openmp_workers((unsigned)number);
     else
@@ -90,17 +95,23 @@ static narc_status run(const request *wanted, world *w, world_body *start) {
     const long steps = lroundf(wanted->seconds / w->settings.time_step);
     const long second = lroundf(1 / w->settings.time_step);
     memcpy(start, w->bodies, w->body_count * sizeof *start);
-    printf("%8s %14s %12s %12s %8s %9s %8s\n", "seconds", "energy", "displacement", "overlap", "moving", "contacts",
-           "points");
+    size_t events = 0, kept = 0, asked = 0; /* in a second: events, lists of pairs that were kept, contacts found */
+    printf("%8s %14s %12s %9s %7s %6s %9s %7s %7s %5s %8s\n", "seconds", "energy", "displacement", "overlap", "moving",
+           "awake", "contacts", "points", "events", "kept", "found");
     for (long step = 1; step <= steps; step++) {
-        const narc_status status = world_step(w);
+        const narc_status status = step_scene(wanted->scene, w, step);
         if (status != NARC_OK)
             return status;
+        events += w->event_count;
+        kept += w->list->kept;
+        asked += w->asked_count;
         if (step % second != 0 && step != steps)
             continue;
         const scene_state state = measure_scene(w, start);
-        printf("%8.2f %14.4f %12.6f %12.6f %8zu %9zu %8zu\n", (double)((float)step * w->settings.time_step),
-               state.energy, state.displacement, state.overlap, state.moving, state.contacts, state.points);
+        printf("%8.2f %14.4f %12.6f %9.6f %7zu %6zu %9zu %7zu %7zu %5zu %8zu\n",
+               (double)((float)step * w->settings.time_step), state.energy, state.displacement, state.overlap,
+               state.moving, state.awake, state.contacts, state.points, events, kept, asked);
+        events = kept = asked = 0;
     }
     printf("state %016" PRIx64 "\n", world_hash(w));
     return NARC_OK;

@@ -30,10 +30,11 @@ static void run(struct bench_row *bench_row) {
         world_make_contacts(&row->world, row->found);
 }
 
-/* Without gravity: what has settled stays. */
+/* Without gravity: what has settled stays. No contact serves again, so that all are found. */
 static void fill_world(world *w, const struct workload *workload) {
     world_settings settings = world_defaults;
     settings.gravity = (vec){0, 0};
+    settings.recycling = 0;
     must(world_create(w, settings, workload->body_count + workload->shape_count), &w->error);
     for (uint32_t shape = 0; shape < workload->shape_count; shape++) {
         narc_arc arcs[NARC_MAX_ARCS];
@@ -67,7 +68,7 @@ static void prepare(struct bench_row *bench_row) {
     row->row.pairs = w->list->pairs.count;
     row->row.colliding = (double)row->found / (double)row->row.pairs;
     for (size_t k = 0; k < row->found; k++)
-        row->row.wrong += w->contacts[k].pair != w->manifolds[k].pair;
+        row->row.wrong += w->contacts[w->manifolds[k].pair].point_count != w->manifolds[k].count;
 }
 
 struct bench_row *make_world_part_row(const char *name, enum world_part part, const struct workload_key *key,

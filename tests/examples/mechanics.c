@@ -21,7 +21,7 @@ static world create_slope(double angle) {
     assert_int_equal(world_create(&w, settings, 8), NARC_OK);
     assert_int_equal(narc_build_box(200, 2, 0, arcs, &count, NULL), NARC_OK);
     assert_int_equal(world_add_shape(&w, arcs, count, &floor), NARC_OK);
-    const world_body body = {.position = {0, -1}, .cosine = 1, .shape = floor, .still = 1, .friction = 0.5f};
+    const world_body body = {.position = {0, -1}, .cosine = 1, .shape = floor, .kind = NARC_STATIC, .friction = 0.5f};
     assert_int_equal(world_add_body(&w, body), NARC_OK);
     return w;
 }
@@ -142,6 +142,53 @@ TEST(test_momentum) {
     world_destroy(&w);
 }
 
+/* An ellipse that rocks on its flat side keeps its energy: it gains none, and loses 15 % at most in ten seconds, 5 times
+ * in and out. If its point stayed where it was at the beginning of each step it would gain 19 %. */
+TEST(test_ellipse_rocks) {
+    world w = create_slope(0);
+    w.settings.rolling_arm = 0;
+    w.settings.sleep_time = INFINITY;
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    assert_int_equal(narc_build_ellipse(1, 0.5, 16, arcs, &count, NULL, NULL), NARC_OK);
+    const double tilt = 0.5, height = hypot(sin(tilt), 0.5 * cos(tilt)); /* of the centre, when it touches */
+    world_body *ellipse = add_to(&w, arcs, count, 0, (float)height);
+    ellipse->cosine = cosf((float)tilt);
+    ellipse->sine = sinf((float)tilt);
+    const double lowest = 0.5 * g * (double)w.shapes[ellipse->shape].mass, start = world_energy(&w) - lowest;
+    double greatest = 0, last = 0;
+    for (int step = 0; step < 600; step++) {
+        step_for(&w, 1.0 / 60);
+        last = world_energy(&w) - lowest;
+        greatest = fmax(greatest, last);
+    }
+    assert_near(greatest / start, 1, 0.01);
+    assert_near(last / start, 0.925, 0.075);
+    world_destroy(&w);
+}
+
+/* Bodies that have turned together, as in a column that falls over, have another normal. */
+TEST(test_turned_together) {
+    world w = create_slope(0);
+    w.settings.gravity = (vec){0, 0};
+    w.settings.sleep_time = INFINITY;
+    add_box(&w, 0, 10);
+    add_box(&w, 0, 11);
+    world_body *const boxes[] = {&w.bodies[1], &w.bodies[2]};
+    step_for(&w, 0.1);
+    assert_int_equal(w.active_count, 1);
+    assert_near((double)w.contacts[w.active[0]].normal.y, 1, 1e-6);
+    for (int k = 0; k < 2; k++) {
+        boxes[k]->cosine = 0.8f;
+        boxes[k]->sine = 0.6f;
+    }
+    boxes[1]->position = (vec){-0.6f, 10.8f};
+    step_for(&w, 1.0 / 60);
+    assert_int_equal(w.active_count, 1);
+    assert_near((double)w.contacts[w.active[0]].normal.x, -0.6, 1e-4);
+    world_destroy(&w);
+}
+
 /* A step names the body that is broken: no pair would ever show it, because its box overlaps nothing. */
 TEST(test_broken_body) {
     world w = create_slope(0);
@@ -151,6 +198,9 @@ TEST(test_broken_body) {
     assert_int_equal(world_step(&w), NARC_ERROR_NOT_FINITE);
     assert_int_equal(w.error.index, 1);
     assert_non_null(strstr(w.error.message, "body 1"));
+    box->position.x = 0; /* mended, it goes on: what is known of pairs is that of the list, whatever failed */
+    step_for(&w, 0.5);
+    assert_near((double)box->position.y, 0.5, 0.005);
     world_destroy(&w);
 }
 
@@ -196,7 +246,7 @@ TEST(test_segment) {
     assert_int_equal(narc_build_segment((narc_point){-5, 1}, (narc_point){5, 1}, 0, arcs, &count, NULL), NARC_OK);
     assert_int_equal(world_add_shape(&w, arcs, count, &body.shape), NARC_OK);
     assert_int_equal(world_add_body(&w, body), NARC_ERROR_SIZE);
-    body.still = 1;
+    body.kind = NARC_STATIC;
     assert_int_equal(world_add_body(&w, body), NARC_OK);
     world_destroy(&w);
 }

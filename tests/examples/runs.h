@@ -13,6 +13,7 @@ typedef struct run {
     world_body *start; /* as the bodies were at first */
     const char *name;
     uint64_t seed;
+    long step;
 } run;
 
 /* Builds the scene; the test fails if that does. */
