@@ -22,6 +22,7 @@ struct call {
     uint64_t *bits;            /* overlap kernels: where the answers go; else NULL */
     struct rows *rows;         /* the others: the same */
     struct queue *edges;       /* manifolds: pairs that may have a second point; else NULL */
+    struct box_queue *boxes;   /* pairs of boxes that wait (box/box_pairs.inl), or NULL */
 };
 
 /* One of two places, without a branch: which lanes have an answer can't be foreseen. */

@@ -23,6 +23,8 @@
 #include "base/rows.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "box/box_pairs.inl"
+#include "box/box_rows.inl"
 #include "kernels.h"
 #include "sat/certificates.inl"
 #include "sat/direction_lookup.inl"
@@ -64,9 +66,10 @@ INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf ite
 INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
     struct rows *rows = call->rows;
     const vm open = vm_and_not(take_valid(call, pair, circles, item), circles->apart);
-    const bool in_order = !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid);
+    const bool due = !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid);
+    const bool in_order = due && (!call->boxes || call->boxes->count == 0);
     const vm left = are_discs(open, item) ? answer_discs(call, open, circles->margin, item, in_order) : open;
-    if (in_order && !vm_any(left))
+    if (due && !vm_any(left) && (in_order || !vm_any(open)))
         rows->done += V_WIDTH;
     return left;
 }
@@ -205,6 +208,19 @@ static void decide(const struct call *call, struct queue *queue, int begin, stru
     }
 }
 
+/* Takes pairs of boxes and answers them, a few vectors at a time. */
+INLINE vm answer_boxes_first(const struct call *call, const struct pair_indices *indices, int k,
+                             const struct placement *placement, vm open, int32_t number) {
+    if (!call->boxes)
+        return open;
+    const vm left = take_boxes(call, indices, k, placement, open, number);
+    if (!vm_any(left) && !call->rows->dense && call->rows->done == number)
+        call->rows->done += V_WIDTH;
+    if (call->boxes->count >= BOX_FLUSH)
+        run_boxes(call, call->edges ? answer_box_manifolds : answer_box_contacts, call->boxes, false);
+    return left;
+}
+
 /* The rows of a call, of contacts or manifolds. */
 static size_t find_rows(const narc_batch *batch, size_t first, size_t count, const narc_rows *out, bool manifolds) {
     const bool hinted = batch->query.hints.base != NULL;
@@ -217,10 +233,16 @@ static size_t find_rows(const narc_batch *batch, size_t first, size_t count, con
     struct call call = begin_rows(batch, first, count, out, &rows);
     if (NARC_SHORTCUTS) {
         call.edges = manifolds ? &queues[STAGES - 1] : NULL;
-        run_pairs(&call, triage_rows, CONTACT_FIELDS, stages, stage_count, hinted ? 0 : CLIMB, queues);
+        struct box_queue boxes;
+        boxes.count = 0;
+        call.boxes = batch->shapes->box_count > 0 ? &boxes : NULL;
+        run_pairs(&call, answer_boxes_first, triage_rows, CONTACT_FIELDS, stages, stage_count, hinted ? 0 : CLIMB,
+                  queues);
+        if (boxes.count > 0)
+            run_boxes(&call, manifolds ? answer_box_manifolds : answer_box_contacts, &boxes, true);
     } else {
         call.edges = manifolds ? &queues[1] : NULL;
-        run_pairs(&call, take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
+        run_pairs(&call, NULL, take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
     }
     return manifolds ? end_rows(&call, sizeof(narc_manifold)) : end_rows(&call, sizeof(narc_contact));
 }

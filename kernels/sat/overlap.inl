@@ -149,7 +149,7 @@ static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_
         return;
     }
     const struct call call = begin_overlaps(batch, first, count, out_bits);
-    run_pairs(&call, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
+    run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
 }
 
 #endif
