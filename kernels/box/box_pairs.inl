@@ -148,7 +148,8 @@ INLINE vm take_boxes(const struct call *call, const struct pair_indices *indices
         const vf far_a = v_sub(v_sub(value_a, v_abs(across_a)), v_select(negative_a, v_neg(across_a), across_a));
         const vf far_b = v_sub(v_sub(value_b, v_abs(across_b)), v_select(back_b, v_neg(across_b), across_b));
         const vf others = v_max(v_min(along_x, along_y), v_max(far_a, far_b));
-        const vm certain = vm_or(v_lt(two, best), v_lt(two, v_sub(best, others)));
+        const vm nearer = vm_or(crossed, v_lt(s, c)); /* or else two edges of B are equally near */
+        const vm certain = vm_and(nearer, vm_or(v_lt(two, best), v_lt(two, v_sub(best, others))));
 
         const vi pairs = vi_add(vi_lanes(), vi_set(number));
         const vi edges = vi_add(edge_number(a_on_x, negative_a), vi_shift_left(edge_number(b_on_x, vm_not(back_b)), 2));

@@ -127,15 +127,19 @@ INLINE vf get_box_margins(const struct call *call, vi pairs) {
     return v_load(lane);
 }
 
-/* The places of rows: behind those that are listed if all pairs before the last one are answered. */
+/* The places of rows: behind those that are listed if all pairs before the last one are answered. From the first vector
+ * on of which that is not so no row is listed. */
 INLINE void find_box_places(const struct call *call, const struct box_queue *queue, int last, vi pairs, vm keep,
                             char *place[V_WIDTH]) {
+    struct rows *rows = call->rows;
     int32_t code;
     memcpy(&code, &queue->item[BOX_CODE][last], sizeof code);
-    if ((int)((uint32_t)code >> BOX_PAIR_SHIFT) < call->rows->done)
-        find_next_places(call->rows, keep, place);
-    else
+    if ((code >> BOX_PAIR_SHIFT) < rows->done) {
+        find_next_places(rows, keep, place);
+    } else {
+        rows->done = -1;
         find_places(call, pairs, keep, place);
+    }
 }
 
 /* Answers the pairs k ... of a queue in the lanes `live`. */
