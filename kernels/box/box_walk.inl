@@ -21,25 +21,44 @@
 #include "sat/normal_fan.inl"
 #include "simd/simd.h"
 
-/* The corners of a pair with their numbers, B's counted from the one behind the first couple. */
-struct box_corners {
-    struct arcs a[4], b[4];
-    vi number_a[4], number_b[4];
+/* Two junctions that follow each other, and the corners behind their edges, with their numbers. */
+struct couple {
+    vec2 low, high, corner_a, corner_b;
+    vm a_first, b_first;
+    vi number_a, number_b;
 };
 
-/* Takes the candidate of the interval from `low` to `high` if it is better, in the lanes `which`. A's corner is number
- * p there, or the one before it in the lanes `before_a`, and so is B's. Returns whether the gap rises at `high`. */
-INLINE vm try_interval(const struct box_corners *corners, int p, vm before_a, vm before_b, vec2 low, vec2 high,
-                       vm which, vm rises, struct gap *best) {
-    const int last = (p + 3) & 3;
-    const struct arc_pair arcs = {select_arcs(before_a, &corners->a[last], &corners->a[p]),
-                                  select_arcs(before_b, &corners->b[last], &corners->b[p])};
-    const struct candidate found = find_candidate(&arcs, low, high, rises);
+/* Couple p, with edge `turn` + p of B; `wraps`: B's edge lies before +x. */
+INLINE struct couple find_couple(const struct box_pair *pair, int p, vi turn, vm *out_wraps) {
+    const vi edge_a = vi_set(p), edge_b = vi_add(turn, edge_a);
+    const vec2 of_a = box_normal(edge_a), of_b = v2_rotate_opposite(pair->pose.rotation, box_normal(edge_b));
+    const vf angle = diamond_angle(of_b);
+    *out_wraps = v_lt(v_set(2), angle);
+    const vm a_first = p == 0 ? vm_and_not(v_lt(v_set(0), angle), *out_wraps) : v_lt(v_set((float)p), angle);
+    return (struct couple){.low = v2_select(a_first, of_a, of_b),
+                           .high = v2_select(a_first, of_b, of_a),
+                           .corner_a = box_corner(pair->half_a, edge_a),
+                           .corner_b = place_center_b(box_corner(pair->half_b, edge_b), &pair->pose),
+                           .a_first = a_first,
+                           .b_first = vm_not(a_first),
+                           .number_a = edge_a,
+                           .number_b = edge_b};
+}
+
+/* Takes the candidate of the interval between a couple's junctions, or of the one behind them, up to `end`, if it is
+ * better, in the lanes `which`. Returns whether the gap rises at the interval's end. */
+INLINE vm try_interval(const struct box_pair *pair, const struct couple *last, const struct couple *couple, vec2 end,
+                       bool behind, vm which, vm rises, struct gap *best) {
+    const vm none = vm_front(0), last_a = behind ? none : couple->b_first, last_b = behind ? none : couple->a_first;
+    const vec2 start = behind ? couple->high : couple->low;
+    const struct arc_pair arcs = {
+        {.center = v2_select(last_a, last->corner_a, couple->corner_a), .radius = pair->radius_a},
+        {.center = v2_select(last_b, last->corner_b, couple->corner_b), .radius = pair->radius_b}};
+    const struct candidate found = find_candidate(&arcs, start, end, rises);
     const vm better = vm_and(which, vm_and(found.exists, v_lt(best->separation, found.value)));
-    const struct gap gap = {found.value, v2_select(found.inside, found.u, low),
-                            v_select(found.inside, found.length, v_set(1)),
-                            vi_select(before_a, corners->number_a[last], corners->number_a[p]),
-                            vi_select(before_b, corners->number_b[last], corners->number_b[p])};
+    const struct gap gap = {
+        found.value, v2_select(found.inside, found.u, start), v_select(found.inside, found.length, v_set(1)),
+        vi_select(last_a, last->number_a, couple->number_a), vi_select(last_b, last->number_b, couple->number_b)};
     *best = select_gap(better, &gap, best);
     return found.rises;
 }
@@ -47,37 +66,27 @@ INLINE vm try_interval(const struct box_corners *corners, int p, vm before_a, vm
 /* The largest gap, with the numbers of the corners in place of records. */
 static __attribute__((noinline)) void walk_boxes(const struct box_pair *pair, struct gap *out_best) {
     const vec2 q = pair->pose.rotation;
-    const vm all = vm_front(V_WIDTH), none = vm_front(0);
+    const vm all = vm_front(V_WIDTH);
     const vi zero = vi_set(0);
     /* B's edge nearest to +x. */
     const vm crossed = v_lt(v_abs(q.x), v_abs(q.y));
     const vm opposite = vm_or(vm_and(crossed, v_lt(q.y, v_set(0))), vm_and_not(v_lt(v_set(0), q.x), crossed));
     const vi turn = vi_add(vi_select(crossed, vi_set(1), zero), vi_select(opposite, vi_set(2), zero));
-    struct box_corners corners;
-    vec2 low[4], high[4];
-    vm a_first[4], wraps = none;
+    vm wraps, never;
+    const struct couple first = find_couple(pair, 0, turn, &wraps);
+    const struct couple before = find_couple(pair, 3, turn, &never);
+    struct couple last = before, couple = first;
+    struct gap best = {v_set(-INFINITY), first.low, v_set(1), zero, zero};
+    vm rises = v_lt(v2_cross(v2_sub(last.corner_b, last.corner_a), first.low), v_set(0));
     for (int p = 0; p < 4; p++) {
-        const vi edge_a = vi_set(p), edge_b = vi_add(turn, edge_a);
-        const vec2 of_a = box_normal(edge_a), of_b = v2_rotate_opposite(q, box_normal(edge_b));
-        const vf angle = diamond_angle(of_b);
-        wraps = p == 0 ? v_lt(v_set(2), angle) : wraps;
-        a_first[p] = vm_and_not(v_lt(v_set((float)p), angle), p == 0 ? wraps : none);
-        low[p] = v2_select(a_first[p], of_a, of_b);
-        high[p] = v2_select(a_first[p], of_b, of_a);
-        corners.a[p] = (struct arcs){.center = box_corner(pair->half_a, edge_a), .radius = pair->radius_a};
-        corners.b[p] = (struct arcs){.center = place_center_b(box_corner(pair->half_b, edge_b), &pair->pose),
-                                     .radius = pair->radius_b};
-        corners.number_a[p] = edge_a;
-        corners.number_b[p] = edge_b;
+        const struct couple next = p == 3 ? first : p == 2 ? before : find_couple(pair, p + 1, turn, &never);
+        rises = try_interval(pair, &last, &couple, couple.high, false, p == 0 ? vm_not(wraps) : all, rises, &best);
+        rises = try_interval(pair, &last, &couple, next.low, true, all, rises, &best);
+        last = couple;
+        couple = next;
     }
-    struct gap best = {v_set(-INFINITY), low[0], v_set(1), zero, zero};
-    vm rises = v_lt(v2_cross(v2_sub(corners.b[3].center, corners.a[3].center), low[0]), v_set(0));
-    for (int p = 0; p < 4; p++) {
-        const vm which = p == 0 ? vm_not(wraps) : all;
-        rises = try_interval(&corners, p, vm_not(a_first[p]), a_first[p], low[p], high[p], which, rises, &best);
-        rises = try_interval(&corners, p, none, none, high[p], low[(p + 1) & 3], all, rises, &best);
-    }
-    try_interval(&corners, 0, vm_not(a_first[0]), a_first[0], low[0], high[0], wraps, rises, &best);
+    if (vm_any(wraps))
+        try_interval(pair, &before, &first, first.high, false, wraps, rises, &best);
     best.normal = v2_divide(best.normal, best.length);
     *out_best = best;
 }
