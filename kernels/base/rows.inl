@@ -77,6 +77,12 @@ INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[
 INLINE void find_next_places(struct rows *rows, vm keep, char *place[V_WIDTH]) {
     const uint32_t kept = vm_bits(keep);
     char *next = rows->out.base + rows->listed * rows->out.stride;
+    if (kept == vm_bits(vm_front(V_WIDTH))) { /* mostly so where boxes rest on each other */
+        for (int lane = 0; lane < V_WIDTH; lane++)
+            place[lane] = next + lane * rows->out.stride;
+        rows->listed += V_WIDTH;
+        return;
+    }
     for (uint32_t lane = 0; lane < V_WIDTH; lane++) {
         place[lane] = choose(kept >> lane & 1, next, rows->spare);
         next += (ptrdiff_t)(kept >> lane & 1) * rows->out.stride;

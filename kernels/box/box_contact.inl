@@ -22,30 +22,24 @@
 #include "box/box_pairs.inl"
 #include "simd/simd.h"
 
-/* A pair in each lane. */
+/* A pair in each lane, as it lies in the queue: registers are too few to hold it. */
 struct box_pair {
-    struct pose pose; /* A is scaled */
-    vec2 rotation_a, half_a, half_b;
-    vf radius_a, radius_b, slack;
-    vi code;
+    const struct box_queue *queue;
+    int k;
 };
 
-INLINE struct box_pair get_box_pair(const struct box_queue *queue, int k) {
-    vf item[BOX_FIELDS];
-    UNROLL
-    for (int f = 0; f < BOX_FIELDS; f++)
-        item[f] = v_load(queue->item[f] + k);
-    return (struct box_pair){{{item[BOX_POSITION], item[BOX_POSITION + 1]},
-                              {item[BOX_ROTATION], item[BOX_ROTATION + 1]},
-                              v_set(1),
-                              item[BOX_SCALE_B]},
-                             {item[BOX_ROTATION_A], item[BOX_ROTATION_A + 1]},
-                             {item[BOX_HALF_A], item[BOX_HALF_A + 1]},
-                             {item[BOX_HALF_B], item[BOX_HALF_B + 1]},
-                             item[BOX_RADIUS_A],
-                             item[BOX_RADIUS_B],
-                             item[BOX_SLACK],
-                             vi_bits(item[BOX_CODE])};
+INLINE vf box_field(const struct box_pair *pair, int field) { return v_load(pair->queue->item[field] + pair->k); }
+
+INLINE vec2 box_vec2(const struct box_pair *pair, int field) {
+    return (vec2){box_field(pair, field), box_field(pair, field + 1)};
+}
+
+INLINE vi box_code(const struct box_pair *pair) { return vi_bits(box_field(pair, BOX_CODE)); }
+
+/* B's in A's frame, where A is scaled. */
+INLINE struct pose box_pose(const struct box_pair *pair) {
+    return (struct pose){box_vec2(pair, BOX_POSITION), box_vec2(pair, BOX_ROTATION), v_set(1),
+                         box_field(pair, BOX_SCALE_B)};
 }
 
 /* 1, or -1 where bit 1 of a number is set. */
@@ -75,16 +69,18 @@ struct box_side {
 INLINE struct box_side find_side_a(const struct box_pair *pair, vi edge) {
     return (struct box_side){.edge = edge,
                              .normal = box_normal(edge),
-                             .low = box_corner(pair->half_a, vi_sub(edge, vi_set(1))),
-                             .high = box_corner(pair->half_a, edge)};
+                             .low = box_corner(box_vec2(pair, BOX_HALF_A), vi_sub(edge, vi_set(1))),
+                             .high = box_corner(box_vec2(pair, BOX_HALF_A), edge)};
 }
 
 INLINE struct box_side find_side_b(const struct box_pair *pair, vi edge) {
-    const vec2 before = box_corner(pair->half_b, vi_sub(edge, vi_set(1))), behind = box_corner(pair->half_b, edge);
+    const struct pose pose = box_pose(pair);
+    const vec2 half = box_vec2(pair, BOX_HALF_B);
+    const vec2 before = box_corner(half, vi_sub(edge, vi_set(1))), behind = box_corner(half, edge);
     return (struct box_side){.edge = edge,
-                             .normal = v2_rotate_opposite(pair->pose.rotation, box_normal(edge)),
-                             .low = place_center_b(behind, &pair->pose),
-                             .high = place_center_b(before, &pair->pose)};
+                             .normal = v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(edge)),
+                             .low = place_center_b(behind, &pose),
+                             .high = place_center_b(before, &pose)};
 }
 
 /* The corner that touches. */
@@ -101,8 +97,9 @@ struct box_contact {
 /* What the two edges tell. Sets where the answer is not certain, and where a corner touches a corner: then other edges
  * may be closer to the normal. */
 INLINE struct box_contact find_facing(const struct box_pair *pair, vm *out_left, vm *out_corners) {
-    const vf zero = v_set(0), radii = v_add(pair->radius_a, pair->radius_b), slack = pair->slack;
-    const vi edge_a = vi_and(pair->code, vi_set(3)), edge_b = vi_and(vi_shift_right(pair->code, 2), vi_set(3));
+    const vf zero = v_set(0), radii = v_add(box_field(pair, BOX_RADIUS_A), box_field(pair, BOX_RADIUS_B)),
+             slack = box_field(pair, BOX_SLACK);
+    const vi edge_a = vi_and(box_code(pair), vi_set(3)), edge_b = vi_and(vi_shift_right(box_code(pair), 2), vi_set(3));
     struct box_contact c = {.a = find_side_a(pair, edge_a), .b = find_side_b(pair, edge_b)};
     /* The order in the walk, which begins at +x: an edge of A there comes after one of B just before it. */
     const vf angle_a = v_of_int(edge_a), angle_b = diamond_angle(c.b.normal);
@@ -125,7 +122,7 @@ INLINE struct box_contact find_facing(const struct box_pair *pair, vm *out_left,
     c.separation = v_select(takes_g, value_g, value_f);
     c.normal = v2_select(takes_g, g, f);
 
-    vm left = vm_or(vi_lt(vi_set(0), vi_and(pair->code, vi_set(BOX_TIE))), vm_and(beyond, before));
+    vm left = vm_or(vi_lt(vi_set(0), vi_and(box_code(pair), vi_set(BOX_TIE))), vm_and(beyond, before));
     left = vm_or(left, vm_not(vm_or(vm_or(at_f, at_g), vm_or(beyond, before))));
     const vm corners = vm_or(inside, vm_or(beyond, before));
     if (vm_any(corners)) {
@@ -161,7 +158,7 @@ INLINE struct box_side select_box_side(vm m, const struct box_side *a, const str
 INLINE void find_closest_sides(const struct box_pair *pair, vm which, vi corner_a, vi corner_b,
                                struct box_contact *contact) {
     const vi one = vi_set(1);
-    const vec2 q = pair->pose.rotation, n = contact->normal;
+    const vec2 q = box_vec2(pair, BOX_ROTATION), n = contact->normal;
     vm behind_a, behind_b;
     const vi edge_a = find_closer_edge(corner_a, box_normal(corner_a), box_normal(vi_add(corner_a, one)), n, &behind_a);
     const vi edge_b = find_closer_edge(corner_b, v2_rotate_opposite(q, box_normal(corner_b)),

@@ -57,6 +57,8 @@ INLINE vi find_box_feature(const struct box_side *side, const struct box_touch *
 /* The reaches of a corner, as find_reach() has them, with the edge next to it. */
 INLINE vi find_box_reach(const struct box_side *side, const struct box_touch *touch) {
     const vf zero = v_set(0), one = v_set(1), full = v_set(NARC_REACH_ONE);
+    if (!vm_any(vm_not(touch->parallel)))
+        return vi_set(0);
     const vf turn = v_select(side->behind, touch->sine, v_neg(touch->sine)); /* away from the edge */
     const vf near = v_select(touch->parallel, zero, v_mul(full, v_min(v_max(turn, zero), one)));
     const vf other = v_mul(full, v_select(v_lt(zero, turn), v_min(touch->cosine, one), one));
@@ -89,13 +91,13 @@ struct box_manifold {
 INLINE struct box_manifold find_box_points(const struct call *call, const struct box_pair *pair,
                                            const struct box_contact *c, const struct box_touch *on_a,
                                            const struct box_touch *on_b, vec2 place, vf margin) {
-    const vec2 n = c->normal, to_world = pair->rotation_a;
+    const vec2 n = c->normal, to_world = box_vec2(pair, BOX_ROTATION_A);
     const vf flat_sine = v_set(call->batch->flat_sine);
-    const vi code = pair->code;
+    const vi code = box_code(pair);
     const struct edge a = find_box_edge(&c->a, on_a, n, flat_sine, code, 4, false);
     const struct edge b = find_box_edge(&c->b, on_b, n, flat_sine, code, 6, true);
     const struct end_point low = find_end_point(&a, &b, false), high = find_end_point(&a, &b, true);
-    const vm stretch = is_stretch(&low, &high, c->separation, n, pair->pose.position);
+    const vm stretch = is_stretch(&low, &high, c->separation, n, box_vec2(pair, BOX_POSITION));
     const vm faces = vm_and(vm_and(a.offered, b.offered), stretch);
     const struct end_point exact = get_deepest(&a, &b, place.y, place.x, c->separation);
     struct facing_points p = find_facing_points(&a, &b, low, high, &exact, find_second_margin(call, margin));
@@ -144,8 +146,8 @@ INLINE void find_box_places(const struct call *call, const struct box_queue *que
 
 /* Answers the pairs k ... of a queue in the lanes `live`. */
 INLINE void answer_boxes(const struct call *call, const struct box_queue *queue, int k, int live, bool manifolds) {
-    const struct box_pair pair = get_box_pair(queue, k);
-    const vi pairs = box_numbers(pair.code);
+    const struct box_pair pair = {queue, k};
+    const vi pairs = box_numbers(box_code(&pair));
     const vf margin = get_box_margins(call, pairs);
     const vm open = vm_front(live);
     vm left, corners;
@@ -167,11 +169,11 @@ INLINE void answer_boxes(const struct call *call, const struct box_queue *queue,
     if (!vm_any(keep))
         return;
     const vec2 n = c.normal;
-    const struct box_touch on_a = find_touch(&c.a, n, pair.radius_a, false);
-    const struct box_touch on_b = find_touch(&c.b, n, v_neg(pair.radius_b), true);
+    const struct box_touch on_a = find_touch(&c.a, n, box_field(&pair, BOX_RADIUS_A), false);
+    const struct box_touch on_b = find_touch(&c.b, n, v_neg(box_field(&pair, BOX_RADIUS_B)), true);
     const vf half = v_set(0.5f), across = v_mul(half, v_add(on_a.across, on_b.across));
     const vec2 place = {across, v_mul(half, v_add(v_max(on_a.min, on_b.min), v_min(on_a.max, on_b.max)))};
-    const vec2 normal = v2_rotate(pair.rotation_a, n);
+    const vec2 normal = v2_rotate(box_vec2(&pair, BOX_ROTATION_A), n);
     const vi numbers = find_numbers(call, pairs);
     char *to[V_WIDTH];
     find_box_places(call, queue, k + live - 1, pairs, keep, to);
@@ -187,14 +189,14 @@ INLINE void answer_boxes(const struct call *call, const struct box_queue *queue,
         return;
     }
     const vf flat = v_set(INFINITY);
-    const vi of_a = find_box_feature(&c.a, &on_a, pair.code, 4);
-    const vi of_b = find_box_feature(&c.b, &on_b, pair.code, 6);
+    const vi of_a = find_box_feature(&c.a, &on_a, box_code(&pair), 4);
+    const vi of_b = find_box_feature(&c.b, &on_b, box_code(&pair), 6);
     const struct answer answer = {.separation = c.separation,
                                   .normal = normal,
-                                  .point = v2_rotate(pair.rotation_a, v2_rotate(n, place)),
+                                  .point = v2_rotate(box_vec2(&pair, BOX_ROTATION_A), v2_rotate(n, place)),
                                   .feature = vi_add(of_a, vi_shift_left(of_b, 8)),
-                                  .radius_a = v_select(on_a.parallel, flat, pair.radius_a),
-                                  .radius_b = v_select(on_b.parallel, flat, pair.radius_b)};
+                                  .radius_a = v_select(on_a.parallel, flat, box_field(&pair, BOX_RADIUS_A)),
+                                  .radius_b = v_select(on_b.parallel, flat, box_field(&pair, BOX_RADIUS_B))};
     write_answers(call, to, numbers, &answer);
 }
 

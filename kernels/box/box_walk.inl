@@ -30,15 +30,16 @@ struct couple {
 
 /* Couple p, with edge `turn` + p of B; `wraps`: B's edge lies before +x. */
 INLINE struct couple find_couple(const struct box_pair *pair, int p, vi turn, vm *out_wraps) {
+    const struct pose pose = box_pose(pair);
     const vi edge_a = vi_set(p), edge_b = vi_add(turn, edge_a);
-    const vec2 of_a = box_normal(edge_a), of_b = v2_rotate_opposite(pair->pose.rotation, box_normal(edge_b));
+    const vec2 of_a = box_normal(edge_a), of_b = v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(edge_b));
     const vf angle = diamond_angle(of_b);
     *out_wraps = v_lt(v_set(2), angle);
     const vm a_first = p == 0 ? vm_and_not(v_lt(v_set(0), angle), *out_wraps) : v_lt(v_set((float)p), angle);
     return (struct couple){.low = v2_select(a_first, of_a, of_b),
                            .high = v2_select(a_first, of_b, of_a),
-                           .corner_a = box_corner(pair->half_a, edge_a),
-                           .corner_b = place_center_b(box_corner(pair->half_b, edge_b), &pair->pose),
+                           .corner_a = box_corner(box_vec2(pair, BOX_HALF_A), edge_a),
+                           .corner_b = place_center_b(box_corner(box_vec2(pair, BOX_HALF_B), edge_b), &pose),
                            .a_first = a_first,
                            .b_first = vm_not(a_first),
                            .number_a = edge_a,
@@ -52,8 +53,8 @@ INLINE vm try_interval(const struct box_pair *pair, const struct couple *last, c
     const vm none = vm_front(0), last_a = behind ? none : couple->b_first, last_b = behind ? none : couple->a_first;
     const vec2 start = behind ? couple->high : couple->low;
     const struct arc_pair arcs = {
-        {.center = v2_select(last_a, last->corner_a, couple->corner_a), .radius = pair->radius_a},
-        {.center = v2_select(last_b, last->corner_b, couple->corner_b), .radius = pair->radius_b}};
+        {.center = v2_select(last_a, last->corner_a, couple->corner_a), .radius = box_field(pair, BOX_RADIUS_A)},
+        {.center = v2_select(last_b, last->corner_b, couple->corner_b), .radius = box_field(pair, BOX_RADIUS_B)}};
     const struct candidate found = find_candidate(&arcs, start, end, rises);
     const vm better = vm_and(which, vm_and(found.exists, v_lt(best->separation, found.value)));
     const struct gap gap = {
@@ -65,7 +66,7 @@ INLINE vm try_interval(const struct box_pair *pair, const struct couple *last, c
 
 /* The largest gap, with the numbers of the corners in place of records. */
 static __attribute__((noinline)) void walk_boxes(const struct box_pair *pair, struct gap *out_best) {
-    const vec2 q = pair->pose.rotation;
+    const vec2 q = box_vec2(pair, BOX_ROTATION);
     const vm all = vm_front(V_WIDTH);
     const vi zero = vi_set(0);
     /* B's edge nearest to +x. */

@@ -305,16 +305,17 @@ INLINE struct facing_points find_facing_points(const struct edge *a, const struc
     const vm nearer_low = v_le(v_abs(v_sub(exact->along, low.along)), v_abs(v_sub(high.along, exact->along)));
     const vm lower_low = v_le(low.separation, high.separation);
     const vm at_low = vm_or(vm_and(touch, lower_low), vm_and_not(nearer_low, touch));
-    struct end_point deep = select_end_point(at_low, &low, &high), other = select_end_point(at_low, &high, &low);
-    deep = select_end_point(touch, &deep, exact);
-    deep.separation = exact->separation;
-    other.separation = v_max(other.separation, exact->separation);
-    const vm two = is_below(other.separation, margin);
+    const vm exact_low = vm_and_not(at_low, touch), exact_high = vm_and_not(vm_not(at_low), touch);
+    const vf least = exact->separation; /* rounding may not make the other one less */
+    const vf above_low = v_max(low.separation, least), above_high = v_max(high.separation, least);
+    const vm two = is_below(v_select(at_low, above_high, above_low), margin);
     const vm keeps_low = vm_or(two, at_low); /* the first point that is listed is the low one */
-    low = select_end_point(at_low, &deep, &other);
-    high = select_end_point(at_low, &other, &deep);
+    low = select_end_point(exact_low, exact, &low);
+    high = select_end_point(exact_high, exact, &high);
+    low.separation = v_select(at_low, least, above_low);
+    high.separation = v_select(at_low, above_high, least);
     const vm none = vm_xor(two, two);
-    struct facing_points points = {.two = two, .second = high, .deepest = deep};
+    struct facing_points points = {.two = two, .second = high, .deepest = select_end_point(at_low, &low, &high)};
     points.first = select_end_point(keeps_low, &low, &high);
     points.first_id = find_point_id(a, b, points.first.along, keeps_low);
     points.second_id = find_point_id(a, b, high.along, none);
