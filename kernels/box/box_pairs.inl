@@ -16,7 +16,8 @@
  * the six other junctions by two slacks; and if every half size exceeds two slacks, so that at each junction the slope
  * of g drops by four or more. docs/algorithm.md, section 9, proves it. Other pairs are walked around all of the fan
  * (box_walk.inl), and boxes with a side that short are left to the other stages, as are those whose size may be out of
- * range. Apart: if best exceeds the radii, the margin and one slack (certificates.inl, 1).
+ * range. Apart: if best exceeds the radii, the margin and one slack (certificates.inl, 1). Colliding: if best is below
+ * minus a slack, as a corner faces a corner only where sharp boxes are apart.
  */
 #ifndef NARC_BOX_BOX_PAIRS_INL
 #define NARC_BOX_BOX_PAIRS_INL
@@ -45,11 +46,12 @@ enum {
     BOX_RADIUS_A, /* scaled */
     BOX_RADIUS_B,
     BOX_SLACK,
-    BOX_CODE, /* bits: edge of A 0-1, edge of B 2-3, first arcs 4-5 and 6-7, BOX_TIE 8, pair from 9 on */
+    BOX_CODE, /* bits: edge of A 0-1, edge of B 2-3, first arcs 4-5 and 6-7, BOX_TIE 8 */
+    BOX_PAIR, /* counted from the first of the call */
     BOX_FIELDS
 };
 
-enum { BOX_TIE = 1 << 8, BOX_PAIR_SHIFT = 9 };
+enum { BOX_TIE = 1 << 8 };
 
 /* They wait until there are so many; push_boxes() writes up to a vector behind the last one. */
 enum { BOX_FLUSH = V_WIDTH > 8 ? 16 : 24, BOX_CAPACITY = BOX_FLUSH + V_WIDTH };
@@ -62,9 +64,6 @@ struct box_queue {
 /* Answers the pairs k ... of a queue in the lanes `live`. */
 typedef void box_stage(const struct call *call, const struct box_queue *queue, int k, int live);
 
-/* The numbers of the pairs. */
-INLINE vi box_numbers(vi code) { return vi_shift_right(code, BOX_PAIR_SHIFT); }
-
 /* Takes as many whole vectors as there are, from the front so that the order stays; at the `end` all. */
 INLINE void run_boxes(const struct call *call, box_stage *answer, struct box_queue *queue, bool end) {
     int k = 0;
@@ -75,6 +74,12 @@ INLINE void run_boxes(const struct call *call, box_stage *answer, struct box_que
     for (int f = 0; f < BOX_FIELDS && k < queue->count; f++)
         v_store(queue->item[f], v_load(queue->item[f] + k));
     queue->count = k < queue->count ? queue->count - k : 0;
+}
+
+/* Makes a call look for boxes, if there are any. */
+INLINE void start_boxes(struct call *call, struct box_queue *queue) {
+    queue->count = 0;
+    call->boxes = call->batch->shapes->box_count > 0 ? queue : NULL;
 }
 
 /* The form of a shape in each lane. */
@@ -133,7 +138,12 @@ INLINE vm take_boxes(const struct call *call, const struct pair_indices *indices
     const vf least = v_min(v_min(half_a.x, half_a.y), v_min(half_b.x, half_b.y));
     const vm sizes = vm_and(box_in_range(size_a), box_in_range(size_b));
     const vm taken = vm_and(which, vm_and(sizes, v_lt(two, least)));
-    const vm near = vm_and_not(taken, v_lt(v_add(placement->margin, slack), v_sub(best, radii)));
+    vm near = vm_and_not(taken, v_lt(v_add(placement->margin, slack), v_sub(best, radii)));
+    if (call->bits) { /* nothing but overlaps is asked for */
+        const vm deep = vm_and(near, v_lt(best, v_neg(slack)));
+        call->bits[(uint32_t)number / 64] |= (uint64_t)vm_bits(deep) << (uint32_t)number % 64;
+        near = vm_and_not(near, deep);
+    }
     if (vm_any(near)) {
         /* The edges, and on which side: as the better of the two values has it. */
         const vm a_on_x = v_le(along_y, along_x), b_on_x = vm_xor(a_on_x, crossed);
@@ -166,7 +176,8 @@ INLINE vm take_boxes(const struct call *call, const struct pair_indices *indices
         item[BOX_RADIUS_A] = radius_a;
         item[BOX_RADIUS_B] = radius_b;
         item[BOX_SLACK] = slack;
-        item[BOX_CODE] = v_of_bits(vi_add(vi_add(edges, first), vi_add(tie, vi_shift_left(pairs, BOX_PAIR_SHIFT))));
+        item[BOX_CODE] = v_of_bits(vi_add(vi_add(edges, first), tie));
+        item[BOX_PAIR] = v_of_bits(pairs);
         struct box_queue *queue = call->boxes;
         const vp packing = vm_packing(near);
         UNROLL
@@ -177,6 +188,19 @@ INLINE vm take_boxes(const struct call *call, const struct pair_indices *indices
             put_hints(call, pairs, near, vi_set(FIRST_ARCS));
     }
     return vm_and_not(open, taken);
+}
+
+/* Takes pairs of boxes, if a call looks for any, and answers them a few vectors at a time. */
+INLINE vm take_detour(const struct call *call, const struct pair_indices *indices, int k,
+                      const struct placement *placement, vm open, int32_t number, box_stage *answer) {
+    if (!call->boxes)
+        return open;
+    const vm left = take_boxes(call, indices, k, placement, open, number);
+    if (!vm_any(left) && call->rows && !call->rows->dense && call->rows->done == number)
+        call->rows->done += V_WIDTH;
+    if (call->boxes->count >= BOX_FLUSH)
+        run_boxes(call, answer, call->boxes, false);
+    return left;
 }
 
 #endif

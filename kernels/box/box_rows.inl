@@ -134,9 +134,9 @@ INLINE vf get_box_margins(const struct call *call, vi pairs) {
 INLINE void find_box_places(const struct call *call, const struct box_queue *queue, int last, vi pairs, vm keep,
                             char *place[V_WIDTH]) {
     struct rows *rows = call->rows;
-    int32_t code;
-    memcpy(&code, &queue->item[BOX_CODE][last], sizeof code);
-    if ((code >> BOX_PAIR_SHIFT) < rows->done) {
+    int32_t pair;
+    memcpy(&pair, &queue->item[BOX_PAIR][last], sizeof pair);
+    if (pair < rows->done) {
         find_next_places(rows, keep, place);
     } else {
         rows->done = -1;
@@ -147,24 +147,10 @@ INLINE void find_box_places(const struct call *call, const struct box_queue *que
 /* Answers the pairs k ... of a queue in the lanes `live`. */
 INLINE void answer_boxes(const struct call *call, const struct box_queue *queue, int k, int live, bool manifolds) {
     const struct box_pair pair = {queue, k};
-    const vi pairs = box_numbers(box_code(&pair));
+    const vi pairs = vi_bits(box_field(&pair, BOX_PAIR));
     const vf margin = get_box_margins(call, pairs);
     const vm open = vm_front(live);
-    vm left, corners;
-    struct box_contact c = find_facing(&pair, &left, &corners);
-    left = vm_and(open, left);
-    if (vm_any(vm_or(left, vm_and(open, corners)))) {
-        vi corner_a = box_touching(&c.a), corner_b = box_touching(&c.b);
-        if (vm_any(left)) {
-            struct gap gap;
-            walk_boxes(&pair, &gap);
-            c.separation = v_select(left, gap.separation, c.separation);
-            c.normal = v2_select(left, gap.normal, c.normal);
-            corner_a = vi_select(left, gap.record_a, corner_a);
-            corner_b = vi_select(left, gap.record_b, corner_b);
-        }
-        find_closest_sides(&pair, vm_or(left, corners), corner_a, corner_b, &c);
-    }
+    const struct box_contact c = find_box_contact(&pair, open);
     const vm keep = vm_and(open, is_below(c.separation, margin));
     if (!vm_any(keep))
         return;

@@ -14,6 +14,7 @@
 #include <math.h>
 
 #include "base/arcs.inl"
+#include "base/call.inl"
 #include "base/gap.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
@@ -90,6 +91,34 @@ static __attribute__((noinline)) void walk_boxes(const struct box_pair *pair, st
         try_interval(pair, &before, &first, first.high, false, wraps, rises, &best);
     best.normal = v2_divide(best.normal, best.length);
     *out_best = best;
+}
+
+/* How the boxes of a pair touch, in the lanes `open`. */
+INLINE struct box_contact find_box_contact(const struct box_pair *pair, vm open) {
+    vm left, corners;
+    struct box_contact c = find_facing(pair, &left, &corners);
+    left = vm_and(open, left);
+    if (vm_any(vm_or(left, vm_and(open, corners)))) {
+        vi corner_a = box_touching(&c.a), corner_b = box_touching(&c.b);
+        if (vm_any(left)) {
+            struct gap gap;
+            walk_boxes(pair, &gap);
+            c.separation = v_select(left, gap.separation, c.separation);
+            c.normal = v2_select(left, gap.normal, c.normal);
+            corner_a = vi_select(left, gap.record_a, corner_a);
+            corner_b = vi_select(left, gap.record_b, corner_b);
+        }
+        find_closest_sides(pair, vm_or(left, corners), corner_a, corner_b, &c);
+    }
+    return c;
+}
+
+/* Answers whether the pairs k ... of a queue overlap. */
+static void answer_box_overlaps(const struct call *call, const struct box_queue *queue, int k, int live) {
+    const struct box_pair pair = {queue, k};
+    const vm open = vm_front(live);
+    const struct box_contact c = find_box_contact(&pair, open);
+    mark_pairs(call, vi_bits(box_field(&pair, BOX_PAIR)), vm_and(open, v_lt(c.separation, v_set(0))));
 }
 
 #endif

@@ -208,17 +208,10 @@ static void decide(const struct call *call, struct queue *queue, int begin, stru
     }
 }
 
-/* Takes pairs of boxes and answers them, a few vectors at a time. */
-INLINE vm answer_boxes_first(const struct call *call, const struct pair_indices *indices, int k,
-                             const struct placement *placement, vm open, int32_t number) {
-    if (!call->boxes)
-        return open;
-    const vm left = take_boxes(call, indices, k, placement, open, number);
-    if (!vm_any(left) && !call->rows->dense && call->rows->done == number)
-        call->rows->done += V_WIDTH;
-    if (call->boxes->count >= BOX_FLUSH)
-        run_boxes(call, call->edges ? answer_box_manifolds : answer_box_contacts, call->boxes, false);
-    return left;
+INLINE vm detour_rows(const struct call *call, const struct pair_indices *indices, int k,
+                      const struct placement *placement, vm open, int32_t number) {
+    box_stage *const answer = call->edges ? answer_box_manifolds : answer_box_contacts;
+    return take_detour(call, indices, k, placement, open, number, answer);
 }
 
 /* The rows of a call, of contacts or manifolds. */
@@ -234,10 +227,8 @@ static size_t find_rows(const narc_batch *batch, size_t first, size_t count, con
     if (NARC_SHORTCUTS) {
         call.edges = manifolds ? &queues[STAGES - 1] : NULL;
         struct box_queue boxes;
-        boxes.count = 0;
-        call.boxes = batch->shapes->box_count > 0 ? &boxes : NULL;
-        run_pairs(&call, answer_boxes_first, triage_rows, CONTACT_FIELDS, stages, stage_count, hinted ? 0 : CLIMB,
-                  queues);
+        start_boxes(&call, &boxes);
+        run_pairs(&call, detour_rows, triage_rows, CONTACT_FIELDS, stages, stage_count, hinted ? 0 : CLIMB, queues);
         if (boxes.count > 0)
             run_boxes(&call, manifolds ? answer_box_manifolds : answer_box_contacts, &boxes, true);
     } else {

@@ -16,6 +16,8 @@
 #include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/vec2.inl"
+#include "box/box_pairs.inl"
+#include "box/box_walk.inl"
 #include "kernels.h"
 #include "sat/certificates.inl"
 #include "sat/direction_lookup.inl"
@@ -141,6 +143,11 @@ static void decide_overlaps(const struct call *call, struct queue *queue, int be
     }
 }
 
+INLINE vm detour_overlaps(const struct call *call, const struct pair_indices *indices, int k,
+                          const struct placement *placement, vm open, int32_t number) {
+    return take_detour(call, indices, k, placement, open, number, answer_box_overlaps);
+}
+
 static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_t *out_bits) {
     static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_to_overlaps, decide_overlaps};
     struct queue queues[4];
@@ -148,8 +155,12 @@ static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_
         run_overlap_method(decide_overlaps, batch, first, count, out_bits);
         return;
     }
-    const struct call call = begin_overlaps(batch, first, count, out_bits);
-    run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
+    struct call call = begin_overlaps(batch, first, count, out_bits);
+    struct box_queue boxes;
+    start_boxes(&call, &boxes);
+    run_pairs(&call, detour_overlaps, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
+    if (boxes.count > 0)
+        run_boxes(&call, answer_box_overlaps, &boxes, true);
 }
 
 #endif
