@@ -105,8 +105,9 @@ INLINE vi edge_number(vm on_x, vm negative) {
     return vi_add(vi_select(on_x, vi_set(0), vi_set(1)), vi_select(negative, vi_set(2), vi_set(0)));
 }
 
-/* Takes pairs of two boxes: puts those that may have a contact into the queue. Returns the lanes that are left. */
-INLINE vm take_boxes(const struct call *call, const struct pair_indices *indices, int k,
+/* Takes pairs of two boxes: puts those that may have a contact into the queue. Returns the lanes that are left. Not
+ * inlined: the loop around it serves other shapes. */
+static __attribute__((noinline)) vm take_boxes(const struct call *call, const struct pair_indices *indices, int k,
                      const struct placement *placement, vm open, int32_t number) {
     const narc_box_form *forms = call->batch->shapes->boxes;
     const struct pose *pose = &placement->pose;
@@ -195,7 +196,8 @@ INLINE vm take_detour(const struct call *call, const struct pair_indices *indice
                       const struct placement *placement, vm open, int32_t number, box_stage *answer) {
     if (!call->boxes)
         return open;
-    const vm left = take_boxes(call, indices, k, placement, open, number);
+    const struct placement copy = *placement; /* the original stays in registers */
+    const vm left = take_boxes(call, indices, k, &copy, open, number);
     if (!vm_any(left) && call->rows && !call->rows->dense && call->rows->done == number)
         call->rows->done += V_WIDTH;
     if (call->boxes->count >= BOX_FLUSH)
