@@ -192,6 +192,8 @@ INLINE size_t end_rows(const struct call *call, size_t size) {
     size_t count = (size_t)rows->listed;
     if (rows->dense)
         return fill_gaps(call, size);
+    if (rows->done >= (int)call->count) /* all rows are listed */
+        return count;
     for (size_t k = 0; k < call->count; k += 64) {
         uint64_t bits = 0;
         for (size_t i = 0; i < 64; i++)

@@ -76,12 +76,6 @@ INLINE void run_boxes(const struct call *call, box_stage *answer, struct box_que
     queue->count = k < queue->count ? queue->count - k : 0;
 }
 
-/* Makes a call look for boxes, if there are any. */
-INLINE void start_boxes(struct call *call, struct box_queue *queue) {
-    queue->count = 0;
-    call->boxes = call->batch->shapes->box_count > 0 ? queue : NULL;
-}
-
 /* The form of a shape in each lane. */
 struct box_form {
     vec2 half;
@@ -105,9 +99,8 @@ INLINE vi edge_number(vm on_x, vm negative) {
     return vi_add(vi_select(on_x, vi_set(0), vi_set(1)), vi_select(negative, vi_set(2), vi_set(0)));
 }
 
-/* Takes pairs of two boxes: puts those that may have a contact into the queue. Returns the lanes that are left. Not
- * inlined: the loop around it serves other shapes. */
-static __attribute__((noinline)) vm take_boxes(const struct call *call, const struct pair_indices *indices, int k,
+/* Takes pairs of two boxes: puts those that may have a contact into the queue. Returns the lanes that are left. */
+INLINE vm take_boxes(const struct call *call, const struct pair_indices *indices, int k,
                      const struct placement *placement, vm open, int32_t number) {
     const narc_box_form *forms = call->batch->shapes->boxes;
     const struct pose *pose = &placement->pose;
@@ -191,13 +184,10 @@ static __attribute__((noinline)) vm take_boxes(const struct call *call, const st
     return vm_and_not(open, taken);
 }
 
-/* Takes pairs of boxes, if a call looks for any, and answers them a few vectors at a time. */
+/* Takes pairs of boxes and answers them a few vectors at a time. */
 INLINE vm take_detour(const struct call *call, const struct pair_indices *indices, int k,
                       const struct placement *placement, vm open, int32_t number, box_stage *answer) {
-    if (!call->boxes)
-        return open;
-    const struct placement copy = *placement; /* the original stays in registers */
-    const vm left = take_boxes(call, indices, k, &copy, open, number);
+    const vm left = take_boxes(call, indices, k, placement, open, number);
     if (!vm_any(left) && call->rows && !call->rows->dense && call->rows->done == number)
         call->rows->done += V_WIDTH;
     if (call->boxes->count >= BOX_FLUSH)

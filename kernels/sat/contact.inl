@@ -224,13 +224,17 @@ static size_t find_rows(const narc_batch *batch, size_t first, size_t count, con
     struct queue queues[STAGES];
     struct rows rows;
     struct call call = begin_rows(batch, first, count, out, &rows);
-    if (NARC_SHORTCUTS) {
+    const int edged_stage = hinted ? 0 : CLIMB;
+    struct box_queue boxes;
+    if (NARC_SHORTCUTS)
         call.edges = manifolds ? &queues[STAGES - 1] : NULL;
-        struct box_queue boxes;
-        start_boxes(&call, &boxes);
-        run_pairs(&call, detour_rows, triage_rows, CONTACT_FIELDS, stages, stage_count, hinted ? 0 : CLIMB, queues);
-        if (boxes.count > 0)
-            run_boxes(&call, manifolds ? answer_box_manifolds : answer_box_contacts, &boxes, true);
+    if (NARC_SHORTCUTS && batch->shapes->box_count > 0) {
+        boxes.count = 0;
+        call.boxes = &boxes;
+        run_pairs(&call, detour_rows, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
+        run_boxes(&call, manifolds ? answer_box_manifolds : answer_box_contacts, &boxes, true);
+    } else if (NARC_SHORTCUTS) {
+        run_pairs(&call, NULL, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
     } else {
         call.edges = manifolds ? &queues[1] : NULL;
         run_pairs(&call, NULL, take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);

@@ -156,11 +156,15 @@ static void overlap(const narc_batch *batch, size_t first, size_t count, uint64_
         return;
     }
     struct call call = begin_overlaps(batch, first, count, out_bits);
+    if (batch->shapes->box_count == 0) {
+        run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
+        return;
+    }
     struct box_queue boxes;
-    start_boxes(&call, &boxes);
+    boxes.count = 0;
+    call.boxes = &boxes;
     run_pairs(&call, detour_overlaps, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
-    if (boxes.count > 0)
-        run_boxes(&call, answer_box_overlaps, &boxes, true);
+    run_boxes(&call, answer_box_overlaps, &boxes, true);
 }
 
 #endif
