@@ -22,6 +22,7 @@ struct pair_indices {
 INLINE void load_indices(const narc_batch *batch, size_t first, int count, struct pair_indices *out) {
     const narc_index_column column_a = batch->pairs.a, column_b = batch->pairs.b;
     const bool plain = column_a.base && column_b.base && !batch->query.selection.base;
+    UNROLL_FEW
     for (int k = 0; k < count; k++) {
         const size_t number = plain ? first + (size_t)k : narc_pair_at(batch, first + (size_t)k);
         const uint32_t a = plain || column_a.base ? narc_index_at(column_a, number) : (uint32_t)number;

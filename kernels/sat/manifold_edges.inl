@@ -244,8 +244,8 @@ INLINE vi find_edge_feature(const struct edge *edge, vf along, vm low, bool is_b
     const vf least = v_mul(v_set(AT_END), v_sub(edge->high.along, edge->low.along));
     const vf inside = v_select(low, v_sub(along, edge->low.along), v_sub(edge->high.along, along));
     const vm on_edge = v_lt(least, inside), at_start = is_b ? vm_not(low) : low;
-    const vi number = vi_select(vm_and_not(at_start, on_edge), edge->before, edge->after);
-    return vi_add(number, vi_select(on_edge, vi_set(NARC_FEATURE_EDGE), vi_set(0)));
+    const vi of_edge = vi_add(edge->after, vi_set(NARC_FEATURE_EDGE));
+    return vi_select(on_edge, of_edge, vi_select(at_start, edge->before, edge->after));
 }
 
 /* The id of a point. */
