@@ -130,7 +130,6 @@ INLINE struct box_contact find_facing(const struct box_pair *pair, vm *out_left,
         const vf length = v2_length(w);
         const vf room = v_select(beyond, v2_dot(w, f), v_select(before, v2_dot(w, g), length));
         left = vm_or(left, vm_and_not(corners, v_lt(slack, room)));
-        left = vm_or(left, vm_and(inside, at_g));
         c.separation = v_select(corners, v_sub(length, radii), c.separation);
         c.normal = v2_select(corners, v2_divide(w, length), c.normal);
     }
