@@ -205,9 +205,11 @@ narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
     bool box = x > least_edge && y > least_edge;
     for (size_t k = 0; k < 4; k++) {
         const narc_stored_arc *arc = &arcs[k].arc;
+        const float *start = normals[k], *end = normals[k + 1];
         box = box && has_same_bits(arc->center_x, sides[k][0] * x) && has_same_bits(arc->center_y, sides[k][1] * y) &&
-              has_same_bits(arc->radius, radius) && memcmp(&arc->start_x, normals[k], sizeof normals[k]) == 0 &&
-              memcmp(&arc->end_x, normals[k + 1], sizeof normals[k]) == 0;
+              has_same_bits(arc->radius, radius) && has_same_bits(arc->start_x, start[0]) &&
+              has_same_bits(arc->start_y, start[1]) && has_same_bits(arc->end_x, end[0]) &&
+              has_same_bits(arc->end_y, end[1]);
     }
     return (narc_box_form){x, y, radius, box ? NARC_IS_BOX | header->first_arc : 0};
 }
