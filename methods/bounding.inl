@@ -58,17 +58,17 @@ INLINE vm filter_obbs(const struct call *call, size_t pair, const struct filter 
 
 static void overlap_circle(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
     const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
-    run_pairs(&call, filter_circles, 0, NULL, 0, 0, NULL);
+    run_pairs(&call, NULL, filter_circles, 0, NULL, 0, 0, NULL);
 }
 
 static void overlap_aabb(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
     const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
-    run_pairs(&call, filter_aabbs, 0, NULL, 0, 0, NULL);
+    run_pairs(&call, NULL, filter_aabbs, 0, NULL, 0, 0, NULL);
 }
 
 static void overlap_obb(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
     const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
-    run_pairs(&call, filter_obbs, 0, NULL, 0, 0, NULL);
+    run_pairs(&call, NULL, filter_obbs, 0, NULL, 0, 0, NULL);
 }
 
 #endif

@@ -186,6 +186,34 @@ narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_s
     return NARC_OK;
 }
 
+static bool has_same_bits(float a, float b) {
+    uint32_t bits[2];
+    memcpy(&bits[0], &a, sizeof a);
+    memcpy(&bits[1], &b, sizeof b);
+    return bits[0] == bits[1];
+}
+
+narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
+    static const float normals[5][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 0}};
+    static const float sides[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+    const narc_shape_header *header = &shape->header;
+    const narc_record *arcs = &shape->records[narc_angle_records(header->count)];
+    if (header->count != 4 || header->extent_ratio == UINT8_MAX || (header->flags & NARC_SHAPE_SMOOTH))
+        return (narc_box_form){.info = 0};
+    const float x = arcs[0].arc.center_x, y = arcs[0].arc.center_y, radius = arcs[0].arc.radius;
+    const float least_edge = ldexpf(1, 5 * (header->flags >> NARC_SIZE_CLASS_SHIFT) - 47);
+    bool box = x > least_edge && y > least_edge;
+    for (size_t k = 0; k < 4; k++) {
+        const narc_stored_arc *arc = &arcs[k].arc;
+        const float *start = normals[k], *end = normals[k + 1];
+        box = box && has_same_bits(arc->center_x, sides[k][0] * x) && has_same_bits(arc->center_y, sides[k][1] * y) &&
+              has_same_bits(arc->radius, radius) && has_same_bits(arc->start_x, start[0]) &&
+              has_same_bits(arc->start_y, start[1]) && has_same_bits(arc->end_x, end[0]) &&
+              has_same_bits(arc->end_y, end[1]);
+    }
+    return (narc_box_form){x, y, radius, box ? NARC_IS_BOX | header->first_arc : 0};
+}
+
 /* ------------------------------------------------------------------------------------------------ loading */
 
 /* How far the outline of stored arcs may be from the one that was given: a few roundings of each coordinate, radius and
@@ -197,13 +225,6 @@ narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_s
 
 static narc_status fail_stored(narc_error *error, const char *what) {
     return narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "%s", what);
-}
-
-static bool has_same_bits(float a, float b) {
-    uint32_t bits[2];
-    memcpy(&bits[0], &a, sizeof a);
-    memcpy(&bits[1], &b, sizeof b);
-    return bits[0] == bits[1];
 }
 
 /* The outline of stored arcs, in the caller's order, and their extent. */

@@ -95,24 +95,28 @@ static void unlink_shape(narc_shapes *shapes, uint32_t shape, uint32_t *head) {
 
 /* Headers come last, so that what reads past them reads past the memory. */
 static bool grow_headers(narc_shapes *shapes, size_t capacity) {
-    const size_t item = sizeof(uint32_t) + sizeof(narc_shape_entry) + sizeof(narc_shape_header);
+    const size_t item = sizeof(narc_box_form) + sizeof(uint32_t) + sizeof(narc_shape_entry) + sizeof(narc_shape_header);
     void *array = NULL, *memory;
     if (capacity > (SIZE_MAX - 2 * NARC_CACHE_LINE) / item)
         return false;
+    const size_t boxes_size = capacity * sizeof(narc_box_form);
     const size_t links = capacity * (sizeof(uint32_t) + sizeof(narc_shape_entry));
-    const size_t front = (links + NARC_CACHE_LINE - 1) / NARC_CACHE_LINE * NARC_CACHE_LINE;
+    const size_t front = (boxes_size + links + NARC_CACHE_LINE - 1) / NARC_CACHE_LINE * NARC_CACHE_LINE;
     memory = allocate(shapes, front + capacity * sizeof(narc_shape_header), &array);
     if (!memory)
         return false;
     narc_shape_header *headers = (void *)((char *)array + front);
-    narc_shape_entry *entries = array;
+    narc_box_form *boxes = array;
+    narc_shape_entry *entries = (void *)(boxes + capacity);
     if (shapes->count) {
+        memcpy(boxes, shapes->boxes, shapes->count * sizeof *boxes);
         memcpy(headers, shapes->headers, shapes->count * sizeof *headers);
         memcpy(entries, shapes->entries, shapes->count * sizeof *entries);
     }
     release(shapes, shapes->headers_memory);
     shapes->headers_memory = memory;
     shapes->headers = headers;
+    shapes->boxes = boxes;
     shapes->entries = entries;
     shapes->buckets = (void *)(entries + capacity);
     shapes->capacity = capacity;
@@ -247,9 +251,16 @@ static uint32_t find_equal(const narc_shapes *shapes, const narc_encoded_shape *
     return shape;
 }
 
+/* Keeps the form of a shape's box, or that it is none. */
+static void put_box(narc_shapes *shapes, uint32_t shape, narc_box_form box) {
+    shapes->box_count += (box.info != 0) - (size_t)(shapes->boxes[shape].info != 0);
+    shapes->boxes[shape] = box;
+}
+
 void narc_open_indices(narc_shapes *shapes, size_t count) {
     for (uint32_t k = (uint32_t)count; k-- > shapes->count;) {
         shapes->headers[k] = (narc_shape_header){.count = SPARE_ARCS};
+        shapes->boxes[k] = (narc_box_form){.info = 0};
         shapes->entries[k] = (narc_shape_entry){.uses = 0};
         link_shape(shapes, k, &shapes->last_removed);
         shapes->removed_count++;
@@ -282,6 +293,7 @@ narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, narc_enc
     }
     memcpy(&shapes->records[encoded->header.first_record], encoded->records, size * sizeof *encoded->records);
     shapes->headers[shape] = encoded->header;
+    put_box(shapes, shape, narc_find_box_form(encoded));
     shapes->entries[shape] = (narc_shape_entry){.uses = 1, .hash = hash};
     link_shape(shapes, shape, find_bucket(shapes, hash));
     shapes->used_records += size - used_size;
@@ -360,6 +372,7 @@ narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *e
     narc_shape_header *header = &shapes->headers[shape];
     shapes->used_records -= narc_count_records(header->count);
     header->bound_radius = 0;
+    put_box(shapes, shape, (narc_box_form){.info = 0});
     unlink_shape(shapes, shape, find_bucket(shapes, shapes->entries[shape].hash));
     link_shape(shapes, shape, &shapes->last_removed);
     shapes->removed_count++;

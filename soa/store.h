@@ -81,6 +81,18 @@ typedef union narc_record {
     narc_stored_arc arc;
 } narc_record;
 
+/* A box about its own origin with sides along its axes, sharp or with equally rounded corners, beside its header: half
+ * the sides of the rectangle of the corners' centres. Batches of boxes read nothing else of a shape (kernels/box/).
+ *   info   0: the shape is no box of that kind; else NARC_IS_BOX and, in its lowest bits, first_arc of the header.
+ * The corners are the records in their order, the one at +x, +y first. Both half sizes are longer than what counts as no
+ * edge. */
+typedef struct narc_box_form {
+    float half_x, half_y, radius;
+    uint32_t info;
+} narc_box_form;
+
+#define NARC_IS_BOX 4u
+
 /* How many records the junction angles of a shape take: its first arc lies behind them. */
 static inline size_t narc_angle_records(size_t count) { return (count + NARC_RECORD_ANGLES - 1) / NARC_RECORD_ANGLES; }
 
@@ -115,16 +127,18 @@ typedef struct narc_shape_entry {
 struct narc_shapes {
     narc_shape_header *headers;
     narc_record *records;
+    narc_box_form *boxes;                 /* one for each header */
     narc_shape_entry *entries;            /* one for each header */
     uint32_t *buckets;                    /* the first shape in each list, as many lists as there is room for headers */
     size_t count, capacity;               /* headers, those of removed shapes among them */
     size_t removed_count;                 /* removed shapes */
+    size_t box_count;                     /* shapes with a box's form */
     uint32_t last_removed;                /* the last of them, or NARC_NO_SHAPE */
     uint64_t change_count;                /* how often shapes came, changed or went */
     size_t record_count, record_capacity; /* records, with the gaps between blocks */
     size_t used_records;                  /* records in blocks of shapes, and of the circle that removed ones have */
     narc_allocator allocator;
-    /* What the allocator returned: entries, buckets and headers; and records. Headers and records begin at cache lines,
+    /* What the allocator returned: boxes, entries, buckets and headers; and records. Headers and records begin at cache lines,
      * and end with the memory but for less than one. */
     void *headers_memory, *records_memory;
 };

@@ -147,3 +147,35 @@ void make_packing(struct workload *workload) {
     }
     free(boxes);
 }
+
+/* Adds a pair of the bodies at two places of a stack, if there are such places: row y has `width` - y * shrink. */
+static void add_neighbours(struct workload *workload, size_t width, size_t shrink, size_t a, size_t x, size_t y) {
+    size_t first = 0;
+    for (size_t k = 0; k < y; k++)
+        first += width - k * shrink;
+    if (y < width && x < width - y * shrink)
+        workload->pairs[workload->pair_count++] = (struct pair){(uint32_t)a, (uint32_t)(first + x)};
+}
+
+void make_stack(struct workload *workload) {
+    const size_t shrink = workload->key.scene == SCENE_PYRAMID, most = workload->key.pair_count;
+    const size_t width = (size_t)sqrt((double)most / (shrink ? 1.5 : 4));
+    const double step = shrink ? 1.05 : 1, height = shrink ? 0.9995 : 1;
+    workload->pairs = allocate(4 * width * width, sizeof *workload->pairs);
+    workload->bodies = allocate(width * width, sizeof *workload->bodies);
+    workload->body_count = workload->pair_count = 0;
+    for (size_t y = 0; y < width; y++) {
+        for (size_t x = 0; x < width - y * shrink; x++) {
+            const size_t body = workload->body_count++;
+            workload->bodies[body] = (struct body){.x = (float)(step * ((double)x + 0.5 * (double)(y * shrink))),
+                                                   .y = (float)(height * (double)y),
+                                                   .cosine = 1,
+                                                   .shape = (uint32_t)(body % workload->shape_count)};
+            add_neighbours(workload, width, shrink, body, x + 1, y);
+            add_neighbours(workload, width, shrink, body, x - 1, y + 1);
+            add_neighbours(workload, width, shrink, body, x, y + 1);
+            if (!shrink)
+                add_neighbours(workload, width, shrink, body, x + 1, y + 1);
+        }
+    }
+}

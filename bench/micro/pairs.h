@@ -13,4 +13,7 @@ void make_pairs(struct workload *workload);
 /* One body for 10 pairs, at random places, as dense as it takes for that many pairs of boxes that overlap. */
 void make_packing(struct workload *workload);
 
+/* Squares in rows, each pair of neighbours. */
+void make_stack(struct workload *workload);
+
 #endif

@@ -132,6 +132,24 @@ static void add_steps(struct workload_key key, const char *isa, unsigned threads
         add_step(step, key, isa, threads);
 }
 
+/* Stacks of boxes beside Box2D, with few shapes and one for each body or nearly. */
+static void add_stacks(const char *isa) {
+    for (enum scene scene = SCENE_PYRAMID; scene <= SCENE_LATTICE; scene++) {
+        for (enum variety variety = UNIQUE; variety <= TEMPLATES; variety++) {
+            const struct workload_key key = {.edges = 4,
+                                             .family = FAMILY_BOXES,
+                                             .scene = scene,
+                                             .variety = variety,
+                                             .sorted = true,
+                                             .pair_count = pair_count / 4};
+            add_query(QUERY_OVERLAP, key, isa);
+            add_query(QUERY_CONTACT, key, isa);
+            add_query(QUERY_MANIFOLD, key, isa);
+            add_peer(&box2d_collide, key);
+        }
+    }
+}
+
 void list_settled(const struct row_choice *choice) {
     const struct shapes four = {FAMILY_N_ARCS, 4}, eight = {FAMILY_N_ARCS, 8}, boxes = {FAMILY_BOXES, 4};
     const struct shapes discs = {FAMILY_DISCS, 8};
@@ -149,6 +167,7 @@ void list_settled(const struct row_choice *choice) {
     add_steps(large, best, 1);
     add_steps(large, best, 2);
     add_query(QUERY_MANIFOLD, large, best);
+    add_stacks(best);
     add_world_parts(key, best, 10000);
     add_world_parts(key, best, 30000);
     if (narc_isa_supported("avx2")) {

@@ -116,12 +116,20 @@ struct outline round_polygon(const struct outline *n_arc) {
     return rounded;
 }
 
-struct outline make_box(uint64_t *random) {
-    const double x = random_between(random, 0.5, 1.2), y = random_between(random, 0.5, 1.2);
+static struct outline box_with(double x, double y) {
     struct outline outline = {.count = 4, .arcs = {{.x = x, .y = -y}, {.x = x, .y = y}, {.x = -x, .y = y}}};
     outline.arcs[3] = (struct arc){.x = -x, .y = -y};
     add_edge_normals(&outline);
     return outline;
+}
+
+struct outline make_box(uint64_t *random) {
+    const double x = random_between(random, 0.5, 1.2);
+    return box_with(x, random_between(random, 0.5, 1.2));
+}
+
+struct outline make_square(void) {
+    return box_with(0.5, 0.5);
 }
 
 struct outline make_circle(double radius) {

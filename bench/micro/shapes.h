@@ -23,6 +23,9 @@ struct outline round_polygon(const struct outline *n_arc);
 /* A rectangle, its sides 1 .. 2.4 long. */
 struct outline make_box(uint64_t *random);
 
+/* A square with sides of 1. */
+struct outline make_square(void);
+
 struct outline make_circle(double radius);
 
 double area_of(const struct outline *outline);

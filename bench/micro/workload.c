@@ -26,6 +26,10 @@ static bool same_key(const struct workload_key *a, const struct workload_key *b)
 
 bool is_settled(const struct workload_key *key) { return key->scene >= SCENE_SETTLED_SMALL; }
 
+static bool is_stack(const struct workload_key *key) {
+    return key->scene == SCENE_PYRAMID || key->scene == SCENE_LATTICE;
+}
+
 /* Shapes of even and of odd index are the first and second bodies' in FAMILY_GENERAL. */
 static struct outline make_shape(const struct workload_key *key, size_t index, uint64_t *random) {
     const struct outline n_arc = make_n_arc(random, key->edges);
@@ -40,7 +44,7 @@ static struct outline make_shape(const struct workload_key *key, size_t index, u
     case FAMILY_ROUNDED:
         return round_polygon(&n_arc);
     case FAMILY_BOXES:
-        return make_box(random);
+        return is_stack(key) ? make_square() : make_box(random);
     case FAMILY_DISCS:
         return make_circle(random_between(random, 0.6, 1.2));
     default:
@@ -95,7 +99,7 @@ static void measure_gaps(struct workload *workload) {
 
 static void move_bodies(struct workload *workload) {
     uint64_t random = 2;
-    const double most = is_settled(&workload->key) ? 0.001 : 0.01;
+    const double most = is_stack(&workload->key) ? 0 : is_settled(&workload->key) ? 0.001 : 0.01;
     struct body *bodies = allocate(workload->body_count, sizeof *bodies);
     for (size_t k = 0; k < workload->body_count; k++) {
         const struct body *body = &workload->bodies[k];
@@ -140,6 +144,8 @@ static void make_workload(struct workload *workload, const struct workload_key *
         make_shapes(workload);
         if (is_settled(key))
             make_settled(workload);
+        else if (is_stack(key))
+            make_stack(workload);
         else if (key->scene == SCENE_PACKING)
             make_packing(workload);
         else
@@ -164,8 +170,8 @@ const struct workload *get_workload(const struct workload_key *key) {
 }
 
 void name_workload(const struct workload_key *key, char *out, size_t size) {
-    static const char *const scenes[] = {"disjoint",      "colliding", "mixed",        "packing",
-                                         "settled-small", "settled",   "settled-large"};
+    static const char *const scenes[] = {"disjoint", "colliding",     "mixed",   "packing",      "pyramid",
+                                         "lattice",  "settled-small", "settled", "settled-large"};
     static const char *const varieties[VARIETIES] = {
         [UNIQUE] = "unique", [TEMPLATES] = "templates", [MANY] = "many", [FEW] = "few"};
     static const char *const families[] = {[FAMILY_KINDS] = "kinds",

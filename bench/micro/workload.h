@@ -31,12 +31,16 @@ enum family {
 
 /* Where the second body of a pair is: at a multiple of the distance at which the two touch (in a random direction), or
  * anywhere where the axis-aligned boxes overlap, half of the pairs colliding. SCENE_PACKING is not made of pairs but of
- * bodies: 1 to 10 pairs, all in one square. So are the settled piles, of `body_count` bodies: see settled.h. */
+ * bodies: 1 to 10 pairs, all in one square. So are the settled piles, of `body_count` bodies: see settled.h; and stacks
+ * of equal squares: a pyramid at rest, each with a gap to the next in its row, and a lattice without gaps, where normals
+ * tie at every corner. */
 enum scene {
     SCENE_DISJOINT,
     SCENE_COLLIDING,
     SCENE_MIXED,
     SCENE_PACKING,
+    SCENE_PYRAMID,
+    SCENE_LATTICE,
     SCENE_SETTLED_SMALL,
     SCENE_SETTLED,
     SCENE_SETTLED_LARGE
@@ -53,7 +57,7 @@ struct workload_key {
     enum variety variety;
     bool sorted; /* pairs by their first body, as from a broad phase, instead of in random order */
     bool moved;  /* the next frame: every body moved by up to 1 % of its size, and turned by up to 0.01; in settled
-                  * piles a tenth of that */
+                  * piles a tenth of that, in stacks nothing */
     size_t pair_count;
     size_t body_count; /* of a settled pile, whose pairs are those that are close; else 0 */
 };

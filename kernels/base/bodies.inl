@@ -30,15 +30,17 @@ INLINE void load_pair(const narc_batch *batch, size_t number, size_t a, size_t b
 
 INLINE void load_indices(const narc_batch *batch, size_t first, int count, struct pair_indices *out) {
     const narc_index_column a = batch->pairs->a, b = batch->pairs->b;
-    if (a.base && b.base && !batch->query->selection.base)
+    if (a.base && b.base && !batch->query->selection.base) {
+        UNROLL_FEW
         for (size_t k = 0; k < (size_t)count; k++)
             load_pair(batch, first + k, narc_index_at(a, first + k), narc_index_at(b, first + k), (int)k, out);
-    else
+    } else {
         for (int k = 0; k < count; k++) {
             const size_t number = narc_pair_at(batch, first + (size_t)k);
             load_pair(batch, number, a.base ? narc_index_at(a, number) : number,
                       b.base ? narc_index_at(b, number) : number, k, out);
         }
+    }
     for (int k = count; k % V_WIDTH != 0; k++) {
         out->number[k] = out->number[0];
         out->a[k] = out->a[0];

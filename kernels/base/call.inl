@@ -23,6 +23,7 @@ struct call {
     uint64_t *bits;            /* overlap kernels: where the answers go; else NULL */
     struct rows *rows;         /* the others: the same */
     struct queue *edges;       /* manifolds: pairs that may have a second point; else NULL */
+    struct box_queue *boxes;   /* pairs of boxes that wait (box/box_pairs.inl), or NULL */
 };
 
 /* One of two places, without a branch: which lanes have an answer can't be foreseen. */
@@ -67,14 +68,19 @@ INLINE vf get_margins(const struct call *call, const struct queue *queue, int k)
 /* With an infinite margin every separation counts, an infinite one too. */
 INLINE vm is_below(vf separation, vf margin) { return vm_or(v_lt(separation, margin), v_le(v_set(INFINITY), margin)); }
 
-/* Sets the bits of the pairs k ... of a queue in the lanes `hits`. */
-INLINE void mark_overlaps(const struct call *call, const struct queue *queue, int k, vm hits) {
+/* Sets the bits of pairs in the lanes `hits`. */
+INLINE void mark_pairs(const struct call *call, vi pairs, vm hits) {
     int32_t pair[V_WIDTH];
-    get_pairs(queue, k, pair);
+    vi_store(pair, pairs);
     for (uint32_t lanes = vm_bits(hits); lanes; lanes &= lanes - 1) {
         const uint32_t number = (uint32_t)pair[__builtin_ctz(lanes)];
         call->bits[number / 64] |= (uint64_t)1 << number % 64;
     }
+}
+
+/* The same for the pairs k ... of a queue. */
+INLINE void mark_overlaps(const struct call *call, const struct queue *queue, int k, vm hits) {
+    mark_pairs(call, get_bits(queue, PAIR, k), hits);
 }
 
 /* ------------------------------------------------------------------------------------------------ hints

@@ -75,33 +75,50 @@ INLINE vec2 circle_difference(vec2 a, vec2 b, const struct pose *pose) {
     return v2_sub(place_center_b(b, pose), v2_scale(a, pose->scale_a));
 }
 
-/* Sets up the pairs k ... of a block of `count`, the first of which has the number `number`: fills `item`. */
-INLINE struct filter set_up_pairs(const struct call *call, const struct pair_indices *in, int k, int count,
-                                  enum pose_layout layout, int32_t number, vf item[FIELDS]) {
+/* Where the bodies of a pair in each lane are. */
+struct placement {
+    struct pose pose;
+    vec2 rotation_a;
+    vf margin;
+    vm in_range; /* all that is known without the shapes' sizes */
+};
+
+/* That of the pairs k ... of a block. */
+INLINE struct placement place_pairs(const struct call *call, const struct pair_indices *in, int k,
+                                    enum pose_layout layout) {
     const narc_batch *batch = call->batch;
     const narc_pairs *pairs = batch->pairs;
-    const float shrink = 1.0f - 0x1p-16f, grow = 1.0f + 0x1p-16f; /* of a square: 2^-17 of the distance */
     const bool shifted = pairs->shift_x.base || pairs->shift_y.base;
     const vec2 shift = {load_pair_column(pairs->shift_x, in->number + k, 0),
                         load_pair_column(pairs->shift_y, in->number + k, 0)};
     const struct body_pair bodies = load_bodies(batch, layout, in->a + k, in->b + k, shifted ? &shift : NULL);
     const vf margin = load_pair_column(call->margins, in->number + k, call->margin);
-    const struct headers a = load_headers(batch->shapes->headers, in->shape_a + k);
-    const struct headers b = load_headers(batch->shapes->headers, in->shape_b + k);
-    const vf scale_a = bodies.scale_a, scale_b = bodies.scale_b;
-    struct filter filter = {.margin = margin};
     vm valid_a, valid_b;
     const vec2 rotation_a = normalise_rotation(bodies.rotation_a, &valid_a);
     const vec2 rotation_b = normalise_rotation(bodies.rotation_b, &valid_b);
-    const vf size_a = v_mul(scale_a, a.bound_radius), size_b = v_mul(scale_b, b.bound_radius);
-    const vm near = distance_in_range(bodies.difference), sizes = vm_and(size_in_range(size_a), size_in_range(size_b));
-    const vm in_range = vm_and(vm_and(near, v_le(margin, margin)), vm_and(vm_and(valid_a, valid_b), sizes));
-    const vm exists = vm_front(count - k);
-    filter.valid = vm_and(exists, in_range);
-    filter.invalid = vm_and_not(exists, in_range);
+    const vm near = vm_and(distance_in_range(bodies.difference), v_le(margin, margin));
+    return (struct placement){{v2_unrotate(rotation_a, bodies.difference), v2_unrotate(rotation_a, rotation_b),
+                               bodies.scale_a, bodies.scale_b},
+                              rotation_a,
+                              margin,
+                              vm_and(near, vm_and(valid_a, valid_b))};
+}
 
-    const struct pose pose = {v2_unrotate(rotation_a, bodies.difference), v2_unrotate(rotation_a, rotation_b), scale_a,
-                              scale_b};
+/* Sets up the pairs k ... of a block in the lanes `which`, the first of which has the number `number`: fills `item`. */
+INLINE struct filter set_up_pairs(const struct call *call, const struct pair_indices *in, int k,
+                                  const struct placement *placement, vm which, int32_t number, vf item[FIELDS]) {
+    const narc_batch *batch = call->batch;
+    const float shrink = 1.0f - 0x1p-16f, grow = 1.0f + 0x1p-16f; /* of a square: 2^-17 of the distance */
+    const struct pose pose = placement->pose;
+    const vf margin = placement->margin, scale_a = pose.scale_a, scale_b = pose.scale_b;
+    const struct headers a = load_headers(batch->shapes->headers, in->shape_a + k);
+    const struct headers b = load_headers(batch->shapes->headers, in->shape_b + k);
+    struct filter filter = {.margin = margin};
+    const vf size_a = v_mul(scale_a, a.bound_radius), size_b = v_mul(scale_b, b.bound_radius);
+    const vm in_range = vm_and(placement->in_range, vm_and(size_in_range(size_a), size_in_range(size_b)));
+    filter.valid = vm_and(which, in_range);
+    filter.invalid = vm_and_not(which, in_range);
+
     const vec2 bounds = circle_difference(a.bound_center, b.bound_center, &pose);
     const vec2 axis = circle_difference(a.inner_center, b.inner_center, &pose);
     const vf size = v_add(size_a, size_b), limit = v_add(size, margin);
@@ -123,7 +140,7 @@ INLINE struct filter set_up_pairs(const struct call *call, const struct pair_ind
     item[INFO_B] = v_of_bits(b.info);
     item[PAIR] = v_of_bits(vi_add(vi_lanes(), vi_set(number + k)));
     set_vec2(item, DIRECTION, axis);
-    set_vec2(item, ROTATION_A, rotation_a);
+    set_vec2(item, ROTATION_A, placement->rotation_a);
     item[SIZE] = size;
     return filter;
 }

@@ -33,6 +33,11 @@ typedef vm triage(const struct call *call, size_t pair, const struct filter *cir
 /* Answers the pairs `begin` ... of a queue, or pushes them to the next stage's. */
 typedef void stage(const struct call *call, struct queue *queue, int begin, struct queue *next);
 
+/* Takes pairs of a kind that has a way of its own, of those in the lanes `open`, and returns the other lanes. `number`:
+ * of the first. */
+typedef vm detour(const struct call *call, const struct pair_indices *indices, int k, const struct placement *placement,
+                  vm open, int32_t number);
+
 /* Triage for methods that treat all pairs alike. */
 INLINE vm take_valid(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
     (void)pair;
@@ -83,10 +88,10 @@ INLINE void run_stages(const struct call *call, stage *const *stages, int stage_
     }
 }
 
-/* Runs all pairs of a call. `queues`: one for each stage. `edged_stage`: where pairs with edges may begin instead of at
- * the first stage, or 0. */
-INLINE void run_pairs(const struct call *call, triage *settle, int fields, stage *const *stages, int stage_count,
-                      int edged_stage, struct queue *queues) {
+/* Runs all pairs of a call. `take`: what comes before all else, or NULL. `queues`: one for each stage. `edged_stage`:
+ * where pairs with edges may begin instead of at the first stage, or 0. */
+INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int fields, stage *const *stages,
+                      int stage_count, int edged_stage, struct queue *queues) {
     const narc_batch *batch = call->batch;
     const enum pose_layout layout = find_layout(batch);
     struct pair_indices indices;
@@ -102,7 +107,15 @@ INLINE void run_pairs(const struct call *call, triage *settle, int fields, stage
             queues->whole = false;
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
-            const struct filter circles = set_up_pairs(call, &indices, k, n, layout, (int32_t)(uint32_t)block, item);
+            const struct placement placement = place_pairs(call, &indices, k, layout);
+            vm asked = vm_front(n - k);
+            if (take) {
+                asked = take(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block + k);
+                if (!vm_any(asked))
+                    continue;
+            }
+            const struct filter circles =
+                set_up_pairs(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block, item);
             *call->skipped += (size_t)__builtin_popcount(vm_bits(circles.invalid));
             const vm open = settle(call, block + (size_t)k, &circles, item);
             if (stage_count > 0 && vm_any(open)) {
@@ -138,7 +151,7 @@ INLINE void run_overlap_method(stage *find, const narc_batch *batch, size_t firs
                                uint64_t *out_bits) {
     struct queue queue;
     const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
-    run_pairs(&call, take_valid, FIELDS, &find, 1, 0, &queue);
+    run_pairs(&call, NULL, take_valid, FIELDS, &find, 1, 0, &queue);
 }
 
 INLINE size_t run_contact_method(stage *find, const narc_batch *batch, size_t first, size_t count, size_t *skipped,
@@ -146,7 +159,7 @@ INLINE size_t run_contact_method(stage *find, const narc_batch *batch, size_t fi
     struct queue queue;
     struct rows rows;
     const struct call call = begin_rows(batch, first, count, skipped, out, &rows);
-    run_pairs(&call, take_valid, FIELDS, &find, 1, 0, &queue);
+    run_pairs(&call, NULL, take_valid, FIELDS, &find, 1, 0, &queue);
     return end_rows(&call, sizeof(narc_contact));
 }
 

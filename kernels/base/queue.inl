@@ -20,7 +20,7 @@ enum { BLOCK = 32 };
 #ifdef NARC_QUEUE_PAIRS
 enum { FLUSH = NARC_QUEUE_PAIRS, STEP = NARC_QUEUE_PAIRS, STAGES = 1 };
 #else
-enum { FLUSH = V_WIDTH > 8 ? 24 : 32, STEP = V_WIDTH > 8 ? 16 : 32, STAGES = 5 };
+enum { FLUSH = V_WIDTH > 8 ? 24 : 32, STEP = V_WIDTH > 8 ? 16 : 24, STAGES = 5 };
 #endif
 
 /* A queue has less than FLUSH pairs when a stage before it, or a vector of new pairs, adds STEP at most. push() and

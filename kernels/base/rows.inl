@@ -72,6 +72,23 @@ INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[
                 place[lane] = find_place(call, row[lane]);
 }
 
+/* The places behind those that are listed, for the lanes `keep`; elsewhere the spare one. */
+INLINE void find_next_places(struct rows *rows, vm keep, char *place[V_WIDTH]) {
+    const uint32_t kept = vm_bits(keep);
+    char *next = rows->out.base + rows->listed * rows->out.stride;
+    if (kept == vm_bits(vm_front(V_WIDTH))) { /* mostly so where boxes rest on each other */
+        for (int lane = 0; lane < V_WIDTH; lane++)
+            place[lane] = next + lane * rows->out.stride;
+        rows->listed += V_WIDTH;
+        return;
+    }
+    for (uint32_t lane = 0; lane < V_WIDTH; lane++) {
+        place[lane] = choose(kept >> lane & 1, next, rows->spare);
+        next += (ptrdiff_t)(kept >> lane & 1) * rows->out.stride;
+    }
+    rows->listed += __builtin_popcount(kept);
+}
+
 INLINE void put_word(char *place, int offset, uint32_t word) { memcpy(place + offset, &word, sizeof word); }
 
 /* Two halves of a word, the one at the lower address first. */
@@ -196,6 +213,8 @@ INLINE size_t end_rows(const struct call *call, size_t size) {
     size_t count = (size_t)rows->listed;
     if (rows->dense)
         return fill_gaps(call, size);
+    if (rows->done >= (int)call->count) /* all rows are listed */
+        return count;
     for (size_t k = 0; k < call->count; k += 8)
         for (uint32_t bits = pack_bytes(rows->known + k); bits; bits &= bits - 1, to += stride, count++) {
             const char *from = rows->out.base + (ptrdiff_t)(k + (unsigned)__builtin_ctz(bits)) * stride;

@@ -19,6 +19,8 @@
 #include "base/rows.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "box/box_pairs.inl"
+#include "box/box_rows.inl"
 #include "kernels.h"
 #include "sat/certificates.inl"
 #include "sat/direction_lookup.inl"
@@ -58,10 +60,11 @@ INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf ite
 INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
     struct rows *rows = call->rows;
     const vm open = vm_and_not(take_valid(call, pair, circles, item), circles->apart);
-    const bool room = (size_t)rows->listed + V_WIDTH <= call->count;
-    const bool in_order = room && !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid);
+    const bool due = !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid);
+    const bool room = (size_t)rows->listed + V_WIDTH <= call->count && (!call->boxes || call->boxes->count == 0);
+    const bool in_order = due && room;
     const vm left = are_discs(open, item) ? answer_discs(call, open, circles->margin, item, in_order) : open;
-    if (in_order && !vm_any(left))
+    if (due && !vm_any(left) && (in_order || !vm_any(open)))
         rows->done += V_WIDTH;
     return left;
 }
@@ -200,6 +203,12 @@ static void decide(const struct call *call, struct queue *queue, int begin, stru
     }
 }
 
+INLINE vm detour_rows(const struct call *call, const struct pair_indices *indices, int k,
+                      const struct placement *placement, vm open, int32_t number) {
+    box_stage *const answer = call->edges ? answer_box_manifolds : answer_box_contacts;
+    return take_detour(call, indices, k, placement, open, number, answer);
+}
+
 /* The rows of a call, of contacts or manifolds. */
 static size_t find_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out,
                         bool manifolds) {
@@ -211,12 +220,20 @@ static size_t find_rows(const narc_batch *batch, size_t first, size_t count, siz
     struct queue queues[STAGES];
     struct rows rows;
     struct call call = begin_rows(batch, first, count, skipped, out, &rows);
-    if (NARC_SHORTCUTS) {
+    const int edged_stage = hinted ? 0 : CLIMB;
+    struct box_queue boxes;
+    if (NARC_SHORTCUTS)
         call.edges = manifolds ? &queues[STAGES - 1] : NULL;
-        run_pairs(&call, triage_rows, CONTACT_FIELDS, stages, stage_count, hinted ? 0 : CLIMB, queues);
+    if (NARC_SHORTCUTS && batch->shapes->box_count > 0) {
+        boxes.count = 0;
+        call.boxes = &boxes;
+        run_pairs(&call, detour_rows, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
+        run_boxes(&call, manifolds ? answer_box_manifolds : answer_box_contacts, &boxes, true);
+    } else if (NARC_SHORTCUTS) {
+        run_pairs(&call, NULL, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
     } else {
         call.edges = manifolds ? &queues[1] : NULL;
-        run_pairs(&call, take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
+        run_pairs(&call, NULL, take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
     }
     return manifolds ? end_rows(&call, sizeof(narc_manifold)) : end_rows(&call, sizeof(narc_contact));
 }

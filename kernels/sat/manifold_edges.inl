@@ -71,7 +71,7 @@ struct edge {
     vm offered;                /* and its normal within the flat angle of n? */
     vm parallel;               /* n is the edge's normal */
     struct edge_end low, high; /* in the order of t */
-    vi before, after;          /* the records of the arcs at its start and at its counter-clockwise end */
+    vi before, after;          /* the numbers of the arcs at its start and at its counter-clockwise end */
     vf arc_radius;             /* of the touching arc */
 };
 
@@ -146,6 +146,12 @@ INLINE struct edge find_edge_of(const narc_record *records, struct ring ring, vi
     return edge;
 }
 
+/* The caller's number of an arc of A or B. */
+INLINE vi find_number_of(const struct queue *queue, int k, vi record, bool is_b) {
+    return find_arc_number(record, get_bits(queue, is_b ? FIRST_RECORD_B : FIRST_RECORD_A, k),
+                           get_bits(queue, is_b ? INFO_B : INFO_A, k));
+}
+
 /* The edge next to the arc in `record`: of two the one closer to n, of equals the one at the arc's end. Where that is
  * none, because the arc and its neighbour have a common tangent, the other one. */
 INLINE struct edge find_edge(const struct call *call, const struct queue *queue, int k, vi record, vec2 n, bool is_b) {
@@ -172,6 +178,8 @@ INLINE struct edge find_edge(const struct call *call, const struct queue *queue,
         edge.before = vi_select(again, other.before, edge.before);
         edge.after = vi_select(again, other.after, edge.after);
     }
+    edge.before = find_number_of(queue, k, edge.before, is_b);
+    edge.after = find_number_of(queue, k, edge.after, is_b);
     return edge;
 }
 
@@ -232,14 +240,17 @@ INLINE vm is_stretch(const struct end_point *low, const struct end_point *high, 
 #define AT_END 0x1p-5f
 
 /* The byte of a body's edge, of a point at `along`, at the low end in the lanes `low`. */
-INLINE vi find_edge_feature(const struct queue *queue, int k, const struct edge *edge, vf along, vm low, bool is_b) {
-    const vi first = get_bits(queue, is_b ? FIRST_RECORD_B : FIRST_RECORD_A, k);
-    const vi info = get_bits(queue, is_b ? INFO_B : INFO_A, k);
+INLINE vi find_edge_feature(const struct edge *edge, vf along, vm low, bool is_b) {
     const vf least = v_mul(v_set(AT_END), v_sub(edge->high.along, edge->low.along));
     const vf inside = v_select(low, v_sub(along, edge->low.along), v_sub(edge->high.along, along));
     const vm on_edge = v_lt(least, inside), at_start = is_b ? vm_not(low) : low;
-    const vi record = vi_select(vm_and_not(at_start, on_edge), edge->before, edge->after);
-    return vi_add(find_arc_number(record, first, info), vi_select(on_edge, vi_set(NARC_FEATURE_EDGE), vi_set(0)));
+    const vi of_edge = vi_add(edge->after, vi_set(NARC_FEATURE_EDGE));
+    return vi_select(on_edge, of_edge, vi_select(at_start, edge->before, edge->after));
+}
+
+/* The id of a point. */
+INLINE vi find_point_id(const struct edge *a, const struct edge *b, vf along, vm low) {
+    return vi_add(find_edge_feature(a, along, low, false), vi_shift_left(find_edge_feature(b, along, low, true), 8));
 }
 
 /* Does a body touch the other one with its edge? */
@@ -249,95 +260,131 @@ INLINE vm is_nearer_low(const struct edge *edge, vf along) {
     return v_le(v_abs(v_sub(along, edge->low.along)), v_abs(v_sub(edge->high.along, along)));
 }
 
-/* The byte of the body with `edge`, of the only point of two bodies, at `along`. A body that touches with its edge does
- * so at the end where the other one's corner has its own edge beside it: so the id is that of the same point with the
- * other edge within the flat angle. */
-INLINE vi find_touching_feature(const struct queue *queue, int k, const struct edge *edge, const struct edge *other,
-                                vf along, bool is_b) {
-    const vi first = get_bits(queue, is_b ? FIRST_RECORD_B : FIRST_RECORD_A, k);
-    const vi info = get_bits(queue, is_b ? INFO_B : INFO_A, k);
-    const vi arc = find_arc_number(get_bits(queue, is_b ? DEEPEST_RECORD_B : DEEPEST_RECORD_A, k), first, info);
+/* The byte of the body with `edge`, of the only point of two bodies, at `along`, where it has the arc `number`. A body
+ * that touches with its edge does so at the end where the other one's corner has its own edge beside it: so the id is
+ * that of the same point with the other edge within the flat angle. */
+INLINE vi find_touching_feature(const struct edge *edge, const struct edge *other, vf along, vi number, bool is_b) {
     const vm corner = vm_and_not(other->is_edge, other->parallel);
     const vm low = vm_or(vm_and(corner, is_nearer_low(other, along)), vm_and_not(is_nearer_low(edge, along), corner));
-    return vi_select(touches(edge), find_edge_feature(queue, k, edge, along, low, is_b), arc);
+    return vi_select(touches(edge), find_edge_feature(edge, along, low, is_b), number);
+}
+
+/* The id of the only point of two bodies. */
+INLINE vi find_touching_id(const struct edge *a, const struct edge *b, vf along, vi number_a, vi number_b) {
+    return vi_add(find_touching_feature(a, b, along, number_a, false),
+                  vi_shift_left(find_touching_feature(b, a, along, number_b, true), 8));
 }
 
 /* Stores the ids of pairs with one point, in the lanes `which`. */
-INLINE void store_touching_features(const struct call *call, const struct queue *queue, int k, vm which,
-                                    const struct edge *a, const struct edge *b) {
-    const vf along = get(queue, DEEPEST_ALONG, k);
-    const vi of_a = find_touching_feature(queue, k, a, b, along, false);
-    const vi of_b = find_touching_feature(queue, k, b, a, along, true);
+INLINE void store_touching_ids(const struct call *call, const struct queue *queue, int k, vm which,
+                               const struct edge *a, const struct edge *b) {
+    const vi number_a = find_number_of(queue, k, get_bits(queue, DEEPEST_RECORD_A, k), false);
+    const vi number_b = find_number_of(queue, k, get_bits(queue, DEEPEST_RECORD_B, k), true);
     char *place[V_WIDTH];
     int32_t id[V_WIDTH];
     find_places(call, get_bits(queue, PAIR, k), which, place);
-    vi_store(id, vi_add(of_a, vi_shift_left(of_b, 8)));
+    vi_store(id, find_touching_id(a, b, get(queue, DEEPEST_ALONG, k), number_a, number_b));
     for (int lane = 0; lane < V_WIDTH; lane++)
         put_word(place[lane], FIRST_POINT + offsetof(narc_manifold_point, feature), (uint32_t)id[lane]);
 }
 
+/* The points of two edges that face each other, in the lanes `two` both, elsewhere the first only, which is the deepest
+ * then. */
+struct facing_points {
+    vm two;
+    struct end_point first, second, deepest;
+    vi first_id, second_id;
+};
+
+/* Those of two edges with a stretch from `low` to `high` in common, seen along n. `exact`: the deepest point; `margin`:
+ * of the other one. */
+INLINE struct facing_points find_facing_points(const struct edge *a, const struct edge *b, struct end_point low,
+                                               struct end_point high, const struct end_point *exact, vf margin) {
+    /* The end that is the deepest point. Where the edges touch, the places are the stretch's ends. */
+    const vm touch = vm_and(a->parallel, b->parallel);
+    const vm nearer_low = v_le(v_abs(v_sub(exact->along, low.along)), v_abs(v_sub(high.along, exact->along)));
+    const vm lower_low = v_le(low.separation, high.separation);
+    const vm at_low = vm_or(vm_and(touch, lower_low), vm_and_not(nearer_low, touch));
+    const vm exact_low = vm_and_not(at_low, touch), exact_high = vm_and_not(vm_not(at_low), touch);
+    const vf least = exact->separation; /* rounding may not make the other one less */
+    const vf above_low = v_max(low.separation, least), above_high = v_max(high.separation, least);
+    const vm two = is_below(v_select(at_low, above_high, above_low), margin);
+    const vm keeps_low = vm_or(two, at_low); /* the first point that is listed is the low one */
+    low = select_end_point(exact_low, exact, &low);
+    high = select_end_point(exact_high, exact, &high);
+    low.separation = v_select(at_low, least, above_low);
+    high.separation = v_select(at_low, above_high, least);
+    const vm none = vm_xor(two, two);
+    struct facing_points points = {.two = two, .second = high, .deepest = select_end_point(at_low, &low, &high)};
+    points.first = select_end_point(keeps_low, &low, &high);
+    points.first_id = find_point_id(a, b, points.first.along, keeps_low);
+    points.second_id = find_point_id(a, b, high.along, none);
+    return points;
+}
+
+/* The words of both points in a row. */
+INLINE void write_facing_points(const struct facing_points *p, vec2 to_world, vec2 n, vf out_first[4],
+                                vf out_second[4]) {
+    const vec2 first = v2_rotate(to_world, v2_rotate(n, (vec2){p->first.across, p->first.along}));
+    const vec2 second = v2_rotate(to_world, v2_rotate(n, (vec2){p->second.across, p->second.along}));
+    const vf zero = v_set(0);
+    out_first[0] = first.x;
+    out_first[1] = first.y;
+    out_first[2] = p->first.separation;
+    out_first[3] = v_of_bits(p->first_id);
+    out_second[0] = v_select(p->two, second.x, zero);
+    out_second[1] = v_select(p->two, second.y, zero);
+    out_second[2] = v_select(p->two, p->second.separation, zero);
+    out_second[3] = v_select(p->two, v_of_bits(p->second_id), zero);
+}
+
+/* The point that is known already. */
+INLINE struct end_point get_deepest(const struct edge *a, const struct edge *b, vf along, vf across, vf separation) {
+    const vf flat = v_set(INFINITY);
+    return (struct end_point){along, across, separation, v_select(a->parallel, flat, a->arc_radius),
+                              v_select(b->parallel, flat, b->arc_radius)};
+}
+
+/* The margin of second points. */
+INLINE vf find_second_margin(const struct call *call, vf margin) {
+    const float asked = call->batch->query->second_margin;
+    return v_max(margin, v_set(asked == 0 ? -INFINITY : asked));
+}
+
 /* Finds the second points of the pairs `begin` ... of a queue, and the ids of all points. */
 static void find_second_points(const struct call *call, struct queue *queue, int begin, struct queue *next) {
-    const float asked = call->batch->query->second_margin;
-    const vf second_margin = v_set(asked == 0 ? -INFINITY : asked);
     (void)next;
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k);
         const vec2 n = get_vec2(queue, DEEPEST_NORMAL, k);
-        const vf deepest = get(queue, DEEPEST_SEPARATION, k), along = get(queue, DEEPEST_ALONG, k);
+        const vf deepest = get(queue, DEEPEST_SEPARATION, k);
         const struct edge a = find_edge(call, queue, k, get_bits(queue, DEEPEST_RECORD_A, k), n, false);
         const struct edge b = find_edge(call, queue, k, get_bits(queue, DEEPEST_RECORD_B, k), n, true);
-        struct end_point low = find_end_point(&a, &b, false), high = find_end_point(&a, &b, true);
+        const struct end_point low = find_end_point(&a, &b, false), high = find_end_point(&a, &b, true);
         const vec2 position_b = get_vec2(queue, POSITION, k);
         const vm common = vm_and(vm_and(a.offered, b.offered), is_stretch(&low, &high, deepest, n, position_b));
         const vm faces = vm_and(live, common);
         const vm one = vm_and(vm_and_not(live, faces), vm_or(touches(&a), touches(&b)));
         if (vm_any(one))
-            store_touching_features(call, queue, k, one, &a, &b);
+            store_touching_ids(call, queue, k, one, &a, &b);
         if (!vm_any(faces))
             continue;
-        /* The end that is the deepest point. Where the edges touch, the places are the stretch's ends. */
-        const vm touch = vm_and(a.parallel, b.parallel);
-        const vm nearer_low = v_le(v_abs(v_sub(along, low.along)), v_abs(v_sub(high.along, along)));
-        const vm lower_low = v_le(low.separation, high.separation);
-        const vm at_low = vm_or(vm_and(touch, lower_low), vm_and_not(nearer_low, touch));
-        struct end_point deep = select_end_point(at_low, &low, &high), other = select_end_point(at_low, &high, &low);
-        const struct end_point exact = {along, get(queue, DEEPEST_ACROSS, k), deepest,
-                                        v_select(a.parallel, v_set(INFINITY), a.arc_radius),
-                                        v_select(b.parallel, v_set(INFINITY), b.arc_radius)};
-        deep = select_end_point(touch, &deep, &exact);
-        deep.separation = deepest;
-        other.separation = v_max(other.separation, deepest);
-        const vf margin = v_max(get_margins(call, queue, k), second_margin);
-        const vm two = vm_and(faces, is_below(other.separation, margin));
-        const vm keeps_low = vm_or(two, at_low); /* the first point that is listed is the low one */
-        low = select_end_point(at_low, &deep, &other);
-        high = select_end_point(at_low, &other, &deep);
-        const struct end_point first = select_end_point(keeps_low, &low, &high);
-
-        const vm none = vm_xor(faces, faces);
-        const vi first_a = find_edge_feature(queue, k, &a, first.along, keeps_low, false);
-        const vi first_b = find_edge_feature(queue, k, &b, first.along, keeps_low, true);
-        const vi high_a = find_edge_feature(queue, k, &a, high.along, none, false);
-        const vi high_b = find_edge_feature(queue, k, &b, high.along, none, true);
-        const vi first_id = vi_add(first_a, vi_shift_left(first_b, 8));
-        const vi high_id = vi_add(high_a, vi_shift_left(high_b, 8));
-        const vec2 to_world = get_vec2(queue, ROTATION_A, k), zero = {v_set(0), v_set(0)};
-        const vec2 point = v2_rotate(to_world, v2_rotate(n, (vec2){first.across, first.along}));
-        const vec2 other_point = v2_rotate(to_world, v2_rotate(n, (vec2){high.across, high.along}));
-        const vec2 second = v2_select(two, other_point, zero);
-        const vf of_first[4] = {point.x, point.y, first.separation, v_of_bits(first_id)};
-        const vf of_second[4] = {second.x, second.y, v_select(two, high.separation, zero.x),
-                                 v_select(two, v_of_bits(high_id), zero.x)};
+        const struct end_point exact =
+            get_deepest(&a, &b, get(queue, DEEPEST_ALONG, k), get(queue, DEEPEST_ACROSS, k), deepest);
+        const vf margin = find_second_margin(call, get_margins(call, queue, k));
+        const struct facing_points p = find_facing_points(&a, &b, low, high, &exact, margin);
+        const vec2 to_world = get_vec2(queue, ROTATION_A, k);
+        vf first[4], second[4];
+        write_facing_points(&p, to_world, n, first, second);
         char *place[V_WIDTH];
         float radius_a[V_WIDTH], radius_b[V_WIDTH];
         int32_t count[V_WIDTH];
         find_places(call, get_bits(queue, PAIR, k), faces, place);
-        v_put_rows(place, FIRST_POINT, of_first);
-        v_put_rows(place, SECOND_POINT, of_second);
-        v_store(radius_a, deep.radius_a);
-        v_store(radius_b, deep.radius_b);
-        vi_store(count, vi_select(two, vi_set(2), vi_set(1)));
+        v_put_rows(place, FIRST_POINT, first);
+        v_put_rows(place, SECOND_POINT, second);
+        v_store(radius_a, p.deepest.radius_a);
+        v_store(radius_b, p.deepest.radius_b);
+        vi_store(count, vi_select(p.two, vi_set(2), vi_set(1)));
         for (int lane = 0; lane < V_WIDTH; lane++) {
             put_word(place[lane], offsetof(narc_manifold, count), (uint32_t)count[lane]);
             memcpy(place[lane] + MANIFOLD_RADII, &radius_a[lane], sizeof(float));

@@ -13,6 +13,8 @@
 #include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/vec2.inl"
+#include "box/box_pairs.inl"
+#include "box/box_walk.inl"
 #include "kernels.h"
 #include "sat/certificates.inl"
 #include "sat/direction_lookup.inl"
@@ -136,6 +138,19 @@ static void decide_overlaps(const struct call *call, struct queue *queue, int be
     }
 }
 
+/* Answers whether the pairs k ... of a queue overlap. */
+static void answer_box_overlaps(const struct call *call, const struct box_queue *queue, int k, int live) {
+    const struct box_pair pair = {queue, k};
+    const vm open = vm_front(live);
+    const struct box_contact c = find_box_contact(&pair, open);
+    mark_pairs(call, vi_bits(box_field(&pair, BOX_PAIR)), vm_and(open, v_lt(c.separation, v_set(0))));
+}
+
+INLINE vm detour_overlaps(const struct call *call, const struct pair_indices *indices, int k,
+                          const struct placement *placement, vm open, int32_t number) {
+    return take_detour(call, indices, k, placement, open, number, answer_box_overlaps);
+}
+
 void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
     static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_from_overlaps, decide_overlaps};
     struct queue queues[4];
@@ -143,6 +158,14 @@ void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, si
         run_overlap_method(decide_overlaps, batch, first, count, skipped, out_bits);
         return;
     }
-    const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
-    run_pairs(&call, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
+    struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
+    if (batch->shapes->box_count == 0) {
+        run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
+        return;
+    }
+    struct box_queue boxes;
+    boxes.count = 0;
+    call.boxes = &boxes;
+    run_pairs(&call, detour_overlaps, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
+    run_boxes(&call, answer_box_overlaps, &boxes, true);
 }

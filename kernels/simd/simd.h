@@ -51,11 +51,14 @@
  * arrays of its own: the address sanitizer's frames are less aligned than GCC 12 takes those arrays to be. */
 #define INLINE static inline __attribute__((always_inline))
 
-/* Before a loop over the fields of something, all of which is wanted in registers. */
+/* Before a loop over the fields of something, all of which is wanted in registers; and before one that does little else
+ * but count. */
 #ifdef __clang__
-#define UNROLL _Pragma("unroll")
+#define UNROLL     _Pragma("unroll")
+#define UNROLL_FEW _Pragma("unroll 4")
 #else
-#define UNROLL _Pragma("GCC unroll 32")
+#define UNROLL     _Pragma("GCC unroll 32")
+#define UNROLL_FEW _Pragma("GCC unroll 4")
 #endif
 
 #ifndef NARC_SIMD

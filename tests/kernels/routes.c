@@ -68,7 +68,7 @@ static void check_manifolds(const struct scene *scene, float margin, const float
     const narc_pairs pairs = scene_pairs(scene);
     const narc_workers workers = narc_openmp_workers(threads);
     const narc_query query = {.margin = margin, .margins = {own, sizeof *own}, .workers = &workers};
-    struct manifolds right = find_plain_manifolds(scene->store, &bodies, &pairs, margin, own);
+    struct manifolds right = find_plain_manifolds(scene->store, &bodies, &pairs, &query);
     struct manifolds found = {guard_allocate(pairs.count * sizeof *found.rows), 0};
     assert_int_equal(
         narc_find_manifolds(scene->store, &bodies, &pairs, &query, found.rows, pairs.count, &found.count, NULL),

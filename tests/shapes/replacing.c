@@ -61,6 +61,7 @@ static void expect_same_shape(const narc_shapes *shapes, uint32_t index, const s
                         narc_count_records(header.count) * sizeof(narc_record));
     header.first_record = fresh->headers[0].first_record;
     assert_memory_equal(&header, fresh->headers, sizeof header);
+    assert_memory_equal(&shapes->boxes[index], fresh->boxes, sizeof *fresh->boxes);
     narc_destroy_shapes(fresh);
 }
 
@@ -78,6 +79,7 @@ struct model {
 
 static void expect_model(const narc_shapes *shapes, const struct model *model) {
     size_t used = narc_count_records(2); /* the circle that removed shapes have */
+    size_t boxes = 0;
     assert_int_equal(narc_count_shapes(shapes), model->count);
     for (uint32_t k = 0; k < model->count; k++) {
         assert_int_equal(narc_count_uses(shapes, k), model->uses[k]);
@@ -85,7 +87,9 @@ static void expect_model(const narc_shapes *shapes, const struct model *model) {
             used += narc_count_records(shapes->headers[k].count);
             assert_int_equal(narc_get_arcs(shapes, k, NULL), model->shape[k].count);
             expect_same_shape(shapes, k, &model->shape[k]);
+            boxes += shapes->boxes[k].info != 0;
         } else {
+            assert_int_equal(shapes->boxes[k].info, 0);
             narc_aabb box;
             assert_int_equal(narc_get_arcs(shapes, k, NULL), 0);
             assert_int_equal(narc_shape_flags(shapes, k), 0);
@@ -93,6 +97,7 @@ static void expect_model(const narc_shapes *shapes, const struct model *model) {
         }
     }
     assert_int_equal(shapes->used_records, used);
+    assert_int_equal(shapes->box_count, boxes);
 }
 
 TEST(holds_what_was_put_last) {

@@ -46,6 +46,7 @@ static void expect_same_store(const narc_shapes *a, const narc_shapes *b) {
     assert_int_equal(a->removed_count, b->removed_count);
     assert_int_equal(a->last_removed, b->last_removed);
     assert_int_equal(a->used_records, b->used_records);
+    assert_int_equal(a->box_count, b->box_count);
     for (uint32_t k = 0; k < a->count; k++) {
         narc_shape_header header = a->headers[k];
         assert_int_equal(narc_count_uses(a, k), narc_count_uses(b, k));
@@ -56,6 +57,7 @@ static void expect_same_store(const narc_shapes *a, const narc_shapes *b) {
         }
         header.first_record = b->headers[k].first_record;
         assert_memory_equal(&header, &b->headers[k], sizeof header);
+        assert_memory_equal(&a->boxes[k], &b->boxes[k], sizeof *a->boxes);
         assert_memory_equal(&a->records[a->headers[k].first_record], &b->records[header.first_record],
                             (narc_angle_records(header.count) + header.count) * sizeof(narc_record));
     }

@@ -234,6 +234,59 @@ TEST(knows_what_shapes_are) {
     narc_destroy_shapes(shapes);
 }
 
+/* The form of the box that some arcs make, in a store of their own. */
+static narc_box_form find_form(const narc_arc *arcs, size_t count) {
+    narc_shapes *shapes = empty_store();
+    assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+    const narc_box_form form = shapes->boxes[0];
+    assert_int_equal(shapes->box_count, form.info != 0);
+    narc_destroy_shapes(shapes);
+    return form;
+}
+
+static void expect_form(const struct shape *shape, float half_x, float half_y, float radius, uint32_t info) {
+    const narc_box_form form = find_form(shape->arcs, shape->count);
+    assert_int_equal(form.info, info);
+    assert_true(form.half_x == half_x && form.half_y == half_y && form.radius == radius);
+}
+
+/* Boxes about their origin with equal corners, whichever arc comes first; nothing else. */
+TEST(knows_boxes) {
+    const narc_point corners[4] = {{-2, 1}, {-2, -1}, {2, -1}, {2, 1}};
+    struct shape box = box_of(4, 2, 0), shape, polygon;
+    expect_form(&box, 2, 1, 0, NARC_IS_BOX);
+    assert_int_equal(narc_build_polygon(corners, 4, 0, polygon.arcs, &polygon.count, NULL), NARC_OK);
+    expect_form(&polygon, 2, 1, 0, NARC_IS_BOX | 3);
+    box = box_of(4, 2, 0.25);
+    expect_form(&box, 1.75f, 0.75f, 0.25f, NARC_IS_BOX);
+    for (uint32_t first = 1; first < 4; first++) {
+        shape.count = 4;
+        for (uint32_t k = 0; k < 4; k++)
+            shape.arcs[(k + first) % 4] = box.arcs[k];
+        expect_form(&shape, 1.75f, 0.75f, 0.25f, NARC_IS_BOX | first);
+    }
+    for (int change = 0; change < 6; change++) {
+        shape = box;
+        for (size_t k = 0; k < 4; k++) {
+            narc_arc *arc = &shape.arcs[k];
+            arc->center_x += change == 0 ? 1e-6 : 0;
+            arc->center_y += change == 1 ? 0.5 : 0;
+            arc->start += change == 2 ? 1e-6 : 0; /* turned, as far as it still joins */
+            arc->end += change == 2 ? 1e-6 : 0;
+        }
+        if (change == 3) { /* one corner has another radius */
+            shape.arcs[2].radius = 0.5;
+            shape.arcs[2].center_x += 0.25;
+            shape.arcs[2].center_y += 0.25;
+        }
+        if (change == 4)
+            shape = box_of(4, 2, 1); /* a capsule of four arcs */
+        if (change == 5)
+            shape = box_of(4, 2, 0.9999999); /* its short sides are no edges */
+        assert_int_equal(find_form(shape.arcs, shape.count).info, 0);
+    }
+}
+
 /* The filters' circles hold for the shape that was stored, and are not much larger or smaller than they must be. */
 TEST(bounds_what_is_stored) {
     struct test_random random = test_random_named("bounds");

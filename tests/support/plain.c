@@ -25,12 +25,13 @@ static size_t run_kernel(narc_row_kernel *kernel, const narc_batch *batch, void 
 
 static narc_batch begin_plain(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                               const narc_query *query) {
+    const float angle = query->flat_angle == 0 ? NARC_FLAT_ANGLE : query->flat_angle;
     return (narc_batch){.shapes = shapes,
                         .a = bodies,
                         .b = bodies,
                         .pairs = pairs,
                         .query = query,
-                        .flat_sine = (float)sin((double)NARC_FLAT_ANGLE),
+                        .flat_sine = angle < 0 ? -1 : (float)sin((double)angle),
                         .count = pairs->count,
                         .asked = pairs->count};
 }
@@ -53,9 +54,8 @@ struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies
 }
 
 struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
-                                      float margin, const float *margins) {
-    const narc_query query = {.margin = margin, .margins = {margins, sizeof *margins}};
-    const narc_batch batch = begin_plain(shapes, bodies, pairs, &query);
+                                      const narc_query *query) {
+    const narc_batch batch = begin_plain(shapes, bodies, pairs, query);
     struct manifolds plain = {make_junk(pairs->count * sizeof *plain.rows), 0};
     plain.count = run_kernel(narc_kernels_plain.manifold, &batch, plain.rows, sizeof *plain.rows);
     return plain;

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * box_contact.inl - how two boxes touch: the deciding formula (normal_fan.inl), of which only that part is computed
+ * that can hold its answer.
+ *
+ * Let F and G be the normals of the edge of A and of the edge of B that face each other (box_pairs.inl), in the order
+ * in which the formula meets them. In the interval before F the corners before both edges answer, between F and G the
+ * one behind F and the one before the other edge, and beyond G the corners behind both edges. The candidates are a kink
+ * at F, a kink at G, and a corner against a corner in each of the intervals; their signs and values are computed as
+ * the formula computes them. What it looks at elsewhere is less, or rises or falls throughout: docs/algorithm.md,
+ * section 9. Where signs contradict each other, and where a corner may just as well be in the next interval, the fan is
+ * walked (box_walk.inl).
+ */
+#ifndef NARC_BOX_BOX_CONTACT_INL
+#define NARC_BOX_BOX_CONTACT_INL
+
+#include <stdbool.h>
+
+#include "base/arcs.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "box/box_pairs.inl"
+#include "simd/simd.h"
+
+/* A pair in each lane, as it lies in the queue: registers are too few to hold it. */
+struct box_pair {
+    const struct box_queue *queue;
+    int k;
+};
+
+INLINE vf box_field(const struct box_pair *pair, int field) { return v_load(pair->queue->item[field] + pair->k); }
+
+INLINE vec2 box_vec2(const struct box_pair *pair, int field) {
+    return (vec2){box_field(pair, field), box_field(pair, field + 1)};
+}
+
+INLINE vi box_code(const struct box_pair *pair) { return vi_bits(box_field(pair, BOX_CODE)); }
+
+/* B's in A's frame, where A is scaled. */
+INLINE struct pose box_pose(const struct box_pair *pair) {
+    return (struct pose){box_vec2(pair, BOX_POSITION), box_vec2(pair, BOX_ROTATION), v_set(1),
+                         box_field(pair, BOX_SCALE_B)};
+}
+
+/* 1, or -1 where bit 1 of a number is set. */
+INLINE vf sign_of(vi number) {
+    return v_of_bits(vi_add(vi_set(0x3f800000), vi_and(vi_shift_left(number, 30), vi_set(INT32_MIN))));
+}
+
+/* Corner i of a box, and the normal of its edge i: i counts on beyond 3. */
+INLINE vec2 box_corner(vec2 half, vi i) {
+    return (vec2){v_mul(half.x, sign_of(vi_add(i, vi_set(1)))), v_mul(half.y, sign_of(i))};
+}
+
+INLINE vec2 box_normal(vi i) {
+    const vf sign = sign_of(i), zero = v_set(0);
+    const vm odd = vi_lt(vi_set(0), vi_and(i, vi_set(1)));
+    return (vec2){v_select(odd, zero, sign), v_select(odd, sign, zero)};
+}
+
+/* An edge of a box with the centres of both its corners; along the tangent, n turned a quarter turn counter-clockwise,
+ * `low` comes first. One of the corners touches: the one behind the edge, counter-clockwise, or the one before it. */
+struct box_side {
+    vi edge;
+    vec2 normal, low, high;
+    vm behind;
+};
+
+INLINE struct box_side find_side_a(const struct box_pair *pair, vi edge) {
+    return (struct box_side){.edge = edge,
+                             .normal = box_normal(edge),
+                             .low = box_corner(box_vec2(pair, BOX_HALF_A), vi_sub(edge, vi_set(1))),
+                             .high = box_corner(box_vec2(pair, BOX_HALF_A), edge)};
+}
+
+INLINE struct box_side find_side_b(const struct box_pair *pair, vi edge) {
+    const struct pose pose = box_pose(pair);
+    const vec2 half = box_vec2(pair, BOX_HALF_B);
+    const vec2 before = box_corner(half, vi_sub(edge, vi_set(1))), behind = box_corner(half, edge);
+    return (struct box_side){.edge = edge,
+                             .normal = v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(edge)),
+                             .low = place_center_b(behind, &pose),
+                             .high = place_center_b(before, &pose)};
+}
+
+/* The corner that touches. */
+INLINE vi box_touching(const struct box_side *side) {
+    return vi_sub(side->edge, vi_select(side->behind, vi_set(0), vi_set(1)));
+}
+
+struct box_contact {
+    vf separation;
+    vec2 normal;
+    struct box_side a, b;
+};
+
+/* What the two edges tell. Sets where the answer is not certain, and where a corner touches a corner: then other edges
+ * may be closer to the normal. */
+INLINE struct box_contact find_facing(const struct box_pair *pair, vm *out_left, vm *out_corners) {
+    const vf zero = v_set(0), radii = v_add(box_field(pair, BOX_RADIUS_A), box_field(pair, BOX_RADIUS_B)),
+             slack = box_field(pair, BOX_SLACK);
+    const vi edge_a = vi_and(box_code(pair), vi_set(3)), edge_b = vi_and(vi_shift_right(box_code(pair), 2), vi_set(3));
+    struct box_contact c = {.a = find_side_a(pair, edge_a), .b = find_side_b(pair, edge_b)};
+    /* The order in the walk, which begins at +x: an edge of A there comes after one of B just before it. */
+    const vf angle_a = v_of_int(edge_a), angle_b = diamond_angle(c.b.normal);
+    const vm wraps = vm_and(v_le(angle_a, zero), v_lt(v_set(2), angle_b));
+    const vm a_first = vm_and_not(v_lt(angle_a, angle_b), wraps);
+    const vec2 f = v2_select(a_first, c.a.normal, c.b.normal), g = v2_select(a_first, c.b.normal, c.a.normal);
+    const vec2 u_before = v2_sub(c.b.high, c.a.low), u_beyond = v2_sub(c.b.low, c.a.high);
+    const vec2 u = v2_sub(v2_select(a_first, c.b.high, c.b.low), v2_select(a_first, c.a.high, c.a.low));
+
+    const vf after_f = v2_cross(f, u), before_g = v2_cross(u, g), along_f = v2_dot(u, f), along_g = v2_dot(u_beyond, g);
+    const vm rises = v_lt(v2_cross(u_before, f), zero), falls = v_lt(v2_cross(g, u_beyond), zero);
+    const vm between = vm_and(v_le(zero, after_f), v_le(zero, before_g));
+    const vm at_f = vm_or(between, vm_and(rises, v_lt(after_f, zero))); /* or in the interval from there on */
+    const vm at_g = vm_and(v_lt(before_g, zero), falls);
+    const vm inside = vm_and(between, v_lt(zero, v_add(along_f, v2_dot(u, g))));
+    const vm beyond = vm_and_not(vm_not(falls), at_f), before = vm_and_not(vm_not(rises), vm_or(at_f, at_g));
+    const vf value_f = v_sub(along_f, radii), value_g = v_sub(along_g, radii);
+    const vm better = vm_or(v_lt(value_f, value_g), vm_and(wraps, v_le(value_f, value_g)));
+    const vm takes_g = vm_and(at_g, vm_or(vm_not(at_f), better));
+    c.separation = v_select(takes_g, value_g, value_f);
+    c.normal = v2_select(takes_g, g, f);
+
+    vm left = vm_or(vi_lt(vi_set(0), vi_and(box_code(pair), vi_set(BOX_TIE))), vm_and(beyond, before));
+    left = vm_or(left, vm_not(vm_or(vm_or(at_f, at_g), vm_or(beyond, before))));
+    const vm corners = vm_or(inside, vm_or(beyond, before));
+    if (vm_any(corners)) {
+        const vec2 w = v2_select(beyond, u_beyond, v2_select(before, u_before, u));
+        const vf length = v2_length(w);
+        const vf room = v_select(beyond, v2_dot(w, f), v_select(before, v2_dot(w, g), length));
+        left = vm_or(left, vm_and_not(corners, v_lt(slack, room)));
+        c.separation = v_select(corners, v_sub(length, radii), c.separation);
+        c.normal = v2_select(corners, v2_divide(w, length), c.normal);
+    }
+    const vm behind_both = vm_or(takes_g, beyond);
+    c.a.behind = vm_or(behind_both, vm_and_not(a_first, before));
+    c.b.behind = vm_or(behind_both, vm_and_not(vm_not(a_first), before));
+    *out_left = left;
+    *out_corners = corners;
+    return c;
+}
+
+/* The edge next to a corner that is closer to n; of equals the one behind the corner. */
+INLINE vi find_closer_edge(vi corner, vec2 start, vec2 end, vec2 n, vm *out_behind) {
+    *out_behind = v_lt(v_abs(v2_cross(start, n)), v_abs(v2_cross(end, n)));
+    return vi_add(corner, vi_select(*out_behind, vi_set(0), vi_set(1)));
+}
+
+INLINE struct box_side select_box_side(vm m, const struct box_side *a, const struct box_side *b) {
+    return (struct box_side){vi_select(m, a->edge, b->edge), v2_select(m, a->normal, b->normal),
+                             v2_select(m, a->low, b->low), v2_select(m, a->high, b->high),
+                             vm_or(vm_and(m, a->behind), vm_and_not(b->behind, m))};
+}
+
+/* Takes the edges that are closest to n, in the lanes `which`, with the corners that touch. */
+INLINE void find_closest_sides(const struct box_pair *pair, vm which, vi corner_a, vi corner_b,
+                               struct box_contact *contact) {
+    const vi one = vi_set(1);
+    const vec2 q = box_vec2(pair, BOX_ROTATION), n = contact->normal;
+    vm behind_a, behind_b;
+    const vi edge_a = find_closer_edge(corner_a, box_normal(corner_a), box_normal(vi_add(corner_a, one)), n, &behind_a);
+    const vi edge_b = find_closer_edge(corner_b, v2_rotate_opposite(q, box_normal(corner_b)),
+                                       v2_rotate_opposite(q, box_normal(vi_add(corner_b, one))), n, &behind_b);
+    struct box_side a = find_side_a(pair, edge_a), b = find_side_b(pair, edge_b);
+    a.behind = behind_a;
+    b.behind = behind_b;
+    contact->a = select_box_side(which, &a, &contact->a);
+    contact->b = select_box_side(which, &b, &contact->b);
+}
+
+#endif

@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * box_rows.inl - the last step of a pair of boxes: contacts, and manifolds with their second point, ids, radii and
+ * reaches. All is what base/contact_point.inl, base/rows.inl and sat/manifold_edges.inl define, and is computed in
+ * the same way: of a box the edge closest to the normal is one of the two next to the corner that touches, and it is
+ * never too short to be one.
+ *
+ * Rows are listed at once while all pairs before them are answered (rows.inl).
+ */
+#ifndef NARC_BOX_BOX_ROWS_INL
+#define NARC_BOX_BOX_ROWS_INL
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/call.inl"
+#include "base/contact_point.inl"
+#include "base/rows.inl"
+#include "base/vec2.inl"
+#include "box/box_contact.inl"
+#include "box/box_pairs.inl"
+#include "box/box_walk.inl"
+#include "kernels.h"
+#include "sat/manifold_edges.inl"
+#include "simd/simd.h"
+
+/* What a box touches the other one with: a corner, or its edge. */
+struct box_touch {
+    vf radius;           /* outwards along n: of B, which is touched on its side -n, below 0 */
+    vm parallel;         /* n is the edge's normal */
+    vf sine, cosine;     /* from the edge's normal to n */
+    vf across, min, max; /* as of a feature */
+};
+
+INLINE struct box_touch find_touch(const struct box_side *side, vec2 n, vf radius, bool is_b) {
+    struct box_touch touch = {.radius = radius, .sine = v2_cross(side->normal, n), .cosine = v2_dot(side->normal, n)};
+    const vec2 step = v2_scale(n, radius), low = v2_add(side->low, step), high = v2_add(side->high, step);
+    const vm at_low = is_b ? side->behind : vm_not(side->behind);
+    const vf along_low = v2_cross(n, low), along_high = v2_cross(n, high);
+    touch.parallel = v_le(v_abs(touch.sine), v_set(PARALLEL));
+    touch.across = v_select(at_low, v2_dot(n, low), v2_dot(n, high));
+    touch.min = v_select(vm_or(at_low, touch.parallel), along_low, along_high);
+    touch.max = v_select(vm_and_not(at_low, touch.parallel), along_low, along_high);
+    return touch;
+}
+
+/* The caller's number of corner i, or of the edge before it. `shift`: of the first arc in the code. */
+INLINE vi box_feature(vi i, vi code, int shift) { return vi_and(vi_add(i, vi_shift_right(code, shift)), vi_set(3)); }
+
+/* What touches, as a contact has it. */
+INLINE vi find_box_feature(const struct box_side *side, const struct box_touch *touch, vi code, int shift) {
+    const vi edge = vi_add(box_feature(side->edge, code, shift), vi_set(NARC_FEATURE_EDGE));
+    return vi_select(touch->parallel, edge, box_feature(box_touching(side), code, shift));
+}
+
+/* The reaches of a corner, as find_reach() has them, with the edge next to it. */
+INLINE vi find_box_reach(const struct box_side *side, const struct box_touch *touch) {
+    const vf zero = v_set(0), one = v_set(1), full = v_set(NARC_REACH_ONE);
+    if (!vm_any(vm_not(touch->parallel)))
+        return vi_set(0);
+    const vf turn = v_select(side->behind, touch->sine, v_neg(touch->sine)); /* away from the edge */
+    const vf near = v_select(touch->parallel, zero, v_mul(full, v_min(v_max(turn, zero), one)));
+    const vf other = v_mul(full, v_select(v_lt(zero, turn), v_min(touch->cosine, one), one));
+    const vf far = v_select(touch->parallel, zero, other);
+    return pack_halves(vi_truncate(v_select(side->behind, near, far)), vi_truncate(v_select(side->behind, far, near)));
+}
+
+/* The edge of a box as find_second_points() takes it. */
+INLINE struct edge find_box_edge(const struct box_side *side, const struct box_touch *touch, vec2 n, vf flat_sine,
+                                 vi code, int shift, bool is_b) {
+    const vec2 step = v2_scale(side->normal, touch->radius), low = v2_add(side->low, step),
+               high = v2_add(side->high, step);
+    const vf radius = is_b ? v_neg(touch->radius) : touch->radius;
+    return (struct edge){.is_edge = vm_front(V_WIDTH),
+                         .offered = v_le(v_abs(touch->sine), flat_sine),
+                         .parallel = touch->parallel,
+                         .low = {v2_cross(n, low), v2_dot(n, low), radius},
+                         .high = {v2_cross(n, high), v2_dot(n, high), radius},
+                         .before = box_feature(vi_sub(side->edge, vi_set(1)), code, shift),
+                         .after = box_feature(side->edge, code, shift),
+                         .arc_radius = radius};
+}
+
+/* The words of a manifold's row behind its first one: the point that `place` tells, or those of two edges. */
+struct box_manifold {
+    vi count;
+    vf radius_a, radius_b, first[4], second[4];
+};
+
+INLINE struct box_manifold find_box_points(const struct call *call, const struct box_pair *pair,
+                                           const struct box_contact *c, const struct box_touch *on_a,
+                                           const struct box_touch *on_b, vec2 place, vf margin) {
+    const vec2 n = c->normal, to_world = box_vec2(pair, BOX_ROTATION_A);
+    const vf flat_sine = v_set(call->batch->flat_sine);
+    const vi code = box_code(pair);
+    const struct edge a = find_box_edge(&c->a, on_a, n, flat_sine, code, 4, false);
+    const struct edge b = find_box_edge(&c->b, on_b, n, flat_sine, code, 6, true);
+    const struct end_point low = find_end_point(&a, &b, false), high = find_end_point(&a, &b, true);
+    const vm stretch = is_stretch(&low, &high, c->separation, n, box_vec2(pair, BOX_POSITION));
+    const vm faces = vm_and(vm_and(a.offered, b.offered), stretch);
+    const struct end_point exact = get_deepest(&a, &b, place.y, place.x, c->separation);
+    struct facing_points p = find_facing_points(&a, &b, low, high, &exact, find_second_margin(call, margin));
+    if (vm_any(vm_not(faces))) {
+        const vi number_a = box_feature(box_touching(&c->a), code, 4),
+                 number_b = box_feature(box_touching(&c->b), code, 6);
+        const vi id = find_touching_id(&a, &b, place.y, number_a, number_b);
+        p.two = vm_and(p.two, faces);
+        p.first = select_end_point(faces, &p.first, &exact);
+        p.first_id = vi_select(faces, p.first_id, id);
+        p.deepest = select_end_point(faces, &p.deepest, &exact);
+    }
+    struct box_manifold m = {.count = vi_select(p.two, vi_set(2), vi_set(1)),
+                             .radius_a = p.deepest.radius_a,
+                             .radius_b = p.deepest.radius_b};
+    write_facing_points(&p, to_world, n, m.first, m.second);
+    return m;
+}
+
+/* The margins of pairs. */
+INLINE vf get_box_margins(const struct call *call, vi pairs) {
+    int32_t pair[V_WIDTH];
+    float lane[V_WIDTH];
+    if (!call->margins.base)
+        return v_set(call->margin);
+    vi_store(pair, pairs);
+    for (int l = 0; l < V_WIDTH; l++)
+        lane[l] = find_margin(call, pair[l]);
+    return v_load(lane);
+}
+
+/* The places of rows: behind those that are listed if all pairs before the last one are answered. From the first vector
+ * on of which that is not so no row is listed. */
+INLINE void find_box_places(const struct call *call, const struct box_queue *queue, int last, vi pairs, vm keep,
+                            char *place[V_WIDTH]) {
+    struct rows *rows = call->rows;
+    int32_t pair;
+    memcpy(&pair, &queue->item[BOX_PAIR][last], sizeof pair);
+    if (pair < rows->done) {
+        find_next_places(rows, keep, place);
+    } else {
+        rows->done = -1;
+        find_places(call, pairs, keep, place);
+    }
+}
+
+/* Answers the pairs k ... of a queue in the lanes `live`. */
+INLINE void answer_boxes(const struct call *call, const struct box_queue *queue, int k, int live, bool manifolds) {
+    const struct box_pair pair = {queue, k};
+    const vi pairs = vi_bits(box_field(&pair, BOX_PAIR));
+    const vf margin = get_box_margins(call, pairs);
+    const vm open = vm_front(live);
+    const struct box_contact c = find_box_contact(&pair, open);
+    const vm keep = vm_and(open, is_below(c.separation, margin));
+    if (!vm_any(keep))
+        return;
+    const vec2 n = c.normal;
+    const struct box_touch on_a = find_touch(&c.a, n, box_field(&pair, BOX_RADIUS_A), false);
+    const struct box_touch on_b = find_touch(&c.b, n, v_neg(box_field(&pair, BOX_RADIUS_B)), true);
+    const vf half = v_set(0.5f), across = v_mul(half, v_add(on_a.across, on_b.across));
+    const vec2 place = {across, v_mul(half, v_add(v_max(on_a.min, on_b.min), v_min(on_a.max, on_b.max)))};
+    const vec2 normal = v2_rotate(box_vec2(&pair, BOX_ROTATION_A), n);
+    const vi numbers = find_numbers(call, pairs);
+    char *to[V_WIDTH];
+    find_box_places(call, queue, k + live - 1, pairs, keep, to);
+    if (manifolds) {
+        const struct box_manifold m = find_box_points(call, &pair, &c, &on_a, &on_b, place, margin);
+        const vf head[4] = {v_of_bits(numbers), v_of_bits(m.count), normal.x, normal.y};
+        const vf radii[4] = {m.radius_a, m.radius_b, v_of_bits(find_box_reach(&c.a, &on_a)),
+                             v_of_bits(find_box_reach(&c.b, &on_b))};
+        v_put_rows(to, 0, head);
+        v_put_rows(to, MANIFOLD_RADII, radii);
+        v_put_rows(to, FIRST_POINT, m.first);
+        v_put_rows(to, SECOND_POINT, m.second);
+        return;
+    }
+    const vf flat = v_set(INFINITY);
+    const vi of_a = find_box_feature(&c.a, &on_a, box_code(&pair), 4);
+    const vi of_b = find_box_feature(&c.b, &on_b, box_code(&pair), 6);
+    const struct answer answer = {.separation = c.separation,
+                                  .normal = normal,
+                                  .point = v2_rotate(box_vec2(&pair, BOX_ROTATION_A), v2_rotate(n, place)),
+                                  .feature = vi_add(of_a, vi_shift_left(of_b, 8)),
+                                  .radius_a = v_select(on_a.parallel, flat, box_field(&pair, BOX_RADIUS_A)),
+                                  .radius_b = v_select(on_b.parallel, flat, box_field(&pair, BOX_RADIUS_B))};
+    write_answers(call, to, numbers, &answer);
+}
+
+static void answer_box_contacts(const struct call *call, const struct box_queue *queue, int k, int live) {
+    answer_boxes(call, queue, k, live, false);
+}
+
+static void answer_box_manifolds(const struct call *call, const struct box_queue *queue, int k, int live) {
+    answer_boxes(call, queue, k, live, true);
+}
+
+#endif

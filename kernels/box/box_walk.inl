@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * box_walk.inl - the deciding formula (normal_fan.inl) for two boxes of which more than two edges may answer: around
+ * all of the fan, without a look at the arcs.
+ *
+ * The junctions of both boxes are a right angle apart. So the walk, which begins at +x, meets them in four couples: edge
+ * p of A, at the diamond angle p, and the edge of B that is nearest to it, in the order of their angles. B's edge next
+ * to +x may lie just before it: then its interval is the last of the walk. Half sizes are more than rounding, so there
+ * is always a candidate.
+ */
+#ifndef NARC_BOX_BOX_WALK_INL
+#define NARC_BOX_BOX_WALK_INL
+
+#include <math.h>
+
+#include "base/arcs.inl"
+#include "base/call.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "box/box_contact.inl"
+#include "sat/normal_fan.inl"
+#include "simd/simd.h"
+
+/* Two junctions that follow each other, and the corners behind their edges, with their numbers. */
+struct couple {
+    vec2 low, high, corner_a, corner_b;
+    vm a_first, b_first;
+    vi number_a, number_b;
+};
+
+/* Couple p, with edge `turn` + p of B; `wraps`: B's edge lies before +x. */
+INLINE struct couple find_couple(const struct box_pair *pair, int p, vi turn, vm *out_wraps) {
+    const struct pose pose = box_pose(pair);
+    const vi edge_a = vi_set(p), edge_b = vi_add(turn, edge_a);
+    const vec2 of_a = box_normal(edge_a), of_b = v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(edge_b));
+    const vf angle = diamond_angle(of_b);
+    *out_wraps = v_lt(v_set(2), angle);
+    const vm a_first = p == 0 ? vm_and_not(v_lt(v_set(0), angle), *out_wraps) : v_lt(v_set((float)p), angle);
+    return (struct couple){.low = v2_select(a_first, of_a, of_b),
+                           .high = v2_select(a_first, of_b, of_a),
+                           .corner_a = box_corner(box_vec2(pair, BOX_HALF_A), edge_a),
+                           .corner_b = place_center_b(box_corner(box_vec2(pair, BOX_HALF_B), edge_b), &pose),
+                           .a_first = a_first,
+                           .b_first = vm_not(a_first),
+                           .number_a = edge_a,
+                           .number_b = edge_b};
+}
+
+/* Takes the candidate of the interval between a couple's junctions, or of the one behind them, up to `end`, if it is
+ * better, in the lanes `which`. Returns whether the gap rises at the interval's end. */
+INLINE vm try_interval(const struct box_pair *pair, const struct couple *last, const struct couple *couple, vec2 end,
+                       bool behind, vm which, vm rises, struct gap *best) {
+    const vm none = vm_front(0), last_a = behind ? none : couple->b_first, last_b = behind ? none : couple->a_first;
+    const vec2 start = behind ? couple->high : couple->low;
+    const struct arc_pair arcs = {
+        {.center = v2_select(last_a, last->corner_a, couple->corner_a), .radius = box_field(pair, BOX_RADIUS_A)},
+        {.center = v2_select(last_b, last->corner_b, couple->corner_b), .radius = box_field(pair, BOX_RADIUS_B)}};
+    const struct candidate found = find_candidate(&arcs, start, end, rises);
+    const vm better = vm_and(which, vm_and(found.exists, v_lt(best->separation, found.value)));
+    const struct gap gap = {
+        found.value, v2_select(found.inside, found.u, start), v_select(found.inside, found.length, v_set(1)),
+        vi_select(last_a, last->number_a, couple->number_a), vi_select(last_b, last->number_b, couple->number_b)};
+    *best = select_gap(better, &gap, best);
+    return found.rises;
+}
+
+/* The largest gap, with the numbers of the corners in place of records. */
+static __attribute__((noinline)) void walk_boxes(const struct box_pair *pair, struct gap *out_best) {
+    const vec2 q = box_vec2(pair, BOX_ROTATION);
+    const vm all = vm_front(V_WIDTH);
+    const vi zero = vi_set(0);
+    /* B's edge nearest to +x. */
+    const vm crossed = v_lt(v_abs(q.x), v_abs(q.y));
+    const vm opposite = vm_or(vm_and(crossed, v_lt(q.y, v_set(0))), vm_and_not(v_lt(v_set(0), q.x), crossed));
+    const vi turn = vi_add(vi_select(crossed, vi_set(1), zero), vi_select(opposite, vi_set(2), zero));
+    vm wraps, never;
+    const struct couple first = find_couple(pair, 0, turn, &wraps);
+    const struct couple before = find_couple(pair, 3, turn, &never);
+    struct couple last = before, couple = first;
+    struct gap best = {v_set(-INFINITY), first.low, v_set(1), zero, zero};
+    vm rises = v_lt(v2_cross(v2_sub(last.corner_b, last.corner_a), first.low), v_set(0));
+    for (int p = 0; p < 4; p++) {
+        const struct couple next = p == 3 ? first : p == 2 ? before : find_couple(pair, p + 1, turn, &never);
+        rises = try_interval(pair, &last, &couple, couple.high, false, p == 0 ? vm_not(wraps) : all, rises, &best);
+        rises = try_interval(pair, &last, &couple, next.low, true, all, rises, &best);
+        last = couple;
+        couple = next;
+    }
+    if (vm_any(wraps))
+        try_interval(pair, &before, &first, first.high, false, wraps, rises, &best);
+    best.normal = v2_divide(best.normal, best.length);
+    *out_best = best;
+}
+
+/* How the boxes of a pair touch, in the lanes `open`. */
+INLINE struct box_contact find_box_contact(const struct box_pair *pair, vm open) {
+    vm left, corners;
+    struct box_contact c = find_facing(pair, &left, &corners);
+    left = vm_and(open, left);
+    if (vm_any(vm_or(left, vm_and(open, corners)))) {
+        vi corner_a = box_touching(&c.a), corner_b = box_touching(&c.b);
+        if (vm_any(left)) {
+            struct gap gap;
+            walk_boxes(pair, &gap);
+            c.separation = v_select(left, gap.separation, c.separation);
+            c.normal = v2_select(left, gap.normal, c.normal);
+            corner_a = vi_select(left, gap.record_a, corner_a);
+            corner_b = vi_select(left, gap.record_b, corner_b);
+        }
+        find_closest_sides(pair, vm_or(left, corners), corner_a, corner_b, &c);
+    }
+    return c;
+}
+
+#endif

@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * box_pairs.c - pairs of boxes have a way of their own: rows are those of the deciding formula, byte by byte, where
+ * boxes are aligned, equal, tie, touch in corners, are thin, and where rotations and sizes are almost something else.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "layouts.h"
+#include "plain.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { SHAPES = 24, PAIRS = 4000 };
+
+/* How boxes of a scene differ. */
+enum sizes { LATTICE, ALIKE, USUAL, THIN, SIZES };
+
+static struct shape make_box(struct test_random *random, enum sizes sizes, double unit) {
+    const double spread = sizes == THIN ? 1e3 : 4;
+    double width = random_log_between(random, 1 / spread, spread),
+           height = random_log_between(random, 1 / spread, spread);
+    if (sizes == LATTICE || sizes == ALIKE) {
+        width = sizes == ALIKE ? 1 : 0.25 * (double)(1 + random_below(random, 6));
+        height = sizes == ALIKE ? 1 : 0.25 * (double)(1 + random_below(random, 6));
+    }
+    const double least = fmin(width, height);
+    const double radii[] = {0, 0, 0.0625, least * random_unit(random) / 2, least * 1e-7, least * 0.4999999};
+    const double radius = fmin(radii[random_below(random, 6)], least / 4 * (1 + random_unit(random)));
+    return box_of(width * unit, height * unit, radius * unit);
+}
+
+/* One that starts with another arc, or a shape that is no such box: turned, elsewhere, or something else. */
+static struct shape make_other(struct test_random *random, double unit) {
+    struct shape shape = make_box(random, USUAL, unit);
+    const size_t kind = random_below(random, 4);
+    const double move = kind == 1 ? unit * random_between(random, -1, 1) : 0, turn = kind == 2 ? 0.5 : 0;
+    struct shape other = {.count = 4};
+    if (kind == 3)
+        return random_below(random, 2) ? circle_of(unit) : capsule_of(unit, unit);
+    for (size_t i = 0; i < 4; i++) {
+        const narc_arc arc = shape.arcs[(i + 1) % 4];
+        other.arcs[i] = (narc_arc){cos(turn) * arc.center_x - sin(turn) * arc.center_y + move,
+                                   sin(turn) * arc.center_x + cos(turn) * arc.center_y, arc.radius, arc.start + turn,
+                                   arc.end + turn};
+    }
+    return other;
+}
+
+/* A multiple of 45 degrees exactly, or beside it by a few units in the last place, or by any small angle. */
+static void turn_nearly(struct test_random *random, struct body *body, size_t steps) {
+    const double turn = pi / (double)steps * (double)random_below(random, 2 * steps);
+    const double beside = (random_below(random, 2) ? 1 : -1) * random_log_between(random, 1e-10, 1e-2);
+    const size_t kind = random_below(random, 4);
+    body->cosine = (float)cos(turn + (kind == 3 ? beside : 0));
+    body->sine = (float)sin(turn + (kind == 3 ? beside : 0));
+    body->cosine = fabsf(body->cosine) < 1e-9f ? 0 : body->cosine;
+    body->sine = fabsf(body->sine) < 1e-9f ? 0 : body->sine;
+    if (kind == 1) {
+        body->cosine += (float)random_between(random, -3, 3) * 0x1p-24f;
+        body->sine += (float)random_between(random, -3, 3) * 0x1p-24f;
+    }
+    if (random_below(random, 8) == 0) { /* zeros of either sign */
+        body->cosine = body->cosine == 0 ? -0.0f : body->cosine;
+        body->sine = body->sine == 0 ? -0.0f : body->sine;
+    }
+}
+
+static void turn(struct test_random *random, struct body *body) {
+    const double angle = random_between(random, -pi, pi);
+    const float drift = random_below(random, 3) ? 1 : (float)(1 + 2e-4 * random_between(random, -1, 1));
+    body->cosine = (float)cos(angle);
+    body->sine = (float)sin(angle);
+    if (random_below(random, 2))
+        turn_nearly(random, body, random_below(random, 2) ? 4 : 2);
+    body->cosine *= drift;
+    body->sine *= drift;
+}
+
+/* The rotation of a body times a nearly exact multiple of 90 or 45 degrees, or the same. */
+static void turn_like(struct test_random *random, struct body *body, const struct body *other) {
+    struct body by = {.cosine = 1};
+    if (random_below(random, 4))
+        turn_nearly(random, &by, random_below(random, 4) ? 2 : 4);
+    body->cosine = other->cosine * by.cosine - other->sine * by.sine;
+    body->sine = other->sine * by.cosine + other->cosine * by.sine;
+}
+
+/* How far a box reaches along its own axes, turned by an angle of which these are cosine and sine. */
+static double reach(const struct shape *box, double c, double s) {
+    const narc_arc *arc = &box->arcs[0];
+    return fabs(c) * fabs(arc->center_x) + fabs(s) * fabs(arc->center_y) + arc->radius;
+}
+
+/* Puts B somewhere at A: side against side, corner against corner, one inside the other, or anywhere near. */
+static void place(struct test_random *random, const struct scene *scene, const struct body *a, struct body *b,
+                  bool grid) {
+    const struct shape *of_a = &scene->shapes[a->shape], *of_b = &scene->shapes[b->shape];
+    const size_t side = random_below(random, 4);
+    const double c_a = (double)a->cosine, s_a = (double)a->sine;
+    const double x = side % 2 ? -s_a : c_a, y = side % 2 ? c_a : s_a, sign = side / 2 ? -1 : 1;
+    const double c = x * (double)b->cosine + y * (double)b->sine, s = x * (double)b->sine - y * (double)b->cosine;
+    const double up_a = (double)a->scale * reach(of_a, side % 2 ? 0 : 1, side % 2 ? 1 : 0);
+    const double wide_a = (double)a->scale * reach(of_a, side % 2 ? 1 : 0, side % 2 ? 0 : 1);
+    const double up_b = (double)b->scale * reach(of_b, c, s), wide_b = (double)b->scale * reach(of_b, s, c);
+    const double tiny = random_between(random, -1, 1) * random_log_between(random, 1e-8, 0.1);
+    const double ups[] = {up_a + up_b,
+                          (up_a + up_b) * (1 + tiny),
+                          up_a + up_b - random_unit(random) * fmin(up_a, up_b),
+                          up_a + up_b + tiny * fmin(up_a, up_b),
+                          0,
+                          2 * random_unit(random) * (up_a + up_b)};
+    const double alongs[] = {0,
+                             wide_a + wide_b,
+                             wide_a - wide_b,
+                             (wide_a + wide_b) * (1 + tiny),
+                             (wide_a + wide_b) * random_unit(random),
+                             (wide_a + wide_b) * random_unit(random)};
+    double up = sign * ups[random_below(random, 6)], along = alongs[random_below(random, 6)];
+    along = random_below(random, 2) ? -along : along;
+    if (grid) {
+        up = 0.125 * nearbyint(8 * up);
+        along = 0.125 * nearbyint(8 * along);
+    }
+    b->x = a->x + x * up - y * along;
+    b->y = a->y + y * up + x * along;
+}
+
+static struct scene make_boxes(struct test_random *random, enum sizes sizes, bool mixed) {
+    const narc_precision precision = random_below(random, 2) ? NARC_FLOAT64 : NARC_FLOAT32;
+    struct scene scene = create_scene(precision, SHAPES, 2 * PAIRS, PAIRS);
+    const double units[] = {1, 1, 1e-5, 3e4}, unit = sizes == LATTICE ? 1 : units[random_below(random, 4)];
+    const double far = random_below(random, 3) ? unit : unit * random_log_between(random, 1, 1e4);
+    for (size_t k = 0; k < SHAPES; k++) {
+        const struct shape shape = mixed && k % 4 == 0 ? make_other(random, unit) : make_box(random, sizes, unit);
+        scene_add_shape(&scene, &shape);
+    }
+    for (size_t k = 0; k < PAIRS; k++) {
+        const bool grid = sizes == LATTICE && random_below(random, 4);
+        struct body a = {.cosine = 1, .scale = 1}, b = {.scale = 1};
+        a.shape = (uint32_t)random_below(random, SHAPES);
+        b.shape = random_below(random, 4) ? (uint32_t)random_below(random, SHAPES) : a.shape;
+        if (random_below(random, 4) == 0 && sizes != LATTICE) {
+            a.scale = (float)random_log_between(random, 0.01, 100);
+            b.scale = random_below(random, 2) ? a.scale : (float)random_log_between(random, 0.01, 100);
+        }
+        a.x = far * random_between(random, -1, 1);
+        a.y = far * random_between(random, -1, 1);
+        if (grid) {
+            a.x = nearbyint(a.x);
+            a.y = nearbyint(a.y);
+            turn_nearly(random, &a, 2);
+        } else {
+            turn(random, &a);
+        }
+        turn_like(random, &b, &a);
+        if (random_below(random, 4) == 0)
+            turn(random, &b);
+        if (mixed && random_below(random, 40) == 0)
+            b.sine = NAN;
+        place(random, &scene, &a, &b, grid);
+        scene_add_two(&scene, a, b);
+        if (random_below(random, 64) == 0)
+            scene.pairs[k].b = scene.pairs[k].a;
+        else if (random_below(random, 2))
+            scene.pairs[k] = (struct pair){scene.pairs[k].b, scene.pairs[k].a};
+    }
+    return scene;
+}
+
+/* Fails with the first row that differs. */
+static void check_rows(const struct scene *scene, const struct manifolds *right, const struct manifolds *found,
+                       const char *name) {
+    for (size_t k = 0; k < right->count && k < found->count; k++) {
+        const narc_manifold *r = &right->rows[k], *f = &found->rows[k];
+        if (memcmp(r, f, sizeof *r) == 0)
+            continue;
+        const struct pair pair = scene->pairs[r->pair];
+        const struct reference_body a = scene_reference(scene, pair.a), b = scene_reference(scene, pair.b);
+        print_pair(&a, &b);
+        const narc_manifold *const both[] = {r, f};
+        for (int i = 0; i < 2; i++)
+            print_error("%s: pair %u, %u points, normal (%a, %a), radii %a %a, reaches %u %u %u %u; (%a, %a) %a %04x; "
+                        "(%a, %a) %a %04x\n",
+                        i ? "found" : "right", both[i]->pair, both[i]->count, (double)both[i]->normal_x,
+                        (double)both[i]->normal_y, (double)both[i]->radius_a, (double)both[i]->radius_b,
+                        both[i]->reach_a[0], both[i]->reach_a[1], both[i]->reach_b[0], both[i]->reach_b[1],
+                        (double)both[i]->point[0].x, (double)both[i]->point[0].y, (double)both[i]->point[0].separation,
+                        both[i]->point[0].feature, (double)both[i]->point[1].x, (double)both[i]->point[1].y,
+                        (double)both[i]->point[1].separation, both[i]->point[1].feature);
+        fail_msg("%s: row %zu differs", name, k);
+    }
+    assert_int_equal(right->count, found->count);
+}
+
+/* Manifolds with any flat angle and margins, and contacts, of one scene. */
+static void check_boxes(struct test_random *random, const struct scene *scene, const char *name) {
+    const enum layout layouts[] = {LAYOUT_ARRAYS, LAYOUT_STRUCTURES, LAYOUT_STRUCTURES, LAYOUT_REVERSED};
+    struct columns columns = create_columns(scene, layouts[random_below(random, 4)], 0, scene->pair_count);
+    const narc_pairs *pairs = &columns.pairs;
+    struct contacts plain = find_plain_contacts(scene->store, &columns.bodies, pairs);
+    const struct plain_batch batch = {.shapes = scene->store,
+                                      .bodies = &columns.bodies,
+                                      .pairs = pairs,
+                                      .right = plain.rows,
+                                      .scene = scene,
+                                      .name = name};
+    const float flats[] = {0, 0.05f, 0.7f, 0.7853982f, NARC_MAX_FLAT_ANGLE, -1};
+    const float some = plain.rows[random_below(random, plain.count)].separation;
+    const float margins[] = {0.02f, 0, INFINITY, some, nextafterf(some, INFINITY), -0.01f};
+    float *each = malloc(scene->pair_count * sizeof *each);
+    for (size_t k = 0; k < scene->pair_count; k++) { /* the separation itself is not below it */
+        const float separation = plain.rows[k].separation;
+        each[k] = random_below(random, 2) ? separation : nextafterf(separation, INFINITY);
+        each[k] = random_below(random, 20) ? each[k] : NAN;
+    }
+    for (size_t m = 0; m < sizeof margins / sizeof *margins; m++) {
+        narc_query query = {.margin = margins[m], .flat_angle = flats[random_below(random, 6)]};
+        query.second_margin = random_below(random, 2) ? 0 : 0.1f;
+        if (m == 1)
+            query.margins = (narc_float_column){each, sizeof *each};
+        struct manifolds right = find_plain_manifolds(scene->store, &columns.bodies, pairs, &query);
+        struct manifolds found = find_manifolds(scene->store, &columns.bodies, pairs, &query);
+        check_rows(scene, &right, &found, name);
+        free(right.rows);
+        free(found.rows);
+        if (m != 1)
+            check_plain_contacts(&batch, &(narc_query){.margin = margins[m]});
+    }
+    check_plain_overlaps(&batch, NULL);
+    free(each);
+    free(plain.rows);
+    destroy_columns(&columns);
+}
+
+static void check_sizes(enum sizes sizes, bool mixed, const char *name) {
+    struct test_random random = test_random_named(name);
+    for (size_t round = 0; round < test_trials(8); round++) {
+        struct scene scene = make_boxes(&random, sizes, mixed);
+        check_boxes(&random, &scene, name);
+        destroy_scene(&scene);
+    }
+}
+
+TEST(test_lattice) { check_sizes(LATTICE, false, "boxes of a lattice"); }
+
+TEST(test_alike) { check_sizes(ALIKE, false, "squares"); }
+
+TEST(test_usual) { check_sizes(USUAL, false, "boxes"); }
+
+TEST(test_thin) { check_sizes(THIN, false, "thin boxes"); }
+
+TEST(test_mixed) { check_sizes(USUAL, true, "boxes among others"); }
+
+TEST_MAIN("box_pairs")
