@@ -84,8 +84,8 @@ typedef union narc_record {
 /* A box about its own origin with sides along its axes, sharp or with equally rounded corners, beside its header: half
  * the sides of the rectangle of the corners' centres. Batches of boxes read nothing else of a shape (kernels/box/).
  *   info   0: the shape is no box of that kind; else NARC_IS_BOX and, in its lowest bits, first_arc of the header.
- * The corners are the records in their order, the one at +x, +y first. Both half sizes are longer than what counts as no
- * edge. */
+ * The corners are the records in their order, the one at +x, +y first. Both half sizes are longer than what counts as
+ * no edge. */
 typedef struct narc_box_form {
     float half_x, half_y, radius;
     uint32_t info;
@@ -138,8 +138,8 @@ struct narc_shapes {
     size_t record_count, record_capacity; /* records, with the gaps between blocks */
     size_t used_records;                  /* records in blocks of shapes, and of the circle that removed ones have */
     narc_allocator allocator;
-    /* What the allocator returned: boxes, entries, buckets and headers; and records. Headers and records begin at cache lines,
-     * and end with the memory but for less than one. */
+    /* What the allocator returned: boxes, entries, buckets and headers; and records. Headers and records begin at cache
+     * lines, and end with the memory but for less than one. */
     void *headers_memory, *records_memory;
 };
 

@@ -53,7 +53,7 @@ enum {
 enum { BOX_TIE = 1 << 8 };
 
 /* They wait until there are so many; take_boxes() writes up to a vector behind the last one. */
-enum { BOX_FLUSH = V_WIDTH > 8 ? 16 : 24, BOX_CAPACITY = BOX_FLUSH + V_WIDTH };
+enum { BOX_FLUSH = 32, BOX_CAPACITY = BOX_FLUSH + V_WIDTH };
 
 struct box_queue {
     _Alignas(64) float item[BOX_FIELDS][BOX_CAPACITY];
