@@ -19,25 +19,38 @@ struct pair_indices {
     _Alignas(64) int32_t number[BLOCK], a[BLOCK], b[BLOCK], shape_a[BLOCK], shape_b[BLOCK];
 };
 
+/* What pairs are loaded from: copies of what the caller gave. Nothing that is written could change them, so that compilers
+ * keep them in registers. */
+struct sources {
+    narc_bodies a, b;
+    narc_pairs pairs;
+    narc_index_column selection;
+};
+
+INLINE struct sources copy_sources(const narc_batch *batch) {
+    return (struct sources){*batch->a, *batch->b, *batch->pairs, batch->query->selection};
+}
+
 /* Item k of a block: a pair, its bodies and their shapes. */
-INLINE void load_pair(const narc_batch *batch, size_t number, size_t a, size_t b, int k, struct pair_indices *out) {
+INLINE void load_pair(const struct sources *given, size_t number, size_t a, size_t b, int k, struct pair_indices *out) {
     out->number[k] = (int32_t)(uint32_t)number;
     out->a[k] = (int32_t)(uint32_t)a;
     out->b[k] = (int32_t)(uint32_t)b;
-    out->shape_a[k] = (int32_t)narc_index_at(batch->a->shape, a);
-    out->shape_b[k] = (int32_t)narc_index_at(batch->b->shape, b);
+    out->shape_a[k] = (int32_t)narc_index_at(given->a.shape, a);
+    out->shape_b[k] = (int32_t)narc_index_at(given->b.shape, b);
 }
 
-INLINE void load_indices(const narc_batch *batch, size_t first, int count, struct pair_indices *out) {
-    const narc_index_column a = batch->pairs->a, b = batch->pairs->b;
-    if (a.base && b.base && !batch->query->selection.base) {
+INLINE void load_indices(const struct sources *given, size_t first, int count, struct pair_indices *out) {
+    const narc_index_column a = given->pairs.a, b = given->pairs.b;
+    if (a.base && b.base && !given->selection.base) {
         UNROLL_FEW
         for (size_t k = 0; k < (size_t)count; k++)
-            load_pair(batch, first + k, narc_index_at(a, first + k), narc_index_at(b, first + k), (int)k, out);
+            load_pair(given, first + k, narc_index_at(a, first + k), narc_index_at(b, first + k), (int)k, out);
     } else {
         for (int k = 0; k < count; k++) {
-            const size_t number = narc_pair_at(batch, first + (size_t)k);
-            load_pair(batch, number, a.base ? narc_index_at(a, number) : number,
+            const size_t number =
+                given->selection.base ? narc_index_at(given->selection, first + (size_t)k) : first + (size_t)k;
+            load_pair(given, number, a.base ? narc_index_at(a, number) : number,
                       b.base ? narc_index_at(b, number) : number, k, out);
         }
     }
@@ -77,9 +90,9 @@ static inline enum pose_layout find_pose_layout(const narc_bodies *bodies) {
 }
 
 /* That of both sets of a batch, where it is the same. Rows of doubles are subtracted within one set only. */
-static inline enum pose_layout find_layout(const narc_batch *batch) {
-    const enum pose_layout a = find_pose_layout(batch->a), b = find_pose_layout(batch->b);
-    const bool one_set = batch->a->x.base == batch->b->x.base && batch->a->x.stride == batch->b->x.stride;
+static inline enum pose_layout find_layout(const struct sources *given) {
+    const enum pose_layout a = find_pose_layout(&given->a), b = find_pose_layout(&given->b);
+    const bool one_set = given->a.x.base == given->b.x.base && given->a.x.stride == given->b.x.stride;
     return a == b && (a != POSE_DOUBLE_ROWS || one_set) ? a : POSE_COLUMNS;
 }
 
@@ -110,7 +123,7 @@ INLINE float find_difference(narc_position_column of_a, narc_position_column of_
     return (float)(shift ? to - from + (double)*shift : to - from);
 }
 
-INLINE vec2 load_differences(const narc_batch *batch, const int32_t *a, const int32_t *b, const vec2 *shift) {
+INLINE vec2 load_differences(const struct sources *given, const int32_t *a, const int32_t *b, const vec2 *shift) {
     float x[V_WIDTH], y[V_WIDTH], shift_x[V_WIDTH], shift_y[V_WIDTH];
     if (shift) {
         v_store(shift_x, shift->x);
@@ -118,8 +131,8 @@ INLINE vec2 load_differences(const narc_batch *batch, const int32_t *a, const in
     }
     for (int k = 0; k < V_WIDTH; k++) {
         const uint32_t from = (uint32_t)a[k], to = (uint32_t)b[k];
-        x[k] = find_difference(batch->a->x, batch->b->x, from, to, shift ? shift_x + k : NULL);
-        y[k] = find_difference(batch->a->y, batch->b->y, from, to, shift ? shift_y + k : NULL);
+        x[k] = find_difference(given->a.x, given->b.x, from, to, shift ? shift_x + k : NULL);
+        y[k] = find_difference(given->a.y, given->b.y, from, to, shift ? shift_y + k : NULL);
     }
     return (vec2){v_load(x), v_load(y)};
 }
@@ -142,32 +155,32 @@ INLINE void load_double_rows(const narc_bodies *bodies, const int32_t *a, const 
     *out = (struct body_pair){{difference[0], difference[1]}, {of_a[0], of_a[1]}, {of_b[0], of_b[1]}, of_a[2], of_b[2]};
 }
 
-INLINE void load_columns(const narc_batch *batch, const int32_t *a, const int32_t *b, const vec2 *shift,
+INLINE void load_columns(const struct sources *given, const int32_t *a, const int32_t *b, const vec2 *shift,
                          struct body_pair *out) {
-    out->difference = load_differences(batch, a, b, shift);
-    out->rotation_a = (vec2){load_column(batch->a->cosine, a), load_column(batch->a->sine, a)};
-    out->rotation_b = (vec2){load_column(batch->b->cosine, b), load_column(batch->b->sine, b)};
-    out->scale_a = load_pair_column(batch->a->scale, a, 1);
-    out->scale_b = load_pair_column(batch->b->scale, b, 1);
+    out->difference = load_differences(given, a, b, shift);
+    out->rotation_a = (vec2){load_column(given->a.cosine, a), load_column(given->a.sine, a)};
+    out->rotation_b = (vec2){load_column(given->b.cosine, b), load_column(given->b.sine, b)};
+    out->scale_a = load_pair_column(given->a.scale, a, 1);
+    out->scale_b = load_pair_column(given->b.scale, b, 1);
 }
 
 /* `shift`: of B, or NULL. */
-INLINE struct body_pair load_bodies(const narc_batch *batch, enum pose_layout layout, const int32_t *a,
+INLINE struct body_pair load_bodies(const struct sources *given, enum pose_layout layout, const int32_t *a,
                                     const int32_t *b, const vec2 *shift) {
     struct body_pair pair;
     if (__builtin_expect(layout == POSE_ROWS && !shift, 1)) { /* or compilers keep the vectors of all three in memory */
         vf of_a[4], of_b[4];
-        v_rows(batch->a->x.base, batch->a->x.stride, a, of_a);
-        v_rows(batch->b->x.base, batch->b->x.stride, b, of_b);
+        v_rows(given->a.x.base, given->a.x.stride, a, of_a);
+        v_rows(given->b.x.base, given->b.x.stride, b, of_b);
         pair = (struct body_pair){{v_sub(of_b[0], of_a[0]), v_sub(of_b[1], of_a[1])},
                                   {of_a[2], of_a[3]},
                                   {of_b[2], of_b[3]},
-                                  load_pair_column(batch->a->scale, a, 1),
-                                  load_pair_column(batch->b->scale, b, 1)};
+                                  load_pair_column(given->a.scale, a, 1),
+                                  load_pair_column(given->b.scale, b, 1)};
     } else if (layout == POSE_DOUBLE_ROWS) {
-        load_double_rows(batch->a, a, b, shift, &pair);
+        load_double_rows(&given->a, a, b, shift, &pair);
     } else {
-        load_columns(batch, a, b, shift, &pair);
+        load_columns(given, a, b, shift, &pair);
     }
     return pair;
 }

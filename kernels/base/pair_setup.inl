@@ -84,14 +84,13 @@ struct placement {
 };
 
 /* That of the pairs k ... of a block. */
-INLINE struct placement place_pairs(const struct call *call, const struct pair_indices *in, int k,
-                                    enum pose_layout layout) {
-    const narc_batch *batch = call->batch;
-    const narc_pairs *pairs = batch->pairs;
+INLINE struct placement place_pairs(const struct call *call, const struct sources *given, const struct pair_indices *in,
+                                    int k, enum pose_layout layout) {
+    const narc_pairs *pairs = &given->pairs;
     const bool shifted = pairs->shift_x.base || pairs->shift_y.base;
     const vec2 shift = {load_pair_column(pairs->shift_x, in->number + k, 0),
                         load_pair_column(pairs->shift_y, in->number + k, 0)};
-    const struct body_pair bodies = load_bodies(batch, layout, in->a + k, in->b + k, shifted ? &shift : NULL);
+    const struct body_pair bodies = load_bodies(given, layout, in->a + k, in->b + k, shifted ? &shift : NULL);
     const vf margin = load_pair_column(call->margins, in->number + k, call->margin);
     vm valid_a, valid_b;
     const vec2 rotation_a = normalise_rotation(bodies.rotation_a, &valid_a);

@@ -92,22 +92,22 @@ INLINE void run_stages(const struct call *call, stage *const *stages, int stage_
  * where pairs with edges may begin instead of at the first stage, or 0. */
 INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int fields, stage *const *stages,
                       int stage_count, int edged_stage, struct queue *queues) {
-    const narc_batch *batch = call->batch;
-    const enum pose_layout layout = find_layout(batch);
+    const struct sources given = copy_sources(call->batch);
+    const enum pose_layout layout = find_layout(&given);
     struct pair_indices indices;
     struct found_arcs arcs;
     for (int s = 0; s < stage_count; s++)
         start_queue(&queues[s], &arcs);
     for (size_t block = 0; block < call->count; block += BLOCK) {
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
-        load_indices(batch, call->first + block, n, &indices);
+        load_indices(&given, call->first + block, n, &indices);
         if (edged_stage > 0 && block % REMEMBERED == 0)
             queues->edged = queues->edged_left = 0;
         if (stage_count > 0 && block % (4 * BLOCK) == 0)
             queues->whole = false;
         for (int k = 0; k < n; k += V_WIDTH) {
             vf item[FIELDS];
-            const struct placement placement = place_pairs(call, &indices, k, layout);
+            const struct placement placement = place_pairs(call, &given, &indices, k, layout);
             vm asked = vm_front(n - k);
             if (take) {
                 asked = take(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block + k);
