@@ -5,8 +5,8 @@
  *
  * The junctions of each box are a right angle apart. So the walk, which begins at +x, meets them in four couples:
  * edge p of A, at the diamond angle p, and the edge of B that is nearest to it, in the order of their angles. B's edge
- * next to +x may lie just before it: then its interval is the last of the walk. Half sizes are more than rounding, so there
- * is always a candidate.
+ * next to +x may lie just before it: then its interval is the last of the walk. Half sizes are more than rounding, so
+ * there is always a candidate.
  */
 #ifndef NARC_BOX_BOX_WALK_INL
 #define NARC_BOX_BOX_WALK_INL

@@ -31,7 +31,8 @@ TEST(test_plain) {
         const narc_bodies bodies = scene_bodies(&scene);
         const narc_pairs pairs = scene_pairs(&scene);
         for (size_t m = 0; m < MARGINS; m++) {
-            struct manifolds right = find_plain_manifolds(scene.store, &bodies, &pairs, &(narc_query){.margin = margins[m]});
+            struct manifolds right =
+                find_plain_manifolds(scene.store, &bodies, &pairs, &(narc_query){.margin = margins[m]});
             struct manifolds found = scene_manifolds(&scene, margins[m]);
             size_t two = 0;
             check_same(&right, &found);
@@ -64,7 +65,8 @@ TEST(test_threads_and_hints) {
     const narc_pairs pairs = scene_pairs(&scene);
     static uint32_t hints[PAIRS], right_hints[PAIRS];
     for (size_t m = 0; m < MARGINS; m++) {
-        struct manifolds right = find_plain_manifolds(scene.store, &bodies, &pairs, &(narc_query){.margin = margins[m]});
+        struct manifolds right =
+            find_plain_manifolds(scene.store, &bodies, &pairs, &(narc_query){.margin = margins[m]});
         for (unsigned threads = 0; threads < 4; threads++) {
             const narc_workers workers = narc_openmp_workers(threads);
             const narc_query query = {.margin = margins[m], .hints = NARC_HINT_ARRAY(hints), .workers = &workers};
