@@ -19,6 +19,8 @@ enum { BLOCK = 32 };
  * time as long as the stages behind it have room: so all queues together lie in the first cache, and on a small stack. */
 #ifdef NARC_QUEUE_PAIRS
 enum { FLUSH = NARC_QUEUE_PAIRS, STEP = NARC_QUEUE_PAIRS, STAGES = 1 };
+#elif defined(NARC_FEW_STAGES)
+enum { FLUSH = 32, STEP = 32, STAGES = 4 };
 #else
 enum { FLUSH = V_WIDTH > 8 ? 24 : 32, STEP = V_WIDTH > 8 ? 16 : 24, STAGES = 5 };
 #endif

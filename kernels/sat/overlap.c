@@ -7,6 +7,9 @@
  * or have a common point, or passes the pair on. The rest climb to a local maximum of the gap. What is left then goes
  * to the deciding formula.
  */
+/* With a queue less there is room for more pairs in each. */
+#define NARC_FEW_STAGES
+
 #include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/pair_setup.inl"
@@ -153,19 +156,19 @@ INLINE vm detour_overlaps(const struct call *call, const struct pair_indices *in
 
 void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
     static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_from_overlaps, decide_overlaps};
-    struct queue queues[4];
+    struct queue queues[STAGES];
     if (!NARC_SHORTCUTS) {
         run_overlap_method(decide_overlaps, batch, first, count, skipped, out_bits);
         return;
     }
     struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
     if (batch->shapes->box_count == 0) {
-        run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
+        run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, 2, queues);
         return;
     }
     struct box_queue boxes;
     boxes.count = 0;
     call.boxes = &boxes;
-    run_pairs(&call, detour_overlaps, triage_overlaps, OVERLAP_FIELDS, stages, 4, 2, queues);
+    run_pairs(&call, detour_overlaps, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, 2, queues);
     run_boxes(&call, answer_box_overlaps, &boxes, true);
 }
