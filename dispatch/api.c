@@ -4,7 +4,7 @@
  */
 #include "dispatch.h"
 #include "elementary.h"
-#include "fail.h"
+#include "error.h"
 
 #define TEXT_(a) #a
 #define TEXT(a)  TEXT_(a)

@@ -8,7 +8,7 @@
  * ends a part and finds it due, for those behind it that have ended, too.
  */
 #include "dispatch.h"
-#include "fail.h"
+#include "error.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>

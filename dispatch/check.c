@@ -4,7 +4,7 @@
  */
 #include "column.h"
 #include "dispatch.h"
-#include "fail.h"
+#include "error.h"
 
 #include <math.h>
 

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "fail.h"
+#include "error.h"
 #include "number.h"
 
 static const char BLANKS[] = " \t\r";

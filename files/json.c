@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "fail.h"
+#include "error.h"
 
 /* Lists and objects that are open before `end`, a place in valid JSON. */
 static size_t count_open(const char *text, const char *end) {

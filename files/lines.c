@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "fail.h"
+#include "error.h"
 
 narc_excerpt narc_make_excerpt(const char *text) {
     enum { LONGEST = 40 };

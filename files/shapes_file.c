@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fail.h"
+#include "error.h"
 #include "json.h"
 
 #include "memory.h"

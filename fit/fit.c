@@ -8,7 +8,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "fail.h"
+#include "error.h"
 #include "model/least_distance.h"
 #include "outline/vector.h"
 #include "result/finish.h"

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "fail.h"
+#include "error.h"
 #include "memory.h"
 
 /* The promised 2^31 floats. */

@@ -5,7 +5,7 @@
 #include "column.h"
 #include "copy.h"
 #include "dispatch.h"
-#include "fail.h"
+#include "error.h"
 
 #include <math.h>
 #include <string.h>

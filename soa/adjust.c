@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "elementary.h"
-#include "fail.h"
+#include "error.h"
 #include "outline.h"
 
 /* Two sides are apart, and an area is one, if they exceed the rounding of coordinates of this size, relatively. */

@@ -6,7 +6,7 @@
 
 #include "column.h"
 #include "elementary.h"
-#include "fail.h"
+#include "error.h"
 #include "store.h"
 
 static narc_status check_body(const narc_shapes *shapes, const narc_bodies *bodies, size_t body, narc_error *error) {

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "elementary.h"
-#include "fail.h"
+#include "error.h"
 #include "outline.h"
 
 /* Radii may exceed what fits by so much, relatively, to forgive the rounding of a caller's own arithmetic. */

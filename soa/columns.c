@@ -3,7 +3,7 @@
  * columns.c - are the columns of a caller's bodies there?
  */
 #include "column.h"
-#include "fail.h"
+#include "error.h"
 
 narc_status narc_check_columns(const narc_bodies *bodies, narc_error *error) {
     const struct {

@@ -14,7 +14,7 @@
 #include <string.h>
 
 #include "elementary.h"
-#include "fail.h"
+#include "error.h"
 #include "outline.h"
 
 enum { MOST_JUNCTIONS = NARC_MAX_ARCS / 4, MOST_UNKNOWNS = 2 * MOST_JUNCTIONS + 1, MOST_PEAKS = 2 * MOST_UNKNOWNS };

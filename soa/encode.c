@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "elementary.h"
-#include "fail.h"
+#include "error.h"
 #include "outline.h"
 
 /* How far outside, relative to the size, an arc's centre may be found and still count as inside: a few dozen
@@ -202,7 +202,8 @@ narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
         return (narc_box_form){.info = 0};
     const float x = arcs[0].arc.center_x, y = arcs[0].arc.center_y, radius = arcs[0].arc.radius;
     const float least_edge = ldexpf(1, 5 * (header->flags >> NARC_SIZE_CLASS_SHIFT) - 47);
-    bool box = x > least_edge && y > least_edge;
+    /* A header that was loaded may say anything of the bounding circle; kernels go by half of its size. */
+    bool box = x > least_edge && y > least_edge && header->bound_radius <= 1.001f * (x + y + radius);
     for (size_t k = 0; k < 4; k++) {
         const narc_stored_arc *arc = &arcs[k].arc;
         const float *start = normals[k], *end = normals[k + 1];

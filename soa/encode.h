@@ -21,7 +21,7 @@ narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_s
 /* The form of a shape that is a box, else one with info 0. */
 narc_box_form narc_find_box_form(const narc_encoded_shape *shape);
 
-/* Checks the header and the arcs of a shape that was stored elsewhere, and writes the other records: angles and box.
+/* Checks the header and the arcs of a shape that was stored elsewhere, and writes the records of its angles.
  * Nothing that it lets through breaks what kernels rely on. NARC_ERROR_FORMAT. */
 narc_status narc_restore_shape(narc_encoded_shape *shape, narc_error *error);
 

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "elementary.h"
-#include "fail.h"
+#include "error.h"
 #include "outline.h"
 
 /* How much an alpha may exceed pi / 2: a rounding of the sums above. */

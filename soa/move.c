@@ -4,7 +4,7 @@
  */
 #include <string.h>
 
-#include "fail.h"
+#include "error.h"
 #include "outline.h"
 
 static narc_status check_list(const narc_arc *arcs, size_t count, const narc_arc *out_arcs, narc_error *error) {

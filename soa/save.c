@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "encode.h"
-#include "fail.h"
+#include "error.h"
 
 static const char magic[8] = "NARCSHPS";
 

@@ -17,7 +17,7 @@
 
 #include "elementary.h"
 #include "encode.h"
-#include "fail.h"
+#include "error.h"
 #include "memory.h"
 #include "outline.h"
 
@@ -214,8 +214,8 @@ static size_t count_own_records(const narc_shapes *shapes, uint32_t shape) {
 
 static const size_t hashed_header = offsetof(narc_shape_header, first_record) + sizeof(uint32_t);
 
-/* Mixes the words of an array into a hash: a change of any bit changes all bits of the result about half of the time
- *. */
+/* Mixes the words of an array into a hash: a change of any bit changes all bits of the result about half of the
+ * time. */
 static uint64_t mix(uint64_t hash, const void *words, size_t size) {
     for (size_t at = 0; at < size; at += sizeof(uint32_t)) {
         uint32_t word;

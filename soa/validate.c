@@ -3,7 +3,7 @@
  * validate.c - is a list of arcs a closed convex outline?
  */
 #include "elementary.h"
-#include "fail.h"
+#include "error.h"
 #include "outline.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "atom.h"
-#include "fail.h"
+#include "error.h"
 #include "fix_narc_shapes.h"
 #include "memory.h"
 #include "update.h"

@@ -14,7 +14,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
-#include "fail.h"
+#include "error.h"
 #include "modify.h"
 #include "pair_narc.h"
 #include "update.h"

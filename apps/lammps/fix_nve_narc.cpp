@@ -5,7 +5,7 @@
 #include "fix_nve_narc.h"
 
 #include "atom.h"
-#include "fail.h"
+#include "error.h"
 #include "fix_narc_shapes.h"
 #include "force.h"
 #include "update.h"

@@ -10,7 +10,7 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "fail.h"
+#include "error.h"
 #include "fix_narc_shapes.h"
 #include "force.h"
 #include "input.h"

@@ -12,7 +12,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
-#include "fail.h"
+#include "error.h"
 #include "force.h"
 #include "memory.h"
 #include "modify.h"

@@ -3,7 +3,7 @@
  * find_pairs.c - narc_find_pairs(): boxes into strips, a sweep through each strip and its neighbours, pairs into order.
  */
 #include "dispatch.h"
-#include "fail.h"
+#include "error.h"
 #include "narc_broad_phase.h"
 #include "steps.h"
 

@@ -8,7 +8,7 @@
  */
 #include "column.h"
 #include "dispatch.h"
-#include "fail.h"
+#include "error.h"
 #include "narc_broad_phase.h"
 #include "steps.h"
 

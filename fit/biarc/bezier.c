@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "biarc/biarc.h"
-#include "fail.h"
+#include "error.h"
 #include "narc_fit.h"
 
 /* Least tolerance, relative to the extent. */

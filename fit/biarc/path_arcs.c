@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "biarc/polyline.h"
-#include "fail.h"
+#include "error.h"
 #include "outline/path.h"
 
 struct builder {

@@ -14,7 +14,7 @@
 
 #include <stdlib.h>
 
-#include "fail.h"
+#include "error.h"
 #include "outline/path.h"
 
 /* The window reaches so many tolerances to either side, and so many times the slack: the stairs of a traced outline are

@@ -35,7 +35,7 @@
 #include <stdlib.h>
 
 #include "biarc/biarc.h"
-#include "fail.h"
+#include "error.h"
 #include "outline/path.h"
 
 enum { SHARES = 5 };

@@ -13,7 +13,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "fail.h"
+#include "error.h"
 
 /* Most chords of one curve. The default flatness never needs 1000: with E the larger side of the curve's bounding box,
  * Markov's inequality bounds the second derivative of a cubic by 48 E in each coordinate, so D by 8 sqrt(2) E. */

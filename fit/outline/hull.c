@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fail.h"
+#include "error.h"
 #include "outline/vector.h"
 
 /* A corner that turns by less than this, as the sine of the angle, counts as straight: then its two sides have normals

@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "fail.h"
+#include "error.h"
 
 narc_status narc_create_path(narc_path **out_path) {
     if (!out_path)

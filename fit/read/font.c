@@ -9,7 +9,7 @@
 #include FT_FREETYPE_H
 #include FT_OUTLINE_H
 
-#include "fail.h"
+#include "error.h"
 #include "outline/path.h"
 
 /* Each font has a FreeType library of its own: fonts of different threads then share nothing. */

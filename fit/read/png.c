@@ -7,7 +7,7 @@
 #include <png.h>
 #include <stdlib.h>
 
-#include "fail.h"
+#include "error.h"
 #include "outline/path.h"
 #include "read/trace.h"
 

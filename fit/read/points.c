@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "csv.h"
-#include "fail.h"
+#include "error.h"
 #include "json.h"
 #include "outline/path.h"
 

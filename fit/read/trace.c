@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "fail.h"
+#include "error.h"
 
 /* The four neighbours counter-clockwise (rows grow downwards): east, north, west, south. */
 enum { EAST, NORTH, WEST, SOUTH };

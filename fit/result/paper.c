@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "fail.h"
+#include "error.h"
 #include "model/chain.h"
 #include "outline/vector.h"
 

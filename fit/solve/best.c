@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fail.h"
+#include "error.h"
 #include "outline/vector.h"
 #include "solve/starts.h"
 

@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-#include "fail.h"
+#include "error.h"
 #include "outline/vector.h"
 
 enum { MOST_NEEDS = 5, MOST_KNOWN = MOST_NEEDS * MOST_RANKED };

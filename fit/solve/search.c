@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fail.h"
+#include "error.h"
 #include "model/difference.h"
 #include "outline/vector.h"
 

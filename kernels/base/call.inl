@@ -53,16 +53,21 @@ INLINE float find_margin(const struct call *call, int32_t pair) {
     return call->margins.base ? narc_float_at(call->margins, find_number(call, pair)) : call->margin;
 }
 
-/* The margins of the pairs k ... of a queue. */
-INLINE vf get_margins(const struct call *call, const struct queue *queue, int k) {
+/* The margins of pairs. */
+INLINE vf find_margins(const struct call *call, vi pairs) {
     int32_t pair[V_WIDTH];
     float lane[V_WIDTH];
     if (!call->margins.base)
         return v_set(call->margin);
-    get_pairs(queue, k, pair);
+    vi_store(pair, pairs);
     for (int l = 0; l < V_WIDTH; l++)
         lane[l] = find_margin(call, pair[l]);
     return v_load(lane);
+}
+
+/* The same for the pairs k ... of a queue. */
+INLINE vf get_margins(const struct call *call, const struct queue *queue, int k) {
+    return find_margins(call, get_bits(queue, PAIR, k));
 }
 
 /* With an infinite margin every separation counts, an infinite one too. */
@@ -88,7 +93,7 @@ INLINE void mark_overlaps(const struct call *call, const struct queue *queue, in
  * What a call leaves for the next one: the arcs of A and B at which a pair's search ended, counted from 1 in the order of
  * the store, A's in the lowest 8 bits. Any other value names no arcs. */
 
-/* The hint of two circles, which need none. */
+/* The hint of two circles, and of two boxes, which need none. */
 #define FIRST_ARCS 0x0101
 
 /* Where the hint of a pair is, by its number in the batch. */

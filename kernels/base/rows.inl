@@ -30,11 +30,13 @@ enum {
 _Static_assert(sizeof(narc_contact) == 36 && CONTACT_WORDS == 4, "two writes of four words follow the pair");
 _Static_assert(sizeof(narc_manifold) == 64 && MANIFOLD_RADII == 16 && FIRST_POINT == 32, "four writes of four words");
 
-/* The rows of a call. The answers of the first pairs may be known in order: then they are listed at once. */
+/* The rows of a call. The answers of the first pairs may be known in order: then they are listed at once. All pairs
+ * before `done` are answered and have `listed` rows, or wait in the queue of boxes, in their order; -1: no more rows are
+ * listed. */
 struct rows {
     narc_rows out;
     bool dense;
-    int done, listed;                               /* all pairs before `done` are answered, and have `listed` rows */
+    int done, listed;
     int without;                                    /* rows of pairs without an answer */
     uint8_t known[NARC_ROW_GROUP + 1];              /* 1: a pair from there on that has a row; and one to spare */
     _Alignas(16) char spare[sizeof(narc_manifold)]; /* takes what lanes without an answer write */

@@ -177,7 +177,7 @@ INLINE vm take_boxes(const struct call *call, const struct pair_indices *indices
         for (int f = 0; f < BOX_FIELDS; f++)
             v_store(queue->item[f] + queue->count, v_pack(packing, item[f]));
         queue->count += __builtin_popcount(vm_bits(near));
-        if (call->batch->query->hints.base)
+        if (call->rows && call->batch->query->hints.base)
             put_hints(call, pairs, near, vi_set(FIRST_ARCS));
     }
     return vm_and_not(open, taken);

@@ -117,18 +117,6 @@ INLINE struct box_manifold find_box_points(const struct call *call, const struct
     return m;
 }
 
-/* The margins of pairs. */
-INLINE vf get_box_margins(const struct call *call, vi pairs) {
-    int32_t pair[V_WIDTH];
-    float lane[V_WIDTH];
-    if (!call->margins.base)
-        return v_set(call->margin);
-    vi_store(pair, pairs);
-    for (int l = 0; l < V_WIDTH; l++)
-        lane[l] = find_margin(call, pair[l]);
-    return v_load(lane);
-}
-
 /* The places of rows: behind those that are listed if all pairs before the last one are answered. From the first vector
  * on of which that is not so no row is listed. */
 INLINE void find_box_places(const struct call *call, const struct box_queue *queue, int last, vi pairs, vm keep,
@@ -148,7 +136,7 @@ INLINE void find_box_places(const struct call *call, const struct box_queue *que
 INLINE void answer_boxes(const struct call *call, const struct box_queue *queue, int k, int live, bool manifolds) {
     const struct box_pair pair = {queue, k};
     const vi pairs = vi_bits(box_field(&pair, BOX_PAIR));
-    const vf margin = get_box_margins(call, pairs);
+    const vf margin = find_margins(call, pairs);
     const vm open = vm_front(live);
     const struct box_contact c = find_box_contact(&pair, open);
     const vm keep = vm_and(open, is_below(c.separation, margin));

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * fail.c - the one place that fills a narc_error. The fitting library has its own copy of this file's object, so that
+ * error.c - the one place that fills a narc_error. The fitting library has its own copy of this file's object, so that
  * the function stays hidden in both.
  */
-#include "fail.h"
+#include "error.h"
 
 #include <stdarg.h>
 #include <stdio.h>

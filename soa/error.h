@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * fail.h - fills a narc_error. Internal.
+ * error.h - fills a narc_error. Internal.
  */
-#ifndef NARC_FAIL_H
-#define NARC_FAIL_H
+#ifndef NARC_ERROR_H
+#define NARC_ERROR_H
 
 #include "narc_shapes.h"
 
