@@ -116,14 +116,32 @@ static double count_wrong_pairs(const struct frame *frame) {
     return (double)wrong;
 }
 
-static double count_wrong_manifolds(const struct step_row *row, const struct workload *workload) {
+/* `index`: of each pair that was asked, its number in the workload; NULL: it is the same. */
+static double count_wrong_manifolds(const struct step_row *row, const struct workload *workload,
+                                    const uint32_t *index) {
     const narc_manifold *list = share_manifolds(row->capacity);
     size_t wrong = 0, colliding = 0;
-    for (size_t k = 0; k < row->manifold_count; k++)
-        wrong += !(fabs(deepest_separation(&list[k]) - workload->gaps[list[k].pair]) < TOUCHING);
+    for (size_t k = 0; k < row->manifold_count; k++) {
+        const uint32_t pair = index ? index[list[k].pair] : list[k].pair;
+        wrong += pair == NARC_NO_MATCH || !(fabs(deepest_separation(&list[k]) - workload->gaps[pair]) < TOUCHING);
+    }
     for (size_t k = 0; k < workload->pair_count; k++)
         colliding += workload->gaps[k] < -TOUCHING;
     return (double)(wrong + (row->manifold_count < colliding));
+}
+
+/* Finds the pairs of the kept list among those of the first frame. It has all of them, and where coordinates are large a
+ * few more: its boxes are widened after they were rounded. Returns how many it lacks. */
+static double count_lost_pairs(const struct step_row *row) {
+    const narc_pairs frame = pairs_of(&row->frames[0]), *kept = &row->list->pairs;
+    size_t found = 0;
+    narc_error error;
+    if (kept->count > row->capacity)
+        return (double)kept->count;
+    must(narc_match_pairs(row->broad, &frame, kept, NULL, row->match, &error), &error);
+    for (size_t k = 0; k < kept->count; k++)
+        found += row->match[k] != NARC_NO_MATCH;
+    return (double)(frame.count - found);
 }
 
 static void make_frame(struct frame *frame, const struct workload_key *key, size_t capacity) {
@@ -140,14 +158,14 @@ static void begin(struct step_row *row) {
     run_whole(row, &row->frames[1], &row->frames[0]);
     row->row.wrong = count_wrong_pairs(&row->frames[0]);
     if (row->row.wrong == 0)
-        row->row.wrong = count_wrong_manifolds(row, row->frames[0].workload);
+        row->row.wrong = count_wrong_manifolds(row, row->frames[0].workload, NULL);
     row->row.colliding = (double)row->manifold_count / (double)row->row.pairs;
     run_whole(row, &row->frames[0], &row->frames[1]);
     if (row->job.step == STEP_KEPT) {
         update_pairs(row, &row->frames[0]);
-        row->row.wrong += (double)(row->list->pairs.count != row->frames[0].pair_count);
+        row->row.wrong += count_lost_pairs(row);
         run_kept(row, &row->frames[1]);
-        row->row.wrong += count_wrong_manifolds(row, row->frames[1].workload);
+        row->row.wrong += count_wrong_manifolds(row, row->frames[1].workload, row->match);
     }
 }
 
