@@ -238,6 +238,40 @@ static void expect_usable(const narc_shapes *shapes) {
     }
 }
 
+static void write_word(unsigned char *bytes, uint32_t word) {
+    for (int k = 0; k < 4; k++)
+        bytes[k] = (unsigned char)(word >> 8 * k);
+}
+
+/* Kernels for boxes go by half of their sizes, the others by the bounding circle: where that is forged, there is no box.
+ */
+TEST(forged_circle_makes_no_box) {
+    narc_shapes *shapes = empty_store(), *loaded = NULL;
+    const struct shape box = box_of(4, 2, 0);
+    unsigned char is[4], *at = NULL;
+    size_t size;
+    narc_error error;
+    assert_int_equal(narc_add_shape(shapes, box.arcs, box.count, NULL, NULL), NARC_OK);
+    assert_int_equal(shapes->box_count, 1);
+    unsigned char *bytes = save(shapes, &size);
+    uint32_t word;
+    memcpy(&word, &shapes->headers[0].bound_radius, sizeof word);
+    write_word(is, word);
+    for (size_t k = START; k + 4 <= size && !at; k++)
+        at = memcmp(bytes + k, is, 4) == 0 ? bytes + k : NULL;
+    assert_non_null(at);
+    const float forged = 2 * shapes->headers[0].bound_radius;
+    memcpy(&word, &forged, sizeof word);
+    write_word(at, word);
+    write_checksum(bytes, size);
+    expect_ok(narc_load_shapes(NULL, bytes, size, &loaded, &error), &error);
+    assert_true(loaded->headers[0].bound_radius == forged);
+    assert_int_equal(loaded->box_count, 0);
+    narc_destroy_shapes(loaded);
+    narc_destroy_shapes(shapes);
+    free(bytes);
+}
+
 /* Damage with a checksum that fits, as by someone who means it: an error, or a store like any other. */
 TEST(forged_bytes_do_no_harm) {
     struct test_random random = test_random_named("forgery");
