@@ -21,7 +21,7 @@ enum { MOST_OVERLAPS = 16384, LEAST_OVERLAPS = 1024, PARTS_PER_WORKER = 4 };
 /* Parts of rows are at most that many, so that what is known of them has room on the stack. */
 enum { MOST_PARTS = 64 };
 
-/* Rows that are found apart where the caller's list is nearly full. */
+/* Where there is room for fewer rows, so many pairs are answered apart. */
 enum { APART = 16 };
 
 struct job {
@@ -33,8 +33,8 @@ struct job {
     uint64_t *bits;
 
     narc_row_kernel *kernel;
-    size_t size; /* bytes of a row */
-    narc_rows rows;
+    size_t row_size;
+    narc_rows rows;                  /* of dense ones the first is the batch's, else that of `first` */
     atomic_flag closing;             /* does someone move rows? */
     atomic_size_t due;               /* the part to move next */
     size_t found;                    /* rows in their final place; of who moves them */
@@ -87,19 +87,19 @@ narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *
 
 /* ------------------------------------------------------------------------------------------------ rows */
 
+static char *find_row(const narc_rows *rows, size_t row) { return rows->base + (ptrdiff_t)row * rows->stride; }
+
 /* Moves rows to an earlier place; what lies between them stays. */
-static void move_rows(char *to, const char *from, size_t count, const struct job *job) {
+static void move_rows(const struct job *job, size_t to, size_t from, size_t count) {
     if (to == from)
         return;
-    if (job->rows.stride == (ptrdiff_t)job->size) {
-        memmove(to, from, count * job->size);
+    if (job->rows.stride == (ptrdiff_t)job->row_size) {
+        memmove(find_row(&job->rows, to), find_row(&job->rows, from), count * job->row_size);
         return;
     }
-    for (size_t k = 0; k < count; k++, to += job->rows.stride, from += job->rows.stride)
-        memcpy(to, from, job->size);
+    for (size_t k = 0; k < count; k++)
+        memcpy(find_row(&job->rows, to + k), find_row(&job->rows, from + k), job->row_size);
 }
-
-static char *place_of(const struct job *job, size_t row) { return job->rows.base + (ptrdiff_t)row * job->rows.stride; }
 
 /* Moves the rows of all parts that are due. Of several threads one does it; one that ends a part while another is at it
  * leaves it to that one, which looks again after it has let go. */
@@ -108,7 +108,7 @@ static void close_gaps(struct job *job, size_t parts) {
     while (due < parts && atomic_load(&job->ended[due]) && !atomic_flag_test_and_set(&job->closing)) {
         for (due = atomic_load(&job->due); due < parts && atomic_load(&job->ended[due]); due++) {
             const size_t count = atomic_load(&job->ended[due]) - 1;
-            move_rows(place_of(job, job->found), place_of(job, due * job->part_size), count, job);
+            move_rows(job, job->found, due * job->part_size, count);
             job->found += count;
         }
         atomic_store(&job->due, due);
@@ -116,15 +116,34 @@ static void close_gaps(struct job *job, size_t parts) {
     }
 }
 
-/* Finds the rows of `count` pairs from `start` on, group by group; returns how many there are. */
-static size_t find_groups(const struct job *job, size_t start, size_t count, size_t *skipped) {
+/* Answers a few pairs where there is room for `room` rows only. Not inlined: the others need no room for these. */
+static __attribute__((noinline)) size_t list_apart(const struct job *job, size_t first, size_t count, char *to,
+                                                   size_t room, size_t *skipped) {
+    _Alignas(16) char rows[APART * sizeof(narc_manifold)];
+    const narc_rows apart = {rows, (ptrdiff_t)job->row_size};
+    const size_t found = job->kernel(job->batch, first, count, skipped, &apart);
+    for (size_t k = 0; k < found && k < room; k++)
+        memcpy(to + (ptrdiff_t)k * job->rows.stride, find_row(&apart, k), job->row_size);
+    return found;
+}
+
+/* Finds the rows of `count` pairs from the job's pair `start` on, group by group, and lists them behind each other from
+ * row `start` on, as far as there is room. Returns how many there are. */
+static size_t list_rows(const struct job *job, size_t start, size_t count, size_t room, size_t *skipped) {
     const bool dense = job->batch->query->dense != 0;
     size_t found = 0;
-    for (size_t k = 0; k < count; k += NARC_ROW_GROUP) {
-        const size_t left = count - k;
-        const narc_rows to = {dense ? job->rows.base : place_of(job, start + found), job->rows.stride};
-        found += job->kernel(job->batch, job->first + start + k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, skipped,
-                             &to);
+    for (size_t k = 0, group; k < count; k += group) {
+        const size_t left = count - k, free = found < room ? room - found : 0;
+        const bool direct = dense || free >= left || free >= APART;
+        narc_rows to = job->rows;
+        if (!dense && free > 0)
+            to.base = find_row(&to, start + found);
+        group = direct ? NARC_ROW_GROUP : APART;
+        group = left < group ? left : group;
+        if (direct && !dense && free < group)
+            group = free;
+        found += direct ? job->kernel(job->batch, job->first + start + k, group, skipped, &to)
+                        : list_apart(job, job->first + start + k, group, to.base, free, skipped);
     }
     return found;
 }
@@ -132,18 +151,17 @@ static size_t find_groups(const struct job *job, size_t start, size_t count, siz
 static void find_part_of_rows(void *argument, size_t part) {
     struct job *const job = argument;
     size_t skipped = 0;
-    const size_t found = find_groups(job, part * job->part_size, size_of_part(job, part), &skipped);
+    const size_t count = size_of_part(job, part);
+    const size_t found = list_rows(job, part * job->part_size, count, count, &skipped);
     atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
     atomic_store(&job->ended[part], found + 1);
     if (!job->batch->query->dense)
         close_gaps(job, (job->count - 1) / job->part_size + 1);
 }
 
-/* The rows of the pairs of a job, which has room for as many. Returns how many there are. */
-static size_t list_rows(struct job *job, size_t *skipped) {
+/* The same by several workers, with room for as many rows as there are pairs. */
+static size_t share_rows(struct job *job, size_t *skipped) {
     const size_t groups = (job->count - 1) / NARC_ROW_GROUP + 1;
-    if (narc_count_workers(job->batch->query->workers, groups) <= 1)
-        return find_groups(job, 0, job->count, skipped);
     job->part_size = ((groups - 1) / MOST_PARTS + 1) * NARC_ROW_GROUP;
     const size_t parts = (job->count - 1) / job->part_size + 1;
     atomic_init(&job->skipped, 0);
@@ -157,35 +175,6 @@ static size_t list_rows(struct job *job, size_t *skipped) {
     for (size_t part = 0; part < parts && job->batch->query->dense; part++)
         job->found += atomic_load(&job->ended[part]) - 1;
     return job->found;
-}
-
-/* The same for a few pairs, with room for `room` rows only. Not inlined: the others need no room for these. */
-static __attribute__((noinline)) size_t list_apart(struct job *job, size_t room, size_t *skipped) {
-    _Alignas(16) char rows[APART * sizeof(narc_manifold)];
-    const narc_rows to = {rows, (ptrdiff_t)job->size};
-    const size_t found = job->kernel(job->batch, job->first, job->count, skipped, &to);
-    const size_t kept = found < room ? found : room;
-    for (size_t k = 0; k < kept; k++)
-        memcpy(place_of(job, k), rows + k * job->size, job->size);
-    return found;
-}
-
-/* Lists rows as far as there is room, and counts them all: so many pairs at a time as there is room for. */
-static size_t list_all(struct job *job, size_t capacity, size_t *skipped) {
-    const narc_rows rows = job->rows;
-    const size_t end = job->first + job->count;
-    size_t found = 0;
-    while (job->first < end) {
-        const size_t room = found < capacity ? capacity - found : 0, left = end - job->first;
-        const bool direct = room >= left || room >= APART;
-        const size_t most = direct ? room : APART;
-        job->count = left < most ? left : most;
-        if (room > 0)
-            job->rows.base = rows.base + (ptrdiff_t)found * rows.stride;
-        found += direct ? list_rows(job, skipped) : list_apart(job, room, skipped);
-        job->first += job->count;
-    }
-    return found;
 }
 
 /* Is there room for the rows, and is it used as it may be? */
@@ -205,9 +194,11 @@ static narc_status check_rows(const narc_batch *batch, const void *rows, ptrdiff
     return NARC_OK;
 }
 
-narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t size,
-                             size_t capacity, size_t *out_count, narc_error *error) {
+narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t capacity,
+                             size_t *out_count, narc_error *error) {
     const narc_query *query = batch->query;
+    const size_t size = batch->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact),
+                 end = batch->first + batch->count;
     const ptrdiff_t stride = query->row_stride ? query->row_stride : (ptrdiff_t)size;
     const narc_status status = check_rows(batch, out_rows, stride, size, capacity, out_count, error);
     if (status != NARC_OK)
@@ -216,12 +207,19 @@ narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, v
     size_t skipped = 0, found = 0;
     job.batch = batch;
     job.kernel = kernel;
-    job.first = batch->first;
-    job.count = batch->count;
-    job.size = size;
+    job.row_size = size;
     job.rows = (narc_rows){out_rows, stride};
-    if (batch->count > 0)
-        found = query->dense ? list_rows(&job, &skipped) : list_all(&job, capacity, &skipped);
+    /* Workers take so many pairs at a time as there is room for; where that is little, this thread takes them. */
+    for (job.first = batch->first; job.first < end; job.first += job.count) {
+        const size_t left = end - job.first, room = query->dense ? left : found < capacity ? capacity - found : 0;
+        job.count = left < room ? left : room;
+        const bool shared = narc_count_workers(query->workers, (job.count + NARC_ROW_GROUP - 1) / NARC_ROW_GROUP) > 1;
+        if (!query->dense && room > 0)
+            job.rows.base = (char *)out_rows + (ptrdiff_t)found * stride;
+        if (!shared)
+            job.count = left;
+        found += shared ? share_rows(&job, &skipped) : list_rows(&job, 0, left, room, &skipped);
+    }
     if (query->out_skipped)
         *query->out_skipped = skipped;
     *out_count = found;

@@ -37,11 +37,11 @@ struct narc_side {
 };
 struct narc_side narc_find_side(const narc_batch *batch, size_t pair, int side);
 
-/* Checks the outputs, runs a kernel on a batch that was begun, and tells what was skipped. Rows have `size` bytes. */
+/* Checks the outputs, runs a kernel on a batch that was begun, and tells what was skipped. */
 narc_status narc_answer_overlaps(narc_overlap_kernel *kernel, const narc_batch *batch, uint64_t *out_bits,
                                  narc_error *error);
-narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t size,
-                             size_t capacity, size_t *out_count, narc_error *error);
+narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t capacity,
+                             size_t *out_count, narc_error *error);
 
 /* Of the pairs that a batch asks for, the place of the first that names a pair, a body or a shape that does not exist;
  * the end of the range if none. */

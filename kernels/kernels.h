@@ -7,6 +7,8 @@
 #ifndef NARC_KERNELS_H
 #define NARC_KERNELS_H
 
+#include <stdbool.h>
+
 #include "broad_phase.h"
 #include "column.h"
 #include "store.h"
@@ -20,6 +22,7 @@ typedef struct narc_batch {
     const narc_query *query;
     size_t first, count;
     size_t asked;    /* how many pairs are selected */
+    bool manifolds;  /* are rows manifolds? Else contacts */
     float flat_sine; /* of manifolds: the sine of the flat angle; below 0: no second points */
     narc_bodies filled[2];
 } narc_batch;

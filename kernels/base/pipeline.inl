@@ -160,7 +160,7 @@ INLINE size_t run_contact_method(stage *find, const narc_batch *batch, size_t fi
     struct rows rows;
     const struct call call = begin_rows(batch, first, count, skipped, out, &rows);
     run_pairs(&call, NULL, take_valid, FIELDS, &find, 1, 0, &queue);
-    return end_rows(&call, sizeof(narc_contact));
+    return end_rows(&call);
 }
 
 #endif

@@ -207,9 +207,10 @@ INLINE uint32_t pack_bytes(const uint8_t *bytes) {
     return (uint32_t)(word * 0x0102040810204080u >> 56);
 }
 
-/* Ends a call with rows of `size` bytes: moves them together in the order of their pairs. Returns how many there are. */
-INLINE size_t end_rows(const struct call *call, size_t size) {
+/* Ends a call: moves its rows together in the order of their pairs. Returns how many there are. */
+INLINE size_t end_rows(const struct call *call) {
     const struct rows *rows = call->rows;
+    const size_t size = call->batch->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact);
     const ptrdiff_t stride = rows->out.stride;
     char *to = rows->out.base + rows->listed * stride;
     size_t count = (size_t)rows->listed;

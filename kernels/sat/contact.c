@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * contact.c - the contact kernel: separation, normal, point and arcs of the pairs closer than a margin, in their
- * order; and the manifold kernel, which goes on from there to a second point (manifold_edges.inl).
+ * contact.c - the contact kernel: separation, normal, point and arcs of the pairs closer than a margin, in their order;
+ * for manifolds it goes on from there to a second point (manifold_edges.inl).
  *
  * Pairs pass through stages until one of them knows the answer that the deciding formula (normal_fan.inl) would give,
  * to the last bit: circles, a probe along the axis (or of the arcs of the last call), another along u, a climb to a
@@ -209,40 +209,29 @@ INLINE vm detour_rows(const struct call *call, const struct pair_indices *indice
     return take_detour(call, indices, k, placement, open, number, answer);
 }
 
-/* The rows of a call, of contacts or manifolds. */
-static size_t find_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out,
-                        bool manifolds) {
-    const bool hinted = batch->query->hints.base != NULL;
+size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
+    const bool hinted = batch->query->hints.base != NULL, manifolds = batch->manifolds;
     stage *const stages[STAGES] = {hinted ? start_from_hints : probe_axis, probe_again, climb_from, decide,
                                    find_second_points};
     stage *const formula[] = {decide, find_second_points};
-    const int stage_count = manifolds ? STAGES : STAGES - 1;
+    const int stage_count = manifolds ? STAGES : STAGES - 1, edged_stage = hinted ? 0 : CLIMB;
     struct queue queues[STAGES];
+    struct box_queue boxes;
     struct rows rows;
     struct call call = begin_rows(batch, first, count, skipped, out, &rows);
-    const int edged_stage = hinted ? 0 : CLIMB;
-    struct box_queue boxes;
-    if (NARC_SHORTCUTS)
-        call.edges = manifolds ? &queues[STAGES - 1] : NULL;
-    if (NARC_SHORTCUTS && batch->shapes->box_count > 0) {
+    if (!NARC_SHORTCUTS) {
+        call.edges = manifolds ? &queues[1] : NULL;
+        run_pairs(&call, NULL, take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
+        return end_rows(&call);
+    }
+    call.edges = manifolds ? &queues[STAGES - 1] : NULL;
+    if (batch->shapes->box_count > 0) {
         boxes.count = 0;
         call.boxes = &boxes;
         run_pairs(&call, detour_rows, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
         run_boxes(&call, manifolds ? answer_box_manifolds : answer_box_contacts, &boxes, true);
-    } else if (NARC_SHORTCUTS) {
-        run_pairs(&call, NULL, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
     } else {
-        call.edges = manifolds ? &queues[1] : NULL;
-        run_pairs(&call, NULL, take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
+        run_pairs(&call, NULL, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
     }
-    return manifolds ? end_rows(&call, sizeof(narc_manifold)) : end_rows(&call, sizeof(narc_contact));
-}
-
-size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
-    return find_rows(batch, first, count, skipped, out, false);
-}
-
-size_t NARC_NAMED(manifold)(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
-                            const narc_rows *out) {
-    return find_rows(batch, first, count, skipped, out, true);
+    return end_rows(&call);
 }

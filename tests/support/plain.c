@@ -12,13 +12,14 @@
 #include "check.h"
 #include "plain_kernels.h"
 
-/* Runs a kernel group by group into rows of `size` bytes; returns how many. */
-static size_t run_kernel(narc_row_kernel *kernel, const narc_batch *batch, void *rows, size_t size) {
+/* Finds a batch's rows group by group; returns how many. */
+static size_t find_rows(const narc_batch *batch, void *rows) {
+    const size_t size = batch->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact);
     size_t found = 0, skipped = 0;
     for (size_t k = 0; k < batch->asked; k += NARC_ROW_GROUP) {
         const size_t left = batch->asked - k;
         const narc_rows out = {(char *)rows + found * size, (ptrdiff_t)size};
-        found += kernel(batch, k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &skipped, &out);
+        found += narc_kernels_plain.contact(batch, k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &skipped, &out);
     }
     return found;
 }
@@ -43,7 +44,7 @@ struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies
     const size_t count = pairs->count;
     struct contacts plain = {make_junk(count * sizeof *plain.rows), count};
     uint64_t *bits = make_junk(NARC_BIT_WORDS(count) * sizeof *bits);
-    assert_int_equal(run_kernel(narc_kernels_plain.contact, &batch, plain.rows, sizeof *plain.rows), count);
+    assert_int_equal(find_rows(&batch, plain.rows), count);
     narc_kernels_plain.overlap(&batch, 0, count, &skipped, bits);
     for (size_t k = 0; k < count; k++) {
         assert_int_equal(plain.rows[k].pair, k);
@@ -55,9 +56,10 @@ struct contacts find_plain_contacts(const narc_shapes *shapes, const narc_bodies
 
 struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,
                                       const narc_query *query) {
-    const narc_batch batch = begin_plain(shapes, bodies, pairs, query);
+    narc_batch batch = begin_plain(shapes, bodies, pairs, query);
+    batch.manifolds = true;
     struct manifolds plain = {make_junk(pairs->count * sizeof *plain.rows), 0};
-    plain.count = run_kernel(narc_kernels_plain.manifold, &batch, plain.rows, sizeof *plain.rows);
+    plain.count = find_rows(&batch, plain.rows);
     return plain;
 }
 
