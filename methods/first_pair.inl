@@ -95,7 +95,7 @@ INLINE void store_first_gap(const struct call *call, const struct queue *queue, 
         return;
     struct feature on_a, on_b;
     const vec2 n = find_gap_features(call, queue, k, gap, &on_a, &on_b);
-    store_contacts(call, queue, k, keep, gap->separation, n, &on_a, &on_b);
+    store_rows(call, queue, k, keep, gap->separation, n, &on_a, &on_b);
 }
 
 static void find_first_pairs(const struct call *call, struct queue *queue, int begin, struct queue *next) {

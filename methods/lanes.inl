@@ -113,7 +113,7 @@ static inline void store_found(const struct call *call, const struct queue *queu
         const struct feature on_a = find_found(call, queue, k, point, queue->record_a, SCALE_A);
         const struct feature on_b = find_found(call, queue, k, point, queue->record_b, SCALE_B);
         const vm keep = vm_and(vm_front(queue->count - k), is_below(separation, get_margins(call, queue, k)));
-        store_contacts(call, queue, k, keep, separation, n, &on_a, &on_b);
+        store_rows(call, queue, k, keep, separation, n, &on_a, &on_b);
     }
 }
 

@@ -82,7 +82,7 @@ INLINE void store_polygon_contacts(const struct call *call, const struct queue *
     struct feature on_a = find_feature_at(records, get_ring_a(queue, k), s.record_a, &pose, n, false);
     struct feature on_b = find_feature_at(records, get_ring_b(queue, k), s.record_b, &pose, n, true);
     move_together(&on_a, &on_b);
-    store_contacts(call, queue, k, keep, gap->separation, n, &on_a, &on_b);
+    store_rows(call, queue, k, keep, gap->separation, n, &on_a, &on_b);
 }
 
 static void find_polygons(const struct call *call, struct queue *queue, int begin, struct queue *next) {

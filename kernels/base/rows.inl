@@ -57,7 +57,8 @@ INLINE char *find_place(const struct call *call, int32_t pair) {
     return rows->out.base + (ptrdiff_t)item * rows->out.stride;
 }
 
-/* Notes that pairs have a row, in the lanes `keep`, and finds their places; elsewhere the spare one. */
+/* Notes that pairs have a row, in the lanes `keep`, and finds their places; elsewhere the spare one: what lanes write in
+ * vain stays in one line of the cache. */
 INLINE void find_places(const struct call *call, vi pairs, vm keep, char *place[V_WIDTH]) {
     struct rows *rows = call->rows;
     char *const base = rows->out.base + (rows->dense ? (ptrdiff_t)call->first * rows->out.stride : 0);
@@ -138,13 +139,6 @@ INLINE void write_answers(const struct call *call, char *const *place, vi number
         put_word(place[lane], 0, (uint32_t)number[lane]);
 }
 
-/* Writes the rows of pairs in the lanes `keep`. */
-INLINE void put_answers(const struct call *call, vi pairs, vm keep, const struct answer *answer) {
-    char *place[V_WIDTH];
-    find_places(call, pairs, keep, place);
-    write_answers(call, place, find_numbers(call, pairs), answer);
-}
-
 /* Lists the rows of pairs in the lanes `keep` behind those that are listed, where there is room for all lanes: packed, so
  * that their places follow each other. What is written behind the last one is overwritten. */
 INLINE void append_answers(const struct call *call, vi pairs, vm keep, const struct answer *answer) {
@@ -207,15 +201,13 @@ INLINE uint32_t pack_bytes(const uint8_t *bytes) {
     return (uint32_t)(word * 0x0102040810204080u >> 56);
 }
 
-/* Ends a call: moves its rows together in the order of their pairs. Returns how many there are. */
-INLINE size_t end_rows(const struct call *call) {
+/* Moves the rows of a call together in the order of their pairs, those behind the listed ones. Returns how many there
+ * are. */
+INLINE size_t close_gaps(const struct call *call, size_t size) {
     const struct rows *rows = call->rows;
-    const size_t size = call->batch->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact);
     const ptrdiff_t stride = rows->out.stride;
     char *to = rows->out.base + rows->listed * stride;
     size_t count = (size_t)rows->listed;
-    if (rows->dense)
-        return fill_gaps(call, size);
     if (rows->done >= (int)call->count) /* all rows are listed */
         return count;
     for (size_t k = 0; k < call->count; k += 8)
@@ -225,6 +217,14 @@ INLINE size_t end_rows(const struct call *call) {
                 memcpy(to, from, size);
         }
     return count;
+}
+
+/* Ends a call. Sizes are constants, so that a row is copied by a few instructions. */
+INLINE size_t end_rows(const struct call *call) {
+    const bool dense = call->rows->dense;
+    if (call->batch->manifolds)
+        return dense ? fill_gaps(call, sizeof(narc_manifold)) : close_gaps(call, sizeof(narc_manifold));
+    return dense ? fill_gaps(call, sizeof(narc_contact)) : close_gaps(call, sizeof(narc_contact));
 }
 
 /* The caller's number of an arc from its record; a circle's two halves are both arc 0. */
@@ -275,11 +275,14 @@ INLINE struct answer find_answer(const struct call *call, const struct queue *qu
     return answer;
 }
 
-/* Writes the contacts of the pairs k ... of a queue in the lanes `keep`. */
-INLINE void store_contacts(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
-                           const struct feature *on_a, const struct feature *on_b) {
+/* Writes the rows of the pairs k ... of a queue in the lanes `keep`. */
+INLINE void store_rows(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
+                       const struct feature *on_a, const struct feature *on_b) {
     const struct answer answer = find_answer(call, queue, k, separation, n, on_a, on_b);
-    put_answers(call, get_bits(queue, PAIR, k), keep, &answer);
+    const vi pairs = get_bits(queue, PAIR, k);
+    char *place[V_WIDTH];
+    find_places(call, pairs, keep, place);
+    write_answers(call, place, find_numbers(call, pairs), &answer);
 }
 
 /* The unit normal of the gap of the pairs k ... of a queue, and what touches along it. */

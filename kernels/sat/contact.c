@@ -48,10 +48,13 @@ INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf ite
                                   .reach_a = all_round,
                                   .reach_b = all_round};
     const vm found = vm_and(vm_and_not(p.only, p.far), is_below(p.separation, margin));
-    if (in_order && !vm_any(left))
+    if (in_order && !vm_any(left)) {
         append_answers(call, pairs, found, &answer);
-    else
-        put_answers(call, pairs, found, &answer);
+    } else {
+        char *place[V_WIDTH];
+        find_places(call, pairs, found, place);
+        write_answers(call, place, find_numbers(call, pairs), &answer);
+    }
     if (call->batch->query->hints.base)
         put_hints(call, pairs, answered, vi_set(FIRST_ARCS));
     return left;
@@ -67,14 +70,6 @@ INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter 
     if (due && !vm_any(left) && (in_order || !vm_any(open)))
         rows->done += V_WIDTH;
     return left;
-}
-
-/* Stores what was found of the pairs k ... of a queue in the lanes `keep`. */
-INLINE void store_answer(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
-                         const struct feature *on_a, const struct feature *on_b) {
-    store_contacts(call, queue, k, keep, separation, n, on_a, on_b);
-    if (call->edges)
-        collect_edges(call, queue, k, keep, separation, n, on_a, on_b);
 }
 
 /* Passes on the pairs k ... of a queue in the lanes `left`. */
@@ -104,7 +99,8 @@ INLINE vm probe(const struct call *call, const struct queue *queue, int k, vm li
         const vec2 n = v2_divide(p.u, p.length);
         const struct feature on_a = find_feature(&p.arcs.a, &p.arcs.a, n, record_a, false);
         const struct feature on_b = find_feature(&p.arcs.b, &p.arcs.b, n, record_b, true);
-        store_answer(call, queue, k, keep, p.separation, n, &on_a, &on_b);
+        store_rows(call, queue, k, keep, p.separation, n, &on_a, &on_b);
+        collect_edges(call, queue, k, keep, p.separation, n, &on_a, &on_b);
     }
     *out_u = p.u;
     return vm_and_not(live, vm_or(apart, certain));
@@ -121,7 +117,8 @@ INLINE vm climb_to(const struct call *call, const struct queue *queue, int k, vm
     if (vm_any(keep)) {
         const struct feature on_a = find_feature(&m->after.a, &m->before.a, top.normal, m->record_a, false);
         const struct feature on_b = find_feature(&m->after.b, &m->before.b, top.normal, m->record_b, true);
-        store_answer(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b);
+        store_rows(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b);
+        collect_edges(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b);
     }
     *out_lost = vm_and_not(live, m->found);
     return vm_and_not(live, vm_or(top.apart, top.certain));
@@ -198,7 +195,8 @@ static void decide(const struct call *call, struct queue *queue, int begin, stru
         if (vm_any(keep)) {
             struct feature on_a, on_b;
             const vec2 n = find_gap_features(call, queue, k, &gap, &on_a, &on_b);
-            store_answer(call, queue, k, keep, gap.separation, n, &on_a, &on_b);
+            store_rows(call, queue, k, keep, gap.separation, n, &on_a, &on_b);
+            collect_edges(call, queue, k, keep, gap.separation, n, &on_a, &on_b);
         }
     }
 }

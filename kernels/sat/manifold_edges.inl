@@ -40,10 +40,12 @@ enum {
     DEEPEST_RECORD_B = SIZE
 };
 
-/* Collects the pairs k ... of a queue in the lanes `keep` where both bodies have edges: they may have a second point,
- * and the first one's id is not final. */
+/* Of manifolds, collects the pairs k ... of a queue in the lanes `keep` where both bodies have edges: they may have a
+ * second point, and the first one's id is not final. */
 INLINE void collect_edges(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
                           const struct feature *on_a, const struct feature *on_b) {
+    if (!call->edges)
+        return;
     const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k);
     const vm smooth = vm_or(info_has(info_a, NARC_SHAPE_SMOOTH), info_has(info_b, NARC_SHAPE_SMOOTH));
     const vm edges = vm_and_not(keep, smooth);
