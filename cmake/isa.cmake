@@ -22,7 +22,8 @@ function(narc_add_isa_objects target name isa)
   # No LTO, whoever asks for it: inlining must not carry these instructions across the processor check.
   set_target_properties(${target} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
   separate_arguments(flag_list UNIX_COMMAND "${NARC_ISA_FLAGS_${isa}}")
-  target_compile_options(${target} PRIVATE ${flag_list} -fno-lto)
+  # Functions begin with a cache line: where the linker puts them may cost no kernel its 3 or 4 percent.
+  target_compile_options(${target} PRIVATE ${flag_list} -fno-lto -falign-functions=64)
   # Where each variable of an optimised kernel lives takes half of GCC's time to find out, and Clang 14 crashes over it
   # (in LLVM's salvageDebugInfo): lines, but no variables.
   target_compile_options(${target} PRIVATE $<$<C_COMPILER_ID:GNU>:-fno-var-tracking>

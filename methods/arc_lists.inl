@@ -7,9 +7,8 @@
 
 #include <stdbool.h>
 
-#include "base/arcs.inl"
-#include "base/queue.inl"
 #include "base/shape.inl"
+#include "base/queue.inl"
 #include "base/vec2.inl"
 #include "simd/simd.h"
 

@@ -13,7 +13,7 @@
 
 #include <math.h>
 
-#include "base/arcs.inl"
+#include "base/shape.inl"
 #include "base/call.inl"
 #include "base/pipeline.inl"
 #include "base/queue.inl"

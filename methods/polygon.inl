@@ -13,7 +13,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "base/arcs.inl"
+#include "base/shape.inl"
 #include "base/call.inl"
 #include "base/contact_point.inl"
 #include "base/pipeline.inl"

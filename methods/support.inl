@@ -11,11 +11,10 @@
 #ifndef NARC_METHODS_SUPPORT_INL
 #define NARC_METHODS_SUPPORT_INL
 
-#include "base/arcs.inl"
-#include "base/queue.inl"
 #include "base/shape.inl"
+#include "base/queue.inl"
 #include "base/vec2.inl"
-#include "sat/direction_lookup.inl"
+#include "sat/search.inl"
 #include "simd/simd.h"
 
 /* When a search ends for want of precision, relative to the numbers that go into w: normal_fan.inl's table, with |t|

@@ -25,7 +25,6 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "base/arcs.inl"
 #include "base/bodies.inl"
 #include "base/call.inl"
 #include "base/queue.inl"
@@ -33,25 +32,6 @@
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "simd/simd.h"
-
-/* Makes a rotation's length 1, which it nearly is: one step of Newton's method for the inverse root of the square, from
- * 1, which leaves 3/8 of the square's error squared, 1.5 e at most. In lanes where the square is off by more than
- * NARC_ROTATION_TOLERANCE, `out_valid` is false. */
-INLINE vec2 normalise_rotation(vec2 rotation, vm *out_valid) {
-    const vf error = v_sub(v2_dot(rotation, rotation), v_set(1));
-    *out_valid = v_le(v_abs(error), v_set((float)NARC_ROTATION_TOLERANCE));
-    return v2_scale(rotation, v_sub(v_set(1), v_mul(v_set(0.5f), error)));
-}
-
-INLINE vm distance_in_range(vec2 difference) {
-    const vf limit = v_set((float)NARC_MAX_DISTANCE);
-    return vm_and(v_le(v_abs(difference.x), limit), v_le(v_abs(difference.y), limit));
-}
-
-/* The bounding radius has 96 e of the extent in it, so this keeps scaled coordinates below 2e14, too. */
-INLINE vm size_in_range(vf size) {
-    return vm_and(v_le(v_set((float)NARC_MIN_SIZE), size), v_le(size, v_set((float)NARC_MAX_BOUND_RADIUS)));
-}
 
 /* 128 e (D + E_a + E_b), four times what the deciding formula can be off by: what a value from the same arithmetic must
  * be clear of, before it can stand for the formula's. Infinite where an extent is not known. */
@@ -88,14 +68,14 @@ INLINE struct placement place_pairs(const struct call *call, const struct source
                                     int k, enum pose_layout layout) {
     const narc_pairs *pairs = &given->pairs;
     const bool shifted = pairs->shift_x.base || pairs->shift_y.base;
-    const vec2 shift = {load_pair_column(pairs->shift_x, in->number + k, 0),
-                        load_pair_column(pairs->shift_y, in->number + k, 0)};
+    const vec2 shift = {load_column_or(pairs->shift_x, in->number + k, 0),
+                        load_column_or(pairs->shift_y, in->number + k, 0)};
     const struct body_pair bodies = load_bodies(given, layout, in->a + k, in->b + k, shifted ? &shift : NULL);
-    const vf margin = load_pair_column(call->margins, in->number + k, call->margin);
+    const vf margin = load_column_or(call->margins, in->number + k, call->margin);
     vm valid_a, valid_b;
     const vec2 rotation_a = normalise_rotation(bodies.rotation_a, &valid_a);
     const vec2 rotation_b = normalise_rotation(bodies.rotation_b, &valid_b);
-    const vm near = vm_and(distance_in_range(bodies.difference), v_le(margin, margin));
+    const vm near = vm_and(is_distance_in_range(bodies.difference), v_le(margin, margin));
     return (struct placement){{v2_unrotate(rotation_a, bodies.difference), v2_unrotate(rotation_a, rotation_b),
                                bodies.scale_a, bodies.scale_b},
                               rotation_a,
@@ -114,7 +94,7 @@ INLINE struct filter set_up_pairs(const struct call *call, const struct pair_ind
     const struct headers b = load_headers(batch->shapes->headers, in->shape_b + k);
     struct filter filter = {.margin = margin};
     const vf size_a = v_mul(scale_a, a.bound_radius), size_b = v_mul(scale_b, b.bound_radius);
-    const vm in_range = vm_and(placement->in_range, vm_and(size_in_range(size_a), size_in_range(size_b)));
+    const vm in_range = vm_and(placement->in_range, vm_and(is_size_in_range(size_a), is_size_in_range(size_b)));
     filter.valid = vm_and(which, in_range);
     filter.invalid = vm_and_not(which, in_range);
 

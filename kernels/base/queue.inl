@@ -84,6 +84,11 @@ INLINE vec2 get_vec2(const struct queue *queue, int field, int k) {
     return (vec2){get(queue, field, k), get(queue, field + 1, k)};
 }
 
+INLINE struct pose get_pose(const struct queue *queue, int k) {
+    return (struct pose){get_vec2(queue, POSITION, k), get_vec2(queue, ROTATION, k), get(queue, SCALE_A, k),
+                         get(queue, SCALE_B, k)};
+}
+
 INLINE struct ring get_ring_a(const struct queue *queue, int k) {
     return make_ring(get_bits(queue, FIRST_RECORD_A, k), get_bits(queue, INFO_A, k));
 }

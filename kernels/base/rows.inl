@@ -11,7 +11,6 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/contact_point.inl"
 #include "base/queue.inl"
@@ -93,24 +92,6 @@ INLINE void find_next_places(struct rows *rows, vm keep, char *place[V_WIDTH]) {
 }
 
 INLINE void put_word(char *place, int offset, uint32_t word) { memcpy(place + offset, &word, sizeof word); }
-
-/* Two halves of a word, the one at the lower address first. */
-INLINE vi pack_halves(vi low, vi high) {
-#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-    return vi_add(high, vi_shift_left(low, 16));
-#else
-    return vi_add(low, vi_shift_left(high, 16));
-#endif
-}
-
-/* What is known of a pair's only point, or its deepest one. */
-struct answer {
-    vf separation;
-    vec2 normal, point; /* in the world's axes */
-    vi feature;
-    vf radius_a, radius_b;
-    vi reach_a, reach_b; /* of manifolds, as in the row */
-};
 
 /* Writes rows of pairs with one point. */
 INLINE void write_answers(const struct call *call, char *const *place, vi numbers, const struct answer *answer) {
@@ -227,54 +208,6 @@ INLINE size_t end_rows(const struct call *call) {
     return dense ? fill_gaps(call, sizeof(narc_contact)) : close_gaps(call, sizeof(narc_contact));
 }
 
-/* The caller's number of an arc from its record; a circle's two halves are both arc 0. */
-INLINE vi find_arc_number(vi record, vi first_record, vi info) {
-    const vi index = vi_sub(record, first_arc_record(first_record, info));
-    const vi number = vi_add(index, info_first_arc(info)), count = info_count(info);
-    const vi wrapped = vi_select(vi_lt(number, count), number, vi_sub(number, count));
-    return vi_select(info_has(info, NARC_SHAPE_CIRCLE), vi_set(0), wrapped);
-}
-
-/* The sine of the angle from one unit vector to another, counter-clockwise and up to half a turn, of a quarter turn at
- * most. */
-INLINE vf find_capped_sine(vec2 from, vec2 to) {
-    const vf one = v_set(1), sine = v_max(v2_cross(from, to), v_set(0));
-    return v_select(v_lt(v_set(0), v2_dot(from, to)), v_min(sine, one), one);
-}
-
-/* How far n may turn on the arc of a feature, as a manifold's row has it. */
-INLINE vi find_reach(const struct feature *f, vec2 n, vi info, vm edge) {
-    const vf one = v_set(NARC_REACH_ONE), none = v_set(0);
-    const vm circle = info_has(info, NARC_SHAPE_CIRCLE);
-    const vf back = v_mul(one, find_capped_sine(f->start, n)), ahead = v_mul(one, find_capped_sine(n, f->end));
-    return pack_halves(vi_truncate(v_select(circle, one, v_select(edge, none, back))),
-                       vi_truncate(v_select(circle, one, v_select(edge, none, ahead))));
-}
-
-/* The answer to the pairs k ... of a queue that touch along n, in A's frame. */
-INLINE struct answer find_answer(const struct call *call, const struct queue *queue, int k, vf separation, vec2 n,
-                                 const struct feature *on_a, const struct feature *on_b) {
-    const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k), zero = vi_set(0);
-    const vec2 to_world = get_vec2(queue, ROTATION_A, k);
-    const vm edge_a = touches_edge(on_a, info_a, get(queue, SCALE_A, k));
-    const vm edge_b = touches_edge(on_b, info_b, get(queue, SCALE_B, k));
-    const vi number_a = find_arc_number(on_a->record, get_bits(queue, FIRST_RECORD_A, k), info_a);
-    const vi number_b = find_arc_number(on_b->record, get_bits(queue, FIRST_RECORD_B, k), info_b);
-    const vi feature_a = vi_add(number_a, vi_select(edge_a, vi_set(NARC_FEATURE_EDGE), zero));
-    const vi feature_b = vi_add(number_b, vi_select(edge_b, vi_set(NARC_FEATURE_EDGE), zero));
-    struct answer answer = {.separation = separation,
-                            .normal = v2_rotate(to_world, n),
-                            .point = v2_rotate(to_world, v2_rotate(n, find_contact_place(on_a, on_b))),
-                            .feature = vi_add(feature_a, vi_shift_left(feature_b, 8)),
-                            .radius_a = v_select(edge_a, v_set(INFINITY), on_a->radius),
-                            .radius_b = v_select(edge_b, v_set(INFINITY), on_b->radius)};
-    if (call->edges) {
-        answer.reach_a = find_reach(on_a, n, info_a, edge_a);
-        answer.reach_b = find_reach(on_b, n, info_b, edge_b);
-    }
-    return answer;
-}
-
 /* Writes the rows of the pairs k ... of a queue in the lanes `keep`. */
 INLINE void store_rows(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
                        const struct feature *on_a, const struct feature *on_b) {
@@ -283,17 +216,6 @@ INLINE void store_rows(const struct call *call, const struct queue *queue, int k
     char *place[V_WIDTH];
     find_places(call, pairs, keep, place);
     write_answers(call, place, find_numbers(call, pairs), &answer);
-}
-
-/* The unit normal of the gap of the pairs k ... of a queue, and what touches along it. */
-INLINE vec2 find_gap_features(const struct call *call, const struct queue *queue, int k, const struct gap *gap,
-                              struct feature *out_a, struct feature *out_b) {
-    const narc_record *records = call->batch->shapes->records;
-    const vec2 n = v2_divide(gap->normal, gap->length);
-    const struct pose pose = get_pose(queue, k);
-    *out_a = find_feature_at(records, get_ring_a(queue, k), gap->record_a, &pose, n, false);
-    *out_b = find_feature_at(records, get_ring_b(queue, k), gap->record_b, &pose, n, true);
-    return n;
 }
 
 #endif

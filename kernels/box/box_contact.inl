@@ -16,7 +16,6 @@
 
 #include <stdbool.h>
 
-#include "base/arcs.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "box/box_pairs.inl"

@@ -25,11 +25,11 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "base/arcs.inl"
 #include "base/bodies.inl"
 #include "base/call.inl"
 #include "base/pair_setup.inl"
 #include "base/rows.inl"
+#include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "simd/simd.h"

@@ -13,7 +13,6 @@
 
 #include <math.h>
 
-#include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"

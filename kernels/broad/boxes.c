@@ -194,7 +194,7 @@ size_t NARC_NAMED(box)(const narc_box_batch *batch, size_t first, size_t count, 
         vm valid;
         const vec2 rotation = normalise_rotation(placed.rotation, &valid);
         struct reaches r = find_reaches(batch->shapes, &headers, &placed, rotation, margin);
-        valid = vm_and(valid, size_in_range(v_mul(placed.scale, headers.bound_radius)));
+        valid = vm_and(valid, is_size_in_range(v_mul(placed.scale, headers.bound_radius)));
         if (batch->motion_x.base) {
             const vf motion = load_column(batch->motion_x, body);
             add_motion(&r.right, &r.left, motion);

@@ -17,7 +17,6 @@
 #ifndef NARC_SAT_CERTIFICATES_INL
 #define NARC_SAT_CERTIFICATES_INL
 
-#include "base/arcs.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"

@@ -10,7 +10,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/contact_point.inl"
 #include "base/pair_setup.inl"
@@ -23,11 +22,9 @@
 #include "box/box_rows.inl"
 #include "kernels.h"
 #include "sat/certificates.inl"
-#include "sat/direction_lookup.inl"
-#include "sat/hill_climb.inl"
 #include "sat/manifold_edges.inl"
 #include "sat/normal_fan.inl"
-#include "sat/probe.inl"
+#include "sat/search.inl"
 #include "simd/simd.h"
 
 /* Answers pairs of two circles in the lanes `open`; returns those that are left. `in_order`: are the pairs before, and

@@ -19,7 +19,6 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/contact_point.inl"
 #include "base/queue.inl"

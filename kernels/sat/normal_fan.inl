@@ -52,7 +52,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/arcs.inl"
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"

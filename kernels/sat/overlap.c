@@ -10,20 +10,18 @@
 /* With a queue less there is room for more pairs in each. */
 #define NARC_FEW_STAGES
 
-#include "base/arcs.inl"
 #include "base/call.inl"
 #include "base/pair_setup.inl"
 #include "base/pipeline.inl"
 #include "base/queue.inl"
+#include "base/shape.inl"
 #include "base/vec2.inl"
 #include "box/box_pairs.inl"
 #include "box/box_walk.inl"
 #include "kernels.h"
 #include "sat/certificates.inl"
-#include "sat/direction_lookup.inl"
-#include "sat/hill_climb.inl"
 #include "sat/normal_fan.inl"
-#include "sat/probe.inl"
+#include "sat/search.inl"
 #include "simd/simd.h"
 
 INLINE vm triage_overlaps(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {

@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * search.inl - how the highest local maximum of the gap is found: the arcs that hold a direction, a probe of these arcs,
+ * and a climb from arc to arc. What a probe or a climb proves: certificates.inl.
+ */
+#ifndef NARC_SAT_SEARCH_INL
+#define NARC_SAT_SEARCH_INL
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/queue.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "sat/certificates.inl"
+#include "simd/simd.h"
+
+/* ------------------------------------------------------------------------------------------------ looking up
+ *
+ * All directions n point from A to B in A's frame; A is asked for n and B for -n. */
+
+/* Counts half the angles of a record that are below `angle`, which both halves of a lane hold. */
+INLINE vi count_below(vi count, const int16_t *angles, const int32_t *record, vi angle) {
+    vf four[4];
+    v_rows(angles, sizeof(narc_record), record, four);
+    for (int k = 0; k < 4; k++)
+        count = vi_count16(count, angle, vi_bits(four[k]));
+    return count;
+}
+
+/* How many junctions of its shape come before a direction, in each lane: up to the 16 bits of the angles. */
+INLINE vi count_junctions(const narc_record *records, vi record, vi count, vec2 direction) {
+    const vf scaled = v_mul(diamond_angle(direction), v_set(NARC_ANGLE_SCALE));
+    const vi angle = vi_truncate(v_sub(scaled, v_set(NARC_ANGLE_OFFSET)));
+    vi twice = vi_add(vi_and(angle, vi_set(0xffff)), vi_shift_left(angle, 16)), before = vi_set(0);
+    for (int done = 0;; done += NARC_RECORD_ANGLES) {
+        int32_t index[V_WIDTH];
+        vi_store(index, record);
+        before = count_below(before, records->angles, index, twice);
+        if (vm_any(vi_lt(vi_set(done + NARC_RECORD_ANGLES / 2), count)))
+            before = count_below(before, &records->angles[NARC_RECORD_ANGLES / 2], index, twice);
+        const vm more = vi_lt(vi_set(done + NARC_RECORD_ANGLES), count);
+        if (!vm_any(more))
+            break;
+        record = vi_add(record, vi_select(more, vi_set(1), vi_set(0)));
+        twice = vi_select(more, twice, vi_set((int32_t)0x80008000u)); /* nothing is below that */
+    }
+    return vi_add(vi_and(before, vi_set(0xffff)), vi_shift_right(before, 16));
+}
+
+/* The record of the arc that holds a direction, in each lane. */
+INLINE vi find_arc(const narc_record *records, vi first_record, vi info, vec2 direction) {
+    const vi count = info_count(info), before = count_junctions(records, first_record, count, direction);
+    const vi index = vi_sub(vi_select(vi_lt(vi_set(0), before), before, count), vi_set(1));
+    return vi_add(first_arc_record(first_record, info), index);
+}
+
+/* The arcs of the pairs k ... of a queue that hold n and -n. */
+INLINE void find_arcs(const narc_record *records, const struct queue *queue, int k, vec2 n, vi *out_a, vi *out_b) {
+    const vec2 n_b = v2_unrotate_opposite(get_vec2(queue, ROTATION, k), n);
+    *out_a = find_arc(records, get_bits(queue, FIRST_RECORD_A, k), get_bits(queue, INFO_A, k), n);
+    *out_b = find_arc(records, get_bits(queue, FIRST_RECORD_B, k), get_bits(queue, INFO_B, k), n_b);
+}
+
+/* Finds the arcs that hold DIRECTION for the pairs `begin` ... of a queue. With `hints`, lanes that have one keep the
+ * arcs that it names. */
+INLINE void look_up_arcs(const narc_record *records, struct queue *queue, int begin, bool hints) {
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        const vm hinted = hints ? vi_lt(vi_set(0), vi_load(queue->hinted + k)) : vm_front(0);
+        if (hints && vm_bits(hinted) == vm_bits(vm_front(V_WIDTH)))
+            continue;
+        vi a, b;
+        find_arcs(records, queue, k, get_vec2(queue, DIRECTION, k), &a, &b);
+        if (hints) {
+            a = vi_select(hinted, vi_load(queue->record_a + k), a);
+            b = vi_select(hinted, vi_load(queue->record_b + k), b);
+        }
+        vi_store(queue->record_a + k, a);
+        vi_store(queue->record_b + k, b);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ probing
+ *
+ * What one arc of A and one of B tell of the gap. If u, from the centre of the one to that of the other, lies between
+ * their junctions, it is the direction of a local maximum of the gap, and mostly of the highest. */
+
+struct probe {
+    struct arc_pair arcs;
+    vec2 u;
+    vf length, radii, separation; /* of u, of both arcs, along u */
+    vm far;                       /* the separation is above the margin, for certain */
+    vm only;                      /* it is the one that the deciding formula would give */
+};
+
+/* The sine of the angle from u to the nearest junction of its arcs, times the length of u. A circle's junctions mean
+ * nothing. */
+INLINE vf find_least_sine(const struct arc_pair *arcs, vec2 u, vf length, vi info_a, vi info_b) {
+    const vf from_a = v_min(v2_cross(arcs->a.start, u), v2_cross(u, arcs->a.end));
+    const vf from_b = v_min(v2_cross(arcs->b.start, u), v2_cross(u, arcs->b.end));
+    return v_min(v_select(info_has(info_a, NARC_SHAPE_CIRCLE), length, from_a),
+                 v_select(info_has(info_b, NARC_SHAPE_CIRCLE), length, from_b));
+}
+
+INLINE struct probe measure_gap(const struct arc_pair *arcs) {
+    struct probe p = {.arcs = *arcs, .u = center_difference(arcs)};
+    p.length = v2_length(p.u);
+    p.radii = v_add(arcs->a.radius, arcs->b.radius);
+    p.separation = v_sub(p.length, p.radii);
+    return p;
+}
+
+/* `least` as find_least_sine() gives it. */
+INLINE void certify_gap(struct probe *p, vf least, vf slack, vm live, vf margin) {
+    const vf inner = v_add(p->arcs.a.inner, p->arcs.b.inner);
+    const vm inside = vm_and(live, v_lt(v_set(0), least)); /* u is long enough for the formula if is_only_maximum() */
+    p->far = vm_and(inside, v_lt(v_add(margin, slack), p->separation));
+    p->only = vm_and(inside, is_only_maximum(inner, p->separation, least, p->length, slack));
+}
+
+/* Probes the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`. */
+INLINE struct probe probe_arcs(const narc_record *records, const struct queue *queue, int k, vm live, vf margin) {
+    const struct pose pose = get_pose(queue, k);
+    const struct arc_pair arcs =
+        load_arc_pair(records, vi_load(queue->record_a + k), vi_load(queue->record_b + k), &pose);
+    struct probe p = measure_gap(&arcs);
+    const vf least = find_least_sine(&arcs, p.u, p.length, get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k));
+    certify_gap(&p, least, get(queue, SLACK, k), live, margin);
+    return p;
+}
+
+/* Of two circles there is nothing to search: the gap is largest from centre to centre. They are answered as they are
+ * set up, without a queue. */
+
+/* Are there pairs in the lanes `open`, all of two circles? */
+INLINE bool are_discs(vm open, const vf item[FIELDS]) {
+    return vm_any(open) && !vm_any(vm_and_not(open, both_have(item, NARC_SHAPE_CIRCLE)));
+}
+
+/* A circle in each lane: half of it, without its ends, which mean nothing. */
+INLINE struct arcs load_disc(const narc_record *records, vi first_record, vi info, const struct pose *pose, bool is_b) {
+    const vf none = v_set(0);
+    vf field[8] = {none, none, none, none, none, none, none, none};
+    int32_t index[V_WIDTH];
+    vi_store(index, first_arc_record(first_record, info));
+    v_rows(records, sizeof *records, index, field);
+    return is_b ? place_b(field, pose) : place_a(field, pose);
+}
+
+/* What two circles tell of the gap, in the lanes `live`. */
+INLINE struct probe probe_discs(const narc_record *records, const vf item[FIELDS], vm live, vf margin) {
+    const struct pose pose = {
+        {item[POSITION], item[POSITION + 1]}, {item[ROTATION], item[ROTATION + 1]}, item[SCALE_A], item[SCALE_B]};
+    const struct arc_pair arcs = {
+        load_disc(records, item_bits(item, FIRST_RECORD_A), item_bits(item, INFO_A), &pose, false),
+        load_disc(records, item_bits(item, FIRST_RECORD_B), item_bits(item, INFO_B), &pose, true)};
+    struct probe p = measure_gap(&arcs);
+    certify_gap(&p, p.length, item[SLACK], live, margin);
+    return p;
+}
+
+/* ------------------------------------------------------------------------------------------------ climbing */
+
+/* Most climbs end at the first step, and nearly all within four. */
+enum { CLIMB_STEPS = 8 };
+
+/* Where u lies in an interval of directions: the common part of the sectors of two arcs, from lo to hi. */
+struct interval {
+    vm lo_is_a, hi_is_a; /* whose junction it is */
+    vm inside, up, down; /* does u lie in it, or does g rise beyond hi, beyond lo? */
+};
+
+INLINE struct interval find_interval(const struct arc_pair *arcs, vec2 u) {
+    const vf zero = v_set(0);
+    const vf start_a = v2_cross(arcs->a.start, u), start_b = v2_cross(arcs->b.start, u);
+    const vf end_a = v2_cross(u, arcs->a.end), end_b = v2_cross(u, arcs->b.end);
+    const vf least = v_min(v_min(start_a, end_a), v_min(start_b, end_b));
+    struct interval i;
+    i.lo_is_a = v_le(zero, v2_cross(arcs->b.start, arcs->a.start));
+    i.hi_is_a = v_le(zero, v2_cross(arcs->a.end, arcs->b.end));
+    i.inside = vm_and(v_le(zero, least), v_le(v_set(LEAST_SQUARE), v2_dot(u, u)));
+    i.down = v_lt(v_select(i.lo_is_a, start_a, start_b), zero);
+    i.up = v_lt(v_select(i.hi_is_a, end_a, end_b), zero);
+    return i;
+}
+
+/* What a climb knows of the step before: its arcs, which way it left them, and whether A's moved. */
+struct last_step {
+    struct arc_pair arcs;
+    vi record_a, record_b;
+    vm up, down, moved_a;
+};
+
+/* Enters what a step has found in the lanes `open`; at_lo and at_hi: the junction there is the maximum. */
+INLINE void keep_maximum(struct local_maximum *maximum, const struct arc_pair *arcs, vi record_a, vi record_b,
+                         const struct last_step *last, const struct interval *i, vec2 u, vm at_lo, vm at_hi, vm open) {
+    const struct arc_pair after = select_arc_pair(at_hi, &last->arcs, arcs);
+    const struct arc_pair before = select_arc_pair(at_lo, &last->arcs, arcs);
+    const vec2 lo = v2_select(i->lo_is_a, arcs->a.start, arcs->b.start);
+    const vec2 hi = v2_select(i->hi_is_a, arcs->a.end, arcs->b.end);
+    maximum->after = select_arc_pair(open, &after, &maximum->after);
+    maximum->before = select_arc_pair(open, &before, &maximum->before);
+    maximum->record_a = vi_select(open, vi_select(at_hi, last->record_a, record_a), maximum->record_a);
+    maximum->record_b = vi_select(open, vi_select(at_hi, last->record_b, record_b), maximum->record_b);
+    maximum->direction = v2_select(open, v2_select(at_lo, lo, v2_select(at_hi, hi, u)), maximum->direction);
+    maximum->kink = vm_or(maximum->kink, vm_and(open, vm_or(at_lo, at_hi)));
+}
+
+/* Climbs from the arcs in record_a and record_b to a local maximum. Each step looks at the interval of two arcs, with
+ * u from the centre of A's arc to that of B's (normal_fan.inl). If u lies in it, that is the maximum. Else the gap
+ * rises beyond hi, or beyond lo, and the search crosses that junction; if it would go back over the junction that it
+ * has just crossed, that junction is the maximum. Where the sectors have no common part (a hint that is stale) steps
+ * lead anywhere: whoever uses the result checks that the arcs hold its direction. */
+INLINE struct local_maximum climb(const narc_record *records, const struct queue *queue, int k, vm live) {
+    const struct pose pose = get_pose(queue, k);
+    const struct ring ring_a = get_ring_a(queue, k), ring_b = get_ring_b(queue, k);
+    const vm none = vm_front(0);
+    vi record_a = vi_load(queue->record_a + k), record_b = vi_load(queue->record_b + k);
+    vm open = live;
+    struct last_step last = {.up = none, .down = none, .moved_a = none};
+    struct local_maximum maximum;
+    for (int step = 0;; step++) {
+        const struct arc_pair arcs = load_arc_pair(records, record_a, record_b, &pose);
+        const vec2 u = center_difference(&arcs);
+        const struct interval i = find_interval(&arcs, u);
+        /* Back over the junction that the last step crossed: the one at this end, and of the shape that moved. */
+        const vm at_lo = vm_and_not(vm_and_not(vm_and(last.up, i.down), vm_xor(i.lo_is_a, last.moved_a)), i.inside);
+        const vm at_hi = vm_and_not(vm_and_not(vm_and(last.down, i.up), vm_xor(i.hi_is_a, last.moved_a)), i.inside);
+        if (step == 0)
+            maximum = (struct local_maximum){none, none, u, arcs, arcs, record_a, record_b};
+        else
+            keep_maximum(&maximum, &arcs, record_a, record_b, &last, &i, u, at_lo, at_hi, open);
+        const vm here = vm_and(open, vm_or(i.inside, vm_or(at_lo, at_hi)));
+        maximum.found = vm_or(maximum.found, here);
+        open = vm_and_not(open, here);
+        if (step + 1 == CLIMB_STEPS || !vm_any(open))
+            return maximum;
+        const vm down = vm_and_not(i.down, i.up);
+        last = (struct last_step){arcs, record_a, record_b,
+                                  i.up, down,     vm_or(vm_and(i.up, i.hi_is_a), vm_and(down, i.lo_is_a))};
+        const vi zero = vi_set(0), by = vi_select(i.up, vi_set(1), vi_select(down, vi_set(-1), zero));
+        record_a = step_record(ring_a, record_a, vi_select(last.moved_a, by, zero));
+        record_b = step_record(ring_b, record_b, vi_select(last.moved_a, zero, by));
+    }
+}
+
+/* A local maximum and what it proves: that the separation is above the margin, or that it is this. */
+struct certified_maximum {
+    struct local_maximum maximum;
+    vf separation;
+    vec2 normal;
+    vm apart, certain;
+};
+
+/* Climbs from the arcs in record_a and record_b of the pairs k ... of a queue. */
+INLINE struct certified_maximum climb_and_certify(const narc_record *records, const struct queue *queue, int k, vm live,
+                                                  vf margin) {
+    const struct local_maximum m = climb(records, queue, k, live);
+    const vec2 u = center_difference(&m.after);
+    const vf radii = v_add(m.after.a.radius, m.after.b.radius), length = v2_length(u);
+    const vf value = v_select(m.kink, v2_dot(u, m.direction), length);
+    struct certified_maximum top = {.maximum = m, .separation = v_sub(value, radii)};
+    top.normal = v2_divide(m.direction, v_select(m.kink, v_set(1), length));
+    const struct sines sines = find_sines(queue, k, &m, top.normal);
+    const vm found = vm_and(vm_and(live, m.found), v_le(v_set(0), sines.least));
+    top.apart = vm_and(found, v_lt(v_add(margin, get(queue, SLACK, k)), top.separation));
+    top.certain =
+        vm_and(vm_and_not(found, top.apart), is_global_maximum(queue, k, &m, &sines, top.normal, top.separation));
+    return top;
+}
+
+#endif
