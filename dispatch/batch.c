@@ -178,11 +178,12 @@ static size_t share_rows(struct job *job, size_t *skipped) {
 }
 
 /* Is there room for the rows, and is it used as it may be? */
-static narc_status check_rows(const narc_batch *batch, const void *rows, ptrdiff_t stride, size_t size, size_t capacity,
+static narc_status check_rows(const narc_batch *batch, const narc_rows *rows, size_t size, size_t capacity,
                               const size_t *out_count, narc_error *error) {
     const narc_query *query = batch->query;
     const size_t end = query->selection.base ? batch->pairs->count : batch->first + batch->count;
-    if (!out_count || (!rows && capacity > 0))
+    const ptrdiff_t stride = rows->stride;
+    if (!out_count || (!rows->base && capacity > 0))
         return narc_fail_missing(error, !out_count ? "out_count" : "out_rows");
     if (stride % 4 != 0 || (stride < (ptrdiff_t)size && stride > -(ptrdiff_t)size))
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)stride,
@@ -194,32 +195,44 @@ static narc_status check_rows(const narc_batch *batch, const void *rows, ptrdiff
     return NARC_OK;
 }
 
-narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t capacity,
-                             size_t *out_count, narc_error *error) {
+/* The rows of a batch with more than one group of pairs, or with little room. Workers take so many pairs at a time as
+ * there is room for; where that is little, this thread takes them. */
+static __attribute__((noinline)) size_t list_all(narc_row_kernel *kernel, const narc_batch *batch, size_t row_size,
+                                                 const narc_rows *rows, size_t capacity, size_t *skipped) {
     const narc_query *query = batch->query;
-    const size_t size = batch->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact),
-                 end = batch->first + batch->count;
-    const ptrdiff_t stride = query->row_stride ? query->row_stride : (ptrdiff_t)size;
-    const narc_status status = check_rows(batch, out_rows, stride, size, capacity, out_count, error);
-    if (status != NARC_OK)
-        return status;
-    struct job job;
-    size_t skipped = 0, found = 0;
+    const size_t end = batch->first + batch->count;
+    size_t found = 0;
+    struct job job; /* most of it is for workers */
     job.batch = batch;
     job.kernel = kernel;
-    job.row_size = size;
-    job.rows = (narc_rows){out_rows, stride};
-    /* Workers take so many pairs at a time as there is room for; where that is little, this thread takes them. */
+    job.row_size = row_size;
+    job.rows = *rows;
     for (job.first = batch->first; job.first < end; job.first += job.count) {
         const size_t left = end - job.first, room = query->dense ? left : found < capacity ? capacity - found : 0;
         job.count = left < room ? left : room;
         const bool shared = narc_count_workers(query->workers, (job.count + NARC_ROW_GROUP - 1) / NARC_ROW_GROUP) > 1;
         if (!query->dense && room > 0)
-            job.rows.base = (char *)out_rows + (ptrdiff_t)found * stride;
+            job.rows.base = find_row(rows, found);
         if (!shared)
             job.count = left;
-        found += shared ? share_rows(&job, &skipped) : list_rows(&job, 0, left, room, &skipped);
+        found += shared ? share_rows(&job, skipped) : list_rows(&job, 0, left, room, skipped);
     }
+    return found;
+}
+
+narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t capacity,
+                             size_t *out_count, narc_error *error) {
+    const narc_query *query = batch->query;
+    const size_t row_size = batch->manifolds ? sizeof(narc_manifold) : sizeof(narc_contact);
+    const narc_rows rows = {out_rows, query->row_stride ? query->row_stride : (ptrdiff_t)row_size};
+    const narc_status status = check_rows(batch, &rows, row_size, capacity, out_count, error);
+    if (status != NARC_OK)
+        return status;
+    size_t skipped = 0, found = 0;
+    if (batch->count <= NARC_ROW_GROUP && batch->count <= capacity)
+        found = batch->count > 0 ? kernel(batch, batch->first, batch->count, &skipped, &rows) : 0;
+    else
+        found = list_all(kernel, batch, row_size, &rows, capacity, &skipped);
     if (query->out_skipped)
         *query->out_skipped = skipped;
     *out_count = found;

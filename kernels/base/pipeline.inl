@@ -75,25 +75,38 @@ INLINE int find_due(const struct queue *queues, int stage_count, bool end) {
     return -1;
 }
 
+/* Takes the last pairs of a queue through its stage. */
+INLINE void run_stage(const struct call *call, stage *run, struct queue *queue) {
+    const int begin = queue->count > STEP ? queue->count - STEP : 0;
+    if (queue->count % V_WIDTH != 0 && begin == 0)
+        pad(queue);
+    run(call, queue, begin, queue + 1);
+    queue->count = begin;
+}
+
 INLINE void run_stages(const struct call *call, stage *const *stages, int stage_count, struct queue *queues, bool end) {
+    if (call->count <= STEP) { /* no queue can be full: each stage runs once, at the end */
+        for (int s = 0; s < stage_count; s++)
+            if (queues[s].count > 0)
+                run_stage(call, stages[s], &queues[s]);
+        return;
+    }
     for (int s = find_due(queues, stage_count, end); s >= 0;) {
-        struct queue *queue = &queues[s];
-        const int begin = queue->count > STEP ? queue->count - STEP : 0;
-        if (queue->count % V_WIDTH != 0 && begin == 0)
-            pad(queue);
-        stages[s](call, queue, begin, queue + 1);
-        queue->count = begin;
+        run_stage(call, stages[s], &queues[s]);
         const int due = find_due(queues, stage_count, end);
-        s = begin >= STEP && due <= s ? s : due;
+        s = queues[s].count >= STEP && due <= s ? s : due;
     }
 }
+
+/* For so few pairs it is not worth a look how their poses lie. */
+enum { FEW_PAIRS = 4 };
 
 /* Runs all pairs of a call. `take`: what comes before all else, or NULL. `queues`: one for each stage. `edged_stage`:
  * where pairs with edges may begin instead of at the first stage, or 0. */
 INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int fields, stage *const *stages,
                       int stage_count, int edged_stage, struct queue *queues) {
     const struct sources given = copy_sources(call->batch);
-    const enum pose_layout layout = find_layout(&given);
+    const enum pose_layout layout = call->count <= FEW_PAIRS ? POSE_COLUMNS : find_layout(&given);
     struct pair_indices indices;
     struct found_arcs arcs;
     for (int s = 0; s < stage_count; s++)
