@@ -25,8 +25,8 @@
 /* A local maximum of the gap over all directions (normal_fan.inl). It lies between two junctions, where `after` and `before` are both the arcs that hold it, or (`kink`) at a junction,
  * with the arcs after it and those before. */
 struct local_maximum {
-    vm found, kink;
-    vec2 direction; /* not yet of length 1 */
+    vm found, turned, kink; /* turned: not found, but near `direction` */
+    vec2 direction;         /* not yet of length 1 */
     struct arc_pair after, before;
     vi record_a, record_b; /* of the arcs after it */
 };
@@ -161,10 +161,14 @@ INLINE struct sines find_sines(const struct queue *queue, int k, const struct lo
     return s;
 }
 
-/* Is a local maximum with the unit normal n, whose arcs hold n, the formula's answer? Certificates 3 and 4. */
-INLINE vm is_global_maximum(const struct queue *queue, int k, const struct local_maximum *m, const struct sines *s,
-                            vec2 n, vf separation) {
-    const vf zero = v_set(0), slack = get(queue, SLACK, k), depth = v_neg(separation);
+/* Where the fan ends on both sides of n: the cosines of the angles, and whether it is narrow enough. */
+struct fan_ends {
+    vf after, before;
+    vm narrow;
+};
+
+INLINE struct fan_ends find_fan_ends(const struct queue *queue, int k, vec2 n, vf separation) {
+    const vf zero = v_set(0), slack = get(queue, SLACK, k);
     const vec2 axis = get_vec2(queue, AXIS, k);
     const vf axis_square = v2_dot(axis, axis), axis_length = v_sqrt(axis_square);
     /* The cosine of half the fan, and then those of its ends seen from n, all times the axis' length or its square. */
@@ -172,18 +176,24 @@ INLINE vm is_global_maximum(const struct queue *queue, int k, const struct local
     const vf fan_sine = v_sqrt(v_max(zero, v_sub(axis_square, v_mul(fan, fan))));
     const vf along = v2_dot(axis, n), across = v2_cross(axis, n);
     const vf even = v_mul(fan, along), odd = v_mul(fan_sine, across);
-    const vf cosine_after = v_div(v_add(even, odd), axis_square), cosine_before = v_div(v_sub(even, odd), axis_square);
-    const vm narrow = vm_and(v_lt(zero, along), v_le(v_mul(v_set(-0.5f), axis_length), fan));
+    return (struct fan_ends){v_div(v_add(even, odd), axis_square), v_div(v_sub(even, odd), axis_square),
+                             vm_and(v_lt(zero, along), v_le(v_mul(v_set(-0.5f), axis_length), fan))};
+}
 
+/* Is a local maximum with the unit normal n, whose arcs hold n, the formula's answer? Certificates 3 and 4. */
+INLINE vm is_global_maximum(const struct queue *queue, int k, const struct local_maximum *m, const struct sines *s,
+                            vec2 n, vf separation) {
+    const vf zero = v_set(0), slack = get(queue, SLACK, k), depth = v_neg(separation);
+    const struct fan_ends ends = find_fan_ends(queue, k, n, separation);
     const vf edge_after = v_select(m->kink, v2_cross(center_difference(&m->after), n), zero);
     const vf edge_before = v_select(m->kink, v2_cross(n, center_difference(&m->before)), zero);
-    const vm after = is_side_clear(&m->after, s->end_a, s->end_b, edge_after, m->kink, cosine_after, depth, slack);
+    const vm after = is_side_clear(&m->after, s->end_a, s->end_b, edge_after, m->kink, ends.after, depth, slack);
     const vm before =
-        is_side_clear(&m->before, s->start_a, s->start_b, edge_before, m->kink, cosine_before, depth, slack);
+        is_side_clear(&m->before, s->start_a, s->start_b, edge_before, m->kink, ends.before, depth, slack);
 
     const vf inner = v_add(m->after.a.inner, m->after.b.inner);
     const vm only = vm_and_not(is_only_maximum(inner, separation, s->least, v_set(1), slack), m->kink);
-    return vm_or(only, vm_and(narrow, vm_and(after, before)));
+    return vm_or(only, vm_and(ends.narrow, vm_and(after, before)));
 }
 
 #endif

@@ -105,7 +105,7 @@ INLINE vm probe(const struct call *call, const struct queue *queue, int k, vm li
 
 /* Climbs from the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`; returns those
  * without an answer. In *out_lost, those without even a local maximum. */
-INLINE vm climb_to(const struct call *call, const struct queue *queue, int k, vm live, vm *out_lost) {
+INLINE vm climb_to(const struct call *call, struct queue *queue, int k, vm live, vm *out_lost) {
     const vf margin = get_margins(call, queue, k);
     const struct certified_maximum top = climb_and_certify(call->batch->shapes->records, queue, k, live, margin);
     const struct local_maximum *m = &top.maximum;
@@ -117,7 +117,9 @@ INLINE vm climb_to(const struct call *call, const struct queue *queue, int k, vm
         store_rows(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b);
         collect_edges(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b);
     }
-    *out_lost = vm_and_not(live, m->found);
+    const vm near = vm_or(m->found, m->turned);
+    *out_lost = vm_and_not(live, near);
+    store_vec2(queue, DIRECTION, k, v2_select(near, m->direction, get_vec2(queue, DIRECTION, k)));
     return vm_and_not(live, vm_or(top.apart, top.certain));
 }
 
@@ -182,11 +184,23 @@ static void climb_from(const struct call *call, struct queue *queue, int begin, 
         pass_on(queue, k, climb_to(call, queue, k, vm_front(queue->count - k), &lost), next);
 }
 
+/* The deciding formula, or a part of it that has its answer for certain. */
+INLINE struct gap decide_gap(const narc_shapes *shapes, const struct queue *queue, int k, vm live) {
+    vm certain;
+    if (!NARC_SHORTCUTS)
+        return find_gap(shapes, queue, k, live, true);
+    const struct gap near = walk_near(shapes->records, queue, k, live, &certain);
+    if (!vm_any(vm_and_not(live, certain)))
+        return near;
+    const struct gap gap = find_gap(shapes, queue, k, vm_and_not(live, certain), true);
+    return select_gap(certain, &near, &gap);
+}
+
 static void decide(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     (void)next;
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k);
-        const struct gap gap = find_gap(call->batch->shapes, queue, k, live, true);
+        const struct gap gap = decide_gap(call->batch->shapes, queue, k, live);
         store_hints(call, queue, k, live, gap.record_a, gap.record_b);
         const vm keep = vm_and(live, is_below(gap.separation, get_margins(call, queue, k)));
         if (vm_any(keep)) {

@@ -13,6 +13,7 @@
 #include "base/shape.inl"
 #include "base/vec2.inl"
 #include "sat/certificates.inl"
+#include "sat/normal_fan.inl"
 #include "simd/simd.h"
 
 /* ------------------------------------------------------------------------------------------------ looking up
@@ -194,6 +195,7 @@ struct last_step {
 /* Enters what a step has found in the lanes `open`; at_lo and at_hi: the junction there is the maximum. */
 INLINE void keep_maximum(struct local_maximum *maximum, const struct arc_pair *arcs, vi record_a, vi record_b,
                          const struct last_step *last, const struct interval *i, vec2 u, vm at_lo, vm at_hi, vm open) {
+    const vm to_lo = vm_and(last->up, i->down), to_hi = vm_and(last->down, i->up);
     const struct arc_pair after = select_arc_pair(at_hi, &last->arcs, arcs);
     const struct arc_pair before = select_arc_pair(at_lo, &last->arcs, arcs);
     const vec2 lo = v2_select(i->lo_is_a, arcs->a.start, arcs->b.start);
@@ -202,14 +204,15 @@ INLINE void keep_maximum(struct local_maximum *maximum, const struct arc_pair *a
     maximum->before = select_arc_pair(open, &before, &maximum->before);
     maximum->record_a = vi_select(open, vi_select(at_hi, last->record_a, record_a), maximum->record_a);
     maximum->record_b = vi_select(open, vi_select(at_hi, last->record_b, record_b), maximum->record_b);
-    maximum->direction = v2_select(open, v2_select(at_lo, lo, v2_select(at_hi, hi, u)), maximum->direction);
+    maximum->direction = v2_select(open, v2_select(to_lo, lo, v2_select(to_hi, hi, u)), maximum->direction);
     maximum->kink = vm_or(maximum->kink, vm_and(open, vm_or(at_lo, at_hi)));
 }
 
 /* Climbs from the arcs in record_a and record_b to a local maximum. Each step looks at the interval of two arcs, with
  * u from the centre of A's arc to that of B's (normal_fan.inl). If u lies in it, that is the maximum. Else the gap
  * rises beyond hi, or beyond lo, and the search crosses that junction; if it would go back over the junction that it
- * has just crossed, that junction is the maximum. Where the sectors have no common part (a hint that is stale) steps
+ * has just crossed, that junction is the maximum. Where it would go back over the other shape's, both junctions lie side
+ * by side: the search ends there, `turned`. Where the sectors have no common part (a hint that is stale) steps
  * lead anywhere: whoever uses the result checks that the arcs hold its direction. */
 INLINE struct local_maximum climb(const narc_record *records, const struct queue *queue, int k, vm live) {
     const struct pose pose = get_pose(queue, k);
@@ -227,12 +230,14 @@ INLINE struct local_maximum climb(const narc_record *records, const struct queue
         const vm at_lo = vm_and_not(vm_and_not(vm_and(last.up, i.down), vm_xor(i.lo_is_a, last.moved_a)), i.inside);
         const vm at_hi = vm_and_not(vm_and_not(vm_and(last.down, i.up), vm_xor(i.hi_is_a, last.moved_a)), i.inside);
         if (step == 0)
-            maximum = (struct local_maximum){none, none, u, arcs, arcs, record_a, record_b};
+            maximum = (struct local_maximum){none, none, none, u, arcs, arcs, record_a, record_b};
         else
             keep_maximum(&maximum, &arcs, record_a, record_b, &last, &i, u, at_lo, at_hi, open);
         const vm here = vm_and(open, vm_or(i.inside, vm_or(at_lo, at_hi)));
+        const vm back = vm_or(vm_and(last.up, i.down), vm_and(last.down, i.up)); /* perhaps over the other's junction */
         maximum.found = vm_or(maximum.found, here);
-        open = vm_and_not(open, here);
+        maximum.turned = vm_or(maximum.turned, vm_and_not(vm_and(open, back), here));
+        open = vm_and_not(open, vm_or(here, back));
         if (step + 1 == CLIMB_STEPS || !vm_any(open))
             return maximum;
         const vm down = vm_and_not(i.down, i.up);
@@ -267,6 +272,90 @@ INLINE struct certified_maximum climb_and_certify(const narc_record *records, co
     top.certain =
         vm_and(vm_and_not(found, top.apart), is_global_maximum(queue, k, &m, &sines, top.normal, top.separation));
     return top;
+}
+
+/* ------------------------------------------------------------------------------------------------ walking
+ *
+ * Where bodies rest face on face, a junction of A and one of B lie side by side, too close for a local maximum at one of
+ * them to have a certificate. So the fan is walked there, as the deciding formula walks it, past two junctions, F and
+ * G: with the candidates between F and G and behind G, and none before F. They are the formula's to the last bit; what
+ * it finds elsewhere is less if certificate 4 holds on both sides, behind G with n = G, and before F with n = F: g at F
+ * and at G is not above the answer. The formula's interval before F begins at the start of one of the two arcs there,
+ * and so both are tried. Of two equal values it takes the one that it meets first, from +x on. */
+
+/* The walk begins that much (radians) before the direction of the local maximum. */
+#define WALK_BACK 0x1p-6f
+
+/* Is a direction of length 1 within the sectors of both arcs, not close to an end? */
+INLINE vm is_well_inside(const struct arc_pair *arcs, vec2 n) {
+    const vm no_circle = vm_front(0);
+    const vf ends = v_min(find_sine(n, arcs->a.end, no_circle), find_sine(n, arcs->b.end, no_circle));
+    const vf starts = v_min(find_sine(mirror(n), mirror(arcs->a.start), no_circle),
+                            find_sine(mirror(n), mirror(arcs->b.start), no_circle));
+    return v_le(v_set(LEAST_ANGLE), v_min(ends, starts));
+}
+
+/* The fan at a direction: what comes before it belongs to the next round. */
+INLINE struct fan start_fan_at(const narc_record *records, const struct queue *queue, int k, const struct pose *pose,
+                               vec2 direction) {
+    struct fan fan = {.ring_a = get_ring_a(queue, k), .ring_b = get_ring_b(queue, k)};
+    const vi here = vi_bits(diamond_angle(direction)), this_round = vi_set(THIS_ROUND), zero = vi_set(0);
+    find_arcs(records, queue, k, direction, &fan.record_a, &fan.record_b);
+    fan.arcs = load_arc_pair(records, fan.record_a, fan.record_b, pose);
+    const vi angle_a = vi_bits(diamond_angle(fan.arcs.a.end)), angle_b = vi_bits(diamond_angle(fan.arcs.b.end));
+    fan.angle_a = vi_add(angle_a, vi_select(vi_lt(angle_a, here), zero, this_round));
+    fan.angle_b = vi_add(angle_b, vi_select(vi_lt(angle_b, here), zero, this_round));
+    fan.a_is_next = vi_lt(fan.angle_a, fan.angle_b);
+    return fan;
+}
+
+INLINE struct gap make_gap(const struct candidate *found, const struct fan *fan, vec2 lo) {
+    return (struct gap){found->value, v2_select(found->inside, found->u, lo),
+                        v_select(found->inside, found->length, v_set(1)), fan->record_a, fan->record_b};
+}
+
+/* The gap near DIRECTION of the pairs k ... of a queue; *out_certain: it is the formula's answer. */
+INLINE struct gap walk_near(const narc_record *records, const struct queue *queue, int k, vm live, vm *out_certain) {
+    const struct pose pose = get_pose(queue, k);
+    const vec2 d = get_vec2(queue, DIRECTION, k), n = v2_divide(d, v2_length(d));
+    const vec2 begin = v2_add(n, v2_scale(v2_right(n), v_set(WALK_BACK)));
+    const vf slack = get(queue, SLACK, k);
+    const vm none = vm_front(0), all = vm_front(V_WIDTH);
+    struct fan fan = start_fan_at(records, queue, k, &pose, begin);
+    const struct arc_pair arcs_before = fan.arcs;
+    const vec2 f = fan_end(&fan);
+    const struct candidate by_a = find_candidate(&fan.arcs, fan.arcs.a.start, f, none);
+    const struct candidate by_b = find_candidate(&fan.arcs, fan.arcs.b.start, f, none);
+    vm certain = vm_and_not(vm_and(live, is_well_inside(&fan.arcs, begin)), vm_or(by_a.exists, by_b.exists));
+    const vm circle = vm_or(info_has(get_bits(queue, INFO_A, k), NARC_SHAPE_CIRCLE),
+                            info_has(get_bits(queue, INFO_B, k), NARC_SHAPE_CIRCLE));
+    certain = vm_and_not(certain, circle);
+    pass_junction(&fan, records, &pose);
+    const vec2 g = fan_end(&fan);
+    const struct candidate first = find_candidate(&fan.arcs, f, g, by_a.rises);
+    const struct gap at_f = make_gap(&first, &fan, f);
+    pass_junction(&fan, records, &pose);
+    const struct candidate second = find_candidate(&fan.arcs, g, fan_end(&fan), first.rises);
+    const struct gap at_g = make_gap(&second, &fan, g);
+
+    const vm wraps = vi_lt(vi_bits(diamond_angle(g)), vi_bits(diamond_angle(f)));
+    const vm better = vm_or(v_lt(first.value, second.value), vm_and(wraps, v_le(first.value, second.value)));
+    const vm takes_g = vm_and(second.exists, vm_or(better, vm_not(first.exists)));
+    const struct gap gap = select_gap(takes_g, &at_g, &at_f);
+
+    const struct fan_ends ends_f = find_fan_ends(queue, k, f, gap.separation);
+    const struct fan_ends ends_g = find_fan_ends(queue, k, g, gap.separation);
+    const vec2 u_before = center_difference(&arcs_before), u_after = center_difference(&fan.arcs);
+    const vf depth_f = v_sub(v_add(arcs_before.a.radius, arcs_before.b.radius), v2_dot(u_before, f));
+    const vf depth_g = v_sub(v_add(fan.arcs.a.radius, fan.arcs.b.radius), v2_dot(u_after, g));
+    const vm after = is_side_clear(&fan.arcs, find_sine(g, fan.arcs.a.end, none), find_sine(g, fan.arcs.b.end, none),
+                                   v2_cross(u_after, g), all, ends_g.after, depth_g, slack);
+    const vm before = is_side_clear(&arcs_before, find_sine(mirror(f), mirror(arcs_before.a.start), none),
+                                    find_sine(mirror(f), mirror(arcs_before.b.start), none), v2_cross(f, u_before), all,
+                                    ends_f.before, depth_f, slack);
+    const vm exists = vm_or(first.exists, second.exists), narrow = vm_and(ends_f.narrow, ends_g.narrow);
+    *out_certain = vm_and(vm_and(certain, exists), vm_and(narrow, vm_and(after, before)));
+    return gap;
 }
 
 #endif

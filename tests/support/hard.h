@@ -28,7 +28,8 @@ struct shape make_hard_shape(struct test_random *random, enum hard_family family
 
 enum hard_placement {
     HARD_TOUCH,      /* exact separations of 0 and +-1e-8 .. +-1e-2 of the size, from a random touch */
-    HARD_JUNCTION,   /* the contact's normal 0 or 1e-8 .. 1e-3 beside a junction, mostly one of each shape */
+    HARD_JUNCTION,   /* the contact's normal 0 or 1e-8 .. 1e-3 beside a junction, mostly one of each shape, those 0.05
+                      * apart at most */
     HARD_ALIGNED,    /* somewhere deep, a junction of A and one of B opposite but for 0 or 1e-8 .. 1e-3 */
     HARD_CONCENTRIC, /* one middle, or nearly one */
     HARD_PLACES

@@ -127,7 +127,9 @@ static void add_junctions(struct place *place) {
     for (size_t k = 0; k < HARD_BODIES / 2 - 5; k++) {
         const double gaps[] = {0, 1e-7, 1e-6, 1e-5, 1e-3, 0.1, 0.4};
         const double gap = gaps[random_below(random, sizeof gaps / sizeof *gaps)] * (random_below(random, 2) ? 1 : -1);
-        const double beside = of_both ? nearly_nothing(random) : random_between(random, -pi, pi);
+        double beside = of_both ? nearly_nothing(random) : random_between(random, -pi, pi);
+        if (of_both && random_below(random, 4) == 0)
+            beside = random_log_between(random, 1e-4, 0.05) * (random_below(random, 2) ? 1 : -1);
         const double shift = random_below(random, 2) ? 0 : random_between(random, -0.5, 0.5);
         turn(&place->a, normal - start_a + series_item(k, 1e-8, 3));
         turn(&place->b, normal + pi - start_b + beside);
