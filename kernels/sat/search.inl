@@ -279,9 +279,10 @@ INLINE struct certified_maximum climb_and_certify(const narc_record *records, co
  * Where bodies rest face on face, a junction of A and one of B lie side by side, too close for a local maximum at one of
  * them to have a certificate. So the fan is walked there, as the deciding formula walks it, past two junctions, F and
  * G: with the candidates between F and G and behind G, and none before F. They are the formula's to the last bit; what
- * it finds elsewhere is less if certificate 4 holds on both sides, behind G with n = G, and before F with n = F: g at F
- * and at G is not above the answer. The formula's interval before F begins at the start of one of the two arcs there,
- * and so both are tried. Of two equal values it takes the one that it meets first, from +x on. */
+ * it finds elsewhere is less if certificate 4 holds on both sides, behind G with n = G, and before F with n = F, and F
+ * and G are less than a right angle apart: docs/algorithm.md, section 9. The formula's interval before F begins at the
+ * start of one of the two arcs there, and so both are tried. Of two equal values it takes the one that it meets first,
+ * from +x on. */
 
 /* The walk begins that much (radians) before the direction of the local maximum. */
 #define WALK_BACK 0x1p-6f
@@ -354,7 +355,8 @@ INLINE struct gap walk_near(const narc_record *records, const struct queue *queu
                                     find_sine(mirror(f), mirror(arcs_before.b.start), none), v2_cross(f, u_before), all,
                                     ends_f.before, depth_f, slack);
     const vm exists = vm_or(first.exists, second.exists), narrow = vm_and(ends_f.narrow, ends_g.narrow);
-    *out_certain = vm_and(vm_and(certain, exists), vm_and(narrow, vm_and(after, before)));
+    certain = vm_and(vm_and(certain, exists), v_lt(v_set(0), v2_dot(f, g)));
+    *out_certain = vm_and(certain, vm_and(narrow, vm_and(after, before)));
     return gap;
 }
 

@@ -83,6 +83,33 @@ TEST(test_aligned) { check_hard_places(HARD_ALIGNED, 3); }
 
 TEST(test_concentric) { check_hard_places(HARD_CONCENTRIC, 3); }
 
+/* Faces on faces, where the fan begins and ends: A's normal lies along its own +x, B's a little beside it. Gaps at both
+ * are equal to the last bit, or nearly. */
+TEST(test_faces_at_x) {
+    struct test_random random = test_random_named("faces at x");
+    const double t = sqrt(2.0) - 1;
+    const narc_point corners[] = {{1, -t}, {1, t}, {t, 1}, {-t, 1}, {-1, t}, {-1, -t}, {-t, -1}, {t, -1}};
+    struct shape octagon = {.count = NARC_MAX_ARCS};
+    assert_int_equal(narc_build_polygon(corners, 8, 0, octagon.arcs, &octagon.count, NULL), NARC_OK);
+    const size_t count = test_trials(2000);
+    struct scene scene = create_scene(NARC_FLOAT32, 1, 2 * count, count);
+    scene_add_shape(&scene, &octagon);
+    for (size_t k = 0; k < count; k++) {
+        const double turned = random_below(&random, 2) ? 0 : random_between(&random, -pi, pi);
+        const double sign = random_below(&random, 2) ? 1 : -1, gap = random_log_between(&random, 1e-8, 0.1);
+        struct body a = turned_body(turned, 1);
+        struct body b = turned_body(turned + sign * random_log_between(&random, 1e-10, 0.03), 1);
+        const double x = 2 + (random_below(&random, 4) ? gap * (random_below(&random, 2) ? 1 : -1) : 0);
+        const double y =
+            random_below(&random, 2) ? (double)random_below(&random, 9) / 8 - 0.5 : random_between(&random, -1, 1);
+        b.x = x * cos(turned) - y * sin(turned);
+        b.y = x * sin(turned) + y * cos(turned);
+        scene_add_two(&scene, a, b);
+    }
+    check_scene(&random, &scene, LAYOUT_STRUCTURES, "faces at x");
+    destroy_scene(&scene);
+}
+
 /* The places of the other tests: every kind, random families. */
 TEST(test_all_places) {
     struct test_random random = test_random_named("all places");
