@@ -28,10 +28,18 @@ narc_status world_fail(world *w, narc_status status, const char *message) {
 }
 
 narc_status world_create(world *w, world_settings settings, size_t capacity) {
-    *w = (world){.settings = settings, .capacity = capacity};
+    const size_t pairs = WORLD_PAIRS * capacity;
+    *w = (world){.settings = settings, .capacity = capacity, .pair_room = pairs};
     w->shapes = calloc(capacity, sizeof *w->shapes);
     w->bodies = calloc(capacity, sizeof *w->bodies);
-    if (!w->shapes || !w->bodies || narc_create_shapes(NULL, &w->store) != NARC_OK ||
+    w->contacts = calloc(pairs, sizeof *w->contacts);
+    w->next_contacts = calloc(pairs, sizeof *w->next_contacts);
+    w->overlaps = calloc(NARC_BIT_WORDS(pairs), sizeof *w->overlaps);
+    w->asked = calloc(pairs, sizeof *w->asked);
+    w->active = calloc(pairs, sizeof *w->active);
+    w->events = calloc(2 * pairs, sizeof *w->events); /* of each pair one, of this list and of the last */
+    if (!w->shapes || !w->bodies || !w->contacts || !w->next_contacts || !w->overlaps || !w->asked || !w->active ||
+        !w->events || narc_create_shapes(NULL, &w->store) != NARC_OK ||
         narc_create_broad_phase(NULL, &w->broad_phase) != NARC_OK)
         return world_fail(w, NARC_ERROR_MEMORY, "no memory for a world");
     return NARC_OK;
@@ -44,7 +52,6 @@ void world_destroy(world *w) {
     free(w->shapes);
     free(w->contacts);
     free(w->next_contacts);
-    free(w->manifolds);
     free(w->overlaps);
     free(w->asked);
     free(w->active);
@@ -92,18 +99,19 @@ narc_status world_add_body(world *w, world_body body) {
     body.inverse_mass = moved_by_contacts ? 1 / w->shapes[body.shape].mass : 0;
     body.inverse_inertia = moved_by_contacts ? 1 / w->shapes[body.shape].inertia : 0;
     body.id = ++w->last_id;
+    body.start = body.position;
     world_wake_body(&body);
     w->bodies[w->body_count++] = body;
     return NARC_OK;
 }
 
-void world_remove_body(world *w, size_t index) { w->bodies[index] = w->bodies[--w->body_count]; }
+void world_remove_body(world *w, world_body *body) { *body = w->bodies[--w->body_count]; }
 
-size_t world_find_body(const world *w, uint64_t id) {
+world_body *world_find_body(const world *w, uint64_t id) {
     for (size_t k = 0; k < w->body_count; k++)
         if (w->bodies[k].id == id)
-            return k;
-    return SIZE_MAX;
+            return &w->bodies[k];
+    return NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------ the step */
@@ -117,22 +125,19 @@ static void predict_motion(world *w) {
         const vec fall = falls ? scale(time, w->settings.gravity) : (vec){0, 0};
         body->motion = scale(time, add(body->velocity, fall));
         body->turn_reach = time * fabsf(body->spin) * w->shapes[body->shape].reach;
-        body->moved = (vec){0, 0};
-        body->turned = 0;
         body->stopped = false;
     }
 }
 
 narc_status world_step(world *w) {
-    size_t count = 0;
-    narc_status status;
     predict_motion(w);
-    if ((status = world_update_pairs(w)) != NARC_OK)
+    narc_status status = world_update_pairs(w);
+    if (status != NARC_OK)
         return status;
     world_recycle_contacts(w);
-    if ((status = world_find_manifolds(w, &count)) != NARC_OK || (status = world_find_overlaps(w)) != NARC_OK)
+    if ((status = world_find_manifolds(w)) != NARC_OK || (status = world_find_overlaps(w)) != NARC_OK)
         return status;
-    world_make_contacts(w, count);
+    world_make_contacts(w);
     world_sleep(w);
     world_solve(w);
     world_list_events(w);
