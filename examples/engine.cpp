@@ -27,10 +27,9 @@ struct Rotation {
 struct Entity {
     uint64_t id; // what its pairs are known by, whatever its place in the array
     uint32_t shape;
-    uint8_t kind; // 0 or NARC_STATIC
     Position position;
     Rotation rotation = {1, 0};
-    float inverse_mass = 0, inverse_inertia = 0;
+    float inverse_mass = 0, inverse_inertia = 0; // of what never moves
     Vec velocity = 0;
     float spin = 0;
 };
@@ -91,11 +90,11 @@ class World {
   public:
     std::vector<Entity> entities; // which come and go in any way
 
-    void add(const narc::outline &outline, Position position, uint8_t kind) {
+    void add(const narc::outline &outline, Position position, bool moves = true) {
         narc_mass mass;
         narc_compute_mass(outline.data(), outline.size(), &mass);
-        Entity entity = {++last_id, shapes.add(outline).value(), kind, position};
-        if (kind != NARC_STATIC) {
+        Entity entity = {++last_id, shapes.add(outline).value(), position};
+        if (moves) {
             entity.inverse_mass = static_cast<float>(1 / mass.area);
             entity.inverse_inertia = static_cast<float>(1 / mass.second_moment);
         }
@@ -104,7 +103,7 @@ class World {
     void step(float time) {
         find_contacts();
         for (Entity &entity : entities)
-            entity.velocity -= Vec(0, entity.kind == NARC_STATIC ? 0 : 9.81f * time);
+            entity.velocity -= Vec(0, entity.inverse_mass == 0 ? 0 : 9.81f * time);
         for (size_t k = 0; k < list->pairs.count; k++)
             start(k);
         for (int round = 0; round < 12; round++)
@@ -123,10 +122,8 @@ class World {
     void find_contacts() {
         const narc_bodies bodies = narc::bodies_of(entities, &Entity::position, &Entity::rotation, &Entity::shape);
         const narc_workers workers = narc::workers_of(2, run_tasks);
-        narc_pair_filter filter = {};
-        filter.kind = narc::column(entities, &Entity::kind);
         narc::pair_options options;
-        options.margin(margin).skin(0.05f).id(narc::column(entities, &Entity::id)).filter(filter).workers(workers);
+        options.margin(margin).skin(0.05f).id(narc::column(entities, &Entity::id)).workers(workers);
         list = broad.update(shapes, bodies, options).value();
         if (!list->kept) { // what is known goes to where the pairs are now, and zeros to new ones
             std::vector<Pair> next(list->pairs.count);
@@ -180,9 +177,9 @@ class World {
 int main() try {
     World world;
     const double far = 1e9;
-    world.add(narc::box(20, 2).value(), {far, -1}, NARC_STATIC);
+    world.add(narc::box(20, 2).value(), {far, -1}, false);
     for (int k = 0; k < 5; k++)
-        world.add(narc::box(1, 1, 0.05).value(), {far + 0.02 * k, 0.5 + k}, 0);
+        world.add(narc::box(1, 1, 0.05).value(), {far + 0.02 * k, 0.5 + k});
     for (int step = 0; step < 360; step++) {
         if (step == 120) { // the last one takes its place
             world.entities[2] = world.entities.back();

@@ -22,7 +22,7 @@ static world_body make_body(uint32_t shape, float x, float y, float angle) {
         .position = {x, y}, .cosine = cosf(angle), .sine = sinf(angle), .shape = shape, .friction = 0.6f};
 }
 
-/* Shapes and bodies are added without a look at each: what goes wrong stays in w->error, and build_scene() returns it. */
+/* What goes wrong stays in w->error, and build_scene() returns it. */
 static uint32_t add_shape(world *w, const narc_arc *arcs, size_t count) {
     uint32_t shape = 0;
     if (w->error.status == NARC_OK)
@@ -79,27 +79,26 @@ enum { KINDS = 6 + GLYPH_COUNT, SIZES = 3 };
 /* Shape number `kind` of the pile. */
 static uint32_t add_kind(world *w, int kind, double size) {
     const narc_point hexagon[] = {{0.5, 0}, {0.3, 0.4}, {-0.2, 0.4}, {-0.5, 0.1}, {-0.3, -0.4}, {0.2, -0.4}};
-    const narc_four_arc lens = {0.8 * size, 0.8 * size, size, 0.1 * size, 0.1 * size}; /* with round tips */
-    narc_point points[6];
-    narc_arc arcs[NARC_MAX_ARCS];
-    size_t count = 0;
-    for (int i = 0; i < 6; i++)
-        points[i] = (narc_point){size * hexagon[i].x, size * hexagon[i].y};
+    const narc_four_arc lens = {0.8, 0.8, 1, 0.1, 0.1}; /* with round tips */
+    narc_arc arcs[NARC_MAX_ARCS] = {{0}};
+    size_t count = GLYPH_ARCS;
     if (kind == 0)
-        narc_build_circle(0.4 * size, arcs, &count, &w->error);
+        narc_build_circle(0.4, arcs, &count, &w->error);
     else if (kind == 1)
-        narc_build_capsule(0.6 * size, 0.25 * size, arcs, &count, &w->error);
-    else if (kind == 2 || kind == 3)
-        return kind == 2 ? add_box(w, size, 0.7 * size, 0) : add_box(w, 0.9 * size, 0.6 * size, 0.15 * size);
+        narc_build_capsule(0.6, 0.25, arcs, &count, &w->error);
+    else if (kind == 2)
+        narc_build_box(1, 0.7, 0, arcs, &count, &w->error);
+    else if (kind == 3)
+        narc_build_box(0.9, 0.6, 0.15, arcs, &count, &w->error);
     else if (kind == 4)
-        narc_build_polygon(points, 6, 0, arcs, &count, &w->error);
+        narc_build_polygon(hexagon, 6, 0, arcs, &count, &w->error);
     else if (kind == 5)
         narc_build_four_arc(lens, arcs, &count, &w->error);
     else
-        for (; count < GLYPH_ARCS; count++) {
-            const narc_arc arc = glyphs[kind - 6][count];
-            arcs[count] = (narc_arc){size * arc.center_x, size * arc.center_y, size * arc.radius, arc.start, arc.end};
-        }
+        memcpy(arcs, glyphs[kind - 6], sizeof glyphs[0]);
+    for (size_t i = 0; i < count; i++)
+        arcs[i] = (narc_arc){size * arcs[i].center_x, size * arcs[i].center_y, size * arcs[i].radius, arcs[i].start,
+                             arcs[i].end};
     return add_shape(w, arcs, count);
 }
 
@@ -207,14 +206,11 @@ scene_state measure_scene(const world *w) {
         const vec way = subtract(body->position, body->start);
         state.displacement = fmax(state.displacement, (double)length(way));
         state.sideways = fmax(state.sideways, (double)fabsf(way.x));
-        state.moving += !(world_speed(w, body) <= SCENE_MOVING);
+        state.moving += !(world_speed(w, body) <= 0.01f);
         state.awake += body->kind == 0;
     }
     for (size_t k = 0; k < w->list->pairs.count; k++)
-        for (unsigned i = 0; i < w->contacts[k].point_count; i++) {
+        for (unsigned i = 0; i < w->contacts[k].point_count; i++, state.points++)
             state.overlap = fmax(state.overlap, -(double)w->contacts[k].points[i].separation);
-            state.points++;
-            state.contacts += i == 0;
-        }
     return state;
 }

@@ -23,15 +23,13 @@ const scene *find_scene(const char *name);
 /* Builds the scene in a new world. Another seed puts bodies a little elsewhere. */
 narc_status build_scene(const scene *chosen, world_settings settings, uint64_t seed, world *out_world);
 
-/* A body moves if a point of it is faster than this, in m/s. */
-#define SCENE_MOVING 0.01f
-
 typedef struct scene_state {
     double energy;       /* J */
     double displacement; /* the largest distance of a body from where it was added, m */
     double sideways;     /* the same along x alone */
     double overlap;      /* the deepest at the last step, m */
-    size_t moving, awake, contacts, points;
+    size_t moving;       /* bodies of which a point is faster than 1 cm/s */
+    size_t awake, points;
 } scene_state;
 
 /* One step, after what the scene does in it. */

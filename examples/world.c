@@ -28,7 +28,7 @@ narc_status world_fail(world *w, narc_status status, const char *message) {
 }
 
 narc_status world_create(world *w, world_settings settings, size_t capacity) {
-    const size_t pairs = WORLD_PAIRS * capacity;
+    const size_t pairs = 16 * capacity;
     *w = (world){.settings = settings, .capacity = capacity, .pair_room = pairs};
     w->shapes = calloc(capacity, sizeof *w->shapes);
     w->bodies = calloc(capacity, sizeof *w->bodies);
@@ -58,8 +58,6 @@ void world_destroy(world *w) {
     free(w->events);
     *w = (world){.body_count = 0};
 }
-
-/* ------------------------------------------------------------------------------------------------ shapes and bodies */
 
 narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32_t *out_shape) {
     narc_arc centered[NARC_MAX_ARCS];
@@ -94,8 +92,7 @@ narc_status world_add_body(world *w, world_body body) {
     if (body.shape >= narc_count_shapes(w->store))
         return world_fail(w, NARC_ERROR_INDEX, "a body's shape does not exist");
     if (moved_by_contacts && !(w->shapes[body.shape].mass > 0))
-        return world_fail(w, NARC_ERROR_SIZE,
-                          "a segment has no mass, only what is static or a sensor may have that shape");
+        return world_fail(w, NARC_ERROR_SIZE, "a body without mass may be static or a sensor, and no other");
     body.inverse_mass = moved_by_contacts ? 1 / w->shapes[body.shape].mass : 0;
     body.inverse_inertia = moved_by_contacts ? 1 / w->shapes[body.shape].inertia : 0;
     body.id = ++w->last_id;
@@ -114,16 +111,13 @@ world_body *world_find_body(const world *w, uint64_t id) {
     return NULL;
 }
 
-/* ------------------------------------------------------------------------------------------------ the step */
-
 /* What each body will move, so that pairs that meet on the way are found; nothing has moved so far. */
 static void predict_motion(world *w) {
     const float time = w->settings.time_step;
     for (size_t k = 0; k < w->body_count; k++) {
         world_body *body = &w->bodies[k];
         const bool falls = body->inverse_mass > 0 && body->kind == 0;
-        const vec fall = falls ? scale(time, w->settings.gravity) : (vec){0, 0};
-        body->motion = scale(time, add(body->velocity, fall));
+        body->motion = scale(time, falls ? add(body->velocity, scale(time, w->settings.gravity)) : body->velocity);
         body->turn_reach = time * fabsf(body->spin) * w->shapes[body->shape].reach;
         body->stopped = false;
     }
@@ -144,23 +138,19 @@ narc_status world_step(world *w) {
     return NARC_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------ measures */
-
 float world_speed(const world *w, const world_body *body) {
     return length(body->velocity) + fabsf(body->spin) * w->shapes[body->shape].reach;
 }
 
 double world_energy(const world *w) {
     double energy = 0;
-    for (size_t k = 0; k < w->body_count; k++) {
-        const world_body *body = &w->bodies[k];
-        if (body->inverse_mass == 0)
-            continue;
-        const world_shape *shape = &w->shapes[body->shape];
-        energy += 0.5 * (double)shape->mass * (double)dot(body->velocity, body->velocity);
-        energy += 0.5 * (double)shape->inertia * (double)(body->spin * body->spin);
-        energy -= (double)shape->mass * (double)dot(w->settings.gravity, body->position);
-    }
+    for (const world_body *body = w->bodies; body < w->bodies + w->body_count; body++)
+        if (body->inverse_mass > 0) {
+            const world_shape *shape = &w->shapes[body->shape];
+            const float per_mass =
+                0.5f * dot(body->velocity, body->velocity) - dot(w->settings.gravity, body->position);
+            energy += (double)shape->mass * (double)per_mass + 0.5 * (double)(shape->inertia * body->spin * body->spin);
+        }
     return energy;
 }
 

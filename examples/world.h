@@ -8,8 +8,6 @@
  *     world_events.c    what begins and ends, what sleeps and wakes
  *     scenes.c          worlds to look at; world_main.c runs them
  *
- *     cc -std=c17 -O2 -ffp-contract=off world*.c scenes.c -o world $(pkg-config --cflags --libs narc) -lm
- *
  * It leaves out joints and a solver on several threads. docs/solver.md tells why everything is as it is.
  */
 #ifndef WORLD_H
@@ -104,14 +102,12 @@ typedef struct world_event {
     bool sensor; /* one of them is */
 } world_event;
 
-enum { WORLD_PAIRS = 16 };
-
 typedef struct world {
     world_settings settings;
     narc_shapes *store;
     world_shape *shapes;
     world_body *bodies;
-    size_t body_count, capacity;
+    size_t body_count, capacity, pair_room;
     uint64_t last_id;
     narc_broad_phase *broad_phase;
     const narc_pair_list *list;              /* pairs of bodies that are close; the broad phase owns it */
@@ -120,11 +116,11 @@ typedef struct world {
     uint32_t *asked;                         /* pairs to find contacts of */
     world_contact **active;                  /* those with points and a body that moves: what the solver goes through */
     world_event *events;
-    size_t pair_room, asked_count, active_count, event_count;
+    size_t asked_count, active_count, event_count;
     narc_error error; /* what went wrong, when a function here says that something did */
 } world;
 
-/* Room for `capacity` bodies and shapes, and WORLD_PAIRS times as many pairs that are close. On an error too, world_destroy() frees what there is. */
+/* Room for `capacity` bodies and shapes, and 16 times as many pairs. On an error too, world_destroy() frees what there is. */
 narc_status world_create(world *w, world_settings settings, size_t capacity);
 void world_destroy(world *w);
 

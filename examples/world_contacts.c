@@ -21,8 +21,6 @@ static narc_status find_broken_body(world *w) {
     return status == NARC_OK ? world_fail(w, NARC_ERROR_NOT_FINITE, "a velocity is out of range") : status;
 }
 
-/* ------------------------------------------------------------------------------------------------ pairs */
-
 /* All pairs of bodies that come closer than the margin in this step, rotation included. Where the list is another one,
  * what is known of the pairs that were in the last is carried over; zeros for the others. */
 narc_status world_update_pairs(world *w) {
@@ -57,8 +55,6 @@ narc_status world_update_pairs(world *w) {
     }
     return w->list->skipped > 0 ? find_broken_body(w) : NARC_OK;
 }
-
-/* ------------------------------------------------------------------------------------------------ which to ask of */
 
 /* A pair that in this step moves by much of a body's thickness has a contact if the two could meet within it. So the
  * solver stops them where they would touch. For all pairs that would be too much: a contact at a distance is a guess at
@@ -121,16 +117,8 @@ narc_status world_find_overlaps(world *w) {
     return narc_find_overlaps(w->store, &bodies, &w->list->pairs, &query, w->overlaps, &w->error);
 }
 
-/* ------------------------------------------------------------------------------------------------ contacts */
-
-/* A point starts with the impulses of the point of the last step where the same features touched. */
-static void start_warm(world_point *point, const world_point last[2]) {
-    const int i = last[0].feature == point->feature ? 0 : 1;
-    const bool known = last[i].feature == point->feature && last[i].normal_impulse > 0;
-    point->normal_impulse = known ? last[i].normal_impulse : 0;
-    point->tangent_impulse = known ? last[i].tangent_impulse : 0;
-}
-
+/* What the solver wants of narc's row. A point starts with the impulses of the point of the last step where the same
+ * features touched; a pair without a point keeps nothing. */
 static void make_contact(world_contact *c) {
     const world_body *a = c->a, *b = c->b;
     const narc_manifold *m = &c->row;
@@ -143,29 +131,27 @@ static void make_contact(world_contact *c) {
     c->restitution = fmaxf(a->restitution, b->restitution);
     c->point_count = m->count;
     c->walks = m->count == 1 && !(edge_a && edge_b);
-    c->points[1] = (world_point){.feature = 0}; /* where there is one point */
+    c->points[0] = c->points[1] = (world_point){.feature = 0};
+    c->rolling_impulse = m->count > 0 ? c->rolling_impulse : 0;
     for (unsigned i = 0; i < m->count; i++) {
         world_point *p = &c->points[i];
         const float half = 0.5f * m->point[i].separation;
         const float radius_a = c->walks && !edge_a ? m->radius_a : 0, radius_b = c->walks && !edge_b ? m->radius_b : 0;
-        *p = (world_point){.feature = m->point[i].feature, .radii = radius_a + radius_b};
+        p->feature = m->point[i].feature;
+        p->radii = radius_a + radius_b;
         p->anchor_a = (vec){m->point[i].x, m->point[i].y}; /* narc's points count from A's position */
         p->anchor_b = add(p->anchor_a, subtract(a->position, b->position));
         p->local_a = to_local(a, subtract(p->anchor_a, scale(half + radius_a, c->normal)));
         p->local_b = to_local(b, add(p->anchor_b, scale(half + radius_b, c->normal)));
-        start_warm(p, last);
+        const world_point *const same = &last[last[0].feature == p->feature ? 0 : 1];
+        if (same->feature == p->feature && same->normal_impulse > 0) {
+            p->normal_impulse = same->normal_impulse;
+            p->tangent_impulse = same->tangent_impulse;
+        }
     }
 }
 
-/* A pair that was asked and has no manifold keeps nothing. */
 void world_make_contacts(world *w) {
-    for (size_t k = 0; k < w->asked_count; k++) {
-        world_contact *c = &w->contacts[w->asked[k]];
-        if (c->row.count > 0)
-            make_contact(c);
-        else {
-            c->points[0] = c->points[1] = (world_point){.feature = 0};
-            c->rolling_impulse = 0;
-        }
-    }
+    for (size_t k = 0; k < w->asked_count; k++)
+        make_contact(&w->contacts[w->asked[k]]);
 }

@@ -4,19 +4,13 @@
  */
 #include "world.h"
 
-/* ------------------------------------------------------------------------------------------------ events */
-
-static void add_event(world *w, uint64_t id_a, uint64_t id_b, bool begins, bool sensor) {
-    w->events[w->event_count++] = (world_event){id_a, id_b, begins, sensor};
-}
-
 /* Bodies of a lost pair may be gone. What lay on one that is gone wakes. */
 void world_end_lost_pairs(world *w) {
     for (size_t k = 0; k < w->list->lost_count; k++) {
         const narc_lost_pair *lost = &w->list->lost[k];
         if (!w->contacts[lost->pair].touching)
             continue;
-        add_event(w, lost->id_a, lost->id_b, false, (lost->marks & NARC_SENSOR) != 0);
+        w->events[w->event_count++] = (world_event){lost->id_a, lost->id_b, false, (lost->marks & NARC_SENSOR) != 0};
         world_body *const a = world_find_body(w, lost->id_a), *const b = world_find_body(w, lost->id_b);
         if (a)
             world_wake_body(a);
@@ -27,7 +21,7 @@ void world_end_lost_pairs(world *w) {
 
 static void set_touching(world *w, world_contact *c, bool touching, bool sensor) {
     if (touching != c->touching)
-        add_event(w, c->a->id, c->b->id, touching, sensor);
+        w->events[w->event_count++] = (world_event){c->a->id, c->b->id, touching, sensor};
     c->touching = touching;
 }
 
@@ -46,8 +40,6 @@ void world_list_events(world *w) {
     for (size_t k = 0; k < w->list->sensor_count; k++)
         set_touching(w, &w->contacts[w->list->sensors[k]], w->overlaps[k / 64] >> k % 64 & 1, true);
 }
-
-/* ------------------------------------------------------------------------------------------------ sleep */
 
 void world_wake_body(world_body *body) {
     body->kind &= (uint8_t)~NARC_ASLEEP;

@@ -49,7 +49,7 @@ static FILE *open_file(const char *folder, const char *name) {
     snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *file = fopen(path, "w");
     if (!file)
-        fprintf(stderr, "world: %s cannot be written\n", path);
+        perror(path);
     return file;
 }
 
@@ -82,8 +82,8 @@ static narc_status run(const scene *chosen, double seconds, world *w) {
     const long steps = lround(seconds / (double)w->settings.time_step);
     const long second = lroundf(1 / w->settings.time_step);
     size_t events = 0, kept = 0, asked = 0; /* in a second: events, lists of pairs that were kept, contacts found */
-    printf("%8s %14s %12s %9s %7s %6s %9s %7s %7s %5s %8s\n", "seconds", "energy", "displacement", "overlap", "moving",
-           "awake", "contacts", "points", "events", "kept", "found");
+    printf("%8s %14s %12s %9s %7s %6s %7s %7s %5s %8s\n", "seconds", "energy", "displacement", "overlap", "moving",
+           "awake", "points", "events", "kept", "found");
     for (long step = 1; step <= steps; step++) {
         const narc_status status = step_scene(chosen, w, step);
         if (status != NARC_OK)
@@ -94,9 +94,9 @@ static narc_status run(const scene *chosen, double seconds, world *w) {
         if (step % second != 0 && step != steps)
             continue;
         const scene_state state = measure_scene(w);
-        printf("%8.2f %14.4f %12.6f %9.6f %7zu %6zu %9zu %7zu %7zu %5zu %8zu\n",
+        printf("%8.2f %14.4f %12.6f %9.6f %7zu %6zu %7zu %7zu %5zu %8zu\n",
                (double)((float)step * w->settings.time_step), state.energy, state.displacement, state.overlap,
-               state.moving, state.awake, state.contacts, state.points, events, kept, asked);
+               state.moving, state.awake, state.points, events, kept, asked);
         events = kept = asked = 0;
     }
     printf("state %016" PRIx64 "\n", world_hash(w));
