@@ -17,9 +17,7 @@ struct world_row {
     world world;
 };
 
-static void find_manifolds(struct world_row *row) {
-    must(world_find_manifolds(&row->world), &row->world.error);
-}
+static void find_manifolds(struct world_row *row) { must(world_find_manifolds(&row->world), &row->world.error); }
 
 static void run(struct bench_row *bench_row) {
     struct world_row *row = bench_row->context;

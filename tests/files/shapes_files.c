@@ -277,34 +277,6 @@ TEST(writes_nothing_wrong) {
 
 /* ---------------------------------------------------------------------------- damage */
 
-/* Flips bits, repeats, leaves out or inserts bytes, or cuts the end. */
-static size_t damage(struct test_random *random, char *text, size_t size) {
-    static const char bytes[] = "[]{},;:\"\\ \n\t0123456789.-+eEnaiu\xff\xc3\0";
-    for (size_t changes = 1 + random_below(random, 3); changes > 0; changes--) {
-        const size_t at = random_below(random, size), length = 1 + random_below(random, 8);
-        switch (random_below(random, 5)) {
-        case 0:
-            text[at] = bytes[random_below(random, sizeof bytes)];
-            break;
-        case 1:
-            memmove(text + at + 1, text + at, size++ - at);
-            text[at] = bytes[random_below(random, sizeof bytes)];
-            break;
-        case 2:
-            if (at + length < size)
-                memmove(text + at, text + at + length, (size -= length) - at);
-            break;
-        case 3:
-            text[at] = (char)(text[at] ^ 1 << random_below(random, 8));
-            break;
-        default:
-            size = random_below(random, 4) ? size : at + 1;
-            break;
-        }
-    }
-    return size;
-}
-
 /* Whatever the bytes, shapes come out that can be written and read again, or an error whose line there is; then the store
  * is as before. */
 TEST(survives_damage) {
@@ -314,7 +286,7 @@ TEST(survives_damage) {
     for (size_t trial = 0; trial < trials; trial++) {
         char text[sizeof every_form + 8];
         memcpy(text, every_form, sizeof every_form);
-        const size_t size = damage(&random, text, sizeof every_form - 1);
+        const size_t size = random_damage(&random, text, sizeof every_form - 1);
         narc_shape_list *list = NULL;
         narc_error error = {.status = NARC_OK};
         narc_shapes *store = empty_store();
