@@ -76,8 +76,8 @@ narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32
     narc_compute_mass(centered, count, &mass);
     narc_compute_bounding_circle(centered, count, &circle);
     const double reach = hypot(circle.x, circle.y) + circle.radius;
-    /* Of a shape that the store has already, the same numbers once more. A convex shape of width w and diameter d has an
-     * area from w d / 2 to w d, and its reach is from d / 2 to d. */
+    /* Of a shape that the store has already, the same numbers once more. A convex shape of width w and diameter d has
+     * an area from w d / 2 to w d, and its reach is from d / 2 to d. */
     w->shapes[shape] =
         (world_shape){(float)mass.area, (float)mass.second_moment, (float)reach, (float)(mass.area / (2 * reach))};
     if (out_shape)

@@ -120,7 +120,8 @@ typedef struct world {
     narc_error error; /* what went wrong, when a function here says that something did */
 } world;
 
-/* Room for `capacity` bodies and shapes, and 16 times as many pairs. On an error too, world_destroy() frees what there is. */
+/* Room for `capacity` bodies and shapes, and 16 times as many pairs. world_destroy() frees what there is, on an error
+ * too. */
 narc_status world_create(world *w, world_settings settings, size_t capacity);
 void world_destroy(world *w);
 
@@ -147,8 +148,7 @@ narc_status world_step(world *w);
 /* Notes what went wrong, and returns the status. */
 narc_status world_fail(world *w, narc_status status, const char *message);
 
-/* world_contacts.c: pairs, with what is known of them; which of them to ask of; their manifolds; contacts made of these;
- * overlaps of sensors. */
+/* world_contacts.c: pairs, with what is known of them; which to ask of; manifolds; contacts; overlaps of sensors. */
 narc_status world_update_pairs(world *w);
 void world_recycle_contacts(world *w);
 narc_status world_find_manifolds(world *w);

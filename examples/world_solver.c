@@ -171,9 +171,9 @@ static void integrate_velocities(world *w, float time) {
     }
 }
 
-/* A fast pair's contact tells where it touches as it stands, and about that point a body could turn right through a thin
- * wall. So a pair that touches and has turned much, as it would in this sub-step too, stays until the next step. It loses
- * time, and no momentum. */
+/* A fast pair's contact tells where it touches as it stands, and about that point a body could turn right through a
+ * thin wall. So a pair that touches, and in this sub-step would have turned much since it was found, stays until the
+ * next step. It loses time, and no momentum. */
 static void stop_turns(const world *w, float time) {
     for (size_t k = 0; k < w->active_count; k++) {
         const world_contact *c = w->active[k];

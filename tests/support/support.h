@@ -64,8 +64,8 @@ double random_between(struct test_random *random, double low, double high); /* l
 double random_log_between(struct test_random *random, double low, double high);
 size_t random_below(struct test_random *random, size_t limit); /* 0 .. limit - 1 */
 
-/* Changes up to three places of a text of JSON or CSV: bytes or bits become others, are repeated, left out or inserted, or
- * the end is cut. Returns its new size; it may grow by three. */
+/* Damages a text of JSON or CSV in up to three places: bytes become others, are left out or inserted, bits flip, or the
+ * end is cut. Returns its new size; it may grow by three. */
 size_t random_damage(struct test_random *random, char *text, size_t size);
 
 /* FNV-1a, 64 bits, continued from `hash`: of bytes, and of numbers of `size` bytes each, the lowest byte first on every
