@@ -27,12 +27,11 @@ struct Rotation {
 struct Entity {
     uint64_t id; // what its pairs are known by, whatever its place in the array
     uint32_t shape;
-    uint8_t kind; // 0 or NARC_STATIC
     Position position;
-    Rotation rotation;
-    float inverse_mass, inverse_inertia;
-    Vec velocity;
-    float spin;
+    Rotation rotation = {1, 0};
+    float inverse_mass = 0, inverse_inertia = 0; // of what never moves
+    Vec velocity = 0;
+    float spin = 0;
 };
 
 struct Point {
@@ -40,12 +39,9 @@ struct Point {
     float normal_impulse, tangent_impulse;
     Vec anchor_a, anchor_b;
 };
-struct Known { // of a pair of the list; it goes with the pair to the next list
+struct Pair { // of the list; it goes with the pair to the next list
     uint32_t hint;
-    Point points[2];
-};
-struct Contact { // a row of narc's answer within the engine's own
-    narc_manifold manifold;
+    narc_manifold manifold; // narc writes it here; count 0: they are apart
     Entity *a, *b;
     Vec normal;
     Point points[2];
@@ -62,28 +58,24 @@ const auto run_tasks = [](unsigned count, const auto &task) {
 
 // ------------------------------------------------------------------------------------------------ a solver
 
-// B's speed at a point relative to A's.
-Vec velocity(const Contact &c, const Point &p) {
-    return c.b->velocity + c.b->spin * quarter_turn(p.anchor_b) - c.a->velocity - c.a->spin * quarter_turn(p.anchor_a);
-}
-void push(const Contact &c, const Point &p, Vec impulse) {
+void push(const Pair &c, const Point &p, Vec impulse) {
     c.a->velocity -= c.a->inverse_mass * impulse;
     c.a->spin -= c.a->inverse_inertia * cross(p.anchor_a, impulse);
     c.b->velocity += c.b->inverse_mass * impulse;
     c.b->spin += c.b->inverse_inertia * cross(p.anchor_b, impulse);
 }
-// Pushes along a direction towards a speed, with an impulse in all between `least` and `most`.
-void drive(const Contact &c, const Point &p, Vec direction, float speed, float least, float most, float &impulse) {
-    const float turn_a = cross(p.anchor_a, direction), turn_b = cross(p.anchor_b, direction);
-    const float inverse_mass = c.a->inverse_mass + c.b->inverse_mass + c.a->inverse_inertia * turn_a * turn_a +
-                               c.b->inverse_inertia * turn_b * turn_b;
-    const float wanted = impulse + (speed - dot(velocity(c, p), direction)) / inverse_mass;
+// Pushes along a direction towards a speed of B's point against A's, with an impulse in all between `least` and `most`.
+void drive(const Pair &c, const Point &p, Vec direction, float speed, float least, float most, float &impulse) {
+    const float arm_a = cross(p.anchor_a, direction), arm_b = cross(p.anchor_b, direction);
+    const float inverse_mass = c.a->inverse_mass + c.b->inverse_mass + c.a->inverse_inertia * arm_a * arm_a +
+                               c.b->inverse_inertia * arm_b * arm_b;
+    const float now = dot(c.b->velocity - c.a->velocity, direction) + c.b->spin * arm_b - c.a->spin * arm_a;
     const float before = impulse;
-    impulse = std::clamp(wanted, least, most);
+    impulse = std::clamp(before + (speed - now) / inverse_mass, least, most);
     push(c, p, (impulse - before) * direction);
 }
 // Friction 0.6; a gap may close within the step, and of an overlap of more than 5 mm a fifth goes.
-void solve(Contact &c, uint32_t i, float time) {
+void solve(Pair &c, uint32_t i, float time) {
     Point &p = c.points[i];
     const float limit = 0.6f * p.normal_impulse, separation = c.manifold.point[i].separation;
     drive(c, p, quarter_turn(c.normal), 0, -limit, limit, p.tangent_impulse);
@@ -98,83 +90,76 @@ class World {
   public:
     std::vector<Entity> entities; // which come and go in any way
 
-    void add(const narc::outline &outline, Position position, uint8_t kind) {
+    void add(const narc::outline &outline, Position position, bool moves = true) {
         narc_mass mass;
         narc_compute_mass(outline.data(), outline.size(), &mass);
-        const float movable = kind == NARC_STATIC ? 0 : 1;
-        entities.push_back({++last_id,
-                            shapes.add(outline).value(),
-                            kind,
-                            position,
-                            {1, 0},
-                            movable / static_cast<float>(mass.area),
-                            movable / static_cast<float>(mass.second_moment),
-                            0,
-                            0});
+        Entity entity = {++last_id, shapes.add(outline).value(), position};
+        if (moves) {
+            entity.inverse_mass = static_cast<float>(1 / mass.area);
+            entity.inverse_inertia = static_cast<float>(1 / mass.second_moment);
+        }
+        entities.push_back(entity);
     }
     void step(float time) {
         find_contacts();
         for (Entity &entity : entities)
-            entity.velocity -= Vec(0, entity.kind == NARC_STATIC ? 0 : 9.81f * time);
-        for (Contact &contact : contacts)
-            start(contact);
+            entity.velocity -= Vec(0, entity.inverse_mass == 0 ? 0 : 9.81f * time);
+        for (size_t k = 0; k < list->pairs.count; k++)
+            start(k);
         for (int round = 0; round < 12; round++)
-            for (Contact &contact : contacts)
-                for (uint32_t i = 0; i < contact.manifold.count; i++)
-                    solve(contact, i, time);
+            for (Pair &pair : pairs)
+                for (uint32_t i = 0; i < pair.manifold.count; i++)
+                    solve(pair, i, time);
         for (Entity &entity : entities) {
             const Vec r = Vec(entity.rotation.cosine, entity.rotation.sine) * Vec(1, time * entity.spin);
             entity.rotation = {r.real() / std::abs(r), r.imag() / std::abs(r)};
             entity.position.x += static_cast<double>(time * entity.velocity.real());
             entity.position.y += static_cast<double>(time * entity.velocity.imag());
         }
-        for (Known &pair : known) // one without a contact keeps its hint alone
-            pair = {pair.hint, {}};
-        for (const Contact &contact : contacts)
-            std::copy(contact.points, contact.points + contact.manifold.count, known[contact.manifold.pair].points);
     }
 
   private:
     void find_contacts() {
         const narc_bodies bodies = narc::bodies_of(entities, &Entity::position, &Entity::rotation, &Entity::shape);
         const narc_workers workers = narc::workers_of(2, run_tasks);
-        narc_pair_filter filter = {};
-        filter.kind = narc::column(entities, &Entity::kind);
         narc::pair_options options;
-        options.margin(margin).skin(0.05f).id(narc::column(entities, &Entity::id)).filter(filter).workers(workers);
+        options.margin(margin).skin(0.05f).id(narc::column(entities, &Entity::id)).workers(workers);
         list = broad.update(shapes, bodies, options).value();
         if (!list->kept) { // what is known goes to where the pairs are now, and zeros to new ones
-            std::vector<Known> next(list->pairs.count);
-            narc_gather(list->previous, next.size(), sizeof(Known), known.data(), next.data());
-            known.swap(next);
+            std::vector<Pair> next(list->pairs.count);
+            narc_gather(list->previous, next.size(), sizeof(Pair), pairs.data(), next.data());
+            pairs.swap(next);
         }
         for (size_t k = 0; k < list->lost_count; k++)
             std::printf("%d and %d part\n", static_cast<int>(list->lost[k].id_a), static_cast<int>(list->lost[k].id_b));
         size_t skipped = 0;
         narc::query query;
-        query.margin(margin).hints(narc::hints(known, &Known::hint)).workers(workers).skipped(skipped);
-        contacts = narc::find_manifolds(shapes, bodies, list->pairs, query, rows, &Contact::manifold).value();
+        query.margin(margin).hints(narc::hints(pairs, &Pair::hint)).dense().workers(workers).skipped(skipped);
+        narc::find_manifolds(shapes, bodies, list->pairs, query, pairs, &Pair::manifold).value();
         if (list->skipped + skipped > 0)
             narc::validate(shapes, bodies).value(); // throws: names the broken body
     }
 
     // A point starts with the impulses of the point of the last step where the same features touched; but not where the
     // pair's bodies stand in the other order than then.
-    void start(Contact &c) {
+    void start(size_t k) {
+        Pair &c = pairs[k];
         const narc_manifold &m = c.manifold;
-        const Known &last = known[m.pair];
-        c.a = &entities[list->pairs.a.base[m.pair]];
-        c.b = &entities[list->pairs.b.base[m.pair]];
+        const Point last[2] = {c.points[0], c.points[1]};
+        c.a = &entities[list->pairs.a.base[k]];
+        c.b = &entities[list->pairs.b.base[k]];
         c.normal = {m.normal_x, m.normal_y};
         const Vec to_a(static_cast<float>(c.a->position.x - c.b->position.x),
                        static_cast<float>(c.a->position.y - c.b->position.y));
-        for (uint32_t i = 0; i < m.count; i++) {
-            const Point &same = last.points[last.points[0].feature == m.point[i].feature ? 0 : 1];
-            const bool warm = same.feature == m.point[i].feature && !(list->marks[m.pair] & NARC_FLIPPED);
-            const Vec anchor(m.point[i].x, m.point[i].y);
-            c.points[i] = {m.point[i].feature, warm ? same.normal_impulse : 0, warm ? same.tangent_impulse : 0, anchor,
-                           anchor + to_a};
-            push(c, c.points[i], Vec(c.points[i].normal_impulse, c.points[i].tangent_impulse) * c.normal);
+        for (uint32_t i = 0; i < 2; i++) {
+            Point &p = c.points[i];
+            const Point &same = last[last[0].feature == m.point[i].feature ? 0 : 1];
+            const bool warm = same.feature == m.point[i].feature && !(list->marks[k] & NARC_FLIPPED);
+            p = warm && i < m.count ? same : Point{};
+            p.feature = m.point[i].feature;
+            p.anchor_a = {m.point[i].x, m.point[i].y}; // narc's points count from A's position
+            p.anchor_b = p.anchor_a + to_a;
+            push(c, p, Vec(p.normal_impulse, p.tangent_impulse) * c.normal);
         }
     }
 
@@ -182,9 +167,7 @@ class World {
     narc::shapes shapes;
     narc::broad_phase broad;
     const narc_pair_list *list = nullptr; // the broad phase's, until the next step
-    std::vector<Known> known;             // of each pair in the list
-    std::vector<Contact> rows;
-    narc::span<Contact> contacts; // those of `rows` that were found
+    std::vector<Pair> pairs;              // of this list
     uint64_t last_id = 0;
 };
 
@@ -194,9 +177,9 @@ class World {
 int main() try {
     World world;
     const double far = 1e9;
-    world.add(narc::box(20, 2).value(), {far, -1}, NARC_STATIC);
+    world.add(narc::box(20, 2).value(), {far, -1}, false);
     for (int k = 0; k < 5; k++)
-        world.add(narc::box(1, 1, 0.05).value(), {far + 0.02 * k, 0.5 + k}, 0);
+        world.add(narc::box(1, 1, 0.05).value(), {far + 0.02 * k, 0.5 + k});
     for (int step = 0; step < 360; step++) {
         if (step == 120) { // the last one takes its place
             world.entities[2] = world.entities.back();

@@ -11,32 +11,30 @@ typedef struct scene {
     const char *name, *purpose;
     float seconds; /* how long it is worth watching */
     size_t capacity;
-    narc_status (*build)(world *w, uint64_t seed);
+    void (*build)(world *w, uint64_t seed);  /* notes what goes wrong in w->error */
     narc_status (*act)(world *w, long step); /* before each step, from 1 on; or NULL */
 } scene;
 
-/* Number `index`, or NULL behind the last; and by name. */
-const scene *get_scene(size_t index);
+extern const scene scenes[]; /* the last one has no name */
+
+/* By name, or NULL. */
 const scene *find_scene(const char *name);
 
 /* Builds the scene in a new world. Another seed puts bodies a little elsewhere. */
 narc_status build_scene(const scene *chosen, world_settings settings, uint64_t seed, world *out_world);
 
-/* A body moves if a point of it is faster than this, in m/s. */
-#define SCENE_MOVING 0.01f
-
 typedef struct scene_state {
     double energy;       /* J */
-    double displacement; /* the largest distance of a body from where it was at first, m */
+    double displacement; /* the largest distance of a body from where it was added, m */
     double sideways;     /* the same along x alone */
     double overlap;      /* the deepest at the last step, m */
-    size_t moving, awake, contacts, points;
+    size_t moving;       /* bodies of which a point is faster than 1 cm/s */
+    size_t awake, points;
 } scene_state;
 
 /* One step, after what the scene does in it. */
 narc_status step_scene(const scene *chosen, world *w, long step);
 
-/* `start` has the bodies as they were at first; a body that has another number is not measured for its way. */
-scene_state measure_scene(const world *w, const world_body *start);
+scene_state measure_scene(const world *w);
 
 #endif

@@ -28,10 +28,18 @@ narc_status world_fail(world *w, narc_status status, const char *message) {
 }
 
 narc_status world_create(world *w, world_settings settings, size_t capacity) {
-    *w = (world){.settings = settings, .capacity = capacity};
+    const size_t pairs = 16 * capacity;
+    *w = (world){.settings = settings, .capacity = capacity, .pair_room = pairs};
     w->shapes = calloc(capacity, sizeof *w->shapes);
     w->bodies = calloc(capacity, sizeof *w->bodies);
-    if (!w->shapes || !w->bodies || narc_create_shapes(NULL, &w->store) != NARC_OK ||
+    w->contacts = calloc(pairs, sizeof *w->contacts);
+    w->next_contacts = calloc(pairs, sizeof *w->next_contacts);
+    w->overlaps = calloc(NARC_BIT_WORDS(pairs), sizeof *w->overlaps);
+    w->asked = calloc(pairs, sizeof *w->asked);
+    w->active = calloc(pairs, sizeof *w->active);
+    w->events = calloc(2 * pairs, sizeof *w->events); /* of each pair one, of this list and of the last */
+    if (!w->shapes || !w->bodies || !w->contacts || !w->next_contacts || !w->overlaps || !w->asked || !w->active ||
+        !w->events || narc_create_shapes(NULL, &w->store) != NARC_OK ||
         narc_create_broad_phase(NULL, &w->broad_phase) != NARC_OK)
         return world_fail(w, NARC_ERROR_MEMORY, "no memory for a world");
     return NARC_OK;
@@ -44,15 +52,12 @@ void world_destroy(world *w) {
     free(w->shapes);
     free(w->contacts);
     free(w->next_contacts);
-    free(w->manifolds);
     free(w->overlaps);
     free(w->asked);
     free(w->active);
     free(w->events);
     *w = (world){.body_count = 0};
 }
-
-/* ------------------------------------------------------------------------------------------------ shapes and bodies */
 
 narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32_t *out_shape) {
     narc_arc centered[NARC_MAX_ARCS];
@@ -71,8 +76,8 @@ narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32
     narc_compute_mass(centered, count, &mass);
     narc_compute_bounding_circle(centered, count, &circle);
     const double reach = hypot(circle.x, circle.y) + circle.radius;
-    /* Of a shape that the store has already, the same numbers once more. A convex shape of width w and diameter d has an
-     * area from w d / 2 to w d, and its reach is from d / 2 to d. */
+    /* Of a shape that the store has already, the same numbers once more. A convex shape of width w and diameter d has
+     * an area from w d / 2 to w d, and its reach is from d / 2 to d. */
     w->shapes[shape] =
         (world_shape){(float)mass.area, (float)mass.second_moment, (float)reach, (float)(mass.area / (2 * reach))};
     if (out_shape)
@@ -87,26 +92,24 @@ narc_status world_add_body(world *w, world_body body) {
     if (body.shape >= narc_count_shapes(w->store))
         return world_fail(w, NARC_ERROR_INDEX, "a body's shape does not exist");
     if (moved_by_contacts && !(w->shapes[body.shape].mass > 0))
-        return world_fail(w, NARC_ERROR_SIZE,
-                          "a segment has no mass, only what is static or a sensor may have that shape");
+        return world_fail(w, NARC_ERROR_SIZE, "a body without mass may be static or a sensor, and no other");
     body.inverse_mass = moved_by_contacts ? 1 / w->shapes[body.shape].mass : 0;
     body.inverse_inertia = moved_by_contacts ? 1 / w->shapes[body.shape].inertia : 0;
     body.id = ++w->last_id;
+    body.start = body.position;
     world_wake_body(&body);
     w->bodies[w->body_count++] = body;
     return NARC_OK;
 }
 
-void world_remove_body(world *w, size_t index) { w->bodies[index] = w->bodies[--w->body_count]; }
+void world_remove_body(world *w, world_body *body) { *body = w->bodies[--w->body_count]; }
 
-size_t world_find_body(const world *w, uint64_t id) {
+world_body *world_find_body(const world *w, uint64_t id) {
     for (size_t k = 0; k < w->body_count; k++)
         if (w->bodies[k].id == id)
-            return k;
-    return SIZE_MAX;
+            return &w->bodies[k];
+    return NULL;
 }
-
-/* ------------------------------------------------------------------------------------------------ the step */
 
 /* What each body will move, so that pairs that meet on the way are found; nothing has moved so far. */
 static void predict_motion(world *w) {
@@ -114,32 +117,26 @@ static void predict_motion(world *w) {
     for (size_t k = 0; k < w->body_count; k++) {
         world_body *body = &w->bodies[k];
         const bool falls = body->inverse_mass > 0 && body->kind == 0;
-        const vec fall = falls ? scale(time, w->settings.gravity) : (vec){0, 0};
-        body->motion = scale(time, add(body->velocity, fall));
+        body->motion = scale(time, falls ? add(body->velocity, scale(time, w->settings.gravity)) : body->velocity);
         body->turn_reach = time * fabsf(body->spin) * w->shapes[body->shape].reach;
-        body->moved = (vec){0, 0};
-        body->turned = 0;
         body->stopped = false;
     }
 }
 
 narc_status world_step(world *w) {
-    size_t count = 0;
-    narc_status status;
     predict_motion(w);
-    if ((status = world_update_pairs(w)) != NARC_OK)
+    narc_status status = world_update_pairs(w);
+    if (status != NARC_OK)
         return status;
     world_recycle_contacts(w);
-    if ((status = world_find_manifolds(w, &count)) != NARC_OK || (status = world_find_overlaps(w)) != NARC_OK)
+    if ((status = world_find_manifolds(w)) != NARC_OK || (status = world_find_overlaps(w)) != NARC_OK)
         return status;
-    world_make_contacts(w, count);
+    world_make_contacts(w);
     world_sleep(w);
     world_solve(w);
     world_list_events(w);
     return NARC_OK;
 }
-
-/* ------------------------------------------------------------------------------------------------ measures */
 
 float world_speed(const world *w, const world_body *body) {
     return length(body->velocity) + fabsf(body->spin) * w->shapes[body->shape].reach;
@@ -147,15 +144,13 @@ float world_speed(const world *w, const world_body *body) {
 
 double world_energy(const world *w) {
     double energy = 0;
-    for (size_t k = 0; k < w->body_count; k++) {
-        const world_body *body = &w->bodies[k];
-        if (body->inverse_mass == 0)
-            continue;
-        const world_shape *shape = &w->shapes[body->shape];
-        energy += 0.5 * (double)shape->mass * (double)dot(body->velocity, body->velocity);
-        energy += 0.5 * (double)shape->inertia * (double)(body->spin * body->spin);
-        energy -= (double)shape->mass * (double)dot(w->settings.gravity, body->position);
-    }
+    for (const world_body *body = w->bodies; body < w->bodies + w->body_count; body++)
+        if (body->inverse_mass > 0) {
+            const world_shape *shape = &w->shapes[body->shape];
+            const float per_mass =
+                0.5f * dot(body->velocity, body->velocity) - dot(w->settings.gravity, body->position);
+            energy += (double)shape->mass * (double)per_mass + 0.5 * (double)(shape->inertia * body->spin * body->spin);
+        }
     return energy;
 }
 

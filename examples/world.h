@@ -8,8 +8,6 @@
  *     world_events.c    what begins and ends, what sleeps and wakes
  *     scenes.c          worlds to look at; world_main.c runs them
  *
- *     cc -std=c17 -O2 -ffp-contract=off world*.c scenes.c -o world $(pkg-config --cflags --libs narc) -lm
- *
  * It leaves out joints and a solver on several threads. docs/solver.md tells why everything is as it is.
  */
 #ifndef WORLD_H
@@ -36,14 +34,13 @@ typedef struct world_body {
 
     /* What follows is the world's. */
     uint64_t id;                         /* never given twice, whatever number the body has */
+    vec start;                           /* where it was added */
     float inverse_mass, inverse_inertia; /* 0 if contacts do not move it */
     vec motion;                          /* in this step, if nothing stops it */
     float turn_reach;                    /* how far rotation may carry its points in this step */
+    bool stopped;                        /* it has hit, and goes on in the next step */
     float rest;                          /* for how long it has been slow, seconds */
-    uint32_t island;                     /* a body of the same island, in the end its root */
-    vec moved;                           /* since the contacts were found */
-    float turned;
-    bool stopped; /* it has hit, and goes on in the next step */
+    struct world_body *island;           /* a body of the same island, in the end its root */
 } world_body;
 
 /* With density 1. */
@@ -73,9 +70,9 @@ extern const world_settings world_defaults;
 
 typedef struct world_point {
     uint32_t feature;
-    vec local_a, local_b;   /* anchors in the frames of A and B */
-    float gap;              /* separation when it was found */
-    vec anchor_a, anchor_b; /* from the centres of mass, world axes */
+    vec anchor_a, anchor_b; /* from the centres of mass, world axes: the lever arms of impulses */
+    vec local_a, local_b;   /* in the frames of A and B: their surfaces there, or the centres of the arcs that touch */
+    float radii;            /* of these arcs: what lies between the centres and the surfaces */
     float separation;       /* as the step begins */
     float approach;         /* the speed at which it closes then */
     float normal_mass, tangent_mass;
@@ -85,16 +82,15 @@ typedef struct world_point {
 
 /* What the engine knows of a pair in the list of pairs; zeros for one that is new. */
 typedef struct world_contact {
-    uint32_t hint; /* narc's */
-    uint32_t a, b;
+    world_body *a, *b;
+    uint32_t hint;     /* narc's */
+    narc_manifold row; /* narc's answer */
     float margin;
     bool fast;     /* the bodies could pass through each other within the step */
     bool touching; /* has begun and has not ended */
     bool walks;    /* its point walks along arcs while the bodies roll */
     unsigned point_count;
-    vec normal, normal_in_a, normal_in_b; /* world axes; the frames of A and B */
-    vec center_a, center_b;               /* of the arcs that touch, in the bodies' frames, or a point on the edge */
-    narc_manifold row;                    /* as it was found: radii and reaches */
+    vec normal, normal_in_a, normal_in_b; /* world axes; as it was found, in the frames of A and B */
     float friction, restitution;
     float rolling_impulse; /* of rotation */
     world_point points[2];
@@ -111,21 +107,21 @@ typedef struct world {
     narc_shapes *store;
     world_shape *shapes;
     world_body *bodies;
-    size_t body_count, capacity;
+    size_t body_count, capacity, pair_room;
     uint64_t last_id;
     narc_broad_phase *broad_phase;
     const narc_pair_list *list;              /* pairs of bodies that are close; the broad phase owns it */
     world_contact *contacts, *next_contacts; /* one for each pair of this list; room for the next one */
-    narc_manifold *manifolds;
-    uint64_t *overlaps; /* of sensors, as bits */
-    uint32_t *asked;    /* pairs to find contacts of */
-    uint32_t *active;   /* pairs with a contact and a body that moves: what the solver goes through */
+    uint64_t *overlaps;                      /* of sensors, as bits */
+    uint32_t *asked;                         /* pairs to find contacts of */
+    world_contact **active;                  /* those with points and a body that moves: what the solver goes through */
     world_event *events;
-    size_t pair_room, asked_count, active_count, event_count;
+    size_t asked_count, active_count, event_count;
     narc_error error; /* what went wrong, when a function here says that something did */
 } world;
 
-/* Room for `capacity` bodies and shapes. On an error too, world_destroy() frees what there is. */
+/* Room for `capacity` bodies and shapes, and 16 times as many pairs. world_destroy() frees what there is, on an error
+ * too. */
 narc_status world_create(world *w, world_settings settings, size_t capacity);
 void world_destroy(world *w);
 
@@ -135,11 +131,11 @@ narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32
 /* Adds a body of density 1, and gives it an id, from 1 on. */
 narc_status world_add_body(world *w, world_body body);
 
-/* Body `index` goes, and the last one takes its number. */
-void world_remove_body(world *w, size_t index);
+/* The body goes, and the last one takes its place. */
+void world_remove_body(world *w, world_body *body);
 
-/* The number of the body with this id, or SIZE_MAX. */
-size_t world_find_body(const world *w, uint64_t id);
+/* The body with this id, or NULL. */
+world_body *world_find_body(const world *w, uint64_t id);
 
 /* Who pushes a body wakes it. What it lies among wakes with it. */
 void world_wake_body(world_body *body);
@@ -152,12 +148,11 @@ narc_status world_step(world *w);
 /* Notes what went wrong, and returns the status. */
 narc_status world_fail(world *w, narc_status status, const char *message);
 
-/* world_contacts.c: pairs, with what is known of them; which of them to ask of; their manifolds; contacts made of
- * `count` manifolds; overlaps of sensors. */
+/* world_contacts.c: pairs, with what is known of them; which to ask of; manifolds; contacts; overlaps of sensors. */
 narc_status world_update_pairs(world *w);
 void world_recycle_contacts(world *w);
-narc_status world_find_manifolds(world *w, size_t *out_count);
-void world_make_contacts(world *w, size_t count);
+narc_status world_find_manifolds(world *w);
+void world_make_contacts(world *w);
 narc_status world_find_overlaps(world *w);
 
 /* world_solver.c: from active contacts to new velocities and positions. */
@@ -193,6 +188,12 @@ static inline vec to_world(const world_body *body, vec v) {
 }
 static inline vec to_local(const world_body *body, vec v) {
     return (vec){body->cosine * v.x + body->sine * v.y, body->cosine * v.y - body->sine * v.x};
+}
+
+/* From A's local point to B's, world axes. */
+static inline vec find_span(const world_contact *c, const world_point *p) {
+    return add(subtract(c->b->position, c->a->position),
+               subtract(to_world(c->b, p->local_b), to_world(c->a, p->local_a)));
 }
 
 #endif

@@ -4,30 +4,24 @@
  */
 #include "world.h"
 
-/* ------------------------------------------------------------------------------------------------ events */
-
-static void add_event(world *w, uint64_t id_a, uint64_t id_b, bool begins, bool sensor) {
-    w->events[w->event_count++] = (world_event){id_a, id_b, begins, sensor};
-}
-
 /* Bodies of a lost pair may be gone. What lay on one that is gone wakes. */
 void world_end_lost_pairs(world *w) {
     for (size_t k = 0; k < w->list->lost_count; k++) {
         const narc_lost_pair *lost = &w->list->lost[k];
         if (!w->contacts[lost->pair].touching)
             continue;
-        add_event(w, lost->id_a, lost->id_b, false, (lost->marks & NARC_SENSOR) != 0);
-        const size_t a = world_find_body(w, lost->id_a), b = world_find_body(w, lost->id_b);
-        if (a != SIZE_MAX)
-            world_wake_body(&w->bodies[a]);
-        if (b != SIZE_MAX)
-            world_wake_body(&w->bodies[b]);
+        w->events[w->event_count++] = (world_event){lost->id_a, lost->id_b, false, (lost->marks & NARC_SENSOR) != 0};
+        world_body *const a = world_find_body(w, lost->id_a), *const b = world_find_body(w, lost->id_b);
+        if (a)
+            world_wake_body(a);
+        if (b)
+            world_wake_body(b);
     }
 }
 
 static void set_touching(world *w, world_contact *c, bool touching, bool sensor) {
     if (touching != c->touching)
-        add_event(w, w->bodies[c->a].id, w->bodies[c->b].id, touching, sensor);
+        w->events[w->event_count++] = (world_event){c->a->id, c->b->id, touching, sensor};
     c->touching = touching;
 }
 
@@ -47,45 +41,44 @@ void world_list_events(world *w) {
         set_touching(w, &w->contacts[w->list->sensors[k]], w->overlaps[k / 64] >> k % 64 & 1, true);
 }
 
-/* ------------------------------------------------------------------------------------------------ sleep */
-
 void world_wake_body(world_body *body) {
     body->kind &= (uint8_t)~NARC_ASLEEP;
     body->rest = 0;
 }
 
-/* The island's root: the body with the lowest number that was found to belong to it. */
-static uint32_t find_root(world_body *bodies, uint32_t k) {
-    while (bodies[k].island != k)
-        k = bodies[k].island = bodies[bodies[k].island].island;
-    return k;
+/* The island's root: the first body of it. */
+static world_body *find_root(world_body *body) {
+    while (body->island != body)
+        body = body->island = body->island->island;
+    return body;
 }
 
 /* Bodies that touch, directly or through others that move, are an island. It sleeps when all of its bodies have been
  * slow for a while, and is awake as long as one has not. */
 void world_sleep(world *w) {
-    for (uint32_t k = 0; k < w->body_count; k++) {
-        world_body *body = &w->bodies[k];
-        body->island = k;
+    world_body *const end = w->bodies + w->body_count;
+    for (world_body *body = w->bodies; body < end; body++) {
+        body->island = body;
         body->rest = world_speed(w, body) > w->settings.sleep_speed ? 0 : body->rest + w->settings.time_step;
     }
     for (size_t k = 0; k < w->list->pairs.count; k++) {
         const world_contact *c = &w->contacts[k];
         if ((c->point_count == 0 && !c->touching) || (w->list->marks[k] & (NARC_STATIC | NARC_SENSOR)))
             continue;
-        const uint32_t a = find_root(w->bodies, c->a), b = find_root(w->bodies, c->b);
-        w->bodies[a > b ? a : b].island = a > b ? b : a;
+        world_body *const a = find_root(c->a), *const b = find_root(c->b);
+        if (a < b)
+            b->island = a;
+        else
+            a->island = b;
     }
-    for (uint32_t k = 0; k < w->body_count; k++) { /* a root's rest is that of its island's least quiet body */
-        world_body *root = &w->bodies[find_root(w->bodies, k)];
-        root->rest = fminf(root->rest, w->bodies[k].rest);
+    for (world_body *body = w->bodies; body < end; body++) { /* a root's rest: that of its island's least quiet body */
+        world_body *const root = find_root(body);
+        root->rest = fminf(root->rest, body->rest);
     }
-    for (uint32_t k = 0; k < w->body_count; k++) {
-        world_body *body = &w->bodies[k];
+    for (world_body *body = w->bodies; body < end; body++) {
         if (body->inverse_mass == 0)
             continue;
-        const bool asleep = w->bodies[find_root(w->bodies, k)].rest >= w->settings.sleep_time;
-        if (asleep) {
+        if (find_root(body)->rest >= w->settings.sleep_time) {
             body->kind |= NARC_ASLEEP;
             body->velocity = (vec){0, 0};
             body->spin = 0;
@@ -93,10 +86,9 @@ void world_sleep(world *w) {
             world_wake_body(body);
     }
     w->active_count = 0;
-    for (uint32_t k = 0; k < w->list->pairs.count; k++) {
-        const world_contact *c = &w->contacts[k];
-        const bool still = w->bodies[c->a].kind != 0 && w->bodies[c->b].kind != 0;
-        if (c->point_count > 0 && !still)
-            w->active[w->active_count++] = k;
+    for (size_t k = 0; k < w->list->pairs.count; k++) {
+        world_contact *c = &w->contacts[k];
+        if (c->point_count > 0 && (c->a->kind == 0 || c->b->kind == 0))
+            w->active[w->active_count++] = c;
     }
 }

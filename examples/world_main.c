@@ -10,51 +10,38 @@
 
 #include "scenes.h"
 
-typedef struct request {
-    const scene *scene;
-    world_settings settings;
-    float seconds;
-    uint64_t seed;
-    const char *folder; /* where files go, or NULL */
-} request;
-
 static int print_usage(FILE *to) {
     fprintf(to, "usage: world SCENE [--seconds T] [--seed N] [--substeps N] [--flat-angle DEGREES] [--threads N]\n"
                 "                   [--recycling METRES] [--sleep SECONDS] [--out FOLDER]\n\n");
-    for (size_t i = 0; get_scene(i); i++)
-        fprintf(to, "  %-10s %s\n", get_scene(i)->name, get_scene(i)->purpose);
+    for (const scene *s = scenes; s->name; s++)
+        fprintf(to, "  %-10s %s\n", s->name, s->purpose);
     fprintf(to, "\nWith --recycling 0 all contacts are found anew, with --sleep 0 nothing sleeps. With --out, "
                 "shapes.json and bodies.csv show the end:\n"
                 "  narc collide --shapes shapes.json --bodies bodies.csv --picture world.png\n");
     return to == stdout ? 0 : 2;
 }
 
-static bool read_option(request *wanted, const char *name, const char *value) {
+typedef struct command_line {
+    int count, used; /* words; those that were understood */
+    bool wrong;
+    char **words;
+} command_line;
+
+static const char *find_text(command_line *line, const char *name) {
+    for (int i = 2; i + 1 < line->count; i += 2)
+        if (strcmp(line->words[i], name) == 0) {
+            line->used += 2;
+            return line->words[i + 1];
+        }
+    return NULL;
+}
+
+static double find_number(command_line *line, const char *name, double otherwise, double least, double most) {
+    const char *const text = find_text(line, name);
     char *end;
-    const double number = strtod(value, &end);
-    if (strcmp(name, "--out") == 0) {
-        wanted->folder = value;
-        return true;
-    }
-    if (*value == '\0' || *end != '\0' || !(number >= -90 && number <= 1e9))
-        return false;
-    if (strcmp(name, "--seconds") == 0 && number > 0)
-        wanted->seconds = (float)number;
-    else if (strcmp(name, "--seed") == 0 && number >= 0)
-        wanted->seed = (uint64_t)number;
-    else if (strcmp(name, "--substeps") == 0 && number >= 1 && number <= 1000)
-        wanted->settings.substeps = (unsigned)number;
-    else if (strcmp(name, "--flat-angle") == 0)
-        wanted->settings.flat_angle = (float)(number * 3.14159265 / 180);
-    else if (strcmp(name, "--recycling") == 0 && number >= 0)
-        wanted->settings.recycling = (float)number;
-    else if (strcmp(name, "--sleep") == 0 && number >= 0)
-        wanted->settings.sleep_time = number > 0 ? (float)number : INFINITY;
-    else if (strcmp(name, "--threads") == 0 && number >= 0 && number <= 256)
-        wanted->settings.workers = narc_openmp_workers((unsigned)number);
-    else
-        return false;
-    return true;
+    const double number = text ? strtod(text, &end) : otherwise;
+    line->wrong |= text && (*text == '\0' || *end != '\0' || !(number >= least && number <= most));
+    return line->wrong ? otherwise : number;
 }
 
 static FILE *open_file(const char *folder, const char *name) {
@@ -62,7 +49,7 @@ static FILE *open_file(const char *folder, const char *name) {
     snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *file = fopen(path, "w");
     if (!file)
-        fprintf(stderr, "world: %s cannot be written\n", path);
+        perror(path);
     return file;
 }
 
@@ -91,15 +78,14 @@ static bool write_files(const world *w, const char *folder) {
     return fclose(bodies) == 0 && closed;
 }
 
-static narc_status run(const request *wanted, world *w, world_body *start) {
-    const long steps = lroundf(wanted->seconds / w->settings.time_step);
+static narc_status run(const scene *chosen, double seconds, world *w) {
+    const long steps = lround(seconds / (double)w->settings.time_step);
     const long second = lroundf(1 / w->settings.time_step);
-    memcpy(start, w->bodies, w->body_count * sizeof *start);
     size_t events = 0, kept = 0, asked = 0; /* in a second: events, lists of pairs that were kept, contacts found */
-    printf("%8s %14s %12s %9s %7s %6s %9s %7s %7s %5s %8s\n", "seconds", "energy", "displacement", "overlap", "moving",
-           "awake", "contacts", "points", "events", "kept", "found");
+    printf("%8s %14s %12s %9s %7s %6s %7s %7s %5s %8s\n", "seconds", "energy", "displacement", "overlap", "moving",
+           "awake", "points", "events", "kept", "found");
     for (long step = 1; step <= steps; step++) {
-        const narc_status status = step_scene(wanted->scene, w, step);
+        const narc_status status = step_scene(chosen, w, step);
         if (status != NARC_OK)
             return status;
         events += w->event_count;
@@ -107,10 +93,10 @@ static narc_status run(const request *wanted, world *w, world_body *start) {
         asked += w->asked_count;
         if (step % second != 0 && step != steps)
             continue;
-        const scene_state state = measure_scene(w, start);
-        printf("%8.2f %14.4f %12.6f %9.6f %7zu %6zu %9zu %7zu %7zu %5zu %8zu\n",
+        const scene_state state = measure_scene(w);
+        printf("%8.2f %14.4f %12.6f %9.6f %7zu %6zu %7zu %7zu %5zu %8zu\n",
                (double)((float)step * w->settings.time_step), state.energy, state.displacement, state.overlap,
-               state.moving, state.awake, state.contacts, state.points, events, kept, asked);
+               state.moving, state.awake, state.points, events, kept, asked);
         events = kept = asked = 0;
     }
     printf("state %016" PRIx64 "\n", world_hash(w));
@@ -118,26 +104,31 @@ static narc_status run(const request *wanted, world *w, world_body *start) {
 }
 
 int main(int argc, char **argv) {
-    if (argc == 2 && strcmp(argv[1], "--help") == 0)
-        return print_usage(stdout);
-    request wanted = {.scene = argc > 1 ? find_scene(argv[1]) : NULL, .settings = world_defaults, .seed = 1};
-    if (!wanted.scene || argc % 2 != 0)
+    const double degree = 3.14159265358979 / 180;
+    const scene *const chosen = argc > 1 ? find_scene(argv[1]) : NULL;
+    if (!chosen)
+        return print_usage(argc == 2 && strcmp(argv[1], "--help") == 0 ? stdout : stderr);
+    command_line line = {argc, 2, false, argv};
+    world_settings settings = world_defaults;
+    const double seconds = find_number(&line, "--seconds", (double)chosen->seconds, 1e-3, 1e9);
+    const uint64_t seed = (uint64_t)find_number(&line, "--seed", 1, 0, 1e9);
+    const double sleep_time = find_number(&line, "--sleep", (double)settings.sleep_time, 0, 1e9);
+    const char *const folder = find_text(&line, "--out");
+    settings.sleep_time = sleep_time > 0 ? (float)sleep_time : INFINITY;
+    settings.substeps = (unsigned)find_number(&line, "--substeps", settings.substeps, 1, 1000);
+    settings.flat_angle =
+        (float)(degree * find_number(&line, "--flat-angle", (double)settings.flat_angle / degree, -90, 90));
+    settings.recycling = (float)find_number(&line, "--recycling", (double)settings.recycling, 0, 1e9);
+    settings.workers = narc_openmp_workers((unsigned)find_number(&line, "--threads", 1, 0, 256));
+    if (line.wrong || line.used != argc)
         return print_usage(stderr);
-    wanted.seconds = wanted.scene->seconds;
-    for (int i = 2; i < argc; i += 2)
-        if (!read_option(&wanted, argv[i], argv[i + 1]))
-            return print_usage(stderr);
     world w;
-    narc_status status = build_scene(wanted.scene, wanted.settings, wanted.seed, &w);
-    world_body *start = calloc(wanted.scene->capacity, sizeof *start);
-    bool written = true;
-    if (status == NARC_OK && start)
-        status = run(&wanted, &w, start);
-    if (status == NARC_OK && wanted.folder)
-        written = write_files(&w, wanted.folder);
+    narc_status status = build_scene(chosen, settings, seed, &w);
+    if (status == NARC_OK)
+        status = run(chosen, seconds, &w);
     if (status != NARC_OK)
         fprintf(stderr, "world: %s: %s\n", narc_status_name(status), w.error.message);
-    free(start);
+    const bool done = status == NARC_OK && (!folder || write_files(&w, folder));
     world_destroy(&w);
-    return status == NARC_OK && start && written ? 0 : 2;
+    return done ? 0 : 2;
 }

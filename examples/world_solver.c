@@ -29,47 +29,50 @@ static spring make_spring(float hertz, float time) {
 }
 
 /* The speed of B's point relative to A's. */
-static vec find_velocity(const world_body *a, const world_body *b, const world_point *p) {
-    return subtract(add(b->velocity, scale(b->spin, quarter_turn(p->anchor_b))),
-                    add(a->velocity, scale(a->spin, quarter_turn(p->anchor_a))));
+static vec find_velocity(const world_contact *c, const world_point *p) {
+    return subtract(add(c->b->velocity, scale(c->b->spin, quarter_turn(p->anchor_b))),
+                    add(c->a->velocity, scale(c->a->spin, quarter_turn(p->anchor_a))));
 }
 
-/* How far it has moved relative to A's since the contacts were found. */
-static vec find_movement(const world_body *a, const world_body *b, const world_point *p) {
-    return subtract(add(b->moved, scale(b->turned, quarter_turn(p->anchor_b))),
-                    add(a->moved, scale(a->turned, quarter_turn(p->anchor_a))));
+static float find_separation(const world_contact *c, const world_point *p) {
+    return dot(find_span(c, p), c->normal) - p->radii;
 }
 
 /* The impulse that changes the speed along a direction by 1. */
-static float find_mass(const world_body *a, const world_body *b, const world_point *p, vec direction) {
+static float find_mass(const world_contact *c, const world_point *p, vec direction) {
     const float turn_a = cross(p->anchor_a, direction), turn_b = cross(p->anchor_b, direction);
-    return 1 / (a->inverse_mass + b->inverse_mass + a->inverse_inertia * turn_a * turn_a +
-                b->inverse_inertia * turn_b * turn_b);
+    return 1 / (c->a->inverse_mass + c->b->inverse_mass + c->a->inverse_inertia * turn_a * turn_a +
+                c->b->inverse_inertia * turn_b * turn_b);
 }
 
-static void apply(world_body *a, world_body *b, const world_point *p, vec impulse) {
-    a->velocity = subtract(a->velocity, scale(a->inverse_mass, impulse));
-    a->spin -= a->inverse_inertia * cross(p->anchor_a, impulse);
-    b->velocity = add(b->velocity, scale(b->inverse_mass, impulse));
-    b->spin += b->inverse_inertia * cross(p->anchor_b, impulse);
+static void apply(const world_contact *c, const world_point *p, vec impulse) {
+    c->a->velocity = subtract(c->a->velocity, scale(c->a->inverse_mass, impulse));
+    c->a->spin -= c->a->inverse_inertia * cross(p->anchor_a, impulse);
+    c->b->velocity = add(c->b->velocity, scale(c->b->inverse_mass, impulse));
+    c->b->spin += c->b->inverse_inertia * cross(p->anchor_b, impulse);
 }
 
-static void apply_rotation(world_body *a, world_body *b, float impulse) {
-    a->spin -= a->inverse_inertia * impulse;
-    b->spin += b->inverse_inertia * impulse;
+static void apply_rotation(const world_contact *c, float impulse) {
+    c->a->spin -= c->a->inverse_inertia * impulse;
+    c->b->spin += c->b->inverse_inertia * impulse;
 }
 
-static void prepare(world *w) {
-    for (size_t k = 0; k < w->active_count; k++) {
-        world_contact *c = &w->contacts[w->active[k]];
-        const world_body *a = &w->bodies[c->a], *b = &w->bodies[c->b];
-        for (unsigned i = 0; i < c->point_count; i++) {
-            world_point *p = &c->points[i];
-            p->normal_mass = find_mass(a, b, p, c->normal);
-            p->tangent_mass = find_mass(a, b, p, quarter_turn(c->normal));
-            p->approach = -dot(find_velocity(a, b, p), c->normal);
-            p->greatest_impulse = 0;
-        }
+/* The impulse along the normal becomes another one, which pushes or is 0. */
+static void change_normal_impulse(const world_contact *c, world_point *p, float change) {
+    const float impulse = fmaxf(0, p->normal_impulse + change);
+    apply(c, p, scale(impulse - p->normal_impulse, c->normal));
+    p->normal_impulse = impulse;
+    p->greatest_impulse = fmaxf(p->greatest_impulse, impulse);
+}
+
+static void prepare(world_contact *c) {
+    for (unsigned i = 0; i < c->point_count; i++) {
+        world_point *p = &c->points[i];
+        p->normal_mass = find_mass(c, p, c->normal);
+        p->tangent_mass = find_mass(c, p, quarter_turn(c->normal));
+        p->separation = find_separation(c, p);
+        p->approach = -dot(find_velocity(c, p), c->normal);
+        p->greatest_impulse = 0;
     }
 }
 
@@ -81,104 +84,79 @@ static bool is_in_fan(vec first, vec normal, const uint16_t reach[2]) {
 }
 
 /* While bodies roll, the point where two arcs touch walks along them, and the normal is that of their centres; on an
- * edge it is the edge's. Where one of the arcs ends, the contact stays with the bodies until the next step. Fast bodies
- * stay where they are, too: next touches what nobody knows before that, and they could turn right through each other.
- * They lose time, and no momentum. */
-static void walk(world_body *a, world_body *b, world_contact *c) {
-    const vec between = subtract(b->position, a->position);
-    const vec center_a = to_world(a, c->center_a), center_b = to_world(b, c->center_b);
-    const vec way = add(between, subtract(center_b, center_a));
-    const bool edge_a = isinf(c->row.radius_a), edge_b = isinf(c->row.radius_b);
-    const float radius_a = edge_a ? 0 : c->row.radius_a, radius_b = edge_b ? 0 : c->row.radius_b;
-    const float distance = copysignf(length(way), dot(way, c->normal));
-    const vec normal = edge_a   ? to_world(a, c->normal_in_a)
-                       : edge_b ? to_world(b, c->normal_in_b)
-                                : scale(1 / distance, way);
-    if (!is_in_fan(c->normal_in_a, to_local(a, normal), c->row.reach_a) ||
-        !is_in_fan(c->normal_in_b, to_local(b, normal), c->row.reach_b)) {
-        if (c->fast && c->points[0].greatest_impulse > 0)
-            a->stopped = b->stopped = true;
-        return;
-    }
+ * edge it is the edge's. Where one of the arcs ends, the contact stays with the bodies until the next step. */
+static void walk(world_contact *c) {
     world_point *p = &c->points[0];
-    const float separation = dot(way, normal) - radius_a - radius_b;
+    const bool edge_a = isinf(c->row.radius_a), edge_b = isinf(c->row.radius_b);
+    const vec to_b = subtract(c->b->position, c->a->position), way = find_span(c, p);
+    const vec normal = edge_a   ? to_world(c->a, c->normal_in_a)
+                       : edge_b ? to_world(c->b, c->normal_in_b)
+                                : scale(1 / copysignf(length(way), dot(way, c->normal)), way);
+    if (!is_in_fan(c->normal_in_a, to_local(c->a, normal), c->row.reach_a) ||
+        !is_in_fan(c->normal_in_b, to_local(c->b, normal), c->row.reach_b))
+        return;
     c->normal = normal;
-    if (!edge_a) {
-        p->anchor_a = add(center_a, scale(radius_a + 0.5f * separation, normal));
-        p->anchor_b = subtract(p->anchor_a, between);
-    } else {
-        p->anchor_b = subtract(center_b, scale(radius_b + 0.5f * separation, normal));
-        p->anchor_a = add(p->anchor_b, between);
-    }
-    p->separation = separation - dot(find_movement(a, b, p), normal);
-    p->normal_mass = find_mass(a, b, p, normal);
-    p->tangent_mass = find_mass(a, b, p, quarter_turn(normal));
+    const float half = 0.5f * find_separation(c, p);
+    p->anchor_a = edge_a ? subtract(add(to_b, to_world(c->b, p->local_b)), scale(c->row.radius_b + half, normal))
+                         : add(to_world(c->a, p->local_a), scale(c->row.radius_a + half, normal));
+    p->anchor_b = subtract(p->anchor_a, to_b);
+    p->normal_mass = find_mass(c, p, normal);
+    p->tangent_mass = find_mass(c, p, quarter_turn(normal));
 }
 
 /* The impulses of the last sub-step again, where the points are now. */
-static void warm_start(world *w) {
-    for (size_t k = 0; k < w->active_count; k++) {
-        world_contact *c = &w->contacts[w->active[k]];
-        world_body *a = &w->bodies[c->a], *b = &w->bodies[c->b];
-        if (c->walks)
-            walk(a, b, c);
-        apply_rotation(a, b, c->rolling_impulse);
-        for (unsigned i = 0; i < c->point_count; i++) {
-            const world_point *p = &c->points[i];
-            const vec along = scale(p->normal_impulse, c->normal);
-            apply(a, b, p, add(along, scale(p->tangent_impulse, quarter_turn(c->normal))));
-        }
+static void warm_start(world_contact *c) {
+    if (c->walks)
+        walk(c);
+    apply_rotation(c, c->rolling_impulse);
+    for (unsigned i = 0; i < c->point_count; i++) {
+        const world_point *p = &c->points[i];
+        const vec along = scale(p->normal_impulse, c->normal);
+        apply(c, p, add(along, scale(p->tangent_impulse, quarter_turn(c->normal))));
     }
 }
 
 /* As friction, but against rotation. Without it what rolls or rocks would do so for ever. */
-static void solve_rolling(world_contact *c, world_body *a, world_body *b, float arm) {
+static void solve_rolling(world_contact *c, float arm) {
     const float limit = arm * (c->points[0].normal_impulse + c->points[1].normal_impulse);
-    const float wanted = c->rolling_impulse - (b->spin - a->spin) / (a->inverse_inertia + b->inverse_inertia);
-    const float impulse = fmaxf(-limit, fminf(wanted, limit));
-    apply_rotation(a, b, impulse - c->rolling_impulse);
+    const float spin = c->b->spin - c->a->spin, inverse_inertia = c->a->inverse_inertia + c->b->inverse_inertia;
+    const float impulse = fmaxf(-limit, fminf(c->rolling_impulse - spin / inverse_inertia, limit));
+    apply_rotation(c, impulse - c->rolling_impulse);
     c->rolling_impulse = impulse;
 }
 
 /* Coulomb: no more than friction times the normal impulse. */
-static void solve_friction(world_contact *c, world_body *a, world_body *b, world_point *p) {
+static void solve_friction(const world_contact *c, world_point *p) {
     const vec tangent = quarter_turn(c->normal);
     const float limit = c->friction * p->normal_impulse;
-    const float wanted = p->tangent_impulse - p->tangent_mass * dot(find_velocity(a, b, p), tangent);
+    const float wanted = p->tangent_impulse - p->tangent_mass * dot(find_velocity(c, p), tangent);
     const float impulse = fmaxf(-limit, fminf(wanted, limit));
-    apply(a, b, p, scale(impulse - p->tangent_impulse, tangent));
+    apply(c, p, scale(impulse - p->tangent_impulse, tangent));
     p->tangent_impulse = impulse;
 }
 
 /* Points that are apart may come together within the sub-step, and no further. Those that overlap are pushed apart as
  * the spring says. */
-static void solve_normal(world_contact *c, world_body *a, world_body *b, world_point *p, const spring *soft,
-                         float time) {
-    const float separation = p->separation + dot(find_movement(a, b, p), c->normal);
-    const float speed = dot(find_velocity(a, b, p), c->normal);
-    float change;
+static void solve_normal(const world_contact *c, world_point *p, const spring *soft, float time) {
+    const float separation = find_separation(c, p), speed = dot(find_velocity(c, p), c->normal);
     if (separation > 0)
-        change = -p->normal_mass * (speed + separation / time);
-    else
-        change = -p->normal_mass * soft->strength * (speed + fmaxf(soft->rate * separation, -greatest_push)) -
-                 soft->loss * p->normal_impulse;
-    const float impulse = fmaxf(0, p->normal_impulse + change);
-    apply(a, b, p, scale(impulse - p->normal_impulse, c->normal));
-    p->normal_impulse = impulse;
-    p->greatest_impulse = fmaxf(p->greatest_impulse, impulse);
+        change_normal_impulse(c, p, -p->normal_mass * (speed + separation / time));
+    else {
+        const float wanted = speed + fmaxf(soft->rate * separation, -greatest_push);
+        change_normal_impulse(c, p, -p->normal_mass * soft->strength * wanted - soft->loss * p->normal_impulse);
+    }
 }
 
 /* One round over all contacts, in the order of the pairs: the same bits however narc spread its work. */
 static void solve_contacts(world *w, const spring *soft, float time, bool friction) {
     for (size_t k = 0; k < w->active_count; k++) {
-        world_contact *c = &w->contacts[w->active[k]];
-        world_body *a = &w->bodies[c->a], *b = &w->bodies[c->b];
+        world_contact *c = w->active[k];
         if (friction)
-            solve_rolling(c, a, b, w->settings.rolling_arm);
+            solve_rolling(c, w->settings.rolling_arm);
         for (unsigned i = 0; i < c->point_count && friction; i++)
-            solve_friction(c, a, b, &c->points[i]);
+            solve_friction(c, &c->points[i]);
         for (unsigned i = 0; i < c->point_count; i++)
-            solve_normal(c, a, b, &c->points[i], soft, time);
+            solve_normal(c, &c->points[i], soft, time);
     }
 }
 
@@ -193,51 +171,58 @@ static void integrate_velocities(world *w, float time) {
     }
 }
 
+/* A fast pair's contact tells where it touches as it stands, and about that point a body could turn right through a
+ * thin wall. So a pair that touches, and in this sub-step would have turned much since it was found, stays until the
+ * next step. It loses time, and no momentum. */
+static void stop_turns(const world *w, float time) {
+    for (size_t k = 0; k < w->active_count; k++) {
+        const world_contact *c = w->active[k];
+        const float turn =
+            cross(to_world(c->a, c->normal_in_a), to_world(c->b, c->normal_in_b)) + time * (c->b->spin - c->a->spin);
+        if (!c->fast || fabsf(turn) <= greatest_turn / (float)w->settings.substeps)
+            continue;
+        for (unsigned i = 0; i < c->point_count; i++)
+            if (c->points[i].greatest_impulse > 0 || c->points[i].separation < w->settings.margin)
+                c->a->stopped = c->b->stopped = true;
+    }
+}
+
 static void integrate_positions(world *w, float time) {
     for (size_t k = 0; k < w->body_count; k++) {
         world_body *body = &w->bodies[k];
         if (body->kind & (NARC_STATIC | NARC_ASLEEP) || body->stopped)
             continue;
-        const vec way = scale(time, body->velocity);
         const float turn = time * body->spin;
         const float cosine = body->cosine - turn * body->sine, sine = body->sine + turn * body->cosine;
         const float size = length((vec){cosine, sine});
-        body->position = add(body->position, way);
-        body->moved = add(body->moved, way);
-        body->turned += turn;
+        body->position = add(body->position, scale(time, body->velocity));
         body->cosine = cosine / size;
         body->sine = sine / size;
     }
 }
 
 /* What met fast enough and was pressed goes apart again. */
-static void bounce(world *w) {
-    for (size_t k = 0; k < w->active_count; k++) {
-        world_contact *c = &w->contacts[w->active[k]];
-        world_body *a = &w->bodies[c->a], *b = &w->bodies[c->b];
-        for (unsigned i = 0; i < c->point_count; i++) {
-            world_point *p = &c->points[i];
-            if (c->restitution == 0 || p->approach < least_bounce || p->greatest_impulse == 0)
-                continue;
-            const float speed = dot(find_velocity(a, b, p), c->normal);
-            const float change = -p->normal_mass * (speed - c->restitution * p->approach);
-            const float impulse = fmaxf(0, p->normal_impulse + change);
-            apply(a, b, p, scale(impulse - p->normal_impulse, c->normal));
-            p->normal_impulse = impulse;
-        }
-    }
+static void bounce(const world_contact *c, world_point *p) {
+    if (c->restitution > 0 && p->approach > least_bounce && p->greatest_impulse > 0)
+        change_normal_impulse(c, p,
+                              -p->normal_mass * (dot(find_velocity(c, p), c->normal) - c->restitution * p->approach));
 }
 
 void world_solve(world *w) {
     const float time = w->settings.time_step / (float)w->settings.substeps;
     const spring soft = make_spring(w->settings.spring_rate / time, time);
-    prepare(w);
+    for (size_t k = 0; k < w->active_count; k++)
+        prepare(w->active[k]);
     for (unsigned step = 0; step < w->settings.substeps; step++) {
         integrate_velocities(w, time);
-        warm_start(w);
+        for (size_t k = 0; k < w->active_count; k++)
+            warm_start(w->active[k]);
         solve_contacts(w, &soft, time, false);
+        stop_turns(w, time);
         integrate_positions(w, time);
         solve_contacts(w, &rigid, time, true);
     }
-    bounce(w);
+    for (size_t k = 0; k < w->active_count; k++)
+        for (unsigned i = 0; i < w->active[k]->point_count; i++)
+            bounce(w->active[k], &w->active[k]->points[i]);
 }

@@ -15,19 +15,16 @@ struct world_row {
     struct workload_key key;
     const char *isa;
     world world;
-    size_t found;
 };
 
-static void find_manifolds(struct world_row *row) {
-    must(world_find_manifolds(&row->world, &row->found), &row->world.error);
-}
+static void find_manifolds(struct world_row *row) { must(world_find_manifolds(&row->world), &row->world.error); }
 
 static void run(struct bench_row *bench_row) {
     struct world_row *row = bench_row->context;
     if (row->part == WORLD_MANIFOLDS)
         find_manifolds(row);
     else
-        world_make_contacts(&row->world, row->found);
+        world_make_contacts(&row->world);
 }
 
 /* Without gravity: what has settled stays. No contact serves again, so that all are found. */
@@ -64,11 +61,12 @@ static void prepare(struct bench_row *bench_row) {
     fill_world(w, get_workload(&row->key));
     must(world_step(w), &w->error);
     find_manifolds(row);
-    world_make_contacts(w, row->found);
+    world_make_contacts(w);
     row->row.pairs = w->list->pairs.count;
-    row->row.colliding = (double)row->found / (double)row->row.pairs;
-    for (size_t k = 0; k < row->found; k++)
-        row->row.wrong += w->contacts[w->manifolds[k].pair].point_count != w->manifolds[k].count;
+    for (size_t k = 0; k < row->row.pairs; k++) {
+        row->row.colliding += (w->contacts[k].point_count > 0) / (double)row->row.pairs;
+        row->row.wrong += w->contacts[k].point_count != w->contacts[k].row.count;
+    }
 }
 
 struct bench_row *make_world_part_row(const char *name, enum world_part part, const struct workload_key *key,

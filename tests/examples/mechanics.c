@@ -177,7 +177,7 @@ TEST(test_turned_together) {
     world_body *const boxes[] = {&w.bodies[1], &w.bodies[2]};
     step_for(&w, 0.1);
     assert_int_equal(w.active_count, 1);
-    assert_near((double)w.contacts[w.active[0]].normal.y, 1, 1e-6);
+    assert_near((double)w.active[0]->normal.y, 1, 1e-6);
     for (int k = 0; k < 2; k++) {
         boxes[k]->cosine = 0.8f;
         boxes[k]->sine = 0.6f;
@@ -185,7 +185,22 @@ TEST(test_turned_together) {
     boxes[1]->position = (vec){-0.6f, 10.8f};
     step_for(&w, 1.0 / 60);
     assert_int_equal(w.active_count, 1);
-    assert_near((double)w.contacts[w.active[0]].normal.x, -0.6, 1e-4);
+    assert_near((double)w.active[0]->normal.x, -0.6, 1e-4);
+    world_destroy(&w);
+}
+
+/* A pair that is listed still, but has no point, forgets what pressed and what rolled. */
+TEST(test_forgets) {
+    world w = create_slope(0.2);
+    world_body *circle = add_circle(&w, 0.5, 0, 0.5f);
+    step_for(&w, 0.5);
+    assert_true(w.contacts[0].points[0].normal_impulse > 0 && w.contacts[0].rolling_impulse != 0);
+    circle->position.y += 0.03f;
+    circle->velocity = (vec){0, 0};
+    step_for(&w, 1.0 / 60);
+    assert_int_equal(w.list->pairs.count, 1);
+    assert_int_equal(w.contacts[0].point_count, 0);
+    assert_true(w.contacts[0].points[0].normal_impulse == 0 && w.contacts[0].rolling_impulse == 0);
     world_destroy(&w);
 }
 

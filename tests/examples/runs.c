@@ -6,16 +6,11 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 run begin_run(const char *name, world_settings settings, uint64_t seed) {
     run r = {.name = name, .seed = seed};
     assert_non_null(find_scene(name));
     assert_int_equal(build_scene(find_scene(name), settings, seed, &r.world), NARC_OK);
-    r.start = calloc(r.world.capacity, sizeof *r.start);
-    assert_non_null(r.start);
-    memcpy(r.start, r.world.bodies, r.world.body_count * sizeof *r.start);
     return r;
 }
 
@@ -36,14 +31,11 @@ void continue_run(run *r, float seconds) { continue_with(r, seconds, INFINITY); 
 void continue_calm_run(run *r, float seconds) { continue_with(r, seconds, 1e-4); }
 
 scene_state measure_run(const run *r) {
-    const scene_state state = measure_scene(&r->world, r->start);
+    const scene_state state = measure_scene(&r->world);
     print_message("%s, seed %d: energy %.2f, displacement %.4f, sideways %.4f, overlap %.4f, %zu moving, %zu awake\n",
                   r->name, (int)r->seed, state.energy, state.displacement, state.sideways, state.overlap, state.moving,
                   state.awake);
     return state;
 }
 
-void end_run(run *r) {
-    world_destroy(&r->world);
-    free(r->start);
-}
+void end_run(run *r) { world_destroy(&r->world); }

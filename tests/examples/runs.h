@@ -10,7 +10,6 @@
 
 typedef struct run {
     world world;
-    world_body *start; /* as the bodies were at first */
     const char *name;
     uint64_t seed;
     long step;

@@ -13,6 +13,7 @@
 
 #include "expect.h"
 #include "families.h"
+#include "ledger.h"
 #include "narc_files.h"
 #include "support.h"
 
@@ -277,34 +278,6 @@ TEST(writes_nothing_wrong) {
 
 /* ---------------------------------------------------------------------------- damage */
 
-/* Flips bits, repeats, leaves out or inserts bytes, or cuts the end. */
-static size_t damage(struct test_random *random, char *text, size_t size) {
-    static const char bytes[] = "[]{},;:\"\\ \n\t0123456789.-+eEnaiu\xff\xc3\0";
-    for (size_t changes = 1 + random_below(random, 3); changes > 0; changes--) {
-        const size_t at = random_below(random, size), length = 1 + random_below(random, 8);
-        switch (random_below(random, 5)) {
-        case 0:
-            text[at] = bytes[random_below(random, sizeof bytes)];
-            break;
-        case 1:
-            memmove(text + at + 1, text + at, size++ - at);
-            text[at] = bytes[random_below(random, sizeof bytes)];
-            break;
-        case 2:
-            if (at + length < size)
-                memmove(text + at, text + at + length, (size -= length) - at);
-            break;
-        case 3:
-            text[at] = (char)(text[at] ^ 1 << random_below(random, 8));
-            break;
-        default:
-            size = random_below(random, 4) ? size : at + 1;
-            break;
-        }
-    }
-    return size;
-}
-
 /* Whatever the bytes, shapes come out that can be written and read again, or an error whose line there is; then the store
  * is as before. */
 TEST(survives_damage) {
@@ -314,7 +287,7 @@ TEST(survives_damage) {
     for (size_t trial = 0; trial < trials; trial++) {
         char text[sizeof every_form + 8];
         memcpy(text, every_form, sizeof every_form);
-        const size_t size = damage(&random, text, sizeof every_form - 1);
+        const size_t size = random_damage(&random, text, sizeof every_form - 1);
         narc_shape_list *list = NULL;
         narc_error error = {.status = NARC_OK};
         narc_shapes *store = empty_store();
@@ -341,32 +314,13 @@ TEST(survives_damage) {
 
 /* ---------------------------------------------------------------------------- memory that runs out */
 
-/* Gives memory so many times; counts what is not released. */
-struct purse {
-    size_t left, held;
-};
-
-static void *take(size_t size, void *context) {
-    struct purse *purse = context;
-    void *memory = purse->left ? malloc(size) : NULL;
-    purse->left -= purse->left > 0;
-    purse->held += memory != NULL;
-    return memory;
-}
-
-static void give_back(void *memory, void *context) {
-    struct purse *purse = context;
-    purse->held -= memory != NULL;
-    free(memory);
-}
-
 /* Each of the caller's allocations fails, and all behind it: those of the list, then those of the store. */
 TEST(tells_missing_memory) {
     for (int of_store = 0; of_store < 2; of_store++) {
         size_t failures = 0;
         for (narc_status status = NARC_ERROR_MEMORY; status; failures += status != NARC_OK) {
-            struct purse purse = {.left = failures + (size_t)of_store};
-            const narc_allocator allocator = {take, give_back, &purse};
+            struct ledger ledger = {.limited = true, .left = failures + (size_t)of_store};
+            const narc_allocator allocator = ledger_allocator(&ledger);
             narc_shapes *store = NULL;
             narc_shape_list *list = NULL;
             narc_error error = {.status = NARC_OK};
@@ -376,21 +330,21 @@ TEST(tells_missing_memory) {
             if (status) {
                 expect_error(status, NARC_ERROR_MEMORY, &error, "");
                 uint32_t index = 99;
-                purse.left = 100;
+                ledger.left = 100;
                 assert_int_equal(narc_add_shape(store, &(narc_arc){0, 0, 1, 0, 6.283185307179586}, 1, &index, NULL),
                                  NARC_OK);
                 assert_int_equal(index, 0);
             }
             narc_destroy_shape_list(list);
             narc_destroy_shapes(store);
-            assert_int_equal(purse.held, 0);
+            assert_int_equal(ledger.live, 0);
         }
         assert_true(failures > (of_store ? 1 : FORMS + 1));
     }
     narc_shape_list *list = read_text(every_form, NULL);
     for (size_t left = 0; left < 3; left++) {
-        struct purse purse = {.left = left};
-        const narc_allocator allocator = {take, give_back, &purse};
+        struct ledger ledger = {.limited = true, .left = left};
+        const narc_allocator allocator = ledger_allocator(&ledger);
         char *text = NULL;
         size_t size = 0;
         narc_error error;
@@ -401,8 +355,8 @@ TEST(tells_missing_memory) {
             expect_ok(status, &error);
         assert_true((text != NULL) == (left == 2));
         if (text)
-            give_back(text, &purse);
-        assert_int_equal(purse.held, 0);
+            allocator.release(text, &ledger);
+        assert_int_equal(ledger.live, 0);
     }
     narc_destroy_shape_list(list);
 }

@@ -248,34 +248,6 @@ TEST(computes_the_hull) {
     assert_memory_equal(points, corners, sizeof corners);
 }
 
-/* Changes, leaves out, repeats or inserts bytes, or cuts the end. */
-static size_t damage(struct test_random *random, char *text, size_t size) {
-    static const char bytes[] = "[]{},;:\"\\ \n\r\t0123456789.-+eEnaif\xff\xc3\0u";
-    for (size_t changes = 1 + random_below(random, 3); changes > 0; changes--) {
-        const size_t at = random_below(random, size), length = 1 + random_below(random, 4);
-        switch (random_below(random, 4)) {
-        case 0:
-            text[at] = bytes[random_below(random, sizeof bytes)];
-            break;
-        case 1:
-            memmove(text + at + 1, text + at, size - at);
-            text[at] = bytes[random_below(random, sizeof bytes)];
-            size++;
-            break;
-        case 2:
-            if (at + length < size) {
-                memmove(text + at, text + at + length, size - at - length);
-                size -= length;
-            }
-            break;
-        default:
-            size = random_below(random, 4) ? size : at + 1;
-            break;
-        }
-    }
-    return size;
-}
-
 /* Whatever the bytes, points come out, or an error whose line there is; then the path is as before. */
 TEST(survives_damage) {
     static const char *const texts[] = {
@@ -290,7 +262,7 @@ TEST(survives_damage) {
     for (size_t trial = 0; trial < trials; trial++) {
         char text[200] = {0};
         strcpy(text, texts[trial % 4]);
-        const size_t size = damage(&random, text, strlen(text));
+        const size_t size = random_damage(&random, text, strlen(text));
         narc_path *path = make_occupied_path();
         narc_error error = {0};
         const narc_status status =

@@ -44,27 +44,12 @@ static struct scene make_scene(struct test_random *random, size_t pairs) {
     return scene;
 }
 
-/* A step of all bodies, small or not. */
-static void move_bodies(struct test_random *random, struct scene *scene, double step) {
-    for (size_t k = 0; k < scene->body_count; k++) {
-        struct body *body = &scene->bodies[k];
-        const double angle = atan2((double)body->sine, (double)body->cosine) + step * random_between(random, -1, 1);
-        body->cosine = (float)cos(angle);
-        body->sine = (float)sin(angle);
-        body->x += (double)body->scale * step * random_between(random, -1, 1);
-        body->y += (double)body->scale * step * random_between(random, -1, 1);
-        round_position(body, scene->precision);
-    }
-}
-
 /* Calls with these hints: right with any margin, and leave the same hints on every instruction set and with any number
  * of threads. `out_hints` gets those of margin 0; it may be `hints`, or NULL. */
 static void check_hints(const struct scene *scene, const uint32_t *hints, uint32_t *out_hints, const char *name) {
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
-    struct contacts right = find_plain_contacts(scene->store, &bodies, &pairs);
-    const struct plain_batch batch = {
-        .shapes = scene->store, .bodies = &bodies, .pairs = &pairs, .right = right.rows, .scene = scene, .name = name};
+    const struct plain_batch batch = make_plain_batch(scene, &bodies, &pairs, name);
     const size_t size = pairs.count * sizeof *hints;
     uint32_t *left = create_hints(pairs.count), *other = create_hints(pairs.count);
     const narc_workers two = narc_openmp_workers(2);
@@ -85,7 +70,7 @@ static void check_hints(const struct scene *scene, const uint32_t *hints, uint32
     }
     free(left);
     free(other);
-    free(right.rows);
+    free(batch.right);
 }
 
 TEST(test_frames) {
@@ -97,7 +82,7 @@ TEST(test_frames) {
             check_hints(&scene, hints, hints, "frames");
             if (frame == 0) /* there are some */
                 assert_true(memcmp(hints, zeros, scene.pair_count * sizeof *hints) != 0);
-            move_bodies(&random, &scene, frame < 5 ? 0.01 : 1e-6);
+            scene_move_bodies(&scene, &random, frame < 5 ? 0.01 : 1e-6);
         }
         free(hints);
         free(zeros);
@@ -115,7 +100,7 @@ TEST(test_stale) {
         uint32_t *hints = create_hints(count);
         check_hints(&scene, hints, hints, "zeros");
         check_hints(&other, hints, NULL, "another scene's");
-        move_bodies(&random, &scene, 3);
+        scene_move_bodies(&scene, &random, 3);
         check_hints(&scene, hints, hints, "hours old");
         for (size_t k = count - 1; k > 0; k--) {
             const size_t i = random_below(&random, k + 1);

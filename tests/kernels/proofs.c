@@ -13,17 +13,11 @@ static const double pi = 3.14159265358979323846;
 
 static void check_scene(const struct scene *scene, const char *name) {
     struct columns columns = create_columns(scene, LAYOUT_STRUCTURES, 0, scene->pair_count);
-    struct contacts plain = find_plain_contacts(scene->store, &columns.bodies, &columns.pairs);
-    const struct plain_batch batch = {.shapes = scene->store,
-                                      .bodies = &columns.bodies,
-                                      .pairs = &columns.pairs,
-                                      .right = plain.rows,
-                                      .scene = scene,
-                                      .name = name};
+    const struct plain_batch batch = make_plain_batch(scene, &columns.bodies, &columns.pairs, name);
     check_plain_overlaps(&batch, NULL);
     check_plain_contacts(&batch, &(narc_query){.margin = 0});
     check_plain_contacts(&batch, &(narc_query){.margin = INFINITY});
-    free(plain.rows);
+    free(batch.right);
     destroy_columns(&columns);
 }
 

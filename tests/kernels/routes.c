@@ -82,9 +82,7 @@ static void check_manifolds(const struct scene *scene, float margin, const float
 static void check_all(struct test_random *random, const struct scene *scene, const char *name) {
     const narc_bodies bodies = scene_bodies(scene);
     const narc_pairs pairs = scene_pairs(scene);
-    struct contacts right = find_plain_contacts(scene->store, &bodies, &pairs);
-    const struct plain_batch batch = {
-        .shapes = scene->store, .bodies = &bodies, .pairs = &pairs, .right = right.rows, .scene = scene, .name = name};
+    const struct plain_batch batch = make_plain_batch(scene, &bodies, &pairs, name);
     uint32_t *hints = calloc(pairs.count, sizeof *hints);
     float *own = malloc(pairs.count * sizeof *own);
     assert_non_null(hints);
@@ -111,7 +109,7 @@ static void check_all(struct test_random *random, const struct scene *scene, con
     }
     free(hints);
     free(own);
-    free(right.rows);
+    free(batch.right);
 }
 
 /* Discs alone, with few others, with many; with broken bodies between them; around the ends of vectors and calls. */

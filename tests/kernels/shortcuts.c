@@ -33,19 +33,13 @@ static const char *any_name(size_t family) {
  * which the others must not mind. */
 static void check_scene(struct test_random *random, const struct scene *scene, enum layout layout, const char *name) {
     struct columns columns = create_columns(scene, layout, 0, scene->pair_count);
-    struct contacts plain = find_plain_contacts(scene->store, &columns.bodies, &columns.pairs);
-    const struct plain_batch batch = {.shapes = scene->store,
-                                      .bodies = &columns.bodies,
-                                      .pairs = &columns.pairs,
-                                      .right = plain.rows,
-                                      .scene = scene,
-                                      .name = name};
-    const float some = plain.rows[random_below(random, plain.count)].separation;
+    const struct plain_batch batch = make_plain_batch(scene, &columns.bodies, &columns.pairs, name);
+    const float some = batch.right[random_below(random, columns.pairs.count)].separation;
     const float margins[] = {0, INFINITY, 0.25f, 1e-4f, -1e-4f, -0.25f, some, nextafterf(some, INFINITY), -FLT_MAX};
     check_plain_overlaps(&batch, NULL);
     for (size_t k = 0; k < sizeof margins / sizeof *margins; k++)
         check_plain_contacts(&batch, &(narc_query){.margin = margins[k]});
-    free(plain.rows);
+    free(batch.right);
     destroy_columns(&columns);
 }
 
@@ -285,17 +279,11 @@ static void check_changes(struct test_random *random, enum change change) {
         const double beside = point ? (point % 2 ? 1 : -1) * 1e-13 * pow(4, (double)point) : 0;
         for (size_t k = 0; k < PAIRS; k++)
             walk(&scene, k, &ways[k], ways[k].changes ? ways[k].low + beside : random_unit(random));
-        struct contacts plain = find_plain_contacts(scene.store, &bodies, &pairs);
-        const struct plain_batch batch = {.shapes = scene.store,
-                                          .bodies = &bodies,
-                                          .pairs = &pairs,
-                                          .right = plain.rows,
-                                          .scene = &scene,
-                                          .name = "change"};
+        const struct plain_batch batch = make_plain_batch(&scene, &bodies, &pairs, "change");
         check_plain_overlaps(&batch, NULL);
         check_plain_contacts(&batch, &(narc_query){.margin = 0});
         check_plain_contacts(&batch, &(narc_query){.margin = INFINITY});
-        free(plain.rows);
+        free(batch.right);
     }
     free(first.rows);
     destroy_scene(&scene);

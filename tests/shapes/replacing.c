@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "families.h"
+#include "ledger.h"
 #include "methods.h"
 #include "narc.h"
 #include "narc_broad_phase.h"
@@ -16,40 +17,6 @@
 #include "tests.h"
 
 static const double pi = 3.14159265358979323846;
-
-/* What the allocator has given. */
-struct ledger {
-    size_t live, most, allocations;
-    bool refuses;
-};
-
-static void *ledger_allocate(size_t size, void *context) {
-    struct ledger *ledger = context;
-    if (ledger->refuses)
-        return NULL;
-    size_t *memory = malloc(size + 16);
-    assert_non_null(memory);
-    *memory = size;
-    ledger->allocations++;
-    ledger->live += size;
-    ledger->most = ledger->live > ledger->most ? ledger->live : ledger->most;
-    return (char *)memory + 16;
-}
-
-static void ledger_release(void *memory, void *context) {
-    struct ledger *ledger = context;
-    size_t *start = (size_t *)(void *)((char *)memory - 16);
-    ledger->live -= *start;
-    memset(memory, 0xa5, *start); /* what still reads it shows */
-    free(start);
-}
-
-static narc_shapes *create_store(struct ledger *ledger) {
-    const narc_allocator allocator = {ledger_allocate, ledger_release, ledger};
-    narc_shapes *shapes = NULL;
-    assert_int_equal(narc_create_shapes(&allocator, &shapes), NARC_OK);
-    return shapes;
-}
 
 /* A shape that was added to a store of its own has the same bits wherever it is. */
 static void expect_same_shape(const narc_shapes *shapes, uint32_t index, const struct shape *shape) {
@@ -105,7 +72,7 @@ TEST(holds_what_was_put_last) {
     for (size_t round = 0; round < test_trials(20); round++) {
         struct ledger ledger = {0};
         struct model *model = calloc(1, sizeof *model);
-        narc_shapes *shapes = create_store(&ledger);
+        narc_shapes *shapes = ledger_store(&ledger);
         assert_non_null(model);
         for (int step = 0; step < 300; step++) {
             const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
@@ -190,7 +157,7 @@ TEST(memory_does_not_grow) {
     struct test_random random = test_random_named("no growth");
     for (int way = 0; way < 2; way++) { /* replace; remove and add */
         struct ledger ledger = {0};
-        narc_shapes *shapes = create_store(&ledger);
+        narc_shapes *shapes = ledger_store(&ledger);
         struct shape polygons[NARC_MAX_ARCS + 1];
         size_t corners[SHAPES], need = SHAPES * need_of(3), most_needed = need;
         for (size_t n = 3; n <= NARC_MAX_ARCS; n++)
@@ -224,7 +191,7 @@ TEST(memory_does_not_grow) {
 TEST(removed_shapes_need_no_memory) {
     enum { SHAPES = 10000 };
     struct ledger ledger = {0};
-    narc_shapes *shapes = create_store(&ledger);
+    narc_shapes *shapes = ledger_store(&ledger);
     const struct shape small = make_polygon(3), large = make_polygon(64);
     const size_t most_needed = (SHAPES - 1) * need_of(3) + need_of(64);
     for (uint32_t k = 0; k < SHAPES; k++)
@@ -251,7 +218,7 @@ TEST(removed_shapes_need_no_memory) {
 /* A shape that changes and keeps its number of arcs, or has fewer, allocates nothing. */
 TEST(same_size_allocates_nothing) {
     struct ledger ledger = {0};
-    narc_shapes *shapes = create_store(&ledger);
+    narc_shapes *shapes = ledger_store(&ledger);
     const struct shape eight = make_polygon(8), five = make_polygon(5);
     assert_int_equal(narc_add_shape(shapes, eight.arcs, 8, NULL, NULL), NARC_OK);
     const size_t before = ledger.allocations;
@@ -267,7 +234,7 @@ TEST(same_size_allocates_nothing) {
 TEST(refused_replacement_changes_nothing) {
     struct ledger ledger = {0};
     struct model *model = calloc(1, sizeof *model);
-    narc_shapes *shapes = create_store(&ledger);
+    narc_shapes *shapes = ledger_store(&ledger);
     const struct shape small = make_polygon(3), large = make_polygon(64);
     narc_arc broken = {0, 0, -1, -pi, pi};
     narc_error error;
@@ -279,7 +246,7 @@ TEST(refused_replacement_changes_nothing) {
         model->exists[k] = true;
     }
     model->count = 20;
-    ledger.refuses = true;
+    ledger.limited = true;
     expect_error(narc_replace_shape(NULL, 0, small.arcs, 3, &error), NARC_ERROR_ARGUMENT, &error, "shapes is NULL");
     expect_error(narc_remove_shape(NULL, 0, &error), NARC_ERROR_ARGUMENT, &error, "shapes is NULL");
     expect_error(narc_replace_shape(shapes, 20, small.arcs, 3, &error), NARC_ERROR_INDEX, &error,
@@ -289,7 +256,7 @@ TEST(refused_replacement_changes_nothing) {
     expect_error(narc_replace_shape(shapes, 7, &broken, 1, &error), NARC_ERROR_RADIUS, &error, "arc 0: radius is -1");
     expect_error(narc_replace_shape(shapes, 7, large.arcs, 64, &error), NARC_ERROR_MEMORY, &error, "no memory");
     expect_model(shapes, model);
-    ledger.refuses = false;
+    ledger.limited = false;
     expect_ok(narc_replace_shape(shapes, 7, large.arcs, 64, &error), &error);
     model->shape[7] = large;
     expect_model(shapes, model);
@@ -394,7 +361,7 @@ static narc_status ask_boxes(const narc_methods *methods, bool *out_meet, narc_e
 /* The methods' copy of a store never answers for shapes that the store does not have. */
 TEST(methods_are_never_stale) {
     struct ledger ledger = {0};
-    const narc_allocator allocator = {ledger_allocate, ledger_release, &ledger};
+    const narc_allocator allocator = ledger_allocator(&ledger);
     const struct shape small = make_polygon(4), large = make_polygon(64);
     struct shape wide = large;
     narc_shapes *shapes = NULL;
@@ -410,10 +377,10 @@ TEST(methods_are_never_stale) {
     expect_error(ask_boxes(NULL, &meet, &error), NARC_ERROR_ARGUMENT, &error, "methods is NULL");
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
     expect_error(narc_create_methods(shapes, NULL, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_methods is NULL");
-    ledger.refuses = true;
+    ledger.limited = true;
     expect_error(narc_create_methods(shapes, &allocator, &methods, &error), NARC_ERROR_MEMORY, &error, "no memory");
     assert_null(methods);
-    ledger.refuses = false;
+    ledger.limited = false;
     expect_ok(narc_create_methods(shapes, &allocator, &methods, &error), &error);
     for (int change = 0; change < 4; change++) {
         if (change == 0)
@@ -425,10 +392,10 @@ TEST(methods_are_never_stale) {
         else
             store_shape(shapes, wide);
         expect_error(ask_boxes(methods, &meet, &error), NARC_ERROR_ARGUMENT, &error, "narc_refresh_methods()");
-        ledger.refuses = true;
+        ledger.limited = true;
         expect_error(narc_refresh_methods(methods, &error), NARC_ERROR_MEMORY, &error, "no memory");
         expect_error(ask_boxes(methods, &meet, &error), NARC_ERROR_ARGUMENT, &error, "narc_refresh_methods()");
-        ledger.refuses = false;
+        ledger.limited = false;
         expect_ok(narc_refresh_methods(methods, &error), &error);
         expect_ok(ask_boxes(methods, &meet, &error), &error);
         assert_int_equal(meet, change == 1 || change == 3); /* one radius is 1, or 2; removed shapes meet nothing */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "families.h"
+#include "ledger.h"
 #include "narc.h"
 #include "store.h"
 #include "support.h"
@@ -14,57 +15,33 @@
 
 static const double pi = 3.14159265358979323846;
 
-struct counter {
-    size_t allocations, live;
-};
-
-static void *count_allocation(size_t size, void *context) {
-    struct counter *counter = context;
-    counter->allocations++;
-    counter->live++;
-    return malloc(size);
-}
-
-static void count_release(void *memory, void *context) {
-    struct counter *counter = context;
-    counter->live--;
-    free(memory);
-}
-
-static narc_shapes *create_store(struct counter *counter) {
-    const narc_allocator allocator = {count_allocation, count_release, counter};
-    narc_shapes *shapes = NULL;
-    assert_int_equal(narc_create_shapes(&allocator, &shapes), NARC_OK);
-    return shapes;
-}
-
 TEST(equal_shapes_are_stored_once) {
     struct test_random random = test_random_named("sharing");
-    struct counter counter = {0};
-    narc_shapes *shapes = create_store(&counter);
+    struct ledger ledger = {0};
+    narc_shapes *shapes = ledger_store(&ledger);
     for (size_t k = 0; k < 20 * FAMILY_COUNT; k++) {
         const struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         const uint32_t index = store_shape(shapes, shape), uses = narc_count_uses(shapes, index);
         const size_t count = narc_count_shapes(shapes), records = shapes->record_count,
-                     allocations = counter.allocations;
+                     allocations = ledger.allocations;
         for (uint32_t again = 1; again <= 3; again++) {
             assert_int_equal(store_shape(shapes, shape), index);
             assert_int_equal(narc_count_uses(shapes, index), uses + again);
         }
         assert_int_equal(narc_count_shapes(shapes), count);
         assert_int_equal(shapes->record_count, records);
-        assert_int_equal(counter.allocations, allocations);
+        assert_int_equal(ledger.allocations, allocations);
     }
     assert_int_equal(narc_count_uses(shapes, (uint32_t)narc_count_shapes(shapes)), 0);
     assert_int_equal(narc_count_uses(NULL, 0), 0);
     narc_destroy_shapes(shapes);
-    assert_int_equal(counter.live, 0);
+    assert_int_equal(ledger.live, 0);
 }
 
 /* What answers tell apart is another shape: the place, the numbers of arcs, one bit of one number. */
 TEST(other_bits_are_another_shape) {
-    struct counter counter = {0};
-    narc_shapes *shapes = create_store(&counter);
+    struct ledger ledger = {0};
+    narc_shapes *shapes = ledger_store(&ledger);
     const struct shape box = box_of(2, 1, 0);
     struct shape other = box;
     assert_int_equal(store_shape(shapes, box), 0);
@@ -90,8 +67,8 @@ TEST(other_bits_are_another_shape) {
 }
 
 TEST(last_use_removes) {
-    struct counter counter = {0};
-    narc_shapes *shapes = create_store(&counter);
+    struct ledger ledger = {0};
+    narc_shapes *shapes = ledger_store(&ledger);
     const struct shape box = box_of(2, 1, 0), other = box_of(3, 1, 0);
     narc_error error;
     for (int k = 0; k < 3; k++)
@@ -108,8 +85,8 @@ TEST(last_use_removes) {
 }
 
 TEST(shared_shapes_are_not_replaced) {
-    struct counter counter = {0};
-    narc_shapes *shapes = create_store(&counter);
+    struct ledger ledger = {0};
+    narc_shapes *shapes = ledger_store(&ledger);
     const struct shape box = box_of(2, 1, 0), other = box_of(3, 1, 0);
     narc_arc arcs[NARC_MAX_ARCS];
     narc_error error;
@@ -136,8 +113,8 @@ TEST(shared_shapes_are_not_replaced) {
  * sides in steps. */
 TEST(searches_are_short) {
     enum { STEPS = 150 };
-    struct counter counter = {0};
-    narc_shapes *shapes = create_store(&counter);
+    struct ledger ledger = {0};
+    narc_shapes *shapes = ledger_store(&ledger);
     for (int w = 1; w <= STEPS; w++)
         for (int h = 1; h <= STEPS; h++)
             assert_int_equal(store_shape(shapes, box_of(0.125 * w, 0.125 * h, 0)), (w - 1) * STEPS + h - 1);
@@ -157,8 +134,8 @@ TEST(searches_are_short) {
 }
 
 TEST(added_at_an_index) {
-    struct counter counter = {0};
-    narc_shapes *shapes = create_store(&counter);
+    struct ledger ledger = {0};
+    narc_shapes *shapes = ledger_store(&ledger);
     const struct shape box = box_of(2, 1, 0), other = box_of(3, 1, 0);
     narc_error error;
     expect_ok(narc_add_shape_at(shapes, 5, box.arcs, 4, &error), &error); /* extends */
@@ -189,8 +166,8 @@ TEST(added_at_an_index) {
 /* Any order of indices, each in a time that does not depend on how many there are. */
 TEST(fills_indices_in_any_order) {
     enum { COUNT = 5000 };
-    struct counter counter = {0};
-    narc_shapes *shapes = create_store(&counter);
+    struct ledger ledger = {0};
+    narc_shapes *shapes = ledger_store(&ledger);
     for (uint32_t k = COUNT; k-- > 0;) {
         const struct shape box = box_of(1 + k, 1, 0);
         assert_int_equal(narc_add_shape_at(shapes, k, box.arcs, 4, NULL), NARC_OK);

@@ -8,6 +8,7 @@
 
 #include "copy.h"
 #include "families.h"
+#include "ledger.h"
 #include "oracle.h"
 #include "store.h"
 #include "support.h"
@@ -340,41 +341,18 @@ TEST(bounds_what_is_stored) {
 
 /* ------------------------------------------------------------------------------------------------ memory */
 
-struct counter {
-    size_t allocations, allowed; /* how many there were, and may be */
-    size_t live;
-};
-
-static void *count_allocation(size_t size, void *context) {
-    struct counter *counter = context;
-    if (counter->allocations >= counter->allowed)
-        return NULL;
-    counter->allocations++;
-    counter->live++;
-    void *memory = malloc(size);
-    memset(memory, 0xa5, size);
-    return memory;
-}
-
-static void count_release(void *memory, void *context) {
-    struct counter *counter = context;
-    assert_non_null(memory);
-    counter->live--;
-    free(memory);
-}
-
 /* Whichever allocation fails, the store stays as it was, and the same shape can be added once there is memory. */
 TEST(survives_failing_allocations) {
     struct test_random random = test_random_named("failing allocations");
     struct shape added[400];
-    struct counter counter = {0};
-    narc_allocator allocator = {count_allocation, count_release, &counter};
+    struct ledger ledger = {.limited = true};
+    const narc_allocator allocator = ledger_allocator(&ledger);
     narc_shapes *shapes = NULL;
     narc_error error;
     size_t failures = 0;
     assert_int_equal(narc_create_shapes(&allocator, &shapes), NARC_ERROR_MEMORY);
     assert_null(shapes);
-    counter.allowed = 1;
+    ledger.left = 1;
     assert_int_equal(narc_create_shapes(&allocator, &shapes), NARC_OK);
     for (size_t k = 0; k < 400; k++) {
         added[k] = make_shape(&random, (enum family)(k % FAMILY_COUNT));
@@ -388,29 +366,27 @@ TEST(survives_failing_allocations) {
                 narc_arc arcs[NARC_MAX_ARCS];
                 expect_same_arcs(&added[j], arcs, narc_get_arcs(shapes, (uint32_t)j, arcs));
             }
-            counter.allowed++;
+            ledger.left++;
         }
     }
     assert_true(failures >= 10); /* each of the two arrays grew several times */
     narc_destroy_shapes(shapes);
-    assert_int_equal(counter.live, 0);
+    assert_int_equal(ledger.live, 0);
 }
 
 TEST(reserve_is_enough) {
     struct test_random random = test_random_named("reserve");
     for (size_t round = 0; round < 50; round++) {
         struct shape added[2 * FAMILY_COUNT];
-        struct counter counter = {.allowed = 3};
-        narc_allocator allocator = {count_allocation, count_release, &counter};
-        narc_shapes *shapes = NULL;
+        struct ledger ledger = {.limited = true, .left = 3};
+        narc_shapes *shapes = ledger_store(&ledger);
         size_t arc_count = 0;
-        assert_int_equal(narc_create_shapes(&allocator, &shapes), NARC_OK);
         for (size_t k = 0; k < 2 * FAMILY_COUNT; k++) {
             added[k] = make_shape(&random, round % 2 ? FAMILY_CIRCLE : (enum family)(k % FAMILY_COUNT));
             arc_count += added[k].count;
         }
         assert_int_equal(narc_reserve_shapes(shapes, 2 * FAMILY_COUNT, arc_count), NARC_OK);
-        assert_int_equal(counter.allocations, 3);
+        assert_int_equal(ledger.allocations, 3);
         for (size_t k = 0; k < 2 * FAMILY_COUNT; k++)
             assert_int_equal(narc_add_shape_at(shapes, (uint32_t)k, added[k].arcs, added[k].count, NULL), NARC_OK);
         assert_int_equal(narc_reserve_shapes(shapes, 1000000, 8000000), NARC_ERROR_MEMORY);
@@ -419,14 +395,16 @@ TEST(reserve_is_enough) {
         assert_int_equal(narc_reserve_shapes(shapes, 1, (size_t)1 << 30), NARC_ERROR_COUNT);
         assert_int_equal(narc_reserve_shapes(shapes, 0, 0), NARC_OK);
         narc_destroy_shapes(shapes);
-        assert_int_equal(counter.live, 0);
+        assert_int_equal(ledger.live, 0);
     }
 }
 
 TEST(refuses_bad_arguments) {
     narc_shapes *shapes = NULL;
     narc_error error;
-    narc_allocator incomplete = {NULL, count_release, NULL};
+    struct ledger ledger = {0};
+    narc_allocator incomplete = ledger_allocator(&ledger);
+    incomplete.allocate = NULL;
     narc_arc arc = {0, 0, -1, -pi, pi};
     uint32_t index = 12345;
     assert_int_equal(narc_create_shapes(NULL, NULL), NARC_ERROR_ARGUMENT);

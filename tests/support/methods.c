@@ -154,20 +154,6 @@ void destroy_corpus(struct corpus *corpus) {
     free(corpus->pairs);
 }
 
-void move_corpus(struct test_random *random, struct corpus *corpus, double step) {
-    struct scene *scene = &corpus->scene;
-    for (size_t k = 0; k < scene->body_count; k++) {
-        struct body *body = &scene->bodies[k];
-        const double angle = atan2((double)body->sine, (double)body->cosine) + step * random_between(random, -1, 1);
-        body->cosine = (float)cos(angle);
-        body->sine = (float)sin(angle);
-        body->x += (double)body->scale * step * random_between(random, -1, 1);
-        body->y += (double)body->scale * step * random_between(random, -1, 1);
-        round_position(body, scene->precision);
-    }
-    solve_corpus(corpus);
-}
-
 void print_corpus_pair(const struct corpus *corpus, size_t k) {
     const struct exact_pair *pair = &corpus->pairs[k];
     const struct scene *scene = &corpus->scene;

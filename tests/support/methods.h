@@ -31,9 +31,6 @@ struct corpus make_corpus(const char *name, narc_precision precision, double rou
 void solve_corpus(struct corpus *corpus);
 void destroy_corpus(struct corpus *corpus);
 
-/* The bodies of a corpus after a step, small or not, solved. */
-void move_corpus(struct test_random *random, struct corpus *corpus, double step);
-
 /* Prints pair k so that it can be put into a test of its own. */
 void print_corpus_pair(const struct corpus *corpus, size_t k);
 

@@ -63,6 +63,12 @@ struct manifolds find_plain_manifolds(const narc_shapes *shapes, const narc_bodi
     return plain;
 }
 
+struct plain_batch make_plain_batch(const struct scene *scene, const narc_bodies *bodies, const narc_pairs *pairs,
+                                    const char *name) {
+    narc_contact *const right = find_plain_contacts(scene->store, bodies, pairs).rows;
+    return (struct plain_batch){scene->store, bodies, pairs, right, scene, name};
+}
+
 static void fail_at(const struct plain_batch *batch, size_t pair, const char *what) {
     const struct pair indices = batch->scene->pairs[pair];
     const struct reference_body a = scene_reference(batch->scene, indices.a);

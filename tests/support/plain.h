@@ -20,10 +20,14 @@ struct plain_batch {
     const narc_shapes *shapes;
     const narc_bodies *bodies;
     const narc_pairs *pairs;
-    const narc_contact *right;
+    narc_contact *right;
     const struct scene *scene;
     const char *name;
 };
+
+/* A batch of a scene; whoever gets it frees `right`. */
+struct plain_batch make_plain_batch(const struct scene *scene, const narc_bodies *bodies, const narc_pairs *pairs,
+                                    const char *name);
 
 /* Fail, with the pair, unless the instruction set under test says the same. */
 void check_plain_overlaps(const struct plain_batch *batch, const narc_workers *workers);

@@ -108,6 +108,18 @@ void round_position(struct body *body, narc_precision precision) {
     }
 }
 
+void scene_move_bodies(struct scene *scene, struct test_random *random, double step) {
+    for (size_t k = 0; k < scene->body_count; k++) {
+        struct body *body = &scene->bodies[k];
+        const double angle = atan2((double)body->sine, (double)body->cosine) + step * random_between(random, -1, 1);
+        body->cosine = (float)cos(angle);
+        body->sine = (float)sin(angle);
+        body->x += (double)body->scale * step * random_between(random, -1, 1);
+        body->y += (double)body->scale * step * random_between(random, -1, 1);
+        round_position(body, scene->precision);
+    }
+}
+
 void *make_junk(size_t size) { return memset(allocate(size, 1), GUARD_JUNK, size); }
 
 bool is_junk(const void *memory, size_t size) {

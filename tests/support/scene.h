@@ -60,6 +60,9 @@ struct body turned_body(double angle, double scale);
 /* A copy of a position in single precision, in both members. */
 void round_position(struct body *body, narc_precision precision);
 
+/* A step of all bodies, small or not. */
+void scene_move_bodies(struct scene *scene, struct test_random *random, double step);
+
 /* Rows and how many of them are used; whoever gets such a list frees its rows. */
 struct contacts {
     narc_contact *rows;

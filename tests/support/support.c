@@ -90,6 +90,33 @@ double random_log_between(struct test_random *random, double low, double high) {
 
 size_t random_below(struct test_random *random, size_t limit) { return (size_t)(random_bits(random) % limit); }
 
+size_t random_damage(struct test_random *random, char *text, size_t size) {
+    static const char bytes[] = "[]{},;:\"\\ \n\r\t0123456789.-+eEnaifu\xff\xc3\0";
+    for (size_t changes = 1 + random_below(random, 3); changes > 0; changes--) {
+        const size_t at = random_below(random, size), length = 1 + random_below(random, 8);
+        switch (random_below(random, 5)) {
+        case 0:
+            text[at] = bytes[random_below(random, sizeof bytes)];
+            break;
+        case 1:
+            memmove(text + at + 1, text + at, size++ - at);
+            text[at] = bytes[random_below(random, sizeof bytes)];
+            break;
+        case 2:
+            if (at + length < size)
+                memmove(text + at, text + at + length, (size -= length) - at);
+            break;
+        case 3:
+            text[at] = (char)(text[at] ^ 1 << random_below(random, 8));
+            break;
+        default:
+            size = random_below(random, 4) ? size : at + 1;
+            break;
+        }
+    }
+    return size;
+}
+
 uint64_t test_hash(uint64_t hash, const void *bytes, size_t size) {
     const unsigned char *byte = bytes;
     for (size_t k = 0; k < size; k++)

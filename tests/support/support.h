@@ -64,6 +64,10 @@ double random_between(struct test_random *random, double low, double high); /* l
 double random_log_between(struct test_random *random, double low, double high);
 size_t random_below(struct test_random *random, size_t limit); /* 0 .. limit - 1 */
 
+/* Damages a text of JSON or CSV in up to three places: bytes become others, are left out or inserted, bits flip, or the
+ * end is cut. Returns its new size; it may grow by three. */
+size_t random_damage(struct test_random *random, char *text, size_t size);
+
 /* FNV-1a, 64 bits, continued from `hash`: of bytes, and of numbers of `size` bytes each, the lowest byte first on every
  * machine. */
 #define TEST_HASH_START 0xcbf29ce484222325u

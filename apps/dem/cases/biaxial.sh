@@ -8,12 +8,8 @@
 set -eu
 program=$1 folder=$2 shapes=$3 name=$4 friction=$5 change=${6:-}
 cases=$(cd "$(dirname "$0")" && pwd)
-mkdir -p "$folder"
-cp "$shapes" "$folder/shapes.json"
+sh "$cases/with_shapes.sh" "$program" biaxial "$folder" "$shapes" "$name" "s/\"friction\": 0.5/\"friction\": $friction/; $change"
 cd "$folder"
-names=$(grep -o "\"name\": *\"${name}[^\"]*\"" shapes.json | sed 's/"name": *//' | paste -s -d , -)
-sed "s/\[\"disc\"\]/[$names]/; s/\"friction\": 0.5/\"friction\": $friction/; $change" "$cases/biaxial.json" >biaxial.json
-"$program" biaxial.json --threads 1 >biaxial.txt
 pressed=$(sed -n 's/.*"press", "duration": \([0-9.]*\).*/\1/p' biaxial.json)
 every=$(sed -n 's/.*"every": \([0-9.]*\),.*/\1/p' biaxial.json)
 frame=$(awk "BEGIN { printf \"%06d\", $pressed / $every }")

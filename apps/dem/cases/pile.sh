@@ -5,12 +5,8 @@
 set -eu
 program=$1 folder=$2 shapes=$3 name=$4 change=${5:-}
 cases=$(cd "$(dirname "$0")" && pwd)
-mkdir -p "$folder"
-cp "$shapes" "$folder/shapes.json"
+sh "$cases/with_shapes.sh" "$program" pile "$folder" "$shapes" "$name" "$change"
 cd "$folder"
-names=$(grep -o "\"name\": *\"${name}[^\"]*\"" shapes.json | sed 's/"name": *//' | paste -s -d , -)
-sed "s/\[\"disc\"\]/[$names]/; $change" "$cases/pile.json" >pile.json
-"$program" pile.json --threads 1 >pile.txt
 last=$(find . -name 'pile-0*.csv' | sort | tail -n 1)
 width=$(sed -n 's/.*"table".*"width": \([0-9.]*\),.*/\1/p' pile.json)
 awk -F , -v half="$(awk "BEGIN { print $width / 2 }")" -f "$cases/repose.awk" "$last"
