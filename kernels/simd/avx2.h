@@ -23,9 +23,8 @@ INLINE vf v_set(float a) { return _mm256_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm256_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm256_storeu_ps(p, a); }
 INLINE __m256 v_two_rows(const char *base, ptrdiff_t stride, const int32_t *index) {
-    const __m128 low = _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index[0] * stride));
-    const __m128 high = _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index[4] * stride));
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1);
+    const __m256 low = _mm256_castps128_ps256(v_row(base, stride, index[0]));
+    return _mm256_insertf128_ps(low, v_row(base, stride, index[4]), 1);
 }
 INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
     const __m256 a = v_two_rows(base, stride, index), b = v_two_rows(base, stride, index + 1);
@@ -40,8 +39,8 @@ INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf 
     out[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(ab_high, cd_high));
 }
 INLINE void v_put_two_rows(char *const *place, int offset, __m256 rows) {
-    _mm_storeu_ps((float *)(void *)(place[0] + offset), _mm256_castps256_ps128(rows));
-    _mm_storeu_ps((float *)(void *)(place[4] + offset), _mm256_extractf128_ps(rows, 1));
+    v_put_row(place[0], offset, _mm256_castps256_ps128(rows));
+    v_put_row(place[4], offset, _mm256_extractf128_ps(rows, 1));
 }
 INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     const __m256 low01 = _mm256_unpacklo_ps(in[0], in[1]), high01 = _mm256_unpackhi_ps(in[0], in[1]);

@@ -22,9 +22,6 @@ typedef __mmask16 vp;
 INLINE vf v_set(float a) { return _mm512_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm512_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm512_storeu_ps(p, a); }
-INLINE __m128 v_row(const char *base, ptrdiff_t stride, int32_t index) {
-    return _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index * stride));
-}
 INLINE __m512 v_four_rows(const char *base, ptrdiff_t stride, const int32_t *index) {
     __m512 rows = _mm512_castps128_ps512(v_row(base, stride, index[0]));
     rows = _mm512_insertf32x4(rows, v_row(base, stride, index[4]), 1);
@@ -44,10 +41,10 @@ INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf 
     out[3] = _mm512_castpd_ps(_mm512_unpackhi_pd(ab_high, cd_high));
 }
 INLINE void v_put_four_rows(char *const *place, int offset, __m512 rows) {
-    _mm_storeu_ps((float *)(void *)(place[0] + offset), _mm512_castps512_ps128(rows));
-    _mm_storeu_ps((float *)(void *)(place[4] + offset), _mm512_extractf32x4_ps(rows, 1));
-    _mm_storeu_ps((float *)(void *)(place[8] + offset), _mm512_extractf32x4_ps(rows, 2));
-    _mm_storeu_ps((float *)(void *)(place[12] + offset), _mm512_extractf32x4_ps(rows, 3));
+    v_put_row(place[0], offset, _mm512_castps512_ps128(rows));
+    v_put_row(place[4], offset, _mm512_extractf32x4_ps(rows, 1));
+    v_put_row(place[8], offset, _mm512_extractf32x4_ps(rows, 2));
+    v_put_row(place[12], offset, _mm512_extractf32x4_ps(rows, 3));
 }
 INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     const __m512 low01 = _mm512_unpacklo_ps(in[0], in[1]), high01 = _mm512_unpackhi_ps(in[0], in[1]);
