@@ -29,26 +29,24 @@ INLINE __m256 v_two_rows(const char *base, ptrdiff_t stride, const int32_t *inde
 INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
     const __m256 a = v_two_rows(base, stride, index), b = v_two_rows(base, stride, index + 1);
     const __m256 c = v_two_rows(base, stride, index + 2), d = v_two_rows(base, stride, index + 3);
-    const __m256d ab_low = _mm256_castps_pd(_mm256_unpacklo_ps(a, b)),
-                  ab_high = _mm256_castps_pd(_mm256_unpackhi_ps(a, b));
-    const __m256d cd_low = _mm256_castps_pd(_mm256_unpacklo_ps(c, d)),
-                  cd_high = _mm256_castps_pd(_mm256_unpackhi_ps(c, d));
-    out[0] = _mm256_castpd_ps(_mm256_unpacklo_pd(ab_low, cd_low));
-    out[1] = _mm256_castpd_ps(_mm256_unpackhi_pd(ab_low, cd_low));
-    out[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(ab_high, cd_high));
-    out[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(ab_high, cd_high));
+    const __m256 ab_low = _mm256_shuffle_ps(a, b, 0x44), ab_high = _mm256_shuffle_ps(a, b, 0xee);
+    const __m256 cd_low = _mm256_shuffle_ps(c, d, 0x44), cd_high = _mm256_shuffle_ps(c, d, 0xee);
+    out[0] = _mm256_shuffle_ps(ab_low, cd_low, 0x88);
+    out[1] = _mm256_shuffle_ps(ab_low, cd_low, 0xdd);
+    out[2] = _mm256_shuffle_ps(ab_high, cd_high, 0x88);
+    out[3] = _mm256_shuffle_ps(ab_high, cd_high, 0xdd);
 }
 INLINE void v_put_two_rows(char *const *place, int offset, __m256 rows) {
     v_put_row(place[0], offset, _mm256_castps256_ps128(rows));
     v_put_row(place[4], offset, _mm256_extractf128_ps(rows, 1));
 }
 INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
-    const __m256 low01 = _mm256_unpacklo_ps(in[0], in[1]), high01 = _mm256_unpackhi_ps(in[0], in[1]);
-    const __m256 low23 = _mm256_unpacklo_ps(in[2], in[3]), high23 = _mm256_unpackhi_ps(in[2], in[3]);
-    v_put_two_rows(place, offset, _mm256_shuffle_ps(low01, low23, 0x44));
-    v_put_two_rows(place + 1, offset, _mm256_shuffle_ps(low01, low23, 0xee));
-    v_put_two_rows(place + 2, offset, _mm256_shuffle_ps(high01, high23, 0x44));
-    v_put_two_rows(place + 3, offset, _mm256_shuffle_ps(high01, high23, 0xee));
+    const __m256 low01 = _mm256_shuffle_ps(in[0], in[1], 0x44), high01 = _mm256_shuffle_ps(in[0], in[1], 0xee);
+    const __m256 low23 = _mm256_shuffle_ps(in[2], in[3], 0x44), high23 = _mm256_shuffle_ps(in[2], in[3], 0xee);
+    v_put_two_rows(place, offset, _mm256_shuffle_ps(low01, low23, 0x88));
+    v_put_two_rows(place + 1, offset, _mm256_shuffle_ps(low01, low23, 0xdd));
+    v_put_two_rows(place + 2, offset, _mm256_shuffle_ps(high01, high23, 0x88));
+    v_put_two_rows(place + 3, offset, _mm256_shuffle_ps(high01, high23, 0xdd));
 }
 INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
                                  const vf *shifts, vf out[2]) {

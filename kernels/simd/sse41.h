@@ -26,20 +26,20 @@ INLINE void v_store(float *p, vf a) { _mm_storeu_ps(p, a); }
 INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
     const __m128 a = v_row(base, stride, index[0]), b = v_row(base, stride, index[1]);
     const __m128 c = v_row(base, stride, index[2]), d = v_row(base, stride, index[3]);
-    const __m128 ab_low = _mm_unpacklo_ps(a, b), ab_high = _mm_unpackhi_ps(a, b);
-    const __m128 cd_low = _mm_unpacklo_ps(c, d), cd_high = _mm_unpackhi_ps(c, d);
-    out[0] = _mm_movelh_ps(ab_low, cd_low);
-    out[1] = _mm_movehl_ps(cd_low, ab_low);
-    out[2] = _mm_movelh_ps(ab_high, cd_high);
-    out[3] = _mm_movehl_ps(cd_high, ab_high);
+    const __m128 ab_low = _mm_shuffle_ps(a, b, 0x44), ab_high = _mm_shuffle_ps(a, b, 0xee);
+    const __m128 cd_low = _mm_shuffle_ps(c, d, 0x44), cd_high = _mm_shuffle_ps(c, d, 0xee);
+    out[0] = _mm_shuffle_ps(ab_low, cd_low, 0x88);
+    out[1] = _mm_shuffle_ps(ab_low, cd_low, 0xdd);
+    out[2] = _mm_shuffle_ps(ab_high, cd_high, 0x88);
+    out[3] = _mm_shuffle_ps(ab_high, cd_high, 0xdd);
 }
 INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
-    const __m128 low01 = _mm_unpacklo_ps(in[0], in[1]), high01 = _mm_unpackhi_ps(in[0], in[1]);
-    const __m128 low23 = _mm_unpacklo_ps(in[2], in[3]), high23 = _mm_unpackhi_ps(in[2], in[3]);
-    v_put_row(place[0], offset, _mm_movelh_ps(low01, low23));
-    v_put_row(place[1], offset, _mm_movehl_ps(low23, low01));
-    v_put_row(place[2], offset, _mm_movelh_ps(high01, high23));
-    v_put_row(place[3], offset, _mm_movehl_ps(high23, high01));
+    const __m128 low01 = _mm_shuffle_ps(in[0], in[1], 0x44), high01 = _mm_shuffle_ps(in[0], in[1], 0xee);
+    const __m128 low23 = _mm_shuffle_ps(in[2], in[3], 0x44), high23 = _mm_shuffle_ps(in[2], in[3], 0xee);
+    v_put_row(place[0], offset, _mm_shuffle_ps(low01, low23, 0x88));
+    v_put_row(place[1], offset, _mm_shuffle_ps(low01, low23, 0xdd));
+    v_put_row(place[2], offset, _mm_shuffle_ps(high01, high23, 0x88));
+    v_put_row(place[3], offset, _mm_shuffle_ps(high01, high23, 0xdd));
 }
 INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
                                  const vf *shifts, vf out[2]) {
