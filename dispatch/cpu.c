@@ -21,9 +21,9 @@ static const struct feature {
     unsigned long long saved;
 } features[] = {
     {"sse4.1", NARC_CPU_SSE41, 1, ECX, 19, XMM_SAVED},    {"popcnt", NARC_CPU_SSE41, 1, ECX, 23, XMM_SAVED},
-    {"avx2", NARC_CPU_AVX2, 7, EBX, 5, YMM_SAVED},        {"bmi2", NARC_CPU_AVX2, 7, EBX, 8, YMM_SAVED},
-    {"avx512f", NARC_CPU_AVX512, 7, EBX, 16, ZMM_SAVED},  {"avx512dq", NARC_CPU_AVX512, 7, EBX, 17, ZMM_SAVED},
-    {"avx512bw", NARC_CPU_AVX512, 7, EBX, 30, ZMM_SAVED}, {"avx512vl", NARC_CPU_AVX512, 7, EBX, 31, ZMM_SAVED},
+    {"avx2", NARC_CPU_AVX2, 7, EBX, 5, YMM_SAVED},        {"avx512f", NARC_CPU_AVX512, 7, EBX, 16, ZMM_SAVED},
+    {"avx512dq", NARC_CPU_AVX512, 7, EBX, 17, ZMM_SAVED}, {"avx512bw", NARC_CPU_AVX512, 7, EBX, 30, ZMM_SAVED},
+    {"avx512vl", NARC_CPU_AVX512, 7, EBX, 31, ZMM_SAVED},
 };
 
 static unsigned long long read_xcr0(void) {

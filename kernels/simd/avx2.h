@@ -7,9 +7,10 @@
 
 #include "simd/simd.h"
 
-#if !defined(__AVX2__) || !defined(__BMI2__)
-#error "compile with -mavx2 -mbmi2"
+#ifndef __AVX2__
+#error "compile with -mavx2"
 #endif
+#include "simd/packing.h"
 #include "simd/x86.h"
 
 #define V_WIDTH  8
@@ -102,9 +103,7 @@ INLINE vm vm_and_not(vm a, vm b) { return _mm256_andnot_ps(b, a); }
 INLINE vm vm_front(int n) { return vi_lt(vi_lanes(), vi_set(n)); }
 INLINE uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_ps(a); }
 INLINE vp vm_packing(vm a) {
-    /* A byte of ones for each lane that is kept, and then those bytes of 0 ... 7. */
-    const uint64_t kept = _pdep_u64((uint32_t)_mm256_movemask_ps(a), 0x0101010101010101u) * 0xff;
-    return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)_pext_u64(0x0706050403020100u, kept)));
+    return _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)&v_eight_lanes[vm_bits(a)]));
 }
 INLINE int vm_any(vm a) { return _mm256_movemask_ps(a) != 0; }
 

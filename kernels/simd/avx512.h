@@ -17,7 +17,7 @@
 typedef __m512 vf;
 typedef __m512i vi;
 typedef __mmask16 vm;
-typedef __mmask16 vp;
+typedef __m512i vp;
 
 INLINE vf v_set(float a) { return _mm512_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm512_loadu_ps(p); }
@@ -88,7 +88,7 @@ INLINE vf v_max(vf a, vf b) { return _mm512_max_ps(a, b); }
 INLINE vm v_lt(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
 INLINE vm v_le(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
 INLINE vf v_select(vm m, vf a, vf b) { return _mm512_mask_blend_ps(m, b, a); }
-INLINE vf v_pack(vp p, vf a) { return _mm512_maskz_compress_ps(p, a); }
+INLINE vf v_pack(vp p, vf a) { return _mm512_permutexvar_ps(p, a); }
 INLINE vi vi_set(int32_t a) { return _mm512_set1_epi32(a); }
 INLINE vi vi_load(const int32_t *p) { return _mm512_loadu_si512(p); }
 INLINE void vi_store(int32_t *p, vi a) { _mm512_storeu_si512(p, a); }
@@ -114,7 +114,7 @@ INLINE vm vm_not(vm a) { return _knot_mask16(a); }
 INLINE vm vm_and_not(vm a, vm b) { return _kandn_mask16(b, a); }
 INLINE vm vm_front(int n) { return vi_lt(vi_lanes(), vi_set(n)); }
 INLINE uint32_t vm_bits(vm a) { return (uint32_t)a; }
-INLINE vp vm_packing(vm a) { return a; }
+INLINE vp vm_packing(vm a) { return _mm512_maskz_compress_epi32(a, vi_lanes()); }
 INLINE int vm_any(vm a) { return a != 0; }
 
 #endif

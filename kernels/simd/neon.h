@@ -12,7 +12,7 @@
 #endif
 #include <arm_neon.h>
 
-#include "simd/four_lanes.h"
+#include "simd/packing.h"
 
 #define V_WIDTH  4
 #define V_SINCOS Sleef_cinz_sincosf4_u10advsimdnofma

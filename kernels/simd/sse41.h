@@ -10,7 +10,7 @@
 #if !defined(__SSE4_1__) || !defined(__POPCNT__)
 #error "compile with -msse4.1 -mpopcnt"
 #endif
-#include "simd/four_lanes.h"
+#include "simd/packing.h"
 #include "simd/x86.h"
 
 #define V_WIDTH  4
