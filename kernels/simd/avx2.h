@@ -23,13 +23,15 @@ typedef __m256i vp;
 INLINE vf v_set(float a) { return _mm256_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm256_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm256_storeu_ps(p, a); }
-INLINE __m256 v_two_rows(const char *base, ptrdiff_t stride, const int32_t *index) {
+INLINE __m256 v_two_rows(const char *base, ptrdiff_t stride, const size_t *index) {
     const __m256 low = _mm256_castps128_ps256(v_row(base, stride, index[0]));
     return _mm256_insertf128_ps(low, v_row(base, stride, index[4]), 1);
 }
 INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
-    const __m256 a = v_two_rows(base, stride, index), b = v_two_rows(base, stride, index + 1);
-    const __m256 c = v_two_rows(base, stride, index + 2), d = v_two_rows(base, stride, index + 3);
+    size_t at[8];
+    v_indices(index, 8, at);
+    const __m256 a = v_two_rows(base, stride, at), b = v_two_rows(base, stride, at + 1);
+    const __m256 c = v_two_rows(base, stride, at + 2), d = v_two_rows(base, stride, at + 3);
     const __m256 ab_low = _mm256_shuffle_ps(a, b, 0x44), ab_high = _mm256_shuffle_ps(a, b, 0xee);
     const __m256 cd_low = _mm256_shuffle_ps(c, d, 0x44), cd_high = _mm256_shuffle_ps(c, d, 0xee);
     out[0] = _mm256_shuffle_ps(ab_low, cd_low, 0x88);

@@ -22,15 +22,17 @@ typedef __m512i vp;
 INLINE vf v_set(float a) { return _mm512_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm512_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm512_storeu_ps(p, a); }
-INLINE __m512 v_four_rows(const char *base, ptrdiff_t stride, const int32_t *index) {
+INLINE __m512 v_four_rows(const char *base, ptrdiff_t stride, const size_t *index) {
     __m512 rows = _mm512_castps128_ps512(v_row(base, stride, index[0]));
     rows = _mm512_insertf32x4(rows, v_row(base, stride, index[4]), 1);
     rows = _mm512_insertf32x4(rows, v_row(base, stride, index[8]), 2);
     return _mm512_insertf32x4(rows, v_row(base, stride, index[12]), 3);
 }
 INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
-    const __m512 a = v_four_rows(base, stride, index), b = v_four_rows(base, stride, index + 1);
-    const __m512 c = v_four_rows(base, stride, index + 2), d = v_four_rows(base, stride, index + 3);
+    size_t at[16];
+    v_indices(index, 16, at);
+    const __m512 a = v_four_rows(base, stride, at), b = v_four_rows(base, stride, at + 1);
+    const __m512 c = v_four_rows(base, stride, at + 2), d = v_four_rows(base, stride, at + 3);
     const __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(a, b)),
                   ab_high = _mm512_castps_pd(_mm512_unpackhi_ps(a, b));
     const __m512d cd_low = _mm512_castps_pd(_mm512_unpacklo_ps(c, d)),

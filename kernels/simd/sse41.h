@@ -24,8 +24,8 @@ INLINE vf v_set(float a) { return _mm_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm_storeu_ps(p, a); }
 INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
-    const __m128 a = v_row(base, stride, index[0]), b = v_row(base, stride, index[1]);
-    const __m128 c = v_row(base, stride, index[2]), d = v_row(base, stride, index[3]);
+    const __m128 a = v_row(base, stride, (uint32_t)index[0]), b = v_row(base, stride, (uint32_t)index[1]);
+    const __m128 c = v_row(base, stride, (uint32_t)index[2]), d = v_row(base, stride, (uint32_t)index[3]);
     const __m128 ab_low = _mm_shuffle_ps(a, b, 0x44), ab_high = _mm_shuffle_ps(a, b, 0xee);
     const __m128 cd_low = _mm_shuffle_ps(c, d, 0x44), cd_high = _mm_shuffle_ps(c, d, 0xee);
     out[0] = _mm_shuffle_ps(ab_low, cd_low, 0x88);

@@ -9,8 +9,17 @@
 
 #include <immintrin.h>
 
-INLINE __m128 v_row(const char *base, ptrdiff_t stride, int32_t index) {
-    return _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index * stride));
+INLINE void v_indices(const int32_t *index, int count, size_t *out) {
+    UNROLL
+    for (int k = 0; k < count; k += 2) {
+        uint64_t two;
+        memcpy(&two, index + k, sizeof two);
+        out[k] = (uint32_t)two;
+        out[k + 1] = (size_t)(two >> 32);
+    }
+}
+INLINE __m128 v_row(const char *base, ptrdiff_t stride, size_t index) {
+    return _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)index * stride));
 }
 INLINE void v_put_row(char *place, int offset, __m128 row) { _mm_storeu_ps((float *)(void *)(place + offset), row); }
 INLINE __m128d v_double_row(const char *base, ptrdiff_t stride, int32_t index) {
