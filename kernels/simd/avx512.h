@@ -109,11 +109,11 @@ INLINE vi vi_count16(vi counts, vi below, vi values) {
     return _mm512_mask_add_epi16(counts, _mm512_cmpgt_epi16_mask(below, values), counts, _mm512_set1_epi16(1));
 }
 INLINE vi vi_lanes(void) { return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15); }
-INLINE vm vm_and(vm a, vm b) { return _kand_mask16(a, b); }
-INLINE vm vm_or(vm a, vm b) { return _kor_mask16(a, b); }
-INLINE vm vm_xor(vm a, vm b) { return _kxor_mask16(a, b); }
-INLINE vm vm_not(vm a) { return _knot_mask16(a); }
-INLINE vm vm_and_not(vm a, vm b) { return _kandn_mask16(b, a); }
+INLINE vm vm_and(vm a, vm b) { return (vm)(a & b); }
+INLINE vm vm_or(vm a, vm b) { return (vm)(a | b); }
+INLINE vm vm_xor(vm a, vm b) { return (vm)(a ^ b); }
+INLINE vm vm_not(vm a) { return (vm)~a; }
+INLINE vm vm_and_not(vm a, vm b) { return (vm)(a & ~b); }
 INLINE vm vm_front(int n) { return vi_lt(vi_lanes(), vi_set(n)); }
 INLINE uint32_t vm_bits(vm a) { return (uint32_t)a; }
 INLINE vp vm_packing(vm a) { return _mm512_maskz_compress_epi32(a, vi_lanes()); }
