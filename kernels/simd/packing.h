@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * packing.h - which lanes go in front, for each set of lanes that is kept: what wrappers without an instruction for it look up.
+ * packing.h - which lanes go in front, for each set of lanes that is kept: what wrappers look up that have no instruction
+ * for it.
  */
 #ifndef NARC_SIMD_PACKING_H
 #define NARC_SIMD_PACKING_H
@@ -20,7 +21,7 @@ static const uint8_t v_four_lanes[16][16] = {
 
 /* Of eight lanes: the numbers of those that are kept, a byte each, from the lowest on; then lane 0 again. */
 #define V_LANE(set, lane)                                                                                              \
-    ((uint64_t)((set) >> (lane)&1) * (lane) << 8 * __builtin_popcount((set) & ((1 << (lane)) - 1)))
+    ((uint64_t)(((set) >> (lane)) & 1) * (lane) << 8 * __builtin_popcount((set) & ((1 << (lane)) - 1)))
 #define V_LANES(set)                                                                                                   \
     (V_LANE(set, 1) | V_LANE(set, 2) | V_LANE(set, 3) | V_LANE(set, 4) | V_LANE(set, 5) | V_LANE(set, 6) |             \
      V_LANE(set, 7))

@@ -9,6 +9,8 @@
 
 #include <immintrin.h>
 
+/* Indices that kernels have just stored, compilers take from the vector that they were in: by pairs, since 64 bits come
+ * out as fast as 32. */
 INLINE void v_indices(const int32_t *index, int count, size_t *out) {
     UNROLL
     for (int k = 0; k < count; k += 2) {
