@@ -4,21 +4,26 @@
  */
 #include "dispatch.h"
 
-#if defined(__x86_64__)
+#if defined(__x86_64__) || defined(__i386__)
 #include <cpuid.h>
 
-/* Bits of extended control register 0: the register files that the operating system saves. */
-enum { YMM_SAVED = 0x06, ZMM_SAVED = 0xe6 };
+enum { EBX = 1, ECX = 2 };
 
-/* Each feature: the need that it is part of, its bit in ebx of leaf 7, and the registers that it works on. */
+/* Bits of extended control register 0: the register files that the operating system saves. What compilers use without
+ * being asked is saved without asking. */
+enum { XMM_SAVED = 0, YMM_SAVED = 0x06, ZMM_SAVED = 0xe6 };
+
+/* Each feature: the need that it is part of, where cpuid has it (leaf, register, bit), and the registers that it works
+ * on. */
 static const struct feature {
     const char *name;
-    unsigned need, bit;
+    unsigned need, leaf, place, bit;
     unsigned long long saved;
 } features[] = {
-    {"avx2", NARC_CPU_AVX2, 5, YMM_SAVED},        {"bmi2", NARC_CPU_AVX2, 8, YMM_SAVED},
-    {"avx512f", NARC_CPU_AVX512, 16, ZMM_SAVED},  {"avx512dq", NARC_CPU_AVX512, 17, ZMM_SAVED},
-    {"avx512bw", NARC_CPU_AVX512, 30, ZMM_SAVED}, {"avx512vl", NARC_CPU_AVX512, 31, ZMM_SAVED},
+    {"sse4.1", NARC_CPU_SSE41, 1, ECX, 19, XMM_SAVED},    {"popcnt", NARC_CPU_SSE41, 1, ECX, 23, XMM_SAVED},
+    {"avx2", NARC_CPU_AVX2, 7, EBX, 5, YMM_SAVED},        {"avx512f", NARC_CPU_AVX512, 7, EBX, 16, ZMM_SAVED},
+    {"avx512dq", NARC_CPU_AVX512, 7, EBX, 17, ZMM_SAVED}, {"avx512bw", NARC_CPU_AVX512, 7, EBX, 30, ZMM_SAVED},
+    {"avx512vl", NARC_CPU_AVX512, 7, EBX, 31, ZMM_SAVED},
 };
 
 static unsigned long long read_xcr0(void) {
@@ -27,12 +32,18 @@ static unsigned long long read_xcr0(void) {
     return (unsigned long long)high << 32 | low;
 }
 
-static bool has_feature(const struct feature *feature) {
+static bool are_saved(unsigned long long registers) {
     const unsigned osxsave = 1u << 27; /* leaf 1, ecx */
     unsigned a, b, c, d;
-    if (!__get_cpuid(1, &a, &b, &c, &d) || !(c & osxsave) || (read_xcr0() & feature->saved) != feature->saved)
-        return false;
-    return __get_cpuid_count(7, 0, &a, &b, &c, &d) && b >> feature->bit & 1;
+    if (registers == 0)
+        return true;
+    return __get_cpuid(1, &a, &b, &c, &d) && c & osxsave && (read_xcr0() & registers) == registers;
+}
+
+static bool has_feature(const struct feature *feature) {
+    unsigned word[4];
+    return are_saved(feature->saved) && __get_cpuid_count(feature->leaf, 0, &word[0], &word[1], &word[2], &word[3]) &&
+           word[feature->place] >> feature->bit & 1;
 }
 
 #else

@@ -5,6 +5,7 @@
 #include "settled_list.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "common.h"
 #include "disc_loops.h"
@@ -150,6 +151,18 @@ static void add_stacks(const char *isa) {
     }
 }
 
+/* What the instruction sets are compared by: piles on each of them, `best` having its rows already. */
+static void add_instruction_sets(struct workload_key key, const char *best) {
+    for (size_t k = 0; narc_isa_name(k); k++) {
+        const char *isa = narc_isa_name(k);
+        if (!narc_isa_supported(isa) || strcmp(isa, best) == 0)
+            continue;
+        add_queries(isa, FEW);
+        add_step(STEP_BOXES, key, isa, 1);
+        add_step(STEP_PAIRS, key, isa, 1);
+    }
+}
+
 void list_settled(const struct row_choice *choice) {
     const struct shapes four = {FAMILY_N_ARCS, 4}, eight = {FAMILY_N_ARCS, 8}, boxes = {FAMILY_BOXES, 4};
     const struct shapes discs = {FAMILY_DISCS, 8};
@@ -168,6 +181,8 @@ void list_settled(const struct row_choice *choice) {
     add_steps(large, best, 2);
     add_query(QUERY_MANIFOLD, large, best);
     add_stacks(best);
+    if (choice->all)
+        add_instruction_sets(key, best);
     add_world_parts(key, best, 10000);
     add_world_parts(key, best, 30000);
     if (narc_isa_supported("avx2")) {

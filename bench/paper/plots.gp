@@ -18,7 +18,7 @@ array dashes[6] = [solid, solid, solid, solid, dashed, dashed] # by column
 array warm[5] = [solid, solid, dashed, solid, dashed]
 
 # As a reader calls them.
-name_of(isa) = isa eq "avx512" ? "AVX-512" : isa eq "avx2" ? "AVX2" : isa eq "neon" ? "NEON" : "plain C"
+name_of(isa) = isa eq "avx512" ? "AVX-512" : isa eq "avx2" ? "AVX2" : isa eq "sse41" ? "SSE4.1" : isa eq "neon" ? "NEON" : "plain C"
 figure_4 = "Do they collide? No pair does"
 figure_5 = "Depth, normal and point; all pairs collide"
 

@@ -7,9 +7,10 @@
 
 #include "simd/simd.h"
 
-#if !defined(__AVX2__) || !defined(__BMI2__)
-#error "compile with -mavx2 -mbmi2"
+#ifndef __AVX2__
+#error "compile with -mavx2"
 #endif
+#include "simd/packing.h"
 #include "simd/x86.h"
 
 #define V_WIDTH  8
@@ -22,34 +23,33 @@ typedef __m256i vp;
 INLINE vf v_set(float a) { return _mm256_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm256_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm256_storeu_ps(p, a); }
-INLINE __m256 v_two_rows(const char *base, ptrdiff_t stride, const int32_t *index) {
-    const __m128 low = _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index[0] * stride));
-    const __m128 high = _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index[4] * stride));
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1);
+INLINE __m256 v_two_rows(const char *base, ptrdiff_t stride, const size_t *index) {
+    const __m256 low = _mm256_castps128_ps256(v_row(base, stride, index[0]));
+    return _mm256_insertf128_ps(low, v_row(base, stride, index[4]), 1);
 }
 INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
-    const __m256 a = v_two_rows(base, stride, index), b = v_two_rows(base, stride, index + 1);
-    const __m256 c = v_two_rows(base, stride, index + 2), d = v_two_rows(base, stride, index + 3);
-    const __m256d ab_low = _mm256_castps_pd(_mm256_unpacklo_ps(a, b)),
-                  ab_high = _mm256_castps_pd(_mm256_unpackhi_ps(a, b));
-    const __m256d cd_low = _mm256_castps_pd(_mm256_unpacklo_ps(c, d)),
-                  cd_high = _mm256_castps_pd(_mm256_unpackhi_ps(c, d));
-    out[0] = _mm256_castpd_ps(_mm256_unpacklo_pd(ab_low, cd_low));
-    out[1] = _mm256_castpd_ps(_mm256_unpackhi_pd(ab_low, cd_low));
-    out[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(ab_high, cd_high));
-    out[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(ab_high, cd_high));
+    size_t at[8];
+    v_indices(index, 8, at);
+    const __m256 a = v_two_rows(base, stride, at), b = v_two_rows(base, stride, at + 1);
+    const __m256 c = v_two_rows(base, stride, at + 2), d = v_two_rows(base, stride, at + 3);
+    const __m256 ab_low = _mm256_shuffle_ps(a, b, 0x44), ab_high = _mm256_shuffle_ps(a, b, 0xee);
+    const __m256 cd_low = _mm256_shuffle_ps(c, d, 0x44), cd_high = _mm256_shuffle_ps(c, d, 0xee);
+    out[0] = _mm256_shuffle_ps(ab_low, cd_low, 0x88);
+    out[1] = _mm256_shuffle_ps(ab_low, cd_low, 0xdd);
+    out[2] = _mm256_shuffle_ps(ab_high, cd_high, 0x88);
+    out[3] = _mm256_shuffle_ps(ab_high, cd_high, 0xdd);
 }
 INLINE void v_put_two_rows(char *const *place, int offset, __m256 rows) {
-    _mm_storeu_ps((float *)(void *)(place[0] + offset), _mm256_castps256_ps128(rows));
-    _mm_storeu_ps((float *)(void *)(place[4] + offset), _mm256_extractf128_ps(rows, 1));
+    v_put_row(place[0], offset, _mm256_castps256_ps128(rows));
+    v_put_row(place[4], offset, _mm256_extractf128_ps(rows, 1));
 }
 INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
-    const __m256 low01 = _mm256_unpacklo_ps(in[0], in[1]), high01 = _mm256_unpackhi_ps(in[0], in[1]);
-    const __m256 low23 = _mm256_unpacklo_ps(in[2], in[3]), high23 = _mm256_unpackhi_ps(in[2], in[3]);
-    v_put_two_rows(place, offset, _mm256_shuffle_ps(low01, low23, 0x44));
-    v_put_two_rows(place + 1, offset, _mm256_shuffle_ps(low01, low23, 0xee));
-    v_put_two_rows(place + 2, offset, _mm256_shuffle_ps(high01, high23, 0x44));
-    v_put_two_rows(place + 3, offset, _mm256_shuffle_ps(high01, high23, 0xee));
+    const __m256 low01 = _mm256_shuffle_ps(in[0], in[1], 0x44), high01 = _mm256_shuffle_ps(in[0], in[1], 0xee);
+    const __m256 low23 = _mm256_shuffle_ps(in[2], in[3], 0x44), high23 = _mm256_shuffle_ps(in[2], in[3], 0xee);
+    v_put_two_rows(place, offset, _mm256_shuffle_ps(low01, low23, 0x88));
+    v_put_two_rows(place + 1, offset, _mm256_shuffle_ps(low01, low23, 0xdd));
+    v_put_two_rows(place + 2, offset, _mm256_shuffle_ps(high01, high23, 0x88));
+    v_put_two_rows(place + 3, offset, _mm256_shuffle_ps(high01, high23, 0xdd));
 }
 INLINE void v_double_differences(const void *base, ptrdiff_t stride, const int32_t *a, const int32_t *b,
                                  const vf *shifts, vf out[2]) {
@@ -105,9 +105,7 @@ INLINE vm vm_and_not(vm a, vm b) { return _mm256_andnot_ps(b, a); }
 INLINE vm vm_front(int n) { return vi_lt(vi_lanes(), vi_set(n)); }
 INLINE uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_ps(a); }
 INLINE vp vm_packing(vm a) {
-    /* A byte of ones for each lane that is kept, and then those bytes of 0 ... 7. */
-    const uint64_t kept = _pdep_u64((uint32_t)_mm256_movemask_ps(a), 0x0101010101010101u) * 0xff;
-    return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)_pext_u64(0x0706050403020100u, kept)));
+    return _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)&v_eight_lanes[vm_bits(a)]));
 }
 INLINE int vm_any(vm a) { return _mm256_movemask_ps(a) != 0; }
 

@@ -17,23 +17,22 @@
 typedef __m512 vf;
 typedef __m512i vi;
 typedef __mmask16 vm;
-typedef __mmask16 vp;
+typedef __m512i vp;
 
 INLINE vf v_set(float a) { return _mm512_set1_ps(a); }
 INLINE vf v_load(const float *p) { return _mm512_loadu_ps(p); }
 INLINE void v_store(float *p, vf a) { _mm512_storeu_ps(p, a); }
-INLINE __m128 v_row(const char *base, ptrdiff_t stride, int32_t index) {
-    return _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)(uint32_t)index * stride));
-}
-INLINE __m512 v_four_rows(const char *base, ptrdiff_t stride, const int32_t *index) {
+INLINE __m512 v_four_rows(const char *base, ptrdiff_t stride, const size_t *index) {
     __m512 rows = _mm512_castps128_ps512(v_row(base, stride, index[0]));
     rows = _mm512_insertf32x4(rows, v_row(base, stride, index[4]), 1);
     rows = _mm512_insertf32x4(rows, v_row(base, stride, index[8]), 2);
     return _mm512_insertf32x4(rows, v_row(base, stride, index[12]), 3);
 }
 INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf out[4]) {
-    const __m512 a = v_four_rows(base, stride, index), b = v_four_rows(base, stride, index + 1);
-    const __m512 c = v_four_rows(base, stride, index + 2), d = v_four_rows(base, stride, index + 3);
+    size_t at[16];
+    v_indices(index, 16, at);
+    const __m512 a = v_four_rows(base, stride, at), b = v_four_rows(base, stride, at + 1);
+    const __m512 c = v_four_rows(base, stride, at + 2), d = v_four_rows(base, stride, at + 3);
     const __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(a, b)),
                   ab_high = _mm512_castps_pd(_mm512_unpackhi_ps(a, b));
     const __m512d cd_low = _mm512_castps_pd(_mm512_unpacklo_ps(c, d)),
@@ -44,10 +43,10 @@ INLINE void v_rows(const void *base, ptrdiff_t stride, const int32_t *index, vf 
     out[3] = _mm512_castpd_ps(_mm512_unpackhi_pd(ab_high, cd_high));
 }
 INLINE void v_put_four_rows(char *const *place, int offset, __m512 rows) {
-    _mm_storeu_ps((float *)(void *)(place[0] + offset), _mm512_castps512_ps128(rows));
-    _mm_storeu_ps((float *)(void *)(place[4] + offset), _mm512_extractf32x4_ps(rows, 1));
-    _mm_storeu_ps((float *)(void *)(place[8] + offset), _mm512_extractf32x4_ps(rows, 2));
-    _mm_storeu_ps((float *)(void *)(place[12] + offset), _mm512_extractf32x4_ps(rows, 3));
+    v_put_row(place[0], offset, _mm512_castps512_ps128(rows));
+    v_put_row(place[4], offset, _mm512_extractf32x4_ps(rows, 1));
+    v_put_row(place[8], offset, _mm512_extractf32x4_ps(rows, 2));
+    v_put_row(place[12], offset, _mm512_extractf32x4_ps(rows, 3));
 }
 INLINE void v_put_rows(char *const *place, int offset, const vf in[4]) {
     const __m512 low01 = _mm512_unpacklo_ps(in[0], in[1]), high01 = _mm512_unpackhi_ps(in[0], in[1]);
@@ -91,7 +90,7 @@ INLINE vf v_max(vf a, vf b) { return _mm512_max_ps(a, b); }
 INLINE vm v_lt(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
 INLINE vm v_le(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
 INLINE vf v_select(vm m, vf a, vf b) { return _mm512_mask_blend_ps(m, b, a); }
-INLINE vf v_pack(vp p, vf a) { return _mm512_maskz_compress_ps(p, a); }
+INLINE vf v_pack(vp p, vf a) { return _mm512_permutexvar_ps(p, a); }
 INLINE vi vi_set(int32_t a) { return _mm512_set1_epi32(a); }
 INLINE vi vi_load(const int32_t *p) { return _mm512_loadu_si512(p); }
 INLINE void vi_store(int32_t *p, vi a) { _mm512_storeu_si512(p, a); }
@@ -110,14 +109,14 @@ INLINE vi vi_count16(vi counts, vi below, vi values) {
     return _mm512_mask_add_epi16(counts, _mm512_cmpgt_epi16_mask(below, values), counts, _mm512_set1_epi16(1));
 }
 INLINE vi vi_lanes(void) { return _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15); }
-INLINE vm vm_and(vm a, vm b) { return _kand_mask16(a, b); }
-INLINE vm vm_or(vm a, vm b) { return _kor_mask16(a, b); }
-INLINE vm vm_xor(vm a, vm b) { return _kxor_mask16(a, b); }
-INLINE vm vm_not(vm a) { return _knot_mask16(a); }
-INLINE vm vm_and_not(vm a, vm b) { return _kandn_mask16(b, a); }
+INLINE vm vm_and(vm a, vm b) { return (vm)(a & b); }
+INLINE vm vm_or(vm a, vm b) { return (vm)(a | b); }
+INLINE vm vm_xor(vm a, vm b) { return (vm)(a ^ b); }
+INLINE vm vm_not(vm a) { return (vm)~a; }
+INLINE vm vm_and_not(vm a, vm b) { return (vm)(a & ~b); }
 INLINE vm vm_front(int n) { return vi_lt(vi_lanes(), vi_set(n)); }
 INLINE uint32_t vm_bits(vm a) { return (uint32_t)a; }
-INLINE vp vm_packing(vm a) { return a; }
+INLINE vp vm_packing(vm a) { return _mm512_maskz_compress_epi32(a, vi_lanes()); }
 INLINE int vm_any(vm a) { return a != 0; }
 
 #endif

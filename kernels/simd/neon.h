@@ -12,6 +12,8 @@
 #endif
 #include <arm_neon.h>
 
+#include "simd/packing.h"
+
 #define V_WIDTH  4
 #define V_SINCOS Sleef_cinz_sincosf4_u10advsimdnofma
 typedef float32x4_t vf;
@@ -105,19 +107,7 @@ INLINE vm vm_not(vm a) { return vmvnq_u32(a); }
 INLINE vm vm_and_not(vm a, vm b) { return vbicq_u32(a, b); }
 INLINE vm vm_front(int n) { return vi_lt(vi_lanes(), vi_set(n)); }
 INLINE uint32_t vm_bits(vm a) { return vaddvq_u32(vandq_u32(a, vld1q_u32((const uint32_t[4]){1, 2, 4, 8}))); }
-INLINE vp vm_packing(vm a) {
-    /* For each set of lanes, the bytes of those lanes; then lane 0 again. */
-    static const uint8_t bytes[16][16] = {
-        {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3},       {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3},
-        {4, 5, 6, 7, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3},       {0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 0, 1, 2, 3},
-        {8, 9, 10, 11, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3},     {0, 1, 2, 3, 8, 9, 10, 11, 0, 1, 2, 3, 0, 1, 2, 3},
-        {4, 5, 6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 0, 1, 2, 3},     {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 0, 1, 2, 3},
-        {12, 13, 14, 15, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3},   {0, 1, 2, 3, 12, 13, 14, 15, 0, 1, 2, 3, 0, 1, 2, 3},
-        {4, 5, 6, 7, 12, 13, 14, 15, 0, 1, 2, 3, 0, 1, 2, 3},   {0, 1, 2, 3, 4, 5, 6, 7, 12, 13, 14, 15, 0, 1, 2, 3},
-        {8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 0, 1, 2, 3}, {0, 1, 2, 3, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3},
-        {4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3}, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15}};
-    return vld1q_u8(bytes[vm_bits(a)]);
-}
+INLINE vp vm_packing(vm a) { return vld1q_u8(v_four_lanes[vm_bits(a)]); }
 INLINE int vm_any(vm a) { return vmaxvq_u32(a) != 0; }
 
 #endif

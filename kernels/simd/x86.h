@@ -1,28 +1,54 @@
 /* SPDX-License-Identifier: MIT
  *
- * x86.h - what the wrappers of both x86 instruction sets need.
+ * x86.h - what the wrappers of x86 instruction sets share.
  */
 #ifndef NARC_SIMD_X86_H
 #define NARC_SIMD_X86_H
 
+#include "simd/simd.h"
+
 #include <immintrin.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+
+/* Indices that kernels have just stored, compilers take from the vector that they were in: by pairs, since 64 bits come
+ * out as fast as 32. */
+INLINE void v_indices(const int32_t *index, int count, size_t *out) {
+    UNROLL
+    for (int k = 0; k < count; k += 2) {
+        uint64_t two;
+        memcpy(&two, index + k, sizeof two);
+        out[k] = (uint32_t)two;
+        out[k + 1] = (size_t)(two >> 32);
+    }
+}
+INLINE __m128 v_row(const char *base, ptrdiff_t stride, size_t index) {
+    return _mm_loadu_ps((const float *)(const void *)(base + (ptrdiff_t)index * stride));
+}
+INLINE void v_put_row(char *place, int offset, __m128 row) { _mm_storeu_ps((float *)(void *)(place + offset), row); }
+INLINE __m128d v_double_row(const char *base, ptrdiff_t stride, int32_t index) {
+    return _mm_loadu_pd((const double *)(const void *)(base + (ptrdiff_t)(uint32_t)index * stride));
+}
 
 /* The differences of two lanes that follow each other. */
-static inline __attribute__((always_inline)) __m128
-v_two_differences(const char *base, ptrdiff_t stride, const int32_t *a, const int32_t *b, bool shifted, __m128 shifts) {
-    __m256d from =
-        _mm256_castpd128_pd256(_mm_loadu_pd((const double *)(const void *)(base + (ptrdiff_t)(uint32_t)a[0] * stride)));
-    __m256d to =
-        _mm256_castpd128_pd256(_mm_loadu_pd((const double *)(const void *)(base + (ptrdiff_t)(uint32_t)b[0] * stride)));
-    from = _mm256_insertf128_pd(
-        from, _mm_loadu_pd((const double *)(const void *)(base + (ptrdiff_t)(uint32_t)a[1] * stride)), 1);
-    to = _mm256_insertf128_pd(
-        to, _mm_loadu_pd((const double *)(const void *)(base + (ptrdiff_t)(uint32_t)b[1] * stride)), 1);
-    const __m256d difference = _mm256_sub_pd(to, from);
+#ifdef __AVX__
+INLINE __m256d v_two_double_rows(const char *base, ptrdiff_t stride, const int32_t *index) {
+    const __m256d low = _mm256_castpd128_pd256(v_double_row(base, stride, index[0]));
+    return _mm256_insertf128_pd(low, v_double_row(base, stride, index[1]), 1);
+}
+INLINE __m128 v_two_differences(const char *base, ptrdiff_t stride, const int32_t *a, const int32_t *b, bool shifted,
+                                __m128 shifts) {
+    const __m256d difference = _mm256_sub_pd(v_two_double_rows(base, stride, b), v_two_double_rows(base, stride, a));
     return _mm256_cvtpd_ps(shifted ? _mm256_add_pd(difference, _mm256_cvtps_pd(shifts)) : difference);
 }
+#else
+INLINE __m128 v_difference(const char *base, ptrdiff_t stride, int32_t a, int32_t b, bool shifted, __m128 shift) {
+    const __m128d difference = _mm_sub_pd(v_double_row(base, stride, b), v_double_row(base, stride, a));
+    return _mm_cvtpd_ps(shifted ? _mm_add_pd(difference, _mm_cvtps_pd(shift)) : difference);
+}
+INLINE __m128 v_two_differences(const char *base, ptrdiff_t stride, const int32_t *a, const int32_t *b, bool shifted,
+                                __m128 shifts) {
+    return _mm_movelh_ps(v_difference(base, stride, a[0], b[0], shifted, shifts),
+                         v_difference(base, stride, a[1], b[1], shifted, _mm_movehl_ps(shifts, shifts)));
+}
+#endif
 
 #endif
