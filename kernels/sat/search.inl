@@ -278,11 +278,10 @@ INLINE struct certified_maximum climb_and_certify(const narc_record *records, co
  *
  * Where bodies rest face on face, a junction of A and one of B lie side by side, too close for a local maximum at one of
  * them to have a certificate. So the fan is walked there, as the deciding formula walks it, past two junctions, F and
- * G: with the candidates between F and G and behind G, and none before F. They are the formula's to the last bit; what
- * it finds elsewhere is less if certificate 4 holds on both sides, behind G with n = G, and before F with n = F, and F
- * and G are less than a right angle apart: docs/algorithm.md, section 9. The formula's interval before F begins at the
- * start of one of the two arcs there, and so both are tried. Of two equal values it takes the one that it meets first,
- * from +x on. */
+ * G: with the candidates between F and G and behind G; the gap rises before F, where there is none. They are the
+ * formula's to the last bit; what it finds elsewhere is less if certificate 4 holds on both sides, behind G with n = G,
+ * and before F with n = F, and F and G are less than a right angle apart: docs/algorithm.md, section 9. Of two equal
+ * values it takes the one that it meets first, from +x on. */
 
 /* The walk begins that much (radians) before the direction of the local maximum. */
 #define WALK_BACK 0x1p-6f
@@ -325,15 +324,13 @@ INLINE struct gap walk_near(const narc_record *records, const struct queue *queu
     struct fan fan = start_fan_at(records, queue, k, &pose, begin);
     const struct arc_pair arcs_before = fan.arcs;
     const vec2 f = fan_end(&fan);
-    const struct candidate by_a = find_candidate(&fan.arcs, fan.arcs.a.start, f, none);
-    const struct candidate by_b = find_candidate(&fan.arcs, fan.arcs.b.start, f, none);
-    vm certain = vm_and_not(vm_and(live, is_well_inside(&fan.arcs, begin)), vm_or(by_a.exists, by_b.exists));
+    vm certain = vm_and(live, is_well_inside(&fan.arcs, begin));
     const vm circle = vm_or(info_has(get_bits(queue, INFO_A, k), NARC_SHAPE_CIRCLE),
                             info_has(get_bits(queue, INFO_B, k), NARC_SHAPE_CIRCLE));
     certain = vm_and_not(certain, circle);
     pass_junction(&fan, records, &pose);
     const vec2 g = fan_end(&fan);
-    const struct candidate first = find_candidate(&fan.arcs, f, g, by_a.rises);
+    const struct candidate first = find_candidate(&fan.arcs, f, g, all);
     const struct gap at_f = make_gap(&first, &fan, f);
     pass_junction(&fan, records, &pose);
     const struct candidate second = find_candidate(&fan.arcs, g, fan_end(&fan), first.rises);
