@@ -26,6 +26,7 @@
 struct box_pair {
     const struct box_queue *queue;
     int k;
+    bool capsules; /* capsules.inl, not boxes */
 };
 
 INLINE vf box_field(const struct box_pair *pair, int field) { return v_load(pair->queue->item[field] + pair->k); }
@@ -47,14 +48,19 @@ INLINE vf sign_of(vi number) {
     return v_of_bits(vi_add(vi_set(0x3f800000), vi_and(vi_shift_left(number, 30), vi_set(INT32_MIN))));
 }
 
-/* Corner i of a box, and the normal of its edge i: i counts on beyond 3. */
-INLINE vec2 box_corner(vec2 half, vi i) {
-    return (vec2){v_mul(half.x, sign_of(vi_add(i, vi_set(1)))), v_mul(half.y, sign_of(i))};
+/* Corner i of A or B, in its own frame, and the normal of its edge i; `half`: the field with its half sizes. i counts on
+ * beyond 3, for a box; a capsule has edges 1 and 3 (store.h). */
+INLINE vec2 box_corner(const struct box_pair *pair, int half, vi i) {
+    const vec2 size = box_vec2(pair, half);
+    const vf y = pair->capsules ? v_set(0) : v_mul(size.y, sign_of(i));
+    return (vec2){v_mul(size.x, sign_of(vi_add(i, vi_set(1)))), y};
 }
 
-INLINE vec2 box_normal(vi i) {
+INLINE vec2 box_normal(const struct box_pair *pair, int half, vi i) {
     const vf sign = sign_of(i), zero = v_set(0);
     const vm odd = vi_lt(vi_set(0), vi_and(i, vi_set(1)));
+    if (pair->capsules)
+        return (vec2){v_mul(box_field(pair, half + 1), sign), sign};
     return (vec2){v_select(odd, zero, sign), v_select(odd, sign, zero)};
 }
 
@@ -68,17 +74,18 @@ struct box_side {
 
 INLINE struct box_side find_side_a(const struct box_pair *pair, vi edge) {
     return (struct box_side){.edge = edge,
-                             .normal = box_normal(edge),
-                             .low = box_corner(box_vec2(pair, BOX_HALF_A), vi_sub(edge, vi_set(1))),
-                             .high = box_corner(box_vec2(pair, BOX_HALF_A), edge)};
+                             .normal = box_normal(pair, BOX_HALF_A, edge),
+                             .low = box_corner(pair, BOX_HALF_A, vi_sub(edge, vi_set(1))),
+                             .high = box_corner(pair, BOX_HALF_A, edge)};
 }
 
 INLINE struct box_side find_side_b(const struct box_pair *pair, vi edge) {
     const struct pose pose = box_pose(pair);
-    const vec2 half = box_vec2(pair, BOX_HALF_B);
-    const vec2 before = box_corner(half, vi_sub(edge, vi_set(1))), behind = box_corner(half, edge);
+    const vec2 before = box_corner(pair, BOX_HALF_B, vi_sub(edge, vi_set(1))),
+               behind = box_corner(pair, BOX_HALF_B, edge);
     return (struct box_side){.edge = edge,
-                             .normal = v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(edge)),
+                             .normal =
+                                 v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(pair, BOX_HALF_B, edge)),
                              .low = place_center_b(behind, &pose),
                              .high = place_center_b(before, &pose)};
 }
@@ -159,9 +166,11 @@ INLINE void find_closest_sides(const struct box_pair *pair, vm which, vi corner_
     const vi one = vi_set(1);
     const vec2 q = box_vec2(pair, BOX_ROTATION), n = contact->normal;
     vm behind_a, behind_b;
-    const vi edge_a = find_closer_edge(corner_a, box_normal(corner_a), box_normal(vi_add(corner_a, one)), n, &behind_a);
-    const vi edge_b = find_closer_edge(corner_b, v2_rotate_opposite(q, box_normal(corner_b)),
-                                       v2_rotate_opposite(q, box_normal(vi_add(corner_b, one))), n, &behind_b);
+    const vi edge_a = find_closer_edge(corner_a, box_normal(pair, BOX_HALF_A, corner_a),
+                                       box_normal(pair, BOX_HALF_A, vi_add(corner_a, one)), n, &behind_a);
+    const vi edge_b =
+        find_closer_edge(corner_b, v2_rotate_opposite(q, box_normal(pair, BOX_HALF_B, corner_b)),
+                         v2_rotate_opposite(q, box_normal(pair, BOX_HALF_B, vi_add(corner_b, one))), n, &behind_b);
     struct box_side a = find_side_a(pair, edge_a), b = find_side_b(pair, edge_b);
     a.behind = behind_a;
     b.behind = behind_b;

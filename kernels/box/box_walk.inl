@@ -32,14 +32,15 @@ struct couple {
 INLINE struct couple find_couple(const struct box_pair *pair, int p, vi turn, vm *out_wraps) {
     const struct pose pose = box_pose(pair);
     const vi edge_a = vi_set(p), edge_b = vi_add(turn, edge_a);
-    const vec2 of_a = box_normal(edge_a), of_b = v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(edge_b));
+    const vec2 of_a = box_normal(pair, BOX_HALF_A, edge_a),
+               of_b = v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(pair, BOX_HALF_B, edge_b));
     const vf angle = diamond_angle(of_b);
     *out_wraps = v_lt(v_set(2), angle);
     const vm a_first = p == 0 ? vm_and_not(v_lt(v_set(0), angle), *out_wraps) : v_lt(v_set((float)p), angle);
     return (struct couple){.low = v2_select(a_first, of_a, of_b),
                            .high = v2_select(a_first, of_b, of_a),
-                           .corner_a = box_corner(box_vec2(pair, BOX_HALF_A), edge_a),
-                           .corner_b = place_center_b(box_corner(box_vec2(pair, BOX_HALF_B), edge_b), &pose),
+                           .corner_a = box_corner(pair, BOX_HALF_A, edge_a),
+                           .corner_b = place_center_b(box_corner(pair, BOX_HALF_B, edge_b), &pose),
                            .a_first = a_first,
                            .b_first = vm_not(a_first),
                            .number_a = edge_a,
