@@ -173,7 +173,7 @@ INLINE void answer_boxes(const struct call *call, const struct box_queue *queue,
     const vi pairs = vi_bits(box_field(&pair, BOX_PAIR));
     const vf margin = find_margins(call, pairs);
     const vm open = vm_front(live);
-    const struct box_contact c = capsules ? find_capsule_contact(&pair) : find_box_contact(&pair, open);
+    const struct box_contact c = capsules ? find_capsule_contact(&pair, open) : find_box_contact(&pair, open);
     const vm keep = vm_and(open, is_below(c.separation, margin));
     if (!vm_any(keep))
         return;

@@ -26,6 +26,10 @@
 #include "box/box_walk.inl"
 #include "simd/simd.h"
 
+/* Bits of BOX_CODE: the edge with the largest value is of B, and not of A; it is the one at -y; turned into its own frame,
+ * the other capsule rises along the edge. */
+enum { EDGE_OF_B = 1, EDGE_NEGATIVE = 2, EDGE_TILTED = 4 };
+
 /* Takes pairs of two capsules, in the lanes `which`: puts those that may have a contact into the queue. Returns the
  * lanes that it took. Any value of g is a bound: apart, if one along an axis of either exceeds the radii, the margin and
  * a slack. Colliding, if the segments cross, or the middle of B is well within A. */
@@ -57,6 +61,16 @@ INLINE vm take_capsules(const struct call *call, const struct box_form *a, const
         near = vm_and_not(near, deep);
     }
     if (vm_any(near)) {
+        const vm by_b = v_lt(across_a, across_b);
+        const vf center = v_select(by_b, t_b.y, t.y); /* of the other capsule, across the edge; or minus that */
+        const vm negative = vm_xor(by_b, v_lt(center, zero)), tilted = vm_xor(v_lt(zero, q.y), negative);
+        const vf others = v_max(v_min(across_a, across_b), v_sub(across, v_mul(v_set(2), v_abs(center))));
+        const vm clear = vm_or(v_lt(v_mul(v_set(64), slack), across), v_lt(across, v_neg(two)));
+        const vm certain = vm_and(vm_and(clear, v_lt(two, v_sub(across, others))), v_lt(v_set(0x1p-7f), c));
+        vi code = vi_select(certain, vi_set(0), vi_set(BOX_TIE));
+        code = vi_add(code, vi_select(by_b, vi_set(EDGE_OF_B), vi_set(0)));
+        code = vi_add(code, vi_select(negative, vi_set(EDGE_NEGATIVE), vi_set(0)));
+        code = vi_add(code, vi_select(tilted, vi_set(EDGE_TILTED), vi_set(0)));
         const vi pairs = vi_add(vi_lanes(), vi_set(number));
         const vi first =
             vi_add(vi_shift_left(vi_and(a->info, vi_set(1)), 4), vi_shift_left(vi_and(b->info, vi_set(1)), 6));
@@ -70,7 +84,7 @@ INLINE vm take_capsules(const struct call *call, const struct box_form *a, const
         item[BOX_RADIUS_A] = radius_a;
         item[BOX_RADIUS_B] = radius_b;
         item[BOX_SLACK] = slack;
-        item[BOX_CODE] = v_of_bits(first);
+        item[BOX_CODE] = v_of_bits(vi_add(code, first));
         item[BOX_PAIR] = v_of_bits(pairs);
         push_boxes(queue, near, item);
         if (call->rows && call->batch->query->hints.base)
@@ -79,37 +93,17 @@ INLINE vm take_capsules(const struct call *call, const struct box_form *a, const
     return taken;
 }
 
-INLINE vec2 find_capsule_normal_b(const struct box_pair *pair, vi edge) {
-    return v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(pair, BOX_HALF_B, edge));
-}
-
-/* The junctions of edge `edge_a` of A and edge `edge_b` of B, which is `angle_b`. */
-INLINE struct couple find_capsule_couple(const struct box_pair *pair, int edge_a, vi edge_b, vf angle_b) {
-    const struct pose pose = box_pose(pair);
-    const vi edge = vi_set(edge_a);
-    const vec2 of_a = box_normal(pair, BOX_HALF_A, edge), of_b = find_capsule_normal_b(pair, edge_b);
-    const vm a_first = v_lt(v_set((float)edge_a), angle_b);
-    return (struct couple){.low = v2_select(a_first, of_a, of_b),
-                           .high = v2_select(a_first, of_b, of_a),
-                           .corner_a = box_corner(pair, BOX_HALF_A, edge),
-                           .corner_b = place_center_b(box_corner(pair, BOX_HALF_B, edge_b), &pose),
-                           .a_first = a_first,
-                           .b_first = vm_not(a_first),
-                           .number_a = edge,
-                           .number_b = edge_b};
-}
-
-/* The largest gap, with the numbers of the corners in place of records. */
-INLINE struct gap walk_capsules(const struct box_pair *pair) {
+/* The same for capsules, of whose edges only couples 1 and 3 are left: the first one with that edge of B which lies within
+ * half a turn from +x. */
+static __attribute__((noinline)) void walk_capsules(const struct box_pair *given, struct gap *out_best) {
+    const struct box_pair capsules = {given->queue, given->k, true}, *const pair = &capsules;
     const vm all = vm_front(V_WIDTH);
-    const vi one = vi_set(1), three = vi_set(3), zero = vi_set(0);
-    const vf angle_1 = diamond_angle(find_capsule_normal_b(pair, one));
-    const vf angle_3 = diamond_angle(find_capsule_normal_b(pair, three));
-    const vm turned = v_lt(angle_3, angle_1);
-    const struct couple first =
-        find_capsule_couple(pair, 1, vi_select(turned, three, one), v_select(turned, angle_3, angle_1));
-    const struct couple last =
-        find_capsule_couple(pair, 3, vi_select(turned, one, three), v_select(turned, angle_1, angle_3));
+    const vi zero = vi_set(0);
+    const vf angle_1 = diamond_angle(find_side_normal(pair, vi_set(1), true));
+    const vf angle_3 = diamond_angle(find_side_normal(pair, vi_set(3), true));
+    const vi turn = vi_select(v_lt(angle_3, angle_1), vi_set(2), zero);
+    vm never;
+    const struct couple first = find_couple(pair, 1, turn, &never), last = find_couple(pair, 3, turn, &never);
     struct gap best = {v_set(-INFINITY), first.low, v_set(1), zero, zero};
     vm rises = v_lt(v2_cross(v2_sub(last.corner_b, last.corner_a), first.low), v_set(0));
     rises = try_interval(pair, &last, &first, first.high, false, all, rises, &best);
@@ -117,27 +111,62 @@ INLINE struct gap walk_capsules(const struct box_pair *pair) {
     rises = try_interval(pair, &first, &last, last.high, false, all, rises, &best);
     try_interval(pair, &first, &last, first.low, true, all, rises, &best);
     best.normal = v2_divide(best.normal, best.length);
-    return best;
+    *out_best = best;
 }
 
-/* The edge of a capsule that is closer to n, of the two at the end where it touches, corner 1 or 3. `of_corner`: the
- * normal of the edge with that number. */
-INLINE vi find_capsule_edge(vi corner, vec2 of_corner, vec2 n, vm *out_behind) {
-    *out_behind = v_lt(v_set(0), v2_dot(of_corner, n));
-    return vi_select(*out_behind, corner, vi_sub(vi_set(4), corner));
+INLINE vm code_has(vi code, int bit) { return vi_lt(vi_set(0), vi_and(code, vi_set(bit))); }
+
+INLINE vec2 find_end_a(const struct box_pair *pair, vm right) {
+    const vf half = box_field(pair, BOX_HALF_A);
+    return (vec2){v_select(right, half, v_neg(half)), v_set(0)};
 }
 
-/* How the capsules of a pair touch. */
-INLINE struct box_contact find_capsule_contact(const struct box_pair *pair) {
-    const struct gap gap = walk_capsules(pair);
-    const vec2 of_a = box_normal(pair, BOX_HALF_A, gap.record_a), of_b = find_capsule_normal_b(pair, gap.record_b);
-    vm behind_a, behind_b;
-    const vi edge_a = find_capsule_edge(gap.record_a, of_a, gap.normal, &behind_a);
-    const vi edge_b = find_capsule_edge(gap.record_b, of_b, gap.normal, &behind_b);
-    struct box_contact contact = {gap.separation, gap.normal, find_side_a(pair, edge_a), find_side_b(pair, edge_b)};
-    contact.a.behind = behind_a;
-    contact.b.behind = behind_b;
-    return contact;
+/* How the capsules of a pair touch, in the lanes `open`. */
+INLINE struct box_contact find_capsule_contact(const struct box_pair *pair, vm open) {
+    const struct pose pose = box_pose(pair);
+    const vf zero = v_set(0), radii = v_add(box_field(pair, BOX_RADIUS_A), box_field(pair, BOX_RADIUS_B));
+    const vi code = box_code(pair), first = vi_set(1), second = vi_set(3);
+    const vm by_b = code_has(code, EDGE_OF_B), negative = code_has(code, EDGE_NEGATIVE);
+    const vm tilted = code_has(code, EDGE_TILTED);
+    /* The ends that face each other before the edge and behind it: at +x? */
+    const vm up = vm_not(negative), other = vm_xor(tilted, vm_not(by_b));
+    const vm before_a = vm_or(vm_and(by_b, other), vm_and_not(up, by_b)),
+             behind_a = vm_or(vm_and(by_b, other), vm_and_not(negative, by_b));
+    const vm before_b = vm_or(vm_and(by_b, up), vm_and_not(other, by_b)),
+             behind_b = vm_or(vm_and(by_b, negative), vm_and_not(other, by_b));
+    const vf half_b = box_field(pair, BOX_HALF_B);
+    const vec2 left_b = place_center_b((vec2){v_neg(half_b), zero}, &pose),
+               right_b = place_center_b((vec2){half_b, zero}, &pose);
+    const vec2 u_before = v2_sub(v2_select(before_b, right_b, left_b), find_end_a(pair, before_a));
+    const vec2 u_behind = v2_sub(v2_select(behind_b, right_b, left_b), find_end_a(pair, behind_a));
+    const vi edge = vi_select(negative, second, first);
+    const vec2 f = v2_select(by_b, find_side_normal(pair, edge, true), find_side_normal(pair, edge, false));
+
+    const vm rises = v_lt(v2_cross(u_before, f), zero), falls = v_lt(v2_cross(f, u_behind), zero);
+    const vm at_ends = vm_not(vm_and(rises, falls));
+    struct box_contact c = {.separation = v_sub(v2_dot(u_behind, f), radii), .normal = f};
+    vm left = vm_or(code_has(code, BOX_TIE), vm_not(vm_or(rises, falls)));
+    if (vm_any(at_ends)) {
+        const vec2 u = v2_select(rises, u_behind, u_before);
+        const vf length = v2_length(u);
+        c.separation = v_select(at_ends, v_sub(length, radii), c.separation);
+        c.normal = v2_select(at_ends, v2_divide(u, length), c.normal);
+    }
+    const vm right_a = vm_or(vm_and(rises, behind_a), vm_and_not(before_a, rises));
+    const vm right_b_ = vm_or(vm_and(rises, behind_b), vm_and_not(before_b, rises));
+    vi corner_a = vi_select(right_a, second, first), corner_b = vi_select(right_b_, second, first);
+    left = vm_and(open, left);
+    if (vm_any(left)) {
+        struct gap gap;
+        walk_capsules(pair, &gap);
+        c.separation = v_select(left, gap.separation, c.separation);
+        c.normal = v2_select(left, gap.normal, c.normal);
+        corner_a = vi_select(left, gap.record_a, corner_a);
+        corner_b = vi_select(left, gap.record_b, corner_b);
+    }
+    c.a = find_closest_side(pair, corner_a, c.normal, false);
+    c.b = find_closest_side(pair, corner_b, c.normal, true);
+    return c;
 }
 
 #endif

@@ -144,17 +144,19 @@ static void decide_overlaps(const struct call *call, struct queue *queue, int be
 }
 
 /* Answers whether the pairs k ... of a queue overlap. */
-static void answer_box_overlaps(const struct call *call, const struct box_queue *queue, int k, int live) {
-    const struct box_pair pair = {queue, k, false};
+INLINE void mark_box_overlaps(const struct call *call, const struct box_queue *queue, int k, int live, bool capsules) {
+    const struct box_pair pair = {queue, k, capsules};
     const vm open = vm_front(live);
-    const struct box_contact c = find_box_contact(&pair, open);
+    const struct box_contact c = capsules ? find_capsule_contact(&pair, open) : find_box_contact(&pair, open);
     mark_pairs(call, vi_bits(box_field(&pair, BOX_PAIR)), vm_and(open, v_lt(c.separation, v_set(0))));
 }
 
+static void answer_box_overlaps(const struct call *call, const struct box_queue *queue, int k, int live) {
+    mark_box_overlaps(call, queue, k, live, false);
+}
+
 static void answer_capsule_overlaps(const struct call *call, const struct box_queue *queue, int k, int live) {
-    const struct box_pair pair = {queue, k, true};
-    const struct gap gap = walk_capsules(&pair);
-    mark_pairs(call, vi_bits(box_field(&pair, BOX_PAIR)), vm_and(vm_front(live), v_lt(gap.separation, v_set(0))));
+    mark_box_overlaps(call, queue, k, live, true);
 }
 
 static box_stage *const overlap_detours[BOX_QUEUES] = {answer_box_overlaps, answer_capsule_overlaps};
