@@ -37,19 +37,23 @@ INLINE vm take_detour(const struct call *call, const struct pair_indices *indice
     struct box_queue *const boxes = &call->boxes[OF_BOXES], *const capsules = &call->boxes[OF_CAPSULES];
     const struct box_form a = load_box_forms(forms, indices->shape_a + k);
     const struct box_form b = load_box_forms(forms, indices->shape_b + k);
-    const vm in_range = vm_and(open, placement->in_range);
-    const vm two_boxes = vm_and(in_range, are_forms(&a, &b, NARC_IS_BOX)),
-             two_capsules = vm_and(in_range, are_forms(&a, &b, NARC_IS_CAPSULE));
+    const vm in_range = vm_and(open, placement->in_range), two_boxes = vm_and(in_range, are_forms(&a, &b, NARC_IS_BOX));
     vm left = open;
     if (vm_any(two_boxes))
         left = vm_and_not(left, take_boxes(call, &a, &b, placement, two_boxes, number, boxes));
-    if (vm_any(two_capsules))
-        left = vm_and_not(left, take_capsules(call, &a, &b, placement, two_capsules, number, capsules));
-    if (call->rows && !call->rows->dense && call->rows->done == number && !vm_any(left)) /* in order, if one waits */
-        call->rows->done = boxes->count > 0 && capsules->count > 0 ? -1 : number + V_WIDTH;
-    for (int kind = 0; kind < BOX_QUEUES; kind++)
-        if (call->boxes[kind].count >= BOX_FLUSH)
-            run_boxes(call, answers[kind], &call->boxes[kind], false);
+    if (vm_any(left)) {
+        const vm two_capsules = vm_and(in_range, are_forms(&a, &b, NARC_IS_CAPSULE));
+        if (vm_any(two_capsules))
+            left = vm_and_not(left, take_capsules(call, &a, &b, placement, two_capsules, number, capsules));
+    }
+    if (call->rows && boxes->count > 0 && capsules->count > 0)
+        call->rows->done = -1; /* two queues are not in the order of their pairs */
+    else if (call->rows && !vm_any(left) && !call->rows->dense && call->rows->done == number)
+        call->rows->done += V_WIDTH;
+    if (boxes->count >= BOX_FLUSH)
+        run_boxes(call, answers[OF_BOXES], boxes, false);
+    if (capsules->count >= BOX_FLUSH)
+        run_boxes(call, answers[OF_CAPSULES], capsules, false);
     return left;
 }
 

@@ -32,7 +32,7 @@ enum { EDGE_OF_B = 1, EDGE_NEGATIVE = 2, EDGE_TILTED = 4 };
 
 /* Takes pairs of two capsules, in the lanes `which`: puts those that may have a contact into the queue. Returns the
  * lanes that it took. Any value of g is a bound: apart, if one along an axis of either exceeds the radii, the margin and
- * a slack. Colliding, if the segments cross, or the middle of B is well within A. */
+ * a slack. Colliding, if the segments cross, or a point of one is closer to one of the other than both radii. */
 INLINE vm take_capsules(const struct call *call, const struct box_form *a, const struct box_form *b,
                         const struct placement *placement, vm which, int32_t number, struct box_queue *queue) {
     const struct pose *pose = &placement->pose;
@@ -53,10 +53,13 @@ INLINE vm take_capsules(const struct call *call, const struct box_form *a, const
     const vm taken = vm_and(which, vm_and(sizes, v_lt(two, v_min(half_a, half_b))));
     vm near = vm_and_not(taken, v_lt(v_add(placement->margin, slack), v_sub(best, radii)));
     if (call->bits) { /* nothing but overlaps is asked for */
-        const vec2 beyond = {v_max(v_sub(x, half_a), zero), y};
+        /* The point of A that is closest to the middle of B, and that of B which is closest to it. */
+        const vec2 r = {v_sub(t.x, v_max(v_min(t.x, half_a), v_neg(half_a))), t.y};
+        const vf along = v_max(v_min(v_neg(v2_dot(q, r)), half_b), v_neg(half_b));
+        const vec2 between = v2_add(r, v2_scale(q, along));
         const vf core = v_max(v_sub(radii, two), zero);
-        const vm inside = v_lt(v2_dot(beyond, beyond), v_mul(core, core));
-        const vm deep = vm_and(near, vm_or(v_lt(across, v_neg(slack)), inside));
+        const vm close = v_lt(v2_dot(between, between), v_mul(core, core));
+        const vm deep = vm_and(near, vm_or(v_lt(across, v_neg(slack)), close));
         call->bits[(uint32_t)number / 64] |= (uint64_t)vm_bits(deep) << (uint32_t)number % 64;
         near = vm_and_not(near, deep);
     }
@@ -166,6 +169,9 @@ INLINE struct box_contact find_capsule_contact(const struct box_pair *pair, vm o
     }
     c.a = find_closest_side(pair, corner_a, c.normal, false);
     c.b = find_closest_side(pair, corner_b, c.normal, true);
+    const vm at_top = vi_lt(c.b.edge, second); /* its ends are placed already */
+    c.b.low = v2_select(at_top, left_b, right_b);
+    c.b.high = v2_select(at_top, right_b, left_b);
     return c;
 }
 

@@ -288,6 +288,23 @@ TEST(test_both) { check_sizes(LATTICE, BOTH, "boxes and capsules"); }
 
 TEST(test_mixed) { check_sizes(USUAL, OTHERS, "boxes and capsules among others"); }
 
+/* A box waits while capsules are answered, and pairs that are neither are far apart: rows stay in the order of pairs. */
+TEST(test_order_of_rows) {
+    struct scene scene = create_scene(NARC_FLOAT32, 2, 400, 200);
+    const struct shape box = box_of(2, 2, 0), capsule = capsule_of(2, 1);
+    scene_add_shape(&scene, &box);
+    scene_add_shape(&scene, &capsule);
+    for (uint32_t k = 0; k < 200; k++) {
+        struct body a = {.cosine = 1, .scale = 1, .shape = k > 0}, b = a;
+        b.shape = k % 2 ? 0 : a.shape;
+        b.x = k % 2 ? 100 : 0.5;
+        scene_add_two(&scene, a, b);
+    }
+    struct test_random random = test_random_named("order");
+    check_boxes(&random, &scene, "a box before capsules");
+    destroy_scene(&scene);
+}
+
 /* Hints are those of contacts: overlaps leave them alone. */
 TEST(test_overlaps_without_hints) {
     struct test_random random = test_random_named("hints");
