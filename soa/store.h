@@ -86,7 +86,8 @@ typedef union narc_record {
  * without height. Batches of boxes and of capsules read nothing else of a shape (kernels/box/).
  *   half_y of a capsule   A zero: x of the normal of its edge at +y, with its sign, which makes a bit of an answer. The
  *                         normal at -y is the opposite one.
- *   info   0: the shape is neither; else NARC_IS_BOX or NARC_IS_CAPSULE and, in its lowest bits, first_arc of the header.
+ *   info   0: the shape is neither; else NARC_IS_BOX or NARC_IS_CAPSULE and, in its lowest bits, the first_arc of its
+ *          header.
  * The corners of a box are the records in their order, the one at +x, +y first; those of a capsule the ends at -x and
  * +x. Half sizes, but for a capsule's height, are longer than what counts as no edge. */
 typedef struct narc_box_form {

@@ -48,8 +48,8 @@ INLINE vf sign_of(vi number) {
     return v_of_bits(vi_add(vi_set(0x3f800000), vi_and(vi_shift_left(number, 30), vi_set(INT32_MIN))));
 }
 
-/* Corner i of A or B, in its own frame, and the normal of its edge i; `half`: the field with its half sizes. i counts on
- * beyond 3, for a box; a capsule has edges 1 and 3 (store.h). */
+/* Corner i of A or B, in its own frame, and the normal of its edge i; `half`: the field with its half sizes. i counts
+ * on beyond 3. Of a capsule's edges there are 1 and 3 (store.h). */
 INLINE vec2 box_corner(const struct box_pair *pair, int half, vi i) {
     const vec2 size = box_vec2(pair, half);
     const vf y = pair->capsules ? v_set(0) : v_mul(size.y, sign_of(i));
@@ -157,8 +157,8 @@ INLINE vec2 find_side_normal(const struct box_pair *pair, vi edge, bool is_b) {
     return is_b ? v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), normal) : normal;
 }
 
-/* The edge next to a corner that is closer to n; of equals the one behind the corner. A capsule has two, opposite to each
- * other, at either of its ends. */
+/* The edge next to a corner that is closer to n; of equals the one behind the corner. A capsule has two, opposite to
+ * each other, at either of its ends. */
 INLINE struct box_side find_closest_side(const struct box_pair *pair, vi corner, vec2 n, bool is_b) {
     const vi next = vi_add(corner, vi_set(1));
     vm behind;

@@ -3,7 +3,7 @@
  * box_rows.inl - the last step of a pair of boxes: contacts, and manifolds with their second point, ids, radii and
  * reaches. All is what base/contact_point.inl, base/rows.inl and sat/manifold_edges.inl define, and is computed in
  * the same way: of a box the edge closest to the normal is one of the two next to the corner that touches, and it is
- * never too short to be one.
+ * never too short to be one. Capsules differ in that their arcs go half a turn.
  *
  * Rows are listed at once while all pairs before them are answered (rows.inl).
  */
@@ -46,8 +46,8 @@ INLINE struct box_touch find_touch(const struct box_side *side, vec2 n, vf radiu
     return touch;
 }
 
-/* The caller's number of corner i, or of the edge before it. `shift`: of the first arc in the code. The arc at the -x end
- * of a capsule, its corners 1 and 2, comes first. */
+/* The caller's number of corner i, or of the edge before it. `shift`: of the first arc in the code. Of a capsule
+ * the arc at -x, its corners 1 and 2, is stored first. */
 INLINE vi box_feature(const struct box_pair *pair, vi i, int shift) {
     const vi first = vi_shift_right(box_code(pair), shift);
     if (pair->capsules)

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * capsules.inl - pairs of two capsules (store.h, narc_box_form): boxes without height, of which two edges are left, with
- * half a turn from one to the other. They wait in a queue of their own, with the fields of boxes.
+ * capsules.inl - pairs of two capsules (store.h, narc_box_form): boxes without height, of which two edges are left,
+ * half a turn apart. They wait in a queue of their own, with the fields of boxes.
  *
- * Corners and edges have the numbers of a box: edge 1 lies at +y and edge 3 at -y, each from the corner before it to its
- * own, which is behind it. So corners 0 and 3 are the end at +x, and 1 and 2 the one at -x.
+ * Corners and edges have the numbers of a box: edge 1 lies at +y and edge 3 at -y, each from the corner before it to
+ * its own one behind it. So corners 0 and 3 are the end at +x, and 1 and 2 the one at -x.
  *
- * The fan has four junctions only, and so four intervals: all of them are computed, as the deciding formula does it
- * (normal_fan.inl), and no proof is needed. The junctions of each capsule are half a turn apart. So the walk, which
- * begins at +x, meets edge 1 of A, at the diamond angle 1, and that edge of B which lies within half a turn from +x, in
- * the order of their angles, and then the other two in theirs.
+ * Let g be the gap of the two segments, without the radii. Its fan has four junctions. Next to that with the largest
+ * value are two of the other capsule, and the formula's answer is the kink there or lies in one of the two intervals in
+ * between, if three things are so: the value exceeds those of the other three by two slacks; it exceeds 64 slacks, or
+ * is below minus two; and the capsules are not at a right angle. docs/algorithm.md, section 9, proves it. Other pairs
+ * are walked around all four intervals.
  */
 #ifndef NARC_BOX_CAPSULES_INL
 #define NARC_BOX_CAPSULES_INL
@@ -26,13 +27,13 @@
 #include "box/box_walk.inl"
 #include "simd/simd.h"
 
-/* Bits of BOX_CODE: the edge with the largest value is of B, and not of A; it is the one at -y; turned into its own frame,
- * the other capsule rises along the edge. */
+/* Bits of BOX_CODE, of the edge with the largest value: it is of B, and not of A; it lies at -y; the end at +x of the
+ * capsule which has not that edge is further off from it, if it is B, or nearer, if it is A. */
 enum { EDGE_OF_B = 1, EDGE_NEGATIVE = 2, EDGE_TILTED = 4 };
 
 /* Takes pairs of two capsules, in the lanes `which`: puts those that may have a contact into the queue. Returns the
- * lanes that it took. Any value of g is a bound: apart, if one along an axis of either exceeds the radii, the margin and
- * a slack. Colliding, if the segments cross, or a point of one is closer to one of the other than both radii. */
+ * lanes that it took. Any value of g is a bound: apart, if one along an axis of either exceeds the radii, the margin
+ * and a slack. Colliding, if the segments cross, or a point of one is closer to one of the other than both radii. */
 INLINE vm take_capsules(const struct call *call, const struct box_form *a, const struct box_form *b,
                         const struct placement *placement, vm which, int32_t number, struct box_queue *queue) {
     const struct pose *pose = &placement->pose;
@@ -96,7 +97,7 @@ INLINE vm take_capsules(const struct call *call, const struct box_form *a, const
     return taken;
 }
 
-/* The same for capsules, of whose edges only couples 1 and 3 are left: the first one with that edge of B which lies within
+/* The largest gap, as walk_boxes() finds it. Of the couples 1 and 3 are left, 1 with that edge of B which lies within
  * half a turn from +x. */
 static __attribute__((noinline)) void walk_capsules(const struct box_pair *given, struct gap *out_best) {
     const struct box_pair capsules = {given->queue, given->k, true}, *const pair = &capsules;
@@ -131,7 +132,7 @@ INLINE struct box_contact find_capsule_contact(const struct box_pair *pair, vm o
     const vi code = box_code(pair), first = vi_set(1), second = vi_set(3);
     const vm by_b = code_has(code, EDGE_OF_B), negative = code_has(code, EDGE_NEGATIVE);
     const vm tilted = code_has(code, EDGE_TILTED);
-    /* The ends that face each other before the edge and behind it: at +x? */
+    /* The ends that face each other in the intervals before the edge's normal and behind it: those at +x? */
     const vm up = vm_not(negative), other = vm_xor(tilted, vm_not(by_b));
     const vm before_a = vm_or(vm_and(by_b, other), vm_and_not(up, by_b)),
              behind_a = vm_or(vm_and(by_b, other), vm_and_not(negative, by_b));
@@ -155,9 +156,9 @@ INLINE struct box_contact find_capsule_contact(const struct box_pair *pair, vm o
         c.separation = v_select(at_ends, v_sub(length, radii), c.separation);
         c.normal = v2_select(at_ends, v2_divide(u, length), c.normal);
     }
-    const vm right_a = vm_or(vm_and(rises, behind_a), vm_and_not(before_a, rises));
-    const vm right_b_ = vm_or(vm_and(rises, behind_b), vm_and_not(before_b, rises));
-    vi corner_a = vi_select(right_a, second, first), corner_b = vi_select(right_b_, second, first);
+    const vm at_right_a = vm_or(vm_and(rises, behind_a), vm_and_not(before_a, rises));
+    const vm at_right_b = vm_or(vm_and(rises, behind_b), vm_and_not(before_b, rises));
+    vi corner_a = vi_select(at_right_a, second, first), corner_b = vi_select(at_right_b, second, first);
     left = vm_and(open, left);
     if (vm_any(left)) {
         struct gap gap;
