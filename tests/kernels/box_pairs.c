@@ -305,6 +305,25 @@ TEST(test_order_of_rows) {
     destroy_scene(&scene);
 }
 
+/* Capsules and boxes come seldom, among circles, and then all at once. */
+TEST(test_seldom) {
+    struct scene scene = create_scene(NARC_FLOAT32, 3, 3000, 1500);
+    const struct shape circle = circle_of(1), box = box_of(2, 1, 0.25), capsule = capsule_of(2, 0.5);
+    scene_add_shape(&scene, &circle);
+    scene_add_shape(&scene, &box);
+    scene_add_shape(&scene, &capsule);
+    struct test_random random = test_random_named("seldom");
+    for (uint32_t k = 0; k < 1500; k++) {
+        struct body a = {.cosine = 1, .scale = 1}, b = a;
+        a.shape = b.shape = k % 41 == 0 || k > 1200 ? 1 + k % 2 : 0;
+        b.x = random_between(&random, -2, 2);
+        b.y = random_between(&random, -1, 1);
+        scene_add_two(&scene, a, b);
+    }
+    check_boxes(&random, &scene, "seldom");
+    destroy_scene(&scene);
+}
+
 /* Hints are those of contacts: overlaps leave them alone. */
 TEST(test_overlaps_without_hints) {
     struct test_random random = test_random_named("hints");
