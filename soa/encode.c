@@ -193,26 +193,39 @@ static bool has_same_bits(float a, float b) {
     return bits[0] == bits[1];
 }
 
+/* Is it stored with these bits? The normals are those of the edges before and behind it. */
+static bool is_corner(const narc_stored_arc *arc, float x, float y, float radius, const float *start,
+                      const float *end) {
+    return has_same_bits(arc->center_x, x) && has_same_bits(arc->center_y, y) && has_same_bits(arc->radius, radius) &&
+           has_same_bits(arc->start_x, start[0]) && has_same_bits(arc->start_y, start[1]) &&
+           has_same_bits(arc->end_x, end[0]) && has_same_bits(arc->end_y, end[1]);
+}
+
 narc_box_form narc_find_box_form(const narc_encoded_shape *shape) {
     static const float normals[5][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 0}};
     static const float sides[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
     const narc_shape_header *header = &shape->header;
     const narc_record *arcs = &shape->records[narc_angle_records(header->count)];
-    if (header->count != 4 || header->extent_ratio == UINT8_MAX || (header->flags & NARC_SHAPE_SMOOTH))
+    const bool capsule = header->count == 2;
+    if ((header->count != 4 && !capsule) || header->extent_ratio == UINT8_MAX || (header->flags & NARC_SHAPE_SMOOTH))
         return (narc_box_form){.info = 0};
-    const float x = arcs[0].arc.center_x, y = arcs[0].arc.center_y, radius = arcs[0].arc.radius;
+    const float x = fabsf(arcs[0].arc.center_x), radius = arcs[0].arc.radius;
+    const float y = capsule ? arcs[0].arc.start_x : arcs[0].arc.center_y; /* of a capsule a zero with its sign */
     const float least_edge = ldexpf(1, 5 * (header->flags >> NARC_SIZE_CLASS_SHIFT) - 47);
     /* A header that was loaded may say anything of the bounding circle; kernels go by half of its size. */
-    bool box = x > least_edge && y > least_edge && header->bound_radius <= 1.001f * (x + y + radius);
-    for (size_t k = 0; k < 4; k++) {
-        const narc_stored_arc *arc = &arcs[k].arc;
-        const float *start = normals[k], *end = normals[k + 1];
-        box = box && has_same_bits(arc->center_x, sides[k][0] * x) && has_same_bits(arc->center_y, sides[k][1] * y) &&
-              has_same_bits(arc->radius, radius) && has_same_bits(arc->start_x, start[0]) &&
-              has_same_bits(arc->start_y, start[1]) && has_same_bits(arc->end_x, end[0]) &&
-              has_same_bits(arc->end_y, end[1]);
+    bool found = x > least_edge && header->bound_radius <= 1.001f * (x + y + radius);
+    if (capsule) {
+        const float up[2] = {y, 1}, down[2] = {-y, -1};
+        found = found && y == 0 && is_corner(&arcs[0].arc, -x, 0, radius, up, down) &&
+                is_corner(&arcs[1].arc, x, 0, radius, down, up);
+    } else {
+        found = found && y > least_edge;
+        for (size_t k = 0; k < 4; k++)
+            found =
+                found && is_corner(&arcs[k].arc, sides[k][0] * x, sides[k][1] * y, radius, normals[k], normals[k + 1]);
     }
-    return (narc_box_form){x, y, radius, box ? NARC_IS_BOX | header->first_arc : 0};
+    const uint32_t kind = capsule ? NARC_IS_CAPSULE : NARC_IS_BOX;
+    return (narc_box_form){x, y, radius, found ? kind | header->first_arc : 0};
 }
 
 /* ------------------------------------------------------------------------------------------------ loading */

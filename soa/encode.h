@@ -18,7 +18,7 @@ typedef struct narc_encoded_shape {
 /* Validates and encodes a list of arcs. Errors: those of narc_validate_arcs(), NARC_ERROR_SIZE. */
 narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_shape *out_shape, narc_error *error);
 
-/* The form of a shape that is a box, else one with info 0. */
+/* The form of a shape that is a box or a capsule, else one with info 0. */
 narc_box_form narc_find_box_form(const narc_encoded_shape *shape);
 
 /* Checks the header and the arcs of a shape that was stored elsewhere, and writes the records of its angles.

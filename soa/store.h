@@ -82,16 +82,21 @@ typedef union narc_record {
 } narc_record;
 
 /* A box about its own origin with sides along its axes, sharp or with equally rounded corners, beside its header: half
- * the sides of the rectangle of the corners' centres. Batches of boxes read nothing else of a shape (kernels/box/).
- *   info   0: the shape is no box of that kind; else NARC_IS_BOX and, in its lowest bits, first_arc of the header.
- * The corners are the records in their order, the one at +x, +y first. Both half sizes are longer than what counts as
- * no edge. */
+ * the sides of the rectangle of the corners' centres. Or a capsule along the x axis about its own origin, as a box
+ * without height. Batches of boxes and of capsules read nothing else of a shape (kernels/box/).
+ *   half_y of a capsule   A zero: x of the normal of its edge at +y, with its sign, which makes a bit of an answer. The
+ *                         normal at -y is the opposite one.
+ *   info   0: the shape is neither; else NARC_IS_BOX or NARC_IS_CAPSULE and, in its lowest bits, the first_arc of its
+ *          header.
+ * The corners of a box are the records in their order, the one at +x, +y first; those of a capsule the ends at -x and
+ * +x. Half sizes, but for a capsule's height, are longer than what counts as no edge. */
 typedef struct narc_box_form {
     float half_x, half_y, radius;
     uint32_t info;
 } narc_box_form;
 
-#define NARC_IS_BOX 4u
+#define NARC_IS_BOX     4u
+#define NARC_IS_CAPSULE 8u
 
 /* How many records the junction angles of a shape take: its first arc lies behind them. */
 static inline size_t narc_angle_records(size_t count) { return (count + NARC_RECORD_ANGLES - 1) / NARC_RECORD_ANGLES; }
@@ -132,7 +137,7 @@ struct narc_shapes {
     uint32_t *buckets;                    /* the first shape in each list, as many lists as there is room for headers */
     size_t count, capacity;               /* headers, those of removed shapes among them */
     size_t removed_count;                 /* removed shapes */
-    size_t box_count;                     /* shapes with a box's form */
+    size_t box_count;                     /* shapes with a form of a box or a capsule */
     uint32_t last_removed;                /* the last of them, or NARC_NO_SHAPE */
     uint64_t change_count;                /* how often shapes came, changed or went */
     size_t record_count, record_capacity; /* records, with the gaps between blocks */

@@ -31,8 +31,11 @@ static void place(const struct outline *outline, const struct body *body, double
 
 /* Closed at the start and open at the end, by the same expression: one of the arcs has each direction. */
 static int covers(const struct outline *outline, size_t k, struct vector v) {
-    return outline->count == 1 ||
-           (cross(start_of(&outline->arcs[k]), v) >= 0 && cross(start_of(&outline->arcs[k + 1]), v) < 0);
+    const struct vector start = start_of(&outline->arcs[k]), end = start_of(&outline->arcs[k + 1]);
+    const double behind = cross(start, v);
+    if (outline->count == 2)
+        return behind > 0 || (behind == 0 && start.x * v.x + start.y * v.y > 0);
+    return outline->count == 1 || (behind >= 0 && cross(end, v) < 0);
 }
 
 static double support(const struct outline *outline, struct vector v) {

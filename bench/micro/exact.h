@@ -13,7 +13,8 @@ extern "C" {
 
 enum { MAX_EDGES = 16 };
 
-/* An arc covers the outward normals from its start normal to that of the next arc, a turn by less than pi. A polygon
+/* An arc covers the outward normals from its start normal to that of the next arc, a turn by less than pi, or half a turn
+ * if there are two. A polygon
  * is one of arcs with radius 0: the vertices, each with the normal of the edge before it. */
 struct arc {
     double x, y, radius;

@@ -105,6 +105,7 @@ static void add_isa(const char *isa) {
     add_both(sorted(templates(mixed)), isa, 1);
     add_both(of_family(FAMILY_KINDS, mixed), isa, 1);
     add_both(of_family(FAMILY_GENERAL, mixed), isa, 1);
+    add_both(of_family(FAMILY_CAPSULES, mixed), isa, 1);
     add_narc("floor", QUERY_OVERLAP, of_family(FAMILY_BOUNDS, mixed), isa, 1, mixed.pair_count);
     add_narc("floor", QUERY_OVERLAP, of_family(FAMILY_BOUNDS, templates(mixed)), isa, 1, mixed.pair_count);
     add_narc("unhinted", QUERY_FRAMES, templates(mixed), isa, 1, mixed.pair_count);

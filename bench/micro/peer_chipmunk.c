@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * peer_chipmunk.c - Chipmunk's contacts of two polygons.
+ * peer_chipmunk.c - Chipmunk's contacts of two polygons, or of two segments with a radius.
  *
  * Chipmunk keeps each body's vertices in world axes and renews them once per step, not once per pair: that is outside
  * the time.
@@ -10,12 +10,13 @@
 #include "common.h"
 #include "peers.h"
 
-static cpShape *place_polygon(const struct outline *outline, const struct body *place) {
+static cpShape *place_shape(const struct outline *outline, const struct body *place) {
     cpVect points[MAX_EDGES];
     for (size_t k = 0; k < outline->count; k++)
         points[k] = cpv(outline->arcs[k].x, outline->arcs[k].y);
     cpBody *body = cpBodyNewKinematic();
-    cpShape *shape = cpPolyShapeNewRaw(body, (int)outline->count, points, 0);
+    cpShape *shape = outline->count == 2 ? cpSegmentShapeNew(body, points[0], points[1], outline->arcs[0].radius)
+                                         : cpPolyShapeNewRaw(body, (int)outline->count, points, 0);
     cpShapeUpdate(shape,
                   cpTransformNewTranspose(place->cosine, -place->sine, place->x, place->sine, place->cosine, place->y));
     return shape;
@@ -24,7 +25,7 @@ static cpShape *place_polygon(const struct outline *outline, const struct body *
 static void *create(const struct workload *workload) {
     cpShape **shapes = allocate(workload->body_count, sizeof *shapes);
     for (size_t k = 0; k < workload->body_count; k++)
-        shapes[k] = place_polygon(&workload->outlines[workload->bodies[k].shape], &workload->bodies[k]);
+        shapes[k] = place_shape(&workload->outlines[workload->bodies[k].shape], &workload->bodies[k]);
     return shapes;
 }
 

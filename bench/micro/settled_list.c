@@ -21,7 +21,7 @@ static const struct shapes {
     enum family family;
     unsigned edges;
 } all_shapes[] = {{FAMILY_N_ARCS, 4}, {FAMILY_N_ARCS, 8}, {FAMILY_N_ARCS, 12}, {FAMILY_ROUNDED, 8},
-                  {FAMILY_BOXES, 4},  {FAMILY_DISCS, 8},  {FAMILY_KINDS, 8}};
+                  {FAMILY_BOXES, 4},  {FAMILY_DISCS, 8},  {FAMILY_KINDS, 8},   {FAMILY_CAPSULES, 4}};
 enum { SHAPES = sizeof all_shapes / sizeof all_shapes[0] };
 
 static size_t pair_count;
@@ -165,7 +165,7 @@ static void add_instruction_sets(struct workload_key key, const char *best) {
 
 void list_settled(const struct row_choice *choice) {
     const struct shapes four = {FAMILY_N_ARCS, 4}, eight = {FAMILY_N_ARCS, 8}, boxes = {FAMILY_BOXES, 4};
-    const struct shapes discs = {FAMILY_DISCS, 8};
+    const struct shapes discs = {FAMILY_DISCS, 8}, capsules = {FAMILY_CAPSULES, 4};
     const char *best = choice->best_isa;
     pair_count = choice->pair_count;
     const struct workload_key key = settled(eight, SCENE_SETTLED, FEW),
@@ -190,6 +190,8 @@ void list_settled(const struct row_choice *choice) {
         add_query(QUERY_HINTED, settled(four, SCENE_SETTLED, FEW), "avx2");
         add_query(QUERY_CONTACT, key, "avx2");
         add_query(QUERY_HINTED, key, "avx2");
+        add_query(QUERY_CONTACT, settled(capsules, SCENE_SETTLED, FEW), "avx2");
+        add_query(QUERY_MANIFOLD, settled(capsules, SCENE_SETTLED, FEW), "avx2");
     }
     add_loop("scalar-loop", settled(discs, SCENE_SETTLED, FEW));
     add_loop("avx2-loop", settled(discs, SCENE_SETTLED, FEW));
@@ -199,6 +201,8 @@ void list_settled(const struct row_choice *choice) {
         add_peer(&box2d_collide, settled(boxes, SCENE_SETTLED, variety));
         add_peer(&chipmunk_collide, settled(eight, SCENE_SETTLED, variety));
         add_peer(&chipmunk_collide, settled(boxes, SCENE_SETTLED, variety));
+        add_peer(&box2d_collide, settled(capsules, SCENE_SETTLED, variety));
+        add_peer(&chipmunk_collide, settled(capsules, SCENE_SETTLED, variety));
     }
     for (size_t p = 0; all_world_peers[p]; p++) {
         add_world(all_world_peers[p], small);

@@ -24,8 +24,9 @@ struct table {
 };
 
 static const struct line kinds[] = {
-    {"4 arcs", "n4"},   {"8 arcs", "n8"},   {"12 arcs", "n12"},     {"rounded 8-gons", "rounded"},
-    {"boxes", "boxes"}, {"discs", "discs"}, {"all kinds", "kinds"}, {NULL, NULL}};
+    {"4 arcs", "n4"},   {"8 arcs", "n8"},   {"12 arcs", "n12"},       {"rounded 8-gons", "rounded"},
+    {"boxes", "boxes"}, {"discs", "discs"}, {"capsules", "capsules"}, {"all kinds", "kinds"},
+    {NULL, NULL}};
 
 static const struct table tables[] = {
     {"ns per pair, 30,000 bodies, 64 shapes | overlap | contact | with hints | manifolds | Box2D | Chipmunk | a loop |",

@@ -136,6 +136,18 @@ struct outline make_circle(double radius) {
     return (struct outline){.count = 1, .arcs = {{.radius = radius, .start_x = 1}, {.radius = radius, .start_x = 1}}};
 }
 
+struct outline make_capsule(uint64_t *random) {
+    const double x = random_between(random, 0.5, 1.2), radius = random_between(random, 0.35, 0.6);
+    struct outline outline = {.count = 2, .arcs = {{x, 0, radius, 0, -1}, {-x, 0, radius, 0, 1}}};
+    outline.arcs[2] = outline.arcs[0];
+    return outline;
+}
+
+struct outline box_as_large_as(const struct outline *capsule) {
+    const struct arc *arc = &capsule->arcs[0];
+    return box_with(arc->x + pi / 4 * arc->radius, arc->radius);
+}
+
 double reach_of(const struct outline *outline) {
     double reach = 0;
     for (size_t k = 0; k < outline->count; k++)

@@ -28,6 +28,12 @@ struct outline make_square(void);
 
 struct outline make_circle(double radius);
 
+/* A capsule: a segment 1 .. 2.4 long with a radius of 0.35 .. 0.6. */
+struct outline make_capsule(uint64_t *random);
+
+/* The box that is as wide as a capsule, and has its area. */
+struct outline box_as_large_as(const struct outline *capsule);
+
 double area_of(const struct outline *outline);
 
 /* No point of the outline is further from the origin. */

@@ -21,7 +21,7 @@ struct target {
     double limit;
 };
 
-static const char *const kinds[] = {"n4", "n8", "n12", "rounded", "boxes", "discs", "kinds", NULL};
+static const char *const kinds[] = {"n4", "n8", "n12", "rounded", "boxes", "discs", "capsules", "kinds", NULL};
 static const char *const scenes[] = {
     "n8/mixed/unique/random",    "n8/mixed/templates/random",   "n8/mixed/unique/sorted",
     "n8/disjoint/unique/random", "n8/colliding/unique/random",  "n8/packing/unique/sorted",
@@ -51,6 +51,16 @@ static const struct target settled_targets[] = {
      UNLIKE_PILE("contact", "n4", "BEST"), AT_LEAST, 3.5},
     {"contact with hints, 4 arcs, 4,096 shapes, against Box2D", UNLIKE_PILE("contact", "n4", "box2d-collide"),
      UNLIKE_PILE("hinted", "n4", "BEST"), AT_LEAST, 4.9},
+    {"contact, capsules, against Box2D's boxes", PILE("contact", "capsules", "box2d-collide"),
+     PILE("contact", "capsules", "BEST"), AT_LEAST, 6},
+    {"manifolds, capsules, against Box2D's boxes", PILE("contact", "capsules", "box2d-collide"),
+     PILE("manifold", "capsules", "BEST"), AT_LEAST, 6},
+    {"manifolds, capsules, 4,096 shapes, against Box2D's boxes", UNLIKE_PILE("contact", "capsules", "box2d-collide"),
+     UNLIKE_PILE("manifold", "capsules", "BEST"), AT_LEAST, 6},
+    {"manifolds, capsules, AVX2, against Box2D's boxes", PILE("contact", "capsules", "box2d-collide"),
+     PILE("manifold", "capsules", "avx2"), AT_LEAST, 6},
+    {"contact, capsules, AVX2, against Box2D's boxes", PILE("contact", "capsules", "box2d-collide"),
+     PILE("contact", "capsules", "avx2"), AT_LEAST, 6},
     {"overlap, time against contact, KIND", PILE("overlap", "KIND", "BEST"), PILE("contact", "KIND", "BEST"), AT_MOST,
      0.75},
     {"overlap, time against contact, 4,096 shapes, KIND", UNLIKE_PILE("overlap", "KIND", "BEST"),

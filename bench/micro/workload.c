@@ -47,6 +47,8 @@ static struct outline make_shape(const struct workload_key *key, size_t index, u
         return is_stack(key) ? make_square() : make_box(random);
     case FAMILY_DISCS:
         return make_circle(random_between(random, 0.6, 1.2));
+    case FAMILY_CAPSULES:
+        return make_capsule(random);
     default:
         return n_arc;
     }
@@ -112,13 +114,22 @@ static void move_bodies(struct workload *workload) {
     workload->bodies = bodies;
 }
 
-/* The same bodies and pairs, with something else in the place of each n-arc. */
+/* What the shapes of a family are in the place of: itself, if of nothing. */
+static enum family find_source(enum family family) {
+    if (family == FAMILY_POLYGONS || family == FAMILY_BOUNDS)
+        return FAMILY_N_ARCS;
+    return family == FAMILY_CAPSULE_BOXES ? FAMILY_CAPSULES : family;
+}
+
+/* The same bodies and pairs, with something else in the place of each shape. */
 static void replace_shapes(struct workload *workload) {
     struct outline *outlines = allocate(workload->shape_count, sizeof *outlines);
     for (size_t k = 0; k < workload->shape_count; k++) {
         const struct outline *n_arc = &workload->outlines[k];
         if (workload->key.family == FAMILY_BOUNDS)
             outlines[k] = make_circle(bounding_radius(n_arc));
+        else if (workload->key.family == FAMILY_CAPSULE_BOXES)
+            outlines[k] = box_as_large_as(n_arc);
         else
             outlines[k] = is_settled(&workload->key) ? polygon_as_large_as(n_arc) : polygon_of(n_arc);
     }
@@ -128,10 +139,9 @@ static void replace_shapes(struct workload *workload) {
 
 static void make_workload(struct workload *workload, const struct workload_key *key) {
     struct workload_key source = *key;
-    const bool replaced = key->family == FAMILY_POLYGONS || key->family == FAMILY_BOUNDS;
-    if (replaced)
-        source.family = FAMILY_N_ARCS;
-    else
+    source.family = find_source(key->family);
+    const bool replaced = source.family != key->family;
+    if (!replaced)
         source.moved = false;
     if (!same_key(&source, key))
         *workload = *get_workload(&source);
@@ -174,13 +184,11 @@ void name_workload(const struct workload_key *key, char *out, size_t size) {
                                          "lattice",  "settled-small", "settled", "settled-large"};
     static const char *const varieties[VARIETIES] = {
         [UNIQUE] = "unique", [TEMPLATES] = "templates", [MANY] = "many", [FEW] = "few"};
-    static const char *const families[] = {[FAMILY_KINDS] = "kinds",
-                                           [FAMILY_GENERAL] = "general",
-                                           [FAMILY_ROUNDED] = "rounded",
-                                           [FAMILY_BOXES] = "boxes",
-                                           [FAMILY_DISCS] = "discs"};
+    static const char *const families[] = {
+        [FAMILY_KINDS] = "kinds", [FAMILY_GENERAL] = "general", [FAMILY_ROUNDED] = "rounded",
+        [FAMILY_BOXES] = "boxes", [FAMILY_DISCS] = "discs",     [FAMILY_CAPSULES] = "capsules"};
     char family[16];
-    if (key->family >= FAMILY_KINDS && key->family <= FAMILY_DISCS)
+    if (key->family >= FAMILY_KINDS && key->family <= FAMILY_CAPSULES)
         snprintf(family, sizeof family, "%s", families[key->family]);
     else
         snprintf(family, sizeof family, "n%u", key->edges % 100);

@@ -25,8 +25,10 @@ enum family {
     FAMILY_ROUNDED, /* the polygons of the junctions with arcs in the place of vertices */
     FAMILY_BOXES,
     FAMILY_DISCS,
+    FAMILY_CAPSULES,
     FAMILY_POLYGONS, /* the polygons of FAMILY_N_ARCS, in the same places; in settled piles as large as the n-arcs */
     FAMILY_BOUNDS,   /* the bounding circles of FAMILY_N_ARCS, in the same places */
+    FAMILY_CAPSULE_BOXES /* boxes as large as FAMILY_CAPSULES, in the same places */
 };
 
 /* Where the second body of a pair is: at a multiple of the distance at which the two touch (in a random direction), or

@@ -23,7 +23,7 @@ struct call {
     uint64_t *bits;            /* overlap kernels: where the answers go; else NULL */
     struct rows *rows;         /* the others: the same */
     struct queue *edges;       /* manifolds: pairs that may have a second point; else NULL */
-    struct box_queue *boxes;   /* pairs of boxes that wait (box/box_pairs.inl), or NULL */
+    struct box_queue *boxes;   /* pairs of boxes and of capsules that wait (box/box_detour.inl), or NULL */
 };
 
 /* One of two places, without a branch: which lanes have an answer can't be foreseen. */
@@ -93,7 +93,7 @@ INLINE void mark_overlaps(const struct call *call, const struct queue *queue, in
  * What a call leaves for the next one: the arcs of A and B at which a pair's search ended, counted from 1 in the order of
  * the store, A's in the lowest 8 bits. Any other value names no arcs. */
 
-/* The hint of two circles, and of two boxes, which need none. */
+/* The hint of two circles, boxes or capsules, which need none. */
 #define FIRST_ARCS 0x0101
 
 /* Where the hint of a pair is, by its number in the batch. */

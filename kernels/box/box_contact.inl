@@ -25,6 +25,7 @@
 struct box_pair {
     const struct box_queue *queue;
     int k;
+    bool capsules; /* capsules.inl, not boxes */
 };
 
 INLINE vf box_field(const struct box_pair *pair, int field) { return v_load(pair->queue->item[field] + pair->k); }
@@ -46,14 +47,19 @@ INLINE vf sign_of(vi number) {
     return v_of_bits(vi_add(vi_set(0x3f800000), vi_and(vi_shift_left(number, 30), vi_set(INT32_MIN))));
 }
 
-/* Corner i of a box, and the normal of its edge i: i counts on beyond 3. */
-INLINE vec2 box_corner(vec2 half, vi i) {
-    return (vec2){v_mul(half.x, sign_of(vi_add(i, vi_set(1)))), v_mul(half.y, sign_of(i))};
+/* Corner i of A or B, in its own frame, and the normal of its edge i; `half`: the field with its half sizes. i counts
+ * on beyond 3. Of a capsule's edges there are 1 and 3 (store.h). */
+INLINE vec2 box_corner(const struct box_pair *pair, int half, vi i) {
+    const vec2 size = box_vec2(pair, half);
+    const vf y = pair->capsules ? v_set(0) : v_mul(size.y, sign_of(i));
+    return (vec2){v_mul(size.x, sign_of(vi_add(i, vi_set(1)))), y};
 }
 
-INLINE vec2 box_normal(vi i) {
+INLINE vec2 box_normal(const struct box_pair *pair, int half, vi i) {
     const vf sign = sign_of(i), zero = v_set(0);
     const vm odd = vi_lt(vi_set(0), vi_and(i, vi_set(1)));
+    if (pair->capsules)
+        return (vec2){v_mul(box_field(pair, half + 1), sign), sign};
     return (vec2){v_select(odd, zero, sign), v_select(odd, sign, zero)};
 }
 
@@ -67,17 +73,18 @@ struct box_side {
 
 INLINE struct box_side find_side_a(const struct box_pair *pair, vi edge) {
     return (struct box_side){.edge = edge,
-                             .normal = box_normal(edge),
-                             .low = box_corner(box_vec2(pair, BOX_HALF_A), vi_sub(edge, vi_set(1))),
-                             .high = box_corner(box_vec2(pair, BOX_HALF_A), edge)};
+                             .normal = box_normal(pair, BOX_HALF_A, edge),
+                             .low = box_corner(pair, BOX_HALF_A, vi_sub(edge, vi_set(1))),
+                             .high = box_corner(pair, BOX_HALF_A, edge)};
 }
 
 INLINE struct box_side find_side_b(const struct box_pair *pair, vi edge) {
     const struct pose pose = box_pose(pair);
-    const vec2 half = box_vec2(pair, BOX_HALF_B);
-    const vec2 before = box_corner(half, vi_sub(edge, vi_set(1))), behind = box_corner(half, edge);
+    const vec2 before = box_corner(pair, BOX_HALF_B, vi_sub(edge, vi_set(1))),
+               behind = box_corner(pair, BOX_HALF_B, edge);
     return (struct box_side){.edge = edge,
-                             .normal = v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(edge)),
+                             .normal =
+                                 v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(pair, BOX_HALF_B, edge)),
                              .low = place_center_b(behind, &pose),
                              .high = place_center_b(before, &pose)};
 }
@@ -140,10 +147,34 @@ INLINE struct box_contact find_facing(const struct box_pair *pair, vm *out_left,
     return c;
 }
 
-/* The edge next to a corner that is closer to n; of equals the one behind the corner. */
-INLINE vi find_closer_edge(vi corner, vec2 start, vec2 end, vec2 n, vm *out_behind) {
-    *out_behind = v_lt(v_abs(v2_cross(start, n)), v_abs(v2_cross(end, n)));
-    return vi_add(corner, vi_select(*out_behind, vi_set(0), vi_set(1)));
+INLINE struct box_side find_side(const struct box_pair *pair, vi edge, bool is_b) {
+    return is_b ? find_side_b(pair, edge) : find_side_a(pair, edge);
+}
+
+INLINE vec2 find_side_normal(const struct box_pair *pair, vi edge, bool is_b) {
+    const vec2 normal = box_normal(pair, is_b ? BOX_HALF_B : BOX_HALF_A, edge);
+    return is_b ? v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), normal) : normal;
+}
+
+/* The edge next to a corner that is closer to n; of equals the one behind the corner. A capsule has two, opposite to
+ * each other, at either of its ends. */
+INLINE struct box_side find_closest_side(const struct box_pair *pair, vi corner, vec2 n, bool is_b) {
+    const vi next = vi_add(corner, vi_set(1));
+    vm behind;
+    vi edge;
+    if (pair->capsules) {
+        const vi own = vi_add(vi_and(vi_add(corner, vi_set(3)), vi_set(2)), vi_set(1));
+        behind = v_lt(v_set(0), v2_dot(find_side_normal(pair, own, is_b), n));
+        edge = vi_select(behind, own, vi_sub(vi_set(4), own));
+    } else {
+        const vf start = v2_cross(find_side_normal(pair, corner, is_b), n),
+                 end = v2_cross(find_side_normal(pair, next, is_b), n);
+        behind = v_lt(v_abs(start), v_abs(end));
+        edge = vi_select(behind, corner, next);
+    }
+    struct box_side side = find_side(pair, edge, is_b);
+    side.behind = behind;
+    return side;
 }
 
 INLINE struct box_side select_box_side(vm m, const struct box_side *a, const struct box_side *b) {
@@ -155,15 +186,8 @@ INLINE struct box_side select_box_side(vm m, const struct box_side *a, const str
 /* Takes the edges that are closest to n, in the lanes `which`, with the corners that touch. */
 INLINE void find_closest_sides(const struct box_pair *pair, vm which, vi corner_a, vi corner_b,
                                struct box_contact *contact) {
-    const vi one = vi_set(1);
-    const vec2 q = box_vec2(pair, BOX_ROTATION), n = contact->normal;
-    vm behind_a, behind_b;
-    const vi edge_a = find_closer_edge(corner_a, box_normal(corner_a), box_normal(vi_add(corner_a, one)), n, &behind_a);
-    const vi edge_b = find_closer_edge(corner_b, v2_rotate_opposite(q, box_normal(corner_b)),
-                                       v2_rotate_opposite(q, box_normal(vi_add(corner_b, one))), n, &behind_b);
-    struct box_side a = find_side_a(pair, edge_a), b = find_side_b(pair, edge_b);
-    a.behind = behind_a;
-    b.behind = behind_b;
+    const struct box_side a = find_closest_side(pair, corner_a, contact->normal, false);
+    const struct box_side b = find_closest_side(pair, corner_b, contact->normal, true);
     contact->a = select_box_side(which, &a, &contact->a);
     contact->b = select_box_side(which, &b, &contact->b);
 }

@@ -63,6 +63,15 @@ struct box_queue {
 /* Answers the pairs k ... of a queue in the lanes `live`. */
 typedef void box_stage(const struct call *call, const struct box_queue *queue, int k, int live);
 
+/* Appends the lanes `keep` of `item`. */
+INLINE void push_boxes(struct box_queue *queue, vm keep, const vf item[BOX_FIELDS]) {
+    const vp packing = vm_packing(keep);
+    UNROLL
+    for (int f = 0; f < BOX_FIELDS; f++)
+        v_store(queue->item[f] + queue->count, v_pack(packing, item[f]));
+    queue->count += __builtin_popcount(vm_bits(keep));
+}
+
 /* Takes as many whole vectors as there are, from the front so that the order stays; at the `end` all. */
 INLINE void run_boxes(const struct call *call, box_stage *answer, struct box_queue *queue, bool end) {
     int k = 0;
@@ -98,21 +107,20 @@ INLINE vi edge_number(vm on_x, vm negative) {
     return vi_add(vi_select(on_x, vi_set(0), vi_set(1)), vi_select(negative, vi_set(2), vi_set(0)));
 }
 
-/* Takes pairs of two boxes: puts those that may have a contact into the queue. Returns the lanes that are left. */
-INLINE vm take_boxes(const struct call *call, const struct pair_indices *indices, int k,
-                     const struct placement *placement, vm open, int32_t number) {
-    const narc_box_form *forms = call->batch->shapes->boxes;
+/* Are both shapes of that kind? */
+INLINE vm are_forms(const struct box_form *a, const struct box_form *b, uint32_t kind) {
+    return vi_lt(vi_set(0), vi_and(vi_and(a->info, b->info), vi_set((int32_t)kind)));
+}
+
+/* Takes pairs of two boxes, in the lanes `which`: puts those that may have a contact into the queue. Returns the lanes
+ * that it took. */
+INLINE vm take_boxes(const struct call *call, const struct box_form *a, const struct box_form *b,
+                     const struct placement *placement, vm which, int32_t number, struct box_queue *queue) {
     const struct pose *pose = &placement->pose;
     const vec2 t = pose->position, q = pose->rotation;
     const vf zero = v_set(0);
-    const struct box_form a = load_box_forms(forms, indices->shape_a + k);
-    const struct box_form b = load_box_forms(forms, indices->shape_b + k);
-    const vm boxes = vi_lt(vi_set(0), vi_and(vi_and(a.info, b.info), vi_set(NARC_IS_BOX)));
-    const vm which = vm_and(vm_and(open, boxes), placement->in_range);
-    if (!vm_any(which))
-        return open;
-    const vec2 half_a = v2_scale(a.half, pose->scale_a), half_b = v2_scale(b.half, pose->scale_b);
-    const vf radius_a = v_mul(a.radius, pose->scale_a), radius_b = v_mul(b.radius, pose->scale_b);
+    const vec2 half_a = v2_scale(a->half, pose->scale_a), half_b = v2_scale(b->half, pose->scale_b);
+    const vf radius_a = v_mul(a->radius, pose->scale_a), radius_b = v_mul(b->radius, pose->scale_b);
     const vf radii = v_add(radius_a, radius_b);
     const vf size_a = v_add(v_add(half_a.x, half_a.y), radius_a), size_b = v_add(v_add(half_b.x, half_b.y), radius_b);
 
@@ -157,41 +165,25 @@ INLINE vm take_boxes(const struct call *call, const struct pair_indices *indices
         const vi pairs = vi_add(vi_lanes(), vi_set(number));
         const vi edges = vi_add(edge_number(a_on_x, negative_a), vi_shift_left(edge_number(b_on_x, vm_not(back_b)), 2));
         const vi first =
-            vi_add(vi_shift_left(vi_and(a.info, vi_set(3)), 4), vi_shift_left(vi_and(b.info, vi_set(3)), 6));
+            vi_add(vi_shift_left(vi_and(a->info, vi_set(3)), 4), vi_shift_left(vi_and(b->info, vi_set(3)), 6));
         const vi tie = vi_select(certain, vi_set(0), vi_set(BOX_TIE));
         vf item[BOX_FIELDS];
         set_vec2(item, BOX_POSITION, t);
         set_vec2(item, BOX_ROTATION, q);
         set_vec2(item, BOX_ROTATION_A, placement->rotation_a);
         set_vec2(item, BOX_HALF_A, half_a);
-        set_vec2(item, BOX_HALF_B, b.half);
+        set_vec2(item, BOX_HALF_B, b->half);
         item[BOX_SCALE_B] = pose->scale_b;
         item[BOX_RADIUS_A] = radius_a;
         item[BOX_RADIUS_B] = radius_b;
         item[BOX_SLACK] = slack;
         item[BOX_CODE] = v_of_bits(vi_add(vi_add(edges, first), tie));
         item[BOX_PAIR] = v_of_bits(pairs);
-        struct box_queue *queue = call->boxes;
-        const vp packing = vm_packing(near);
-        UNROLL
-        for (int f = 0; f < BOX_FIELDS; f++)
-            v_store(queue->item[f] + queue->count, v_pack(packing, item[f]));
-        queue->count += __builtin_popcount(vm_bits(near));
+        push_boxes(queue, near, item);
         if (call->rows && call->batch->query->hints.base)
             put_hints(call, pairs, near, vi_set(FIRST_ARCS));
     }
-    return vm_and_not(open, taken);
-}
-
-/* Takes pairs of boxes and answers them a few vectors at a time. */
-INLINE vm take_detour(const struct call *call, const struct pair_indices *indices, int k,
-                      const struct placement *placement, vm open, int32_t number, box_stage *answer) {
-    const vm left = take_boxes(call, indices, k, placement, open, number);
-    if (!vm_any(left) && call->rows && !call->rows->dense && call->rows->done == number)
-        call->rows->done += V_WIDTH;
-    if (call->boxes->count >= BOX_FLUSH)
-        run_boxes(call, answer, call->boxes, false);
-    return left;
+    return taken;
 }
 
 #endif

@@ -3,7 +3,7 @@
  * box_rows.inl - the last step of a pair of boxes: contacts, and manifolds with their second point, ids, radii and
  * reaches. All is what base/contact_point.inl, base/rows.inl and sat/manifold_edges.inl define, and is computed in
  * the same way: of a box the edge closest to the normal is one of the two next to the corner that touches, and it is
- * never too short to be one.
+ * never too short to be one. Capsules differ in that their arcs go half a turn.
  *
  * Rows are listed at once while all pairs before them are answered (rows.inl).
  */
@@ -21,6 +21,7 @@
 #include "box/box_contact.inl"
 #include "box/box_pairs.inl"
 #include "box/box_walk.inl"
+#include "box/capsules.inl"
 #include "kernels.h"
 #include "sat/manifold_edges.inl"
 #include "simd/simd.h"
@@ -45,41 +46,75 @@ INLINE struct box_touch find_touch(const struct box_side *side, vec2 n, vf radiu
     return touch;
 }
 
-/* The caller's number of corner i, or of the edge before it. `shift`: of the first arc in the code. */
-INLINE vi box_feature(vi i, vi code, int shift) { return vi_and(vi_add(i, vi_shift_right(code, shift)), vi_set(3)); }
+/* The caller's number of corner i, or of the edge before it. `shift`: of the first arc in the code. Of a capsule
+ * the arc at -x, its corners 1 and 2, is stored first. */
+INLINE vi box_feature(const struct box_pair *pair, vi i, int shift) {
+    const vi first = vi_shift_right(box_code(pair), shift);
+    if (pair->capsules)
+        return vi_and(vi_add(vi_shift_right(vi_add(i, vi_set(3)), 1), first), vi_set(1));
+    return vi_and(vi_add(i, first), vi_set(3));
+}
 
 /* What touches, as a contact has it. */
-INLINE vi find_box_feature(const struct box_side *side, const struct box_touch *touch, vi code, int shift) {
-    const vi edge = vi_add(box_feature(side->edge, code, shift), vi_set(NARC_FEATURE_EDGE));
-    return vi_select(touch->parallel, edge, box_feature(box_touching(side), code, shift));
+INLINE vi find_box_feature(const struct box_pair *pair, const struct box_side *side, const struct box_touch *touch,
+                           int shift) {
+    const vi edge = vi_add(box_feature(pair, side->edge, shift), vi_set(NARC_FEATURE_EDGE));
+    return vi_select(touch->parallel, edge, box_feature(pair, box_touching(side), shift));
 }
 
 /* The reaches of a corner, as find_reach() has them, with the edge next to it. */
-INLINE vi find_box_reach(const struct box_side *side, const struct box_touch *touch) {
+INLINE vi find_box_reach(const struct box_pair *pair, const struct box_side *side, const struct box_touch *touch) {
     const vf zero = v_set(0), one = v_set(1), full = v_set(NARC_REACH_ONE);
     if (!vm_any(vm_not(touch->parallel)))
         return vi_set(0);
     const vf turn = v_select(side->behind, touch->sine, v_neg(touch->sine)); /* away from the edge */
-    const vf near = v_select(touch->parallel, zero, v_mul(full, v_min(v_max(turn, zero), one)));
-    const vf other = v_mul(full, v_select(v_lt(zero, turn), v_min(touch->cosine, one), one));
+    vf sine = v_min(v_max(turn, zero), one), other = v_select(v_lt(zero, turn), v_min(touch->cosine, one), one);
+    if (pair->capsules) { /* the other edge is half a turn away */
+        sine = v_select(v_lt(zero, touch->cosine), sine, one);
+        other = one;
+    }
+    const vf near = v_select(touch->parallel, zero, v_mul(full, sine));
+    other = v_mul(full, other);
     const vf far = v_select(touch->parallel, zero, other);
     return pack_halves(vi_truncate(v_select(side->behind, near, far)), vi_truncate(v_select(side->behind, far, near)));
 }
 
-/* The edge of a box as find_second_points() takes it. */
-INLINE struct edge find_box_edge(const struct box_side *side, const struct box_touch *touch, vec2 n, vf flat_sine,
-                                 vi code, int shift, bool is_b) {
-    const vec2 step = v2_scale(side->normal, touch->radius), low = v2_add(side->low, step),
-               high = v2_add(side->high, step);
+/* Places of an edge whose outward normal is `normal`, seen along n. */
+INLINE void place_box_edge(struct edge *edge, const struct box_side *side, vec2 normal, vf radius, vec2 n,
+                           vf arc_radius, bool turned) {
+    const vec2 step = v2_scale(normal, radius);
+    const vec2 low = v2_add(turned ? side->high : side->low, step),
+               high = v2_add(turned ? side->low : side->high, step);
+    edge->low = (struct edge_end){v2_cross(n, low), v2_dot(n, low), arc_radius};
+    edge->high = (struct edge_end){v2_cross(n, high), v2_dot(n, high), arc_radius};
+}
+
+/* The edge of a box as find_second_points() takes it. That of a capsule may lie along n, and then not look like an edge
+ * from there: the one on the other side is asked. */
+INLINE struct edge find_box_edge(const struct box_pair *pair, const struct box_side *side,
+                                 const struct box_touch *touch, vec2 n, vf flat_sine, int shift, bool is_b) {
     const vf radius = is_b ? v_neg(touch->radius) : touch->radius;
-    return (struct edge){.is_edge = vm_front(V_WIDTH),
-                         .offered = v_le(v_abs(touch->sine), flat_sine),
-                         .parallel = touch->parallel,
-                         .low = {v2_cross(n, low), v2_dot(n, low), radius},
-                         .high = {v2_cross(n, high), v2_dot(n, high), radius},
-                         .before = box_feature(vi_sub(side->edge, vi_set(1)), code, shift),
-                         .after = box_feature(side->edge, code, shift),
-                         .arc_radius = radius};
+    struct edge edge = {.is_edge = vm_front(V_WIDTH),
+                        .offered = v_le(v_abs(touch->sine), flat_sine),
+                        .parallel = touch->parallel,
+                        .before = box_feature(pair, vi_sub(side->edge, vi_set(1)), shift),
+                        .after = box_feature(pair, side->edge, shift),
+                        .arc_radius = radius};
+    place_box_edge(&edge, side, side->normal, touch->radius, n, radius, false);
+    if (pair->capsules) {
+        edge.is_edge = v_lt(edge.low.along, edge.high.along);
+        edge.offered = vm_and(edge.offered, edge.is_edge);
+        const vm again = vm_not(edge.is_edge);
+        if (vm_any(again)) {
+            struct edge other;
+            place_box_edge(&other, side, (vec2){v_neg(side->normal.x), v_neg(side->normal.y)}, touch->radius, n, radius,
+                           true);
+            edge.low = select_edge_end(again, &other.low, &edge.low);
+            edge.high = select_edge_end(again, &other.high, &edge.high);
+            edge.is_edge = v_lt(edge.low.along, edge.high.along);
+        }
+    }
+    return edge;
 }
 
 /* The words of a manifold's row behind its first one: the point that `place` tells, or those of two edges. */
@@ -93,17 +128,16 @@ INLINE struct box_manifold find_box_points(const struct call *call, const struct
                                            const struct box_touch *on_b, vec2 place, vf margin) {
     const vec2 n = c->normal, to_world = box_vec2(pair, BOX_ROTATION_A);
     const vf flat_sine = v_set(call->batch->flat_sine);
-    const vi code = box_code(pair);
-    const struct edge a = find_box_edge(&c->a, on_a, n, flat_sine, code, 4, false);
-    const struct edge b = find_box_edge(&c->b, on_b, n, flat_sine, code, 6, true);
+    const struct edge a = find_box_edge(pair, &c->a, on_a, n, flat_sine, 4, false);
+    const struct edge b = find_box_edge(pair, &c->b, on_b, n, flat_sine, 6, true);
     const struct end_point low = find_end_point(&a, &b, false), high = find_end_point(&a, &b, true);
     const vm stretch = is_stretch(&low, &high, c->separation, n, box_vec2(pair, BOX_POSITION));
     const vm faces = vm_and(vm_and(a.offered, b.offered), stretch);
     const struct end_point exact = get_deepest(&a, &b, place.y, place.x, c->separation);
     struct facing_points p = find_facing_points(&a, &b, low, high, &exact, find_second_margin(call, margin));
     if (vm_any(vm_not(faces))) {
-        const vi number_a = box_feature(box_touching(&c->a), code, 4),
-                 number_b = box_feature(box_touching(&c->b), code, 6);
+        const vi number_a = box_feature(pair, box_touching(&c->a), 4),
+                 number_b = box_feature(pair, box_touching(&c->b), 6);
         const vi id = find_touching_id(&a, &b, place.y, number_a, number_b);
         p.two = vm_and(p.two, faces);
         p.first = select_end_point(faces, &p.first, &exact);
@@ -133,12 +167,13 @@ INLINE void find_box_places(const struct call *call, const struct box_queue *que
 }
 
 /* Answers the pairs k ... of a queue in the lanes `live`. */
-INLINE void answer_boxes(const struct call *call, const struct box_queue *queue, int k, int live, bool manifolds) {
-    const struct box_pair pair = {queue, k};
+INLINE void answer_boxes(const struct call *call, const struct box_queue *queue, int k, int live, bool capsules,
+                         bool manifolds) {
+    const struct box_pair pair = {queue, k, capsules};
     const vi pairs = vi_bits(box_field(&pair, BOX_PAIR));
     const vf margin = find_margins(call, pairs);
     const vm open = vm_front(live);
-    const struct box_contact c = find_box_contact(&pair, open);
+    const struct box_contact c = capsules ? find_capsule_contact(&pair, open) : find_box_contact(&pair, open);
     const vm keep = vm_and(open, is_below(c.separation, margin));
     if (!vm_any(keep))
         return;
@@ -154,8 +189,8 @@ INLINE void answer_boxes(const struct call *call, const struct box_queue *queue,
     if (manifolds) {
         const struct box_manifold m = find_box_points(call, &pair, &c, &on_a, &on_b, place, margin);
         const vf head[4] = {v_of_bits(numbers), v_of_bits(m.count), normal.x, normal.y};
-        const vf radii[4] = {m.radius_a, m.radius_b, v_of_bits(find_box_reach(&c.a, &on_a)),
-                             v_of_bits(find_box_reach(&c.b, &on_b))};
+        const vf radii[4] = {m.radius_a, m.radius_b, v_of_bits(find_box_reach(&pair, &c.a, &on_a)),
+                             v_of_bits(find_box_reach(&pair, &c.b, &on_b))};
         v_put_rows(to, 0, head);
         v_put_rows(to, MANIFOLD_RADII, radii);
         v_put_rows(to, FIRST_POINT, m.first);
@@ -163,8 +198,8 @@ INLINE void answer_boxes(const struct call *call, const struct box_queue *queue,
         return;
     }
     const vf flat = v_set(INFINITY);
-    const vi of_a = find_box_feature(&c.a, &on_a, box_code(&pair), 4);
-    const vi of_b = find_box_feature(&c.b, &on_b, box_code(&pair), 6);
+    const vi of_a = find_box_feature(&pair, &c.a, &on_a, 4);
+    const vi of_b = find_box_feature(&pair, &c.b, &on_b, 6);
     const struct answer answer = {.separation = c.separation,
                                   .normal = normal,
                                   .point = v2_rotate(box_vec2(&pair, BOX_ROTATION_A), v2_rotate(n, place)),
@@ -175,11 +210,19 @@ INLINE void answer_boxes(const struct call *call, const struct box_queue *queue,
 }
 
 static void answer_box_contacts(const struct call *call, const struct box_queue *queue, int k, int live) {
-    answer_boxes(call, queue, k, live, false);
+    answer_boxes(call, queue, k, live, false, false);
 }
 
 static void answer_box_manifolds(const struct call *call, const struct box_queue *queue, int k, int live) {
-    answer_boxes(call, queue, k, live, true);
+    answer_boxes(call, queue, k, live, false, true);
+}
+
+static void answer_capsule_contacts(const struct call *call, const struct box_queue *queue, int k, int live) {
+    answer_boxes(call, queue, k, live, true, false);
+}
+
+static void answer_capsule_manifolds(const struct call *call, const struct box_queue *queue, int k, int live) {
+    answer_boxes(call, queue, k, live, true, true);
 }
 
 #endif

@@ -31,14 +31,14 @@ struct couple {
 INLINE struct couple find_couple(const struct box_pair *pair, int p, vi turn, vm *out_wraps) {
     const struct pose pose = box_pose(pair);
     const vi edge_a = vi_set(p), edge_b = vi_add(turn, edge_a);
-    const vec2 of_a = box_normal(edge_a), of_b = v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(edge_b));
+    const vec2 of_a = box_normal(pair, BOX_HALF_A, edge_a), of_b = find_side_normal(pair, edge_b, true);
     const vf angle = diamond_angle(of_b);
     *out_wraps = v_lt(v_set(2), angle);
     const vm a_first = p == 0 ? vm_and_not(v_lt(v_set(0), angle), *out_wraps) : v_lt(v_set((float)p), angle);
     return (struct couple){.low = v2_select(a_first, of_a, of_b),
                            .high = v2_select(a_first, of_b, of_a),
-                           .corner_a = box_corner(box_vec2(pair, BOX_HALF_A), edge_a),
-                           .corner_b = place_center_b(box_corner(box_vec2(pair, BOX_HALF_B), edge_b), &pose),
+                           .corner_a = box_corner(pair, BOX_HALF_A, edge_a),
+                           .corner_b = place_center_b(box_corner(pair, BOX_HALF_B, edge_b), &pose),
                            .a_first = a_first,
                            .b_first = vm_not(a_first),
                            .number_a = edge_a,
@@ -64,7 +64,8 @@ INLINE vm try_interval(const struct box_pair *pair, const struct couple *last, c
 }
 
 /* The largest gap, with the numbers of the corners in place of records. */
-static __attribute__((noinline)) void walk_boxes(const struct box_pair *pair, struct gap *out_best) {
+static __attribute__((noinline)) void walk_boxes(const struct box_pair *given, struct gap *out_best) {
+    const struct box_pair boxes = {given->queue, given->k, false}, *const pair = &boxes;
     const vec2 q = box_vec2(pair, BOX_ROTATION);
     const vm all = vm_front(V_WIDTH);
     const vi zero = vi_set(0);

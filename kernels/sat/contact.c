@@ -18,6 +18,7 @@
 #include "base/rows.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "box/box_detour.inl"
 #include "box/box_pairs.inl"
 #include "box/box_rows.inl"
 #include "kernels.h"
@@ -61,7 +62,7 @@ INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter 
     struct rows *rows = call->rows;
     const vm open = vm_and_not(take_valid(call, pair, circles, item), circles->apart);
     const bool due = !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid);
-    const bool room = (size_t)rows->listed + V_WIDTH <= call->count && (!call->boxes || call->boxes->count == 0);
+    const bool room = (size_t)rows->listed + V_WIDTH <= call->count && !boxes_wait(call);
     const bool in_order = due && room;
     const vm left = are_discs(open, item) ? answer_discs(call, open, circles->margin, item, in_order) : open;
     if (due && !vm_any(left) && (in_order || !vm_any(open)))
@@ -212,10 +213,12 @@ static void decide(const struct call *call, struct queue *queue, int begin, stru
     }
 }
 
+static box_stage *const contact_detours[BOX_QUEUES] = {answer_box_contacts, answer_capsule_contacts};
+static box_stage *const manifold_detours[BOX_QUEUES] = {answer_box_manifolds, answer_capsule_manifolds};
+
 INLINE vm detour_rows(const struct call *call, const struct pair_indices *indices, int k,
                       const struct placement *placement, vm open, int32_t number) {
-    box_stage *const answer = call->edges ? answer_box_manifolds : answer_box_contacts;
-    return take_detour(call, indices, k, placement, open, number, answer);
+    return take_detour(call, indices, k, placement, open, number, call->edges ? manifold_detours : contact_detours);
 }
 
 size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
@@ -225,7 +228,7 @@ size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, 
     stage *const formula[] = {decide, find_second_points};
     const int stage_count = manifolds ? STAGES : STAGES - 1, edged_stage = hinted ? 0 : CLIMB;
     struct queue queues[STAGES];
-    struct box_queue boxes;
+    struct box_queue boxes[BOX_QUEUES];
     struct rows rows;
     struct call call = begin_rows(batch, first, count, skipped, out, &rows);
     if (!NARC_SHORTCUTS) {
@@ -235,10 +238,9 @@ size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, 
     }
     call.edges = manifolds ? &queues[STAGES - 1] : NULL;
     if (batch->shapes->box_count > 0) {
-        boxes.count = 0;
-        call.boxes = &boxes;
+        start_boxes(&call, boxes);
         run_pairs(&call, detour_rows, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
-        run_boxes(&call, manifolds ? answer_box_manifolds : answer_box_contacts, &boxes, true);
+        end_boxes(&call, manifolds ? manifold_detours : contact_detours);
     } else {
         run_pairs(&call, NULL, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
     }

@@ -16,8 +16,10 @@
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
+#include "box/box_detour.inl"
 #include "box/box_pairs.inl"
 #include "box/box_walk.inl"
+#include "box/capsules.inl"
 #include "kernels.h"
 #include "sat/certificates.inl"
 #include "sat/normal_fan.inl"
@@ -140,16 +142,26 @@ static void decide_overlaps(const struct call *call, struct queue *queue, int be
 }
 
 /* Answers whether the pairs k ... of a queue overlap. */
-static void answer_box_overlaps(const struct call *call, const struct box_queue *queue, int k, int live) {
-    const struct box_pair pair = {queue, k};
+INLINE void mark_box_overlaps(const struct call *call, const struct box_queue *queue, int k, int live, bool capsules) {
+    const struct box_pair pair = {queue, k, capsules};
     const vm open = vm_front(live);
-    const struct box_contact c = find_box_contact(&pair, open);
+    const struct box_contact c = capsules ? find_capsule_contact(&pair, open) : find_box_contact(&pair, open);
     mark_pairs(call, vi_bits(box_field(&pair, BOX_PAIR)), vm_and(open, v_lt(c.separation, v_set(0))));
 }
 
+static void answer_box_overlaps(const struct call *call, const struct box_queue *queue, int k, int live) {
+    mark_box_overlaps(call, queue, k, live, false);
+}
+
+static void answer_capsule_overlaps(const struct call *call, const struct box_queue *queue, int k, int live) {
+    mark_box_overlaps(call, queue, k, live, true);
+}
+
+static box_stage *const overlap_detours[BOX_QUEUES] = {answer_box_overlaps, answer_capsule_overlaps};
+
 INLINE vm detour_overlaps(const struct call *call, const struct pair_indices *indices, int k,
                           const struct placement *placement, vm open, int32_t number) {
-    return take_detour(call, indices, k, placement, open, number, answer_box_overlaps);
+    return take_detour(call, indices, k, placement, open, number, overlap_detours);
 }
 
 void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
@@ -164,9 +176,8 @@ void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, si
         run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, 2, queues);
         return;
     }
-    struct box_queue boxes;
-    boxes.count = 0;
-    call.boxes = &boxes;
+    struct box_queue boxes[BOX_QUEUES];
+    start_boxes(&call, boxes);
     run_pairs(&call, detour_overlaps, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, 2, queues);
-    run_boxes(&call, answer_box_overlaps, &boxes, true);
+    end_boxes(&call, overlap_detours);
 }

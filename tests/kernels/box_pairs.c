@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * box_pairs.c - pairs of boxes have a way of their own: rows are those of the deciding formula, byte by byte, where
- * boxes are aligned, equal, tie, touch in corners, are thin, and where rotations and sizes are almost something else.
+ * box_pairs.c - pairs of boxes, and pairs of capsules, have a way of their own: rows are those of the deciding formula,
+ * byte by byte, where they are aligned, equal, tie, touch in corners, are thin, and where rotations and sizes are almost
+ * something else.
  */
 #include <float.h>
 #include <math.h>
@@ -20,7 +21,22 @@ enum { SHAPES = 24, PAIRS = 4000 };
 /* How boxes of a scene differ. */
 enum sizes { LATTICE, ALIKE, USUAL, THIN, SIZES };
 
-static struct shape make_box(struct test_random *random, enum sizes sizes, double unit) {
+/* What a scene is made of. */
+enum kinds { BOXES, CAPSULES, BOTH, OTHERS /* both, and what is neither */ };
+
+/* A capsule, or a segment, whose arcs are listed from either end: that turns the zeros in its normals. */
+static struct shape make_capsule(struct test_random *random, double length, double width) {
+    const double radii[] = {0, width, width, width * 1e-7, 0.0625, length};
+    const double radius = radii[random_below(random, 6)], x = random_below(random, 2) ? length / 2 : -length / 2;
+    struct shape shape = {.count = 0};
+    if (x > 0 && radius > 0 && random_below(random, 2))
+        return capsule_of(length, radius);
+    assert_int_equal(
+        narc_build_segment((narc_point){-x, 0}, (narc_point){x, 0}, radius, shape.arcs, &shape.count, NULL), NARC_OK);
+    return shape;
+}
+
+static struct shape make_form(struct test_random *random, enum sizes sizes, double unit, bool capsule) {
     const double spread = sizes == THIN ? 1e3 : 4;
     double width = random_log_between(random, 1 / spread, spread),
            height = random_log_between(random, 1 / spread, spread);
@@ -28,22 +44,25 @@ static struct shape make_box(struct test_random *random, enum sizes sizes, doubl
         width = sizes == ALIKE ? 1 : 0.25 * (double)(1 + random_below(random, 6));
         height = sizes == ALIKE ? 1 : 0.25 * (double)(1 + random_below(random, 6));
     }
+    if (capsule)
+        return make_capsule(random, width * unit, height * unit);
     const double least = fmin(width, height);
     const double radii[] = {0, 0, 0.0625, least * random_unit(random) / 2, least * 1e-7, least * 0.4999999};
     const double radius = fmin(radii[random_below(random, 6)], least / 4 * (1 + random_unit(random)));
     return box_of(width * unit, height * unit, radius * unit);
 }
 
-/* One that starts with another arc, or a shape that is no such box: turned, elsewhere, or something else. */
+/* One that starts with another arc, or a shape that has no such form: turned, elsewhere, or something else. */
 static struct shape make_other(struct test_random *random, double unit) {
-    struct shape shape = make_box(random, USUAL, unit);
-    const size_t kind = random_below(random, 4);
-    const double move = kind == 1 ? unit * random_between(random, -1, 1) : 0, turn = kind == 2 ? 0.5 : 0;
-    struct shape other = {.count = 4};
+    struct shape shape = make_form(random, USUAL, unit, random_below(random, 2));
+    const size_t kind = random_below(random, 5);
+    const double turns[] = {0.5, pi / 2}, turn = kind == 2 || kind == 4 ? turns[kind == 4] : 0;
+    const double move = kind == 1 ? unit * random_between(random, -1, 1) : 0;
+    struct shape other = {.count = shape.count};
     if (kind == 3)
-        return random_below(random, 2) ? circle_of(unit) : capsule_of(unit, unit);
-    for (size_t i = 0; i < 4; i++) {
-        const narc_arc arc = shape.arcs[(i + 1) % 4];
+        return random_below(random, 2) ? circle_of(unit) : capsule_of(unit * 1e-7, unit);
+    for (size_t i = 0; i < shape.count; i++) {
+        const narc_arc arc = shape.arcs[(i + 1) % shape.count];
         other.arcs[i] = (narc_arc){cos(turn) * arc.center_x - sin(turn) * arc.center_y + move,
                                    sin(turn) * arc.center_x + cos(turn) * arc.center_y, arc.radius, arc.start + turn,
                                    arc.end + turn};
@@ -90,7 +109,7 @@ static void turn_like(struct test_random *random, struct body *body, const struc
     body->sine = other->sine * by.cosine + other->cosine * by.sine;
 }
 
-/* How far a box reaches along its own axes, turned by an angle of which these are cosine and sine. */
+/* How far a box or a capsule reaches along its own axes, turned by an angle of which these are cosine and sine. */
 static double reach(const struct shape *box, double c, double s) {
     const narc_arc *arc = &box->arcs[0];
     return fabs(c) * fabs(arc->center_x) + fabs(s) * fabs(arc->center_y) + arc->radius;
@@ -130,13 +149,16 @@ static void place(struct test_random *random, const struct scene *scene, const s
     b->y = a->y + y * up + x * along;
 }
 
-static struct scene make_boxes(struct test_random *random, enum sizes sizes, bool mixed) {
+static struct scene make_boxes(struct test_random *random, enum sizes sizes, enum kinds kinds) {
+    const bool mixed = kinds == OTHERS;
     const narc_precision precision = random_below(random, 2) ? NARC_FLOAT64 : NARC_FLOAT32;
     struct scene scene = create_scene(precision, SHAPES, 2 * PAIRS, PAIRS);
     const double units[] = {1, 1, 1e-5, 3e4}, unit = sizes == LATTICE ? 1 : units[random_below(random, 4)];
     const double far = random_below(random, 3) ? unit : unit * random_log_between(random, 1, 1e4);
     for (size_t k = 0; k < SHAPES; k++) {
-        const struct shape shape = mixed && k % 4 == 0 ? make_other(random, unit) : make_box(random, sizes, unit);
+        const bool capsule = kinds == CAPSULES || (kinds != BOXES && random_below(random, 2));
+        const struct shape shape =
+            mixed && k % 4 == 0 ? make_other(random, unit) : make_form(random, sizes, unit, capsule);
         scene_add_shape(&scene, &shape);
     }
     for (size_t k = 0; k < PAIRS; k++) {
@@ -237,29 +259,75 @@ static void check_boxes(struct test_random *random, const struct scene *scene, c
     destroy_columns(&columns);
 }
 
-static void check_sizes(enum sizes sizes, bool mixed, const char *name) {
+static void check_sizes(enum sizes sizes, enum kinds kinds, const char *name) {
     struct test_random random = test_random_named(name);
     for (size_t round = 0; round < test_trials(8); round++) {
-        struct scene scene = make_boxes(&random, sizes, mixed);
+        struct scene scene = make_boxes(&random, sizes, kinds);
         check_boxes(&random, &scene, name);
         destroy_scene(&scene);
     }
 }
 
-TEST(test_lattice) { check_sizes(LATTICE, false, "boxes of a lattice"); }
+TEST(test_lattice) { check_sizes(LATTICE, BOXES, "boxes of a lattice"); }
 
-TEST(test_alike) { check_sizes(ALIKE, false, "squares"); }
+TEST(test_alike) { check_sizes(ALIKE, BOXES, "squares"); }
 
-TEST(test_usual) { check_sizes(USUAL, false, "boxes"); }
+TEST(test_usual) { check_sizes(USUAL, BOXES, "boxes"); }
 
-TEST(test_thin) { check_sizes(THIN, false, "thin boxes"); }
+TEST(test_thin) { check_sizes(THIN, BOXES, "thin boxes"); }
 
-TEST(test_mixed) { check_sizes(USUAL, true, "boxes among others"); }
+TEST(test_capsule_lattice) { check_sizes(LATTICE, CAPSULES, "capsules of a lattice"); }
+
+TEST(test_alike_capsules) { check_sizes(ALIKE, CAPSULES, "equal capsules"); }
+
+TEST(test_capsules) { check_sizes(USUAL, CAPSULES, "capsules"); }
+
+TEST(test_thin_capsules) { check_sizes(THIN, CAPSULES, "thin capsules"); }
+
+TEST(test_both) { check_sizes(LATTICE, BOTH, "boxes and capsules"); }
+
+TEST(test_mixed) { check_sizes(USUAL, OTHERS, "boxes and capsules among others"); }
+
+/* A box waits while capsules are answered, and pairs that are neither are far apart: rows stay in the order of pairs. */
+TEST(test_order_of_rows) {
+    struct scene scene = create_scene(NARC_FLOAT32, 2, 400, 200);
+    const struct shape box = box_of(2, 2, 0), capsule = capsule_of(2, 1);
+    scene_add_shape(&scene, &box);
+    scene_add_shape(&scene, &capsule);
+    for (uint32_t k = 0; k < 200; k++) {
+        struct body a = {.cosine = 1, .scale = 1, .shape = k > 0}, b = a;
+        b.shape = k % 2 ? 0 : a.shape;
+        b.x = k % 2 ? 100 : 0.5;
+        scene_add_two(&scene, a, b);
+    }
+    struct test_random random = test_random_named("order");
+    check_boxes(&random, &scene, "a box before capsules");
+    destroy_scene(&scene);
+}
+
+/* Capsules and boxes come seldom, among circles, and then all at once. */
+TEST(test_seldom) {
+    struct scene scene = create_scene(NARC_FLOAT32, 3, 3000, 1500);
+    const struct shape circle = circle_of(1), box = box_of(2, 1, 0.25), capsule = capsule_of(2, 0.5);
+    scene_add_shape(&scene, &circle);
+    scene_add_shape(&scene, &box);
+    scene_add_shape(&scene, &capsule);
+    struct test_random random = test_random_named("seldom");
+    for (uint32_t k = 0; k < 1500; k++) {
+        struct body a = {.cosine = 1, .scale = 1}, b = a;
+        a.shape = b.shape = k % 41 == 0 || k > 1200 ? 1 + k % 2 : 0;
+        b.x = random_between(&random, -2, 2);
+        b.y = random_between(&random, -1, 1);
+        scene_add_two(&scene, a, b);
+    }
+    check_boxes(&random, &scene, "seldom");
+    destroy_scene(&scene);
+}
 
 /* Hints are those of contacts: overlaps leave them alone. */
 TEST(test_overlaps_without_hints) {
     struct test_random random = test_random_named("hints");
-    struct scene scene = make_boxes(&random, USUAL, true);
+    struct scene scene = make_boxes(&random, USUAL, OTHERS);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
     uint32_t *hints = malloc(pairs.count * sizeof *hints);

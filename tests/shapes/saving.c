@@ -243,11 +243,8 @@ static void write_word(unsigned char *bytes, uint32_t word) {
         bytes[k] = (unsigned char)(word >> 8 * k);
 }
 
-/* Kernels for boxes go by half of their sizes, the others by the bounding circle: where that is forged, there is no box.
- */
-TEST(forged_circle_makes_no_box) {
+static void check_forged(struct shape box) {
     narc_shapes *shapes = empty_store(), *loaded = NULL;
-    const struct shape box = box_of(4, 2, 0);
     unsigned char is[4], *at = NULL;
     size_t size;
     narc_error error;
@@ -271,6 +268,12 @@ TEST(forged_circle_makes_no_box) {
     narc_destroy_shapes(shapes);
     free(bytes);
 }
+
+/* Kernels for boxes and capsules go by half of their sizes, the others by the bounding circle: where that is forged,
+ * there is no box, and no capsule. */
+TEST(forged_circle_makes_no_box) { check_forged(box_of(4, 2, 0)); }
+
+TEST(forged_circle_makes_no_capsule) { check_forged(capsule_of(4, 2)); }
 
 /* Damage with a checksum that fits, as by someone who means it: an error, or a store like any other. */
 TEST(forged_bytes_do_no_harm) {

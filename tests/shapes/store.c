@@ -288,6 +288,38 @@ TEST(knows_boxes) {
     }
 }
 
+/* Capsules along the x axis about their origin, listed from either end, with the signs of the zeros in their normals;
+ * nothing else. */
+TEST(knows_capsules) {
+    struct shape capsule = capsule_of(4, 1), shape;
+    for (int turned = 0; turned < 2; turned++) {
+        const double x = turned ? -2 : 2;
+        for (int radius = 0; radius < 2; radius++) {
+            narc_build_segment((narc_point){-x, 0}, (narc_point){x, 0}, radius, shape.arcs, &shape.count, NULL);
+            expect_form(&shape, 2, 0, (float)radius, turned ? NARC_IS_CAPSULE : NARC_IS_CAPSULE | 1);
+            assert_int_equal(signbit(find_form(shape.arcs, shape.count).half_y) != 0, !turned);
+        }
+    }
+    expect_form(&capsule, 2, 0, 1, NARC_IS_CAPSULE | 1);
+    for (int change = 0; change < 6; change++) {
+        const double turn = change == 2 ? 1e-6 : change == 3 ? 1.5707963267948966 : 0;
+        shape = capsule;
+        for (size_t k = 0; k < 2; k++) {
+            narc_arc *arc = &shape.arcs[k];
+            const double x = arc->center_x;
+            arc->center_x = cos(turn) * x + (change == 0 ? 1e-6 : 0);
+            arc->center_y = sin(turn) * x + (change == 1 ? 0.5 : 0);
+            arc->start += turn;
+            arc->end += turn;
+        }
+        if (change == 4)
+            shape = capsule_of(1e-7, 1); /* its sides are no edges */
+        if (change == 5)
+            shape = circle_of(1);
+        assert_int_equal(find_form(shape.arcs, shape.count).info, 0);
+    }
+}
+
 /* The filters' circles hold for the shape that was stored, and are not much larger or smaller than they must be. */
 TEST(bounds_what_is_stored) {
     struct test_random random = test_random_named("bounds");
