@@ -56,6 +56,12 @@ narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, siz
                              const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count,
                              narc_error *error);
 
+/* The same for those pairs alone that have one of broad->fresh, some `fresh_count` bodies. All other boxes are as they were
+ * when narc_sweep_boxes() or this function ended last, for this broad phase. False: that would take as long as all pairs,
+ * which are then to be found. */
+bool narc_sweep_fresh(narc_broad_phase *broad, const narc_box *boxes, size_t count, size_t fresh_count,
+                      const narc_pair_filter *filter, size_t *out_count);
+
 /* Lists these `found` pairs in their order, sweeping again if not all were held. NARC_ERROR_MEMORY. */
 narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const narc_pair_filter *filter,
                                   const narc_workers *workers, size_t found, uint32_t *out_a, uint32_t *out_b,
@@ -65,6 +71,12 @@ narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const n
  * order of min_x. There is room for all boxes and a part for each worker. */
 void narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers);
 
+/* Puts the boxes of a strip, whose entries are listed at its places, into the columns in the order of min_x. */
+void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes);
+
+/* Fills what a kernel may read behind the last box of the columns. */
+void narc_end_columns(const narc_box_columns *boxes, size_t end);
+
 /* The number of the strip of a level that holds `y`, or of one `offset` strips above it; the nearest one that boxes may
  * lie in. */
 uint64_t narc_strip_number(const narc_broad_phase *broad, const narc_level *level, float y, int64_t offset);
@@ -72,6 +84,18 @@ uint64_t narc_strip_number(const narc_broad_phase *broad, const narc_level *leve
 /* Puts the bodies of each pair from `first` on into their order, a < b, leaves out pairs that the filter does not let,
  * and returns how many there are then, with those before `first`. */
 uint32_t narc_filter_pairs(const narc_pair_filter *filter, uint32_t *a, uint32_t *b, uint32_t first, uint32_t count);
+
+/* What a new list has of the last one. narc_match_lists(): the index that each pair had, and whether its bodies changed
+ * their order, by the numbers that they had. narc_list_added(): the pairs that were in none; returns how many are lost.
+ * narc_merge_pairs(): both, and pairs: those of the last list without a fresh body, and `count` others, in order like
+ * these; there is room for all. Then narc_list_lost(), with room for as many; and narc_mark_pairs(), by kinds. */
+void narc_match_lists(const narc_kept_list *last, narc_kept_list *made, const uint32_t *last_index,
+                      const narc_workers *workers);
+size_t narc_list_added(narc_kept_list *last, narc_kept_list *made);
+size_t narc_merge_pairs(const uint8_t *fresh, narc_kept_list *last, narc_kept_list *made, const uint32_t *a,
+                        const uint32_t *b, size_t count);
+void narc_list_lost(const narc_kept_list *last, narc_kept_list *made, size_t lost_count);
+void narc_mark_pairs(const narc_broad_phase *broad, narc_kept_list *made);
 
 /* Writes the pairs of `blocks` blocks in their order. There is room for all. */
 void narc_order_pairs(narc_broad_phase *broad, size_t blocks, size_t body_count, const narc_workers *workers,
