@@ -121,13 +121,18 @@ narc_status narc_reserve_matches(narc_broad_phase *broad, size_t first_count, si
 }
 
 narc_status narc_reserve_bodies(narc_broad_phase *broad, size_t count) {
-    enum { BYTES = 2 * sizeof(narc_box) + sizeof(narc_body_filter) + 2 * sizeof(uint32_t) + 2 };
+    enum {
+        BYTES = sizeof(narc_pose_bits) + 2 * sizeof(narc_box) + sizeof(narc_body_filter) + 2 * sizeof(uint32_t) + 3
+    };
     if (broad->body_memory && count <= broad->body_capacity)
         return NARC_OK;
     const size_t n = with_room(count, 1024);
     if (n > SIZE_MAX - 64 || !replace(broad, &broad->body_memory, n + 64, BYTES))
         return NARC_ERROR_MEMORY;
     char *at = broad->body_memory;
+    broad->known.poses = take(&at, n, sizeof *broad->known.poses);
+    broad->known.count = 0;
+    broad->known.moved = take(&at, n, 1);
     broad->boxes_now = take(&at, n, sizeof *broad->boxes_now);
     broad->kept_boxes = take(&at, n, sizeof *broad->kept_boxes);
     broad->filters = take(&at, n, sizeof *broad->filters);

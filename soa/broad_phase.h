@@ -56,6 +56,22 @@ typedef struct narc_box_columns {
     uint32_t *body;
 } narc_box_columns;
 
+/* All bits of a pose: two positions, cosine and sine, scale and shape. */
+typedef struct narc_pose_bits {
+    uint64_t word[4];
+} narc_pose_bits;
+
+/* The poses that boxes were computed from the last time, which serve again while all else is the same. */
+typedef struct narc_known_poses {
+    narc_pose_bits *poses;
+    size_t count;             /* of the first bodies */
+    uint8_t *moved;           /* 1: the box may be another one than the kept box was made from */
+    narc_precision precision; /* of positions */
+    const narc_shapes *shapes;
+    uint64_t changes, history; /* of the shapes */
+    float margin, skin;        /* the skin: for `moved` */
+} narc_known_poses;
+
 /* Where a kernel puts the bodies whose boxes overlap, a and b in any order: room for some now, and more when it asks. */
 typedef struct narc_found_pairs {
     uint32_t *a, *b;
@@ -106,6 +122,7 @@ struct narc_broad_phase {
     bool renewed;         /* lists may say more than that all is kept: new pairs, lost ones, flips */
     size_t body_capacity; /* for each body: */
     narc_box *boxes_now, *kept_boxes;
+    narc_known_poses known; /* those of boxes_now */
     narc_body_filter *filters;
     uint32_t *last_index; /* its number in the last list */
     uint32_t *place;      /* of its box in the columns, NARC_NO_PLACE or NARC_STRAY */

@@ -167,6 +167,13 @@ static uint64_t sweep_all(narc_broad_phase *broad, const narc_kernel_table *kern
     return atomic_load_explicit(&job.found, memory_order_relaxed);
 }
 
+/* The workers for so many boxes. */
+static narc_workers choose_workers(const narc_workers *workers, size_t count) {
+    narc_workers chosen = workers ? *workers : (narc_workers){.count = 1};
+    chosen.count = narc_count_workers(workers, count / NARC_PART_BOXES + 1);
+    return chosen;
+}
+
 /* ------------------------------------------------------------------------------------------------ few boxes */
 
 /* Strays lie behind the strips in the columns: first those that are not fresh, then the fresh ones, both as if they were
@@ -186,28 +193,25 @@ static void sort_strays(narc_broad_phase *broad, const narc_box *boxes, narc_str
     narc_end_columns(&broad->boxes, end);
 }
 
-/* Takes fresh bodies out of the strips; false: there are too many strays. */
-static bool list_strays(narc_broad_phase *broad, size_t count, size_t fresh_count) {
-    if (broad->stray_count + fresh_count > narc_most_strays(count))
-        return false;
+/* Takes fresh bodies out of the strips. */
+static void list_strays(narc_broad_phase *broad, size_t count) {
     if (broad->stray_count == 0) {
         for (size_t k = 0; k < count; k++)
             broad->place[k] = NARC_NO_PLACE;
         for (uint32_t k = 0; k < broad->sorted_count; k++)
             broad->place[broad->boxes.body[k]] = k;
     }
-    for (uint32_t body = 0; body < count; body++) {
+    for (size_t body = 0; (body = narc_find_flag(broad->fresh, body, count)) < count; body++) {
         const uint32_t place = broad->place[body];
-        if (!broad->fresh[body] || place == NARC_STRAY)
+        if (place == NARC_STRAY)
             continue;
         if (place != NARC_NO_PLACE) {
             broad->boxes.min_y[place] = INFINITY; /* min_x stays, for the order */
             broad->boxes.max_y[place] = -INFINITY;
         }
         broad->place[body] = NARC_STRAY;
-        broad->strays[broad->stray_count++] = body;
+        broad->strays[broad->stray_count++] = (uint32_t)body;
     }
-    return true;
 }
 
 /* What a search for fresh boxes may take for each box of all: less than finding all pairs. */
@@ -237,12 +241,16 @@ static bool sweep_strays(narc_broad_phase *broad, const narc_kernel_table *kerne
 }
 
 bool narc_sweep_fresh(narc_broad_phase *broad, const narc_box *boxes, size_t count, size_t fresh_count,
-                      const narc_pair_filter *filter, size_t *out_count) {
+                      const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count) {
     narc_strip strays[2];
     narc_status status;
     const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
-    if (!kernels || !list_strays(broad, count, fresh_count))
+    const narc_workers chosen = choose_workers(workers, count);
+    if (!kernels || fresh_count > narc_most_strays(count) / 2)
         return false;
+    if (broad->stray_count + fresh_count > narc_most_strays(count))
+        narc_sort_into_strips(broad, boxes, count, &chosen);
+    list_strays(broad, count);
     sort_strays(broad, boxes, strays);
     return sweep_strays(broad, kernels, filter, count, strays, out_count);
 }
@@ -261,13 +269,6 @@ static narc_status check(const narc_broad_phase *broad, const narc_box *boxes, s
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)count, "%zu boxes, at most %lu", count,
                          (unsigned long)(UINT32_MAX - 1));
     return NARC_OK;
-}
-
-/* The workers for so many boxes. */
-static narc_workers choose_workers(const narc_workers *workers, size_t count) {
-    narc_workers chosen = workers ? *workers : (narc_workers){.count = 1};
-    chosen.count = narc_count_workers(workers, count / NARC_PART_BOXES + 1);
-    return chosen;
 }
 
 narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, size_t count,

@@ -120,19 +120,24 @@ size_t narc_merge_pairs(const uint8_t *fresh, narc_kept_list *last, narc_kept_li
 
 /* ------------------------------------------------------------------------------------------------ marks */
 
+/* All move, and none is a sensor. */
+static void mark_moving_pairs(narc_kept_list *made) {
+    const size_t count = made->list.pairs.count;
+    for (size_t k = 0; k < count; k++)
+        made->marks[k] &= NARC_FLIPPED;
+    for (size_t k = 0; k < count; k++)
+        made->selected[k] = (uint32_t)k;
+    made->list.contact_count = count;
+}
+
 /* Sensors are listed from the end of the memory for all pairs, and then turned round. */
-void narc_mark_pairs(const narc_broad_phase *broad, narc_kept_list *made) {
+static void mark_pairs_by_kinds(const narc_body_filter *filters, narc_kept_list *made) {
     const unsigned rest = NARC_STATIC | NARC_ASLEEP;
-    narc_pair_list *const list = &made->list;
-    const size_t count = list->pairs.count;
+    const size_t count = made->list.pairs.count;
     uint32_t *const selected = made->selected;
     size_t contacts = 0, sensors = 0;
-    for (size_t k = 0; k < count && !broad->has_filter; k++) {
-        made->marks[k] &= NARC_FLIPPED;
-        selected[contacts++] = (uint32_t)k;
-    }
-    for (size_t k = 0; k < count && broad->has_filter; k++) {
-        const unsigned a = broad->filters[made->a[k]].kind, b = broad->filters[made->b[k]].kind;
+    for (size_t k = 0; k < count; k++) {
+        const unsigned a = filters[made->a[k]].kind, b = filters[made->b[k]].kind;
         const bool tested = !(a & rest && b & rest), sensor = (a | b) & NARC_SENSOR;
         made->marks[k] = (uint8_t)((made->marks[k] & NARC_FLIPPED) | a | b);
         selected[contacts] = (uint32_t)k;
@@ -146,8 +151,17 @@ void narc_mark_pairs(const narc_broad_phase *broad, narc_kept_list *made) {
         first[k] = first[sensors - 1 - k];
         first[sensors - 1 - k] = moved;
     }
-    list->contacts = selected;
-    list->contact_count = contacts;
-    list->sensors = first;
-    list->sensor_count = sensors;
+    made->list.contact_count = contacts;
+    made->list.sensor_count = sensors;
+}
+
+void narc_mark_pairs(const narc_broad_phase *broad, narc_kept_list *made) {
+    narc_pair_list *const list = &made->list;
+    list->contact_count = list->sensor_count = 0;
+    if (broad->has_filter)
+        mark_pairs_by_kinds(broad->filters, made);
+    else
+        mark_moving_pairs(made);
+    list->contacts = made->selected;
+    list->sensors = made->selected + list->pairs.count - list->sensor_count;
 }

@@ -6,9 +6,11 @@
 #define NARC_BROAD_PHASE_STEPS_H
 
 #include "broad_phase.h"
+#include "narc_broad_phase.h"
 #include "narc_workers.h"
 
 #include <float.h>
+#include <string.h>
 
 /* "options.`name` is ...": it is at least 0 and finite. */
 narc_status narc_check_length(float length, const char *name, narc_error *error);
@@ -50,6 +52,20 @@ static inline bool narc_is_box(const narc_box *box) {
 /* What the filter says of one body. */
 narc_body_filter narc_read_filter(const narc_pair_filter *filter, size_t body);
 
+/* narc_compute_boxes() where boxes of some poses are there: if `known` is not NULL, `options` the same as then, and the
+ * shapes too. */
+narc_status narc_compute_other_boxes(const narc_shapes *shapes, const narc_bodies *bodies,
+                                     const narc_box_options *options, const narc_known_poses *known,
+                                     narc_box *out_boxes, narc_error *error);
+
+/* The first of places from .. count - 1 with a flag, or `count`. */
+static inline size_t narc_find_flag(const uint8_t *flags, size_t from, size_t count) {
+    if (from < count && flags[from])
+        return from;
+    const uint8_t *const found = from < count ? memchr(flags + from, 1, count - from) : NULL;
+    return found ? (size_t)(found - flags) : count;
+}
+
 /* Finds the pairs of boxes that overlap and may form a pair; *out_count is how many. The broad phase holds as many of
  * them as there is memory for. Errors as narc_find_pairs() has them, but for NARC_ERROR_CAPACITY. */
 narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, size_t count,
@@ -60,7 +76,7 @@ narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, siz
  * when narc_sweep_boxes() or this function ended last, for this broad phase. False: that would take as long as all pairs,
  * which are then to be found. */
 bool narc_sweep_fresh(narc_broad_phase *broad, const narc_box *boxes, size_t count, size_t fresh_count,
-                      const narc_pair_filter *filter, size_t *out_count);
+                      const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count);
 
 /* Lists these `found` pairs in their order, sweeping again if not all were held. NARC_ERROR_MEMORY. */
 narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const narc_pair_filter *filter,

@@ -49,6 +49,40 @@ static void add_room(const update *u, const narc_box *boxes, float half, narc_bo
     }
 }
 
+/* No box is known; all may be others. */
+static void forget_poses(narc_broad_phase *broad) {
+    broad->known.count = 0;
+    memset(broad->known.moved, 1, broad->body_capacity);
+}
+
+/* The boxes of bodies. Those that have not moved keep theirs, unless boxes depend on more than poses. */
+static narc_status compute_boxes(const update *u, const narc_shapes *shapes, const narc_bodies *bodies) {
+    narc_broad_phase *const broad = u->broad;
+    const narc_pair_options *const o = u->options;
+    const narc_box_options box_options = {
+        .margin = o->margin * 0.5f, .motion_x = o->motion_x, .motion_y = o->motion_y, .workers = o->workers};
+    const bool by_pose = !o->motion_x.base && !o->motion_y.base && !o->reach.base;
+    narc_known_poses *const known = &broad->known;
+    if (!by_pose || known->precision != bodies->x.precision || known->shapes != shapes ||
+        known->changes != shapes->change_count || known->history != shapes->history || known->margin != o->margin ||
+        known->skin != o->skin)
+        forget_poses(broad);
+    const narc_status status =
+        narc_compute_other_boxes(shapes, bodies, &box_options, by_pose ? known : NULL, broad->boxes_now, u->error);
+    if (status != NARC_OK)
+        return status;
+    if (o->reach.base)
+        add_room(u, broad->boxes_now, 0, broad->boxes_now);
+    known->count = by_pose ? u->count : 0;
+    known->precision = bodies->x.precision;
+    known->shapes = shapes;
+    known->changes = shapes->change_count;
+    known->history = shapes->history;
+    known->margin = o->margin;
+    known->skin = o->skin;
+    return NARC_OK;
+}
+
 /* ------------------------------------------------------------------------------------------------ what has changed */
 
 /* LEFT: a body has left its kept box, or may form other pairs. REST: one fell asleep or woke. WHOLE: no kept box is of
@@ -58,6 +92,10 @@ enum { LEFT = 1, REST = 2, WHOLE = 4 };
 static bool is_inside(const narc_box *box, const narc_box *around) {
     return box->min_x >= around->min_x && box->min_y >= around->min_y && box->max_x <= around->max_x &&
            box->max_y <= around->max_y;
+}
+
+static bool has_kept_box(const narc_broad_phase *broad, size_t body) {
+    return broad->kept_boxes[body].min_x <= broad->kept_boxes[body].max_x;
 }
 
 /* From the skin, `room` may have gone on a side, or come. */
@@ -88,11 +126,12 @@ static void look(void *argument, size_t part, size_t first, size_t end) {
     const narc_broad_phase *const broad = u->broad;
     const float half = u->options->skin / 2;
     bool left = false, rest = false;
-    size_t fresh_count = 0;
+    size_t fresh_count = 0, k = first;
     (void)part;
-    for (size_t k = first; k < end; k++) {
+    memset(broad->fresh + first, 0, end - first);
+    for (; (k = all->use_filters ? k : narc_find_flag(broad->known.moved, k, end)) < end; k++) {
         const narc_box *const box = &u->boxes[k], *const kept = &broad->kept_boxes[k];
-        const bool has = narc_is_box(box), had = kept->min_x <= kept->max_x;
+        const bool has = narc_is_box(box), had = has_kept_box(broad, k);
         bool out = has ? !is_inside(box, kept) : had, fresh = has ? !is_near(box, kept, half) : had;
         if (all->use_filters) {
             const narc_body_filter now = filter_of(u, k), *const then = &broad->filters[k];
@@ -211,17 +250,25 @@ static narc_status find_last_indices(const update *u, narc_kept_list *last, narc
 
 /* ------------------------------------------------------------------------------------------------ a new list */
 
-/* Boxes with their skin and filters, as the new list knows them; returns how many bodies have no box. */
-static size_t keep_bodies(const update *u, unsigned found) {
+/* Gives fresh bodies boxes with the skin, as the new list knows them, and all bodies their filters. Returns how many
+ * have no box, if it was so many in the last list. */
+static size_t keep_bodies(const update *u, unsigned found, size_t skipped) {
     narc_broad_phase *const broad = u->broad;
-    size_t skipped = 0;
+    const bool whole = found & WHOLE;
+    if (whole) {
+        memset(broad->fresh, 1, u->count);
+        skipped = 0;
+    }
     broad->has_filter = u->options->filter;
-    for (size_t k = 0; k < u->count; k++) {
-        const bool has = narc_is_box(&u->boxes[k]), fresh = (found & WHOLE) || broad->fresh[k];
+    for (size_t k = 0; k < u->count && broad->has_filter && (found & REST); k++)
+        broad->filters[k].kind = filter_of(u, k).kind;
+    for (size_t k = 0; (k = narc_find_flag(broad->fresh, k, u->count)) < u->count; k++) {
+        const bool has = narc_is_box(&u->boxes[k]);
         skipped += !has;
-        if (fresh)
-            broad->kept_boxes[k] = has ? widen(u->boxes[k], u->options->skin) : empty;
-        if (broad->has_filter && (fresh || (found & REST)))
+        skipped -= !whole && !has_kept_box(broad, k);
+        broad->kept_boxes[k] = has ? widen(u->boxes[k], u->options->skin) : empty;
+        broad->known.moved[k] = 0;
+        if (broad->has_filter)
             broad->filters[k] = filter_of(u, k);
     }
     return skipped;
@@ -292,8 +339,10 @@ static narc_status find(const update *u, bool same, unsigned found, size_t fresh
     if (status != NARC_OK)
         return status;
     broad->is_current = broad->is_sorted = false; /* as long as the kept boxes are not the last list's */
-    const size_t skipped = keep_bodies(u, found);
-    if (sorted && narc_sweep_fresh(broad, broad->kept_boxes, u->count, fresh_count, u->options->filter, &fresh_pairs) &&
+    const size_t skipped = keep_bodies(u, found, last->list.skipped);
+    if (sorted &&
+        narc_sweep_fresh(broad, broad->kept_boxes, u->count, fresh_count, u->options->filter, u->options->workers,
+                         &fresh_pairs) &&
         fresh_pairs < UINT32_MAX - last->list.pairs.count)
         status = merge(u, last, made, skipped, fresh_pairs, &lost_count);
     else
@@ -359,17 +408,10 @@ narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes
     narc_status status = begin(&u, out_list);
     if (status != NARC_OK)
         return status;
-    const narc_box_options box_options = {.margin = u.options->margin * 0.5f,
-                                          .motion_x = u.options->motion_x,
-                                          .motion_y = u.options->motion_y,
-                                          .workers = u.options->workers};
-    narc_box *const boxes = broad->boxes_now;
-    status = narc_compute_boxes(shapes, bodies, &box_options, boxes, error);
+    status = compute_boxes(&u, shapes, bodies);
     if (status != NARC_OK)
         return status;
-    if (u.options->reach.base)
-        add_room(&u, boxes, 0, boxes);
-    u.boxes = boxes;
+    u.boxes = broad->boxes_now;
     return finish(&u, out_list);
 }
 
@@ -384,6 +426,7 @@ narc_status narc_update_box_pairs(narc_broad_phase *broad, const narc_box *boxes
         return narc_fail_missing(error, "boxes");
     if (u.options->motion_x.base || u.options->motion_y.base)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "options.motion with boxes, which hold their motion");
+    forget_poses(broad);
     if (u.options->margin > 0 || u.options->reach.base) {
         add_room(&u, boxes, u.options->margin * 0.5f, broad->boxes_now);
         u.boxes = broad->boxes_now;
