@@ -13,9 +13,6 @@
 /* Bodies in a part: some 20 microseconds of work. */
 enum { PART = 1024 };
 
-/* Bodies whose boxes are computed together: the widest vector. */
-enum { GROUP = 16 };
-
 narc_status narc_check_length(float length, const char *name, narc_error *error) {
     if (!isfinite(length))
         return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)length, "options.%s is %g", name, (double)length);
@@ -33,12 +30,6 @@ typedef struct box_job {
     narc_box *out_boxes;
     atomic_size_t skipped;
 } box_job;
-
-static void compute_boxes(box_job *job, size_t first, size_t count) {
-    const size_t skipped = job->kernels->box(&job->batch, first, count, job->out_boxes + first);
-    if (skipped > 0)
-        atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
-}
 
 /* The bits of an item of 32 bits of a column. */
 static uint64_t bits_at(const void *base, ptrdiff_t stride, size_t k) {
@@ -65,11 +56,12 @@ static narc_pose_bits get_pose_bits(const narc_bodies *bodies, size_t k) {
                              bits_at(scale.base, scale.stride, k) | (uint64_t)narc_index_at(bodies->shape, k) << 32}};
 }
 
-/* Have bodies first .. end - 1 their known poses? Others take their places. */
-static bool recall_poses(const narc_bodies *given, const narc_known_poses *all, size_t first, size_t end) {
+/* Lists those of bodies first .. end - 1 whose poses are not the known ones, which they are then. */
+static size_t list_moved(const narc_bodies *given, const narc_known_poses *all, size_t first, size_t end,
+                         uint32_t *list) {
     const narc_bodies bodies = *given; /* copies, which nothing that is written could change */
     const narc_known_poses known = *all;
-    bool same = true;
+    size_t count = 0;
     for (size_t k = first; k < end; k++) {
         const narc_pose_bits now = get_pose_bits(&bodies, k), then = known.poses[k];
         const uint64_t other = (now.word[0] ^ then.word[0]) | (now.word[1] ^ then.word[1]) |
@@ -78,26 +70,22 @@ static bool recall_poses(const narc_bodies *given, const narc_known_poses *all, 
             continue;
         known.poses[k] = now;
         known.moved[k] = 1;
-        same = false;
+        list[count++] = (uint32_t)k;
     }
-    return same;
+    return count;
 }
 
 static void compute_part(void *argument, size_t part, size_t start, size_t end) {
     box_job *job = argument;
-    size_t first = job->first + start, last = job->first + end, to = first;
+    const size_t first = job->first + start;
+    size_t count = end - start;
+    uint32_t list[PART];
     (void)part;
     if (job->known)
-        for (size_t from = first; from < last; from = to) {
-            to = last - from < GROUP ? last : from + GROUP;
-            if (recall_poses(job->batch.bodies, job->known, from, to)) {
-                if (first < from)
-                    compute_boxes(job, first, from - first);
-                first = to;
-            }
-        }
-    if (first < last)
-        compute_boxes(job, first, last - first);
+        count = list_moved(job->batch.bodies, job->known, first, job->first + end, list);
+    const size_t skipped = job->kernels->box(&job->batch, job->known ? list : NULL, first, count, job->out_boxes);
+    if (skipped > 0)
+        atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
 
 narc_status narc_compute_other_boxes(const narc_shapes *shapes, const narc_bodies *bodies,

@@ -124,8 +124,6 @@ size_t narc_merge_pairs(const uint8_t *fresh, narc_kept_list *last, narc_kept_li
 static void mark_moving_pairs(narc_kept_list *made) {
     const size_t count = made->list.pairs.count;
     for (size_t k = 0; k < count; k++)
-        made->marks[k] &= NARC_FLIPPED;
-    for (size_t k = 0; k < count; k++)
         made->selected[k] = (uint32_t)k;
     made->list.contact_count = count;
 }

@@ -21,6 +21,10 @@ static inline size_t narc_part_size(size_t count, size_t parts) { return count /
 /* Both bodies of a pair as one number; pairs in order have rising numbers. */
 static inline uint64_t narc_join_pair(uint32_t a, uint32_t b) { return (uint64_t)a << 32 | b; }
 
+/* narc_match_pairs() of two lists in order. */
+void narc_match_in_order(const narc_pairs *old_pairs, const narc_pairs *new_pairs, const narc_workers *workers,
+                         uint32_t *out_match);
+
 /* The first pair of a list in order that is not before `pair`. */
 size_t narc_find_pair(const narc_pairs *pairs, uint64_t pair);
 

@@ -132,7 +132,7 @@ static void look(void *argument, size_t part, size_t first, size_t end) {
     for (; (k = all->use_filters ? k : narc_find_flag(broad->known.moved, k, end)) < end; k++) {
         const narc_box *const box = &u->boxes[k], *const kept = &broad->kept_boxes[k];
         const bool has = narc_is_box(box), had = has_kept_box(broad, k);
-        bool out = has ? !is_inside(box, kept) : had, fresh = has ? !is_near(box, kept, half) : had;
+        bool out = has ? !is_inside(box, kept) : had;
         if (all->use_filters) {
             const narc_body_filter now = filter_of(u, k), *const then = &broad->filters[k];
             const unsigned other = now.kind ^ then->kind;
@@ -140,7 +140,8 @@ static void look(void *argument, size_t part, size_t first, size_t end) {
                    (other & (NARC_STATIC | NARC_SENSOR));
             rest |= (other & NARC_ASLEEP) != 0;
         }
-        broad->fresh[k] = fresh |= out;
+        const bool fresh = out || (has && !is_near(box, kept, half));
+        broad->fresh[k] = fresh;
         fresh_count += fresh;
         left |= out;
     }
@@ -308,10 +309,9 @@ static narc_status find_all(const update *u, bool same, narc_kept_list *last, na
     if (!same && made->has_ids)
         narc_match_lists(last, made, broad->last_index, workers);
     else
-        status = narc_match_pairs(broad, &last->list.pairs, &made->list.pairs, workers, made->previous, u->error);
-    if (status == NARC_OK)
-        *out_lost = narc_list_added(last, made);
-    return status;
+        narc_match_in_order(&last->list.pairs, &made->list.pairs, workers, made->previous);
+    *out_lost = narc_list_added(last, made);
+    return NARC_OK;
 }
 
 /* Lists `found` pairs of fresh bodies, and those of others that were there. */
