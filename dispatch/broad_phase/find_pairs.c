@@ -176,6 +176,18 @@ static narc_workers choose_workers(const narc_workers *workers, size_t count) {
 
 /* ------------------------------------------------------------------------------------------------ few boxes */
 
+/* Lists strays as they lie in the columns, both kinds together in the order of min_x, so that they hardly need sorting the
+ * next time. */
+static void merge_strays(narc_broad_phase *broad, const narc_strip *old, const narc_strip *fresh) {
+    const narc_box_columns *const boxes = &broad->boxes;
+    uint32_t *to = broad->strays, i = old->first, k = fresh->first;
+    while (i < old->end || k < fresh->end) {
+        const bool take_old = k == fresh->end || (i < old->end && boxes->min_x[i] <= boxes->min_x[k]);
+        *to++ = boxes->body[take_old ? i++ : k++];
+    }
+    broad->stray_count = (size_t)(to - broad->strays);
+}
+
 /* Strays lie behind the strips in the columns: first those that are not fresh, then the fresh ones, both as if they were
  * strips. There is room for all. */
 static void sort_strays(narc_broad_phase *broad, const narc_box *boxes, narc_strip strays[2]) {
@@ -184,13 +196,16 @@ static void sort_strays(narc_broad_phase *broad, const narc_box *boxes, narc_str
         strays[fresh] = (narc_strip){.first = end};
         for (size_t k = 0; k < broad->stray_count; k++) {
             const uint32_t body = broad->strays[k];
-            if (broad->fresh[body] == fresh && narc_is_box(&boxes[body]))
+            if (!narc_is_box(&boxes[body]))
+                broad->place[body] = NARC_NO_PLACE;
+            else if (broad->fresh[body] == fresh)
                 broad->entries[end++] = (narc_box_entry){.min_x = boxes[body].min_x, .body = body};
         }
         strays[fresh].end = end;
         narc_sort_strip(broad, &strays[fresh], boxes);
     }
     narc_end_columns(&broad->boxes, end);
+    merge_strays(broad, &strays[0], &strays[1]);
 }
 
 /* Takes fresh bodies out of the strips. */
@@ -214,25 +229,31 @@ static void list_strays(narc_broad_phase *broad, size_t count) {
     }
 }
 
-/* What a search for fresh boxes may take for each box of all: less than finding all pairs. */
-enum { STEPS_FOR_BOX = 4 };
+/* What a search for fresh boxes may take for each box of all, less than finding all pairs; how many fresh boxes are swept
+ * before it is asked how long that took. */
+enum { STEPS_FOR_BOX = 4, FRESH_AT_A_TIME = 16 };
 
-/* Sweeps each fresh box with those behind it, the other strays, and the strips. False: it took too long. */
+/* Sweeps fresh boxes with each other, with the other strays, and one by one with the strips. False: it took too long. */
 static bool sweep_strays(narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_pair_filter *filter,
                          size_t count, const narc_strip strays[2], size_t *out_count) {
+    const narc_box_columns *const boxes = &broad->boxes;
     const uint64_t most_steps = STEPS_FOR_BOX * (uint64_t)count;
     sweep job = {.broad = broad, .kernels = kernels, .filter = filter, .tasks = 1};
     uint32_t a[NARC_PAIR_BLOCK], b[NARC_PAIR_BLOCK];
     own_pairs own = {{.room = NARC_PAIR_BLOCK, .get_room = get_room}, &job, 0, 0, a, b};
+    narc_strip few = strays[1], behind = strays[1];
     atomic_store_explicit(&broad->block_count, 0, memory_order_relaxed);
     begin_block(&own);
-    for (narc_strip behind = strays[1]; behind.first < behind.end && own.pairs.steps < most_steps;) {
-        const uint32_t k = behind.first++;
-        const narc_strip one = {
-            .first = k, .end = k + 1, .min_y = broad->boxes.min_y[k], .max_y = broad->boxes.max_y[k]};
-        sweep_both(broad, kernels, &one, &behind, &own.pairs);
-        sweep_both(broad, kernels, &one, &strays[0], &own.pairs);
-        sweep_levels(broad, kernels, &one, &broad->levels[broad->level_count], &own.pairs);
+    for (; behind.first < behind.end && own.pairs.steps < most_steps; few.first = few.end) {
+        few.end = behind.end - few.first > FRESH_AT_A_TIME ? few.first + FRESH_AT_A_TIME : behind.end;
+        behind.first = few.end;
+        kernels->sweep(boxes, few.first, few.end, few.first, few.end, few.width, &own.pairs);
+        sweep_both(broad, kernels, &few, &behind, &own.pairs);
+        sweep_both(broad, kernels, &few, &strays[0], &own.pairs);
+        for (uint32_t k = few.first; k < few.end; k++) {
+            const narc_strip one = {.first = k, .end = k + 1, .min_y = boxes->min_y[k], .max_y = boxes->max_y[k]};
+            sweep_levels(broad, kernels, &one, &broad->levels[broad->level_count], &own.pairs);
+        }
     }
     end_block(&own);
     *out_count = (size_t)own.total;

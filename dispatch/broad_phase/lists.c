@@ -87,33 +87,53 @@ static void take_over(const narc_kept_list *last, size_t first, size_t end, narc
         made->previous[to + k] = (uint32_t)(first + k);
 }
 
+/* The first pair of a list from `at` on that has a fresh body, or is not before `next`; the number of pairs if there is
+ * none. Four at a time, as most of them have not. */
+static size_t skip_pairs(const uint8_t *fresh, const narc_kept_list *list, size_t at, uint64_t next) {
+    const uint32_t *const a = list->a, *const b = list->b;
+    const size_t count = list->list.pairs.count;
+    while (count - at >= 4 && narc_join_pair(a[at + 3], b[at + 3]) < next &&
+           !(fresh[a[at]] | fresh[b[at]] | fresh[a[at + 1]] | fresh[b[at + 1]] | fresh[a[at + 2]] | fresh[b[at + 2]] |
+             fresh[a[at + 3]] | fresh[b[at + 3]]))
+        at += 4;
+    while (at < count && !(fresh[a[at]] | fresh[b[at]]) && narc_join_pair(a[at], b[at]) < next)
+        at++;
+    return at;
+}
+
+/* A pair of a fresh body that is there still belongs to the run of those that stay. */
 size_t narc_merge_pairs(const uint8_t *fresh, narc_kept_list *last, narc_kept_list *made, const uint32_t *a,
                         const uint32_t *b, size_t count) {
     const size_t last_count = last->list.pairs.count;
-    size_t from = 0, to = 0, added = 0, lost = 0;
+    size_t first = 0, at = 0, k = 0, to = 0, added = 0, lost = 0;
     memset(last->matched, 1, last_count);
-    for (size_t k = 0; from < last_count || k < count;) {
+    for (;;) {
         const uint64_t next = k < count ? narc_join_pair(a[k], b[k]) : UINT64_MAX;
-        size_t end = from;
-        while (end < last_count && !(fresh[last->a[end]] | fresh[last->b[end]]) &&
-               narc_join_pair(last->a[end], last->b[end]) < next)
-            end++;
-        take_over(last, from, end, made, to);
-        to += end - from;
-        from = end;
-        if (from < last_count && narc_join_pair(last->a[from], last->b[from]) < next) {
-            last->matched[from++] = 0;
-            lost++;
-        } else if (k < count) {
-            const bool was = is_pair(last, from, a[k], b[k]);
-            made->a[to] = a[k];
-            made->b[to] = b[k++];
-            made->previous[to] = was ? (uint32_t)from++ : NARC_NO_MATCH;
-            made->added[added] = (uint32_t)to++;
-            added += !was;
+        at = skip_pairs(fresh, last, at, next);
+        const uint64_t there = at < last_count ? narc_join_pair(last->a[at], last->b[at]) : UINT64_MAX;
+        if (there == next && k == count) /* both lists are at their ends */
+            break;
+        if (there == next) {
+            at++;
+            k++;
+            continue;
         }
+        take_over(last, first, at, made, to);
+        to += at - first;
+        first = at;
+        if (there < next) {
+            last->matched[at] = 0;
+            first = ++at;
+            lost++;
+            continue;
+        }
+        made->a[to] = a[k];
+        made->b[to] = b[k++];
+        made->previous[to] = NARC_NO_MATCH;
+        made->added[added++] = (uint32_t)to++;
     }
-    made->list.pairs.count = to;
+    take_over(last, first, at, made, to);
+    made->list.pairs.count = to + at - first;
     made->list.added_count = added;
     return lost;
 }
