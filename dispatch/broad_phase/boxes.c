@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * boxes.c - narc_compute_boxes(): argument checks, then bodies part by part to the kernel.
+ * boxes.c - narc_compute_boxes(): argument checks, then bodies part by part to the kernel; and the boxes of a step of
+ * narc_update_pairs(), of bodies that have moved.
  */
 #include "column.h"
 #include "dispatch.h"
@@ -88,9 +89,9 @@ static void compute_part(void *argument, size_t part, size_t start, size_t end) 
         atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
 
-narc_status narc_compute_other_boxes(const narc_shapes *shapes, const narc_bodies *bodies,
-                                     const narc_box_options *options, const narc_known_poses *known,
-                                     narc_box *out_boxes, narc_error *error) {
+/* Where boxes of some poses are known, from the same options and shapes, of all others. */
+static narc_status compute_boxes(const narc_shapes *shapes, const narc_bodies *bodies, const narc_box_options *options,
+                                 const narc_known_poses *known, narc_box *out_boxes, narc_error *error) {
     static const narc_box_options defaults = {0};
     const narc_box_options *const o = options ? options : &defaults;
     if (!shapes || !bodies)
@@ -120,5 +121,58 @@ narc_status narc_compute_other_boxes(const narc_shapes *shapes, const narc_bodie
 
 narc_status narc_compute_boxes(const narc_shapes *shapes, const narc_bodies *bodies, const narc_box_options *options,
                                narc_box *out_boxes, narc_error *error) {
-    return narc_compute_other_boxes(shapes, bodies, options, NULL, out_boxes, error);
+    return compute_boxes(shapes, bodies, options, NULL, out_boxes, error);
+}
+
+/* ------------------------------------------------------------------------------------------------ boxes of a step */
+
+/* x - by or less, finite: a rounding errs by half of the step that is added, or less. */
+static float lower(float x, float by) {
+    const float rounded = x - by, down = rounded - (fabsf(rounded) * 0x1p-23f + FLT_TRUE_MIN);
+    return by == 0 ? x : down < -FLT_MAX ? -FLT_MAX : down;
+}
+
+narc_box narc_widen_box(narc_box box, float by) {
+    return (narc_box){lower(box.min_x, by), lower(box.min_y, by), -lower(-box.max_x, by), -lower(-box.max_y, by)};
+}
+
+void narc_add_room(const narc_box *boxes, size_t count, float room, narc_float_column reach, narc_box *out_boxes) {
+    for (size_t k = 0; k < count; k++) {
+        const float own = reach.base ? narc_float_at(reach, k) : 0;
+        const bool fine = narc_is_box(&boxes[k]) && own >= 0 && own <= FLT_MAX;
+        out_boxes[k] = fine ? narc_widen_box(narc_widen_box(boxes[k], room), own) : narc_empty_box();
+    }
+}
+
+void narc_forget_poses(narc_broad_phase *broad) {
+    broad->known.count = 0;
+    memset(broad->known.moved, 1, broad->body_capacity);
+}
+
+narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
+                                    const narc_pair_options *options, narc_error *error) {
+    const narc_box_options box_options = {.margin = options->margin * 0.5f,
+                                          .motion_x = options->motion_x,
+                                          .motion_y = options->motion_y,
+                                          .workers = options->workers};
+    const bool by_pose = !options->motion_x.base && !options->motion_y.base && !options->reach.base;
+    narc_known_poses *const known = &broad->known;
+    if (!by_pose || known->precision != bodies->x.precision || known->shapes != shapes ||
+        known->changes != shapes->change_count || known->history != shapes->history ||
+        known->margin != options->margin || known->skin != options->skin)
+        narc_forget_poses(broad);
+    const narc_status status =
+        compute_boxes(shapes, bodies, &box_options, by_pose ? known : NULL, broad->boxes_now, error);
+    if (status != NARC_OK)
+        return status;
+    if (options->reach.base)
+        narc_add_room(broad->boxes_now, bodies->count, 0, options->reach, broad->boxes_now);
+    known->count = by_pose ? bodies->count : 0;
+    known->precision = bodies->x.precision;
+    known->shapes = shapes;
+    known->changes = shapes->change_count;
+    known->history = shapes->history;
+    known->margin = options->margin;
+    known->skin = options->skin;
+    return NARC_OK;
 }

@@ -176,8 +176,8 @@ static narc_workers choose_workers(const narc_workers *workers, size_t count) {
 
 /* ------------------------------------------------------------------------------------------------ few boxes */
 
-/* Lists strays as they lie in the columns, both kinds together in the order of min_x, so that they hardly need sorting the
- * next time. */
+/* Lists strays as they lie in the columns, both kinds together in the order of min_x, so that they hardly need sorting
+ * the next time. */
 static void merge_strays(narc_broad_phase *broad, const narc_strip *old, const narc_strip *fresh) {
     const narc_box_columns *const boxes = &broad->boxes;
     uint32_t *to = broad->strays, i = old->first, k = fresh->first;
@@ -188,8 +188,8 @@ static void merge_strays(narc_broad_phase *broad, const narc_strip *old, const n
     broad->stray_count = (size_t)(to - broad->strays);
 }
 
-/* Strays lie behind the strips in the columns: first those that are not fresh, then the fresh ones, both as if they were
- * strips. There is room for all. */
+/* Strays lie behind the strips in the columns: first those that are not fresh, then the fresh ones, both as if they
+ * were strips. There is room for all. */
 static void sort_strays(narc_broad_phase *broad, const narc_box *boxes, narc_strip strays[2]) {
     uint32_t end = (uint32_t)broad->sorted_count;
     for (uint8_t fresh = 0; fresh < 2; fresh++) {
@@ -229,11 +229,11 @@ static void list_strays(narc_broad_phase *broad, size_t count) {
     }
 }
 
-/* What a search for fresh boxes may take for each box of all, less than finding all pairs; how many fresh boxes are swept
- * before it is asked how long that took. */
+/* What a search for fresh boxes may take for each box of all, less than finding all pairs; how many fresh boxes are
+ * swept before it is asked how long that took. */
 enum { STEPS_FOR_BOX = 4, FRESH_AT_A_TIME = 16 };
 
-/* Sweeps fresh boxes with each other, with the other strays, and one by one with the strips. False: it took too long. */
+/* Sweeps fresh boxes with each other, with the other strays, and one by one with the strips. False: it took long. */
 static bool sweep_strays(narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_pair_filter *filter,
                          size_t count, const narc_strip strays[2], size_t *out_count) {
     const narc_box_columns *const boxes = &broad->boxes;

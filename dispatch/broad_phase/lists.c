@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * lists.c - the parts of a new list of narc_update_pairs(): pairs that stay, which pair of the last list each was, which
- * are new or lost, marks.
+ * lists.c - the parts of a new list of narc_update_pairs(): pairs that stay, which pair of the last list each was,
+ * which are new or lost, marks.
  */
 #include "narc_broad_phase.h"
 #include "steps.h"
@@ -78,13 +78,17 @@ void narc_list_lost(const narc_kept_list *last, narc_kept_list *made, size_t los
 
 /* ------------------------------------------------------------------------------------------------ pairs that stay */
 
+static void list_numbers(uint32_t *out, uint32_t first, uint32_t count) {
+    for (uint32_t k = 0; k < count; k++)
+        out[k] = first + k;
+}
+
 /* Takes pairs first .. end - 1 of the last list over, to place `to`. */
 static void take_over(const narc_kept_list *last, size_t first, size_t end, narc_kept_list *made, size_t to) {
     const size_t count = end - first;
     memcpy(made->a + to, last->a + first, count * sizeof *made->a);
     memcpy(made->b + to, last->b + first, count * sizeof *made->b);
-    for (size_t k = 0; k < count; k++)
-        made->previous[to + k] = (uint32_t)(first + k);
+    list_numbers(made->previous + to, (uint32_t)first, (uint32_t)count);
 }
 
 /* The first pair of a list from `at` on that has a fresh body, or is not before `next`; the number of pairs if there is
@@ -142,10 +146,8 @@ size_t narc_merge_pairs(const uint8_t *fresh, narc_kept_list *last, narc_kept_li
 
 /* All move, and none is a sensor. */
 static void mark_moving_pairs(narc_kept_list *made) {
-    const size_t count = made->list.pairs.count;
-    for (size_t k = 0; k < count; k++)
-        made->selected[k] = (uint32_t)k;
-    made->list.contact_count = count;
+    list_numbers(made->selected, 0, (uint32_t)made->list.pairs.count);
+    made->list.contact_count = made->list.pairs.count;
 }
 
 /* Sensors are listed from the end of the memory for all pairs, and then turned round. */

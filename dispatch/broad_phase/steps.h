@@ -10,6 +10,7 @@
 #include "narc_workers.h"
 
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
 /* "options.`name` is ...": it is at least 0 and finite. */
@@ -56,11 +57,21 @@ static inline bool narc_is_box(const narc_box *box) {
 /* What the filter says of one body. */
 narc_body_filter narc_read_filter(const narc_pair_filter *filter, size_t body);
 
-/* narc_compute_boxes() where boxes of some poses are there: if `known` is not NULL, `options` the same as then, and the
- * shapes too. */
-narc_status narc_compute_other_boxes(const narc_shapes *shapes, const narc_bodies *bodies,
-                                     const narc_box_options *options, const narc_known_poses *known,
-                                     narc_box *out_boxes, narc_error *error);
+static inline narc_box narc_empty_box(void) { return (narc_box){INFINITY, INFINITY, -INFINITY, -INFINITY}; }
+
+/* A box that is larger on each side by at least `by`, hardly more, and finite. */
+narc_box narc_widen_box(narc_box box, float by);
+
+/* The boxes with so much room, and each body's own reach. A body whose reach is broken has none. */
+void narc_add_room(const narc_box *boxes, size_t count, float room, narc_float_column reach, narc_box *out_boxes);
+
+/* Computes broad->boxes_now, without a skin. Bodies that have not moved keep theirs, unless boxes depend on more than
+ * poses. Errors as narc_compute_boxes() has them. */
+narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
+                                    const narc_pair_options *options, narc_error *error);
+
+/* Knows no pose: all bodies may have moved. */
+void narc_forget_poses(narc_broad_phase *broad);
 
 /* The first of places from .. count - 1 with a flag, or `count`. */
 static inline size_t narc_find_flag(const uint8_t *flags, size_t from, size_t count) {
@@ -76,9 +87,9 @@ narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, siz
                              const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count,
                              narc_error *error);
 
-/* The same for those pairs alone that have one of broad->fresh, some `fresh_count` bodies. All other boxes are as they were
- * when narc_sweep_boxes() or this function ended last, for this broad phase. False: that would take as long as all pairs,
- * which are then to be found. */
+/* The same for those pairs alone that have one of broad->fresh, some `fresh_count` bodies. All other boxes are as they
+ * were when narc_sweep_boxes() or this function ended last, for this broad phase. False: that would take as long as all
+ * pairs, which are then to be found. */
 bool narc_sweep_fresh(narc_broad_phase *broad, const narc_box *boxes, size_t count, size_t fresh_count,
                       const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count);
 

@@ -11,7 +11,6 @@
 #include "narc_broad_phase.h"
 #include "steps.h"
 
-#include <math.h>
 #include <string.h>
 
 /* Bodies that a thread looks at at a time: some 10 microseconds of work. */
@@ -24,64 +23,6 @@ typedef struct update {
     const narc_pair_options *options;
     narc_error *error;
 } update;
-
-/* ------------------------------------------------------------------------------------------------ boxes */
-
-static const narc_box empty = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-
-/* x - by or less, finite: a rounding errs by half of the step that is added, or less. */
-static float lower(float x, float by) {
-    const float rounded = x - by, down = rounded - (fabsf(rounded) * 0x1p-23f + FLT_TRUE_MIN);
-    return by == 0 ? x : down < -FLT_MAX ? -FLT_MAX : down;
-}
-
-static narc_box widen(narc_box box, float by) {
-    return (narc_box){lower(box.min_x, by), lower(box.min_y, by), -lower(-box.max_x, by), -lower(-box.max_y, by)};
-}
-
-/* The boxes with half of the margin, `half`, and each body's own reach. A body whose reach is broken has none. */
-static void add_room(const update *u, const narc_box *boxes, float half, narc_box *out_boxes) {
-    const narc_float_column reach = u->options->reach;
-    for (size_t k = 0; k < u->count; k++) {
-        const float own = reach.base ? narc_float_at(reach, k) : 0;
-        const bool fine = narc_is_box(&boxes[k]) && own >= 0 && own <= FLT_MAX;
-        out_boxes[k] = fine ? widen(widen(boxes[k], half), own) : empty;
-    }
-}
-
-/* No box is known; all may be others. */
-static void forget_poses(narc_broad_phase *broad) {
-    broad->known.count = 0;
-    memset(broad->known.moved, 1, broad->body_capacity);
-}
-
-/* The boxes of bodies. Those that have not moved keep theirs, unless boxes depend on more than poses. */
-static narc_status compute_boxes(const update *u, const narc_shapes *shapes, const narc_bodies *bodies) {
-    narc_broad_phase *const broad = u->broad;
-    const narc_pair_options *const o = u->options;
-    const narc_box_options box_options = {
-        .margin = o->margin * 0.5f, .motion_x = o->motion_x, .motion_y = o->motion_y, .workers = o->workers};
-    const bool by_pose = !o->motion_x.base && !o->motion_y.base && !o->reach.base;
-    narc_known_poses *const known = &broad->known;
-    if (!by_pose || known->precision != bodies->x.precision || known->shapes != shapes ||
-        known->changes != shapes->change_count || known->history != shapes->history || known->margin != o->margin ||
-        known->skin != o->skin)
-        forget_poses(broad);
-    const narc_status status =
-        narc_compute_other_boxes(shapes, bodies, &box_options, by_pose ? known : NULL, broad->boxes_now, u->error);
-    if (status != NARC_OK)
-        return status;
-    if (o->reach.base)
-        add_room(u, broad->boxes_now, 0, broad->boxes_now);
-    known->count = by_pose ? u->count : 0;
-    known->precision = bodies->x.precision;
-    known->shapes = shapes;
-    known->changes = shapes->change_count;
-    known->history = shapes->history;
-    known->margin = o->margin;
-    known->skin = o->skin;
-    return NARC_OK;
-}
 
 /* ------------------------------------------------------------------------------------------------ what has changed */
 
@@ -267,7 +208,7 @@ static size_t keep_bodies(const update *u, unsigned found, size_t skipped) {
         const bool has = narc_is_box(&u->boxes[k]);
         skipped += !has;
         skipped -= !whole && !has_kept_box(broad, k);
-        broad->kept_boxes[k] = has ? widen(u->boxes[k], u->options->skin) : empty;
+        broad->kept_boxes[k] = has ? narc_widen_box(u->boxes[k], u->options->skin) : narc_empty_box();
         broad->known.moved[k] = 0;
         if (broad->has_filter)
             broad->filters[k] = filter_of(u, k);
@@ -408,7 +349,7 @@ narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes
     narc_status status = begin(&u, out_list);
     if (status != NARC_OK)
         return status;
-    status = compute_boxes(&u, shapes, bodies);
+    status = narc_compute_step_boxes(broad, shapes, bodies, u.options, error);
     if (status != NARC_OK)
         return status;
     u.boxes = broad->boxes_now;
@@ -426,9 +367,9 @@ narc_status narc_update_box_pairs(narc_broad_phase *broad, const narc_box *boxes
         return narc_fail_missing(error, "boxes");
     if (u.options->motion_x.base || u.options->motion_y.base)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "options.motion with boxes, which hold their motion");
-    forget_poses(broad);
+    narc_forget_poses(broad);
     if (u.options->margin > 0 || u.options->reach.base) {
-        add_room(&u, boxes, u.options->margin * 0.5f, broad->boxes_now);
+        narc_add_room(boxes, count, u.options->margin * 0.5f, u.options->reach, broad->boxes_now);
         u.boxes = broad->boxes_now;
     }
     return finish(&u, out_list);

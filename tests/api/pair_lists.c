@@ -589,7 +589,7 @@ TEST(lists_all_bodies_that_are_close) {
                 close += gap < 0.249;
                 assert_true(listed || gap > 0.249);
                 if (!list->kept)
-                    assert_true(!listed || gap < 0.25 + 0.25 + 2 * 2 * motion);
+                    assert_true(!listed || gap < 0.25 + 3 * 0.125 + 2 * 2 * motion);
             }
     }
     assert_true(kept >= steps / 15 && close > 3 * steps);
@@ -627,6 +627,166 @@ TEST(notices_shapes_that_change) {
     assert_true(list->kept && list->lost_count == 0 && list->skipped == 1);
     narc_destroy_broad_phase(broad);
     narc_destroy_shapes(shapes);
+}
+
+/* Bodies with all that a box is made from, positions in both precisions. */
+typedef struct placed {
+    double x, y;
+    float near_x, near_y, cosine, sine, scale;
+    uint32_t shape;
+} placed;
+
+static narc_bodies view_placed(const placed *bodies, size_t count, bool doubles, bool scales) {
+    narc_bodies view = {.count = count,
+                        .x = NARC_POSITION_COLUMN(bodies, x),
+                        .y = NARC_POSITION_COLUMN(bodies, y),
+                        .cosine = NARC_COLUMN(bodies, cosine),
+                        .sine = NARC_COLUMN(bodies, sine),
+                        .shape = NARC_COLUMN(bodies, shape)};
+    if (!doubles) {
+        view.x = NARC_POSITION_COLUMN(bodies, near_x);
+        view.y = NARC_POSITION_COLUMN(bodies, near_y);
+    }
+    if (scales)
+        view.scale = NARC_COLUMN(bodies, scale);
+    return view;
+}
+
+static void change_placed(struct test_random *random, placed *one) {
+    switch (random_below(random, 6)) {
+    case 0:
+        one->x += random_between(random, -1, 1);
+        one->near_x = (float)one->x;
+        break;
+    case 1:
+        one->y = random_below(random, 4) ? one->y + random_between(random, -0.1, 0.1) : NAN;
+        one->near_y = (float)one->y;
+        break;
+    case 2: { /* the other end */
+        const float cosine = one->cosine;
+        one->cosine = -one->sine;
+        one->sine = cosine;
+        break;
+    }
+    case 3:
+        one->scale = one->scale == 1 ? 1.5f : 1;
+        break;
+    case 4:
+        one->shape = 1 - one->shape;
+        break;
+    default:
+        one->y = one->near_y = 0;
+        break;
+    }
+}
+
+/* Boxes of bodies that rest are not computed again: the list is that of boxes that are, whatever changes. */
+TEST(notices_all_that_boxes_are_made_from) {
+    enum { COUNT = 200 };
+    struct test_random random = test_random_named("placed");
+    narc_broad_phase *broad = create_broad_phase(NULL), *other = create_broad_phase(NULL);
+    narc_shapes *shapes = empty_store();
+    placed bodies[COUNT];
+    narc_box boxes[COUNT];
+    float margin = 0.25f, skin_now = 0.25f;
+    bool doubles = true, scales = true;
+    size_t kept = 0, count = COUNT;
+    narc_arc capsule[NARC_MAX_ARCS];
+    size_t arc_count;
+    store_shape(shapes, circle_of(0.5));
+    assert_int_equal(narc_build_capsule(1, 0.25, capsule, &arc_count, NULL), NARC_OK);
+    assert_int_equal(narc_add_shape(shapes, capsule, arc_count, NULL, NULL), NARC_OK);
+    for (size_t k = 0; k < COUNT; k++) {
+        const float x = (float)random_between(&random, 0, 16), y = (float)random_between(&random, 0, 16);
+        bodies[k] = (placed){(double)x, (double)y, x, y, 1, 0, 1, (uint32_t)k % 2};
+    }
+    const size_t steps = test_trials(400);
+    for (size_t step = 0; step < steps; step++) {
+        const narc_workers workers = narc_openmp_workers(1 + (unsigned)step % 2);
+        const narc_bodies view = view_placed(bodies, count, doubles, scales);
+        const narc_box_options box_options = {.margin = margin / 2};
+        const narc_pair_options options = {.margin = margin, .skin = skin_now, .workers = &workers},
+                                without = {.skin = skin_now};
+        assert_int_equal(narc_compute_boxes(shapes, &view, &box_options, boxes, NULL), NARC_OK);
+        const narc_pair_list *const list = update(broad, shapes, &view, &options);
+        check_equal_lists(list, update_boxes(other, boxes, count, &without));
+        kept += list->kept;
+        for (size_t changes = (size_t)random_below(&random, 3); changes-- > 0;)
+            change_placed(&random, &bodies[random_below(&random, COUNT)]);
+        switch (random_below(&random, 40)) {
+        case 0:
+            margin = random_below(&random, 2) ? 0.25f : 0.5f;
+            break;
+        case 1:
+            skin_now = (float)random_between(&random, 0.05, 0.5);
+            break;
+        case 2:
+            doubles = !doubles;
+            break;
+        case 3:
+            scales = !scales;
+            break;
+        case 4: {
+            const struct shape circle = circle_of(random_between(&random, 0.25, 1));
+            assert_int_equal(narc_replace_shape(shapes, 0, circle.arcs, circle.count, NULL), NARC_OK);
+            break;
+        }
+        case 5:
+            count = count == COUNT ? COUNT - 7 : COUNT;
+            break;
+        case 6: /* other boxes in between */
+            for (size_t k = 0; k < count; k++)
+                boxes[k].max_x += 1;
+            update_boxes(broad, boxes, count, &options);
+            update_boxes(other, boxes, count, &options);
+            break;
+        default:
+            break;
+        }
+    }
+    assert_true(kept > steps / 10);
+    narc_destroy_broad_phase(broad);
+    narc_destroy_broad_phase(other);
+    narc_destroy_shapes(shapes);
+}
+
+/* Memory that begins anew. */
+typedef struct arena {
+    _Alignas(64) char bytes[1 << 16];
+    size_t used;
+} arena;
+
+static void *take_from_arena(size_t size, void *context) {
+    arena *all = context;
+    void *const taken = all->bytes + all->used;
+    all->used += (size + 63) / 64 * 64;
+    return all->used <= sizeof all->bytes ? taken : NULL;
+}
+
+static void leave_in_arena(void *memory, void *context) {
+    (void)memory;
+    (void)context;
+}
+
+/* Another store where the last one was, which has changed as often. */
+TEST(notices_another_store_in_the_same_place) {
+    static arena memory;
+    const narc_allocator allocator = {take_from_arena, leave_in_arena, &memory};
+    narc_broad_phase *broad = create_broad_phase(NULL);
+    const narc_pair_options options = {.skin = 0.125f};
+    const disc discs[] = {{0, 0, 1, 0, 0, 0, 0}, {3, 0, 1, 0, 0, 0, 0}};
+    const narc_bodies bodies = view(discs, 2);
+    for (int step = 0; step < 4; step++) {
+        const struct shape circle = circle_of(step % 2 ? 2.25 : 0.5);
+        narc_shapes *shapes = NULL;
+        memory.used = 0;
+        assert_int_equal(narc_create_shapes(&allocator, &shapes), NARC_OK);
+        store_shape(shapes, circle);
+        assert_int_equal(update(broad, shapes, &bodies, &options)->pairs.count, step % 2);
+        narc_destroy_shapes(shapes);
+        narc_forget_pairs(broad); /* or larger boxes are kept */
+    }
+    narc_destroy_broad_phase(broad);
 }
 
 /* ------------------------------------------------------------------------------------------------ memory and errors */
