@@ -68,8 +68,8 @@ typedef struct narc_known_poses {
     uint8_t *moved;           /* 1: the box may be another one than the kept box was made from */
     narc_precision precision; /* of positions */
     const narc_shapes *shapes;
-    uint64_t changes, history; /* of the shapes */
-    float margin, skin;        /* the skin: for `moved` */
+    uint64_t history;   /* of the shapes */
+    float margin, skin; /* the skin: for `moved` */
 } narc_known_poses;
 
 /* Where a kernel puts the bodies whose boxes overlap, a and b in any order: room for some now, and more when it asks. */

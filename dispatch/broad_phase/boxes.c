@@ -158,8 +158,7 @@ narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *
     const bool by_pose = !options->motion_x.base && !options->motion_y.base && !options->reach.base;
     narc_known_poses *const known = &broad->known;
     if (!by_pose || known->precision != bodies->x.precision || known->shapes != shapes ||
-        known->changes != shapes->change_count || known->history != shapes->history ||
-        known->margin != options->margin || known->skin != options->skin)
+        known->history != shapes->history || known->margin != options->margin || known->skin != options->skin)
         narc_forget_poses(broad);
     const narc_status status =
         compute_boxes(shapes, bodies, &box_options, by_pose ? known : NULL, broad->boxes_now, error);
@@ -170,7 +169,6 @@ narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *
     known->count = by_pose ? bodies->count : 0;
     known->precision = bodies->x.precision;
     known->shapes = shapes;
-    known->changes = shapes->change_count;
     known->history = shapes->history;
     known->margin = options->margin;
     known->skin = options->skin;

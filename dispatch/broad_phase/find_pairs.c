@@ -220,10 +220,8 @@ static void list_strays(narc_broad_phase *broad, size_t count) {
         const uint32_t place = broad->place[body];
         if (place == NARC_STRAY)
             continue;
-        if (place != NARC_NO_PLACE) {
-            broad->boxes.min_y[place] = INFINITY; /* min_x stays, for the order */
-            broad->boxes.max_y[place] = -INFINITY;
-        }
+        if (place != NARC_NO_PLACE)
+            broad->boxes.min_y[place] = INFINITY; /* nothing overlaps it; min_x stays, for the order */
         broad->place[body] = NARC_STRAY;
         broad->strays[broad->stray_count++] = (uint32_t)body;
     }

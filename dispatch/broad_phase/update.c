@@ -279,7 +279,7 @@ static narc_status find(const update *u, bool same, unsigned found, size_t fresh
     narc_status status = find_last_indices(u, last, made, same);
     if (status != NARC_OK)
         return status;
-    broad->is_current = broad->is_sorted = false; /* as long as the kept boxes are not the last list's */
+    broad->is_current = false; /* as long as the kept boxes are not the last list's */
     const size_t skipped = keep_bodies(u, found, last->list.skipped);
     if (sorted &&
         narc_sweep_fresh(broad, broad->kept_boxes, u->count, fresh_count, u->options->filter, u->options->workers,

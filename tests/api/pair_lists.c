@@ -471,7 +471,7 @@ TEST(follows_thousands) { run_world("thousands", 12, MOST_BODIES - 10, MOST_BODI
 /* A scene at rest: boxes of all sizes of which a few move, a little or far away, one of them ever further down; now and
  * then anything else happens. */
 static totals run_scene_at_rest(const char *isa, size_t steps) {
-    enum { START = 1500, MOST = 1520, SIDE = 60, MOVERS = 12 };
+    enum { START = 1500, MOST = 1520, SIDE = 60, MOVERS = 50 };
     struct test_random random = test_random_named("rest");
     reference *r = create_reference(40 * MOST);
     body *bodies = calloc(MOST + 1, sizeof *bodies);
@@ -748,6 +748,33 @@ TEST(notices_all_that_boxes_are_made_from) {
     narc_destroy_broad_phase(broad);
     narc_destroy_broad_phase(other);
     narc_destroy_shapes(shapes);
+}
+
+/* A position of 3 in single precision has the bits of one near 0 in double precision. */
+TEST(notices_the_precision_of_positions) {
+    narc_broad_phase *broad = create_broad_phase(NULL);
+    narc_shapes *shapes = empty_store();
+    store_shape(shapes, circle_of(0.5));
+    const float three = 3;
+    union {
+        uint64_t bits;
+        double number;
+        float parts[2];
+    } x[2] = {{0}, {0}};
+    uint32_t bits;
+    memcpy(&bits, &three, sizeof bits);
+    x[1].bits = bits;
+    const disc discs[] = {{0, 0, 1, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0, 0}};
+    narc_bodies bodies = view(discs, 2);
+    bodies.x = (narc_position_column){&x[0].number, sizeof x[0], NARC_FLOAT64};
+    bodies.y = (narc_position_column){&x[0].number, 0, NARC_FLOAT64};
+    assert_int_equal(update(broad, shapes, &bodies, NULL)->pairs.count, 1);
+    const int low = x[1].parts[0] == three ? 0 : 1; /* the order of bytes */
+    bodies.x = (narc_position_column){&x[0].parts[low], sizeof x[0], NARC_FLOAT32};
+    bodies.y = (narc_position_column){&x[0].parts[low], 0, NARC_FLOAT32};
+    assert_int_equal(update(broad, shapes, &bodies, NULL)->pairs.count, 0);
+    narc_destroy_shapes(shapes);
+    narc_destroy_broad_phase(broad);
 }
 
 /* Memory that begins anew. */
