@@ -12,10 +12,11 @@
  *
  *   A narc_broad_phase keeps the list from step to step. Each body has a box, which is larger than the body by a
  *   SKIN. While all bodies stay inside their boxes, the list stays as it is: it has all pairs that are close, and some
- *   that are not. When one has left its box, or the bodies are others, boxes and pairs are made anew, and each pair is
- *   told its index in the last list. What the caller knows of a pair (hints, impulses, friction history) is carried
- *   over by that index with narc_gather(), or stays where it is if the list was kept. Pairs that are new or lost are
- *   listed: they begin and end what depends on being close.
+ *   that are not. When one has left its box, it gets a new box, and so do all that have used up half of their skin; a
+ *   new list has the pairs of these boxes, and each pair is told its index in the last list. In a scene at rest few
+ *   bodies move, and only their pairs are looked for. What the caller knows of a pair (hints, impulses, friction
+ *   history) is carried over by that index with narc_gather(), or stays where it is if the list was kept. Pairs that
+ *   are new or lost are listed: they begin and end what depends on being close.
  *
  *   The list is what the broad phase owns. It is valid until the next call of narc_update_pairs(),
  *   narc_update_box_pairs() or narc_forget_pairs() with this object, or until that is destroyed. A call that fails
@@ -61,7 +62,7 @@ extern "C" {
  *   margin              at least 0: all pairs of bodies that are closer than this are listed: at least the margin that
  *                       contacts are then asked for
  *   skin                at least 0: how much larger than its body the box of a kept list is, on every side. A larger
- *                       one keeps lists longer, and makes them longer. It counts when a list is made. 0: none is kept
+ *                       one keeps lists longer, and makes them longer. It counts when a box is made. 0: none is kept
  *                       but where nothing moves
  *   motion_x, motion_y  world axes: what each body moves in this step, as in narc_box_options. A list has all
  *                       pairs that come close on the way
@@ -81,8 +82,12 @@ typedef struct narc_pair_options {
     void *reserved[4]; /* NULL */
 } narc_pair_options;
 
-/* The pairs of bodies that are closer than the margin, and perhaps others, none further apart than margin + 2 * skin
+/* The pairs of bodies that are closer than the margin, and perhaps others, none further apart than margin + 3 * skin
  * and the motion (of boxes, and but for rounding, NARC_BOX_ROOM) when the list was made.
+ *   A list has all pairs of KEPT BOXES that overlap and may form a pair. When a body has left its kept box, or has
+ * another filter, it and all bodies of whose boxes a side has moved by more than half of the skin get new ones, larger
+ * than they are now by the skin. All bodies do if there are more or fewer than in the last call, or others by their
+ * ids, with the first filter, and after narc_forget_pairs().
  *   bodies    at most 2^32 - 2
  *   options   NULL: defaults
  *   out_list  see narc_pair_list; its arrays belong to `broad`. A broken body (narc_bodies; also one whose motion or
@@ -99,9 +104,12 @@ typedef struct narc_pair_options {
  * Sleep: see narc_pair_filter's table. Boxes of bodies at rest are looked at like others, so that a body that is static
  * or asleep may be put anywhere.
  *
- * Time: with a kept list that of narc_compute_boxes() and a look at each body; else also that of narc_find_pairs() and
- * narc_match_pairs(), and of a search by ids if bodies have changed their numbers. Memory: some 190 bytes for each
- * body, 206 with ids, and some 55 for each pair, and a quarter of it for growth; kept from step to step.
+ * Time: a look at each body, and narc_compute_boxes() of those whose position, rotation, scale or shape differs from
+ * the last call's (of all where there is motion or a reach, or the store of shapes has changed). With a new list also a
+ * walk over all pairs, and a search for those of the bodies with new boxes; if these are more than one in 16, or others
+ * by their ids, the time of narc_find_pairs() and narc_match_pairs(). Which way is taken changes no bit of the list.
+ * Memory: some 240 bytes for each body, 260 with ids, and some 55 for each pair, and a quarter of it for growth; kept
+ * from step to step.
  * Errors: as narc_compute_boxes() and narc_find_pairs(), but for NARC_ERROR_CAPACITY; NARC_ERROR_ARGUMENT (a negative
  * skin, two bodies with the same id: found at the latest when it would match a body wrongly), NARC_ERROR_NOT_FINITE,
  * NARC_ERROR_MEMORY. On an error `*out_list` is untouched, and the last list is as it was and valid. */

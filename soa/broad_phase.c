@@ -73,12 +73,13 @@ enum { BYTES_PER_BOX = 128 };
 narc_status narc_reserve_boxes(narc_broad_phase *broad, size_t count) {
     if (broad->box_memory && count <= broad->box_capacity) /* padding needs memory even without boxes */
         return NARC_OK;
-    const size_t n = with_room(count, 1024), padded = n + NARC_BOX_PADDING, parts = n / NARC_PART_BOXES + 1;
-    if (n > SIZE_MAX - 64 || !replace(broad, &broad->box_memory, n + 64, BYTES_PER_BOX))
+    const size_t n = with_room(count, 1024), strays = narc_most_strays(n), parts = n / NARC_PART_BOXES + 1;
+    const size_t both = n + strays, padded = both + NARC_BOX_PADDING;
+    if (both > SIZE_MAX - 64 || !replace(broad, &broad->box_memory, both + 64, BYTES_PER_BOX))
         return NARC_ERROR_MEMORY;
     char *at = broad->box_memory;
-    broad->entries = take(&at, n, sizeof *broad->entries);
-    broad->spare = take(&at, n, sizeof *broad->spare);
+    broad->entries = take(&at, both, sizeof *broad->entries);
+    broad->spare = take(&at, both, sizeof *broad->spare);
     broad->strips = take(&at, n, sizeof *broad->strips);
     broad->levels = take(&at, n, sizeof *broad->levels);
     broad->boxes.min_x = take(&at, padded, sizeof(float));
@@ -87,6 +88,7 @@ narc_status narc_reserve_boxes(narc_broad_phase *broad, size_t count) {
     broad->boxes.max_y = take(&at, padded, sizeof(float));
     broad->boxes.body = take(&at, padded, sizeof(uint32_t));
     broad->ends = take(&at, n + 1, sizeof *broad->ends);
+    broad->strays = take(&at, strays, sizeof *broad->strays);
     broad->parts = take(&at, parts < NARC_STRIP_PARTS ? parts : NARC_STRIP_PARTS, sizeof *broad->parts);
     broad->box_capacity = n;
     return NARC_OK;
@@ -119,18 +121,25 @@ narc_status narc_reserve_matches(narc_broad_phase *broad, size_t first_count, si
 }
 
 narc_status narc_reserve_bodies(narc_broad_phase *broad, size_t count) {
-    enum { BYTES = 2 * sizeof(narc_box) + sizeof(narc_body_filter) + sizeof(uint32_t) + 1 };
+    enum {
+        BYTES = sizeof(narc_pose_bits) + 2 * sizeof(narc_box) + sizeof(narc_body_filter) + 2 * sizeof(uint32_t) + 3
+    };
     if (broad->body_memory && count <= broad->body_capacity)
         return NARC_OK;
     const size_t n = with_room(count, 1024);
     if (n > SIZE_MAX - 64 || !replace(broad, &broad->body_memory, n + 64, BYTES))
         return NARC_ERROR_MEMORY;
     char *at = broad->body_memory;
+    broad->known.poses = take(&at, n, sizeof *broad->known.poses);
+    broad->known.count = 0;
+    broad->known.moved = take(&at, n, 1);
     broad->boxes_now = take(&at, n, sizeof *broad->boxes_now);
     broad->kept_boxes = take(&at, n, sizeof *broad->kept_boxes);
     broad->filters = take(&at, n, sizeof *broad->filters);
     broad->last_index = take(&at, n, sizeof *broad->last_index);
+    broad->place = take(&at, n, sizeof *broad->place);
     broad->taken = take(&at, n, 1);
+    broad->fresh = take(&at, n, 1);
     broad->body_capacity = n;
     broad->is_current = false;
     return NARC_OK;

@@ -56,6 +56,22 @@ typedef struct narc_box_columns {
     uint32_t *body;
 } narc_box_columns;
 
+/* All bits of a pose: two positions, cosine and sine, scale and shape. */
+typedef struct narc_pose_bits {
+    uint64_t word[4];
+} narc_pose_bits;
+
+/* The poses that boxes were computed from the last time, which serve again while all else is the same. */
+typedef struct narc_known_poses {
+    narc_pose_bits *poses;
+    size_t count;             /* of the first bodies */
+    uint8_t *moved;           /* 1: the box may be another one than the kept box was made from */
+    narc_precision precision; /* of positions */
+    const narc_shapes *shapes;
+    uint64_t history;   /* of the shapes */
+    float margin, skin; /* the skin: for `moved` */
+} narc_known_poses;
+
 /* Where a kernel puts the bodies whose boxes overlap, a and b in any order: room for some now, and more when it asks. */
 typedef struct narc_found_pairs {
     uint32_t *a, *b;
@@ -101,31 +117,43 @@ struct narc_broad_phase {
     narc_kept_list lists[2]; /* the last one, and memory for the next */
     int last;
     bool is_current;      /* the last list holds all pairs of `kept_boxes` and `filters` */
+    bool is_sorted;       /* what is sorted below are the kept boxes, but for strays */
     bool has_filter;      /* `filters` are in use */
     bool renewed;         /* lists may say more than that all is kept: new pairs, lost ones, flips */
     size_t body_capacity; /* for each body: */
     narc_box *boxes_now, *kept_boxes;
+    narc_known_poses known; /* those of boxes_now */
     narc_body_filter *filters;
     uint32_t *last_index; /* its number in the last list */
+    uint32_t *place;      /* of its box in the columns, NARC_NO_PLACE or NARC_STRAY */
+    uint8_t *fresh;       /* 1: it gets a new kept box, or may form other pairs */
     uint8_t *taken;       /* for each body of the last list: it has a number in this one */
     /* what narc_find_pairs() sorts */
     size_t box_capacity, block_capacity, match_capacity; /* match_capacity: of uint32_t */
     /* for each box */
     narc_box_entry *entries, *spare;
-    narc_box_columns boxes; /* in the order of their strips, with NARC_BOX_PADDING items behind the last */
+    narc_box_columns boxes; /* in the order of their strips; strays and NARC_BOX_PADDING items behind them */
     narc_strip *strips;
     narc_level *levels;     /* those that have boxes, the highest strips first */
     uint32_t *ends;         /* of each body's list of partners; one more than boxes */
     narc_strip_part *parts; /* one for every NARC_PART_BOXES boxes, NARC_STRIP_PARTS at most */
+    uint32_t *strays;       /* bodies whose kept boxes are others than when all were sorted */
     /* for each block of pairs */
     uint32_t *pair_a, *pair_b; /* NARC_PAIR_BLOCK each */
     narc_pair_block *blocks;
     /* of the last call */
     atomic_size_t block_count; /* blocks that tasks asked for, perhaps more than there are */
-    size_t strip_count, level_count;
+    size_t strip_count, level_count, sorted_count, stray_count;
     uint64_t steps;                   /* of the last sweep */
     int64_t lowest_strip, strip_span; /* of all levels; numbers of strips leave strip_span for each level */
 };
+
+/* A body that is not in the columns; a stray, whose box there overlaps nothing. Neither is a place. */
+#define NARC_NO_PLACE UINT32_MAX
+#define NARC_STRAY    (UINT32_MAX - 1)
+
+/* So many boxes may be strays. */
+static inline size_t narc_most_strays(size_t count) { return count / 8; }
 
 /* What a kernel may read behind the last box: the widest vector. */
 enum { NARC_BOX_PADDING = 16 };

@@ -251,6 +251,12 @@ static uint32_t find_equal(const narc_shapes *shapes, const narc_encoded_shape *
     return shape;
 }
 
+static void note_change(narc_shapes *shapes, uint32_t shape, uint32_t hash) {
+    const uint32_t change[] = {shape, hash};
+    shapes->change_count++;
+    shapes->history = mix(shapes->history, change, sizeof change);
+}
+
 /* Keeps the form of a shape's box, or that it is none. */
 static void put_box(narc_shapes *shapes, uint32_t shape, narc_box_form box) {
     shapes->box_count += (box.info != 0) - (size_t)(shapes->boxes[shape].info != 0);
@@ -297,7 +303,7 @@ narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, narc_enc
     shapes->entries[shape] = (narc_shape_entry){.uses = 1, .hash = hash};
     link_shape(shapes, shape, find_bucket(shapes, hash));
     shapes->used_records += size - used_size;
-    shapes->change_count++;
+    note_change(shapes, shape, hash);
     return NARC_OK;
 }
 
@@ -376,7 +382,7 @@ narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *e
     unlink_shape(shapes, shape, find_bucket(shapes, shapes->entries[shape].hash));
     link_shape(shapes, shape, &shapes->last_removed);
     shapes->removed_count++;
-    shapes->change_count++;
+    note_change(shapes, shape, shapes->entries[shape].hash);
     return NARC_OK;
 }
 

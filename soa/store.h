@@ -140,6 +140,7 @@ struct narc_shapes {
     size_t box_count;                     /* shapes with a form of a box or a capsule */
     uint32_t last_removed;                /* the last of them, or NARC_NO_SHAPE */
     uint64_t change_count;                /* how often shapes came, changed or went */
+    uint64_t history;                     /* a hash of which shapes did so, one after the other */
     size_t record_count, record_capacity; /* records, with the gaps between blocks */
     size_t used_records;                  /* records in blocks of shapes, and of the circle that removed ones have */
     narc_allocator allocator;

@@ -11,6 +11,7 @@
 #include "disc_loops.h"
 #include "narc_rows.h"
 #include "peers.h"
+#include "rest_rows.h"
 #include "step_rows.h"
 #include "world_rows.h"
 
@@ -86,6 +87,18 @@ static void add_world_parts(struct workload_key key, const char *isa, size_t bod
         snprintf(suffix, sizeof suffix, "/%zubodies", body_count);
         name_row(titles[part], &key, isa, suffix, name);
         list_row(make_world_part_row(name, part, &key, isa));
+    }
+}
+
+/* A pile of 10,000 of which all, one of 20, one of 100, or no body leaves its box in a step. */
+static void add_rest(struct workload_key key, const char *isa) {
+    static const size_t parts[] = {1, 20, 100, 0};
+    key.body_count /= body_counts[1] / 10000;
+    for (size_t k = 0; k < sizeof parts / sizeof parts[0]; k++) {
+        char name[BENCH_NAME], suffix[32];
+        snprintf(suffix, sizeof suffix, "/1of%zu", parts[k]);
+        name_row("update", &key, isa, suffix, name);
+        list_row(make_rest_row(name, parts[k], &key, isa));
     }
 }
 
@@ -183,6 +196,7 @@ void list_settled(const struct row_choice *choice) {
     add_stacks(best);
     if (choice->all)
         add_instruction_sets(key, best);
+    add_rest(key, best);
     add_world_parts(key, best, 10000);
     add_world_parts(key, best, 30000);
     if (narc_isa_supported("avx2")) {

@@ -7,6 +7,8 @@
 #include "narc_broad_phase.h"
 #include "steps.h"
 
+#include <math.h>
+
 /* Pairs that a box has, more or less: a call that finds more of them sweeps twice, the first time. */
 enum { USUAL_PAIRS = 3 };
 
@@ -113,6 +115,17 @@ static void sweep_both(const narc_broad_phase *broad, const narc_kernel_table *k
     kernels->sweep(&broad->boxes, a->first, a->end, b->first, b->end, b->width, out);
 }
 
+/* Sweeps a strip, or any boxes, and those of levels before `end` that may reach it. */
+static void sweep_levels(const narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_strip *strip,
+                         const narc_level *end, narc_found_pairs *out) {
+    for (const narc_level *level = broad->levels; level < end; level++) {
+        const uint64_t lowest = narc_strip_number(broad, level, strip->min_y, -1);
+        const uint64_t highest = narc_strip_number(broad, level, strip->max_y, 0);
+        for (size_t k = find_strip(broad, level, lowest); k < level->end && broad->strips[k].number <= highest; k++)
+            sweep_both(broad, kernels, strip, &broad->strips[k], out);
+    }
+}
+
 /* Sweeps a strip: itself, the one above it, and those of levels with strips at least as high that may reach it. */
 static void sweep_strip(const narc_broad_phase *broad, const narc_kernel_table *kernels, size_t index,
                         narc_found_pairs *out) {
@@ -120,12 +133,7 @@ static void sweep_strip(const narc_broad_phase *broad, const narc_kernel_table *
     kernels->sweep(&broad->boxes, strip->first, strip->end, strip->first, strip->end, strip->width, out);
     if (index + 1 < broad->strip_count && above->number == strip->number + 1)
         sweep_both(broad, kernels, strip, above, out);
-    for (const narc_level *level = broad->levels; level < &broad->levels[strip->level]; level++) {
-        const uint64_t lowest = narc_strip_number(broad, level, strip->min_y, -1);
-        const uint64_t highest = narc_strip_number(broad, level, strip->max_y, 0);
-        for (size_t k = find_strip(broad, level, lowest); k < level->end && broad->strips[k].number <= highest; k++)
-            sweep_both(broad, kernels, strip, &broad->strips[k], out);
-    }
+    sweep_levels(broad, kernels, strip, &broad->levels[strip->level], out);
 }
 
 /* One task: sweeps strips that no other does. */
@@ -159,6 +167,113 @@ static uint64_t sweep_all(narc_broad_phase *broad, const narc_kernel_table *kern
     return atomic_load_explicit(&job.found, memory_order_relaxed);
 }
 
+/* The workers for so many boxes. */
+static narc_workers choose_workers(const narc_workers *workers, size_t count) {
+    narc_workers chosen = workers ? *workers : (narc_workers){.count = 1};
+    chosen.count = narc_count_workers(workers, count / NARC_PART_BOXES + 1);
+    return chosen;
+}
+
+/* ------------------------------------------------------------------------------------------------ few boxes */
+
+/* Lists strays as they lie in the columns, both kinds together in the order of min_x, so that they hardly need sorting
+ * the next time. */
+static void merge_strays(narc_broad_phase *broad, const narc_strip *old, const narc_strip *fresh) {
+    const narc_box_columns *const boxes = &broad->boxes;
+    uint32_t *to = broad->strays, i = old->first, k = fresh->first;
+    while (i < old->end || k < fresh->end) {
+        const bool take_old = k == fresh->end || (i < old->end && boxes->min_x[i] <= boxes->min_x[k]);
+        *to++ = boxes->body[take_old ? i++ : k++];
+    }
+    broad->stray_count = (size_t)(to - broad->strays);
+}
+
+/* Strays lie behind the strips in the columns: first those that are not fresh, then the fresh ones, both as if they
+ * were strips. There is room for all. */
+static void sort_strays(narc_broad_phase *broad, const narc_box *boxes, narc_strip strays[2]) {
+    uint32_t end = (uint32_t)broad->sorted_count;
+    for (uint8_t fresh = 0; fresh < 2; fresh++) {
+        strays[fresh] = (narc_strip){.first = end};
+        for (size_t k = 0; k < broad->stray_count; k++) {
+            const uint32_t body = broad->strays[k];
+            if (!narc_is_box(&boxes[body]))
+                broad->place[body] = NARC_NO_PLACE;
+            else if (broad->fresh[body] == fresh)
+                broad->entries[end++] = (narc_box_entry){.min_x = boxes[body].min_x, .body = body};
+        }
+        strays[fresh].end = end;
+        narc_sort_strip(broad, &strays[fresh], boxes);
+    }
+    narc_end_columns(&broad->boxes, end);
+    merge_strays(broad, &strays[0], &strays[1]);
+}
+
+/* Takes fresh bodies out of the strips. */
+static void list_strays(narc_broad_phase *broad, size_t count) {
+    if (broad->stray_count == 0) {
+        for (size_t k = 0; k < count; k++)
+            broad->place[k] = NARC_NO_PLACE;
+        for (uint32_t k = 0; k < broad->sorted_count; k++)
+            broad->place[broad->boxes.body[k]] = k;
+    }
+    for (size_t body = 0; (body = narc_find_flag(broad->fresh, body, count)) < count; body++) {
+        const uint32_t place = broad->place[body];
+        if (place == NARC_STRAY)
+            continue;
+        if (place != NARC_NO_PLACE)
+            broad->boxes.min_y[place] = INFINITY; /* nothing overlaps it; min_x stays, for the order */
+        broad->place[body] = NARC_STRAY;
+        broad->strays[broad->stray_count++] = (uint32_t)body;
+    }
+}
+
+/* What a search for fresh boxes may take for each box of all, less than finding all pairs; how many fresh boxes are
+ * swept before it is asked how long that took. */
+enum { STEPS_FOR_BOX = 4, FRESH_AT_A_TIME = 16 };
+
+/* Sweeps fresh boxes with each other, with the other strays, and one by one with the strips. False: it took long. */
+static bool sweep_strays(narc_broad_phase *broad, const narc_kernel_table *kernels, const narc_pair_filter *filter,
+                         size_t count, const narc_strip strays[2], size_t *out_count) {
+    const narc_box_columns *const boxes = &broad->boxes;
+    const uint64_t most_steps = STEPS_FOR_BOX * (uint64_t)count;
+    sweep job = {.broad = broad, .kernels = kernels, .filter = filter, .tasks = 1};
+    uint32_t a[NARC_PAIR_BLOCK], b[NARC_PAIR_BLOCK];
+    own_pairs own = {{.room = NARC_PAIR_BLOCK, .get_room = get_room}, &job, 0, 0, a, b};
+    narc_strip few = strays[1], behind = strays[1];
+    atomic_store_explicit(&broad->block_count, 0, memory_order_relaxed);
+    begin_block(&own);
+    for (; behind.first < behind.end && own.pairs.steps < most_steps; few.first = few.end) {
+        few.end = behind.end - few.first > FRESH_AT_A_TIME ? few.first + FRESH_AT_A_TIME : behind.end;
+        behind.first = few.end;
+        kernels->sweep(boxes, few.first, few.end, few.first, few.end, few.width, &own.pairs);
+        sweep_both(broad, kernels, &few, &behind, &own.pairs);
+        sweep_both(broad, kernels, &few, &strays[0], &own.pairs);
+        for (uint32_t k = few.first; k < few.end; k++) {
+            const narc_strip one = {.first = k, .end = k + 1, .min_y = boxes->min_y[k], .max_y = boxes->max_y[k]};
+            sweep_levels(broad, kernels, &one, &broad->levels[broad->level_count], &own.pairs);
+        }
+    }
+    end_block(&own);
+    *out_count = (size_t)own.total;
+    return own.pairs.steps < most_steps &&
+           atomic_load_explicit(&broad->block_count, memory_order_relaxed) <= broad->block_capacity;
+}
+
+bool narc_sweep_fresh(narc_broad_phase *broad, const narc_box *boxes, size_t count, size_t fresh_count,
+                      const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count) {
+    narc_strip strays[2];
+    narc_status status;
+    const narc_kernel_table *const kernels = narc_kernels(&status, NULL);
+    const narc_workers chosen = choose_workers(workers, count);
+    if (!kernels || fresh_count > narc_most_strays(count) / 2)
+        return false;
+    if (broad->stray_count + fresh_count > narc_most_strays(count))
+        narc_sort_into_strips(broad, boxes, count, &chosen);
+    list_strays(broad, count);
+    sort_strays(broad, boxes, strays);
+    return sweep_strays(broad, kernels, filter, count, strays, out_count);
+}
+
 /* ------------------------------------------------------------------------------------------------ the call */
 
 static narc_status check(const narc_broad_phase *broad, const narc_box *boxes, size_t count, const uint32_t *out_a,
@@ -175,13 +290,6 @@ static narc_status check(const narc_broad_phase *broad, const narc_box *boxes, s
     return NARC_OK;
 }
 
-/* The workers for so many boxes. */
-static narc_workers choose_workers(const narc_workers *workers, size_t count) {
-    narc_workers chosen = workers ? *workers : (narc_workers){.count = 1};
-    chosen.count = narc_count_workers(workers, count / NARC_PART_BOXES + 1);
-    return chosen;
-}
-
 narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, size_t count,
                              const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count,
                              narc_error *error) {
@@ -190,6 +298,7 @@ narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, siz
     if (!kernels)
         return status;
     const narc_workers chosen = choose_workers(workers, count);
+    broad->is_sorted = false;
     if (narc_reserve_boxes(broad, count) != NARC_OK ||
         narc_reserve_blocks(broad, count_blocks(USUAL_PAIRS * (uint64_t)count, chosen.count)) != NARC_OK)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)count, "not enough memory for %zu boxes", count);

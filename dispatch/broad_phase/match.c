@@ -171,6 +171,12 @@ static void match_part(void *argument, size_t part, size_t first, size_t end) {
             m->out_match[k] = find_match(&m->old, pair_at(m->pairs, k));
 }
 
+void narc_match_in_order(const narc_pairs *old_pairs, const narc_pairs *new_pairs, const narc_workers *workers,
+                         uint32_t *out_match) {
+    matching m = {{.pairs = old_pairs}, new_pairs, out_match};
+    narc_run_ranges(workers, new_pairs->count, PART, match_part, &m);
+}
+
 narc_status narc_match_pairs(narc_broad_phase *broad, const narc_pairs *old_pairs, const narc_pairs *new_pairs,
                              const narc_workers *workers, uint32_t *out_match, narc_error *error) {
     matching m = {{.pairs = old_pairs}, new_pairs, out_match};

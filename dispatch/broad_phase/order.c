@@ -144,6 +144,8 @@ static void order_part(void *argument, size_t part, size_t first, size_t end) {
     place_partners(o->broad, o->blocks, (uint32_t)first, (uint32_t)end, own_b);
     for (size_t body = first; body < end; from = ends[body++]) {
         const uint32_t count = ends[body] - from;
+        if (count == 0)
+            continue;
         if (count <= FOUR && own_count - from >= FOUR) { /* what is written too much, the next bodies write again */
             for (uint32_t k = 0; k < FOUR; k++)
                 own_a[from + k] = (uint32_t)body;

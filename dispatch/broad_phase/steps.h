@@ -6,9 +6,12 @@
 #define NARC_BROAD_PHASE_STEPS_H
 
 #include "broad_phase.h"
+#include "narc_broad_phase.h"
 #include "narc_workers.h"
 
 #include <float.h>
+#include <math.h>
+#include <string.h>
 
 /* "options.`name` is ...": it is at least 0 and finite. */
 narc_status narc_check_length(float length, const char *name, narc_error *error);
@@ -18,6 +21,10 @@ static inline size_t narc_part_size(size_t count, size_t parts) { return count /
 
 /* Both bodies of a pair as one number; pairs in order have rising numbers. */
 static inline uint64_t narc_join_pair(uint32_t a, uint32_t b) { return (uint64_t)a << 32 | b; }
+
+/* narc_match_pairs() of two lists in order. */
+void narc_match_in_order(const narc_pairs *old_pairs, const narc_pairs *new_pairs, const narc_workers *workers,
+                         uint32_t *out_match);
 
 /* The first pair of a list in order that is not before `pair`. */
 size_t narc_find_pair(const narc_pairs *pairs, uint64_t pair);
@@ -50,11 +57,41 @@ static inline bool narc_is_box(const narc_box *box) {
 /* What the filter says of one body. */
 narc_body_filter narc_read_filter(const narc_pair_filter *filter, size_t body);
 
+static inline narc_box narc_empty_box(void) { return (narc_box){INFINITY, INFINITY, -INFINITY, -INFINITY}; }
+
+/* A box that is larger on each side by at least `by`, hardly more, and finite. */
+narc_box narc_widen_box(narc_box box, float by);
+
+/* The boxes with so much room, and each body's own reach. A body whose reach is broken has none. */
+void narc_add_room(const narc_box *boxes, size_t count, float room, narc_float_column reach, narc_box *out_boxes);
+
+/* Computes broad->boxes_now, without a skin. Bodies that have not moved keep theirs, unless boxes depend on more than
+ * poses. Errors as narc_compute_boxes() has them. */
+narc_status narc_compute_step_boxes(narc_broad_phase *broad, const narc_shapes *shapes, const narc_bodies *bodies,
+                                    const narc_pair_options *options, narc_error *error);
+
+/* Knows no pose: all bodies may have moved. */
+void narc_forget_poses(narc_broad_phase *broad);
+
+/* The first of places from .. count - 1 with a flag, or `count`. */
+static inline size_t narc_find_flag(const uint8_t *flags, size_t from, size_t count) {
+    if (from < count && flags[from])
+        return from;
+    const uint8_t *const found = from < count ? memchr(flags + from, 1, count - from) : NULL;
+    return found ? (size_t)(found - flags) : count;
+}
+
 /* Finds the pairs of boxes that overlap and may form a pair; *out_count is how many. The broad phase holds as many of
  * them as there is memory for. Errors as narc_find_pairs() has them, but for NARC_ERROR_CAPACITY. */
 narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, size_t count,
                              const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count,
                              narc_error *error);
+
+/* The same for those pairs alone that have one of broad->fresh, some `fresh_count` bodies. All other boxes are as they
+ * were when narc_sweep_boxes() or this function ended last, for this broad phase. False: that would take as long as all
+ * pairs, which are then to be found. */
+bool narc_sweep_fresh(narc_broad_phase *broad, const narc_box *boxes, size_t count, size_t fresh_count,
+                      const narc_pair_filter *filter, const narc_workers *workers, size_t *out_count);
 
 /* Lists these `found` pairs in their order, sweeping again if not all were held. NARC_ERROR_MEMORY. */
 narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const narc_pair_filter *filter,
@@ -65,6 +102,12 @@ narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const n
  * order of min_x. There is room for all boxes and a part for each worker. */
 void narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers);
 
+/* Puts the boxes of a strip, whose entries are listed at its places, into the columns in the order of min_x. */
+void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes);
+
+/* Fills what a kernel may read behind the last box of the columns. */
+void narc_end_columns(const narc_box_columns *boxes, size_t end);
+
 /* The number of the strip of a level that holds `y`, or of one `offset` strips above it; the nearest one that boxes may
  * lie in. */
 uint64_t narc_strip_number(const narc_broad_phase *broad, const narc_level *level, float y, int64_t offset);
@@ -72,6 +115,18 @@ uint64_t narc_strip_number(const narc_broad_phase *broad, const narc_level *leve
 /* Puts the bodies of each pair from `first` on into their order, a < b, leaves out pairs that the filter does not let,
  * and returns how many there are then, with those before `first`. */
 uint32_t narc_filter_pairs(const narc_pair_filter *filter, uint32_t *a, uint32_t *b, uint32_t first, uint32_t count);
+
+/* What a new list has of the last one. narc_match_lists(): the index that each pair had, and whether its bodies changed
+ * their order, by the numbers that they had. narc_list_added(): the pairs that were in none; returns how many are lost.
+ * narc_merge_pairs(): both, and pairs: those of the last list without a fresh body, and `count` others, in order like
+ * these; there is room for all. Then narc_list_lost(), with room for as many; and narc_mark_pairs(), by kinds. */
+void narc_match_lists(const narc_kept_list *last, narc_kept_list *made, const uint32_t *last_index,
+                      const narc_workers *workers);
+size_t narc_list_added(narc_kept_list *last, narc_kept_list *made);
+size_t narc_merge_pairs(const uint8_t *fresh, narc_kept_list *last, narc_kept_list *made, const uint32_t *a,
+                        const uint32_t *b, size_t count);
+void narc_list_lost(const narc_kept_list *last, narc_kept_list *made, size_t lost_count);
+void narc_mark_pairs(const narc_broad_phase *broad, narc_kept_list *made);
 
 /* Writes the pairs of `blocks` blocks in their order. There is room for all. */
 void narc_order_pairs(narc_broad_phase *broad, size_t blocks, size_t body_count, const narc_workers *workers,

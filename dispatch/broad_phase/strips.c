@@ -370,7 +370,7 @@ static narc_box_entry *sort_by_min_x(narc_box_entry *entries, narc_box_entry *sp
     return entries;
 }
 
-static void sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes) {
+void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes) {
     const narc_box_columns *const out = &broad->boxes;
     const size_t count = strip->end - strip->first;
     const narc_box_entry *const sorted =
@@ -400,7 +400,14 @@ static void sort_strips(void *argument, size_t part, size_t first, size_t end) {
     const passes *p = argument;
     (void)part;
     for (size_t k = first; k < end; k++)
-        sort_strip(p->broad, &p->broad->strips[k], p->boxes);
+        narc_sort_strip(p->broad, &p->broad->strips[k], p->boxes);
+}
+
+void narc_end_columns(const narc_box_columns *boxes, size_t end) {
+    for (size_t k = end; k < end + NARC_BOX_PADDING; k++) { /* read, and of no use */
+        boxes->min_x[k] = boxes->max_x[k] = boxes->min_y[k] = boxes->max_y[k] = 0;
+        boxes->body[k] = 0;
+    }
 }
 
 void narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers) {
@@ -417,9 +424,8 @@ void narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_
     }
     list_strips(&p, listed);
     list_levels(&p);
+    broad->sorted_count = listed;
+    broad->stray_count = 0;
     narc_run_ranges(workers, broad->strip_count, FEW_STRIPS, sort_strips, &p);
-    for (size_t k = listed; k < listed + NARC_BOX_PADDING; k++) { /* read, and of no use */
-        broad->boxes.min_x[k] = broad->boxes.max_x[k] = broad->boxes.min_y[k] = broad->boxes.max_y[k] = 0;
-        broad->boxes.body[k] = 0;
-    }
+    narc_end_columns(&broad->boxes, listed);
 }

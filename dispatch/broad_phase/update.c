@@ -11,11 +11,10 @@
 #include "narc_broad_phase.h"
 #include "steps.h"
 
-#include <math.h>
 #include <string.h>
 
-/* Bodies that a thread looks at at a time, and pairs that it matches: some 10 microseconds of work. */
-enum { BODY_PART = 4096, PAIR_PART = 4096 };
+/* Bodies that a thread looks at at a time: some 10 microseconds of work. */
+enum { BODY_PART = 4096 };
 
 typedef struct update {
     narc_broad_phase *broad;
@@ -25,38 +24,28 @@ typedef struct update {
     narc_error *error;
 } update;
 
-/* ------------------------------------------------------------------------------------------------ boxes */
-
-static const narc_box empty = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-
-/* x - by or less, finite: a rounding errs by half of the step that is added, or less. */
-static float lower(float x, float by) {
-    const float rounded = x - by, down = rounded - (fabsf(rounded) * 0x1p-23f + FLT_TRUE_MIN);
-    return by == 0 ? x : down < -FLT_MAX ? -FLT_MAX : down;
-}
-
-static narc_box widen(narc_box box, float by) {
-    return (narc_box){lower(box.min_x, by), lower(box.min_y, by), -lower(-box.max_x, by), -lower(-box.max_y, by)};
-}
-
-/* The boxes with half of the margin, `half`, and each body's own reach. A body whose reach is broken has none. */
-static void add_room(const update *u, const narc_box *boxes, float half, narc_box *out_boxes) {
-    const narc_float_column reach = u->options->reach;
-    for (size_t k = 0; k < u->count; k++) {
-        const float own = reach.base ? narc_float_at(reach, k) : 0;
-        const bool fine = narc_is_box(&boxes[k]) && own >= 0 && own <= FLT_MAX;
-        out_boxes[k] = fine ? widen(widen(boxes[k], half), own) : empty;
-    }
-}
-
 /* ------------------------------------------------------------------------------------------------ what has changed */
 
-/* RENEW: a body has left its kept box, or may form other pairs. REST: one fell asleep or woke. */
-enum { RENEW = 1, REST = 2 };
+/* LEFT: a body has left its kept box, or may form other pairs. REST: one fell asleep or woke. WHOLE: no kept box is of
+ * use. */
+enum { LEFT = 1, REST = 2, WHOLE = 4 };
 
 static bool is_inside(const narc_box *box, const narc_box *around) {
     return box->min_x >= around->min_x && box->min_y >= around->min_y && box->max_x <= around->max_x &&
            box->max_y <= around->max_y;
+}
+
+static bool has_kept_box(const narc_broad_phase *broad, size_t body) {
+    return broad->kept_boxes[body].min_x <= broad->kept_boxes[body].max_x;
+}
+
+/* From the skin, `room` may have gone on a side, or come. */
+static bool has_room(float room, float half) { return room >= half && room <= 3 * half; }
+
+/* Has each side of a box moved by at most `half` of the skin since its kept box was made? */
+static bool is_near(const narc_box *box, const narc_box *kept, float half) {
+    return has_room(box->min_x - kept->min_x, half) && has_room(box->min_y - kept->min_y, half) &&
+           has_room(kept->max_x - box->max_x, half) && has_room(kept->max_y - box->max_y, half);
 }
 
 static narc_body_filter filter_of(const update *u, size_t body) {
@@ -68,6 +57,7 @@ typedef struct changes {
     const update *update;
     bool use_filters;
     atomic_uint found;
+    atomic_size_t fresh_count;
 } changes;
 
 /* Bodies first .. end - 1, whose kept boxes and filters are those of the last list. */
@@ -75,29 +65,39 @@ static void look(void *argument, size_t part, size_t first, size_t end) {
     changes *const all = argument;
     const update *const u = all->update;
     const narc_broad_phase *const broad = u->broad;
-    bool renew = false, rest = false;
+    const float half = u->options->skin / 2;
+    bool left = false, rest = false;
+    size_t fresh_count = 0, k = first;
     (void)part;
-    for (size_t k = first; k < end; k++) {
-        const bool has = narc_is_box(&u->boxes[k]), had = broad->kept_boxes[k].min_x <= broad->kept_boxes[k].max_x;
-        renew |= has ? !is_inside(&u->boxes[k], &broad->kept_boxes[k]) : had;
-        if (!all->use_filters)
-            continue;
-        const narc_body_filter now = filter_of(u, k), *const then = &broad->filters[k];
-        const unsigned other = now.kind ^ then->kind;
-        renew |= now.category != then->category || now.mask != then->mask || now.group != then->group ||
-                 (other & (NARC_STATIC | NARC_SENSOR));
-        rest |= (other & NARC_ASLEEP) != 0;
+    memset(broad->fresh + first, 0, end - first);
+    for (; (k = all->use_filters ? k : narc_find_flag(broad->known.moved, k, end)) < end; k++) {
+        const narc_box *const box = &u->boxes[k], *const kept = &broad->kept_boxes[k];
+        const bool has = narc_is_box(box), had = has_kept_box(broad, k);
+        bool out = has ? !is_inside(box, kept) : had;
+        if (all->use_filters) {
+            const narc_body_filter now = filter_of(u, k), *const then = &broad->filters[k];
+            const unsigned other = now.kind ^ then->kind;
+            out |= now.category != then->category || now.mask != then->mask || now.group != then->group ||
+                   (other & (NARC_STATIC | NARC_SENSOR));
+            rest |= (other & NARC_ASLEEP) != 0;
+        }
+        const bool fresh = out || (has && !is_near(box, kept, half));
+        broad->fresh[k] = fresh;
+        fresh_count += fresh;
+        left |= out;
     }
-    if (renew || rest)
-        atomic_fetch_or_explicit(&all->found, (renew ? RENEW : 0u) | (rest ? REST : 0u), memory_order_relaxed);
+    atomic_fetch_add_explicit(&all->fresh_count, fresh_count, memory_order_relaxed);
+    if (left || rest)
+        atomic_fetch_or_explicit(&all->found, (left ? LEFT : 0u) | (rest ? REST : 0u), memory_order_relaxed);
 }
 
-static unsigned look_at_all(const update *u) {
+static unsigned look_at_all(const update *u, size_t *out_fresh_count) {
     const bool filter = u->options->filter, had_filter = u->broad->has_filter;
-    changes all = {u, filter || had_filter, 0};
+    changes all = {u, filter || had_filter, 0, 0};
     if (!u->broad->is_current || (filter && !had_filter))
-        return RENEW;
+        return WHOLE;
     narc_run_ranges(u->options->workers, u->count, BODY_PART, look, &all);
+    *out_fresh_count = atomic_load_explicit(&all.fresh_count, memory_order_relaxed);
     return atomic_load_explicit(&all.found, memory_order_relaxed);
 }
 
@@ -113,32 +113,6 @@ static bool are_same(const update *u) {
         for (size_t k = 0; same && k < u->count; k++)
             same = id_of(u, k) == (last->has_ids ? last->ids[k] : k);
     return same;
-}
-
-/* ------------------------------------------------------------------------------------------------ marks */
-
-static unsigned kind_of(const narc_broad_phase *broad, uint32_t body) {
-    return broad->has_filter ? broad->filters[body].kind : 0;
-}
-
-/* Marks all pairs by the kinds of their bodies, and lists those to be tested that have a sensor, or have none. */
-static size_t mark_pairs(const narc_broad_phase *broad, const narc_kept_list *made, unsigned sensor, uint32_t *out) {
-    const unsigned rest = NARC_STATIC | NARC_ASLEEP;
-    size_t count = 0;
-    for (size_t k = 0; k < made->list.pairs.count; k++) {
-        const unsigned a = kind_of(broad, made->a[k]), b = kind_of(broad, made->b[k]);
-        made->marks[k] = (uint8_t)((made->marks[k] & NARC_FLIPPED) | a | b);
-        if (!(a & rest && b & rest) && ((a | b) & NARC_SENSOR) == sensor)
-            out[count++] = (uint32_t)k;
-    }
-    return count;
-}
-
-static void mark_all_pairs(const narc_broad_phase *broad, narc_kept_list *made) {
-    narc_pair_list *const list = &made->list;
-    list->contact_count = mark_pairs(broad, made, 0, made->selected);
-    list->sensors = made->selected + list->contact_count;
-    list->sensor_count = mark_pairs(broad, made, NARC_SENSOR, made->selected + list->contact_count);
 }
 
 /* The last list once more. */
@@ -157,7 +131,7 @@ static void keep(const update *u, bool rest) {
         return;
     for (size_t k = 0; k < u->count; k++)
         broad->filters[k].kind = filter_of(u, k).kind;
-    mark_all_pairs(broad, last);
+    narc_mark_pairs(broad, last);
 }
 
 /* ------------------------------------------------------------------------------------------------ bodies by ids */
@@ -216,136 +190,125 @@ static narc_status find_last_indices(const update *u, narc_kept_list *last, narc
     return NARC_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------ matching */
-
-static bool is_pair(const narc_kept_list *list, size_t k, uint32_t a, uint32_t b) {
-    return k < list->list.pairs.count && list->a[k] == a && list->b[k] == b;
-}
-
-typedef struct matching {
-    const narc_kept_list *last;
-    narc_kept_list *made;
-    const uint32_t *last_index;
-} matching;
-
-/* New pairs first .. end - 1 by the numbers that their bodies had. Behind the last match comes the next, mostly. */
-static void match_part(void *argument, size_t part, size_t first, size_t end) {
-    const matching *const m = argument;
-    size_t at = first;
-    (void)part;
-    for (size_t k = first; k < end; k++) {
-        const uint32_t a = m->last_index[m->made->a[k]], b = m->last_index[m->made->b[k]];
-        const uint32_t low = a < b ? a : b, high = a < b ? b : a;
-        if (!is_pair(m->last, at, low, high))
-            at = narc_find_pair(&m->last->list.pairs, narc_join_pair(low, high));
-        const bool found = high != NARC_NO_MATCH && is_pair(m->last, at, low, high);
-        m->made->previous[k] = found ? (uint32_t)at++ : NARC_NO_MATCH;
-        m->made->marks[k] = found && b < a ? NARC_FLIPPED : 0;
-    }
-}
-
-/* Lists the pairs that are new. Marks those of the last list that are still there, and returns how many are not. */
-static size_t list_added(narc_kept_list *last, narc_kept_list *made) {
-    const size_t count = made->list.pairs.count, last_count = last->list.pairs.count;
-    size_t added = 0;
-    memset(last->matched, 0, last_count);
-    for (size_t k = 0; k < count; k++)
-        if (made->previous[k] == NARC_NO_MATCH)
-            made->added[added++] = (uint32_t)k;
-        else
-            last->matched[made->previous[k]] = 1;
-    made->list.added_count = added;
-    return last_count - (count - added);
-}
-
-static void list_lost(const narc_kept_list *last, narc_kept_list *made, size_t lost_count) {
-    size_t lost = 0;
-    for (size_t k = 0; lost < lost_count; k++) {
-        const uint32_t a = last->a[k], b = last->b[k];
-        if (!last->matched[k])
-            made->lost[lost++] = (narc_lost_pair){.pair = (uint32_t)k,
-                                                  .a = a,
-                                                  .b = b,
-                                                  .marks = last->marks[k] & NARC_KINDS,
-                                                  .id_a = last->has_ids ? last->ids[a] : a,
-                                                  .id_b = last->has_ids ? last->ids[b] : b};
-    }
-    made->list.lost_count = lost_count;
-}
-
 /* ------------------------------------------------------------------------------------------------ a new list */
 
-/* Boxes with their skin and filters, as the new list knows them; returns how many bodies have no box. */
-static size_t keep_bodies(const update *u) {
+/* Gives fresh bodies boxes with the skin, as the new list knows them, and all bodies their filters. Returns how many
+ * have no box, if it was so many in the last list. */
+static size_t keep_bodies(const update *u, unsigned found, size_t skipped) {
     narc_broad_phase *const broad = u->broad;
-    size_t skipped = 0;
+    const bool whole = found & WHOLE;
+    if (whole) {
+        memset(broad->fresh, 1, u->count);
+        skipped = 0;
+    }
     broad->has_filter = u->options->filter;
-    for (size_t k = 0; k < u->count; k++) {
+    for (size_t k = 0; k < u->count && broad->has_filter && (found & REST); k++)
+        broad->filters[k].kind = filter_of(u, k).kind;
+    for (size_t k = 0; (k = narc_find_flag(broad->fresh, k, u->count)) < u->count; k++) {
         const bool has = narc_is_box(&u->boxes[k]);
         skipped += !has;
-        broad->kept_boxes[k] = has ? widen(u->boxes[k], u->options->skin) : empty;
+        skipped -= !whole && !has_kept_box(broad, k);
+        broad->kept_boxes[k] = has ? narc_widen_box(u->boxes[k], u->options->skin) : narc_empty_box();
+        broad->known.moved[k] = 0;
+        if (broad->has_filter)
+            broad->filters[k] = filter_of(u, k);
     }
-    for (size_t k = 0; k < u->count && broad->has_filter; k++)
-        broad->filters[k] = filter_of(u, k);
     return skipped;
 }
 
-/* Makes the next list. The last one stays as it is, but for `matched`, and for ids that are numbers. */
-static narc_status find(const update *u, bool same, narc_kept_list *last, narc_kept_list *made) {
+/* Room for so many pairs in the next list. */
+static narc_status begin_list(const update *u, narc_kept_list *last, narc_kept_list *made, size_t count,
+                              size_t skipped) {
+    if (count > UINT32_MAX - 1)
+        return narc_fail(u->error, NARC_ERROR_COUNT, 0, (double)count, "%zu pairs of boxes overlap, at most %lu", count,
+                         (unsigned long)(UINT32_MAX - 1));
+    if (narc_reserve_pairs(u->broad, made, count) != NARC_OK || narc_reserve_pairs(u->broad, last, 0) != NARC_OK)
+        return fail_memory(u, count, "pairs");
+    made->list = (narc_pair_list){.pairs = {.count = count, .a = NARC_ARRAY(made->a), .b = NARC_ARRAY(made->b)},
+                                  .previous = made->previous,
+                                  .marks = made->marks,
+                                  .added = made->added,
+                                  .skipped = skipped};
+    memset(made->marks, 0, count);
+    return NARC_OK;
+}
+
+/* Finds all pairs, and what they were. */
+static narc_status find_all(const update *u, bool same, narc_kept_list *last, narc_kept_list *made, size_t skipped,
+                            size_t *out_lost) {
     narc_broad_phase *const broad = u->broad;
     const narc_pair_filter *const filter = u->options->filter;
+    const narc_workers *const workers = u->options->workers;
     size_t found = 0;
+    narc_status status = narc_sweep_boxes(broad, broad->kept_boxes, u->count, filter, workers, &found, u->error);
+    if (status == NARC_OK)
+        status = begin_list(u, last, made, found, skipped);
+    if (status == NARC_OK)
+        status = narc_list_found_pairs(broad, u->count, filter, workers, found, made->a, made->b, u->error);
+    if (status != NARC_OK)
+        return status;
+    if (!same && made->has_ids)
+        narc_match_lists(last, made, broad->last_index, workers);
+    else
+        narc_match_in_order(&last->list.pairs, &made->list.pairs, workers, made->previous);
+    *out_lost = narc_list_added(last, made);
+    return NARC_OK;
+}
+
+/* Lists `found` pairs of fresh bodies, and those of others that were there. */
+static narc_status merge(const update *u, narc_kept_list *last, narc_kept_list *made, size_t skipped, size_t found,
+                         size_t *out_lost) {
+    narc_broad_phase *const broad = u->broad;
+    if (narc_reserve_matches(broad, found, found) != NARC_OK)
+        return fail_memory(u, found, "pairs");
+    uint32_t *const a = broad->match_memory, *const b = a + found;
+    narc_status status = begin_list(u, last, made, last->list.pairs.count + found, skipped);
+    if (status == NARC_OK)
+        status = narc_list_found_pairs(broad, u->count, u->options->filter, u->options->workers, found, a, b, u->error);
+    if (status == NARC_OK)
+        *out_lost = narc_merge_pairs(broad->fresh, last, made, a, b, found);
+    return status;
+}
+
+/* Makes the next list. The last one stays as it is, but for `matched`, and for ids that are numbers. */
+static narc_status find(const update *u, bool same, unsigned found, size_t fresh_count, narc_kept_list *last,
+                        narc_kept_list *made) {
+    narc_broad_phase *const broad = u->broad;
+    const bool sorted = !(found & WHOLE) && broad->is_sorted;
+    size_t lost_count = 0, fresh_pairs = 0;
     narc_status status = find_last_indices(u, last, made, same);
     if (status != NARC_OK)
         return status;
     broad->is_current = false; /* as long as the kept boxes are not the last list's */
-    const size_t skipped = keep_bodies(u);
-    status = narc_sweep_boxes(broad, broad->kept_boxes, u->count, filter, u->options->workers, &found, u->error);
+    const size_t skipped = keep_bodies(u, found, last->list.skipped);
+    if (sorted &&
+        narc_sweep_fresh(broad, broad->kept_boxes, u->count, fresh_count, u->options->filter, u->options->workers,
+                         &fresh_pairs) &&
+        fresh_pairs < UINT32_MAX - last->list.pairs.count)
+        status = merge(u, last, made, skipped, fresh_pairs, &lost_count);
+    else
+        status = find_all(u, same, last, made, skipped, &lost_count);
     if (status != NARC_OK)
         return status;
-    if (found > UINT32_MAX - 1)
-        return narc_fail(u->error, NARC_ERROR_COUNT, 0, (double)found, "%zu pairs of boxes overlap, at most %lu", found,
-                         (unsigned long)(UINT32_MAX - 1));
-    if (narc_reserve_pairs(broad, made, found) != NARC_OK || narc_reserve_pairs(broad, last, 0) != NARC_OK)
-        return fail_memory(u, found, "pairs");
-    status = narc_list_found_pairs(broad, u->count, filter, u->options->workers, found, made->a, made->b, u->error);
-    if (status != NARC_OK)
-        return status;
-    made->list = (narc_pair_list){.pairs = {.count = found, .a = NARC_ARRAY(made->a), .b = NARC_ARRAY(made->b)},
-                                  .previous = made->previous,
-                                  .marks = made->marks,
-                                  .contacts = made->selected,
-                                  .added = made->added,
-                                  .skipped = skipped};
-    memset(made->marks, 0, found);
-    if (!same && made->has_ids) {
-        matching m = {last, made, broad->last_index};
-        narc_run_ranges(u->options->workers, found, PAIR_PART, match_part, &m);
-    } else
-        status = narc_match_pairs(broad, &last->list.pairs, &made->list.pairs, u->options->workers, made->previous,
-                                  u->error);
-    if (status != NARC_OK)
-        return status;
-    const size_t lost_count = list_added(last, made);
     if (narc_reserve_lost(broad, made, lost_count) != NARC_OK)
         return fail_memory(u, lost_count, "lost pairs");
-    list_lost(last, made, lost_count);
-    made->list.lost = made->lost;
-    mark_all_pairs(broad, made);
+    narc_list_lost(last, made, lost_count);
+    narc_mark_pairs(broad, made);
     return NARC_OK;
 }
 
 static narc_status finish(const update *u, const narc_pair_list **out_list) {
     narc_broad_phase *const broad = u->broad;
     const bool same = are_same(u);
-    const unsigned found = same ? look_at_all(u) : RENEW;
-    if (found & RENEW) {
+    size_t fresh_count = 0;
+    const unsigned found = same ? look_at_all(u, &fresh_count) : WHOLE;
+    if (found & (LEFT | WHOLE)) {
         const int next = 1 - broad->last;
-        const narc_status status = find(u, same, &broad->lists[broad->last], &broad->lists[next]);
+        const narc_status status = find(u, same, found, fresh_count, &broad->lists[broad->last], &broad->lists[next]);
         if (status != NARC_OK)
             return status;
         broad->last = next;
-        broad->is_current = broad->renewed = true;
+        broad->is_current = broad->is_sorted = broad->renewed = true;
     } else
         keep(u, found & REST);
     *out_list = &broad->lists[broad->last].list;
@@ -386,17 +349,10 @@ narc_status narc_update_pairs(narc_broad_phase *broad, const narc_shapes *shapes
     narc_status status = begin(&u, out_list);
     if (status != NARC_OK)
         return status;
-    const narc_box_options box_options = {.margin = u.options->margin * 0.5f,
-                                          .motion_x = u.options->motion_x,
-                                          .motion_y = u.options->motion_y,
-                                          .workers = u.options->workers};
-    narc_box *const boxes = broad->boxes_now;
-    status = narc_compute_boxes(shapes, bodies, &box_options, boxes, error);
+    status = narc_compute_step_boxes(broad, shapes, bodies, u.options, error);
     if (status != NARC_OK)
         return status;
-    if (u.options->reach.base)
-        add_room(&u, boxes, 0, boxes);
-    u.boxes = boxes;
+    u.boxes = broad->boxes_now;
     return finish(&u, out_list);
 }
 
@@ -411,8 +367,9 @@ narc_status narc_update_box_pairs(narc_broad_phase *broad, const narc_box *boxes
         return narc_fail_missing(error, "boxes");
     if (u.options->motion_x.base || u.options->motion_y.base)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "options.motion with boxes, which hold their motion");
+    narc_forget_poses(broad);
     if (u.options->margin > 0 || u.options->reach.base) {
-        add_room(&u, boxes, u.options->margin * 0.5f, broad->boxes_now);
+        narc_add_room(boxes, count, u.options->margin * 0.5f, u.options->reach, broad->boxes_now);
         u.boxes = broad->boxes_now;
     }
     return finish(&u, out_list);

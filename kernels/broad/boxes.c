@@ -170,9 +170,9 @@ INLINE struct reaches find_reaches(const narc_shapes *shapes, const struct heade
                             add_upwards(v_neg(at.y), v_sub(height[3], rest.y))};
 }
 
-/* The boxes of bodies first .. first + count - 1, to the front of `out`; returns how many have
- * none. */
-size_t NARC_NAMED(box)(const narc_box_batch *batch, size_t first, size_t count, narc_box *out) {
+/* The boxes of bodies list[0 .. count - 1], or first .. first + count - 1 without a list, to their places in `out`;
+ * returns how many have none. */
+size_t NARC_NAMED(box)(const narc_box_batch *batch, const uint32_t *list, size_t first, size_t count, narc_box *out) {
     const narc_bodies *const bodies = batch->bodies;
     const enum pose_layout layout = find_pose_layout(bodies);
     /* Room for the sum with a height, and for underflow: less than any rounding of NARC_MIN_SIZE. */
@@ -181,13 +181,13 @@ size_t NARC_NAMED(box)(const narc_box_batch *batch, size_t first, size_t count, 
     for (size_t k = 0; k < count; k += V_WIDTH) {
         /* The lanes behind the last body repeat the vector's first. */
         const int lanes = count - k < V_WIDTH ? (int)(count - k) : V_WIDTH;
-        const vi lane = vi_select(vm_front(lanes), vi_lanes(), vi_set(0)), place = vi_add(lane, vi_set((int32_t)k));
         int32_t body[V_WIDTH], shape[V_WIDTH];
         char *to[V_WIDTH];
-        vi_store(body, vi_add(place, vi_set((int32_t)(uint32_t)first)));
         for (int l = 0; l < V_WIDTH; l++) {
-            shape[l] = (int32_t)narc_index_at(bodies->shape, (uint32_t)body[l]);
-            to[l] = (char *)(out + k + (l < lanes ? l : 0));
+            const size_t place = k + (size_t)(l < lanes ? l : 0), own = list ? list[place] : first + place;
+            body[l] = (int32_t)(uint32_t)own;
+            shape[l] = (int32_t)narc_index_at(bodies->shape, own);
+            to[l] = (char *)(out + own);
         }
         const struct headers headers = load_headers(batch->shapes->headers, shape);
         const struct placed_bodies placed = load_placed_bodies(bodies, layout, body);
