@@ -7,8 +7,8 @@
 
 #include <stdbool.h>
 
-#include "base/shape.inl"
 #include "base/queue.inl"
+#include "base/shape.inl"
 #include "base/vec2.inl"
 #include "simd/simd.h"
 
@@ -35,7 +35,7 @@ static inline void list_arcs(const narc_shapes *shapes, const struct queue *queu
     out->ring = is_b ? get_ring_b(queue, k) : get_ring_a(queue, k);
     out->count = out->ring.count;
     /* The caller's arc 0 lies `first_arc` places before the end of the ring. */
-    const vi first_arc = info_first_arc(info);
+    const vi first_arc = get_first_arc(info);
     vi record = vi_add(out->ring.base, vi_sub(out->count, first_arc));
     record = vi_select(vi_lt(vi_set(0), first_arc), record, out->ring.base);
     out->record = record;

@@ -5,8 +5,8 @@
 #ifndef NARC_METHODS_BOXES_INL
 #define NARC_METHODS_BOXES_INL
 
-#include "base/shape.inl"
 #include "base/queue.inl"
+#include "base/shape.inl"
 #include "base/vec2.inl"
 #include "simd/simd.h"
 

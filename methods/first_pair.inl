@@ -13,11 +13,11 @@
 
 #include <math.h>
 
-#include "base/shape.inl"
 #include "base/call.inl"
 #include "base/pipeline.inl"
 #include "base/queue.inl"
 #include "base/rows.inl"
+#include "base/shape.inl"
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "methods/arc_lists.inl"

@@ -140,7 +140,7 @@ INLINE struct verdict step_search(const narc_batch *batch, const struct lanes *l
     const vm busy = vi_lt(vi_set(-1), age), fresh = vi_lt(age, vi_set(1));
     const vec2 direction = choose_direction(s, lanes, hint, age);
     const struct support found = find_support(batch->shapes, &lanes->pair, 0, busy, direction);
-    const struct vertex w = {found.w, found.middle, batch->query->hints.base ? diamond_angle(found.m) : zero};
+    const struct vertex w = {found.w, found.middle, batch->query->hints.base ? find_diamond_angle(found.m) : zero};
 
     /* What the step was for: a first point, a hint's second, a side of a segment through the origin, or the rule. */
     const vm seeded = vi_lt(age, seeds), second = vm_and_not(vm_and(seeded, vi_lt(age, vi_set(2))), fresh);

@@ -62,7 +62,7 @@ INLINE void leave_simplex(const struct call *call, const struct lanes *lanes, co
                           vec2 axis, vm collides, vm done) {
     const vi triangle = vi_add(ten_bits(corners[0]->angle), vi_add(vi_shift_left(ten_bits(corners[1]->angle), 10),
                                                                    vi_shift_left(ten_bits(corners[2]->angle), 20)));
-    const vf angle = v_min(v_mul(diamond_angle(axis), v_set(0x1p28f)), v_set(0x1p30f - 64));
+    const vf angle = v_min(v_mul(find_diamond_angle(axis), v_set(0x1p28f)), v_set(0x1p30f - 64));
     const vi hint = vi_select(collides, vi_add(vi_shift_left(triangle, 2), vi_set(HINT_TRIANGLE)),
                               vi_add(vi_shift_left(vi_truncate(angle), 2), vi_set(HINT_AXIS)));
     put_hints(call, get_bits(&lanes->pair, PAIR, 0), done, hint);

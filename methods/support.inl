@@ -11,8 +11,8 @@
 #ifndef NARC_METHODS_SUPPORT_INL
 #define NARC_METHODS_SUPPORT_INL
 
-#include "base/shape.inl"
 #include "base/queue.inl"
+#include "base/shape.inl"
 #include "base/vec2.inl"
 #include "sat/search.inl"
 #include "simd/simd.h"
@@ -71,7 +71,7 @@ INLINE struct support find_support(const narc_shapes *shapes, const struct queue
     const vec2 m = v2_select(is_short, (vec2){v_set(1), v_set(0)}, v2_divide(direction, v_sqrt(square)));
     struct support s = {.m = m};
     const struct arc_pair arcs = find_support_arcs(shapes->records, queue, k, live, m, &pose, &s.record_a, &s.record_b);
-    const vec2 u = center_difference(&arcs);
+    const vec2 u = find_center_difference(&arcs);
     const vf radii = v_add(arcs.a.radius, arcs.b.radius), lean = v_sub(arcs.a.radius, arcs.b.radius);
     const vf size_a = v_add(sum_of_sizes(arcs.a.center), arcs.a.radius);
     const vf size_b = v_add(sum_of_sizes(arcs.b.center), arcs.b.radius);

@@ -119,7 +119,7 @@ INLINE vi make_hint(const struct queue *queue, int k, vi record_a, vi record_b) 
     const vi a = vi_sub(record_a, get_ring_a(queue, k).base), b = vi_sub(record_b, get_ring_b(queue, k).base);
     const vi both = vi_and(get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k));
     const vi hint = vi_add(vi_add(a, vi_set(1)), vi_shift_left(vi_add(b, vi_set(1)), 8));
-    return vi_select(info_has(both, NARC_SHAPE_CIRCLE), vi_set(FIRST_ARCS), hint);
+    return vi_select(has_flag(both, NARC_SHAPE_CIRCLE), vi_set(FIRST_ARCS), hint);
 }
 
 /* Leaves hints for the pairs k ... of a queue in the lanes `ended`, if hints are wanted. */

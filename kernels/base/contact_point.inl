@@ -89,7 +89,7 @@ INLINE struct feature find_feature_at(const narc_record *records, struct ring ri
 INLINE vm touches_edge(const struct feature *f, vi info, vf scale) {
     const vf length = v_sub(f->along_max, f->along_min), least = v_mul(scale, find_least_edge(info));
     const vm longer = v_lt(v_max(v_mul(v_set(LEAST_STRETCH), f->magnitude), least), length);
-    return vm_and_not(longer, info_has(info, NARC_SHAPE_SMOOTH));
+    return vm_and_not(longer, has_flag(info, NARC_SHAPE_SMOOTH));
 }
 
 /* The contact point's place across n and along it. */
@@ -133,10 +133,10 @@ struct answer {
 
 /* The caller's number of an arc from its record; a circle's two halves are both arc 0. */
 INLINE vi find_arc_number(vi record, vi first_record, vi info) {
-    const vi index = vi_sub(record, first_arc_record(first_record, info));
-    const vi number = vi_add(index, info_first_arc(info)), count = info_count(info);
+    const vi index = vi_sub(record, find_first_arc(first_record, info));
+    const vi number = vi_add(index, get_first_arc(info)), count = get_arc_count(info);
     const vi wrapped = vi_select(vi_lt(number, count), number, vi_sub(number, count));
-    return vi_select(info_has(info, NARC_SHAPE_CIRCLE), vi_set(0), wrapped);
+    return vi_select(has_flag(info, NARC_SHAPE_CIRCLE), vi_set(0), wrapped);
 }
 
 /* The sine of the angle from one unit vector to another, counter-clockwise and up to half a turn, of a quarter turn at
@@ -149,7 +149,7 @@ INLINE vf find_capped_sine(vec2 from, vec2 to) {
 /* How far n may turn on the arc of a feature, as a manifold's row has it. */
 INLINE vi find_reach(const struct feature *f, vec2 n, vi info, vm edge) {
     const vf one = v_set(NARC_REACH_ONE), none = v_set(0);
-    const vm circle = info_has(info, NARC_SHAPE_CIRCLE);
+    const vm circle = has_flag(info, NARC_SHAPE_CIRCLE);
     const vf back = v_mul(one, find_capped_sine(f->start, n)), ahead = v_mul(one, find_capped_sine(n, f->end));
     return pack_halves(vi_truncate(v_select(circle, one, v_select(edge, none, back))),
                        vi_truncate(v_select(circle, one, v_select(edge, none, ahead))));

@@ -36,7 +36,7 @@
 /* 128 e (D + E_a + E_b), four times what the deciding formula can be off by: what a value from the same arithmetic must
  * be clear of, before it can stand for the formula's. Infinite where an extent is not known. */
 INLINE vf find_slack(vec2 position, vi info_a, vi info_b, vf size_a, vf size_b) {
-    const vi unknown = vi_set(255), ratio_a = info_extent_ratio(info_a), ratio_b = info_extent_ratio(info_b);
+    const vi unknown = vi_set(255), ratio_a = get_extent_ratio(info_a), ratio_b = get_extent_ratio(info_b);
     const vf extents = v_add(v_mul(size_a, v_of_int(ratio_a)), v_mul(size_b, v_of_int(ratio_b)));
     const vf slack = v_mul(v_set(0x1p-17f), v_add(v_add(v_abs(position.x), v_abs(position.y)), extents));
     return v_select(vm_and(vi_lt(ratio_a, unknown), vi_lt(ratio_b, unknown)), slack, v_set(INFINITY));
@@ -51,7 +51,7 @@ struct filter {
 };
 
 /* From the centre of a circle of A to that of a circle of B. */
-INLINE vec2 circle_difference(vec2 a, vec2 b, const struct pose *pose) {
+INLINE vec2 find_circle_difference(vec2 a, vec2 b, const struct pose *pose) {
     return v2_sub(place_center_b(b, pose), v2_scale(a, pose->scale_a));
 }
 
@@ -98,8 +98,8 @@ INLINE struct filter set_up_pairs(const struct call *call, const struct pair_ind
     filter.valid = vm_and(which, in_range);
     filter.invalid = vm_and_not(which, in_range);
 
-    const vec2 bounds = circle_difference(a.bound_center, b.bound_center, &pose);
-    const vec2 axis = circle_difference(a.inner_center, b.inner_center, &pose);
+    const vec2 bounds = find_circle_difference(a.bound_center, b.bound_center, &pose);
+    const vec2 axis = find_circle_difference(a.inner_center, b.inner_center, &pose);
     const vf size = v_add(size_a, size_b), limit = v_add(size, margin);
     const vf core = v_add(v_mul(scale_a, a.inner_radius), v_mul(scale_b, b.inner_radius));
     filter.apart =

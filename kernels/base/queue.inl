@@ -104,14 +104,14 @@ INLINE void store_vec2(struct queue *queue, int field, int k, vec2 a) {
 
 /* Are both shapes of the pairs k ... smooth? */
 INLINE vm find_smooth(const struct queue *queue, int k) {
-    return info_has(vi_and(get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k)), NARC_SHAPE_SMOOTH);
+    return has_flag(vi_and(get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k)), NARC_SHAPE_SMOOTH);
 }
 
-INLINE vi item_bits(const vf item[FIELDS], int field) { return vi_bits(item[field]); }
+INLINE vi get_item_bits(const vf item[FIELDS], int field) { return vi_bits(item[field]); }
 
 /* Do both shapes of a pair have a flag? */
 INLINE vm both_have(const vf item[FIELDS], int flag) {
-    return info_has(vi_and(item_bits(item, INFO_A), item_bits(item, INFO_B)), flag);
+    return has_flag(vi_and(get_item_bits(item, INFO_A), get_item_bits(item, INFO_B)), flag);
 }
 
 /* Notes how a first stage fared with pairs that have edges: what it took, and what is left of it. */

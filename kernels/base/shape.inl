@@ -30,11 +30,11 @@ INLINE struct headers load_headers(const narc_shape_header *headers, const int32
                             word[4],          {word[5], word[6]}, word[7]};
 }
 
-INLINE vi info_count(vi info) { return vi_and(info, vi_set(0xff)); }
+INLINE vi get_arc_count(vi info) { return vi_and(info, vi_set(0xff)); }
 
-INLINE vi info_first_arc(vi info) { return vi_and(vi_shift_right(info, 8), vi_set(0xff)); }
+INLINE vi get_first_arc(vi info) { return vi_and(vi_shift_right(info, 8), vi_set(0xff)); }
 
-INLINE vm info_has(vi info, int flag) { return vi_lt(vi_set(0), vi_and(info, vi_set(flag << 16))); }
+INLINE vm has_flag(vi info, int flag) { return vi_lt(vi_set(0), vi_and(info, vi_set(flag << 16))); }
 
 /* A shape's straight parts that are no longer than this, in its own unit, are no edges (store.h, the size class). */
 INLINE vf find_least_edge(vi info) {
@@ -43,12 +43,12 @@ INLINE vf find_least_edge(vi info) {
     return v_of_bits(vi_shift_left(exponent, 23));
 }
 
-INLINE vi info_extent_ratio(vi info) { return vi_shift_right(info, 24); }
+INLINE vi get_extent_ratio(vi info) { return vi_shift_right(info, 24); }
 
 /* The record of the shape's first arc, behind its junction angles. */
-INLINE vi first_arc_record(vi first_record, vi info) {
+INLINE vi find_first_arc(vi first_record, vi info) {
     _Static_assert(NARC_RECORD_ANGLES == 16, "the shift divides by it");
-    return vi_add(first_record, vi_shift_right(vi_add(info_count(info), vi_set(NARC_RECORD_ANGLES - 1)), 4));
+    return vi_add(first_record, vi_shift_right(vi_add(get_arc_count(info), vi_set(NARC_RECORD_ANGLES - 1)), 4));
 }
 
 /* A record in each lane: eight fields. */
@@ -65,7 +65,7 @@ struct ring {
 };
 
 INLINE struct ring make_ring(vi first_record, vi info) {
-    return (struct ring){first_arc_record(first_record, info), info_count(info)};
+    return (struct ring){find_first_arc(first_record, info), get_arc_count(info)};
 }
 
 /* A record after a step of -1, 0 or 1 along the ring. */
@@ -76,7 +76,7 @@ INLINE vi step_record(struct ring ring, vi record, vi step) {
 }
 
 /* The diamond angle of a direction of any length: monotonic in the true angle, 0 along +x, 1 along +y, at most 4. */
-INLINE vf diamond_angle(vec2 a) {
+INLINE vf find_diamond_angle(vec2 a) {
     const vf part = v_div(a.x, v_add(v_abs(a.x), v_abs(a.y)));
     return v_select(v_le(v_set(0), a.y), v_sub(v_set(1), part), v_add(v_set(3), part));
 }
@@ -97,15 +97,15 @@ struct arcs {
 };
 
 /* Two floats that lack their lower halves, in one. */
-INLINE vf upper_half(vf two) { return v_of_bits(vi_and(vi_bits(two), vi_set((int32_t)0xffff0000u))); }
+INLINE vf get_upper_half(vf two) { return v_of_bits(vi_and(vi_bits(two), vi_set((int32_t)0xffff0000u))); }
 
-INLINE vf lower_half(vf two) { return v_of_bits(vi_shift_left(vi_bits(two), 16)); }
+INLINE vf get_lower_half(vf two) { return v_of_bits(vi_shift_left(vi_bits(two), 16)); }
 
 INLINE struct arcs place_a(const vf field[8], const struct pose *pose) {
     return (struct arcs){v2_scale((vec2){field[0], field[1]}, pose->scale_a),
                          v_mul(field[2], pose->scale_a),
-                         v_mul(upper_half(field[3]), pose->scale_a),
-                         v_mul(lower_half(field[3]), pose->scale_a),
+                         v_mul(get_upper_half(field[3]), pose->scale_a),
+                         v_mul(get_lower_half(field[3]), pose->scale_a),
                          {field[4], field[5]},
                          {field[6], field[7]}};
 }
@@ -117,8 +117,8 @@ INLINE vec2 place_center_b(vec2 center, const struct pose *pose) {
 INLINE struct arcs place_b(const vf field[8], const struct pose *pose) {
     return (struct arcs){place_center_b((vec2){field[0], field[1]}, pose),
                          v_mul(field[2], pose->scale_b),
-                         v_mul(upper_half(field[3]), pose->scale_b),
-                         v_mul(lower_half(field[3]), pose->scale_b),
+                         v_mul(get_upper_half(field[3]), pose->scale_b),
+                         v_mul(get_lower_half(field[3]), pose->scale_b),
                          v2_rotate_opposite(pose->rotation, (vec2){field[4], field[5]}),
                          v2_rotate_opposite(pose->rotation, (vec2){field[6], field[7]})};
 }
@@ -150,7 +150,7 @@ INLINE struct arc_pair select_arc_pair(vm m, const struct arc_pair *a, const str
 }
 
 /* u, from the centre of A's arc to that of B's. */
-INLINE vec2 center_difference(const struct arc_pair *arcs) { return v2_sub(arcs->b.center, arcs->a.center); }
+INLINE vec2 find_center_difference(const struct arc_pair *arcs) { return v2_sub(arcs->b.center, arcs->a.center); }
 
 /* The least normal float: a smaller square has lost its digits. */
 #define LEAST_SQUARE 0x1p-126f

@@ -28,38 +28,38 @@ struct box_pair {
     bool capsules; /* capsules.inl, not boxes */
 };
 
-INLINE vf box_field(const struct box_pair *pair, int field) { return v_load(pair->queue->item[field] + pair->k); }
+INLINE vf get_box_field(const struct box_pair *pair, int field) { return v_load(pair->queue->item[field] + pair->k); }
 
-INLINE vec2 box_vec2(const struct box_pair *pair, int field) {
-    return (vec2){box_field(pair, field), box_field(pair, field + 1)};
+INLINE vec2 get_box_vec2(const struct box_pair *pair, int field) {
+    return (vec2){get_box_field(pair, field), get_box_field(pair, field + 1)};
 }
 
-INLINE vi box_code(const struct box_pair *pair) { return vi_bits(box_field(pair, BOX_CODE)); }
+INLINE vi get_box_code(const struct box_pair *pair) { return vi_bits(get_box_field(pair, BOX_CODE)); }
 
 /* B's in A's frame, where A is scaled. */
-INLINE struct pose box_pose(const struct box_pair *pair) {
-    return (struct pose){box_vec2(pair, BOX_POSITION), box_vec2(pair, BOX_ROTATION), v_set(1),
-                         box_field(pair, BOX_SCALE_B)};
+INLINE struct pose get_box_pose(const struct box_pair *pair) {
+    return (struct pose){get_box_vec2(pair, BOX_POSITION), get_box_vec2(pair, BOX_ROTATION), v_set(1),
+                         get_box_field(pair, BOX_SCALE_B)};
 }
 
 /* 1, or -1 where bit 1 of a number is set. */
-INLINE vf sign_of(vi number) {
+INLINE vf find_sign(vi number) {
     return v_of_bits(vi_add(vi_set(0x3f800000), vi_and(vi_shift_left(number, 30), vi_set(INT32_MIN))));
 }
 
 /* Corner i of A or B, in its own frame, and the normal of its edge i; `half`: the field with its half sizes. i counts
  * on beyond 3. Of a capsule's edges there are 1 and 3 (store.h). */
-INLINE vec2 box_corner(const struct box_pair *pair, int half, vi i) {
-    const vec2 size = box_vec2(pair, half);
-    const vf y = pair->capsules ? v_set(0) : v_mul(size.y, sign_of(i));
-    return (vec2){v_mul(size.x, sign_of(vi_add(i, vi_set(1)))), y};
+INLINE vec2 find_box_corner(const struct box_pair *pair, int half, vi i) {
+    const vec2 size = get_box_vec2(pair, half);
+    const vf y = pair->capsules ? v_set(0) : v_mul(size.y, find_sign(i));
+    return (vec2){v_mul(size.x, find_sign(vi_add(i, vi_set(1)))), y};
 }
 
-INLINE vec2 box_normal(const struct box_pair *pair, int half, vi i) {
-    const vf sign = sign_of(i), zero = v_set(0);
+INLINE vec2 find_box_normal(const struct box_pair *pair, int half, vi i) {
+    const vf sign = find_sign(i), zero = v_set(0);
     const vm odd = vi_lt(vi_set(0), vi_and(i, vi_set(1)));
     if (pair->capsules)
-        return (vec2){v_mul(box_field(pair, half + 1), sign), sign};
+        return (vec2){v_mul(get_box_field(pair, half + 1), sign), sign};
     return (vec2){v_select(odd, zero, sign), v_select(odd, sign, zero)};
 }
 
@@ -73,24 +73,24 @@ struct box_side {
 
 INLINE struct box_side find_side_a(const struct box_pair *pair, vi edge) {
     return (struct box_side){.edge = edge,
-                             .normal = box_normal(pair, BOX_HALF_A, edge),
-                             .low = box_corner(pair, BOX_HALF_A, vi_sub(edge, vi_set(1))),
-                             .high = box_corner(pair, BOX_HALF_A, edge)};
+                             .normal = find_box_normal(pair, BOX_HALF_A, edge),
+                             .low = find_box_corner(pair, BOX_HALF_A, vi_sub(edge, vi_set(1))),
+                             .high = find_box_corner(pair, BOX_HALF_A, edge)};
 }
 
 INLINE struct box_side find_side_b(const struct box_pair *pair, vi edge) {
-    const struct pose pose = box_pose(pair);
-    const vec2 before = box_corner(pair, BOX_HALF_B, vi_sub(edge, vi_set(1))),
-               behind = box_corner(pair, BOX_HALF_B, edge);
-    return (struct box_side){.edge = edge,
-                             .normal =
-                                 v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), box_normal(pair, BOX_HALF_B, edge)),
-                             .low = place_center_b(behind, &pose),
-                             .high = place_center_b(before, &pose)};
+    const struct pose pose = get_box_pose(pair);
+    const vec2 before = find_box_corner(pair, BOX_HALF_B, vi_sub(edge, vi_set(1))),
+               behind = find_box_corner(pair, BOX_HALF_B, edge);
+    return (struct box_side){
+        .edge = edge,
+        .normal = v2_rotate_opposite(get_box_vec2(pair, BOX_ROTATION), find_box_normal(pair, BOX_HALF_B, edge)),
+        .low = place_center_b(behind, &pose),
+        .high = place_center_b(before, &pose)};
 }
 
 /* The corner that touches. */
-INLINE vi box_touching(const struct box_side *side) {
+INLINE vi find_box_touching(const struct box_side *side) {
     return vi_sub(side->edge, vi_select(side->behind, vi_set(0), vi_set(1)));
 }
 
@@ -103,12 +103,13 @@ struct box_contact {
 /* What the two edges tell. Sets where the answer is not certain, and where a corner touches a corner: then other edges
  * may be closer to the normal. */
 INLINE struct box_contact find_facing(const struct box_pair *pair, vm *out_left, vm *out_corners) {
-    const vf zero = v_set(0), radii = v_add(box_field(pair, BOX_RADIUS_A), box_field(pair, BOX_RADIUS_B)),
-             slack = box_field(pair, BOX_SLACK);
-    const vi edge_a = vi_and(box_code(pair), vi_set(3)), edge_b = vi_and(vi_shift_right(box_code(pair), 2), vi_set(3));
+    const vf zero = v_set(0), radii = v_add(get_box_field(pair, BOX_RADIUS_A), get_box_field(pair, BOX_RADIUS_B)),
+             slack = get_box_field(pair, BOX_SLACK);
+    const vi edge_a = vi_and(get_box_code(pair), vi_set(3)),
+             edge_b = vi_and(vi_shift_right(get_box_code(pair), 2), vi_set(3));
     struct box_contact c = {.a = find_side_a(pair, edge_a), .b = find_side_b(pair, edge_b)};
     /* The order in the walk, which begins at +x: an edge of A there comes after one of B just before it. */
-    const vf angle_a = v_of_int(edge_a), angle_b = diamond_angle(c.b.normal);
+    const vf angle_a = v_of_int(edge_a), angle_b = find_diamond_angle(c.b.normal);
     const vm wraps = vm_and(v_le(angle_a, zero), v_lt(v_set(2), angle_b));
     const vm a_first = vm_and_not(v_lt(angle_a, angle_b), wraps);
     const vec2 f = v2_select(a_first, c.a.normal, c.b.normal), g = v2_select(a_first, c.b.normal, c.a.normal);
@@ -128,7 +129,7 @@ INLINE struct box_contact find_facing(const struct box_pair *pair, vm *out_left,
     c.separation = v_select(takes_g, value_g, value_f);
     c.normal = v2_select(takes_g, g, f);
 
-    vm left = vm_or(vi_lt(vi_set(0), vi_and(box_code(pair), vi_set(BOX_TIE))), vm_and(beyond, before));
+    vm left = vm_or(vi_lt(vi_set(0), vi_and(get_box_code(pair), vi_set(BOX_TIE))), vm_and(beyond, before));
     left = vm_or(left, vm_not(vm_or(vm_or(at_f, at_g), vm_or(beyond, before))));
     const vm corners = vm_or(inside, vm_or(beyond, before));
     if (vm_any(corners)) {
@@ -152,8 +153,8 @@ INLINE struct box_side find_side(const struct box_pair *pair, vi edge, bool is_b
 }
 
 INLINE vec2 find_side_normal(const struct box_pair *pair, vi edge, bool is_b) {
-    const vec2 normal = box_normal(pair, is_b ? BOX_HALF_B : BOX_HALF_A, edge);
-    return is_b ? v2_rotate_opposite(box_vec2(pair, BOX_ROTATION), normal) : normal;
+    const vec2 normal = find_box_normal(pair, is_b ? BOX_HALF_B : BOX_HALF_A, edge);
+    return is_b ? v2_rotate_opposite(get_box_vec2(pair, BOX_ROTATION), normal) : normal;
 }
 
 /* The edge next to a corner that is closer to n; of equals the one behind the corner. A capsule has two, opposite to

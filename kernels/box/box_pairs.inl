@@ -98,12 +98,12 @@ INLINE struct box_form load_box_forms(const narc_box_form *forms, const int32_t 
 }
 
 /* Is a box of about this size in range, for certain? The bounding radius is between 0.7 and 1.001 times the sum. */
-INLINE vm box_in_range(vf size) {
+INLINE vm is_box_in_range(vf size) {
     return vm_and(v_le(v_set(2 * (float)NARC_MIN_SIZE), size), v_le(size, v_set(0.5f * (float)NARC_MAX_SIZE)));
 }
 
 /* The number of an edge: on the x axis or on the y axis, at its negative end or not. */
-INLINE vi edge_number(vm on_x, vm negative) {
+INLINE vi find_edge_number(vm on_x, vm negative) {
     return vi_add(vi_select(on_x, vi_set(0), vi_set(1)), vi_select(negative, vi_set(2), vi_set(0)));
 }
 
@@ -137,7 +137,7 @@ INLINE vm take_boxes(const struct call *call, const struct box_form *a, const st
 
     const vf slack = v_mul(v_set(0x1p-17f), v_add(v_add(x, y), v_add(size_a, size_b))), two = v_add(slack, slack);
     const vf least = v_min(v_min(half_a.x, half_a.y), v_min(half_b.x, half_b.y));
-    const vm sizes = vm_and(box_in_range(size_a), box_in_range(size_b));
+    const vm sizes = vm_and(is_box_in_range(size_a), is_box_in_range(size_b));
     const vm taken = vm_and(which, vm_and(sizes, v_lt(two, least)));
     vm near = vm_and_not(taken, v_lt(v_add(placement->margin, slack), v_sub(best, radii)));
     if (call->bits) { /* nothing but overlaps is asked for */
@@ -163,7 +163,8 @@ INLINE vm take_boxes(const struct call *call, const struct box_form *a, const st
         const vm certain = vm_and(nearer, vm_or(v_lt(two, best), v_lt(two, v_sub(best, others))));
 
         const vi pairs = vi_add(vi_lanes(), vi_set(number));
-        const vi edges = vi_add(edge_number(a_on_x, negative_a), vi_shift_left(edge_number(b_on_x, vm_not(back_b)), 2));
+        const vi edges =
+            vi_add(find_edge_number(a_on_x, negative_a), vi_shift_left(find_edge_number(b_on_x, vm_not(back_b)), 2));
         const vi first =
             vi_add(vi_shift_left(vi_and(a->info, vi_set(3)), 4), vi_shift_left(vi_and(b->info, vi_set(3)), 6));
         const vi tie = vi_select(certain, vi_set(0), vi_set(BOX_TIE));

@@ -48,8 +48,8 @@ INLINE struct box_touch find_touch(const struct box_side *side, vec2 n, vf radiu
 
 /* The caller's number of corner i, or of the edge before it. `shift`: of the first arc in the code. Of a capsule
  * the arc at -x, its corners 1 and 2, is stored first. */
-INLINE vi box_feature(const struct box_pair *pair, vi i, int shift) {
-    const vi first = vi_shift_right(box_code(pair), shift);
+INLINE vi find_box_arc(const struct box_pair *pair, vi i, int shift) {
+    const vi first = vi_shift_right(get_box_code(pair), shift);
     if (pair->capsules)
         return vi_and(vi_add(vi_shift_right(vi_add(i, vi_set(3)), 1), first), vi_set(1));
     return vi_and(vi_add(i, first), vi_set(3));
@@ -58,8 +58,8 @@ INLINE vi box_feature(const struct box_pair *pair, vi i, int shift) {
 /* What touches, as a contact has it. */
 INLINE vi find_box_feature(const struct box_pair *pair, const struct box_side *side, const struct box_touch *touch,
                            int shift) {
-    const vi edge = vi_add(box_feature(pair, side->edge, shift), vi_set(NARC_FEATURE_EDGE));
-    return vi_select(touch->parallel, edge, box_feature(pair, box_touching(side), shift));
+    const vi edge = vi_add(find_box_arc(pair, side->edge, shift), vi_set(NARC_FEATURE_EDGE));
+    return vi_select(touch->parallel, edge, find_box_arc(pair, find_box_touching(side), shift));
 }
 
 /* The reaches of a corner, as find_reach() has them, with the edge next to it. */
@@ -97,8 +97,8 @@ INLINE struct edge find_box_edge(const struct box_pair *pair, const struct box_s
     struct edge edge = {.is_edge = vm_front(V_WIDTH),
                         .offered = v_le(v_abs(touch->sine), flat_sine),
                         .parallel = touch->parallel,
-                        .before = box_feature(pair, vi_sub(side->edge, vi_set(1)), shift),
-                        .after = box_feature(pair, side->edge, shift),
+                        .before = find_box_arc(pair, vi_sub(side->edge, vi_set(1)), shift),
+                        .after = find_box_arc(pair, side->edge, shift),
                         .arc_radius = radius};
     place_box_edge(&edge, side, side->normal, touch->radius, n, radius, false);
     if (pair->capsules) {
@@ -126,18 +126,18 @@ struct box_manifold {
 INLINE struct box_manifold find_box_points(const struct call *call, const struct box_pair *pair,
                                            const struct box_contact *c, const struct box_touch *on_a,
                                            const struct box_touch *on_b, vec2 place, vf margin) {
-    const vec2 n = c->normal, to_world = box_vec2(pair, BOX_ROTATION_A);
+    const vec2 n = c->normal, to_world = get_box_vec2(pair, BOX_ROTATION_A);
     const vf flat_sine = v_set(call->batch->flat_sine);
     const struct edge a = find_box_edge(pair, &c->a, on_a, n, flat_sine, 4, false);
     const struct edge b = find_box_edge(pair, &c->b, on_b, n, flat_sine, 6, true);
     const struct end_point low = find_end_point(&a, &b, false), high = find_end_point(&a, &b, true);
-    const vm stretch = is_stretch(&low, &high, c->separation, n, box_vec2(pair, BOX_POSITION));
+    const vm stretch = is_stretch(&low, &high, c->separation, n, get_box_vec2(pair, BOX_POSITION));
     const vm faces = vm_and(vm_and(a.offered, b.offered), stretch);
     const struct end_point exact = get_deepest(&a, &b, place.y, place.x, c->separation);
     struct facing_points p = find_facing_points(&a, &b, low, high, &exact, find_second_margin(call, margin));
     if (vm_any(vm_not(faces))) {
-        const vi number_a = box_feature(pair, box_touching(&c->a), 4),
-                 number_b = box_feature(pair, box_touching(&c->b), 6);
+        const vi number_a = find_box_arc(pair, find_box_touching(&c->a), 4),
+                 number_b = find_box_arc(pair, find_box_touching(&c->b), 6);
         const vi id = find_touching_id(&a, &b, place.y, number_a, number_b);
         p.two = vm_and(p.two, faces);
         p.first = select_end_point(faces, &p.first, &exact);
@@ -170,7 +170,7 @@ INLINE void find_box_places(const struct call *call, const struct box_queue *que
 INLINE void answer_boxes(const struct call *call, const struct box_queue *queue, int k, int live, bool capsules,
                          bool manifolds) {
     const struct box_pair pair = {queue, k, capsules};
-    const vi pairs = vi_bits(box_field(&pair, BOX_PAIR));
+    const vi pairs = vi_bits(get_box_field(&pair, BOX_PAIR));
     const vf margin = find_margins(call, pairs);
     const vm open = vm_front(live);
     const struct box_contact c = capsules ? find_capsule_contact(&pair, open) : find_box_contact(&pair, open);
@@ -178,11 +178,11 @@ INLINE void answer_boxes(const struct call *call, const struct box_queue *queue,
     if (!vm_any(keep))
         return;
     const vec2 n = c.normal;
-    const struct box_touch on_a = find_touch(&c.a, n, box_field(&pair, BOX_RADIUS_A), false);
-    const struct box_touch on_b = find_touch(&c.b, n, v_neg(box_field(&pair, BOX_RADIUS_B)), true);
+    const struct box_touch on_a = find_touch(&c.a, n, get_box_field(&pair, BOX_RADIUS_A), false);
+    const struct box_touch on_b = find_touch(&c.b, n, v_neg(get_box_field(&pair, BOX_RADIUS_B)), true);
     const vf half = v_set(0.5f), across = v_mul(half, v_add(on_a.across, on_b.across));
     const vec2 place = {across, v_mul(half, v_add(v_max(on_a.min, on_b.min), v_min(on_a.max, on_b.max)))};
-    const vec2 normal = v2_rotate(box_vec2(&pair, BOX_ROTATION_A), n);
+    const vec2 normal = v2_rotate(get_box_vec2(&pair, BOX_ROTATION_A), n);
     const vi numbers = find_numbers(call, pairs);
     char *to[V_WIDTH];
     find_box_places(call, queue, k + live - 1, pairs, keep, to);
@@ -202,10 +202,10 @@ INLINE void answer_boxes(const struct call *call, const struct box_queue *queue,
     const vi of_b = find_box_feature(&pair, &c.b, &on_b, 6);
     const struct answer answer = {.separation = c.separation,
                                   .normal = normal,
-                                  .point = v2_rotate(box_vec2(&pair, BOX_ROTATION_A), v2_rotate(n, place)),
+                                  .point = v2_rotate(get_box_vec2(&pair, BOX_ROTATION_A), v2_rotate(n, place)),
                                   .feature = vi_add(of_a, vi_shift_left(of_b, 8)),
-                                  .radius_a = v_select(on_a.parallel, flat, box_field(&pair, BOX_RADIUS_A)),
-                                  .radius_b = v_select(on_b.parallel, flat, box_field(&pair, BOX_RADIUS_B))};
+                                  .radius_a = v_select(on_a.parallel, flat, get_box_field(&pair, BOX_RADIUS_A)),
+                                  .radius_b = v_select(on_b.parallel, flat, get_box_field(&pair, BOX_RADIUS_B))};
     write_answers(call, to, numbers, &answer);
 }
 

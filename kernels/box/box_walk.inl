@@ -29,16 +29,16 @@ struct couple {
 
 /* Couple p, with edge `turn` + p of B; `wraps`: B's edge lies before +x. */
 INLINE struct couple find_couple(const struct box_pair *pair, int p, vi turn, vm *out_wraps) {
-    const struct pose pose = box_pose(pair);
+    const struct pose pose = get_box_pose(pair);
     const vi edge_a = vi_set(p), edge_b = vi_add(turn, edge_a);
-    const vec2 of_a = box_normal(pair, BOX_HALF_A, edge_a), of_b = find_side_normal(pair, edge_b, true);
-    const vf angle = diamond_angle(of_b);
+    const vec2 of_a = find_box_normal(pair, BOX_HALF_A, edge_a), of_b = find_side_normal(pair, edge_b, true);
+    const vf angle = find_diamond_angle(of_b);
     *out_wraps = v_lt(v_set(2), angle);
     const vm a_first = p == 0 ? vm_and_not(v_lt(v_set(0), angle), *out_wraps) : v_lt(v_set((float)p), angle);
     return (struct couple){.low = v2_select(a_first, of_a, of_b),
                            .high = v2_select(a_first, of_b, of_a),
-                           .corner_a = box_corner(pair, BOX_HALF_A, edge_a),
-                           .corner_b = place_center_b(box_corner(pair, BOX_HALF_B, edge_b), &pose),
+                           .corner_a = find_box_corner(pair, BOX_HALF_A, edge_a),
+                           .corner_b = place_center_b(find_box_corner(pair, BOX_HALF_B, edge_b), &pose),
                            .a_first = a_first,
                            .b_first = vm_not(a_first),
                            .number_a = edge_a,
@@ -52,8 +52,8 @@ INLINE vm try_interval(const struct box_pair *pair, const struct couple *last, c
     const vm none = vm_front(0), last_a = behind ? none : couple->b_first, last_b = behind ? none : couple->a_first;
     const vec2 start = behind ? couple->high : couple->low;
     const struct arc_pair arcs = {
-        {.center = v2_select(last_a, last->corner_a, couple->corner_a), .radius = box_field(pair, BOX_RADIUS_A)},
-        {.center = v2_select(last_b, last->corner_b, couple->corner_b), .radius = box_field(pair, BOX_RADIUS_B)}};
+        {.center = v2_select(last_a, last->corner_a, couple->corner_a), .radius = get_box_field(pair, BOX_RADIUS_A)},
+        {.center = v2_select(last_b, last->corner_b, couple->corner_b), .radius = get_box_field(pair, BOX_RADIUS_B)}};
     const struct candidate found = find_candidate(&arcs, start, end, rises);
     const vm better = vm_and(which, vm_and(found.exists, v_lt(best->separation, found.value)));
     const struct gap gap = {
@@ -66,7 +66,7 @@ INLINE vm try_interval(const struct box_pair *pair, const struct couple *last, c
 /* The largest gap, with the numbers of the corners in place of records. */
 static __attribute__((noinline)) void walk_boxes(const struct box_pair *given, struct gap *out_best) {
     const struct box_pair boxes = {given->queue, given->k, false}, *const pair = &boxes;
-    const vec2 q = box_vec2(pair, BOX_ROTATION);
+    const vec2 q = get_box_vec2(pair, BOX_ROTATION);
     const vm all = vm_front(V_WIDTH);
     const vi zero = vi_set(0);
     /* B's edge nearest to +x. */
@@ -98,7 +98,7 @@ INLINE struct box_contact find_box_contact(const struct box_pair *pair, vm open)
     struct box_contact c = find_facing(pair, &left, &corners);
     left = vm_and(open, left);
     if (vm_any(vm_or(left, vm_and(open, corners)))) {
-        vi corner_a = box_touching(&c.a), corner_b = box_touching(&c.b);
+        vi corner_a = find_box_touching(&c.a), corner_b = find_box_touching(&c.b);
         if (vm_any(left)) {
             struct gap gap;
             walk_boxes(pair, &gap);

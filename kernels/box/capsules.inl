@@ -49,7 +49,7 @@ INLINE vm take_capsules(const struct call *call, const struct box_form *a, const
     const vf across = v_max(across_a, across_b), best = v_max(across, v_max(along_a, along_b));
 
     const vf slack = v_mul(v_set(0x1p-17f), v_add(v_add(x, y), v_add(size_a, size_b))), two = v_add(slack, slack);
-    const vm sizes = vm_and(box_in_range(size_a), box_in_range(size_b));
+    const vm sizes = vm_and(is_box_in_range(size_a), is_box_in_range(size_b));
     const vm taken = vm_and(which, vm_and(sizes, v_lt(two, v_min(half_a, half_b))));
     vm near = vm_and_not(taken, v_lt(v_add(placement->margin, slack), v_sub(best, radii)));
     if (call->bits) { /* nothing but overlaps is asked for */
@@ -102,8 +102,8 @@ static __attribute__((noinline)) void walk_capsules(const struct box_pair *given
     const struct box_pair capsules = {given->queue, given->k, true}, *const pair = &capsules;
     const vm all = vm_front(V_WIDTH);
     const vi zero = vi_set(0);
-    const vf angle_1 = diamond_angle(find_side_normal(pair, vi_set(1), true));
-    const vf angle_3 = diamond_angle(find_side_normal(pair, vi_set(3), true));
+    const vf angle_1 = find_diamond_angle(find_side_normal(pair, vi_set(1), true));
+    const vf angle_3 = find_diamond_angle(find_side_normal(pair, vi_set(3), true));
     const vi turn = vi_select(v_lt(angle_3, angle_1), vi_set(2), zero);
     vm never;
     const struct couple first = find_couple(pair, 1, turn, &never), last = find_couple(pair, 3, turn, &never);
@@ -120,15 +120,15 @@ static __attribute__((noinline)) void walk_capsules(const struct box_pair *given
 INLINE vm code_has(vi code, int bit) { return vi_lt(vi_set(0), vi_and(code, vi_set(bit))); }
 
 INLINE vec2 find_end_a(const struct box_pair *pair, vm right) {
-    const vf half = box_field(pair, BOX_HALF_A);
+    const vf half = get_box_field(pair, BOX_HALF_A);
     return (vec2){v_select(right, half, v_neg(half)), v_set(0)};
 }
 
 /* How the capsules of a pair touch, in the lanes `open`. */
 INLINE struct box_contact find_capsule_contact(const struct box_pair *pair, vm open) {
-    const struct pose pose = box_pose(pair);
-    const vf zero = v_set(0), radii = v_add(box_field(pair, BOX_RADIUS_A), box_field(pair, BOX_RADIUS_B));
-    const vi code = box_code(pair), first = vi_set(1), second = vi_set(3);
+    const struct pose pose = get_box_pose(pair);
+    const vf zero = v_set(0), radii = v_add(get_box_field(pair, BOX_RADIUS_A), get_box_field(pair, BOX_RADIUS_B));
+    const vi code = get_box_code(pair), first = vi_set(1), second = vi_set(3);
     const vm by_b = code_has(code, EDGE_OF_B), negative = code_has(code, EDGE_NEGATIVE);
     const vm tilted = code_has(code, EDGE_TILTED);
     /* The ends that face each other in the intervals before the edge's normal and behind it: those at +x? */
@@ -137,7 +137,7 @@ INLINE struct box_contact find_capsule_contact(const struct box_pair *pair, vm o
              behind_a = vm_or(vm_and(by_b, other), vm_and_not(negative, by_b));
     const vm before_b = vm_or(vm_and(by_b, up), vm_and_not(other, by_b)),
              behind_b = vm_or(vm_and(by_b, negative), vm_and_not(other, by_b));
-    const vf half_b = box_field(pair, BOX_HALF_B);
+    const vf half_b = get_box_field(pair, BOX_HALF_B);
     const vec2 left_b = place_center_b((vec2){v_neg(half_b), zero}, &pose),
                right_b = place_center_b((vec2){half_b, zero}, &pose);
     const vec2 u_before = v2_sub(v2_select(before_b, right_b, left_b), find_end_a(pair, before_a));

@@ -80,7 +80,7 @@ INLINE vi sum_of_halves(vi twice) { return vi_add(vi_and(twice, vi_set(0xffff)),
 /* The arcs that may hold the axes: those between the junctions that are surely before a direction and surely behind
  * it. Near angle 0, the junctions that are before it are the last ones. */
 INLINE void find_arc_runs(const narc_record *records, vi first_record, vi count, vec2 right, struct arc_run run[AXES]) {
-    const vf quarter = diamond_angle(right);
+    const vf quarter = find_diamond_angle(right);
     vi limit[2 * AXES], before[2 * AXES];
     vm turn[AXES];
     UNROLL
@@ -156,7 +156,7 @@ INLINE struct reaches find_reaches(const narc_shapes *shapes, const struct heade
                                    const struct placed_bodies *bodies, vec2 rotation, vf margin) {
     const vec2 right = {rotation.x, v_neg(rotation.y)}, up = {rotation.y, rotation.x};
     const vec2 axis[AXES] = {right, up, {v_neg(right.x), v_neg(right.y)}, {v_neg(up.x), v_neg(up.y)}};
-    const vi count = info_count(headers->info), arcs = first_arc_record(headers->first_record, headers->info);
+    const vi count = get_arc_count(headers->info), arcs = find_first_arc(headers->first_record, headers->info);
     struct arc_run run[AXES];
     vf height[AXES];
     find_arc_runs(shapes->records, headers->first_record, count, right, run);

@@ -41,7 +41,7 @@ struct local_maximum {
 #define LOOSE 64.0f
 
 /* By how much g must exceed the margin, with arcs that were looked up. */
-INLINE vf lookup_slack(const struct queue *queue, int k) {
+INLINE vf find_lookup_slack(const struct queue *queue, int k) {
     return v_mul(get(queue, SLACK, k), v_select(find_smooth(queue, k), v_set(1), v_set(LOOSE)));
 }
 
@@ -150,8 +150,8 @@ struct sines {
 INLINE vec2 mirror(vec2 a) { return (vec2){a.x, v_neg(a.y)}; }
 
 INLINE struct sines find_sines(const struct queue *queue, int k, const struct local_maximum *m, vec2 n) {
-    const vm circle_a = info_has(get_bits(queue, INFO_A, k), NARC_SHAPE_CIRCLE);
-    const vm circle_b = info_has(get_bits(queue, INFO_B, k), NARC_SHAPE_CIRCLE);
+    const vm circle_a = has_flag(get_bits(queue, INFO_A, k), NARC_SHAPE_CIRCLE);
+    const vm circle_b = has_flag(get_bits(queue, INFO_B, k), NARC_SHAPE_CIRCLE);
     struct sines s;
     s.end_a = find_sine(n, m->after.a.end, circle_a);
     s.end_b = find_sine(n, m->after.b.end, circle_b);
@@ -185,8 +185,8 @@ INLINE vm is_global_maximum(const struct queue *queue, int k, const struct local
                             vec2 n, vf separation) {
     const vf zero = v_set(0), slack = get(queue, SLACK, k), depth = v_neg(separation);
     const struct fan_ends ends = find_fan_ends(queue, k, n, separation);
-    const vf edge_after = v_select(m->kink, v2_cross(center_difference(&m->after), n), zero);
-    const vf edge_before = v_select(m->kink, v2_cross(n, center_difference(&m->before)), zero);
+    const vf edge_after = v_select(m->kink, v2_cross(find_center_difference(&m->after), n), zero);
+    const vf edge_before = v_select(m->kink, v2_cross(n, find_center_difference(&m->before)), zero);
     const vm after = is_side_clear(&m->after, s->end_a, s->end_b, edge_after, m->kink, ends.after, depth, slack);
     const vm before =
         is_side_clear(&m->before, s->start_a, s->start_b, edge_before, m->kink, ends.before, depth, slack);

@@ -36,7 +36,7 @@ INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf ite
     const vec2 to_world = {item[ROTATION_A], item[ROTATION_A + 1]}, n = v2_divide(p.u, p.length);
     const struct feature on_a = find_feature(&p.arcs.a, &p.arcs.a, n, vi_set(0), false);
     const struct feature on_b = find_feature(&p.arcs.b, &p.arcs.b, n, vi_set(0), true);
-    const vi pairs = item_bits(item, PAIR), all_round = vi_set(-1); /* NARC_REACH_ONE twice */
+    const vi pairs = get_item_bits(item, PAIR), all_round = vi_set(-1); /* NARC_REACH_ONE twice */
     const struct answer answer = {.separation = p.separation,
                                   .normal = v2_rotate(to_world, n),
                                   .point = v2_rotate(to_world, v2_rotate(n, find_contact_place(&on_a, &on_b))),
@@ -86,7 +86,7 @@ INLINE vm probe(const struct call *call, const struct queue *queue, int k, vm li
     const vi record_a = vi_load(queue->record_a + k), record_b = vi_load(queue->record_b + k);
     const vf margin = get_margins(call, queue, k);
     const struct probe p = probe_arcs(call->batch->shapes->records, queue, k, live, margin);
-    const vf limit = v_add(margin, lookup_slack(queue, k));
+    const vf limit = v_add(margin, find_lookup_slack(queue, k));
     vm apart = vm_or(p.far, is_above(p.u, p.radii, get_vec2(queue, DIRECTION, k), limit));
     if (hints) /* a hint's arcs may not hold DIRECTION */
         apart = vm_and_not(apart, vm_and_not(vi_lt(vi_set(0), vi_load(queue->hinted + k)), p.far));

@@ -46,7 +46,7 @@ INLINE void collect_edges(const struct call *call, const struct queue *queue, in
     if (!call->edges)
         return;
     const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k);
-    const vm smooth = vm_or(info_has(info_a, NARC_SHAPE_SMOOTH), info_has(info_b, NARC_SHAPE_SMOOTH));
+    const vm smooth = vm_or(has_flag(info_a, NARC_SHAPE_SMOOTH), has_flag(info_b, NARC_SHAPE_SMOOTH));
     const vm edges = vm_and_not(keep, smooth);
     if (!vm_any(edges))
         return;

@@ -68,7 +68,7 @@ INLINE vi find_first_of_b(const narc_record *records, struct ring ring, const st
         vf ends[4];
         vi_store(index, vi_select(exists, record, ring.base));
         v_rows(&records->arc.start_x, sizeof *records, index, ends);
-        const vf angle = diamond_angle(v2_rotate_opposite(pose->rotation, (vec2){ends[0], ends[1]}));
+        const vf angle = find_diamond_angle(v2_rotate_opposite(pose->rotation, (vec2){ends[0], ends[1]}));
         const vm earlier = vm_and(exists, v_lt(angle, least));
         least = v_select(earlier, angle, least);
         first = vi_select(earlier, record, first);
@@ -90,7 +90,7 @@ struct fan {
 #define THIS_ROUND (-0x40800001) /* minus the bits of 4.0f, and one more */
 
 /* The junction ahead. */
-INLINE vec2 fan_end(const struct fan *fan) { return v2_select(fan->a_is_next, fan->arcs.a.end, fan->arcs.b.end); }
+INLINE vec2 get_fan_end(const struct fan *fan) { return v2_select(fan->a_is_next, fan->arcs.a.end, fan->arcs.b.end); }
 
 /* Starts before the first junction counter-clockwise from +x. */
 INLINE struct fan start_fan(const narc_record *records, const struct queue *queue, int k, const struct pose *pose) {
@@ -99,8 +99,8 @@ INLINE struct fan start_fan(const narc_record *records, const struct queue *queu
     fan.record_a = step_record(fan.ring_a, fan.ring_a.base, back);
     fan.record_b = step_record(fan.ring_b, find_first_of_b(records, fan.ring_b, pose), back);
     fan.arcs = load_arc_pair(records, fan.record_a, fan.record_b, pose);
-    fan.angle_a = vi_add(vi_bits(diamond_angle(fan.arcs.a.end)), this_round);
-    fan.angle_b = vi_add(vi_bits(diamond_angle(fan.arcs.b.end)), this_round);
+    fan.angle_a = vi_add(vi_bits(find_diamond_angle(fan.arcs.a.end)), this_round);
+    fan.angle_b = vi_add(vi_bits(find_diamond_angle(fan.arcs.b.end)), this_round);
     fan.a_is_next = vi_lt(fan.angle_a, fan.angle_b);
     return fan;
 }
@@ -119,7 +119,7 @@ INLINE void pass_junction(struct fan *fan, const narc_record *records, const str
     fan->arcs.b = select_arcs(is_a, &fan->arcs.b, &new_b);
     fan->record_a = vi_select(is_a, passed, fan->record_a);
     fan->record_b = vi_select(is_a, fan->record_b, passed);
-    const vi next_round = vi_bits(diamond_angle(fan_end(fan))), angle = vi_add(next_round, vi_set(THIS_ROUND));
+    const vi next_round = vi_bits(find_diamond_angle(get_fan_end(fan))), angle = vi_add(next_round, vi_set(THIS_ROUND));
     const vm wraps = vi_lt(angle, vi_select(is_a, fan->angle_a, fan->angle_b));
     const vi later = vi_select(wraps, next_round, angle);
     fan->angle_a = vi_select(is_a, later, fan->angle_a);
@@ -138,7 +138,7 @@ struct candidate {
 /* The largest g at lo or between lo and hi, if there is a local maximum; `rises`: towards lo, before it. */
 INLINE struct candidate find_candidate(const struct arc_pair *arcs, vec2 lo, vec2 hi, vm rises) {
     const vf zero = v_set(0), radii = v_add(arcs->a.radius, arcs->b.radius);
-    const vec2 u = center_difference(arcs);
+    const vec2 u = find_center_difference(arcs);
     const vf square = v2_dot(u, u), length = v_sqrt(square);
     const vf after_lo = v2_cross(lo, u), before_hi = v2_cross(u, hi), along_lo = v2_dot(u, lo),
              along_hi = v2_dot(u, hi);
@@ -168,8 +168,8 @@ static inline struct gap find_gap(const narc_shapes *shapes, const struct queue 
     const vi steps = vi_add(fan.ring_a.count, fan.ring_b.count);
     struct gap best = {
         v_select(live, v_set(-INFINITY), v_set(INFINITY)), {v_set(0), v_set(0)}, v_set(1), fan.record_a, fan.record_b};
-    vec2 lo = fan_end(&fan);
-    vm rises = v_lt(v2_cross(center_difference(&fan.arcs), lo), v_set(0));
+    vec2 lo = get_fan_end(&fan);
+    vm rises = v_lt(v2_cross(find_center_difference(&fan.arcs), lo), v_set(0));
     vf fallback = v_set(0); /* the value at the first junction */
     for (int step = 0;; step++) {
         vm active = vm_and(live, vi_lt(vi_set(step), steps));
@@ -178,7 +178,7 @@ static inline struct gap find_gap(const narc_shapes *shapes, const struct queue 
         if (!vm_any(active))
             break;
         pass_junction(&fan, shapes->records, &pose);
-        const vec2 hi = fan_end(&fan);
+        const vec2 hi = get_fan_end(&fan);
         const struct candidate found = find_candidate(&fan.arcs, lo, hi, rises);
         if (step == 0) {
             fallback = found.at_lo;

@@ -45,7 +45,7 @@ INLINE vec2 load_circles(const narc_record *records, const struct queue *queue, 
     v_rows(records, sizeof *records, queue->record_a + k, a);
     v_rows(records, sizeof *records, queue->record_b + k, b);
     *out_radii = v_add(v_mul(pose.scale_a, a[2]), v_mul(pose.scale_b, b[2]));
-    return circle_difference((vec2){a[0], a[1]}, (vec2){b[0], b[1]}, &pose);
+    return find_circle_difference((vec2){a[0], a[1]}, (vec2){b[0], b[1]}, &pose);
 }
 
 /* Passes on the pairs k ... of a queue in the lanes `left`. */
@@ -73,7 +73,7 @@ struct overlap_probe {
 INLINE struct overlap_probe probe_circles(const narc_record *records, const struct queue *queue, int k, vec2 n) {
     vf radii;
     const vec2 u = load_circles(records, queue, k, &radii);
-    return (struct overlap_probe){u, is_above(u, radii, n, lookup_slack(queue, k)),
+    return (struct overlap_probe){u, is_above(u, radii, n, find_lookup_slack(queue, k)),
                                   touch_in_common(queue, k, n, u, radii)};
 }
 
@@ -81,7 +81,7 @@ INLINE struct overlap_probe probe_circles(const narc_record *records, const stru
 INLINE struct overlap_probe probe_whole_arcs(const narc_record *records, const struct queue *queue, int k, vec2 n,
                                              vm live) {
     const struct probe p = probe_arcs(records, queue, k, live, v_set(0));
-    const vm below = v_lt(p.separation, v_set(0)), above = is_above(p.u, p.radii, n, lookup_slack(queue, k));
+    const vm below = v_lt(p.separation, v_set(0)), above = is_above(p.u, p.radii, n, find_lookup_slack(queue, k));
     return (struct overlap_probe){p.u, vm_or(vm_or(p.far, above), vm_and_not(p.only, below)),
                                   vm_or(touch_in_common(queue, k, n, p.u, p.radii), vm_and(p.only, below))};
 }
@@ -146,7 +146,7 @@ INLINE void mark_box_overlaps(const struct call *call, const struct box_queue *q
     const struct box_pair pair = {queue, k, capsules};
     const vm open = vm_front(live);
     const struct box_contact c = capsules ? find_capsule_contact(&pair, open) : find_box_contact(&pair, open);
-    mark_pairs(call, vi_bits(box_field(&pair, BOX_PAIR)), vm_and(open, v_lt(c.separation, v_set(0))));
+    mark_pairs(call, vi_bits(get_box_field(&pair, BOX_PAIR)), vm_and(open, v_lt(c.separation, v_set(0))));
 }
 
 static void answer_box_overlaps(const struct call *call, const struct box_queue *queue, int k, int live) {

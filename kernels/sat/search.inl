@@ -31,7 +31,7 @@ INLINE vi count_below(vi count, const int16_t *angles, const int32_t *record, vi
 
 /* How many junctions of its shape come before a direction, in each lane: up to the 16 bits of the angles. */
 INLINE vi count_junctions(const narc_record *records, vi record, vi count, vec2 direction) {
-    const vf scaled = v_mul(diamond_angle(direction), v_set(NARC_ANGLE_SCALE));
+    const vf scaled = v_mul(find_diamond_angle(direction), v_set(NARC_ANGLE_SCALE));
     const vi angle = vi_truncate(v_sub(scaled, v_set(NARC_ANGLE_OFFSET)));
     vi twice = vi_add(vi_and(angle, vi_set(0xffff)), vi_shift_left(angle, 16)), before = vi_set(0);
     for (int done = 0;; done += NARC_RECORD_ANGLES) {
@@ -51,9 +51,9 @@ INLINE vi count_junctions(const narc_record *records, vi record, vi count, vec2 
 
 /* The record of the arc that holds a direction, in each lane. */
 INLINE vi find_arc(const narc_record *records, vi first_record, vi info, vec2 direction) {
-    const vi count = info_count(info), before = count_junctions(records, first_record, count, direction);
+    const vi count = get_arc_count(info), before = count_junctions(records, first_record, count, direction);
     const vi index = vi_sub(vi_select(vi_lt(vi_set(0), before), before, count), vi_set(1));
-    return vi_add(first_arc_record(first_record, info), index);
+    return vi_add(find_first_arc(first_record, info), index);
 }
 
 /* The arcs of the pairs k ... of a queue that hold n and -n. */
@@ -99,12 +99,12 @@ struct probe {
 INLINE vf find_least_sine(const struct arc_pair *arcs, vec2 u, vf length, vi info_a, vi info_b) {
     const vf from_a = v_min(v2_cross(arcs->a.start, u), v2_cross(u, arcs->a.end));
     const vf from_b = v_min(v2_cross(arcs->b.start, u), v2_cross(u, arcs->b.end));
-    return v_min(v_select(info_has(info_a, NARC_SHAPE_CIRCLE), length, from_a),
-                 v_select(info_has(info_b, NARC_SHAPE_CIRCLE), length, from_b));
+    return v_min(v_select(has_flag(info_a, NARC_SHAPE_CIRCLE), length, from_a),
+                 v_select(has_flag(info_b, NARC_SHAPE_CIRCLE), length, from_b));
 }
 
 INLINE struct probe measure_gap(const struct arc_pair *arcs) {
-    struct probe p = {.arcs = *arcs, .u = center_difference(arcs)};
+    struct probe p = {.arcs = *arcs, .u = find_center_difference(arcs)};
     p.length = v2_length(p.u);
     p.radii = v_add(arcs->a.radius, arcs->b.radius);
     p.separation = v_sub(p.length, p.radii);
@@ -143,7 +143,7 @@ INLINE struct arcs load_disc(const narc_record *records, vi first_record, vi inf
     const vf none = v_set(0);
     vf field[8] = {none, none, none, none, none, none, none, none};
     int32_t index[V_WIDTH];
-    vi_store(index, first_arc_record(first_record, info));
+    vi_store(index, find_first_arc(first_record, info));
     v_rows(records, sizeof *records, index, field);
     return is_b ? place_b(field, pose) : place_a(field, pose);
 }
@@ -153,8 +153,8 @@ INLINE struct probe probe_discs(const narc_record *records, const vf item[FIELDS
     const struct pose pose = {
         {item[POSITION], item[POSITION + 1]}, {item[ROTATION], item[ROTATION + 1]}, item[SCALE_A], item[SCALE_B]};
     const struct arc_pair arcs = {
-        load_disc(records, item_bits(item, FIRST_RECORD_A), item_bits(item, INFO_A), &pose, false),
-        load_disc(records, item_bits(item, FIRST_RECORD_B), item_bits(item, INFO_B), &pose, true)};
+        load_disc(records, get_item_bits(item, FIRST_RECORD_A), get_item_bits(item, INFO_A), &pose, false),
+        load_disc(records, get_item_bits(item, FIRST_RECORD_B), get_item_bits(item, INFO_B), &pose, true)};
     struct probe p = measure_gap(&arcs);
     certify_gap(&p, p.length, item[SLACK], live, margin);
     return p;
@@ -224,7 +224,7 @@ INLINE struct local_maximum climb(const narc_record *records, const struct queue
     struct local_maximum maximum;
     for (int step = 0;; step++) {
         const struct arc_pair arcs = load_arc_pair(records, record_a, record_b, &pose);
-        const vec2 u = center_difference(&arcs);
+        const vec2 u = find_center_difference(&arcs);
         const struct interval i = find_interval(&arcs, u);
         /* Back over the junction that the last step crossed: the one at this end, and of the shape that moved. */
         const vm at_lo = vm_and_not(vm_and_not(vm_and(last.up, i.down), vm_xor(i.lo_is_a, last.moved_a)), i.inside);
@@ -261,7 +261,7 @@ struct certified_maximum {
 INLINE struct certified_maximum climb_and_certify(const narc_record *records, const struct queue *queue, int k, vm live,
                                                   vf margin) {
     const struct local_maximum m = climb(records, queue, k, live);
-    const vec2 u = center_difference(&m.after);
+    const vec2 u = find_center_difference(&m.after);
     const vf radii = v_add(m.after.a.radius, m.after.b.radius), length = v2_length(u);
     const vf value = v_select(m.kink, v2_dot(u, m.direction), length);
     struct certified_maximum top = {.maximum = m, .separation = v_sub(value, radii)};
@@ -299,10 +299,11 @@ INLINE vm is_well_inside(const struct arc_pair *arcs, vec2 n) {
 INLINE struct fan start_fan_at(const narc_record *records, const struct queue *queue, int k, const struct pose *pose,
                                vec2 direction) {
     struct fan fan = {.ring_a = get_ring_a(queue, k), .ring_b = get_ring_b(queue, k)};
-    const vi here = vi_bits(diamond_angle(direction)), this_round = vi_set(THIS_ROUND), zero = vi_set(0);
+    const vi here = vi_bits(find_diamond_angle(direction)), this_round = vi_set(THIS_ROUND), zero = vi_set(0);
     find_arcs(records, queue, k, direction, &fan.record_a, &fan.record_b);
     fan.arcs = load_arc_pair(records, fan.record_a, fan.record_b, pose);
-    const vi angle_a = vi_bits(diamond_angle(fan.arcs.a.end)), angle_b = vi_bits(diamond_angle(fan.arcs.b.end));
+    const vi angle_a = vi_bits(find_diamond_angle(fan.arcs.a.end)),
+             angle_b = vi_bits(find_diamond_angle(fan.arcs.b.end));
     fan.angle_a = vi_add(angle_a, vi_select(vi_lt(angle_a, here), zero, this_round));
     fan.angle_b = vi_add(angle_b, vi_select(vi_lt(angle_b, here), zero, this_round));
     fan.a_is_next = vi_lt(fan.angle_a, fan.angle_b);
@@ -323,27 +324,27 @@ INLINE struct gap walk_near(const narc_record *records, const struct queue *queu
     const vm none = vm_front(0), all = vm_front(V_WIDTH);
     struct fan fan = start_fan_at(records, queue, k, &pose, begin);
     const struct arc_pair arcs_before = fan.arcs;
-    const vec2 f = fan_end(&fan);
+    const vec2 f = get_fan_end(&fan);
     vm certain = vm_and(live, is_well_inside(&fan.arcs, begin));
-    const vm circle = vm_or(info_has(get_bits(queue, INFO_A, k), NARC_SHAPE_CIRCLE),
-                            info_has(get_bits(queue, INFO_B, k), NARC_SHAPE_CIRCLE));
+    const vm circle = vm_or(has_flag(get_bits(queue, INFO_A, k), NARC_SHAPE_CIRCLE),
+                            has_flag(get_bits(queue, INFO_B, k), NARC_SHAPE_CIRCLE));
     certain = vm_and_not(certain, circle);
     pass_junction(&fan, records, &pose);
-    const vec2 g = fan_end(&fan);
+    const vec2 g = get_fan_end(&fan);
     const struct candidate first = find_candidate(&fan.arcs, f, g, all);
     const struct gap at_f = make_gap(&first, &fan, f);
     pass_junction(&fan, records, &pose);
-    const struct candidate second = find_candidate(&fan.arcs, g, fan_end(&fan), first.rises);
+    const struct candidate second = find_candidate(&fan.arcs, g, get_fan_end(&fan), first.rises);
     const struct gap at_g = make_gap(&second, &fan, g);
 
-    const vm wraps = vi_lt(vi_bits(diamond_angle(g)), vi_bits(diamond_angle(f)));
+    const vm wraps = vi_lt(vi_bits(find_diamond_angle(g)), vi_bits(find_diamond_angle(f)));
     const vm better = vm_or(v_lt(first.value, second.value), vm_and(wraps, v_le(first.value, second.value)));
     const vm takes_g = vm_and(second.exists, vm_or(better, vm_not(first.exists)));
     const struct gap gap = select_gap(takes_g, &at_g, &at_f);
 
     const struct fan_ends ends_f = find_fan_ends(queue, k, f, gap.separation);
     const struct fan_ends ends_g = find_fan_ends(queue, k, g, gap.separation);
-    const vec2 u_before = center_difference(&arcs_before), u_after = center_difference(&fan.arcs);
+    const vec2 u_before = find_center_difference(&arcs_before), u_after = find_center_difference(&fan.arcs);
     const vf depth_f = v_sub(v_add(arcs_before.a.radius, arcs_before.b.radius), v2_dot(u_before, f));
     const vf depth_g = v_sub(v_add(fan.arcs.a.radius, fan.arcs.b.radius), v2_dot(u_after, g));
     const vm after = is_side_clear(&fan.arcs, find_sine(g, fan.arcs.a.end, none), find_sine(g, fan.arcs.b.end, none),
