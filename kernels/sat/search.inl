@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * search.inl - how the highest local maximum of the gap is found: the arcs that hold a direction, a probe of these arcs,
- * and a climb from arc to arc. What a probe or a climb proves: certificates.inl.
+ * a climb from arc to arc, and a walk past two junctions. What they prove: certificates.inl.
  */
 #ifndef NARC_SAT_SEARCH_INL
 #define NARC_SAT_SEARCH_INL
@@ -278,10 +278,10 @@ INLINE struct certified_maximum climb_and_certify(const narc_record *records, co
  *
  * Where bodies rest face on face, a junction of A and one of B lie side by side, too close for a local maximum at one of
  * them to have a certificate. So the fan is walked there, as the deciding formula walks it, past two junctions, F and
- * G: with the candidates between F and G and behind G; the gap rises before F, where there is none. They are the
- * formula's to the last bit; what it finds elsewhere is less if certificate 4 holds on both sides, behind G with n = G,
- * and before F with n = F, and F and G are less than a right angle apart: docs/algorithm.md, section 9. Of two equal
- * values it takes the one that it meets first, from +x on. */
+ * G. Certificate 4 on both sides, before F with n = F and behind G with n = G, says that the gap rises before F, falls
+ * behind G, and is less elsewhere: the candidates are a kink at F or what lies between F and G, and a kink at G, to the
+ * last bit the formula's. Of two equal values it takes the one that it meets first, from +x on. F and G are less than a
+ * right angle apart: docs/algorithm.md, section 9. */
 
 /* The walk begins that much (radians) before the direction of the local maximum. */
 #define WALK_BACK 0x1p-6f
@@ -310,11 +310,6 @@ INLINE struct fan start_fan_at(const narc_record *records, const struct queue *q
     return fan;
 }
 
-INLINE struct gap make_gap(const struct candidate *found, const struct fan *fan, vec2 lo) {
-    return (struct gap){found->value, v2_select(found->inside, found->u, lo),
-                        v_select(found->inside, found->length, v_set(1)), fan->record_a, fan->record_b};
-}
-
 /* The gap near DIRECTION of the pairs k ... of a queue; *out_certain: it is the formula's answer. */
 INLINE struct gap walk_near(const narc_record *records, const struct queue *queue, int k, vm live, vm *out_certain) {
     const struct pose pose = get_pose(queue, k);
@@ -325,36 +320,31 @@ INLINE struct gap walk_near(const narc_record *records, const struct queue *queu
     struct fan fan = start_fan_at(records, queue, k, &pose, begin);
     const struct arc_pair arcs_before = fan.arcs;
     const vec2 f = get_fan_end(&fan);
-    vm certain = vm_and(live, is_well_inside(&fan.arcs, begin));
-    const vm circle = vm_or(has_flag(get_bits(queue, INFO_A, k), NARC_SHAPE_CIRCLE),
-                            has_flag(get_bits(queue, INFO_B, k), NARC_SHAPE_CIRCLE));
-    certain = vm_and_not(certain, circle);
+    const vm inside = vm_and(live, is_well_inside(&fan.arcs, begin));
     pass_junction(&fan, records, &pose);
     const vec2 g = get_fan_end(&fan);
-    const struct candidate first = find_candidate(&fan.arcs, f, g, all);
-    const struct gap at_f = make_gap(&first, &fan, f);
+    const struct candidate found = find_candidate(&fan.arcs, f, g, all);
+    const struct gap from_f = {found.value, v2_select(found.inside, found.u, f),
+                               v_select(found.inside, found.length, v_set(1)), fan.record_a, fan.record_b};
     pass_junction(&fan, records, &pose);
-    const struct candidate second = find_candidate(&fan.arcs, g, get_fan_end(&fan), first.rises);
-    const struct gap at_g = make_gap(&second, &fan, g);
 
+    const vec2 u_before = find_center_difference(&arcs_before), u_after = find_center_difference(&fan.arcs);
+    const vf value_f = v_sub(v2_dot(u_before, f), v_add(arcs_before.a.radius, arcs_before.b.radius));
+    const vf value_g = v_sub(v2_dot(u_after, g), v_add(fan.arcs.a.radius, fan.arcs.b.radius));
+    const struct gap at_g = {value_g, g, v_set(1), fan.record_a, fan.record_b};
     const vm wraps = vi_lt(vi_bits(find_diamond_angle(g)), vi_bits(find_diamond_angle(f)));
-    const vm better = vm_or(v_lt(first.value, second.value), vm_and(wraps, v_le(first.value, second.value)));
-    const vm takes_g = vm_and(second.exists, vm_or(better, vm_not(first.exists)));
-    const struct gap gap = select_gap(takes_g, &at_g, &at_f);
+    const vm better = vm_or(v_lt(found.value, value_g), vm_and(wraps, v_le(found.value, value_g)));
+    const struct gap gap = select_gap(vm_and(found.rises, vm_or(better, vm_not(found.exists))), &at_g, &from_f);
 
     const struct fan_ends ends_f = find_fan_ends(queue, k, f, gap.separation);
     const struct fan_ends ends_g = find_fan_ends(queue, k, g, gap.separation);
-    const vec2 u_before = find_center_difference(&arcs_before), u_after = find_center_difference(&fan.arcs);
-    const vf depth_f = v_sub(v_add(arcs_before.a.radius, arcs_before.b.radius), v2_dot(u_before, f));
-    const vf depth_g = v_sub(v_add(fan.arcs.a.radius, fan.arcs.b.radius), v2_dot(u_after, g));
     const vm after = is_side_clear(&fan.arcs, find_sine(g, fan.arcs.a.end, none), find_sine(g, fan.arcs.b.end, none),
-                                   v2_cross(u_after, g), all, ends_g.after, depth_g, slack);
+                                   v2_cross(u_after, g), all, ends_g.after, v_neg(value_g), slack);
     const vm before = is_side_clear(&arcs_before, find_sine(mirror(f), mirror(arcs_before.a.start), none),
                                     find_sine(mirror(f), mirror(arcs_before.b.start), none), v2_cross(f, u_before), all,
-                                    ends_f.before, depth_f, slack);
-    const vm exists = vm_or(first.exists, second.exists), narrow = vm_and(ends_f.narrow, ends_g.narrow);
-    certain = vm_and(vm_and(certain, exists), v_lt(v_set(0), v2_dot(f, g)));
-    *out_certain = vm_and(certain, vm_and(narrow, vm_and(after, before)));
+                                    ends_f.before, v_neg(value_f), slack);
+    const vm narrow = vm_and(vm_and(ends_f.narrow, ends_g.narrow), v_lt(v_set(0), v2_dot(f, g)));
+    *out_certain = vm_and(vm_and(inside, narrow), vm_and(after, before));
     return gap;
 }
 

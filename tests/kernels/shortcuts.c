@@ -77,27 +77,48 @@ TEST(test_aligned) { check_hard_places(HARD_ALIGNED, 3); }
 
 TEST(test_concentric) { check_hard_places(HARD_CONCENTRIC, 3); }
 
+/* A shape with a face whose normal is its own +x, at x = 0. */
+static struct shape make_faced(struct test_random *random) {
+    const double t = sqrt(2.0) - 1, radius = random_below(random, 2) ? 0 : 0.0625;
+    const narc_point octagon[] = {{0, -t}, {0, t},   {t - 1, 1},   {-1 - t, 1},
+                                  {-2, t}, {-2, -t}, {-1 - t, -1}, {t - 1, -1}};
+    const narc_point pentagon[] = {{0, -0.5}, {0, 0.75}, {-1, 1}, {-1.75, 0.125}, {-0.75, -1}};
+    const narc_point triangle[] = {{0, -1}, {0, 0.75}, {-1.5, 0}};
+    const narc_point *const corners[] = {octagon, pentagon, triangle};
+    const size_t counts[] = {8, 5, 3}, kind = random_below(random, 4);
+    struct shape shape = {.count = 3,
+                          .arcs = {{0, -1, 0, -pi / 2, 0}, {0, 1, 0, 0, pi / 2}, {0, 0, 1, pi / 2, 1.5 * pi}}};
+    if (kind == 3)
+        return shape; /* half a disc */
+    shape.count = NARC_MAX_ARCS;
+    assert_int_equal(narc_build_polygon(corners[kind], counts[kind], radius, shape.arcs, &shape.count, NULL), NARC_OK);
+    return shape;
+}
+
 /* Faces on faces, where the fan begins and ends: A's normal lies along its own +x, B's a little beside it. Gaps at both
  * are equal to the last bit, or nearly. */
 TEST(test_faces_at_x) {
     struct test_random random = test_random_named("faces at x");
-    const double t = sqrt(2.0) - 1;
-    const narc_point corners[] = {{1, -t}, {1, t}, {t, 1}, {-t, 1}, {-1, t}, {-1, -t}, {-t, -1}, {t, -1}};
-    struct shape octagon = {.count = NARC_MAX_ARCS};
-    assert_int_equal(narc_build_polygon(corners, 8, 0, octagon.arcs, &octagon.count, NULL), NARC_OK);
-    const size_t count = test_trials(2000);
-    struct scene scene = create_scene(NARC_FLOAT32, 1, 2 * count, count);
-    scene_add_shape(&scene, &octagon);
+    enum { SHAPES = 40 };
+    const size_t count = test_trials(20000);
+    struct scene scene = create_scene(NARC_FLOAT32, SHAPES, 2 * count, count);
+    for (size_t k = 0; k < SHAPES; k++) {
+        const struct shape shape = make_faced(&random);
+        scene_add_shape(&scene, &shape);
+    }
     for (size_t k = 0; k < count; k++) {
+        const double beside = random_log_between(&random, 1e-10, random_below(&random, 4) ? 1e-4 : 0.03);
         const double turned = random_below(&random, 2) ? 0 : random_between(&random, -pi, pi);
-        const double sign = random_below(&random, 2) ? 1 : -1, gap = random_log_between(&random, 1e-8, 0.1);
-        struct body a = turned_body(turned, 1);
-        struct body b = turned_body(turned + sign * random_log_between(&random, 1e-10, 0.03), 1);
-        const double x = 2 + (random_below(&random, 4) ? gap * (random_below(&random, 2) ? 1 : -1) : 0);
-        const double y =
-            random_below(&random, 2) ? (double)random_below(&random, 9) / 8 - 0.5 : random_between(&random, -1, 1);
-        b.x = x * cos(turned) - y * sin(turned);
-        b.y = x * sin(turned) + y * cos(turned);
+        struct body a = turned_body(turned, 1),
+                    b = turned_body(turned + pi + (random_below(&random, 3) ? -beside : beside), 1);
+        const double gap = random_below(&random, 2)
+                               ? -random_between(&random, 0, 0.4)
+                               : random_log_between(&random, 1e-8, 0.1) * (random_below(&random, 2) ? 1 : -1);
+        const double shift = random_between(&random, -0.5, 0.5);
+        a.shape = (uint32_t)random_below(&random, SHAPES);
+        b.shape = (uint32_t)random_below(&random, SHAPES);
+        b.x = gap * cos(turned) - shift * sin(turned);
+        b.y = gap * sin(turned) + shift * cos(turned);
         scene_add_two(&scene, a, b);
     }
     check_scene(&random, &scene, LAYOUT_STRUCTURES, "faces at x");
