@@ -114,7 +114,9 @@ TEST(test_faces_at_x) {
         const double gap = random_below(&random, 2)
                                ? -random_between(&random, 0, 0.4)
                                : random_log_between(&random, 1e-8, 0.1) * (random_below(&random, 2) ? 1 : -1);
-        const double shift = random_between(&random, -0.5, 0.5);
+        const bool corners = random_below(&random, 4) != 0; /* mostly corners beside corners */
+        const double shift =
+            corners ? ((double)random_below(&random, 29) - 14) / 8 : random_between(&random, -0.5, 0.5);
         a.shape = (uint32_t)random_below(&random, SHAPES);
         b.shape = (uint32_t)random_below(&random, SHAPES);
         b.x = gap * cos(turned) - shift * sin(turned);
