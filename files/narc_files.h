@@ -46,9 +46,10 @@ typedef struct narc_shape_list {
 /* Reads a shapes file of `size` bytes, and adds each shape to `store` unless that is NULL. The list's memory comes from
  * `allocator`, NULL: malloc() and free(); cJSON, which parses, uses malloc(). The list may outlive the data and the
  * store.
- * Errors: NARC_ERROR_ARGUMENT (NULL, an allocator without a function), NARC_ERROR_MEMORY; NARC_ERROR_FORMAT (no JSON, a key that is unknown, missing or
- * there twice, a value of another kind, a name that cannot be one or is another shape's), NARC_ERROR_COUNT (no shape, too
- * many arcs or points), NARC_ERROR_NOT_FINITE; and those of narc_validate_arcs(), the builders and narc_add_shape().
+ * Errors: NARC_ERROR_ARGUMENT (NULL, an allocator without a function), NARC_ERROR_MEMORY; NARC_ERROR_FORMAT (no JSON, a
+ * key that is unknown, missing or there twice, a value of another kind, a name that cannot be one or is another
+ * shape's), NARC_ERROR_COUNT (no shape, too many arcs or points), NARC_ERROR_NOT_FINITE; and those of
+ * narc_validate_arcs(), the builders and narc_add_shape().
  * error->index is the line, 0 where none is known; the message begins with it, "line 3: ", and names the shape, its arc
  * or point, and the value. Shapes that were added to the store before an error are removed again. */
 NARC_API narc_status narc_read_shapes(const void *data, size_t size, const narc_allocator *allocator,

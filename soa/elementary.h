@@ -14,7 +14,8 @@ void narc_find_cosine(double angle, double *out_cosine, double *out_sine);
 double narc_cos(double angle);
 double narc_sin(double angle);
 
-/* The angle of the vector (x, y), -pi .. pi, below 1 unit where neither is 2^1000 times the other. Zeros count with their signs, as in the C library. */
+/* The angle of the vector (x, y), -pi .. pi, below 1 unit where neither is 2^1000 times the other. Zeros count with
+ * their signs, as in the C library. */
 double narc_atan2(double y, double x);
 
 /* Of -1 .. 1, below 2 units. */

@@ -85,7 +85,7 @@ INLINE void run_stage(const struct call *call, stage *run, struct queue *queue) 
 }
 
 INLINE void run_stages(const struct call *call, stage *const *stages, int stage_count, struct queue *queues, bool end) {
-    if (call->count <= STEP) { /* no queue can be full: each stage runs once, at the end */
+    if (call->count <= STEP) { /* no queue can be full: each stage runs once, when all pairs are in */
         for (int s = 0; s < stage_count; s++)
             if (queues[s].count > 0)
                 run_stage(call, stages[s], &queues[s]);

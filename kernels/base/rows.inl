@@ -30,8 +30,8 @@ _Static_assert(sizeof(narc_contact) == 36 && CONTACT_WORDS == 4, "two writes of 
 _Static_assert(sizeof(narc_manifold) == 64 && MANIFOLD_RADII == 16 && FIRST_POINT == 32, "four writes of four words");
 
 /* The rows of a call. The answers of the first pairs may be known in order: then they are listed at once. All pairs
- * before `done` are answered and have `listed` rows, or wait in the queue of boxes, or in that of capsules, in their order; -1: no more rows
- * are listed. */
+ * before `done` are answered and have `listed` rows, or wait in the queue of boxes, or in that of capsules, in their
+ * order; -1: no more rows are listed. */
 struct rows {
     narc_rows out;
     bool dense;

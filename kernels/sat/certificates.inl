@@ -22,8 +22,8 @@
 #include "base/vec2.inl"
 #include "simd/simd.h"
 
-/* A local maximum of the gap over all directions (normal_fan.inl). It lies between two junctions, where `after` and `before` are both the arcs that hold it, or (`kink`) at a junction,
- * with the arcs after it and those before. */
+/* A local maximum of the gap over all directions (normal_fan.inl). It lies between two junctions, where `after` and
+ * `before` are both the arcs that hold it, or (`kink`) at a junction, with the arcs after it and those before. */
 struct local_maximum {
     vm found, turned, kink; /* turned: not found, but near `direction` */
     vec2 direction;         /* not yet of length 1 */

@@ -5,7 +5,7 @@
  *
  * Pairs pass through stages until one of them knows the answer that the deciding formula (normal_fan.inl) would give,
  * to the last bit: circles, a probe along the axis (or of the arcs of the last call), another along u, a climb to a
- * local maximum, and the formula itself. The normal n and the arcs are those of the highest local maximum of the gap.
+ * local maximum, a walk past the two junctions beside it, and the formula itself. The normal n and the arcs are those of the highest local maximum of the gap.
  */
 #include <stdbool.h>
 #include <string.h>
@@ -105,7 +105,7 @@ INLINE vm probe(const struct call *call, const struct queue *queue, int k, vm li
 }
 
 /* Climbs from the arcs in record_a and record_b of the pairs k ... of a queue, in the lanes `live`; returns those
- * without an answer. In *out_lost, those without even a local maximum. */
+ * without an answer. In *out_lost, those that are not even near a local maximum; DIRECTION leads to the others'. */
 INLINE vm climb_to(const struct call *call, struct queue *queue, int k, vm live, vm *out_lost) {
     const vf margin = get_margins(call, queue, k);
     const struct certified_maximum top = climb_and_certify(call->batch->shapes->records, queue, k, live, margin);

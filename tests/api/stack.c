@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * stack.c - every call of the library in a thread whose stack has NARC_STACK_SIZE bytes (of other methods,
- * NARC_METHODS_STACK_SIZE), those of the C library among them, and the tasks of its workers in such threads, too. Below each stack lies a forbidden megabyte: more ends the
- * process, and the last line that it printed names the call. Stacks are filled with junk before: what is left of it
- * tells how much was used.
+ * NARC_METHODS_STACK_SIZE), those of the C library among them, and the tasks of its workers in such threads, too. Below
+ * each stack lies a forbidden megabyte: more ends the process, and the last line that it printed names the call. Stacks
+ * are filled with junk before: what is left of it tells how much was used.
  */
 #define _GNU_SOURCE /* MAP_ANONYMOUS */
 #include <math.h>

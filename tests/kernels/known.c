@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * known.c - cases that are known to be hard, and published ones, each with an answer that is known by heart: every method that can must give it, either way round.
+ * known.c - cases that are known to be hard, and published ones, each with an answer that is known by heart: every
+ * method that can must give it, either way round.
  */
 #include <math.h>
 #include <stdio.h>
