@@ -7,7 +7,6 @@
 
 #include "kernels.h"
 #include "narc.h"
-#include "workers.h"
 
 /* What a table may need of the processor and the operating system: all features of that kind in the list of cpu.c. */
 enum { NARC_CPU_AVX2 = 1, NARC_CPU_AVX512 = 2, NARC_CPU_NEON = 4, NARC_CPU_SSE41 = 8 };
@@ -54,5 +53,18 @@ size_t narc_find_bad_index(narc_index_column column, size_t first, size_t count,
 /* Checks bodies first .. first + *count - 1 as far as kernels rely on it: columns and shapes. *count 0: to the end. */
 narc_status narc_check_bodies(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t *count,
                               const narc_workers *workers, narc_error *error);
+
+/* How many run at once of so many parts: at least 1. `workers` as the caller gave it, NULL too. */
+unsigned narc_count_workers(const narc_workers *workers, size_t parts);
+
+/* Calls part(argument, k) for each k below `parts`, once. They are begun in rising order; none waits for another, and
+ * all have ended when this returns. With one worker, or one part, in the calling thread, without `workers->run`. */
+typedef void narc_part(void *argument, size_t part);
+void narc_run_parts(const narc_workers *workers, size_t parts, narc_part *part, void *argument);
+
+/* The same for items: range(argument, part, first, end) for each part of `size` items first .. end - 1, of which the
+ * last may have fewer. Returns how many parts there are. */
+typedef void narc_range(void *argument, size_t part, size_t first, size_t end);
+size_t narc_run_ranges(const narc_workers *workers, size_t count, size_t size, narc_range *range, void *argument);
 
 #endif

@@ -2,7 +2,7 @@
  *
  * workers.c - how work is spread: parts that any number of threads take one after the other.
  */
-#include "workers.h"
+#include "dispatch.h"
 
 #include <stdatomic.h>
 

@@ -60,6 +60,18 @@ static bool replace(const narc_broad_phase *broad, void **memory, size_t items, 
     return true;
 }
 
+/* Makes room for `count` items in an array of its own. */
+static narc_status reserve(const narc_broad_phase *broad, void **memory, size_t *capacity, size_t count, size_t least,
+                           size_t item_size) {
+    const size_t n = with_room(count, least);
+    if (count <= *capacity)
+        return NARC_OK;
+    if (!replace(broad, memory, n, item_size))
+        return NARC_ERROR_MEMORY;
+    *capacity = n;
+    return NARC_OK;
+}
+
 /* Takes `count` items of `size` bytes from the front of the memory at `*at`, in whole units of 16 bytes. */
 static void *take(char **at, size_t count, size_t size) {
     void *const taken = *at;
@@ -110,14 +122,8 @@ narc_status narc_reserve_blocks(narc_broad_phase *broad, size_t count) {
 narc_status narc_reserve_matches(narc_broad_phase *broad, size_t first_count, size_t second_count) {
     if (second_count > SIZE_MAX - first_count)
         return NARC_ERROR_MEMORY;
-    const size_t count = first_count + second_count;
-    if (count <= broad->match_capacity)
-        return NARC_OK;
-    const size_t n = with_room(count, 1024);
-    if (!replace(broad, &broad->match_memory, n, sizeof(uint32_t)))
-        return NARC_ERROR_MEMORY;
-    broad->match_capacity = n;
-    return NARC_OK;
+    return reserve(broad, &broad->match_memory, &broad->match_capacity, first_count + second_count, 1024,
+                   sizeof(uint32_t));
 }
 
 narc_status narc_reserve_bodies(narc_broad_phase *broad, size_t count) {
@@ -165,24 +171,14 @@ narc_status narc_reserve_pairs(narc_broad_phase *broad, narc_kept_list *list, si
 
 narc_status narc_reserve_lost(narc_broad_phase *broad, narc_kept_list *list, size_t count) {
     void *memory = list->lost;
-    if (count <= list->lost_capacity)
-        return NARC_OK;
-    const size_t n = with_room(count, 64);
-    if (!replace(broad, &memory, n, sizeof *list->lost))
-        return NARC_ERROR_MEMORY;
+    const narc_status status = reserve(broad, &memory, &list->lost_capacity, count, 64, sizeof *list->lost);
     list->lost = memory;
-    list->lost_capacity = n;
-    return NARC_OK;
+    return status;
 }
 
 narc_status narc_reserve_ids(narc_broad_phase *broad, narc_kept_list *list, size_t count) {
     void *memory = list->ids;
-    if (count <= list->id_capacity)
-        return NARC_OK;
-    const size_t n = with_room(count, 1024);
-    if (!replace(broad, &memory, n, sizeof *list->ids))
-        return NARC_ERROR_MEMORY;
+    const narc_status status = reserve(broad, &memory, &list->id_capacity, count, 1024, sizeof *list->ids);
     list->ids = memory;
-    list->id_capacity = n;
-    return NARC_OK;
+    return status;
 }

@@ -75,7 +75,7 @@ static void begin_block(own_pairs *own) {
 static size_t count_blocks(uint64_t pairs, size_t tasks) { return (size_t)(pairs / NARC_FULL_BLOCK) + tasks; }
 
 /* More than the largest number of pairs? Tasks have asked for more blocks than hold that many. */
-static bool too_many(const narc_broad_phase *broad, size_t tasks) {
+static bool has_too_many(const narc_broad_phase *broad, size_t tasks) {
     return atomic_load_explicit(&broad->block_count, memory_order_relaxed) > count_blocks(UINT32_MAX, tasks) + 1;
 }
 
@@ -87,7 +87,7 @@ static void get_room(narc_found_pairs *pairs) {
         return;
     end_block(own);
     begin_block(own);
-    pairs->enough = too_many(own->sweep->broad, own->sweep->tasks);
+    pairs->enough = has_too_many(own->sweep->broad, own->sweep->tasks);
 }
 
 /* ------------------------------------------------------------------------------------------------ sweeps */
@@ -202,7 +202,7 @@ static void sort_strays(narc_broad_phase *broad, const narc_box *boxes, narc_str
                 broad->entries[end++] = (narc_box_entry){.min_x = boxes[body].min_x, .body = body};
         }
         strays[fresh].end = end;
-        narc_sort_strip(broad, &strays[fresh], boxes);
+        narc_fill_strip(broad, &strays[fresh], boxes);
     }
     narc_end_columns(&broad->boxes, end);
     merge_strays(broad, &strays[0], &strays[1]);
@@ -268,7 +268,7 @@ bool narc_sweep_fresh(narc_broad_phase *broad, const narc_box *boxes, size_t cou
     if (!kernels || fresh_count > narc_most_strays(count) / 2)
         return false;
     if (broad->stray_count + fresh_count > narc_most_strays(count))
-        narc_sort_into_strips(broad, boxes, count, &chosen);
+        narc_make_strips(broad, boxes, count, &chosen);
     list_strays(broad, count);
     sort_strays(broad, boxes, strays);
     return sweep_strays(broad, kernels, filter, count, strays, out_count);
@@ -276,8 +276,9 @@ bool narc_sweep_fresh(narc_broad_phase *broad, const narc_box *boxes, size_t cou
 
 /* ------------------------------------------------------------------------------------------------ the call */
 
-static narc_status check(const narc_broad_phase *broad, const narc_box *boxes, size_t count, const uint32_t *out_a,
-                         const uint32_t *out_b, size_t capacity, const size_t *out_count, narc_error *error) {
+static narc_status check_arguments(const narc_broad_phase *broad, const narc_box *boxes, size_t count,
+                                   const uint32_t *out_a, const uint32_t *out_b, size_t capacity,
+                                   const size_t *out_count, narc_error *error) {
     if (!broad || !out_count)
         return narc_fail_missing(error, !broad ? "broad" : "out_count");
     if (count > 0 && !boxes)
@@ -302,7 +303,7 @@ narc_status narc_sweep_boxes(narc_broad_phase *broad, const narc_box *boxes, siz
     if (narc_reserve_boxes(broad, count) != NARC_OK ||
         narc_reserve_blocks(broad, count_blocks(USUAL_PAIRS * (uint64_t)count, chosen.count)) != NARC_OK)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)count, "not enough memory for %zu boxes", count);
-    narc_sort_into_strips(broad, boxes, count, &chosen);
+    narc_make_strips(broad, boxes, count, &chosen);
     const uint64_t found = sweep_all(broad, kernels, filter, &chosen);
     if (found > UINT32_MAX)
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)UINT32_MAX, "more than %lu pairs of boxes overlap",
@@ -333,7 +334,7 @@ narc_status narc_find_pairs(narc_broad_phase *broad, const narc_box *boxes, size
                             const narc_pair_filter *filter, const narc_workers *workers, uint32_t *out_a,
                             uint32_t *out_b, size_t capacity, size_t *out_count, narc_error *error) {
     size_t found = 0;
-    narc_status status = check(broad, boxes, count, out_a, out_b, capacity, out_count, error);
+    narc_status status = check_arguments(broad, boxes, count, out_a, out_b, capacity, out_count, error);
     if (status == NARC_OK && filter)
         status = narc_check_reserved(filter->reserved, 2, "filter", error);
     if (status == NARC_OK)

@@ -3,9 +3,9 @@
  * lists.c - the parts of a new list of narc_update_pairs(): pairs that stay, which pair of the last list each was,
  * which are new or lost, marks.
  */
+#include "dispatch.h"
 #include "narc_broad_phase.h"
 #include "steps.h"
-#include "workers.h"
 
 #include <string.h>
 
@@ -144,12 +144,6 @@ size_t narc_merge_pairs(const uint8_t *fresh, narc_kept_list *last, narc_kept_li
 
 /* ------------------------------------------------------------------------------------------------ marks */
 
-/* All move, and none is a sensor. */
-static void mark_moving_pairs(narc_kept_list *made) {
-    list_numbers(made->selected, 0, (uint32_t)made->list.pairs.count);
-    made->list.contact_count = made->list.pairs.count;
-}
-
 /* Sensors are listed from the end of the memory for all pairs, and then turned round. */
 static void mark_pairs_by_kinds(const narc_body_filter *filters, narc_kept_list *made) {
     const unsigned rest = NARC_STATIC | NARC_ASLEEP;
@@ -178,10 +172,12 @@ static void mark_pairs_by_kinds(const narc_body_filter *filters, narc_kept_list 
 void narc_mark_pairs(const narc_broad_phase *broad, narc_kept_list *made) {
     narc_pair_list *const list = &made->list;
     list->contact_count = list->sensor_count = 0;
-    if (broad->has_filter)
+    if (broad->has_filter) {
         mark_pairs_by_kinds(broad->filters, made);
-    else
-        mark_moving_pairs(made);
+    } else { /* all move, and none is a sensor */
+        list_numbers(made->selected, 0, (uint32_t)list->pairs.count);
+        list->contact_count = list->pairs.count;
+    }
     list->contacts = made->selected;
     list->sensors = made->selected + list->pairs.count - list->sensor_count;
 }

@@ -39,7 +39,7 @@ static void check_order(void *argument, size_t part, size_t first, size_t end) {
         atomic_store_explicit(&check->disorder, true, memory_order_relaxed);
 }
 
-static bool in_order(const narc_pairs *pairs, const narc_workers *workers) {
+static bool is_in_order(const narc_pairs *pairs, const narc_workers *workers) {
     list_check check = {.pairs = pairs};
     narc_run_ranges(workers, pairs->count, PART, check_order, &check);
     return !atomic_load_explicit(&check.disorder, memory_order_relaxed);
@@ -58,8 +58,8 @@ size_t narc_find_pair(const narc_pairs *pairs, uint64_t pair) {
 }
 
 /* New pairs first .. end - 1, both lists in order. */
-static void walk(const narc_pairs *old_pairs, const narc_pairs *new_pairs, size_t first, size_t end,
-                 uint32_t *out_match) {
+static void match_by_walk(const narc_pairs *old_pairs, const narc_pairs *new_pairs, size_t first, size_t end,
+                          uint32_t *out_match) {
     size_t at = narc_find_pair(old_pairs, pair_at(new_pairs, first));
     uint64_t there = at < old_pairs->count ? pair_at(old_pairs, at) : UINT64_MAX;
     for (size_t k = first; k < end; k++) {
@@ -88,15 +88,14 @@ static size_t find_bucket(const buckets *t, uint64_t pair) {
     return (size_t)((once ^ once >> 32) * ratio >> 1 >> (63 - t->bits));
 }
 
-static uint64_t pair_of(const buckets *t, uint32_t item) { return pair_at(t->pairs, item); }
-
 static bool comes_before(const void *context, uint32_t one, uint32_t other) {
-    const uint64_t first = pair_of(context, one), second = pair_of(context, other);
+    const buckets *const t = context;
+    const uint64_t first = pair_at(t->pairs, one), second = pair_at(t->pairs, other);
     return first < second || (first == second && one < other);
 }
 
 /* A counting sort by bucket. */
-static void fill(const buckets *t) {
+static void fill_buckets(const buckets *t) {
     const size_t count = t->pairs->count, bucket_count = (size_t)1 << t->bits;
     uint32_t sum = 0;
     memset(t->starts, 0, (bucket_count + 1) * sizeof *t->starts);
@@ -108,7 +107,7 @@ static void fill(const buckets *t) {
         t->items[--t->starts[find_bucket(t, pair_at(t->pairs, k))]] = (uint32_t)k;
     for (size_t k = 0; k < bucket_count; k++)
         if (t->starts[k + 1] - t->starts[k] > FEW)
-            narc_sort_by_heap(t->items + t->starts[k], t->starts[k + 1] - t->starts[k], comes_before, t);
+            narc_sort_indices(t->items + t->starts[k], t->starts[k + 1] - t->starts[k], comes_before, t);
 }
 
 /* The first old pair that is this one. */
@@ -117,13 +116,13 @@ static uint32_t find_match(const buckets *t, uint64_t pair) {
     uint32_t first = t->starts[bucket], end = t->starts[bucket + 1];
     while (end - first > FEW) {
         const uint32_t middle = first + (end - first) / 2;
-        if (pair_of(t, t->items[middle]) < pair)
+        if (pair_at(t->pairs, t->items[middle]) < pair)
             first = middle + 1;
         else
             end = middle + 1;
     }
     for (; first < end; first++)
-        if (pair_of(t, t->items[first]) == pair)
+        if (pair_at(t->pairs, t->items[first]) == pair)
             return t->items[first];
     return NARC_NO_MATCH;
 }
@@ -138,13 +137,13 @@ static narc_status make_buckets(narc_broad_phase *broad, const narc_pairs *pairs
         return NARC_ERROR_MEMORY;
     out->starts = broad->match_memory;
     out->items = out->starts + start_count;
-    fill(out);
+    fill_buckets(out);
     return NARC_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------ the calls */
 
-static narc_status check(const narc_pairs *pairs, const char *name, narc_error *error) {
+static narc_status check_pairs(const narc_pairs *pairs, const char *name, narc_error *error) {
     if (!pairs)
         return narc_fail_missing(error, name);
     if (pairs->count > UINT32_MAX - 1)
@@ -165,7 +164,7 @@ static void match_part(void *argument, size_t part, size_t first, size_t end) {
     const matching *m = argument;
     (void)part;
     if (!m->old.starts)
-        walk(m->old.pairs, m->pairs, first, end, m->out_match);
+        match_by_walk(m->old.pairs, m->pairs, first, end, m->out_match);
     else
         for (size_t k = first; k < end; k++)
             m->out_match[k] = find_match(&m->old, pair_at(m->pairs, k));
@@ -180,14 +179,14 @@ void narc_match_in_order(const narc_pairs *old_pairs, const narc_pairs *new_pair
 narc_status narc_match_pairs(narc_broad_phase *broad, const narc_pairs *old_pairs, const narc_pairs *new_pairs,
                              const narc_workers *workers, uint32_t *out_match, narc_error *error) {
     matching m = {{.pairs = old_pairs}, new_pairs, out_match};
-    narc_status status = check(old_pairs, "old_pairs", error);
+    narc_status status = check_pairs(old_pairs, "old_pairs", error);
     if (status == NARC_OK)
-        status = check(new_pairs, "new_pairs", error);
+        status = check_pairs(new_pairs, "new_pairs", error);
     if (status != NARC_OK)
         return status;
     if (!broad || (new_pairs->count > 0 && !out_match))
         return narc_fail_missing(error, broad ? "out_match" : "broad");
-    if ((!in_order(old_pairs, workers) || !in_order(new_pairs, workers)) &&
+    if ((!is_in_order(old_pairs, workers) || !is_in_order(new_pairs, workers)) &&
         make_buckets(broad, old_pairs, &m.old) != NARC_OK)
         return narc_fail(error, NARC_ERROR_MEMORY, 0, (double)old_pairs->count, "not enough memory for %zu pairs",
                          old_pairs->count);

@@ -3,8 +3,8 @@
  * order.c - the last steps of narc_find_pairs(): the filter, and the order of the pairs.
  */
 #include "column.h"
+#include "dispatch.h"
 #include "steps.h"
-#include "workers.h"
 
 #include <string.h>
 
@@ -25,7 +25,7 @@ narc_body_filter narc_read_filter(const narc_pair_filter *filter, size_t body) {
 }
 
 /* Two static bodies do not meet, nor do two sensors. */
-static bool lets(const narc_pair_filter *filter, uint32_t a, uint32_t b) {
+static bool lets_pair(const narc_pair_filter *filter, uint32_t a, uint32_t b) {
     const narc_body_filter one = narc_read_filter(filter, a), other = narc_read_filter(filter, b);
     return !(one.kind & other.kind & (NARC_STATIC | NARC_SENSOR)) && (one.group == 0 || one.group != other.group) &&
            (one.category & other.mask) != 0 && (other.category & one.mask) != 0;
@@ -40,14 +40,14 @@ uint32_t narc_filter_pairs(const narc_pair_filter *filter, uint32_t *a, uint32_t
     for (uint32_t k = first; k < count; k++) {
         a[left] = a[k];
         b[left] = b[k];
-        left += lets(filter, a[left], b[left]);
+        left += lets_pair(filter, a[left], b[left]);
     }
     return left;
 }
 
 /* ------------------------------------------------------------------------------------------------ order */
 
-enum { FEW = 32, FOUR = 4 };
+enum { FOUR = 4 };
 
 /* Sorts the first `count` of four items and leaves the others, without a branch: how many partners a body has is hard
  * to predict. */
@@ -62,16 +62,6 @@ static void sort_four(uint32_t *list, uint32_t count) {
     put_in_order(&sorted[1], &sorted[2]);
     for (uint32_t k = 0; k < FOUR; k++)
         list[k] = k < count ? sorted[k] : list[k];
-}
-
-static void insert_all(uint32_t *list, size_t count) {
-    for (size_t k = 1; k < count; k++) {
-        const uint32_t moved = list[k];
-        size_t to = k;
-        for (; to > 0 && list[to - 1] > moved; to--)
-            list[to] = list[to - 1];
-        list[to] = moved;
-    }
 }
 
 static bool is_less(const void *context, uint32_t one, uint32_t other) {
@@ -154,10 +144,7 @@ static void order_part(void *argument, size_t part, size_t first, size_t end) {
         }
         for (uint32_t k = from; k < ends[body]; k++)
             own_a[k] = (uint32_t)body;
-        if (count <= FEW)
-            insert_all(own_b + from, count);
-        else
-            narc_sort_by_heap(own_b + from, count, is_less, NULL);
+        narc_sort_indices(own_b + from, count, is_less, NULL);
     }
 }
 

@@ -29,11 +29,26 @@ void narc_match_in_order(const narc_pairs *old_pairs, const narc_pairs *new_pair
 /* The first pair of a list in order that is not before `pair`. */
 size_t narc_find_pair(const narc_pairs *pairs, uint64_t pair);
 
-/* Sorts in place by a heap with the last in front, in n log n whatever the items are. Compiled for each `before`. */
-static inline void narc_sort_by_heap(uint32_t *items, size_t count,
+/* Sorts broad->entries by their strips, which are below `limit`, in `parts` parts or fewer. Equal ones stay in order. */
+void narc_sort_by_strip(narc_broad_phase *broad, size_t count, uint64_t limit, size_t parts,
+                        const narc_workers *workers);
+
+/* Sorts entries by min_x, and returns where they are then: here, or in `spare`. */
+narc_box_entry *narc_sort_by_min_x(narc_box_entry *entries, narc_box_entry *spare, size_t count);
+
+/* Sorts indices in place: a few by insertion, more by a heap with the last in front. Compiled for each `before`. */
+static inline void narc_sort_indices(uint32_t *items, size_t count,
                                      bool (*before)(const void *context, uint32_t one, uint32_t other),
                                      const void *context) {
-    for (size_t root = count / 2, end = count; end > 1;) {
+    enum { FEW = 32 };
+    for (size_t k = 1; k < count && count <= FEW; k++) {
+        const uint32_t moved = items[k];
+        size_t to = k;
+        for (; to > 0 && before(context, moved, items[to - 1]); to--)
+            items[to] = items[to - 1];
+        items[to] = moved;
+    }
+    for (size_t root = count / 2, end = count; end > 1 && count > FEW;) {
         const uint32_t moved = root > 0 ? items[--root] : items[--end];
         if (end < count)
             items[end] = items[0];
@@ -100,10 +115,10 @@ narc_status narc_list_found_pairs(narc_broad_phase *broad, size_t count, const n
 
 /* Lists the levels and strips that `count` boxes lie in, and puts the boxes into the columns, strip by strip, in the
  * order of min_x. There is room for all boxes and a part for each worker. */
-void narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers);
+void narc_make_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers);
 
 /* Puts the boxes of a strip, whose entries are listed at its places, into the columns in the order of min_x. */
-void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes);
+void narc_fill_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes);
 
 /* Fills what a kernel may read behind the last box of the columns. */
 void narc_end_columns(const narc_box_columns *boxes, size_t end);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * strips.c - sorts boxes into the strips of the broad phase.
+ * strips.c - makes the strips of the broad phase: which boxes lie in each, and the columns that hold them.
  *
  * A level holds boxes whose heights differ by less than a factor of 4 and whose widths by less than 16 (the lowest: all
  * down to 0). Its strips are as high as the highest box of its heights, h. With min_y / h rounded down as the number of
@@ -8,11 +8,8 @@
  * with higher strips only from one strip below its own min_y up to that of its max_y. The height has LEVEL_ROOM in it
  * for rounding: of a box's own height, 2^-24, and of the quotients of two boxes, each 2^-53 of MOST_STRIPS.
  */
+#include "dispatch.h"
 #include "steps.h"
-#include "workers.h"
-
-#include <math.h>
-#include <string.h>
 
 #define LEVEL_ROOM 0x1p-20
 
@@ -48,7 +45,6 @@ typedef struct passes {
     const narc_workers *workers;
     size_t parts; /* at most */
     classes heights, widths;
-    int shift; /* of the digits that a pass sorts by */
 } passes;
 
 /* Returns how many parts there are. */
@@ -169,8 +165,20 @@ static void list_part(void *argument, size_t part, size_t first, size_t end) {
     own->highest = highest;
 }
 
-/* Lists the entries of all boxes that are not empty; there is one. */
-static void list_entries(passes *p, size_t count) {
+/* Makes an entry's level and strip one number, level * span + (strip - lowest). */
+static void join_part(void *argument, size_t part, size_t first, size_t end) {
+    const narc_broad_phase *const broad = ((const passes *)argument)->broad;
+    narc_box_entry *const entries = broad->entries;
+    const uint64_t each_level = (uint64_t)broad->strip_span - ((uint64_t)1 << STRIP_BITS);
+    const uint64_t lowest = (uint64_t)(broad->lowest_strip + STRIP_ZERO);
+    (void)part;
+    for (size_t k = first; k < end; k++)
+        entries[k].strip += (entries[k].strip >> STRIP_BITS) * each_level - lowest;
+}
+
+/* Lists the entries of all boxes that are not empty: `listed` of them, at least one. Returns how many numbers strips
+ * may have. */
+static uint64_t list_entries(passes *p, size_t count, size_t listed) {
     int64_t lowest = INT64_MAX, highest = INT64_MIN;
     const size_t parts = run_pass(p, count, list_part);
     for (const narc_strip_part *own = p->broad->parts; own < p->broad->parts + parts; own++) {
@@ -179,76 +187,17 @@ static void list_entries(passes *p, size_t count) {
     }
     p->broad->lowest_strip = lowest;
     p->broad->strip_span = highest - lowest + 2; /* one more, so that levels are not next to each other */
+    run_pass(p, listed, join_part);
+    return (uint64_t)p->heights.count * (uint64_t)p->widths.count * (uint64_t)p->broad->strip_span;
 }
 
-/* An entry's level and strip as one number, once the range of strips is known. */
-static uint64_t join_strip(uint64_t level_and_strip, int64_t lowest, int64_t span) {
-    const uint64_t level = level_and_strip >> STRIP_BITS;
-    const int64_t strip = (int64_t)(level_and_strip & (((uint64_t)1 << STRIP_BITS) - 1)) - STRIP_ZERO;
-    return level * (uint64_t)span + (uint64_t)(strip - lowest);
-}
-
-/* ------------------------------------------------------------------------------------------------ sorting */
-
-enum { DIGIT_BITS = 11, DIGITS = NARC_DIGITS };
-_Static_assert(DIGITS == 1 << DIGIT_BITS, "digits have that many bits");
-
-static void exchange(narc_box_entry **one, narc_box_entry **other) {
-    narc_box_entry *const first = *one;
-    *one = *other;
-    *other = first;
-}
-
-/* The first pass joins levels and strips. */
-static void count_digits(void *argument, size_t part, size_t first, size_t end) {
-    const passes *p = argument;
-    narc_box_entry *const from = p->broad->entries;
-    uint32_t *const place = p->broad->parts[part].place;
-    const int64_t lowest = p->broad->lowest_strip, span = p->broad->strip_span;
-    const int shift = p->shift;
-    memset(place, 0, DIGITS * sizeof *place);
-    for (size_t k = first; k < end; k++) {
-        if (shift == 0)
-            from[k].strip = join_strip(from[k].strip, lowest, span);
-        place[from[k].strip >> shift & (DIGITS - 1)]++;
-    }
-}
-
-static void move_entries(void *argument, size_t part, size_t first, size_t end) {
-    const passes *p = argument;
-    const narc_box_entry *const from = p->broad->entries;
-    narc_box_entry *const to = p->broad->spare;
-    uint32_t *const place = p->broad->parts[part].place;
-    const int shift = p->shift;
-    for (size_t k = first; k < end; k++)
-        to[place[from[k].strip >> shift & (DIGITS - 1)]++] = from[k];
-}
-
-/* One pass of a stable radix sort, from `entries` to `spare`, which change places. Each part counts its digits, and
- * then knows where those of the parts before it end. */
-static void sort_by_digit(passes *p, size_t count) {
-    narc_broad_phase *const broad = p->broad;
-    const size_t parts = run_pass(p, count, count_digits);
-    uint32_t sum = 0;
-    for (size_t k = 0; k < DIGITS; k++)
-        for (size_t part = 0; part < parts; part++) {
-            const uint32_t here = broad->parts[part].place[k];
-            broad->parts[part].place[k] = sum;
-            sum += here;
-        }
-    run_pass(p, count, move_entries);
-    exchange(&broad->entries, &broad->spare);
-}
-
-static bool begins_strip(const narc_box_entry *entries, size_t k) {
-    return k == 0 || entries[k].strip != entries[k - 1].strip;
-}
+/* ------------------------------------------------------------------------------------------------ strips */
 
 static void list_strips_of_part(void *argument, size_t part, size_t first, size_t end) {
     narc_broad_phase *const broad = ((const passes *)argument)->broad;
     narc_strip *to = broad->strips + first;
     for (size_t k = first; k < end; k++)
-        if (begins_strip(broad->entries, k))
+        if (k == 0 || broad->entries[k].strip != broad->entries[k - 1].strip)
             *to++ = (narc_strip){.number = broad->entries[k].strip, .first = (uint32_t)k};
     broad->parts[part].start = first;
     broad->parts[part].count = (size_t)(to - broad->strips) - first;
@@ -284,97 +233,11 @@ static void list_levels(const passes *p) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ within a strip */
-
-/* Below so many entries, insertion is the faster sort. More go into buckets first, as many as there are entries; and
- * where buckets would hold more than one or two each, digits are faster. */
-enum { SMALL = 32, BUCKETS = 8192, MOST_FOR_BUCKETS = BUCKETS * 3 / 2 };
-
-/* Insertion with at most `moves` moves: false if they are not enough. */
-static bool insert_all(narc_box_entry *entries, size_t count, size_t moves) {
-    for (size_t k = 1; k < count; k++) {
-        const narc_box_entry moved = entries[k];
-        size_t to = k;
-        for (; to > 0 && entries[to - 1].min_x > moved.min_x; to--)
-            entries[to] = entries[to - 1];
-        entries[to] = moved;
-        if (moves < k - to)
-            return false;
-        moves -= k - to;
-    }
-    return true;
-}
-
-/* Unsigned numbers in the order of floats. */
-static uint32_t order_of(float x) {
-    const uint32_t bits = bits_of(x);
-    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
-}
-
-/* Where an entry goes: into buckets of equal widths, or by a digit of its min_x. */
-typedef struct division {
-    float low, scale;
-    int shift;
-} division;
-
-static size_t bucket_of(float x, const division *by) { return (uint32_t)((x - by->low) * by->scale); }
-
-static size_t digit_of(float x, const division *by) { return order_of(x) >> by->shift & (DIGITS - 1); }
-
-/* A counting sort into `places` places. */
-static inline void divide(const narc_box_entry *from, narc_box_entry *to, size_t count, uint32_t *place, size_t places,
-                          size_t (*place_of)(float x, const division *by), const division *by) {
-    uint32_t sum = 0;
-    memset(place, 0, places * sizeof *place);
-    for (size_t k = 0; k < count; k++)
-        place[place_of(from[k].min_x, by)]++;
-    for (size_t k = 0; k < places; k++) {
-        const uint32_t here = place[k];
-        place[k] = sum;
-        sum += here;
-    }
-    for (size_t k = 0; k < count; k++)
-        to[place[place_of(from[k].min_x, by)]++] = from[k];
-}
-
-/* Sorts entries by buckets of equal widths, which brings those that are spread evenly nearly into their order, and by
- * insertion; others digit by digit. Returns where they are then. */
-static narc_box_entry *sort_by_min_x(narc_box_entry *entries, narc_box_entry *spare, size_t count) {
-    uint32_t place[BUCKETS];
-    float low = INFINITY, high = -INFINITY;
-    bool in_order = true;
-    if (count < SMALL) {
-        insert_all(entries, count, SIZE_MAX);
-        return entries;
-    }
-    for (size_t k = 0; k < count; k++) {
-        const float x = entries[k].min_x;
-        in_order = in_order && x >= high;
-        low = x < low ? x : low;
-        high = x > high ? x : high;
-    }
-    if (in_order)
-        return entries;
-    const size_t buckets = count < BUCKETS ? count : BUCKETS;
-    division by = {.low = low, .scale = (float)(buckets - 1) / (high - low)};
-    /* Not too many, nor nearly all in one place, nor too far apart. */
-    if (count <= MOST_FOR_BUCKETS && by.scale > 0 && by.scale <= FLT_MAX) {
-        divide(entries, spare, count, place, buckets, bucket_of, &by);
-        if (insert_all(spare, count, 2 * count))
-            return spare;
-    }
-    for (; by.shift < 32; by.shift += DIGIT_BITS) {
-        divide(entries, spare, count, place, DIGITS, digit_of, &by);
-        exchange(&entries, &spare);
-    }
-    return entries;
-}
-
-void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes) {
+void narc_fill_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box *boxes) {
     const narc_box_columns *const out = &broad->boxes;
     const size_t count = strip->end - strip->first;
     const narc_box_entry *const sorted =
-        sort_by_min_x(broad->entries + strip->first, broad->spare + strip->first, count);
+        narc_sort_by_min_x(broad->entries + strip->first, broad->spare + strip->first, count);
     strip->min_y = INFINITY;
     strip->max_y = -INFINITY;
     float width = 0;
@@ -393,14 +256,14 @@ void narc_sort_strip(narc_broad_phase *broad, narc_strip *strip, const narc_box 
     strip->width = width * (1 + 0x1p-22f) + FLT_TRUE_MIN; /* no box is wider, for all rounding */
 }
 
-/* Strips that are sorted at a time. */
+/* Strips that a thread fills at a time. */
 enum { FEW_STRIPS = 4 };
 
-static void sort_strips(void *argument, size_t part, size_t first, size_t end) {
+static void fill_strips(void *argument, size_t part, size_t first, size_t end) {
     const passes *p = argument;
     (void)part;
     for (size_t k = first; k < end; k++)
-        narc_sort_strip(p->broad, &p->broad->strips[k], p->boxes);
+        narc_fill_strip(p->broad, &p->broad->strips[k], p->boxes);
 }
 
 void narc_end_columns(const narc_box_columns *boxes, size_t end) {
@@ -410,22 +273,18 @@ void narc_end_columns(const narc_box_columns *boxes, size_t end) {
     }
 }
 
-void narc_sort_into_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers) {
+void narc_make_strips(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_workers *workers) {
     passes p = {.broad = broad,
                 .boxes = boxes,
                 .workers = workers,
                 .parts = workers->count < NARC_STRIP_PARTS ? workers->count : NARC_STRIP_PARTS};
     const size_t listed = count_boxes(&p, count);
-    if (listed > 0) {
-        list_entries(&p, count);
-        const uint64_t numbers = (uint64_t)p.heights.count * (uint64_t)p.widths.count * (uint64_t)broad->strip_span;
-        for (; p.shift < 64 && numbers >> p.shift > 0; p.shift += DIGIT_BITS)
-            sort_by_digit(&p, listed);
-    }
+    if (listed > 0)
+        narc_sort_by_strip(broad, listed, list_entries(&p, count, listed), p.parts, workers);
     list_strips(&p, listed);
     list_levels(&p);
     broad->sorted_count = listed;
     broad->stray_count = 0;
-    narc_run_ranges(workers, broad->strip_count, FEW_STRIPS, sort_strips, &p);
+    narc_run_ranges(workers, broad->strip_count, FEW_STRIPS, fill_strips, &p);
     narc_end_columns(&broad->boxes, listed);
 }

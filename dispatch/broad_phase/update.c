@@ -61,7 +61,7 @@ typedef struct changes {
 } changes;
 
 /* Bodies first .. end - 1, whose kept boxes and filters are those of the last list. */
-static void look(void *argument, size_t part, size_t first, size_t end) {
+static void look_at_some(void *argument, size_t part, size_t first, size_t end) {
     changes *const all = argument;
     const update *const u = all->update;
     const narc_broad_phase *const broad = u->broad;
@@ -96,7 +96,7 @@ static unsigned look_at_all(const update *u, size_t *out_fresh_count) {
     changes all = {u, filter || had_filter, 0, 0};
     if (!u->broad->is_current || (filter && !had_filter))
         return WHOLE;
-    narc_run_ranges(u->options->workers, u->count, BODY_PART, look, &all);
+    narc_run_ranges(u->options->workers, u->count, BODY_PART, look_at_some, &all);
     *out_fresh_count = atomic_load_explicit(&all.fresh_count, memory_order_relaxed);
     return atomic_load_explicit(&all.found, memory_order_relaxed);
 }
@@ -116,7 +116,7 @@ static bool are_same(const update *u) {
 }
 
 /* The last list once more. */
-static void keep(const update *u, bool rest) {
+static void keep_list(const update *u, bool rest) {
     narc_broad_phase *const broad = u->broad;
     narc_kept_list *const last = &broad->lists[broad->last];
     if (broad->renewed)
@@ -256,8 +256,8 @@ static narc_status find_all(const update *u, bool same, narc_kept_list *last, na
 }
 
 /* Lists `found` pairs of fresh bodies, and those of others that were there. */
-static narc_status merge(const update *u, narc_kept_list *last, narc_kept_list *made, size_t skipped, size_t found,
-                         size_t *out_lost) {
+static narc_status merge_lists(const update *u, narc_kept_list *last, narc_kept_list *made, size_t skipped,
+                               size_t found, size_t *out_lost) {
     narc_broad_phase *const broad = u->broad;
     if (narc_reserve_matches(broad, found, found) != NARC_OK)
         return fail_memory(u, found, "pairs");
@@ -271,8 +271,8 @@ static narc_status merge(const update *u, narc_kept_list *last, narc_kept_list *
 }
 
 /* Makes the next list. The last one stays as it is, but for `matched`, and for ids that are numbers. */
-static narc_status find(const update *u, bool same, unsigned found, size_t fresh_count, narc_kept_list *last,
-                        narc_kept_list *made) {
+static narc_status make_list(const update *u, bool same, unsigned found, size_t fresh_count, narc_kept_list *last,
+                             narc_kept_list *made) {
     narc_broad_phase *const broad = u->broad;
     const bool sorted = !(found & WHOLE) && broad->is_sorted;
     size_t lost_count = 0, fresh_pairs = 0;
@@ -285,7 +285,7 @@ static narc_status find(const update *u, bool same, unsigned found, size_t fresh
         narc_sweep_fresh(broad, broad->kept_boxes, u->count, fresh_count, u->options->filter, u->options->workers,
                          &fresh_pairs) &&
         fresh_pairs < UINT32_MAX - last->list.pairs.count)
-        status = merge(u, last, made, skipped, fresh_pairs, &lost_count);
+        status = merge_lists(u, last, made, skipped, fresh_pairs, &lost_count);
     else
         status = find_all(u, same, last, made, skipped, &lost_count);
     if (status != NARC_OK)
@@ -304,13 +304,14 @@ static narc_status finish(const update *u, const narc_pair_list **out_list) {
     const unsigned found = same ? look_at_all(u, &fresh_count) : WHOLE;
     if (found & (LEFT | WHOLE)) {
         const int next = 1 - broad->last;
-        const narc_status status = find(u, same, found, fresh_count, &broad->lists[broad->last], &broad->lists[next]);
+        const narc_status status =
+            make_list(u, same, found, fresh_count, &broad->lists[broad->last], &broad->lists[next]);
         if (status != NARC_OK)
             return status;
         broad->last = next;
         broad->is_current = broad->is_sorted = broad->renewed = true;
     } else
-        keep(u, found & REST);
+        keep_list(u, found & REST);
     *out_list = &broad->lists[broad->last].list;
     return NARC_OK;
 }
