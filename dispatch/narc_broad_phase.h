@@ -62,8 +62,7 @@ extern "C" {
  *   margin              at least 0: all pairs of bodies that are closer than this are listed: at least the margin that
  *                       contacts are then asked for
  *   skin                at least 0: how much larger than its body the box of a kept list is, on every side. A larger
- *                       one keeps lists longer, and makes them longer. It counts when a box is made. 0: none is kept
- *                       but where nothing moves
+ *                       one keeps lists longer, and makes them longer. 0: none is kept but where nothing moves
  *   motion_x, motion_y  world axes: what each body moves in this step, as in narc_box_options. A list has all
  *                       pairs that come close on the way
  *   reach               at least 0: how far beyond its box a body may reach in this step, such as by rotation
@@ -85,9 +84,9 @@ typedef struct narc_pair_options {
 /* The pairs of bodies that are closer than the margin, and perhaps others, none further apart than margin + 3 * skin
  * and the motion (of boxes, and but for rounding, NARC_BOX_ROOM) when the list was made.
  *   A list has all pairs of KEPT BOXES that overlap and may form a pair. When a body has left its kept box, or has
- * another filter, it and all bodies of whose boxes a side has moved by more than half of the skin get new ones, larger
- * than they are now by the skin. All bodies do if there are more or fewer than in the last call, or others by their
- * ids, with the first filter, and after narc_forget_pairs().
+ * another filter, it and all bodies with less than half of the skin, or more than one and a half, left on a side get new
+ * ones, larger than they are now by the skin. All bodies do if there are more or fewer than in the last call, or others
+ * by their ids, with the first filter, after narc_forget_pairs(), and perhaps after a call that failed.
  *   bodies    at most 2^32 - 2
  *   options   NULL: defaults
  *   out_list  see narc_pair_list; its arrays belong to `broad`. A broken body (narc_bodies; also one whose motion or

@@ -64,11 +64,14 @@ static size_t list_moved(const narc_bodies *given, const narc_known_poses *all, 
     const narc_known_poses known = *all;
     size_t count = 0;
     for (size_t k = first; k < end; k++) {
-        const narc_pose_bits now = get_pose_bits(&bodies, k), then = known.poses[k];
-        const uint64_t other = (now.word[0] ^ then.word[0]) | (now.word[1] ^ then.word[1]) |
-                               (now.word[2] ^ then.word[2]) | (now.word[3] ^ then.word[3]);
-        if (other == 0 && k < known.count)
-            continue;
+        const narc_pose_bits now = get_pose_bits(&bodies, k);
+        if (k < known.count) {
+            const narc_pose_bits then = known.poses[k];
+            const uint64_t other = (now.word[0] ^ then.word[0]) | (now.word[1] ^ then.word[1]) |
+                                   (now.word[2] ^ then.word[2]) | (now.word[3] ^ then.word[3]);
+            if (other == 0)
+                continue;
+        }
         known.poses[k] = now;
         known.moved[k] = 1;
         list[count++] = (uint32_t)k;

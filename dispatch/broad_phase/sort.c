@@ -8,6 +8,10 @@
 #include "dispatch.h"
 #include "steps.h"
 
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
 enum { DIGIT_BITS = 11, DIGITS = NARC_DIGITS };
 _Static_assert(DIGITS == 1 << DIGIT_BITS, "digits have that many bits");
 

@@ -11,6 +11,10 @@
 #include "dispatch.h"
 #include "steps.h"
 
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
 #define LEVEL_ROOM 0x1p-20
 
 /* Strips are counted from y = 0. Beyond so many, numbers in single precision are several h apart: a box there has no

@@ -72,8 +72,8 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
     memset(broad->fresh + first, 0, end - first);
     for (; (k = all->use_filters ? k : narc_find_flag(broad->known.moved, k, end)) < end; k++) {
         const narc_box *const box = &u->boxes[k], *const kept = &broad->kept_boxes[k];
-        const bool has = narc_is_box(box), had = has_kept_box(broad, k);
-        bool out = has ? !is_inside(box, kept) : had;
+        const bool moved = broad->known.moved[k], has = narc_is_box(box), had = has_kept_box(broad, k);
+        bool out = moved && (has ? !is_inside(box, kept) : had);
         if (all->use_filters) {
             const narc_body_filter now = filter_of(u, k), *const then = &broad->filters[k];
             const unsigned other = now.kind ^ then->kind;
@@ -81,7 +81,7 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
                    (other & (NARC_STATIC | NARC_SENSOR));
             rest |= (other & NARC_ASLEEP) != 0;
         }
-        const bool fresh = out || (has && !is_near(box, kept, half));
+        const bool fresh = out || (moved && has && !is_near(box, kept, half));
         broad->fresh[k] = fresh;
         fresh_count += fresh;
         left |= out;
