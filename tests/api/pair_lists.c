@@ -507,8 +507,8 @@ static totals run_scene_at_rest(const char *isa, size_t steps) {
 }
 
 TEST(finds_pairs_of_few_that_move) {
-    static const char *const names[] = {"scalar", "neon", "avx2", "avx512"};
-    const size_t steps = test_trials(80);
+    static const char *const names[] = {"scalar", "neon", "sse41", "avx2", "avx512"};
+    const size_t steps = 20 + test_trials(60);
     for (size_t k = 0; k < sizeof names / sizeof names[0]; k++)
         if (narc_isa_supported(names[k])) {
             const totals sums = run_scene_at_rest(names[k], steps);
@@ -700,7 +700,7 @@ TEST(notices_all_that_boxes_are_made_from) {
         const float x = (float)random_between(&random, 0, 16), y = (float)random_between(&random, 0, 16);
         bodies[k] = (placed){(double)x, (double)y, x, y, 1, 0, 1, (uint32_t)k % 2};
     }
-    const size_t steps = test_trials(400);
+    const size_t steps = 40 + test_trials(360);
     for (size_t step = 0; step < steps; step++) {
         const narc_workers workers = narc_openmp_workers(1 + (unsigned)step % 2);
         const narc_bodies view = view_placed(bodies, count, doubles, scales);
