@@ -14,7 +14,7 @@
 #include "base/queue.inl"
 #include "base/shape.inl"
 #include "base/vec2.inl"
-#include "sat/search.inl"
+#include "sat/arc_lookup.inl"
 #include "simd/simd.h"
 
 /* When a search ends for want of precision, relative to the numbers that go into w: normal_fan.inl's table, with |t|

@@ -22,6 +22,7 @@
 #include "box/box_pairs.inl"
 #include "box/box_rows.inl"
 #include "kernels.h"
+#include "sat/arc_lookup.inl"
 #include "sat/certificates.inl"
 #include "sat/manifold_edges.inl"
 #include "sat/normal_fan.inl"

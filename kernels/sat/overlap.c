@@ -21,6 +21,7 @@
 #include "box/box_walk.inl"
 #include "box/capsules.inl"
 #include "kernels.h"
+#include "sat/arc_lookup.inl"
 #include "sat/certificates.inl"
 #include "sat/normal_fan.inl"
 #include "sat/search.inl"
