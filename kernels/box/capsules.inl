@@ -117,7 +117,7 @@ static __attribute__((noinline)) void walk_capsules(const struct box_pair *given
     *out_best = best;
 }
 
-INLINE vm code_has(vi code, int bit) { return vi_lt(vi_set(0), vi_and(code, vi_set(bit))); }
+INLINE vm has_bit(vi code, int bit) { return vi_lt(vi_set(0), vi_and(code, vi_set(bit))); }
 
 INLINE vec2 find_end_a(const struct box_pair *pair, vm right) {
     const vf half = get_box_field(pair, BOX_HALF_A);
@@ -129,8 +129,8 @@ INLINE struct box_contact find_capsule_contact(const struct box_pair *pair, vm o
     const struct pose pose = get_box_pose(pair);
     const vf zero = v_set(0), radii = v_add(get_box_field(pair, BOX_RADIUS_A), get_box_field(pair, BOX_RADIUS_B));
     const vi code = get_box_code(pair), first = vi_set(1), second = vi_set(3);
-    const vm by_b = code_has(code, EDGE_OF_B), negative = code_has(code, EDGE_NEGATIVE);
-    const vm tilted = code_has(code, EDGE_TILTED);
+    const vm by_b = has_bit(code, EDGE_OF_B), negative = has_bit(code, EDGE_NEGATIVE);
+    const vm tilted = has_bit(code, EDGE_TILTED);
     /* The ends that face each other in the intervals before the edge's normal and behind it: those at +x? */
     const vm up = vm_not(negative), other = vm_xor(tilted, vm_not(by_b));
     const vm before_a = vm_or(vm_and(by_b, other), vm_and_not(up, by_b)),
@@ -148,7 +148,7 @@ INLINE struct box_contact find_capsule_contact(const struct box_pair *pair, vm o
     const vm rises = v_lt(v2_cross(u_before, f), zero), falls = v_lt(v2_cross(f, u_behind), zero);
     const vm at_ends = vm_not(vm_and(rises, falls));
     struct box_contact c = {.separation = v_sub(v2_dot(u_behind, f), radii), .normal = f};
-    vm left = vm_or(code_has(code, BOX_TIE), vm_not(vm_or(rises, falls)));
+    vm left = vm_or(has_bit(code, BOX_TIE), vm_not(vm_or(rises, falls)));
     if (vm_any(at_ends)) {
         const vec2 u = v2_select(rises, u_behind, u_before);
         const vf length = v2_length(u);

@@ -73,9 +73,9 @@ INLINE void count_angles(const narc_record *records, vi first_record, vi count, 
     }
 }
 
-INLINE vi both_halves(vi angle) { return vi_add(vi_and(angle, vi_set(0xffff)), vi_shift_left(angle, 16)); }
+INLINE vi fill_both_halves(vi angle) { return vi_add(vi_and(angle, vi_set(0xffff)), vi_shift_left(angle, 16)); }
 
-INLINE vi sum_of_halves(vi twice) { return vi_add(vi_and(twice, vi_set(0xffff)), vi_shift_right(twice, 16)); }
+INLINE vi add_halves(vi twice) { return vi_add(vi_and(twice, vi_set(0xffff)), vi_shift_right(twice, 16)); }
 
 /* The arcs that may hold the axes: those between the junctions that are surely before a direction and surely behind
  * it. Near angle 0, the junctions that are before it are the last ones. */
@@ -91,13 +91,13 @@ INLINE void find_arc_runs(const narc_record *records, vi first_record, vi count,
         turn[k] = vm_or(vi_lt(unit, vi_set(FIRST_ANGLE - 1)), vi_lt(vi_set(LAST_ANGLE), unit));
         const vi low = vi_select(turn[k], vi_set(LAST_ANGLE), vi_sub(unit, vi_set(1)));
         const vi high = vi_select(turn[k], vi_set(FIRST_ANGLE), vi_add(unit, vi_set(2)));
-        limit[2 * k] = both_halves(low);
-        limit[2 * k + 1] = both_halves(high);
+        limit[2 * k] = fill_both_halves(low);
+        limit[2 * k + 1] = fill_both_halves(high);
     }
     count_angles(records, first_record, count, limit, before);
     UNROLL
     for (int k = 0; k < AXES; k++) {
-        const vi all = sum_of_halves(before[2 * k]), high = sum_of_halves(before[2 * k + 1]);
+        const vi all = add_halves(before[2 * k]), high = add_halves(before[2 * k + 1]);
         const vi low = vi_sub(all, vi_select(turn[k], count, vi_set(0)));
         const vi first = vi_sub(low, vi_set(1));
         run[k] =
@@ -106,7 +106,7 @@ INLINE void find_arc_runs(const narc_record *records, vi first_record, vi count,
 }
 
 /* centre.m + radius of an arc, with its room for rounding. */
-INLINE vf support_of_arc(const narc_record *records, vi record, vec2 m) {
+INLINE vf find_arc_support(const narc_record *records, vi record, vec2 m) {
     int32_t index[V_WIDTH];
     vf arc[4];
     vi_store(index, record);
@@ -118,7 +118,7 @@ INLINE vf support_of_arc(const narc_record *records, vi record, vec2 m) {
 
 /* The largest height of the arcs that may hold m. There is mostly one. */
 INLINE vf find_support_value(const narc_record *records, vi arcs, vi count, struct arc_run run, vec2 m) {
-    vf height = support_of_arc(records, vi_add(arcs, run.first), m);
+    vf height = find_arc_support(records, vi_add(arcs, run.first), m);
     vi arc = run.first;
     for (int k = 1; k < NARC_MAX_ARCS; k++) {
         const vm more = vi_lt(vi_set(k - 1), run.more);
@@ -126,7 +126,7 @@ INLINE vf find_support_value(const narc_record *records, vi arcs, vi count, stru
             break;
         const vi next = vi_add(arc, vi_select(more, vi_set(1), vi_set(0)));
         arc = vi_select(vi_lt(next, count), next, vi_set(0));
-        height = v_max(height, support_of_arc(records, vi_add(arcs, arc), m));
+        height = v_max(height, find_arc_support(records, vi_add(arcs, arc), m));
     }
     return height;
 }
