@@ -22,17 +22,15 @@
  *       csv.c         tables of measures, and of grains
  *       restart.c     the state in a file, bit for bit
  *       files.c       files that are read, or appear, as a whole
- *       frames.c      what pictures, files for ParaView and tables of grains have in common
- *       vtk.c         files for ParaView; vtk_xml.c their XML
- *       picture.c     pictures
+ *       frames.c      what files for ParaView and tables of grains have in common
+ *       vtk.c         files for ParaView
  *
  * Conventions
  *
  *   Grains are bodies 0 .. grain_count - 1, walls follow. All state is double. narc reads positions as doubles in place
  *   (it subtracts them before it rounds) and rotations as floats, which are rounded copies of the doubles here. So the
- *   depth of a contact is within NARC_ERROR_BOUND times a few sizes of the two bodies, wherever they are.
- *
- *   Grains touch each other in one point, the deepest.
+ *   narc tells what touches within NARC_ERROR_BOUND times a few sizes; depth, normal and point are then computed in
+ *   double (touch.h).
  *
  *   A contact's normal points from A to B, and A < B. Its tangent is the normal turned by a quarter turn. In two
  *   dimensions the tangential spring is one number along the tangent, so it turns with the contact by itself.
@@ -47,6 +45,8 @@
 #include <narc_broad_phase.h>
 
 #include <stdio.h>
+
+#include "touch.h"
 
 enum { DEM_MAX_MATERIALS = 16, DEM_NAME_SIZE = 64, DEM_PATH_SIZE = 1024 };
 
@@ -66,8 +66,10 @@ typedef struct dem_material {
 typedef struct dem_shape {
     char name[DEM_NAME_SIZE];
     double area, second_moment;
-    double reach;  /* the largest distance of a point from the origin */
-    double extent; /* the diameter of the disc of equal area */
+    double reach;      /* the largest distance of a point from the origin */
+    double extent;     /* the diameter of the disc of equal area */
+    touch_side *sides; /* `side_count` of them */
+    size_t side_count;
 } dem_shape;
 
 typedef enum dem_law { DEM_LINEAR, DEM_HERTZ } dem_law;
@@ -89,12 +91,10 @@ typedef struct dem_settings {
     double thickness; /* of the grains, across the plane */
     dem_vec gravity;
     dem_law law;
-    double max_overlap;    /* a deeper contact stops the run; a share of the smaller body's extent */
-    double least_radius;   /* Hertz: a radius of curvature is at least, */
-    double largest_radius; /* and at most, this share of half the grain's extent */
+    double max_overlap; /* a deeper contact stops the run; a share of the smaller body's extent */
     bool periodic_x, periodic_y;
-    double low_x, high_x, low_y, high_y; /* the periodic cell; also the region of pictures if it is not empty */
-    unsigned threads;                    /* 0: as OpenMP would, fewer for few grains */
+    double low_x, high_x, low_y, high_y; /* the periodic cell; where it is periodic */
+    unsigned threads;                    /* 0: one */
 } dem_settings;
 
 /* Bodies: `count` of each array, grains first. */
@@ -108,6 +108,7 @@ typedef struct dem_bodies {
     double *mass, *inertia;
     double *list_x, *list_y, *list_cosine, *list_sine; /* where they were when the pairs were found */
     double *reach, *extent;                            /* of the scaled shape */
+    double *disc;                                      /* its radius, of a disc; 0: it is none */
     float *scale;
     uint32_t *shape;
     uint8_t *material, *still; /* still: a wall. Two of them form no pair */
@@ -182,11 +183,22 @@ typedef struct dem_force {
     double torque_a, torque_b;
 } dem_force;
 
+/* A contact as its law takes it. Two flat sides touch at two ends (see touch.h): the normal and the point are then
+ * those of both together. */
+typedef struct dem_contact {
+    uint64_t pair;
+    dem_vec normal; /* unit, from A to B */
+    dem_vec point;  /* halfway between both surfaces, from the centre of A */
+    double depth;
+    dem_force force;
+} dem_contact;
+
 /* The contacts of the last step, in the order of the pairs. */
 typedef struct dem_contacts {
     size_t count, capacity;
-    narc_contact *rows;
-    dem_force *forces;
+    dem_contact *rows;
+    narc_contact *found; /* what may touch */
+    size_t found_count;
 } dem_contacts;
 
 /* Energies, and what was dissipated since the start. kinetic + potential + elastic + damping + friction - walls stays
@@ -213,12 +225,6 @@ typedef struct dem_region {
     bool given;
     double low_x, high_x, low_y, high_y;
 } dem_region;
-
-/* Seconds spent in each part, for speed.c; counted only if `on`. */
-typedef struct dem_clock {
-    bool on;
-    double lists, narrow, forces, motion;
-} dem_clock;
 
 /* An incidence list: which pairs have body i as B, ascending: of[first[i]] .. of[first[i + 1] - 1]; and where the pairs
  * that have it as A begin. */
@@ -259,8 +265,7 @@ typedef struct dem {
 
     narc_broad_phase *broad;
     struct dem_scratch *scratch; /* memory of the neighbour list and of sums */
-    dem_clock clock;
-    char error[512]; /* what went wrong, when a function here says that something did */
+    char error[512];             /* what went wrong, when a function here says that something did */
 } dem;
 
 /* ------------------------------------------------------------------------------------------------ model.c */
@@ -305,6 +310,10 @@ double dem_damping_ratio(dem_law law, double restitution);
 /* The law between two materials, in both orders. With the Hertz law kn and kt come from the materials. */
 void dem_set_law(dem *d, uint8_t a, uint8_t b, dem_contact_law law);
 
+/* What the shortest contact lasts that there can be: pi sqrt(m / K) of the lightest grains of each material, with the
+ * Hertz law at the deepest overlap that is allowed. Infinite without grains. */
+double dem_find_shortest_contact(const dem *d);
+
 /* One step. */
 bool dem_step(dem *d);
 
@@ -347,26 +356,9 @@ bool dem_close_file(dem_file *out, bool ok, char *error);
 
 /* ------------------------------------------------------------------------------------------------ frames */
 
-/* Writes the state for ParaView, and adds it to the lists of frames. Frame 12 of "out/pile" is out/pile-000012.vtp and
- * out/pile-contacts-000012.vtp, the lists are out/pile.pvd and out/pile-contacts.pvd. Errors as above, into `error`
- * (512 bytes). */
+/* Writes the state for ParaView: frame 12 of "out/pile" is out/pile-000012.vtk and out/pile-contacts-000012.vtk.
+ * Errors as above, into `error` (512 bytes). */
 bool dem_write_vtk(const dem *d, const char *stem, uint64_t frame, char *error);
-
-/* What the colours of grains tell. */
-typedef enum dem_coloring { DEM_PLAIN, DEM_SPEED, DEM_COORDINATION, DEM_PRESSURE } dem_coloring;
-
-typedef struct dem_look {
-    dem_region region; /* if it is not given: of all bodies */
-    double width;      /* in pixels */
-    dem_coloring coloring;
-    double top;  /* the value that has the last colour; 0: the largest one of the frame */
-    bool forces; /* lines from centre to contact to centre */
-} dem_look;
-
-/* By the path's suffix, .png or .svg. */
-typedef enum dem_picture { DEM_NO_PICTURE, DEM_PNG, DEM_SVG } dem_picture;
-dem_picture dem_picture_kind(const char *path);
-bool dem_draw_picture(const dem *d, const dem_look *look, const char *path, char *error);
 
 /* The table of measures, a line for each time, which grows while the run goes on. A new one; or, if the position is
  * above 0 and the file is there, an old one, cut off there: if it is one of this input, and the line that ends there is

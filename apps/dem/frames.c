@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * frames.c - what files for ParaView, pictures and tables have in common.
+ * frames.c - what files for ParaView and tables have in common.
  */
 #include "frames.h"
 
@@ -66,8 +66,8 @@ dem_load *dem_find_loads(const dem *d, char *error) {
     }
     for (size_t k = 0; k < c->count; k++) {
         const size_t p = c->rows[k].pair, i = d->pairs.a[p], j = d->pairs.b[p];
-        const dem_force f = c->forces[k];
-        const dem_vec arm_i = {(double)c->rows[k].point_x, (double)c->rows[k].point_y};
+        const dem_force f = c->rows[k].force;
+        const dem_vec arm_i = c->rows[k].point;
         const dem_vec arm_j = {arm_i.x + (b->x[i] - b->x[j] - (double)d->pairs.shift_x[p]),
                                arm_i.y + (b->y[i] - b->y[j] - (double)d->pairs.shift_y[p])};
         add_load(&loads[i], (dem_vec){-f.x, -f.y}, arm_i);
@@ -82,15 +82,13 @@ dem_load *dem_find_loads(const dem *d, char *error) {
 }
 
 double dem_normal_force(const dem *d, size_t k) {
-    const narc_contact *row = &d->contacts.rows[k];
-    const dem_force *f = &d->contacts.forces[k];
-    return f->x * (double)row->normal_x + f->y * (double)row->normal_y;
+    const dem_contact *row = &d->contacts.rows[k];
+    return row->force.x * row->normal.x + row->force.y * row->normal.y;
 }
 
 double dem_tangential_force(const dem *d, size_t k) {
-    const narc_contact *row = &d->contacts.rows[k];
-    const dem_force *f = &d->contacts.forces[k];
-    return f->y * (double)row->normal_x - f->x * (double)row->normal_y;
+    const dem_contact *row = &d->contacts.rows[k];
+    return row->force.y * row->normal.x - row->force.x * row->normal.y;
 }
 
 /* ------------------------------------------------------------------------------------------------ places */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * frames.h - what files for ParaView, pictures and tables have in common: each grain's share of the contacts, the place
+ * frames.h - what files for ParaView and tables have in common: each grain's share of the contacts, the place
  * of walls, the box around all.
  */
 #ifndef DEM_FRAMES_H

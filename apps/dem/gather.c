@@ -30,17 +30,17 @@ static void gather_body(const dem *d, size_t body) {
     for (size_t i = n.first_b[body]; i < n.first_b[body + 1]; i++) {
         const size_t k = find_contact(d, n.of_b[i]);
         if (k < c.count) {
-            fx += c.forces[k].x;
-            fy += c.forces[k].y;
-            torque += c.forces[k].torque_b;
+            fx += c.rows[k].force.x;
+            fy += c.rows[k].force.y;
+            torque += c.rows[k].force.torque_b;
         }
     }
     for (size_t p = n.first_a[body]; p < n.first_a[body + 1]; p++) {
         const size_t k = find_contact(d, p);
         if (k < c.count) {
-            fx -= c.forces[k].x;
-            fy -= c.forces[k].y;
-            torque += c.forces[k].torque_a;
+            fx -= c.rows[k].force.x;
+            fy -= c.rows[k].force.y;
+            torque += c.rows[k].force.torque_a;
         }
     }
     d->bodies.fx[body] = fx;

@@ -119,10 +119,8 @@ static void read_pair_laws(const json_value *contact, dem *d, dem_contact_law co
 static void read_contact(const json_value *root, dem *d) {
     const json_value contact = json_require(root, "contact");
     dem_contact_law law = {.damping_ratio = -1, .gamma_n = -1, .tangential_share = 0.5};
-    if (d->settings.law == DEM_LINEAR) {
-        json_refuse(&contact, "least_radius largest_radius", "is of the Hertz law");
+    if (d->settings.law == DEM_LINEAR)
         json_require(&contact, "kn");
-    }
     json_require(&contact, "friction");
     read_law(&contact, d, &law);
     for (size_t a = 0; a < d->material_count; a++)
@@ -130,15 +128,13 @@ static void read_contact(const json_value *root, dem *d) {
             dem_set_law(d, (uint8_t)a, (uint8_t)b, law);
     read_pair_laws(&contact, d, law);
     d->settings.max_overlap = json_number_or(root, "max_overlap", 1e-6, 1, d->settings.max_overlap);
-    d->settings.least_radius = json_number_or(&contact, "least_radius", 1e-3, 1, d->settings.least_radius);
-    d->settings.largest_radius = json_number_or(&contact, "largest_radius", 1, 1e3, d->settings.largest_radius);
 }
 
 /* The law is asked before the materials, which depend on it. */
 static dem_law read_law_name(const json_value *root) {
     const json_value contact = json_require(root, "contact");
-    json_check_object(&contact, "law kn kt gamma_n gamma_t pairs friction restitution rolling_friction least_radius "
-                                "largest_radius tangential_damping");
+    json_check_object(&contact, "law kn kt gamma_n gamma_t pairs friction restitution rolling_friction "
+                                "tangential_damping");
     const json_value law = json_require(&contact, "law");
     char name[DEM_NAME_SIZE];
     json_text(&law, name, sizeof name);

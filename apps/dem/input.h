@@ -30,9 +30,8 @@ typedef struct dem_stage {
 /* File names are empty for what is not wanted. */
 typedef struct dem_output {
     uint64_t every, restart_every; /* steps */
-    char csv[DEM_PATH_SIZE], grains[DEM_PATH_SIZE], vtk[DEM_PATH_SIZE], picture[DEM_PATH_SIZE], restart[DEM_PATH_SIZE];
+    char csv[DEM_PATH_SIZE], grains[DEM_PATH_SIZE], vtk[DEM_PATH_SIZE], restart[DEM_PATH_SIZE];
     dem_region region; /* of stresses */
-    dem_look look;     /* of pictures */
 } dem_output;
 
 typedef struct dem_input {

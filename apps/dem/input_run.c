@@ -101,28 +101,13 @@ static void read_name(const json_value *root, const json_value *object, const ch
         json_fail(&name, "is the file of shapes");
 }
 
-static dem_coloring read_coloring(const json_value *name) {
-    static const char *const names[] = {
-        [DEM_PLAIN] = "plain", [DEM_SPEED] = "speed", [DEM_COORDINATION] = "coordination", [DEM_PRESSURE] = "pressure"};
-    char text[DEM_NAME_SIZE];
-    json_text(name, text, sizeof text);
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-        if (strcmp(text, names[i]) == 0)
-            return (dem_coloring)i;
-    json_fail(name, "is not one of plain, speed, coordination and pressure");
-}
-
-static dem_look read_look(const json_value *output) {
-    const json_value region = json_member(output, "picture_region"), coloring = json_member(output, "picture_color");
-    dem_look look = {.coloring = DEM_SPEED};
-    if (region.item)
-        look.region = dem_read_region(&region);
-    if (coloring.item)
-        look.coloring = read_coloring(&coloring);
-    look.width = json_number_or(output, "picture_width", 16, 20000, 800);
-    look.top = json_number_or(output, "picture_top", 0, 1e300, 0);
-    look.forces = json_bool_or(output, "picture_forces", true);
-    return look;
+/* A table's name. */
+static void read_table(const json_value *root, const json_value *object, const char *key, char *out_text) {
+    const json_value name = json_member(object, key);
+    read_name(root, object, key, out_text);
+    const size_t length = strlen(out_text);
+    if (name.item && (length < 4 || strcmp(out_text + length - 4, ".csv") != 0))
+        json_fail(&name, "does not end in .csv");
 }
 
 void dem_read_output(const json_value *root, const dem *d, dem_output *out_output) {
@@ -130,25 +115,22 @@ void dem_read_output(const json_value *root, const dem *d, dem_output *out_outpu
     *out_output = (dem_output){.every = UINT64_MAX, .restart_every = UINT64_MAX};
     if (!output.item)
         return;
-    json_check_object(&output, "every csv grains vtk restart restart_every region picture picture_region picture_width "
-                               "picture_color picture_top picture_forces");
+    json_check_object(&output, "every csv grains vtk restart restart_every region");
     const json_value every = json_require(&output, "every"), restart_every = json_member(&output, "restart_every");
-    const json_value region = json_member(&output, "region"), picture = json_member(&output, "picture");
+    const json_value region = json_member(&output, "region"), vtk = json_member(&output, "vtk");
     out_output->every = read_steps(&every, d);
     if (restart_every.item)
         out_output->restart_every = read_steps(&restart_every, d);
     if (region.item)
         out_output->region = dem_read_region(&region);
-    out_output->look = read_look(&output);
-    read_name(root, &output, "csv", out_output->csv);
-    read_name(root, &output, "grains", out_output->grains);
+    read_table(root, &output, "csv", out_output->csv);
+    read_table(root, &output, "grains", out_output->grains);
     read_name(root, &output, "vtk", out_output->vtk);
-    read_name(root, &output, "picture", out_output->picture);
     read_name(root, &output, "restart", out_output->restart);
     if (out_output->restart[0] && strcmp(out_output->restart, out_output->csv) == 0)
         json_fail(&output, "names one file twice");
     if (restart_every.item && !out_output->restart[0])
         json_fail(&restart_every, "is there without restart");
-    if (picture.item && dem_picture_kind(out_output->picture) == DEM_NO_PICTURE)
-        json_fail(&picture, "does not end in .png or .svg");
+    if (vtk.item && strstr(out_output->vtk, ".vtk"))
+        json_fail(&vtk, "has a suffix: numbers of frames and .vtk are added");
 }

@@ -12,10 +12,11 @@ enum { DEM_BLOCK = 256 };
 
 /* What a block of contacts adds up to. */
 typedef struct dem_sums {
+    size_t count; /* of contacts */
     double normal_energy, tangential_energy, rolling_energy;
     double old_springs; /* what the springs of these contacts held in the last step */
     double damping, friction;
-    size_t too_deep; /* the first contact that is, or SIZE_MAX */
+    size_t too_deep; /* the first pair that is, or SIZE_MAX */
 } dem_sums;
 
 /* A pair that narc does not find: across a periodic border, or with a plate. */

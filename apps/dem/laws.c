@@ -13,9 +13,11 @@
  *   Hertz-Mindlin     K_n = kn sqrt(R h)  K_t = kt sqrt(R h)  C = gamma m sqrt(R h)
  *   with restitution  C_n = ratio sqrt(K_n m), C_t a share of it
  *
+ * Two flat sides have two normal forces, each a share of F_n (see touch.h), and one tangential force between them.
+ *
  * These are the formulae of LAMMPS's gran/hooke/history and gran/hertz/history (Cundall and Strack 1979; Mindlin 1949;
- * Brilliantov and others 1996). 1 / R = 1 / R_A + 1 / R_B: with the Hertz law the radii of curvature of the arcs that
- * touch, within limits; with the linear law, which needs it for rolling only, half the extents. K_r = K_t R^2.
+ * Brilliantov and others 1996). 1 / R = 1 / R_A + 1 / R_B, the radii of the discs of equal area, whatever touches: a
+ * stiffness that followed the curvature would jump from arc to arc, and so would the energy. K_r = K_t R^2.
  *
  * The ratio that gives a restitution e. Linear: h'' + gamma h' + (kn / m) h = 0 from h = 0 to h = 0 has e = exp(-gamma
  * T / 2) with T = pi / sqrt(kn / m - gamma^2 / 4), so gamma = 2 b sqrt(kn / m) with b = -ln e / sqrt(pi^2 + ln^2 e).
@@ -26,6 +28,7 @@
  * is counted: a spring's is then the difference of its energies, and what is left of the tangential work is friction's.
  */
 #include <math.h>
+#include <string.h>
 
 #include "internal.h"
 
@@ -52,6 +55,32 @@ void dem_set_law(dem *d, uint8_t a, uint8_t b, dem_contact_law law) {
     d->laws[a][b] = d->laws[b][a] = law;
 }
 
+static double find_duration(const dem *d, size_t grain, size_t a, size_t b, double mass) {
+    const dem_contact_law *law = &d->laws[a][b];
+    const double size = 0.5 * d->bodies.extent[grain]; /* of two grains R is half of it, and their depth as much */
+    const double stiffness = law->kn * (d->settings.law == DEM_HERTZ ? size * sqrt(d->settings.max_overlap) : 1);
+    return 3.14159265358979323846 * sqrt(mass / stiffness);
+}
+
+double dem_find_shortest_contact(const dem *d) {
+    size_t lightest[DEM_MAX_MATERIALS];
+    double shortest = INFINITY;
+    for (size_t a = 0; a < d->material_count; a++) {
+        lightest[a] = SIZE_MAX;
+        for (size_t k = 0; k < d->grain_count; k++)
+            if (d->bodies.material[k] == a &&
+                (lightest[a] == SIZE_MAX || d->bodies.mass[k] < d->bodies.mass[lightest[a]]))
+                lightest[a] = k;
+    }
+    for (size_t a = 0; a < d->material_count; a++)
+        for (size_t b = 0; b < d->material_count && lightest[a] < SIZE_MAX; b++) {
+            const double m = d->bodies.mass[lightest[a]];
+            const double with = lightest[b] < SIZE_MAX ? d->bodies.mass[lightest[b]] : INFINITY; /* or a wall */
+            shortest = fmin(shortest, find_duration(d, lightest[a], a, b, m / (1 + m / with)));
+        }
+    return shortest;
+}
+
 /* The dashpots of pairs do not change while a list lasts: for unit size of the contact (see apply_law()). */
 void dem_find_dashpots(dem *d) {
     const dem_bodies *b = &d->bodies;
@@ -68,54 +97,89 @@ void dem_find_dashpots(dem *d) {
 /* A contact, for its law. The tangent is (-normal.y, normal.x). */
 typedef struct contact {
     size_t a, b;
-    dem_vec normal;
-    dem_vec arm_a, arm_b; /* from both centres to the point */
     double depth;
-    double vn, vt, turn; /* relative velocities: apart, along the tangent, rotation */
+    dem_vec normal, point; /* of all ends */
+    dem_vec arm_b;         /* from the centre of B to the point */
+    double vn, vt, turn;   /* relative velocities: apart, along the tangent, rotation */
 } contact;
 
-static inline double clamp(double value, double low, double high) {
-    return value < low ? low : value > high ? high : value;
+/* 1 / R is the sum of 1 / R_i, of the discs of equal area. A wall's has no end. */
+static double find_radius(const dem_bodies *b, size_t i, size_t j) {
+    const double half_i = 0.5 * b->extent[i], half_j = 0.5 * b->extent[j];
+    return b->inverse_mass[j] > 0 ? half_i * half_j / (half_i + half_j) : half_i;
 }
 
-/* Half of the harmonic sum: R. Walls (inverse mass 0) have no limits above and take the grain's below. */
-static double find_radius(const dem *d, const dem_bodies *b, size_t k, size_t i, size_t j) {
-    const bool is_grain = b->inverse_mass[j] > 0;
-    const double half_i = 0.5 * b->extent[i], half_j = is_grain ? 0.5 * b->extent[j] : half_i;
-    if (d->settings.law == DEM_LINEAR)
-        return is_grain ? half_i * half_j / (half_i + half_j) : half_i;
-    const double low = d->settings.least_radius, high = d->settings.largest_radius;
-    const double r_a = clamp((double)d->contacts.rows[k].radius_a, low * half_i, high * half_i);
-    const double r_b = clamp((double)d->contacts.rows[k].radius_b, low * half_j, is_grain ? high * half_j : INFINITY);
-    return r_b < INFINITY ? r_a * r_b / (r_a + r_b) : r_a;
+INLINE touch_grain look_at(const dem *d, size_t body) {
+    const dem_bodies *b = &d->bodies;
+    const dem_shape *shape = &d->shapes[b->shape[body]];
+    return (touch_grain){shape->sides, shape->side_count, b->cosine[body], b->sine[body], (double)b->scale[body]};
 }
 
-INLINE contact load_contact(const dem *d, size_t k) {
-    const narc_contact *row = &d->contacts.rows[k];
+/* Of A and B's relative motion at a place: B's surface moves away with it. */
+INLINE dem_vec find_velocity(const dem_bodies *b, const contact *c, dem_vec at_a, dem_vec at_b) {
+    return (dem_vec){b->vx[c->b] - b->vx[c->a] - (b->spin[c->b] * at_b.y - b->spin[c->a] * at_a.y),
+                     b->vy[c->b] - b->vy[c->a] + (b->spin[c->b] * at_b.x - b->spin[c->a] * at_a.x)};
+}
+
+/* Where B is from A. A plate's shift is rounded: what of it is across the plate is left out. */
+INLINE dem_vec find_way(const dem *d, size_t p, size_t i, size_t j) {
+    const dem_bodies *b = &d->bodies;
+    dem_vec shift = {(double)d->pairs.shift_x[p], (double)d->pairs.shift_y[p]};
+    if (j >= d->grain_count) {
+        const dem_vec n = d->walls[j - d->grain_count].normal; /* 0 of a box */
+        const double across = shift.x * n.x + shift.y * n.y;
+        shift = (dem_vec){shift.x - across * n.x, shift.y - across * n.y};
+    }
+    return (dem_vec){b->x[j] - b->x[i] + shift.x, b->y[j] - b->y[i] + shift.y};
+}
+
+/* The normal and the point of two ends are their means, by what each bears. */
+INLINE void join_ends(const touch_end *end, contact *c) {
+    const double first = end[0].share / (end[0].share + end[1].share), second = 1 - first;
+    const double x = first * end[0].normal_x + second * end[1].normal_x;
+    const double y = first * end[0].normal_y + second * end[1].normal_y, length = sqrt(x * x + y * y);
+    c->normal = (dem_vec){x / length, y / length};
+    c->point = (dem_vec){first * end[0].x + second * end[1].x, first * end[0].y + second * end[1].y};
+}
+
+/* Returns the count of ends; only of two of them, `t` is what they are. */
+INLINE int load_contact(const dem *d, size_t k, contact *c, touch *t) {
+    const narc_contact *row = &d->contacts.found[k];
     const dem_bodies *b = &d->bodies;
     const size_t p = row->pair, i = d->pairs.a[p], j = d->pairs.b[p];
-    contact c = {.a = i, .b = j, .normal = {(double)row->normal_x, (double)row->normal_y}};
-    c.depth = -(double)row->separation;
-    c.arm_a = (dem_vec){(double)row->point_x, (double)row->point_y};
-    c.arm_b = (dem_vec){c.arm_a.x + (b->x[i] - b->x[j] - (double)d->pairs.shift_x[p]),
-                        c.arm_a.y + (b->y[i] - b->y[j] - (double)d->pairs.shift_y[p])};
-    if (j >= d->grain_count) { /* a plate's shift is rounded: what of it is across the plate is no depth */
-        const dem_vec n = d->walls[j - d->grain_count].normal;
-        c.depth -= (double)d->pairs.shift_x[p] * n.x + (double)d->pairs.shift_y[p] * n.y;
-        c.depth = c.depth > 0 ? c.depth : 0;
+    const dem_vec way = find_way(d, p, i, j);
+    touch_end end;
+    int count = 1;
+    if (b->disc[i] > 0 && b->disc[j] > 0) {
+        end = meet_discs(b->disc[i], b->disc[j], way.x, way.y);
+        c->depth = end.depth;
+    } else {
+        const touch_grain of_a = look_at(d, i), of_b = look_at(d, j);
+        find_touch(&of_a, &of_b, way.x, way.y, row->feature, t);
+        end = t->end[0];
+        c->depth = t->depth;
+        count = t->count;
     }
-    const double x = b->vx[j] - b->vx[i] - (b->spin[j] * c.arm_b.y - b->spin[i] * c.arm_a.y);
-    const double y = b->vy[j] - b->vy[i] + (b->spin[j] * c.arm_b.x - b->spin[i] * c.arm_a.x);
-    c.vn = x * c.normal.x + y * c.normal.y;
-    c.vt = y * c.normal.x - x * c.normal.y;
-    c.turn = b->spin[j] - b->spin[i];
-    return c;
+    if (!(c->depth > 0))
+        return 0;
+    c->a = i;
+    c->b = j;
+    c->normal = (dem_vec){end.normal_x, end.normal_y};
+    c->point = (dem_vec){end.x, end.y};
+    if (count == 2)
+        join_ends(t->end, c);
+    c->arm_b = (dem_vec){c->point.x - way.x, c->point.y - way.y};
+    const dem_vec v = find_velocity(b, c, c->point, c->arm_b);
+    c->vn = v.x * c->normal.x + v.y * c->normal.y;
+    c->vt = v.y * c->normal.x - v.x * c->normal.y;
+    c->turn = b->spin[j] - b->spin[i];
+    return count;
 }
 
 /* Adds to a slider's spring what moved in the step, and cuts it back to what friction bears. Returns the force, without
  * a sign; `bound` is the largest. What work is lost is damping's, or friction's in a step that slides. (Where the
  * dashpot alone is more than friction bears, cutting back stretches the spring the other way: LAMMPS's rule. The energy
- * that it gets so is taken from friction's account.) */
+ * that it gets so is taken from friction's account.) Where nothing is borne there is no spring. */
 INLINE double slide(double *spring, double *spring_force, double stiffness, double dashpot, double way, double bound,
                     dem_sums *sums) {
     const double before = *spring, force_before = *spring_force;
@@ -123,7 +187,8 @@ INLINE double slide(double *spring, double *spring_force, double stiffness, doub
     const bool slides = fabs(force) > bound;
     if (slides) {
         force = force > 0 ? bound : -bound;
-        pull = force - dashpot;
+        pull = bound > 0 ? force - dashpot : 0;
+        dashpot = force - pull;
         stretch = stiffness > 0 ? pull / stiffness : 0;
     }
     const double lost = (0.5 * (force_before + pull) + dashpot) * way - 0.5 * (pull * stretch - force_before * before);
@@ -137,7 +202,7 @@ INLINE double slide(double *spring, double *spring_force, double stiffness, doub
 /* Returns the torque on A; that on B is opposite. */
 static double apply_rolling(dem *d, const contact *c, size_t k, double stiffness, double bound, bool is_old,
                             dem_sums *sums) {
-    dem_rolling *rolling = &d->pairs.rolling[d->contacts.rows[k].pair];
+    dem_rolling *rolling = &d->pairs.rolling[d->contacts.found[k].pair];
     if (!is_old)
         *rolling = (dem_rolling){0, 0};
     sums->old_springs += 0.5 * rolling->torque * rolling->angle;
@@ -160,15 +225,51 @@ static bool is_too_deep(const dem *d, size_t i, size_t j, double depth) {
     return !(depth <= d->settings.max_overlap * (size_i < size_j ? size_i : size_j));
 }
 
-/* One contact. Where `hertz` and `rolls` are constants all that they do not want is left out. */
-INLINE void apply_law(dem *d, size_t k, bool hertz, bool rolls, dem_sums *sums) {
-    const contact c = load_contact(d, k);
+/* A force on B, and the opposite one on A, where `at_a` is from A. */
+INLINE void add_force(const contact *c, double fx, double fy, dem_vec at_a, dem_force *sum) {
+    const dem_vec at_b = {at_a.x + (c->arm_b.x - c->point.x), at_a.y + (c->arm_b.y - c->point.y)};
+    *sum = (dem_force){sum->x + fx, sum->y + fy, sum->torque_a - (at_a.x * fy - at_a.y * fx),
+                       sum->torque_b + (at_b.x * fy - at_b.y * fx)};
+}
+
+/* The forces along the normals of two ends, and what slides them off each other: added to `sum`. Returns the whole
+ * push, and in `out_dashpot` the dashpots' share of it. (Contacts go by value: those of one point stay in registers.)
+ * */
+static double push_ends(const dem_bodies *b, contact c, const touch *t, double stiffness, double dashpot,
+                        dem_force *sum, double *out_dashpot, double *out_power) {
+    double push = 0;
+    *out_dashpot = *out_power = 0;
+    for (int i = 0; i < 2; i++) {
+        const touch_end *end = &t->end[i];
+        const dem_vec at_a = {end->x, end->y};
+        const dem_vec at_b = {at_a.x + (c.arm_b.x - c.point.x), at_a.y + (c.arm_b.y - c.point.y)};
+        const dem_vec v = find_velocity(b, &c, at_a, at_b);
+        const double vn = v.x * end->normal_x + v.y * end->normal_y, slow = -end->share * dashpot * vn;
+        const double force = end->share * stiffness * t->depth + slow;
+        add_force(&c, force * end->normal_x, force * end->normal_y, at_a, sum);
+        push += force;
+        *out_dashpot += slow;
+        *out_power += slow * vn;
+    }
+    add_force(&c, stiffness * t->depth * t->slide_x, stiffness * t->depth * t->slide_y,
+              (dem_vec){t->corner_x, t->corner_y}, sum);
+    return push;
+}
+
+/* One contact, and its row. Where `hertz` and `rolls` are constants all that they do not want is left out. Returns
+ * false if both are apart after all. */
+INLINE bool apply_law(dem *d, size_t k, dem_contact *out_row, bool hertz, bool rolls, dem_sums *sums) {
+    contact c;
+    touch t;
+    const int count = load_contact(d, k, &c, &t);
+    if (count == 0)
+        return false;
     const dem_bodies *b = &d->bodies;
-    const size_t p = d->contacts.rows[k].pair;
-    const double dt = d->settings.time_step;
+    const size_t p = d->contacts.found[k].pair;
+    const double dt = d->settings.time_step, depth = c.depth;
     const dem_contact_law *law = &d->laws[b->material[c.a]][b->material[c.b]];
-    const double radius = hertz || rolls ? find_radius(d, b, k, c.a, c.b) : 0;
-    const double size = hertz ? sqrt(radius * c.depth) : 1;
+    const double radius = hertz || rolls ? find_radius(b, c.a, c.b) : 0;
+    const double size = hertz ? sqrt(radius * depth) : 1;
     const double kn = law->kn * size, kt = law->kt * size;
     const double damped = hertz ? (law->damping_ratio >= 0 ? sqrt(size) : size) : 1;
 
@@ -178,38 +279,48 @@ INLINE void apply_law(dem *d, size_t k, bool hertz, bool rolls, dem_sums *sums) 
     memory.step = d->step;
     sums->old_springs += 0.5 * memory.spring * memory.slide;
 
-    const double dashpot = -d->pairs.dashpot[p].normal * damped * c.vn, push = kn * c.depth + dashpot;
-    sums->damping -= 0.5 * (memory.damping + dashpot) * c.vn * dt;
-    sums->normal_energy += (hertz ? 0.4 : 0.5) * kn * c.depth * c.depth;
+    dem_force ends = {0, 0, 0, 0};
+    double dashpot = -d->pairs.dashpot[p].normal * damped * c.vn, power = dashpot * c.vn, push = kn * depth + dashpot;
+    double along = push, before = memory.damping * c.vn; /* the dashpot's power at the step's beginning */
+    if (count == 2) {                                    /* and of two ends as if it had been what it is */
+        push = push_ends(b, c, &t, kn, d->pairs.dashpot[p].normal * damped, &ends, &dashpot, &power);
+        before = is_old ? power : 0;
+        along = 0;
+    }
+    sums->damping -= 0.5 * (power + before) * dt;
+    sums->normal_energy += (hertz ? 0.4 : 0.5) * kn * depth * depth;
     memory.damping = dashpot;
     const double drag = -slide(&memory.slide, &memory.spring, kt, d->pairs.dashpot[p].tangential * damped * c.vt,
                                c.vt * dt, law->friction * fabs(push), sums);
     sums->tangential_energy += 0.5 * memory.spring * memory.slide;
     d->pairs.memory[p] = memory;
 
-    const double fx = push * c.normal.x - drag * c.normal.y, fy = push * c.normal.y + drag * c.normal.x;
-    double torque_a = -(c.arm_a.x * fy - c.arm_a.y * fx), torque_b = c.arm_b.x * fy - c.arm_b.y * fx;
+    const double fx = along * c.normal.x - drag * c.normal.y, fy = along * c.normal.y + drag * c.normal.x;
+    dem_force force = {fx, fy, -(c.point.x * fy - c.point.y * fx), c.arm_b.x * fy - c.arm_b.y * fx};
+    if (count == 2)
+        force = (dem_force){force.x + ends.x, force.y + ends.y, force.torque_a + ends.torque_a,
+                            force.torque_b + ends.torque_b};
     if (rolls) {
         const double bound = law->rolling_friction * radius * fabs(push);
         const double torque = apply_rolling(d, &c, k, kt * radius * radius, bound, is_old, sums);
-        torque_a += torque;
-        torque_b -= torque;
+        force.torque_a += torque;
+        force.torque_b -= torque;
     }
-    d->contacts.forces[k] = (dem_force){fx, fy, torque_a, torque_b};
+    *out_row = (dem_contact){p, c.normal, c.point, depth, force};
     if (d->scratch->adds) {
-        add_to_body(b, c.a, -fx, -fy, torque_a);
-        add_to_body(b, c.b, fx, fy, torque_b);
-    } else {
-        d->scratch->slot[p] = (uint32_t)k;
+        add_to_body(b, c.a, -force.x, -force.y, force.torque_a);
+        add_to_body(b, c.b, force.x, force.y, force.torque_b);
     }
-    if (!(c.depth <= d->safe_depth) && sums->too_deep == SIZE_MAX && is_too_deep(d, c.a, c.b, c.depth))
-        sums->too_deep = k;
+    if (!(depth <= d->safe_depth) && sums->too_deep == SIZE_MAX && is_too_deep(d, c.a, c.b, depth))
+        sums->too_deep = p;
+    return true;
 }
 
+/* Their rows follow each other, and what is apart in double precision has none. */
 INLINE dem_sums apply_laws(dem *d, size_t first, size_t end, bool hertz, bool rolls) {
     dem_sums sums = {.too_deep = SIZE_MAX};
     for (size_t k = first; k < end; k++)
-        apply_law(d, k, hertz, rolls, &sums);
+        sums.count += apply_law(d, k, &d->contacts.rows[first + sums.count], hertz, rolls, &sums);
     return sums;
 }
 
@@ -219,20 +330,36 @@ static dem_sums apply_block(dem *d, size_t first, size_t end, bool hertz, bool r
                    : apply_laws(d, first, end, false, false);
 }
 
-static bool fail_depth(dem *d, size_t k) {
-    const size_t p = d->contacts.rows[k].pair, a = d->pairs.a[p], b = d->pairs.b[p];
+static bool fail_depth(dem *d, size_t p) {
+    const size_t a = d->pairs.a[p], b = d->pairs.b[p], k = d->contacts.count;
     const bool is_grain = b < d->grain_count;
-    return dem_fail(
-        d,
-        "step %llu: grain %zu overlaps %s %zu by %g, more than %g of the smaller one's extent. Use a shorter "
-        "time step, or stiffer contacts",
-        (unsigned long long)d->step, a, is_grain ? "grain" : "wall", is_grain ? b : b - d->grain_count,
-        -(double)d->contacts.rows[k].separation, d->settings.max_overlap);
+    double depth = 0;
+    for (size_t i = 0; i < k; i++)
+        depth = d->contacts.rows[i].pair == p ? d->contacts.rows[i].depth : depth;
+    return dem_fail(d, "step %llu: grain %zu overlaps %s %zu by %g, more than %g of the smaller one's extent. %s",
+                    (unsigned long long)d->step, a, is_grain ? "grain" : "wall", is_grain ? b : b - d->grain_count,
+                    depth, d->settings.max_overlap,
+                    d->step == 0 ? "They are placed so: the run has not begun"
+                                 : "Use a shorter time step, or stiffer contacts");
+}
+
+/* The rows of all blocks, without gaps between them. */
+static void join_blocks(dem *d, size_t blocks) {
+    dem_contacts *c = &d->contacts;
+    c->count = 0;
+    for (size_t block = 0; block < blocks; block++) {
+        const size_t first = block * DEM_BLOCK, count = d->scratch->sums[block].count;
+        if (c->count < first)
+            memmove(&c->rows[c->count], &c->rows[first], count * sizeof *c->rows);
+        c->count += count;
+    }
+    for (size_t k = 0; !d->scratch->adds && k < c->count; k++)
+        d->scratch->slot[c->rows[k].pair] = (uint32_t)k;
 }
 
 bool dem_apply_laws(dem *d) {
     dem_scratch *s = d->scratch;
-    const size_t count = d->contacts.count, blocks = (count + DEM_BLOCK - 1) / DEM_BLOCK;
+    const size_t count = d->contacts.found_count, blocks = (count + DEM_BLOCK - 1) / DEM_BLOCK;
     const bool hertz = d->settings.law == DEM_HERTZ, rolls = dem_has_rolling(d);
     const unsigned team = dem_team(d);
     s->adds = team == 1;
@@ -245,6 +372,7 @@ bool dem_apply_laws(dem *d) {
         const size_t first = block * DEM_BLOCK, end = block + 1 < blocks ? first + DEM_BLOCK : count;
         s->sums[block] = apply_block(d, first, end, hertz, rolls);
     }
+    join_blocks(d, blocks);
     dem_sums all = {.too_deep = SIZE_MAX};
     for (size_t block = blocks; block-- > 0;) {
         const dem_sums *sums = &s->sums[block];

@@ -48,11 +48,9 @@ static void write_restart(run *r) {
         end_badly(r);
 }
 
-/* "out/pile.png" and 12 make "out/pile-000012.png". */
+/* "out/pile.csv" and 12 make "out/pile-000012.csv". */
 static void number_name(const char *name, uint64_t number, char *out_name, size_t size) {
-    const char *slash = strrchr(name, '/'), *dot = strrchr(slash ? slash : name, '.');
-    const int stem = (int)(dot ? (size_t)(dot - name) : strlen(name));
-    snprintf(out_name, size, "%.*s-%06" PRIu64 "%s", stem, name, number, dot ? dot : "");
+    snprintf(out_name, size, "%.*s-%06" PRIu64 ".csv", (int)strlen(name) - 4, name, number);
 }
 
 static void write_frame(run *r) {
@@ -68,12 +66,11 @@ static void write_frame(run *r) {
     }
     if (o->vtk[0] && !dem_write_vtk(d, o->vtk, r->place.frame, d->error))
         end_badly(r);
-    number_name(o->grains, r->place.frame, name, sizeof name);
-    if (o->grains[0] && !dem_write_grains(d, name, d->error))
-        end_badly(r);
-    number_name(o->picture, r->place.frame, name, sizeof name);
-    if (o->picture[0] && !dem_draw_picture(d, &o->look, name, d->error))
-        end_badly(r);
+    if (o->grains[0]) {
+        number_name(o->grains, r->place.frame, name, sizeof name);
+        if (!dem_write_grains(d, name, d->error))
+            end_badly(r);
+    }
     r->place.frame++;
 }
 
@@ -176,6 +173,8 @@ static void report(const run *r) {
     printf("kinetic %.6g, potential %.6g, elastic %.6g, damping %.6g, friction %.6g, walls %.6g\n", m.energy.kinetic,
            m.energy.potential, m.energy.elastic, m.energy.damping, m.energy.friction, m.energy.walls);
     printf("state %016" PRIx64 "\n", dem_hash(&r->world));
+    if (fflush(stdout) != 0 || ferror(stdout))
+        fail("the report cannot be written");
     fprintf(stderr, "dem: %.1f s, %.1f microseconds a step\n", seconds, steps > 0 ? 1e6 * seconds / steps : 0);
 }
 
@@ -183,7 +182,7 @@ static int print_usage(FILE *to) {
     fprintf(to, "usage: dem INPUT.json [--restart FILE] [--threads N]\n\n"
                 "Runs the discrete element simulation that the input describes (apps/dem/README.md).\n"
                 "  --restart FILE   go on from a restart file\n"
-                "  --threads N      1 to 256; otherwise as OpenMP would\n");
+                "  --threads N      1 to 256; otherwise 1\n");
     return to == stdout ? 0 : 2;
 }
 
@@ -213,6 +212,10 @@ int main(int argc, char **argv) {
     if (!r)
         fail("not enough memory");
     dem_read_input(argv[optind], threads, &r->world, &r->input);
+    const double shortest = dem_find_shortest_contact(&r->world), time_step = r->world.settings.time_step;
+    if (time_step > shortest / 15)
+        fprintf(stderr, "dem: %s: time step %g is more than a 15th of what the shortest contact lasts, %g\n",
+                argv[optind], time_step, shortest);
     watch_signals(); /* before that a signal ends the program at once: a filling may take long */
     begin(r, restart);
     while (r->place.stage < r->input.stage_count)

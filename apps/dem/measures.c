@@ -36,8 +36,8 @@ static double find_image(bool periodic, double value, double low, double width) 
 
 static bool is_inside(const dem *d, const dem_region *r, size_t contact, size_t a) {
     const dem_settings *s = &d->settings;
-    const double point_x = d->bodies.x[a] + (double)d->contacts.rows[contact].point_x;
-    const double point_y = d->bodies.y[a] + (double)d->contacts.rows[contact].point_y;
+    const double point_x = d->bodies.x[a] + d->contacts.rows[contact].point.x;
+    const double point_y = d->bodies.y[a] + d->contacts.rows[contact].point.y;
     const double x = find_image(s->periodic_x, point_x, r->low_x, dem_cell_width(d));
     const double y = find_image(s->periodic_y, point_y, r->low_y, dem_cell_height(d));
     return !r->given || (x >= r->low_x && x < r->high_x && y >= r->low_y && y < r->high_y);
@@ -63,18 +63,18 @@ void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measu
     m.energy = measure_energies(d, &m.fastest);
     double ends = 0;
     for (size_t k = 0; k < c->count; k++) {
-        const narc_contact *row = &c->rows[k];
-        const dem_force *f = &c->forces[k];
+        const dem_contact *row = &c->rows[k];
+        const dem_force *f = &row->force;
         const size_t p = row->pair, i = d->pairs.a[p], j = d->pairs.b[p];
         const bool is_wall = j >= d->grain_count;
         const double smaller = is_wall ? b->extent[i] : fmin(b->extent[i], b->extent[j]);
         ends += is_wall ? 1 : 2;
-        m.deepest = fmax(m.deepest, -(double)row->separation / smaller);
+        m.deepest = fmax(m.deepest, row->depth / smaller);
         if (!is_inside(d, r, k, i))
             continue;
         /* From the centre of A to that of B; of a wall, to the contact. */
-        const double x = is_wall ? (double)row->point_x : b->x[j] - b->x[i] + (double)d->pairs.shift_x[p];
-        const double y = is_wall ? (double)row->point_y : b->y[j] - b->y[i] + (double)d->pairs.shift_y[p];
+        const double x = is_wall ? row->point.x : b->x[j] - b->x[i] + (double)d->pairs.shift_x[p];
+        const double y = is_wall ? row->point.y : b->y[j] - b->y[i] + (double)d->pairs.shift_y[p];
         m.stress_xx += f->x * x;
         m.stress_xy += f->x * y;
         m.stress_yx += f->y * x;

@@ -9,13 +9,8 @@
 
 #include "internal.h"
 
-const dem_settings dem_defaults = {.time_step = 1e-5,
-                                   .skin = 0.1,
-                                   .thickness = 1,
-                                   .gravity = {0, -9.81},
-                                   .max_overlap = 0.05,
-                                   .least_radius = 0.02,
-                                   .largest_radius = 2};
+const dem_settings dem_defaults = {
+    .time_step = 1e-5, .skin = 0.1, .thickness = 1, .gravity = {0, -9.81}, .max_overlap = 0.05};
 
 bool dem_fail(dem *d, const char *format, ...) {
     va_list arguments;
@@ -66,7 +61,7 @@ static const column body_columns[] = {
     BODY(spin),        BODY(fx),        BODY(fy),     BODY(torque),  BODY(list_x),       BODY(list_y),
     BODY(list_cosine), BODY(list_sine), BODY(cell_x), BODY(cell_y),  BODY(scale),        BODY(shape),
     BODY(material),    BODY(still),     BODY(mass),   BODY(inertia), BODY(inverse_mass), BODY(inverse_inertia),
-    BODY(reach),       BODY(extent)};
+    BODY(reach),       BODY(extent),    BODY(disc)};
 enum { BODY_COLUMNS = sizeof body_columns / sizeof body_columns[0] };
 
 static const column pair_columns[] = {PAIR(a),     PAIR(b),      PAIR(shift_x), PAIR(shift_y),
@@ -119,8 +114,10 @@ bool dem_create(dem *d, dem_settings settings) {
 void dem_destroy(dem *d) {
     dem_scratch *s = d->scratch;
     dem_contacts *c = &d->contacts;
-    void *const arrays[] = {d->shapes,        d->walls, c->rows, c->forces, d->incidence.first_a, d->incidence.first_b,
+    void *const arrays[] = {d->shapes,        d->walls, c->rows, c->found, d->incidence.first_a, d->incidence.first_b,
                             d->incidence.of_b};
+    for (size_t k = 0; k < d->shape_count; k++)
+        free(d->shapes[k].sides);
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++)
         free(arrays[i]);
     free_columns(&d->bodies, body_columns, BODY_COLUMNS);
@@ -175,7 +172,11 @@ bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count,
     *shape = (dem_shape){.area = mass.area,
                          .second_moment = mass.second_moment,
                          .reach = find_reach(centred, count),
-                         .extent = 2 * sqrt(mass.area / 3.14159265358979323846)};
+                         .extent = 2 * sqrt(mass.area / 3.14159265358979323846),
+                         .side_count = count};
+    if (!dem_resize(d, &shape->sides, count, sizeof *shape->sides))
+        return false;
+    make_touch_sides(centred, count, shape->sides);
     snprintf(shape->name, sizeof shape->name, "%s", name);
     return true;
 }
@@ -214,6 +215,9 @@ static bool add_body(dem *d, uint32_t shape, uint8_t material, double x, double 
     b->material[k] = material;
     b->reach[k] = (double)scale * d->shapes[shape].reach;
     b->extent[k] = (double)scale * d->shapes[shape].extent;
+    const touch_side *side = d->shapes[shape].sides;
+    const bool is_disc = d->shapes[shape].side_count == 1 && side->x == 0 && side->y == 0;
+    b->disc[k] = is_disc ? (double)scale * side->radius : 0;
     return true;
 }
 
@@ -346,6 +350,13 @@ bool dem_start(dem *d) {
         return dem_fail(d, d->started ? "the run has begun" : "there are no grains");
     if (!(s->time_step > 0) || !(s->skin > 0) || !isfinite(s->skin) || !isfinite(s->time_step))
         return dem_fail(d, "time step %g and skin %g are not both above 0", s->time_step, s->skin);
+    const double shortest = dem_find_shortest_contact(d);
+    if (s->time_step > shortest / 5)
+        return dem_fail(
+            d,
+            "time step %g is more than a fifth of what the shortest contact lasts, %g. Take a 15th, or less "
+            "stiff contacts",
+            s->time_step, shortest);
     if ((s->periodic_x && !check_cell(d, "x", s->low_x, &s->high_x)) ||
         (s->periodic_y && !check_cell(d, "y", s->low_y, &s->high_y)) || !add_walls(d))
         return false;
@@ -388,13 +399,8 @@ bool dem_find_broken_body(dem *d) {
                     is_grain ? error.index : error.index - d->grain_count, error.message);
 }
 
-/* As many as the settings say. If they say nothing: as OpenMP would, but a thread for each 2,000 grains at most. */
-unsigned dem_team(const dem *d) {
-    const unsigned most = narc_openmp_workers(0).count, useful = 1 + (unsigned)(d->grain_count / 2000);
-    if (d->settings.threads > 0)
-        return d->settings.threads;
-    return most < useful ? most : useful;
-}
+/* Threads wait for each other several times a step: unless they are asked for there is one. */
+unsigned dem_team(const dem *d) { return d->settings.threads > 0 ? d->settings.threads : 1; }
 
 narc_workers dem_workers(const dem *d) { return narc_openmp_workers(dem_team(d)); }
 

@@ -21,7 +21,7 @@ typedef struct header {
 } header;
 
 static const char MAGIC[8] = {'n', 'a', 'r', 'c', '-', 'd', 'e', 'm'};
-enum { VERSION = 3, BYTE_ORDER_MARK = 0x01020304 };
+enum { VERSION = 4, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct counts {
     uint64_t bodies, walls, pairs, contacts, extra;
@@ -98,7 +98,6 @@ static void pass_arrays(stream *s, dem *d) {
     pass(s, p->rolling, p->count * sizeof *p->rolling);
     /* What the last step found: a run that has no more steps is asked for it. */
     pass(s, d->contacts.rows, d->contacts.count * sizeof *d->contacts.rows);
-    pass(s, d->contacts.forces, d->contacts.count * sizeof *d->contacts.forces);
 }
 
 static void pass_all(stream *s, dem *d, dem_place *place) {

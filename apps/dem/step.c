@@ -78,7 +78,7 @@ bool dem_make_room_for_contacts(dem *d) {
     const size_t count = d->pairs.capacity;
     if (count <= c->capacity)
         return true;
-    if (!dem_resize(d, &c->rows, count, sizeof *c->rows) || !dem_resize(d, &c->forces, count, sizeof *c->forces))
+    if (!dem_resize(d, &c->rows, count, sizeof *c->rows) || !dem_resize(d, &c->found, count, sizeof *c->found))
         return false;
     c->capacity = count;
     return true;
@@ -95,11 +95,15 @@ static bool find_contacts(dem *d) {
     }
     const narc_workers workers = dem_workers(d);
     size_t skipped = 0;
-    const narc_query query = {.hints = NARC_HINT_ARRAY(p->hints), .workers = &workers, .out_skipped = &skipped};
+    const narc_query query = {.margin = (float)(4 * NARC_ERROR_BOUND * d->grain_reach), /* touch.h decides */
+                              .hints = NARC_HINT_ARRAY(p->hints),
+                              .workers = &workers,
+                              .out_skipped = &skipped};
     narc_error error;
     if (!dem_make_room_for_contacts(d) || !dem_make_poses(d, &bodies))
         return false;
-    if (narc_find_contacts(d->store, &bodies, &pairs, &query, c->rows, c->capacity, &c->count, &error) != NARC_OK)
+    if (narc_find_contacts(d->store, &bodies, &pairs, &query, c->found, c->capacity, &c->found_count, &error) !=
+        NARC_OK)
         return dem_fail_narc(d, "contacts", &error);
     return skipped == 0 || dem_find_broken_body(d);
 }
@@ -127,35 +131,22 @@ double dem_seconds(void) {
 }
 
 bool dem_step(dem *d) {
-    const bool timed = d->clock.on;
-    const double start = timed ? dem_seconds() : 0;
     d->step++;
     d->time += d->settings.time_step;
     if (!dem_steer_walls(d))
         return false;
     kick_and_drift(d);
     dem_move_walls(d);
-    const bool renew = have_moved(d, false) && have_moved(d, true);
-    const double moved = timed ? dem_seconds() : 0;
-    if (renew && !dem_renew_lists(d))
+    if (have_moved(d, false) && have_moved(d, true) && !dem_renew_lists(d))
         return false;
-    const double listed = timed ? dem_seconds() : 0;
     if (!find_contacts(d))
         return false;
-    const double found = timed ? dem_seconds() : 0;
     dem_count_wall_work(d);
     if (!dem_apply_laws(d))
         return false;
     dem_gather_forces(d);
     dem_count_wall_work(d);
     dem_find_resistances(d);
-    const double pushed = timed ? dem_seconds() : 0;
     kick(d);
-    if (timed) {
-        d->clock.motion += moved - start + (dem_seconds() - pushed);
-        d->clock.lists += listed - moved;
-        d->clock.narrow += found - listed;
-        d->clock.forces += pushed - found;
-    }
     return true;
 }

@@ -1,22 +1,49 @@
 /* SPDX-License-Identifier: MIT
  *
- * vtk.c - files for ParaView: for each frame a .vtp file of bodies and one of contacts, and a .pvd file of each kind that
- * lists the frames so far.
+ * vtk.c - files for ParaView, in VTK's old binary format: for each frame one of bodies, which are polygons, and one of
+ * contacts, which are points. All numbers are big-endian.
  */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "frames.h"
-#include "vtk_xml.h"
 
 /* A polygon is nowhere further from the outline than this share of the shape's extent; its corners are on it. */
 static const double OUTLINE_TOLERANCE = 1.0 / 400;
 
 enum { MOST_CORNERS = 4096 };
 
-static bool fail_memory(char *error) {
-    snprintf(error, 512, "not enough memory for a VTK file");
-    return false;
+/* ------------------------------------------------------------------------------------------------ numbers */
+
+static void put_word(FILE *file, uint32_t word) {
+    for (int shift = 24; shift >= 0; shift -= 8)
+        putc((int)(word >> shift & 0xff), file);
+}
+
+static void put_number(FILE *file, double value) {
+    const float rounded = (float)value;
+    uint32_t word;
+    memcpy(&word, &rounded, sizeof word);
+    put_word(file, word);
+}
+
+static void put_place(FILE *file, double x, double y) {
+    put_number(file, x);
+    put_number(file, y);
+    put_number(file, 0);
+}
+
+static void put_head(FILE *file, const dem *d, size_t points) {
+    uint64_t bits;
+    memcpy(&bits, &d->time, sizeof bits);
+    fprintf(file,
+            "# vtk DataFile Version 3.0\nstep %llu, time %.9g\nBINARY\nDATASET POLYDATA\nFIELD FieldData 1\n"
+            "TimeValue 1 1 double\n",
+            (unsigned long long)d->step, d->time);
+    put_word(file, (uint32_t)(bits >> 32));
+    put_word(file, (uint32_t)bits);
+    fprintf(file, "\nPOINTS %zu float\n", points);
 }
 
 /* ------------------------------------------------------------------------------------------------ outlines */
@@ -54,7 +81,7 @@ static void free_outlines(outline *outlines, size_t count) {
     free(outlines);
 }
 
-/* Of each shape. */
+/* Of each shape. NULL: there is not enough memory. */
 static outline *sample_shapes(const dem *d) {
     outline *outlines = calloc(d->shape_count, sizeof *outlines);
     for (size_t k = 0; outlines && k < d->shape_count; k++) {
@@ -72,7 +99,12 @@ static outline *sample_shapes(const dem *d) {
 
 /* ------------------------------------------------------------------------------------------------ bodies */
 
-static void add_outline(const dem *d, const outline *outlines, const dem_region *all, size_t k, vtk_column *points) {
+static size_t count_corners(const dem *d, const outline *outlines, size_t k) {
+    const bool is_plate = k >= d->grain_count && d->walls[k - d->grain_count].kind == DEM_PLATE;
+    return is_plate ? 4 : outlines[d->bodies.shape[k]].count;
+}
+
+static void put_outline(FILE *file, const dem *d, const outline *outlines, const dem_region *all, size_t k) {
     const dem_bodies *b = &d->bodies;
     const outline *form = &outlines[b->shape[k]];
     const double c = (double)b->scale[k] * b->cosine[k], s = (double)b->scale[k] * b->sine[k];
@@ -80,85 +112,71 @@ static void add_outline(const dem *d, const outline *outlines, const dem_region 
     if (k >= d->grain_count && d->walls[k - d->grain_count].kind == DEM_PLATE) {
         dem_outline_plate(d, k - d->grain_count, all, corners);
         for (size_t i = 0; i < 4; i++)
-            vtk_add_place(points, corners[i].x, corners[i].y);
+            put_place(file, corners[i].x, corners[i].y);
         return;
     }
     for (size_t i = 0; i < form->count; i++) {
         const dem_vec p = form->corners[i];
-        vtk_add_place(points, b->x[k] + c * p.x - s * p.y, b->y[k] + s * p.x + c * p.y);
+        put_place(file, b->x[k] + c * p.x - s * p.y, b->y[k] + s * p.x + c * p.y);
     }
 }
 
-static void write_fields(FILE *file, const dem *d, const dem_load *loads, vtk_column *c) {
+static void put_fields(FILE *file, const dem *d, const dem_load *loads) {
     static const char *const words[] = {"id", "wall", "shape", "material", "coordination", "bearing"};
     static const char *const numbers[] = {"speed", "spin", "size", "pressure"};
     const dem_bodies *b = &d->bodies;
+    fprintf(file, "\nCELL_DATA %zu\nFIELD FieldData 12", b->count);
     for (size_t i = 0; i < 6; i++) {
+        fprintf(file, "\n%s 1 %zu int\n", words[i], b->count);
         for (size_t k = 0; k < b->count; k++)
-            vtk_add_word(c, (const uint32_t[]){(uint32_t)k, k >= d->grain_count, b->shape[k], b->material[k],
-                                               loads[k].contacts, loads[k].bearing}[i]);
-        vtk_write_column(file, c, "Int32", words[i], 1);
+            put_word(file, (const uint32_t[]){(uint32_t)k, k >= d->grain_count, b->shape[k], b->material[k],
+                                              loads[k].contacts, loads[k].bearing}[i]);
     }
-    for (size_t k = 0; k < b->count; k++)
-        vtk_add_place(c, b->vx[k], b->vy[k]);
-    vtk_write_column(file, c, "Float32", "velocity", 3);
     for (size_t i = 0; i < 4; i++) {
+        fprintf(file, "\n%s 1 %zu float\n", numbers[i], b->count);
         for (size_t k = 0; k < b->count; k++)
-            vtk_add_number(c, (const double[]){hypot(b->vx[k], b->vy[k]), b->spin[k], b->extent[k],
-                                               0.5 * (loads[k].stress_xx + loads[k].stress_yy)}[i]);
-        vtk_write_column(file, c, "Float32", numbers[i], 1);
+            put_number(file, (const double[]){hypot(b->vx[k], b->vy[k]), b->spin[k], b->extent[k],
+                                              0.5 * (loads[k].stress_xx + loads[k].stress_yy)}[i]);
     }
-    for (size_t k = 0; k < b->count; k++) { /* a full tensor: ParaView's filters want nine */
-        const dem_load *l = &loads[k];
-        const double nine[9] = {l->stress_xx, l->stress_xy, 0, l->stress_yx, l->stress_yy, 0, 0, 0, 0};
-        for (size_t i = 0; i < 9; i++)
-            vtk_add_number(c, nine[i]);
+    fprintf(file, "\nvelocity 3 %zu float\n", b->count);
+    for (size_t k = 0; k < b->count; k++)
+        put_place(file, b->vx[k], b->vy[k]);
+    fprintf(file, "\nstress 9 %zu float\n", b->count);
+    for (size_t k = 0; k < b->count; k++) {
+        put_place(file, loads[k].stress_xx, loads[k].stress_xy);
+        put_place(file, loads[k].stress_yx, loads[k].stress_yy);
+        put_place(file, 0, 0);
     }
-    vtk_write_column(file, c, "Float32", "stress", 9);
-}
-
-static bool write_polygons(FILE *file, const dem *d, const outline *outlines, const dem_load *loads, vtk_column *c,
-                           vtk_column *ends) {
-    const dem_region all = dem_bound_all(d);
-    for (size_t k = 0; k < d->bodies.count; k++) {
-        add_outline(d, outlines, &all, k, c);
-        vtk_add_word(ends, (uint32_t)(c->count / 3));
-    }
-    const size_t points = c->count / 3;
-    vtk_write_head(file, d, points, 0, d->bodies.count);
-    vtk_open_section(file, "Points");
-    vtk_write_column(file, c, "Float32", "points", 3);
-    vtk_close_section(file, "Points");
-    vtk_open_section(file, "Polys");
-    for (size_t i = 0; i < points; i++)
-        vtk_add_word(c, (uint32_t)i);
-    vtk_write_column(file, c, "Int32", "connectivity", 1);
-    vtk_write_column(file, ends, "Int32", "offsets", 1);
-    vtk_close_section(file, "Polys");
-    vtk_open_section(file, "CellData");
-    write_fields(file, d, loads, c);
-    vtk_close_section(file, "CellData");
-    vtk_write_tail(file);
-    return !c->failed && !ends->failed;
 }
 
 static bool write_bodies(FILE *file, const dem *d, char *error) {
+    const dem_region all = dem_bound_all(d);
     outline *outlines = sample_shapes(d);
-    dem_load *loads = dem_find_loads(d, error);
-    vtk_column numbers = {.words = NULL}, ends = {.words = NULL};
-    const bool ok =
-        (outlines && loads && write_polygons(file, d, outlines, loads, &numbers, &ends)) || fail_memory(error);
+    dem_load *loads = outlines ? dem_find_loads(d, error) : NULL;
+    size_t points = 0, first = 0;
+    if (!outlines)
+        snprintf(error, 512, "not enough memory for a VTK file");
+    for (size_t k = 0; loads && k < d->bodies.count; k++)
+        points += count_corners(d, outlines, k);
+    if (loads) {
+        put_head(file, d, points);
+        for (size_t k = 0; k < d->bodies.count; k++)
+            put_outline(file, d, outlines, &all, k);
+        fprintf(file, "\nPOLYGONS %zu %zu\n", d->bodies.count, d->bodies.count + points);
+        for (size_t k = 0; k < d->bodies.count; k++) {
+            const size_t corners = count_corners(d, outlines, k);
+            put_word(file, (uint32_t)corners);
+            for (size_t i = 0; i < corners; i++)
+                put_word(file, (uint32_t)first++);
+        }
+        put_fields(file, d, loads);
+    }
     free_outlines(outlines, d->shape_count);
     free(loads);
-    free(numbers.words);
-    free(ends.words);
-    return ok;
+    return loads != NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------ contacts */
-
-/* A radius of curvature; of an edge -1. */
-static double show_radius(float radius) { return isinf(radius) ? -1 : (double)radius; }
 
 /* Tangential by friction times normal force. */
 static double find_mobilised_friction(const dem *d, size_t k) {
@@ -169,81 +187,54 @@ static double find_mobilised_friction(const dem *d, size_t k) {
     return most > 0 ? fmin(fabs(dem_tangential_force(d, k)) / most, 1) : 0;
 }
 
-static void write_forces(FILE *file, const dem *d, vtk_column *c) {
-    static const char *const numbers[] = {"normal_force", "tangential_force", "mobilised_friction",
-                                          "separation",   "radius_a",         "radius_b"};
-    const dem_contacts *list = &d->contacts;
-    const narc_contact *row = list->rows;
-    for (size_t k = 0; k < list->count; k++)
-        vtk_add_place(c, list->forces[k].x, list->forces[k].y);
-    vtk_write_column(file, c, "Float32", "force", 3);
-    for (size_t k = 0; k < list->count; k++)
-        vtk_add_place(c, (double)row[k].normal_x, (double)row[k].normal_y);
-    vtk_write_column(file, c, "Float32", "normal", 3);
-    for (size_t i = 0; i < 6; i++) {
-        for (size_t k = 0; k < list->count; k++)
-            vtk_add_number(c, (const double[]){dem_normal_force(d, k), dem_tangential_force(d, k),
-                                               find_mobilised_friction(d, k), (double)row[k].separation,
-                                               show_radius(row[k].radius_a), show_radius(row[k].radius_b)}[i]);
-        vtk_write_column(file, c, "Float32", numbers[i], 1);
-    }
-}
-
-static bool write_points(FILE *file, const dem *d, vtk_column *c) {
-    const dem_contacts *list = &d->contacts;
-    vtk_write_head(file, d, list->count, list->count, 0);
-    vtk_open_section(file, "Points");
-    for (size_t k = 0; k < list->count; k++) {
-        const size_t a = d->pairs.a[list->rows[k].pair];
-        vtk_add_place(c, d->bodies.x[a] + (double)list->rows[k].point_x,
-                      d->bodies.y[a] + (double)list->rows[k].point_y);
-    }
-    vtk_write_column(file, c, "Float32", "points", 3);
-    vtk_close_section(file, "Points");
-    vtk_open_section(file, "Verts");
-    for (size_t k = 0; k < list->count; k++)
-        vtk_add_word(c, (uint32_t)k);
-    vtk_write_column(file, c, "Int32", "connectivity", 1);
-    for (size_t k = 0; k < list->count; k++)
-        vtk_add_word(c, (uint32_t)k + 1);
-    vtk_write_column(file, c, "Int32", "offsets", 1);
-    vtk_close_section(file, "Verts");
-    vtk_open_section(file, "PointData");
-    for (size_t k = 0; k < list->count; k++)
-        vtk_add_word(c, d->pairs.a[list->rows[k].pair]);
-    vtk_write_column(file, c, "Int32", "body_a", 1);
-    for (size_t k = 0; k < list->count; k++)
-        vtk_add_word(c, d->pairs.b[list->rows[k].pair]);
-    vtk_write_column(file, c, "Int32", "body_b", 1);
-    write_forces(file, d, c);
-    vtk_close_section(file, "PointData");
-    vtk_write_tail(file);
-    return !c->failed;
-}
-
 static bool write_contacts(FILE *file, const dem *d, char *error) {
-    vtk_column numbers = {.words = NULL};
-    const bool ok = write_points(file, d, &numbers) || fail_memory(error);
-    free(numbers.words);
-    return ok;
+    static const char *const words[] = {"body_a", "body_b"}, *const vectors[] = {"force", "normal"};
+    static const char *const numbers[] = {"normal_force", "tangential_force", "mobilised_friction", "overlap"};
+    const size_t count = d->contacts.count;
+    const dem_contact *row = d->contacts.rows;
+    (void)error;
+    put_head(file, d, count);
+    for (size_t k = 0; k < count; k++) {
+        const size_t a = d->pairs.a[row[k].pair];
+        put_place(file, d->bodies.x[a] + row[k].point.x, d->bodies.y[a] + row[k].point.y);
+    }
+    fprintf(file, "\nVERTICES %zu %zu\n", count, 2 * count);
+    for (size_t k = 0; k < count; k++) {
+        put_word(file, 1);
+        put_word(file, (uint32_t)k);
+    }
+    fprintf(file, "\nPOINT_DATA %zu\nFIELD FieldData 8", count);
+    for (size_t i = 0; i < 2; i++) {
+        fprintf(file, "\n%s 1 %zu int\n", words[i], count);
+        for (size_t k = 0; k < count; k++)
+            put_word(file, i == 0 ? d->pairs.a[row[k].pair] : d->pairs.b[row[k].pair]);
+    }
+    for (size_t i = 0; i < 2; i++) {
+        fprintf(file, "\n%s 3 %zu float\n", vectors[i], count);
+        for (size_t k = 0; k < count; k++)
+            put_place(file, i == 0 ? row[k].force.x : row[k].normal.x, i == 0 ? row[k].force.y : row[k].normal.y);
+    }
+    for (size_t i = 0; i < 4; i++) {
+        fprintf(file, "\n%s 1 %zu float\n", numbers[i], count);
+        for (size_t k = 0; k < count; k++)
+            put_number(file, (const double[]){dem_normal_force(d, k), dem_tangential_force(d, k),
+                                              find_mobilised_friction(d, k), row[k].depth}[i]);
+    }
+    return true;
 }
 
 /* ------------------------------------------------------------------------------------------------ both */
 
-/* A file, then the list with it. */
-static bool write_part(const dem *d, const char *stem, uint64_t frame, bool (*write)(FILE *, const dem *, char *),
-                       char *error) {
-    char path[DEM_PATH_SIZE];
-    dem_file file;
-    snprintf(path, sizeof path, "%.1000s-%06llu.vtp", stem, (unsigned long long)frame);
-    if (!dem_open_file(&file, path, error))
-        return false;
-    const bool ok = write(file.file, d, error);
-    return dem_close_file(&file, ok, error) && vtk_list_frame(d, stem, frame, error);
-}
-
 bool dem_write_vtk(const dem *d, const char *stem, uint64_t frame, char *error) {
-    char contacts[DEM_PATH_SIZE];
-    snprintf(contacts, sizeof contacts, "%.1000s-contacts", stem);
-    return write_part(d, stem, frame, write_bodies, error) && write_part(d, contacts, frame, write_contacts, error);
+    bool ok = true;
+    for (int i = 0; i < 2 && ok; i++) {
+        char path[DEM_PATH_SIZE];
+        dem_file file;
+        snprintf(path, sizeof path, "%.1000s%s-%06llu.vtk", stem, i ? "-contacts" : "", (unsigned long long)frame);
+        if (!dem_open_file(&file, path, error))
+            return false;
+        ok = i ? write_contacts(file.file, d, error) : write_bodies(file.file, d, error);
+        ok = dem_close_file(&file, ok, error);
+    }
+    return ok;
 }

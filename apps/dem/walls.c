@@ -41,7 +41,7 @@ static double find_distance(const dem *d, int first, int second) {
 static double find_resistance(const dem *d, size_t contact) {
     const size_t p = d->contacts.rows[contact].pair, a = d->pairs.a[p], b = d->pairs.b[p];
     const dem_contact_law *law = &d->laws[d->bodies.material[a]][d->bodies.material[b]];
-    const double depth = -(double)d->contacts.rows[contact].separation;
+    const double depth = d->contacts.rows[contact].depth;
     const bool hertz = d->settings.law == DEM_HERTZ;
     const double size = hertz ? sqrt(0.5 * d->bodies.extent[a] * depth) : 1,
                  damped = law->damping_ratio >= 0 ? sqrt(size) : size;

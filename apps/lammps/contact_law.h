@@ -11,16 +11,9 @@
 #include <cmath>
 #include <string>
 
+#include "touch.h"
+
 namespace narc_lammps {
-
-/* Hertz: the radius of curvature of a touching corner (0) or edge (infinite) is taken for this many times the
- * grain's own radius, and any other is kept between the two. */
-constexpr double least_curvature_radius = 1.0 / 16;
-constexpr double greatest_curvature_radius = 16;
-
-inline double limit_curvature_radius(double radius, double grain_radius) {
-    return std::clamp(radius, least_curvature_radius * grain_radius, greatest_curvature_radius * grain_radius);
-}
 
 struct ContactLaw {
     bool hertz = false;
@@ -30,17 +23,25 @@ struct ContactLaw {
     bool limit_damping = false; /* never pull */
 };
 
+/* How a grain or a wall moves. */
+struct Motion {
+    double x, y, spin;
+};
+
 /* A contact of A with B in the plane. */
-struct Touch {
-    double normal_x, normal_y;     /* unit, from A to B */
-    double overlap;                /* > 0 */
-    double velocity_x, velocity_y; /* of A's surface there less that of B's */
-    double mass;                   /* effective */
-    double curvature_radius;       /* 1 / (1 / R_a + 1 / R_b), for Hertz */
+struct Contact {
+    touch_end end; /* of one; of two the deeper one */
+    double depth;
+    const touch *ends;   /* of two; else null */
+    double way_x, way_y; /* from A to B */
+    Motion a, b;
+    double mass;   /* effective */
+    double radius; /* 1 / (1 / R_a + 1 / R_b), of the discs of equal area, for Hertz */
 };
 
 struct Force {
-    double x, y;   /* on A */
+    double x, y; /* on A, on B the opposite */
+    double torque_a, torque_b;
     double energy; /* elastic: of both springs */
 };
 
@@ -67,42 +68,107 @@ bool read_law(ContactLaw &law, bool hertz, double pressure_unit, char **argument
            law.friction <= 10000 && (damped == 0 || damped == 1);
 }
 
+/* The velocity of A's surface less that of B's, where the arms reach. */
+inline void find_velocity(const Contact &c, const double arm_a[2], const double arm_b[2], double velocity[2]) {
+    velocity[0] = c.a.x - c.a.spin * arm_a[1] - (c.b.x - c.b.spin * arm_b[1]);
+    velocity[1] = c.a.y + c.a.spin * arm_a[0] - (c.b.y + c.b.spin * arm_b[0]);
+}
+
+/* Adds a force on A, and the opposite one on B. */
+inline void add_force(Force &sum, double x, double y, const double arm_a[2], const double arm_b[2]) {
+    sum.x += x;
+    sum.y += y;
+    sum.torque_a += arm_a[0] * y - arm_a[1] * x;
+    sum.torque_b -= arm_b[0] * y - arm_b[1] * x;
+}
+
+/* Along the normals of two ends (see touch.h), and along the side that they are the ends of. The whole push. (Contacts
+ * go by value, so that those of one point stay in registers.) */
+[[gnu::noinline]] inline double push_ends(const ContactLaw &law, Contact c, double stiffening, Force &sum) {
+    double whole = 0, velocity[2];
+    const double spring = stiffening * law.kn * c.depth;
+    for (const touch_end &end : c.ends->end) {
+        const double arm_a[2] = {end.x, end.y}, arm_b[2] = {end.x - c.way_x, end.y - c.way_y};
+        find_velocity(c, arm_a, arm_b, velocity);
+        const double approach = velocity[0] * end.normal_x + velocity[1] * end.normal_y;
+        double push = end.share * (spring + stiffening * c.mass * law.gamma_n * approach);
+        if (law.limit_damping)
+            push = std::max(push, 0.0);
+        add_force(sum, -push * end.normal_x, -push * end.normal_y, arm_a, arm_b);
+        whole += push;
+    }
+    const double arm_a[2] = {c.ends->corner_x, c.ends->corner_y};
+    const double arm_b[2] = {arm_a[0] - c.way_x, arm_a[1] - c.way_y};
+    add_force(sum, -spring * c.ends->slide_x, -spring * c.ends->slide_y, arm_a, arm_b);
+    return whole;
+}
+
 /* The force of a contact. `slip` is the memory of the tangential spring, a vector; it moves on by `step` of time, and
- * not at all if `step` is 0. */
-inline Force compute_force(const ContactLaw &law, const Touch &at, double step, double slip[2]) {
-    const double approach = at.velocity_x * at.normal_x + at.velocity_y * at.normal_y;
-    const double tangent_x = at.velocity_x - approach * at.normal_x;
-    const double tangent_y = at.velocity_y - approach * at.normal_y;
-    const double stiffening = law.hertz ? std::sqrt(at.overlap * at.curvature_radius) : 1;
-    double push = stiffening * (law.kn * at.overlap + at.mass * law.gamma_n * approach);
-    if (law.limit_damping)
-        push = std::max(push, 0.0);
+ * not at all if `step` is 0. gran/hooke/history takes the velocities along the tangent, and lets that force act, where
+ * the surface of each grain lies deepest in the other: for discs at the end of each radius. So does this, for any form;
+ * of two ends in their mean. A call would cost as much as the force of a disc. */
+[[gnu::always_inline]] inline Force compute_force(const ContactLaw &law, const Contact &c, double step,
+                                                  double slip[2]) {
+    const touch_end deep = c.end;
+    double normal_x = deep.normal_x, normal_y = deep.normal_y, x = deep.x, y = deep.y, half = 0.5 * deep.depth;
+    if (c.ends) {
+        const touch_end flat = c.ends->end[1];
+        const double rest = flat.share / (deep.share + flat.share), first = 1 - rest;
+        const double along_x = first * deep.normal_x + rest * flat.normal_x;
+        const double along_y = first * deep.normal_y + rest * flat.normal_y;
+        const double length = std::sqrt(along_x * along_x + along_y * along_y);
+        normal_x = along_x / length;
+        normal_y = along_y / length;
+        half = 0.5 * (first * deep.depth + rest * flat.depth);
+        x = first * deep.x + rest * flat.x;
+        y = first * deep.y + rest * flat.y;
+    }
+    const double arm_a[2] = {x + half * normal_x, y + half * normal_y};
+    const double arm_b[2] = {x - half * normal_x - c.way_x, y - half * normal_y - c.way_y};
+    double velocity[2];
+    find_velocity(c, arm_a, arm_b, velocity);
+    const double approach = velocity[0] * normal_x + velocity[1] * normal_y;
+    const double tangent_x = velocity[0] - approach * normal_x, tangent_y = velocity[1] - approach * normal_y;
+    const double stiffening = law.hertz ? std::sqrt(c.depth * c.radius) : 1;
+    Force sum = {0, 0, 0, 0, 0};
+    double push, along = 0; /* along: the part of it that acts here, and not at two ends */
+    if (c.ends) {
+        Force of_ends = {0, 0, 0, 0, 0};
+        push = push_ends(law, c, stiffening, of_ends);
+        sum = of_ends;
+    } else {
+        push = stiffening * (law.kn * c.depth + c.mass * law.gamma_n * approach);
+        along = push = law.limit_damping ? std::max(push, 0.0) : push;
+    }
 
     if (step > 0) {
         slip[0] += tangent_x * step;
         slip[1] += tangent_y * step;
-        const double along_normal = slip[0] * at.normal_x + slip[1] * at.normal_y;
-        slip[0] -= along_normal * at.normal_x;
-        slip[1] -= along_normal * at.normal_y;
+        const double along_normal = slip[0] * normal_x + slip[1] * normal_y;
+        slip[0] -= along_normal * normal_x;
+        slip[1] -= along_normal * normal_y;
     }
-    const double drag = at.mass * law.gamma_t;
+    const double drag = c.mass * law.gamma_t;
     double shear_x = -stiffening * (law.kt * slip[0] + drag * tangent_x);
     double shear_y = -stiffening * (law.kt * slip[1] + drag * tangent_y);
-    const double shear = std::hypot(shear_x, shear_y), most = law.friction * std::fabs(push);
+    const double shear = std::sqrt(shear_x * shear_x + shear_y * shear_y), most = law.friction * std::fabs(push);
     if (shear > most) {
         const double keep = most / shear;
         const bool memory = slip[0] != 0 || slip[1] != 0;
         shear_x = memory ? shear_x * keep : 0;
         shear_y = memory ? shear_y * keep : 0;
-        if (law.kt > 0 && memory) { /* the spring is as long as what friction can hold */
+        if (!(most > 0)) {
+            slip[0] = slip[1] = 0;         /* where nothing is borne there is no spring */
+        } else if (law.kt > 0 && memory) { /* the spring is as long as what friction can hold */
             slip[0] = keep * (slip[0] + drag * tangent_x / law.kt) - drag * tangent_x / law.kt;
             slip[1] = keep * (slip[1] + drag * tangent_y / law.kt) - drag * tangent_y / law.kt;
         }
     }
+    add_force(sum, shear_x - along * normal_x, shear_y - along * normal_y, arm_a, arm_b);
     /* The work of kn overlap is kn overlap^2 / 2, that of kn sqrt(R) overlap^(3/2) is 2/5 of force times overlap. */
-    const double energy = stiffening * (law.kn * at.overlap * at.overlap * (law.hertz ? 0.4 : 0.5) +
-                                        0.5 * law.kt * (slip[0] * slip[0] + slip[1] * slip[1]));
-    return {shear_x - push * at.normal_x, shear_y - push * at.normal_y, energy};
+    sum.energy = stiffening * (law.kn * c.depth * c.depth * (law.hertz ? 0.4 : 0.5) +
+                               0.5 * law.kt * (slip[0] * slip[0] + slip[1] * slip[1]));
+    return sum;
 }
 
 } // namespace narc_lammps

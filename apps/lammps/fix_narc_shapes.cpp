@@ -146,9 +146,24 @@ FixNarcShapes *FixNarcShapes::find(LAMMPS *lammps, const char *who) {
 
 int FixNarcShapes::setmask() { return FixConst::PRE_EXCHANGE | FixConst::POST_NEIGHBOR | FixConst::POST_RUN; }
 
+/* What would run without an error, and not do what it says. */
+void FixNarcShapes::refuse_what_does_not_fit() {
+    if (update->whichflag == 2)
+        error->all(FLERR, std::string("fix narc/shapes: grains cannot be minimized: rotations are no variables of it"));
+    if (!std::strncmp(update->integrate_style, "respa", 5))
+        error->all(FLERR, std::string("fix narc/shapes: run_style respa is not known, use verlet"));
+    for (int i = 0; i < modify->nfix; i++) {
+        const Fix *fix = modify->fix[i];
+        if (fix->time_integrate && std::strcmp(fix->style, "narc/nve") != 0 && std::strcmp(fix->style, "move") != 0)
+            error->all(FLERR, std::string("fix narc/shapes: fix ") + fix->id + " of style " + fix->style +
+                                  " moves grains and does not turn them, use fix narc/nve");
+    }
+}
+
 void FixNarcShapes::init() {
     if (domain->dimension != 2)
         error->all(FLERR, std::string("fix narc/shapes wants dimension 2"));
+    refuse_what_does_not_fit();
     for (int i = 0; i < modify->nfix; i++)
         if (modify->fix[i] != this && !std::strcmp(modify->fix[i]->style, style))
             error->all(FLERR, std::string("there is more than one fix narc/shapes"));
@@ -177,15 +192,11 @@ void FixNarcShapes::init() {
 
 /* ---------------------------------------------------------------------------- grains */
 
-unsigned FixNarcShapes::form_index(int i) const {
-    return static_cast<unsigned>((property_index < 0 ? atom->type[i] : atom->ivector[property_index][i]) - 1);
-}
-
-double FixNarcShapes::scale(int i) const { return atom->radius[i] / form(i).reach; }
-
 double FixNarcShapes::moment_of_inertia(int i) const {
     return form(i).inertia_ratio * atom->rmass[i] * atom->radius[i] * atom->radius[i];
 }
+
+double FixNarcShapes::equal_radius(int i) const { return scale(i) * std::sqrt(form(i).area / std::acos(-1.0)); }
 
 void FixNarcShapes::set_mass(int i) {
     if (density > 0 && (atom->mask[i] & groupbit))

@@ -10,6 +10,7 @@
 
 #include <vector>
 
+#include "atom.h"
 #include "fix.h"
 #include "shape_file.h"
 
@@ -50,8 +51,14 @@ class FixNarcShapes : public Fix {
 
     /* The form of a local or ghost atom. */
     const narc_lammps::Form &form(int i) const { return forms[form_index(i)]; }
-    double scale(int i) const; /* by which the form is drawn larger */
+    /* By which the form is drawn larger. */
+    double scale(int i) const { return atom->radius[i] / form(i).reach; }
     double moment_of_inertia(int i) const;
+    double equal_radius(int i) const; /* of the disc of equal area */
+    touch_grain outline(int i) const {
+        const narc_lammps::Form &of = form(i);
+        return {of.sides.data(), of.sides.size(), atom->mu[i][0], atom->mu[i][1], scale(i)};
+    }
 
     /* Sees to it that an atom has an orientation: that of angle 0 if it has none. */
     void orient(int i);
@@ -73,11 +80,14 @@ class FixNarcShapes : public Fix {
     /* Of local atoms, between the end of a neighbour list and the next; while a list lives the pair style has it. */
     std::vector<std::vector<Memory>> memories;
 
-    unsigned form_index(int i) const;
+    unsigned form_index(int i) const {
+        return static_cast<unsigned>((property_index < 0 ? atom->type[i] : atom->ivector[property_index][i]) - 1);
+    }
 
   private:
     void read_forms(const char *path, int count, char **names);
     void set_mass(int i);
+    void refuse_what_does_not_fit();
     void save_memories();
     static int pack(const std::vector<Memory> &list, double *buffer);
     static int unpack(const double *buffer, std::vector<Memory> &list);

@@ -90,6 +90,10 @@ int FixWallNarc::read_wall(int i, int count, char **arguments) {
             error->all(FLERR, std::string("fix wall/narc: the normal of a plate is 0"));
         normal_x = number(i + 3) / length;
         normal_y = number(i + 4) / length;
+        const double half = std::acos(-1.0) / 2;
+        const narc_arc ends[] = {{-1, 0, 0, half, 3 * half}, {1, 0, 0, -half, half}}; /* edge 0 looks up */
+        sides.resize(2);
+        make_touch_sides(ends, 2, sides.data());
         return end;
     }
     const double width = number(i + 3), height = number(i + 4), angle = number(i + 5) * std::acos(-1.0) / 180;
@@ -102,6 +106,8 @@ int FixWallNarc::read_wall(int i, int count, char **arguments) {
     narc_error failure = {};
     if (narc_build_box(width, height, 0, arcs, &arc_count, &failure) != NARC_OK)
         error->all(FLERR, std::string("fix wall/narc: box: ") + failure.message);
+    sides.resize(arc_count);
+    make_touch_sides(arcs, arc_count, sides.data());
     narc_status status = narc_create_shapes(nullptr, &store);
     uint32_t next = 0; /* the shapes' own indices, also of equal ones, and behind them the box */
     for (const narc_lammps::Form &form : shapes->forms)
@@ -143,7 +149,8 @@ void FixWallNarc::initial_integrate(int) {
 
 /* ---------------------------------------------------------------------------- contacts */
 
-/* A half plane: the grain's deepest point is that of its support against the normal. */
+/* A half plane: the grain's deepest point is that of its support against the normal. What lies under it is a segment of
+ * the border, four times as long as the grain. */
 void FixWallNarc::find_plate_contacts() {
     const double border = normal_x * (place_x + moved[0]) + normal_y * (place_y + moved[1]);
     for (int i = 0; i < atom->nlocal; i++) {
@@ -151,16 +158,17 @@ void FixWallNarc::find_plate_contacts() {
         if (!(atom->mask[i] & groupbit) || height >= atom->radius[i])
             continue;
         const narc_lammps::Form &form = shapes->form(i);
-        const double c = atom->mu[i][0], s = atom->mu[i][1], scale = shapes->scale(i);
+        const double c = atom->mu[i][0], s = atom->mu[i][1];
         narc_point deepest;
         size_t arc;
         narc_find_support(form.arcs.data(), form.arcs.size(), -(c * normal_x + s * normal_y),
                           -(c * normal_y - s * normal_x), &deepest, &arc);
-        const double arm_x = scale * (c * deepest.x - s * deepest.y), arm_y = scale * (s * deepest.x + c * deepest.y);
-        const double overlap = -(height + normal_x * arm_x + normal_y * arm_y);
-        if (overlap > 0)
-            contacts.push_back({i, -normal_x, -normal_y, overlap, arm_x, arm_y, scale * form.arcs[arc].radius,
-                                static_cast<double>(INFINITY)});
+        const touch_grain outline = shapes->outline(i);
+        const touch_grain under = {sides.data(), sides.size(), normal_y, -normal_x, 4 * atom->radius[i]};
+        const double way_x = -height * normal_x, way_y = -height * normal_y;
+        const unsigned feature = static_cast<unsigned>(arc) | NARC_FEATURE_EDGE << 8;
+        contacts.push_back({i, {}, way_x, way_y});
+        find_touch(&outline, &under, way_x, way_y, feature, &contacts.back().at);
     }
 }
 
@@ -187,35 +195,36 @@ void FixWallNarc::find_box_contacts() {
     std::vector<narc_contact> rows(grains.size());
     size_t found = 0;
     narc_error failure = {};
-    if (narc_find_contacts(store, &view, &pairs, nullptr, rows.data(), rows.size(), &found, &failure) != NARC_OK)
+    narc_query query = {};
+    query.margin = static_cast<float>(8 * NARC_ERROR_BOUND * reach);
+    if (narc_find_contacts(store, &view, &pairs, &query, rows.data(), rows.size(), &found, &failure) != NARC_OK)
         error->one(FLERR, std::string("fix wall/narc: ") + failure.message);
     rows.resize(found);
+    const touch_grain wall = {sides.data(), sides.size(), normal_x, normal_y, 1};
     for (const narc_contact &row : rows) {
-        const double overlap = -static_cast<double>(row.separation), nx = row.normal_x, ny = row.normal_y;
-        contacts.push_back({grains[row.pair], nx, ny, overlap, row.point_x + 0.5 * overlap * nx,
-                            row.point_y + 0.5 * overlap * ny, row.radius_a, row.radius_b});
+        const int i = grains[row.pair];
+        const touch_grain outline = shapes->outline(i);
+        const double way_x = box.x - atom->x[i][0], way_y = box.y - atom->x[i][1];
+        contacts.push_back({i, {}, way_x, way_y});
+        find_touch(&outline, &wall, way_x, way_y, row.feature, &contacts.back().at);
     }
 }
 
 void FixWallNarc::apply_contact(const Contact &contact, double step) {
     const int i = contact.grain;
-    const double spin = atom->omega[i][2];
-    narc_lammps::Touch at = {};
-    at.normal_x = contact.normal_x;
-    at.normal_y = contact.normal_y;
-    at.overlap = contact.overlap;
-    at.velocity_x = atom->v[i][0] - spin * contact.arm_y - velocity[0];
-    at.velocity_y = atom->v[i][1] + spin * contact.arm_x - velocity[1];
-    at.mass = atom->rmass[i];
-    if (law.hertz) {
-        const double grain = narc_lammps::limit_curvature_radius(contact.grain_curvature, atom->radius[i]);
-        const double wall = std::max(contact.wall_curvature, narc_lammps::least_curvature_radius * atom->radius[i]);
-        at.curvature_radius = 1 / (1 / grain + 1 / wall);
-    }
+    const narc_lammps::Contact at = {contact.at.end[0],
+                                     contact.at.depth,
+                                     contact.at.count == 2 ? &contact.at : nullptr,
+                                     contact.way_x,
+                                     contact.way_y,
+                                     {atom->v[i][0], atom->v[i][1], atom->omega[i][2]},
+                                     {velocity[0], velocity[1], 0},
+                                     atom->rmass[i],
+                                     shapes->equal_radius(i)};
     const narc_lammps::Force on_grain = narc_lammps::compute_force(law, at, step, &slips[2 * static_cast<size_t>(i)]);
     atom->f[i][0] += on_grain.x;
     atom->f[i][1] += on_grain.y;
-    atom->torque[i][2] += contact.arm_x * on_grain.y - contact.arm_y * on_grain.x;
+    atom->torque[i][2] += on_grain.torque_a;
     mine[0] -= on_grain.x;
     mine[1] -= on_grain.y;
     mine[2] += on_grain.energy;
@@ -227,6 +236,8 @@ void FixWallNarc::post_force(int) {
         find_plate_contacts();
     else
         find_box_contacts();
+    contacts.erase(std::remove_if(contacts.begin(), contacts.end(), [](const Contact &c) { return !c.at.count; }),
+                   contacts.end());
     std::fill(mine, mine + 3, 0.0);
     summed = false;
     std::fill(touched.begin(), touched.end(), 0);

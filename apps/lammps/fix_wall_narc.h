@@ -50,12 +50,11 @@ class FixWallNarc : public Fix {
     int maxsize_restart() override { return 3; }
 
   private:
-    /* A grain that touches: its deepest point relative to its centre, and the radii of curvature there. */
+    /* A grain that touches, A, and the wall's place from its centre. */
     struct Contact {
         int grain;
-        double normal_x, normal_y, overlap;
-        double arm_x, arm_y;
-        double grain_curvature, wall_curvature;
+        touch at;
+        double way_x, way_y;
     };
 
     int read_wall(int i, int count, char **arguments);
@@ -73,7 +72,8 @@ class FixWallNarc : public Fix {
     int every = 1;
     std::string velocity_variable[2]; /* equal-style variables that give it; empty: constant */
     double moved[2] = {0, 0};
-    narc_shapes *store = nullptr; /* a box: all forms of grains, and the box behind them */
+    std::vector<touch_side> sides; /* of the box; of a plate a segment, which lies under each grain */
+    narc_shapes *store = nullptr;  /* a box: all forms of grains, and the box behind them */
 
     std::vector<Contact> contacts;
     std::vector<double> slips;   /* two of each atom */

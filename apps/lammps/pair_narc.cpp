@@ -21,7 +21,6 @@
 #include "update.h"
 
 using namespace LAMMPS_NS;
-using narc_lammps::Touch;
 
 PairNarc::PairNarc(LAMMPS *lammps, bool hertz) : Pair(lammps) {
     law.hertz = hertz;
@@ -92,14 +91,41 @@ void PairNarc::init_style() {
         if (!std::strcmp(modify->fix[i]->style, "freeze"))
             frozen = modify->fix[i]->groupbit;
 
+    find_radii();
+    Pair::init_style();
+}
+
+/* The largest of each type: of grains that there are, and of those that fix pour or deposit will make. */
+void PairNarc::find_radii() {
     std::vector<double> mine(static_cast<size_t>(atom->ntypes) + 1, 0);
     for (int i = 0; i < atom->nlocal; i++) {
         double &most = mine[static_cast<size_t>(atom->type[i])];
         most = std::max(most, atom->radius[i]);
     }
+    for (int i = 0; i < modify->nfix; i++)
+        for (int type = 1; type <= atom->ntypes; type++) {
+            Fix *fix = modify->fix[i];
+            int asked = type;
+            if (std::strncmp(fix->style, "pour", 4) != 0 && std::strncmp(fix->style, "deposit", 7) != 0)
+                continue;
+            if (const auto *radius = static_cast<const double *>(fix->extract("radius", asked)))
+                mine[static_cast<size_t>(type)] = std::max(mine[static_cast<size_t>(type)], *radius);
+        }
     type_radius.resize(mine.size());
     MPI_Allreduce(mine.data(), type_radius.data(), static_cast<int>(mine.size()), MPI_DOUBLE, MPI_MAX, world);
-    Pair::init_style();
+}
+
+/* Neighbours are looked for by these radii, and as far as half a periodic box: what does not fit would go through. */
+void PairNarc::check_atoms() const {
+    for (int i = 0; i < atom->nlocal; i++)
+        if (atom->radius[i] > type_radius[static_cast<size_t>(atom->type[i])])
+            error->one(FLERR, "pair_style narc: atom " + std::to_string(atom->tag[i]) + " has radius " +
+                                  std::to_string(atom->radius[i]) + ", more than any of its type when the run began");
+    for (int axis = 0; axis < 2; axis++)
+        if (domain->periodicity[axis] && domain->prd[axis] < 2 * neighbor->cutneighmax)
+            error->one(FLERR, std::string("pair_style narc: the box is periodic in ") + "xy"[axis] + ", and " +
+                                  std::to_string(domain->prd[axis]) + " wide: less than twice the neighbour cutoff, " +
+                                  std::to_string(neighbor->cutneighmax));
 }
 
 double PairNarc::init_one(int i, int j) {
@@ -114,6 +140,7 @@ bool PairNarc::remembers_for_ghosts() const { return force->newton_pair; }
 
 /* LAMMPS' list goes by the largest radius of each type; of its pairs those are kept whose own radii reach. */
 void PairNarc::build_pairs() {
+    check_atoms();
     first.clear();
     second.clear();
     touching.clear();
@@ -175,60 +202,70 @@ void PairNarc::find_contacts() {
     pairs.b = NARC_ARRAY(second);
     const narc_workers workers = narc_openmp_workers(static_cast<unsigned>(comm->nthreads));
     size_t skipped = 0;
-    narc_query query = {};
+    narc_query query = {}; /* what touches by rounding is looked at again, in double precision */
+    query.margin = static_cast<float>(4 * NARC_ERROR_BOUND * *std::max_element(type_radius.begin(), type_radius.end()));
     query.hints = NARC_HINT_ARRAY(hints);
     query.workers = &workers;
     query.out_skipped = &skipped;
     narc_error failure = {};
     narc_status status = narc_find_contacts(shapes->store, &bodies, &pairs, &query, contacts.data(), contacts.size(),
-                                            &contact_count, &failure);
+                                            &found_count, &failure);
     if (status == NARC_OK && skipped > 0) /* a number that is none, or so */
         status = narc_validate_bodies(shapes->store, &bodies, &failure);
     if (status != NARC_OK)
         error->one(FLERR, std::string("pair_style narc: ") + failure.message);
 }
 
-/* gran/hooke/history takes the velocities, and lets the forces act, where the surface of each grain lies deepest in the
- * other: for discs at the end of each radius. So does this, for any form. */
-void PairNarc::apply_contact(const narc_contact &contact, double step) {
-    const int a = static_cast<int>(first[contact.pair]), b = static_cast<int>(second[contact.pair]);
+/* False if the grains are apart after all. */
+bool PairNarc::apply_contact(const narc_contact &row, double step) {
+    const int a = static_cast<int>(first[row.pair]), b = static_cast<int>(second[row.pair]);
     const double *x_a = atom->x[a], *x_b = atom->x[b], *v_a = atom->v[a], *v_b = atom->v[b];
-    const double spin_a = atom->omega[a][2], spin_b = atom->omega[b][2];
     const double dx = x_a[0] - x_b[0], dy = x_a[1] - x_b[1];
-    Touch at = {};
-    at.normal_x = contact.normal_x;
-    at.normal_y = contact.normal_y;
-    at.overlap = -static_cast<double>(contact.separation);
-    const double half = 0.5 * at.overlap;
-    const double arm_a[2] = {contact.point_x + half * at.normal_x, contact.point_y + half * at.normal_y};
-    const double arm_b[2] = {contact.point_x - half * at.normal_x + dx, contact.point_y - half * at.normal_y + dy};
-    at.velocity_x = v_a[0] - spin_a * arm_a[1] - (v_b[0] - spin_b * arm_b[1]);
-    at.velocity_y = v_a[1] + spin_a * arm_a[0] - (v_b[1] + spin_b * arm_b[0]);
+    narc_lammps::Contact contact;
+    touch at;
+    contact.ends = nullptr;
+    if (shapes->form(a).is_disc && shapes->form(b).is_disc) {
+        contact.end = meet_discs(atom->radius[a], atom->radius[b], -dx, -dy);
+        contact.depth = contact.end.depth;
+    } else {
+        const touch_grain outline_a = shapes->outline(a), outline_b = shapes->outline(b);
+        find_touch(&outline_a, &outline_b, -dx, -dy, row.feature, &at);
+        contact.end = at.end[0];
+        contact.depth = at.depth;
+        contact.ends = at.count == 2 ? &at : nullptr;
+    }
+    if (!(contact.depth > 0))
+        return false;
+    contact.way_x = -dx;
+    contact.way_y = -dy;
+    contact.a = {v_a[0], v_a[1], atom->omega[a][2]};
+    contact.b = {v_b[0], v_b[1], atom->omega[b][2]};
     const double mass_a = atom->rmass[a], mass_b = atom->rmass[b];
-    at.mass = mass_a * mass_b / (mass_a + mass_b);
+    contact.mass = mass_a * mass_b / (mass_a + mass_b);
     if (atom->mask[a] & frozen)
-        at.mass = mass_b;
+        contact.mass = mass_b;
     if (atom->mask[b] & frozen)
-        at.mass = mass_a;
+        contact.mass = mass_a;
+    contact.radius = 0;
     if (law.hertz) {
-        const double radius_a = narc_lammps::limit_curvature_radius(contact.radius_a, atom->radius[a]);
-        const double radius_b = narc_lammps::limit_curvature_radius(contact.radius_b, atom->radius[b]);
-        at.curvature_radius = radius_a * radius_b / (radius_a + radius_b);
+        const double radius_a = shapes->equal_radius(a), radius_b = shapes->equal_radius(b);
+        contact.radius = radius_a * radius_b / (radius_a + radius_b);
     }
     const narc_lammps::Force on_a =
-        narc_lammps::compute_force(law, at, step, &slips[2 * static_cast<size_t>(contact.pair)]);
+        narc_lammps::compute_force(law, contact, step, &slips[2 * static_cast<size_t>(row.pair)]);
     if (force->newton_pair || a < atom->nlocal) {
         atom->f[a][0] += on_a.x;
         atom->f[a][1] += on_a.y;
-        atom->torque[a][2] += arm_a[0] * on_a.y - arm_a[1] * on_a.x;
+        atom->torque[a][2] += on_a.torque_a;
     }
     if (force->newton_pair || b < atom->nlocal) {
         atom->f[b][0] -= on_a.x;
         atom->f[b][1] -= on_a.y;
-        atom->torque[b][2] -= arm_b[0] * on_a.y - arm_b[1] * on_a.x;
+        atom->torque[b][2] += on_a.torque_b;
     }
     if (evflag)
         ev_tally_xyz(a, b, atom->nlocal, force->newton_pair, on_a.energy, 0.0, on_a.x, on_a.y, 0.0, dx, dy, 0.0);
+    return true;
 }
 
 void PairNarc::compute(int energy, int virial_kind) {
@@ -238,19 +275,20 @@ void PairNarc::compute(int energy, int virial_kind) {
     find_contacts();
 
     /* Both lists rise. What touched and does so no more begins anew. */
-    size_t next = 0;
-    for (const uint32_t pair : touching) {
-        while (next < contact_count && contacts[next].pair < pair)
-            next++;
-        if (next == contact_count || contacts[next].pair != pair)
-            slips[2 * static_cast<size_t>(pair)] = slips[2 * static_cast<size_t>(pair) + 1] = 0;
-    }
+    before.swap(touching);
     touching.clear();
     const double step = update->setupflag ? 0 : update->dt;
-    for (size_t k = 0; k < contact_count; k++) {
-        touching.push_back(contacts[k].pair);
-        apply_contact(contacts[k], step);
+    size_t next = 0;
+    for (size_t k = 0; k < found_count; k++)
+        if (apply_contact(contacts[k], step))
+            touching.push_back(contacts[k].pair);
+    for (const uint32_t pair : before) {
+        while (next < touching.size() && touching[next] < pair)
+            next++;
+        if (next == touching.size() || touching[next] != pair)
+            slips[2 * static_cast<size_t>(pair)] = slips[2 * static_cast<size_t>(pair) + 1] = 0;
     }
+    contact_count = touching.size();
 }
 
 /* ---------------------------------------------------------------------------- restart */
@@ -301,7 +339,7 @@ void *PairNarc::extract(const char *name, int &dimension) {
 }
 
 double PairNarc::memory_usage() {
-    return Pair::memory_usage() +
-           static_cast<double>(first.capacity() * (3 * sizeof(uint32_t) + 2 * sizeof(double)) +
-                               touching.capacity() * sizeof(uint32_t) + contacts.capacity() * sizeof(narc_contact));
+    return Pair::memory_usage() + static_cast<double>(first.capacity() * (3 * sizeof(uint32_t) + 2 * sizeof(double)) +
+                                                      (touching.capacity() + before.capacity()) * sizeof(uint32_t) +
+                                                      contacts.capacity() * sizeof(narc_contact));
 }

@@ -43,8 +43,10 @@ class PairNarc : public Pair {
 
   private:
     void allocate();
+    void find_radii();
+    void check_atoms() const;
     void find_contacts();
-    void apply_contact(const narc_contact &contact, double step);
+    bool apply_contact(const narc_contact &contact, double step);
 
     narc_lammps::ContactLaw law;
     FixNarcShapes *shapes = nullptr;
@@ -56,8 +58,9 @@ class PairNarc : public Pair {
     std::vector<uint32_t> first, second, hints;
     std::vector<double> slips;          /* two of each pair */
     std::vector<uint32_t> touching;     /* the pairs that touched in the last step */
-    std::vector<narc_contact> contacts; /* of the last step, and room for one of each pair */
-    size_t contact_count = 0;
+    std::vector<uint32_t> before;       /* and in the one before it */
+    std::vector<narc_contact> contacts; /* what may touch, and room for one of each pair */
+    size_t found_count = 0, contact_count = 0;
 };
 
 class PairNarcHooke : public PairNarc {

@@ -31,15 +31,17 @@ double find_reach(const std::vector<narc_arc> &arcs) {
 
 /* Throws std::runtime_error with the library's message. */
 Form make_form(const std::string &name, const std::vector<narc_arc> &arcs) {
-    Form form = {name, arcs, 0, 0, 0};
+    Form form = {name, arcs, std::vector<touch_side>(arcs.size()), 0, 0, false, 0};
     narc_error error;
     if (narc_center_arcs(arcs.data(), arcs.size(), form.arcs.data(), nullptr, &error) != NARC_OK)
         throw std::runtime_error(error.message);
+    make_touch_sides(form.arcs.data(), form.arcs.size(), form.sides.data());
     narc_mass mass;
     if (!narc_compute_mass(form.arcs.data(), form.arcs.size(), &mass) || !(mass.area > 0))
         throw std::runtime_error("it has no area");
     form.area = mass.area;
     form.reach = find_reach(form.arcs);
+    form.is_disc = form.sides.size() == 1 && form.sides[0].x == 0 && form.sides[0].y == 0;
     form.inertia_ratio = mass.second_moment / (mass.area * form.reach * form.reach);
     return form;
 }

@@ -10,14 +10,18 @@
 
 #include <narc.h>
 
+#include "touch.h"
+
 namespace narc_lammps {
 
 /* A form of grains, its centroid at the origin. */
 struct Form {
     std::string name;
     std::vector<narc_arc> arcs;
+    std::vector<touch_side> sides;
     double area;
     double reach; /* distance of the furthest point from the centroid: a grain's radius is `reach` times its size */
+    bool is_disc; /* about the centroid; `reach` is its radius */
     double inertia_ratio; /* moment of inertia of unit mass and unit radius: I = inertia_ratio * mass * radius^2 */
 };
 

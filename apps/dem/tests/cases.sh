@@ -7,7 +7,7 @@ dem=$1 cases=$2 case=$3
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 shapes=$cases/shapes.json
-quiet='s/"vtk": "[^"]*", //; s/"picture": "[^"]*", //'
+quiet='s/"vtk": "[^"]*", //'
 
 # check WORDS CONDITION VALUE...: the condition is awk's, over $1, $2 ...
 check() {

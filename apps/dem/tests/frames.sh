@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# usage: sh frames.sh DEM: files for ParaView, tables of grains and pictures of a run that was interrupted. Without
-# python3 the files are not read: 77, skipped.
+# usage: sh frames.sh DEM: files for ParaView and tables of grains of a run that was interrupted, and its pictures.
+# Without python3 the files are not read: 77, skipped.
 set -eu
 dem=$1 here=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d)
@@ -29,31 +29,24 @@ cat >in.json <<'END'
   "contact": {"law": "linear", "kn": 1e7, "restitution": 0.5, "friction": 0.5},
   "time_step": 1e-4, "skin": 0.1,
   "stages": [{"name": "fall", "duration": 0.6}, {"name": "rest", "duration": 0.4}],
-  "output": {"every": 0.1, "csv": "table.csv", "grains": "out.csv", "vtk": "out", "picture": "out.png", "picture_width": 700,
-             "picture_color": "coordination", "restart": "out.restart"}
+  "output": {"every": 0.1, "csv": "table.csv", "grains": "out.csv", "vtk": "out", "restart": "out.restart"}
 }
 END
 
 # As if it had been interrupted after frame 6, and another run, given up, had left frames up to 7.
 sed 's/"duration": 0.6/"duration": 0.7/; s/, {"name": "rest".*}\]/]/' in.json >longer.json
 "$dem" longer.json --threads 1 >/dev/null 2>&1 || fail "the run that was given up"
-grep -q 'out-000007.vtp' out.pvd || fail "frame 7 is not in the list"
+[ -f out-contacts-000007.vtk ] || fail "there is no frame 7"
 sed 's/, {"name": "rest".*}\]/]/' in.json >first.json
 "$dem" first.json --threads 1 >/dev/null 2>&1 || fail "the first stage"
-grep -q 'out-000007.vtp' out.pvd && fail "a frame of another run is in the list"
 "$dem" in.json --restart out.restart --threads 1 >/dev/null 2>&1 || fail "the restart"
 
-for k in 00 05 10; do
-    [ "$(head -c 4 "out-0000$k.png" | tail -c 3)" = PNG ] || fail "out-0000$k.png is no picture"
-done
-for wrong in '"picture_color": "red"' '"picture_width": 1' '"picture_top": -1' '"picture_region": [1, 1, 0, 2]'; do
-    sed "s/\"picture_color\": \"coordination\"/$wrong/; s/\"picture_width\": 700, *\$/\"picture_top\": 0,/" in.json >bad.json
-    "$dem" bad.json >/dev/null 2>err.txt && fail "no error: $wrong"
-    grep -q '^dem: bad.json: output' err.txt || fail "$wrong: $(cat err.txt)"
-done
 sed 's/"vtk": "out"/"vtk": "none\/out"/' in.json >bad.json
 "$dem" bad.json >/dev/null 2>err.txt && fail "no error for a folder that does not exist"
-grep -q 'none/out-000000.vtp' err.txt || fail "the folder that does not exist: $(cat err.txt)"
+grep -q 'none/out-000000.vtk' err.txt || fail "the folder that does not exist: $(cat err.txt)"
 
 command -v python3 >/dev/null || exit 77
 python3 "$here/frames.py" "$folder"
+# A polygon for each body, and a line for each contact that bears.
+python3 "$here/../draw.py" out-000010.vtk drawn.svg --color coordination
+{ [ "$(grep -c '<polygon' drawn.svg)" -eq 83 ] && grep -q '<polyline' drawn.svg; } || fail "the picture: $(head -c 300 drawn.svg)"

@@ -70,17 +70,17 @@ awk -F , 'NR == 1 { while ($(++i) != "lid_y") { } next }
     END { exit !(y[200] < y[0] && y[1000] < y[800] && y[1200] == y[1000] && y[2000] == y[1000]) }' stands.csv ||
     miss "a wall whose servo has ended moves on: $(cat stands.csv)"
 # A symbolic link stays one, its file is replaced and keeps its permissions; names may be as long as names can be.
-long=$(printf '%0243d' 0)
+long=$(printf '%0241d' 0)
 mkdir -p elsewhere
 echo old >elsewhere/real
 chmod 640 elsewhere/real
 ln -s elsewhere/real linked
-sed "s/\"out.csv\"/\"linked.csv\"/; s/\"out.restart\"/\"linked\"/; s/\"restart_every\"/\"grains\": \"$long.c\", &/" first.json >linked.json
+sed "s/\"out.csv\"/\"linked.csv\"/; s/\"out.restart\"/\"linked\"/; s/\"restart_every\"/\"grains\": \"$long.csv\", &/" first.json >linked.json
 "$dem" linked.json --threads 1 >/dev/null 2>err.txt || miss "a restart behind a link"
 [ -L linked ] || miss "a link is replaced"
 [ "$(head -c 8 elsewhere/real)" = narc-dem ] || miss "the file behind a link has no restart"
 [ "$(stat -c %a elsewhere/real)" = 640 ] || miss "other permissions: $(stat -c %a elsewhere/real)"
-[ -f "$long-000000.c" ] || miss "no file with a long name"
+[ -f "$long-000000.csv" ] || miss "no file with a long name"
 [ -z "$(find . -name '.narc-*')" ] || miss "a temporary file stays"
 # What is read-only stays, also for root.
 chmod 444 elsewhere/real
@@ -90,8 +90,10 @@ grep -q "linked: Permission denied" err.txt || miss "a read-only file is not tol
 cmp -s elsewhere/real kept.real || miss "a read-only file is replaced"
 [ -z "$(find . -name '.narc-*')" ] || miss "a temporary file stays beside a read-only one"
 # Where there is no room for a file the reason is told, and nothing stays.
-for output in picture.png picture.svg grains.csv; do
-    sed "s/\"csv\": \"out.csv\"/\"${output%.*}\": \"$output\"/" first.json >full.json
+for output in vtk.vtk grains.csv; do
+    name=$output
+    [ "$output" = grains.csv ] || name=vtk
+    sed "s/\"csv\": \"out.csv\"/\"${output%.*}\": \"$name\"/" first.json >full.json
     (ulimit -f 1 && exec "$dem" full.json --threads 1) >/dev/null 2>err.txt && miss "a full disk: $output"
     grep -q "^dem: ${output%.*}-000000.${output#*.}: File too large$" err.txt || miss "a full disk is not told: $(cat err.txt)"
     [ -z "$(find . -name '.narc-*' -o -name "${output%.*}-0*")" ] || miss "a file stays on a full disk: $output"
@@ -99,12 +101,11 @@ done
 # At a restart outputs may have other names, and files of theirs may be gone: they begin anew.
 "$dem" first.json --threads 1 >/dev/null 2>err.txt || miss "the first stage again"
 cp out.restart first.restart
-sed 's/"csv": "out.csv"/"csv": "new.csv", "grains": "new.csv", "vtk": "new", "picture": "new.png"/' good.json >other.json
+sed 's/"csv": "out.csv"/"csv": "new.csv", "grains": "new.csv", "vtk": "new"/' good.json >other.json
 "$dem" other.json --restart first.restart --threads 1 >half.txt 2>err.txt || miss "a restart with other outputs"
 [ "$(grep state half.txt)" = "$(grep state whole.txt)" ] || miss "a restart with other outputs has other bits"
 { head -n 1 whole.csv; tail -n 5 whole.csv; } | cmp -s - new.csv || miss "a new table: $(cat new.csv)"
-{ [ "$(grep -c new-0 new.pvd)" -eq 5 ] && [ "$(grep -c new-contacts-0 new-contacts.pvd)" -eq 5 ]; } || miss "new lists"
-{ [ -f new-000006.csv ] && [ -f new-000010.png ] && [ ! -f new-000005.png ]; } || miss "frames of a restart with other outputs"
+{ [ -f new-000006.csv ] && [ -f new-contacts-000010.vtk ] && [ ! -f new-000005.vtk ]; } || miss "frames of a restart with other outputs"
 "$dem" other.json --restart out.restart --threads 1 >/dev/null 2>err.txt || miss "a restart with the new outputs"
 { head -n 1 whole.csv; tail -n 5 whole.csv; } | cmp -s - new.csv || miss "the new table again: $(cat new.csv)"
 rm out.csv
@@ -242,8 +243,7 @@ wrong 's/"restitution": 0.5/"restitution": 0.5, "gamma_t": 3/' "contact.gamma_t:
 wrong 's/"friction": 0.2/"friction": 0.2, "gamma_t": 2/' "contact.pairs\[0\].gamma_t: is for gamma_n"
 wrong 's/"friction": 0.2/"friction": 0.2, "gamma_n": 3, "tangential_damping": 1/' "contact.pairs\[0\].tangential_damping: is for restitution"
 wrong 's/"restitution": 0.5/"gamma_n": 5/; s/"friction": 0.2/"friction": 0.2, "restitution": 0.5, "gamma_t": 1/' "contact.pairs\[0\].gamma_t: is for gamma_n"
-wrong 's/"kn": 1e7/"kn": 1e7, "least_radius": 0.1/' "contact.least_radius: is of the Hertz law '0.1'"
-wrong 's/"kn": 1e7/"kn": 1e7, "largest_radius": 4/' "contact.largest_radius: is of the Hertz law '4'"
+wrong 's/"kn": 1e7/"kn": 1e7, "least_radius": 0.1/' "contact.least_radius: is an unknown key"
 wrong 's/"rolling_friction": 0.01/"rolling_friction": -0.01/' "contact.rolling_friction: is less than 0 '-0.01'"
 wrong 's/"friction": 0.2}/"friction": 0.2}, {"materials": ["steel", "sand"], "kn": 2e7}/' "contact.pairs\[1\].materials: is a pair that stands before"
 wrong 's/"size": {"normal": \[0.4, 0.1\]/"size": {"uniform": [0.3, 0.4]/' "grains\[0\].size.low: is not for uniform, which has limits '0.3'"
@@ -273,8 +273,9 @@ wrong 's/{"velocity": \[0.5, 0\]}/{"spin": 3}/' "stages\[1\].walls.floor.spin: t
 wrong 's/"every": 0.02/"every": 0/' "output.every: is not above 0"
 wrong 's/"restart": "out.restart", //' "output.restart_every: is there without restart"
 wrong 's/"csv": "out.csv"/"csv": 7/' "output.csv: is not a string '7'"
-sed 's/"csv": "out.csv"/"picture": "out.gif"/' good.json >bad.json
-fails "a picture of no kind" "dem: bad.json: output.picture: does not end in .png or .svg '\"out.gif\"'" bad.json
+wrong 's/"csv": "out.csv"/"grains": "out"/' "output.grains: does not end in .csv '\"out\"'"
+wrong 's/"csv": "out.csv"/"csv": "out.txt"/' "output.csv: does not end in .csv"
+wrong 's/"csv": "out.csv"/"vtk": "out.vtk"/' "output.vtk: has a suffix"
 sed 's|"csv": "out.csv"|"csv": "no/folder/out.csv"|' good.json >bad.json
 fails "no folder for the table" "dem: no/folder/out.csv: " bad.json
 
@@ -284,9 +285,38 @@ sed 's/"direction": \[0, -1\], "stress": 100, "between": \["floor", "block"\], "
 fails "nothing to press" "dem: step 400: wall 'lid' has moved by more than 1.999 without touching a grain: its servo has nothing to press" \
     bad.json --threads 1
 
-# Too long a step: which grain, and what to do.
+# Too long a step is told before the run, and one that is rather long in a line on standard error.
 sed 's/"time_step": 1e-4/"time_step": 1e-2/; s/"duration": 0.1/"duration": 3/g' good.json >bad.json
-fails "too long a step" "dem: step [0-9]*: grain [0-9]* .*Use a shorter time step" bad.json --threads 1
+fails "too long a step" "dem: bad.json: time step 0.01 is more than a fifth of what the shortest contact lasts" bad.json
+sed 's/"time_step": 1e-4/"time_step": 3e-4/' good.json >rather.json
+"$dem" rather.json >/dev/null 2>err.txt || miss "a rather long step"
+grep -q '^dem: rather.json: time step 0.0003 is more than a 15th of what the shortest contact lasts' err.txt ||
+    miss "a rather long step is not told: $(cat err.txt)"
+"$dem" good.json >/dev/null 2>err.txt || miss "a run"
+grep -q 'time step' err.txt && miss "a step that is short enough is told"
+# Too fast: which grain, and what to do.
+sed 's/"velocity": \[1, 0\]/"velocity": [300, -800]/' good.json >bad.json
+fails "too fast" "dem: step [0-9]*: grain [0-9]* .*Use a shorter time step" bad.json
+# Grains that overlap before the run begins.
+sed 's/"at": \[2, 9.5\]/"at": [2, 0.3]/' good.json >bad.json
+fails "grains in a wall" "dem: bad.json: step 0: grain 28 overlaps wall .*They are placed so" bad.json
+# Where the report or the table cannot be written the run has failed.
+if [ -c /dev/full ]; then
+    "$dem" good.json >/dev/full 2>err.txt && miss "a report on a full disk"
+    grep -q '^dem: the report cannot be written' err.txt || miss "a report on a full disk is not told"
+    ln -s /dev/full full.csv
+    sed 's/"csv": "out.csv"/"csv": "full.csv"/' good.json >full.json
+    "$dem" full.json >/dev/null 2>err.txt && miss "a table on a full disk"
+fi
+# One thread, unless more are asked for.
+OMP_DISPLAY_ENV=false OMP_NUM_THREADS=2 "$dem" long.json >/dev/null 2>err.txt &
+process=$!
+sleep 0.3
+if [ -r /proc/$process/status ]; then
+    [ "$(sed -n 's/^Threads:[^0-9]*//p' /proc/$process/status)" = 1 ] || miss "more than one thread by default"
+fi
+kill $process 2>/dev/null
+wait $process
 sed 's/"velocity": \[1, 0\]/"velocity": [1e200, 0]/' good.json >bad.json
 fails "a grain that leaves" "dem: step 1: grain 28 .*Use a shorter time step" bad.json --threads 1
 

@@ -41,6 +41,17 @@ static void check(const dem *d, bool ok) {
         fail_msg("%s", d->error);
 }
 
+/* A grain as narc fit --arcs 8 writes it. */
+static const narc_arc sand[] = {
+    {0.30362318967031376, 0.0097855072832697121, 0.72173061243176462, 0.12140611267875406, 0.97257050336731055},
+    {0.01522636700788127, -0.4133720053420914, 1.233819479536947, 0.97257050336731055, 1.5028508135931822},
+    {0.016630730194921811, -0.39273486050015705, 1.2131346062429649, 1.5028508135931822, 2.0501343749940517},
+    {-0.12957769536272123, -0.11144026794320344, 0.89611165517186753, 2.0501343749940517, 2.7825076160484885},
+    {-0.39880257185007739, -0.010384390519988337, 0.60854544630613849, 2.7825076160484885, -2.3711150810513208},
+    {-0.031176707217766608, 0.34643157181772455, 1.1208602004618646, -2.3711150810513208, -1.6325517584529359},
+    {-0.015673973613442471, 0.59714669779339768, 1.3720541676310709, -1.6325517584529359, -1.0322511169388462},
+    {0.33309866011495537, 0.013381695560912482, 0.69203657383710404, -1.0322511169388462, 0.12140611267875406}};
+
 static void add_shapes(dem *d) {
     narc_arc arcs[NARC_MAX_ARCS];
     narc_point points[8];
@@ -57,7 +68,16 @@ static void add_shapes(dem *d) {
         points[i] = (narc_point){1.3 * cos(i * PI / 4), sin(i * PI / 4)};
     assert_int_equal(narc_build_ring(points, 8, arcs, &count, NULL), NARC_OK);
     check(d, dem_add_shape(d, "arcs", arcs, count, &index));
-    assert_int_equal(index, ARCS);
+    assert_int_equal(narc_build_ellipse(1.5, 0.75, 8, arcs, &count, NULL, NULL), NARC_OK);
+    check(d, dem_add_shape(d, "ellipse", arcs, count, &index));
+    assert_int_equal(narc_build_regular_polygon(8, 1, 0, arcs, &count, NULL), NARC_OK);
+    check(d, dem_add_shape(d, "sharp", arcs, count, &index));
+    assert_int_equal(narc_build_box(1, 1, 0, arcs, &count, NULL), NARC_OK);
+    check(d, dem_add_shape(d, "square", arcs, count, &index));
+    assert_int_equal(narc_build_capsule(1, 0.5, arcs, &count, NULL), NARC_OK);
+    check(d, dem_add_shape(d, "long", arcs, count, &index));
+    check(d, dem_add_shape(d, "sand", sand, sizeof sand / sizeof sand[0], &index));
+    assert_int_equal(index, SAND);
 }
 
 dem make_world(dem_settings settings, dem_contact_law law) {
