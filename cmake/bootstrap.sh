@@ -11,7 +11,9 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   run        collide 20,000 bodies; shapes, contacts and pictures go to out/
   test       one build and its tests, minutes
   gate       what a change must pass besides: style, long tests, without dependencies, sanitizers, and
-             under qemu NEON, 32-bit x86 and a big-endian processor
+             under qemu NEON, 32-bit x86 and a big-endian processor; recorded answers on WebAssembly and Windows
+  platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
+             WebAssembly in node, Windows under wine
   bench      the benchmarks beside Box2D, Chipmunk and libccd; tables and plots go to out/. Options are Google
              Benchmark's and those of bench/README.md
   paper      the paper's evaluation; tables and plots go to out/. Options are those of bench/paper/README.md
@@ -20,8 +22,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
              tables of times beside LAMMPS' own styles; all goes to out/lammps/
   dem        a pile of 5,000 sand grains with the discrete element program: pictures, files for ParaView, tables and the
              angle of repose go to out/dem/, in some minutes. dem cases: slopes, collisions, piles of discs and long
-             grains, biaxial tests, hoppers besides, in 10 to 20 minutes on two cores. dem speed: what a step
-             costs. apps/dem/README.md says what they mean
+             grains, biaxial tests, hoppers besides, in 10 to 20 minutes on two cores. apps/dem/README.md says
+             what they mean
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.
@@ -50,7 +52,9 @@ gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang
 bench_packages="$library_packages $peer_packages gnuplot-nox"
 study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
 lammps_packages="$run_packages g++ liblammps-dev libopenmpi-dev openmpi-bin"
-dem_packages="$run_packages r-cran-shapes gnuplot-nox"
+wasm_packages="$library_packages clang llvm lld wasi-libc libclang-rt-dev-wasm32 nodejs"
+windows_packages="$library_packages gcc-mingw-w64-x86-64-posix wine64"
+dem_packages="$run_packages r-cran-shapes gnuplot-nox python3"
 
 missing_of() {
     for package; do
@@ -128,11 +132,54 @@ check() {
 check_foreign() {
     preset=$1 tools="$2 libc6-dev-$3-cross qemu-user" processor=$3
     shift 3
-    if install_packages $tools && fetch_libraries "$processor" "$@"; then
+    if install_packages $tools && { [ $# -eq 0 ] || fetch_libraries "$processor" "$@"; }; then
         check "$preset"
     else
         skipped="$skipped; $preset SKIPPED: no compiler, qemu or libraries from this machine's package sources"
     fi
+}
+
+# All processors that Debian has libraries for.
+check_processors() {
+    case $(uname -m) in
+    aarch64 | arm64) ;; # NEON is what all other tests ran
+    *) check_foreign aarch64 gcc-aarch64-linux-gnu arm64 libsleef-dev libsleef3 libcmocka-dev libcmocka0 ;;
+    esac
+    check_foreign i686 gcc-i686-linux-gnu i386 libcmocka-dev libcmocka0
+    check_foreign s390x gcc-s390x-linux-gnu s390x libcmocka-dev libcmocka0
+}
+
+# The recorded answers alone.
+check_golden() {
+    build "$1" test_golden test_stored_bits
+    ctest --preset "$1" -R '^(golden_.*|stored_bits)$' || fail "tests failed in build/$1"
+}
+
+# WebAssembly and Windows, by check or check_golden.
+check_systems() {
+    if install_packages $wasm_packages; then
+        $1 wasm32
+    else
+        skipped="$skipped; wasm32 SKIPPED: not among this machine's packages"
+    fi
+    if install_packages $windows_packages; then
+        # Tests that run at once would all set wine's folder up.
+        WINEPREFIX="$PWD/build/wine" WINEDEBUG=-all /usr/lib/wine/wine64 wineboot >/dev/null 2>&1 || true
+        $1 mingw64
+    else
+        skipped="$skipped; mingw64 SKIPPED: not among this machine's packages"
+    fi
+}
+
+platforms() {
+    require_packages $library_packages
+    skipped=
+    check_processors
+    check_foreign riscv64 gcc-riscv64-linux-gnu riscv64
+    check_foreign ppc64le gcc-powerpc64le-linux-gnu ppc64el
+    check_foreign armhf gcc-arm-linux-gnueabihf armhf
+    check_systems check
+    say "all tests passed$skipped"
 }
 
 run() {
@@ -269,13 +316,21 @@ fit_sand() {
         --out out/dem/sand.json --picture out/dem/sand.png
 }
 
+# draw_last FOLDER NAME: the grains and contacts of the last table of a run.
+draw_last() {
+    build/release/tools/narc collide --shapes "$1/shapes.json" --out "$1/contacts.csv" --picture "$1.png" \
+        --bodies "$(find "$1" -name "$2-0*.csv" | sort | tail -n 1)"
+}
+
 dem_pile() {
     fit_sand
     say "a pile of 5,000 sand grains"
     sh $dem_cases/pile.sh "$dem_program" out/dem/pile out/dem/sand.json "" >out/dem/pile.txt
-    say "a close look at it"
-    sh $dem_cases/look.sh "$dem_program" out/dem/pile pile.json pile.restart ../pile-close.png \
-        "-0.064, -0.006, 0.064, 0.034" 900
+    say "pictures of it"
+    draw_last out/dem/pile pile
+    last=$(find out/dem/pile -name 'pile-contacts-0*.vtk' | sort | tail -n 1)
+    python3 apps/dem/draw.py "$(echo "$last" | sed 's/-contacts//')" out/dem/pile-close.svg --color none --width 900 \
+        --region -0.064 -0.006 0.064 0.034
     gnuplot -e "folder='out/dem/pile'" $dem_cases/pile.gp
     say "angle of repose, left, right, mean, in degrees"
     cat out/dem/pile.txt
@@ -286,8 +341,10 @@ dem_all() {
     dem_pile
     say "other cases"
     sh $dem_cases/all.sh "$dem_program" out/dem out/dem/sand.json "$jobs"
-    sh $dem_cases/look.sh "$dem_program" out/dem/biaxial-sand biaxial.json biaxial.restart ../biaxial-close.png \
-        "-38, -36, -14, -22" 560 coordination
+    draw_last out/dem/biaxial-sand biaxial
+    last=$(find out/dem/biaxial-sand -name 'biaxial-contacts-0*.vtk' | sort | tail -n 1)
+    python3 apps/dem/draw.py "$(echo "$last" | sed 's/-contacts//')" out/dem/biaxial-close.svg --color coordination \
+        --width 560 --region -38 -36 -14 -22
     gnuplot -e "folder='out/dem'" $dem_cases/plots.gp
     say "results"
     cat out/dem/results.txt
@@ -295,14 +352,13 @@ dem_all() {
 
 dem() {
     require_packages $dem_packages
-    build release narc_tool dem dem_speed
+    build release narc_tool dem
     dem_program=$PWD/build/release/apps/dem/dem dem_cases=apps/dem/cases
     mkdir -p out
     case ${1:-pile} in
     pile) rm -rf out/dem && dem_pile ;;
     cases) rm -rf out/dem && dem_all ;;
-    speed) build/release/apps/dem/dem_speed ;;
-    *) fail "dem $1: it is pile, cases or speed" ;;
+    *) fail "dem $1: it is pile or cases" ;;
     esac
     [ ! -d out/dem ] || ls -ld out/dem/*
 }
@@ -326,7 +382,7 @@ check_style() {
 
 gate() {
     require_packages $gate_packages
-    build ci bench_narc bench_paper fit_study
+    build ci bench_narc bench_paper fit_study bench_scenes
     ctest --preset ci || fail "tests failed in build/ci"
     check_style
     build release all
@@ -345,12 +401,12 @@ gate() {
     else
         skipped="; LAMMPS SKIPPED: not among this machine's packages"
     fi
-    case $(uname -m) in
-    aarch64 | arm64) ;; # NEON is what all of the above ran
-    *) check_foreign aarch64 gcc-aarch64-linux-gnu arm64 libsleef-dev libsleef3 libcmocka-dev libcmocka0 ;;
-    esac
-    check_foreign i686 gcc-i686-linux-gnu i386 libcmocka-dev libcmocka0
-    check_foreign s390x gcc-s390x-linux-gnu s390x libcmocka-dev libcmocka0
+    check_processors
+    if install_packages $wasm_packages; then
+        check_golden wasm32
+    else
+        skipped="$skipped; wasm32 SKIPPED: not among this machine's packages"
+    fi
     say "all tests passed$skipped"
 }
 
@@ -366,6 +422,7 @@ case ${1:-} in
 run) run ;;
 test) test_release ;;
 gate) gate ;;
+platforms) platforms ;;
 docs) reference ;;
 bench)
     shift

@@ -2,7 +2,7 @@
 # What cmake --install writes: headers, the libraries, the CMake package and the pkg-config files.
 include(CMakePackageConfigHelpers)
 
-install(FILES soa/narc_export.h soa/narc_columns.h soa/narc_workers.h soa/narc_shapes.h soa/narc_pairs.h dispatch/narc.h
+install(FILES soa/narc_export.h soa/narc_columns.h soa/narc_workers.h soa/narc_shapes.h soa/narc_pairs.h soa/narc_scene.h dispatch/narc.h
   dispatch/narc_broad_phase.h dispatch/narc.hpp
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 
