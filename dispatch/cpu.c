@@ -51,13 +51,15 @@ static bool has_feature(const struct feature *feature) {
 static const struct feature {
     const char *name;
     unsigned need;
-} features[] = {{"neon", NARC_CPU_NEON}};
+} features[] = {{"neon", NARC_CPU_NEON}, {"simd128", NARC_CPU_WASM128}};
 
 static bool has_feature(const struct feature *feature) {
-    (void)feature;
 #if defined(__aarch64__)
-    return true; /* part of the base architecture */
+    return feature->need == NARC_CPU_NEON; /* part of the base architecture */
+#elif defined(__wasm__)
+    return feature->need == NARC_CPU_WASM128; /* an engine without it would have refused the module */
 #else
+    (void)feature;
     return false;
 #endif
 }

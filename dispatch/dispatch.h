@@ -9,7 +9,7 @@
 #include "narc.h"
 
 /* What a table may need of the processor and the operating system: all features of that kind in the list of cpu.c. */
-enum { NARC_CPU_AVX2 = 1, NARC_CPU_AVX512 = 2, NARC_CPU_NEON = 4, NARC_CPU_SSE41 = 8 };
+enum { NARC_CPU_AVX2 = 1, NARC_CPU_AVX512 = 2, NARC_CPU_NEON = 4, NARC_CPU_SSE41 = 8, NARC_CPU_WASM128 = 16 };
 unsigned narc_detect_cpu(void);
 
 /* The table in use, chosen at the first call; NULL if NARC_ISA asks for what can't be had (`*out_status` says why). */

@@ -4,17 +4,19 @@
 //
 // The mental model
 //
-//   Names are those of C without the prefix, and mean what narc_shapes.h, narc.h and narc_broad_phase.h say there.
+//   Names are those of C without the prefix, and mean what narc_shapes.h, narc.h, narc_broad_phase.h and narc_scene.h
+//   say there.
 //   Bodies, pairs, columns and rows are the structures of C; beside them there are
 //
-//       narc::shapes, narc::broad_phase   owners: they move, are not copied, and pass as pointers to all functions of C.
+//       narc::shapes, narc::broad_phase,
+//       narc::index                       owners: they move, are not copied, and pass as pointers to all functions of C.
 //                                         One that was moved from, or had no memory, is a NULL there
 //       narc::result                      an answer or an error: if (result) ... else result.error().message. value()
 //                                         is for those who want exceptions: without an answer it throws
 //                                         narc::exception, or ends the program where exceptions are switched off
 //       narc::span                        the caller's array: a container with data() and size(), an array, a pointer
 //                                         and a size. Like columns, it must not outlive what it looks at
-//       narc::query, narc::pair_options   the structures of C with functions that set their fields
+//       narc::query, narc::pair_options   and other options: the structures of C with functions that set their fields
 //
 //   No call allocates what C would not, but for rows in a std::vector, which is made longer where it is too short and
 //   never shorter: the span that is returned tells how many there are.
@@ -46,6 +48,7 @@
 
 #include "narc.h"
 #include "narc_broad_phase.h"
+#include "narc_scene.h"
 
 namespace narc {
 
@@ -211,6 +214,18 @@ auto find_rows(Call call, const narc_shapes *shapes, const narc_bodies &bodies, 
                ? result<span<item>>(error)
                : result<span<item>>(items.first(query.dense ? pairs.count : found));
 }
+
+// call(rows, capacity, error) with room for so many rows, which are the result.
+template <class Row, class Rows, class Call> result<span<Row>> fill_rows(Rows &rows, size_t needed, Call call) {
+    make_room(rows, needed);
+    const span<Row> items(rows);
+    if (items.size() < needed)
+        return result<span<Row>>(too_short(needed));
+    narc_error error = {};
+    return call(items.data(), items.size(), &error) ? result<span<Row>>(error) : result<span<Row>>(items.first(needed));
+}
+
+inline size_t at_least_one(size_t most) { return most > 0 ? most : 1; }
 
 } // namespace detail
 
@@ -428,6 +443,113 @@ inline result<void> compute_boxes(const narc_shapes *shapes, const narc_bodies &
                                   const narc_box_options &options = {}) {
     return boxes.size() < bodies.count ? result<void>(detail::too_short(bodies.count))
                                        : detail::ask<void>(narc_compute_boxes, shapes, &bodies, &options, boxes.data());
+}
+
+// ------------------------------------------------------------------------------------------------ questions to a scene
+
+struct index_options : detail::options<index_options, narc_index_options> {
+    index_options &category(narc_word_column value) noexcept { return set(&narc_index_options::category, value); }
+    index_options &fast() noexcept { return set(&narc_index_options::fast, 1u); }
+};
+
+struct index_query : detail::options<index_query, narc_index_query> {
+    index_query &mask(narc_word_column value) noexcept { return set(&narc_index_query::mask, value); }
+    index_query &ignored(narc_index_column value) noexcept { return set(&narc_index_query::ignored, value); }
+};
+
+class index : public detail::owner<narc_index, narc_create_index, narc_destroy_index> {
+  public:
+    using owner::owner;
+    result<void> build(span<const narc_box> boxes, const narc_index_options &options = {}) {
+        return detail::ask<void>(narc_build_index, get(), boxes.data(), boxes.size(), &options);
+    }
+    // The slack.
+    result<float> refit(span<const narc_box> boxes, const narc_index_options &options = {}) {
+        return detail::ask<float>(narc_refit_index, get(), boxes.data(), boxes.size(), &options);
+    }
+    // Its columns stay until the next query.
+    result<narc_pairs> query(span<const narc_box> boxes, const narc_index_query &query = {}) {
+        return detail::ask<narc_pairs>(narc_query_index, get(), boxes.data(), boxes.size(), &query);
+    }
+};
+
+struct ray_options : detail::options<ray_options, narc_ray_options> {
+    ray_options &search(const narc_index_query &value) noexcept { return set(&narc_ray_options::search, value); }
+    ray_options &inside(narc_inside value) noexcept { return set(&narc_ray_options::inside, value); }
+    ray_options &any() noexcept { return set(&narc_ray_options::any, 1u); }
+    ray_options &most(size_t value) noexcept { return set(&narc_ray_options::most, value); }
+    ray_options &skipped(size_t &out) noexcept { return set(&narc_ray_options::out_skipped, &out); }
+};
+
+struct cast_options : detail::options<cast_options, narc_cast_options> {
+    cast_options &target(float value) noexcept { return set(&narc_cast_options::target, value); }
+    cast_options &tolerance(float value) noexcept { return set(&narc_cast_options::tolerance, value); }
+    cast_options &skipped(size_t &out) noexcept { return set(&narc_cast_options::out_skipped, &out); }
+};
+
+struct nearest_options : detail::options<nearest_options, narc_nearest_options> {
+    nearest_options &search(const narc_index_query &value) noexcept {
+        return set(&narc_nearest_options::search, value);
+    }
+    nearest_options &distance(float value) noexcept { return set(&narc_nearest_options::distance, value); }
+    nearest_options &inside() noexcept { return set(&narc_nearest_options::inside, 1u); }
+    nearest_options &most(size_t value) noexcept { return set(&narc_nearest_options::most, value); }
+};
+
+// Of all these, `rows` is a span, an array or a vector of the answer's rows, and the result is the span of all that
+// were asked for; those without an answer have count 0.
+template <class Rows>
+auto cast_rays(const narc_index *index, const narc_shapes *shapes, const narc_bodies &bodies, const narc_rays &rays,
+               const narc_ray_options &options, Rows &&rows) {
+    return detail::fill_rows<narc_ray_hit>(
+        rows, rays.count * detail::at_least_one(options.most),
+        [&](narc_ray_hit *out, size_t capacity, narc_error *error) {
+            return narc_cast_rays(index, shapes, &bodies, &rays, &options, out, capacity, error);
+        });
+}
+
+// Motions of bodies, and of pairs.other_bodies; NULL: they stand still.
+template <class Rows>
+auto cast_pairs(const narc_shapes *shapes, const narc_bodies &bodies, const narc_motions *motions,
+                const narc_pairs &pairs, const narc_motions *other_motions, const narc_cast_options &options,
+                Rows &&rows) {
+    return detail::fill_rows<narc_impact>(
+        rows, pairs.count,
+        [&](narc_impact *out, size_t capacity, narc_error *error) {
+            return narc_cast_pairs(shapes, &bodies, motions, &pairs, other_motions, &options, out, capacity, error);
+        });
+}
+
+template <class Rows>
+auto cast_shapes(narc_index *index, const narc_shapes *shapes, const narc_bodies &bodies, const narc_bodies &movers,
+                 const narc_motions &motions, const narc_index_query &search, const narc_cast_options &options,
+                 Rows &&rows) {
+    return detail::fill_rows<narc_impact>(
+        rows, movers.count,
+        [&](narc_impact *out, size_t capacity, narc_error *error) {
+            return narc_cast_shapes(index, shapes, &bodies, &movers, &motions, &search, &options, out, capacity, error);
+        });
+}
+
+// `body`: of each point; {}: point k and body k.
+template <class Rows>
+auto find_distances(const narc_shapes *shapes, const narc_bodies &bodies, const narc_points &at, narc_index_column body,
+                    Rows &&rows, const narc_workers *workers = nullptr) {
+    return detail::fill_rows<narc_distance>(
+        rows, at.count,
+        [&](narc_distance *out, size_t, narc_error *error) {
+            return narc_find_distances(shapes, &bodies, &at, body, workers, out, error);
+        });
+}
+
+template <class Rows>
+auto find_nearest(const narc_index *index, const narc_shapes *shapes, const narc_bodies &bodies, const narc_points &at,
+                  const narc_nearest_options &options, Rows &&rows) {
+    return detail::fill_rows<narc_distance>(
+        rows, at.count * detail::at_least_one(options.most),
+        [&](narc_distance *out, size_t capacity, narc_error *error) {
+            return narc_find_nearest(index, shapes, &bodies, &at, &options, out, capacity, error);
+        });
 }
 
 // ------------------------------------------------------------------------------------------------ the rest

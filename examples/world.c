@@ -119,7 +119,10 @@ static void predict_motion(world *w) {
         const bool falls = body->inverse_mass > 0 && body->kind == 0;
         body->motion = scale(time, falls ? add(body->velocity, scale(time, w->settings.gravity)) : body->velocity);
         body->turn_reach = time * fabsf(body->spin) * w->shapes[body->shape].reach;
-        body->stopped = false;
+        body->from = body->position;
+        body->from_rotation = (vec){body->cosine, body->sine};
+        body->turn = 0;
+        body->stop = 1;
     }
 }
 
@@ -134,8 +137,9 @@ narc_status world_step(world *w) {
     world_make_contacts(w);
     world_sleep(w);
     world_solve(w);
+    status = world_stop_bullets(w);
     world_list_events(w);
-    return NARC_OK;
+    return status;
 }
 
 float world_speed(const world *w, const world_body *body) {

@@ -17,6 +17,7 @@
 
 #include <narc.h>
 #include <narc_broad_phase.h>
+#include <narc_scene.h>
 
 typedef struct vec {
     float x, y;
@@ -36,9 +37,10 @@ typedef struct world_body {
     uint64_t id;                         /* never given twice, whatever number the body has */
     vec start;                           /* where it was added */
     float inverse_mass, inverse_inertia; /* 0 if contacts do not move it */
-    vec motion;                          /* in this step, if nothing stops it */
-    float turn_reach;                    /* how far rotation may carry its points in this step */
-    bool stopped;                        /* it has hit, and goes on in the next step */
+    vec motion;                          /* in this step, at first if nothing stops it, then as it was */
+    float turn, turn_reach;              /* its rotation in this step; how far that may carry its points */
+    vec from, from_rotation;             /* its pose before: position, cosine and sine */
+    float stop;                          /* the part of the step after which it hits, and waits for the next one; 1 */
     float rest;                          /* for how long it has been slow, seconds */
     struct world_body *island;           /* a body of the same island, in the end its root */
 } world_body;
@@ -86,7 +88,7 @@ typedef struct world_contact {
     uint32_t hint;     /* narc's */
     narc_manifold row; /* narc's answer */
     float margin;
-    bool fast;     /* the bodies could pass through each other within the step */
+    float depth;   /* above 0: the bodies could pass through each other in this step, and may get so deep */
     bool touching; /* has begun and has not ended */
     bool walks;    /* its point walks along arcs while the bodies roll */
     unsigned point_count;
@@ -154,6 +156,9 @@ void world_recycle_contacts(world *w);
 narc_status world_find_manifolds(world *w);
 void world_make_contacts(world *w);
 narc_status world_find_overlaps(world *w);
+
+/* What was so fast that it passed into a body, or through it, stands where the two met: it loses time, no momentum. */
+narc_status world_stop_bullets(world *w);
 
 /* world_solver.c: from active contacts to new velocities and positions. */
 void world_solve(world *w);

@@ -56,14 +56,13 @@ narc_status world_update_pairs(world *w) {
     return w->list->skipped > 0 ? find_broken_body(w) : NARC_OK;
 }
 
-/* A pair that in this step moves by much of a body's thickness has a contact if the two could meet within it. So the
- * solver stops them where they would touch. For all pairs that would be too much: a contact at a distance is a guess at
- * the normal of the touch. */
-static void find_margin(const world *w, world_contact *c) {
+/* How deep a pair may get that in this step moves by much of the thinner body: into a quarter of it. Others: 0. Where
+ * such a pair could meet in this step it has a contact now. */
+static void find_depth(const world *w, world_contact *c) {
     const float way = length(subtract(c->b->motion, c->a->motion)) + c->a->turn_reach + c->b->turn_reach;
-    const float thickness = fminf(w->shapes[c->a->shape].thickness, w->shapes[c->b->shape].thickness);
-    c->fast = way > 0.25f * thickness;
-    c->margin = w->settings.margin + (c->fast ? way : 0);
+    const float depth = 0.25f * fminf(w->shapes[c->a->shape].thickness, w->shapes[c->b->shape].thickness);
+    c->depth = way > depth ? depth : 0;
+    c->margin = w->settings.margin + (way > depth ? way : 0);
 }
 
 /* By how much have a contact's bodies moved since it was found? */
@@ -83,8 +82,8 @@ void world_recycle_contacts(world *w) {
     w->asked_count = 0;
     for (size_t k = 0; k < w->list->contact_count; k++) {
         world_contact *c = &w->contacts[w->list->contacts[k]];
-        find_margin(w, c);
-        if (c->point_count > 0 && !c->fast && find_change(w, c) < w->settings.recycling)
+        find_depth(w, c);
+        if (c->point_count > 0 && c->depth == 0 && find_change(w, c) < w->settings.recycling)
             continue;
         c->point_count = 0;
         w->asked[w->asked_count++] = w->list->contacts[k];
@@ -154,4 +153,42 @@ static void make_contact(world_contact *c) {
 void world_make_contacts(world *w) {
     for (size_t k = 0; k < w->asked_count; k++)
         make_contact(&w->contacts[w->asked[k]]);
+}
+
+/* Bodies that were deeper before may get hardly deeper; else the solver sees to them. */
+narc_status world_stop_bullets(world *w) {
+    const world_body *all = w->bodies, *end = all + w->body_count;
+    const narc_motions motions = {
+        NARC_COLUMN(all, motion.x), NARC_COLUMN(all, motion.y), NARC_COLUMN(all, turn), {NULL}};
+    narc_bodies before = view_bodies(w);
+    before.x = NARC_POSITION_COLUMN(all, from.x);
+    before.y = NARC_POSITION_COLUMN(all, from.y);
+    before.cosine = NARC_COLUMN(all, from_rotation.x);
+    before.sine = NARC_COLUMN(all, from_rotation.y);
+    for (world_body *body = w->bodies; body < end; body++)
+        body->motion = subtract(body->position, body->from);
+    for (size_t k = 0; k < w->list->contact_count; k++) {
+        const uint32_t pair = w->list->contacts[k];
+        const world_contact *c = &w->contacts[pair];
+        const float deepest = fminf(c->row.point[0].separation, c->row.point[1].separation);
+        const narc_pairs one = {
+            .count = 1, .a = {w->list->pairs.a.base + pair, 0}, .b = {w->list->pairs.b.base + pair, 0}};
+        const narc_cast_options options = {.target = -fmaxf(c->depth, 0.03f * c->depth - deepest)};
+        narc_impact hit = {.count = 0};
+        if (c->depth > 0 &&
+            narc_cast_pairs(w->store, &before, &motions, &one, NULL, &options, &hit, 1, &w->error) != NARC_OK)
+            return w->error.status;
+        if (hit.count > 0)
+            c->a->stop = c->b->stop = fminf(hit.fraction, fminf(c->a->stop, c->b->stop));
+    }
+    for (world_body *body = w->bodies; body < end; body++)
+        if (body->stop < 1) {
+            const float turn = body->stop * body->turn;
+            body->position = add(body->from, scale(body->stop, body->motion));
+            narc_compute_poses(&turn, 1, &body->cosine, &body->sine, NULL);
+            const vec rotation = to_world(body, body->from_rotation);
+            body->cosine = rotation.x;
+            body->sine = rotation.y;
+        }
+    return NARC_OK;
 }

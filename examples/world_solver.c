@@ -171,30 +171,15 @@ static void integrate_velocities(world *w, float time) {
     }
 }
 
-/* A fast pair's contact tells where it touches as it stands, and about that point a body could turn right through a
- * thin wall. So a pair that touches, and in this sub-step would have turned much since it was found, stays until the
- * next step. It loses time, and no momentum. */
-static void stop_turns(const world *w, float time) {
-    for (size_t k = 0; k < w->active_count; k++) {
-        const world_contact *c = w->active[k];
-        const float turn =
-            cross(to_world(c->a, c->normal_in_a), to_world(c->b, c->normal_in_b)) + time * (c->b->spin - c->a->spin);
-        if (!c->fast || fabsf(turn) <= greatest_turn / (float)w->settings.substeps)
-            continue;
-        for (unsigned i = 0; i < c->point_count; i++)
-            if (c->points[i].greatest_impulse > 0 || c->points[i].separation < w->settings.margin)
-                c->a->stopped = c->b->stopped = true;
-    }
-}
-
 static void integrate_positions(world *w, float time) {
     for (size_t k = 0; k < w->body_count; k++) {
         world_body *body = &w->bodies[k];
-        if (body->kind & (NARC_STATIC | NARC_ASLEEP) || body->stopped)
+        if (body->kind & (NARC_STATIC | NARC_ASLEEP))
             continue;
         const float turn = time * body->spin;
         const float cosine = body->cosine - turn * body->sine, sine = body->sine + turn * body->cosine;
         const float size = length((vec){cosine, sine});
+        body->turn += turn;
         body->position = add(body->position, scale(time, body->velocity));
         body->cosine = cosine / size;
         body->sine = sine / size;
@@ -218,7 +203,6 @@ void world_solve(world *w) {
         for (size_t k = 0; k < w->active_count; k++)
             warm_start(w->active[k]);
         solve_contacts(w, &soft, time, false);
-        stop_turns(w, time);
         integrate_positions(w, time);
         solve_contacts(w, &rigid, time, true);
     }

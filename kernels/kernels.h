@@ -11,6 +11,7 @@
 
 #include "broad_phase.h"
 #include "column.h"
+#include "index.h"
 #include "store.h"
 
 /* What a batch call works on: pairs of a body of `a` and one of `b`, by their indices or, without, by the pair's own.
@@ -45,6 +46,52 @@ typedef struct narc_box_batch {
     float margin;
     narc_float_column motion_x, motion_y; /* base NULL: none */
 } narc_box_batch;
+
+/* What the kernels of points work on. */
+typedef struct narc_point_batch {
+    const narc_shapes *shapes;
+    const narc_bodies *bodies;
+    const narc_points *points;
+    narc_index_column body;         /* of distances: the body of each point; base NULL: point k has body k */
+    const narc_index *index;        /* of the nearest bodies: where they are looked for, */
+    const narc_index_query *search; /* which of them, */
+    float distance;                 /* how near they must be, */
+    size_t most;                    /* and rows of each point, at least 1 */
+    narc_distance *out;
+} narc_point_batch;
+
+/* What the kernel of rays works on. */
+typedef struct narc_ray_batch {
+    const narc_index *index;
+    const narc_shapes *shapes;
+    const narc_bodies *bodies;
+    const narc_rays *rays;
+    const narc_ray_options *options;
+    size_t most; /* rows of each ray, at least 1 */
+    narc_ray_hit *out;
+} narc_ray_batch;
+
+/* What the kernel of regions works on. */
+typedef struct narc_region_batch {
+    const narc_index *index;
+    const narc_box *boxes;
+    narc_word_column mask;     /* base NULL: none */
+    narc_index_column ignored; /* base NULL: none */
+} narc_region_batch;
+
+/* Where that kernel puts what it finds: the bodies of each query, in any order, behind those of the query before it. */
+typedef struct narc_found_bodies {
+    uint32_t *body;                                   /* those of this query */
+    size_t count, room;                               /* how many there are, and room for them */
+    void (*get_room)(struct narc_found_bodies *out);  /* for another NARC_REGION_ROOM at least */
+    void (*end_query)(struct narc_found_bodies *out); /* `count` is all of this query; the next one begins */
+} narc_found_bodies;
+
+/* What a kernel may find in one go, with the lanes behind the last one. */
+enum { NARC_REGION_ROOM = 16 * NARC_NODE_SLOTS + 16 };
+
+/* So many bodies of a query, at most, the kernel puts into order. NARC_FOUND_PADDING more may be read. */
+enum { NARC_ORDER_BODIES = 128 };
 
 /* The most pairs that one call for rows takes. */
 enum { NARC_ROW_GROUP = 1024 };

@@ -8,7 +8,10 @@
 #include "narc_shapes.h"
 
 /* Fills `error` unless it is NULL and returns `status`, so that a check reads `return narc_fail(...)`. */
-#if defined(__GNUC__)
+#if defined(__MINGW32__)
+#include <stdio.h>
+__attribute__((format(__MINGW_PRINTF_FORMAT, 5, 6)))
+#elif defined(__GNUC__)
 __attribute__((format(printf, 5, 6)))
 #endif
 narc_status

@@ -117,6 +117,19 @@ void read_pairs(const char *path, size_t body_count, pair_list *out_pairs) {
     *out_pairs = pairs;
 }
 
+/* Rounded outwards: the kernels subtract positions exactly, a box must not lose a pair to rounding. */
+narc_aabb *bound_bodies(const narc_shapes *store, const body_list *bodies) {
+    narc_aabb *boxes = allocate(bodies->count, sizeof *boxes);
+    for (size_t i = 0; i < bodies->count; i++) {
+        const body *at = &bodies->items[i];
+        narc_aabb box;
+        narc_get_aabb(store, at->shape, at->cosine, at->sine, at->scale, &box);
+        boxes[i] = (narc_aabb){nextafter(at->x + box.min_x, -INFINITY), nextafter(at->y + box.min_y, -INFINITY),
+                               nextafter(at->x + box.max_x, INFINITY), nextafter(at->y + box.max_y, INFINITY)};
+    }
+    return boxes;
+}
+
 narc_bodies view_bodies(const body_list *bodies) {
     const body *items = bodies->items;
     return (narc_bodies){.count = bodies->count,

@@ -34,6 +34,9 @@ void read_bodies(const char *path, const narc_shape_list *shapes, body_list *out
 /* Reads a CSV file with the columns a and b: indices of bodies. */
 void read_pairs(const char *path, size_t body_count, pair_list *out_pairs);
 
+/* The bodies' bounding boxes in the world, to be freed. */
+narc_aabb *bound_bodies(const narc_shapes *store, const body_list *bodies);
+
 /* Both as the library wants them. */
 narc_bodies view_bodies(const body_list *bodies);
 narc_pairs view_pairs(const pair_list *pairs);

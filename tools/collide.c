@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "broad_phase.h"
+#include "calls.h"
 #include "canvas.h"
 #include "commands.h"
 #include "fail.h"
@@ -64,7 +65,7 @@ static const char HELP[] =
     "\n"
     "The manual, narc(1), describes the files.\n";
 
-enum { LARGEST_THREADS = 1024, DEFAULT_MOST_PAIRS = 100000000 };
+enum { DEFAULT_MOST_PAIRS = 100000000 };
 
 /* Far below what single precision can reach, and far above what it rounds to 0, which would mean the default. */
 static const double LEAST_TOLERANCE = 1e-9;
@@ -83,7 +84,7 @@ typedef struct job {
     narc_aabb *boxes;
     pair_list pairs;
     narrow_result narrow;
-    bool *colliding; /* bodies */
+    bool *marked; /* bodies that collide */
     double broad_seconds;
 } job;
 
@@ -162,23 +163,8 @@ static settings read_settings(int argc, char **argv) {
     }
     if (options[ALL].value)
         chosen.narrow.margin = INFINITY;
-    const bool counted = options[THREADS].value;
-    chosen.narrow.workers =
-        narc_openmp_workers(counted ? (unsigned)whole_option(&options[THREADS], 1, LARGEST_THREADS) : 0);
+    chosen.narrow.workers = choose_workers(&options[THREADS]);
     return chosen;
-}
-
-/* The bodies' bounding boxes in the world, rounded outwards: the kernels subtract positions exactly, a box must not
- * lose a pair to rounding. */
-static void bound_bodies(job *work) {
-    work->boxes = allocate(work->bodies.count, sizeof *work->boxes);
-    for (size_t i = 0; i < work->bodies.count; i++) {
-        const body *at = &work->bodies.items[i];
-        narc_aabb box;
-        narc_get_aabb(work->store, at->shape, at->cosine, at->sine, at->scale, &box);
-        work->boxes[i] = (narc_aabb){nextafter(at->x + box.min_x, -INFINITY), nextafter(at->y + box.min_y, -INFINITY),
-                                     nextafter(at->x + box.max_x, INFINITY), nextafter(at->y + box.max_y, INFINITY)};
-    }
 }
 
 static void find_pairs(job *work, const settings *chosen) {
@@ -216,12 +202,12 @@ static void check_polygons(const job *work, const char *path) {
 }
 
 static void mark_bodies(job *work) {
-    work->colliding = allocate(work->bodies.count, sizeof *work->colliding);
-    memset(work->colliding, 0, work->bodies.count * sizeof *work->colliding);
+    work->marked = allocate(work->bodies.count, sizeof *work->marked);
+    memset(work->marked, 0, work->bodies.count * sizeof *work->marked);
     for (size_t k = 0; k < work->pairs.count; k++) {
         if (pair_collides(&work->narrow, k)) {
             const pair hit = work->pairs.items[k];
-            work->colliding[hit.a] = work->colliding[hit.b] = true;
+            work->marked[hit.a] = work->marked[hit.b] = true;
         }
     }
 }
@@ -309,15 +295,11 @@ static void print_report(FILE *file, const job *work, const settings *chosen) {
 static void run(int argc, char **argv) {
     const settings chosen = read_settings(argc, argv);
     job work = {0};
-    narc_error error;
-    if (chosen.isa && narc_set_isa(chosen.isa, &error) != NARC_OK) {
-        /* The message begins with the library's function; the user knows the option. */
-        fail("--isa%s", error.message + strcspn(error.message, ":"));
-    }
+    choose_isa(chosen.isa);
     work.shapes = read_shapes(chosen.shapes, &work.store);
     read_bodies(chosen.bodies, work.shapes, &work.bodies);
     check_picture_size(chosen.picture, work.bodies.count);
-    bound_bodies(&work);
+    work.boxes = bound_bodies(work.store, &work.bodies);
     if (chosen.pairs)
         read_pairs(chosen.pairs, work.bodies.count, &work.pairs);
     /* Outputs that cannot be written are found before the work is done. */
@@ -339,14 +321,14 @@ static void run(int argc, char **argv) {
     if (out)
         flush_output(out);
     if (picture) {
-        const body_scene scene = {work.shapes,
-                                  &work.bodies,
-                                  work.boxes,
-                                  work.colliding,
-                                  &work.pairs,
-                                  work.narrow.contacts,
-                                  work.narrow.contact_count,
-                                  is_filter(chosen.narrow.method)};
+        const body_scene scene = {.shapes = work.shapes,
+                                  .bodies = &work.bodies,
+                                  .boxes = work.boxes,
+                                  .marked = work.marked,
+                                  .pairs = &work.pairs,
+                                  .contacts = work.narrow.contacts,
+                                  .contact_count = work.narrow.contact_count,
+                                  .is_filter = is_filter(chosen.narrow.method)};
         draw_bodies(chosen.picture, picture, &scene);
     }
     FILE *report = finish_outputs();
@@ -355,7 +337,7 @@ static void run(int argc, char **argv) {
     commit_outputs();
 
     free_narrow_result(&work.narrow);
-    free(work.colliding);
+    free(work.marked);
     free(work.pairs.items);
     free(work.boxes);
     free(work.bodies.items);

@@ -12,6 +12,6 @@ typedef struct command {
     void (*run)(int argc, char **argv);
 } command;
 
-extern const command fit_command, scene_command, collide_command, info_command;
+extern const command fit_command, scene_command, collide_command, cast_command, info_command;
 
 #endif

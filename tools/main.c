@@ -16,7 +16,7 @@
 #include "progress.h"
 #include "text.h"
 
-static const command *const commands[] = {&fit_command, &scene_command, &collide_command, &info_command};
+static const command *const commands[] = {&fit_command, &scene_command, &collide_command, &cast_command, &info_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static void print_help(void) {

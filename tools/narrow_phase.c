@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "calls.h"
 #include "fail.h"
 #include "progress.h"
 #include "text.h"
@@ -45,11 +46,6 @@ bool is_filter(narc_method method) {
     return method == NARC_METHOD_CIRCLE || method == NARC_METHOD_AABB || method == NARC_METHOD_OBB;
 }
 
-static void check(narc_status status, const narc_error *error) {
-    if (status != NARC_OK)
-        fail("%s", error->message);
-}
-
 void free_narrow_result(narrow_result *result) {
     free(result->contacts);
     free(result->colliding);
@@ -76,7 +72,7 @@ static void call_library(const batch *asked, narrow_result *result) {
     const narc_status status = is_filter(asked->options.method) ? find_overlaps(asked, result->colliding, &error)
                                                                 : find_contacts(asked, result, &error);
     result->seconds = seconds_now() - start;
-    check(status, &error);
+    check_call(status, &error);
 }
 
 static int compare_numbers(const void *left, const void *right) {
@@ -104,7 +100,7 @@ static void find_colliding(const batch *asked, narrow_result *result) {
         again.options.out_outcomes = NULL;
         again.query.out_skipped = NULL;
         narc_error error;
-        check(find_overlaps(&again, result->colliding, &error), &error);
+        check_call(find_overlaps(&again, result->colliding, &error), &error);
         return;
     }
     memset(result->colliding, 0, NARC_BIT_WORDS(asked->pairs.count) * sizeof *result->colliding);
@@ -130,7 +126,7 @@ static void compare_with_exact(const batch *asked, narrow_result *result) {
     uint64_t *exact = allocate(NARC_BIT_WORDS(count), sizeof *exact);
     const narc_query query = {.workers = asked->query.workers};
     narc_error error;
-    check(narc_find_overlaps(asked->store, &asked->bodies, &asked->pairs, &query, exact, &error), &error);
+    check_call(narc_find_overlaps(asked->store, &asked->bodies, &asked->pairs, &query, exact, &error), &error);
     for (size_t k = 0; k < count; k++) {
         const bool is_told = bit_at(result->colliding, k), is_true = bit_at(exact, k);
         result->missed += is_true && !is_told;
@@ -160,7 +156,7 @@ void run_narrow_phase(const narrow_settings *chosen, const narc_shapes *shapes, 
         .query = {.margin = chosen->margin, .workers = &chosen->workers, .out_skipped = &out_result->skipped}};
     narc_error error;
     if (!is_exact)
-        check(narc_create_methods(shapes, NULL, &asked.methods, &error), &error);
+        check_call(narc_create_methods(shapes, NULL, &asked.methods, &error), &error);
     show_stage("narrow phase", count, "pairs", count > MANY_PAIRS);
     measure_call(&asked, out_result);
     find_colliding(&asked, out_result);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * picture_bodies.c - bodies filled, colliding ones in another colour and on top, then contact points with their
- * normals; a legend below, if there is anything of these. Lines and dots are in proportion to the bodies on the page, so
+ * picture_bodies.c - bodies filled, those that collide or are hit in another colour and on top, then rays, and contact
+ * points or hits with their normals; a legend below, if there is anything of these. Lines and dots are in proportion to the bodies on the page, so
  * that 20 and 20,000 of them look alike.
  */
 #include "picture_bodies.h"
@@ -54,10 +54,13 @@ static double box_size(narc_aabb box) { return fmax(box.max_x - box.min_x, box.m
 /* What the picture will have. */
 static void find_samples(const body_scene *scene, bool *shown) {
     for (size_t i = 0; i < scene->bodies->count; i++)
-        shown[scene->colliding[i] ? HIT : FREE] = true;
+        shown[scene->marked[i] ? HIT : FREE] = true;
     for (size_t k = 0; k < scene->contact_count; k++)
         if (isfinite(scene->contacts[k].separation))
             shown[scene->contacts[k].separation < 0 ? TOUCHING : APART] = true;
+    for (size_t k = 0; k < scene->ray_count; k++)
+        shown[TOUCHING] = shown[TOUCHING] || scene->rays[k].hit.count;
+    shown[APART] = shown[APART] || scene->ray_count;
 }
 
 /* Bodies alone need none. */
@@ -74,6 +77,11 @@ static view choose_view(const char *path, const body_scene *scene) {
         world = (narc_aabb){fmin(world.min_x, box.min_x), fmin(world.min_y, box.min_y), fmax(world.max_x, box.max_x),
                             fmax(world.max_y, box.max_y)};
         sizes += box_size(box);
+    }
+    for (size_t k = 0; k < scene->ray_count; k++) {
+        const drawn_ray *ray = &scene->rays[k];
+        world = (narc_aabb){fmin(world.min_x, ray->x), fmin(world.min_y, ray->y), fmax(world.max_x, ray->x),
+                            fmax(world.max_y, ray->y)};
     }
     const double size = box_size(world), mean = count ? sizes / (double)count : size;
     if (!(size > 0 && size <= NARC_MAX_DISTANCE))
@@ -135,7 +143,7 @@ static void draw_body(canvas *page, const view *seen, const body_scene *scene, s
     const double zoom = seen->zoom * (double)drawn->scale, size = seen->zoom * box_size(scene->boxes[index]);
     const double cosine = (double)drawn->cosine, sine = (double)drawn->sine;
     const narc_point origin = to_page(seen, drawn->x, drawn->y);
-    const bool hit = scene->colliding[index];
+    const bool hit = scene->marked[index];
     if (!made->bodies) {
         paint_body(page, &(placement){origin.x, origin.y, zoom * cosine, zoom * sine}, form, hit, size);
         return;
@@ -184,6 +192,29 @@ static void draw_contact(canvas *page, const view *seen, const body_scene *scene
     use_stamp(page, stamp, p, ratio * normal.x, ratio * normal.y);
 }
 
+/* Ray k, and where it hits with the normal there, sized after the body. Only the nearest hit of a ray, or its end, has a
+ * line from its start; what ends beyond the page is cut off there. */
+static void draw_ray(canvas *page, const view *seen, const body_scene *scene, size_t k) {
+    const drawn_ray *ray = &scene->rays[k];
+    const narc_point from = to_page(seen, ray->x, ray->y);
+    narc_point to = to_page(seen, ray->end_x, ray->end_y);
+    const double length = hypot(to.x - from.x, to.y - from.y), longest = seen->width + seen->height;
+    if (!ray->hit.count && length > longest)
+        to = (narc_point){from.x + (to.x - from.x) / length * longest, from.y + (to.y - from.y) / length * longest};
+    if (k % scene->hits_per_ray == 0) {
+        set_color(page, NEAR_CONTACT);
+        cairo_set_line_width(page->pen, 2 * THINNEST);
+        cairo_move_to(page->pen, from.x, from.y);
+        cairo_line_to(page->pen, to.x, to.y);
+        cairo_stroke(page->pen);
+        draw_dot(page, from, THICKEST);
+    }
+    if (ray->hit.count) {
+        const double size = seen->zoom * box_size(scene->boxes[ray->hit.body]);
+        paint_contact(page, to, (narc_point){(double)ray->hit.normal_x, (double)ray->hit.normal_y}, true, size);
+    }
+}
+
 /* ---------------------------------------------------------------------------- legend */
 
 static void draw_sample_of(canvas *page, int of, double x, double y, double half) {
@@ -201,12 +232,18 @@ static void draw_sample_of(canvas *page, int of, double x, double y, double half
     }
 }
 
-static void draw_legend_of(canvas *page, const view *seen, bool is_filter) {
+static void draw_legend_of(canvas *page, const view *seen, const body_scene *scene) {
     static const char *const words[SAMPLE_COUNT] = {
         "collides with none", "collides", "contact: point, normal from a to b", "the same of a pair that is apart"};
     static const char *const filter_words[SAMPLE_COUNT] = {"in no pair that passes", "in a pair that passes", "", ""};
+    static const char *const ray_words[SAMPLE_COUNT] = {"is hit by none", "is hit", "hit: point, normal outwards",
+                                                        "ray"};
     if (has_legend(seen->shown)) {
-        draw_legend(page, is_filter ? filter_words : words, seen->shown, SAMPLE_COUNT, draw_sample_of, seen->width / 2,
+        draw_legend(page,
+                    scene->is_filter   ? filter_words
+                    : scene->ray_count ? ray_words
+                                       : words,
+                    seen->shown, SAMPLE_COUNT, draw_sample_of, seen->width / 2,
                     seen->height - 0.5 * LEGEND_HEIGHT * seen->text, seen->text, seen->width - 2 * MARGIN);
     }
 }
@@ -221,9 +258,10 @@ void check_picture_size(const char *path, size_t body_count) {
 }
 
 static void check_items(const char *path, const body_scene *scene) {
-    if (picture_kind_of(path) == PICTURE_SVG && scene->contact_count > MOST_SVG_ITEMS - scene->bodies->count) {
-        fail("%s: %zu bodies and %zu contacts, an .svg picture has at most %d of both; a .png picture can have more",
-             path, scene->bodies->count, scene->contact_count, MOST_SVG_ITEMS);
+    const size_t marks = scene->contact_count + scene->ray_count;
+    if (picture_kind_of(path) == PICTURE_SVG && marks > MOST_SVG_ITEMS - scene->bodies->count) {
+        fail("%s: %zu bodies and %zu %s, an .svg picture has at most %d of both; a .png picture can have more", path,
+             scene->bodies->count, marks, scene->ray_count ? "rays" : "contacts", MOST_SVG_ITEMS);
     }
 }
 
@@ -252,9 +290,9 @@ void draw_bodies(const char *path, FILE *file, const body_scene *scene) {
     canvas page;
     open_canvas(&page, path, file, seen.width, seen.height);
     stamps made = make_stamps(page.kind, scene->shapes->count);
-    const size_t count = scene->bodies->count, steps = 2 * count + scene->contact_count;
+    const size_t count = scene->bodies->count, steps = 2 * count + scene->contact_count + scene->ray_count;
     for (size_t i = 0; i < 2 * count; i++) {
-        if (scene->colliding[i % count] == (i >= count))
+        if (scene->marked[i % count] == (i >= count))
             draw_body(&page, &seen, scene, &made, i % count);
         show_progress("drawing", i, steps);
     }
@@ -263,7 +301,11 @@ void draw_bodies(const char *path, FILE *file, const body_scene *scene) {
             draw_contact(&page, &seen, scene, &made, k);
         show_progress("drawing", 2 * count + k, steps);
     }
-    draw_legend_of(&page, &seen, scene->is_filter);
+    for (size_t k = 0; k < scene->ray_count; k++) {
+        draw_ray(&page, &seen, scene, k);
+        show_progress("drawing", 2 * count + k, steps);
+    }
+    draw_legend_of(&page, &seen, scene);
     finish_canvas(&page);
     free_stamps(&made, scene->shapes->count);
 }

@@ -8,16 +8,25 @@
 #include <stdio.h>
 
 #include "bodies.h"
+#include "narc_scene.h"
+
+/* From where a ray starts to what it hits, or to its end. */
+typedef struct drawn_ray {
+    double x, y, end_x, end_y;
+    narc_ray_hit hit;
+} drawn_ray;
 
 typedef struct body_scene {
     const narc_shape_list *shapes;
     const body_list *bodies;
     const narc_aabb *boxes; /* of the bodies */
-    const bool *colliding;  /* of the bodies: is it in a colliding pair? */
-    const pair_list *pairs;
+    const bool *marked;     /* of the bodies: is it in a colliding pair, or hit by a ray? */
+    const pair_list *pairs; /* those that contacts are of */
     const narc_contact *contacts;
     size_t contact_count;
     bool is_filter; /* the pairs passed a filter: they may collide */
+    const drawn_ray *rays;
+    size_t ray_count, hits_per_ray; /* of each ray its nearest hit comes first */
 } body_scene;
 
 /* A picture that would have too many bodies is an error; `path` may be NULL, no picture. */

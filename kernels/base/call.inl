@@ -93,7 +93,7 @@ INLINE void mark_overlaps(const struct call *call, const struct queue *queue, in
  * What a call leaves for the next one: the arcs of A and B at which a pair's search ended, counted from 1 in the order of
  * the store, A's in the lowest 8 bits. Any other value names no arcs. */
 
-/* The hint of two circles, boxes or capsules, which need none. */
+/* The hint of two circles, boxes, capsules or polygons of few corners, which need none. */
 #define FIRST_ARCS 0x0101
 
 /* Where the hint of a pair is, by its number in the batch. */

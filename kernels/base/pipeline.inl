@@ -19,6 +19,7 @@
 #include "base/queue.inl"
 #include "base/rows.inl"
 #include "kernels.h"
+#include "polygon/polygon_edges.inl"
 #include "simd/simd.h"
 
 /* Are pairs settled before they reach the deciding formula? Without shortcuts every pair goes to it: the tests compare
@@ -50,12 +51,20 @@ INLINE vm take_valid(const struct call *call, size_t pair, const struct filter *
 enum { REMEMBERED = 64 * BLOCK };
 
 /* Appends the lanes `open` of `item` to the first stage's queue. Where that one can't answer most of the pairs that
- * have edges, as among bodies that rest on each other, these go to the stage that can. */
-INLINE void enter(struct queue *queues, vm open, const vf item[FIELDS], int fields, int edged_stage) {
+ * have edges, as among bodies that rest on each other, these go to the stage that can; polygons if it can't answer half
+ * of them, or `not_first`. */
+INLINE void enter(struct queue *queues, vm open, const vf item[FIELDS], int fields, int edged_stage, int polygon_stage,
+                  bool not_first) {
     vm here = open;
+    if (polygon_stage > 0 && (not_first || 2 * queues->edged_left > queues->edged)) {
+        const vm polygons = are_polygons(open, item[INFO_A], item[INFO_B]);
+        here = vm_and_not(open, polygons);
+        if (vm_any(polygons))
+            push(&queues[polygon_stage], polygons, item, fields);
+    }
     if (edged_stage > 0 && 4 * queues->edged_left > 3 * queues->edged) {
-        const vm edged = vm_and_not(open, both_have(item, NARC_SHAPE_SMOOTH));
-        here = vm_and_not(open, edged);
+        const vm edged = vm_and_not(here, both_have(item, NARC_SHAPE_SMOOTH));
+        here = vm_and_not(here, edged);
         if (vm_any(edged))
             push(&queues[edged_stage], edged, item, fields);
     }
@@ -98,7 +107,7 @@ INLINE void run_stages(const struct call *call, stage *const *stages, int stage_
     }
 }
 
-/* For so few pairs it is not worth a look how their poses lie. */
+/* For so few pairs it is not worth a look how their poses lie, nor one whether polygons need no enumeration. */
 enum { FEW_PAIRS = 4 };
 
 /* Runs all pairs of a call. `take`: what comes before all else, or NULL. `queues`: one for each stage. `edged_stage`:
@@ -106,6 +115,8 @@ enum { FEW_PAIRS = 4 };
 INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int fields, stage *const *stages,
                       int stage_count, int edged_stage, struct queue *queues) {
     const struct sources given = copy_sources(call->batch);
+    const int polygon_stage = stage_count > POLYGONS ? POLYGONS : 0;
+    const bool not_first = edged_stage == 0 || call->count <= FEW_PAIRS; /* do polygons skip the first stage? */
     const enum pose_layout layout = call->count <= FEW_PAIRS ? POSE_COLUMNS : find_layout(&given);
     struct pair_indices indices;
     struct found_arcs arcs;
@@ -132,8 +143,9 @@ INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int
             *call->skipped += (size_t)__builtin_popcount(vm_bits(circles.invalid));
             const vm open = settle(call, block + (size_t)k, &circles, item);
             if (stage_count > 0 && vm_any(open)) {
-                enter(queues, open, item, fields, edged_stage);
-                if (queues->count >= FLUSH || queues[edged_stage].count >= FLUSH)
+                enter(queues, open, item, fields, edged_stage, polygon_stage, not_first);
+                if (queues->count >= FLUSH || queues[edged_stage].count >= FLUSH ||
+                    queues[polygon_stage].count >= FLUSH)
                     run_stages(call, stages, stage_count, queues, false);
             }
         }
@@ -164,7 +176,7 @@ INLINE void run_overlap_method(stage *find, const narc_batch *batch, size_t firs
                                uint64_t *out_bits) {
     struct queue queue;
     const struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
-    run_pairs(&call, NULL, take_valid, FIELDS, &find, 1, 0, &queue);
+    run_pairs(&call, NULL, take_valid, QUEUE_FIELDS, &find, 1, 0, &queue);
 }
 
 INLINE size_t run_contact_method(stage *find, const narc_batch *batch, size_t first, size_t count, size_t *skipped,
@@ -172,7 +184,7 @@ INLINE size_t run_contact_method(stage *find, const narc_batch *batch, size_t fi
     struct queue queue;
     struct rows rows;
     const struct call call = begin_rows(batch, first, count, skipped, out, &rows);
-    run_pairs(&call, NULL, take_valid, FIELDS, &find, 1, 0, &queue);
+    run_pairs(&call, NULL, take_valid, QUEUE_FIELDS, &find, 1, 0, &queue);
     return end_rows(&call);
 }
 

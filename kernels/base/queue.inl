@@ -16,13 +16,14 @@
 enum { BLOCK = 32 };
 
 /* A stage waits for FLUSH pairs, so that vectors are full and its code is fetched once for several, and takes STEP at a
- * time as long as the stages behind it have room: so all queues together lie in the first cache, and on a small stack. */
+ * time as long as the stages behind it have room: so all queues together lie in the first cache, and on a small stack.
+ * POLYGONS is the stage that takes pairs of polygons (polygon/polygon_edges.inl), or 0. */
 #ifdef NARC_QUEUE_PAIRS
-enum { FLUSH = NARC_QUEUE_PAIRS, STEP = NARC_QUEUE_PAIRS, STAGES = 1 };
+enum { FLUSH = NARC_QUEUE_PAIRS, STEP = NARC_QUEUE_PAIRS, STAGES = 1, POLYGONS = 0 };
 #elif defined(NARC_FEW_STAGES)
-enum { FLUSH = 32, STEP = 32, STAGES = 4 };
+enum { FLUSH = 32, STEP = 32, STAGES = 5, POLYGONS = 3 };
 #else
-enum { FLUSH = V_WIDTH > 8 ? 24 : 32, STEP = V_WIDTH > 8 ? 16 : 24, STAGES = 5 };
+enum { FLUSH = V_WIDTH > 8 ? 16 : 24, STEP = FLUSH, STAGES = 6, POLYGONS = 3 };
 #endif
 
 /* A queue has less than FLUSH pairs when a stage before it, or a vector of new pairs, adds STEP at most. push() and
@@ -52,10 +53,17 @@ enum {
     CONTACT_FIELDS = SIZE
 };
 
+/* Those that queues have room for. */
+#ifdef NARC_FEW_STAGES
+enum { QUEUE_FIELDS = OVERLAP_FIELDS };
+#else
+enum { QUEUE_FIELDS = FIELDS };
+#endif
+
 struct queue {
-    _Alignas(64) float item[FIELDS][CAPACITY]; /* aligned: whole vectors do not lie across cache lines */
-    int32_t *record_a, *record_b;              /* the arcs that a stage found: push() leaves them out */
-    int32_t *hinted;                           /* 1 where a hint named these arcs */
+    _Alignas(64) float item[QUEUE_FIELDS][CAPACITY]; /* aligned: whole vectors do not lie across cache lines */
+    int32_t *record_a, *record_b;                    /* the arcs that a stage found: push() leaves them out */
+    int32_t *hinted;                                 /* 1 where a hint named these arcs */
     int count;
     int edged, edged_left; /* first stage: pairs with edges that it took, and passed on */
     bool whole;            /* first stage of overlaps: are whole arcs worth their price? */
@@ -144,7 +152,7 @@ INLINE void push(struct queue *queue, vm keep, const vf *item, int fields) {
 /* Fills the rest of a queue's last vector with harmless lanes: one arc, the first of all. */
 static inline void pad(struct queue *queue) {
     UNROLL
-    for (int f = 0; f < FIELDS; f++)
+    for (int f = 0; f < QUEUE_FIELDS; f++)
         v_store(queue->item[f] + queue->count, v_set(0));
     v_store(queue->item[INFO_A] + queue->count, v_of_bits(vi_set(1)));
     v_store(queue->item[INFO_B] + queue->count, v_of_bits(vi_set(1)));

@@ -117,38 +117,16 @@ INLINE struct edge find_box_edge(const struct box_pair *pair, const struct box_s
     return edge;
 }
 
-/* The words of a manifold's row behind its first one: the point that `place` tells, or those of two edges. */
-struct box_manifold {
-    vi count;
-    vf radius_a, radius_b, first[4], second[4];
-};
-
-INLINE struct box_manifold find_box_points(const struct call *call, const struct box_pair *pair,
-                                           const struct box_contact *c, const struct box_touch *on_a,
-                                           const struct box_touch *on_b, vec2 place, vf margin) {
-    const vec2 n = c->normal, to_world = get_box_vec2(pair, BOX_ROTATION_A);
+INLINE struct manifold_points find_box_points(const struct call *call, const struct box_pair *pair,
+                                              const struct box_contact *c, const struct box_touch *on_a,
+                                              const struct box_touch *on_b, vec2 place, vf margin) {
     const vf flat_sine = v_set(call->batch->flat_sine);
-    const struct edge a = find_box_edge(pair, &c->a, on_a, n, flat_sine, 4, false);
-    const struct edge b = find_box_edge(pair, &c->b, on_b, n, flat_sine, 6, true);
-    const struct end_point low = find_end_point(&a, &b, false), high = find_end_point(&a, &b, true);
-    const vm stretch = is_stretch(&low, &high, c->separation, n, get_box_vec2(pair, BOX_POSITION));
-    const vm faces = vm_and(vm_and(a.offered, b.offered), stretch);
-    const struct end_point exact = get_deepest(&a, &b, place.y, place.x, c->separation);
-    struct facing_points p = find_facing_points(&a, &b, low, high, &exact, find_second_margin(call, margin));
-    if (vm_any(vm_not(faces))) {
-        const vi number_a = find_box_arc(pair, find_box_touching(&c->a), 4),
-                 number_b = find_box_arc(pair, find_box_touching(&c->b), 6);
-        const vi id = find_touching_id(&a, &b, place.y, number_a, number_b);
-        p.two = vm_and(p.two, faces);
-        p.first = select_end_point(faces, &p.first, &exact);
-        p.first_id = vi_select(faces, p.first_id, id);
-        p.deepest = select_end_point(faces, &p.deepest, &exact);
-    }
-    struct box_manifold m = {.count = vi_select(p.two, vi_set(2), vi_set(1)),
-                             .radius_a = p.deepest.radius_a,
-                             .radius_b = p.deepest.radius_b};
-    write_facing_points(&p, to_world, n, m.first, m.second);
-    return m;
+    const struct edge a = find_box_edge(pair, &c->a, on_a, c->normal, flat_sine, 4, false);
+    const struct edge b = find_box_edge(pair, &c->b, on_b, c->normal, flat_sine, 6, true);
+    const vi number_a = find_box_arc(pair, find_box_touching(&c->a), 4),
+             number_b = find_box_arc(pair, find_box_touching(&c->b), 6);
+    return find_manifold_points(call, &a, &b, c->separation, c->normal, place, get_box_vec2(pair, BOX_ROTATION_A),
+                                get_box_vec2(pair, BOX_POSITION), margin, number_a, number_b);
 }
 
 /* The places of rows: behind those that are listed if all pairs before the last one are answered. From the first vector
@@ -187,14 +165,9 @@ INLINE void answer_boxes(const struct call *call, const struct box_queue *queue,
     char *to[V_WIDTH];
     find_box_places(call, queue, k + live - 1, pairs, keep, to);
     if (manifolds) {
-        const struct box_manifold m = find_box_points(call, &pair, &c, &on_a, &on_b, place, margin);
-        const vf head[4] = {v_of_bits(numbers), v_of_bits(m.count), normal.x, normal.y};
-        const vf radii[4] = {m.radius_a, m.radius_b, v_of_bits(find_box_reach(&pair, &c.a, &on_a)),
-                             v_of_bits(find_box_reach(&pair, &c.b, &on_b))};
-        v_put_rows(to, 0, head);
-        v_put_rows(to, MANIFOLD_RADII, radii);
-        v_put_rows(to, FIRST_POINT, m.first);
-        v_put_rows(to, SECOND_POINT, m.second);
+        const struct manifold_points m = find_box_points(call, &pair, &c, &on_a, &on_b, place, margin);
+        write_manifolds(to, numbers, normal, &m, find_box_reach(&pair, &c.a, &on_a),
+                        find_box_reach(&pair, &c.b, &on_b));
         return;
     }
     const vf flat = v_set(INFINITY);

@@ -5,7 +5,9 @@
  *
  * Pairs pass through stages until one of them knows the answer that the deciding formula (normal_fan.inl) would give,
  * to the last bit: circles, a probe along the axis (or of the arcs of the last call), another along u, a climb to a
- * local maximum, a walk past the two junctions beside it, and the formula itself. The normal n and the arcs are those of the highest local maximum of the gap.
+ * local maximum, a walk past the two junctions beside it, and the formula itself. The normal n and the arcs are those of
+ * the highest local maximum of the gap. Polygons of few corners go from the first probe to a stage that has the gap at
+ * all junctions.
  */
 #include <stdbool.h>
 #include <string.h>
@@ -22,6 +24,9 @@
 #include "box/box_pairs.inl"
 #include "box/box_rows.inl"
 #include "kernels.h"
+#include "polygon/polygon_contact.inl"
+#include "polygon/polygon_edges.inl"
+#include "polygon/polygon_rows.inl"
 #include "sat/arc_lookup.inl"
 #include "sat/certificates.inl"
 #include "sat/manifold_edges.inl"
@@ -125,8 +130,8 @@ INLINE vm climb_to(const struct call *call, struct queue *queue, int k, vm live,
     return vm_and_not(live, vm_or(top.apart, top.certain));
 }
 
-/* The stage that climbs. */
-enum { CLIMB = 2 };
+/* Stages that others pass pairs on to. */
+enum { CLIMB = 2, DECIDE = 4 };
 
 /* First stage: probes along the axis, and hands smooth pairs to the next probe, along u. Near edges u leads astray:
  * other pairs go to the climb, which begins along the axis again. */
@@ -138,7 +143,9 @@ static void probe_axis(const struct call *call, struct queue *queue, int begin, 
         const vm left = probe(call, queue, k, live, false, &u);
         store_vec2(queue, DIRECTION, k, v2_select(smooth, u, get_vec2(queue, DIRECTION, k)));
         pass_on(queue, k, vm_and(left, smooth), next);
-        pass_on(queue, k, vm_and_not(left, smooth), next + 1);
+        const vm edged = vm_and_not(left, smooth), polygons = select_polygons(queue, k, edged);
+        pass_on(queue, k, vm_and_not(edged, polygons), queue + CLIMB);
+        pass_on(queue, k, polygons, queue + POLYGONS);
         count_edged(queue, vm_and_not(live, smooth), vm_and_not(left, smooth));
     }
 }
@@ -161,8 +168,8 @@ static void start_from_hints(const struct call *call, struct queue *queue, int b
         if (vm_any(edged)) {
             vm lost;
             const vm left = climb_to(call, queue, k, edged, &lost);
-            pass_on(queue, k, vm_and(left, lost), next + 1);
-            pass_on(queue, k, vm_and_not(left, lost), next + 2);
+            pass_on(queue, k, vm_and(left, lost), queue + CLIMB);
+            pass_on(queue, k, vm_and_not(left, lost), queue + DECIDE);
         }
     }
 }
@@ -180,10 +187,60 @@ static void probe_again(const struct call *call, struct queue *queue, int begin,
 
 /* Climbs from the arcs that hold DIRECTION. */
 static void climb_from(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+    (void)next;
     look_up_arcs(call->batch->shapes->records, queue, begin, false);
     vm lost;
     for (int k = begin; k < queue->count; k += V_WIDTH)
-        pass_on(queue, k, climb_to(call, queue, k, vm_front(queue->count - k), &lost), next);
+        pass_on(queue, k, climb_to(call, queue, k, vm_front(queue->count - k), &lost), queue + (DECIDE - CLIMB));
+}
+
+/* Polygons: the gap at all junctions. Those pairs for which one exceeds all others take the places of the queue's last
+ * ones, from `begin` on. */
+static __attribute__((noinline)) void compare_edges(const struct call *call, struct queue *queue, int begin,
+                                                    struct queue *next) {
+    const int end = queue->count;
+    queue->count = begin;
+    for (int k = begin; k < end; k += V_WIDTH) {
+        const vm live = vm_front(end - k);
+        const vf slack = get(queue, SLACK, k), limit = v_add(get_margins(call, queue, k), v_mul(v_set(2), slack));
+        const struct polygon_edge found = find_polygon_edge(call->batch->shapes->records, queue, k, true);
+        const struct best_edge *best = &found.best;
+        if (call->batch->query->hints.base)
+            put_hints(call, get_bits(queue, PAIR, k), live, vi_set(FIRST_ARCS));
+        const vm near = vm_and_not(live, v_lt(limit, best->gap));
+        if (!vm_any(near))
+            continue;
+        const vm clear = v_lt(best->second, v_sub(best->gap, v_mul(v_set(CLEAR_EDGE), slack)));
+        vf item[FIELDS];
+        get_item(queue, k, item, CONTACT_FIELDS);
+        set_vec2(item, DIRECTION, best->normal);
+        item[EDGE_CODE] = v_of_bits(vi_add(best->edge, vi_shift_left(found.corner, 4)));
+        if (vm_any(vm_and_not(near, clear)))
+            push(next, vm_and_not(near, clear), item, CONTACT_FIELDS);
+        if (vm_any(vm_and(near, clear)))
+            push(queue, vm_and(near, clear), item, FIELDS);
+    }
+    pad(queue); /* what was behind them has no edges */
+}
+
+/* The contacts of polygons, if they are certain. */
+static __attribute__((noinline)) void answer_edges(const struct call *call, struct queue *queue, int begin,
+                                                   struct queue *next) {
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        const vm live = vm_front(queue->count - k);
+        const struct polygon_contact c = find_polygon_contact(call->batch->shapes->records, queue, k);
+        const vf margin = get_margins(call, queue, k);
+        const vm keep = vm_and(vm_and(live, c.certain), is_below(c.separation, margin));
+        if (vm_any(keep))
+            store_polygon_rows(call, queue, k, keep, margin, &c);
+        pass_on(queue, k, vm_and_not(live, c.certain), next);
+    }
+}
+
+/* One after the other, so that neither's stack is added to the other's. */
+static void answer_polygons(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+    compare_edges(call, queue, begin, next);
+    answer_edges(call, queue, begin, next);
 }
 
 /* The deciding formula, or a part of it that has its answer for certain. */
@@ -224,8 +281,8 @@ INLINE vm detour_rows(const struct call *call, const struct pair_indices *indice
 
 size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
     const bool hinted = batch->query->hints.base != NULL, manifolds = batch->manifolds;
-    stage *const stages[STAGES] = {hinted ? start_from_hints : probe_axis, probe_again, climb_from, decide,
-                                   find_second_points};
+    stage *const stages[STAGES] = {
+        hinted ? start_from_hints : probe_axis, probe_again, climb_from, answer_polygons, decide, find_second_points};
     stage *const formula[] = {decide, find_second_points};
     const int stage_count = manifolds ? STAGES : STAGES - 1, edged_stage = hinted ? 0 : CLIMB;
     struct queue queues[STAGES];

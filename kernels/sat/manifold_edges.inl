@@ -352,6 +352,46 @@ INLINE vf find_second_margin(const struct call *call, vf margin) {
     return v_max(margin, v_set(asked == 0 ? -INFINITY : asked));
 }
 
+/* The words of a manifold's row behind its first ones: the point that `place` tells, or those of two edges. */
+struct manifold_points {
+    vi count;
+    vf radius_a, radius_b, first[4], second[4];
+};
+
+/* Those of two bodies that touch along n with the arcs of these numbers, next to these edges. */
+INLINE struct manifold_points find_manifold_points(const struct call *call, const struct edge *a, const struct edge *b,
+                                                   vf separation, vec2 n, vec2 place, vec2 to_world, vec2 position_b,
+                                                   vf margin, vi number_a, vi number_b) {
+    const struct end_point low = find_end_point(a, b, false), high = find_end_point(a, b, true);
+    const vm stretch = is_stretch(&low, &high, separation, n, position_b);
+    const vm faces = vm_and(vm_and(a->offered, b->offered), stretch);
+    const struct end_point exact = get_deepest(a, b, place.y, place.x, separation);
+    struct facing_points p = find_facing_points(a, b, low, high, &exact, find_second_margin(call, margin));
+    if (vm_any(vm_not(faces))) {
+        const vi id = find_touching_id(a, b, place.y, number_a, number_b);
+        p.two = vm_and(p.two, faces);
+        p.first = select_end_point(faces, &p.first, &exact);
+        p.first_id = vi_select(faces, p.first_id, id);
+        p.deepest = select_end_point(faces, &p.deepest, &exact);
+    }
+    struct manifold_points m = {.count = vi_select(p.two, vi_set(2), vi_set(1)),
+                                .radius_a = p.deepest.radius_a,
+                                .radius_b = p.deepest.radius_b};
+    write_facing_points(&p, to_world, n, m.first, m.second);
+    return m;
+}
+
+/* Writes rows of manifolds. */
+INLINE void write_manifolds(char *const *place, vi numbers, vec2 normal, const struct manifold_points *m, vi reach_a,
+                            vi reach_b) {
+    const vf head[4] = {v_of_bits(numbers), v_of_bits(m->count), normal.x, normal.y};
+    const vf radii[4] = {m->radius_a, m->radius_b, v_of_bits(reach_a), v_of_bits(reach_b)};
+    v_put_rows(place, 0, head);
+    v_put_rows(place, MANIFOLD_RADII, radii);
+    v_put_rows(place, FIRST_POINT, m->first);
+    v_put_rows(place, SECOND_POINT, m->second);
+}
+
 /* Finds the second points of the pairs `begin` ... of a queue, and the ids of all points. */
 static void find_second_points(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     (void)next;

@@ -4,8 +4,8 @@
  *
  * Circles settle some pairs, and two probes most others: one along the axis between the inscribed circles, and one
  * along u of the arcs that the first one found. A probe ends with a proof (certificates.inl) that the bodies are apart
- * or have a common point, or passes the pair on. The rest climb to a local maximum of the gap. What is left then goes
- * to the deciding formula.
+ * or have a common point, or passes the pair on. The rest climb to a local maximum of the gap; of polygons with few
+ * corners it is computed at all junctions. What is left then goes to the deciding formula.
  */
 /* With a queue less there is room for more pairs in each. */
 #define NARC_FEW_STAGES
@@ -21,6 +21,7 @@
 #include "box/box_walk.inl"
 #include "box/capsules.inl"
 #include "kernels.h"
+#include "polygon/polygon_edges.inl"
 #include "sat/arc_lookup.inl"
 #include "sat/certificates.inl"
 #include "sat/normal_fan.inl"
@@ -87,6 +88,9 @@ INLINE struct overlap_probe probe_whole_arcs(const narc_record *records, const s
                                   vm_or(touch_in_common(queue, k, n, p.u, p.radii), vm_and(p.only, below))};
 }
 
+/* Stages that others pass pairs on to. */
+enum { CLIMB = 2, DECIDE = 4 };
+
 /* Probes along the axis. Smooth pairs are probed along u next. Near edges u leads astray: other pairs climb. Circles
  * settle what overlaps deeply or is well apart. Once they leave more than half of a vector, as among bodies that rest
  * on each other, whole arcs are worth their price for the rest of a block. */
@@ -104,7 +108,9 @@ static void probe_axis_overlaps(const struct call *call, struct queue *queue, in
             queue->whole = 2 * __builtin_popcount(vm_bits(vm_and(left, smooth))) > V_WIDTH;
         store_vec2(queue, DIRECTION, k, v2_select(smooth, p.u, n));
         pass_on_overlaps(queue, k, vm_and(left, smooth), next);
-        pass_on_overlaps(queue, k, vm_and_not(left, smooth), next + 1);
+        const vm edged = vm_and_not(left, smooth), polygons = select_polygons(queue, k, edged);
+        pass_on_overlaps(queue, k, vm_and_not(edged, polygons), queue + CLIMB);
+        pass_on_overlaps(queue, k, polygons, queue + POLYGONS);
         count_edged(queue, vm_and_not(live, smooth), vm_and_not(left, smooth));
     }
 }
@@ -124,13 +130,26 @@ static void probe_again_overlaps(const struct call *call, struct queue *queue, i
 
 /* Climbs from the arcs that hold DIRECTION. */
 static void climb_from_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+    (void)next;
     const narc_record *records = call->batch->shapes->records;
     look_up_arcs(records, queue, begin, false);
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k);
         const struct certified_maximum top = climb_and_certify(records, queue, k, live, v_set(0));
         mark_overlaps(call, queue, k, vm_and(top.certain, v_lt(top.separation, v_set(0))));
-        pass_on_overlaps(queue, k, vm_and_not(live, vm_or(top.apart, top.certain)), next);
+        pass_on_overlaps(queue, k, vm_and_not(live, vm_or(top.apart, top.certain)), queue + (DECIDE - CLIMB));
+    }
+}
+
+/* Polygons: the largest gap at a junction has the answer's sign, if it is not 0 up to rounding. */
+static void compare_polygon_overlaps(const struct call *call, struct queue *queue, int begin, struct queue *next) {
+    for (int k = begin; k < queue->count; k += V_WIDTH) {
+        const vm live = vm_front(queue->count - k);
+        const vf best = find_polygon_edge(call->batch->shapes->records, queue, k, false).best.gap,
+                 slack = get(queue, SLACK, k);
+        const vm deep = v_lt(best, v_neg(slack)), apart = v_lt(slack, best);
+        mark_overlaps(call, queue, k, vm_and(live, deep));
+        pass_on_overlaps(queue, k, vm_and_not(live, vm_or(deep, apart)), next);
     }
 }
 
@@ -166,7 +185,8 @@ INLINE vm detour_overlaps(const struct call *call, const struct pair_indices *in
 }
 
 void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
-    static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_from_overlaps, decide_overlaps};
+    static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_from_overlaps,
+                                    compare_polygon_overlaps, decide_overlaps};
     struct queue queues[STAGES];
     if (!NARC_SHORTCUTS) {
         run_overlap_method(decide_overlaps, batch, first, count, skipped, out_bits);
@@ -174,11 +194,11 @@ void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, si
     }
     struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
     if (batch->shapes->box_count == 0) {
-        run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, 2, queues);
+        run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, CLIMB, queues);
         return;
     }
     struct box_queue boxes[BOX_QUEUES];
     start_boxes(&call, boxes);
-    run_pairs(&call, detour_overlaps, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, 2, queues);
+    run_pairs(&call, detour_overlaps, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, CLIMB, queues);
     end_boxes(&call, overlap_detours);
 }

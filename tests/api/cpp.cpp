@@ -260,6 +260,7 @@ void test_shapes() {
     CHECK(moved.add(circle));
     static_assert(!std::is_copy_constructible_v<narc::shapes> && !std::is_copy_assignable_v<narc::shapes>, "owners");
     static_assert(std::is_nothrow_move_constructible_v<narc::broad_phase>, "owners");
+    static_assert(std::is_nothrow_move_constructible_v<narc::index>, "owners");
 
     narc_shapes *raw = nullptr;
     CHECK(narc_create_shapes(nullptr, &raw) == NARC_OK);
@@ -485,6 +486,110 @@ void test_broad_phase() {
     CHECK(broad.update(std::vector<narc_box>()).value()->pairs.count == 0);
 }
 
+// ---------------------------------------------------------------------------- questions to a scene
+
+void test_index() {
+    Scene scene = make_scene(10);
+    std::vector<narc_box> boxes(10);
+    CHECK(narc::compute_boxes(scene.shapes, scene.bodies, boxes));
+    const std::vector<uint64_t> category = {1, 2, 1, 2, 1, 2, 1, 2, 1, 2}, mask = {2};
+    const std::vector<uint32_t> ignored = {3};
+    const narc_workers workers = narc_openmp_workers(1);
+    narc::index index;
+    const auto options = narc::index_options().category(narc::column(category)).fast().workers(workers);
+    const narc_index_options &c = options;
+    CHECK(c.category.base == category.data() && c.fast == 1 && c.workers == &workers);
+    CHECK(index.build(boxes, options));
+    CHECK(index.refit(boxes, options).value() == 1);
+    CHECK(status_of(index.refit(narc::span<const narc_box>(boxes.data(), 9))) == NARC_ERROR_ARGUMENT);
+    CHECK(index.query({&boxes[3], 1}).value().count == 3);
+    const auto query = narc::index_query().mask(narc::column(mask)).ignored(narc::column(ignored)).workers(workers);
+    CHECK(index.query({&boxes[3], 1}, query).value().count == 0);
+    const narc::index moved = std::move(index);
+    CHECK(moved.get() && !index.get());                                   // NOLINT
+    CHECK(status_of(index.build(boxes)) == NARC_ERROR_ARGUMENT);          // NOLINT
+    CHECK(status_of(index.query({&boxes[3], 1})) == NARC_ERROR_ARGUMENT); // NOLINT
+    index = narc::index();
+    CHECK(index.build({}) && index.query(boxes).value().count == 0);
+}
+
+void test_rays_and_points() {
+    Scene scene = make_scene(10);
+    std::vector<narc_box> boxes(10);
+    CHECK(narc::compute_boxes(scene.shapes, scene.bodies, boxes));
+    narc::index index;
+    CHECK(index.build(boxes));
+    const std::vector<uint32_t> ignored = {0, 0};
+    const std::vector<Vector> from = {{-5, 0.1}, {3.1, 0.1}};
+    const std::vector<float> along = {20, 20}, none = {0, 0};
+    const auto search = narc::index_query().ignored(narc::column(ignored));
+
+    size_t skipped = 9;
+    narc_rays rays = {};
+    rays.count = 2;
+    rays.x = narc::positions(from, &Vector::x);
+    rays.y = narc::positions(from, &Vector::y);
+    rays.motion_x = narc::column(along);
+    rays.motion_y = narc::column(none);
+    const auto options = narc::ray_options().search(search).inside(NARC_INSIDE_IGNORES).most(3).skipped(skipped);
+    const narc_ray_options c = narc::ray_options(options).any();
+    CHECK(c.search.ignored.base == ignored.data() && c.inside == NARC_INSIDE_IGNORES && c.any == 1 && c.most == 3);
+    std::vector<narc_ray_hit> hits;
+    const auto found = narc::cast_rays(index, scene.shapes, scene.bodies, rays, options, hits).value();
+    std::vector<narc_ray_hit> expected(6);
+    CHECK(!narc_cast_rays(index, scene.shapes, &scene.bodies, &rays, &options, expected.data(), 6, nullptr));
+    CHECK(found.size() == 6 && skipped == 0 && found[0].body == 1 && found[1].body == 2 && found[3].body == 4);
+    CHECK(std::memcmp(hits.data(), expected.data(), 6 * sizeof expected[0]) == 0);
+    CHECK(status_of(narc::cast_rays(index, scene.shapes, scene.bodies, rays, options, narc::span(hits.data(), 5))) ==
+          NARC_ERROR_CAPACITY);
+
+    narc_points points = {2, rays.x, rays.y, {}};
+    const auto near = narc::nearest_options().search(search).distance(7).most(2);
+    const narc_nearest_options &n = near;
+    CHECK(n.search.ignored.base == ignored.data() && n.distance == 7 && n.inside == 0 && n.most == 2);
+    std::vector<narc_distance> rows;
+    const auto nearest = narc::find_nearest(index, scene.shapes, scene.bodies, points, near, rows).value();
+    CHECK(nearest.size() == 4 && nearest[0].body == 1 && nearest[0].separation > 5 && nearest[2].body == 3);
+    const uint32_t bodies[] = {1, 3};
+    narc_distance row[2];
+    CHECK(narc::find_distances(scene.shapes, scene.bodies, points, narc::column(bodies), row).value().size() == 2);
+    CHECK(same(row[0], nearest[0]) && same(row[1], nearest[2]));
+    CHECK(narc::find_nearest(index, scene.shapes, scene.bodies, points, narc::nearest_options().inside(), row));
+    CHECK(row[0].count == 0 && row[1].body == 3 && row[1].separation < 0);
+    CHECK(status_of(narc::find_distances(scene.shapes, scene.bodies, points, {}, narc::span(row, 1))) ==
+          NARC_ERROR_CAPACITY);
+    CHECK(status_of(narc::find_distances(nullptr, scene.bodies, points, {}, row)) == NARC_ERROR_ARGUMENT);
+}
+
+void test_casts() {
+    Scene scene = make_scene(10);
+    std::vector<narc_box> boxes(10);
+    CHECK(narc::compute_boxes(scene.shapes, scene.bodies, boxes));
+    narc::index index;
+    CHECK(index.build(boxes));
+    const std::vector<narc_body> movers = {narc::body(-5, 0, 1), narc::body(3, -5, 1)};
+    const std::vector<float> x = {10, 0}, y = {0, 10};
+    narc_motions motions = {};
+    motions.x = narc::column(x);
+    motions.y = narc::column(y);
+    size_t skipped = 9;
+    const auto options = narc::cast_options().target(0).tolerance(0.01f).skipped(skipped);
+    std::vector<narc_impact> impacts;
+    const auto hits =
+        narc::cast_shapes(index, scene.shapes, scene.bodies, narc::bodies_of(movers), motions, {}, options, impacts)
+            .value();
+    CHECK(hits.size() == 2 && hits[0].count == NARC_CAST_HIT && hits[0].body == 0 && hits[1].body == 3 && skipped == 0);
+    const uint32_t a[] = {0, 1}, b[] = {0, 3};
+    narc_pairs pairs = {};
+    pairs.count = 2;
+    pairs.a = narc::column(a);
+    pairs.b = narc::column(b);
+    pairs.other_bodies = &scene.bodies;
+    narc_impact impact[2];
+    CHECK(narc::cast_pairs(scene.shapes, narc::bodies_of(movers), &motions, pairs, nullptr, options, impact));
+    CHECK(same(impact[0], hits[0]) && same(impact[1], hits[1]));
+}
+
 void test_poses_and_sets() {
     const std::vector<float> angles = {0, 1};
     std::vector<float> cosines(2), sines(2);
@@ -526,6 +631,9 @@ int main() {
     test_small_batches();
     test_workers();
     test_broad_phase();
+    test_index();
+    test_rays_and_points();
+    test_casts();
     test_poses_and_sets();
     test_exceptions();
     std::puts("narc.hpp is what it says");

@@ -10,6 +10,7 @@
 #include "narc_files.h"
 #include "narc_fit.h"
 #include "narc_methods.h"
+#include "narc_scene.h"
 
 #define AT(field, offset) (offsetof(type, field) == (offset))
 #define LAYOUT(structure, size, fields)                                                                                \
@@ -27,6 +28,16 @@ static void check_numbers(void) {
     LAYOUT(narc_manifold, 64,
            AT(pair, 0) && AT(count, 4) && AT(normal_x, 8) && AT(normal_y, 12) && AT(radius_a, 16) && AT(radius_b, 20) &&
                AT(reach_a, 24) && AT(reach_b, 28) && AT(point, 32));
+    LAYOUT(narc_ray_hit, 36,
+           AT(ray, 0) && AT(body, 4) && AT(feature, 8) && AT(count, 10) && AT(fraction, 12) && AT(normal_x, 16) &&
+               AT(normal_y, 20) && AT(point_x, 24) && AT(point_y, 28) && AT(radius, 32));
+    LAYOUT(narc_impact, 44,
+           AT(pair, 0) && AT(body, 4) && AT(feature, 8) && AT(count, 10) && AT(fraction, 12) && AT(separation, 16) &&
+               AT(normal_x, 20) && AT(normal_y, 24) && AT(point_x, 28) && AT(point_y, 32) && AT(radius_a, 36) &&
+               AT(radius_b, 40));
+    LAYOUT(narc_distance, 36,
+           AT(point, 0) && AT(body, 4) && AT(feature, 8) && AT(count, 10) && AT(separation, 12) && AT(normal_x, 16) &&
+               AT(normal_y, 20) && AT(place_x, 24) && AT(place_y, 28) && AT(radius, 32));
     LAYOUT(narc_point, 16, AT(x, 0) && AT(y, 8));
     LAYOUT(narc_arc, 40, AT(center_x, 0) && AT(center_y, 8) && AT(radius, 16) && AT(start, 24) && AT(end, 32));
     LAYOUT(narc_four_arc, 40,
@@ -50,6 +61,9 @@ static void check_pointers(void) {
     LAYOUT(narc_byte_column, 16, AT(base, 0) && AT(stride, 8));
     LAYOUT(narc_hint_column, 16, AT(base, 0) && AT(stride, 8));
     LAYOUT(narc_position_column, 24, AT(base, 0) && AT(stride, 8) && AT(precision, 16));
+    LAYOUT(narc_motions, 64, AT(x, 0) && AT(y, 16) && AT(angle, 32) && AT(reserved, 48));
+    LAYOUT(narc_cast_options, 56,
+           AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(reserved, 24));
     LAYOUT(narc_workers, 24, AT(context, 0) && AT(count, 8) && AT(run, 16));
     LAYOUT(narc_error, 216, AT(status, 0) && AT(index, 8) && AT(value, 16) && AT(message, 24));
     LAYOUT(narc_allocator, 24, AT(allocate, 0) && AT(release, 8) && AT(context, 16));
@@ -74,6 +88,19 @@ static void check_pointers(void) {
     LAYOUT(narc_box_options, 104,
            AT(margin, 0) && AT(motion_x, 8) && AT(motion_y, 24) && AT(first, 40) && AT(count, 48) && AT(workers, 56) &&
                AT(out_skipped, 64) && AT(reserved, 72));
+    LAYOUT(narc_index_options, 64, AT(category, 0) && AT(fast, 16) && AT(workers, 24) && AT(reserved, 32));
+    LAYOUT(narc_index_query, 72, AT(mask, 0) && AT(ignored, 16) && AT(workers, 32) && AT(reserved, 40));
+    LAYOUT(narc_rays, 120,
+           AT(count, 0) && AT(x, 8) && AT(y, 32) && AT(motion_x, 56) && AT(motion_y, 72) && AT(fraction, 88) &&
+               AT(reserved, 104));
+    LAYOUT(narc_ray_options, 128,
+           AT(search, 0) && AT(inside, 72) && AT(any, 76) && AT(most, 80) && AT(out_skipped, 88) && AT(reserved, 96));
+    LAYOUT(narc_motions, 64, AT(x, 0) && AT(y, 16) && AT(angle, 32) && AT(reserved, 48));
+    LAYOUT(narc_cast_options, 56,
+           AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(reserved, 24));
+    LAYOUT(narc_points, 72, AT(count, 0) && AT(x, 8) && AT(y, 32) && AT(reserved, 56));
+    LAYOUT(narc_nearest_options, 120,
+           AT(search, 0) && AT(distance, 72) && AT(inside, 76) && AT(most, 80) && AT(reserved, 88));
     LAYOUT(narc_method_options, 56,
            AT(method, 0) && AT(tolerance, 4) && AT(iterations, 8) && AT(out_outcomes, 16) && AT(reserved, 24));
     LAYOUT(narc_named_shape, 48, AT(name, 0) && AT(arcs, 8) && AT(arc_count, 16) && AT(origin, 24) && AT(index, 40));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * stack.c - every call of the library in a thread whose stack has NARC_STACK_SIZE bytes (of other methods,
+ * stack.c - every call of the library in a thread whose stack has NARC_STACK_SIZE bytes (other methods:
  * NARC_METHODS_STACK_SIZE), those of the C library among them, and the tasks of its workers in such threads, too. Below
  * each stack lies a forbidden megabyte: more ends the process, and the last line that it printed names the call. Stacks
  * are filled with junk before: what is left of it tells how much was used.
@@ -16,6 +16,7 @@
 #include "guard.h"
 #include "methods.h"
 #include "narc_broad_phase.h"
+#include "narc_scene.h"
 
 /* Sanitizers make frames larger, and so does a compiler that does not optimise. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
@@ -46,6 +47,13 @@ static uint8_t outcomes[PAIRS];
 static uint64_t bits[NARC_BIT_WORDS(PAIRS)];
 static narc_contact contacts[PAIRS];
 static narc_manifold manifolds[PAIRS];
+static narc_impact impacts[PAIRS];
+static narc_motions motions;
+static narc_cast_options cast_options;
+static narc_index *scenery;
+static narc_index_query search;
+static narc_distance distances[3 * BODIES];
+static narc_ray_hit hits[3 * BODIES];
 static narc_box boxes[BODIES], spread[BODIES];
 static unsigned char bytes[1 << 16];
 static narc_arc arcs[NARC_MAX_ARCS];
@@ -95,6 +103,34 @@ static narc_status keep_shapes(narc_error *error) {
     return TRUE(fine);
 }
 
+/* An index of the bodies' boxes, and what is asked through it. */
+static narc_status ask_index(narc_error *error) {
+    const narc_points at = {.count = BODIES, .x = bodies.x, .y = bodies.y};
+    const narc_index_options index_options = {.workers = query.workers}, fast = {.fast = 1, .workers = query.workers};
+    const narc_nearest_options three = {.search.workers = query.workers, .most = 3};
+    const narc_float_column shift = NARC_ARRAY(shifts);
+    const narc_rays rays = {
+        .count = BODIES, .x = at.x, .y = at.y, .motion_x = shift, .motion_y = shift, .fraction = NARC_ARRAY(margins)};
+    const narc_ray_options leave = {
+        .search.workers = query.workers, .inside = NARC_INSIDE_LEAVES, .most = 3, .out_skipped = &skipped};
+    narc_index *index = NULL;
+    narc_pairs met;
+    const bool fine =
+        narc_create_index(NULL, &index) == NARC_OK &&
+        narc_compute_boxes(store, &bodies, NULL, boxes, error) == NARC_OK &&
+        narc_build_index(index, boxes, BODIES, &fast, error) == NARC_OK &&
+        narc_build_index(index, boxes, BODIES, &index_options, error) == NARC_OK &&
+        narc_refit_index(index, boxes, BODIES, &index_options, NULL, error) == NARC_OK &&
+        narc_query_index(index, boxes, BODIES, &three.search, &met, error) == NARC_OK &&
+        narc_find_nearest(index, store, &bodies, &at, &three, distances, 3 * BODIES, error) == NARC_OK &&
+        narc_cast_rays(index, store, &bodies, &rays, &leave, hits, 3 * BODIES, error) == NARC_OK && skipped < BODIES &&
+        narc_find_distances(store, &bodies, &at, NARC_ARRAY(selection), query.workers, distances, error) ==
+            NARC_ERROR_INDEX &&
+        narc_find_distances(store, &bodies, &at, (narc_index_column){0}, query.workers, distances, error) == NARC_OK;
+    narc_destroy_index(index);
+    return TRUE(fine);
+}
+
 /* All calls. Messages are printed on the stack. */
 #define CALLS(CALL, METHOD)                                                                                            \
     CALL(overlaps, narc_find_overlaps(store, &bodies, &pairs, &query, bits, error))                                    \
@@ -111,6 +147,10 @@ static narc_status keep_shapes(narc_error *error) {
     CALL(one_overlap, narc_find_overlaps(store, &own, &one, NULL, bits, error))                                        \
     CALL(one_contact, narc_find_contacts(store, &own, &one, NULL, contacts, 1, &count, error))                         \
     CALL(one_manifold, narc_find_manifolds(store, &own, &one, NULL, manifolds, 1, &count, error))                      \
+    CALL(cast_pairs, narc_cast_pairs(store, &bodies, &motions, &pairs, NULL, &cast_options, impacts, PAIRS, error))    \
+    CALL(cast_shapes,                                                                                                  \
+         narc_cast_shapes(scenery, store, &bodies, &bodies, &motions, &search, &cast_options, impacts, PAIRS, error))  \
+    CALL(index, ask_index(error))                                                                                      \
     METHOD(sat, ask_method(NARC_METHOD_SAT, error))                                                                    \
     METHOD(sat_first, ask_method(NARC_METHOD_SAT_FIRST, error))                                                        \
     METHOD(polygon_sat, ask_method(NARC_METHOD_POLYGON_SAT, error))                                                    \
@@ -164,7 +204,7 @@ static narc_status keep_shapes(narc_error *error) {
     }
 CALLS(DEFINE, DEFINE)
 
-/* With the stacks they are promised to do with: those of the core, and the larger ones of other methods. */
+/* With the stacks they are promised to do with: those of the core, and the larger ones of casts and other methods. */
 enum { CORE, METHODS, STACKS };
 static const size_t stack_size[STACKS] = {NARC_STACK_SIZE, NARC_METHODS_STACK_SIZE};
 #define LIST_CALL(name, expression)   {#name, call_##name, CORE},
@@ -252,7 +292,7 @@ static void run_tasks(void *context, unsigned task_count, void (*run)(void *argu
 /* Runs all calls, and tells how much each used. */
 static void run_calls(const narc_workers *workers) {
     query.workers = dense.workers = selected.workers = range.workers = box_options.workers = pair_options.workers =
-        workers;
+        cast_options.workers = search.workers = workers;
     memset(most, 0, sizeof most);
     for (size_t k = 0; k < sizeof calls / sizeof *calls; k++) {
         struct job job = {.call = &calls[k], .status = NARC_ERROR_CANCELLED};
@@ -325,6 +365,7 @@ static int set_up(void **state) {
     range.count = 2560;
     box_options = (narc_box_options){
         .margin = 0.1f, .motion_x = NARC_ARRAY(shifts), .motion_y = NARC_ARRAY(shifts), .out_skipped = &skipped};
+    motions = (narc_motions){.x = NARC_ARRAY(shifts), .angle = NARC_ARRAY(shifts)};
     for (int k = 0; k < BODIES; k++) {
         const float x = (float)random_between(&random, 0, 60), y = (float)random_between(&random, 0, 60);
         spread[k] = (narc_box){x, y, x + 1, y + 1};
@@ -333,6 +374,8 @@ static int set_up(void **state) {
         call_stack[k] = map_stack(stack_size[k]);
         task_stack[k] = map_stack(stack_size[k]);
     }
+    if (narc_create_index(NULL, &scenery) || narc_build_index(scenery, spread, BODIES, NULL, NULL))
+        return 1;
     return narc_create_broad_phase(NULL, &broad) || narc_build_ellipse(3, 1, 16, arcs, &arc_count, NULL, NULL);
 }
 

@@ -11,6 +11,7 @@
 
 #include "narc.h"
 #include "narc_broad_phase.h"
+#include "narc_scene.h"
 #include "support.h"
 
 enum { BODIES = 8000, FEW = 40, PAIRS = 60000, THREADS = 3 };
@@ -89,7 +90,7 @@ static void watch_run(void *context, unsigned count, task_function *task, void *
 /* ------------------------------------------------------------------------------------------------ all calls */
 
 /* Of each answer a hash, and how often workers were asked to run. */
-enum { FEW_CONTACTS = 8, ANSWERS = 13 };
+enum { FEW_CONTACTS = 9, ANSWERS = 14 };
 typedef struct answers {
     uint64_t hash[ANSWERS], runs[ANSWERS];
     size_t count;
@@ -111,6 +112,7 @@ static uint32_t a[PAIRS], b[PAIRS], match[PAIRS], hints[PAIRS], selection[PAIRS]
 static uint64_t bits[NARC_BIT_WORDS(PAIRS)];
 static narc_contact contacts[PAIRS];
 static narc_manifold manifolds[PAIRS];
+static narc_ray_hit hits[2 * BODIES];
 
 static void place_bodies(size_t count) {
     static const float rotations[][2] = {{1, 0}, {0.8f, 0.6f}, {-0.6f, 0.8f}};
@@ -161,6 +163,32 @@ static void ask_lists(size_t count, const narc_workers *workers, answers *out) {
     narc_destroy_broad_phase(broad);
 }
 
+/* From each body through its neighbours; those of the broken one have no answer. */
+static void ask_rays(size_t count, const narc_workers *workers, answers *out) {
+    static const float motion[] = {3, -1, 0, 2, -4};
+    const narc_bodies bodies = narc_view_bodies(rows, count);
+    size_t skipped = 0, found = 0;
+    float motions[BODIES + 2];
+    for (size_t k = 0; k < count + 2; k++)
+        motions[k] = motion[k % 5];
+    const narc_rays rays = {.count = count,
+                            .x = bodies.x,
+                            .y = bodies.y,
+                            .motion_x = NARC_ARRAY(motions),
+                            .motion_y = {motions + 2, sizeof *motions}};
+    const narc_ray_options options = {
+        .search.workers = workers, .inside = NARC_INSIDE_LEAVES, .most = 2, .out_skipped = &skipped};
+    narc_index *index = NULL;
+    OK(narc_create_index(NULL, &index));
+    OK(narc_build_index(index, boxes, count, NULL, NULL));
+    OK(narc_cast_rays(index, shapes, &bodies, &rays, &options, hits, 2 * count, NULL));
+    for (size_t k = 0; k < 2 * count; k++)
+        found += hits[k].count;
+    assert_true(skipped == 1 && found > count);
+    note(out, test_hash(TEST_HASH_START, hits, 2 * count * sizeof *hits));
+    narc_destroy_index(index);
+}
+
 static answers ask(size_t count, const narc_workers *workers) {
     answers out = {0};
     size_t found = 0, listed = 0, skipped = 0;
@@ -173,6 +201,7 @@ static answers ask(size_t count, const narc_workers *workers) {
     OK(narc_compute_boxes(shapes, &bodies, &box_options, boxes, NULL));
     assert_int_equal(skipped, 1);
     note(&out, test_hash(TEST_HASH_START, boxes, count * sizeof *boxes));
+    ask_rays(count, workers, &out);
 
     OK(narc_create_broad_phase(NULL, &broad));
     OK(narc_find_pairs(broad, boxes, count, NULL, workers, a, b, PAIRS, &found, NULL));

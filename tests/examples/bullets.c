@@ -45,7 +45,7 @@ TEST(test_can_fail) {
 }
 
 /* A bullet and a plate of 0.05 x 4 m that nothing holds: it never comes to the plate's other side, but around an end. */
-static bool passes_plate(uint64_t seed) {
+static bool passes_plate(uint64_t seed, float speed) {
     run r = begin_run("bullets", world_defaults, seed);
     world *w = &r.world;
     narc_arc arcs[NARC_MAX_ARCS];
@@ -57,7 +57,8 @@ static bool passes_plate(uint64_t seed) {
     assert_int_equal(world_add_shape(w, arcs, count, &plate.shape), NARC_OK);
     assert_int_equal(world_add_body(w, plate), NARC_OK);
     struct test_random random = {seed};
-    bullet.position.y = (float)random_between(&random, 0.3, 3.7);
+    bullet.position = (vec){-speed / 12, (float)random_between(&random, 0.3, 3.7)};
+    bullet.velocity.x = speed;
     const double angle = random_between(&random, -3, 3);
     bullet.cosine = (float)cos(angle);
     bullet.sine = (float)sin(angle);
@@ -75,10 +76,40 @@ static bool passes_plate(uint64_t seed) {
 }
 
 TEST(test_loose_plate) {
+    static const float speeds[] = {60, 120, 200, 390};
     size_t passed = 0;
-    for (uint64_t seed = 1; seed <= test_trials(1000); seed++)
-        passed += passes_plate(seed);
+    for (uint64_t seed = 1; seed <= test_trials(3000); seed++)
+        for (int k = 0; k < 4; k++)
+            passed += passes_plate(seed, speeds[k]);
     assert_int_equal(passed, 0);
+}
+
+/* A ball on a thin floor: each time that it comes down it touches and goes up again, for minutes. */
+TEST(test_ball_bounces) {
+    run r = begin_run("bullets", world_defaults, 1);
+    world *w = &r.world;
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count, touches = 0, turns = 0;
+    world_body floor = {.cosine = 1, .kind = NARC_STATIC}, ball = {.cosine = 1, .position = {0, 3}, .restitution = 1};
+    w->body_count = 0;
+    assert_int_equal(narc_build_box(40, 0.02, 0, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(world_add_shape(w, arcs, count, &floor.shape), NARC_OK);
+    assert_int_equal(world_add_body(w, floor), NARC_OK);
+    assert_int_equal(narc_build_circle(0.05, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(world_add_shape(w, arcs, count, &ball.shape), NARC_OK);
+    assert_int_equal(world_add_body(w, ball), NARC_OK);
+    const world_body *const moving = &w->bodies[1];
+    for (size_t step = 0; step < 60 * 60 * test_trials(5); step++) {
+        const float before = moving->velocity.y;
+        assert_int_equal(world_step(w), NARC_OK);
+        turns += before < -1 && moving->velocity.y > 0;
+        for (size_t k = 0; k < w->event_count; k++)
+            touches += w->events[k].begins;
+        assert_true(moving->position.y > 0.03f);
+    }
+    print_message("%zu times up, %zu touches\n", turns, touches);
+    assert_true(turns > 20 && touches >= turns);
+    end_run(&r);
 }
 
 /* Two that fly at each other, at 240 m/s, stay on their sides. */

@@ -14,12 +14,17 @@
 
 #include "methods.h"
 #include "narc_broad_phase.h"
+#include "narc_scene.h"
 #include "scene.h"
 
 /* One number for both precisions: the double positions are the single ones, 2^30 away, and as exact. */
 static const uint64_t golden_answers = 0x9467dc252df3f63fu;
+static const uint64_t golden_casts[] = {0xdd3ef55eec6c8e51u, 0x592438d802f5e0a5u}; /* straight, turning */
 static const uint64_t golden_manifolds = 0x1fe97f326534654au, golden_reaches = 0xb20aca8e704ae916u;
 /* Boxes: the doubles 2^30 away are rounded outwards to floats. */
+static const uint64_t golden_points = 0x57ecde8c73d6312eu;
+/* Rays that stop, leave, ignore. */
+static const uint64_t golden_rays[] = {0x3d921d721e7f6ffbu, 0x93bc1e29f9ee300fu, 0xebbd7d8a4e9a67f1u};
 static const uint64_t golden_boxes[] = {0x82c50e42c4824bc1u, 0xf33d99eef204246fu};
 /* Those of the other methods, in their order. */
 static const uint64_t golden_methods[] = {0x85810ad0d8fcad45u, 0xde05f3d86d13b145u, 0xb72adc1892a6c4b6u,
@@ -270,6 +275,42 @@ TEST(test_manifolds) {
     check_hash("reaches, double positions", reaches[1], golden_reaches);
 }
 
+TEST(test_casts) {
+    for (int precision = 0; precision < 2; precision++) {
+        struct scene scene = make_scene((narc_precision)precision);
+        const narc_bodies bodies = scene_bodies(&scene);
+        const narc_pairs pairs = scene_pairs(&scene);
+        float motion[BODIES];
+        for (size_t k = 0; k < BODIES; k++)
+            motion[k] = ((float)(k % 17) - 8) / 4;
+        const narc_float_column column = NARC_ARRAY(motion);
+        for (int turning = 0; turning < 2; turning++) {
+            const narc_motions motions = {.x = column,
+                                          .y = {motion + BODIES - 1, -column.stride},
+                                          .angle = {turning ? motion : NULL, column.stride}};
+            struct {
+                narc_impact *rows;
+                size_t count;
+            } list = {make_junk(PAIRS * sizeof *list.rows), PAIRS};
+            uint64_t hash = TEST_HASH_START;
+            assert_int_equal(
+                narc_cast_pairs(scene.store, &bodies, &motions, &pairs, NULL, NULL, list.rows, PAIRS, NULL), NARC_OK);
+            HASH_FIELD(hash, list, body);
+            HASH_FIELD(hash, list, feature);
+            HASH_FIELD(hash, list, count);
+            HASH_FIELD(hash, list, fraction);
+            HASH_FIELD(hash, list, separation);
+            HASH_FIELD(hash, list, normal_x);
+            HASH_FIELD(hash, list, normal_y);
+            HASH_FIELD(hash, list, point_x);
+            HASH_FIELD(hash, list, point_y);
+            check_hash(turning ? "turning casts" : "casts", hash, golden_casts[turning]);
+            free(list.rows);
+        }
+        destroy_scene(&scene);
+    }
+}
+
 TEST(test_boxes) {
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_scene((narc_precision)precision);
@@ -286,6 +327,97 @@ TEST(test_boxes) {
             options = (narc_box_options){.margin = 0.125f, .motion_x = NARC_ARRAY(motion), .motion_y = {motion + 5, 0}};
         }
         check_hash("boxes", hash, golden_boxes[precision]);
+        destroy_scene(&scene);
+    }
+}
+
+/* Distances of each body's position to another body, and to the two nearest but itself. */
+TEST(test_points) {
+    for (int precision = 0; precision < 2; precision++) {
+        struct scene scene = make_scene((narc_precision)precision);
+        const narc_bodies bodies = scene_bodies(&scene);
+        const narc_points points = {.count = BODIES, .x = bodies.x, .y = bodies.y};
+        uint32_t own[BODIES], other[BODIES];
+        narc_distance rows[3 * BODIES];
+        narc_box boxes[BODIES];
+        narc_index *index = NULL;
+        for (uint32_t k = 0; k < BODIES; k++) {
+            own[k] = k;
+            other[k] = (7 * k + 3) % BODIES;
+        }
+        const narc_nearest_options options = {.search.ignored = NARC_ARRAY(own), .most = 2};
+        assert_int_equal(narc_compute_boxes(scene.store, &bodies, NULL, boxes, NULL), NARC_OK);
+        assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+        assert_int_equal(narc_build_index(index, boxes, BODIES, NULL, NULL), NARC_OK);
+        assert_int_equal(narc_find_distances(scene.store, &bodies, &points, NARC_ARRAY(other), NULL, rows, NULL),
+                         NARC_OK);
+        assert_int_equal(
+            narc_find_nearest(index, scene.store, &bodies, &points, &options, rows + BODIES, 2 * BODIES, NULL),
+            NARC_OK);
+        uint64_t hash = TEST_HASH_START;
+        for (size_t k = 0; k < 3 * BODIES; k++) {
+            hash = test_hash_items(hash, &rows[k].point, 2, sizeof rows[k].point);
+            hash = test_hash_items(hash, &rows[k].feature, 2, sizeof rows[k].feature);
+            hash = test_hash_items(hash, &rows[k].separation, 6, sizeof rows[k].separation);
+        }
+        check_hash("points", hash, golden_points);
+        narc_destroy_index(index);
+        destroy_scene(&scene);
+    }
+}
+
+/* Rays from each body's position through a few of the bodies, up to two hits each. */
+TEST(test_rays) {
+    enum { MOST = 2, ROWS = BODIES * MOST };
+    for (int precision = 0; precision < 2; precision++) {
+        struct scene scene = make_scene((narc_precision)precision);
+        const narc_bodies bodies = scene_bodies(&scene);
+        float motion[BODIES + 2];
+        uint64_t category[BODIES], mask[BODIES];
+        narc_box boxes[BODIES];
+        narc_index *index = NULL;
+        for (size_t k = 0; k < BODIES + 2; k++)
+            motion[k] = ((float)(k % 17) - 8) / 4;
+        for (size_t k = 0; k < BODIES; k++) {
+            category[k] = UINT64_C(1) << k % 64;
+            mask[k] = UINT64_C(1) << (k + 1) % 64;
+        }
+        const narc_index_options seen = {.category = NARC_ARRAY(category)};
+        const narc_rays rays = {.count = BODIES,
+                                .x = bodies.x,
+                                .y = bodies.y,
+                                .motion_x = NARC_ARRAY(motion),
+                                .motion_y = {motion + BODIES + 1, -(ptrdiff_t)sizeof *motion}};
+        assert_int_equal(narc_compute_boxes(scene.store, &bodies, NULL, boxes, NULL), NARC_OK);
+        assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+        assert_int_equal(narc_build_index(index, boxes, BODIES, &seen, NULL), NARC_OK);
+        for (int inside = 0; inside < 3; inside++) {
+            struct {
+                narc_ray_hit rows[ROWS];
+                size_t count;
+            } list = {.count = ROWS};
+            const narc_ray_options options = {
+                .search.mask = NARC_ARRAY(mask), .inside = (narc_inside)inside, .most = MOST};
+            uint64_t hash = TEST_HASH_START;
+            size_t hits = 0;
+            assert_int_equal(narc_cast_rays(index, scene.store, &bodies, &rays, &options, list.rows, ROWS, NULL),
+                             NARC_OK);
+            HASH_FIELD(hash, list, body);
+            HASH_FIELD(hash, list, feature);
+            HASH_FIELD(hash, list, count);
+            HASH_FIELD(hash, list, fraction);
+            HASH_FIELD(hash, list, normal_x);
+            HASH_FIELD(hash, list, normal_y);
+            HASH_FIELD(hash, list, point_x);
+            HASH_FIELD(hash, list, point_y);
+            HASH_FIELD(hash, list, radius);
+            for (size_t k = 0; k < ROWS; k++)
+                hits += list.rows[k].count;
+            printf("  %zu hits of %d\n", hits, (int)ROWS);
+            assert_true(hits > ROWS / 4 && hits < ROWS);
+            check_hash("rays", hash, golden_rays[inside]);
+        }
+        narc_destroy_index(index);
         destroy_scene(&scene);
     }
 }

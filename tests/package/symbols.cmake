@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Which symbols and instructions are in objects and libraries. Run as cmake -D ... -P symbols.cmake, with one of
 #   NM, OBJECTS, EXPECTED         the objects define names of that regular expression, and nothing else that the linker sees
-#   NM, LIBRARY, HEADERS          the shared library exports the functions that the headers declare, and nothing else
+#   NM or OBJDUMP, LIBRARY, HEADERS   the shared library exports the functions that the headers declare, and nothing else
 #   OBJDUMP, LIBRARY, SONAME      what the shared library calls itself
 #   OBJDUMP, OBJECTS, FORBIDDEN   no disassembled line of the objects matches the regular expression
 
@@ -72,7 +72,13 @@ else()
     list(APPEND declared ${functions})
   endforeach()
   list(SORT declared)
-  defined_symbols(exported -D "${LIBRARY}")
+  if(LIBRARY MATCHES "\\.dll$")
+    run(header "${OBJDUMP}" -p "${LIBRARY}")
+    string(REGEX MATCHALL "\t\\[ *[0-9]+\\] [A-Za-z_0-9]+\n" exported "${header}")
+    list(TRANSFORM exported REPLACE ".* ([A-Za-z_0-9]+)\n" "\\1")
+  else()
+    defined_symbols(exported -D "${LIBRARY}")
+  endif()
   set(missing ${declared})
   list(REMOVE_ITEM missing ${exported})
   set(unwanted ${exported})

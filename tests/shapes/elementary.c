@@ -43,13 +43,16 @@ static double random_size(struct test_random *random, int low, int high) {
 
 static double random_sign(struct test_random *random, double x) { return random_below(random, 2) ? -x : x; }
 
-static void require_long_double(void) {
-    if (LDBL_MANT_DIG < 64)
-        skip();
-}
+/* Has the C library functions with more digits than a double's? On Windows some have fewer. */
+#ifdef _WIN32
+static bool has_long_double(void) { return false; }
+#else
+static bool has_long_double(void) { return LDBL_MANT_DIG >= 64; }
+#endif
 
 TEST(test_sines) {
-    require_long_double();
+    if (!has_long_double())
+        skip();
     struct test_random random = test_random_named("sines");
     struct worst cosine = {0}, sine = {0};
     const size_t trials = test_trials(400000);
@@ -78,7 +81,8 @@ TEST(test_sines) {
 }
 
 TEST(test_arc_tangents) {
-    require_long_double();
+    if (!has_long_double())
+        skip();
     struct test_random random = test_random_named("arc tangents");
     struct worst tangent = {0}, sine = {0};
     const size_t trials = test_trials(400000);
@@ -101,7 +105,8 @@ TEST(test_arc_tangents) {
 }
 
 TEST(test_lengths_and_powers) {
-    require_long_double();
+    if (!has_long_double())
+        skip();
     struct test_random random = test_random_named("lengths and powers");
     struct worst length = {0}, logarithm = {0}, power = {0};
     const size_t trials = test_trials(200000);

@@ -7,10 +7,45 @@
 
 #include <stdlib.h>
 #include <string.h>
+
+#include "support.h"
+
+#if defined(_WIN32)
+#include <windows.h>
+
+static void *map_pages(size_t size) { return VirtualAlloc(NULL, size, MEM_RESERVE | MEM_COMMIT, PAGE_READWRITE); }
+static bool forbid_pages(void *pages, size_t size) {
+    DWORD old;
+    return VirtualProtect(pages, size, PAGE_NOACCESS, &old);
+}
+static void unmap_pages(void *pages, size_t size) {
+    (void)size;
+    VirtualFree(pages, 0, MEM_RELEASE);
+}
+static size_t page_size(void) { return 4096; }
+#elif defined(__wasm__)
+/* No page can be forbidden: what is written there is found at the end, what is read is not. */
+#define FORBIDDEN_IS_JUNK
+
+static void *map_pages(size_t size) { return malloc(size); }
+static bool forbid_pages(void *pages, size_t size) { return memset(pages, GUARD_JUNK, size) != NULL; }
+static void unmap_pages(void *pages, size_t size) {
+    (void)size;
+    free(pages);
+}
+static size_t page_size(void) { return 256; }
+#else
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "support.h"
+static void *map_pages(size_t size) {
+    void *pages = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return pages == MAP_FAILED ? NULL : pages;
+}
+static bool forbid_pages(void *pages, size_t size) { return mprotect(pages, size, PROT_NONE) == 0; }
+static void unmap_pages(void *pages, size_t size) { munmap(pages, size); }
+static size_t page_size(void) { return (size_t)sysconf(_SC_PAGESIZE); }
+#endif
 
 /* One allocation: a forbidden page, pages that hold the memory at their end, a forbidden page. */
 struct block {
@@ -25,15 +60,21 @@ static struct block *blocks;
 void *guard_allocate(size_t size) {
     struct block *block = malloc(sizeof(*block));
     assert_non_null(block);
-    size_t page = (size_t)sysconf(_SC_PAGESIZE), inside = (size + page - 1) / page * page + (size == 0 ? page : 0);
-    unsigned char *map = mmap(NULL, inside + 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    assert_true(map != MAP_FAILED);
+    size_t page = page_size(), inside = (size + page - 1) / page * page + (size == 0 ? page : 0);
+    unsigned char *map = map_pages(inside + 2 * page);
+    assert_non_null(map);
     memset(map + page, GUARD_JUNK, inside);
-    assert_int_equal(mprotect(map, page, PROT_NONE), 0);
-    assert_int_equal(mprotect(map + page + inside, page, PROT_NONE), 0);
+    assert_true(forbid_pages(map, page) && forbid_pages(map + page + inside, page));
     *block = (struct block){blocks, map, inside + 2 * page, page, map + page + inside - size};
     blocks = block;
     return block->memory;
+}
+
+static bool is_junk(const unsigned char *from, const unsigned char *to) {
+    bool whole = true;
+    for (const unsigned char *byte = from; byte < to; byte++)
+        whole = whole && *byte == GUARD_JUNK;
+    return whole;
 }
 
 void guard_release(void *memory) {
@@ -42,12 +83,13 @@ void guard_release(void *memory) {
         link = &(*link)->next;
     struct block *block = *link;
     assert_non_null(block);
-    bool whole = true;
-    for (const unsigned char *byte = block->map + block->page; byte < block->memory; byte++)
-        whole = whole && *byte == GUARD_JUNK;
-    assert_true(whole);
+    assert_true(is_junk(block->map + block->page, block->memory));
+#ifdef FORBIDDEN_IS_JUNK
+    const unsigned char *end = block->map + block->map_size;
+    assert_true(is_junk(block->map, block->map + block->page) && is_junk(end - block->page, end));
+#endif
     *link = block->next;
-    munmap(block->map, block->map_size);
+    unmap_pages(block->map, block->map_size);
     free(block);
 }
 

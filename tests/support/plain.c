@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "layouts.h"
 #include "plain_kernels.h"
 
 /* Finds a batch's rows group by group; returns how many. */
@@ -132,4 +133,74 @@ void check_plain_contacts(const struct plain_batch *batch, const narc_query *que
     }
     assert_int_equal(at, found.count);
     free(found.rows);
+}
+
+/* Fails with the first row that differs. */
+static void check_rows(const struct scene *scene, const struct manifolds *right, const struct manifolds *found,
+                       const char *name) {
+    for (size_t k = 0; k < right->count && k < found->count; k++) {
+        const narc_manifold *r = &right->rows[k], *f = &found->rows[k];
+        if (memcmp(r, f, sizeof *r) == 0)
+            continue;
+        const struct pair pair = scene->pairs[r->pair];
+        const struct reference_body a = scene_reference(scene, pair.a), b = scene_reference(scene, pair.b);
+        print_pair(&a, &b);
+        const narc_manifold *const both[] = {r, f};
+        for (int i = 0; i < 2; i++)
+            print_error("%s: pair %u, %u points, normal (%a, %a), radii %a %a, reaches %u %u %u %u; (%a, %a) %a %04x; "
+                        "(%a, %a) %a %04x\n",
+                        i ? "found" : "right", both[i]->pair, both[i]->count, (double)both[i]->normal_x,
+                        (double)both[i]->normal_y, (double)both[i]->radius_a, (double)both[i]->radius_b,
+                        both[i]->reach_a[0], both[i]->reach_a[1], both[i]->reach_b[0], both[i]->reach_b[1],
+                        (double)both[i]->point[0].x, (double)both[i]->point[0].y, (double)both[i]->point[0].separation,
+                        both[i]->point[0].feature, (double)both[i]->point[1].x, (double)both[i]->point[1].y,
+                        (double)both[i]->point[1].separation, both[i]->point[1].feature);
+        fail_msg("%s: row %zu differs", name, k);
+    }
+    assert_int_equal(right->count, found->count);
+}
+
+void check_plain_scene(struct test_random *random, const struct scene *scene, const char *name) {
+    const enum layout layouts[] = {LAYOUT_ARRAYS, LAYOUT_STRUCTURES, LAYOUT_STRUCTURES, LAYOUT_REVERSED};
+    struct columns columns = create_columns(scene, layouts[random_below(random, 4)], 0, scene->pair_count);
+    const narc_pairs *pairs = &columns.pairs;
+    struct contacts plain = find_plain_contacts(scene->store, &columns.bodies, pairs);
+    const struct plain_batch batch = {.shapes = scene->store,
+                                      .bodies = &columns.bodies,
+                                      .pairs = pairs,
+                                      .right = plain.rows,
+                                      .scene = scene,
+                                      .name = name};
+    const float flats[] = {0, 0.05f, 0.7f, 0.7853982f, NARC_MAX_FLAT_ANGLE, -1};
+    const float some = plain.rows[random_below(random, plain.count)].separation;
+    const float margins[] = {0.02f, 0, INFINITY, some, nextafterf(some, INFINITY), -0.01f};
+    float *each = malloc(scene->pair_count * sizeof *each);
+    for (size_t k = 0; k < scene->pair_count; k++) { /* the separation itself is not below it */
+        const float separation = plain.rows[k].separation;
+        each[k] = random_below(random, 2) ? separation : nextafterf(separation, INFINITY);
+        each[k] = random_below(random, 20) ? each[k] : NAN;
+    }
+    uint32_t *hints = malloc(scene->pair_count * sizeof *hints);
+    for (size_t k = 0; k < scene->pair_count; k++)
+        hints[k] = (uint32_t)random_below(random, 12) << 8 | (uint32_t)random_below(random, 12);
+    for (size_t m = 0; m < sizeof margins / sizeof *margins; m++) {
+        narc_query query = {.margin = margins[m], .flat_angle = flats[random_below(random, 6)]};
+        query.second_margin = random_below(random, 2) ? 0 : 0.1f;
+        if (m == 1)
+            query.margins = (narc_float_column){each, sizeof *each};
+        struct manifolds right = find_plain_manifolds(scene->store, &columns.bodies, pairs, &query);
+        if (random_below(random, 2))
+            query.hints = NARC_HINT_ARRAY(hints);
+        struct manifolds found = find_manifolds(scene->store, &columns.bodies, pairs, &query);
+        check_rows(scene, &right, &found, name);
+        free(right.rows);
+        free(found.rows);
+        if (m != 1)
+            check_plain_contacts(&batch, &(narc_query){.margin = margins[m], .hints = query.hints});
+    }
+    check_plain_overlaps(&batch, NULL);
+    free(hints);
+    free(each);
+    free(plain.rows);
+    destroy_columns(&columns);
 }

@@ -33,4 +33,7 @@ struct plain_batch make_plain_batch(const struct scene *scene, const narc_bodies
 void check_plain_overlaps(const struct plain_batch *batch, const narc_workers *workers);
 void check_plain_contacts(const struct plain_batch *batch, const narc_query *query);
 
+/* The same of manifolds with any flat angle and margins, contacts, with hints and without, and overlaps of a scene. */
+void check_plain_scene(struct test_random *random, const struct scene *scene, const char *name);
+
 #endif

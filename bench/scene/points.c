@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * points.c - the nearest bodies of points beside Chipmunk, and distances by pair: settled piles and sparse scenes. The
+ * ways take turns within one process. Chipmunk wants to know how far to look, and takes longer the further that is; it
+ * is told a distance within which every point finds something, and asked of a tenth of the points.
+ *
+ *     bench_points [--bodies=10000] [--points=1000000] [--rounds=5]
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common.h"
+#include "own.h"
+#include "peers.h"
+#include "random.h"
+
+enum { MOST_ROUNDS = 100, PEER_PART = 10 };
+
+struct setting {
+    size_t bodies, points, rounds;
+};
+
+struct questions {
+    size_t count;
+    float *x, *y, *distances;
+    uint32_t *body;
+    narc_distance *rows;
+};
+
+static struct questions make_questions(double half, size_t count) {
+    struct questions q = {count,
+                          allocate(count, sizeof(float)),
+                          allocate(count, sizeof(float)),
+                          allocate(count, sizeof(float)),
+                          allocate(count, sizeof *q.body),
+                          allocate(count, sizeof *q.rows)};
+    uint64_t random = 78;
+    for (size_t k = 0; k < count; k++) {
+        q.x[k] = (float)random_between(&random, -half, half);
+        q.y[k] = (float)random_between(&random, -half, half);
+    }
+    return q;
+}
+
+/* ------------------------------------------------------------------------------------------------ ways */
+
+static const double reach = 2; /* of a pile; times the spread */
+
+/* So many points in a call. */
+static void find_nearest(const struct own *own, const struct questions *q, size_t batch,
+                         const narc_nearest_options *options) {
+    for (size_t k = 0; k < q->count; k += batch) {
+        const narc_points points = {.count = batch < q->count - k ? batch : q->count - k,
+                                    .x = NARC_POSITION_ARRAY(q->x + k),
+                                    .y = NARC_POSITION_ARRAY(q->y + k)};
+        narc_error error;
+        must(narc_find_nearest(own->index, own->scene->shapes, &own->bodies, &points, options, q->rows + k,
+                               points.count, &error),
+             &error);
+    }
+}
+
+static void find_distances(const struct own *own, const struct questions *q, narc_index_column body) {
+    const narc_points points = {.count = q->count, .x = NARC_POSITION_ARRAY(q->x), .y = NARC_POSITION_ARRAY(q->y)};
+    narc_error error;
+    must(narc_find_distances(own->scene->shapes, &own->bodies, &points, body, NULL, q->rows, &error), &error);
+}
+
+enum way { ARCS, POLYGONS, ONE_BY_ONE, INSIDE, TWO_WORKERS, PAIRS, ONE_BODY, PEER, WAYS };
+
+static double run(enum way way, const struct own *arcs, const struct own *own, void *peer, const struct questions *q,
+                  float within) {
+    const narc_workers two = narc_openmp_workers(2);
+    const narc_nearest_options inside = {.inside = 1}, by_two = {.search.workers = &two};
+    const uint32_t first = 0;
+    const double start = now();
+    switch (way) {
+    case ARCS:
+        find_nearest(arcs, q, q->count, NULL);
+        break;
+    case POLYGONS:
+        find_nearest(own, q, q->count, NULL);
+        break;
+    case ONE_BY_ONE:
+        find_nearest(arcs, q, 1, NULL);
+        break;
+    case INSIDE:
+        find_nearest(arcs, q, q->count, &inside);
+        break;
+    case TWO_WORKERS:
+        find_nearest(arcs, q, q->count, &by_two);
+        break;
+    case PAIRS:
+        find_distances(arcs, q, NARC_ARRAY(q->body));
+        break;
+    case ONE_BODY:
+        find_distances(arcs, q, (narc_index_column){&first, 0});
+        break;
+    case PEER:
+        chipmunk_scene.find_nearest(peer, q->x, q->y, q->count / PEER_PART, within, q->distances);
+    case WAYS:
+        break;
+    }
+    return (now() - start) / (double)(way == PEER ? q->count / PEER_PART : q->count);
+}
+
+static void compare(const struct setting *s, const char *scene_name, double spread) {
+    const struct own arcs = make_own(FAMILY_N_ARCS, s->bodies, spread);
+    const struct own own = make_own(FAMILY_POLYGONS, s->bodies, spread);
+    void *const peer = chipmunk_scene.create(own.scene);
+    const struct questions q = make_questions(own.half, s->points);
+    double ns[WAYS][MOST_ROUNDS], median[WAYS];
+    size_t differences = 0;
+    find_nearest(&arcs, &q, q.count, NULL);
+    for (size_t k = 0; k < q.count; k++)
+        q.body[k] = q.rows[k].body;
+    for (size_t round = 0; round < s->rounds; round++)
+        for (enum way way = 0; way < WAYS; way++)
+            ns[way][round] = run(way, &arcs, &own, peer, &q, (float)(reach * spread));
+    find_nearest(&own, &q, q.count, NULL);
+    for (size_t k = 0; k < q.count / PEER_PART; k++) /* bodies overlap: within several, they name another depth */
+        differences += fabs((double)(q.rows[k].separation - q.distances[k])) > 1e-3 && q.rows[k].separation > 0;
+    for (enum way way = 0; way < WAYS; way++)
+        median[way] = quantile(ns[way], s->rounds, 0.5);
+    printf("| %zu %s | %.0f | %.0f | %.0f | %.0f | %.2f | %.0f | %.0f | %.0f (%.1f, %.1f) | %zu |\n", s->bodies,
+           scene_name, median[ARCS], median[POLYGONS], median[ONE_BY_ONE], median[INSIDE],
+           median[ARCS] / median[TWO_WORKERS], median[PAIRS], median[ONE_BODY], median[PEER],
+           median[PEER] / median[POLYGONS], median[PEER] / median[ONE_BY_ONE], differences);
+    fflush(stdout);
+}
+
+int main(int argc, char **argv) {
+    struct setting s = {10000, 1000000, 5};
+    for (int k = 1; k < argc; k++) {
+        const char *const bodies = option_value(argv[k], "--bodies="), *const points =
+                                                                           option_value(argv[k], "--points=");
+        const char *const rounds = option_value(argv[k], "--rounds=");
+        if (!bodies && !points && !rounds)
+            fail("%s: unknown; see the head of points.c", argv[k]);
+        *(bodies   ? &s.bodies
+          : points ? &s.points
+                   : &s.rounds) = strtoul(bodies   ? bodies
+                                          : points ? points
+                                                   : rounds,
+                                          NULL, 10);
+    }
+    if (s.rounds < 1 || s.rounds > MOST_ROUNDS || s.points < 1000 || s.bodies < 100)
+        fail("--rounds=1 .. %d, --points=1000 or more, --bodies=100 or more", MOST_ROUNDS);
+    printf("%s, %s, %s; ns a point, the nearest body but for distances\n\n", processor_name(), compiler_name,
+           choose_best_isa());
+    printf("| Scene | n-arcs | polygons | n-arcs one by one | inside | two workers, times | distances by pair | of one "
+           "body | Chipmunk (times polygons, one by one) | Differ |\n");
+    printf("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    compare(&s, "pile", 1);
+    compare(&s, "sparse", 3);
+    return 0;
+}

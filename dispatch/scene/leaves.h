@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * leaves.h - the two orders in which an index is built. Internal.
+ */
+#ifndef NARC_SCENE_LEAVES_H
+#define NARC_SCENE_LEAVES_H
+
+#include "index.h"
+
+/* Fill index->body with the bodies of its boxes, eight for each leaf. There is room for them. The order depends on the
+ * boxes alone. */
+void narc_halve_bodies(narc_index *index, const narc_box *boxes, const narc_workers *workers);
+void narc_sort_bodies_by_curve(narc_index *index, const narc_box *boxes, const narc_workers *workers);
+
+/* A box that is not empty. False for NaN too. */
+bool narc_is_full_box(const narc_box *box);
+
+#endif

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * points.c - narc_find_distances() and narc_find_nearest(): argument checks, then points part by part to the kernels.
+ */
+#include "column.h"
+#include "dispatch.h"
+#include "error.h"
+#include "index.h"
+
+#include <math.h>
+#include <stdatomic.h>
+
+/* Points in a part: some 20 microseconds of work. */
+enum { CHECK_PART = 16384, PART = 512, NEAREST_PART = 128 };
+
+/* So few points are asked one by one, of the kernels with one lane. The bits are the same. */
+enum { FEW = 2 };
+
+typedef struct point_job {
+    narc_point_batch batch;
+    void (*kernel)(const narc_point_batch *batch, size_t first, size_t end);
+    atomic_size_t bad; /* the first point whose body or shape does not exist */
+} point_job;
+
+static void answer_part(void *argument, size_t part, size_t first, size_t end) {
+    const point_job *job = argument;
+    (void)part;
+    job->kernel(&job->batch, first, end);
+}
+
+static narc_status check_points(const narc_points *points, narc_error *error) {
+    if (points->count > UINT32_MAX)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)points->count, "%zu points, at most %lu", points->count,
+                         (unsigned long)UINT32_MAX);
+    const narc_status status = narc_check_reserved(points->reserved, 2, "points", error);
+    if (status != NARC_OK || points->count == 0)
+        return status;
+    if (!points->x.base || !points->y.base)
+        return narc_fail_missing(error, points->x.base ? "points.y" : "points.x");
+    const narc_precision x = points->x.precision, y = points->y.precision;
+    if ((x != NARC_FLOAT32 && x != NARC_FLOAT64) || x != y)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)x,
+                         "points.x.precision is %d and points.y.precision is %d", (int)x, (int)y);
+    return NARC_OK;
+}
+
+/* What both calls begin with. Shapes are looked at where bodies are named. */
+static narc_status check_inputs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
+                                narc_error *error) {
+    if (!shapes || !bodies || !points)
+        return narc_fail_missing(error, !shapes ? "shapes" : !bodies ? "bodies" : "points");
+    narc_status status = check_points(points, error);
+    if (status == NARC_OK && bodies->count > UINT32_MAX)
+        status = narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->count, "%zu bodies, at most %lu",
+                           bodies->count, (unsigned long)UINT32_MAX);
+    if (status == NARC_OK)
+        status = narc_check_reserved(bodies->reserved, 2, "bodies", error);
+    return status == NARC_OK && bodies->count > 0 ? narc_check_columns(bodies, error) : status;
+}
+
+/* The kernels for so many points. */
+static const narc_kernel_table *find_kernels(size_t count, narc_status *out_status, narc_error *error) {
+    const narc_kernel_table *const kernels = narc_kernels(out_status, error);
+    return kernels && count <= FEW ? &narc_kernels_scalar : kernels;
+}
+
+/* ------------------------------------------------------------------------------------------------ distances */
+
+static size_t find_body(const narc_point_batch *batch, size_t point) {
+    return batch->body.base ? narc_index_at(batch->body, point) : point;
+}
+
+static void check_part(void *argument, size_t part, size_t first, size_t end) {
+    point_job *job = argument;
+    const narc_point_batch *const batch = &job->batch;
+    (void)part;
+    for (; first < end; first++) {
+        const size_t body = find_body(batch, first);
+        if (body >= batch->bodies->count || narc_index_at(batch->bodies->shape, body) >= batch->shapes->count)
+            break;
+    }
+    size_t bad = atomic_load_explicit(&job->bad, memory_order_relaxed);
+    while (first < end && first < bad && !atomic_compare_exchange_weak(&job->bad, &bad, first))
+        continue;
+}
+
+/* Says what of a point is out of range. */
+static narc_status describe_bad_point(const narc_point_batch *batch, size_t point, narc_error *error) {
+    const size_t body = find_body(batch, point);
+    if (body >= batch->bodies->count)
+        return narc_fail(error, NARC_ERROR_INDEX, point, (double)body,
+                         "point %zu: the body is %zu, but there are %zu bodies", point, body, batch->bodies->count);
+    const uint32_t shape = narc_index_at(batch->bodies->shape, body);
+    return narc_fail(error, NARC_ERROR_INDEX, point, shape,
+                     "point %zu: body %zu has shape %lu, but there are %zu shapes", point, body, (unsigned long)shape,
+                     batch->shapes->count);
+}
+
+narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
+                                narc_index_column body, const narc_workers *workers, narc_distance *out_rows,
+                                narc_error *error) {
+    narc_status status = check_inputs(shapes, bodies, points, error);
+    if (status != NARC_OK || points->count == 0)
+        return status;
+    if (!out_rows)
+        return narc_fail_missing(error, "out_rows");
+    const narc_kernel_table *const kernels = find_kernels(points->count, &status, error);
+    if (!kernels)
+        return status;
+    point_job job = {.batch = {.shapes = shapes, .bodies = bodies, .points = points, .body = body, .out = out_rows},
+                     .kernel = kernels->distance};
+    atomic_init(&job.bad, points->count);
+    narc_run_ranges(workers, points->count, CHECK_PART, check_part, &job);
+    const size_t bad = atomic_load(&job.bad);
+    if (bad < points->count)
+        return describe_bad_point(&job.batch, bad, error);
+    narc_run_ranges(workers, points->count, PART, answer_part, &job);
+    return NARC_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------ nearest */
+
+static narc_status check_options(const narc_nearest_options *options, narc_error *error) {
+    if (isnan(options->distance))
+        return narc_fail(error, NARC_ERROR_NOT_FINITE, 0, (double)options->distance,
+                         "options.distance is not a number");
+    const narc_status status = narc_check_reserved(options->reserved, 4, "options", error);
+    return status == NARC_OK ? narc_check_reserved(options->search.reserved, 4, "options.search", error) : status;
+}
+
+narc_status narc_find_nearest(const narc_index *index, const narc_shapes *shapes, const narc_bodies *bodies,
+                              const narc_points *points, const narc_nearest_options *options, narc_distance *out_rows,
+                              size_t capacity, narc_error *error) {
+    static const narc_nearest_options defaults = {0};
+    const narc_nearest_options *const o = options ? options : &defaults;
+    if (!index)
+        return narc_fail_missing(error, "index");
+    narc_status status = check_inputs(shapes, bodies, points, error);
+    if (status == NARC_OK)
+        status = check_options(o, error);
+    if (status != NARC_OK)
+        return status;
+    if (bodies->count != index->count)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->count,
+                         "%zu bodies, but the index was built from %zu boxes", bodies->count, index->count);
+    const size_t most = o->most > 0 ? o->most : 1;
+    const float distance = o->distance == 0 ? INFINITY : o->distance;
+    if (points->count == 0)
+        return NARC_OK;
+    if (capacity / most < points->count)
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)points->count * (double)most,
+                         "%zu points with %zu rows each, but room for %zu rows", points->count, most, capacity);
+    if (!out_rows)
+        return narc_fail_missing(error, "out_rows");
+    const narc_kernel_table *const kernels = narc_kernels(&status, error);
+    if (!kernels)
+        return status;
+    point_job job = {.batch = {.shapes = shapes,
+                               .bodies = bodies,
+                               .points = points,
+                               .index = index,
+                               .search = &o->search,
+                               .distance = o->inside && distance > 0 ? 0 : distance,
+                               .most = most,
+                               .out = out_rows},
+                     .kernel = kernels->nearest};
+    narc_run_ranges(o->search.workers, points->count, NEAREST_PART, answer_part, &job);
+    return NARC_OK;
+}

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * rays.c - narc_cast_rays(): argument checks, then rays part by part to the kernel.
+ */
+#include "column.h"
+#include "dispatch.h"
+#include "error.h"
+#include "narc_scene.h"
+
+#include <stdatomic.h>
+
+/* Rays in a part: some 20 microseconds of work. */
+enum { PART = 128 };
+
+struct ray_job {
+    narc_ray_batch batch;
+    const narc_kernel_table *kernels;
+    atomic_size_t skipped;
+};
+
+static void cast_part(void *argument, size_t part, size_t first, size_t end) {
+    struct ray_job *const job = argument;
+    (void)part;
+    const size_t skipped = job->kernels->rays(&job->batch, first, end - first);
+    if (skipped > 0)
+        atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
+}
+
+static narc_status check_rays(const narc_rays *rays, narc_error *error) {
+    const void *const bases[] = {rays->x.base, rays->y.base, rays->motion_x.base, rays->motion_y.base};
+    static const char *const names[] = {"rays.x", "rays.y", "rays.motion_x", "rays.motion_y"};
+    if (rays->count > UINT32_MAX)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)rays->count, "%zu rays, at most %lu", rays->count,
+                         (unsigned long)UINT32_MAX);
+    for (size_t k = 0; k < 4 && rays->count > 0; k++)
+        if (!bases[k])
+            return narc_fail_missing(error, names[k]);
+    if (rays->count > 0 && (rays->x.precision != rays->y.precision || (unsigned)rays->x.precision > NARC_FLOAT64))
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)rays->x.precision,
+                         "rays.x and rays.y are neither both float nor both double");
+    return narc_check_reserved(rays->reserved, 2, "rays", error);
+}
+
+static narc_status check_options(const narc_ray_options *options, narc_error *error) {
+    if ((unsigned)options->inside > NARC_INSIDE_IGNORES)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)options->inside, "options.inside is %d",
+                         (int)options->inside);
+    const narc_status status = narc_check_reserved(options->search.reserved, 4, "options.search", error);
+    return status == NARC_OK ? narc_check_reserved(options->reserved, 4, "options", error) : status;
+}
+
+/* The bodies of an index. */
+static narc_status check_index(const narc_index *index, const narc_bodies *bodies, narc_error *error) {
+    if (bodies->count != index->count)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->count,
+                         "%zu bodies, but the index was built from %zu boxes", bodies->count, index->count);
+    const narc_status status = narc_check_reserved(bodies->reserved, 2, "bodies", error);
+    return status == NARC_OK && bodies->count > 0 ? narc_check_columns(bodies, error) : status;
+}
+
+narc_status narc_cast_rays(const narc_index *index, const narc_shapes *shapes, const narc_bodies *bodies,
+                           const narc_rays *rays, const narc_ray_options *options, narc_ray_hit *out_rows,
+                           size_t capacity, narc_error *error) {
+    static const narc_ray_options defaults = {0};
+    const narc_ray_options *const o = options ? options : &defaults;
+    const size_t most = o->most > 0 ? o->most : 1;
+    if (!index || !shapes || !bodies || !rays)
+        return narc_fail_missing(error, !index ? "index" : !shapes ? "shapes" : !bodies ? "bodies" : "rays");
+    narc_status status = check_rays(rays, error);
+    if (status == NARC_OK)
+        status = check_options(o, error);
+    if (status == NARC_OK)
+        status = check_index(index, bodies, error);
+    if (status != NARC_OK)
+        return status;
+    if (rays->count > capacity / most)
+        return narc_fail(error, NARC_ERROR_CAPACITY, 0, (double)rays->count * (double)most,
+                         "%zu rows for each of %zu rays, but there is room for %zu", most, rays->count, capacity);
+    if (rays->count > 0 && !out_rows)
+        return narc_fail_missing(error, "out_rows");
+    struct ray_job job = {{index, shapes, bodies, rays, o, most, out_rows}, narc_kernels(&status, error), 0};
+    if (!job.kernels)
+        return status;
+    narc_run_ranges(o->search.workers, rays->count, PART, cast_part, &job);
+    if (o->out_skipped)
+        *o->out_skipped = atomic_load_explicit(&job.skipped, memory_order_relaxed);
+    return NARC_OK;
+}

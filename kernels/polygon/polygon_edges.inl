@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * polygon_edges.inl - pairs of two sharp polygons with 3 to 8 corners: the gap at all junctions of both.
+ *
+ * At the normal n of an edge of A the gap g (normal_fan.inl) is the least n.b over all corners b of B, less n.a of a
+ * corner a at that edge; at the negated normal of an edge of B it is n.b of a corner at the edge less the largest n.a.
+ * So all junctions cost 2 * 8 * 8 products, without a search and without a branch.
+ *
+ * They tell which edge answers, if one is CLEAR_EDGE slacks above all others (polygon_contact.inl); and of overlaps
+ * nearly all: polygons whose largest value at a junction is below 0 have none above, as between two junctions g is a
+ * sinusoid that is positive on half a turn, and each sector is less than that.
+ */
+#ifndef NARC_POLYGON_POLYGON_EDGES_INL
+#define NARC_POLYGON_POLYGON_EDGES_INL
+
+#include <math.h>
+#include <stdbool.h>
+
+#include "base/queue.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "simd/simd.h"
+#include "store.h"
+
+enum { MAX_CORNERS = 8 };
+
+/* By so many slacks the largest gap at a junction exceeds all others, or the pair is left to the deciding formula. */
+#define CLEAR_EDGE 6.0f
+
+/* Are both shapes sharp polygons of 3 to 8 corners, in the lanes `which`? */
+INLINE vm are_polygons(vm which, vf info_a, vf info_b) {
+    if (!vm_any(which))
+        return which;
+    const vi a = vi_bits(info_a), b = vi_bits(info_b), least = vi_set(2), most = vi_set(MAX_CORNERS + 1);
+    const vm both = vm_and(which, has_flag(vi_and(a, b), NARC_SHAPE_POLYGON));
+    if (!vm_any(both))
+        return both;
+    const vm large = vm_and(vi_lt(least, get_arc_count(a)), vi_lt(least, get_arc_count(b)));
+    return vm_and(both, vm_and(large, vm_and(vi_lt(get_arc_count(a), most), vi_lt(get_arc_count(b), most))));
+}
+
+/* Those of the pairs k ... of a queue. */
+INLINE vm select_polygons(const struct queue *queue, int k, vm which) {
+    return are_polygons(which, get(queue, INFO_A, k), get(queue, INFO_B, k));
+}
+
+/* A polygon in each lane, in A's frame: its corners, and the normals of the edges before them, B's negated. Lanes that
+ * have less corners than others repeat their first one. `full`: all have 8. */
+struct polygon {
+    bool full, is_b;
+    int most; /* corners of any lane */
+    vi count;
+    vec2 corner[MAX_CORNERS], normal[MAX_CORNERS];
+};
+
+INLINE vec2 place_corner(vec2 center, const struct pose *pose, bool is_b) {
+    return is_b ? place_center_b(center, pose) : v2_scale(center, pose->scale_a);
+}
+
+/* The record of corner j in each lane, for v_rows(). */
+INLINE void store_corner_record(const struct polygon *p, struct ring ring, int j, int32_t index[V_WIDTH]) {
+    if (!p->full)
+        vi_store(index, vi_select(vi_lt(vi_set(j), ring.count), vi_add(ring.base, vi_set(j)), ring.base));
+}
+
+/* Two corners at a time: a record has the normals of the edges at both its ends. */
+INLINE void load_polygon(const narc_record *records, struct ring ring, const struct pose *pose, struct polygon *p) {
+    const bool is_b = p->is_b;
+    int32_t index[V_WIDTH];
+    p->count = ring.count;
+    p->most = MAX_CORNERS;
+    while (!p->full && p->most > 3 && !vm_any(vi_lt(vi_set(p->most - 1), ring.count)))
+        p->most--;
+    vi_store(index, ring.base);
+    UNROLL
+    for (int j = 0; j < MAX_CORNERS; j += 2) {
+        vf first[4], second[4], normals[4];
+        if (j >= p->most) {
+            p->corner[j] = p->corner[j + 1] = p->corner[0];
+            continue;
+        }
+        const narc_record *const here = p->full ? records + j : records;
+        store_corner_record(p, ring, j, index);
+        v_rows(here, sizeof *records, index, first);
+        v_rows(&here->arc.start_x, sizeof *records, index, normals);
+        store_corner_record(p, ring, j + 1, index);
+        v_rows(p->full ? here + 1 : here, sizeof *records, index, second);
+        p->corner[j] = place_corner((vec2){first[0], first[1]}, pose, is_b);
+        p->corner[j + 1] = place_corner((vec2){second[0], second[1]}, pose, is_b);
+        p->normal[j] = (vec2){normals[0], normals[1]};
+        p->normal[j + 1] = (vec2){normals[2], normals[3]};
+        if (is_b) {
+            p->normal[j] = v2_rotate_opposite(pose->rotation, p->normal[j]);
+            p->normal[j + 1] = v2_rotate_opposite(pose->rotation, p->normal[j + 1]);
+        }
+    }
+}
+
+/* The largest gap at a junction and the second largest; where the largest is: edge i of A, or MAX_CORNERS + i of B. */
+struct best_edge {
+    vf gap, second;
+    vi edge;
+    vec2 normal;
+};
+
+/* The nearer of two corners of B, seen from A; of A it is the other one. */
+INLINE vf find_nearer(vf a, vf b, bool of_a) { return of_a ? v_max(a, b) : v_min(a, b); }
+
+/* With one lane: the edge of a polygon that faces the other one, by the axis of the inscribed circles. */
+INLINE int find_facing_edge(const struct polygon *p, vec2 axis) {
+    vf most = v_set(-INFINITY);
+    int facing = 0;
+    for (int i = 0; i < p->most; i++) {
+        const vf along = v2_dot(axis, p->normal[i]);
+        facing = vm_any(v_lt(most, along)) ? i : facing;
+        most = v_max(most, along);
+    }
+    return facing;
+}
+
+/* Takes the junctions of `own`. With one lane those that the inscribed circles rule out are left out, as nearly all are
+ * once the edge that faces the other body is known. */
+INLINE void try_edges(const struct polygon *own, const struct polygon *other, const struct queue *queue, int k,
+                      struct best_edge *best) {
+    const bool of_a = own->is_b; /* whose corners are searched */
+    const vf room = v_mul(v_set(CLEAR_EDGE + 2), get(queue, SLACK, k)), core = get(queue, CORE, k);
+    const vec2 axis = get_vec2(queue, AXIS, k);
+    const int first = V_WIDTH == 1 ? find_facing_edge(own, axis) : 0;
+    for (int tried = 0; tried < (own->full ? MAX_CORNERS : own->most); tried++) {
+        const int i = first + tried < own->most ? first + tried : first + tried - own->most;
+        const vec2 n = own->normal[i];
+        if (V_WIDTH == 1 && !vm_any(v_le(v_sub(best->gap, room), v_sub(v2_dot(axis, n), core))))
+            continue;
+        vf even = v2_dot(n, other->corner[0]), odd = v2_dot(n, other->corner[1]);
+        UNROLL
+        for (int j = 2; j < MAX_CORNERS; j += 2) {
+            if (j == 4 && !other->full && other->most <= 4)
+                break;
+            even = find_nearer(even, v2_dot(n, other->corner[j]), of_a);
+            odd = find_nearer(odd, v2_dot(n, other->corner[j + 1]), of_a);
+        }
+        const vf here = v2_dot(n, own->corner[i]), there = find_nearer(even, odd, of_a);
+        vf gap = of_a ? v_sub(here, there) : v_sub(there, here);
+        if (!own->full)
+            gap = v_select(vi_lt(vi_set(i), own->count), gap, v_set(-INFINITY));
+        const vm better = v_lt(best->gap, gap);
+        best->second = v_max(best->second, v_min(best->gap, gap));
+        best->edge = vi_select(better, vi_set(own->is_b ? MAX_CORNERS + i : i), best->edge);
+        best->normal = v2_select(better, n, best->normal);
+        best->gap = v_max(best->gap, gap);
+    }
+}
+
+/* The corner of the other shape that is closest to the edge of A, in the lanes `of_a`, or of B. */
+INLINE vi find_closest_corner(const struct polygon *a, const struct polygon *b, vm of_a, vec2 n) {
+    const vec2 m = v2_select(of_a, n, (vec2){v_neg(n.x), v_neg(n.y)});
+    vf least = v_set(INFINITY);
+    vi closest = vi_set(0);
+    UNROLL
+    for (int j = 0; j < MAX_CORNERS; j++) {
+        const vf along = v2_dot(m, v2_select(of_a, b->corner[j], a->corner[j]));
+        closest = vi_select(v_lt(along, least), vi_set(j), closest);
+        least = v_min(along, least);
+    }
+    return closest;
+}
+
+/* The edge with the largest gap, and the other shape's corner that is closest to it. */
+struct polygon_edge {
+    struct best_edge best;
+    vi corner;
+};
+
+INLINE struct polygon_edge find_best_of(const narc_record *records, const struct queue *queue, int k, bool full,
+                                        bool contact) {
+    const struct pose pose = get_pose(queue, k);
+    const vf none = v_set(-INFINITY);
+    struct polygon a, b; /* an initialiser would clear all of both */
+    struct polygon_edge found = {{none, none, vi_set(0), {v_set(0), v_set(0)}}, vi_set(0)};
+    a.full = b.full = full;
+    a.is_b = false;
+    b.is_b = true;
+    load_polygon(records, get_ring_a(queue, k), &pose, &a);
+    load_polygon(records, get_ring_b(queue, k), &pose, &b);
+    try_edges(&a, &b, queue, k, &found.best);
+    try_edges(&b, &a, queue, k, &found.best);
+    if (contact)
+        found.corner = find_closest_corner(&a, &b, vi_lt(found.best.edge, vi_set(MAX_CORNERS)), found.best.normal);
+    return found;
+}
+
+/* Those of the pairs k ... of a queue; without `contact` only the gap. */
+INLINE struct polygon_edge find_polygon_edge(const narc_record *records, const struct queue *queue, int k,
+                                             bool contact) {
+    const vi most = vi_set(MAX_CORNERS);
+    const vi a = get_arc_count(get_bits(queue, INFO_A, k)), b = get_arc_count(get_bits(queue, INFO_B, k));
+    const bool full = !vm_any(vm_or(vi_lt(a, most), vi_lt(b, most)));
+    return full ? find_best_of(records, queue, k, true, contact) : find_best_of(records, queue, k, false, contact);
+}
+
+#endif

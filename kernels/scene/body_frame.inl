@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * body_frame.inl - one body for one ray or point: its frame in double precision, and the arcs of its shape in lanes.
+ *
+ * What is asked of a body is brought into its shape's own coordinates in double precision and rounded there once. So it
+ * has no error but that, in proportion to the body, however far the world's origin or the ray's start is, and arcs are
+ * used as they are stored: nothing is turned or scaled but the question and the answer. The plain doubles below are
+ * rounded correctly everywhere, as the lanes' floats are.
+ */
+#ifndef NARC_SCENE_BODY_FRAME_INL
+#define NARC_SCENE_BODY_FRAME_INL
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "column.h"
+#include "kernels.h"
+#include "simd/simd.h"
+
+/* A vector or a point in double precision. */
+typedef struct {
+    double x, y;
+} place;
+
+INLINE double find_least(double a, double b) { return a < b ? a : b; }
+INLINE double find_most(double a, double b) { return a > b ? a : b; }
+INLINE double find_dot(place a, place b) { return a.x * b.x + a.y * b.y; }
+INLINE double find_cross(place a, place b) { return a.x * b.y - a.y * b.x; }
+
+/* A point p of the shape stands at position + scale * (rotation p). */
+struct body_frame {
+    place position, rotation; /* the rotation is a unit vector */
+    double scale, inverse_scale;
+    const narc_shape_header *header;
+    const narc_record *arcs; /* header->count of them */
+};
+
+/* 1 / sqrt(1 + e), of the error that a rotation's square may have: the next term, 63/256 e^5, is below 2^-57. So what is
+ * far away is not off in proportion. */
+INLINE double find_inverse_length(double e) { return 1 - e * (0.5 - e * (0.375 - e * (0.3125 - e * 0.2734375))); }
+
+/* False for a body that nothing meets: one with broken numbers, or whose shape does not exist. */
+INLINE bool load_body_frame(const narc_shapes *shapes, const narc_bodies *bodies, size_t body, struct body_frame *out) {
+    const uint32_t shape = narc_index_at(bodies->shape, body);
+    if (shape >= shapes->count)
+        return false;
+    const double cosine = (double)narc_float_at(bodies->cosine, body), sine = (double)narc_float_at(bodies->sine, body);
+    const double scale = bodies->scale.base ? (double)narc_float_at(bodies->scale, body) : 1;
+    const double square_error = cosine * cosine + sine * sine - 1, factor = find_inverse_length(square_error);
+    const narc_shape_header *const header = &shapes->headers[shape];
+    const float size = (float)scale * header->bound_radius;
+    out->position = (place){narc_position_at(bodies->x, body), narc_position_at(bodies->y, body)};
+    out->rotation = (place){cosine * factor, sine * factor};
+    out->scale = scale;
+    out->inverse_scale = 1 / scale;
+    out->header = header;
+    out->arcs = narc_arcs_of(shapes, header);
+    return fabs(square_error) <= NARC_ROTATION_TOLERANCE && (float)NARC_MIN_SIZE <= size &&
+           size <= (float)NARC_MAX_BOUND_RADIUS; /* all false for NaN */
+}
+
+/* A direction of the world in the shape's axes, and back. */
+INLINE place turn_to_shape(const struct body_frame *frame, place a) {
+    return (place){find_dot(frame->rotation, a), find_cross(frame->rotation, a)};
+}
+INLINE place turn_to_world(const struct body_frame *frame, place a) {
+    return (place){frame->rotation.x * a.x - frame->rotation.y * a.y,
+                   frame->rotation.y * a.x + frame->rotation.x * a.y};
+}
+
+/* ------------------------------------------------------------------------------------------------ arcs */
+
+/* Arcs of one shape, each in a lane, in its own coordinates. */
+struct own_arcs {
+    vec2 center;
+    vf radius;
+    vec2 start, end;
+};
+
+/* Arcs first .. first + V_WIDTH - 1; lanes behind the last arc repeat it. */
+INLINE struct own_arcs load_own_arcs(const struct body_frame *frame, int first) {
+    const int last = (int)frame->header->count - 1;
+    int32_t index[V_WIDTH];
+    vf field[8];
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        index[lane] = first + lane < last ? first + lane : last;
+    v_rows(frame->arcs, sizeof *frame->arcs, index, field);
+    v_rows(&frame->arcs->arc.start_x, sizeof *frame->arcs, index, field + 4);
+    return (struct own_arcs){{field[0], field[1]}, field[2], {field[4], field[5]}, {field[6], field[7]}};
+}
+
+/* ------------------------------------------------------------------------------------------------ features */
+
+/* The number of a stored arc, or of the edge before it, as a row has it (narc_contact.feature). */
+INLINE unsigned find_feature_number(const narc_shape_header *header, int arc, bool is_edge) {
+    const unsigned number = (unsigned)arc + header->first_arc;
+    if (header->flags & NARC_SHAPE_CIRCLE)
+        return 0;
+    return (number < header->count ? number : number - header->count) + (is_edge ? NARC_FEATURE_EDGE : 0);
+}
+
+/* Does what lies between an arc and the one before count as an edge? As in base/contact_point.inl. */
+INLINE bool is_edge_before(const struct body_frame *frame, int arc) {
+    const narc_shape_header *const header = frame->header;
+    const narc_stored_arc *const after = &frame->arcs[arc].arc;
+    const narc_stored_arc *const before = &frame->arcs[arc > 0 ? arc - 1 : (int)header->count - 1].arc;
+    const float length =
+        after->start_x * (after->center_y - before->center_y) - after->start_y * (after->center_x - before->center_x);
+    const uint32_t least_bits = (5u * (header->flags >> NARC_SIZE_CLASS_SHIFT) + 127 - 47) << 23; /* store.h */
+    float least;
+    memcpy(&least, &least_bits, sizeof least);
+    const float magnitude =
+        0.125f * (fabsf(before->center_x) + fabsf(before->center_y) + fabsf(after->center_x) + fabsf(after->center_y)) +
+        before->radius + after->radius;
+    return !(header->flags & NARC_SHAPE_SMOOTH) && length > least && length > 0x1p-18f * magnitude;
+}
+
+#endif

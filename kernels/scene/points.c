@@ -1,0 +1,396 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * points.c - the kernels of points: how far each is from one body, and which bodies of an index are nearest to it.
+ *
+ * The separation of a point p is the largest p.n - h(n) of all normals n, h the support function. Over an arc with the
+ * centre c and the radius r, u = p - c, that is u.n - r: |u| - r if the arc holds the direction of u, else the larger
+ * value at its two ends. The ends are normals of junctions, and so those of edges. Nothing is lost between two arcs: a
+ * sign that rounding turns takes |u| for the value at the end of the arc, or that for |u|, and both are the same there.
+ *
+ * u is taken from the middle of the shape's bounding circle, where p is placed in double precision. So it has no error
+ * but that in proportion to the body's own size and the distance to it.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "base/bodies.inl"
+#include "base/contact_point.inl"
+#include "base/rows.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "column.h"
+#include "index.h"
+#include "kernels.h"
+#include "scene/body_frame.inl"
+#include "simd/simd.h"
+
+/* ------------------------------------------------------------------------------------------------ separations */
+
+/* From an arc's centre to a point: does u.n rise at the arc's start, and fall at its end; |u|, and u.n there. */
+struct arc_view {
+    vm rises, falls, holds;
+    vf length, at_start, at_end;
+};
+
+/* Sweeps are at most half a turn, and far above a rounding: two signs tell that the arc holds the direction. Where
+ * |u|^2 has lost its digits the ends serve: what they lack is less than any rounding of the body. */
+INLINE struct arc_view view_arc(vec2 u, vec2 start, vec2 end) {
+    const vf square = v2_dot(u, u), zero = v_set(0);
+    const vm rises = v_le(zero, v2_cross(start, u)), falls = v_le(zero, v2_cross(u, end));
+    const vm holds = vm_and(vm_and(rises, falls), v_le(v_set(LEAST_SQUARE), square));
+    return (struct arc_view){rises, falls, holds, v_sqrt(square), v2_dot(u, start), v2_dot(u, end)};
+}
+
+INLINE vf find_arc_separation(const struct arc_view *view, vf radius) {
+    return v_sub(v_select(view->holds, view->length, v_max(view->at_start, view->at_end)), radius);
+}
+
+/* A point as a body sees it: in its axes and the world's unit, from the middle of the bounding circle. False if
+ * there is no answer. */
+INLINE bool place_point(const struct body_frame *frame, place point, float *out_x, float *out_y) {
+    const place from = {point.x - frame->position.x, point.y - frame->position.y};
+    if (!(fabs(from.x) <= NARC_MAX_DISTANCE && fabs(from.y) <= NARC_MAX_DISTANCE)) /* or NaN */
+        return false;
+    const place turned = turn_to_shape(frame, from);
+    *out_x = (float)(turned.x - frame->scale * (double)frame->header->bound_x);
+    *out_y = (float)(turned.y - frame->scale * (double)frame->header->bound_y);
+    return true;
+}
+
+INLINE place load_point(const narc_points *points, size_t k) {
+    return (place){narc_position_at(points->x, k), narc_position_at(points->y, k)};
+}
+
+/* The separation of one point, with arcs in lanes. */
+INLINE float find_separation(const struct body_frame *frame, float x, float y) {
+    const vec2 point = {v_set(x), v_set(y)};
+    const vec2 middle = {v_set(frame->header->bound_x), v_set(frame->header->bound_y)};
+    const vf scale = v_set((float)frame->scale);
+    vf most = v_set(-INFINITY);
+    for (int k = 0; k < (int)frame->header->count; k += V_WIDTH) {
+        const struct own_arcs arcs = load_own_arcs(frame, k);
+        const vec2 u = v2_sub(point, v2_scale(v2_sub(arcs.center, middle), scale));
+        const struct arc_view view = view_arc(u, arcs.start, arcs.end);
+        most = v_max(most, find_arc_separation(&view, v_mul(arcs.radius, scale)));
+    }
+    float lane[V_WIDTH];
+    v_store(lane, most);
+    for (int k = 1; k < V_WIDTH; k++)
+        lane[0] = lane[0] < lane[k] ? lane[k] : lane[0];
+    return lane[0];
+}
+
+/* ------------------------------------------------------------------------------------------------ rows */
+
+/* A point and a body that wait for their row: eight numbers for two vectors of rows. */
+struct question {
+    float x, y; /* see place_point() */
+    float cosine, sine, scale;
+    uint32_t shape, point, body;
+    char *row;
+};
+
+struct questions {
+    struct question item[V_WIDTH];
+    int count;
+};
+
+/* Values of places that are far apart along the outline may be the same but for rounding, where normals turn little.
+ * The place is seen from a point nearby, so signs choose: a PROPER place is an arc that holds the direction of u, or
+ * a junction where u.n rises before it and falls behind. It counts for more by what a separation may be off by, 4 e
+ * of the lengths in it, and any other for as much less. */
+#define TIE 0x1p-22f
+
+/* The nearest place of the outline. */
+struct nearest {
+    vf separation;
+    vf value; /* with the tie */
+    vec2 normal;
+    vf length; /* of the normal */
+    vi record; /* of the arc */
+};
+
+/* The nearest place on an arc, or at its ends. `rises`: u.n rises at the end of the arc before. */
+INLINE struct nearest find_nearest_on(const narc_record *records, vi record, vec2 point, vec2 middle, vf scale,
+                                      vm *rises) {
+    vf field[8];
+    load_records(records, record, field);
+    const vec2 center = {field[0], field[1]}, start = {field[4], field[5]}, end = {field[6], field[7]};
+    const vec2 u = v2_sub(point, v2_scale(v2_sub(center, middle), scale));
+    const struct arc_view view = view_arc(u, start, end);
+    const vf radius = v_mul(field[2], scale), separation = find_arc_separation(&view, radius);
+    const vm kink = vm_and_not(*rises, view.rises), at_start = vm_or(kink, v_le(view.at_end, view.at_start));
+    const vf size = v_mul(v_add(v_add(v_abs(center.x), v_abs(center.y)), field[2]), scale);
+    const vf tie = v_mul(v_set(TIE), v_add(view.length, size));
+    const vf value = v_select(kink, v_sub(view.at_start, radius), separation);
+    *rises = vm_not(view.falls);
+    return (struct nearest){separation, v_add(value, v_select(vm_or(kink, view.holds), tie, v_neg(tie))),
+                            v2_select(view.holds, u, v2_select(at_start, start, end)),
+                            v_select(view.holds, view.length, v_set(1)), record};
+}
+
+/* That of the whole outline; of equal ones, that on the first arc. */
+INLINE struct nearest find_nearest_place(const narc_record *records, struct ring ring, vec2 point, vec2 middle,
+                                         vf scale) {
+    vm rises = vm_front(0);
+    const vi last = vi_sub(vi_add(ring.base, ring.count), vi_set(1));
+    struct nearest best = find_nearest_on(records, last, point, middle, scale, &rises);
+    best.value = best.separation = v_set(-INFINITY); /* it comes again: here it tells whether u.n rises */
+    for (int k = 0; k < NARC_MAX_ARCS; k++) {
+        const vm more = vi_lt(vi_set(k), ring.count);
+        if (!vm_any(more))
+            break;
+        const vi record = vi_select(more, vi_add(ring.base, vi_set(k)), last);
+        const struct nearest next = find_nearest_on(records, record, point, middle, scale, &rises);
+        const vm better = v_lt(best.value, next.value);
+        best = (struct nearest){v_max(next.separation, best.separation), v_select(better, next.value, best.value),
+                                v2_select(better, next.normal, best.normal), v_select(better, next.length, best.length),
+                                vi_select(better, record, best.record)};
+    }
+    return best;
+}
+
+/* Writes the rows of those that wait. The lanes behind the last one repeat the first, and its row. */
+static void answer(const narc_shapes *shapes, struct questions *waiting) {
+    const narc_record *records = shapes->records;
+    int32_t item[V_WIDTH], shape[V_WIDTH];
+    char *row[V_WIDTH];
+    vf pose_words[4], words[4];
+    if (waiting->count == 0)
+        return;
+    for (int k = 0; k < V_WIDTH; k++) {
+        item[k] = k < waiting->count ? k : 0;
+        shape[k] = (int32_t)waiting->item[item[k]].shape;
+        row[k] = waiting->item[item[k]].row;
+    }
+    waiting->count = 0;
+    v_rows(&waiting->item[0].x, sizeof waiting->item[0], item, pose_words);
+    v_rows(&waiting->item[0].scale, sizeof waiting->item[0], item, words);
+    const struct headers header = load_headers(shapes->headers, shape);
+    const vec2 point = {pose_words[0], pose_words[1]}, to_world = {pose_words[2], pose_words[3]};
+    const vec2 middle = header.bound_center;
+    const vf scale = words[0];
+    const struct ring ring = make_ring(header.first_record, header.info);
+    const struct pose pose = {.scale_a = scale};
+    const struct nearest found = find_nearest_place(records, ring, point, middle, scale);
+    const vec2 n = v2_divide(found.normal, found.length);
+    const struct feature f = find_feature_at(records, ring, found.record, &pose, n, false);
+    const vm edge = touches_edge(&f, header.info, scale);
+    /* The foot of the point on the edge, and not beyond its ends. */
+    const vf along = v2_cross(n, v2_add(point, v2_scale(middle, scale)));
+    const vec2 foot = {f.across, v_min(v_max(along, f.along_min), f.along_max)};
+    const vec2 nearest = v2_rotate(to_world, v2_rotate(n, foot)), normal = v2_rotate(to_world, n);
+    const vi number = find_arc_number(f.record, header.first_record, header.info);
+    const vi feature = vi_add(number, vi_select(edge, vi_set(NARC_FEATURE_EDGE), vi_set(0)));
+    const vf front[4] = {words[2], words[3], v_of_bits(pack_halves(feature, vi_set(1))), found.separation};
+    const vf rest[4] = {normal.x, normal.y, nearest.x, nearest.y};
+    float radius[V_WIDTH];
+    v_store(radius, v_select(edge, v_set(INFINITY), f.radius));
+    _Static_assert(sizeof(narc_distance) == 36 && offsetof(narc_distance, normal_x) == 16, "two writes and a float");
+    v_put_rows(row, 0, front);
+    v_put_rows(row, 16, rest);
+    for (int k = 0; k < V_WIDTH; k++)
+        memcpy(row[k] + 32, &radius[k], sizeof radius[k]);
+}
+
+INLINE void put_nothing(narc_distance *row, size_t point) { *row = (narc_distance){.point = (uint32_t)point}; }
+
+/* Sees to it that the row of a point and a body is written, now or when others have come. */
+INLINE void ask(const narc_point_batch *batch, size_t point, size_t body, narc_distance *row,
+                struct questions *waiting) {
+    struct body_frame frame;
+    float x, y;
+    if (!load_body_frame(batch->shapes, batch->bodies, body, &frame) ||
+        !place_point(&frame, load_point(batch->points, point), &x, &y)) {
+        put_nothing(row, point);
+        return;
+    }
+    waiting->item[waiting->count++] = (struct question){x,
+                                                        y,
+                                                        (float)frame.rotation.x,
+                                                        (float)frame.rotation.y,
+                                                        (float)frame.scale,
+                                                        (uint32_t)(frame.header - batch->shapes->headers),
+                                                        (uint32_t)point,
+                                                        (uint32_t)body,
+                                                        (char *)row};
+    if (waiting->count == V_WIDTH)
+        answer(batch->shapes, waiting);
+}
+
+void NARC_NAMED(distance)(const narc_point_batch *batch, size_t first, size_t end) {
+    struct questions waiting;
+    waiting.count = 0;
+    for (size_t k = first; k < end; k++)
+        ask(batch, k, batch->body.base ? narc_index_at(batch->body, k) : k, batch->out + k, &waiting);
+    answer(batch->shapes, &waiting);
+}
+
+/* ------------------------------------------------------------------------------------------------ nearest */
+
+/* Boxes and the values that are compared with them leave room for the rounding of separations, so that the answer
+ * does not depend on which boxes lie around a body: a separation is within 6 e d + 600 e R of that of the stored
+ * arcs, d the distance to the box, R the radius of the smallest circle around the body. A centre is at most 65 R
+ * from its middle, and a radius at most 64 R. R is below 0.6 of the box's width and height together. BOX_ROOM is
+ * three times that, KEY_ROOM some 20 times: of a square. */
+#define BOX_ROOM 0x1p-14f
+#define KEY_ROOM 0x1p-16f
+
+/* All separations are less: further away no body has an answer. */
+#define FARTHEST 1.5e17f
+
+enum { KEYS = V_WIDTH > NARC_NODE_SLOTS ? V_WIDTH : NARC_NODE_SLOTS, SLOT_BITS = NARC_NODE_SLOTS - 1 };
+
+/* A node on the way, and the keys of its slots, each with the number of its slot in the lowest bits; infinite where
+ * there is nothing to look at, or no more. */
+struct step {
+    float key[KEYS];
+    uint32_t node;
+};
+
+/* A point's search. */
+struct search {
+    const narc_point_batch *batch;
+    place point;
+    float x, y, room; /* the point in single precision, and what that may be off by */
+    uint32_t ignored;
+    uint64_t mask;
+    narc_distance *rows; /* the nearest so far, in their order: point, body and separation */
+    size_t found;
+    float limit, limit_key; /* of a separation that still counts */
+};
+
+/* Squares keep the order if those of negative values are negative. What is added last is far below any square that a
+ * body's size makes, and above what a slot's number makes of 0. */
+INLINE float find_limit_key(float separation) {
+    const float key = separation * fabsf(separation);
+    return key + fabsf(key) * KEY_ROOM + 0x1p-120f;
+}
+
+/* Lower bounds of the separations in a node's slots, as keys: within a box the distance to its nearest side, negative,
+ * outside the distance to the box. Infinite, or NaN where the point is too far away, for empty slots. */
+INLINE vf find_keys(const struct search *search, const narc_index_node *node, int k) {
+    const vf zero = v_set(0), at_x = v_set(search->x), at_y = v_set(search->y);
+    const vf min_x = v_load(node->min_x + k), max_x = v_load(node->max_x + k);
+    const vf min_y = v_load(node->min_y + k), max_y = v_load(node->max_y + k);
+    const vf size = v_add(v_sub(max_x, min_x), v_sub(max_y, min_y));
+    const vf room = v_add(v_mul(size, v_set(BOX_ROOM)), v_set(search->room));
+    const vf x = v_sub(v_max(v_sub(min_x, at_x), v_sub(at_x, max_x)), room);
+    const vf y = v_sub(v_max(v_sub(min_y, at_y), v_sub(at_y, max_y)), room);
+    const vf depth = v_max(x, y);
+    const vec2 outside = {v_max(x, zero), v_max(y, zero)};
+    return v_select(v_lt(zero, depth), v2_dot(outside, outside), v_neg(v_mul(depth, depth)));
+}
+
+INLINE void enter_node(const struct search *search, unsigned level, uint32_t node, struct step *step) {
+    const narc_index *const index = search->batch->index;
+    const size_t at = index->first_node[level] + (size_t)node;
+    const vf limit = v_set(search->limit_key), none = v_set(INFINITY);
+    for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH) {
+        const vf key = find_keys(search, &index->nodes[at], k);
+        const vi slot = vi_add(vi_lanes(), vi_set(k)), front = vi_and(vi_bits(key), vi_set(~SLOT_BITS));
+        v_store(step->key + k, v_select(v_le(key, limit), v_of_bits(vi_add(front, slot)), none));
+    }
+    step->node = node;
+    for (unsigned k = 0; k < NARC_NODE_SLOTS && index->masks; k++)
+        if (!(index->masks[NARC_NODE_SLOTS * at + k] & search->mask))
+            step->key[k] = INFINITY;
+}
+
+INLINE float find_lower(float a, float b) { return a < b ? a : b; }
+
+/* The least of a node's keys. */
+INLINE float find_least_key(const float *key) {
+    const float low = find_lower(find_lower(key[0], key[1]), find_lower(key[2], key[3]));
+    return find_lower(low, find_lower(find_lower(key[4], key[5]), find_lower(key[6], key[7])));
+}
+
+/* Puts a body among the nearest ones if it belongs there. */
+INLINE void add_body(struct search *search, uint32_t body, float separation) {
+    narc_distance *const rows = search->rows;
+    const size_t most = search->batch->most;
+    size_t k = search->found;
+    if (!(separation < search->limit) &&
+        !(k == most && separation == rows[most - 1].separation && body < rows[most - 1].body))
+        return;
+    k -= k == most;
+    for (; k > 0 &&
+           (separation < rows[k - 1].separation || (separation == rows[k - 1].separation && body < rows[k - 1].body));
+         k--)
+        rows[k] = rows[k - 1];
+    rows[k] = (narc_distance){.body = body, .separation = separation};
+    search->found += search->found < most;
+    if (search->found == most) {
+        search->limit = rows[most - 1].separation;
+        search->limit_key = find_limit_key(search->limit);
+    }
+}
+
+INLINE void look_at_body(struct search *search, uint32_t body) {
+    const float shrink = 1 - 0x1p-16f; /* of a square, as in base/pair_setup.inl: the radius has room for separations */
+    struct body_frame frame;
+    float x, y;
+    if (body == search->ignored || !load_body_frame(search->batch->shapes, search->batch->bodies, body, &frame) ||
+        !place_point(&frame, search->point, &x, &y))
+        return;
+    const float reach = (float)frame.scale * frame.header->bound_radius + search->limit;
+    if (reach < 0 || reach * reach < (x * x + y * y) * shrink)
+        return;
+    add_body(search, body, find_separation(&frame, x, y));
+}
+
+/* Goes through the index, at each node to the nearest slot first. */
+static void find_nearest(struct search *search) {
+    const narc_index *const index = search->batch->index;
+    struct step steps[NARC_INDEX_LEVELS];
+    const unsigned top = index->level_count - 1;
+    enter_node(search, top, 0, &steps[top]);
+    for (unsigned level = top; level <= top;) {
+        struct step *const step = &steps[level];
+        const float least = find_least_key(step->key);
+        if (!(least <= search->limit_key)) {
+            level++;
+            continue;
+        }
+        uint32_t bits;
+        memcpy(&bits, &least, sizeof bits);
+        const uint32_t slot = bits & SLOT_BITS, below = NARC_NODE_SLOTS * step->node + slot;
+        step->key[slot] = INFINITY;
+        if (level == 0) {
+            look_at_body(search, index->body[below]);
+        } else {
+            level--;
+            enter_node(search, level, below, &steps[level]);
+        }
+    }
+}
+
+void NARC_NAMED(nearest)(const narc_point_batch *batch, size_t first, size_t end) {
+    const narc_index_query *const query = batch->search;
+    struct questions waiting;
+    waiting.count = 0;
+    for (size_t k = first; k < end; k++) {
+        struct search search = {.batch = batch, .point = load_point(batch->points, k), .ignored = UINT32_MAX};
+        search.x = (float)search.point.x;
+        search.y = (float)search.point.y;
+        search.room =
+            (float)((fabs(search.point.x - (double)search.x) + fabs(search.point.y - (double)search.y)) * 1.001);
+        search.mask = query->mask.base ? narc_word_at(query->mask, k) : UINT64_MAX;
+        if (query->ignored.base)
+            search.ignored = narc_index_at(query->ignored, k);
+        search.rows = batch->out + k * batch->most;
+        search.limit = batch->distance < FARTHEST ? batch->distance : FARTHEST;
+        search.limit_key = find_limit_key(search.limit);
+        if (batch->index->level_count > 0 && search.mask != 0)
+            find_nearest(&search);
+        for (size_t i = 0; i < batch->most; i++)
+            if (i < search.found)
+                ask(batch, k, search.rows[i].body, &search.rows[i], &waiting);
+            else
+                put_nothing(&search.rows[i], k);
+    }
+    answer(batch->shapes, &waiting);
+}

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * regions.c - the kernels of narc_query_index(): the bodies of an index whose boxes meet a query's box, and their
+ * order.
+ *
+ * The tree is walked level by level: of some nodes of a level, all children whose boxes meet the query's box, then
+ * theirs. Nodes of one list do not wait for each other, unlike those of a stack. A list that is longer than NODES is
+ * taken in parts, each down to the leaves before the next, so that lists are never longer than their memory.
+ */
+#include <float.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "kernels.h"
+#include "simd/simd.h"
+
+/* Nodes that are taken from a list in one go. */
+enum { NODES = 16 };
+_Static_assert((int)NARC_REGION_ROOM >= NODES * NARC_NODE_SLOTS + 16, "what so many leaves hold, and a vector");
+
+/* What a query asks, in vectors and out of them. */
+struct region {
+    vf min_x, min_y, max_x, max_y;
+    uint64_t mask;
+    vi ignored;
+};
+
+INLINE vm meet_slots(const struct region *region, const narc_index_node *node, int slot) {
+    const vm in_x =
+        vm_and(v_le(v_load(node->min_x + slot), region->max_x), v_le(region->min_x, v_load(node->max_x + slot)));
+    const vm in_y =
+        vm_and(v_le(v_load(node->min_y + slot), region->max_y), v_le(region->min_y, v_load(node->max_y + slot)));
+    return vm_and(vm_and(in_x, in_y), vm_front(NARC_NODE_SLOTS));
+}
+
+/* Appends those lanes of `items` that hold; writes a whole vector. */
+INLINE uint32_t *append(uint32_t *to, vm hit, vi items) {
+    v_store((float *)(void *)to, v_pack(vm_packing(hit), v_of_bits(items)));
+    return to + __builtin_popcount(vm_bits(hit));
+}
+
+/* Of some slots those that have one of the bits of a mask. */
+INLINE vm match_masks(vm hit, const uint64_t *masks, uint64_t mask) {
+    int32_t fine[V_WIDTH] = {0};
+    for (uint32_t bits = vm_bits(hit); bits > 0; bits &= bits - 1) {
+        const int lane = __builtin_ctz(bits);
+        fine[lane] = (masks[lane] & mask) != 0;
+    }
+    return vm_and(hit, vi_lt(vi_set(0), vi_load(fine)));
+}
+
+/* Appends the children of nodes list[0 .. count - 1] of a level, or the bodies of leaves, whose boxes meet the
+ * region. */
+INLINE uint32_t *visit(const narc_index *index, unsigned level, const struct region *region, bool masked, bool ignores,
+                       const uint32_t *list, size_t count, uint32_t *to) {
+    const narc_index_node *const nodes = index->nodes + index->first_node[level];
+    for (size_t k = 0; k < count; k++)
+        for (int slot = 0; slot < NARC_NODE_SLOTS; slot += V_WIDTH) {
+            const size_t below = (size_t)list[k] * NARC_NODE_SLOTS + (size_t)slot;
+            vm hit = meet_slots(region, &nodes[list[k]], slot);
+            if (masked)
+                hit = match_masks(hit, index->masks + (size_t)index->first_node[level] * NARC_NODE_SLOTS + below,
+                                  region->mask);
+            vi item = vi_add(vi_set((int32_t)(uint32_t)below), vi_lanes());
+            if (level == 0) {
+                item = vi_load((const int32_t *)(const void *)(index->body + below));
+                if (ignores)
+                    hit = vm_and(hit, vm_or(vi_lt(item, region->ignored), vi_lt(region->ignored, item)));
+            }
+            to = append(to, hit, item);
+        }
+    return to;
+}
+
+INLINE void find_bodies(const narc_index *index, const struct region *region, bool masked, bool ignores,
+                        narc_found_bodies *out) {
+    /* Of each level but the highest a list. */
+    uint32_t lists[NARC_INDEX_LEVELS][NODES * NARC_NODE_SLOTS + 16];
+    uint32_t from[NARC_INDEX_LEVELS], end[NARC_INDEX_LEVELS];
+    const unsigned top = index->level_count - 1;
+    unsigned level = top;
+    lists[top][0] = 0;
+    from[top] = 0;
+    end[top] = 1;
+    for (;;) {
+        const uint32_t *const list = lists[level] + from[level];
+        const uint32_t left = end[level] - from[level], count = left < NODES ? left : NODES;
+        from[level] += count;
+        if (count == 0) {
+            if (level == top)
+                return;
+            level++;
+        } else if (level > 0) {
+            uint32_t *const to = lists[level - 1];
+            end[level - 1] = (uint32_t)(visit(index, level, region, masked, ignores, list, count, to) - to);
+            from[--level] = 0;
+        } else {
+            if (out->room - out->count < NARC_REGION_ROOM)
+                out->get_room(out);
+            uint32_t *const to = out->body + out->count;
+            out->count += (size_t)(visit(index, 0, region, masked, ignores, list, count, to) - to);
+        }
+    }
+}
+
+static bool is_box(const narc_box *box) {
+    return box->min_x >= -FLT_MAX && box->min_y >= -FLT_MAX && box->max_x <= FLT_MAX && box->max_y <= FLT_MAX &&
+           box->min_x <= box->max_x && box->min_y <= box->max_y;
+}
+
+void NARC_NAMED(regions)(const narc_region_batch *batch, size_t first, size_t count, narc_found_bodies *out) {
+    const narc_index *const index = batch->index;
+    const bool masked = index->masks != NULL, ignores = batch->ignored.base != NULL;
+    for (size_t k = first; k < first + count; k++) {
+        const narc_box *const box = &batch->boxes[k];
+        const uint64_t mask = batch->mask.base ? narc_word_at(batch->mask, k) : ~(uint64_t)0;
+        if (is_box(box) && mask != 0) {
+            const struct region region = {v_set(box->min_x),
+                                          v_set(box->min_y),
+                                          v_set(box->max_x),
+                                          v_set(box->max_y),
+                                          mask,
+                                          vi_set(ignores ? (int32_t)narc_index_at(batch->ignored, k) : -1)};
+            if (masked)
+                find_bodies(index, &region, true, true, out);
+            else if (ignores)
+                find_bodies(index, &region, false, true, out);
+            else
+                find_bodies(index, &region, false, false, out);
+        }
+        out->end_query(out);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ order */
+
+/* The place of a body is the number of those below it, in the sign of a difference: bodies are below 2^31. */
+INLINE void find_places(const uint32_t *bodies, size_t count, size_t first, int vectors, uint32_t *out) {
+    vi own[4], place[4];
+    UNROLL
+    for (int i = 0; i < vectors; i++) {
+        own[i] = vi_load((const int32_t *)(const void *)(bodies + first) + i * V_WIDTH);
+        place[i] = vi_set(0);
+    }
+    for (size_t k = 0; k < count; k++) {
+        const vi other = vi_set((int32_t)bodies[k]);
+        UNROLL
+        for (int i = 0; i < vectors; i++)
+            place[i] = vi_add(place[i], vi_shift_right(vi_sub(other, own[i]), 31));
+    }
+    int32_t to[4 * V_WIDTH];
+    UNROLL
+    for (int i = 0; i < vectors; i++)
+        vi_store(to + i * V_WIDTH, place[i]);
+    const size_t left = count - first, n = (size_t)vectors * V_WIDTH;
+    for (size_t k = 0; k < n && k < left; k++)
+        out[to[k]] = bodies[first + k];
+}
+
+void NARC_NAMED(order)(const uint32_t *bodies, size_t count, uint32_t *out) {
+    size_t first = 0;
+    for (; count - first > 2 * V_WIDTH && first < count; first += 4 * V_WIDTH)
+        find_places(bodies, count, first, 4, out);
+    if (first < count && count - first > V_WIDTH)
+        find_places(bodies, count, first, 2, out);
+    else if (first < count)
+        find_places(bodies, count, first, 1, out);
+}

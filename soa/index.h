@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * index.h - the layout of an index, as the kernels read it. Internal.
+ *
+ * A tree without pointers. LEAVES are nodes of level 0 and hold up to eight boxes of bodies; eight nodes that follow
+ * each other in a level are the children of one node of the next, in their order; the last level has one node, the
+ * root. So child `slot` of node i of a level is node 8 i + slot of the level below, and body 8 i + slot of a leaf is
+ * narc_index.body[8 i + slot].
+ *
+ * Slots are what three halvings of a node make: bit 2 of a slot's number says in which half it is by the first one, bit
+ * 1 by the second, bit 0 by the third. For each bit `order` of the node says along which axis the halves lie, and
+ * whether the half with the bit 0 lies lower there. So a ray meets the slots roughly in the order of slot ^ flips, with
+ * flips of its direction's quadrant, and nothing is sorted on the way.
+ */
+#ifndef NARC_INDEX_H
+#define NARC_INDEX_H
+
+#include <stdbool.h>
+
+#include "narc_scene.h"
+
+enum { NARC_NODE_SLOTS = 8, NARC_INDEX_LEVELS = 11 };
+
+/* The boxes of a node's slots. A slot without anything has the empty box. Kernels with wider vectors read on in the
+ * node, and behind the last one up to NARC_NODE_PADDING floats. */
+typedef struct narc_index_node {
+    float min_x[NARC_NODE_SLOTS], min_y[NARC_NODE_SLOTS], max_x[NARC_NODE_SLOTS], max_y[NARC_NODE_SLOTS];
+} narc_index_node;
+
+enum { NARC_NODE_PADDING = 16 };
+
+/* In a node's `order`: of the halving by bit b of the slots. */
+#define NARC_ORDER_ALONG_Y(b)  (1u << (2 * (b)))     /* the halves lie one above the other; else side by side */
+#define NARC_ORDER_DOWNWARD(b) (1u << (2 * (b) + 1)) /* the half with bit 0 is the upper one, or that on the right */
+
+/* What building takes for each box: two numbers of 32 bits twice, and once more one. */
+enum { NARC_INDEX_BUILD_BYTES = 20 };
+
+/* What a query of narc_query_index() has found: `count` bodies from narc_index.found[first] on, whose pairs begin at
+ * `row`. */
+typedef struct narc_region {
+    size_t first;
+    uint32_t count, row;
+} narc_region;
+
+struct narc_index {
+    narc_allocator allocator;
+    size_t count;                           /* boxes that it was built from */
+    unsigned level_count;                   /* 0: there are no boxes, and no nodes */
+    uint32_t first_node[NARC_INDEX_LEVELS]; /* of each level, in `nodes` and `order`; level 0 begins at 0 */
+    uint32_t node_count[NARC_INDEX_LEVELS];
+    narc_index_node *nodes; /* at cache lines */
+    uint8_t *order;         /* of each node */
+    uint64_t *masks;  /* for each slot of each node, 8 * node + slot: all category bits below; NULL: all bits set */
+    uint32_t *body;   /* for each slot of each leaf; UINT32_MAX: none */
+    double perimeter; /* of all nodes together, when it was built */
+    /* memory, and for how many boxes */
+    void *tree_memory, *mask_memory, *build_memory;
+    size_t tree_capacity, mask_capacity, build_capacity;
+    /* of narc_query_index(): for each query, each body that is found, in any order, and each pair */
+    narc_region *regions;
+    uint32_t *found, *rows;
+    size_t region_capacity, found_capacity, row_capacity;
+    narc_box *sweeps; /* of narc_cast_shapes(): for each mover */
+    size_t sweep_capacity;
+};
+
+/* Makes room for an index of so many boxes, with masks or without, and for building it. What it holds is lost only if
+ * there was no room; NARC_ERROR_MEMORY: it is as it was. */
+narc_status narc_reserve_index(narc_index *index, size_t count, bool masks);
+
+/* Make room for so many queries, bodies that are found, and pairs of both, and boxes of movers; what was there is lost,
+ * unless there is room already. NARC_ERROR_MEMORY: there is as much room as before. Behind the bodies NARC_FOUND_PADDING
+ * more may be read. */
+narc_status narc_reserve_regions(narc_index *index, size_t count);
+narc_status narc_reserve_found(narc_index *index, size_t count);
+narc_status narc_reserve_rows(narc_index *index, size_t count);
+narc_status narc_reserve_sweeps(narc_index *index, size_t count);
+
+/* Four of the widest vectors. */
+enum { NARC_FOUND_PADDING = 64 };
+
+/* Sets the number of boxes, and the levels that they make. There is room for them. */
+void narc_lay_out_index(narc_index *index, size_t count);
+
+/* How many nodes it has: the root is the last. */
+static inline size_t narc_count_nodes(const narc_index *index) {
+    return index->level_count > 0 ? (size_t)index->first_node[index->level_count - 1] + 1 : 0;
+}
+
+/* The slot that the ray meets first, second and so on: k ^ flips. `order` of the node; does the ray go left, down? */
+static inline unsigned narc_find_flips(unsigned order, bool left, bool down) {
+    unsigned flips = 0;
+    for (unsigned b = 0; b < 3; b++) {
+        const bool backwards = order & NARC_ORDER_ALONG_Y(b) ? down : left, downward = order & NARC_ORDER_DOWNWARD(b);
+        flips |= (unsigned)(backwards != downward) << b;
+    }
+    return flips;
+}
+
+#endif

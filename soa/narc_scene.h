@@ -1,0 +1,354 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * narc_scene.h - what a scene is asked: what lies in a region, what a ray meets, when moving bodies meet, what is
+ * nearest.
+ *
+ * The mental model
+ *
+ *   Bodies and shapes are those of narc.h. An INDEX is a tree over the boxes of bodies. It is built once for what stands
+ *   still, and refitted or built anew for what moves. Questions go through it and answer in rows, exactly: boxes only
+ *   say which bodies need not be asked.
+ *
+ *       narc_query_index()    which boxes meet these boxes?            pairs (query, body)
+ *       narc_cast_rays()      what does each ray hit first?            narc_ray_hit
+ *       narc_cast_shapes()    what does each moving body hit first?    narc_impact
+ *       narc_find_nearest()   which bodies are nearest to a point?     narc_distance
+ *
+ *   Two ask of pairs of bodies, and need no index:
+ *
+ *       narc_cast_pairs()     when do two moving bodies meet?          narc_impact
+ *       narc_find_distances() how far is a point from a body?          narc_distance
+ *
+ *   Rows are dense: what asks has a number, and its rows stand at that number; count 0 says that there is nothing.
+ *   Answers are the same to the last bit on every instruction set, with any number of workers, and whatever the index
+ *   looks like: of equal fractions or distances the body with the lower number counts.
+ *
+ * Example
+ *
+ *     narc_box box[1000];                                          (bodies as in narc.h)
+ *     narc_compute_boxes(shapes, &bodies, NULL, box, NULL);
+ *     narc_index *index;
+ *     narc_create_index(NULL, &index);
+ *     narc_build_index(index, box, 1000, NULL, NULL);
+ *
+ *     float dx[1080], dy[1080];                                    (a laser scanner's rays, each as long as it sees)
+ *     double x = 3, y = 4;
+ *     narc_ray_hit hit[1080];
+ *     narc_rays rays = {.count = 1080, .x = {&x, 0, NARC_FLOAT64}, .y = {&y, 0, NARC_FLOAT64},
+ *                       .motion_x = NARC_ARRAY(dx), .motion_y = NARC_ARRAY(dy)};
+ *     narc_cast_rays(index, shapes, &bodies, &rays, NULL, hit, 1080, NULL);
+ *
+ * Functions that take a const index, and narc_cast_pairs(), may be called from any number of threads at once, with
+ * NARC_STACK_SIZE bytes of stack.
+ */
+#ifndef NARC_SCENE_H
+#define NARC_SCENE_H
+
+#include "narc_pairs.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ------------------------------------------------------------------------------------------------ index */
+
+/* A tree over boxes: nodes of eight. Memory grows to what the largest build wants and stays. */
+typedef struct narc_index narc_index;
+
+/* One of no boxes. `allocator` NULL: malloc and free. NARC_ERROR_MEMORY, NARC_ERROR_ARGUMENT. */
+NARC_API narc_status narc_create_index(const narc_allocator *allocator, narc_index **out_index);
+
+/* Frees it; NULL is fine. */
+NARC_API void narc_destroy_index(narc_index *index);
+
+/* What is 0 or NULL is left out, as all is for {0}.
+ *   category   64 bits for each box, which questions compare with their masks; left out: all bits set
+ *   fast       1: in the order of a curve, in a fraction of the time; questions then take up to twice as long
+ *   workers    threads to use; NULL: the calling one. The index does not depend on them */
+typedef struct narc_index_options {
+    narc_word_column category;
+    uint32_t fast;
+    const narc_workers *workers;
+    void *reserved[4]; /* NULL */
+} narc_index_options;
+
+/* Makes the index one of these boxes; box k is that of body k, as narc_compute_boxes() gives them. An empty box is
+ * found by no question.
+ *   count     at most 2^31
+ *   options   NULL: defaults
+ * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_MEMORY; the index is as it was then.
+ * Fast: of boxes whose centres lie closer together than 1/65,536 of all of them are apart, no order is made.
+ * Source: k-d splits at medians (Bentley 1975); sorting by Morton's curve (Morton 1966) if fast. */
+NARC_API narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t count,
+                                      const narc_index_options *options, narc_error *error);
+
+/* Fits the index to bodies that have moved a little, as many boxes as it was built from: nodes keep their bodies.
+ *   options     as when building; `fast` has no meaning
+ *   out_slack   NULL: nobody asks. The mean perimeter of its nodes, as a multiple of what it was when it was built:
+ *               questions take longer as it grows; above 1.5 it should be built anew
+ * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_MEMORY (a category column, and it was built without one); the index is as it
+ * was then. */
+NARC_API narc_status narc_refit_index(narc_index *index, const narc_box *boxes, size_t count,
+                                      const narc_index_options *options, float *out_slack, narc_error *error);
+
+/* How a question goes through an index; NULL or {0}: all bodies, in the calling thread.
+ *   mask      64 bits for each query: only bodies with category & mask not 0 are found; left out: all bits set
+ *   ignored   for each query a body that is not found, such as the one that asks; UINT32_MAX: none; left out: none
+ *   workers   threads to use; NULL: the calling one */
+typedef struct narc_index_query {
+    narc_word_column mask;
+    narc_index_column ignored;
+    const narc_workers *workers;
+    void *reserved[4]; /* NULL */
+} narc_index_query;
+
+/* All pairs of a query box and a body whose boxes overlap or touch, in the order of (query, body).
+ *   boxes       `count` query boxes, at most 2^32 - 2; an empty one finds nothing
+ *   query       NULL: defaults
+ *   out_pairs   columns a (the query's number) and b (the body), which belong to the index until its next call of this
+ *               function or its end. With other_bodies set to the index's bodies it is what narc_find_contacts() takes:
+ *               what moves against what stands still, or a sensor against all.
+ * One call at a time for each index. Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_COUNT (2^32 pairs or more),
+ * NARC_ERROR_MEMORY; `*out_pairs` is untouched then. */
+NARC_API narc_status narc_query_index(narc_index *index, const narc_box *boxes, size_t count,
+                                      const narc_index_query *query, narc_pairs *out_pairs, narc_error *error);
+
+/* ------------------------------------------------------------------------------------------------ rays */
+
+/* Rays: `count` of each column. A ray goes from (x, y) to (x, y) + fraction * motion; its largest fraction is 1 unless
+ * `fraction` says another, INFINITY for one without end. One that has no length, or a number that is not finite (but
+ * that fraction) or a fraction below 0 or NaN, has no answer; see narc_ray_options.out_skipped. */
+typedef struct narc_rays {
+    size_t count;
+    narc_position_column x, y;            /* both float or both double */
+    narc_float_column motion_x, motion_y; /* world axes */
+    narc_float_column fraction;           /* base NULL: all 1 */
+    void *reserved[2];                    /* NULL */
+} narc_rays;
+
+/* What a ray meets that starts within a body, or on its outline. */
+typedef enum narc_inside {
+    NARC_INSIDE_STOPS = 0,   /* the body, at fraction 0: count 1, the point is the start, normal, feature, radius 0 */
+    NARC_INSIDE_LEAVES = 1,  /* the body, where the ray leaves it, with the normal outwards */
+    NARC_INSIDE_IGNORES = 2, /* not that body */
+} narc_inside;
+
+/* What is 0 or NULL has its default, as all has for {0}.
+ *   search        mask, ignored, workers
+ *   inside        see narc_inside
+ *   any           1: whether anything is hit is all that matters. A row with count 1 tells of some body that is hit
+ *                 (the same one for the same index)
+ *   most          hits that each ray has room for, nearest first; 0: 1, the closest. Row i of ray k is row
+ *                 k * most + i; the rows behind its last hit have count 0
+ *   out_skipped   how many rays have no answer; NULL: nobody asks */
+typedef struct narc_ray_options {
+    narc_index_query search;
+    narc_inside inside;
+    uint32_t any;
+    size_t most;
+    size_t *out_skipped;
+    void *reserved[4]; /* NULL */
+} narc_ray_options;
+
+/* Where a ray enters a body, 36 bytes.
+ *   ray       its number
+ *   body      its number in the index
+ *   feature   the arc or edge that is hit, in the caller's numbering (see narc_contact.feature): one byte
+ *   count     1; 0: nothing is hit, and all else but `ray` is 0
+ *   fraction  of the ray's motion, at least 0
+ *   normal    unit, outwards, world axes
+ *   point     where the outline is hit, world axes, relative to the position of the body
+ *   radius    of curvature there, scaled: 0 at a corner, INFINITY on an edge */
+typedef struct narc_ray_hit {
+    uint32_t ray, body;
+    uint16_t feature;
+    uint16_t count;
+    float fraction;
+    float normal_x, normal_y;
+    float point_x, point_y;
+    float radius;
+} narc_ray_hit;
+
+/* What each ray hits: the least (fraction, body), or the first `most` of them in this order.
+ *   index      built from boxes of these bodies
+ *   bodies     as many as the index has boxes
+ *   rays       at most UINT32_MAX
+ *   options    NULL: defaults
+ *   out_rows   room for `capacity` rows, at least rays->count * most
+ * The point is within NARC_ERROR_BOUND * (the body's extent) of the outline and of the ray, however far the ray has come
+ * (from more than 1e9 extents away, the digits of doubles are lost too); a ray that passes a body by no more than that
+ * may hit or miss it. A corner is hit as the end of an edge. Broken bodies, and those whose shape does not exist, are
+ * not hit: so that a single ray takes no longer where there are many bodies, they are not looked at beforehand.
+ * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_CAPACITY, and those for NARC_ISA.
+ * Allocates nothing. Thread-safe.
+ * Source: docs/algorithm.md, section 15. */
+NARC_API narc_status narc_cast_rays(const narc_index *index, const narc_shapes *shapes, const narc_bodies *bodies,
+                                    const narc_rays *rays, const narc_ray_options *options, narc_ray_hit *out_rows,
+                                    size_t capacity, narc_error *error);
+
+/* ------------------------------------------------------------------------------------------------ casts */
+
+/* How bodies move during a step, `count` as the bodies: from their place to their place + (x, y), while they turn at a
+ * constant rate about their position by `angle`, in radians, counter-clockwise. What is left out is 0. */
+typedef struct narc_motions {
+    narc_float_column x, y;
+    narc_float_column angle;
+    void *reserved[2]; /* NULL */
+} narc_motions;
+
+/* What is 0 or NULL has its default, as all has for {0}.
+ *   target        the separation that is looked for: 0: touch; above 0: closer than that; below 0: so deep
+ *   tolerance     where a body turns, a hit has a separation within target .. target + tolerance; 0: 1/1024 of the
+ *                 smaller body's bounding radius. Bodies that do not turn need none: they meet up to rounding
+ *   workers       threads to use; NULL: the calling one
+ *   out_skipped   how many pairs, or movers, have no answer (a broken body, or a motion that is not finite); NULL:
+ *                 nobody asks */
+typedef struct narc_cast_options {
+    float target;
+    float tolerance;
+    const narc_workers *workers;
+    size_t *out_skipped;
+    void *reserved[4]; /* NULL */
+} narc_cast_options;
+
+/* What became of a cast. */
+enum {
+    NARC_CAST_MISS = 0,       /* the bodies stay further apart than the target */
+    NARC_CAST_HIT = 1,        /* they come so close at `fraction`, and were not closer before */
+    NARC_CAST_UNFINISHED = 2, /* they were not so close up to `fraction`; what comes then was not found out */
+};
+
+/* Where two moving bodies meet, 44 bytes: the time, and the contact of the bodies as they are placed then.
+ *   pair       the number of the pair, or of the mover
+ *   body       the other body: B
+ *   feature    as in narc_contact, and so are the separation, normal and point (relative to A's position at that time)
+ *   count      NARC_CAST_...; 0: all else but `pair` is 0
+ *   fraction   of the step, 0 .. 1 */
+typedef struct narc_impact {
+    uint32_t pair, body;
+    uint16_t feature;
+    uint16_t count;
+    float fraction;
+    float separation;
+    float normal_x, normal_y;
+    float point_x, point_y;
+    float radius_a, radius_b;
+} narc_impact;
+
+/* When do two moving bodies meet? For each pair the first time in 0 .. 1 at which their separation is the target.
+ *   motions         of `bodies`; NULL: they stand still
+ *   other_motions   of pairs->other_bodies; NULL: they stand still. Without other bodies: NULL
+ *   options         NULL: defaults
+ *   out_rows        room for `capacity` rows, at least pairs->count
+ * Fractions are rounded down: positions at one are x + fraction * motion, computed in double precision. Bodies that are
+ * no further than the target at the start hit at fraction 0, parting or not. Without turning, the time is exact up to
+ * rounding: the row's separation is within NARC_ERROR_BOUND * (D + E_a + E_b) of the target, and what a fraction that is
+ * a float may differ by, 2^-24 of the motion. With turning: a hit has a separation within target .. target + tolerance
+ * and none below the target earlier; a miss has none below the target (up to the same rounding). Where the least
+ * separation lies within target .. target + tolerance both are lawful. Turning counts for what it moves: not for a circle
+ * about its position.
+ * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance below 0), NARC_ERROR_CAPACITY. Allocates nothing.
+ * Source: conservative advancement (Mirtich 1996) by bounds of their own: docs/algorithm.md, section 13. */
+NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,
+                                     const narc_pairs *pairs, const narc_motions *other_motions,
+                                     const narc_cast_options *options, narc_impact *out_rows, size_t capacity,
+                                     narc_error *error);
+
+/* What each mover hits first: the least (fraction, body).
+ *   index, bodies    what stands still while movers move, as in narc_cast_rays()
+ *   movers, motions  any bodies, and how each moves
+ *   search           mask and ignored by mover, workers (those of `options` are not used); NULL: defaults
+ *   out_rows         room for `capacity` rows, at least movers->count; A is the mover
+ * Otherwise as narc_cast_pairs(), and one call at a time for each index, as narc_query_index(). */
+NARC_API narc_status narc_cast_shapes(narc_index *index, const narc_shapes *shapes, const narc_bodies *bodies,
+                                      const narc_bodies *movers, const narc_motions *motions,
+                                      const narc_index_query *search, const narc_cast_options *options,
+                                      narc_impact *out_rows, size_t capacity, narc_error *error);
+
+/* ------------------------------------------------------------------------------------------------ points */
+
+/* Points in the world: `count` of each column. One that is not finite has no answer, and none further than
+ * NARC_MAX_DISTANCE from a body's position, in x or y, has one with that body. */
+typedef struct narc_points {
+    size_t count;              /* at most UINT32_MAX */
+    narc_position_column x, y; /* both float or both double */
+    void *reserved[2];         /* NULL */
+} narc_points;
+
+/* How far a point is from a body, 36 bytes.
+ *   point       its number
+ *   body        its number
+ *   feature     the nearest arc or edge, in the caller's numbering (see narc_contact.feature): one byte
+ *   count       1; 0: there is no such body, or no answer, and all else but `point` is 0
+ *   separation  the distance to the outline, negative within the body
+ *   normal      unit, outwards, world axes, of the outline at the nearest place; at a corner, away from it
+ *   place       the nearest place of the outline, world axes, relative to the position of the body. Where several are
+ *               as near, one of them
+ *   radius      of curvature there, scaled: 0 at a corner, INFINITY on an edge */
+typedef struct narc_distance {
+    uint32_t point, body;
+    uint16_t feature;
+    uint16_t count;
+    float separation;
+    float normal_x, normal_y;
+    float place_x, place_y;
+    float radius;
+} narc_distance;
+
+/* The distance of each point to one body: of point k to body k of the column, or without one to body k itself.
+ *   body       numbers of bodies, one for each point; with a stride of 0 all points ask of the same one; left out
+ *              ({0}): point k and body k
+ *   workers    threads to use; NULL: the calling one
+ *   out_rows   room for points->count rows
+ * With D the distance between point and position, E the body's extent: the separation is within
+ * NARC_ERROR_BOUND * (D + E) of the exact one, the place so near to the outline, and no other is nearer by more than
+ * that. Broken bodies have no answer.
+ * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_INDEX (a body or a shape that does not
+ * exist), and those for NARC_ISA. Allocates nothing. Thread-safe.
+ * Source: docs/algorithm.md, section 14. */
+NARC_API narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bodies,
+                                         const narc_points *points, narc_index_column body, const narc_workers *workers,
+                                         narc_distance *out_rows, narc_error *error);
+
+/* What is 0 or NULL has its default, as all has for {0}.
+ *   search     mask, ignored, workers
+ *   distance   only bodies whose separation is less; a negative one: those that the point is so deep within; 0: any
+ *   inside     1: only bodies that the point is within
+ *   most       bodies that each point has room for, nearest first; 0: 1. Row i of point k is row k * most + i; the rows
+ *              behind its last body have count 0 */
+typedef struct narc_nearest_options {
+    narc_index_query search;
+    float distance;
+    uint32_t inside;
+    size_t most;
+    void *reserved[4]; /* NULL */
+} narc_nearest_options;
+
+/* The bodies nearest to each point: the least (separation, body), or the first `most` of them in this order. Rows are
+ * those of narc_find_distances().
+ *   index, bodies   as in narc_cast_rays(); a body whose box does not hold it may not be found
+ *   options         NULL: defaults, which are the nearest body at any distance
+ *   out_rows        room for `capacity` rows, at least points->count * most
+ * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_NOT_FINITE (a distance that is NaN),
+ * NARC_ERROR_CAPACITY, and those for NARC_ISA. Allocates nothing. Thread-safe.
+ *
+ * What is near to a body, not to a point, is found with its box, made larger by the distance, and the contacts of that
+ * margin:
+ *
+ *     narc_box_options around = {.first = 7, .count = 1, .margin = 0.5f};           (body 7, and all within 0.5 of it)
+ *     uint32_t seven = 7;
+ *     narc_index_query others = {.ignored = {&seven, 0}};
+ *     narc_compute_boxes(shapes, &bodies, &around, box, NULL);                      (writes box[7] alone)
+ *     narc_query_index(index, box + 7, 1, &others, &pairs, NULL);
+ *     pairs.a = (narc_index_column){&seven, 0};                                     (the query's body)
+ *     narc_find_contacts(shapes, &bodies, &pairs, &(narc_query){.margin = 0.5f}, contact, capacity, &found, NULL);
+ */
+NARC_API narc_status narc_find_nearest(const narc_index *index, const narc_shapes *shapes, const narc_bodies *bodies,
+                                       const narc_points *points, const narc_nearest_options *options,
+                                       narc_distance *out_rows, size_t capacity, narc_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,366 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * cast_shapes.c - movers through an index against casts of all pairs, one by one; the same bits with any workers and on
+ * every instruction set; casts whose answers are known; what is refused.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "expect.h"
+#include "guard.h"
+#include "narc_broad_phase.h"
+#include "narc_scene.h"
+#include "scene.h"
+
+enum { MOVERS = 300 };
+
+struct motion {
+    float x, y, angle;
+};
+
+/* Bodies that stand, those that move, and an index of the former. */
+struct stage {
+    struct scene scene, movers;
+    struct motion *motion;
+    narc_index *index;
+    uint64_t *category, *mask;
+    uint32_t *ignored;
+    float target;
+};
+
+static struct stage make_stage(struct test_random *random, narc_precision precision, size_t bodies, bool turning) {
+    struct stage s = {.scene = make_random_scene(random, precision, bodies, bodies > 0)};
+    s.movers = s.scene;
+    s.movers.bodies = calloc(MOVERS, sizeof *s.movers.bodies);
+    s.movers.body_count = MOVERS;
+    s.motion = calloc(MOVERS, sizeof *s.motion);
+    s.category = calloc(bodies + 1, sizeof *s.category);
+    s.mask = calloc(MOVERS, sizeof *s.mask);
+    s.ignored = calloc(MOVERS, sizeof *s.ignored);
+    const double width = sqrt((double)bodies) * 2.5;
+    for (size_t k = 0; k < bodies; k++) {
+        struct body *const body = &s.scene.bodies[k];
+        body->x = random_between(random, 0, width);
+        body->y = random_between(random, 0, width);
+        body->scale *= 0.4f;
+        round_position(body, precision);
+        s.category[k] = (uint64_t)1 << random_below(random, 64);
+    }
+    for (size_t k = 0; k < MOVERS; k++) {
+        struct body body = turned_body(random_between(random, -4, 4), random_log_between(random, 0.05, 1));
+        const double angle = random_between(random, -4, 4), way = random_log_between(random, 0.01, width);
+        body.x = random_between(random, 0, width);
+        body.y = random_between(random, 0, width);
+        body.shape = (uint32_t)random_below(random, s.scene.shape_count);
+        round_position(&body, precision);
+        s.movers.bodies[k] = body;
+        s.motion[k] = (struct motion){(float)(way * cos(angle)), (float)(way * sin(angle)), 0};
+        if (turning && k % 3)
+            s.motion[k].angle = (float)random_between(random, -4, 4);
+        s.mask[k] = k % 4 ? UINT64_MAX : random_bits(random);
+        s.ignored[k] = bodies > 0 && k % 2 ? (uint32_t)random_below(random, bodies) : UINT32_MAX;
+    }
+    const narc_bodies all = scene_bodies(&s.scene);
+    narc_box *const boxes = calloc(bodies + 1, sizeof *boxes);
+    narc_error error;
+    assert_int_equal(narc_create_index(NULL, &s.index), NARC_OK);
+    if (bodies > 0)
+        expect_ok(narc_compute_boxes(s.scene.store, &all, NULL, boxes, &error), &error);
+    const narc_index_options options = {.category = {s.category, sizeof *s.category}};
+    expect_ok(narc_build_index(s.index, boxes, bodies, &options, &error), &error);
+    free(boxes);
+    return s;
+}
+
+static void destroy_stage(struct stage *s) {
+    narc_destroy_index(s->index);
+    free(s->movers.bodies);
+    free(s->motion);
+    free(s->category);
+    free(s->mask);
+    free(s->ignored);
+    destroy_scene(&s->scene);
+}
+
+static narc_motions motions_of(const struct stage *s) {
+    return (narc_motions){
+        .x = NARC_COLUMN(s->motion, x), .y = NARC_COLUMN(s->motion, y), .angle = NARC_COLUMN(s->motion, angle)};
+}
+
+static narc_impact *cast(const struct stage *s, bool filtered, unsigned threads) {
+    const narc_bodies bodies = scene_bodies(&s->scene), movers = scene_bodies(&s->movers);
+    const narc_motions motions = motions_of(s);
+    const narc_workers workers = narc_openmp_workers(threads);
+    narc_index_query search = {.workers = &workers};
+    if (filtered) {
+        search.mask = (narc_word_column){s->mask, sizeof *s->mask};
+        search.ignored = (narc_index_column){s->ignored, sizeof *s->ignored};
+    }
+    size_t skipped = 9;
+    const narc_cast_options options = {.target = s->target, .out_skipped = &skipped};
+    narc_impact *const rows = guard_allocate(MOVERS * sizeof *rows);
+    narc_error error;
+    expect_ok(
+        narc_cast_shapes(s->index, s->scene.store, &bodies, &movers, &motions, &search, &options, rows, MOVERS, &error),
+        &error);
+    assert_int_equal(skipped, 0);
+    return rows;
+}
+
+/* The least (fraction, body) of casts against each body. */
+static size_t check_by_force(const struct stage *s, const narc_impact *rows, bool filtered) {
+    const narc_bodies bodies = scene_bodies(&s->scene), movers = scene_bodies(&s->movers);
+    const narc_motions motions = motions_of(s);
+    const size_t count = s->scene.body_count;
+    uint32_t *const a = calloc(count, sizeof *a), *const b = calloc(count, sizeof *b);
+    narc_impact *const all = calloc(count, sizeof *all);
+    const narc_cast_options options = {.target = s->target};
+    size_t hits = 0;
+    narc_error error;
+    for (uint32_t k = 0; k < MOVERS; k++) {
+        narc_impact best = {.pair = k};
+        for (uint32_t i = 0; i < count; i++) {
+            a[i] = k;
+            b[i] = i;
+        }
+        const narc_pairs pairs = {.count = count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b), .other_bodies = &bodies};
+        expect_ok(narc_cast_pairs(s->scene.store, &movers, &motions, &pairs, NULL, &options, all, count, &error),
+                  &error);
+        for (size_t i = 0; i < count; i++)
+            if (all[i].count && (!best.count || all[i].fraction < best.fraction) &&
+                !(filtered && (s->ignored[k] == i || !(s->category[i] & s->mask[k])))) {
+                best = all[i];
+                best.pair = k;
+            }
+        assert_memory_equal(&rows[k], &best, sizeof best);
+        hits += best.count == NARC_CAST_HIT;
+    }
+    free(a);
+    free(b);
+    free(all);
+    return hits;
+}
+
+TEST(test_by_force) {
+    struct test_random random = test_random_named("cast shapes");
+    static const size_t counts[] = {1, 7, 64, 300};
+    for (int round = 0; round < 8; round++) {
+        struct stage s = make_stage(&random, (narc_precision)(round % 2), counts[round / 2], true);
+        s.target = round == 3 ? -0.02f : round == 5 ? 0.1f : 0;
+        for (int filtered = 0; filtered < 2; filtered++) {
+            narc_impact *const rows = cast(&s, filtered, 1), *const shared = cast(&s, filtered, 3);
+            assert_memory_equal(rows, shared, MOVERS * sizeof *rows);
+            const size_t hits = check_by_force(&s, rows, filtered);
+            if (round >= 4 && !filtered)
+                assert_in_range(hits, MOVERS / 4, MOVERS - 1);
+            guard_release(shared);
+            guard_release(rows);
+        }
+        destroy_stage(&s);
+    }
+}
+
+TEST(test_no_bodies) {
+    struct test_random random = test_random_named("no bodies");
+    struct stage s = make_stage(&random, NARC_FLOAT32, 0, true);
+    narc_impact *const rows = cast(&s, false, 1);
+    for (uint32_t k = 0; k < MOVERS; k++) {
+        const narc_impact none = {.pair = k};
+        assert_memory_equal(&rows[k], &none, sizeof none);
+    }
+    guard_release(rows);
+    destroy_stage(&s);
+}
+
+/* Movers that are broken, or whose motion is, hit nothing and are counted. */
+TEST(test_broken_movers) {
+    struct test_random random = test_random_named("broken movers");
+    struct stage s = make_stage(&random, NARC_FLOAT32, 100, true);
+    narc_impact *const right = cast(&s, false, 1);
+    const narc_bodies bodies = scene_bodies(&s.scene), movers = scene_bodies(&s.movers);
+    const narc_motions motions = motions_of(&s);
+    s.movers.bodies[3].x_single = NAN;
+    s.movers.bodies[10].cosine = 2;
+    s.movers.bodies[11].scale = -1;
+    s.motion[20].x = NAN;
+    s.motion[21].y = INFINITY;
+    s.motion[22].angle = NAN;
+    s.motion[23].angle = -INFINITY;
+    static const uint32_t broken[] = {3, 10, 11, 20, 21, 22, 23};
+    size_t skipped = 0, next = 0;
+    const narc_cast_options options = {.out_skipped = &skipped};
+    narc_impact rows[MOVERS];
+    narc_error error;
+    expect_ok(
+        narc_cast_shapes(s.index, s.scene.store, &bodies, &movers, &motions, NULL, &options, rows, MOVERS, &error),
+        &error);
+    assert_int_equal(skipped, 7);
+    for (uint32_t k = 0; k < MOVERS; k++) {
+        const narc_impact none = {.pair = k};
+        const bool is_broken = next < 7 && broken[next] == k;
+        next += is_broken;
+        assert_memory_equal(&rows[k], is_broken ? &none : &right[k], sizeof none);
+    }
+    guard_release(right);
+    destroy_stage(&s);
+}
+
+TEST(test_errors) {
+    struct test_random random = test_random_named("errors");
+    struct stage s = make_stage(&random, NARC_FLOAT32, 10, false);
+    const narc_bodies bodies = scene_bodies(&s.scene), movers = scene_bodies(&s.movers);
+    narc_bodies fewer = bodies, wrong = movers;
+    const narc_motions motions = motions_of(&s);
+    narc_impact *const rows = make_junk(MOVERS * sizeof *rows);
+    narc_shapes *const store = s.scene.store;
+    narc_error e;
+    fewer.count--;
+    wrong.reserved[1] = rows;
+#define REFUSED(status, words, ...) expect_error(narc_cast_shapes(__VA_ARGS__, rows, MOVERS, &e), status, &e, words)
+    REFUSED(NARC_ERROR_ARGUMENT, "index is NULL", NULL, store, &bodies, &movers, &motions, NULL, NULL);
+    REFUSED(NARC_ERROR_ARGUMENT, "shapes is NULL", s.index, NULL, &bodies, &movers, &motions, NULL, NULL);
+    REFUSED(NARC_ERROR_ARGUMENT, "movers is NULL", s.index, store, &bodies, NULL, &motions, NULL, NULL);
+    REFUSED(NARC_ERROR_ARGUMENT, "9 bodies, but the index has 10", s.index, store, &fewer, &movers, &motions, NULL,
+            NULL);
+    REFUSED(NARC_ERROR_ARGUMENT, "bodies.reserved[1]", s.index, store, &bodies, &wrong, &motions, NULL, NULL);
+    REFUSED(NARC_ERROR_ARGUMENT, "tolerance", s.index, store, &bodies, &movers, &motions, NULL,
+            (&(narc_cast_options){.tolerance = -1}));
+    REFUSED(NARC_ERROR_NOT_FINITE, "target", s.index, store, &bodies, &movers, &motions, NULL,
+            (&(narc_cast_options){.target = NAN}));
+    REFUSED(NARC_ERROR_NOT_FINITE, "tolerance", s.index, store, &bodies, &movers, &motions, NULL,
+            (&(narc_cast_options){.tolerance = INFINITY}));
+    REFUSED(NARC_ERROR_ARGUMENT, "options.reserved[2]", s.index, store, &bodies, &movers, &motions, NULL,
+            (&(narc_cast_options){.reserved = {NULL, NULL, rows}}));
+    REFUSED(NARC_ERROR_ARGUMENT, "motions.reserved[0]", s.index, store, &bodies, &movers,
+            (&(narc_motions){.reserved = {rows}}), NULL, NULL);
+    REFUSED(NARC_ERROR_ARGUMENT, "search.reserved[0]", s.index, store, &bodies, &movers, &motions,
+            (&(narc_index_query){.reserved = {rows}}), NULL);
+    expect_error(narc_cast_shapes(s.index, store, &bodies, &movers, &motions, NULL, NULL, rows, MOVERS - 1, &e),
+                 NARC_ERROR_CAPACITY, &e, "300 rows");
+    expect_error(narc_cast_shapes(s.index, store, &bodies, &movers, &motions, NULL, NULL, NULL, MOVERS, &e),
+                 NARC_ERROR_ARGUMENT, &e, "out_rows is NULL");
+    s.movers.bodies[5].shape = 1000000;
+    REFUSED(NARC_ERROR_INDEX, "body 5: shape is 1000000", s.index, store, &bodies, &movers, &motions, NULL, NULL);
+#undef REFUSED
+    const narc_pairs pairs = {.count = 2}, others = {.count = 2, .other_bodies = &bodies};
+#define REFUSED(status, words, ...) expect_error(narc_cast_pairs(__VA_ARGS__, rows, MOVERS, &e), status, &e, words)
+    REFUSED(NARC_ERROR_ARGUMENT, "shapes is NULL", NULL, &bodies, &motions, &pairs, NULL, NULL);
+    REFUSED(NARC_ERROR_ARGUMENT, "pairs is NULL", store, &bodies, &motions, NULL, NULL, NULL);
+    REFUSED(NARC_ERROR_ARGUMENT, "other_motions", store, &bodies, &motions, &pairs, &motions, NULL);
+    REFUSED(NARC_ERROR_ARGUMENT, "other_motions.reserved[1]", store, &bodies, &motions, &others,
+            (&(narc_motions){.reserved = {NULL, rows}}), NULL);
+    REFUSED(NARC_ERROR_ARGUMENT, "tolerance is -2", store, &bodies, &motions, &pairs, NULL,
+            (&(narc_cast_options){.tolerance = -2}));
+#undef REFUSED
+    expect_error(narc_cast_pairs(store, &bodies, &motions, &pairs, NULL, NULL, rows, 1, &e), NARC_ERROR_CAPACITY, &e,
+                 "2 rows");
+    expect_error(narc_cast_pairs(store, &bodies, &motions, &pairs, NULL, NULL, NULL, 2, &e), NARC_ERROR_ARGUMENT, &e,
+                 "out_rows is NULL");
+    assert_true(is_junk(rows, MOVERS * sizeof *rows));
+    expect_ok(narc_cast_pairs(store, &bodies, NULL, &(narc_pairs){0}, NULL, NULL, NULL, 0, &e), &e);
+    free(rows);
+    destroy_stage(&s);
+}
+
+/* ------------------------------------------------------------------------------------------------ known */
+
+/* Casts one pair of boxes, the first of which moves. */
+static narc_impact cast_boxes(struct body a, struct body b, struct motion motion, const narc_cast_options *options) {
+    narc_shapes *const store = empty_store();
+    store_shape(store, box_of(2, 2, 0));
+    store_shape(store, box_of(8, 0.125, 0));
+    const narc_body rows[2] = {{a.x, a.y, a.cosine, a.sine, a.scale, a.shape},
+                               {b.x, b.y, b.cosine, b.sine, b.scale, b.shape}};
+    const float motions[2][3] = {{motion.x, motion.y, motion.angle}};
+    const narc_bodies bodies = narc_view_bodies(rows, 2);
+    const narc_motions moving = {{&motions[0][0], sizeof motions[0]},
+                                 {&motions[0][1], sizeof motions[0]},
+                                 {&motions[0][2], sizeof motions[0]},
+                                 {NULL}};
+    narc_impact impact;
+    narc_error error;
+    expect_ok(narc_cast_pairs(store, &bodies, &moving, &(narc_pairs){.count = 1}, NULL, options, &impact, 1, &error),
+              &error);
+    narc_destroy_shapes(store);
+    return impact;
+}
+
+static struct body at(double x, double y, double angle, uint32_t shape) {
+    struct body body = turned_body(angle, 1);
+    body.x = x;
+    body.y = y;
+    body.shape = shape;
+    return body;
+}
+
+#define EXPECT(found, expected, tolerance) assert_true(fabs((double)(found) - (expected)) <= (tolerance))
+
+TEST(test_known) {
+    const struct body left = at(0, 0, 0, 0), right = at(10, 0, 0, 0);
+    narc_impact i = cast_boxes(left, right, (struct motion){16, 0, 0}, NULL);
+    assert_int_equal(i.count, NARC_CAST_HIT);
+    assert_true(i.fraction == 0.5f && i.separation == 0 && i.normal_x == 1 && i.normal_y == 0);
+    assert_true(i.point_x == 1 && i.point_y == 0 && i.body == 1 && i.pair == 0);
+    i = cast_boxes(left, right, (struct motion){7.5f, 0, 0}, NULL);
+    assert_int_equal(i.count, NARC_CAST_MISS);
+    i = cast_boxes(left, right, (struct motion){8, 0, 0}, NULL); /* they touch as the step ends */
+    assert_true(i.count == NARC_CAST_HIT && i.fraction == 1);
+    i = cast_boxes(left, right, (struct motion){16, 0, 0}, &(narc_cast_options){.target = 4});
+    assert_true(i.count == NARC_CAST_HIT && i.fraction == 0.25f && i.separation == 4);
+    i = cast_boxes(left, right, (struct motion){16, 0, 0}, &(narc_cast_options){.target = -1});
+    assert_true(i.count == NARC_CAST_HIT && i.fraction == 0.5625f && i.separation == -1);
+    i = cast_boxes(left, right, (struct motion){16, 0, 0}, &(narc_cast_options){.target = -2.5f});
+    assert_int_equal(i.count, NARC_CAST_MISS); /* never so deep */
+    /* At the start: touching and parting, apart and parting, deeper and parting. */
+    i = cast_boxes(left, at(2, 0, 0, 0), (struct motion){-1, 0, 0}, NULL);
+    assert_true(i.count == NARC_CAST_HIT && i.fraction == 0);
+    i = cast_boxes(left, at(2.0625, 0, 0, 0), (struct motion){-1, 0, 0}, NULL);
+    assert_int_equal(i.count, NARC_CAST_MISS);
+    i = cast_boxes(left, at(1.5, 0, 0, 0), (struct motion){-1, 0, 0}, NULL);
+    assert_true(i.count == NARC_CAST_HIT && i.fraction == 0 && i.separation == -0.5f);
+    /* No motion. */
+    i = cast_boxes(left, right, (struct motion){0, 0, 0}, NULL);
+    assert_int_equal(i.count, NARC_CAST_MISS);
+    i = cast_boxes(left, at(1, 0, 0, 0), (struct motion){0, 0, 0}, NULL);
+    assert_true(i.count == NARC_CAST_HIT && i.fraction == 0 && i.separation == -1);
+    /* It slides past, closer than half a rounding of its way, but apart. */
+    i = cast_boxes(left, at(5, 2 + 1e-5, 0, 0), (struct motion){100, 0, 0}, NULL);
+    assert_int_equal(i.count, NARC_CAST_MISS);
+    i = cast_boxes(left, at(5, 2 - 1e-5, 0, 0), (struct motion){100, 0, 0}, NULL);
+    assert_int_equal(i.count, NARC_CAST_HIT);
+    EXPECT(i.fraction, 0.03, 1e-6);
+    /* A bar of 8 x 1/8 turns by a quarter turn, until a corner of its end, at (4, -1/16) before, is 2 lower. */
+    i = cast_boxes(at(0, 3, 0, 1), at(3.5, 0, 0, 0), (struct motion){0, 0, -1.5707963f}, NULL);
+    assert_int_equal(i.count, NARC_CAST_HIT);
+    assert_true(i.separation >= 0 && i.separation <= 2.0f / 1024);
+    EXPECT(i.fraction, (asin(2 / hypot(4, 0.0625)) - atan2(0.0625, 4)) / 1.57079632679, 1e-3);
+    /* A whole turn beside it: the bar comes back to where it was, and was in between. */
+    i = cast_boxes(at(0, 3, 0, 1), at(3.5, 0, 0, 0), (struct motion){0, 0, 6.2831853f}, NULL);
+    assert_int_equal(i.count, NARC_CAST_HIT);
+    i = cast_boxes(at(0, 3, 0, 1), at(8.5, 0, 0, 0), (struct motion){0, 0, 6.2831853f}, NULL);
+    assert_int_equal(i.count, NARC_CAST_MISS);
+    /* What turns in touch and parts by that. */
+    i = cast_boxes(at(0, 1.0625 + 1e-4, 0, 1), at(3.5, 0, 0, 0), (struct motion){0, 1, 0.01f}, NULL);
+    assert_int_equal(i.count, NARC_CAST_MISS);
+}
+
+/* ------------------------------------------------------------------------------------------------ bits */
+
+/* The first instruction set that is asked of others is scalar. */
+TEST(test_bits) {
+    struct test_random random = test_random_named("bits");
+    for (int turning = 0; turning < 2; turning++) {
+        struct stage s = make_stage(&random, NARC_FLOAT64, 200, turning);
+        narc_impact *const rows = cast(&s, false, 2);
+        test_use_isa("scalar");
+        narc_impact *const scalar = cast(&s, false, 1);
+        test_use_isa(test_isa());
+        assert_memory_equal(rows, scalar, MOVERS * sizeof *rows);
+        guard_release(scalar);
+        guard_release(rows);
+        destroy_stage(&s);
+    }
+}
+
+TEST_MAIN("cast_shapes")

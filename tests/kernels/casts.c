@@ -1,0 +1,411 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * casts.c - times of impact against the reference's separation over the whole way, in double precision. Pairs are
+ * placed where tests of contacts are hard, and moved back from there along a motion.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "expect.h"
+#include "guard.h"
+#include "hard.h"
+#include "layouts.h"
+#include "narc_scene.h"
+#include "placements.h"
+
+struct motion {
+    float x, y, angle;
+};
+
+/* A scene whose bodies move: body k by motion[k]. */
+struct moving {
+    struct scene scene;
+    struct motion *motion;
+    float target, tolerance;
+};
+
+static narc_motions motions_of(const struct moving *m) {
+    return (narc_motions){
+        .x = NARC_COLUMN(m->motion, x), .y = NARC_COLUMN(m->motion, y), .angle = NARC_COLUMN(m->motion, angle)};
+}
+
+static narc_impact *cast_all(const struct moving *m, unsigned threads, size_t *out_skipped) {
+    const narc_bodies bodies = scene_bodies(&m->scene);
+    const narc_pairs pairs = scene_pairs(&m->scene);
+    const narc_motions motions = motions_of(m);
+    const narc_workers workers = narc_openmp_workers(threads);
+    const narc_cast_options options = {
+        .target = m->target, .tolerance = m->tolerance, .workers = &workers, .out_skipped = out_skipped};
+    narc_impact *rows = guard_allocate(pairs.count * sizeof *rows);
+    narc_error error;
+    expect_ok(narc_cast_pairs(m->scene.store, &bodies, &motions, &pairs, NULL, &options, rows, pairs.count, &error),
+              &error);
+    return rows;
+}
+
+/* ------------------------------------------------------------------------------------------------ the reference */
+
+/* A pair on its way: A at the origin of the frame. */
+struct way {
+    struct reference_body a, b;
+    double x, y, motion_x, motion_y; /* B's, from A's */
+    double angle_a, angle_b, start_a, start_b;
+};
+
+static struct way find_way(const struct moving *m, size_t pair) {
+    const uint32_t a = m->scene.pairs[pair].a, b = m->scene.pairs[pair].b;
+    struct way w = {.a = scene_reference(&m->scene, a), .b = scene_reference(&m->scene, b)};
+    w.x = w.b.x - w.a.x;
+    w.y = w.b.y - w.a.y;
+    w.motion_x = (double)m->motion[b].x - (double)m->motion[a].x;
+    w.motion_y = (double)m->motion[b].y - (double)m->motion[a].y;
+    w.angle_a = (double)m->motion[a].angle;
+    w.angle_b = (double)m->motion[b].angle;
+    w.start_a = atan2(w.a.sine, w.a.cosine);
+    w.start_b = atan2(w.b.sine, w.b.cosine);
+    w.a.x = w.a.y = 0;
+    return w;
+}
+
+static void turn_to(struct reference_body *body, double angle) {
+    body->cosine = cos(angle);
+    body->sine = sin(angle);
+}
+
+static void go_to(struct way *w, double time) {
+    w->b.x = w->x + time * w->motion_x;
+    w->b.y = w->y + time * w->motion_y;
+    turn_to(&w->a, w->start_a + time * w->angle_a);
+    turn_to(&w->b, w->start_b + time * w->angle_b);
+}
+
+static double separation_at(struct way *w, double time) {
+    go_to(w, time);
+    return reference_find_gap(&w->a, &w->b).gap;
+}
+
+static bool turns(const struct way *w) { return w->angle_a != 0 || w->angle_b != 0; }
+
+/* Golden-section search for a least separation between two times. */
+static double descend(struct way *w, double low, double high, double enough) {
+    const double ratio = 0.618033988749894848;
+    double left = high - ratio * (high - low), right = low + ratio * (high - low);
+    double at_left = separation_at(w, left), at_right = separation_at(w, right), least = fmin(at_left, at_right);
+    for (int k = 0; k < 50 && high - low > 1e-9 && least >= enough; k++) {
+        if (at_left < at_right) {
+            high = right;
+            right = left;
+            at_right = at_left;
+            at_left = separation_at(w, left = high - ratio * (high - low));
+        } else {
+            low = left;
+            left = right;
+            at_left = at_right;
+            at_right = separation_at(w, right = low + ratio * (high - low));
+        }
+        least = fmin(least, fmin(at_left, at_right));
+    }
+    return least;
+}
+
+/* The least separation of the times 0 .. end, as far as it is below `enough`. Without turning it is convex in time. Else
+ * it changes by at most `speed` in a step: what can't come below `enough` between two times is passed over. */
+static double find_least(struct way *w, double end, double enough) {
+    enum { SAMPLES = 160 };
+    double at[SAMPLES + 1], least = fmin(separation_at(w, 0), separation_at(w, end));
+    if (!turns(w))
+        return end > 0 ? fmin(least, descend(w, 0, end, enough)) : least;
+    const double speed = hypot(w->motion_x, w->motion_y) + fabs(w->angle_a) * reference_extent(&w->a) +
+                         fabs(w->angle_b) * reference_extent(&w->b);
+    for (int k = 0; k <= SAMPLES; k++)
+        at[k] = separation_at(w, end * k / SAMPLES);
+    for (int k = 0; k <= SAMPLES; k++)
+        least = fmin(least, at[k]);
+    for (int k = 0; k < SAMPLES; k++) {
+        const bool valley = (k == 0 || at[k] <= at[k - 1]) || (k + 2 > SAMPLES || at[k + 1] <= at[k + 2]);
+        if (valley && fmin(at[k], at[k + 1]) - speed * end / SAMPLES < enough)
+            least = fmin(least, descend(w, end * k / SAMPLES, end * (k + 1) / SAMPLES, enough));
+    }
+    return least;
+}
+
+/* ------------------------------------------------------------------------------------------------ what is right */
+
+struct tally {
+    size_t outcomes[3], at_start, rounded;
+    struct fractions worst;
+};
+
+static void fail_cast(const struct moving *m, size_t pair, const narc_impact *row, const char *what, double found,
+                      double allowed) {
+    struct way w = find_way(m, pair);
+    print_pair(&w.a, &w.b);
+    fail_msg(
+        "pair %zu: %s: %.9g, allowed %.9g; outcome %d at %.9g, separation %.9g; way (%.17g, %.17g) + (%.17g, %.17g) "
+        "t, turning %.9g and %.9g, target %.9g",
+        pair, what, found, allowed, row->count, (double)row->fraction, (double)row->separation, w.x, w.y, w.motion_x,
+        w.motion_y, w.angle_a, w.angle_b, (double)m->target);
+}
+
+static void check_row(const struct moving *m, size_t pair, const narc_impact *row, struct tally *tally) {
+    struct way w = find_way(m, pair);
+    const double target = (double)m->target, fraction = (double)row->fraction;
+    go_to(&w, fraction);
+    const double bound = separation_bound(&w.a, &w.b);
+    const double speed = hypot(w.motion_x, w.motion_y) + fabs(w.angle_a) * reference_extent(&w.a) +
+                         fabs(w.angle_b) * reference_extent(&w.b);
+    const double rounding = 0x1p-24 * speed;
+    assert_int_equal(row->pair, pair);
+    assert_in_range(row->count, 0, 2);
+    tally->outcomes[row->count]++;
+    if (row->count == NARC_CAST_MISS) {
+        const narc_impact none = {.pair = (uint32_t)pair};
+        assert_memory_equal(row, &none, sizeof none);
+        const double least = find_least(&w, 1, target - bound);
+        if (least < target - bound)
+            fail_cast(m, pair, row, "missed", least - target, -bound);
+        return;
+    }
+    assert_int_equal(row->body, m->scene.pairs[pair].b);
+    assert_true(fraction >= 0 && fraction <= 1);
+    const double now = separation_at(&w, fraction);
+    const narc_contact contact = {
+        row->pair,     row->feature, 1, row->separation, row->normal_x, row->normal_y, row->point_x, row->point_y,
+        row->radius_a, row->radius_b};
+    const char *const wrong = check_contact(&w.a, &w.b, now, &contact, &tally->worst);
+    if (wrong)
+        fail_cast(m, pair, row, wrong, (double)row->separation, now);
+    tally->at_start += fraction == 0;
+    if (fraction == 0 && now < target) /* as deep as they were */
+        return;
+    const double smaller = fmin((double)m->scene.bodies[m->scene.pairs[pair].a].scale,
+                                (double)m->scene.bodies[m->scene.pairs[pair].b].scale);
+    double tolerance = !turns(&w) ? bound : m->tolerance > 0 ? (double)m->tolerance : smaller * 4 / 1024;
+    if (row->count == NARC_CAST_HIT && now - target > bound + tolerance + rounding)
+        fail_cast(m, pair, row, "not there", now - target, bound + tolerance);
+    if (now - target < -1.5 * bound)
+        fail_cast(m, pair, row, "too deep", now - target, -bound);
+    const double least = find_least(&w, fraction, target - 1.5 * bound);
+    if (least < target - 1.5 * bound)
+        fail_cast(m, pair, row, "too late", least - target, -bound);
+}
+
+static void check_moving(const struct moving *m, struct tally *tally) {
+    size_t skipped = 9;
+    narc_impact *rows = cast_all(m, 1, &skipped);
+    assert_int_equal(skipped, 0);
+    for (size_t k = 0; k < m->scene.pair_count; k++)
+        check_row(m, k, &rows[k], tally);
+    guard_release(rows);
+}
+
+static void print_tally(const char *name, const struct tally *t) {
+    print_message("%s: %zu miss, %zu hit (%zu at once), %zu unfinished; of the bounds: separation %.2f, normal %.2f, "
+                  "point %.2f\n",
+                  name, t->outcomes[0], t->outcomes[1], t->at_start, t->outcomes[2], t->worst.separation,
+                  t->worst.normal, t->worst.point);
+}
+
+/* ------------------------------------------------------------------------------------------------ what is cast */
+
+/* A way to a place: its length is of the order of the size, or far longer; sometimes there is none. */
+static struct motion random_motion(struct test_random *random, double size, double turning) {
+    const double angle = random_between(random, -4, 4);
+    const double way = random_below(random, 8) == 0 ? 0 : size * random_log_between(random, 0.05, 60);
+    double turn = random_below(random, 4) == 0 ? 0 : turning * random_between(random, -1, 1);
+    return (struct motion){(float)(way * cos(angle)), (float)(way * sin(angle)), (float)turn};
+}
+
+/* Moves a body back from where it is after a part of its motion. */
+static void move_back(struct body *body, const struct motion *motion, double time, narc_precision precision) {
+    const double angle = atan2((double)body->sine, (double)body->cosine) - time * (double)motion->angle;
+    body->x -= time * (double)motion->x;
+    body->y -= time * (double)motion->y;
+    if (motion->angle != 0) {
+        body->cosine = (float)cos(angle);
+        body->sine = (float)sin(angle);
+    }
+    round_position(body, precision);
+}
+
+/* Makes all bodies of a scene, two of each pair, move so that they are where they are now after some time. A third of
+ * the ways are across the normal: they graze. */
+static struct moving set_in_motion(struct test_random *random, struct scene scene, double turning) {
+    struct moving m = {.scene = scene, .motion = calloc(scene.body_count, sizeof *m.motion)};
+    assert_non_null(m.motion);
+    for (size_t k = 0; k < scene.pair_count; k++) {
+        const uint32_t two[2] = {scene.pairs[k].a, scene.pairs[k].b};
+        const struct reference_body a = scene_reference(&scene, two[0]), b = scene_reference(&scene, two[1]);
+        const double size = fmin(reference_extent(&a), reference_extent(&b));
+        const double time = random_below(random, 4) ? random_unit(random) : (double)random_below(random, 3) / 2;
+        for (int side = 0; side < 2; side++)
+            m.motion[two[side]] = random_motion(random, size, turning);
+        if (random_below(random, 3) == 0) {
+            const struct reference_gap gap = reference_find_gap(&a, &b);
+            const double way = size * random_log_between(random, 0.05, 60);
+            m.motion[two[0]].x = m.motion[two[0]].y = 0;
+            m.motion[two[1]].x = (float)(-gap.normal_y * way);
+            m.motion[two[1]].y = (float)(gap.normal_x * way);
+        }
+        for (int side = 0; side < 2; side++)
+            move_back(&scene.bodies[two[side]], &m.motion[two[side]], time, scene.precision);
+    }
+    return m;
+}
+
+static void destroy_moving(struct moving *m) {
+    free(m->motion);
+    destroy_scene(&m->scene);
+}
+
+static const float targets[] = {0, 0, 0.05f, -0.05f, 1};
+
+static void check_families(const char *name, double turning, size_t trials) {
+    struct test_random random = test_random_named(name);
+    struct tally tally = {.at_start = 0};
+    for (size_t k = 0; k < trials; k++) {
+        const enum family a = (enum family)random_below(&random, FAMILY_COUNT),
+                          b = (enum family)random_below(&random, FAMILY_COUNT);
+        const struct scene scene = make_placed_scene(&random, (narc_precision)(k % 2), a, b, PLACE_COUNT * 4);
+        struct moving m = set_in_motion(&random, scene, turning);
+        m.target = targets[random_below(&random, 5)];
+        check_moving(&m, &tally);
+        destroy_moving(&m);
+    }
+    print_tally(name, &tally);
+    assert_true(tally.outcomes[0] > 0 && tally.outcomes[1] > 0);
+    assert_true(tally.outcomes[2] * 1000 <= tally.outcomes[0] + tally.outcomes[1]);
+}
+
+TEST(test_lines) { check_families("lines", 0, test_trials(24)); }
+
+/* So deep that the arcs which touch on the way are not those that touch at the target, or that it is never reached. */
+TEST(test_deep_targets) {
+    struct test_random random = test_random_named("deep targets");
+    struct tally tally = {.at_start = 0};
+    for (size_t k = 0; k < test_trials(60); k++) {
+        static const enum family families[] = {FAMILY_SMOOTH, FAMILY_LENS, FAMILY_THIN, FAMILY_UNEQUAL};
+        struct scene scene = create_scene(NARC_FLOAT64, 2, 48, 24);
+        for (int side = 0; side < 2; side++) {
+            const struct shape shape = make_shape(&random, families[random_below(&random, 4)]);
+            scene_add_shape(&scene, &shape);
+        }
+        for (int pair = 0; pair < 24; pair++)
+            scene_add_placed(&random, &scene, PLACE_DEEP, 0, 1);
+        struct moving m = set_in_motion(&random, scene, 0);
+        m.target = (float)-random_log_between(&random, 0.005, 0.6);
+        check_moving(&m, &tally);
+        destroy_moving(&m);
+    }
+    print_tally("deep targets", &tally);
+}
+
+TEST(test_turning) { check_families("turning", 2, test_trials(10)); }
+
+TEST(test_full_turns) { check_families("full turns", 14, test_trials(6)); }
+
+static void check_hard(const char *name, double turning, size_t trials) {
+    struct test_random random = test_random_named(name);
+    struct tally tally = {.at_start = 0};
+    for (size_t k = 0; k < trials; k++) {
+        struct scene scene = create_scene((narc_precision)(k % 2), 2, HARD_BODIES, HARD_BODIES / 2);
+        for (int side = 0; side < 2; side++) {
+            const struct shape shape = make_hard_shape(&random, (enum hard_family)random_below(&random, HARD_COUNT));
+            scene_add_shape(&scene, &shape);
+        }
+        add_hard_pairs(&random, &scene, (enum hard_placement)random_below(&random, HARD_PLACES), 0, 1);
+        struct moving m = set_in_motion(&random, scene, turning);
+        check_moving(&m, &tally);
+        destroy_moving(&m);
+    }
+    print_tally(name, &tally);
+}
+
+TEST(test_hard_lines) { check_hard("hard lines", 0, test_trials(20)); }
+
+TEST(test_hard_turning) { check_hard("hard turning", 3, test_trials(8)); }
+
+/* The scene by a quarter turn: the same numbers in other places, to the last bit. */
+TEST(test_quarter_turn) {
+    struct test_random random = test_random_named("quarter turn");
+    for (size_t k = 0; k < test_trials(60); k++) {
+        struct scene scene = make_placed_scene(&random, NARC_FLOAT64, (enum family)random_below(&random, FAMILY_COUNT),
+                                               (enum family)random_below(&random, FAMILY_COUNT), PLACE_COUNT * 4);
+        struct moving m = set_in_motion(&random, scene, k % 2 ? 3 : 0);
+        narc_impact *const rows = cast_all(&m, 1, NULL);
+        for (size_t b = 0; b < m.scene.body_count; b++) {
+            struct body *const body = &m.scene.bodies[b];
+            const struct body was = *body;
+            const struct motion motion = m.motion[b];
+            body->x = -was.y;
+            body->y = was.x;
+            body->cosine = -was.sine;
+            body->sine = was.cosine;
+            m.motion[b] = (struct motion){-motion.y, motion.x, motion.angle};
+        }
+        narc_impact *const turned = cast_all(&m, 1, NULL);
+        for (size_t pair = 0; pair < m.scene.pair_count; pair++) {
+            const narc_impact *const a = &rows[pair], *const b = &turned[pair];
+            assert_true(a->count == b->count && a->feature == b->feature && a->body == b->body);
+            assert_true(a->fraction == b->fraction && a->separation == b->separation);
+            assert_true(a->normal_x == b->normal_y && a->normal_y == -b->normal_x);
+            assert_true(a->point_x == b->point_y && a->point_y == -b->point_x);
+        }
+        guard_release(turned);
+        guard_release(rows);
+        destroy_moving(&m);
+    }
+}
+
+/* A step is two halves of it: what hits in the whole one hits in one of the two, and what misses in neither, but where it
+ * only grazes. */
+TEST(test_two_halves) {
+    struct test_random random = test_random_named("two halves");
+    size_t differ = 0, hits = 0;
+    for (size_t k = 0; k < test_trials(60); k++) {
+        struct scene scene = make_placed_scene(&random, NARC_FLOAT64, (enum family)random_below(&random, FAMILY_COUNT),
+                                               (enum family)random_below(&random, FAMILY_COUNT), PLACE_COUNT * 4);
+        struct moving m = set_in_motion(&random, scene, k % 2 ? 3 : 0);
+        narc_impact *const whole = cast_all(&m, 1, NULL), *half[2];
+        for (int part = 0; part < 2; part++) {
+            for (size_t b = 0; b < m.scene.body_count; b++) {
+                struct motion *const motion = &m.motion[b];
+                if (part == 0)
+                    *motion = (struct motion){motion->x / 2, motion->y / 2, motion->angle / 2};
+                else
+                    move_back(&m.scene.bodies[b], motion, -1, NARC_FLOAT64);
+            }
+            half[part] = cast_all(&m, 1, NULL);
+        }
+        for (size_t pair = 0; pair < m.scene.pair_count; pair++) {
+            const bool hit = whole[pair].count == NARC_CAST_HIT;
+            const bool parts = half[0][pair].count == NARC_CAST_HIT || half[1][pair].count == NARC_CAST_HIT;
+            hits += hit;
+            if (hit == parts)
+                continue;
+            struct way w = find_way(&m, pair); /* of the second half: backwards over the whole step */
+            w.x -= w.motion_x;
+            w.y -= w.motion_y;
+            w.start_a -= w.angle_a;
+            w.start_b -= w.angle_b;
+            w.motion_x *= 2;
+            w.motion_y *= 2;
+            w.angle_a *= 2;
+            w.angle_b *= 2;
+            const double least = find_least(&w, 1, -1e9);
+            const double size = reference_reach(&w.a, &w.b);
+            if (!(fabs(least) <= size * (turns(&w) ? 4.0 / 1024 : 1e-5)))
+                fail_cast(&m, pair, &whole[pair], "halves differ", least, 0);
+            differ++;
+        }
+        guard_release(whole);
+        guard_release(half[0]);
+        guard_release(half[1]);
+        destroy_moving(&m);
+    }
+    print_message("%zu hits, %zu grazes differ\n", hits, differ);
+}
+
+TEST_MAIN("casts")

@@ -1,0 +1,609 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * distances.c - distances of points to bodies, compared with the reference; what has no answer; layouts and errors;
+ * what is near to a body.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "expect.h"
+#include "guard.h"
+#include "hard.h"
+#include "layouts.h"
+#include "narc.h"
+#include "narc_broad_phase.h"
+#include "narc_scene.h"
+#include "scene.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* How far from 1 a normal's length may be, and how far, in radians, a normal may stray from a sector. */
+static const double unit_tolerance = 1e-6;
+
+/* No edge is longer than this part of the extent, and does not count as one. */
+static const double least_edge = 0x1p-15;
+
+/* ------------------------------------------------------------------------------------------------ points of bodies */
+
+enum point_placement {
+    POINT_NEAR,     /* beside the outline, within half a size */
+    POINT_DEEP,     /* anywhere around: mostly within */
+    POINT_TOUCH,    /* the outline, up to a few roundings off */
+    POINT_JUNCTION, /* on the normal of a junction, inside and outside */
+    POINT_CENTER,   /* the centre of an arc, or nearly */
+    POINT_CORNER,   /* where an arc starts */
+    POINT_EDGE,     /* the line of an edge, or of a tangent */
+    POINT_POSITION, /* the position */
+    POINT_FAR,      /* up to 1e6 sizes away */
+    POINT_PLACES
+};
+
+static const char *const placement_names[POINT_PLACES] = {"near",   "deep", "touch",    "junction", "center",
+                                                          "corner", "edge", "position", "far"};
+
+/* In a shape's own coordinates; the shape's size is about 1. */
+static narc_point place_point(struct test_random *random, const struct shape *shape, enum point_placement placement) {
+    const narc_arc arc = shape->arcs[random_below(random, shape->count)];
+    const double angle = random_between(random, -pi, pi), x = cos(arc.start), y = sin(arc.start);
+    const narc_point start = {arc.center_x + arc.radius * x, arc.center_y + arc.radius * y};
+    const double series = (random_below(random, 2) ? 1 : -1) * random_log_between(random, 1e-8, 1e-3);
+    narc_point p;
+    assert_true(narc_find_support(shape->arcs, shape->count, cos(angle), sin(angle), &p, NULL));
+    double away = 0, x_away = cos(angle), y_away = sin(angle);
+    switch (placement) {
+    case POINT_NEAR:
+        away = random_between(random, -0.5, 0.5);
+        break;
+    case POINT_DEEP:
+        away = random_between(random, -2, 0);
+        break;
+    case POINT_TOUCH:
+        away = random_below(random, 2) ? 0 : series * 1e-3;
+        break;
+    case POINT_FAR:
+        away = random_log_between(random, 1, 1e6);
+        break;
+    case POINT_JUNCTION:
+        p = start;
+        x_away = x;
+        y_away = y;
+        away = random_between(random, -2 - arc.radius, 3);
+        break;
+    case POINT_CENTER:
+        p = (narc_point){arc.center_x, arc.center_y};
+        away = random_below(random, 2) ? 0 : series;
+        break;
+    case POINT_CORNER:
+        p = start;
+        away = random_below(random, 2) ? 0 : series;
+        break;
+    case POINT_EDGE:
+        p = start;
+        x_away = -y;
+        y_away = x;
+        away = random_between(random, -2, 2);
+        break;
+    case POINT_POSITION:
+        p = (narc_point){0, 0};
+        break;
+    case POINT_PLACES:
+        break;
+    }
+    return (narc_point){p.x + x_away * away, p.y + y_away * away};
+}
+
+struct asked_point {
+    double x, y;
+    float x_single, y_single;
+    uint32_t body;
+};
+
+/* A scene with bodies of shapes of a family, and points to ask of. */
+struct point_scene {
+    struct scene scene;
+    struct asked_point *points;
+    size_t count;
+};
+
+enum { SHAPES = 4, KINDS = FAMILY_COUNT + HARD_COUNT };
+
+static const char *kind_name(int kind) {
+    return kind < FAMILY_COUNT ? family_name((enum family)kind)
+                               : hard_family_name((enum hard_family)(kind - FAMILY_COUNT));
+}
+
+static struct shape make_kind(struct test_random *random, int kind) {
+    return kind < FAMILY_COUNT ? make_shape(random, (enum family)kind)
+                               : make_hard_shape(random, (enum hard_family)(kind - FAMILY_COUNT));
+}
+
+/* A pose near the origin or far from it; sizes about 1, or not at all; rotations now and then drifted. */
+static struct body random_body(struct test_random *random, narc_precision precision) {
+    const double scale = random_below(random, 2) ? 1 : random_log_between(random, 1e-6, 1e6);
+    const double way = random_below(random, 2) ? 2 : scale * (precision == NARC_FLOAT64 ? 1e7 : 1e3);
+    struct body body = turned_body(random_between(random, -pi, pi), scale);
+    if (random_below(random, 4) == 0) {
+        const float factor = (float)(1 + 0.498 * NARC_ROTATION_TOLERANCE * random_between(random, -1, 1));
+        body.cosine *= factor;
+        body.sine *= factor;
+    }
+    body.x = random_between(random, -way, way);
+    body.y = random_between(random, -way, way);
+    return body;
+}
+
+/* Point k is placed by k % POINT_PLACES. */
+static struct point_scene make_point_scene(struct test_random *random, narc_precision precision, int kind,
+                                           size_t count) {
+    struct point_scene made = {create_scene(precision, SHAPES, count, 0), NULL, count};
+    made.points = calloc(count, sizeof *made.points);
+    assert_non_null(made.points);
+    for (int k = 0; k < SHAPES; k++) {
+        const struct shape shape = make_kind(random, kind);
+        scene_add_shape(&made.scene, &shape);
+    }
+    for (size_t k = 0; k < count; k++) {
+        struct body body = random_body(random, precision);
+        body.shape = (uint32_t)random_below(random, SHAPES);
+        const uint32_t index = scene_add_body(&made.scene, body);
+        body = made.scene.bodies[index];
+        const narc_point p =
+            place_point(random, &made.scene.shapes[body.shape], (enum point_placement)(k % POINT_PLACES));
+        const double length = hypot((double)body.cosine, (double)body.sine), scale = (double)body.scale / length;
+        struct body at = {.x = body.x + scale * ((double)body.cosine * p.x - (double)body.sine * p.y),
+                          .y = body.y + scale * ((double)body.sine * p.x + (double)body.cosine * p.y)};
+        round_position(&at, precision);
+        made.points[k] = (struct asked_point){at.x, at.y, at.x_single, at.y_single, index};
+    }
+    return made;
+}
+
+static void destroy_point_scene(struct point_scene *scene) {
+    destroy_scene(&scene->scene);
+    free(scene->points);
+}
+
+static narc_points points_of(const struct asked_point *points, size_t count, narc_precision precision) {
+    const bool single = precision == NARC_FLOAT32;
+    return (narc_points){.count = count,
+                         .x = single ? NARC_POSITION_COLUMN(points, x_single) : NARC_POSITION_COLUMN(points, x),
+                         .y = single ? NARC_POSITION_COLUMN(points, y_single) : NARC_POSITION_COLUMN(points, y)};
+}
+
+static narc_distance *find_distances(const struct point_scene *scene) {
+    narc_distance *rows = make_junk(scene->count * sizeof *rows);
+    const narc_bodies bodies = scene_bodies(&scene->scene);
+    const narc_points points = points_of(scene->points, scene->count, scene->scene.precision);
+    narc_error error;
+    if (narc_find_distances(scene->scene.store, &bodies, &points, NARC_COLUMN(scene->points, body), NULL, rows,
+                            &error) != NARC_OK)
+        fail_msg("%s", error.message);
+    return rows;
+}
+
+/* ------------------------------------------------------------------------------------------------ meaning */
+
+/* The body with its rotation made a unit vector, as the kernels take it. */
+static struct reference_body unit_reference(const struct scene *scene, uint32_t body) {
+    struct reference_body reference = scene_reference(scene, body);
+    const double length = hypot(reference.cosine, reference.sine);
+    reference.cosine /= length;
+    reference.sine /= length;
+    return reference;
+}
+
+/* How far a direction lies outside the sector of an arc, in radians. */
+static double angle_outside(const narc_arc *arc, double angle) {
+    double sweep = arc->end - arc->start;
+    sweep = sweep <= 0 ? sweep + 2 * pi : sweep;
+    const double from_middle = remainder(angle - (arc->start + sweep / 2), 2 * pi);
+    return fmax(fabs(from_middle) - sweep / 2, 0);
+}
+
+/* Do the feature and its radius belong to the nearest place with the normal (x, y)? */
+static const char *check_feature(const struct reference_body *body, const narc_distance *row, double x, double y,
+                                 double bound) {
+    const unsigned number = row->feature & (NARC_FEATURE_EDGE - 1u);
+    if (row->feature >= 2 * NARC_FEATURE_EDGE || number >= body->count)
+        return "no such feature";
+    const narc_arc *const arc = &body->arcs[number];
+    const double turn = atan2(body->sine, body->cosine), angle = atan2(y, x) - turn;
+    const double place_x = (double)row->place_x, place_y = (double)row->place_y;
+    const double c = body->scale * body->cosine, s = body->scale * body->sine;
+    const double center_x = c * arc->center_x - s * arc->center_y, center_y = s * arc->center_x + c * arc->center_y;
+    const double radius = body->scale * arc->radius;
+    if (row->feature & NARC_FEATURE_EDGE) {
+        const double off = remainder(angle - arc->start, 2 * pi);
+        const double across = (place_x - center_x) * x + (place_y - center_y) * y - radius;
+        return row->radius != INFINITY                         ? "radius of an edge"
+               : fabs(off) > 2 * unit_tolerance                ? "the edge has another normal"
+               : fabs(across) > bound + fabs(off) * 2 * radius ? "place is not on the edge"
+                                                               : NULL;
+    }
+    if (fabs((double)row->radius - radius) > unit_tolerance * radius)
+        return "radius of an arc";
+    const double off_x = place_x - center_x - radius * x, off_y = place_y - center_y - radius * y;
+    const double outside = angle_outside(arc, angle) * (hypot(place_x - center_x, place_y - center_y) + bound);
+    /* Beside an edge that is too short to count, the arc at its end is named. */
+    if (hypot(off_x, off_y) > 2 * bound + unit_tolerance * radius + least_edge * reference_extent(body))
+        return "place is not on the arc";
+    return outside > unit_tolerance * radius + 2 * bound ? "the arc does not hold the normal" : NULL;
+}
+
+/* What is wrong with a row, or NULL; raises the errors as fractions of the bound. */
+static const char *check_row(const struct reference_body *body, const struct asked_point *point,
+                             const narc_distance *row, struct fractions *worst) {
+    const narc_arc dot = {0, 0, 0, 0, 2 * pi};
+    const struct reference_body other = {&dot, 1, point->x, point->y, 1, 0, 1};
+    const double dx = point->x - body->x, dy = point->y - body->y;
+    const double bound = NARC_ERROR_BOUND * (hypot(dx, dy) + reference_extent(body));
+    const double exact = reference_find_gap(body, &other).gap, separation = (double)row->separation;
+    double x = (double)row->normal_x, y = (double)row->normal_y;
+    const double length = hypot(x, y);
+    if (row->count != 1)
+        return "count";
+    if (!isfinite(separation) || !isfinite(length) || !isfinite(row->place_x) || !isfinite(row->place_y))
+        return "not finite";
+    worst->separation = fmax(worst->separation, fabs(separation - exact) / bound);
+    if (fabs(separation - exact) > bound)
+        return "separation";
+    if (fabs(length - 1) > unit_tolerance)
+        return "normal not of length 1";
+    x /= length;
+    y /= length;
+    const double along = reference_gap_along(body, &other, x, y);
+    worst->normal = fmax(worst->normal, (exact - along) / bound);
+    if (exact - along > bound)
+        return "normal";
+    const double on_outline = reference_point_distance(body, (double)row->place_x, (double)row->place_y);
+    const double way = hypot(dx - (double)row->place_x, dy - (double)row->place_y);
+    worst->point = fmax(worst->point, fmax(fabs(on_outline), fabs(way - fabs(exact))) / bound);
+    if (fabs(on_outline) > bound)
+        return "place not on the outline";
+    if (fabs(way - fabs(exact)) > bound)
+        return "place not the nearest";
+    return check_feature(body, row, x, y, bound);
+}
+
+/* How many wrong rows are shown in full. */
+enum { SHOWN = 5 };
+
+/* Errors stay far below the bound, which adds their largest values; above this a kernel has become worse. */
+static const double expected_part = 0.2;
+
+static void check_all_kinds(const char *name, narc_precision precision, size_t rounds) {
+    struct test_random random = test_random_named(name);
+    struct fractions worst[KINDS + POINT_PLACES] = {{0}};
+    size_t wrong_count = 0, count = POINT_PLACES * test_trials(rounds);
+    for (int kind = 0; kind < KINDS; kind++) {
+        struct point_scene scene = make_point_scene(&random, precision, kind, count);
+        narc_distance *rows = find_distances(&scene);
+        for (size_t k = 0; k < count; k++) {
+            const struct reference_body body = unit_reference(&scene.scene, scene.points[k].body);
+            struct fractions errors = {0};
+            const char *wrong = check_row(&body, &scene.points[k], &rows[k], &errors);
+            if (rows[k].point != k || rows[k].body != scene.points[k].body)
+                wrong = "numbers";
+            struct fractions *const tallies[2] = {&worst[kind], &worst[KINDS + k % POINT_PLACES]};
+            for (int t = 0; t < 2; t++) {
+                tallies[t]->separation = fmax(tallies[t]->separation, errors.separation);
+                tallies[t]->normal = fmax(tallies[t]->normal, errors.normal);
+                tallies[t]->point = fmax(tallies[t]->point, errors.point);
+            }
+            if (wrong && wrong_count++ < SHOWN) {
+                print_error("%s, %s: %s; point (%a, %a); separation %.9g, normal (%.9g, %.9g), place (%.9g, %.9g), "
+                            "feature %d, radius %g; errors %g %g %g\n",
+                            kind_name(kind), placement_names[k % POINT_PLACES], wrong, scene.points[k].x,
+                            scene.points[k].y, (double)rows[k].separation, (double)rows[k].normal_x,
+                            (double)rows[k].normal_y, (double)rows[k].place_x, (double)rows[k].place_y, rows[k].feature,
+                            (double)rows[k].radius, errors.separation, errors.normal, errors.point);
+                print_pair(&body, &body);
+            }
+        }
+        free(rows);
+        destroy_point_scene(&scene);
+    }
+    printf("  %-11s %12s %7s %7s   (largest errors, as fractions of the bound)\n", "", "separation", "normal", "place");
+    for (int k = 0; k < KINDS + POINT_PLACES; k++)
+        printf("  %-11s %12.3f %7.3f %7.3f\n", k < KINDS ? kind_name(k) : placement_names[k - KINDS],
+               worst[k].separation, worst[k].normal, worst[k].point);
+    if (wrong_count)
+        fail_msg("%zu wrong rows", wrong_count);
+    for (int k = 0; k < KINDS; k++)
+        assert_true(worst[k].separation < expected_part && worst[k].normal < expected_part);
+}
+
+TEST(test_single_positions) { check_all_kinds("points, single positions", NARC_FLOAT32, 3); }
+
+TEST(test_double_positions) { check_all_kinds("points, double positions", NARC_FLOAT64, 3); }
+
+/* A circle with a flat place, a short one, and an arc beside it that hardly turns: from there on, the edge's normal,
+ * the arc's end and the arc behind the edge have the same separation but for rounding. */
+TEST(test_short_arcs) {
+    const double turn = 4.7e-5, flat = 1e-3;
+    const struct shape shape = {{{0, 0, 1, 0, turn}, {-flat * turn, flat, 1, turn, pi}, {0, 0, 1, pi, 2 * pi}}, 3};
+    struct test_random random = test_random_named("points, short arcs");
+    const size_t count = test_trials(1000);
+    struct point_scene scene = {create_scene(NARC_FLOAT64, 1, count, 0), calloc(count, sizeof *scene.points), count};
+    assert_non_null(scene.points);
+    scene_add_shape(&scene.scene, &shape);
+    for (size_t k = 0; k < count; k++) {
+        const struct body body = turned_body(random_between(&random, -pi, pi), 1);
+        const double along = flat * random_between(&random, -1, 2), c = (double)body.cosine, s = (double)body.sine;
+        const double x = cos(turn) - along * sin(turn), y = sin(turn) + along * cos(turn);
+        const uint32_t index = scene_add_body(&scene.scene, body);
+        scene.points[k] = (struct asked_point){.x = c * x - s * y, .y = s * x + c * y, .body = index};
+    }
+    narc_distance *rows = find_distances(&scene);
+    for (size_t k = 0; k < count; k++) {
+        const struct reference_body body = unit_reference(&scene.scene, scene.points[k].body);
+        struct fractions errors = {0};
+        const char *wrong = check_row(&body, &scene.points[k], &rows[k], &errors);
+        if (wrong)
+            fail_msg("%s: %g", wrong, errors.point);
+    }
+    free(rows);
+    destroy_point_scene(&scene);
+}
+
+/* ------------------------------------------------------------------------------------------------ the rest */
+
+/* Separations have the sign that narc_find_overlaps() says of a tiny circle there. */
+TEST(test_signs_of_overlaps) {
+    struct test_random random = test_random_named("points, overlaps");
+    const size_t count = POINT_PLACES * test_trials(4);
+    for (int kind = 0; kind < FAMILY_COUNT; kind++) {
+        struct point_scene scene = make_point_scene(&random, NARC_FLOAT64, kind, count);
+        const double radius = 1e-8;
+        const struct shape circle = circle_of(radius);
+        uint32_t shape = 0, clear = 0;
+        narc_body *dots = calloc(count, sizeof *dots);
+        assert_non_null(dots);
+        assert_int_equal(narc_add_shape(scene.scene.store, circle.arcs, circle.count, &shape, NULL), NARC_OK);
+        for (size_t k = 0; k < count; k++)
+            dots[k] = (narc_body){scene.points[k].x, scene.points[k].y, 1, 0, 1, shape};
+        const narc_bodies bodies = scene_bodies(&scene.scene), others = narc_view_bodies(dots, count);
+        uint64_t *bits =
+            find_overlaps(scene.scene.store, &bodies, &(narc_pairs){.count = count, .other_bodies = &others}, NULL);
+        narc_distance *rows = find_distances(&scene);
+        for (size_t k = 0; k < count; k++) {
+            const struct reference_body body = unit_reference(&scene.scene, scene.points[k].body);
+            const double bound = NARC_ERROR_BOUND * (hypot(scene.points[k].x - body.x, scene.points[k].y - body.y) +
+                                                     reference_extent(&body));
+            if (fabs((double)rows[k].separation) <= 2 * bound + 2 * radius)
+                continue;
+            clear++;
+            assert_int_equal(bit_is_set(bits, k), rows[k].separation < 0);
+        }
+        assert_true(clear > count / 3);
+        free(bits);
+        free(dots);
+        free(rows);
+        destroy_point_scene(&scene);
+    }
+}
+
+/* What has no answer: the numbers of broken bodies, and of points. */
+TEST(test_no_answer) {
+    static const float broken[] = {NAN, INFINITY, -INFINITY, 2, 0};
+    struct scene scene = create_scene(NARC_FLOAT32, 1, 64, 0);
+    const struct shape box = box_of(1, 1, 0);
+    scene_add_shape(&scene, &box);
+    const struct body fine = turned_body(0.3, 1);
+    scene_add_body(&scene, fine);
+    for (size_t k = 0; k < sizeof broken / sizeof broken[0]; k++) {
+        struct body body = fine;
+        if (k < 3)
+            body.x = (double)broken[k];
+        scene_add_body(&scene, body);
+        body = fine;
+        body.cosine = broken[k];
+        scene_add_body(&scene, body);
+        body = fine;
+        body.scale = k == 3 ? -1 : broken[k];
+        scene_add_body(&scene, body);
+    }
+    const size_t count = scene.body_count;
+    const float x[] = {3}, y[] = {0.1f};
+    const narc_points points = {.count = count, .x = {x, 0, NARC_FLOAT32}, .y = {y, 0, NARC_FLOAT32}};
+    const narc_bodies bodies = scene_bodies(&scene);
+    narc_distance *rows = make_junk(count * sizeof *rows);
+    assert_int_equal(narc_find_distances(scene.store, &bodies, &points, (narc_index_column){NULL, 0}, NULL, rows, NULL),
+                     NARC_OK);
+    size_t answers = 0;
+    for (size_t k = 0; k < count; k++) {
+        const narc_distance none = {.point = (uint32_t)k};
+        const struct body *body = &scene.bodies[k];
+        const bool is_fine = isfinite(body->x) && body->cosine == fine.cosine && body->scale == 1;
+        answers += rows[k].count;
+        assert_int_equal(rows[k].count, is_fine);
+        if (!is_fine)
+            assert_memory_equal(&rows[k], &none, sizeof none);
+    }
+    assert_true(answers >= 1);
+    static const double far[] = {0, 9e16, 1.1e17, 1e300, NAN, INFINITY, -INFINITY};
+    const double nothing = 0;
+    for (size_t k = 0; k < sizeof far / sizeof far[0]; k++) {
+        const narc_points one = {.count = 1, .x = {&far[k], 0, NARC_FLOAT64}, .y = {&nothing, 0, NARC_FLOAT64}};
+        assert_int_equal(
+            narc_find_distances(scene.store, &bodies, &one, (narc_index_column){NULL, 0}, NULL, rows, NULL), NARC_OK);
+        assert_int_equal(rows[0].count, k < 2);
+        if (k == 1)
+            assert_true(fabs((double)rows[0].separation - far[k]) < 1e-6 * far[k] && rows[0].normal_x > 0.999999f);
+    }
+    assert_int_equal(narc_remove_shape(scene.store, 0, NULL), NARC_OK);
+    assert_int_equal(narc_find_distances(scene.store, &bodies, &points, (narc_index_column){NULL, 0}, NULL, rows, NULL),
+                     NARC_OK);
+    for (size_t k = 0; k < count; k++)
+        assert_int_equal(rows[k].count, 0);
+    free(rows);
+    destroy_scene(&scene);
+}
+
+/* The same bytes from every layout, with guard pages behind all that is read or written. */
+TEST(test_layouts) {
+    struct test_random random = test_random_named("points, layouts");
+    for (int precision = NARC_FLOAT32; precision <= NARC_FLOAT64; precision++)
+        for (int layout = 0; layout < LAYOUT_COUNT; layout++)
+            for (size_t count = 1; count <= 40; count += count < 18 ? 1 : 11) {
+                struct point_scene scene =
+                    make_point_scene(&random, (narc_precision)precision, (int)(count % FAMILY_COUNT), count);
+                if (layout == LAYOUT_SHARED)
+                    share_values(&scene.scene);
+                if (layout == LAYOUT_UNSCALED)
+                    unit_scales(&scene.scene);
+                struct columns columns = create_columns(&scene.scene, (enum layout)layout, 0, 0);
+                narc_shapes *store = guard_store(&scene.scene);
+                narc_distance *expected = find_distances(&scene), *rows = guard_allocate(count * sizeof *rows);
+                struct asked_point *points = guard_copy(scene.points, count * sizeof *points);
+                uint32_t *body = guard_allocate(count * sizeof *body);
+                for (size_t k = 0; k < count; k++)
+                    body[k] = points[k].body;
+                const narc_points asked = points_of(points, count, (narc_precision)precision);
+                assert_int_equal(
+                    narc_find_distances(store, &columns.bodies, &asked, NARC_ARRAY(body), NULL, rows, NULL), NARC_OK);
+                assert_memory_equal(rows, expected, count * sizeof *rows);
+                guard_release(points);
+                guard_release(body);
+                guard_release(rows);
+                free(expected);
+                narc_destroy_shapes(store);
+                destroy_columns(&columns);
+                destroy_point_scene(&scene);
+            }
+}
+
+TEST(test_errors) {
+    struct test_random random = test_random_named("points, errors");
+    struct point_scene scene = make_point_scene(&random, NARC_FLOAT32, FAMILY_BOX, 9);
+    const narc_bodies bodies = scene_bodies(&scene.scene);
+    const narc_points points = points_of(scene.points, 9, NARC_FLOAT32);
+    const narc_index_column own = {NULL, 0};
+    const narc_shapes *const store = scene.scene.store;
+    narc_distance *rows = make_junk(9 * sizeof *rows);
+    narc_error error;
+#define EXPECT(call, status, word) expect_error(call, status, &error, word)
+    EXPECT(narc_find_distances(NULL, &bodies, &points, own, NULL, rows, &error), NARC_ERROR_ARGUMENT, "shapes");
+    EXPECT(narc_find_distances(store, NULL, &points, own, NULL, rows, &error), NARC_ERROR_ARGUMENT, "bodies");
+    EXPECT(narc_find_distances(store, &bodies, NULL, own, NULL, rows, &error), NARC_ERROR_ARGUMENT, "points");
+    EXPECT(narc_find_distances(store, &bodies, &points, own, NULL, NULL, &error), NARC_ERROR_ARGUMENT, "out_rows");
+    narc_points wrong = points;
+    wrong.x.base = NULL;
+    EXPECT(narc_find_distances(store, &bodies, &wrong, own, NULL, rows, &error), NARC_ERROR_ARGUMENT, "points.x");
+    wrong = points;
+    wrong.y.base = NULL;
+    EXPECT(narc_find_distances(store, &bodies, &wrong, own, NULL, rows, &error), NARC_ERROR_ARGUMENT, "points.y");
+    wrong = points;
+    wrong.y.precision = NARC_FLOAT64;
+    EXPECT(narc_find_distances(store, &bodies, &wrong, own, NULL, rows, &error), NARC_ERROR_ARGUMENT, "precision");
+    wrong = points;
+    wrong.reserved[1] = rows;
+    EXPECT(narc_find_distances(store, &bodies, &wrong, own, NULL, rows, &error), NARC_ERROR_ARGUMENT, "reserved[1]");
+    wrong = points;
+    wrong.count = 10;
+    EXPECT(narc_find_distances(store, &bodies, &wrong, own, NULL, rows, &error), NARC_ERROR_INDEX, "point 9");
+#if SIZE_MAX > UINT32_MAX
+    wrong.count = (size_t)UINT32_MAX + 1;
+    EXPECT(narc_find_distances(store, &bodies, &wrong, own, NULL, rows, &error), NARC_ERROR_ARGUMENT, "at most");
+#endif
+    narc_bodies bad = bodies;
+    bad.sine.base = NULL;
+    EXPECT(narc_find_distances(store, &bad, &points, own, NULL, rows, &error), NARC_ERROR_ARGUMENT, "bodies.sine");
+    const uint32_t body[9] = {0, 1, 2, 3, 4, 9, 6, 10, 8};
+    EXPECT(narc_find_distances(store, &bodies, &points, NARC_ARRAY(body), NULL, rows, &error), NARC_ERROR_INDEX,
+           "point 5: the body is 9");
+    scene.scene.bodies[3].shape = SHAPES;
+    EXPECT(narc_find_distances(store, &bodies, &points, own, NULL, rows, &error), NARC_ERROR_INDEX,
+           "body 3 has shape 4");
+    const uint32_t others[9] = {0, 1, 2, 4, 4, 4, 6, 7, 8};
+    assert_true(is_junk(rows, 9 * sizeof *rows));
+    wrong = points;
+    wrong.count = 0;
+    assert_int_equal(narc_find_distances(store, &bodies, &wrong, own, NULL, NULL, NULL), NARC_OK);
+    assert_int_equal(narc_find_distances(store, &bodies, &points, NARC_ARRAY(others), NULL, rows, NULL), NARC_OK);
+
+    narc_index *index = NULL;
+    narc_box boxes[9];
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    scene.scene.bodies[3].shape = 0;
+    assert_int_equal(narc_compute_boxes(store, &bodies, NULL, boxes, NULL), NARC_OK);
+    assert_int_equal(narc_build_index(index, boxes, 9, NULL, NULL), NARC_OK);
+    free(rows);
+    rows = make_junk(18 * sizeof *rows);
+    const narc_nearest_options two = {.most = 2}, nan = {.distance = NAN};
+    narc_nearest_options reserved = {.reserved = {0, 0, rows}}, of_search = {.search.reserved = {rows}};
+    EXPECT(narc_find_nearest(NULL, store, &bodies, &points, NULL, rows, 9, &error), NARC_ERROR_ARGUMENT, "index");
+    EXPECT(narc_find_nearest(index, NULL, &bodies, &points, NULL, rows, 9, &error), NARC_ERROR_ARGUMENT, "shapes");
+    EXPECT(narc_find_nearest(index, store, &bodies, &points, NULL, NULL, 9, &error), NARC_ERROR_ARGUMENT, "out_rows");
+    EXPECT(narc_find_nearest(index, store, &bodies, &points, NULL, rows, 8, &error), NARC_ERROR_CAPACITY, "9 points");
+    EXPECT(narc_find_nearest(index, store, &bodies, &points, &two, rows, 17, &error), NARC_ERROR_CAPACITY, "17 rows");
+    EXPECT(
+        narc_find_nearest(index, store, &bodies, &points, &(narc_nearest_options){.most = SIZE_MAX}, rows, 18, &error),
+        NARC_ERROR_CAPACITY, "rows");
+    EXPECT(narc_find_nearest(index, store, &bodies, &points, &nan, rows, 9, &error), NARC_ERROR_NOT_FINITE, "distance");
+    EXPECT(narc_find_nearest(index, store, &bodies, &points, &reserved, rows, 9, &error), NARC_ERROR_ARGUMENT,
+           "options.reserved[2]");
+    EXPECT(narc_find_nearest(index, store, &bodies, &points, &of_search, rows, 9, &error), NARC_ERROR_ARGUMENT,
+           "options.search.reserved[0]");
+    bad = bodies;
+    bad.count = 8;
+    EXPECT(narc_find_nearest(index, store, &bad, &points, NULL, rows, 9, &error), NARC_ERROR_ARGUMENT, "8 bodies");
+    assert_true(is_junk(rows, 18 * sizeof *rows));
+    assert_int_equal(narc_find_nearest(index, store, &bodies, &points, &two, rows, 18, NULL), NARC_OK);
+    scene.scene.bodies[3].shape = SHAPES; /* not looked at beforehand, and not found */
+    assert_int_equal(narc_find_nearest(index, store, &bodies, &points, NULL, rows, 9, NULL), NARC_OK);
+    for (size_t k = 0; k < 9; k++)
+        assert_true(rows[k].count == 1 && rows[k].body != 3);
+    narc_destroy_index(index);
+    free(rows);
+    destroy_point_scene(&scene);
+}
+
+/* The example of narc_scene.h: what is near to a body. */
+TEST(test_near_a_body) {
+    struct test_random random = test_random_named("points, near a body");
+    struct scene scene = make_random_scene(&random, NARC_FLOAT32, 60, 1);
+    const narc_bodies bodies = scene_bodies(&scene);
+    narc_box box[60];
+    narc_index *index = NULL;
+    narc_pairs pairs;
+    narc_contact contact[60], *all = make_junk(60 * sizeof *all);
+    size_t found = 0, expected = 0;
+    assert_int_equal(narc_compute_boxes(scene.store, &bodies, NULL, box, NULL), NARC_OK);
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    assert_int_equal(narc_build_index(index, box, 60, NULL, NULL), NARC_OK);
+
+    const narc_box_options around = {.first = 7, .count = 1, .margin = 0.5f};
+    const uint32_t seven = 7;
+    const narc_index_query others = {.ignored = {&seven, 0}};
+    assert_int_equal(narc_compute_boxes(scene.store, &bodies, &around, box, NULL), NARC_OK);
+    assert_int_equal(narc_query_index(index, box + 7, 1, &others, &pairs, NULL), NARC_OK);
+    pairs.a = (narc_index_column){&seven, 0};
+    const narc_query query = {.margin = 0.5f};
+    assert_int_equal(narc_find_contacts(scene.store, &bodies, &pairs, &query, contact, 60, &found, NULL), NARC_OK);
+
+    for (uint32_t k = 0; k < 60; k++) {
+        const narc_pairs one = {.count = 1, .a = {&seven, 0}, .b = {&k, 0}};
+        size_t near = 0;
+        if (k == 7)
+            continue;
+        assert_int_equal(narc_find_contacts(scene.store, &bodies, &one, &query, all, 1, &near, NULL), NARC_OK);
+        if (near == 0)
+            continue;
+        assert_true(expected < found);
+        assert_int_equal(pairs.b.base[contact[expected].pair], k);
+        assert_true(contact[expected].separation == all[0].separation);
+        expected++;
+    }
+    assert_int_equal(found, expected);
+    assert_true(found > 0);
+    narc_destroy_index(index);
+    free(all);
+    destroy_scene(&scene);
+}
+
+TEST_MAIN("distances")

@@ -1,0 +1,321 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ray_scenes.c - rays through an index against each body asked by itself, to the last bit: all options, masks, ignored
+ * bodies, any tree, workers, order and layout; moved and reversed rays.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "expect.h"
+#include "guard.h"
+#include "layouts.h"
+#include "narc_broad_phase.h"
+#include "ray_room.h"
+
+/* ------------------------------------------------------------------------------------------------ brute force */
+
+/* Row k * bodies + b: ray k against body b by itself, in an index of its own. */
+static narc_ray_hit *cast_one_by_one(const struct room *room, const narc_rays *rays, narc_inside inside) {
+    const size_t bodies = room->scene.body_count;
+    narc_ray_hit *const all = calloc(rays->count * bodies + 1, sizeof *all), *const one =
+                                                                                 calloc(rays->count + 1, sizeof *one);
+    narc_index *index;
+    narc_error error;
+    assert_true(all && one);
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    const narc_ray_options options = {.inside = inside};
+    for (size_t b = 0; b < bodies; b++) {
+        struct scene alone = room->scene;
+        alone.bodies += b;
+        alone.body_count = 1;
+        const narc_bodies body = scene_bodies(&alone);
+        expect_ok(narc_build_index(index, &room->boxes[b], 1, NULL, &error), &error);
+        expect_ok(narc_cast_rays(index, room->scene.store, &body, rays, &options, one, rays->count, &error), &error);
+        for (size_t k = 0; k < rays->count; k++) {
+            all[k * bodies + b] = one[k];
+            all[k * bodies + b].body = one[k].count ? (uint32_t)b : 0;
+        }
+    }
+    narc_destroy_index(index);
+    free(one);
+    return all;
+}
+
+static int compare_hits(const void *left, const void *right) {
+    const narc_ray_hit *const a = left, *const b = right;
+    if (a->fraction < b->fraction || a->fraction > b->fraction)
+        return a->fraction < b->fraction ? -1 : 1;
+    return (a->body > b->body) - (a->body < b->body);
+}
+
+/* Compares rows with those of each body by itself, sorted. */
+static void compare_rows(const struct room *room, const narc_ray_hit *all, const narc_rays *rays,
+                         const narc_ray_options *options, bool masks, const narc_ray_hit *found) {
+    const size_t bodies = room->scene.body_count, most = options->most ? options->most : 1;
+    narc_ray_hit *const list = calloc(bodies + most, sizeof *list);
+    const narc_index_query *const search = &options->search;
+    for (size_t k = 0; k < rays->count; k++) {
+        const uint64_t mask = search->mask.base ? search->mask.base[k] : UINT64_MAX;
+        size_t count = 0;
+        for (size_t b = 0; b < bodies; b++) {
+            const narc_ray_hit *const hit = &all[k * bodies + b];
+            const bool wanted = mask & (masks ? room->category[b] : UINT64_MAX);
+            if (hit->count && wanted && !(search->ignored.base && search->ignored.base[k] == b))
+                list[count++] = *hit;
+        }
+        qsort(list, count, sizeof *list, compare_hits);
+        for (size_t i = 0; i < most; i++) {
+            const narc_ray_hit none = {.ray = (uint32_t)k}, *const row = &found[k * most + i];
+            if (options->any && i == 0 && count > 0) {
+                const narc_ray_hit *const same = &all[k * bodies + row->body];
+                assert_true(row->count == 1 && row->body < bodies);
+                assert_memory_equal(row, same, sizeof *row);
+            } else {
+                assert_memory_equal(row, i < count && !options->any ? &list[i] : &none, sizeof *row);
+            }
+        }
+    }
+    free(list);
+}
+
+TEST(finds_what_asking_every_body_finds) {
+    struct test_random random = test_random_named("rays and scenes");
+    static const size_t counts[] = {1, 2, 7, 8, 9, 63, 65, 130, 513};
+    static const size_t mosts[] = {0, 1, 2, 5, 40};
+    for (size_t trial = 0; trial < test_trials(sizeof counts / sizeof *counts); trial++) {
+        const size_t count = counts[trial % (sizeof counts / sizeof *counts)], rays = count < 100 ? 300 : 100;
+        const double side = sqrt((double)count) * random_between(&random, 0.5, 4);
+        struct room room = create_room(&random, (narc_precision)(trial % 2), count, side);
+        struct test_ray *const ray = make_rays(&random, &room, rays, side);
+        for (size_t k = 0; k < rays && trial % 2 == NARC_FLOAT64; k += 5) { /* from where doubles are coarse */
+            const double x = (double)ray[k].motion_x, y = (double)ray[k].motion_y, length = hypot(x, y);
+            if (!(length > 0))
+                continue;
+            ray[k].x -= 0x1p44 * (x / length);
+            ray[k].y -= 0x1p44 * (y / length);
+            ray[k].fraction = INFINITY;
+        }
+        const narc_rays view = view_rays(ray, rays);
+        uint64_t *const mask = calloc(rays, sizeof *mask);
+        uint32_t *const ignored = calloc(rays, sizeof *ignored);
+        for (size_t k = 0; k < rays; k++) {
+            const uint64_t bits = random_bits(&random); /* a quarter of the bits is set */
+            mask[k] = k % 7 ? bits & random_bits(&random) : 0;
+            ignored[k] = k % 5 ? (uint32_t)random_below(&random, count) : UINT32_MAX;
+        }
+        for (narc_inside inside = NARC_INSIDE_STOPS; inside <= NARC_INSIDE_IGNORES; inside++) {
+            narc_ray_hit *const all = cast_one_by_one(&room, &view, inside);
+            for (size_t k = 0; k < 15; k++) {
+                const bool masks = k % 3 == 1, fast = k % 2;
+                const narc_workers workers = narc_openmp_workers((unsigned)k % 4);
+                narc_ray_options options = {.inside = inside, .most = mosts[k % 5], .any = k > 9};
+                options.search.workers = &workers;
+                if (k % 3)
+                    options.search.mask = (narc_word_column){mask, sizeof *mask};
+                if (k % 4 > 1)
+                    options.search.ignored = (narc_index_column){ignored, sizeof *ignored};
+                index_room(&room, fast, masks);
+                narc_ray_hit *const found = cast_in_room(&room, &view, &options);
+                compare_rows(&room, all, &view, &options, masks, found);
+                guard_release(found);
+            }
+            free(all);
+        }
+        free(mask);
+        free(ignored);
+        free(ray);
+        destroy_room(&room);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ bits */
+
+/* Scalar in one call decides: instruction sets, workers, the order of rays, one by one, fitted trees. */
+TEST(same_bits_however_asked) {
+    struct test_random random = test_random_named("bits of rays");
+    enum { COUNT = 700, RAYS = 1500, MOST = 3 };
+    for (int precision = 0; precision < 2; precision++) {
+        struct room room = create_room(&random, (narc_precision)precision, COUNT, 40);
+        struct test_ray *const rays = make_rays(&random, &room, RAYS, 40), *const mixed = calloc(RAYS, sizeof *mixed);
+        const narc_rays view = view_rays(rays, RAYS);
+        narc_ray_options options = {.most = MOST, .inside = (narc_inside)precision};
+        test_use_isa("scalar");
+        narc_ray_hit *const right = cast_in_room(&room, &view, &options);
+        test_use_isa(test_isa());
+        for (unsigned threads = 1; threads < 6; threads++) {
+            const narc_workers workers = narc_openmp_workers(threads);
+            options.search.workers = &workers;
+            narc_ray_hit *const found = cast_in_room(&room, &view, &options);
+            assert_memory_equal(found, right, RAYS * MOST * sizeof *right);
+            guard_release(found);
+        }
+        options.search.workers = NULL;
+        size_t order[RAYS];
+        for (size_t k = 0; k < RAYS; k++)
+            order[k] = k;
+        for (size_t k = RAYS - 1; k > 0; k--) {
+            const size_t other = random_below(&random, k + 1), moved = order[k];
+            order[k] = order[other];
+            order[other] = moved;
+        }
+        for (size_t k = 0; k < RAYS; k++)
+            mixed[k] = rays[order[k]];
+        for (size_t size = 1; size < RAYS; size = size < 10 ? size + 1 : 3 * size)
+            for (size_t first = 0; first < RAYS; first += size) {
+                const size_t count = RAYS - first < size ? RAYS - first : size;
+                const narc_rays part = view_rays(mixed + first, count);
+                narc_ray_hit *const found = cast_in_room(&room, &part, &options);
+                for (size_t k = 0; k < count; k++) {
+                    for (size_t i = 0; i < MOST; i++)
+                        found[k * MOST + i].ray = (uint32_t)order[first + k];
+                    assert_memory_equal(&found[k * MOST], &right[order[first + k] * MOST], MOST * sizeof *right);
+                }
+                guard_release(found);
+            }
+        narc_box *const moved = calloc(COUNT, sizeof *moved);
+        for (size_t k = 0; k < COUNT; k++)
+            moved[k] = room.boxes[COUNT - 1 - k];
+        narc_error error;
+        expect_ok(narc_build_index(room.index, moved, COUNT, NULL, &error), &error);
+        expect_ok(narc_refit_index(room.index, room.boxes, COUNT, NULL, NULL, &error), &error); /* a poor tree */
+        narc_ray_hit *const found = cast_in_room(&room, &view, &options);
+        assert_memory_equal(found, right, RAYS * MOST * sizeof *right);
+        guard_release(found);
+        free(moved);
+        guard_release(right);
+        free(rays);
+        free(mixed);
+        destroy_room(&room);
+    }
+}
+
+/* Bodies in all layouts, rays in columns backwards, in rows and shared, each with a guard page behind it. */
+TEST(reads_nothing_but_what_it_is_given) {
+    struct test_random random = test_random_named("layouts of rays");
+    enum { COUNT = 100, RAYS = 67 };
+    for (int precision = 0; precision < 2; precision++)
+        for (enum layout layout = 0; layout < LAYOUT_COUNT; layout++) {
+            struct scene scene = make_random_scene(&random, (narc_precision)precision, COUNT, 1);
+            if (layout == LAYOUT_SHARED)
+                share_values(&scene);
+            if (layout == LAYOUT_UNSCALED)
+                unit_scales(&scene);
+            struct columns columns = create_columns(&scene, layout, 0, 0);
+            narc_shapes *const store = guard_store(&scene);
+            struct room room = {.scene = scene};
+            narc_box boxes[COUNT];
+            room.boxes = boxes;
+            assert_int_equal(narc_create_index(&guard_allocator, &room.index), NARC_OK);
+            index_room(&room, false, false);
+            struct test_ray *const rays = make_rays(&random, &room, RAYS, 10);
+            for (size_t count = 0; count <= RAYS; count++) {
+                const narc_rays view = view_rays(rays, count);
+                narc_ray_hit *const right = cast_in_room(&room, &view, NULL), *const found =
+                                                                                  guard_allocate(count * sizeof *found);
+                float *const numbers = guard_allocate(3 * count * sizeof *numbers);
+                double *const places = guard_allocate(2 * count * sizeof *places);
+                for (size_t k = 0; k < count; k++) { /* backwards */
+                    places[count - 1 - k] = rays[k].x;
+                    places[2 * count - 1 - k] = rays[k].y;
+                    numbers[count - 1 - k] = rays[k].motion_x;
+                    numbers[2 * count - 1 - k] = rays[k].motion_y;
+                    numbers[3 * count - 1 - k] = rays[k].fraction;
+                }
+                const ptrdiff_t last = (ptrdiff_t)count - 1, back = -(ptrdiff_t)sizeof(float);
+                const narc_rays other = {
+                    .count = count,
+                    .x = {places + last, 2 * back, NARC_FLOAT64},
+                    .y = {places + last + (ptrdiff_t)count, 2 * back, NARC_FLOAT64},
+                    .motion_x = {numbers + last, back},
+                    .motion_y = {numbers + last + (ptrdiff_t)count, back},
+                    .fraction = {numbers + last + 2 * (ptrdiff_t)count, back},
+                };
+                narc_error error;
+                expect_ok(narc_cast_rays(room.index, store, &columns.bodies, &other, NULL, found, count, &error),
+                          &error);
+                assert_memory_equal(found, right, count * sizeof *found);
+                guard_release(right);
+                guard_release(found);
+                guard_release(numbers);
+                guard_release(places);
+            }
+            free(rays);
+            narc_destroy_index(room.index);
+            narc_destroy_shapes(store);
+            destroy_columns(&columns);
+            destroy_scene(&scene);
+        }
+}
+
+/* ------------------------------------------------------------------------------------------------ other frames */
+
+/* A scene moved by what doubles add exactly gives the same bits; a ray reversed leaves where it entered. */
+TEST(answers_the_same_elsewhere_and_backwards) {
+    struct test_random random = test_random_named("moved rays");
+    enum { COUNT = 400, RAYS = 1000 };
+    struct room room = create_room(&random, NARC_FLOAT64, COUNT, 60);
+    struct test_ray *const rays = make_rays(&random, &room, RAYS, 60);
+    narc_rays view = view_rays(rays, RAYS);
+    for (size_t k = 0; k < COUNT; k++) {
+        room.scene.bodies[k].x = round(room.scene.bodies[k].x * 0x1p20) * 0x1p-20;
+        room.scene.bodies[k].y = round(room.scene.bodies[k].y * 0x1p20) * 0x1p-20;
+    }
+    for (size_t k = 0; k < RAYS; k++) {
+        rays[k].x = round(rays[k].x * 0x1p20) * 0x1p-20;
+        rays[k].y = round(rays[k].y * 0x1p20) * 0x1p-20;
+    }
+    index_room(&room, false, false);
+    narc_ray_hit *const right = cast_in_room(&room, &view, NULL);
+    for (size_t k = 0; k < COUNT; k++) {
+        room.scene.bodies[k].x += 0x1p20;
+        room.scene.bodies[k].y -= 0x1p24;
+    }
+    for (size_t k = 0; k < RAYS; k++) {
+        rays[k].x += 0x1p20;
+        rays[k].y -= 0x1p24;
+    }
+    index_room(&room, false, false);
+    narc_ray_hit *const moved = cast_in_room(&room, &view, NULL);
+    assert_memory_equal(moved, right, RAYS * sizeof *moved);
+    /* From what is hit, back past where the ray began: the way out of that body is where the ray came in. */
+    size_t checked = 0;
+    for (size_t k = 0; k < RAYS; k++) {
+        const narc_ray_hit *const hit = &right[k];
+        struct test_ray back = rays[k];
+        const struct body *const body = &room.scene.bodies[hit->body];
+        if (!hit->count || (hit->normal_x == 0 && hit->normal_y == 0))
+            continue;
+        const double length = hypot((double)back.motion_x, (double)back.motion_y);
+        const double along = (double)back.motion_x / length, up = (double)back.motion_y / length;
+        const double depth = 0.01 * (double)body->scale;
+        back.x = body->x + (double)hit->point_x + depth * along;
+        back.y = body->y + (double)hit->point_y + depth * up;
+        back.motion_x = -back.motion_x;
+        back.motion_y = -back.motion_y;
+        back.fraction = INFINITY;
+        const struct outline_reference outline = make_outline_reference(&room.scene.shapes[body->shape]);
+        if (!(find_ray_truth(&outline, body, &back).start < -1e-3L))
+            continue;
+        struct scene alone = room.scene;
+        alone.bodies += hit->body;
+        alone.body_count = 1;
+        struct room only = {.scene = alone, .index = room.index, .boxes = room.boxes};
+        index_room(&only, false, false);
+        const narc_rays one = view_rays(&back, 1);
+        narc_ray_hit *const out = cast_in_room(&only, &one, &(narc_ray_options){.inside = NARC_INSIDE_LEAVES});
+        const double extent = (double)(outline.extent * (long double)body->scale);
+        assert_int_equal(out->count, 1);
+        assert_true(fabs((double)out->point_x - (double)hit->point_x) < 1e-5 * extent &&
+                    fabs((double)out->point_y - (double)hit->point_y) < 1e-5 * extent);
+        guard_release(out);
+        checked++;
+    }
+    assert_true(checked > RAYS / 20);
+    guard_release(right);
+    guard_release(moved);
+    free(rays);
+    destroy_room(&room);
+}
+
+TEST_MAIN("ray_scenes")

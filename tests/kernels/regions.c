@@ -1,0 +1,319 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * regions.c - narc_query_index() against all pairs of a query and a box: sizes, places, masks, memory, errors.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "expect.h"
+#include "guard.h"
+#include "index.h"
+#include "ledger.h"
+#include "narc.h"
+#include "support.h"
+
+static bool is_empty(const narc_box *box) {
+    const bool finite = isfinite(box->min_x) && isfinite(box->min_y) && isfinite(box->max_x) && isfinite(box->max_y);
+    return !finite || box->min_x > box->max_x || box->min_y > box->max_y;
+}
+
+static bool overlap(const narc_box *a, const narc_box *b) {
+    return !is_empty(a) && !is_empty(b) && a->min_x <= b->max_x && b->min_x <= a->max_x && a->min_y <= b->max_y &&
+           b->min_y <= a->max_y;
+}
+
+static narc_box random_box(struct test_random *random, double side, double least, double most) {
+    const double x = random_between(random, 0, side), y = random_between(random, 0, side);
+    const double width = random_between(random, least, most), height = random_between(random, least, most);
+    return (narc_box){(float)x, (float)y, (float)(x + width), (float)(y + height)};
+}
+
+/* Boxes and queries, and what they are asked by; what is NULL is left out. */
+struct question {
+    const narc_box *boxes, *queries;
+    size_t box_count, query_count;
+    const uint64_t *category, *mask;
+    const uint32_t *ignored;
+};
+
+static bool is_found(const struct question *q, size_t query, size_t body) {
+    const uint64_t mask = q->mask ? q->mask[query] : UINT64_MAX,
+                   category = q->category ? q->category[body] : UINT64_MAX;
+    return overlap(&q->queries[query], &q->boxes[body]) && (!q->ignored || q->ignored[query] != body) &&
+           (mask & category) != 0;
+}
+
+/* Every query with every body, in the order that is promised. */
+struct rows {
+    uint32_t *a, *b;
+    size_t count;
+};
+
+static struct rows find_all(const struct question *q) {
+    size_t capacity = 1024;
+    struct rows rows = {malloc(capacity * sizeof(uint32_t)), malloc(capacity * sizeof(uint32_t)), 0};
+    for (size_t query = 0; query < q->query_count; query++)
+        for (size_t body = 0; body < q->box_count; body++) {
+            if (!is_found(q, query, body))
+                continue;
+            if (rows.count == capacity) {
+                capacity *= 2;
+                rows.a = realloc(rows.a, capacity * sizeof(uint32_t));
+                rows.b = realloc(rows.b, capacity * sizeof(uint32_t));
+            }
+            rows.a[rows.count] = (uint32_t)query;
+            rows.b[rows.count++] = (uint32_t)body;
+        }
+    return rows;
+}
+
+static void check_rows(const struct rows *expected, const narc_pairs *pairs) {
+    assert_int_equal(pairs->count, expected->count);
+    assert_int_equal(pairs->a.stride, sizeof(uint32_t));
+    assert_int_equal(pairs->b.stride, sizeof(uint32_t));
+    if (expected->count > 0) {
+        assert_memory_equal(pairs->a.base, expected->a, expected->count * sizeof(uint32_t));
+        assert_memory_equal(pairs->b.base, expected->b, expected->count * sizeof(uint32_t));
+    }
+}
+
+static void ask(narc_index *index, const struct question *q, unsigned workers, narc_pairs *out_pairs) {
+    const narc_workers some = narc_openmp_workers(workers);
+    const narc_index_query query = {.mask = {q->mask, sizeof *q->mask},
+                                    .ignored = {q->ignored, sizeof *q->ignored},
+                                    .workers = workers > 1 ? &some : NULL};
+    narc_box *const guarded = guard_copy(q->queries, q->query_count * sizeof *q->queries);
+    narc_error error;
+    if (narc_query_index(index, guarded, q->query_count, &query, out_pairs, &error) != NARC_OK)
+        fail_msg("%s", error.message);
+    guard_release(guarded);
+}
+
+/* Builds, fast and well, asks, and asks again after a refit from other boxes. */
+static void check_question(narc_index *index, const struct question *q) {
+    static const unsigned workers[] = {1, 2, 3, 7};
+    struct rows expected = find_all(q);
+    for (unsigned way = 0; way < 3; way++) {
+        const narc_index_options options = {.category = {q->category, sizeof *q->category}, .fast = way == 1};
+        narc_box *other = NULL;
+        if (way == 2) {
+            other = malloc((q->box_count + 1) * sizeof *other);
+            for (size_t k = 0; k < q->box_count; k++)
+                other[k] = q->boxes[q->box_count - 1 - k];
+        }
+        assert_int_equal(narc_build_index(index, other ? other : q->boxes, q->box_count, &options, NULL), NARC_OK);
+        if (other)
+            assert_int_equal(narc_refit_index(index, q->boxes, q->box_count, &options, NULL, NULL), NARC_OK);
+        free(other);
+        for (unsigned w = 0; w < 4; w++) {
+            narc_pairs pairs;
+            ask(index, q, workers[w], &pairs);
+            check_rows(&expected, &pairs);
+        }
+    }
+    free(expected.a);
+    free(expected.b);
+}
+
+static const size_t counts[] = {0, 1, 7, 8, 9, 64, 65, 513, 5000};
+enum { COUNTS = sizeof counts / sizeof counts[0], QUERIES = 200, MOST = 5000 };
+
+TEST(finds_what_all_pairs_find) {
+    enum { SPREAD, CROWD, EQUAL, ROW, COLUMN, BROKEN, SIZES, HUGE_ONES, KINDS };
+    struct test_random random = test_random_named("regions");
+    static narc_box boxes[MOST], queries[QUERIES];
+    static uint64_t category[MOST], mask[QUERIES];
+    static uint32_t ignored[QUERIES];
+    narc_index *index;
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    for (size_t trial = 0; trial < KINDS * COUNTS * 4; trial++) {
+        const size_t kind = trial % KINDS, count = counts[trial / KINDS % COUNTS], options = trial / KINDS / COUNTS;
+        const double side = kind == CROWD ? 3 : sqrt((double)count) * 2;
+        for (size_t k = 0; k < count; k++) {
+            const double x = (double)k * 2, size = random_log_between(&random, 1e-3, 1e2);
+            boxes[k] = random_box(&random, side, 0, 2);
+            if (kind == EQUAL)
+                boxes[k] = (narc_box){1, 1, 2, 2};
+            else if (kind == ROW)
+                boxes[k] = (narc_box){(float)x, 1, (float)x + 1, 2};
+            else if (kind == COLUMN)
+                boxes[k] = (narc_box){1, (float)x, 1, (float)x};
+            else if (kind == BROKEN && random_below(&random, 3) == 0)
+                (&boxes[k].min_x)[random_below(&random, 4)] = random_below(&random, 2) ? NAN : INFINITY;
+            else if (kind == BROKEN && random_below(&random, 3) == 0)
+                boxes[k].max_y = boxes[k].min_y - 1;
+            else if (kind == SIZES)
+                boxes[k] = random_box(&random, side, 0, size);
+            else if (kind == HUGE_ONES && random_below(&random, 3) == 0)
+                boxes[k] = (narc_box){-FLT_MAX, (float)x, random_below(&random, 2) ? FLT_MAX : 1, FLT_MAX};
+            category[k] = (uint64_t)random_below(&random, 8) << 31;
+        }
+        for (size_t k = 0; k < QUERIES; k++) {
+            queries[k] = random_box(&random, side, 0, k % 20 == 0 ? side : 4);
+            if (k % 10 == 1 && count > 0)
+                queries[k] = boxes[random_below(&random, count)];
+            if (k % 50 == 2)
+                queries[k] = (narc_box){-FLT_MAX, -FLT_MAX, FLT_MAX, FLT_MAX};
+            if (k % 10 == 3)
+                (&queries[k].min_x)[random_below(&random, 4)] = random_below(&random, 2) ? NAN : -INFINITY;
+            mask[k] = (uint64_t)random_below(&random, 8) << 31;
+            ignored[k] = random_below(&random, 4) ? (uint32_t)random_below(&random, count + 1) : UINT32_MAX;
+        }
+        check_question(index,
+                       &(struct question){boxes, queries, count, QUERIES - trial % 3, options & 1 ? category : NULL,
+                                          options == 1 || options == 2 ? mask : NULL, options & 2 ? ignored : NULL});
+    }
+    narc_destroy_index(index);
+}
+
+/* One query that finds all, between others: more than a chunk, and sorted by digits. The order of rows does not depend
+ * on memory that is there already. */
+TEST(finds_more_than_there_was_room_for) {
+    enum { COUNT = 20000, ASKED = 300 };
+    struct test_random random = test_random_named("many in a region");
+    narc_box *const boxes = malloc(COUNT * sizeof *boxes), queries[ASKED];
+    narc_index *index;
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    for (size_t k = 0; k < COUNT; k++)
+        boxes[k] = random_box(&random, 1, 0, 1);
+    for (size_t k = 0; k < ASKED; k++) {
+        queries[k] = (narc_box){3, 3, 4, 4};
+        if (k % 37 == 5)
+            queries[k] = (narc_box){-1, -1, k % 2 ? 0.5f : 2, 2};
+    }
+    check_question(index,
+                   &(struct question){.boxes = boxes, .queries = queries, .box_count = COUNT, .query_count = ASKED});
+    narc_destroy_index(index);
+    free(boxes);
+}
+
+/* 131, 129, 128, 127 ... boxes above one another. */
+TEST(orders_any_number_of_bodies) {
+    enum { COUNT = 300 };
+    struct test_random random = test_random_named("order of regions");
+    narc_box boxes[COUNT], queries[COUNT];
+    narc_index *index;
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    for (size_t k = 0; k < COUNT; k++) {
+        const float x = (float)(k * 7 % COUNT);
+        boxes[k] = (narc_box){x, 0, x, 0};
+        queries[k] = (narc_box){-1, 0, (float)k - 0.5f, 1};
+    }
+    check_question(index,
+                   &(struct question){.boxes = boxes, .queries = queries, .box_count = COUNT, .query_count = COUNT});
+    for (size_t k = 0; k < COUNT; k++)
+        boxes[k].min_x = (float)random_below(&random, COUNT);
+    check_question(index,
+                   &(struct question){.boxes = boxes, .queries = queries, .box_count = COUNT, .query_count = COUNT});
+    narc_destroy_index(index);
+}
+
+/* ------------------------------------------------------------------------------------------------ memory and errors */
+
+TEST(survives_failing_allocations) {
+    enum { COUNT = 3000, ASKED = 500 };
+    struct test_random random = test_random_named("memory of regions");
+    struct ledger ledger = {0};
+    const narc_allocator allocator = ledger_allocator(&ledger);
+    static narc_box boxes[COUNT], queries[ASKED];
+    narc_index *index;
+    narc_error error;
+    size_t failures = 0;
+    assert_int_equal(narc_create_index(&allocator, &index), NARC_OK);
+    for (size_t k = 0; k < COUNT; k++)
+        boxes[k] = random_box(&random, 10, 0, 2);
+    for (size_t k = 0; k < ASKED; k++)
+        queries[k] = random_box(&random, 10, 0, 2);
+    const struct question q = {.boxes = boxes, .queries = queries, .box_count = COUNT, .query_count = ASKED};
+    assert_int_equal(narc_build_index(index, boxes, COUNT, NULL, NULL), NARC_OK);
+    ledger.limited = true;
+    narc_pairs pairs = {.count = 7};
+    for (size_t left = 0;; left++, failures++) {
+        ledger.left = left;
+        const narc_status status = narc_query_index(index, queries, ASKED, NULL, &pairs, &error);
+        if (status == NARC_OK)
+            break;
+        expect_error(status, NARC_ERROR_MEMORY, &error, "no memory for");
+        assert_int_equal(pairs.count, 7);
+    }
+    struct rows expected = find_all(&q);
+    check_rows(&expected, &pairs);
+    assert_true(failures >= 3); /* queries, bodies, rows */
+    const size_t allocations = ledger.allocations;
+    for (size_t k = 0; k < 5; k++) {
+        assert_int_equal(narc_query_index(index, queries, ASKED, NULL, &pairs, NULL), NARC_OK);
+        check_rows(&expected, &pairs);
+    }
+    assert_int_equal(ledger.allocations, allocations);
+    free(expected.a);
+    free(expected.b);
+    narc_destroy_index(index);
+    assert_int_equal(ledger.live, 0);
+}
+
+TEST(reads_columns_with_any_stride) {
+    enum { COUNT = 40, ASKED = 30 };
+    struct test_random random = test_random_named("columns of regions");
+    struct row {
+        uint64_t word;
+        uint32_t index, other;
+    };
+    static narc_box boxes[COUNT], queries[ASKED];
+    static uint64_t category[COUNT], mask[ASKED];
+    static uint32_t ignored[ASKED];
+    struct row *const bodies = guard_allocate(COUNT * sizeof *bodies), *const asked =
+                                                                           guard_allocate(ASKED * sizeof *asked);
+    for (size_t k = 0; k < COUNT; k++) {
+        boxes[k] = random_box(&random, 3, 0, 2);
+        bodies[COUNT - 1 - k].word = category[k] = (uint64_t)1 << random_below(&random, 3) * 21;
+    }
+    for (size_t k = 0; k < ASKED; k++) {
+        queries[k] = random_box(&random, 3, 0, 2);
+        asked[k].word = mask[k] = (uint64_t)random_below(&random, 2) << 42 | random_below(&random, 2) << 21;
+        asked[k].index = ignored[k] = (uint32_t)random_below(&random, COUNT);
+    }
+    const struct question q = {boxes, queries, COUNT, ASKED, category, mask, ignored};
+    const narc_index_options options = {.category = {&bodies[COUNT - 1].word, -(ptrdiff_t)sizeof *bodies}};
+    const narc_index_query query = {.mask = NARC_COLUMN(asked, word), .ignored = NARC_COLUMN(asked, index)};
+    struct rows expected = find_all(&q);
+    narc_index *index;
+    narc_pairs pairs;
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    assert_int_equal(narc_build_index(index, boxes, COUNT, &options, NULL), NARC_OK);
+    assert_int_equal(narc_query_index(index, queries, ASKED, &query, &pairs, NULL), NARC_OK);
+    assert_true(expected.count > 50);
+    check_rows(&expected, &pairs);
+    free(expected.a);
+    free(expected.b);
+    guard_release(bodies);
+    guard_release(asked);
+    narc_destroy_index(index);
+}
+
+TEST(refuses_bad_arguments) {
+    const narc_box box = {0, 0, 1, 1};
+    narc_index_query query = {0};
+    narc_pairs pairs = {.count = 7};
+    narc_index *index;
+    narc_error error;
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+#define REFUSED(call, words) expect_error(call, NARC_ERROR_ARGUMENT, &error, words)
+    REFUSED(narc_query_index(NULL, &box, 1, NULL, &pairs, &error), "index is NULL");
+    REFUSED(narc_query_index(index, NULL, 1, NULL, &pairs, &error), "boxes is NULL");
+    REFUSED(narc_query_index(index, &box, 1, NULL, NULL, &error), "out_pairs is NULL");
+    REFUSED(narc_query_index(index, &box, UINT32_MAX, NULL, &pairs, &error), "queries in one call");
+    query.reserved[3] = &query;
+    REFUSED(narc_query_index(index, &box, 1, &query, &pairs, &error), "query.reserved[3]");
+#undef REFUSED
+    assert_int_equal(pairs.count, 7);
+    assert_int_equal(narc_query_index(index, &box, 1, NULL, &pairs, NULL), NARC_OK);
+    assert_int_equal(pairs.count, 0);
+    pairs.count = 7;
+    assert_int_equal(narc_query_index(index, NULL, 0, NULL, &pairs, NULL), NARC_OK);
+    assert_int_equal(pairs.count, 0);
+    narc_destroy_index(index);
+}
+
+TEST_MAIN("regions")
