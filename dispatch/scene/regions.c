@@ -113,8 +113,8 @@ static narc_status walk_all(search *s, const narc_workers *workers, uint64_t *ou
 
 /* ------------------------------------------------------------------------------------------------ rows */
 
-/* Sorts bodies by their digits, the lowest first, to `out`, by way of `spare`. Bodies are not written: whoever orders those
-   of the next query may read them as well, for the kernel loads whole vectors. */
+/* Sorts bodies by their digits, the lowest first, to `out`, by way of `spare`. The bodies are not written: another worker's
+   kernel may read some of them behind those of its own query. */
 static void sort_bodies(const uint32_t *bodies, size_t count, size_t limit, uint32_t *spare, uint32_t *out) {
     enum { BITS = 8, DIGITS = 1 << BITS };
     int passes = 1;
