@@ -156,35 +156,32 @@ INLINE void stop_inside(place way, narc_ray_hit *out) {
 /* Fills a row, but for the ray and the body, if the ray meets the body at no more than `limit` of its motion. What a body
  * is made of counts within its box alone: it should not reach beyond, but for rounding, and so boxes that the line
  * misses, or meets later, can never hold an answer. */
-INLINE bool cast_at_body(const narc_shapes *shapes, const narc_bodies *bodies, const struct ray *ray,
-                         narc_inside inside, size_t body, const narc_box *box, float limit, narc_ray_hit *out) {
-    struct body_frame frame;
+INLINE bool cast_at_body(const struct body_frame *frame, const struct ray *ray, narc_inside inside, const narc_box *box,
+                         float limit, narc_ray_hit *out) {
     struct entry entry;
-    if (!load_body_frame(shapes, bodies, body, &frame))
-        return false;
-    const narc_shape_header *const header = frame.header;
-    const place way = {frame.position.x - ray->origin.x, frame.position.y - ray->origin.y};
-    const place v = turn_to_shape(&frame, ray->direction), turned = turn_to_shape(&frame, way);
+    const narc_shape_header *const header = frame->header;
+    const place way = {frame->position.x - ray->origin.x, frame->position.y - ray->origin.y};
+    const place v = turn_to_shape(frame, ray->direction), turned = turn_to_shape(frame, way);
     const place middle = {(double)header->bound_x, (double)header->bound_y};
-    const place center = {turned.x * frame.inverse_scale + middle.x, turned.y * frame.inverse_scale + middle.y};
+    const place center = {turned.x * frame->inverse_scale + middle.x, turned.y * frame->inverse_scale + middle.y};
     const double beside = find_cross(v, center), ahead = find_dot(v, center);
     const double radius = (double)header->bound_radius;
     if (!(fabs(beside) <= radius) || ahead < -radius)
         return false;
     const place foot = {middle.x + beside * v.y, middle.y - beside * v.x};
-    if (!find_entry(&frame, foot, v, &entry))
+    if (!find_entry(frame, foot, v, &entry))
         return false;
     const struct stretch in_box = find_box_stretch(ray, box);
-    double distance = find_most((ahead + entry.along) * frame.scale, in_box.from);
-    if (!(in_box.from <= in_box.to))
+    double distance = find_most((ahead + entry.along) * frame->scale, in_box.from);
+    if (!(in_box.from <= in_box.to && distance <= in_box.to))
         return false;
     if (distance <= 0) {
         if (inside == NARC_INSIDE_IGNORES) /* or it is behind */
             return false;
         struct entry exit;
         const double from = distance;
-        const bool leaves = find_entry(&frame, foot, (place){-v.x, -v.y}, &exit);
-        distance = find_least(leaves ? (ahead - exit.along) * frame.scale : from, in_box.to);
+        const bool leaves = find_entry(frame, foot, (place){-v.x, -v.y}, &exit);
+        distance = find_least(leaves ? (ahead - exit.along) * frame->scale : from, in_box.to);
         if (!(distance >= 0))
             return false;
         if (inside == NARC_INSIDE_STOPS) {
@@ -194,21 +191,21 @@ INLINE bool cast_at_body(const narc_shapes *shapes, const narc_bodies *bodies, c
         if (leaves)
             entry = exit;
     }
-    const double fraction = distance * ray->inverse_length, along = distance * frame.inverse_scale - ahead;
+    const double fraction = distance * ray->inverse_length, along = distance * frame->inverse_scale - ahead;
     if (!(fraction <= (double)FLT_MAX) || !(fabs(along) <= 2 * radius)) /* or its box is another's */
         return false;
     out->fraction = (float)fraction;
     if (out->fraction > limit)
         return false;
-    const bool is_edge = entry.on_edge && is_edge_before(&frame, entry.arc);
-    const place point = turn_to_world(&frame, (place){foot.x + along * v.x, foot.y + along * v.y});
-    const place normal = turn_to_world(&frame, entry.normal);
+    const bool is_edge = entry.on_edge && is_edge_before(frame, entry.arc);
+    const place point = turn_to_world(frame, (place){foot.x + along * v.x, foot.y + along * v.y});
+    const place normal = turn_to_world(frame, entry.normal);
     out->feature = (uint16_t)find_feature_number(header, entry.arc, is_edge);
     out->normal_x = (float)normal.x;
     out->normal_y = (float)normal.y;
-    out->point_x = (float)(point.x * frame.scale);
-    out->point_y = (float)(point.y * frame.scale);
-    out->radius = is_edge ? INFINITY : (float)((double)frame.arcs[entry.arc].arc.radius * frame.scale);
+    out->point_x = (float)(point.x * frame->scale);
+    out->point_y = (float)(point.y * frame->scale);
+    out->radius = is_edge ? INFINITY : (float)((double)frame->arcs[entry.arc].arc.radius * frame->scale);
     return true;
 }
 

@@ -11,6 +11,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "column.h"
@@ -29,6 +30,7 @@
 /* A ray's way along an axis past boxes: the planes that it meets first and last of a node's, as offsets in floats, and
  * the start, moved apart by the room. */
 struct axis {
+    bool backwards;
     int first, last;
     float first_start, last_start, inverse;
 };
@@ -40,8 +42,12 @@ struct visit {
     uint32_t level;
 };
 
-enum { MOST_VISITS = (NARC_NODE_SLOTS - 1) * NARC_INDEX_LEVELS + 1 };
+struct visits {
+    unsigned count;
+    struct visit left[(NARC_NODE_SLOTS - 1) * NARC_INDEX_LEVELS + 1];
+};
 
+/* A ray, and what is known of its hits. */
 struct walk {
     struct ray ray;
     struct axis x, y;
@@ -49,13 +55,28 @@ struct walk {
     float room;  /* of a distance */
     float limit; /* no body whose near is above is wanted */
     float limit_fraction;
-    bool left, down;
     uint64_t mask;
     uint32_t ignored;
     size_t found;
     narc_ray_hit *rows;
-    unsigned count; /* of visits */
-    struct visit visits[MOST_VISITS];
+};
+
+enum { LEAST_TOGETHER = 4, MOST_TOGETHER = 32 };
+
+/* The least cosine of the angle between a ray and the first that it goes with. */
+#define COHERENT 0.97
+
+/* Rays of one origin whose directions differ little go through the index together: a node is visited if it meets the
+ * wedge between the outermost two, and only at a leaf each ray is asked, in a lane of its own. A ray's answer is the same
+ * whether it goes alone or not. */
+struct bundle {
+    size_t count;
+    bool open;                              /* may others join? */
+    float left_x, left_y, right_x, right_y; /* the directions of the outermost rays */
+    float limit;                            /* the largest */
+    uint64_t mask;                          /* of all */
+    float limits[MOST_TOGETHER], inverse_x[MOST_TOGETHER], inverse_y[MOST_TOGETHER];
+    struct walk walks[MOST_TOGETHER];
 };
 
 /* ------------------------------------------------------------------------------------------------ a ray begins */
@@ -75,12 +96,20 @@ static narc_box find_scene_box(const narc_index *index) {
 
 static float clip_to_float(double a) { return (float)find_most(-(double)FLT_MAX, find_least((double)FLT_MAX, a)); }
 
+static float clip_inverse(double inverse) {
+    const double limit = (double)LARGEST_INVERSE;
+    return (float)find_most(-limit, find_least(limit, inverse));
+}
+
 INLINE struct axis set_axis(int min, int max, double start, double room, double inverse) {
     const bool backwards = inverse < 0;
     const float low = clip_to_float(start - room), high = clip_to_float(start + room);
-    const float limit = LARGEST_INVERSE, clipped = (float)find_most((double)-limit, find_least((double)limit, inverse));
-    return (struct axis){backwards ? max : min, backwards ? min : max, backwards ? low : high, backwards ? high : low,
-                         clipped};
+    return (struct axis){backwards,
+                         backwards ? max : min,
+                         backwards ? min : max,
+                         backwards ? low : high,
+                         backwards ? high : low,
+                         clip_inverse(inverse)};
 }
 
 /* Nothing further than a fraction of the ray's motion is wanted; what is as far still is. */
@@ -104,17 +133,8 @@ static bool read_ray(const narc_rays *rays, size_t k, struct ray *out, float *ou
            out->length <= DBL_MAX && fraction >= 0;
 }
 
-/* Empties a ray's rows, and sets out from the root. False if there is nothing to visit. */
-static bool begin_walk(const narc_ray_batch *batch, const narc_box *scene, size_t k, size_t *skipped, struct walk *w) {
-    const narc_index_query *const search = &batch->options->search;
-    float fraction;
-    w->rows = batch->out + k * batch->most;
-    for (size_t i = 0; i < batch->most; i++)
-        w->rows[i] = (narc_ray_hit){.ray = (uint32_t)k};
-    if (!read_ray(batch->rays, k, &w->ray, &fraction)) {
-        ++*skipped;
-        return false;
-    }
+/* Sets a ray out from where it meets the scene. False if it never does. */
+static bool begin_walk(const narc_box *scene, struct walk *w) {
     const struct stretch stretch = find_box_stretch(&w->ray, scene);
     if (!(stretch.to >= 0)) /* it is behind, or empty */
         return false;
@@ -130,14 +150,6 @@ static bool begin_walk(const narc_ray_batch *batch, const narc_box *scene, size_
                     start.x, room, w->ray.inverse.x);
     w->y = set_axis(offsetof(narc_index_node, min_y) / sizeof(float), offsetof(narc_index_node, max_y) / sizeof(float),
                     start.y, room, w->ray.inverse.y);
-    w->left = w->ray.direction.x < 0;
-    w->down = w->ray.direction.y < 0;
-    w->mask = search->mask.base ? narc_word_at(search->mask, k) : UINT64_MAX;
-    w->ignored = search->ignored.base ? narc_index_at(search->ignored, k) : UINT32_MAX;
-    w->found = 0;
-    w->count = 1;
-    w->visits[0] = (struct visit){0, 0, batch->index->level_count - 1};
-    set_limit(w, fraction);
     return true;
 }
 
@@ -145,7 +157,7 @@ static bool begin_walk(const narc_ray_batch *batch, const narc_box *scene, size_
 
 /* A bit for each slot that the ray meets, and where. */
 INLINE uint32_t find_slots(const struct walk *w, const narc_index_node *node, float *out_near) {
-    const float *const planes = node->min_x;
+    const float *const planes = (const float *)node;
     const vf inverse_x = v_set(w->x.inverse), inverse_y = v_set(w->y.inverse), limit = v_set(w->limit);
     uint32_t slots = 0;
     for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH) {
@@ -185,55 +197,256 @@ INLINE void keep_hit(struct walk *w, size_t most, const narc_ray_hit *hit) {
         set_limit(w, w->rows[most - 1].fraction);
 }
 
-INLINE void visit_leaf(const narc_ray_batch *batch, struct walk *w, size_t leaf, uint32_t slots, unsigned flips,
+/* Casts a ray at the body in a leaf's slot. Is it done? */
+INLINE bool cast_at_slot(const narc_ray_batch *batch, struct walk *w, const struct body_frame *frame, size_t leaf,
+                         unsigned slot) {
+    const narc_index_node *const node = &batch->index->nodes[leaf];
+    const narc_box box = {node->min_x[slot], node->min_y[slot], node->max_x[slot], node->max_y[slot]};
+    narc_ray_hit hit = {.ray = w->rows->ray, .body = batch->index->body[NARC_NODE_SLOTS * leaf + slot], .count = 1};
+    if (hit.body == w->ignored || !cast_at_body(frame, &w->ray, batch->options->inside, &box, w->limit_fraction, &hit))
+        return false;
+    keep_hit(w, batch->most, &hit);
+    return batch->options->any;
+}
+
+INLINE bool load_slot_frame(const narc_ray_batch *batch, size_t leaf, unsigned slot, struct body_frame *out) {
+    return load_body_frame(batch->shapes, batch->bodies, batch->index->body[NARC_NODE_SLOTS * leaf + slot], out);
+}
+
+/* Is the ray done? */
+INLINE bool visit_leaf(const narc_ray_batch *batch, struct walk *w, size_t leaf, uint32_t slots, unsigned flips,
                        const float *near) {
-    const narc_index *const index = batch->index;
-    const narc_index_node *const node = &index->nodes[leaf];
     for (; slots; slots &= slots - 1) {
         const unsigned slot = (unsigned)__builtin_ctz(slots) ^ flips;
-        const uint32_t body = index->body[NARC_NODE_SLOTS * leaf + slot];
-        const narc_box box = {node->min_x[slot], node->min_y[slot], node->max_x[slot], node->max_y[slot]};
-        narc_ray_hit hit = {.ray = w->rows->ray, .body = body, .count = 1};
-        if (near[slot] > w->limit || body == w->ignored ||
-            !cast_at_body(batch->shapes, batch->bodies, &w->ray, batch->options->inside, body, &box, w->limit_fraction,
-                          &hit))
-            continue;
-        keep_hit(w, batch->most, &hit);
-        if (batch->options->any) {
-            w->count = 0;
-            return;
-        }
+        struct body_frame frame;
+        if (near[slot] <= w->limit && load_slot_frame(batch, leaf, slot, &frame) &&
+            cast_at_slot(batch, w, &frame, leaf, slot))
+            return true;
+    }
+    return false;
+}
+
+/* Those of a node's slots that a mask meets. */
+INLINE uint32_t mask_slots(const narc_index *index, size_t node, uint32_t slots, uint64_t mask) {
+    if (!index->masks)
+        return mask ? slots : 0;
+    for (uint32_t bits = slots; bits; bits &= bits - 1) {
+        const unsigned slot = (unsigned)__builtin_ctz(bits);
+        slots &= ~((uint32_t) !(index->masks[NARC_NODE_SLOTS * node + slot] & mask) << slot);
+    }
+    return slots;
+}
+
+INLINE void begin_visits(const narc_index *index, struct visits *visits) {
+    visits->count = 1;
+    visits->left[0] = (struct visit){0, 0, index->level_count - 1};
+}
+
+/* The last one first: it waits longest. */
+INLINE void add_visits(const struct visit *parent, uint32_t slots, unsigned flips, const float *near,
+                       struct visits *visits) {
+    for (; slots; slots &= ~(1u << (31 - __builtin_clz(slots)))) {
+        const unsigned slot = (31u - (unsigned)__builtin_clz(slots)) ^ flips;
+        visits->left[visits->count++] =
+            (struct visit){near[slot], NARC_NODE_SLOTS * parent->node + slot, parent->level - 1};
     }
 }
 
-/* Visits what is next. */
-INLINE void step_walk(const narc_ray_batch *batch, struct walk *w) {
+static void walk_alone(const narc_ray_batch *batch, struct walk *w) {
     const narc_index *const index = batch->index;
-    const struct visit visit = w->visits[--w->count];
-    if (visit.near > w->limit)
-        return;
-    const size_t node = (size_t)index->first_node[visit.level] + visit.node;
-    float near[NARC_NODE_SLOTS + V_WIDTH];
-    uint32_t slots = find_slots(w, &index->nodes[node], near);
-    if (index->masks)
-        for (uint32_t bits = slots; bits; bits &= bits - 1) {
-            const unsigned slot = (unsigned)__builtin_ctz(bits);
-            slots &= ~((uint32_t) !(index->masks[NARC_NODE_SLOTS * node + slot] & w->mask) << slot);
+    struct visits visits;
+    begin_visits(index, &visits);
+    while (visits.count > 0) {
+        const struct visit visit = visits.left[--visits.count];
+        if (visit.near > w->limit)
+            continue;
+        const size_t node = (size_t)index->first_node[visit.level] + visit.node;
+        float near[NARC_NODE_SLOTS + V_WIDTH];
+        uint32_t slots = mask_slots(index, node, find_slots(w, &index->nodes[node], near), w->mask);
+        const unsigned flips = narc_find_flips(index->order[node], w->x.backwards, w->y.backwards);
+        slots = flip_slots(slots, flips);
+        if (visit.level > 0)
+            add_visits(&visit, slots, flips, near, &visits);
+        else if (visit_leaf(batch, w, node, slots, flips, near))
+            return;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ rays together */
+
+static void begin_bundle(struct bundle *b) {
+    size_t left = 0, right = 0;
+    b->limit = -INFINITY;
+    b->mask = 0;
+    for (size_t k = 0; k < MOST_TOGETHER; k++) {
+        b->limits[k] = -INFINITY;
+        b->inverse_x[k] = b->inverse_y[k] = 0;
+    }
+    for (size_t k = 0; k < b->count; k++) {
+        const struct walk *const w = &b->walks[k];
+        left = find_cross(b->walks[left].ray.direction, w->ray.direction) > 0 ? k : left;
+        right = find_cross(b->walks[right].ray.direction, w->ray.direction) < 0 ? k : right;
+        b->limits[k] = w->limit;
+        b->inverse_x[k] = w->x.inverse;
+        b->inverse_y[k] = w->y.inverse;
+        b->limit = w->limit > b->limit ? w->limit : b->limit;
+        b->mask |= w->mask;
+    }
+    b->left_x = (float)b->walks[left].ray.direction.x;
+    b->left_y = (float)b->walks[left].ray.direction.y;
+    b->right_x = (float)b->walks[right].ray.direction.x;
+    b->right_y = (float)b->walks[right].ray.direction.y;
+}
+
+/* A bit for each slot that the wedge may meet, and how far away it is at least: boxes have corners to the left of the
+ * rightmost ray and to the right of the leftmost one; which corner decides is known by the quadrant. Boxes are larger by
+ * the room on every side, and a cross product errs by less than half of it. */
+INLINE uint32_t find_wedge_slots(const struct bundle *b, const narc_index_node *node, float *out_near) {
+    const struct walk *const w = &b->walks[0];
+    const float *const planes = (const float *)node;
+    const bool aslant = w->x.backwards != w->y.backwards;
+    const vf zero = v_set(0), limit = v_set(b->limit), right_x = v_set(b->right_x), right_y = v_set(b->right_y);
+    const vf outer_x = aslant ? right_x : v_set(b->left_x), outer_y = aslant ? right_y : v_set(b->left_y);
+    const vf other_x = aslant ? v_set(b->left_x) : right_x, other_y = aslant ? v_set(b->left_y) : right_y;
+    uint32_t slots = 0;
+    for (int k = 0; k < NARC_NODE_SLOTS; k += V_WIDTH) {
+        const vf first_x = v_sub(v_load(planes + w->x.first + k), v_set(w->x.first_start));
+        const vf first_y = v_sub(v_load(planes + w->y.first + k), v_set(w->y.first_start));
+        const vf last_x = v_sub(v_load(planes + w->x.last + k), v_set(w->x.last_start));
+        const vf last_y = v_sub(v_load(planes + w->y.last + k), v_set(w->y.last_start));
+        const vf a = v_sub(v_mul(outer_x, first_y), v_mul(outer_y, last_x));
+        const vf c = v_sub(v_mul(other_x, last_y), v_mul(other_y, first_x));
+        const vm beside = aslant ? vm_and(v_le(zero, a), v_le(c, zero)) : vm_and(v_le(a, zero), v_le(zero, c));
+        const vf near = v_add(v_mul(right_x, first_x), v_mul(right_y, first_y));
+        const vf far = v_add(v_mul(right_x, last_x), v_mul(right_y, last_y));
+        v_store(out_near + k, near);
+        slots |= vm_bits(vm_and(beside, vm_and(v_le(zero, far), v_le(near, limit)))) << k;
+    }
+    return slots & ((1u << NARC_NODE_SLOTS) - 1);
+}
+
+/* A bit for each ray that meets a slot's box: as find_slots(), with a lane for each ray. */
+INLINE uint32_t find_rays(const struct bundle *b, const narc_index_node *node, unsigned slot) {
+    const struct walk *const w = &b->walks[0];
+    const float *const planes = (const float *)node + slot;
+    const vf first_x = v_set(planes[w->x.first] - w->x.first_start),
+             last_x = v_set(planes[w->x.last] - w->x.last_start);
+    const vf first_y = v_set(planes[w->y.first] - w->y.first_start),
+             last_y = v_set(planes[w->y.last] - w->y.last_start);
+    uint32_t rays = 0;
+    for (size_t k = 0; k < MOST_TOGETHER; k += V_WIDTH) {
+        const vf inverse_x = v_load(b->inverse_x + k), inverse_y = v_load(b->inverse_y + k);
+        const vf near = v_max(v_max(v_mul(first_x, inverse_x), v_mul(first_y, inverse_y)), v_set(0));
+        const vf far = v_mul(v_min(v_mul(last_x, inverse_x), v_mul(last_y, inverse_y)), v_set(1 + ROOM));
+        rays |= vm_bits(vm_and(v_le(near, far), v_le(near, v_load(b->limits + k)))) << k;
+    }
+    return rays;
+}
+
+INLINE void visit_leaf_together(const narc_ray_batch *batch, struct bundle *b, size_t leaf, uint32_t slots,
+                                unsigned flips) {
+    const narc_index *const index = batch->index;
+    for (; slots; slots &= slots - 1) {
+        const unsigned slot = (unsigned)__builtin_ctz(slots) ^ flips;
+        uint32_t rays = find_rays(b, &index->nodes[leaf], slot);
+        struct body_frame frame;
+        if (!rays || !load_slot_frame(batch, leaf, slot, &frame))
+            continue;
+        for (; rays; rays &= rays - 1) {
+            struct walk *const w = &b->walks[__builtin_ctz(rays)];
+            if ((index->masks ? index->masks[NARC_NODE_SLOTS * leaf + slot] : UINT64_MAX) & w->mask)
+                cast_at_slot(batch, w, &frame, leaf, slot);
+            b->limits[__builtin_ctz(rays)] = w->limit;
         }
-    else if (!w->mask)
-        slots = 0;
-    if (!slots)
-        return;
-    const unsigned flips = narc_find_flips(index->order[node], w->left, w->down);
-    slots = flip_slots(slots, flips);
-    if (visit.level == 0) {
-        visit_leaf(batch, w, node, slots, flips, near);
-        return;
     }
-    for (; slots; slots &= ~(1u << (31 - __builtin_clz(slots)))) { /* the last one first: it waits longest */
-        const unsigned slot = (31u - (unsigned)__builtin_clz(slots)) ^ flips;
-        w->visits[w->count++] = (struct visit){near[slot], NARC_NODE_SLOTS * visit.node + slot, visit.level - 1};
+    b->limit = -INFINITY;
+    for (size_t k = 0; k < b->count; k++)
+        b->limit = b->limits[k] > b->limit ? b->limits[k] : b->limit;
+}
+
+static void walk_together(const narc_ray_batch *batch, struct bundle *b) {
+    const narc_index *const index = batch->index;
+    const struct walk *const first = &b->walks[0];
+    struct visits visits;
+    begin_visits(index, &visits);
+    begin_bundle(b);
+    while (visits.count > 0) {
+        const struct visit visit = visits.left[--visits.count];
+        if (visit.near > b->limit)
+            continue;
+        const size_t node = (size_t)index->first_node[visit.level] + visit.node;
+        float near[NARC_NODE_SLOTS + V_WIDTH];
+        uint32_t slots = mask_slots(index, node, find_wedge_slots(b, &index->nodes[node], near), b->mask);
+        const unsigned flips = narc_find_flips(index->order[node], first->x.backwards, first->y.backwards);
+        slots = flip_slots(slots, flips);
+        if (visit.level > 0)
+            add_visits(&visit, slots, flips, near, &visits);
+        else
+            visit_leaf_together(batch, b, node, slots, flips);
     }
+}
+
+/* Walks with all that are gathered. */
+static void walk(const narc_ray_batch *batch, struct bundle *b) {
+    if (b->count >= LEAST_TOGETHER)
+        walk_together(batch, b);
+    else
+        for (size_t k = 0; k < b->count; k++)
+            walk_alone(batch, &b->walks[k]);
+    b->count = 0;
+}
+
+/* Does a ray go the way of the first one? Then it begins as that does, if others may join it at all. */
+INLINE bool join_first(const struct bundle *b, const struct ray *ray, struct walk *out) {
+    const struct walk *const first = &b->walks[0];
+    if (b->count == 0 || !b->open || ray->origin.x != first->ray.origin.x || ray->origin.y != first->ray.origin.y ||
+        (ray->inverse.x < 0) != first->x.backwards || (ray->inverse.y < 0) != first->y.backwards ||
+        !(find_dot(ray->direction, first->ray.direction) > COHERENT))
+        return false;
+    out->base = 0;
+    out->room = first->room;
+    out->x = first->x;
+    out->y = first->y;
+    out->x.inverse = clip_inverse(ray->inverse.x);
+    out->y.inverse = clip_inverse(ray->inverse.y);
+    return true;
+}
+
+/* Rays that start within the scene may go together, if it is not so large that a wedge's numbers overflow. */
+static bool is_open(const narc_box *scene, const struct walk *w) {
+    const place o = w->ray.origin;
+    return (double)scene->min_x <= o.x && o.x <= (double)scene->max_x && (double)scene->min_y <= o.y &&
+           o.y <= (double)scene->max_y && w->room <= 0x1p80f;
+}
+
+/* Empties a ray's rows and gathers it. False if it has no answer. */
+static bool gather(const narc_ray_batch *batch, const narc_box *scene, size_t k, struct bundle *b) {
+    const narc_index_query *const search = &batch->options->search;
+    narc_ray_hit *const rows = batch->out + k * batch->most;
+    struct ray ray;
+    float fraction;
+    for (size_t i = 0; i < batch->most; i++)
+        rows[i] = (narc_ray_hit){.ray = (uint32_t)k};
+    if (!read_ray(batch->rays, k, &ray, &fraction))
+        return false;
+    const bool joins = join_first(b, &ray, &b->walks[b->count]);
+    if (!joins)
+        walk(batch, b);
+    struct walk *const w = &b->walks[b->count];
+    w->ray = ray;
+    if (!joins) {
+        if (!begin_walk(scene, w))
+            return true;
+        b->open = is_open(scene, w) && !batch->options->any; /* which hit is found of any depends on the way */
+    }
+    w->rows = rows;
+    w->found = 0;
+    w->mask = search->mask.base ? narc_word_at(search->mask, k) : UINT64_MAX;
+    w->ignored = search->ignored.base ? narc_index_at(search->ignored, k) : UINT32_MAX;
+    set_limit(w, fraction);
+    if (++b->count == MOST_TOGETHER)
+        walk(batch, b);
+    return true;
 }
 
 size_t NARC_NAMED(rays)(const narc_ray_batch *batch, size_t first, size_t count) {
@@ -241,10 +454,10 @@ size_t NARC_NAMED(rays)(const narc_ray_batch *batch, size_t first, size_t count)
     const narc_box scene =
         is_empty ? (narc_box){INFINITY, INFINITY, -INFINITY, -INFINITY} : find_scene_box(batch->index);
     size_t skipped = 0;
-    struct walk walk;
+    struct bundle bundle;
+    bundle.count = 0;
     for (size_t k = first; k < first + count; k++)
-        if (begin_walk(batch, &scene, k, &skipped, &walk))
-            while (walk.count > 0)
-                step_walk(batch, &walk);
+        skipped += !gather(batch, &scene, k, &bundle);
+    walk(batch, &bundle);
     return skipped;
 }

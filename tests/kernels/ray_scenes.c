@@ -15,14 +15,14 @@
 
 /* ------------------------------------------------------------------------------------------------ brute force */
 
-/* Row k * bodies + b: ray k against body b by itself, in an index of its own. */
-static narc_ray_hit *cast_one_by_one(const struct room *room, const narc_rays *rays, narc_inside inside) {
+/* Row k * bodies + b: ray k against body b by itself, in an index of its own, and no other ray in the call. */
+static narc_ray_hit *cast_one_by_one(const struct room *room, const struct test_ray *rays, size_t count,
+                                     narc_inside inside) {
     const size_t bodies = room->scene.body_count;
-    narc_ray_hit *const all = calloc(rays->count * bodies + 1, sizeof *all), *const one =
-                                                                                 calloc(rays->count + 1, sizeof *one);
+    narc_ray_hit *const all = calloc(count * bodies + 1, sizeof *all);
     narc_index *index;
     narc_error error;
-    assert_true(all && one);
+    assert_non_null(all);
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     const narc_ray_options options = {.inside = inside};
     for (size_t b = 0; b < bodies; b++) {
@@ -31,14 +31,15 @@ static narc_ray_hit *cast_one_by_one(const struct room *room, const narc_rays *r
         alone.body_count = 1;
         const narc_bodies body = scene_bodies(&alone);
         expect_ok(narc_build_index(index, &room->boxes[b], 1, NULL, &error), &error);
-        expect_ok(narc_cast_rays(index, room->scene.store, &body, rays, &options, one, rays->count, &error), &error);
-        for (size_t k = 0; k < rays->count; k++) {
-            all[k * bodies + b] = one[k];
-            all[k * bodies + b].body = one[k].count ? (uint32_t)b : 0;
+        for (size_t k = 0; k < count; k++) {
+            const narc_rays ray = view_rays(rays + k, 1);
+            narc_ray_hit *const hit = &all[k * bodies + b];
+            expect_ok(narc_cast_rays(index, room->scene.store, &body, &ray, &options, hit, 1, &error), &error);
+            hit->ray = (uint32_t)k;
+            hit->body = hit->count ? (uint32_t)b : 0;
         }
     }
     narc_destroy_index(index);
-    free(one);
     return all;
 }
 
@@ -105,7 +106,7 @@ TEST(finds_what_asking_every_body_finds) {
             ignored[k] = k % 5 ? (uint32_t)random_below(&random, count) : UINT32_MAX;
         }
         for (narc_inside inside = NARC_INSIDE_STOPS; inside <= NARC_INSIDE_IGNORES; inside++) {
-            narc_ray_hit *const all = cast_one_by_one(&room, &view, inside);
+            narc_ray_hit *const all = cast_one_by_one(&room, ray, rays, inside);
             for (size_t k = 0; k < 15; k++) {
                 const bool masks = k % 3 == 1, fast = k % 2;
                 const narc_workers workers = narc_openmp_workers((unsigned)k % 4);
@@ -127,6 +128,39 @@ TEST(finds_what_asking_every_body_finds) {
         free(ray);
         destroy_room(&room);
     }
+}
+
+/* Of a body, what its box in the index holds counts: where that is another's, nothing is hit outside of it. */
+TEST(hits_bodies_within_their_boxes_alone) {
+    struct test_random random = test_random_named("old boxes");
+    enum { COUNT = 200, RAYS = 4000 };
+    struct room room = create_room(&random, NARC_FLOAT64, COUNT, 20);
+    struct test_ray *const rays = make_rays(&random, &room, RAYS, 20);
+    const narc_rays view = view_rays(rays, RAYS);
+    narc_error error;
+    for (size_t k = 0; k < COUNT; k++) { /* half of each, to the left or below */
+        narc_box *const box = &room.boxes[k];
+        *(k % 2 ? &box->max_x : &box->max_y) = k % 2 ? (box->min_x + box->max_x) / 2 : (box->min_y + box->max_y) / 2;
+    }
+    expect_ok(narc_build_index(room.index, room.boxes, COUNT, NULL, &error), &error);
+    narc_ray_hit *const hits = cast_in_room(&room, &view, NULL);
+    size_t checked = 0;
+    for (size_t k = 0; k < RAYS; k++) {
+        const struct body *const body = &room.scene.bodies[hits[k].body];
+        const narc_box *const box = &room.boxes[hits[k].body];
+        const double length = hypot((double)rays[k].motion_x, (double)rays[k].motion_y);
+        const double x = rays[k].x + (double)hits[k].fraction * (double)rays[k].motion_x - body->x;
+        const double y = rays[k].y + (double)hits[k].fraction * (double)rays[k].motion_y - body->y;
+        const double room_for = 1e-6 * (length * (double)hits[k].fraction + 100);
+        if (hits[k].count)
+            assert_true((double)box->min_x - body->x - room_for <= x && x <= (double)box->max_x - body->x + room_for &&
+                        (double)box->min_y - body->y - room_for <= y && y <= (double)box->max_y - body->y + room_for);
+        checked += hits[k].count;
+    }
+    assert_true(checked > RAYS / 20);
+    guard_release(hits);
+    free(rays);
+    destroy_room(&room);
 }
 
 /* ------------------------------------------------------------------------------------------------ bits */

@@ -61,6 +61,30 @@ void destroy_room(struct room *room) {
     destroy_scene(&room->scene);
 }
 
+/* Turns a ray into a fan from where it starts, or from outside of the scene, in the order of angles and otherwise; some
+ * pass the axes, where components are 0 and -0. */
+static void fan_out(struct test_random *random, struct test_ray *rays, size_t count, double side) {
+    static const double steps[] = {0, 1e-7, 1e-3, 0.02, 0.1, 0.5};
+    struct test_ray first = rays[0];
+    const double length = hypot((double)first.motion_x, (double)first.motion_y);
+    const double step = steps[random_below(random, sizeof steps / sizeof *steps)];
+    const double start = random_below(random, 2) ? random_between(random, -4, 4)
+                                                 : (double)random_below(random, 4) * 1.5707963267948966 - 3 * step;
+    if (random_below(random, 3) == 0) {
+        first.x -= round(100 * side * cos(start));
+        first.y -= round(100 * side * sin(start));
+        first.fraction = INFINITY;
+    }
+    for (size_t k = 0; k < count; k++) {
+        const size_t turns = random_below(random, 8) ? k : random_below(random, count);
+        const double x = cos(start + step * (double)turns), y = sin(start + step * (double)turns);
+        rays[k] = first;
+        rays[k].motion_x = fabs(x) < 1e-9 ? copysignf(0, (float)x) : (float)(length * x);
+        rays[k].motion_y = fabs(y) < 1e-9 ? copysignf(0, (float)y) : (float)(length * y);
+        rays[k].fraction = random_below(random, 9) ? first.fraction : (float)random_between(random, 0, 1);
+    }
+}
+
 struct test_ray *make_rays(struct test_random *random, const struct room *room, size_t count, double side) {
     struct test_ray *const rays = calloc(count + 1, sizeof *rays);
     const struct scene *const scene = &room->scene;
@@ -81,10 +105,16 @@ struct test_ray *make_rays(struct test_random *random, const struct room *room, 
             .motion_x = (float)(length * (along_axis ? (double)(1 - (int)quarter) * (quarter != 3) : cos(angle))),
             .motion_y = (float)(length * (along_axis ? (quarter == 1) - (quarter == 3) : sin(angle))),
             .fraction = random_below(random, 4) ? 1 : INFINITY};
-        if (scene->precision == NARC_FLOAT32) {
-            rays[k].x = (double)(float)rays[k].x;
-            rays[k].y = (double)(float)rays[k].y;
-        }
+    }
+    for (size_t k = 0; k < count;) {
+        const size_t next = k + 1 + random_below(random, 80);
+        if (next <= count && random_below(random, 2))
+            fan_out(random, rays + k, next - k, side);
+        k = next;
+    }
+    for (size_t k = 0; k < count && scene->precision == NARC_FLOAT32; k++) {
+        rays[k].x = (double)(float)rays[k].x;
+        rays[k].y = (double)(float)rays[k].y;
     }
     return rays;
 }

@@ -23,7 +23,7 @@ void destroy_room(struct room *room);
 /* Computes the boxes and builds the index anew. */
 void index_room(struct room *room, bool fast, bool masks);
 
-/* Long and short ones, from anywhere, along axes and past corners of bodies. */
+/* Long and short ones, from anywhere, along axes and past corners of bodies; half of them in fans. */
 struct test_ray *make_rays(struct test_random *random, const struct room *room, size_t count, double side);
 
 /* What they hit, in guarded memory. */
