@@ -343,11 +343,19 @@ INLINE uint32_t find_rays(const struct bundle *b, const narc_index_node *node, u
     return rays;
 }
 
+INLINE unsigned find_nearest_slot(uint32_t slots, const float *near) {
+    unsigned nearest = (unsigned)__builtin_ctz(slots);
+    while (slots &= slots - 1)
+        nearest = near[__builtin_ctz(slots)] < near[nearest] ? (unsigned)__builtin_ctz(slots) : nearest;
+    return nearest;
+}
+
 INLINE void visit_leaf_together(const narc_ray_batch *batch, struct bundle *b, size_t leaf, uint32_t slots,
-                                unsigned flips) {
+                                const float *near) {
     const narc_index *const index = batch->index;
-    for (; slots; slots &= slots - 1) {
-        const unsigned slot = (unsigned)__builtin_ctz(slots) ^ flips;
+    unsigned slot;
+    for (; slots; slots &= ~(1u << slot)) {
+        slot = find_nearest_slot(slots, near);
         uint32_t rays = find_rays(b, &index->nodes[leaf], slot);
         struct body_frame frame;
         if (!rays || !load_slot_frame(batch, leaf, slot, &frame))
@@ -378,11 +386,10 @@ static void walk_together(const narc_ray_batch *batch, struct bundle *b) {
         float near[NARC_NODE_SLOTS + V_WIDTH];
         uint32_t slots = mask_slots(index, node, find_wedge_slots(b, &index->nodes[node], near), b->mask);
         const unsigned flips = narc_find_flips(index->order[node], first->x.backwards, first->y.backwards);
-        slots = flip_slots(slots, flips);
         if (visit.level > 0)
-            add_visits(&visit, slots, flips, near, &visits);
+            add_visits(&visit, flip_slots(slots, flips), flips, near, &visits);
         else
-            visit_leaf_together(batch, b, node, slots, flips);
+            visit_leaf_together(batch, b, node, slots, near);
     }
 }
 
