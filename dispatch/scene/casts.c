@@ -33,25 +33,29 @@ struct slots {
 /* ------------------------------------------------------------------------------------------------ slots */
 
 /* What the contact kernel reads of a body: poses in the form that is read fastest. */
-static narc_bodies view_side(const narc_casts *casts, int side) {
+static void view_side(const narc_casts *casts, int side, narc_bodies *out) {
     const float *const pose = casts->pose[side][0];
     const struct narc_cast_side *const of = &casts->side[side];
     const ptrdiff_t stride = sizeof casts->pose[side][0], item = sizeof(float);
-    return (narc_bodies){.count = NARC_CAST_SLOTS,
-                         .x = {pose, stride, NARC_FLOAT32},
-                         .y = {pose + 1, stride, NARC_FLOAT32},
-                         .cosine = {pose + 2, stride},
-                         .sine = {pose + 3, stride},
-                         .scale = {of->scale, item},
-                         .shape = {of->shape, item}};
+    out->count = NARC_CAST_SLOTS;
+    out->x = (narc_position_column){pose, stride, NARC_FLOAT32};
+    out->y = (narc_position_column){pose + 1, stride, NARC_FLOAT32};
+    out->cosine = (narc_float_column){pose + 2, stride};
+    out->sine = (narc_float_column){pose + 3, stride};
+    out->scale = (narc_float_column){of->scale, item};
+    out->shape = (narc_index_column){of->shape, item};
 }
 
 static void open_slots(const narc_cast_job *job, struct slots *slots) {
+    static const narc_pairs pairs = {.count = NARC_CAST_SLOTS};
+    static const narc_query query = {.margin = INFINITY, .dense = 1};
     slots->count = 0;
-    slots->a = view_side(&slots->casts, 0);
-    slots->b = view_side(&slots->casts, 1);
-    slots->pairs = (narc_pairs){.count = NARC_CAST_SLOTS, .other_bodies = &slots->b};
-    slots->query = (narc_query){.margin = INFINITY, .dense = 1, .hints = {slots->hint, sizeof slots->hint[0]}};
+    view_side(&slots->casts, 0, &slots->a);
+    view_side(&slots->casts, 1, &slots->b);
+    slots->pairs = pairs;
+    slots->pairs.other_bodies = &slots->b;
+    slots->query = query;
+    slots->query.hints = (narc_hint_column){slots->hint, sizeof slots->hint[0]};
     slots->batch.shapes = job->batch->shapes;
     slots->batch.a = &slots->a;
     slots->batch.b = &slots->b;

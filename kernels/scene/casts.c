@@ -303,6 +303,16 @@ INLINE struct touch load_contacts(const narc_contact *contacts, size_t k, size_t
                        offsetof(narc_contact, radius_b) - offsetof(narc_contact, point_x) == 12,
                    "four numbers that follow each other");
     get_slots(k, count, touch.slot);
+    if (V_WIDTH == 1) { /* the row has just been written, otherwise divided */
+        const narc_contact *const c = &contacts[k];
+        touch.feature = vi_set(c->feature);
+        touch.separation[0] = c->separation;
+        touch.normal_x[0] = c->normal_x;
+        touch.normal_y[0] = c->normal_y;
+        touch.radius_a[0] = c->radius_a;
+        touch.radius_b[0] = c->radius_b;
+        return touch;
+    }
     v_rows(&contacts->feature, sizeof *contacts, touch.slot, row);
     v_rows(&contacts->point_x, sizeof *contacts, touch.slot, row + 4);
     touch.feature = vi_bits(row[0]);
@@ -397,52 +407,63 @@ INLINE vl find_touch(const narc_casts *casts, const struct touch *touch, size_t 
     return found;
 }
 
-INLINE void advance_line(const narc_casts *casts, const struct touch *touch, size_t k, int h,
-                         const struct held_arcs arcs[2], const struct outline_part *parts, struct step *out) {
+/* Newton's steps; `out_next`: where each leads to if it may be tried to go further, else infinity. */
+INLINE void advance_line(const narc_casts *casts, const struct touch *touch, size_t k, int h, struct step *out,
+                         double *out_next) {
     const size_t slot = k + (size_t)h;
     const vd zero = d_set(0), time = d_of_floats(casts->time + slot), back = d_of_floats(casts->back + slot),
-             rounds = d_of_floats(casts->rounds + slot) + d_set(1), end = d_load(casts->end + slot),
-             enough = d_load(casts->enough + slot);
+             rounds = d_of_floats(casts->rounds + slot) + d_set(1), enough = d_load(casts->enough + slot);
     const vd gap = d_of_floats(touch->separation + h) - d_set((double)casts->target),
              slope = d_of_floats(touch->normal_x + h) * d_load(casts->motion_x + slot) +
                      d_of_floats(touch->normal_y + h) * d_load(casts->motion_y + slot);
-    const vl parts_now = d_le(zero, slope), tried = d_le(zero, back);
-    const vl passed = tried & (parts_now | d_lt(gap, -enough)); /* it may have passed the first root */
-    const vl there = d_le(gap, zero) | (d_le(gap, enough) & ~parts_now);
-    const vd next = time - gap / slope, safe = round_down(next);
-    const vl direct = d_le(back, d_set((double)NARC_CAST_DIRECT));
-    vd outcome = d_select(d_le(d_set(MOST_ROUNDS), rounds), d_set(NARC_CAST_UNFINISHED), d_set(NARC_CAST_GOES_ON));
-    outcome = d_select(d_le(safe, time), d_set(NARC_CAST_HIT), outcome);
-    outcome = d_select(parts_now | d_lt(end, next), d_set(NARC_CAST_MISS), outcome);
-    outcome = d_select(passed, d_set(NARC_CAST_GOES_ON), d_select(there, d_set(NARC_CAST_HIT), outcome));
+    const vl parts = d_le(zero, slope), tried = d_le(zero, back), direct = d_le(back, d_set((double)NARC_CAST_DIRECT));
+    const vl passed = tried & (parts | d_lt(gap, -enough)); /* it may have passed the first root */
+    const vl there = d_le(gap, zero) | (d_le(gap, enough) & ~parts);
+    const vd next = time - gap / slope, safe = round_down(next), hit = d_set(NARC_CAST_HIT),
+             on = d_set(NARC_CAST_GOES_ON);
+    vd outcome = d_select(d_le(d_set(MOST_ROUNDS), rounds), d_set(NARC_CAST_UNFINISHED), on);
+    outcome = d_select(parts | d_lt(d_load(casts->end + slot), next), d_set(NARC_CAST_MISS),
+                       d_select(d_le(safe, time), hit, outcome));
+    outcome = d_select(passed, on, d_select(there, hit, outcome));
     const vl goes_on = d_lt(d_set(NARC_CAST_UNFINISHED), outcome);
-    vd then = d_select(passed, back, safe),
-       then_back = d_select(passed | direct, d_set((double)NARC_CAST_DIRECT), d_set((double)NARC_CAST_FREE));
-    if (parts) {
-        vd duration;
-        const vl further = find_touch(casts, touch, k, h, arcs, parts, &duration) & ~(passed | direct);
-        const vd ahead = time + duration;
-        const vl try = further & d_lt(next, ahead) & d_le(ahead, end);
-        then = d_select(try, round_down(ahead), then);
-        then_back = d_select(try, safe, then_back);
-    }
-    put_step(out, h, outcome, d_select(goes_on, then, time), then_back, d_select(passed, rounds - d_set(1), rounds));
+    d_store(out_next, d_select(goes_on & ~(passed | direct), next, d_set(INFINITY)));
+    put_step(out, h, outcome, d_select(goes_on, d_select(passed, back, safe), time),
+             d_select(passed | direct, d_set((double)NARC_CAST_DIRECT), d_set((double)NARC_CAST_FREE)),
+             d_select(passed, rounds - d_set(1), rounds));
+}
+
+/* Goes on to where circles touch, where that is later than Newton's step. */
+INLINE void go_further(const narc_casts *casts, const struct touch *touch, size_t k, int h,
+                       const struct held_arcs arcs[2], const struct outline_part parts[2], const double *next,
+                       struct step *out) {
+    const size_t slot = k + (size_t)h;
+    vd duration;
+    const vl found = find_touch(casts, touch, k, h, arcs, parts, &duration);
+    const vd ahead = d_of_floats(casts->time + slot) + duration, safe = d_of_floats(out->time + h);
+    const vl further = found & d_lt(d_load(next), ahead) & d_le(ahead, d_load(casts->end + slot));
+    d_put_floats(out->time + h, d_select(further, round_down(ahead), safe));
+    d_put_floats(out->back + h, d_select(further, safe, d_of_floats(out->back + h)));
 }
 
 INLINE void advance_lines(const narc_shapes *shapes, const narc_casts *casts, const struct touch *touch, size_t k,
                           vm live, struct step *out) {
     struct held_arcs arcs[2];
     struct outline_part parts[2];
-    const vf radii = v_add(v_load(touch->radius_a), v_load(touch->radius_b)), direct = v_set(NARC_CAST_DIRECT);
-    const vm on_circles = vm_and(v_lt(radii, v_set(INFINITY)), v_lt(direct, v_load(casts->back + k)));
-    const bool further = vm_any(vm_and(live, on_circles));
-    if (further)
-        for (int side = 0; side < 2; side++) {
-            parts[side] = find_part(shapes, &casts->side[side], side, touch);
-            load_held(shapes, &parts[side], parts[side].arc, &arcs[side]);
-        }
+    double next[V_WIDTH];
     for (int h = 0; h < V_WIDTH; h += D_WIDTH)
-        advance_line(casts, touch, k, h, arcs, further ? parts : NULL, out);
+        advance_line(casts, touch, k, h, out, next + h);
+    const vf radii = v_add(v_load(touch->radius_a), v_load(touch->radius_b)), infinite = v_set(INFINITY);
+    float is_free[V_WIDTH];
+    for (int h = 0; h < V_WIDTH; h += D_WIDTH)
+        d_put_floats(is_free + h, d_load(next + h));
+    if (!vm_any(vm_and(live, vm_and(v_lt(radii, infinite), v_lt(v_load(is_free), infinite)))))
+        return;
+    for (int side = 0; side < 2; side++) {
+        parts[side] = find_part(shapes, &casts->side[side], side, touch);
+        load_held(shapes, &parts[side], parts[side].arc, &arcs[side]);
+    }
+    for (int h = 0; h < V_WIDTH; h += D_WIDTH)
+        go_further(casts, touch, k, h, arcs, parts, next + h, out);
 }
 
 /* ------------------------------------------------------------------------------------------------ turning */
