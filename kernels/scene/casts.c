@@ -471,6 +471,7 @@ INLINE void advance_lines(const narc_shapes *shapes, const narc_casts *casts, co
 /* What axes that turn meet of a body: the centre of an arc, for as long as they stay on that arc. */
 struct lever {
     vd arm;      /* centre x axis */
+    vd reach;    /* centre.axis */
     vd bend;     /* the least centre.axis on the way, below 0 */
     vd duration; /* at least */
 };
@@ -556,26 +557,44 @@ INLINE struct lever find_arm(const struct met *met, int h, vl moves, vd scale, v
         least = d_select(through, -find_length(center), least);
     const vd duration = d_select(round, d_set(INFINITY), d_select(known, find_length(chord) / d_abs(rate), zero));
     const vl some = round | d_lt(zero, d_of_floats(met->on_arc + h));
-    return (struct lever){d_select(some, arm, zero), d_select(some, d_min(least, zero), zero),
-                          d_select(some, duration, zero)};
+    return (struct lever){d_select(some, arm, zero), d_select(some, find_dot(center, axis), zero),
+                          d_select(some, d_min(least, zero), zero), d_select(some, duration, zero)};
+}
+
+/* The gap along an axis after a time s is gap + s (first + s (second + s (third + s fourth))), nearly. */
+struct series {
+    vd first, second, third, fourth;
+};
+
+/* Adds a (cos(rate s) - 1) + b sin(rate s). */
+INLINE void add_turn(struct series *series, vd rate, vd a, vd b) {
+    const vd square = rate * rate, half = a * square * d_set(0.5), third = b * rate * square * d_set(1.0 / 6);
+    series->first += b * rate;
+    series->second -= half;
+    series->third -= third;
+    series->fourth += half * square * d_set(1.0 / 12);
 }
 
 /* For how long from now on the gap, which is `gap` above the target, stays there along the normal as an axis that turns
- * at a rate; `falls` is how fast it falls at most along one at rest. `out_slope`: of the gap. */
+ * at a rate; `falls` is how fast it falls at most along one at rest. `out_series`: what it does, as long as the arcs
+ * stay the same; where these are round, with what the axis would gain if it turned to where the gap is largest. */
 INLINE vd follow_axis(const narc_casts *casts, const struct touch *touch, const struct axes *axes, size_t k, int h,
-                      vd gap, vd falls, vd *out_slope) {
+                      vd gap, vd falls, struct series *out_series) {
     const size_t slot = k + (size_t)h;
     const vd zero = d_set(0), two = d_set(2), infinite = d_set(INFINITY), rate = d_of_floats(axes->rate + h);
     const spot n = get_spot(touch->normal_x + h, touch->normal_y + h),
                motion = {d_load(casts->motion_x + slot), d_load(casts->motion_y + slot)};
-    const vd along = find_dot(n, motion);
+    const vd along = find_dot(n, motion), across = find_cross(n, motion);
     const vl turns = d_lt(zero, d_abs(rate));
-    vd slope = along, bend = zero, duration = infinite, fastest = falls;
+    struct series series = {along, zero, zero, zero};
+    vd bend = zero, duration = infinite, fastest = falls, slide = across;
     if (d_any(turns)) {
         const vd time = d_of_floats(casts->time + slot), left = d_load(casts->end + slot) - time;
         const spot way = {d_load(casts->x + slot) + time * motion.x, d_load(casts->y + slot) + time * motion.y};
         const vd speed = find_length(motion);
-        slope += rate * find_cross(n, way);
+        add_turn(&series, rate, find_dot(n, way), find_cross(n, way));
+        series.second += across * rate;
+        series.third -= along * rate * rate * d_set(0.5);
         bend = rate * rate * (find_length(way) + speed * left) + two * d_abs(rate) * speed;
         fastest += d_select(turns, along + speed, zero);
     }
@@ -586,12 +605,17 @@ INLINE vd follow_axis(const narc_casts *casts, const struct touch *touch, const 
         if (!d_any(moves))
             continue;
         const struct lever lever = find_arm(&axes->met[side], h, moves, d_of_floats(of->scale + slot), its);
-        slope += d_select(moves, its * lever.arm, zero);
+        const vd arm = d_select(moves, lever.arm, zero), reach = d_select(moves, lever.reach, zero);
+        add_turn(&series, its, -reach, arm);
+        slide += its * reach;
         bend -= d_select(moves, its * its * lever.bend, zero);
         duration = d_select(moves, d_min(lever.duration, duration), duration);
     }
-    *out_slope = slope;
-    const vd root = d_sqrt(slope * slope + two * bend * gap);
+    const vd slope = series.first, root = d_sqrt(slope * slope + two * bend * gap);
+    const vd apart = d_of_floats(touch->radius_a + h) + d_of_floats(touch->radius_b + h) +
+                     d_of_floats(touch->separation + h); /* centres of round arcs; of edges: infinite */
+    series.second += slide * slide / (two * d_abs(apart));
+    *out_series = series;
     const vl down = d_lt(slope, zero);
     const vd way = d_select(down, two * gap, root + slope) / d_select(down, root - slope, bend);
     const vd whole = d_select(down | d_lt(zero, bend), way, infinite);
@@ -602,28 +626,55 @@ INLINE vd follow_axis(const narc_casts *casts, const struct touch *touch, const 
     return d_select(on_arc, whole, d_select(d_lt(zero, rest), duration + rest / fastest, duration));
 }
 
+/* When a gap that follows a series is down to 0, if it is within `left`: Newton's steps, of which nothing is promised. */
+INLINE vd find_root(vd gap, const struct series *series, vd left) {
+    const vd zero = d_set(0);
+    vd s = d_min(-gap / series->first, left);
+    for (int step = 0; step < 3; step++) {
+        const vd high = series->third + s * series->fourth, low = series->second + s * high;
+        const vd value = gap + s * (series->first + s * low);
+        const vd slope = series->first + s * (low + low + s * (high + s * series->fourth));
+        const vd next = d_min(s - value / slope, left);
+        s = d_select(d_lt(zero, next), next, zero);
+    }
+    return s;
+}
+
 INLINE void advance_turn(const narc_casts *casts, const struct touch *touch, const struct axes *axes, size_t k, int h,
                          struct step *out) {
     const size_t slot = k + (size_t)h;
     const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
     const vd zero = d_set(0), time = d_of_floats(casts->time + slot), end = d_load(casts->end + slot),
-             rounds = d_of_floats(casts->rounds + slot) + d_set(1);
+             back = d_of_floats(casts->back + slot), rounds = d_of_floats(casts->rounds + slot) + d_set(1),
+             enough = d_load(casts->enough + slot);
     const vd gap = d_of_floats(touch->separation + h) - d_set((double)casts->target);
     const vd along = d_of_floats(touch->normal_x + h) * d_load(casts->motion_x + slot) +
                      d_of_floats(touch->normal_y + h) * d_load(casts->motion_y + slot);
-    const vd falls = d_load(a->lever + slot) * d_abs(d_of_floats(a->angle + slot)) +
-                     d_load(b->lever + slot) * d_abs(d_of_floats(b->angle + slot)) - along;
-    vd slope;
-    const vd duration = follow_axis(casts, touch, axes, k, h, gap, falls, &slope), least = gap / falls;
+    const vd turning = d_load(a->lever + slot) * d_abs(d_of_floats(a->angle + slot)) +
+                       d_load(b->lever + slot) * d_abs(d_of_floats(b->angle + slot)),
+             falls = turning - along;
+    const vl sure = d_lt(along + turning, zero), direct = d_le(back, d_set((double)NARC_CAST_DIRECT));
+    const vl passed = d_le(zero, back) & (~sure | d_lt(gap, zero)); /* it may have passed the first root */
+    struct series series;
+    const vd duration = follow_axis(casts, touch, axes, k, h, gap, falls, &series), least = gap / falls;
     const vd next = time + d_select(d_lt(least, duration), duration, least), safe = round_down(next);
-    const vl near = d_le(gap, d_load(casts->enough + slot)), last = d_le(d_set(MOST_ROUNDS), rounds);
-    const vd hit = d_set(NARC_CAST_HIT), miss = d_set(NARC_CAST_MISS);
-    vd outcome = d_select(last, d_select(near, hit, d_set(NARC_CAST_UNFINISHED)), d_set(NARC_CAST_GOES_ON));
+    const vl near = d_le(gap, enough), last = d_le(d_set(MOST_ROUNDS), rounds);
+    const vd hit = d_set(NARC_CAST_HIT), miss = d_set(NARC_CAST_MISS), on = d_set(NARC_CAST_GOES_ON);
+    vd outcome = d_select(last, d_select(near, hit, d_set(NARC_CAST_UNFINISHED)), on);
     outcome = d_select(d_lt(end, next), miss, d_select(d_le(safe, time), hit, outcome));
-    outcome = d_select(d_le(falls, zero), miss, d_select(near & d_le(slope, zero), hit, outcome));
-    outcome = d_select(d_le(gap, zero), hit, outcome);
+    outcome = d_select(d_le(falls, zero), miss, d_select(near & d_le(series.first, zero), hit, outcome));
+    outcome = d_select(passed, on, d_select(d_le(gap, zero), hit, outcome));
     const vl goes_on = d_lt(d_set(NARC_CAST_UNFINISHED), outcome);
-    put_step(out, h, outcome, d_select(goes_on, safe, time), d_set((double)NARC_CAST_FREE), rounds);
+    const vl may_try = goes_on & sure & d_lt(series.first, zero) & ~(passed | direct);
+    vd to = d_select(passed, back, safe),
+       then_back = d_select(passed | direct, d_set((double)NARC_CAST_DIRECT), d_set((double)NARC_CAST_FREE));
+    if (d_any(may_try)) {
+        const vd ahead = round_down(time + find_root(gap - d_set(0.5) * enough, &series, end - time));
+        const vl try = may_try & d_lt(safe, ahead);
+        to = d_select(try, ahead, to);
+        then_back = d_select(try, safe, then_back);
+    }
+    put_step(out, h, outcome, d_select(goes_on, to, time), then_back, rounds);
 }
 
 INLINE void advance_turns(const narc_shapes *shapes, const narc_casts *casts, const struct touch *touch, size_t k,
