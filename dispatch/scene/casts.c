@@ -16,9 +16,6 @@ enum { PART = 1024 };
 /* So few are asked for of the kernels with one lane; see api.c. */
 enum { FEW = 2 };
 
-/* New pairs are begun when so many slots are free. */
-enum { REFILL = 16 };
-
 struct slots {
     size_t count;
     uint32_t pair[NARC_CAST_SLOTS], body[NARC_CAST_SLOTS]; /* B's */
@@ -234,8 +231,7 @@ void narc_cast_range(narc_cast_job *job, size_t first, size_t end) {
     size_t next = first, skipped = 0;
     open_slots(job, &slots);
     do {
-        if (slots.count + REFILL <= NARC_CAST_SLOTS)
-            next = begin_pairs(job, &slots, next, end, &skipped);
+        next = begin_pairs(job, &slots, next, end, &skipped);
         if (slots.count > 0)
             advance_pairs(job, &slots, &skipped);
     } while (slots.count > 0 || next < end);
