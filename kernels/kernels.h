@@ -104,8 +104,8 @@ enum { NARC_CAST_GOES_ON = 3, NARC_CAST_BROKEN = 4 };
 #define NARC_CAST_FREE   (-1.0f)
 #define NARC_CAST_DIRECT (-2.0f)
 
-/* Of one body of each cast that is under way: how it is at the start, a unit vector but for rounding, the angle by which
- * it turns in the step, and as it is at the cast's time. */
+/* Of one body of each cast that is under way: how it is at the start, a unit vector but for rounding, the angle by
+ * which it turns in the step, and as it is at the cast's time. */
 struct narc_cast_side {
     uint32_t shape[NARC_CAST_ROOM];
     float cosine[NARC_CAST_ROOM], sine[NARC_CAST_ROOM], scale[NARC_CAST_ROOM], angle[NARC_CAST_ROOM];

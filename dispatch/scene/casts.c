@@ -179,8 +179,8 @@ static const narc_kernel_table *choose_kernels(const narc_cast_job *job, size_t 
     return count <= FEW ? &narc_kernels_scalar : job->kernels;
 }
 
-/* Begins pairs next ... end - 1 in free slots; those whose circles never meet, or that have no answer, are done. Returns
- * which pair is next. */
+/* Begins pairs next ... end - 1 in free slots; those whose circles never meet, or that have no answer, are done.
+ * Returns which pair is next. */
 static size_t begin_pairs(const narc_cast_job *job, struct slots *slots, size_t next, size_t end, size_t *skipped) {
     while (slots->count < NARC_CAST_SLOTS && next < end) {
         const size_t first = slots->count, room = NARC_CAST_SLOTS - first,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * casts.c - the kernels of times of impact, a pair in each lane: where it begins, where its bodies are at a time, and
- * what the contact there means. What is not proved by docs/algorithm.md is not relied upon: a pair never goes past a time
- * at which its separation could have come down to the target.
+ * what the contact there means. What is not proved by docs/algorithm.md is not relied upon: a pair never goes past a
+ * time at which its separation could have come down to the target, or goes back there if it may have.
  *
  * With d the way from A's position to B's, w its change in a whole step, n the contact normal and f the separation:
  *
@@ -10,12 +10,13 @@
  * slope is n.w. So the tangent never passes the first root (Newton). The circles that touch may be followed further, to
  * the root of their distance: where f still falls at that time, and is not below the target, no root was passed.
  *
- * With turning f(t) is at least the gap g(t) along any axis, and the axis that n is now, at rest or turning with a body,
- * is followed to a time before which g cannot be at the target. While the arcs that hold the axis stay the same, with
+ * With turning f(t) is at least the gap g(t) along any axis, and the axis that n is now, at rest or turning with a
+ * body, is followed to a time before which g cannot be at the target. While the arcs that hold the axis stay the same, with
  * centres p relative to their bodies and the axis turning at the rate w_n,
  *     g' = n.w + w_n n x d + (w_b - w_n) p_b x n - (w_a - w_n) p_a x n,    g'' >= -M,
  *     M  = w_n^2 |d| + 2 |w_n| |w| + (w_b - w_n)^2 max(p_b.n, 0) + (w_a - w_n)^2 max(-p_a.n, 0).
- * Past them a support function changes at most as fast as its body turns times its lever.
+ * Past them a support function changes at most as fast as its body turns times its lever. Where n.w falls faster than
+ * both change together, f was never smaller before: such a contact is worth a try further on, where g is at the target.
  */
 #include <math.h>
 #include <stdint.h>
@@ -120,9 +121,9 @@ INLINE vm are_fine(const struct narc_cast_side *side, size_t k, const struct out
 }
 
 /* The largest |point x normal| of an outline, at most: the rate at which its support function changes when the shape
- * turns by a radian. A point p of the outline is no further from the centre q of a circle in the shape than R, and along
- * its normal p - q is no shorter than that circle's radius r, so that |p x n| <= |q| + sqrt(R^2 - r^2). Of boxes and
- * regular polygons about their origins it is half an edge, and no less will do. */
+ * turns by a radian. A point p of the outline is no further from the centre q of a circle in the shape than R, and
+ * along its normal p - q is no shorter than that circle's radius r, so that |p x n| <= |q| + sqrt(R^2 - r^2). Of boxes
+ * and regular polygons about their origins it is half an edge, and no less will do. */
 INLINE vd find_lever(const struct outline *outline, int h) {
     const spot inner = get_spot(outline->inner_x + h, outline->inner_y + h);
     const spot bound = get_spot(outline->bound_x + h, outline->bound_y + h);
@@ -509,7 +510,7 @@ INLINE void compare_axes(struct met *met, const float *sign) {
     }
 }
 
-/* The arcs of the body `which` that hold the axes, which turn at `rate` against it: the ones that touch, or the next. */
+/* The arcs of the body `which` that hold the axes, which turn at `rate` against it: those that touch, or the next. */
 INLINE void find_held(const narc_shapes *shapes, const narc_casts *casts, const struct touch *touch, size_t k,
                       int which, vm live, vf rate, struct met *met) {
     const struct narc_cast_side *const side = &casts->side[which];
@@ -626,7 +627,7 @@ INLINE vd follow_axis(const narc_casts *casts, const struct touch *touch, const 
     return d_select(on_arc, whole, d_select(d_lt(zero, rest), duration + rest / fastest, duration));
 }
 
-/* When a gap that follows a series is down to 0, if it is within `left`: Newton's steps, of which nothing is promised. */
+/* When a gap that follows a series is down to 0, `left` at most: Newton's steps, of which nothing is promised. */
 INLINE vd find_root(vd gap, const struct series *series, vd left) {
     const vd zero = d_set(0);
     vd s = d_min(-gap / series->first, left);

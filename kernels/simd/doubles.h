@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * doubles.h - double lanes, for what single precision is not enough for: half as many as floats, and one if there is one.
- * Sums, differences, products and quotients are the language's own operators, and so are & | ~ of predicates. All are
- * correctly rounded, as in simd.h.
+ * doubles.h - double lanes, for what single precision is not enough for: half as many as floats, and one if there is
+ * one. Sums, differences, products and quotients are the language's own operators, and so are & | ~ of predicates. All
+ * are correctly rounded, as in simd.h.
  */
 #ifndef NARC_SIMD_DOUBLES_H
 #define NARC_SIMD_DOUBLES_H
