@@ -567,10 +567,9 @@ struct series {
     vd first, second, third, fourth;
 };
 
-/* Adds a (cos(rate s) - 1) + b sin(rate s). */
+/* Adds a (cos(rate s) - 1) + b sin(rate s), but for the first term. */
 INLINE void add_turn(struct series *series, vd rate, vd a, vd b) {
     const vd square = rate * rate, half = a * square * d_set(0.5), third = b * rate * square * d_set(1.0 / 6);
-    series->first += b * rate;
     series->second -= half;
     series->third -= third;
     series->fourth += half * square * d_set(1.0 / 12);
@@ -578,9 +577,10 @@ INLINE void add_turn(struct series *series, vd rate, vd a, vd b) {
 
 /* For how long from now on the gap, which is `gap` above the target, stays there along the normal as an axis that turns
  * at a rate; `falls` is how fast it falls at most along one at rest. `out_series`: what it does, as long as the arcs
- * stay the same; where these are round, with what the axis would gain if it turned to where the gap is largest. */
+ * stay the same; where these are round, with what the axis would gain if it turned to where the gap is largest. Unless
+ * it `tries`, the first term alone. */
 INLINE vd follow_axis(const narc_casts *casts, const struct touch *touch, const struct axes *axes, size_t k, int h,
-                      vd gap, vd falls, struct series *out_series) {
+                      vd gap, vd falls, bool tries, struct series *out_series) {
     const size_t slot = k + (size_t)h;
     const vd zero = d_set(0), two = d_set(2), infinite = d_set(INFINITY), rate = d_of_floats(axes->rate + h);
     const spot n = get_spot(touch->normal_x + h, touch->normal_y + h),
@@ -593,9 +593,12 @@ INLINE vd follow_axis(const narc_casts *casts, const struct touch *touch, const 
         const vd time = d_of_floats(casts->time + slot), left = d_load(casts->end + slot) - time;
         const spot way = {d_load(casts->x + slot) + time * motion.x, d_load(casts->y + slot) + time * motion.y};
         const vd speed = find_length(motion);
-        add_turn(&series, rate, find_dot(n, way), find_cross(n, way));
-        series.second += across * rate;
-        series.third -= along * rate * rate * d_set(0.5);
+        series.first += rate * find_cross(n, way);
+        if (tries) {
+            add_turn(&series, rate, find_dot(n, way), find_cross(n, way));
+            series.second += across * rate;
+            series.third -= along * rate * rate * d_set(0.5);
+        }
         bend = rate * rate * (find_length(way) + speed * left) + two * d_abs(rate) * speed;
         fastest += d_select(turns, along + speed, zero);
     }
@@ -606,16 +609,21 @@ INLINE vd follow_axis(const narc_casts *casts, const struct touch *touch, const 
         if (!d_any(moves))
             continue;
         const struct lever lever = find_arm(&axes->met[side], h, moves, d_of_floats(of->scale + slot), its);
-        const vd arm = d_select(moves, lever.arm, zero), reach = d_select(moves, lever.reach, zero);
-        add_turn(&series, its, -reach, arm);
-        slide += its * reach;
+        series.first += d_select(moves, its * lever.arm, zero);
+        if (tries) {
+            const vd arm = d_select(moves, lever.arm, zero), reach = d_select(moves, lever.reach, zero);
+            add_turn(&series, its, -reach, arm);
+            slide += its * reach;
+        }
         bend -= d_select(moves, its * its * lever.bend, zero);
         duration = d_select(moves, d_min(lever.duration, duration), duration);
     }
     const vd slope = series.first, root = d_sqrt(slope * slope + two * bend * gap);
-    const vd apart = d_of_floats(touch->radius_a + h) + d_of_floats(touch->radius_b + h) +
-                     d_of_floats(touch->separation + h); /* centres of round arcs; of edges: infinite */
-    series.second += slide * slide / (two * d_abs(apart));
+    if (tries) {
+        const vd apart = d_of_floats(touch->radius_a + h) + d_of_floats(touch->radius_b + h) +
+                         d_of_floats(touch->separation + h); /* centres of round arcs; of edges: infinite */
+        series.second += slide * slide / (two * d_abs(apart));
+    }
     *out_series = series;
     const vl down = d_lt(slope, zero);
     const vd way = d_select(down, two * gap, root + slope) / d_select(down, root - slope, bend);
@@ -631,7 +639,7 @@ INLINE vd follow_axis(const narc_casts *casts, const struct touch *touch, const 
 INLINE vd find_root(vd gap, const struct series *series, vd left) {
     const vd zero = d_set(0);
     vd s = d_min(-gap / series->first, left);
-    for (int step = 0; step < 3; step++) {
+    for (int step = 0; step < 2; step++) {
         const vd high = series->third + s * series->fourth, low = series->second + s * high;
         const vd value = gap + s * (series->first + s * low);
         const vd slope = series->first + s * (low + low + s * (high + s * series->fourth));
@@ -657,7 +665,8 @@ INLINE void advance_turn(const narc_casts *casts, const struct touch *touch, con
     const vl sure = d_lt(along + turning, zero), direct = d_le(back, d_set((double)NARC_CAST_DIRECT));
     const vl passed = d_le(zero, back) & (~sure | d_lt(gap, zero)); /* it may have passed the first root */
     struct series series;
-    const vd duration = follow_axis(casts, touch, axes, k, h, gap, falls, &series), least = gap / falls;
+    const vl tries = sure & ~(passed | direct);
+    const vd duration = follow_axis(casts, touch, axes, k, h, gap, falls, d_any(tries), &series), least = gap / falls;
     const vd next = time + d_select(d_lt(least, duration), duration, least), safe = round_down(next);
     const vl near = d_le(gap, enough), last = d_le(d_set(MOST_ROUNDS), rounds);
     const vd hit = d_set(NARC_CAST_HIT), miss = d_set(NARC_CAST_MISS), on = d_set(NARC_CAST_GOES_ON);
@@ -666,7 +675,7 @@ INLINE void advance_turn(const narc_casts *casts, const struct touch *touch, con
     outcome = d_select(d_le(falls, zero), miss, d_select(near & d_le(series.first, zero), hit, outcome));
     outcome = d_select(passed, on, d_select(d_le(gap, zero), hit, outcome));
     const vl goes_on = d_lt(d_set(NARC_CAST_UNFINISHED), outcome);
-    const vl may_try = goes_on & sure & d_lt(series.first, zero) & ~(passed | direct);
+    const vl may_try = goes_on & tries & d_lt(series.first, zero);
     vd to = d_select(passed, back, safe),
        then_back = d_select(passed | direct, d_set((double)NARC_CAST_DIRECT), d_set((double)NARC_CAST_FREE));
     if (d_any(may_try)) {
