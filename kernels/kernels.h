@@ -93,6 +93,45 @@ enum { NARC_REGION_ROOM = 16 * NARC_NODE_SLOTS + 16 };
 /* So many bodies of a query, at most, the kernel puts into order. NARC_FOUND_PADDING more may be read. */
 enum { NARC_ORDER_BODIES = 128 };
 
+/* So many casts are under way at a time, whole vectors: what fits on the stack beside the queues of the contact kernel.
+ * And room for a vector that begins anywhere. */
+enum { NARC_CAST_SLOTS = 48, NARC_CAST_ROOM = NARC_CAST_SLOTS + 16 };
+
+/* What a step of a cast may come to, beside NARC_CAST_...: it goes on; it has no answer. */
+enum { NARC_CAST_GOES_ON = 3, NARC_CAST_BROKEN = 4 };
+
+/* What is `back` in narc_casts but a time. */
+#define NARC_CAST_FREE   (-1.0f)
+#define NARC_CAST_DIRECT (-2.0f)
+
+/* Of one body of each cast that is under way: how it is at the start, a unit vector but for rounding, the angle by
+ * which it turns in the step, and as it is at the cast's time. */
+struct narc_cast_side {
+    uint32_t shape[NARC_CAST_ROOM];
+    float cosine[NARC_CAST_ROOM], sine[NARC_CAST_ROOM], scale[NARC_CAST_ROOM], angle[NARC_CAST_ROOM];
+    double lever[NARC_CAST_ROOM]; /* of what turns: the largest |point x normal| of its outline, scaled */
+    double turned_x[NARC_CAST_SLOTS], turned_y[NARC_CAST_SLOTS];
+};
+
+/* Casts under way, a slot each. The kernels may write behind the last one, up to NARC_CAST_ROOM. Times are floats,
+ * rounded down: a place at a time is exact, and the caller's own. */
+typedef struct narc_casts {
+    float target, tolerance;                                   /* the caller's */
+    struct narc_cast_side side[2];                             /* A, B */
+    double x[NARC_CAST_ROOM], y[NARC_CAST_ROOM];               /* B's position at the start, from A's */
+    double motion_x[NARC_CAST_ROOM], motion_y[NARC_CAST_ROOM]; /* B's against A's */
+    double end[NARC_CAST_ROOM];                                /* nothing touches then or later */
+    double enough[NARC_CAST_ROOM];     /* a separation that is so much above the target is a hit */
+    float turning[NARC_CAST_ROOM];     /* 1: turning moves an outline; else 0 */
+    float time[NARC_CAST_ROOM];        /* where it is now */
+    float back[NARC_CAST_ROOM];        /* where it was to go, had it not tried to go further; NARC_CAST_FREE: it has
+                                        not; NARC_CAST_DIRECT: it went too far once, and tries no more */
+    float rounds[NARC_CAST_ROOM];      /* contacts so far */
+    int32_t outcome[NARC_CAST_ROOM];   /* of the last step */
+    float pose[2][NARC_CAST_SLOTS][4]; /* x, y, cosine, sine of A and B at the time; A stands at the origin */
+    narc_contact contact[NARC_CAST_SLOTS];
+} narc_casts;
+
 /* The most pairs that one call for rows takes. */
 enum { NARC_ROW_GROUP = 1024 };
 

@@ -2,7 +2,7 @@
  *
  * casts.c - narc_cast_pairs(): argument checks, then pairs part by part. Of a part some pairs are under way at a time,
  * each in a slot: all of them are placed at their present times, the contact kernel finds what there is between them,
- * and each goes on or makes room for the next pair. So vectors are full until a part ends.
+ * and each goes on or makes room for the next pair (kernels/scene/casts.c). So vectors are full until a part ends.
  */
 #include <math.h>
 
@@ -13,114 +13,85 @@
 /* Pairs in a part. */
 enum { PART = 1024 };
 
-/* Pairs under way: what fits on the stack beside the kernel's queues (NARC_STACK_SIZE). */
-enum { SLOTS = 32 };
-
 /* So few are asked for of the kernels with one lane; see api.c. */
 enum { FEW = 2 };
 
-/* What the kernel reads of a body: a pose in the form that is read fastest. A stands at the origin. */
-struct pose {
-    float x, y, cosine, sine;
-};
-
 struct slots {
     size_t count;
-    narc_cast cast[SLOTS];
-    uint32_t pair[SLOTS];
-    struct pose pose[SLOTS][2];
-    float scale[SLOTS][2];
-    uint32_t shape[SLOTS][2];
-    uint32_t hint[SLOTS];
-    narc_contact contact[SLOTS];
+    uint32_t pair[NARC_CAST_SLOTS], body[NARC_CAST_SLOTS]; /* B's */
+    uint32_t hint[NARC_CAST_SLOTS];
     narc_bodies a, b;
     narc_pairs pairs;
     narc_query query;
     narc_batch batch;
+    narc_casts casts;
 };
 
 /* ------------------------------------------------------------------------------------------------ slots */
 
+/* What the contact kernel reads of a body: poses in the form that is read fastest. */
+static void view_side(const narc_casts *casts, int side, narc_bodies *out) {
+    const float *const pose = casts->pose[side][0];
+    const struct narc_cast_side *const of = &casts->side[side];
+    const ptrdiff_t stride = sizeof casts->pose[side][0], item = sizeof(float);
+    out->count = NARC_CAST_SLOTS;
+    out->x = (narc_position_column){pose, stride, NARC_FLOAT32};
+    out->y = (narc_position_column){pose + 1, stride, NARC_FLOAT32};
+    out->cosine = (narc_float_column){pose + 2, stride};
+    out->sine = (narc_float_column){pose + 3, stride};
+    out->scale = (narc_float_column){of->scale, item};
+    out->shape = (narc_index_column){of->shape, item};
+}
+
 static void open_slots(const narc_cast_job *job, struct slots *slots) {
-    const ptrdiff_t stride = 2 * sizeof(struct pose), item = 2 * sizeof(float);
-    const struct pose *const a = &slots->pose[0][0], *const b = &slots->pose[0][1];
+    static const narc_pairs pairs = {.count = NARC_CAST_SLOTS};
+    static const narc_query query = {.margin = INFINITY, .dense = 1};
     slots->count = 0;
-    slots->a = (narc_bodies){.count = SLOTS,
-                             .x = {&a->x, stride, NARC_FLOAT32},
-                             .y = {&a->y, stride, NARC_FLOAT32},
-                             .cosine = {&a->cosine, stride},
-                             .sine = {&a->sine, stride},
-                             .scale = {&slots->scale[0][0], item},
-                             .shape = {&slots->shape[0][0], item}};
-    slots->b = (narc_bodies){.count = SLOTS,
-                             .x = {&b->x, stride, NARC_FLOAT32},
-                             .y = {&b->y, stride, NARC_FLOAT32},
-                             .cosine = {&b->cosine, stride},
-                             .sine = {&b->sine, stride},
-                             .scale = {&slots->scale[0][1], item},
-                             .shape = {&slots->shape[0][1], item}};
-    slots->pairs = (narc_pairs){.count = SLOTS, .other_bodies = &slots->b};
-    slots->query = (narc_query){.margin = INFINITY, .dense = 1, .hints = {slots->hint, sizeof slots->hint[0]}};
+    view_side(&slots->casts, 0, &slots->a);
+    view_side(&slots->casts, 1, &slots->b);
+    slots->pairs = pairs;
+    slots->pairs.other_bodies = &slots->b;
+    slots->query = query;
+    slots->query.hints = (narc_hint_column){slots->hint, sizeof slots->hint[0]};
     slots->batch.shapes = job->batch->shapes;
     slots->batch.a = &slots->a;
     slots->batch.b = &slots->b;
     slots->batch.pairs = &slots->pairs;
     slots->batch.query = &slots->query;
     slots->batch.first = 0;
-    slots->batch.count = slots->batch.asked = SLOTS;
+    slots->batch.count = slots->batch.asked = NARC_CAST_SLOTS;
     slots->batch.manifolds = false;
-}
-
-/* Puts the pair in a slot where it is at its present time. */
-static void place(struct slots *slots, size_t slot) {
-    narc_cast *const cast = &slots->cast[slot];
-    const double time = (double)cast->time;
-    for (int side = 0; side < 2; side++) {
-        narc_mover *const mover = side == 0 ? &cast->a : &cast->b;
-        if (mover->angle == 0)
-            continue;
-        narc_turn_mover(mover, cast->time);
-        slots->pose[slot][side].cosine = (float)mover->turned.x;
-        slots->pose[slot][side].sine = (float)mover->turned.y;
-    }
-    slots->pose[slot][1].x = (float)(cast->x + time * cast->motion_x);
-    slots->pose[slot][1].y = (float)(cast->y + time * cast->motion_y);
+    slots->casts.target = job->target;
+    slots->casts.tolerance = job->tolerance;
 }
 
 static void move_slot(struct slots *slots, size_t from, size_t to) {
-    slots->cast[to] = slots->cast[from];
+    narc_casts *const c = &slots->casts;
     slots->pair[to] = slots->pair[from];
+    slots->body[to] = slots->body[from];
     slots->hint[to] = slots->hint[from];
-    for (int side = 0; side < 2; side++) {
-        slots->pose[to][side] = slots->pose[from][side];
-        slots->scale[to][side] = slots->scale[from][side];
-        slots->shape[to][side] = slots->shape[from][side];
+    for (int k = 0; k < 2; k++) {
+        struct narc_cast_side *const side = &c->side[k];
+        side->shape[to] = side->shape[from];
+        side->cosine[to] = side->cosine[from];
+        side->sine[to] = side->sine[from];
+        side->scale[to] = side->scale[from];
+        side->angle[to] = side->angle[from];
+        side->lever[to] = side->lever[from];
     }
+    c->x[to] = c->x[from];
+    c->y[to] = c->y[from];
+    c->motion_x[to] = c->motion_x[from];
+    c->motion_y[to] = c->motion_y[from];
+    c->end[to] = c->end[from];
+    c->enough[to] = c->enough[from];
+    c->turning[to] = c->turning[from];
+    c->time[to] = c->time[from];
+    c->back[to] = c->back[from];
+    c->rounds[to] = c->rounds[from];
 }
 
-/* ------------------------------------------------------------------------------------------------ one pair */
-
-static float item_or(narc_float_column column, size_t item, float none) {
-    return column.base ? narc_float_at(column, item) : none;
-}
-
-/* Reads a body of the set as the kernels would; false if it is broken, by their rules (base/bodies.inl). */
-static bool read_body(const narc_shapes *shapes, const narc_bodies *set, size_t item, uint32_t shape, float angle,
-                      struct pose *pose, float *out_scale, narc_mover *out) {
-    const float c = narc_float_at(set->cosine, item), s = narc_float_at(set->sine, item), one = 1;
-    const float error = (c * c + s * s) - one, scale = item_or(set->scale, item, 1);
-    const double inverse = 1 - 0.5 * (double)error; /* Newton's step for the root, as the kernels' */
-    pose->cosine = c;
-    pose->sine = s;
-    *out_scale = scale;
-    out->header = &shapes->headers[shape];
-    out->rotation = out->turned = (narc_point){inverse * (double)c, inverse * (double)s};
-    out->scale = (double)scale;
-    out->angle = (double)angle;
-    const float size = scale * out->header->bound_radius;
-    return fabsf(error) <= (float)NARC_ROTATION_TOLERANCE && size >= (float)NARC_MIN_SIZE &&
-           size <= (float)NARC_MAX_BOUND_RADIUS && isfinite(angle);
-}
+/* ------------------------------------------------------------------------------------------------ rows */
 
 /* The row that a pair's answer goes to. */
 static narc_impact *find_row(const narc_cast_job *job, size_t pair) {
@@ -129,21 +100,26 @@ static narc_impact *find_row(const narc_cast_job *job, size_t pair) {
 
 /* Has its mover hit something before a time? */
 static bool is_late(const narc_cast_job *job, size_t pair, float time) {
+    if (!job->nearest)
+        return false;
     const narc_impact *const row = find_row(job, pair);
-    return job->nearest && row->count != NARC_CAST_MISS && row->fraction < time;
+    return row->count != NARC_CAST_MISS && row->fraction < time;
+}
+
+static void write_miss(const narc_cast_job *job, size_t pair) {
+    if (!job->nearest)
+        job->rows[pair] = (narc_impact){.pair = (uint32_t)pair};
 }
 
 /* Writes the row of a pair, unless its mover hits another body before, or one with a lower number then. */
-static void write_row(const narc_cast_job *job, size_t pair, int outcome, const narc_contact *c, float time) {
+static void write_row(const narc_cast_job *job, const struct slots *slots, size_t slot, int outcome) {
+    const narc_contact *const c = &slots->casts.contact[slot];
+    const size_t pair = slots->pair[slot];
+    const uint32_t body = slots->body[slot];
+    const float time = slots->casts.time[slot];
     narc_impact *const row = find_row(job, pair);
-    const uint32_t body = (uint32_t)narc_find_side(job->batch, pair, 1).body;
-    if (outcome == NARC_CAST_MISS) {
-        if (!job->nearest)
-            *row = (narc_impact){.pair = (uint32_t)pair};
-        return;
-    }
-    if (is_late(job, pair, time) ||
-        (job->nearest && row->count != NARC_CAST_MISS && row->fraction == time && row->body < body))
+    if (job->nearest && row->count != NARC_CAST_MISS &&
+        (row->fraction < time || (row->fraction == time && row->body < body)))
         return;
     *row = (narc_impact){.pair = job->nearest ? row->pair : (uint32_t)pair,
                          .body = body,
@@ -159,79 +135,106 @@ static void write_row(const narc_cast_job *job, size_t pair, int outcome, const 
                          .radius_b = c->radius_b};
 }
 
-/* Begins a pair in a slot. False if it is done at once: its circles never meet, or it has no answer. */
-static bool begin_pair(const narc_cast_job *job, struct slots *slots, size_t slot, size_t pair, size_t *skipped) {
-    const narc_batch *const batch = job->batch;
-    const narc_bodies *const sets[2] = {batch->a, batch->b};
-    const narc_index_column columns[2] = {batch->pairs->a, batch->pairs->b};
-    narc_cast *const cast = &slots->cast[slot];
-    size_t item[2];
-    float motion[2][2];
-    bool fine = true;
-    for (int side = 0; side < 2; side++) {
-        const struct narc_side body = narc_find_side(batch, pair, side);
-        const narc_motions *const m = &job->motions[side];
-        item[side] = columns[side].base ? narc_index_at(columns[side], pair) : pair;
-        slots->shape[slot][side] = body.shape;
-        fine &= read_body(batch->shapes, sets[side], item[side], body.shape, item_or(m->angle, body.body, 0),
-                          &slots->pose[slot][side], &slots->scale[slot][side], side == 0 ? &cast->a : &cast->b);
-        motion[side][0] = item_or(m->x, body.body, 0);
-        motion[side][1] = item_or(m->y, body.body, 0);
-    }
-    cast->x = narc_position_at(batch->b->x, item[1]) - narc_position_at(batch->a->x, item[0]) +
-              (double)item_or(batch->pairs->shift_x, pair, 0);
-    cast->y = narc_position_at(batch->b->y, item[1]) - narc_position_at(batch->a->y, item[0]) +
-              (double)item_or(batch->pairs->shift_y, pair, 0);
-    cast->motion_x = (double)motion[1][0] - (double)motion[0][0];
-    cast->motion_y = (double)motion[1][1] - (double)motion[0][1];
-    cast->target = (double)job->target;
-    fine = fine && fabs(cast->x) <= NARC_MAX_DISTANCE && fabs(cast->y) <= NARC_MAX_DISTANCE &&
-           isfinite(cast->motion_x) && isfinite(cast->motion_y);
-    *skipped += !fine;
-    const int outcome = fine ? narc_begin_cast(cast, job->tolerance) : NARC_CAST_MISS;
-    if (outcome == NARC_CAST_MISS || is_late(job, pair, cast->time)) {
-        write_row(job, pair, NARC_CAST_MISS, NULL, 0);
-        return false;
-    }
-    slots->pair[slot] = (uint32_t)pair;
-    slots->hint[slot] = 0;
-    slots->pose[slot][0].x = slots->pose[slot][0].y = 0;
-    place(slots, slot);
-    return true;
+/* ------------------------------------------------------------------------------------------------ pairs */
+
+static float item_or(narc_float_column column, size_t item, float none) {
+    return column.base ? narc_float_at(column, item) : none;
 }
 
-/* Takes the pair in a slot a step further. False if it is done. */
-static bool advance_pair(const narc_cast_job *job, struct slots *slots, size_t slot, size_t *skipped) {
-    narc_cast *const cast = &slots->cast[slot];
-    const narc_contact *const contact = &slots->contact[slot];
-    const int outcome = contact->count > 0 ? narc_advance_cast(job->batch->shapes, cast, contact) : (int)NARC_CAST_MISS;
-    *skipped += contact->count == 0;
-    if (outcome == NARC_CAST_GOES_ON && !is_late(job, slots->pair[slot], cast->back >= 0 ? cast->back : cast->time)) {
-        place(slots, slot);
-        return true;
+/* Copies what the caller says of a pair. */
+static void load_pair(const narc_cast_job *job, struct slots *slots, size_t slot, size_t pair) {
+    const narc_batch *const batch = job->batch;
+    const narc_pairs *const pairs = batch->pairs;
+    const narc_bodies *const sets[2] = {batch->a, batch->b};
+    const narc_index_column columns[2] = {pairs->a, pairs->b};
+    const bool own = !pairs->a.base && !pairs->b.base && !pairs->other_bodies; /* bodies 2 k and 2 k + 1; see check.c */
+    narc_casts *const casts = &slots->casts;
+    size_t item[2];
+    double motion_x[2], motion_y[2];
+    for (int k = 0; k < 2; k++) {
+        const narc_motions *const m = &job->motions[k];
+        struct narc_cast_side *const side = &casts->side[k];
+        item[k] = columns[k].base ? narc_index_at(columns[k], pair) : pair;
+        const size_t body = own ? 2 * pair + (size_t)k : item[k];
+        side->shape[slot] = narc_index_at(sets[k]->shape, item[k]);
+        side->cosine[slot] = narc_float_at(sets[k]->cosine, item[k]);
+        side->sine[slot] = narc_float_at(sets[k]->sine, item[k]);
+        side->scale[slot] = item_or(sets[k]->scale, item[k], 1);
+        side->angle[slot] = item_or(m->angle, body, 0);
+        motion_x[k] = (double)item_or(m->x, body, 0);
+        motion_y[k] = (double)item_or(m->y, body, 0);
+        slots->body[slot] = (uint32_t)body;
     }
-    write_row(job, slots->pair[slot], outcome == NARC_CAST_GOES_ON ? NARC_CAST_MISS : outcome, contact, cast->time);
-    return false;
+    casts->x[slot] = narc_position_at(sets[1]->x, item[1]) - narc_position_at(sets[0]->x, item[0]) +
+                     (double)item_or(pairs->shift_x, pair, 0);
+    casts->y[slot] = narc_position_at(sets[1]->y, item[1]) - narc_position_at(sets[0]->y, item[0]) +
+                     (double)item_or(pairs->shift_y, pair, 0);
+    casts->motion_x[slot] = motion_x[1] - motion_x[0];
+    casts->motion_y[slot] = motion_y[1] - motion_y[0];
+    slots->pair[slot] = (uint32_t)pair;
+    slots->hint[slot] = 0;
+}
+
+static const narc_kernel_table *choose_kernels(const narc_cast_job *job, size_t count) {
+    return count <= FEW ? &narc_kernels_scalar : job->kernels;
+}
+
+/* Begins pairs next ... end - 1 in free slots; those whose circles never meet, or that have no answer, are done.
+ * Returns which pair is next. */
+static size_t begin_pairs(const narc_cast_job *job, struct slots *slots, size_t next, size_t end, size_t *skipped) {
+    while (slots->count < NARC_CAST_SLOTS && next < end) {
+        const size_t first = slots->count, room = NARC_CAST_SLOTS - first,
+                     count = end - next < room ? end - next : room;
+        for (size_t k = 0; k < count; k++)
+            load_pair(job, slots, first + k, next + k);
+        next += count;
+        choose_kernels(job, count)->begin(job->batch->shapes, &slots->casts, first, first + count);
+        for (size_t slot = first; slot < first + count; slot++) {
+            const int outcome = slots->casts.outcome[slot];
+            *skipped += outcome == NARC_CAST_BROKEN;
+            if (outcome != NARC_CAST_GOES_ON || is_late(job, slots->pair[slot], slots->casts.time[slot]))
+                write_miss(job, slots->pair[slot]);
+            else if (slots->count++ < slot)
+                move_slot(slots, slot, slots->count - 1);
+        }
+    }
+    return next;
+}
+
+/* Takes all pairs under way a step further. Those that are done make room. */
+static void advance_pairs(const narc_cast_job *job, struct slots *slots, size_t *skipped) {
+    const narc_kernel_table *const kernels = choose_kernels(job, slots->count);
+    const narc_rows rows = {(char *)slots->casts.contact, sizeof slots->casts.contact[0]};
+    size_t unused = 0;
+    kernels->place(&slots->casts, slots->count);
+    kernels->contact(&slots->batch, 0, slots->count, &unused, &rows);
+    kernels->advance(job->batch->shapes, &slots->casts, slots->count);
+    for (size_t slot = slots->count; slot-- > 0;) {
+        const narc_casts *const c = &slots->casts;
+        const bool broken = c->contact[slot].count == 0;
+        const int outcome = broken ? NARC_CAST_MISS : c->outcome[slot];
+        const size_t pair = slots->pair[slot];
+        *skipped += broken;
+        if (outcome == NARC_CAST_GOES_ON && !is_late(job, pair, c->back[slot] >= 0 ? c->back[slot] : c->time[slot]))
+            continue;
+        if (outcome == NARC_CAST_HIT || outcome == NARC_CAST_UNFINISHED)
+            write_row(job, slots, slot, outcome);
+        else
+            write_miss(job, pair);
+        if (--slots->count > slot)
+            move_slot(slots, slots->count, slot);
+    }
 }
 
 void narc_cast_range(narc_cast_job *job, size_t first, size_t end) {
     struct slots slots;
-    size_t next = first, skipped = 0, unused = 0;
+    size_t next = first, skipped = 0;
     open_slots(job, &slots);
-    while (slots.count < SLOTS && next < end)
-        slots.count += begin_pair(job, &slots, slots.count, next++, &skipped);
-    while (slots.count > 0) {
-        const narc_kernel_table *const kernels = slots.count <= FEW ? &narc_kernels_scalar : job->kernels;
-        const narc_rows rows = {(char *)slots.contact, sizeof slots.contact[0]};
-        kernels->contact(&slots.batch, 0, slots.count, &unused, &rows);
-        for (size_t slot = slots.count; slot-- > 0;) {
-            bool busy = advance_pair(job, &slots, slot, &skipped);
-            while (!busy && next < end)
-                busy = begin_pair(job, &slots, slot, next++, &skipped);
-            if (!busy && --slots.count > slot)
-                move_slot(&slots, slots.count, slot);
-        }
-    }
+    do {
+        next = begin_pairs(job, &slots, next, end, &skipped);
+        if (slots.count > 0)
+            advance_pairs(job, &slots, &skipped);
+    } while (slots.count > 0 || next < end);
     atomic_fetch_add_explicit(&job->skipped, skipped, memory_order_relaxed);
 }
 

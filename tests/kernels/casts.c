@@ -408,4 +408,39 @@ TEST(test_two_halves) {
     print_message("%zu hits, %zu grazes differ\n", hits, differ);
 }
 
+/* A pair's row depends on that pair alone: all of a call, of which some end as soon as they begin, together, and one
+ * after the other, have the rows of each alone. */
+TEST(test_divisions) {
+    struct test_random random = test_random_named("divisions");
+    size_t hits = 0;
+    for (size_t k = 0; k < test_trials(12); k++) {
+        struct scene scene =
+            make_placed_scene(&random, (narc_precision)(k % 2), (enum family)random_below(&random, FAMILY_COUNT),
+                              (enum family)random_below(&random, FAMILY_COUNT), PLACE_COUNT * 30);
+        struct moving m = set_in_motion(&random, scene, k % 3 == 1 ? 3 : 0);
+        for (size_t b = 0; k % 3 == 2 && b < m.scene.body_count; b++)
+            m.motion[b] = (struct motion){0, 0, 0};
+        const narc_bodies bodies = scene_bodies(&m.scene);
+        const narc_motions motions = motions_of(&m);
+        narc_impact *const rows = cast_all(&m, 1, NULL), *const by_two = cast_all(&m, 2, NULL);
+        assert_memory_equal(rows, by_two, m.scene.pair_count * sizeof *rows);
+        for (size_t pair = 0; pair < m.scene.pair_count; pair++) {
+            narc_pairs one = scene_pairs(&m.scene);
+            narc_impact row;
+            narc_error error;
+            one.a.base = &m.scene.pairs[pair].a;
+            one.b.base = &m.scene.pairs[pair].b;
+            one.count = 1;
+            expect_ok(narc_cast_pairs(m.scene.store, &bodies, &motions, &one, NULL, NULL, &row, 1, &error), &error);
+            row.pair = (uint32_t)pair;
+            assert_memory_equal(&row, &rows[pair], sizeof row);
+            hits += row.count == NARC_CAST_HIT;
+        }
+        guard_release(by_two);
+        guard_release(rows);
+        destroy_moving(&m);
+    }
+    assert_true(hits > 0);
+}
+
 TEST_MAIN("casts")

@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * cast_turns.inl - what contacts of casts mean where outlines turn.
+ *
+ * With d the way from A's position to B's, w its change in a whole step, n the contact normal and f the separation:
+ *
+ * f(t) is at least the gap g(t) along any axis, and the axis that n is now, at rest or turning with a body, is followed
+ * to a time before which g cannot be at the target. While the arcs that hold the axis stay the same, with centres p
+ * relative to their bodies and the axis turning at the rate w_n,
+ *     g' = n.w + w_n n x d + (w_b - w_n) p_b x n - (w_a - w_n) p_a x n,    g'' >= -M,
+ *     M  = w_n^2 |d| + 2 |w_n| |w| + (w_b - w_n)^2 max(p_b.n, 0) + (w_a - w_n)^2 max(-p_a.n, 0).
+ * Past them a support function changes at most as fast as its body turns times its lever. Where n.w falls faster than
+ * both change together, f was never smaller before: such a contact is worth a try further on, where g is at the target.
+ */
+#ifndef NARC_SCENE_CAST_TURNS_INL
+#define NARC_SCENE_CAST_TURNS_INL
+
+#include <math.h>
+#include <stdbool.h>
+
+#include "kernels.h"
+#include "narc_scene.h"
+#include "scene/cast_lanes.inl"
+#include "simd/doubles.h"
+#include "simd/simd.h"
+
+/* What axes that turn meet of a body: the centre of an arc, for as long as they stay on that arc. */
+struct lever {
+    vd arm;      /* centre x axis */
+    vd reach;    /* centre.axis */
+    vd bend;     /* the least centre.axis on the way, below 0 */
+    vd duration; /* at least */
+};
+
+/* An axis that is as near to an arc's end as this has the next arc; and it may be so much before the start. */
+#define AT_END 0x1p-19
+
+/* The axes of the contacts of a vector: how fast each turns, and what it meets of each body, seen from there. */
+struct axes {
+    float rate[V_WIDTH];
+    struct met {
+        struct outline_part part;
+        struct held_arcs arcs; /* the arcs that hold the axes, */
+        float on_arc[V_WIDTH]; /* 1, or 0: none does */
+        double axis_x[V_WIDTH], axis_y[V_WIDTH];
+    } met[2];
+};
+
+/* Where axes that turn leave their arcs, and where those begin. */
+INLINE void find_ends(const struct held_arcs *arcs, int h, vl forward, spot *out_from, spot *out_to) {
+    const spot start = get_spot(arcs->start_x + h, arcs->start_y + h), end = get_spot(arcs->end_x + h, arcs->end_y + h);
+    *out_from = (spot){d_select(forward, start.x, end.x), d_select(forward, start.y, end.y)};
+    *out_to = (spot){d_select(forward, end.x, start.x), d_select(forward, end.y, start.y)};
+}
+
+/* Are axes, which turn in the sense of a sign, on their arcs, and stay there? */
+INLINE void compare_axes(struct met *met, const float *sign) {
+    for (int h = 0; h < V_WIDTH; h += D_WIDTH) {
+        const vd of = d_of_floats(sign + h), zero = d_set(0);
+        const spot axis = {d_load(met->axis_x + h), d_load(met->axis_y + h)};
+        spot from, to;
+        find_ends(&met->arcs, h, d_lt(zero, of), &from, &to);
+        const vl on = d_lt(d_set(AT_END), of * find_cross(axis, to)) | d_lt(find_dot(axis, to), zero);
+        d_put_floats(met->on_arc + h, d_select(on, d_set(1), zero));
+    }
+}
+
+/* The arcs of the body `which` that hold the axes, which turn at `rate` against it: those that touch, or the next. */
+INLINE void find_held(const narc_shapes *shapes, const narc_casts *casts, const struct touch *touch, size_t k,
+                      int which, vm live, vf rate, struct met *met) {
+    const struct narc_cast_side *const side = &casts->side[which];
+    const struct outline_part *const part = &met->part;
+    const vm forward = v_lt(v_set(0), rate), turns = vm_and(live, v_lt(v_set(0), v_abs(rate)));
+    if (!vm_any(turns))
+        return;
+    for (int h = 0; h < V_WIDTH; h += D_WIDTH) {
+        const size_t slot = k + (size_t)h;
+        const spot n = get_spot(touch->normal_x + h, touch->normal_y + h), back = {-n.x, -n.y};
+        const spot turned = {d_load(side->turned_x + slot), d_load(side->turned_y + slot)};
+        const spot axis = turn_back(turned, which == 0 ? n : back);
+        d_store(met->axis_x + h, axis.x);
+        d_store(met->axis_y + h, axis.y);
+    }
+    const vi one = vi_set(1), last = vi_sub(part->count, one);
+    const vi before = vi_select(vi_lt(vi_set(0), part->arc), vi_sub(part->arc, one), last);
+    const vi after = vi_select(vi_lt(part->arc, last), vi_add(part->arc, one), vi_set(0));
+    float sign[V_WIDTH];
+    v_store(sign, v_select(forward, v_set(1), v_set(-1)));
+    const vi first = vi_select(vm_and_not(part->on_edge, forward), before, part->arc);
+    load_held(shapes, part, first, &met->arcs);
+    compare_axes(met, sign);
+    const vm lost = vm_and_not(turns, vm_or(part->round, v_lt(v_set(0), v_load(met->on_arc))));
+    if (vm_any(lost)) {
+        load_held(shapes, part, vi_select(lost, vi_select(forward, after, before), first), &met->arcs);
+        compare_axes(met, sign);
+    }
+}
+
+/* How far an axis may turn is at least the chord to its arc's end. Of circles there is no end. */
+INLINE struct lever find_arm(const struct met *met, int h, vl moves, vd scale, vd rate) {
+    const vd zero = d_set(0), center_x = scale * d_of_floats(met->arcs.center_x + h),
+             center_y = scale * d_of_floats(met->arcs.center_y + h);
+    const spot center = {center_x, center_y}, axis = {d_load(met->axis_x + h), d_load(met->axis_y + h)};
+    const vl forward = d_lt(zero, rate), round = find_true(met->part.round, h);
+    const vd sign = d_select(forward, d_set(1), d_set(-1)), arm = find_cross(center, axis);
+    spot from, to;
+    find_ends(&met->arcs, h, forward, &from, &to);
+    const spot chord = {to.x - axis.x, to.y - axis.y};
+    const vl known = d_le(d_set(-AT_END), sign * find_cross(from, axis)) | d_lt(find_dot(axis, from), zero);
+    const vl through = round | (d_lt(zero, sign * arm) & d_lt(sign * find_cross(center, to), zero));
+    vd least = d_min(find_dot(center, axis), find_dot(center, to));
+    if (d_any(through & moves))
+        least = d_select(through, -find_length(center), least);
+    const vd duration = d_select(round, d_set(INFINITY), d_select(known, find_length(chord) / d_abs(rate), zero));
+    const vl some = round | d_lt(zero, d_of_floats(met->on_arc + h));
+    return (struct lever){d_select(some, arm, zero), d_select(some, find_dot(center, axis), zero),
+                          d_select(some, d_min(least, zero), zero), d_select(some, duration, zero)};
+}
+
+/* The gap along an axis after a time s is gap + s (first + s (second + s (third + s fourth))), nearly. */
+struct series {
+    vd first, second, third, fourth;
+};
+
+/* Adds a (cos(rate s) - 1) + b sin(rate s), but for the first term. */
+INLINE void add_turn(struct series *series, vd rate, vd a, vd b) {
+    const vd square = rate * rate, half = a * square * d_set(0.5), third = b * rate * square * d_set(1.0 / 6);
+    series->second -= half;
+    series->third -= third;
+    series->fourth += half * square * d_set(1.0 / 12);
+}
+
+/* For how long from now on the gap, which is `gap` above the target, stays there along the normal as an axis that turns
+ * at a rate; `falls` is how fast it falls at most along one at rest. `out_series`: what it does, as long as the arcs
+ * stay the same; where these are round, with what the axis would gain if it turned to where the gap is largest. Unless
+ * it `tries`, the first term alone. */
+INLINE vd follow_axis(const narc_casts *casts, const struct touch *touch, const struct axes *axes, size_t k, int h,
+                      vd gap, vd falls, bool tries, struct series *out_series) {
+    const size_t slot = k + (size_t)h;
+    const vd zero = d_set(0), two = d_set(2), infinite = d_set(INFINITY), rate = d_of_floats(axes->rate + h);
+    const spot n = get_spot(touch->normal_x + h, touch->normal_y + h),
+               motion = {d_load(casts->motion_x + slot), d_load(casts->motion_y + slot)};
+    const vd along = find_dot(n, motion), across = find_cross(n, motion);
+    const vl turns = d_lt(zero, d_abs(rate));
+    struct series series = {along, zero, zero, zero};
+    vd bend = zero, duration = infinite, fastest = falls, slide = across;
+    if (d_any(turns)) {
+        const vd time = d_of_floats(casts->time + slot), left = d_load(casts->end + slot) - time;
+        const spot way = {d_load(casts->x + slot) + time * motion.x, d_load(casts->y + slot) + time * motion.y};
+        const vd speed = find_length(motion);
+        series.first += rate * find_cross(n, way);
+        if (tries) {
+            add_turn(&series, rate, find_dot(n, way), find_cross(n, way));
+            series.second += across * rate;
+            series.third -= along * rate * rate * d_set(0.5);
+        }
+        bend = rate * rate * (find_length(way) + speed * left) + two * d_abs(rate) * speed;
+        fastest += d_select(turns, along + speed, zero);
+    }
+    for (int side = 0; side < 2; side++) {
+        const struct narc_cast_side *const of = &casts->side[side];
+        const vd its = rate - d_of_floats(of->angle + slot);
+        const vl moves = d_lt(zero, d_abs(its));
+        if (!d_any(moves))
+            continue;
+        const struct lever lever = find_arm(&axes->met[side], h, moves, d_of_floats(of->scale + slot), its);
+        series.first += d_select(moves, its * lever.arm, zero);
+        if (tries) {
+            const vd arm = d_select(moves, lever.arm, zero), reach = d_select(moves, lever.reach, zero);
+            add_turn(&series, its, -reach, arm);
+            slide += its * reach;
+        }
+        bend -= d_select(moves, its * its * lever.bend, zero);
+        duration = d_select(moves, d_min(lever.duration, duration), duration);
+    }
+    const vd slope = series.first, root = d_sqrt(slope * slope + two * bend * gap);
+    if (tries) {
+        const vd apart = d_of_floats(touch->radius_a + h) + d_of_floats(touch->radius_b + h) +
+                         d_of_floats(touch->separation + h); /* centres of round arcs; of edges: infinite */
+        series.second += slide * slide / (two * d_abs(apart));
+    }
+    *out_series = series;
+    const vl down = d_lt(slope, zero);
+    const vd way = d_select(down, two * gap, root + slope) / d_select(down, root - slope, bend);
+    const vd whole = d_select(down | d_lt(zero, bend), way, infinite);
+    const vl on_arc = d_le(whole, duration);
+    if (!d_any(~on_arc))
+        return whole;
+    const vd rest = gap + duration * (slope - bend * duration / two);
+    return d_select(on_arc, whole, d_select(d_lt(zero, rest), duration + rest / fastest, duration));
+}
+
+/* When a gap that follows a series is down to 0, `left` at most: Newton's steps, of which nothing is promised. */
+INLINE vd find_root(vd gap, const struct series *series, vd left) {
+    const vd zero = d_set(0);
+    vd s = d_min(-gap / series->first, left);
+    for (int step = 0; step < 2; step++) {
+        const vd high = series->third + s * series->fourth, low = series->second + s * high;
+        const vd value = gap + s * (series->first + s * low);
+        const vd slope = series->first + s * (low + low + s * (high + s * series->fourth));
+        const vd next = d_min(s - value / slope, left);
+        s = d_select(d_lt(zero, next), next, zero);
+    }
+    return s;
+}
+
+INLINE void advance_turn(const narc_casts *casts, const struct touch *touch, const struct axes *axes, size_t k, int h,
+                         struct step *out) {
+    const size_t slot = k + (size_t)h;
+    const struct narc_cast_side *const a = &casts->side[0], *const b = &casts->side[1];
+    const vd zero = d_set(0), time = d_of_floats(casts->time + slot), end = d_load(casts->end + slot),
+             back = d_of_floats(casts->back + slot), rounds = d_of_floats(casts->rounds + slot) + d_set(1),
+             enough = d_load(casts->enough + slot);
+    const vd gap = d_of_floats(touch->separation + h) - d_set((double)casts->target);
+    const vd along = d_of_floats(touch->normal_x + h) * d_load(casts->motion_x + slot) +
+                     d_of_floats(touch->normal_y + h) * d_load(casts->motion_y + slot);
+    const vd turning = d_load(a->lever + slot) * d_abs(d_of_floats(a->angle + slot)) +
+                       d_load(b->lever + slot) * d_abs(d_of_floats(b->angle + slot)),
+             falls = turning - along;
+    const vl sure = d_lt(along + turning, zero), direct = d_le(back, d_set((double)NARC_CAST_DIRECT));
+    const vl passed = d_le(zero, back) & (~sure | d_lt(gap, zero)); /* it may have passed the first root */
+    struct series series;
+    const vl tries = sure & ~(passed | direct);
+    const vd duration = follow_axis(casts, touch, axes, k, h, gap, falls, d_any(tries), &series), least = gap / falls;
+    const vd next = time + d_select(d_lt(least, duration), duration, least), safe = round_down(next);
+    const vl near = d_le(gap, enough), last = d_le(d_set(MOST_ROUNDS), rounds);
+    const vd hit = d_set(NARC_CAST_HIT), miss = d_set(NARC_CAST_MISS), on = d_set(NARC_CAST_GOES_ON);
+    vd outcome = d_select(last, d_select(near, hit, d_set(NARC_CAST_UNFINISHED)), on);
+    outcome = d_select(d_lt(end, next), miss, d_select(d_le(safe, time), hit, outcome));
+    outcome = d_select(d_le(falls, zero), miss, d_select(near & d_le(series.first, zero), hit, outcome));
+    outcome = d_select(passed, on, d_select(d_le(gap, zero), hit, outcome));
+    const vl goes_on = d_lt(d_set(NARC_CAST_UNFINISHED), outcome);
+    const vl may_try = goes_on & tries & d_lt(series.first, zero);
+    vd to = d_select(passed, back, safe),
+       then_back = d_select(passed | direct, d_set((double)NARC_CAST_DIRECT), d_set((double)NARC_CAST_FREE));
+    if (d_any(may_try)) {
+        const vd ahead = round_down(time + find_root(gap - d_set(0.5) * enough, &series, end - time));
+        const vl try = may_try & d_lt(safe, ahead);
+        to = d_select(try, ahead, to);
+        then_back = d_select(try, safe, then_back);
+    }
+    put_step(out, h, outcome, d_select(goes_on, to, time), then_back, rounds);
+}
+
+INLINE void advance_turns(const narc_shapes *shapes, const narc_casts *casts, const struct touch *touch, size_t k,
+                          vm live, struct step *out) {
+    const vf angle_a = v_load(casts->side[0].angle + k), angle_b = v_load(casts->side[1].angle + k), zero = v_set(0);
+    struct axes axes;
+    for (int side = 0; side < 2; side++)
+        axes.met[side].part = find_part(shapes, &casts->side[side], side, touch);
+    const vf of_b = v_select(axes.met[1].part.on_edge, angle_b, zero);
+    const vf rate = v_select(vm_and(axes.met[0].part.on_edge, v_lt(zero, v_abs(angle_a))), angle_a, of_b);
+    v_store(axes.rate, rate);
+    for (int side = 0; side < 2; side++)
+        find_held(shapes, casts, touch, k, side, live, v_sub(rate, side == 0 ? angle_a : angle_b), &axes.met[side]);
+    for (int h = 0; h < V_WIDTH; h += D_WIDTH)
+        advance_turn(casts, touch, &axes, k, h, out);
+}
+
+#endif
