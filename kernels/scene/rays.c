@@ -190,7 +190,7 @@ INLINE void visit_leaf(const narc_ray_batch *batch, struct walk *w, size_t leaf,
     const narc_index *const index = batch->index;
     const narc_index_node *const node = &index->nodes[leaf];
     for (; slots; slots &= slots - 1) {
-        const unsigned slot = (unsigned)__builtin_ctz(slots) ^ flips;
+        const unsigned slot = (unsigned)FIND_LOWEST(slots) ^ flips;
         const uint32_t body = index->body[NARC_NODE_SLOTS * leaf + slot];
         const narc_box box = {node->min_x[slot], node->min_y[slot], node->max_x[slot], node->max_y[slot]};
         narc_ray_hit hit = {.ray = w->rows->ray, .body = body, .count = 1};
@@ -217,7 +217,7 @@ INLINE void step_walk(const narc_ray_batch *batch, struct walk *w) {
     uint32_t slots = find_slots(w, &index->nodes[node], near);
     if (index->masks)
         for (uint32_t bits = slots; bits; bits &= bits - 1) {
-            const unsigned slot = (unsigned)__builtin_ctz(bits);
+            const unsigned slot = (unsigned)FIND_LOWEST(bits);
             slots &= ~((uint32_t) !(index->masks[NARC_NODE_SLOTS * node + slot] & w->mask) << slot);
         }
     else if (!w->mask)
@@ -230,8 +230,8 @@ INLINE void step_walk(const narc_ray_batch *batch, struct walk *w) {
         visit_leaf(batch, w, node, slots, flips, near);
         return;
     }
-    for (; slots; slots &= ~(1u << (31 - __builtin_clz(slots)))) { /* the last one first: it waits longest */
-        const unsigned slot = (31u - (unsigned)__builtin_clz(slots)) ^ flips;
+    for (; slots; slots &= ~(1u << FIND_HIGHEST(slots))) { /* the last one first: it waits longest */
+        const unsigned slot = (unsigned)FIND_HIGHEST(slots) ^ flips;
         w->visits[w->count++] = (struct visit){near[slot], NARC_NODE_SLOTS * visit.node + slot, visit.level - 1};
     }
 }
