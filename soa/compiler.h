@@ -11,14 +11,22 @@
 #endif
 
 /* For steps of the inner loops that are written once and used more than once, and for what stores vectors to small
- * arrays of its own: the address sanitizer's frames are less aligned than GCC 12 takes those arrays to be. */
+ * arrays of its own: the address sanitizer's frames are less aligned than GCC 12 takes those arrays to be. Code that is
+ * to be small (-Os) leaves it to the compiler. */
+#ifdef __OPTIMIZE_SIZE__
+#define INLINE static inline
+#else
 #define INLINE static inline __attribute__((always_inline))
+#endif
 
 #define NOINLINE static __attribute__((noinline))
 
 /* Before a loop over the fields of something, all of which is wanted in registers; and before one that does little else
  * but count. */
-#ifdef __clang__
+#ifdef __OPTIMIZE_SIZE__
+#define UNROLL
+#define UNROLL_FEW
+#elif defined(__clang__)
 #define UNROLL     _Pragma("unroll")
 #define UNROLL_FEW _Pragma("unroll 4")
 #else

@@ -221,7 +221,8 @@ void narc_cast_range(narc_cast_job *job, size_t first, size_t end) {
     while (slots.count < SLOTS && next < end)
         slots.count += begin_pair(job, &slots, slots.count, next++, &skipped);
     while (slots.count > 0) {
-        const narc_kernel_table *const kernels = slots.count <= FEW ? &narc_kernels_scalar : job->kernels;
+        const narc_kernel_table *const kernels =
+            slots.count <= FEW ? NARC_KERNELS_FOR_FEW(NARC_BUILT_scalar, job->kernels) : job->kernels;
         const narc_rows rows = {(char *)slots.contact, sizeof slots.contact[0]};
         kernels->contact(&slots.batch, 0, slots.count, &unused, &rows);
         for (size_t slot = slots.count; slot-- > 0;) {
