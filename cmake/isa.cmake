@@ -27,7 +27,7 @@ function(narc_add_isa_objects target name isa)
   # Where each variable of an optimised kernel lives takes half of GCC's time to find out, and Clang 14 crashes over it
   # (in LLVM's salvageDebugInfo): lines, but no variables.
   target_compile_options(${target} PRIVATE $<$<C_COMPILER_ID:GNU>:-fno-var-tracking>
-    $<$<AND:$<C_COMPILER_ID:Clang>,$<VERSION_LESS:$<C_COMPILER_VERSION>,16>>:-gline-tables-only>)
+    $<$<AND:$<C_COMPILER_ID:Clang,AppleClang>,$<VERSION_LESS:$<C_COMPILER_VERSION>,16>>:-gline-tables-only>)
   target_link_libraries(${target} PRIVATE narc_flags)
 endfunction()
 

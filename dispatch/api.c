@@ -32,7 +32,7 @@ static narc_status begin(const narc_shapes *shapes, const narc_bodies *bodies, c
     if (status == NARC_OK)
         *out_kernels = narc_kernels(&status, error);
     if (status == NARC_OK && out_batch->count <= FEW)
-        *out_kernels = &narc_kernels_scalar;
+        *out_kernels = NARC_KERNELS_FOR_FEW(NARC_BUILT_scalar, *out_kernels);
     return status;
 }
 

@@ -7,6 +7,7 @@
  * before it are in their final place, they are moved to the end of these. No part waits for that: it is done by whoever
  * ends a part and finds it due, for those behind it that have ended, too.
  */
+#include "compiler.h"
 #include "dispatch.h"
 #include "error.h"
 
@@ -117,8 +118,7 @@ static void close_gaps(struct job *job, size_t parts) {
 }
 
 /* Answers a few pairs where there is room for `room` rows only. Not inlined: the others need no room for these. */
-static __attribute__((noinline)) size_t list_apart(const struct job *job, size_t first, size_t count, char *to,
-                                                   size_t room, size_t *skipped) {
+NOINLINE size_t list_apart(const struct job *job, size_t first, size_t count, char *to, size_t room, size_t *skipped) {
     _Alignas(16) char rows[APART * sizeof(narc_manifold)];
     const narc_rows apart = {rows, (ptrdiff_t)job->row_size};
     const size_t found = job->kernel(job->batch, first, count, skipped, &apart);
@@ -197,8 +197,8 @@ static narc_status check_rows(const narc_batch *batch, const narc_rows *rows, si
 
 /* The rows of a batch with more than one group of pairs, or with little room. Workers take so many pairs at a time as
  * there is room for; where that is little, this thread takes them. */
-static __attribute__((noinline)) size_t list_all(narc_row_kernel *kernel, const narc_batch *batch, size_t row_size,
-                                                 const narc_rows *rows, size_t capacity, size_t *skipped) {
+NOINLINE size_t list_all(narc_row_kernel *kernel, const narc_batch *batch, size_t row_size, const narc_rows *rows,
+                         size_t capacity, size_t *skipped) {
     const narc_query *query = batch->query;
     const size_t end = batch->first + batch->count;
     size_t found = 0;

@@ -2,9 +2,15 @@
  *
  * cpu.c - what this processor can do and the operating system lets it do. The only place that asks.
  */
+#include "compiler.h"
 #include "dispatch.h"
 
-#if defined(__x86_64__) || defined(__i386__)
+#if (NARC_BUILT_sse41 && !defined(NARC_ON_X86)) || (NARC_BUILT_neon && !defined(NARC_ON_ARM64)) ||                     \
+    (NARC_BUILT_wasm128 && !defined(NARC_ON_WASM))
+#error "narc: kernels for a processor that compiler.h does not recognise would never be used"
+#endif
+
+#ifdef NARC_ON_X86
 #include <cpuid.h>
 
 enum { EBX = 1, ECX = 2 };
@@ -28,7 +34,7 @@ static const struct feature {
 
 static unsigned long long read_xcr0(void) {
     unsigned low, high;
-    __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
+    READ_CONTROL_REGISTER(0, &low, &high);
     return (unsigned long long)high << 32 | low;
 }
 
@@ -54,9 +60,9 @@ static const struct feature {
 } features[] = {{"neon", NARC_CPU_NEON}, {"simd128", NARC_CPU_WASM128}};
 
 static bool has_feature(const struct feature *feature) {
-#if defined(__aarch64__)
+#ifdef NARC_ON_ARM64
     return feature->need == NARC_CPU_NEON; /* part of the base architecture */
-#elif defined(__wasm__)
+#elif defined(NARC_ON_WASM)
     return feature->need == NARC_CPU_WASM128; /* an engine without it would have refused the module */
 #else
     (void)feature;

@@ -28,11 +28,8 @@ typedef struct reader {
 } reader;
 
 /* "line 3: shape 'lens', arc 2: message", the line being that of `item`. */
-#if defined(__GNUC__)
-__attribute__((format(printf, 5, 6)))
-#endif
-static void
-fail_shape(reader *at, narc_status status, const cJSON *item, double value, const char *format, ...) {
+PRINTF_LIKE(5, 6)
+static void fail_shape(reader *at, narc_status status, const cJSON *item, double value, const char *format, ...) {
     char message[sizeof((narc_error *)0)->message];
     if (at->status)
         return;

@@ -169,4 +169,10 @@ typedef size_t narc_row_kernel(const narc_batch *batch, size_t first, size_t cou
 #define NARC_ISA_TABLE_1(table)       &table
 #define NARC_ISA_TABLE_0(table)       NULL
 
+/* The kernels for a few items: plain C, or where that is not built, those in use. */
+#define NARC_KERNELS_FOR_FEW(built, kernels)  NARC_KERNELS_FOR_FEW_(built, kernels)
+#define NARC_KERNELS_FOR_FEW_(built, kernels) NARC_KERNELS_FOR_FEW_##built(kernels)
+#define NARC_KERNELS_FOR_FEW_1(kernels)       (&narc_kernels_scalar)
+#define NARC_KERNELS_FOR_FEW_0(kernels)       (kernels)
+
 #endif

@@ -19,7 +19,7 @@
 static inline void sincos_lanes(const float *angles, float *out_cosines, float *out_sines) {
     const vf angle = v_load(angles);
     const vm finite = v_lt(v_abs(angle), v_set(INFINITY));
-    const __typeof__(V_SINCOS(angle)) sincos = V_SINCOS(angle);
+    const TYPE_OF(V_SINCOS(angle)) sincos = V_SINCOS(angle);
     v_store(out_cosines, v_select(finite, sincos.y, v_set(NAN)));
     v_store(out_sines, v_select(finite, sincos.x, v_set(NAN)));
 }

@@ -205,7 +205,7 @@ INLINE void pass_on(const struct lanes *lanes, const struct search *s, vm collid
         v_store(corner[c][3], corners[c]->middle.y);
     }
     for (uint32_t bits = vm_bits(collides); bits; bits &= bits - 1) {
-        const int lane = __builtin_ctz(bits), k = to->pairs.count++;
+        const int lane = FIND_LOWEST(bits), k = to->pairs.count++;
         copy_item(&lanes->pair, lane, &to->pairs, k);
         for (int c = 0; c < 3; c++)
             for (int f = 0; f < 4; f++)

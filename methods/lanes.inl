@@ -76,7 +76,7 @@ INLINE void append_found(const struct lanes *lanes, vm which, const struct best 
     vi_store(record[0], best->record_a);
     vi_store(record[1], best->record_b);
     for (uint32_t bits = vm_bits(which); bits; bits &= bits - 1) {
-        const int lane = __builtin_ctz(bits), k = found->count++;
+        const int lane = FIND_LOWEST(bits), k = found->count++;
         copy_item(&lanes->pair, lane, found, k);
         for (int f = 0; f < COUNT; f++)
             found->item[fields[f]][k] = value[f][lane];

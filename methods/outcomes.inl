@@ -20,7 +20,7 @@ INLINE void note_outcome(const struct call *call, const struct queue *queue, int
         return;
     get_pairs(queue, k, pair);
     for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1)
-        outcomes[find_number(call, pair[__builtin_ctz(lanes)])] = (uint8_t)outcome;
+        outcomes[find_number(call, pair[FIND_LOWEST(lanes)])] = (uint8_t)outcome;
 }
 
 #endif

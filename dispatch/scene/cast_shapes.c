@@ -53,7 +53,7 @@ static narc_box sweep_circle(const struct job *job, size_t k) {
 }
 
 static void find_boxes(void *argument, size_t part, size_t first, size_t end) {
-    static const narc_box empty = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    const narc_box empty = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     struct job *const job = argument;
     narc_box *const boxes = job->index->sweeps;
     const narc_float_column angle = job->casts.motions[0].angle;

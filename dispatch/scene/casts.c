@@ -176,7 +176,7 @@ static void load_pair(const narc_cast_job *job, struct slots *slots, size_t slot
 }
 
 static const narc_kernel_table *choose_kernels(const narc_cast_job *job, size_t count) {
-    return count <= FEW ? &narc_kernels_scalar : job->kernels;
+    return count <= FEW ? NARC_KERNELS_FOR_FEW(NARC_BUILT_scalar, job->kernels) : job->kernels;
 }
 
 /* Begins pairs next ... end - 1 in free slots; those whose circles never meet, or that have no answer, are done.

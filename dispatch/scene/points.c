@@ -61,7 +61,7 @@ static narc_status check_inputs(const narc_shapes *shapes, const narc_bodies *bo
 /* The kernels for so many points. */
 static const narc_kernel_table *find_kernels(size_t count, narc_status *out_status, narc_error *error) {
     const narc_kernel_table *const kernels = narc_kernels(out_status, error);
-    return kernels && count <= FEW ? &narc_kernels_scalar : kernels;
+    return kernels && count <= FEW ? NARC_KERNELS_FOR_FEW(NARC_BUILT_scalar, kernels) : kernels;
 }
 
 /* ------------------------------------------------------------------------------------------------ distances */

@@ -168,7 +168,7 @@ INLINE void load_columns(const struct sources *given, const int32_t *a, const in
 INLINE struct body_pair load_bodies(const struct sources *given, enum pose_layout layout, const int32_t *a,
                                     const int32_t *b, const vec2 *shift) {
     struct body_pair pair;
-    if (__builtin_expect(layout == POSE_ROWS && !shift, 1)) { /* or compilers keep the vectors of all three in memory */
+    if (LIKELY(layout == POSE_ROWS && !shift)) { /* or compilers keep the vectors of all three in memory */
         vf of_a[4], of_b[4];
         v_rows(given->a.x.base, given->a.x.stride, a, of_a);
         v_rows(given->b.x.base, given->b.x.stride, b, of_b);

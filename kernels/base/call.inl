@@ -78,7 +78,7 @@ INLINE void mark_pairs(const struct call *call, vi pairs, vm hits) {
     int32_t pair[V_WIDTH];
     vi_store(pair, pairs);
     for (uint32_t lanes = vm_bits(hits); lanes; lanes &= lanes - 1) {
-        const uint32_t number = (uint32_t)pair[__builtin_ctz(lanes)];
+        const uint32_t number = (uint32_t)pair[FIND_LOWEST(lanes)];
         call->bits[number / 64] |= (uint64_t)1 << number % 64;
     }
 }

@@ -140,7 +140,7 @@ INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int
             }
             const struct filter circles =
                 set_up_pairs(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block, item);
-            *call->skipped += (size_t)__builtin_popcount(vm_bits(circles.invalid));
+            *call->skipped += (size_t)COUNT_BITS(vm_bits(circles.invalid));
             const vm open = settle(call, block + (size_t)k, &circles, item);
             if (stage_count > 0 && vm_any(open)) {
                 enter(queues, open, item, fields, edged_stage, polygon_stage, not_first);

@@ -124,8 +124,8 @@ INLINE vm both_have(const vf item[FIELDS], int flag) {
 
 /* Notes how a first stage fared with pairs that have edges: what it took, and what is left of it. */
 INLINE void count_edged(struct queue *queue, vm taken, vm left) {
-    queue->edged += __builtin_popcount(vm_bits(taken));
-    queue->edged_left += __builtin_popcount(vm_bits(left));
+    queue->edged += COUNT_BITS(vm_bits(taken));
+    queue->edged_left += COUNT_BITS(vm_bits(left));
 }
 
 INLINE void set_vec2(vf *item, int field, vec2 a) {
@@ -146,7 +146,7 @@ INLINE void push(struct queue *queue, vm keep, const vf *item, int fields) {
     UNROLL
     for (int f = 0; f < fields; f++)
         v_store(queue->item[f] + end, v_pack(packing, item[f]));
-    queue->count = end + __builtin_popcount(vm_bits(keep));
+    queue->count = end + COUNT_BITS(vm_bits(keep));
 }
 
 /* Fills the rest of a queue's last vector with harmless lanes: one arc, the first of all. */

@@ -88,7 +88,7 @@ INLINE void find_next_places(struct rows *rows, vm keep, char *place[V_WIDTH]) {
         place[lane] = choose(kept >> lane & 1, next, rows->spare);
         next += (ptrdiff_t)(kept >> lane & 1) * rows->out.stride;
     }
-    rows->listed += __builtin_popcount(kept);
+    rows->listed += COUNT_BITS(kept);
 }
 
 INLINE void put_word(char *place, int offset, uint32_t word) { memcpy(place + offset, &word, sizeof word); }
@@ -136,7 +136,7 @@ INLINE void append_answers(const struct call *call, vi pairs, vm keep, const str
     for (int lane = 0; lane < V_WIDTH; lane++)
         place[lane] = rows->out.base + (rows->listed + lane) * rows->out.stride;
     write_answers(call, place, numbers, &packed);
-    rows->listed += __builtin_popcount(vm_bits(keep));
+    rows->listed += COUNT_BITS(vm_bits(keep));
 }
 
 /* With an infinite margin every pair has a row. Writes that of pairs without an answer, in the lanes `which`. */
@@ -146,7 +146,7 @@ INLINE void put_no_answer(const struct call *call, vi pairs, vm which) {
         return;
     vi_store(pair, pairs);
     for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
-        const int32_t k = pair[__builtin_ctz(lanes)];
+        const int32_t k = pair[FIND_LOWEST(lanes)];
         const narc_contact contact = {.pair = (uint32_t)find_number(call, k), .separation = INFINITY};
         const narc_manifold manifold = {.pair = contact.pair, .point = {{.separation = INFINITY}}};
         if (!(find_margin(call, k) >= INFINITY))
@@ -177,7 +177,7 @@ INLINE uint32_t pack_bytes(const uint8_t *bytes) {
     uint64_t word;
     memcpy(&word, bytes, sizeof word);
 #if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-    word = __builtin_bswap64(word);
+    word = SWAP_BYTES_64(word);
 #endif
     return (uint32_t)(word * 0x0102040810204080u >> 56);
 }
@@ -193,7 +193,7 @@ INLINE size_t close_gaps(const struct call *call, size_t size) {
         return count;
     for (size_t k = 0; k < call->count; k += 8)
         for (uint32_t bits = pack_bytes(rows->known + k); bits; bits &= bits - 1, to += stride, count++) {
-            const char *from = rows->out.base + (ptrdiff_t)(k + (unsigned)__builtin_ctz(bits)) * stride;
+            const char *from = rows->out.base + (ptrdiff_t)(k + (unsigned)FIND_LOWEST(bits)) * stride;
             if (from != to)
                 memcpy(to, from, size);
         }

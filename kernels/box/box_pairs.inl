@@ -69,7 +69,7 @@ INLINE void push_boxes(struct box_queue *queue, vm keep, const vf item[BOX_FIELD
     UNROLL
     for (int f = 0; f < BOX_FIELDS; f++)
         v_store(queue->item[f] + queue->count, v_pack(packing, item[f]));
-    queue->count += __builtin_popcount(vm_bits(keep));
+    queue->count += COUNT_BITS(vm_bits(keep));
 }
 
 /* Takes as many whole vectors as there are, from the front so that the order stays; at the `end` all. */

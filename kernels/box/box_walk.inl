@@ -64,7 +64,7 @@ INLINE vm try_interval(const struct box_pair *pair, const struct couple *last, c
 }
 
 /* The largest gap, with the numbers of the corners in place of records. */
-static __attribute__((noinline)) void walk_boxes(const struct box_pair *given, struct gap *out_best) {
+NOINLINE void walk_boxes(const struct box_pair *given, struct gap *out_best) {
     const struct box_pair boxes = {given->queue, given->k, false}, *const pair = &boxes;
     const vec2 q = get_box_vec2(pair, BOX_ROTATION);
     const vm all = vm_front(V_WIDTH);

@@ -98,7 +98,7 @@ INLINE vm take_capsules(const struct call *call, const struct box_form *a, const
 
 /* The largest gap, as walk_boxes() finds it. Of the couples 1 and 3 are left, 1 with that edge of B which lies within
  * half a turn from +x. */
-static __attribute__((noinline)) void walk_capsules(const struct box_pair *given, struct gap *out_best) {
+NOINLINE void walk_capsules(const struct box_pair *given, struct gap *out_best) {
     const struct box_pair capsules = {given->queue, given->k, true}, *const pair = &capsules;
     const vm all = vm_front(V_WIDTH);
     const vi zero = vi_set(0);

@@ -210,7 +210,7 @@ size_t NARC_NAMED(box)(const narc_box_batch *batch, const uint32_t *list, size_t
         const vf sides[4] = {v_select(valid, v_neg(r.left), none), v_select(valid, v_neg(r.down), none),
                              v_select(valid, r.right, v_neg(none)), v_select(valid, r.up, v_neg(none))};
         v_put_rows(to, 0, sides);
-        skipped += (size_t)__builtin_popcount(vm_bits(vm_and_not(vm_front(lanes), valid)));
+        skipped += (size_t)COUNT_BITS(vm_bits(vm_and_not(vm_front(lanes), valid)));
     }
     return skipped;
 }

@@ -47,7 +47,7 @@ INLINE void sweep_box(const narc_box_columns *boxes, uint32_t place, uint32_t fr
         const vf others = v_of_bits(vi_load((const int32_t *)(const void *)(boxes->body + k)));
         v_store((float *)(void *)(to->out->b + to->count), v_pack(vm_packing(hit), others));
         vi_store((int32_t *)(void *)(to->out->a + to->count), body);
-        to->count += (uint32_t)__builtin_popcount(vm_bits(hit));
+        to->count += (uint32_t)COUNT_BITS(vm_bits(hit));
         to->steps++;
         if (vm_bits(near) != all)
             return;
@@ -61,7 +61,7 @@ INLINE uint32_t find_min_x(const float *min_x, uint32_t from, uint32_t end, floa
     vm below = v_lt(v_load(min_x + from), v_set(x));
     if (left < V_WIDTH)
         below = vm_and(below, vm_front((int)left));
-    from += (uint32_t)__builtin_popcount(vm_bits(below));
+    from += (uint32_t)COUNT_BITS(vm_bits(below));
     if (vm_bits(below) != vm_bits(vm_front(V_WIDTH)))
         return from;
     uint32_t high = from, step = 1, halves = 0;

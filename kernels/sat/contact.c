@@ -196,8 +196,7 @@ static void climb_from(const struct call *call, struct queue *queue, int begin, 
 
 /* Polygons: the gap at all junctions. Those pairs for which one exceeds all others take the places of the queue's last
  * ones, from `begin` on. */
-static __attribute__((noinline)) void compare_edges(const struct call *call, struct queue *queue, int begin,
-                                                    struct queue *next) {
+NOINLINE void compare_edges(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     const int end = queue->count;
     queue->count = begin;
     for (int k = begin; k < end; k += V_WIDTH) {
@@ -224,8 +223,7 @@ static __attribute__((noinline)) void compare_edges(const struct call *call, str
 }
 
 /* The contacts of polygons, if they are certain. */
-static __attribute__((noinline)) void answer_edges(const struct call *call, struct queue *queue, int begin,
-                                                   struct queue *next) {
+NOINLINE void answer_edges(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     for (int k = begin; k < queue->count; k += V_WIDTH) {
         const vm live = vm_front(queue->count - k);
         const struct polygon_contact c = find_polygon_contact(call->batch->shapes->records, queue, k);

@@ -105,7 +105,7 @@ static void probe_axis_overlaps(const struct call *call, struct queue *queue, in
         mark_overlaps(call, queue, k, vm_and(live, p.hit));
         const vm left = vm_and_not(live, vm_or(p.apart, p.hit));
         if (!queue->whole)
-            queue->whole = 2 * __builtin_popcount(vm_bits(vm_and(left, smooth))) > V_WIDTH;
+            queue->whole = 2 * COUNT_BITS(vm_bits(vm_and(left, smooth))) > V_WIDTH;
         store_vec2(queue, DIRECTION, k, v2_select(smooth, p.u, n));
         pass_on_overlaps(queue, k, vm_and(left, smooth), next);
         const vm edged = vm_and_not(left, smooth), polygons = select_polygons(queue, k, edged);

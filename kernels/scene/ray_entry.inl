@@ -105,7 +105,7 @@ INLINE bool find_entry(const struct body_frame *frame, place foot, place directi
     const uint64_t entered = (signs.entered | edges) & UINT64_MAX >> (64 - count);
     if (entered == 0)
         return false;
-    out->arc = __builtin_ctzll(entered);
+    out->arc = FIND_LOWEST_64(entered);
     out->on_edge = edges >> out->arc & 1;
     const narc_stored_arc *const arc = &frame->arcs[out->arc].arc;
     if (out->on_edge)

@@ -217,7 +217,7 @@ INLINE bool load_slot_frame(const narc_ray_batch *batch, size_t leaf, unsigned s
 INLINE bool visit_leaf(const narc_ray_batch *batch, struct walk *w, size_t leaf, uint32_t slots, unsigned flips,
                        const float *near) {
     for (; slots; slots &= slots - 1) {
-        const unsigned slot = (unsigned)__builtin_ctz(slots) ^ flips;
+        const unsigned slot = (unsigned)FIND_LOWEST(slots) ^ flips;
         struct body_frame frame;
         if (near[slot] <= w->limit && load_slot_frame(batch, leaf, slot, &frame) &&
             cast_at_slot(batch, w, &frame, leaf, slot))
@@ -231,7 +231,7 @@ INLINE uint32_t mask_slots(const narc_index *index, size_t node, uint32_t slots,
     if (!index->masks)
         return mask ? slots : 0;
     for (uint32_t bits = slots; bits; bits &= bits - 1) {
-        const unsigned slot = (unsigned)__builtin_ctz(bits);
+        const unsigned slot = (unsigned)FIND_LOWEST(bits);
         slots &= ~((uint32_t) !(index->masks[NARC_NODE_SLOTS * node + slot] & mask) << slot);
     }
     return slots;
@@ -245,8 +245,8 @@ INLINE void begin_visits(const narc_index *index, struct visits *visits) {
 /* The last one first: it waits longest. */
 INLINE void add_visits(const struct visit *parent, uint32_t slots, unsigned flips, const float *near,
                        struct visits *visits) {
-    for (; slots; slots &= ~(1u << (31 - __builtin_clz(slots)))) {
-        const unsigned slot = (31u - (unsigned)__builtin_clz(slots)) ^ flips;
+    for (; slots; slots &= ~(1u << FIND_HIGHEST(slots))) {
+        const unsigned slot = ((unsigned)FIND_HIGHEST(slots)) ^ flips;
         visits->left[visits->count++] =
             (struct visit){near[slot], NARC_NODE_SLOTS * parent->node + slot, parent->level - 1};
     }
@@ -344,9 +344,9 @@ INLINE uint32_t find_rays(const struct bundle *b, const narc_index_node *node, u
 }
 
 INLINE unsigned find_nearest_slot(uint32_t slots, const float *near) {
-    unsigned nearest = (unsigned)__builtin_ctz(slots);
+    unsigned nearest = (unsigned)FIND_LOWEST(slots);
     while (slots &= slots - 1)
-        nearest = near[__builtin_ctz(slots)] < near[nearest] ? (unsigned)__builtin_ctz(slots) : nearest;
+        nearest = near[FIND_LOWEST(slots)] < near[nearest] ? (unsigned)FIND_LOWEST(slots) : nearest;
     return nearest;
 }
 
@@ -361,10 +361,10 @@ INLINE void visit_leaf_together(const narc_ray_batch *batch, struct bundle *b, s
         if (!rays || !load_slot_frame(batch, leaf, slot, &frame))
             continue;
         for (; rays; rays &= rays - 1) {
-            struct walk *const w = &b->walks[__builtin_ctz(rays)];
+            struct walk *const w = &b->walks[FIND_LOWEST(rays)];
             if ((index->masks ? index->masks[NARC_NODE_SLOTS * leaf + slot] : UINT64_MAX) & w->mask)
                 cast_at_slot(batch, w, &frame, leaf, slot);
-            b->limits[__builtin_ctz(rays)] = w->limit;
+            b->limits[FIND_LOWEST(rays)] = w->limit;
         }
     }
     b->limit = -INFINITY;

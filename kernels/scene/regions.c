@@ -36,14 +36,14 @@ INLINE vm meet_slots(const struct region *region, const narc_index_node *node, i
 /* Appends those lanes of `items` that hold; writes a whole vector. */
 INLINE uint32_t *append(uint32_t *to, vm hit, vi items) {
     v_store((float *)(void *)to, v_pack(vm_packing(hit), v_of_bits(items)));
-    return to + __builtin_popcount(vm_bits(hit));
+    return to + COUNT_BITS(vm_bits(hit));
 }
 
 /* Of some slots those that have one of the bits of a mask. */
 INLINE vm match_masks(vm hit, const uint64_t *masks, uint64_t mask) {
     int32_t fine[V_WIDTH] = {0};
     for (uint32_t bits = vm_bits(hit); bits > 0; bits &= bits - 1) {
-        const int lane = __builtin_ctz(bits);
+        const int lane = FIND_LOWEST(bits);
         fine[lane] = (masks[lane] & mask) != 0;
     }
     return vm_and(hit, vi_lt(vi_set(0), vi_load(fine)));

@@ -31,8 +31,8 @@ INLINE void d_put_floats(float *p, vd a) { *p = (float)a; }
 #include <wasm_simd128.h>
 #endif
 enum { D_WIDTH = V_WIDTH / 2 };
-typedef double vd __attribute__((vector_size(8 * V_WIDTH / 2)));
-typedef int64_t vl __attribute__((vector_size(8 * V_WIDTH / 2)));
+typedef double vd VECTOR_OF(8 * V_WIDTH / 2);
+typedef int64_t vl VECTOR_OF(8 * V_WIDTH / 2);
 
 INLINE vd d_set(double a) { return a - (vd){0}; }
 INLINE vl d_lt(vd a, vd b) { return (vl)(a < b); }

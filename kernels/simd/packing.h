@@ -8,6 +8,8 @@
 
 #include <stdint.h>
 
+#include "compiler.h"
+
 /* Of four lanes: the bytes of those that are kept; then lane 0 again. */
 static const uint8_t v_four_lanes[16][16] = {
     {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3},       {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3},
@@ -20,8 +22,7 @@ static const uint8_t v_four_lanes[16][16] = {
     {4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3}, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15}};
 
 /* Of eight lanes: the numbers of those that are kept, a byte each, from the lowest on; then lane 0 again. */
-#define V_LANE(set, lane)                                                                                              \
-    ((uint64_t)(((set) >> (lane)) & 1) * (lane) << 8 * __builtin_popcount((set) & ((1 << (lane)) - 1)))
+#define V_LANE(set, lane) ((uint64_t)(((set) >> (lane)) & 1) * (lane) << 8 * COUNT_BITS((set) & ((1 << (lane)) - 1)))
 #define V_LANES(set)                                                                                                   \
     (V_LANE(set, 1) | V_LANE(set, 2) | V_LANE(set, 3) | V_LANE(set, 4) | V_LANE(set, 5) | V_LANE(set, 6) |             \
      V_LANE(set, 7))

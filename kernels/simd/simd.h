@@ -47,19 +47,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* For steps of the inner loops that are written once and used more than once, and for what stores vectors to small
- * arrays of its own: the address sanitizer's frames are less aligned than GCC 12 takes those arrays to be. */
-#define INLINE static inline __attribute__((always_inline))
-
-/* Before a loop over the fields of something, all of which is wanted in registers; and before one that does little else
- * but count. */
-#ifdef __clang__
-#define UNROLL     _Pragma("unroll")
-#define UNROLL_FEW _Pragma("unroll 4")
-#else
-#define UNROLL     _Pragma("GCC unroll 32")
-#define UNROLL_FEW _Pragma("GCC unroll 4")
-#endif
+#include "compiler.h"
 
 #ifndef NARC_SIMD
 #error "define NARC_SIMD, the file of a vector wrapper: \"simd/scalar.h\""

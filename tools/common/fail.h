@@ -8,11 +8,7 @@
 
 #include <stddef.h>
 
-#if defined(__GNUC__)
-#define PRINTF_LIKE(format_at, first) __attribute__((format(printf, format_at, first)))
-#else
-#define PRINTF_LIKE(format_at, first)
-#endif
+#include "compiler.h"
 
 enum { PARTIAL_STATUS = 1, FAILURE_STATUS = 2 };
 
