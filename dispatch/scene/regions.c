@@ -44,8 +44,7 @@ static void get_room(narc_found_bodies *out) {
     if (out->body != own->spare) {
         const size_t at = atomic_fetch_add_explicit(&s->taken, wanted, memory_order_relaxed);
         if (at <= s->index->found_capacity && wanted <= s->index->found_capacity - at) {
-            if (out->count > 0)
-                memcpy(s->index->found + at, out->body, out->count * sizeof *out->body);
+            memcpy(s->index->found + at, out->body, out->count * sizeof *out->body);
             out->body = s->index->found + at;
             out->room = wanted;
             return;
