@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * regions.c - regions beside Box2D, Chipmunk and GEOS, in batches and one by one, by one worker and two (of these the least time on the wall). Settled piles
- * and sparse scenes of polygons; regions that find 48 bodies and 3. The libraries take turns within one process.
+ * regions.c - regions beside Box2D, Chipmunk and GEOS, in batches and one by one, by one worker and two (the ratio of
+ * the least times on the clock). Settled piles and sparse scenes of polygons; regions that find 48 bodies and 3. The
+ * libraries take turns within one process.
  *
  *     bench_regions [--bodies=1000, 30000 and 1000000] [--regions=10000] [--rounds=7]
  */
