@@ -16,6 +16,7 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
              WebAssembly in node, Windows under wine
   bench      the benchmarks beside Box2D, Chipmunk and libccd; tables and plots go to out/. Options are Google
              Benchmark's and those of bench/README.md
+  bench-scene  what a scene is asked, beside Box2D, Chipmunk and GEOS; tables go to out/
   paper      the paper's evaluation; tables and plots go to out/. Options are those of bench/paper/README.md
   fit-study  the paper's study of goodness of fit; tables and pictures go to out/
   lammps     LAMMPS with grains that are arc shapes, over MPI: its tests, a biaxial compression on 1 and 2 ranks, and
@@ -46,7 +47,7 @@ library_packages="gcc libc6-dev make cmake pkg-config libsleef-dev"
 fit_packages="g++ libfreetype-dev librsvg2-dev libpng-dev libcjson-dev coinor-libclp-dev libnlopt-dev"
 build_packages="$library_packages $fit_packages libcairo2-dev libglib2.0-dev libcmocka-dev"
 run_packages="$build_packages fonts-symbola"
-peer_packages="g++ libbenchmark-dev libbox2d-dev libchipmunk-dev libccd-dev"
+peer_packages="g++ libbenchmark-dev libbox2d-dev libchipmunk-dev libccd-dev libgeos-dev"
 test_packages="$run_packages g++ binutils python3 dpkg-dev file meson"
 gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang-tidy"
 bench_packages="$library_packages $peer_packages gnuplot-nox"
@@ -211,6 +212,25 @@ bench() {
     gnuplot -e "folder='out'" bench/micro/plots.gp
     say "written"
     ls -l out/bench* out/*.dat
+}
+
+bench_scene() {
+    require_packages $bench_packages
+    build bench bench_scenes
+    mkdir -p out
+    rm -f out/scene-*.md
+    for bodies in 1000 30000 1000000; do
+        say "rays, $bodies bodies"
+        build/bench/bench/scene/bench_rays --bodies=$bodies --rays=10800 >out/scene-rays-$bodies.md
+        cat out/scene-rays-$bodies.md
+    done
+    for name in casts points regions index; do
+        say "$name"
+        build/bench/bench/scene/bench_$name >out/scene-$name.md
+        cat out/scene-$name.md
+    done
+    say "written"
+    ls -l out/scene-*.md
 }
 
 paper() {
@@ -424,6 +444,7 @@ bench)
     shift
     bench "$@"
     ;;
+bench-scene) bench_scene ;;
 paper)
     shift
     paper "$@"

@@ -22,6 +22,12 @@ narc_status narc_check_reserved(void *const *reserved, size_t count, const char 
 #define CHECK_RESERVED(member, name, error)                                                                            \
     narc_check_reserved((member).reserved, sizeof(member).reserved / sizeof(void *), name, error)
 
+narc_status narc_check_count(size_t count, size_t most, const char *items, narc_error *error) {
+    if (count > most)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)count, "%zu %s, at most %zu", count, items, most);
+    return NARC_OK;
+}
+
 narc_status narc_check_range(size_t first, size_t *count, size_t total, const char *items, narc_error *error) {
     if (first > total || *count > total - first)
         return narc_fail(error, NARC_ERROR_ARGUMENT, first, (double)*count,
@@ -289,16 +295,25 @@ size_t narc_find_bad_index(narc_index_column column, size_t first, size_t count,
 
 /* ------------------------------------------------------------------------------------------------ the whole */
 
-narc_status narc_check_bodies(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t *count,
-                              const narc_workers *workers, narc_error *error) {
-    if (bodies->count > UINT32_MAX)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->count, "%zu bodies, at most %lu", bodies->count,
-                         (unsigned long)UINT32_MAX);
-    narc_status status = narc_check_range(first, count, bodies->count, "bodies", error);
+narc_status narc_check_set(const narc_bodies *bodies, narc_error *error) {
+    narc_status status = narc_check_count(bodies->count, UINT32_MAX, "bodies", error);
     if (status == NARC_OK)
         status = CHECK_RESERVED(*bodies, "bodies", error);
-    if (status == NARC_OK && *count > 0)
-        status = narc_check_columns(bodies, error);
+    return status == NARC_OK && bodies->count > 0 ? narc_check_columns(bodies, error) : status;
+}
+
+narc_status narc_check_indexed(const narc_index *index, const narc_bodies *bodies, narc_error *error) {
+    if (bodies->count != index->count)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->count,
+                         "%zu bodies, but the index was built from %zu boxes", bodies->count, index->count);
+    return narc_check_set(bodies, error);
+}
+
+narc_status narc_check_bodies(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t *count,
+                              const narc_workers *workers, narc_error *error) {
+    narc_status status = narc_check_set(bodies, error);
+    if (status == NARC_OK)
+        status = narc_check_range(first, count, bodies->count, "bodies", error);
     if (status != NARC_OK)
         return status;
     const size_t bad = narc_find_bad_index(bodies->shape, first, *count, shapes->count, workers);
@@ -337,11 +352,10 @@ narc_status narc_begin_batch(const narc_shapes *shapes, const narc_bodies *bodie
     static const narc_query defaults = {0};
     if (!shapes || !bodies || !pairs)
         return narc_fail_missing(error, !shapes ? "shapes" : !bodies ? "bodies" : "pairs");
-    if (pairs->count > UINT32_MAX)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)pairs->count, "%zu pairs in one batch, at most %lu",
-                         pairs->count, (unsigned long)UINT32_MAX);
     const narc_query *const q = query ? query : &defaults;
-    narc_status status = check_query(q, error);
+    narc_status status = narc_check_count(pairs->count, UINT32_MAX, "pairs in one batch", error);
+    if (status == NARC_OK)
+        status = check_query(q, error);
     if (status == NARC_OK)
         status = CHECK_RESERVED(*pairs, "pairs", error);
     if (status != NARC_OK)

@@ -21,6 +21,9 @@ narc_status narc_fail_missing(narc_error *error, const char *name);
 /* Are all of a struct's reserved members NULL? */
 narc_status narc_check_reserved(void *const *reserved, size_t count, const char *name, narc_error *error);
 
+/* Are there no more than `most`? `items` are named in the message. */
+narc_status narc_check_count(size_t count, size_t most, const char *items, narc_error *error);
+
 /* A range of `*count` items from `first` on; 0 of them: to the end of `total`. */
 narc_status narc_check_range(size_t first, size_t *count, size_t total, const char *items, narc_error *error);
 
@@ -50,6 +53,12 @@ size_t narc_find_bad_pair(const narc_batch *batch);
 size_t narc_find_bad_index(narc_index_column column, size_t first, size_t count, size_t limit,
                            const narc_workers *workers);
 
+/* Checks a set of bodies by itself: their number and columns. */
+narc_status narc_check_set(const narc_bodies *bodies, narc_error *error);
+
+/* The same for the bodies of an index, which are as many as its boxes. */
+narc_status narc_check_indexed(const narc_index *index, const narc_bodies *bodies, narc_error *error);
+
 /* Checks bodies first .. first + *count - 1 as far as kernels rely on it: columns and shapes. *count 0: to the end. */
 narc_status narc_check_bodies(const narc_shapes *shapes, const narc_bodies *bodies, size_t first, size_t *count,
                               const narc_workers *workers, narc_error *error);
@@ -66,5 +75,17 @@ void narc_run_parts(const narc_workers *workers, size_t parts, narc_part *part, 
  * last may have fewer. Returns how many parts there are. */
 typedef void narc_range(void *argument, size_t part, size_t first, size_t end);
 size_t narc_run_ranges(const narc_workers *workers, size_t count, size_t size, narc_range *range, void *argument);
+
+/* Numbers of items become the places where they begin: those of place k behind those of all places before it, and of the
+ * same place in all parts before it, whose numbers are `stride` further on each. */
+static inline void narc_begin_places(uint32_t *place, size_t places, size_t stride, size_t parts) {
+    uint32_t first = 0;
+    for (size_t k = 0; k < places; k++)
+        for (size_t part = 0; part < parts; part++) {
+            const uint32_t here = place[part * stride + k];
+            place[part * stride + k] = first;
+            first += here;
+        }
+}
 
 #endif

@@ -39,6 +39,9 @@ static inline double narc_position_at(narc_position_column column, size_t index)
     return column.precision == NARC_FLOAT64 ? narc_double_at(column, index) : (double)narc_single_at(column, index);
 }
 
+/* Are both columns of the positions of `name` there, and of one known type? */
+narc_status narc_check_positions(const char *name, narc_position_column x, narc_position_column y, narc_error *error);
+
 /* Has a body all columns that it must have, and are positions of a known type? */
 narc_status narc_check_columns(const narc_bodies *bodies, narc_error *error);
 

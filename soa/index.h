@@ -15,6 +15,7 @@
 #ifndef NARC_INDEX_H
 #define NARC_INDEX_H
 
+#include <float.h>
 #include <stdbool.h>
 
 #include "narc_scene.h"
@@ -28,6 +29,12 @@ typedef struct narc_index_node {
 } narc_index_node;
 
 enum { NARC_NODE_PADDING = 16 };
+
+/* A box that is not empty. False for NaN too. */
+static inline bool narc_is_full_box(const narc_box *box) {
+    return box->min_x >= -FLT_MAX && box->min_y >= -FLT_MAX && box->max_x <= FLT_MAX && box->max_y <= FLT_MAX &&
+           box->min_x <= box->max_x && box->min_y <= box->max_y;
+}
 
 /* In a node's `order`: of the halving by bit b of the slots. */
 #define NARC_ORDER_ALONG_Y(b)  (1u << (2 * (b)))     /* the halves lie one above the other; else side by side */

@@ -76,7 +76,7 @@ typedef struct narc_index_options {
  * found by no question.
  *   count     at most 2^31
  *   options   NULL: defaults
- * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_MEMORY; the index is as it was then.
+ * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_MEMORY, and those for NARC_ISA; the index is as it was then.
  * Fast: of boxes whose centres lie closer together than 1/65,536 of all of them are apart, no order is made.
  * Source: k-d splits at medians (Bentley 1975); sorting by Morton's curve (Morton 1966) if fast. */
 NARC_API narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t count,
@@ -86,8 +86,8 @@ NARC_API narc_status narc_build_index(narc_index *index, const narc_box *boxes, 
  *   options     as when building; `fast` has no meaning
  *   out_slack   NULL: nobody asks. The mean perimeter of its nodes, as a multiple of what it was when it was built:
  *               questions take longer as it grows; above 1.5 it should be built anew
- * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_MEMORY (a category column, and it was built without one); the index is as it
- * was then. */
+ * Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_MEMORY (a category column, and it was built without one), and those for
+ * NARC_ISA; the index is as it was then. */
 NARC_API narc_status narc_refit_index(narc_index *index, const narc_box *boxes, size_t count,
                                       const narc_index_options *options, float *out_slack, narc_error *error);
 
@@ -109,7 +109,7 @@ typedef struct narc_index_query {
  *               function or its end. With other_bodies set to the index's bodies it is what narc_find_contacts() takes:
  *               what moves against what stands still, or a sensor against all.
  * One call at a time for each index. Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_COUNT (2^32 pairs or more),
- * NARC_ERROR_MEMORY; `*out_pairs` is untouched then. */
+ * NARC_ERROR_MEMORY, and those for NARC_ISA; `*out_pairs` is untouched then. */
 NARC_API narc_status narc_query_index(narc_index *index, const narc_box *boxes, size_t count,
                                       const narc_index_query *query, narc_pairs *out_pairs, narc_error *error);
 

@@ -4,31 +4,14 @@
 //
 // A step of no time does nothing else: b2World::Step() finds new contacts and updates the manifolds of all, what
 // b2World::GetProfile() calls `collide`, and solves nothing. The bodies stay where they are, and awake.
+#include "box2d_bodies.h"
 #include "peers.h"
-
-#include <box2d/box2d.h>
-
-#include <cmath>
 
 namespace {
 
 void *create(const workload *workload) {
-    auto *world = new b2World(b2Vec2(0, 0));
+    b2World *world = create_box2d_bodies(workload, b2_dynamicBody);
     world->SetAllowSleeping(false);
-    for (size_t k = 0; k < workload->body_count; k++) {
-        const body &place = workload->bodies[k];
-        const outline &outline = workload->outlines[place.shape];
-        b2Vec2 points[b2_maxPolygonVertices];
-        for (size_t i = 0; i < outline.count; i++)
-            points[i].Set(static_cast<float>(outline.arcs[i].x), static_cast<float>(outline.arcs[i].y));
-        b2PolygonShape shape;
-        shape.Set(points, static_cast<int32>(outline.count));
-        b2BodyDef definition;
-        definition.type = b2_dynamicBody;
-        definition.position.Set(place.x, place.y);
-        definition.angle = std::atan2(place.sine, place.cosine);
-        world->CreateBody(&definition)->CreateFixture(&shape, 1);
-    }
     return world;
 }
 

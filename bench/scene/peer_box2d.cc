@@ -3,29 +3,11 @@
 // peer_box2d.cc - rays in Box2D: b2World::RayCast(), which looks for the nearest hit as its callback says.
 #include "peers.h"
 
-#include <box2d/box2d.h>
-
-#include <cmath>
+#include "box2d_bodies.h"
 
 namespace {
 
-void *create(const workload *workload) {
-    auto *world = new b2World(b2Vec2(0, 0));
-    for (size_t k = 0; k < workload->body_count; k++) {
-        const body &place = workload->bodies[k];
-        const outline &outline = workload->outlines[place.shape];
-        b2Vec2 points[b2_maxPolygonVertices];
-        for (size_t i = 0; i < outline.count; i++)
-            points[i].Set(static_cast<float>(outline.arcs[i].x), static_cast<float>(outline.arcs[i].y));
-        b2PolygonShape shape;
-        shape.Set(points, static_cast<int32>(outline.count));
-        b2BodyDef definition;
-        definition.position.Set(place.x, place.y);
-        definition.angle = std::atan2(place.sine, place.cosine);
-        world->CreateBody(&definition)->CreateFixture(&shape, 0);
-    }
-    return world;
-}
+void *create(const workload *workload) { return create_box2d_bodies(workload, b2_staticBody); }
 
 class Nearest : public b2RayCastCallback {
   public:

@@ -59,7 +59,7 @@ static void add_pair(cpShape *shape, void *data) {
     pairs->out[pairs->count++] = pairs->query << 32 | (uintptr_t)cpShapeGetUserData(shape);
 }
 
-size_t chipmunk_find_regions(void *scene, const narc_box *regions, size_t count, uint64_t *out_pairs) {
+static size_t find_regions(void *scene, const narc_box *regions, size_t count, uint64_t *out_pairs) {
     struct pairs pairs = {.out = out_pairs};
     for (size_t k = 0; k < count; k++) {
         const narc_box *const r = &regions[k];
@@ -69,3 +69,10 @@ size_t chipmunk_find_regions(void *scene, const narc_box *regions, size_t count,
     }
     return pairs.count;
 }
+
+static void *create_for_regions(const struct workload *workload, const narc_box *boxes) {
+    (void)boxes;
+    return create(workload);
+}
+
+const struct region_peer chipmunk_regions = {"Chipmunk", create_for_regions, find_regions};

@@ -28,11 +28,20 @@ struct scene_peer {
 
 extern const struct scene_peer box2d_scene, chipmunk_scene;
 
-/* Pairs query << 32 | body of regions and the bodies whose boxes they meet, in any order within a query; returns how
- * many. Chipmunk's of a scene, Box2D's of a tree of boxes. */
-void *box2d_create_tree(const narc_box *boxes, size_t count);
-size_t box2d_find_regions(void *tree, const narc_box *regions, size_t count, uint64_t *out_pairs);
-size_t chipmunk_find_regions(void *scene, const narc_box *regions, size_t count, uint64_t *out_pairs);
+/* GEOS' tree has the polygons: the distances of the nearest ones, 0 within them. */
+void *geos_create_polygons(const struct workload *workload);
+void geos_find_nearest(void *polygons, const float *x, const float *y, size_t count, float *out_distances);
+
+/* A library that finds the bodies in regions: of a scene or, where it has one, in a tree of boxes. */
+struct region_peer {
+    const char *name;
+    void *(*create)(const struct workload *workload, const narc_box *boxes);
+    /* Pairs query << 32 | body of regions and the bodies whose boxes they meet, in any order within a query; returns how
+     * many. */
+    size_t (*find)(void *tree, const narc_box *regions, size_t count, uint64_t *out_pairs);
+};
+
+extern const struct region_peer box2d_regions, chipmunk_regions, geos_regions;
 
 /* A convex polygon of at most eight corners, and how far a body moves and turns. */
 struct peer_polygon {

@@ -18,13 +18,11 @@ struct Pairs {
     }
 };
 
-} // namespace
-
 // The tree makes boxes fatter by b2_aabbExtension, which is taken off before.
-void *box2d_create_tree(const narc_box *boxes, size_t count) {
+void *create(const workload *workload, const narc_box *boxes) {
     auto *tree = new b2DynamicTree;
     const b2Vec2 fat(b2_aabbExtension, b2_aabbExtension);
-    for (uintptr_t k = 0; k < count; k++) {
+    for (uintptr_t k = 0; k < workload->body_count; k++) {
         b2AABB box;
         box.lowerBound = b2Vec2(boxes[k].min_x, boxes[k].min_y) + fat;
         box.upperBound = b2Vec2(boxes[k].max_x, boxes[k].max_y) - fat;
@@ -33,7 +31,7 @@ void *box2d_create_tree(const narc_box *boxes, size_t count) {
     return tree;
 }
 
-size_t box2d_find_regions(void *tree, const narc_box *regions, size_t count, uint64_t *out_pairs) {
+size_t find(void *tree, const narc_box *regions, size_t count, uint64_t *out_pairs) {
     Pairs pairs = {static_cast<const b2DynamicTree *>(tree), 0, out_pairs, 0};
     for (size_t k = 0; k < count; k++) {
         b2AABB box;
@@ -44,3 +42,7 @@ size_t box2d_find_regions(void *tree, const narc_box *regions, size_t count, uin
     }
     return pairs.count;
 }
+
+} // namespace
+
+const region_peer box2d_regions = {"Box2D", create, find};

@@ -72,13 +72,7 @@ void narc_sort_by_strip(narc_broad_phase *broad, size_t count, uint64_t limit, s
     const size_t size = narc_part_size(count, parts);
     for (strip_pass p = {.broad = broad}; p.by.shift < 64 && limit >> p.by.shift > 0; p.by.shift += DIGIT_BITS) {
         const size_t used = narc_run_ranges(workers, count, size, count_part, &p);
-        uint32_t first = 0;
-        for (size_t digit = 0; digit < DIGITS; digit++)
-            for (size_t part = 0; part < used; part++) {
-                const uint32_t here = broad->parts[part].place[digit];
-                broad->parts[part].place[digit] = first;
-                first += here;
-            }
+        narc_begin_places(broad->parts->place, DIGITS, sizeof *broad->parts / sizeof(uint32_t), used);
         narc_run_ranges(workers, count, size, move_part, &p);
         exchange(&broad->entries, &broad->spare);
     }
@@ -119,12 +113,7 @@ static size_t find_digit(const narc_box_entry *entry, const division *by) {
 static inline void divide(const narc_box_entry *from, size_t count, find_place *find, const division *by,
                           uint32_t *place, size_t places, narc_box_entry *to) {
     count_places(from, count, find, by, place, places);
-    uint32_t first = 0;
-    for (size_t k = 0; k < places; k++) {
-        const uint32_t here = place[k];
-        place[k] = first;
-        first += here;
-    }
+    narc_begin_places(place, places, 0, 1);
     move_to_places(from, count, find, by, place, to);
 }
 

@@ -329,11 +329,10 @@ static narc_status begin(const update *u, const narc_pair_list **out_list) {
         status = narc_check_reserved(u->options->reserved, 4, "options", u->error);
     if (status == NARC_OK && u->options->filter)
         status = narc_check_reserved(u->options->filter->reserved, 2, "filter", u->error);
+    if (status == NARC_OK)
+        status = narc_check_count(u->count, UINT32_MAX - 1, "bodies", u->error);
     if (status != NARC_OK)
         return status;
-    if (u->count > UINT32_MAX - 1)
-        return narc_fail(u->error, NARC_ERROR_ARGUMENT, 0, (double)u->count, "%zu bodies, at most %lu", u->count,
-                         (unsigned long)(UINT32_MAX - 1));
     const size_t last_count = u->broad->lists[u->broad->last].body_count;
     return narc_reserve_bodies(u->broad, u->count > last_count ? u->count : last_count) == NARC_OK
                ? NARC_OK

@@ -85,10 +85,8 @@ static narc_status check_arguments(const narc_index *index, const narc_box *boxe
                                    const narc_index_options *options, narc_error *error) {
     if (!index || (!boxes && count > 0))
         return narc_fail_missing(error, !index ? "index" : "boxes");
-    if (count > (size_t)INT32_MAX + 1)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)count, "%zu boxes in one index, at most %lu", count,
-                         (unsigned long)INT32_MAX + 1);
-    return narc_check_reserved(options->reserved, 4, "options", error);
+    const narc_status status = narc_check_count(count, (size_t)INT32_MAX + 1, "boxes in one index", error);
+    return status == NARC_OK ? narc_check_reserved(options->reserved, 4, "options", error) : status;
 }
 
 narc_status narc_build_index(narc_index *index, const narc_box *boxes, size_t count, const narc_index_options *options,

@@ -18,11 +18,6 @@
 #include <math.h>
 #include <string.h>
 
-bool narc_is_full_box(const narc_box *box) {
-    return box->min_x >= -FLT_MAX && box->min_y >= -FLT_MAX && box->max_x <= FLT_MAX && box->max_y <= FLT_MAX &&
-           box->min_x <= box->max_x && box->min_y <= box->max_y;
-}
-
 /* A quarter of the place of a box's centre twice: differences are finite. */
 static float halve_centre(float min, float max) { return min * 0.25f + max * 0.25f; }
 
@@ -85,13 +80,7 @@ static void sort_entries(sorting *s, narc_range *list_entries, uint32_t *out_bod
     const size_t parts = narc_run_ranges(s->workers, s->count, s->part_size, list_entries, s);
     for (s->shift = 0; s->shift < 32; s->shift += DIGIT_BITS) {
         narc_run_ranges(s->workers, s->count, s->part_size, count_digits, s);
-        uint32_t first = 0;
-        for (size_t digit = 0; digit < DIGITS; digit++)
-            for (size_t part = 0; part < parts; part++) {
-                const uint32_t here = s->part[part].place[digit];
-                s->part[part].place[digit] = first;
-                first += here;
-            }
+        narc_begin_places(s->part[0].place, DIGITS, sizeof *s->part / sizeof(uint32_t), parts);
         narc_run_ranges(s->workers, s->count, s->part_size, move_entries, s);
         entry *const sorted = s->to;
         s->to = s->from;

@@ -12,7 +12,4 @@
 void narc_halve_bodies(narc_index *index, const narc_box *boxes, const narc_workers *workers);
 void narc_sort_bodies_by_curve(narc_index *index, const narc_box *boxes, const narc_workers *workers);
 
-/* A box that is not empty. False for NaN too. */
-bool narc_is_full_box(const narc_box *box);
-
 #endif

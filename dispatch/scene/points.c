@@ -28,34 +28,16 @@ static void answer_part(void *argument, size_t part, size_t first, size_t end) {
     job->kernel(&job->batch, first, end);
 }
 
-static narc_status check_points(const narc_points *points, narc_error *error) {
-    if (points->count > UINT32_MAX)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)points->count, "%zu points, at most %lu", points->count,
-                         (unsigned long)UINT32_MAX);
-    const narc_status status = narc_check_reserved(points->reserved, 2, "points", error);
-    if (status != NARC_OK || points->count == 0)
-        return status;
-    if (!points->x.base || !points->y.base)
-        return narc_fail_missing(error, points->x.base ? "points.y" : "points.x");
-    const narc_precision x = points->x.precision, y = points->y.precision;
-    if ((x != NARC_FLOAT32 && x != NARC_FLOAT64) || x != y)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)x,
-                         "points.x.precision is %d and points.y.precision is %d", (int)x, (int)y);
-    return NARC_OK;
-}
-
 /* What both calls begin with. Shapes are looked at where bodies are named. */
-static narc_status check_inputs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
+static narc_status check_points(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
                                 narc_error *error) {
     if (!shapes || !bodies || !points)
         return narc_fail_missing(error, !shapes ? "shapes" : !bodies ? "bodies" : "points");
-    narc_status status = check_points(points, error);
-    if (status == NARC_OK && bodies->count > UINT32_MAX)
-        status = narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->count, "%zu bodies, at most %lu",
-                           bodies->count, (unsigned long)UINT32_MAX);
+    narc_status status = narc_check_count(points->count, UINT32_MAX, "points", error);
     if (status == NARC_OK)
-        status = narc_check_reserved(bodies->reserved, 2, "bodies", error);
-    return status == NARC_OK && bodies->count > 0 ? narc_check_columns(bodies, error) : status;
+        status = narc_check_reserved(points->reserved, 2, "points", error);
+    return status == NARC_OK && points->count > 0 ? narc_check_positions("points", points->x, points->y, error)
+                                                  : status;
 }
 
 /* The kernels for so many points. */
@@ -99,7 +81,9 @@ static narc_status describe_bad_point(const narc_point_batch *batch, size_t poin
 narc_status narc_find_distances(const narc_shapes *shapes, const narc_bodies *bodies, const narc_points *points,
                                 narc_index_column body, const narc_workers *workers, narc_distance *out_rows,
                                 narc_error *error) {
-    narc_status status = check_inputs(shapes, bodies, points, error);
+    narc_status status = check_points(shapes, bodies, points, error);
+    if (status == NARC_OK)
+        status = narc_check_set(bodies, error);
     if (status != NARC_OK || points->count == 0)
         return status;
     if (!out_rows)
@@ -135,14 +119,13 @@ narc_status narc_find_nearest(const narc_index *index, const narc_shapes *shapes
     const narc_nearest_options *const o = options ? options : &defaults;
     if (!index)
         return narc_fail_missing(error, "index");
-    narc_status status = check_inputs(shapes, bodies, points, error);
+    narc_status status = check_points(shapes, bodies, points, error);
     if (status == NARC_OK)
         status = check_options(o, error);
+    if (status == NARC_OK)
+        status = narc_check_indexed(index, bodies, error);
     if (status != NARC_OK)
         return status;
-    if (bodies->count != index->count)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->count,
-                         "%zu bodies, but the index was built from %zu boxes", bodies->count, index->count);
     const size_t most = o->most > 0 ? o->most : 1;
     const float distance = o->distance == 0 ? INFINITY : o->distance;
     if (points->count == 0)

@@ -27,18 +27,12 @@ static void cast_part(void *argument, size_t part, size_t first, size_t end) {
 }
 
 static narc_status check_rays(const narc_rays *rays, narc_error *error) {
-    const void *const bases[] = {rays->x.base, rays->y.base, rays->motion_x.base, rays->motion_y.base};
-    static const char *const names[] = {"rays.x", "rays.y", "rays.motion_x", "rays.motion_y"};
-    if (rays->count > UINT32_MAX)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)rays->count, "%zu rays, at most %lu", rays->count,
-                         (unsigned long)UINT32_MAX);
-    for (size_t k = 0; k < 4 && rays->count > 0; k++)
-        if (!bases[k])
-            return narc_fail_missing(error, names[k]);
-    if (rays->count > 0 && (rays->x.precision != rays->y.precision || (unsigned)rays->x.precision > NARC_FLOAT64))
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)rays->x.precision,
-                         "rays.x and rays.y are neither both float nor both double");
-    return narc_check_reserved(rays->reserved, 2, "rays", error);
+    narc_status status = narc_check_count(rays->count, UINT32_MAX, "rays", error);
+    if (status == NARC_OK && rays->count > 0)
+        status = narc_check_positions("rays", rays->x, rays->y, error);
+    if (status == NARC_OK && rays->count > 0 && (!rays->motion_x.base || !rays->motion_y.base))
+        return narc_fail_missing(error, rays->motion_x.base ? "rays.motion_y" : "rays.motion_x");
+    return status == NARC_OK ? narc_check_reserved(rays->reserved, 2, "rays", error) : status;
 }
 
 static narc_status check_options(const narc_ray_options *options, narc_error *error) {
@@ -47,15 +41,6 @@ static narc_status check_options(const narc_ray_options *options, narc_error *er
                          (int)options->inside);
     const narc_status status = narc_check_reserved(options->search.reserved, 4, "options.search", error);
     return status == NARC_OK ? narc_check_reserved(options->reserved, 4, "options", error) : status;
-}
-
-/* The bodies of an index. */
-static narc_status check_index(const narc_index *index, const narc_bodies *bodies, narc_error *error) {
-    if (bodies->count != index->count)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->count,
-                         "%zu bodies, but the index was built from %zu boxes", bodies->count, index->count);
-    const narc_status status = narc_check_reserved(bodies->reserved, 2, "bodies", error);
-    return status == NARC_OK && bodies->count > 0 ? narc_check_columns(bodies, error) : status;
 }
 
 narc_status narc_cast_rays(const narc_index *index, const narc_shapes *shapes, const narc_bodies *bodies,
@@ -70,7 +55,7 @@ narc_status narc_cast_rays(const narc_index *index, const narc_shapes *shapes, c
     if (status == NARC_OK)
         status = check_options(o, error);
     if (status == NARC_OK)
-        status = check_index(index, bodies, error);
+        status = narc_check_indexed(index, bodies, error);
     if (status != NARC_OK)
         return status;
     if (rays->count > capacity / most)

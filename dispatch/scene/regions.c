@@ -44,8 +44,7 @@ static void get_room(narc_found_bodies *out) {
     if (out->body != own->spare) {
         const size_t at = atomic_fetch_add_explicit(&s->taken, wanted, memory_order_relaxed);
         if (at <= s->index->found_capacity && wanted <= s->index->found_capacity - at) {
-            if (out->count > 0)
-                memcpy(s->index->found + at, out->body, out->count * sizeof *out->body);
+            memcpy(s->index->found + at, out->body, out->count * sizeof *out->body);
             out->body = s->index->found + at;
             out->room = wanted;
             return;
@@ -124,14 +123,10 @@ static void sort_bodies(const uint32_t *bodies, size_t count, size_t limit, uint
     for (int pass = 0; pass < passes; pass++) {
         uint32_t *const to = (passes - pass) % 2 ? out : spare;
         const int shift = pass * BITS;
-        uint32_t place[DIGITS] = {0}, next = 0;
+        uint32_t place[DIGITS] = {0};
         for (size_t k = 0; k < count; k++)
             place[from[k] >> shift & (DIGITS - 1)]++;
-        for (size_t digit = 0; digit < DIGITS; digit++) {
-            const uint32_t here = place[digit];
-            place[digit] = next;
-            next += here;
-        }
+        narc_begin_places(place, DIGITS, 0, 1);
         for (size_t k = 0; k < count; k++)
             to[place[from[k] >> shift & (DIGITS - 1)]++] = from[k];
         from = to;
@@ -161,10 +156,8 @@ static narc_status check_arguments(const narc_index *index, const narc_box *boxe
                                    const narc_index_query *query, const narc_pairs *out_pairs, narc_error *error) {
     if (!index || (!boxes && count > 0) || !out_pairs)
         return narc_fail_missing(error, !index ? "index" : !out_pairs ? "out_pairs" : "boxes");
-    if (count > UINT32_MAX - 1)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)count, "%zu queries in one call, at most %lu", count,
-                         (unsigned long)UINT32_MAX - 1);
-    return narc_check_reserved(query->reserved, 4, "query", error);
+    const narc_status status = narc_check_count(count, UINT32_MAX - 1, "queries in one call", error);
+    return status == NARC_OK ? narc_check_reserved(query->reserved, 4, "query", error) : status;
 }
 
 narc_status narc_query_index(narc_index *index, const narc_box *boxes, size_t count, const narc_index_query *query,

@@ -7,7 +7,6 @@
  * theirs. Nodes of one list do not wait for each other, unlike those of a stack. A list that is longer than NODES is
  * taken in parts, each down to the leaves before the next, so that lists are never longer than their memory.
  */
-#include <float.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -103,18 +102,13 @@ INLINE void find_bodies(const narc_index *index, const struct region *region, bo
     }
 }
 
-static bool is_box(const narc_box *box) {
-    return box->min_x >= -FLT_MAX && box->min_y >= -FLT_MAX && box->max_x <= FLT_MAX && box->max_y <= FLT_MAX &&
-           box->min_x <= box->max_x && box->min_y <= box->max_y;
-}
-
 void NARC_NAMED(regions)(const narc_region_batch *batch, size_t first, size_t count, narc_found_bodies *out) {
     const narc_index *const index = batch->index;
     const bool masked = index->masks != NULL, ignores = batch->ignored.base != NULL;
     for (size_t k = first; k < first + count; k++) {
         const narc_box *const box = &batch->boxes[k];
         const uint64_t mask = batch->mask.base ? narc_word_at(batch->mask, k) : ~(uint64_t)0;
-        if (is_box(box) && mask != 0) {
+        if (narc_is_full_box(box) && mask != 0) {
             const struct region region = {v_set(box->min_x),
                                           v_set(box->min_y),
                                           v_set(box->max_x),

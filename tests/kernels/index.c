@@ -266,6 +266,24 @@ TEST(has_tight_nodes) {
     free(boxes);
 }
 
+/* Boxes in a row, far from the origin, stand in leaves in the order of the row. */
+TEST(keeps_a_row_in_order) {
+    enum { COUNT = 32768, OFFSET = 2 * COUNT };
+    narc_box *const boxes = malloc(COUNT * sizeof *boxes);
+    narc_index *const index = create_index(NULL);
+    for (uint32_t way = 0; way < 4; way++) {
+        for (size_t k = 0; k < COUNT; k++) {
+            const float place = (float)(k * 4097 % COUNT + OFFSET), x = way & 2 ? 0 : place, y = way & 2 ? place : 0;
+            boxes[k] = (narc_box){x, y, x, y};
+        }
+        assert_int_equal(narc_build_index(index, boxes, COUNT, &(narc_index_options){.fast = way & 1}, NULL), NARC_OK);
+        for (size_t k = 0; k < COUNT; k++)
+            assert_int_equal((size_t)index->body[k] * 4097 % COUNT, k);
+    }
+    narc_destroy_index(index);
+    free(boxes);
+}
+
 /* What was built before it has no part in how slack an index of no boxes is. */
 TEST(has_no_slack_when_emptied) {
     const narc_box boxes[2] = {{0, 0, 1, 1}, {2, 2, 3, 3}};

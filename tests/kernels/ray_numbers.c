@@ -188,7 +188,7 @@ TEST(refuses_bad_arguments) {
     WRONG_RAYS(y.base = NULL, NARC_ERROR_ARGUMENT, "rays.y");
     WRONG_RAYS(motion_x.base = NULL, NARC_ERROR_ARGUMENT, "rays.motion_x");
     WRONG_RAYS(motion_y.base = NULL, NARC_ERROR_ARGUMENT, "rays.motion_y");
-    WRONG_RAYS(y.precision = NARC_FLOAT32, NARC_ERROR_ARGUMENT, "both double");
+    WRONG_RAYS(y.precision = NARC_FLOAT32, NARC_ERROR_ARGUMENT, "precision");
     WRONG_RAYS(reserved[1] = hits, NARC_ERROR_ARGUMENT, "rays.reserved[1]");
 #if SIZE_MAX > UINT32_MAX
     WRONG_RAYS(count = (size_t)UINT32_MAX + 1, NARC_ERROR_ARGUMENT, "at most");

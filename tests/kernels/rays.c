@@ -196,30 +196,60 @@ TEST(moves_by_the_least_and_the_most) {
     assert_true(hits[4].count && hits[4].body == 0 && fabsf(hits[4].point_x + 1) < 1e-6f);
 }
 
-/* Where floats are 2 apart, the ray's start is rounded back by 0.9; it would pass above the box from there. */
-TEST(allows_for_the_rounding_of_starts) {
-    struct scene scene = create_scene(NARC_FLOAT64, 1, 2, 1);
-    struct body body = turned_body(0, 1);
-    const struct test_ray ray = {0x1p25 - 3.1, -0.15, 1, 1, 4};
-    struct shape box;
+/* Rays past the corners of a box, as near as numbers allow, from up to 2^50 away; the box stands at the origin or where floats
+ * are up to 2 apart. A body that is ignored changes nothing, though it is so far away that the room for rounding is
+ * large. */
+TEST(finds_the_same_beside_a_far_body) {
+    struct test_random random = test_random_named("corners from afar");
+    enum { COUNT = 4000 };
+    static struct test_ray rays[COUNT];
+    static narc_ray_hit alone[COUNT], beside[COUNT];
+    const uint32_t other = 1;
+    const narc_ray_options options = {.search.ignored = {&other, 0}};
+    const narc_rays view = view_rays(rays, COUNT);
     narc_index *index;
-    const narc_box boxes[2] = {{-1, -1, 1, 1}, {0x1p25f - 2, -1, 0x1p25f, 1}}; /* exactly around */
-    narc_ray_hit hit;
-    narc_error error;
-    expect_ok(narc_build_box(2, 2, 0, box.arcs, &box.count, &error), &error);
-    scene_add_shape(&scene, &box);
-    scene_add_body(&scene, body);
-    body.x = 0x1p25 - 1;
-    scene_add_body(&scene, body);
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_rays view = view_rays(&ray, 1);
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
-    expect_ok(narc_build_index(index, boxes, 2, NULL, &error), &error);
-    expect_ok(narc_cast_rays(index, scene.store, &bodies, &view, NULL, &hit, 1, &error), &error);
-    assert_true(hit.count && hit.body == 1 && hit.normal_x == -1 && fabsf(hit.fraction - 1.1f) < 1e-6f &&
-                fabsf(hit.point_y - 0.95f) < 1e-6f);
+    for (int trial = 0; trial < 16; trial++) {
+        struct scene scene = create_scene(NARC_FLOAT64, 1, 2, 1);
+        struct body body = turned_body(0, 1);
+        struct shape box;
+        narc_error error;
+        size_t hits = 0;
+        body.x = trial < 8 ? 0 : ldexp(1, 10 + 2 * (trial - 8)) + 1;
+        expect_ok(narc_build_box(2, 2, 0, box.arcs, &box.count, &error), &error);
+        scene_add_shape(&scene, &box);
+        scene_add_body(&scene, body);
+        scene_add_body(&scene, body);
+        for (size_t k = 0; k < COUNT; k++) {
+            const float angle = (float)random_between(&random, -4, 4);
+            const double away = random_log_between(&random, 1, 0x1p50);
+            struct test_ray *const ray = &rays[k];
+            ray->motion_x = cosf(angle);
+            ray->motion_y = sinf(angle);
+            ray->fraction = INFINITY;
+            const double along = (double)ray->motion_x, up = (double)ray->motion_y;
+            const double off = random_between(&random, -4, 4) * 0x1p-53 * (away + fabs(body.x));
+            const double x = body.x + (random_below(&random, 2) ? 1 : -1), y = random_below(&random, 2) ? 1 : -1;
+            ray->x = x - off * up - away * along;
+            ray->y = y + off * along - away * up;
+        }
+        const float left = (float)(body.x - 1), right = (float)(body.x + 1);
+        const narc_box boxes[2] = {{left, -1, right, 1}, {-0x1p50f, -0x1p50f, 0x1p50f, 0x1p50f}};
+        for (size_t count = 1; count <= 2; count++) {
+            scene.body_count = count;
+            const narc_bodies bodies = scene_bodies(&scene);
+            expect_ok(narc_build_index(index, boxes, count, NULL, &error), &error);
+            expect_ok(narc_cast_rays(index, scene.store, &bodies, &view, &options, count == 1 ? alone : beside, COUNT,
+                                     &error),
+                      &error);
+        }
+        for (size_t k = 0; k < COUNT; k++)
+            hits += beside[k].count;
+        assert_memory_equal(alone, beside, sizeof alone);
+        assert_true(hits > COUNT / 8);
+        destroy_scene(&scene);
+    }
     narc_destroy_index(index);
-    destroy_scene(&scene);
 }
 
 TEST_MAIN("rays")
