@@ -14,6 +14,7 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
              under qemu NEON, 32-bit x86 and a big-endian processor; recorded answers on WebAssembly and Windows
   platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
              WebAssembly in node, Windows under wine
+  fuzz       the fuzzing programs of tests/fuzz on their seeds, and on for 60 seconds each, or as many as the option says
   bench      the benchmarks beside Box2D, Chipmunk and libccd; tables and plots go to out/. Options are Google
              Benchmark's and those of bench/README.md
   paper      the paper's evaluation; tables and plots go to out/. Options are those of bench/paper/README.md
@@ -395,6 +396,7 @@ gate() {
     # Thread sanitizer of older compilers wants a fixed address layout, where setting it is allowed.
     fixed=$(setarch "$(uname -m)" -R true 2>/dev/null && echo "setarch $(uname -m) -R") || fixed=
     check tsan "$fixed"
+    fuzz 10
     skipped=
     if install_packages $lammps_packages; then
         test_lammps
@@ -410,6 +412,13 @@ gate() {
     say "all tests passed$skipped"
 }
 
+# fuzz SECONDS: for each program.
+fuzz() {
+    require_packages $test_packages clang
+    build fuzz fuzz
+    NARC_FUZZ_SECONDS=$1 ctest --preset fuzz || fail "a fuzzing program found something: build/fuzz/tests/fuzz/*-crash-*"
+}
+
 reference() {
     require_packages doxygen
     rm -rf out/api
@@ -423,6 +432,7 @@ run) run ;;
 test) test_release ;;
 gate) gate ;;
 platforms) platforms ;;
+fuzz) fuzz "${2:-60}" ;;
 docs) reference ;;
 bench)
     shift

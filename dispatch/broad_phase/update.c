@@ -142,9 +142,10 @@ static narc_status fail_memory(const update *u, size_t count, const char *what) 
 
 /* Ids as pairs of their halves. */
 static narc_pairs view_ids(const narc_kept_list *list) {
-    const uint32_t *halves = (const void *)list->ids;
-    return (narc_pairs){
-        .count = list->body_count, .a = {halves, sizeof *list->ids}, .b = {halves + 1, sizeof *list->ids}};
+    const uint32_t *const halves = (const void *)list->ids; /* NULL: there was no body yet */
+    return (narc_pairs){.count = list->body_count,
+                        .a = {halves, sizeof *list->ids},
+                        .b = {halves ? halves + 1 : NULL, sizeof *list->ids}};
 }
 
 /* The ids of a list whose bodies had none: their numbers. */
