@@ -114,7 +114,8 @@ static void check(const struct question *q, const struct answer *answer) {
     const narc_bodies bodies = scene_bodies(&q->scene);
     if (narc_validate_bodies(q->scene.store, &bodies, NULL) != NARC_OK)
         return;
-    check_ray(q, q->chosen, &answer->hits[q->chosen]);
+    if (q->rays[q->chosen].motion_x != 0 || q->rays[q->chosen].motion_y != 0)
+        check_ray(q, q->chosen, &answer->hits[q->chosen]);
     check_impact(q, &answer->impacts[q->chosen]);
     for (size_t k = 0; k < RAYS; k++) {
         const narc_distance *const row = &answer->distances[k];

@@ -10,9 +10,9 @@
 
 enum { MOST = 48, CALLS = 64 };
 
-/* What index k should have: the arcs as they were stored, and how often it was added. */
+/* What index k should have: the arcs as they were given and stored, and how often they were added. */
 struct model {
-    struct shape shapes[MOST];
+    struct shape given[MOST], shapes[MOST];
     uint32_t uses[MOST];
 };
 
@@ -48,8 +48,9 @@ static void add(struct model *model, narc_shapes *store, const struct shape *sha
         return;
     }
     model->shapes[index] = now;
+    model->given[index] = *shape;
     for (uint32_t k = 0; k < MOST; k++)
-        assert_false(k != index && model->uses[k] && is_equal(&now, &model->shapes[k])); /* it should be found */
+        assert_false(k != index && model->uses[k] && is_equal(shape, &model->given[k])); /* it should be found */
 }
 
 /* Is what is stored the shape that was given, but for the rounding to single precision? */
@@ -76,6 +77,7 @@ static void put(struct model *model, narc_shapes *store, uint32_t index, const s
     assert_int_equal(status, expected);
     if (status == NARC_OK) {
         model->shapes[index] = stored_shape(store, index);
+        model->given[index] = *shape;
         check_rounding(shape, &model->shapes[index]);
         model->uses[index] = 1;
     }
@@ -101,8 +103,8 @@ static narc_shapes *save_and_load(struct bytes *from, narc_shapes *store) {
     assert_true(status == NARC_ERROR_FORMAT || status == NARC_OK);
     for (uint32_t k = 0; status == NARC_OK && k < MOST && k < narc_count_shapes(damaged); k++) {
         const struct shape shape = stored_shape(damaged, k);
-        if (shape.count)
-            assert_int_equal(narc_add_shape(damaged, shape.arcs, shape.count, NULL, NULL), NARC_OK);
+        (void)narc_add_shape(damaged, shape.arcs, shape.count, NULL,
+                             NULL); /* rounding may have taken it out of bounds */
     }
     narc_destroy_shapes(damaged);
     narc_destroy_shapes(store);
