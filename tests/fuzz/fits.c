@@ -11,9 +11,9 @@
 static struct outline take_outline(struct bytes *from) {
     struct outline outline = make_outline("fuzz");
     const double scale = pow(10, (double)take_below(from, 7) - 3);
-    narc_point points[24];
+    narc_point points[10];
     for (unsigned contours = 1 + take_below(from, 2); contours > 0; contours--) {
-        const size_t count = 3 + take_below(from, 20);
+        const size_t count = 3 + take_below(from, 8);
         for (size_t k = 0; k < count; k++) {
             const double x = take_number(from, 4), y = take_number(from, 4);
             points[k] = (narc_point){fabs(x) < 1e6 ? scale * x : scale, fabs(y) < 1e6 ? scale * y : scale};
@@ -29,7 +29,7 @@ static struct outline take_outline(struct bytes *from) {
 }
 
 static void check_fit(struct bytes *from, const struct outline *outline) {
-    const narc_fit_request request = {.arc_count = 1 + take_below(from, 10),
+    const narc_fit_request request = {.arc_count = 1 + take_below(from, 5),
                                       .family = (narc_fit_family)take_below(from, 4),
                                       .goal = (narc_fit_goal)take_below(from, 5),
                                       .keep_origin = take_below(from, 2),

@@ -4,10 +4,12 @@
  * is told and nothing has changed. A shapes file that is read and written is the same again.
  */
 #include <stdlib.h>
+#include <string.h>
 
 #include "fit_support.h"
 #include "fuzz.h"
 #include "narc_files.h"
+#include "truetype.h"
 
 enum reader { SHAPES, CSV, JSON, SVG, PNG, FONT };
 
@@ -78,6 +80,28 @@ static narc_status read_path(const uint8_t *data, size_t size, narc_path *path, 
     }
 }
 
+/* Gives the chunks of a PNG file the checksums that they should have, or hardly a change would get beyond these. */
+static uint8_t *mend_checksums(const uint8_t *data, size_t size) {
+    uint8_t *const png = malloc(size + 1);
+    assert_non_null(png);
+    memcpy(png, data, size);
+    for (size_t at = 8; at + 12 <= size;) {
+        const size_t length = read_big_endian(png + at, 4);
+        uint32_t crc = UINT32_MAX;
+        if (length > size - at - 12)
+            break;
+        for (size_t k = at + 4; k < at + 8 + length; k++) {
+            crc ^= png[k];
+            for (int bit = 0; bit < 8; bit++)
+                crc = crc & 1 ? crc >> 1 ^ 0xedb88320u : crc >> 1;
+        }
+        at += 8 + length;
+        for (int k = 0; k < 4; k++)
+            png[at++] = (uint8_t)(~crc >> (24 - 8 * k));
+    }
+    return png;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (FUZZ_READER == SHAPES) {
         read_shapes(data, size);
@@ -85,7 +109,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     narc_path *const path = make_occupied_path();
     narc_error error = {.message = ""};
-    const narc_status status = read_path(data, size, path, &error);
+    uint8_t *const png = FUZZ_READER == PNG ? mend_checksums(data, size) : NULL;
+    const narc_status status = read_path(png ? png : data, size, path, &error);
+    free(png);
     finish_any_bytes(status, &error,
                      1u << NARC_ERROR_FORMAT | 1u << NARC_ERROR_NOT_FINITE | 1u << NARC_ERROR_SIZE |
                          1u << NARC_ERROR_INDEX,
