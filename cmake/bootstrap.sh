@@ -10,7 +10,7 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
 
   run        collide 20,000 bodies; shapes, contacts and pictures go to out/
   test       one build and its tests, minutes
-  gate       what a change must pass besides: style, long tests, without dependencies, sanitizers, and
+  gate       what a change must pass besides: style, long tests, without dependencies, sanitizers, fuzzing, and
              under qemu NEON, 32-bit x86 and a big-endian processor; recorded answers on WebAssembly and Windows
   platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
              WebAssembly in node, Windows under wine
@@ -377,7 +377,7 @@ check_style() {
     # The compilation database of the build with everything in it, the kernels once for each instruction set. The test of
     # what is installed has builds of its own.
     git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'apps/*.c' 'bench/*.c' 'tests/*.c' \
-        ':!tests/package' |
+        ':!tests/package' ':!tests/fuzz' |
         xargs clang-tidy --quiet -p build/ci || fail "clang-tidy has something to say"
 }
 
@@ -414,8 +414,9 @@ gate() {
 
 # fuzz SECONDS: for each program.
 fuzz() {
-    require_packages $test_packages clang
+    require_packages $test_packages clang clang-tidy
     build fuzz fuzz
+    clang-tidy --quiet -p build/fuzz tests/fuzz/*.c || fail "clang-tidy has something to say"
     NARC_FUZZ_SECONDS=$1 ctest --preset fuzz || fail "a fuzzing program found something: build/fuzz/tests/fuzz/*-crash-*"
 }
 

@@ -11,7 +11,7 @@
 #include "narc_files.h"
 #include "truetype.h"
 
-enum reader { SHAPES, CSV, JSON, SVG, PNG, FONT };
+static const enum format { SHAPES, CSV, JSON, SVG, PNG, FONT } format = FUZZ_READER;
 
 static void compare_lists(const narc_shape_list *a, const narc_shape_list *b) {
     assert_int_equal(a->count, b->count);
@@ -64,7 +64,7 @@ static narc_status read_font(const uint8_t *data, size_t size, narc_path *path, 
 
 static narc_status read_path(const uint8_t *data, size_t size, narc_path *path, narc_error *error) {
     narc_image_request request = {.silhouette = (narc_silhouette)(size % 3)};
-    switch ((enum reader)FUZZ_READER) {
+    switch (format) {
     case CSV:
         return narc_read_csv(data, size, path, error);
     case JSON:
@@ -103,13 +103,13 @@ static uint8_t *mend_checksums(const uint8_t *data, size_t size) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    if (FUZZ_READER == SHAPES) {
+    if (format == SHAPES) {
         read_shapes(data, size);
         return 0;
     }
     narc_path *const path = make_occupied_path();
     narc_error error = {.message = ""};
-    uint8_t *const png = FUZZ_READER == PNG ? mend_checksums(data, size) : NULL;
+    uint8_t *const png = format == PNG ? mend_checksums(data, size) : NULL;
     const narc_status status = read_path(png ? png : data, size, path, &error);
     free(png);
     finish_any_bytes(status, &error,
