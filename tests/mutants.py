@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Do the tests notice when the library is wrong? Changes one operator, constant or statement of soa/, kernels/ or
-dispatch/ at a time, at random, in a copy of the tree in build/mutants with the plain C kernels alone, and runs its tests
-until one fails.
+dispatch/ at a time, at random, in a copy of the tree in build/mutants with the plain C kernels alone, and runs its
+tests until one fails.
 
 usage: python3 tests/mutants.py SEED COUNT [PATTERN]     PATTERN: of the files to change, as 'soa/store.c'
 
-A mutant counts if it compiles to another library than the original. Each gets a line, and the last line is the sum. With
-NARC_TEST_TRIALS=0.1 survivors take a tenth of the time, and some of them are none."""
+A mutant counts if it compiles to another library than the original. Each gets a line, and the last line is the sum.
+With NARC_TEST_TRIALS=0.1 survivors take a tenth of the time, and some of them are none."""
 import glob, hashlib, json, os, random, re, shutil, subprocess, sys, time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -20,16 +20,17 @@ TESTS = "^(shapes|api|.*isa-scalar)$"  # labels
 SKIPPED = "slow"
 
 # What stands for what. In C, both sides of an operator have a space.
-SWAPS = [("<", "<="), (">", ">="), ("==", "!="), ("&&", "||"), ("+", "-"), ("*", "/"), ("&", "|"), ("<<", ">>"), ("+=", "-="),
-         ("&=", "|=")]
+SWAPS = [("<", "<="), (">", ">="), ("==", "!="), ("&&", "||"), ("+", "-"), ("*", "/"), ("&", "|"), ("<<", ">>"),
+         ("+=", "-="), ("&=", "|=")]
 SWAPS = [(" %s " % a, " %s " % b) for a, b in SWAPS]
 SWAPS += [("v_add(", "v_sub("), ("v_mul(", "v_div("), ("v_min(", "v_max("), ("v_lt(", "v_le("), ("vm_and(", "vm_or("),
           ("vi_add(", "vi_sub("), ("vi_shift_left(", "vi_shift_right("), ("true", "false"), ("fmin(", "fmax("),
           ("fminf(", "fmaxf(")]
 CHANGES = dict(SWAPS + [(b, a) for a, b in SWAPS])
-CHANGES.update({"vm_and_not(": "vm_and(", "vm_not(": "(", "v_neg(": "(", "v_abs(": "(", "++": "--", "break;": ";", "continue;": ";"})
-OPERATOR = re.compile("|".join(("" if key[0] in " +" else r"\b") + re.escape(key) for key in sorted(CHANGES, key=len, reverse=True)) +
-                      r"|!(?=[a-z])|(?<![\w.])\d+\.?\d*f?(?![\w.])")
+CHANGES.update({"vm_and_not(": "vm_and(", "vm_not(": "(", "v_neg(": "(", "v_abs(": "(", "++": "--", "break;": ";",
+                "continue;": ";"})
+KEYS = [("" if key[0] in " +" else r"\b") + re.escape(key) for key in sorted(CHANGES, key=len, reverse=True)]
+OPERATOR = re.compile("|".join(KEYS) + r"|!(?=[a-z])|(?<![\w.])\d+\.?\d*f?(?![\w.])")
 STATEMENT = re.compile(r"^ +(?!return|if|for|while|else|do|assert|case|const|static)"
                        r"(\*?[\w.>\[\]-]+ [-+*/|&^]?= [^;]*;|\w+\([^;]*\);)$")
 
@@ -40,8 +41,8 @@ def blank(match):
 
 def find_changes(path):
     """Every (path, line number, column, old text, new text) of a file."""
-    text = re.sub(r'/\*.*?\*/|//[^\n]*|"(\\.|[^"\n])*"|^ *#(\\\n|[^\n])*|_Static_assert[^;]*;', blank, open(path).read(),
-                  flags=re.S | re.M)
+    text = re.sub(r'/\*.*?\*/|//[^\n]*|"(\\.|[^"\n])*"|^ *#(\\\n|[^\n])*|_Static_assert[^;]*;', blank,
+                  open(path).read(), flags=re.S | re.M)
     before = ";"
     for number, line in enumerate(text.split("\n")):
         for match in OPERATOR.finditer(line):
@@ -109,7 +110,8 @@ def main():
     seed, count, pattern = int(sys.argv[1]), int(sys.argv[2]), (sys.argv[3:] or [""])[0]
     shutil.rmtree(TREE, ignore_errors=True)
     os.makedirs(BUILD, exist_ok=True)
-    for path in subprocess.run(["git", "ls-files"], cwd=ROOT, stdout=subprocess.PIPE, check=True, text=True).stdout.split():
+    files = subprocess.run(["git", "ls-files"], cwd=ROOT, stdout=subprocess.PIPE, check=True, text=True).stdout
+    for path in files.split():
         os.makedirs(os.path.dirname(TREE + "/" + path), exist_ok=True)
         shutil.copy2(ROOT + "/" + path, TREE + "/" + path)
     subprocess.run(CONFIGURE, check=True, stdout=subprocess.DEVNULL)
@@ -132,8 +134,8 @@ def main():
         result = "does not compile" if not made else "same program" if made == original else kill(tests)
         killed += result in [test["name"] for test in tests]
         survived += result is None
-        print("%-18s %s:%d: '%s' -> '%s'" % (result or "SURVIVED", path[len(TREE) + 1:], number + 1, old.strip(), new.strip()),
-              flush=True)
+        print("%-18s %s:%d: '%s' -> '%s'" %
+              (result or "SURVIVED", path[len(TREE) + 1:], number + 1, old.strip(), new.strip()), flush=True)
         with open(path, "w") as file:
             file.write(kept)
     print("seed %d: %d mutants of %d possible ones, %d killed, %d survived" %

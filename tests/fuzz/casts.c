@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * casts.c - rays, times of impact and distances in a scene from arbitrary bytes: the same bits on every instruction set,
- * and right where the bodies are sound.
+ * casts.c - rays, times of impact and distances in a scene from arbitrary bytes: the same bits on every instruction
+ * set, and right where the bodies are sound.
  */
 #include <math.h>
 #include <stdlib.h>

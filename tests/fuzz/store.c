@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * store.c - a store of shapes beside a model of it, through any sequence of calls; and stores loaded from damaged bytes.
+ * store.c - a store of shapes beside a model of it, through any calls; and stores loaded from damaged bytes.
  */
 #include <math.h>
 #include <stdlib.h>
