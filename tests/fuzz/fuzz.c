@@ -138,8 +138,9 @@ void *ask_everywhere(void (*ask)(const void *question, const narc_workers *worke
         assert_non_null(rows);
         memset(rows, 0x5a, size);
         ask(question, first ? &backwards : NULL, rows);
-        if (first && memcmp(first, rows, size) != 0)
-            fail_msg("%s answers otherwise than %s", narc_isa_name(k), narc_isa_name(0));
+        for (size_t at = 0; first && at < size; at++)
+            if (first[at] != rows[at])
+                fail_msg("%s answers otherwise than %s at byte %zu", narc_isa_name(k), narc_isa_name(0), at);
         if (first)
             free(rows);
         else
