@@ -10,10 +10,11 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
 
   run        collide 20,000 bodies; shapes, contacts and pictures go to out/
   test       one build and its tests, minutes
-  gate       what a change must pass besides: style, long tests, without dependencies, sanitizers, and
+  gate       what a change must pass besides: style, long tests, without dependencies, sanitizers, fuzzing, and
              under qemu NEON, 32-bit x86 and a big-endian processor; recorded answers on WebAssembly and Windows
   platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
              WebAssembly in node, Windows under wine
+  fuzz       the fuzzing programs of tests/fuzz on their seeds, and on for 60 seconds each, or as many as the option says
   bench      the benchmarks beside Box2D, Chipmunk and libccd; tables and plots go to out/. Options are Google
              Benchmark's and those of bench/README.md
   bench-scene  what a scene is asked, beside Box2D, Chipmunk and GEOS; tables go to out/
@@ -396,7 +397,7 @@ check_style() {
     # The compilation database of the build with everything in it, the kernels once for each instruction set. The test of
     # what is installed has builds of its own.
     git ls-files 'soa/*.c' 'kernels/*.c' 'dispatch/*.c' 'methods/*.c' 'files/*.c' 'fit/*.c' 'tools/*.c' 'examples/*.c' 'apps/*.c' 'bench/*.c' 'tests/*.c' \
-        ':!tests/package' |
+        ':!tests/package' ':!tests/fuzz' |
         xargs clang-tidy --quiet -p build/ci || fail "clang-tidy has something to say"
 }
 
@@ -415,6 +416,7 @@ gate() {
     # Thread sanitizer of older compilers wants a fixed address layout, where setting it is allowed.
     fixed=$(setarch "$(uname -m)" -R true 2>/dev/null && echo "setarch $(uname -m) -R") || fixed=
     check tsan "$fixed"
+    fuzz 10
     skipped=
     if install_packages $lammps_packages; then
         test_lammps
@@ -424,6 +426,14 @@ gate() {
     check_processors
     check_systems check_golden
     say "all tests passed$skipped"
+}
+
+# fuzz SECONDS: for each program.
+fuzz() {
+    require_packages $test_packages clang clang-tidy
+    build fuzz fuzz
+    clang-tidy --quiet -p build/fuzz tests/fuzz/*.c || fail "clang-tidy has something to say"
+    NARC_FUZZ_SECONDS=$1 ctest --preset fuzz || fail "a fuzzing program found something: build/fuzz/tests/fuzz/*-crash-*"
 }
 
 reference() {
@@ -439,6 +449,7 @@ run) run ;;
 test) test_release ;;
 gate) gate ;;
 platforms) platforms ;;
+fuzz) fuzz "${2:-60}" ;;
 docs) reference ;;
 bench)
     shift

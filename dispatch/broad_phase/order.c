@@ -156,5 +156,6 @@ void narc_order_pairs(narc_broad_phase *broad, size_t blocks, size_t body_count,
     const size_t parts = narc_run_ranges(workers, body_count, size, count_part, &o);
     for (size_t part = 0; part < parts; part++)
         o.start[part + 1] += o.start[part];
-    narc_run_ranges(workers, body_count, size, order_part, &o);
+    if (o.start[parts] > 0) /* or else there may be no memory to write to */
+        narc_run_ranges(workers, body_count, size, order_part, &o);
 }

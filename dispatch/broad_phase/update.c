@@ -142,9 +142,10 @@ static narc_status fail_memory(const update *u, size_t count, const char *what) 
 
 /* Ids as pairs of their halves. */
 static narc_pairs view_ids(const narc_kept_list *list) {
-    const uint32_t *halves = (const void *)list->ids;
-    return (narc_pairs){
-        .count = list->body_count, .a = {halves, sizeof *list->ids}, .b = {halves + 1, sizeof *list->ids}};
+    const uint32_t *const halves = (const void *)list->ids; /* NULL: there was no body yet */
+    return (narc_pairs){.count = list->body_count,
+                        .a = {halves, sizeof *list->ids},
+                        .b = {halves ? halves + 1 : NULL, sizeof *list->ids}};
 }
 
 /* The ids of a list whose bodies had none: their numbers. */
@@ -261,7 +262,7 @@ static narc_status merge_lists(const update *u, narc_kept_list *last, narc_kept_
     narc_broad_phase *const broad = u->broad;
     if (narc_reserve_matches(broad, found, found) != NARC_OK)
         return fail_memory(u, found, "pairs");
-    uint32_t *const a = broad->match_memory, *const b = a + found;
+    uint32_t *const a = broad->match_memory, *const b = found ? a + found : a; /* of nothing it may be NULL */
     narc_status status = begin_list(u, last, made, last->list.pairs.count + found, skipped);
     if (status == NARC_OK)
         status = narc_list_found_pairs(broad, u->count, u->options->filter, u->options->workers, found, a, b, u->error);

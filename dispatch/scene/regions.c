@@ -188,6 +188,6 @@ narc_status narc_query_index(narc_index *index, const narc_box *boxes, size_t co
         narc_run_ranges(q->workers, count, QUERIES, list_part, &s);
     *out_pairs = (narc_pairs){.count = (size_t)total,
                               .a = {index->rows, sizeof(uint32_t)},
-                              .b = {index->rows + index->row_capacity, sizeof(uint32_t)}};
+                              .b = {index->rows ? index->rows + index->row_capacity : NULL, sizeof(uint32_t)}};
     return NARC_OK;
 }

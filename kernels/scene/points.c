@@ -145,10 +145,10 @@ INLINE struct nearest find_nearest_place(const narc_record *records, struct ring
             break;
         const vi record = vi_select(more, vi_add(ring.base, vi_set(k)), last);
         const struct nearest next = find_nearest_on(records, record, point, middle, scale, &rises);
-        const vm better = v_lt(best.value, next.value);
-        best = (struct nearest){v_max(next.separation, best.separation), v_select(better, next.value, best.value),
-                                v2_select(better, next.normal, best.normal), v_select(better, next.length, best.length),
-                                vi_select(better, record, best.record)};
+        const vm better = vm_and(more, v_lt(best.value, next.value)); /* its last arc again would be another one's */
+        best = (struct nearest){v_select(more, v_max(next.separation, best.separation), best.separation),
+                                v_select(better, next.value, best.value), v2_select(better, next.normal, best.normal),
+                                v_select(better, next.length, best.length), vi_select(better, record, best.record)};
     }
     return best;
 }

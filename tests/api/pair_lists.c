@@ -951,6 +951,23 @@ TEST(forgets_its_pairs) {
     narc_destroy_broad_phase(broad);
 }
 
+/* Bodies may be none, before any memory is needed and after all are gone. */
+TEST(lists_no_bodies) {
+    const narc_box boxes[] = {{0, 0, 1, 1}, {1, 0, 2, 1}};
+    const uint64_t ids[] = {7, 5};
+    const narc_pair_options options = {.skin = 0.125f, .id = NARC_ARRAY(ids)};
+    static const size_t counts[] = {0, 0, 2, 0, 1, 2};
+    narc_broad_phase *broad = create_broad_phase(NULL);
+    for (size_t step = 0, pairs = 0; step < sizeof counts / sizeof *counts; step++) {
+        const narc_pair_list *const list = update_boxes(broad, boxes, counts[step], &options);
+        assert_int_equal(list->lost_count, pairs);
+        pairs = counts[step] == 2;
+        assert_int_equal(list->pairs.count, pairs);
+        assert_int_equal(list->added_count, pairs);
+    }
+    narc_destroy_broad_phase(broad);
+}
+
 TEST(refuses_bad_arguments) {
     narc_box boxes[] = {{0, 0, 1, 1}, {1, 0, 2, 1}, {0, 0, 1, 2}};
     const uint64_t ids[] = {5, 6, 7}, twice[] = {6, 5, 5};

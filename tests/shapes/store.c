@@ -431,6 +431,23 @@ TEST(reserve_is_enough) {
     }
 }
 
+/* By how much arcs are apart across two junctions, or overlap along one, is uncertain of both circles. */
+TEST(leaves_room_for_arcs_that_are_apart) {
+    const double apart = 9e-6;
+    for (int along = 0; along < 2; along++) {
+        for (double angle = 0; angle < 2 * pi; angle += 0.1) {
+            const double x = apart * cos(angle + along * pi / 2), y = apart * sin(angle + along * pi / 2);
+            const narc_arc halves[2] = {{0, 0, 1, angle, angle + pi}, {x, y, 1, angle + pi, angle + 2 * pi}};
+            const double room = along ? apart : 2 * apart;
+            narc_shapes *shapes = empty_store();
+            assert_int_equal(narc_add_shape(shapes, halves, 2, NULL, NULL), NARC_OK);
+            const narc_shape_header *const header = &shapes->headers[0];
+            assert_true((double)header->bound_radius >= 1 + room && (double)header->inner_radius <= 1 - room);
+            narc_destroy_shapes(shapes);
+        }
+    }
+}
+
 TEST(refuses_bad_arguments) {
     narc_shapes *shapes = NULL;
     narc_error error;

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * casts.c - rays, times of impact and distances in a scene from arbitrary bytes: the same bits on every instruction
+ * set, and right where the bodies are sound.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "check.h"
+#include "fuzz.h"
+#include "narc.h"
+#include "narc_broad_phase.h"
+#include "ray_reference.h"
+
+enum { BODIES = 12, RAYS = 8, PAIRS = RAYS };
+
+struct motion {
+    float x, y, angle;
+};
+
+struct question {
+    struct scene scene;
+    narc_index *index;
+    struct test_ray rays[RAYS];
+    struct motion motions[BODIES];
+    narc_ray_options rays_asked;
+    float target;
+    size_t chosen; /* a ray and a pair for the references, which take long */
+};
+
+struct answer {
+    narc_ray_hit hits[RAYS];
+    narc_impact impacts[PAIRS], first[BODIES];
+    narc_distance distances[RAYS], nearest[2 * RAYS];
+};
+
+static void ask(const void *question, const narc_workers *workers, void *out_answer) {
+    const struct question *const q = question;
+    struct answer *const answer = out_answer;
+    const narc_bodies bodies = scene_bodies(&q->scene);
+    const narc_pairs pairs = scene_pairs(&q->scene);
+    const narc_shapes *const store = q->scene.store;
+    const narc_rays rays = view_rays(q->rays, RAYS);
+    const narc_points points = {.count = RAYS, .x = rays.x, .y = rays.y};
+    const narc_motions motions = {
+        NARC_COLUMN(q->motions, x), NARC_COLUMN(q->motions, y), NARC_COLUMN(q->motions, angle), {NULL}};
+    const narc_index_query search = {.workers = workers};
+    const narc_cast_options cast = {.target = q->target, .workers = workers};
+    const narc_nearest_options near = {.search = search, .distance = 5, .most = 2};
+    narc_ray_options through = q->rays_asked;
+    through.search.workers = workers;
+    assert_int_equal(narc_cast_rays(q->index, store, &bodies, &rays, &through, answer->hits, RAYS, NULL), NARC_OK);
+    assert_int_equal(narc_cast_pairs(store, &bodies, &motions, &pairs, NULL, &cast, answer->impacts, PAIRS, NULL),
+                     NARC_OK);
+    assert_int_equal(
+        narc_cast_shapes(q->index, store, &bodies, &bodies, &motions, &search, &cast, answer->first, BODIES, NULL),
+        NARC_OK);
+    assert_int_equal(
+        narc_find_distances(store, &bodies, &points, (narc_index_column){NULL, 0}, workers, answer->distances, NULL),
+        NARC_OK);
+    assert_int_equal(narc_find_nearest(q->index, store, &bodies, &points, &near, answer->nearest, 2 * RAYS, NULL),
+                     NARC_OK);
+}
+
+/* Is a ray's hit right for the body that it tells of, and is no other body in the way? */
+static void check_ray(const struct question *q, size_t k, const narc_ray_hit *hit) {
+    for (uint32_t b = 0; b < BODIES; b++) {
+        const struct body *const body = &q->scene.bodies[b];
+        const struct outline_reference outline = make_outline_reference(&q->scene.shapes[body->shape]);
+        struct ray_errors worst = {0};
+        if (hit->count == 0 || hit->body == b) {
+            const char *const wrong = check_ray_hit(&outline, body, &q->rays[k], q->rays_asked.inside, hit, &worst);
+            if (wrong)
+                fail_msg("ray %zu, body %u: %s", k, b, wrong);
+        }
+    }
+}
+
+/* The separation of a pair when that part of its motion is done. */
+static double separation_at(const struct question *q, uint32_t pair, double time, double *out_bound) {
+    struct reference_body two[2];
+    const uint32_t numbers[2] = {q->scene.pairs[pair].a, q->scene.pairs[pair].b};
+    for (int k = 0; k < 2; k++) {
+        const struct motion *const motion = &q->motions[numbers[k]];
+        struct reference_body body = scene_reference(&q->scene, numbers[k]);
+        const double angle = atan2(body.sine, body.cosine) + time * (double)motion->angle;
+        body.x += time * (double)motion->x;
+        body.y += time * (double)motion->y;
+        body.cosine = cos(angle);
+        body.sine = sin(angle);
+        two[k] = body;
+    }
+    *out_bound = 2 * separation_bound(&two[0], &two[1]);
+    return reference_find_gap(&two[0], &two[1]).gap;
+}
+
+static void check_impact(const struct question *q, const narc_impact *impact) {
+    const double end = impact->count == NARC_CAST_MISS ? 1 : (double)impact->fraction, target = (double)q->target;
+    double bound, speed = 0;
+    for (int k = 0; k < 2; k++) {
+        const struct motion *const motion =
+            &q->motions[k ? q->scene.pairs[impact->pair].b : q->scene.pairs[impact->pair].a];
+        speed += fabs((double)motion->x) + fabs((double)motion->y) + 20 * fabs((double)motion->angle);
+    }
+    for (int k = 0; k < 8; k++) {
+        const double at = separation_at(q, impact->pair, end * k / 8, &bound);
+        assert_true(end == 0 || at >= target - bound - 0x1p-23 * speed);
+    }
+    if (impact->count == NARC_CAST_HIT && end > 0)
+        assert_true(separation_at(q, impact->pair, end, &bound) <= target + 0.05 + bound + 0x1p-23 * speed);
+}
+
+static void check(const struct question *q, const struct answer *answer) {
+    const narc_bodies bodies = scene_bodies(&q->scene);
+    if (narc_validate_bodies(q->scene.store, &bodies, NULL) != NARC_OK)
+        return;
+    if (q->rays[q->chosen].motion_x != 0 || q->rays[q->chosen].motion_y != 0)
+        check_ray(q, q->chosen, &answer->hits[q->chosen]);
+    check_impact(q, &answer->impacts[q->chosen]);
+    for (size_t k = 0; k < RAYS; k++) {
+        const narc_distance *const row = &answer->distances[k];
+        const struct reference_body body = scene_reference(&q->scene, (uint32_t)k);
+        const double x = q->rays[k].x - body.x, y = q->rays[k].y - body.y;
+        if (fmax(fabs(x), fabs(y)) > NARC_MAX_DISTANCE)
+            continue;
+        assert_true(row->count == 1 && row->body == k);
+        assert_true(fabs((double)row->separation - reference_point_distance(&body, x, y)) <=
+                    NARC_ERROR_BOUND * (hypot(x, y) + reference_extent(&body)));
+    }
+}
+
+static double take_step(struct bytes *from, double size) {
+    const double step = take_number(from, size);
+    return fabs(step) <= size ? step : 0;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    struct bytes from = {data, size};
+    struct question q = {.chosen = take_below(&from, RAYS)};
+    q.scene = take_scene(&from, 4, BODIES, PAIRS);
+    const narc_bodies bodies = scene_bodies(&q.scene);
+    narc_box boxes[BODIES];
+    q.rays_asked.inside = (narc_inside)take_below(&from, 3);
+    q.target = (float)take_step(&from, 0.5);
+    for (size_t k = 0; k < BODIES; k++)
+        q.motions[k] = (struct motion){(float)take_step(&from, 8), (float)take_step(&from, 8),
+                                       take_below(&from, 2) ? (float)take_step(&from, 3) : 0};
+    for (size_t k = 0; k < RAYS; k++)
+        q.rays[k] = (struct test_ray){(double)(float)take_step(&from, 8), (double)(float)take_step(&from, 8),
+                                      (float)take_step(&from, 16), (float)take_step(&from, 16), 1};
+    const narc_index_options options = {.fast = take_below(&from, 2)};
+    assert_int_equal(narc_compute_boxes(q.scene.store, &bodies, NULL, boxes, NULL), NARC_OK);
+    assert_int_equal(narc_create_index(NULL, &q.index), NARC_OK);
+    assert_int_equal(narc_build_index(q.index, boxes, BODIES, &options, NULL), NARC_OK);
+    struct answer *const answer = ask_everywhere(ask, &q, sizeof *answer);
+    check(&q, answer);
+    free(answer);
+    narc_destroy_index(q.index);
+    destroy_scene(&q.scene);
+    return 0;
+}

@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * store.c - a store of shapes beside a model of it, through any calls; and stores loaded from damaged bytes.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fuzz.h"
+
+enum { MOST = 48, CALLS = 64 };
+
+/* What index k should have: the arcs as they were given and stored, and how often they were added. */
+struct model {
+    struct shape given[MOST], shapes[MOST];
+    uint32_t uses[MOST];
+};
+
+static struct shape stored_shape(const narc_shapes *store, uint32_t shape) {
+    struct shape stored = {.count = 0};
+    stored.count = narc_get_arcs(store, shape, stored.arcs);
+    return stored;
+}
+
+static bool is_equal(const struct shape *a, const struct shape *b) {
+    return a->count == b->count && memcmp(a->arcs, b->arcs, a->count * sizeof *a->arcs) == 0;
+}
+
+static void compare(const struct model *model, const narc_shapes *store) {
+    assert_true(narc_count_shapes(store) <= MOST);
+    for (uint32_t k = 0; k < MOST; k++) {
+        const struct shape now = stored_shape(store, k);
+        assert_int_equal(narc_count_uses(store, k), model->uses[k]);
+        assert_true(model->uses[k] ? is_equal(&now, &model->shapes[k]) : now.count == 0);
+        if (now.count)
+            assert_int_equal(narc_validate_arcs(now.arcs, now.count, NULL), NARC_OK);
+    }
+}
+
+static void add(struct model *model, narc_shapes *store, const struct shape *shape) {
+    uint32_t index = MOST;
+    assert_int_equal(narc_add_shape(store, shape->arcs, shape->count, &index, NULL), NARC_OK);
+    assert_true(index < MOST);
+    const struct shape now = stored_shape(store, index);
+    if (model->uses[index]++ > 0) {
+        assert_true(is_equal(&now, &model->shapes[index]));
+        assert_int_equal(now.count, shape->count);
+        return;
+    }
+    model->shapes[index] = now;
+    model->given[index] = *shape;
+    for (uint32_t k = 0; k < MOST; k++)
+        assert_false(k != index && model->uses[k] && is_equal(shape, &model->given[k])); /* it should be found */
+}
+
+/* Is what is stored the shape that was given, but for the rounding to single precision? */
+static void check_rounding(const struct shape *given, const struct shape *stored) {
+    double size = 0;
+    assert_int_equal(given->count, stored->count);
+    for (size_t i = 0; i < given->count; i++)
+        size = fmax(size, hypot(given->arcs[i].center_x, given->arcs[i].center_y) + given->arcs[i].radius);
+    for (size_t i = 0; i < given->count; i++) {
+        assert_true(fabs(given->arcs[i].center_x - stored->arcs[i].center_x) <= 0x1p-24 * size);
+        assert_true(fabs(given->arcs[i].center_y - stored->arcs[i].center_y) <= 0x1p-24 * size);
+        assert_true(fabs(given->arcs[i].radius - stored->arcs[i].radius) <= 0x1p-24 * size);
+    }
+}
+
+static void put(struct model *model, narc_shapes *store, uint32_t index, const struct shape *shape, bool replace) {
+    const narc_status status = replace ? narc_replace_shape(store, index, shape->arcs, shape->count, NULL)
+                                       : narc_add_shape_at(store, index, shape->arcs, shape->count, NULL);
+    const uint32_t uses = model->uses[index];
+    const narc_status expected = replace ? (uses == 0  ? NARC_ERROR_INDEX
+                                            : uses > 1 ? NARC_ERROR_IN_USE
+                                                       : NARC_OK)
+                                         : (uses > 0 ? NARC_ERROR_IN_USE : NARC_OK);
+    assert_int_equal(status, expected);
+    if (status == NARC_OK) {
+        model->shapes[index] = stored_shape(store, index);
+        model->given[index] = *shape;
+        check_rounding(shape, &model->shapes[index]);
+        model->uses[index] = 1;
+    }
+}
+
+/* Saves it and loads it again, and from damaged bytes with a checksum that fits. */
+static narc_shapes *save_and_load(struct bytes *from, narc_shapes *store) {
+    enum { AT_CHECKSUM = 32, START = 40 };
+    const size_t size = narc_count_saved_bytes(store);
+    uint8_t *const saved = malloc(size);
+    narc_shapes *loaded = NULL, *damaged = NULL;
+    uint64_t hash = TEST_HASH_START;
+    assert_non_null(saved);
+    assert_int_equal(narc_save_shapes(store, saved, size, NULL), NARC_OK);
+    assert_int_equal(narc_load_shapes(NULL, saved, size, &loaded, NULL), NARC_OK);
+    for (unsigned changes = take_below(from, 4); changes > 0; changes--)
+        saved[take_word(from) % size] ^= (uint8_t)take_byte(from);
+    for (size_t k = 0; k < size; k++)
+        hash = k < AT_CHECKSUM || k >= START ? test_hash(hash, saved + k, 1) : hash;
+    for (int k = 0; k < 8; k++)
+        saved[AT_CHECKSUM + k] = (uint8_t)(hash >> 8 * k);
+    const narc_status status = narc_load_shapes(NULL, saved, size, &damaged, NULL);
+    assert_true(status == NARC_ERROR_FORMAT || status == NARC_OK);
+    for (uint32_t k = 0; status == NARC_OK && k < MOST && k < narc_count_shapes(damaged); k++) {
+        const struct shape shape = stored_shape(damaged, k);
+        (void)narc_add_shape(damaged, shape.arcs, shape.count, NULL,
+                             NULL); /* rounding may have taken it out of bounds */
+    }
+    narc_destroy_shapes(damaged);
+    narc_destroy_shapes(store);
+    free(saved);
+    return loaded;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    struct bytes from = {data, size};
+    struct model model = {.uses = {0}};
+    narc_shapes *store = empty_store();
+    for (int call = 0; call < CALLS && from.left > 0; call++) {
+        const unsigned kind = take_below(&from, 8);
+        const uint32_t index = take_below(&from, MOST);
+        const struct shape shape = kind < 5 ? take_shape(&from) : circle_of(1);
+        /* Fewer than half of the indices are put by number, so that there is room to add. */
+        if (kind < 3 && call < MOST / 2)
+            add(&model, store, &shape);
+        else if (kind < 5)
+            put(&model, store, index / 2, &shape, kind == 4);
+        else if (kind < 7)
+            model.uses[index] -= narc_remove_shape(store, index, NULL) == NARC_OK;
+        else
+            store = save_and_load(&from, store);
+        compare(&model, store);
+    }
+    narc_destroy_shapes(store);
+    return 0;
+}
