@@ -131,7 +131,8 @@ int main(int argc, char **argv) {
         }
         if (k % 10 == 0)
             fprintf(map, "<circle cx='%.3f' cy='%.3f' r='0.05' fill='#1a1a47'/>\n", at.x, -at.y);
-        steer(&at, hits);
+        if (status == NARC_OK)
+            steer(&at, hits);
     }
     fprintf(map, "</g></svg>\n");
     const int failed = fclose(map) != 0 || status != NARC_OK;

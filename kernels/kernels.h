@@ -95,6 +95,9 @@ enum { NARC_ORDER_BODIES = 128 };
 
 /* So many casts are under way at a time, whole vectors: what fits on the stack beside the queues of the contact kernel.
  * And room for a vector that begins anywhere. */
+/* Of a body that turns, by default: the part of the smaller bounding radius that a hit may be away from the target. */
+#define NARC_TURNING_TOLERANCE 0x1p-10
+
 enum { NARC_CAST_SLOTS = 48, NARC_CAST_ROOM = NARC_CAST_SLOTS + 16 };
 
 /* What a step of a cast may come to, beside NARC_CAST_...: it goes on; it has no answer. */

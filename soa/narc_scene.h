@@ -106,7 +106,7 @@ typedef struct narc_index_query {
  *   boxes       `count` query boxes, at most 2^32 - 2; an empty one finds nothing
  *   query       NULL: defaults
  *   out_pairs   columns a (the query's number) and b (the body), which belong to the index until its next call of this
- *               function or its end. With other_bodies set to the index's bodies it is what narc_find_contacts() takes:
+ *               function or of narc_cast_shapes(), or its end. With other_bodies set to the index's bodies it is what narc_find_contacts() takes:
  *               what moves against what stands still, or a sensor against all.
  * One call at a time for each index. Errors: NARC_ERROR_ARGUMENT, NARC_ERROR_COUNT (2^32 pairs or more),
  * NARC_ERROR_MEMORY, and those for NARC_ISA; `*out_pairs` is untouched then. */
@@ -202,8 +202,9 @@ typedef struct narc_motions {
  *   tolerance     where a body turns, a hit has a separation within target .. target + tolerance; 0: 1/1024 of the
  *                 smaller body's bounding radius. Bodies that do not turn need none: they meet up to rounding
  *   workers       threads to use; NULL: the calling one
- *   out_skipped   how many pairs, or movers, have no answer (a broken body, or a motion that is not finite); NULL:
- *                 nobody asks */
+ *   out_skipped   how many pairs have no answer: a broken body, a motion that is not finite, more than
+ *                 NARC_MAX_DISTANCE from A to B at the start. Of movers: those that are broken or whose motion is not
+ *                 finite, and such pairs on the way of the others. NULL: nobody asks */
 typedef struct narc_cast_options {
     float target;
     float tolerance;
@@ -260,7 +261,9 @@ NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodie
  *   movers, motions  any bodies, and how each moves
  *   search           mask and ignored by mover, workers (those of `options` are not used); NULL: defaults
  *   out_rows         room for `capacity` rows, at least movers->count; A is the mover
- * Otherwise as narc_cast_pairs(), and one call at a time for each index, as narc_query_index(). */
+ * Otherwise as narc_cast_pairs(), but the index allocates: NARC_ERROR_MEMORY, NARC_ERROR_COUNT (2^32 pairs of a mover and
+ * a box on its way). That bodies' shapes exist is only looked at where a mover comes near. One call at a time for each
+ * index, as narc_query_index(). */
 NARC_API narc_status narc_cast_shapes(narc_index *index, const narc_shapes *shapes, const narc_bodies *bodies,
                                       const narc_bodies *movers, const narc_motions *motions,
                                       const narc_index_query *search, const narc_cast_options *options,

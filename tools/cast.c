@@ -182,7 +182,7 @@ static void write_hits(FILE *file, const job *work) {
         if (!hit->count)
             continue;
         const body *at = &work->bodies.items[hit->body];
-        fprintf(file, "%" PRIu32 ",%" PRIu32 ",%.9g,%.9g,%.9g,%.9g,%.9g,%d\n", hit->ray, hit->body,
+        fprintf(file, "%" PRIu32 ",%" PRIu32 ",%.9g,%.9g,%.9g,%.17g,%.17g,%d\n", hit->ray, hit->body,
                 (double)hit->fraction, 0 + (double)hit->normal_x, 0 + (double)hit->normal_y,
                 0 + (at->x + (double)hit->point_x), 0 + (at->y + (double)hit->point_y),
                 hit->feature & (NARC_MAX_ARCS - 1));

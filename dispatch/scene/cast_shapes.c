@@ -45,7 +45,10 @@ static narc_box sweep_circle(const struct job *job, size_t k) {
     const narc_shape_header *const header = &job->boxes.shapes->headers[narc_index_at(job->movers->shape, k)];
     const double x = (double)header->bound_x, y = (double)header->bound_y;
     const double scale = job->movers->scale.base ? (double)narc_float_at(job->movers->scale, k) : 1;
-    const double room = scale * ((double)header->bound_radius + sqrt(x * x + y * y)) + (double)job->boxes.margin;
+    const double radius = (double)header->bound_radius, tolerance = (double)job->casts.tolerance;
+    const double room =
+        scale * (radius + sqrt(x * x + y * y)) + (double)job->boxes.margin +
+        (tolerance > 0 ? tolerance : NARC_TURNING_TOLERANCE * scale * radius); /* as far as a hit may be */
     narc_box box;
     sweep(narc_position_at(job->movers->x, k), at_or_0(motions->x, k), room, &box.min_x, &box.max_x);
     sweep(narc_position_at(job->movers->y, k), at_or_0(motions->y, k), room, &box.min_y, &box.max_y);
@@ -85,15 +88,12 @@ static void cast_movers(void *argument, size_t part, size_t first, size_t end) {
 static narc_status check_arguments(const narc_index *index, const narc_shapes *shapes, const narc_bodies *bodies,
                                    const narc_bodies *movers, const narc_index_query *search,
                                    const narc_impact *out_rows, size_t capacity, narc_error *error) {
-    size_t all = 0, all_movers = 0;
+    size_t all_movers = 0;
     if (!index || !shapes || !bodies || !movers)
         return narc_fail_missing(error, !index ? "index" : !shapes ? "shapes" : !bodies ? "bodies" : "movers");
-    if (bodies->count != index->count)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, (double)bodies->count,
-                         "%zu bodies, but the index has %zu boxes", bodies->count, index->count);
     narc_status status = narc_check_reserved(search->reserved, 4, "search", error);
     if (status == NARC_OK)
-        status = narc_check_bodies(shapes, bodies, 0, &all, search->workers, error);
+        status = narc_check_indexed(index, bodies, error);
     if (status == NARC_OK)
         status = narc_check_bodies(shapes, movers, 0, &all_movers, search->workers, error);
     if (status == NARC_OK && movers->count > 0 && !out_rows)

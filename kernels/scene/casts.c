@@ -18,9 +18,6 @@
 #include "simd/doubles.h"
 #include "simd/simd.h"
 
-/* Of a body that turns, by default: the part of the smaller bounding radius that a hit may be away from the target. */
-#define TURNING_TOLERANCE 0x1p-10
-
 /* What a separation without turning may be away from the target, of a distance and both radii: a quarter of what
  * rounding may do to it (NARC_ERROR_BOUND). */
 #define ROUNDING 0x1p-21
@@ -97,8 +94,9 @@ INLINE vl meet_circles(spot apart, spot motion, vd reach, vd *out_start, vd *out
     const vd half = d_sqrt(d_select(d_lt(height, zero), zero, height));
     const vl rests = d_le(square, zero), touch = d_le(excess, zero);
     const vd divisor = d_select(rests, one, square), first = (-along - half) / divisor, last = (half - along) / divisor;
-    const vd start = d_select(touch | rests, zero, first), end = d_select(rests, one, d_min(last, one));
-    const vl meet = ~d_lt(height, zero) & d_le(start, end) & d_le(zero, last) & (touch | d_le(zero, first));
+    const vl ahead = ~touch & ~rests & d_lt(zero, first); /* not where they are all but as near now */
+    const vd start = d_select(ahead, first, zero), end = d_select(rests, one, d_min(last, one));
+    const vl meet = ~d_lt(height, zero) & d_le(start, end) & d_le(zero, last) & (touch | d_lt(along, zero));
     *out_start = start;
     *out_end = end;
     return (rests & touch) | (~rests & meet);
@@ -120,7 +118,7 @@ INLINE void begin_half(narc_casts *casts, size_t k, int h, struct outline outlin
     const vd smaller = d_min(d_of_floats(casts->side[0].scale + k) * d_of_floats(sizes[0]),
                              d_of_floats(casts->side[1].scale + k) * d_of_floats(sizes[1]));
     const vd given = d_set((double)casts->tolerance),
-             enough = d_select(d_lt(zero, given), given, d_set(TURNING_TOLERANCE) * smaller);
+             enough = d_select(d_lt(zero, given), given, d_set(NARC_TURNING_TOLERANCE) * smaller);
     d_store(casts->end + k, end);
     d_store(casts->enough + k, d_select(turns, enough, d_set(ROUNDING) * (radius_a + radius_b + d_abs(target))));
     d_put_floats(casts->time + k, round_down(start));

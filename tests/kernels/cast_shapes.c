@@ -221,8 +221,8 @@ TEST(test_errors) {
     REFUSED(NARC_ERROR_ARGUMENT, "index is NULL", NULL, store, &bodies, &movers, &motions, NULL, NULL);
     REFUSED(NARC_ERROR_ARGUMENT, "shapes is NULL", s.index, NULL, &bodies, &movers, &motions, NULL, NULL);
     REFUSED(NARC_ERROR_ARGUMENT, "movers is NULL", s.index, store, &bodies, NULL, &motions, NULL, NULL);
-    REFUSED(NARC_ERROR_ARGUMENT, "9 bodies, but the index has 10", s.index, store, &fewer, &movers, &motions, NULL,
-            NULL);
+    REFUSED(NARC_ERROR_ARGUMENT, "9 bodies, but the index was built from 10 boxes", s.index, store, &fewer, &movers,
+            &motions, NULL, NULL);
     REFUSED(NARC_ERROR_ARGUMENT, "bodies.reserved[1]", s.index, store, &bodies, &wrong, &motions, NULL, NULL);
     REFUSED(NARC_ERROR_ARGUMENT, "tolerance", s.index, store, &bodies, &movers, &motions, NULL,
             (&(narc_cast_options){.tolerance = -1}));
@@ -295,6 +295,48 @@ static struct body at(double x, double y, double angle, uint32_t shape) {
 }
 
 #define EXPECT(found, expected, tolerance) assert_true(fabs((double)(found) - (expected)) <= (tolerance))
+
+/* Whether bounding circles that touch overlap is a matter of rounding: what goes through the other body hits it. */
+TEST(test_circles_that_touch) {
+    struct test_random random = test_random_named("circles that touch");
+    struct body a = at(0, 0, 0, 0), b = at(1.4142217590853303, 0.00011313774096818694, 0, 0);
+    a.scale = b.scale = 0.5f;
+    for (size_t k = 0; k < test_trials(20000); k++) {
+        const struct motion motion = {(float)(2 * b.x), (float)(2 * b.y), k % 3 == 2 ? 0.1f : 0};
+        const narc_impact impact = cast_boxes(a, b, motion, NULL);
+        assert_true(impact.count == NARC_CAST_HIT && impact.fraction < 0.5f);
+        const double angle = random_between(&random, 0, 6.3);
+        b.x = 1.4142217590853303 * cos(angle) * (1 + 1e-16 * random_between(&random, -4, 4));
+        b.y = 1.4142217590853303 * sin(angle);
+    }
+}
+
+/* A body that turns hits what is as near as the tolerance says: whatever boxes the index has. */
+TEST(test_loose_boxes) {
+    narc_shapes *const store = empty_store();
+    store_shape(store, box_of(1, 1, 0));
+    const narc_body body = {0, 0, 1, 0, 1, 0}, mover = {-5, 1.3, 1, 0, 1, 0};
+    const narc_bodies bodies = narc_view_bodies(&body, 1), movers = narc_view_bodies(&mover, 1);
+    const float x = 10, angle = 0.001f;
+    const narc_motions motions = {.x = {&x, 0}, .angle = {&angle, 0}};
+    const narc_cast_options options = {.tolerance = 0.5f};
+    narc_box box;
+    narc_impact impact[2];
+    narc_index *index;
+    narc_error error;
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    expect_ok(narc_compute_boxes(store, &bodies, NULL, &box, &error), &error);
+    for (int k = 0; k < 2; k++) {
+        box.max_y += (float)k;
+        expect_ok(narc_build_index(index, &box, 1, NULL, &error), &error);
+        expect_ok(narc_cast_shapes(index, store, &bodies, &movers, &motions, NULL, &options, &impact[k], 1, &error),
+                  &error);
+        assert_int_equal(impact[k].count, NARC_CAST_HIT);
+    }
+    assert_memory_equal(&impact[0], &impact[1], sizeof impact[0]);
+    narc_destroy_index(index);
+    narc_destroy_shapes(store);
+}
 
 TEST(test_known) {
     const struct body left = at(0, 0, 0, 0), right = at(10, 0, 0, 0);
