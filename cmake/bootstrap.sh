@@ -416,9 +416,7 @@ gate() {
     ctest --preset release -L slow -E '^package_meson_subproject$' || fail "tests failed in build/release"
     check bare
     check asan
-    # Some releases pack clang's sanitizers apart from clang.
-    echo 'int main(void) { return 0; }' | clang -fsanitize=thread -x c - -o build/probe 2>/dev/null ||
-        require_packages libclang-rt-dev
+    require_sanitizers
     # Thread sanitizer of older compilers wants a fixed address layout, where setting it is allowed.
     fixed=$(setarch "$(uname -m)" -R true 2>/dev/null && echo "setarch $(uname -m) -R") || fixed=
     check tsan "$fixed"
@@ -435,8 +433,16 @@ gate() {
 }
 
 # fuzz SECONDS: for each program.
+# Some releases pack clang's sanitizers apart from clang.
+require_sanitizers() {
+    mkdir -p build
+    echo 'int main(void) { return 0; }' | clang -fsanitize=thread -x c - -o build/probe 2>/dev/null ||
+        require_packages libclang-rt-dev
+}
+
 fuzz() {
     require_packages $test_packages clang clang-tidy
+    require_sanitizers
     build fuzz fuzz
     clang-tidy --quiet -p build/fuzz tests/fuzz/*.c || fail "clang-tidy has something to say"
     NARC_FUZZ_SECONDS=$1 ctest --preset fuzz || fail "a fuzzing program found something: build/fuzz/tests/fuzz/*-crash-*"
