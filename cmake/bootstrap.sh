@@ -420,7 +420,7 @@ gate() {
     # Thread sanitizer of older compilers wants a fixed address layout, where setting it is allowed.
     fixed=$(setarch "$(uname -m)" -R true 2>/dev/null && echo "setarch $(uname -m) -R") || fixed=
     check tsan "$fixed"
-    fuzz 10
+    fuzz 10 1
     skipped=
     if install_packages $lammps_packages; then
         test_lammps
@@ -440,12 +440,13 @@ require_sanitizers() {
         require_packages libclang-rt-dev
 }
 
+# Seconds for each, and the seed of random numbers; see tests/fuzz/CMakeLists.txt.
 fuzz() {
     require_packages $test_packages clang clang-tidy
     require_sanitizers
     build fuzz fuzz
     clang-tidy --quiet -p build/fuzz tests/fuzz/*.c || fail "clang-tidy has something to say"
-    NARC_FUZZ_SECONDS=$1 ctest --preset fuzz || fail "a fuzzing program found something: build/fuzz/tests/fuzz/*-crash-*"
+    NARC_FUZZ_SECONDS=$1 NARC_FUZZ_SEED=$2 ctest --preset fuzz || fail "a fuzzing program found something: build/fuzz/tests/fuzz/*-crash-*"
 }
 
 reference() {
@@ -461,7 +462,7 @@ run) run ;;
 test) test_release ;;
 gate) gate ;;
 platforms) platforms ;;
-fuzz) fuzz "${2:-60}" ;;
+fuzz) fuzz "${2:-60}" 0 ;;
 docs) reference ;;
 bench)
     shift
