@@ -59,13 +59,6 @@ static double find_misfit(const struct shape *shape) {
     return misfit;
 }
 
-static struct reference_body unit_rotation(struct reference_body body) {
-    const double length = hypot(body.cosine, body.sine);
-    body.cosine /= length;
-    body.sine /= length;
-    return body;
-}
-
 static double bounding_radius(const struct shape *shape) {
     narc_circle circle;
     assert_true(narc_compute_bounding_circle(shape->arcs, shape->count, &circle));
@@ -79,8 +72,8 @@ static void find_exact(struct corpus *corpus, size_t k) {
     const struct shape *a = &scene->shapes[scene->bodies[index_a].shape],
                        *b = &scene->shapes[scene->bodies[index_b].shape];
     struct exact_pair *pair = &corpus->pairs[k];
-    pair->a = unit_rotation(scene_reference(scene, index_a));
-    pair->b = unit_rotation(scene_reference(scene, index_b));
+    pair->a = scene_reference(scene, index_a);
+    pair->b = scene_reference(scene, index_b);
     const struct reference_gap found = reference_find_gap(&pair->a, &pair->b);
     pair->gap = found.gap;
     pair->normal_x = found.normal_x;

@@ -86,7 +86,11 @@ struct reference_body pose_shape(const struct shape *shape, const struct body *b
 }
 
 struct reference_body scene_reference(const struct scene *scene, uint32_t body) {
-    return pose_shape(&scene->shapes[scene->bodies[body].shape], &scene->bodies[body]);
+    struct reference_body placed = pose_shape(&scene->shapes[scene->bodies[body].shape], &scene->bodies[body]);
+    const double length = hypot(placed.cosine, placed.sine);
+    placed.cosine /= length;
+    placed.sine /= length;
+    return placed;
 }
 
 struct body turned_body(double angle, double scale) {

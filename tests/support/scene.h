@@ -50,7 +50,7 @@ void scene_add_two(struct scene *scene, struct body a, struct body b);
 narc_bodies scene_bodies(const struct scene *scene);
 narc_pairs scene_pairs(const struct scene *scene);
 
-/* A body for the reference. */
+/* A body for the reference, its rotation made of length 1, as the library does. */
 struct reference_body scene_reference(const struct scene *scene, uint32_t body);
 struct reference_body pose_shape(const struct shape *shape, const struct body *body);
 
