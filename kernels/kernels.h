@@ -14,6 +14,12 @@
 #include "index.h"
 #include "store.h"
 
+/* Are pairs settled before they reach the deciding formula, and do rays share their way? Without shortcuts every pair goes
+ * to it, every ray alone: the tests compare the two, bit for bit. */
+#ifndef NARC_SHORTCUTS
+#define NARC_SHORTCUTS 1
+#endif
+
 /* What a batch call works on: pairs of a body of `a` and one of `b`, by their indices or, without, by the pair's own.
  * Asked of are pairs first .. first + count - 1 of the query's selection, or of all. */
 typedef struct narc_batch {

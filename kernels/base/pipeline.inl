@@ -22,12 +22,6 @@
 #include "polygon/polygon_edges.inl"
 #include "simd/simd.h"
 
-/* Are pairs settled before they reach the deciding formula? Without shortcuts every pair goes to it: the tests compare
- * the two, bit for bit. */
-#ifndef NARC_SHORTCUTS
-#define NARC_SHORTCUTS 1
-#endif
-
 /* Answers what it can of a vector of pairs, the first of which has the number `pair`, and returns the other lanes. */
 typedef vm triage(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]);
 

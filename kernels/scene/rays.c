@@ -395,7 +395,7 @@ static void walk_together(const narc_ray_batch *batch, struct bundle *b) {
 
 /* Walks with all that are gathered. */
 static void walk(const narc_ray_batch *batch, struct bundle *b) {
-    if (b->count >= LEAST_TOGETHER)
+    if (NARC_SHORTCUTS && b->count >= LEAST_TOGETHER)
         walk_together(batch, b);
     else
         for (size_t k = 0; k < b->count; k++)
@@ -436,7 +436,7 @@ static bool gather(const narc_ray_batch *batch, const narc_box *scene, size_t k,
         rows[i] = (narc_ray_hit){.ray = (uint32_t)k};
     if (!read_ray(batch->rays, k, &ray, &fraction))
         return false;
-    const bool joins = join_first(b, &ray, &b->walks[b->count]);
+    const bool joins = NARC_SHORTCUTS && join_first(b, &ray, &b->walks[b->count]);
     if (!joins)
         walk(batch, b);
     struct walk *const w = &b->walks[b->count];
