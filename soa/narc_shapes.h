@@ -393,7 +393,8 @@ NARC_API uint32_t narc_count_uses(const narc_shapes *shapes, uint32_t shape);
 NARC_API size_t narc_count_shapes(const narc_shapes *shapes);
 
 /* The arcs of a shape as the kernels see them (single precision, widened): their number, at most NARC_MAX_ARCS, is
- * returned; 0 if there is no such shape, or it was removed. `out_arcs` may be NULL. */
+ * returned; 0 if there is no such shape, or it was removed. `out_arcs` may be NULL. They miss each other by what was
+ * rounded: of a shape further than some 20 times its size from its own origin narc_validate_arcs() may refuse them. */
 NARC_API size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_arcs);
 
 /* The flags of a shape, 0 if there is no such shape. */
