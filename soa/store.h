@@ -35,7 +35,7 @@ typedef struct narc_shape_header {
     uint32_t first_record; /* index into narc_shapes.records */
     /* Four bytes that the kernels read as one number, `count` its lowest byte:
      *   count          arcs as stored, 2 .. NARC_MAX_ARCS
-     *   first_arc      the caller's arc that is stored first
+     *   first_arc      the caller's arc that is stored first, and NARC_PIECE_... for pieces of chains
      *   flags          NARC_SHAPE_..., and in the upper half the size class
      *   extent_ratio   The extent (the largest |centre| + radius) is at most this many bounding radii. 255: it is more,
      *                  or the arcs join worse than NARC_MAX_MISFIT; then the kernels prove nothing and go by the
@@ -53,6 +53,20 @@ typedef struct narc_shape_header {
     float bound_x, bound_y, bound_radius;
     float inner_x, inner_y, inner_radius;
 } narc_shape_header;
+
+/* Pieces of chains, bits of first_arc:
+ *   NARC_PIECE_RUN      A convex run of a chain, closed far behind: of the caller's arcs 0 ... count - 1 the last four are
+ *                       corners of that closure, and arc 0 and arc count - 5 corners that turn by next to nothing, where
+ *                       the run ends. What touches lies on arcs 1 ... count - 6 or edges 1 ... count - 5; all else is
+ *                       no contact. All of the header is that of the closed shape, which is a shape like any other.
+ *   NARC_PIECE_CONCAVE  One record: an arc with the solid outside its circle. Its radius is negative, or -0 for the
+ *                       bottom of a valley; `start` and `end` are the outward normals (they point to the centre) at its
+ *                       ends, so that end lies counter-clockwise of start by less than half a turn, and so a point of
+ *                       the arc is centre + radius * normal. The circle around it is that of the arc alone, the inner
+ *                       radius is -infinity, the extent ratio that of centre and radius. */
+#define NARC_PIECE_RUN     0x40u
+#define NARC_PIECE_CONCAVE 0x80u
+#define NARC_FIRST_ARC     0x3fu
 
 /* The upper half of a shape's flags is the class of its extent, from 2^(5 class - 32) up to 32 times that, the last one
  * open: up to 2^48 all that NARC_MAX_BOUND_RADIUS lets through. A straight part shorter than 2^(5 class - 47), between

@@ -32,7 +32,7 @@ INLINE struct headers load_headers(const narc_shape_header *headers, const int32
 
 INLINE vi get_arc_count(vi info) { return vi_and(info, vi_set(0xff)); }
 
-INLINE vi get_first_arc(vi info) { return vi_and(vi_shift_right(info, 8), vi_set(0xff)); }
+INLINE vi get_first_arc(vi info) { return vi_and(vi_shift_right(info, 8), vi_set(NARC_FIRST_ARC)); }
 
 INLINE vm has_flag(vi info, int flag) { return vi_lt(vi_set(0), vi_and(info, vi_set(flag << 16))); }
 
