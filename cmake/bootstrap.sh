@@ -420,7 +420,7 @@ gate() {
     # Thread sanitizer of older compilers wants a fixed address layout, where setting it is allowed.
     fixed=$(setarch "$(uname -m)" -R true 2>/dev/null && echo "setarch $(uname -m) -R") || fixed=
     check tsan "$fixed"
-    fuzz 10 1
+    fuzz 10 1 "$fixed" # addresses, which fuzzers learn from, alike from run to run
     skipped=
     if install_packages $lammps_packages; then
         test_lammps
@@ -432,7 +432,6 @@ gate() {
     say "all tests passed$skipped"
 }
 
-# fuzz SECONDS: for each program.
 # Some releases pack clang's sanitizers apart from clang.
 require_sanitizers() {
     mkdir -p build
@@ -440,13 +439,13 @@ require_sanitizers() {
         require_packages libclang-rt-dev
 }
 
-# Seconds for each, and the seed of random numbers; see tests/fuzz/CMakeLists.txt.
+# Seconds for each, the seed of random numbers, and a command to run them by; see tests/fuzz/CMakeLists.txt.
 fuzz() {
     require_packages $test_packages clang clang-tidy
     require_sanitizers
     build fuzz fuzz
     clang-tidy --quiet -p build/fuzz tests/fuzz/*.c || fail "clang-tidy has something to say"
-    NARC_FUZZ_SECONDS=$1 NARC_FUZZ_SEED=$2 ctest --preset fuzz || fail "a fuzzing program found something: build/fuzz/tests/fuzz/*-crash-*"
+    NARC_FUZZ_SECONDS=$1 NARC_FUZZ_SEED=$2 ${3:-} ctest --preset fuzz || fail "a fuzzing program found something: build/fuzz/tests/fuzz/*-crash-*"
 }
 
 reference() {
