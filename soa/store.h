@@ -66,7 +66,14 @@ typedef struct narc_shape_header {
  *                       radius is -infinity, the extent ratio that of centre and radius. */
 #define NARC_PIECE_RUN     0x40u
 #define NARC_PIECE_CONCAVE 0x80u
+#define NARC_PIECES        (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)
 #define NARC_FIRST_ARC     0x3fu
+
+/* Is a feature, as rows have it, one that may touch? Of a run those of its closure may not. */
+static inline bool narc_touches(const narc_shape_header *header, unsigned feature) {
+    const unsigned number = feature & (NARC_FEATURE_EDGE - 1), behind = feature & NARC_FEATURE_EDGE ? 5 : 6;
+    return !(header->first_arc & NARC_PIECE_RUN) || (number > 0 && number + behind <= header->count);
+}
 
 /* The upper half of a shape's flags is the class of its extent, from 2^(5 class - 32) up to 32 times that, the last one
  * open: up to 2^48 all that NARC_MAX_BOUND_RADIUS lets through. A straight part shorter than 2^(5 class - 47), between
