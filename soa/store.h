@@ -66,7 +66,7 @@ typedef struct narc_shape_header {
  *                       radius is -infinity, the extent ratio that of centre and radius. */
 #define NARC_PIECE_RUN     0x40u
 #define NARC_PIECE_CONCAVE 0x80u
-#define NARC_PIECES        (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)
+#define NARC_PIECE_ANY     (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)
 #define NARC_FIRST_ARC     0x3fu
 
 /* Is a feature, as rows have it, one that may touch? Of a run those of its closure may not. */

@@ -83,9 +83,8 @@ INLINE bool may_touch(const struct scene *scene, int arc, place u) {
     const narc_shape_header *const header = scene->body.header;
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place own = turn_to_shape(&scene->body, u);
-    const bool held =
-        header->count == 1 || (find_cross((place){(double)stored->start_x, (double)stored->start_y}, own) >= 0 &&
-                               find_cross(own, (place){(double)stored->end_x, (double)stored->end_y}) >= 0);
+    const bool held = find_cross((place){(double)stored->start_x, (double)stored->start_y}, own) >= 0 &&
+                      find_cross(own, (place){(double)stored->end_x, (double)stored->end_y}) >= 0;
     return held && narc_touches(header, find_feature_number(header, arc, false)) &&
            holds_normal(&scene->arc, (place){-u.x, -u.y});
 }
@@ -129,8 +128,7 @@ INLINE void compare_end(const struct scene *scene, place normal, struct nearest 
         const place start = {(double)arc->start_x, (double)arc->start_y},
                     end = {(double)arc->end_x, (double)arc->end_y};
         const double length = sqrt(find_dot(u, u));
-        const bool held =
-            length > 0 && (body->header->count == 1 || (find_cross(start, u) >= 0 && find_cross(u, end) >= 0));
+        const bool held = length > 0 && find_cross(start, u) >= 0 && find_cross(u, end) >= 0;
         const double gap = (held ? length : find_dot(u, start)) - get_radius(scene, k);
         if (gap <= found.separation)
             continue;
