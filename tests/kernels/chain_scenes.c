@@ -95,7 +95,8 @@ static double find_ends(const struct reference_body *body, const struct bowl *bo
 /* ------------------------------------------------------------------------------------------------ casts */
 
 static struct way make_way(struct test_random *random, const struct shape *shape, bool turns) {
-    struct way way = {.shape = shape, .body = turned_body(random_between(random, -3, 3), random_between(random, 0.3, 1.5))};
+    struct way way = {.shape = shape,
+                      .body = turned_body(random_between(random, -3, 3), random_between(random, 0.3, 1.5))};
     way.body.x = random_between(random, -1.5, 1.5);
     way.body.y = random_between(random, -1.5, 1.5);
     round_position(&way.body, NARC_FLOAT64);
@@ -107,16 +108,20 @@ static struct way make_way(struct test_random *random, const struct shape *shape
 
 /* The ground is the only body of its set, and A or B of the pair. */
 static narc_impact cast(narc_shapes *store, const struct bowl *bowl, const struct way *way, bool ground_first) {
-    const double zero = 0;
     const float one = 1, nothing = 0;
     const narc_bodies ground = {.count = 1,
-                                .x = NARC_POSITIONS(&bowl->entry.x, 0),
-                                .y = NARC_POSITIONS(&bowl->entry.y, 0),
+                                .x = {&bowl->entry.x, 0, NARC_FLOAT64},
+                                .y = {&bowl->entry.y, 0, NARC_FLOAT64},
                                 .cosine = {&one, 0},
                                 .sine = {&nothing, 0},
                                 .shape = {&bowl->entry.shape, 0}};
-    (void)zero;
-    const narc_bodies body = narc_view_bodies(&way->body, 1);
+    const narc_bodies body = {.count = 1,
+                              .x = {&way->body.x, 0, NARC_FLOAT64},
+                              .y = {&way->body.y, 0, NARC_FLOAT64},
+                              .cosine = {&way->body.cosine, 0},
+                              .sine = {&way->body.sine, 0},
+                              .scale = {&way->body.scale, 0},
+                              .shape = {&way->body.shape, 0}};
     const narc_motions motion = {.x = {&way->motion_x, 0}, .y = {&way->motion_y, 0}, .angle = {&way->angle, 0}};
     const narc_pairs pairs = {.count = 1, .other_bodies = ground_first ? &body : &ground};
     narc_impact row;
@@ -126,3 +131,115 @@ static narc_impact cast(narc_shapes *store, const struct bowl *bowl, const struc
               &error);
     return row;
 }
+
+/* How much of a body may be beyond what it is told to touch: the tolerance of what turns, and samples that miss. */
+static double find_room(const struct way *way) { return (double)way->body.scale * (way->angle == 0 ? 2e-5 : 4e-3); }
+
+/* Until what time is nothing of a body beyond the bowl, or an end of the bowl in the body? At most `end`. */
+static double find_free_time(const struct way *way, const struct bowl *bowl, double end, double room) {
+    for (int k = 0; k <= TIMES; k++) {
+        const struct reference_body body = place(way, end * k / TIMES);
+        if (find_depth(&body, bowl) > room || find_ends(&body, bowl) < -room)
+            return end * k / TIMES;
+    }
+    return INFINITY;
+}
+
+/* A hit touches, and nothing did before; without turning ends of the arc are what touches chains beside it, and count
+ * only for where they are passed. */
+static void check_cast(const struct way *way, const struct bowl *bowl, const narc_impact *row, bool ground_first) {
+    const double room = find_room(way), time = row->count == NARC_CAST_MISS ? 1 : (double)row->fraction;
+    const struct reference_body then = place(way, time);
+    const double free_time = find_free_time(way, bowl, time, room);
+    if (row->count != NARC_CAST_HIT) {
+        if (way->angle == 0 && free_time < INFINITY) { /* it went past an end before */
+            const struct reference_body at = place(way, free_time);
+            assert_true(find_ends(&at, bowl) < 0 || find_depth(&at, bowl) <= room);
+        } else {
+            assert_true(free_time == INFINITY);
+        }
+        return;
+    }
+    const double depth = find_depth(&then, bowl), ends = find_ends(&then, bowl);
+    if (time == 0)
+        return;
+    if (way->angle != 0)
+        assert_true(free_time == INFINITY && (fabs(depth) <= room || fabs(ends) <= room));
+    else
+        EXPECT(depth, 0, room);
+    const double x = ground_first ? (double)row->point_x : (double)row->point_x + then.x,
+                 y = ground_first ? (double)row->point_y : (double)row->point_y + then.y;
+    EXPECT(hypot(x, y), bowl->radius, 2 * room + 1e-5);
+    const double sign = ground_first ? -1 : 1;
+    if (row->radius_a < 0 || row->radius_b < 0) { /* not an end */
+        EXPECT(sign * (double)row->normal_x, x / bowl->radius, 1e-3);
+        EXPECT(sign * (double)row->normal_y, y / bowl->radius, 1e-3);
+    }
+}
+
+TEST(test_casts) {
+    struct test_random random = test_random_named("bowls");
+    const size_t trials = test_trials(2000);
+    size_t hits = 0, misses = 0;
+    for (size_t k = 0; k < trials; k++) {
+        narc_shapes *const store = empty_store();
+        const enum family family = (enum family)random_below(&random, FAMILY_COUNT);
+        struct shape shape = make_shape(&random, family);
+        const double low = random_between(&random, -3, 3);
+        const struct bowl bowl =
+            add_bowl(store, random_between(&random, 4, 6), low, low + random_between(&random, 0.2, 1.9));
+        struct way way = make_way(&random, &shape, k % 2 == 1);
+        way.body.shape = store_shape(store, shape);
+        const struct reference_body start = place(&way, 0);
+        if (find_depth(&start, &bowl) < -0.01 && find_ends(&start, &bowl) > 0.01) {
+            const bool ground_first = k % 4 < 2;
+            const narc_impact row = cast(store, &bowl, &way, ground_first);
+            check_cast(&way, &bowl, &row, ground_first);
+            hits += row.count == NARC_CAST_HIT;
+            misses += row.count == NARC_CAST_MISS;
+        }
+        narc_destroy_shapes(store);
+    }
+    assert_true(hits > trials / 16 && misses > trials / 16);
+}
+
+/* ------------------------------------------------------------------------------------------------ points */
+
+TEST(test_points) {
+    struct test_random random = test_random_named("points and bowls");
+    const size_t trials = test_trials(20000);
+    size_t found = 0;
+    for (size_t k = 0; k < trials; k++) {
+        narc_shapes *const store = empty_store();
+        const double low = random_between(&random, -3, 3), high = low + random_between(&random, 0.2, 1.9);
+        const struct bowl bowl = add_bowl(store, random_between(&random, 1, 6), low, high);
+        const float one = 1, nothing = 0;
+        const narc_bodies ground = {.count = 1,
+                                    .x = {&bowl.entry.x, 0, NARC_FLOAT64},
+                                    .y = {&bowl.entry.y, 0, NARC_FLOAT64},
+                                    .cosine = {&one, 0},
+                                    .sine = {&nothing, 0},
+                                    .shape = {&bowl.entry.shape, 0}};
+        const double x = random_between(&random, -8, 8), y = random_between(&random, -8, 8);
+        const narc_points points = {.count = 1, .x = {&x, 0, NARC_FLOAT64}, .y = {&y, 0, NARC_FLOAT64}};
+        narc_distance row;
+        narc_error error;
+        expect_ok(narc_find_distances(store, &ground, &points, (narc_index_column){0}, NULL, &row, &error), &error);
+        if (holds(&bowl, x, y)) {
+            const double away = hypot(x, y);
+            found++;
+            assert_int_equal(row.count, 1);
+            EXPECT(row.separation, bowl.radius - away, 4e-6 * (away + bowl.radius));
+            EXPECT(row.normal_x, -x / away, 4e-6 * (1 + bowl.radius / away));
+            EXPECT((double)row.place_x + bowl.entry.x, x / away * bowl.radius,
+                   1e-5 * bowl.radius * (1 + bowl.radius / away));
+            EXPECT(row.radius, -bowl.radius, 1e-6 * bowl.radius);
+        } else if (!holds(&(struct bowl){.low = low - 0.001, .high = high + 0.001}, x, y)) {
+            assert_int_equal(row.count, 0);
+        }
+        narc_destroy_shapes(store);
+    }
+    assert_true(found > trials / 8);
+}
+
+TEST_MAIN("chain_scenes")
