@@ -3,9 +3,9 @@
  * concave_casts.c - the kernel of one time of impact with a concave arc of a chain.
  *
  * With u from the arc's centre to that of an arc of the other body, R and r their radii, the bodies are R - |u| - r
- * apart there, if u lies in both sectors; else where an end of the concave arc is nearest (MANY minima, of which the
- * least counts). What does not turn is found at once: u moves along a line, and leaves the circle of R - r - target at
- * the larger root. What turns advances by what is left, divided by the speed of the fastest point (Mirtich 1996).
+ * apart there, if u lies in both sectors; else an end of the concave arc is nearest. What does not turn is found at
+ * once: u moves along a line, and leaves the circle of R - r - target at the larger root. What turns advances by what is
+ * left, divided by the speed of the fastest point (Mirtich 1996).
  */
 #include <math.h>
 #include <stdbool.h>
@@ -246,7 +246,7 @@ INLINE int cast_turning(const narc_shapes *shapes, narc_casts *casts, size_t slo
 /* Of a cast that has begun: the whole of it. Returns what becomes of it; time and contact are then the answer's. */
 int NARC_NAMED(cast_concave)(const narc_shapes *shapes, narc_casts *casts, size_t slot) {
     const int side = is_concave(shapes, casts, slot, 0) ? 0 : 1;
-    if (is_concave(shapes, casts, slot, 1 - side))
+    if (!NARC_PIECES || is_concave(shapes, casts, slot, 1 - side))
         return NARC_CAST_MISS;
     return casts->turning[slot] > 0 ? cast_turning(shapes, casts, slot, side)
                                     : cast_straight(shapes, casts, slot, side);

@@ -158,7 +158,7 @@ INLINE void put_nothing(narc_distance *row, size_t point) { *row = (narc_distanc
 
 /* Takes rows back whose point is nearest to what closes a run behind (store.h). */
 INLINE void take_back(const narc_shapes *shapes, const struct question *item, int count) {
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; NARC_PIECES && k < count; k++) {
         narc_distance *const row = (narc_distance *)(void *)item[k].row;
         if (!narc_touches(&shapes->headers[item[k].shape], row->feature))
             put_nothing(row, item[k].point);
@@ -242,7 +242,7 @@ INLINE void ask(const narc_point_batch *batch, size_t point, size_t body, narc_d
         put_nothing(row, point);
         return;
     }
-    if (frame.header->first_arc & NARC_PIECE_CONCAVE) {
+    if (has_any_mark(&frame, NARC_PIECE_CONCAVE)) {
         answer_concave(&frame, load_point(batch->points, point), (uint32_t)point, (uint32_t)body, row);
         return;
     }
@@ -372,7 +372,7 @@ INLINE void look_at_body(struct search *search, uint32_t body) {
     struct body_frame frame;
     float x, y;
     if (body == search->ignored || !load_body_frame(search->batch->shapes, search->batch->bodies, body, &frame) ||
-        narc_is_piece(frame.header) || !place_point(&frame, search->point, &x, &y))
+        has_any_mark(&frame, NARC_PIECE_RUN | NARC_PIECE_CONCAVE) || !place_point(&frame, search->point, &x, &y))
         return;
     const float reach = (float)frame.scale * frame.header->bound_radius + search->limit;
     if (reach < 0 || reach * reach < (x * x + y * y) * shrink)
