@@ -117,7 +117,7 @@ static void add_movers(struct test_random *random, struct ground *g, size_t coun
     struct scene *scene = &g->scene;
     for (size_t k = 0; k < count; k++) {
         const struct shape shape = make_body(random);
-        const narc_arc *near = &g->arcs[random_below(random, g->arc_count)];
+        const narc_arc *near = &g->arcs[1 + random_below(random, g->arc_count - 2)];
         const double angle = random_between(random, near->start, near->end), scale = random_between(random, 0.1, 0.8);
         const double away = near->radius + scale * random_between(random, 0.2, 1.2);
         struct body body = turned_body(random_between(random, -PI, PI), scale);
