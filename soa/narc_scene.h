@@ -249,6 +249,8 @@ typedef struct narc_impact {
  * and none below the target earlier; a miss has none below the target (up to the same rounding). Where the least
  * separation lies within target .. target + tolerance both are lawful. Turning counts for what it moves: not for a circle
  * about its position.
+ * Pieces of chains (narc_chains.h) are hit from the air, within their ends, where another piece goes on; a concave arc by
+ * what turns at its ends, too.
  * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance below 0), NARC_ERROR_CAPACITY. Allocates nothing.
  * Source: conservative advancement (Mirtich 1996) by bounds of their own: docs/algorithm.md, section 13. */
 NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,
@@ -306,7 +308,7 @@ typedef struct narc_distance {
  *   out_rows   room for points->count rows
  * With D the distance between point and position, E the body's extent: the separation is within
  * NARC_ERROR_BOUND * (D + E) of the exact one, the place so near to the outline, and no other is nearer by more than
- * that. Broken bodies have no answer.
+ * that. Broken bodies have no answer, and a piece of a chain has one only where the place lies on it.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_INDEX (a body or a shape that does not
  * exist), and those for NARC_ISA. Allocates nothing. Thread-safe.
  * Source: docs/algorithm.md, section 14. */
@@ -329,7 +331,8 @@ typedef struct narc_nearest_options {
 } narc_nearest_options;
 
 /* The bodies nearest to each point: the least (separation, body), or the first `most` of them in this order. Rows are
- * those of narc_find_distances().
+ * those of narc_find_distances(). Pieces of chains are not found: narc_query_index() with a box about the point finds
+ * them, narc_find_distances() how far they are.
  *   index, bodies   as in narc_cast_rays(); a body whose box does not hold it may not be found
  *   options         NULL: defaults, which are the nearest body at any distance
  *   out_rows        room for `capacity` rows, at least points->count * most

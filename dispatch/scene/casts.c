@@ -61,6 +61,7 @@ static void open_slots(const narc_cast_job *job, struct slots *slots) {
     slots->batch.first = 0;
     slots->batch.count = slots->batch.asked = NARC_CAST_SLOTS;
     slots->batch.manifolds = false;
+    slots->batch.whole = true;
     slots->casts.target = job->target;
     slots->casts.tolerance = job->tolerance;
 }
@@ -175,6 +176,23 @@ static void load_pair(const narc_cast_job *job, struct slots *slots, size_t slot
     slots->hint[slot] = 0;
 }
 
+/* Is a shape of this slot a piece of one of these kinds? */
+static bool has_piece(const narc_cast_job *job, const struct slots *slots, size_t slot, unsigned kinds) {
+    const narc_shape_header *const headers = job->batch->shapes->headers;
+    const struct narc_cast_side *const side = slots->casts.side;
+    return NARC_PIECES &&
+           ((headers[side[0].shape[slot]].first_arc | headers[side[1].shape[slot]].first_arc) & kinds) != 0;
+}
+
+/* Does what touches belong to a run's closure? */
+static bool is_behind(const narc_cast_job *job, const struct slots *slots, size_t slot) {
+    const narc_shape_header *const headers = job->batch->shapes->headers;
+    const struct narc_cast_side *const side = slots->casts.side;
+    const unsigned feature = slots->casts.contact[slot].feature;
+    return !narc_touches(&headers[side[0].shape[slot]], feature & 0xff) ||
+           !narc_touches(&headers[side[1].shape[slot]], feature >> 8);
+}
+
 static const narc_kernel_table *choose_kernels(const narc_cast_job *job, size_t count) {
     return count <= FEW ? NARC_KERNELS_FOR_FEW(NARC_BUILT_scalar, job->kernels) : job->kernels;
 }
@@ -190,8 +208,16 @@ static size_t begin_pairs(const narc_cast_job *job, struct slots *slots, size_t 
         next += count;
         choose_kernels(job, count)->begin(job->batch->shapes, &slots->casts, first, first + count);
         for (size_t slot = first; slot < first + count; slot++) {
-            const int outcome = slots->casts.outcome[slot];
+            int outcome = slots->casts.outcome[slot];
             *skipped += outcome == NARC_CAST_BROKEN;
+            if (outcome == NARC_CAST_GOES_ON && has_piece(job, slots, slot, NARC_PIECE_CONCAVE)) {
+                outcome = job->kernels->cast_concave(job->batch->shapes, &slots->casts, slot);
+                if (outcome != NARC_CAST_MISS)
+                    write_row(job, slots, slot, outcome);
+                else
+                    write_miss(job, slots->pair[slot]);
+                continue;
+            }
             if (outcome != NARC_CAST_GOES_ON || is_late(job, slots->pair[slot], slots->casts.time[slot]))
                 write_miss(job, slots->pair[slot]);
             else if (slots->count++ < slot)
@@ -204,15 +230,18 @@ static size_t begin_pairs(const narc_cast_job *job, struct slots *slots, size_t 
 /* Takes all pairs under way a step further. Those that are done make room. */
 static void advance_pairs(const narc_cast_job *job, struct slots *slots, size_t *skipped) {
     const narc_kernel_table *const kernels = choose_kernels(job, slots->count);
-    const narc_rows rows = {(char *)slots->casts.contact, sizeof slots->casts.contact[0]};
+    const bool pieces = NARC_PIECES && job->batch->shapes->piece_count > 0;
     size_t unused = 0;
+    const narc_rows rows = {
+        .base = (char *)slots->casts.contact, .stride = sizeof slots->casts.contact[0], .further = &unused};
     kernels->place(&slots->casts, slots->count);
     kernels->contact(&slots->batch, 0, slots->count, &unused, &rows);
     kernels->advance(job->batch->shapes, &slots->casts, slots->count);
     for (size_t slot = slots->count; slot-- > 0;) {
         const narc_casts *const c = &slots->casts;
         const bool broken = c->contact[slot].count == 0;
-        const int outcome = broken ? NARC_CAST_MISS : c->outcome[slot];
+        const bool behind = pieces && c->outcome[slot] == NARC_CAST_HIT && is_behind(job, slots, slot);
+        const int outcome = broken || behind ? NARC_CAST_MISS : c->outcome[slot];
         const size_t pair = slots->pair[slot];
         *skipped += broken;
         if (outcome == NARC_CAST_GOES_ON && !is_late(job, pair, c->back[slot] >= 0 ? c->back[slot] : c->time[slot]))

@@ -24,6 +24,8 @@ struct call {
     struct rows *rows;         /* the others: the same */
     struct queue *edges;       /* manifolds: pairs that may have a second point; else NULL */
     struct box_queue *boxes;   /* pairs of boxes and of capsules that wait (box/box_detour.inl), or NULL */
+    bool pieces;               /* are there pieces of chains? */
+    struct queue *concave;     /* contacts of stores with pieces: where pairs with a concave arc wait; else NULL */
 };
 
 /* One of two places, without a branch: which lanes have an answer can't be foreseen. */

@@ -25,6 +25,7 @@
 #include "index.h"
 #include "kernels.h"
 #include "scene/body_frame.inl"
+#include "scene/concave.inl"
 #include "simd/simd.h"
 
 /* ------------------------------------------------------------------------------------------------ separations */
@@ -153,6 +154,39 @@ INLINE struct nearest find_nearest_place(const narc_record *records, struct ring
     return best;
 }
 
+INLINE void put_nothing(narc_distance *row, size_t point) { *row = (narc_distance){.point = (uint32_t)point}; }
+
+/* Takes rows back whose point is nearest to what closes a run behind (store.h). */
+INLINE void take_back(const narc_shapes *shapes, const struct question *item, int count) {
+    for (int k = 0; NARC_PIECES && k < count; k++) {
+        narc_distance *const row = (narc_distance *)(void *)item[k].row;
+        if (!narc_touches(&shapes->headers[item[k].shape], row->feature))
+            put_nothing(row, item[k].point);
+    }
+}
+
+/* The row of a point and a concave arc, if the line from the centre through the point meets the arc. */
+INLINE void answer_concave(const struct body_frame *frame, place point, uint32_t number, uint32_t body,
+                           narc_distance *row) {
+    const struct concave_arc arc = place_concave(frame);
+    const place from = {point.x - frame->position.x, point.y - frame->position.y};
+    const place u = {from.x - arc.center.x, from.y - arc.center.y};
+    const double length = sqrt(find_dot(u, u));
+    const place normal = length > 0 ? (place){-u.x / length, -u.y / length} : find_middle_normal(&arc);
+    put_nothing(row, number);
+    if (!holds_normal(&arc, normal))
+        return;
+    *row = (narc_distance){.point = number,
+                           .body = body,
+                           .count = 1,
+                           .separation = (float)(arc.radius - length),
+                           .normal_x = (float)normal.x,
+                           .normal_y = (float)normal.y,
+                           .place_x = (float)(arc.center.x - arc.radius * normal.x),
+                           .place_y = (float)(arc.center.y - arc.radius * normal.y),
+                           .radius = -(float)arc.radius};
+}
+
 /* Writes the rows of those that wait. The lanes behind the last one repeat the first, and its row. */
 static void answer(const narc_shapes *shapes, struct questions *waiting) {
     const narc_record *records = shapes->records;
@@ -166,6 +200,7 @@ static void answer(const narc_shapes *shapes, struct questions *waiting) {
         shape[k] = (int32_t)waiting->item[item[k]].shape;
         row[k] = waiting->item[item[k]].row;
     }
+    const int count = waiting->count;
     waiting->count = 0;
     v_rows(&waiting->item[0].x, sizeof waiting->item[0], item, pose_words);
     v_rows(&waiting->item[0].scale, sizeof waiting->item[0], item, words);
@@ -194,9 +229,8 @@ static void answer(const narc_shapes *shapes, struct questions *waiting) {
     v_put_rows(row, 16, rest);
     for (int k = 0; k < V_WIDTH; k++)
         memcpy(row[k] + 32, &radius[k], sizeof radius[k]);
+    take_back(shapes, waiting->item, count);
 }
-
-INLINE void put_nothing(narc_distance *row, size_t point) { *row = (narc_distance){.point = (uint32_t)point}; }
 
 /* Sees to it that the row of a point and a body is written, now or when others have come. */
 INLINE void ask(const narc_point_batch *batch, size_t point, size_t body, narc_distance *row,
@@ -206,6 +240,10 @@ INLINE void ask(const narc_point_batch *batch, size_t point, size_t body, narc_d
     if (!load_body_frame(batch->shapes, batch->bodies, body, &frame) ||
         !place_point(&frame, load_point(batch->points, point), &x, &y)) {
         put_nothing(row, point);
+        return;
+    }
+    if (has_any_mark(&frame, NARC_PIECE_CONCAVE)) {
+        answer_concave(&frame, load_point(batch->points, point), (uint32_t)point, (uint32_t)body, row);
         return;
     }
     waiting->item[waiting->count++] = (struct question){x,
@@ -334,7 +372,7 @@ INLINE void look_at_body(struct search *search, uint32_t body) {
     struct body_frame frame;
     float x, y;
     if (body == search->ignored || !load_body_frame(search->batch->shapes, search->batch->bodies, body, &frame) ||
-        !place_point(&frame, search->point, &x, &y))
+        has_any_mark(&frame, NARC_PIECE_RUN | NARC_PIECE_CONCAVE) || !place_point(&frame, search->point, &x, &y))
         return;
     const float reach = (float)frame.scale * frame.header->bound_radius + search->limit;
     if (reach < 0 || reach * reach < (x * x + y * y) * shrink)
