@@ -65,6 +65,17 @@ static inline bool narc_is_segment(const narc_outline *outline) {
 /* The point of the outline furthest from (x, y), and its distance. */
 double narc_find_farthest(const narc_outline *outline, double x, double y, narc_point *out_point);
 
+/* Integrals over a region: 1, x, y and x^2 + y^2. */
+typedef struct narc_moments {
+    double area, x, y, square;
+} narc_moments;
+
+/* Adds those of the triangle from the origin to a and b, negative if it is clockwise. */
+void narc_add_triangle(narc_moments *sum, narc_point a, narc_point b);
+
+/* Adds those of the region between an arc, from the normal `start` on, and its chord. */
+void narc_add_segment(narc_moments *sum, narc_point center, double radius, narc_point start, double sweep);
+
 /* The circles of narc_shapes.h, for an outline, in the outline's coordinates. */
 void narc_bound_outline(const narc_outline *outline, narc_circle *out_circle);
 void narc_inscribe_outline(const narc_outline *outline, narc_circle *out_circle);
