@@ -83,9 +83,6 @@ INLINE void place_parts(const narc_part_batch *batch, size_t first, int count) {
 
 void NARC_NAMED(parts)(const narc_part_batch *given, size_t first, size_t end) {
     const narc_part_batch batch = *given; /* a copy, which nothing that is written could change */
-    size_t k = first;
-    for (; end - k >= D_WIDTH; k += D_WIDTH)
-        place_parts(&batch, k, D_WIDTH);
-    if (k < end)
-        place_parts(&batch, k, (int)(end - k));
+    for (size_t k = first; k < end; k += D_WIDTH)
+        place_parts(&batch, k, end - k < D_WIDTH ? (int)(end - k) : D_WIDTH);
 }

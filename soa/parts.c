@@ -6,8 +6,8 @@
  * Within a strip a convex part lies between one curve below and one above, and these keep their order from one side to
  * the other. So the union is what is left of as many intervals, merged as they lie in the strip's middle, and each is
  * bounded by two curves, whose integrals are known.
- *   Nothing depends on whether curves that nearly coincide or touch are found to cross, nor on where: what is taken for
- * the lower one there differs from it by no more than rounding.
+ *   Nothing depends on whether curves that nearly coincide are found to cross, nor on where: what is taken for the
+ * lower one there differs from it by no more than rounding.
  */
 #include <math.h>
 #include <string.h>
@@ -49,6 +49,9 @@ narc_status narc_move_arcs(const narc_arc *arcs, size_t count, double x, double 
 
 /* ------------------------------------------------------------------------------------------------ curves */
 
+/* What roundings of y come to, at most; a few units of 2^-53. */
+#define ROOM 1e-14
+
 /* Half an arc at most, or an edge: the graph of a function of x. */
 typedef struct curve {
     double from, to;        /* x, rising */
@@ -77,7 +80,7 @@ typedef struct plane {
 /* `start` and `end` are normals, both in the upper half or both in the lower. */
 static void put_half(plane *p, curve c, narc_point start, narc_point end) {
     const double first = c.center.x + c.radius * start.x, last = c.center.x + c.radius * end.x;
-    c.above = start.y + end.y > 0;
+    c.above = end.x < start.x;
     c.from = c.above ? last : first;
     c.to = c.above ? first : last;
     if (c.from < c.to)
@@ -131,14 +134,15 @@ static double find_y(const curve *c, double x) {
 
 /* ------------------------------------------------------------------------------------------------ crossings */
 
-/* x where the lines or circles of two curves meet, up to two of them: NAN is none. */
+/* x where the lines or circles of two curves meet, up to two of them, or else where they are nearest: a strip does not
+ * have in its middle, where its curves are told apart, a place where they nearly touch. NAN is none. */
 static void cross_curves(const curve *a, const curve *b, double x[2]) {
     x[0] = x[1] = NAN;
     if (a->radius > 0 && b->radius > 0) { /* on the line that both have the same power to */
         const double dx = b->center.x - a->center.x, dy = b->center.y - a->center.y, square = dx * dx + dy * dy;
         const double distance = sqrt(square);
         const double along = (square + (a->radius - b->radius) * (a->radius + b->radius)) / (2 * distance);
-        const double across = sqrt((a->radius - along) * (a->radius + along));
+        const double across = sqrt(fmax(0, (a->radius - along) * (a->radius + along)));
         x[0] = a->center.x + (along * dx - across * dy) / distance;
         x[1] = a->center.x + (along * dx + across * dy) / distance;
     } else if (a->radius > 0 || b->radius > 0) {
@@ -147,7 +151,7 @@ static void cross_curves(const curve *a, const curve *b, double x[2]) {
         const double c = width / length, s = rise / length;
         const double px = arc->center.x - edge->from, py = arc->center.y - edge->from_y;
         const double along = c * px + s * py, off = c * py - s * px;
-        const double half = sqrt((arc->radius - off) * (arc->radius + off));
+        const double half = sqrt(fmax(0, (arc->radius - off) * (arc->radius + off)));
         x[0] = edge->from + c * (along - half);
         x[1] = edge->from + c * (along + half);
     } else {
@@ -246,9 +250,12 @@ static void activate_curves(plane *p, double from, double to) {
         if (c->from > from || c->to < to)
             continue;
         const double left = find_y(c, from), right = find_y(c, to);
+        const double room = ROOM * (fabs(left) + fabs(right) + c->radius);
         const bool has_top = c->radius > 0 && c->center.x > from && c->center.x < to;
         c->lowest = has_top && !c->above ? c->center.y - c->radius : fmin(left, right);
         c->highest = has_top && c->above ? c->center.y + c->radius : fmax(left, right);
+        c->lowest -= room;
+        c->highest += room;
         p->active[p->active_count++] = c;
     }
 }
