@@ -39,10 +39,9 @@ void narc_add_triangle(narc_moments *sum, narc_point a, narc_point b) {
 
 /* With its centre as the origin and the arc's middle direction m, half its sweep being f: area r^2/2 (2f - sin 2f),
  * first moment 2/3 r^3 sin^3 f along m, second r^4/4 (2f - sin 2f + 2/3 sin 2f sin^2 f). */
-void narc_add_segment(narc_moments *sum, narc_point center, double r, narc_point start, double sweep) {
+void narc_add_segment(narc_moments *sum, double ax, double ay, double r, double x, double y, double sweep) {
     double part = subtract_sine(sweep), c, s;
     narc_find_cosine(sweep / 2, &c, &s);
-    double x = start.x, y = start.y, ax = center.x, ay = center.y;
     double area = r * r / 2 * part, first = 2.0 / 3 * r * r * r * s * s * s;
     double mx = first * (x * c - y * s), my = first * (y * c + x * s);
     double second = r * r * r * r / 4 * (part + 4.0 / 3 * s * c * s * s);
@@ -61,15 +60,12 @@ bool narc_compute_mass(const narc_arc *arcs, size_t count, narc_mass *out_mass) 
     for (size_t i = 0; i < o.count; i++) {
         narc_point start = narc_find_start(&o, i), end = narc_find_end(&o, i);
         narc_add_triangle(&sum, start, end);
-        narc_add_segment(&sum, (narc_point){o.center_x[i], o.center_y[i]}, o.radius[i],
-                         (narc_point){o.normal_x[i], o.normal_y[i]}, o.sweep[i]);
+        narc_add_segment(&sum, o.center_x[i], o.center_y[i], o.radius[i], o.normal_x[i], o.normal_y[i], o.sweep[i]);
         narc_add_triangle(&sum, end, narc_find_start(&o, (i + 1) % o.count));
     }
-    double x = (o.center_x[0] + o.center_x[1]) / 2, y = (o.center_y[0] + o.center_y[1]) / 2; /* of a segment */
-    if (sum.area > 0) {
-        x = sum.x / sum.area;
-        y = sum.y / sum.area;
-    }
+    const bool flat = !(sum.area > 0); /* a segment: its middle */
+    const double x = flat ? (o.center_x[0] + o.center_x[1]) / 2 : sum.x / sum.area;
+    const double y = flat ? (o.center_y[0] + o.center_y[1]) / 2 : sum.y / sum.area;
     *out_mass = (narc_mass){sum.area, x + o.origin_x, y + o.origin_y, sum.square - sum.area * (x * x + y * y)};
     return true;
 }

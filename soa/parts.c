@@ -49,9 +49,6 @@ narc_status narc_move_arcs(const narc_arc *arcs, size_t count, double x, double 
 
 /* ------------------------------------------------------------------------------------------------ curves */
 
-/* What roundings of y come to, at most; a few units of 2^-53. */
-#define ROOM 1e-14
-
 /* Half an arc at most, or an edge: the graph of a function of x. */
 typedef struct curve {
     double from, to;        /* x, rising */
@@ -187,7 +184,7 @@ static narc_point add_piece(plane *p, const curve *c, narc_point start, double t
         const narc_point first = find_normal_at(c, start.x), last = find_normal_at(c, to);
         const double sine = narc_hypot(last.x - first.x, last.y - first.y); /* of half the sweep, twice */
         const double cosine = narc_hypot(last.x + first.x, last.y + first.y);
-        narc_add_segment(&p->sum, c->center, c->radius, first, 2 * narc_atan2(sine, cosine));
+        narc_add_segment(&p->sum, c->center.x, c->center.y, c->radius, first.x, first.y, 2 * narc_atan2(sine, cosine));
     }
     return end;
 }
@@ -250,12 +247,9 @@ static void activate_curves(plane *p, double from, double to) {
         if (c->from > from || c->to < to)
             continue;
         const double left = find_y(c, from), right = find_y(c, to);
-        const double room = ROOM * (fabs(left) + fabs(right) + c->radius);
         const bool has_top = c->radius > 0 && c->center.x > from && c->center.x < to;
         c->lowest = has_top && !c->above ? c->center.y - c->radius : fmin(left, right);
         c->highest = has_top && c->above ? c->center.y + c->radius : fmax(left, right);
-        c->lowest -= room;
-        c->highest += room;
         p->active[p->active_count++] = c;
     }
 }

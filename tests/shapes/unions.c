@@ -124,7 +124,7 @@ struct known {
     narc_mass mass;
 };
 
-enum kind { TRIANGLES, SLICES, SQUARES, CAPSULES, COPIES, INSIDE, TWO_CIRCLES, TOUCHING, KINDS };
+enum kind { TRIANGLES, SLICES, SQUARES, CAPSULES, COPIES, INSIDE, TWO_CIRCLES, TOUCHING, RESTING, KINDS };
 
 /* A polygon, cut into triangles from a point within, some of them twice: edges are shared, corners meet. */
 static void make_triangles(struct test_random *random, struct known *k) {
@@ -249,10 +249,26 @@ static void make_touching(struct test_random *random, struct known *k) {
     k->mass = (narc_mass){area, 0, 0, area * (radius * radius / 2 + 1.5 * 1.5)};
 }
 
+/* Discs that touch a box in the middle of its sides: the sum. */
+static void make_resting(struct test_random *random, struct known *k) {
+    const double width = random_between(random, 1, 2), height = random_between(random, 0.5, 1);
+    const double radius = random_between(random, 0.1, 0.5), area = pi * radius * radius;
+    const double x = width / 2 + radius, y = height / 2 + radius;
+    const struct shape box = box_of(width, height, 0), disc = circle_of(radius);
+    add_part(&k->compound, &box, 0, 0, 0);
+    for (int side = -1; side <= 1; side += 2) {
+        add_part(&k->compound, &disc, side * x, 0, 0);
+        add_part(&k->compound, &disc, 0, side * y, 1);
+    }
+    k->mass = mass_of(&box);
+    k->mass.area += 4 * area;
+    k->mass.second_moment += 2 * area * (x * x + y * y + radius * radius);
+}
+
 static void make_known(struct test_random *random, enum kind kind, struct known *out) {
-    static void (*const make[KINDS])(struct test_random *,
-                                     struct known *) = {make_triangles, make_slices, make_squares,     make_capsules,
-                                                        make_copies,    make_inside, make_two_circles, make_touching};
+    static void (*const make[KINDS])(struct test_random *, struct known *) = {
+        make_triangles, make_slices,      make_squares,  make_capsules, make_copies,
+        make_inside,    make_two_circles, make_touching, make_resting};
     memset(out, 0, sizeof *out);
     make[kind](random, out);
 }
@@ -312,7 +328,7 @@ static struct span clip_line(narc_point a, narc_point b, const struct samples *p
         const narc_point p = polygon->point[i], q = polygon->point[(i + 1) % polygon->count];
         const double at = (q.x - p.x) * (a.y - p.y) - (q.y - p.y) * (a.x - p.x); /* left of the edge: above 0 */
         const double then = (q.x - p.x) * (b.y - p.y) - (q.y - p.y) * (b.x - p.x);
-        if (hypot(q.x - p.x, q.y - p.y) < 1e-9)
+        if (fabs(q.x - p.x) + fabs(q.y - p.y) < 1e-9)
             continue;
         if (at < 0 && then < 0)
             return (struct span){0, 0};
