@@ -13,76 +13,86 @@
 #include "simd/doubles.h"
 #include "simd/simd.h"
 
-/* Poses, one in each lane. */
+/* Poses of a block of parts. They are gathered whole before any is computed: a vector that is loaded from lanes just
+ * stored waits for all of them. */
+enum { BLOCK = 64 };
 struct poses {
-    vd x, y, cosine, sine, scale;
-    vl valid;
+    double x[BLOCK], y[BLOCK], cosine[BLOCK], sine[BLOCK], scale[BLOCK];
 };
 
-INLINE vd load_positions(narc_position_column column, const size_t *item) {
-    double lane[D_WIDTH];
-    for (int l = 0; l < D_WIDTH; l++)
-        lane[l] = narc_position_at(column, item[l]);
-    return d_load(lane);
+INLINE void load_positions(narc_position_column column, const uint32_t *item, int count, double *out) {
+    for (int k = 0; k < count; k++)
+        out[k] = narc_position_at(column, item[k]);
 }
 
 /* Without a column, `none`. */
-INLINE vd load_numbers(narc_float_column column, const size_t *item, double none) {
-    double lane[D_WIDTH];
-    for (int l = 0; l < D_WIDTH; l++)
-        lane[l] = column.base ? (double)narc_float_at(column, item[l]) : none;
-    return d_load(lane);
+INLINE void load_numbers(narc_float_column column, const uint32_t *item, int count, float none, double *out) {
+    const narc_float_column from = column.base ? column : (narc_float_column){&none, 0};
+    for (int k = 0; k < count; k++)
+        out[k] = (double)narc_float_at(from, item[k]);
 }
 
-INLINE struct poses load_poses(const narc_bodies *bodies, const size_t *item) {
-    const vd cosine = load_numbers(bodies->cosine, item, 1), sine = load_numbers(bodies->sine, item, 0);
-    const vd square = cosine * cosine + sine * sine, length = d_sqrt(square);
-    const vl valid = d_le(d_abs(square - d_set(1)), d_set(NARC_ROTATION_TOLERANCE));
-    return (struct poses){load_positions(bodies->x, item),
-                          load_positions(bodies->y, item),
-                          cosine / length,
-                          sine / length,
-                          load_numbers(bodies->scale, item, 1),
-                          valid};
+INLINE void load_poses(const narc_bodies *bodies, const uint32_t *item, int count, struct poses *out) {
+    load_positions(bodies->x, item, count, out->x);
+    load_positions(bodies->y, item, count, out->y);
+    load_numbers(bodies->cosine, item, count, 1, out->cosine);
+    load_numbers(bodies->sine, item, count, 0, out->sine);
+    load_numbers(bodies->scale, item, count, 1, out->scale);
 }
 
-INLINE struct poses place_poses(const struct poses *at, const struct poses *part) {
-    const vd c = at->cosine, s = at->sine, scale = at->scale;
-    struct poses out = {.x = at->x + scale * (c * part->x - s * part->y),
-                        .y = at->y + scale * (s * part->x + c * part->y),
-                        .cosine = c * part->cosine - s * part->sine,
-                        .sine = s * part->cosine + c * part->sine,
-                        .scale = scale * part->scale};
-    const vl whole = d_le(d_abs(out.x), d_set(DBL_MAX)) & d_le(d_abs(out.y), d_set(DBL_MAX));
-    const vl sized = d_lt(d_set(0), at->scale) & d_le(d_set(FLT_MIN), out.scale) & d_le(out.scale, d_set(FLT_MAX));
-    out.valid = at->valid & part->valid & whole & sized;
-    return out;
+/* Is that a rotation? Makes its length 1. */
+INLINE vl normalise(vd *cosine, vd *sine) {
+    const vd square = *cosine * *cosine + *sine * *sine, inverse = d_set(1) / d_sqrt(square);
+    *cosine *= inverse;
+    *sine *= inverse;
+    return d_le(d_set(1 - NARC_ROTATION_TOLERANCE), square) & d_le(square, d_set(1 + NARC_ROTATION_TOLERANCE));
 }
 
 INLINE void store_lanes(double *lane, vl valid, vd a) { d_store(lane, d_select(valid, a, d_set(0))); }
 
-/* Parts first .. first + count - 1, a vector at most. The lanes behind the last part repeat the first. */
-INLINE void place_parts(const narc_part_batch *batch, size_t first, int count) {
-    size_t item[D_WIDTH], owner[D_WIDTH];
-    double x[D_WIDTH], y[D_WIDTH], cosine[D_WIDTH], sine[D_WIDTH], scale[D_WIDTH];
-    for (int l = 0; l < D_WIDTH; l++) {
-        item[l] = first + (size_t)(l < count ? l : 0);
-        owner[l] = narc_index_at(batch->owner, item[l]);
+/* A vector of a block's parts, from number k on, in the place of their poses in their owners. */
+INLINE void place_lanes(const struct poses *owners, int k, struct poses *parts) {
+    vd c = d_load(owners->cosine + k), s = d_load(owners->sine + k), cosine = d_load(parts->cosine + k),
+       sine = d_load(parts->sine + k);
+    const vl turned = normalise(&c, &s) & normalise(&cosine, &sine);
+    const vd at_scale = d_load(owners->scale + k), scale = at_scale * d_load(parts->scale + k);
+    const vd part_x = d_load(parts->x + k), part_y = d_load(parts->y + k);
+    const vd x = d_load(owners->x + k) + at_scale * (c * part_x - s * part_y);
+    const vd y = d_load(owners->y + k) + at_scale * (s * part_x + c * part_y);
+    const vl placed = d_le(d_abs(x), d_set(DBL_MAX)) & d_le(d_abs(y), d_set(DBL_MAX));
+    const vl sized = d_lt(d_set(0), at_scale) & d_le(d_set(FLT_MIN), scale) & d_le(scale, d_set(FLT_MAX));
+    const vl valid = turned & placed & sized;
+    store_lanes(parts->x + k, valid, x);
+    store_lanes(parts->y + k, valid, y);
+    store_lanes(parts->cosine + k, valid, c * cosine - s * sine);
+    store_lanes(parts->sine + k, valid, s * cosine + c * sine);
+    store_lanes(parts->scale + k, valid, scale);
+}
+
+/* Parts first .. first + count - 1, a block at most. The lanes behind the last part repeat the first. */
+static void place_block(const narc_part_batch *batch, size_t first, int count) {
+    struct poses owners, parts;
+    uint32_t item[BLOCK], owner[BLOCK];
+    int k = 0;
+    for (; k < count || k % D_WIDTH != 0; k++) {
+        item[k] = (uint32_t)first + (uint32_t)(k < count ? k : 0);
+        owner[k] = narc_index_at(batch->owner, item[k]);
     }
-    const struct poses at = load_poses(&batch->owners, owner), part = load_poses(&batch->parts, item);
-    const struct poses out = place_poses(&at, &part);
-    store_lanes(x, out.valid, out.x);
-    store_lanes(y, out.valid, out.y);
-    store_lanes(cosine, out.valid, out.cosine);
-    store_lanes(sine, out.valid, out.sine);
-    store_lanes(scale, out.valid, out.scale);
-    for (int l = 0; l < count; l++)
-        batch->out[item[l]] = (narc_body){
-            x[l], y[l], (float)cosine[l], (float)sine[l], (float)scale[l], narc_index_at(batch->parts.shape, item[l])};
+    load_poses(&batch->owners, owner, k, &owners);
+    load_poses(&batch->parts, item, k, &parts);
+    for (k = 0; k < count; k += D_WIDTH)
+        place_lanes(&owners, k, &parts);
+    for (k = 0; k < count; k++)
+        batch->out[first + (size_t)k] = (narc_body){parts.x[k],
+                                                    parts.y[k],
+                                                    (float)parts.cosine[k],
+                                                    (float)parts.sine[k],
+                                                    (float)parts.scale[k],
+                                                    narc_index_at(batch->parts.shape, first + (size_t)k)};
 }
 
 void NARC_NAMED(parts)(const narc_part_batch *given, size_t first, size_t end) {
     const narc_part_batch batch = *given; /* a copy, which nothing that is written could change */
-    for (size_t k = first; k < end; k += D_WIDTH)
-        place_parts(&batch, k, end - k < D_WIDTH ? (int)(end - k) : D_WIDTH);
+    for (size_t k = first; k < end; k += BLOCK)
+        place_block(&batch, k, end - k < BLOCK ? (int)(end - k) : BLOCK);
 }

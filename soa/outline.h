@@ -73,9 +73,8 @@ typedef struct narc_moments {
 /* Adds those of the triangle from the origin to a and b, negative if it is clockwise. */
 void narc_add_triangle(narc_moments *sum, narc_point a, narc_point b);
 
-/* Adds those of the region between an arc, from the normal `start` on, and its chord. */
-void narc_add_segment(narc_moments *sum, double center_x, double center_y, double radius, double start_x,
-                      double start_y, double sweep);
+/* Adds those of the region between an arc and its chord: centre (ax, ay), radius r, from the normal (x, y) on. */
+void narc_add_segment(narc_moments *sum, double ax, double ay, double r, double x, double y, double sweep);
 
 /* The circles of narc_shapes.h, for an outline, in the outline's coordinates. */
 void narc_bound_outline(const narc_outline *outline, narc_circle *out_circle);
