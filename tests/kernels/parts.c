@@ -13,6 +13,7 @@
 #include "layouts.h"
 #include "narc.h"
 #include "narc_broad_phase.h"
+#include "narc_scene.h"
 #include "support.h"
 
 /* Random owners and parts, and whose they are. Some of each are broken. */
@@ -225,6 +226,61 @@ TEST(moved_shapes_are_placed_parts) {
         assert_true(fabsf(row[0].separation - row[1].separation) <= 40 * (float)NARC_ERROR_BOUND);
         narc_destroy_shapes(store);
     }
+}
+
+/* A part of an owner that has moved on its way for some time, and what it comes near to. */
+static double separation_at(const narc_shapes *store, const narc_body *part, narc_point motion, double angle,
+                            double time, const narc_body *other) {
+    const uint32_t zero = 0;
+    const narc_body owner = {
+        motion.x * (time - 0.5), motion.y * (time - 0.5), (float)cos(angle * time), (float)sin(angle * time), 1, 0};
+    narc_body two[2] = {{0}, *other};
+    const narc_bodies owners = narc_view_bodies(&owner, 1), parts = narc_view_bodies(part, 1),
+                      bodies = narc_view_bodies(two, 2);
+    narc_contact row;
+    size_t found;
+    assert_int_equal(narc_place_parts(&owners, &parts, (narc_index_column){&zero, 0}, NULL, two, NULL), NARC_OK);
+    assert_int_equal(narc_find_contacts(store, &bodies, &(narc_pairs){.count = 1}, &(narc_query){.margin = INFINITY},
+                                        &row, 1, &found, NULL),
+                     NARC_OK);
+    return (double)row.separation;
+}
+
+/* Casts of owners that turn, with the part's shape in the owner's frame. */
+TEST(moved_shapes_meet_when_parts_do) {
+    struct test_random random = test_random_named("casts of compounds");
+    const double tolerance = 1e-3, rounding = 1e-4; /* NARC_ERROR_BOUND of some units */
+    size_t hits = 0;
+    for (size_t trial = 0; trial < test_trials(200); trial++) {
+        const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
+        const float turn[2] = {(float)random_between(&random, -3, 3), 0}, x[2] = {8, 0}, y[2] = {1, 0};
+        const struct body at = turned_body(random_between(&random, -4, 4), 1);
+        narc_shapes *const store = empty_store();
+        const uint32_t stored = store_shape(store, shape);
+        const narc_body part = {random_between(&random, -2, 2), 1, at.cosine, at.sine, 1, stored};
+        struct shape moved = {.count = shape.count};
+        assert_int_equal(narc_move_arcs(shape.arcs, shape.count, part.x, part.y,
+                                        atan2((double)part.sine, (double)part.cosine), 1, moved.arcs, NULL),
+                         NARC_OK);
+        const narc_body two[2] = {{-4, -0.5, 1, 0, 1, store_shape(store, moved)},
+                                  {0.5, random_between(&random, -2, 2), 1, 0, 1, stored}};
+        const narc_bodies bodies = narc_view_bodies(two, 2);
+        const narc_motions motions = {.x = NARC_ARRAY(x), .y = NARC_ARRAY(y), .angle = NARC_ARRAY(turn)};
+        narc_impact row;
+        assert_int_equal(narc_cast_pairs(store, &bodies, &motions, &(narc_pairs){.count = 1}, NULL,
+                                         &(narc_cast_options){.tolerance = (float)tolerance}, &row, 1, NULL),
+                         NARC_OK);
+        const double end = row.count == NARC_CAST_MISS ? 1 : (double)row.fraction;
+        for (int k = 0; k <= 20; k++) {
+            const double here = separation_at(store, &part, (narc_point){8, 1}, (double)turn[0], end * k / 20, &two[1]);
+            assert_true(here >= -rounding || (row.count == NARC_CAST_HIT && row.fraction == 0));
+            if (k == 20 && row.count == NARC_CAST_HIT && row.fraction > 0)
+                assert_true(here <= tolerance + rounding);
+        }
+        hits += row.count == NARC_CAST_HIT && row.fraction > 0;
+        narc_destroy_shapes(store);
+    }
+    assert_true(hits > test_trials(200) / 4);
 }
 
 /* ------------------------------------------------------------------------------------------------ pairs */
