@@ -135,6 +135,29 @@ NARC_API narc_status narc_find_manifolds(const narc_shapes *shapes, const narc_b
 NARC_API narc_status narc_compute_poses(const float *angles, size_t count, float *out_cosines, float *out_sines,
                                         narc_error *error);
 
+/* ------------------------------------------------------------------------------------------------ compounds */
+
+/* Where the parts of bodies are: a body of several shapes is an owner, which has a place, and a part for each shape,
+ * which has one in its owner. A part's place in the world is its owner's position + scale * rotation * its own position;
+ * rotations and scales are multiplied. The rows that come out are bodies, one for each part, and narc_view_bodies() of
+ * them serve every question: a row of an answer names parts, and owner[part] is the body.
+ *   owners      positions, cosines, sines, and scales if there are any; shapes are not looked at
+ *   parts       in the same form, within their owners: positions, shapes; cosines and sines, both left out: not turned;
+ *               scales, left out: 1. A body of one shape is a part at (0, 0) of its own
+ *   owner       of each part the number of its owner
+ *   workers     threads to use; NULL: the calling one
+ *   out_bodies  parts->count rows, overlapping none of the inputs
+ * Positions are computed in double precision, and rotations too, made to have length 1 first: then they are rounded. A
+ * broken part, or one of a broken owner (see narc_bodies), is a row of zeros but for its shape, and so is one whose
+ * place or scale is out of range: broken bodies, which queries skip and count as ever.
+ *   Parts of one owner form no pair if their groups are one: narc_pair_filter.group with owner + 1, as 0 is no group.
+ * Who has groups of bodies gives all their parts that of the bodies, and other numbers to the rest. Parts come and go
+ * as bodies do: the last one into the gap, and narc_pair_options.id tells which is which. docs/questions.md has more.
+ * Errors, all found before anything is written: NARC_ERROR_ARGUMENT (NULL, too many), NARC_ERROR_INDEX (`error` names
+ * the part and the owner), and those for NARC_ISA. No parts: NARC_OK. Allocates nothing. Not in narc_small.wasm. */
+NARC_API narc_status narc_place_parts(const narc_bodies *owners, const narc_bodies *parts, narc_index_column owner,
+                                      const narc_workers *workers, narc_body *out_bodies, narc_error *error);
+
 /* ------------------------------------------------------------------------------------------------ instruction sets */
 
 /* Chooses the instruction set for all later calls in the process by its narc_isa_name(), such as "avx2" or "scalar";

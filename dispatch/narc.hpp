@@ -560,6 +560,17 @@ inline result<void> compute_poses(span<const float> angles, span<float> cosines,
     return detail::ask<void>(narc_compute_poses, angles.data(), angles.size(), cosines.data(), sines.data());
 }
 
+// Where the parts of bodies are; `rows` is a span, an array or a vector of narc_body, which bodies_of() takes.
+template <class Rows>
+auto place_parts(const narc_bodies &owners, const narc_bodies &parts, narc_index_column owner, Rows &&rows,
+                 const narc_workers *workers = nullptr) {
+    return detail::fill_rows<narc_body>(
+        rows, parts.count,
+        [&](narc_body *out, size_t, narc_error *error) {
+            return narc_place_parts(&owners, &parts, owner, workers, out, error);
+        });
+}
+
 inline result<void> set_isa(const char *name) { return detail::ask<void>(narc_set_isa, name); }
 
 } // namespace narc

@@ -20,10 +20,13 @@
 #define NARC_SHORTCUTS 1
 #endif
 
-/* Are there pieces of chains? A build without has no chains, and no shapes that are pieces. */
-#ifndef NARC_PIECES
-#define NARC_PIECES 1
+/* Is this the small module for WebAssembly, which leaves some kernels out, and all that is for pieces of chains? */
+#ifndef NARC_SMALL
+#define NARC_SMALL 0
 #endif
+
+/* Are there pieces of chains? */
+#define NARC_PIECES (!NARC_SMALL)
 
 /* What a batch call works on: pairs of a body of `a` and one of `b`, by their indices or, without, by the pair's own.
  * Asked of are pairs first .. first + count - 1 of the query's selection, or of all. */
@@ -65,6 +68,13 @@ typedef struct narc_box_batch {
     float margin;
     narc_float_column motion_x, motion_y; /* base NULL: none */
 } narc_box_batch;
+
+/* What the kernel of parts works on. */
+typedef struct narc_part_batch {
+    narc_bodies owners, parts;
+    narc_index_column owner;
+    narc_body *out;
+} narc_part_batch;
 
 /* What the kernels of points work on. */
 typedef struct narc_point_batch {

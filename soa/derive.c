@@ -29,13 +29,7 @@ static double subtract_sine(double t) {
     return t * s / 6 * sum;
 }
 
-/* Integrals over a region: 1, x, y and x^2 + y^2. */
-typedef struct moments {
-    double area, x, y, square;
-} moments;
-
-static void add_triangle(moments *sum, narc_point a, narc_point b) /* origin, a, b */
-{
+void narc_add_triangle(narc_moments *sum, narc_point a, narc_point b) {
     double area = (a.x * b.y - a.y * b.x) / 2;
     sum->area += area;
     sum->x += area * (a.x + b.x) / 3;
@@ -43,13 +37,11 @@ static void add_triangle(moments *sum, narc_point a, narc_point b) /* origin, a,
     sum->square += area / 6 * (a.x * a.x + a.y * a.y + b.x * b.x + b.y * b.y + a.x * b.x + a.y * b.y);
 }
 
-/* The region between arc i and its chord. With its centre as the origin and the arc's middle direction m, half its
- * sweep being f: area r^2/2 (2f - sin 2f), first moment 2/3 r^3 sin^3 f along m, second r^4/4 (2f - sin 2f + 2/3 sin
- * 2f sin^2 f). */
-static void add_segment(moments *sum, const narc_outline *o, size_t i) {
-    double r = o->radius[i], part = subtract_sine(o->sweep[i]), c, s;
-    narc_find_cosine(o->sweep[i] / 2, &c, &s);
-    double x = o->normal_x[i], y = o->normal_y[i], ax = o->center_x[i], ay = o->center_y[i];
+/* With its centre as the origin and the arc's middle direction m, half its sweep being f: area r^2/2 (2f - sin 2f),
+ * first moment 2/3 r^3 sin^3 f along m, second r^4/4 (2f - sin 2f + 2/3 sin 2f sin^2 f). */
+void narc_add_segment(narc_moments *sum, double ax, double ay, double r, double x, double y, double sweep) {
+    double part = subtract_sine(sweep), c, s;
+    narc_find_cosine(sweep / 2, &c, &s);
     double area = r * r / 2 * part, first = 2.0 / 3 * r * r * r * s * s * s;
     double mx = first * (x * c - y * s), my = first * (y * c + x * s);
     double second = r * r * r * r / 4 * (part + 4.0 / 3 * s * c * s * s);
@@ -64,18 +56,16 @@ bool narc_compute_mass(const narc_arc *arcs, size_t count, narc_mass *out_mass) 
     if (!read_list(arcs, count, out_mass, &o))
         return false;
     /* Triangles from the outline's own origin, which lies on it: all are positive. */
-    moments sum = {0, 0, 0, 0};
+    narc_moments sum = {0, 0, 0, 0};
     for (size_t i = 0; i < o.count; i++) {
         narc_point start = narc_find_start(&o, i), end = narc_find_end(&o, i);
-        add_triangle(&sum, start, end);
-        add_segment(&sum, &o, i);
-        add_triangle(&sum, end, narc_find_start(&o, (i + 1) % o.count));
+        narc_add_triangle(&sum, start, end);
+        narc_add_segment(&sum, o.center_x[i], o.center_y[i], o.radius[i], o.normal_x[i], o.normal_y[i], o.sweep[i]);
+        narc_add_triangle(&sum, end, narc_find_start(&o, (i + 1) % o.count));
     }
-    double x = (o.center_x[0] + o.center_x[1]) / 2, y = (o.center_y[0] + o.center_y[1]) / 2; /* of a segment */
-    if (sum.area > 0) {
-        x = sum.x / sum.area;
-        y = sum.y / sum.area;
-    }
+    const bool flat = !(sum.area > 0); /* a segment: its middle */
+    const double x = flat ? (o.center_x[0] + o.center_x[1]) / 2 : sum.x / sum.area;
+    const double y = flat ? (o.center_y[0] + o.center_y[1]) / 2 : sum.y / sum.area;
     *out_mass = (narc_mass){sum.area, x + o.origin_x, y + o.origin_y, sum.square - sum.area * (x * x + y * y)};
     return true;
 }

@@ -223,7 +223,8 @@ enum {
  *   kind             see the table above; left out: all move
  *   category, mask   a and b form a pair only if category a & mask b and category b & mask a are not 0. Left
  *                    out: all bits set.
- *   group            two boxes of the same group other than 0 form no pair (the parts of one machine). */
+ *   group            two boxes of the same group other than 0 form no pair (the parts of one machine; of a compound:
+ *                    narc_place_parts()). */
 typedef struct narc_pair_filter {
     narc_byte_column kind;
     narc_word_column category, mask;

@@ -190,7 +190,8 @@ NARC_API narc_status narc_cast_rays(const narc_index *index, const narc_shapes *
 /* ------------------------------------------------------------------------------------------------ casts */
 
 /* How bodies move during a step, `count` as the bodies: from their place to their place + (x, y), while they turn at a
- * constant rate about their position by `angle`, in radians, counter-clockwise. What is left out is 0. */
+ * constant rate about their position by `angle`, in radians, counter-clockwise. What is left out is 0. (So a part of a
+ * compound that turns is to have its owner's position: narc_move_arcs() makes its shape one of the owner's frame.) */
 typedef struct narc_motions {
     narc_float_column x, y;
     narc_float_column angle;

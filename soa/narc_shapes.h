@@ -264,6 +264,12 @@ NARC_API narc_status narc_center_arcs(const narc_arc *arcs, size_t count, narc_a
  * counter-clockwise. `out_arcs` and errors as narc_center_arcs(). Thread-safe. */
 NARC_API narc_status narc_mirror_arcs(const narc_arc *arcs, size_t count, narc_arc *out_arcs, narc_error *error);
 
+/* The same shape elsewhere: its points p go to (x, y) + scale * p, turned by `angle`: a part of a compound in the frame
+ * of its owner. `out_arcs` and errors as narc_center_arcs(), of both lists; NARC_ERROR_NOT_FINITE, NARC_ERROR_SIZE (a
+ * scale that is not positive). Thread-safe. */
+NARC_API narc_status narc_move_arcs(const narc_arc *arcs, size_t count, double x, double y, double angle, double scale,
+                                    narc_arc *out_arcs, narc_error *error);
+
 /* ----------------------------------------------------------------------------------------- derived quantities */
 
 /* All of these take a valid list of arcs (see narc_validate_arcs()), compute in double precision from closed forms, and
@@ -311,14 +317,28 @@ NARC_API bool narc_compute_distance(const narc_arc *arcs, size_t count, narc_poi
 /* Is the point inside the shape or on its outline? */
 NARC_API bool narc_contains_point(const narc_arc *arcs, size_t count, narc_point point);
 
-/* ------------------------------------------------------------------------------------------------ the store */
-
-/* Memory for a store: `allocate` returns `size` bytes aligned to 16 or NULL; `release` gets what it returned. */
+/* Memory: `allocate` returns `size` bytes aligned to 16 or NULL; `release` gets what it returned. */
 typedef struct narc_allocator {
     void *(*allocate)(size_t size, void *context);
     void (*release)(void *memory, void *context);
     void *context;
 } narc_allocator;
+
+/* The mass of a compound: of all that any of its parts covers. Where several lie over each other they count once,
+ * exactly, wherever they touch or cross. (The sum of the parts, each for itself: narc_compute_mass() of each, and
+ * second_moment + area * the square of its centroid's distance from the common one.)
+ *   arcs        those of all parts in one frame (narc_move_arcs()), part after part
+ *   counts      how many arcs each part has
+ *   allocator   of some 400 bytes for each arc, for this call; NULL: malloc and free
+ *   out_mass    without any area (segments alone) the centroid is that of the first part
+ * Errors are some roundings of the compound's size, and so is the difference that the smallest motion of a part makes.
+ * Time grows with the square of how many parts lie side by side, times how often their outlines end or cross.
+ * Errors: NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_COUNT (no parts), NARC_ERROR_MEMORY, those of narc_validate_arcs()
+ * (error->index is the part). Thread-safe. Not in narc_small.wasm. */
+NARC_API narc_status narc_compute_union_mass(const narc_arc *arcs, const size_t *counts, size_t part_count,
+                                             const narc_allocator *allocator, narc_mass *out_mass, narc_error *error);
+
+/* ------------------------------------------------------------------------------------------------ the store */
 
 /* A list of arc shapes, each known by its index 0, 1, 2 ... The store keeps single-precision copies in a layout that
  * belongs to the kernels. Adding, replacing, removing and reserving need exclusive access; all else, queries above all,

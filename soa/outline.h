@@ -65,6 +65,17 @@ static inline bool narc_is_segment(const narc_outline *outline) {
 /* The point of the outline furthest from (x, y), and its distance. */
 double narc_find_farthest(const narc_outline *outline, double x, double y, narc_point *out_point);
 
+/* Integrals over a region: 1, x, y and x^2 + y^2. */
+typedef struct narc_moments {
+    double area, x, y, square;
+} narc_moments;
+
+/* Adds those of the triangle from the origin to a and b, negative if it is clockwise. */
+void narc_add_triangle(narc_moments *sum, narc_point a, narc_point b);
+
+/* Adds those of the region between an arc and its chord: centre (ax, ay), radius r, from the normal (x, y) on. */
+void narc_add_segment(narc_moments *sum, double ax, double ay, double r, double x, double y, double sweep);
+
 /* The circles of narc_shapes.h, for an outline, in the outline's coordinates. */
 void narc_bound_outline(const narc_outline *outline, narc_circle *out_circle);
 void narc_inscribe_outline(const narc_outline *outline, narc_circle *out_circle);

@@ -176,12 +176,23 @@ static void load_pair(const narc_cast_job *job, struct slots *slots, size_t slot
     slots->hint[slot] = 0;
 }
 
-/* Is a shape of this slot a piece of one of these kinds? */
-static bool has_piece(const narc_cast_job *job, const struct slots *slots, size_t slot, unsigned kinds) {
+static bool has_concave_arc(const narc_cast_job *job, const struct slots *slots, size_t slot) {
     const narc_shape_header *const headers = job->batch->shapes->headers;
     const struct narc_cast_side *const side = slots->casts.side;
-    return NARC_PIECES &&
-           ((headers[side[0].shape[slot]].first_arc | headers[side[1].shape[slot]].first_arc) & kinds) != 0;
+    return NARC_PIECES && ((headers[side[0].shape[slot]].first_arc | headers[side[1].shape[slot]].first_arc) &
+                           NARC_PIECE_CONCAVE) != 0;
+}
+
+/* These are cast one by one. */
+static void cast_concave(const narc_cast_job *job, struct slots *slots, size_t slot) {
+    int outcome = NARC_CAST_MISS;
+#if NARC_PIECES
+    outcome = job->kernels->cast_concave(job->batch->shapes, &slots->casts, slot);
+#endif
+    if (outcome == NARC_CAST_MISS)
+        write_miss(job, slots->pair[slot]);
+    else
+        write_row(job, slots, slot, outcome);
 }
 
 /* Does what touches belong to a run's closure? */
@@ -208,17 +219,11 @@ static size_t begin_pairs(const narc_cast_job *job, struct slots *slots, size_t 
         next += count;
         choose_kernels(job, count)->begin(job->batch->shapes, &slots->casts, first, first + count);
         for (size_t slot = first; slot < first + count; slot++) {
-            int outcome = slots->casts.outcome[slot];
+            const int outcome = slots->casts.outcome[slot];
             *skipped += outcome == NARC_CAST_BROKEN;
-            if (outcome == NARC_CAST_GOES_ON && has_piece(job, slots, slot, NARC_PIECE_CONCAVE)) {
-                outcome = job->kernels->cast_concave(job->batch->shapes, &slots->casts, slot);
-                if (outcome != NARC_CAST_MISS)
-                    write_row(job, slots, slot, outcome);
-                else
-                    write_miss(job, slots->pair[slot]);
-                continue;
-            }
-            if (outcome != NARC_CAST_GOES_ON || is_late(job, slots->pair[slot], slots->casts.time[slot]))
+            if (outcome == NARC_CAST_GOES_ON && has_concave_arc(job, slots, slot))
+                cast_concave(job, slots, slot);
+            else if (outcome != NARC_CAST_GOES_ON || is_late(job, slots->pair[slot], slots->casts.time[slot]))
                 write_miss(job, slots->pair[slot]);
             else if (slots->count++ < slot)
                 move_slot(slots, slot, slots->count - 1);

@@ -595,6 +595,14 @@ void test_poses_and_sets() {
     std::vector<float> cosines(2), sines(2);
     CHECK(narc::compute_poses(angles, cosines, sines) && cosines[0] == 1 && std::fabs(sines[1] - 0.841471f) < 1e-6f);
     CHECK(status_of(narc::compute_poses(angles, cosines, narc::span(sines.data(), 1))) == NARC_ERROR_CAPACITY);
+    const narc_body owners[] = {narc::body(1, 2, 0)}, parts[] = {narc::body(3, 4, 5), narc::body(0, 0, 6)};
+    const std::vector<uint32_t> owner = {0, 0};
+    std::vector<narc_body> placed;
+    const auto all = narc::place_parts(narc::bodies_of(owners), narc::bodies_of(parts), narc::column(owner), placed);
+    CHECK(all && all.value().size() == 2 && placed[0].x == 4 && placed[0].y == 6 && placed[1].shape == 6);
+    narc_body room[1];
+    CHECK(status_of(narc::place_parts(narc::bodies_of(owners), narc::bodies_of(parts), narc::column(owner), room)) ==
+          NARC_ERROR_CAPACITY);
     CHECK(narc::set_isa("scalar") && std::string(narc_get_isa()) == "scalar");
     CHECK(status_of(narc::set_isa("none")) == NARC_ERROR_ISA_UNKNOWN && narc::set_isa(nullptr));
 }

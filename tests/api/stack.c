@@ -55,6 +55,7 @@ static narc_index_query search;
 static narc_distance distances[3 * BODIES];
 static narc_ray_hit hits[3 * BODIES];
 static narc_box boxes[BODIES], spread[BODIES];
+static narc_body placed[BODIES];
 static unsigned char bytes[1 << 16];
 static narc_arc arcs[NARC_MAX_ARCS];
 static const narc_point ring[RING] = {{4, 0}, {3, 2}, {0, 3}, {-3, 2}, {-4, 0}, {-3, -2}, {0, -3}, {3, -2}};
@@ -159,6 +160,7 @@ static narc_status ask_index(narc_error *error) {
     METHOD(aabb_filter, ask_method(NARC_METHOD_AABB, error))                                                           \
     METHOD(obb_filter, ask_method(NARC_METHOD_OBB, error))                                                             \
     CALL(poses, narc_compute_poses(margins, PAIRS, cosines, sines, error))                                             \
+    CALL(parts, narc_place_parts(&bodies, &bodies, pairs.a, query.workers, placed, error))                             \
     CALL(names, TRUE(narc_set_isa(test_isa(), error) == NARC_OK && narc_get_isa() && narc_isa_name(0) &&               \
                      narc_isa_supported("scalar") && !narc_cpu_feature(SIZE_MAX) && narc_version() &&                  \
                      narc_openmp_workers(0).count))                                                                    \
@@ -187,6 +189,8 @@ static narc_status ask_index(narc_error *error) {
     CALL(adjust, narc_adjust_polygon(ring, RING, points, error))                                                       \
     CALL(center, narc_center_arcs(arcs, arc_count, arcs, NULL, error))                                                 \
     CALL(mirror, narc_mirror_arcs(arcs, arc_count, arcs, error))                                                       \
+    CALL(move, narc_move_arcs(arcs, arc_count, 1, 2, 3, 4, arcs, error))                                               \
+    CALL(union_mass, narc_compute_union_mass(arcs, &arc_count, 1, NULL, &mass, error))                                 \
     CALL(validate, narc_validate_arcs(arcs, arc_count, error))                                                         \
     CALL(derive,                                                                                                       \
          TRUE(narc_compute_mass(arcs, arc_count, &mass) && narc_compute_bounding_circle(arcs, arc_count, &circle) &&   \

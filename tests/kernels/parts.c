@@ -1,0 +1,437 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * parts.c - compounds: their parts are where they should be, with the same bits as scalar in every layout; those of one
+ * body form no pair, and keep their pairs as others come and go.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "expect.h"
+#include "guard.h"
+#include "layouts.h"
+#include "narc.h"
+#include "narc_broad_phase.h"
+#include "narc_scene.h"
+#include "support.h"
+
+/* Random owners and parts, and whose they are. Some of each are broken. */
+struct compounds {
+    struct scene owners, parts;
+    uint32_t *owner;
+};
+
+static struct compounds make_compounds(struct test_random *random, size_t owners, size_t parts, bool broken) {
+    struct compounds c = {make_random_scene(random, (narc_precision)random_below(random, 2), owners, 1),
+                          make_random_scene(random, (narc_precision)random_below(random, 2), parts, 1),
+                          malloc(parts * sizeof *c.owner)};
+    assert_non_null(c.owner);
+    for (size_t k = 0; k < parts; k++)
+        c.owner[k] = (uint32_t)random_below(random, owners);
+    for (size_t k = 0; broken && k < parts / 8; k++) {
+        c.parts.bodies[random_below(random, parts)].sine = k % 2 ? NAN : 3;
+        c.owners.bodies[random_below(random, owners)].scale = k % 2 ? -1 : INFINITY;
+    }
+    return c;
+}
+
+static void destroy_compounds(struct compounds *c) {
+    destroy_scene(&c->owners);
+    destroy_scene(&c->parts);
+    free(c->owner);
+}
+
+static narc_body *place(const narc_bodies *owners, const narc_bodies *parts, const uint32_t *owner,
+                        const narc_workers *workers) {
+    narc_body *const rows = guard_allocate(parts->count * sizeof *rows);
+    narc_error error;
+    expect_ok(narc_place_parts(owners, parts, (narc_index_column){owner, sizeof *owner}, workers, rows, &error),
+              &error);
+    return rows;
+}
+
+static narc_body *place_all(const struct compounds *c) {
+    const narc_bodies owners = scene_bodies(&c->owners), parts = scene_bodies(&c->parts);
+    return place(&owners, &parts, c->owner, NULL);
+}
+
+/* ------------------------------------------------------------------------------------------------ bits */
+
+TEST(same_bits_whatever_the_layout) {
+    struct test_random random = test_random_named("layouts of parts");
+    enum { OWNERS = 50, MOST = 9000 };
+    struct compounds c = make_compounds(&random, OWNERS, MOST, true);
+    test_use_isa("scalar");
+    narc_body *const right = place_all(&c);
+    test_use_isa(test_isa());
+    for (enum layout layout = 0; layout < LAYOUT_COUNT; layout++) {
+        if (layout == LAYOUT_SHARED || layout == LAYOUT_UNSCALED) /* other values */
+            continue;
+        for (size_t count = 0; count <= MOST; count += count < 70 ? 1 : 1489) {
+            c.parts.body_count = count;
+            struct columns owners = create_columns(&c.owners, layout, 0, 0);
+            struct columns parts = create_columns(&c.parts, (enum layout)((layout + 1) % LAYOUT_SHARED), 0, 0);
+            uint32_t *const owner = guard_copy(c.owner, count * sizeof *owner);
+            const narc_workers workers = narc_openmp_workers((unsigned)random_below(&random, 5));
+            owners.bodies.shape.base = NULL;
+            narc_body *const rows = place(&owners.bodies, &parts.bodies, owner, &workers);
+            assert_memory_equal(rows, right, count * sizeof *rows);
+            guard_release(rows);
+            guard_release(owner);
+            destroy_columns(&owners);
+            destroy_columns(&parts);
+        }
+        c.parts.body_count = MOST;
+    }
+    guard_release(right);
+    destroy_compounds(&c);
+}
+
+/* Without cosines, sines and scales it is as with those of a part that is not turned. */
+TEST(what_is_left_out_is_not_turned) {
+    struct test_random random = test_random_named("unturned parts");
+    struct compounds c = make_compounds(&random, 20, 300, false);
+    for (size_t k = 0; k < c.parts.body_count; k++) {
+        c.parts.bodies[k].cosine = c.parts.bodies[k].scale = 1;
+        c.parts.bodies[k].sine = 0;
+    }
+    narc_body *const right = place_all(&c);
+    const narc_bodies owners = scene_bodies(&c.owners);
+    narc_bodies parts = scene_bodies(&c.parts);
+    parts.cosine.base = parts.sine.base = parts.scale.base = NULL;
+    narc_body *const rows = place(&owners, &parts, c.owner, NULL);
+    assert_memory_equal(rows, right, parts.count * sizeof *rows);
+    guard_release(rows);
+    guard_release(right);
+    destroy_compounds(&c);
+}
+
+/* ------------------------------------------------------------------------------------------------ places */
+
+static double number_of(const struct scene *scene, const struct body *body, bool y) {
+    return scene->precision == NARC_FLOAT64 ? (y ? body->y : body->x) : (double)(y ? body->y_single : body->x_single);
+}
+
+/* With roundings of double precision for a position, of single precision for a rotation and a scale. */
+TEST(parts_are_in_their_places) {
+    struct test_random random = test_random_named("places of parts");
+    for (size_t trial = 0; trial < test_trials(40); trial++) {
+        struct compounds c = make_compounds(&random, 1 + random_below(&random, 40), 200, false);
+        narc_body *const rows = place_all(&c);
+        for (size_t k = 0; k < c.parts.body_count; k++) {
+            const struct body *const part = &c.parts.bodies[k], *const at = &c.owners.bodies[c.owner[k]];
+            const double turn = atan2((double)at->sine, (double)at->cosine), scale = (double)at->scale;
+            const double x = number_of(&c.parts, part, false), y = number_of(&c.parts, part, true);
+            const double angle = turn + atan2((double)part->sine, (double)part->cosine);
+            const double to_x = number_of(&c.owners, at, false) + scale * (cos(turn) * x - sin(turn) * y);
+            const double to_y = number_of(&c.owners, at, true) + scale * (sin(turn) * x + cos(turn) * y);
+            const double room = 8 * DBL_EPSILON * (fabs(to_x) + fabs(to_y) + scale * (fabs(x) + fabs(y)));
+            assert_true(fabs(rows[k].x - to_x) <= room && fabs(rows[k].y - to_y) <= room);
+            assert_true(fabs((double)rows[k].cosine - cos(angle)) <= 0x1p-24 * 0.51 &&
+                        fabs((double)rows[k].sine - sin(angle)) <= 0x1p-24 * 0.51);
+            assert_true(rows[k].scale == at->scale * part->scale && rows[k].shape == part->shape);
+        }
+        guard_release(rows);
+        destroy_compounds(&c);
+    }
+}
+
+/* Any bits give bodies that are whole, or zeros. */
+TEST(broken_bodies_have_broken_parts) {
+    struct test_random random = test_random_named("broken parts");
+    enum { COUNT = 300 };
+    for (size_t trial = 0; trial < test_trials(60); trial++) {
+        struct compounds c = make_compounds(&random, COUNT, COUNT, true);
+        for (size_t k = 0; k < COUNT; k++) {
+            struct body *const body = &(trial % 2 ? c.owners : c.parts).bodies[k];
+            const uint32_t shape = body->shape;
+            uint64_t words[sizeof *body / 8];
+            for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+                words[i] = random_bits(&random);
+            if (k % 3 == 0)
+                memcpy(body, words, sizeof words);
+            body->shape = shape;
+        }
+        narc_body *const rows = place_all(&c);
+        for (size_t k = 0; k < COUNT; k++) {
+            const narc_body zeros = {.shape = c.parts.bodies[k].shape};
+            const double c_s =
+                (double)rows[k].cosine * (double)rows[k].cosine + (double)rows[k].sine * (double)rows[k].sine;
+            const bool whole = fabs(rows[k].x) <= DBL_MAX && fabs(rows[k].y) <= DBL_MAX && fabs(c_s - 1) < 1e-6 &&
+                               rows[k].scale > 0 && rows[k].scale <= FLT_MAX;
+            const struct body *const at = &c.owners.bodies[c.owner[k]], *const part = &c.parts.bodies[k];
+            assert_true(whole || memcmp(&rows[k], &zeros, sizeof zeros) == 0);
+            if (!(at->scale > 0) || isnan(part->sine) || isinf(at->cosine) || !(part->scale > 0))
+                assert_false(whole);
+        }
+        guard_release(rows);
+        destroy_compounds(&c);
+    }
+    /* Each number of either alone. */
+    static const float bad[] = {NAN, INFINITY, -INFINITY};
+    for (int number = 0; number < 10; number++)
+        for (int value = 0; value < 3; value++) {
+            float pose[2][5] = {{1, 2, 0.6f, 0.8f, 1}, {3, 4, 1, 0, 2}};
+            const uint32_t zero = 0;
+            narc_bodies set[2];
+            narc_body row;
+            pose[number / 5][number % 5] = bad[value];
+            for (int k = 0; k < 2; k++)
+                set[k] = (narc_bodies){1,
+                                       {&pose[k][0], 0, NARC_FLOAT32},
+                                       {&pose[k][1], 0, NARC_FLOAT32},
+                                       {&pose[k][2], 0},
+                                       {&pose[k][3], 0},
+                                       {&pose[k][4], 0},
+                                       {&zero, 0},
+                                       {NULL, NULL}};
+            assert_int_equal(narc_place_parts(&set[0], &set[1], (narc_index_column){&zero, 0}, NULL, &row, NULL),
+                             NARC_OK);
+            assert_memory_equal(&row, &(narc_body){0}, sizeof row);
+        }
+}
+
+/* A part in its place is the shape that narc_move_arcs() makes, in the place of its owner. */
+TEST(moved_shapes_are_placed_parts) {
+    struct test_random random = test_random_named("parts and moved shapes");
+    for (size_t trial = 0; trial < test_trials(300); trial++) {
+        const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
+        const double angle = random_between(&random, -4, 4), scale = random_between(&random, 0.5, 2);
+        const float cosine = (float)cos(angle), sine = (float)sin(angle);
+        struct shape moved = {.count = shape.count};
+        narc_shapes *const store = empty_store();
+        narc_body part = {random_between(&random, -2, 2), random_between(&random, -2, 2), cosine, sine, (float)scale,
+                          store_shape(store, shape)};
+        const struct body turned = turned_body(random_between(&random, -4, 4), 1.5);
+        narc_body bodies[4] = {{5, 6, turned.cosine, turned.sine, turned.scale, 0}};
+        const narc_bodies owners = narc_view_bodies(bodies, 1), parts = narc_view_bodies(&part, 1);
+        const narc_bodies all = narc_view_bodies(bodies, 4);
+        const uint32_t zero = 0;
+        narc_contact row[2];
+        size_t found;
+        assert_int_equal(narc_place_parts(&owners, &parts, (narc_index_column){&zero, 0}, NULL, &bodies[1], NULL),
+                         NARC_OK);
+        assert_int_equal(narc_move_arcs(shape.arcs, shape.count, part.x, part.y,
+                                        atan2((double)part.sine, (double)part.cosine), (double)part.scale, moved.arcs,
+                                        NULL),
+                         NARC_OK);
+        bodies[3] = bodies[0];
+        bodies[3].shape = store_shape(store, moved);
+        bodies[0] = bodies[2] = (narc_body){5 + random_between(&random, -4, 4), 6, 1, 0, 1, part.shape};
+        assert_int_equal(narc_find_contacts(store, &all, &(narc_pairs){.count = 2}, &(narc_query){.margin = INFINITY},
+                                            row, 2, &found, NULL),
+                         NARC_OK);
+        assert_int_equal(row[0].count + row[1].count, 2);
+        assert_true(fabsf(row[0].separation - row[1].separation) <= 40 * (float)NARC_ERROR_BOUND);
+        narc_destroy_shapes(store);
+    }
+}
+
+/* A part of an owner that has moved on its way for some time, and what it comes near to. */
+static double separation_at(const narc_shapes *store, const narc_body *part, narc_point motion, double angle,
+                            double time, const narc_body *other) {
+    const uint32_t zero = 0;
+    const narc_body owner = {
+        motion.x * (time - 0.5), motion.y * (time - 0.5), (float)cos(angle * time), (float)sin(angle * time), 1, 0};
+    narc_body two[2] = {{0}, *other};
+    const narc_bodies owners = narc_view_bodies(&owner, 1), parts = narc_view_bodies(part, 1),
+                      bodies = narc_view_bodies(two, 2);
+    narc_contact row;
+    size_t found;
+    assert_int_equal(narc_place_parts(&owners, &parts, (narc_index_column){&zero, 0}, NULL, two, NULL), NARC_OK);
+    assert_int_equal(narc_find_contacts(store, &bodies, &(narc_pairs){.count = 1}, &(narc_query){.margin = INFINITY},
+                                        &row, 1, &found, NULL),
+                     NARC_OK);
+    return (double)row.separation;
+}
+
+/* Casts of owners that turn, with the part's shape in the owner's frame. */
+TEST(moved_shapes_meet_when_parts_do) {
+    struct test_random random = test_random_named("casts of compounds");
+    const double tolerance = 1e-3, rounding = 1e-4; /* NARC_ERROR_BOUND of some units */
+    size_t hits = 0;
+    for (size_t trial = 0; trial < test_trials(200); trial++) {
+        const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
+        const float turn[2] = {(float)random_between(&random, -3, 3), 0}, x[2] = {8, 0}, y[2] = {1, 0};
+        const struct body at = turned_body(random_between(&random, -4, 4), 1);
+        narc_shapes *const store = empty_store();
+        const uint32_t stored = store_shape(store, shape);
+        const narc_body part = {random_between(&random, -2, 2), 1, at.cosine, at.sine, 1, stored};
+        struct shape moved = {.count = shape.count};
+        assert_int_equal(narc_move_arcs(shape.arcs, shape.count, part.x, part.y,
+                                        atan2((double)part.sine, (double)part.cosine), 1, moved.arcs, NULL),
+                         NARC_OK);
+        const narc_body two[2] = {{-4, -0.5, 1, 0, 1, store_shape(store, moved)},
+                                  {0.5, random_between(&random, -2, 2), 1, 0, 1, stored}};
+        const narc_bodies bodies = narc_view_bodies(two, 2);
+        const narc_motions motions = {.x = NARC_ARRAY(x), .y = NARC_ARRAY(y), .angle = NARC_ARRAY(turn)};
+        narc_impact row;
+        assert_int_equal(narc_cast_pairs(store, &bodies, &motions, &(narc_pairs){.count = 1}, NULL,
+                                         &(narc_cast_options){.tolerance = (float)tolerance}, &row, 1, NULL),
+                         NARC_OK);
+        const double end = row.count == NARC_CAST_MISS ? 1 : (double)row.fraction;
+        for (int k = 0; k <= 20; k++) {
+            const double here = separation_at(store, &part, (narc_point){8, 1}, (double)turn[0], end * k / 20, &two[1]);
+            assert_true(here >= -rounding || (row.count == NARC_CAST_HIT && row.fraction == 0));
+            if (k == 20 && row.count == NARC_CAST_HIT && row.fraction > 0)
+                assert_true(here <= tolerance + rounding);
+        }
+        hits += row.count == NARC_CAST_HIT && row.fraction > 0;
+        narc_destroy_shapes(store);
+    }
+    assert_true(hits > test_trials(200) / 4);
+}
+
+/* ------------------------------------------------------------------------------------------------ pairs */
+
+enum { BODIES = 60, PARTS = 4 * BODIES };
+
+static const narc_pair_list *update(narc_broad_phase *broad, const narc_shapes *shapes, const narc_body *rows,
+                                    size_t count, const uint32_t *group, const uint64_t *id) {
+    const narc_bodies bodies = narc_view_bodies(rows, count);
+    const narc_pair_filter filter = {.group = {group, sizeof *group}};
+    const narc_pair_options options = {.filter = &filter, .id = {id, sizeof *id}, .skin = 0.01f};
+    const narc_pair_list *list = NULL;
+    narc_error error;
+    expect_ok(narc_update_pairs(broad, shapes, &bodies, &options, &list, &error), &error);
+    return list;
+}
+
+static bool do_overlap(const narc_box *a, const narc_box *b) {
+    return a->min_x <= b->max_x && b->min_x <= a->max_x && a->min_y <= b->max_y && b->min_y <= a->max_y;
+}
+
+/* Every pair of parts of two bodies whose boxes meet, and none of one body. */
+static void check_pairs(const narc_shapes *shapes, const narc_body *rows, size_t count, const uint32_t *owner,
+                        const narc_pair_list *list) {
+    const narc_bodies bodies = narc_view_bodies(rows, count);
+    static narc_box boxes[PARTS];
+    size_t expected = 0, apart = 0, own = 0;
+    assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, boxes, NULL), NARC_OK);
+    for (size_t a = 0; a < count; a++)
+        for (size_t b = a + 1; b < count; b++) {
+            own += owner[a] == owner[b] && do_overlap(&boxes[a], &boxes[b]);
+            expected += owner[a] != owner[b] && do_overlap(&boxes[a], &boxes[b]);
+        }
+    for (size_t k = 0; k < list->pairs.count; k++) {
+        const uint32_t a = list->pairs.a.base[k], b = list->pairs.b.base[k];
+        assert_true(owner[a] != owner[b]);
+        apart += !do_overlap(&boxes[a], &boxes[b]); /* but for the skin */
+    }
+    assert_int_equal(list->pairs.count - apart, expected);
+    assert_true(own > 0 && expected > 0); /* or nothing was tested */
+}
+
+/* Takes part k away: the last one fills its place. */
+static void remove_part(struct compounds *c, uint32_t *group, uint64_t *id, size_t k) {
+    const size_t last = --c->parts.body_count;
+    c->parts.bodies[k] = c->parts.bodies[last];
+    c->owner[k] = c->owner[last];
+    group[k] = group[last];
+    id[k] = id[last];
+}
+
+TEST(parts_of_one_body_form_no_pair) {
+    struct test_random random = test_random_named("pairs of parts");
+    for (size_t trial = 0; trial < test_trials(20); trial++) {
+        struct compounds c = make_compounds(&random, BODIES, PARTS, false);
+        uint32_t group[PARTS];
+        uint64_t id[PARTS], last_a[9000], last_b[9000];
+        narc_broad_phase *broad = NULL;
+        size_t last_count = 0, known = 0;
+        assert_int_equal(narc_create_broad_phase(NULL, &broad), NARC_OK);
+        for (size_t k = 0; k < PARTS; k++) {
+            struct body *const part = &c.parts.bodies[k];
+            part->x_single *= 0.125f, part->y_single *= 0.125f, part->x *= 0.125, part->y *= 0.125;
+            group[k] = c.owner[k] + 1;
+            id[k] = 1000 + k;
+        }
+        for (size_t k = 0; k < BODIES; k++) {
+            struct body *const at = &c.owners.bodies[k];
+            at->x = at->x_single = (float)random_between(&random, -9, 9);
+            at->y = at->y_single = (float)random_between(&random, -9, 9);
+        }
+        for (int step = 0; step < 12; step++) {
+            narc_body *const rows = place_all(&c);
+            const size_t count = c.parts.body_count;
+            const narc_pair_list *const list = update(broad, c.parts.store, rows, count, group, id);
+            check_pairs(c.parts.store, rows, count, c.owner, list);
+            for (size_t k = 0; k < list->pairs.count; k++) {
+                const uint64_t a = id[list->pairs.a.base[k]], b = id[list->pairs.b.base[k]];
+                const uint32_t then = list->previous[k];
+                assert_true(then == NARC_NO_MATCH || then < last_count);
+                if (then != NARC_NO_MATCH)
+                    assert_true((last_a[then] == a && last_b[then] == b) || (last_a[then] == b && last_b[then] == a));
+                known += then != NARC_NO_MATCH;
+            }
+            last_count = list->pairs.count;
+            assert_true(last_count < 9000);
+            for (size_t k = 0; k < last_count; k++) {
+                last_a[k] = id[list->pairs.a.base[k]];
+                last_b[k] = id[list->pairs.b.base[k]];
+            }
+            guard_release(rows);
+            /* Some parts go, one is another now, and all bodies move a little. */
+            for (int k = 0; k < 3; k++)
+                remove_part(&c, group, id, random_below(&random, c.parts.body_count));
+            c.parts.bodies[0].shape = c.parts.bodies[1].shape;
+            scene_move_bodies(&c.owners, &random, 0.02);
+        }
+        assert_true(known > 0);
+        narc_destroy_broad_phase(broad);
+        destroy_compounds(&c);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ errors */
+
+TEST(parts_refuse_bad_arguments) {
+    struct test_random random = test_random_named("errors of parts");
+    struct compounds c = make_compounds(&random, 10, 90000, false);
+    const narc_bodies owners = scene_bodies(&c.owners), parts = scene_bodies(&c.parts);
+    const narc_index_column owner = {c.owner, sizeof *c.owner};
+    narc_body *const rows = make_junk(90000 * sizeof *rows);
+    narc_bodies wrong;
+    narc_error error;
+#define PLACE(owners, parts, owner, workers, rows, status, words)                                                      \
+    expect_error(narc_place_parts(owners, parts, owner, workers, rows, &error), status, &error, words)
+    PLACE(NULL, &parts, owner, NULL, rows, NARC_ERROR_ARGUMENT, "owners is NULL");
+    PLACE(&owners, NULL, owner, NULL, rows, NARC_ERROR_ARGUMENT, "parts is NULL");
+    PLACE(&owners, &parts, owner, NULL, NULL, NARC_ERROR_ARGUMENT, "out_bodies is NULL");
+    PLACE(&owners, &parts, (narc_index_column){0}, NULL, rows, NARC_ERROR_ARGUMENT, "owner is NULL");
+#define WRONG(set, change, words)                                                                                      \
+    wrong = set;                                                                                                       \
+    wrong.change;                                                                                                      \
+    PLACE(&set == &owners ? &wrong : &owners, &set == &parts ? &wrong : &parts, owner, NULL, rows,                     \
+          NARC_ERROR_ARGUMENT, words)
+    WRONG(owners, x.base = NULL, "owners.x");
+    WRONG(owners, cosine.base = NULL, "owners.cosine");
+    WRONG(owners, sine.base = NULL, "owners.sine");
+    WRONG(owners, y.precision = (narc_precision)7, "precision");
+    WRONG(owners, reserved[1] = rows, "owners.reserved[1]");
+    WRONG(parts, y.base = NULL, "parts.y");
+    WRONG(parts, cosine.base = NULL, "parts.cosine");
+    WRONG(parts, sine.base = NULL, "parts.sine");
+    WRONG(parts, shape.base = NULL, "parts.shape");
+    WRONG(parts, reserved[0] = rows, "parts.reserved[0]");
+#if SIZE_MAX > UINT32_MAX
+    WRONG(owners, count = (size_t)UINT32_MAX + 1, "at most");
+    WRONG(parts, count = (size_t)UINT32_MAX + 1, "at most");
+#endif
+    c.owner[80000] = UINT32_MAX;
+    c.owner[70000] = 10;
+    for (unsigned threads = 1; threads < 4; threads++) {
+        const narc_workers workers = narc_openmp_workers(threads);
+        PLACE(&owners, &parts, owner, &workers, rows, NARC_ERROR_INDEX,
+              "part 70000: the owner is 10, but there are 10");
+        assert_int_equal(error.index, 70000);
+    }
+    assert_true(is_junk(rows, 90000 * sizeof *rows));
+    expect_ok(narc_place_parts(&(narc_bodies){0}, &(narc_bodies){0}, (narc_index_column){0}, NULL, NULL, &error),
+              &error);
+    free(rows);
+    destroy_compounds(&c);
+}
+
+TEST_MAIN("parts")
