@@ -401,6 +401,7 @@ TEST(refuses_bad_arguments) {
     check_refused(arcs, GROUND, &(narc_chain_options){.weld = -1}, NARC_ERROR_ARGUMENT, 0, "weld is -1");
     check_refused(arcs, GROUND, &(narc_chain_options){.weld = NAN}, NARC_ERROR_ARGUMENT, 0, "weld is");
     check_refused(arcs, GROUND, &(narc_chain_options){.least_radius = NAN}, NARC_ERROR_ARGUMENT, 0, "least radius");
+    check_refused(arcs, GROUND, &(narc_chain_options){.reserved = {0, 0, 0, arcs}}, NARC_ERROR_ARGUMENT, 0, "reserved");
     check_refused(arcs, GROUND, &(narc_chain_options){.weld = 1e-9}, NARC_ERROR_COUNT, 2, "parts");
     assert_int_equal(narc_add_chain(shapes, arcs, GROUND, NULL, NULL, 0, &found, &error), NARC_ERROR_CAPACITY);
     assert_int_equal(found, 7);
@@ -510,7 +511,7 @@ TEST(refuses_chains_that_cross_themselves) {
         for (int i = 0; k == 1499 && i < 2; i++)
             walk_arc(&t, 100, 3); /* nearly back, and downhill */
     }
-    check_division(t.arcs, 900, NULL);
+    check_division(t.arcs, 300, NULL);
     narc_shapes *shapes = create_store(NULL);
     assert_true(add(shapes, t.arcs, 1501, NULL) > 1500);
     narc_destroy_shapes(shapes);
