@@ -327,7 +327,8 @@ typedef struct narc_allocator {
 
 /* The mass of a compound: of all that any of its parts covers. Where several lie over each other they count once,
  * exactly, wherever they touch or cross. (The sum of the parts, each for itself: narc_compute_mass() of each, and
- * second_moment + area * the square of its centroid's distance from the common one.)
+ * second_moment + area * the square of its centroid's distance from the common one.) It allocates, and checks what it
+ * is given.
  *   arcs        those of all parts in one frame (narc_move_arcs()), part after part
  *   counts      how many arcs each part has
  *   allocator   of some 400 bytes for each arc, for this call; NULL: malloc and free

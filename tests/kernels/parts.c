@@ -168,25 +168,21 @@ TEST(broken_bodies_have_broken_parts) {
         guard_release(rows);
         destroy_compounds(&c);
     }
-    /* Each number of either alone. */
-    static const float bad[] = {NAN, INFINITY, -INFINITY};
+    /* Each number of either alone; two scales below 0, whose product is not. */
+    static const float bad[] = {NAN, INFINITY, -INFINITY, -1};
     for (int number = 0; number < 10; number++)
-        for (int value = 0; value < 3; value++) {
-            float pose[2][5] = {{1, 2, 0.6f, 0.8f, 1}, {3, 4, 1, 0, 2}};
+        for (int value = 0; value < 4; value++) {
+            narc_body row, poses[2] = {{1, 2, 0.6f, 0.8f, 1, 0}, {3, 4, 1, 0, 2, 0}};
+            narc_body *const one = &poses[number / 5];
+            const narc_bodies owners = narc_view_bodies(&poses[0], 1), parts = narc_view_bodies(&poses[1], 1);
             const uint32_t zero = 0;
-            narc_bodies set[2];
-            narc_body row;
-            pose[number / 5][number % 5] = bad[value];
-            for (int k = 0; k < 2; k++)
-                set[k] = (narc_bodies){1,
-                                       {&pose[k][0], 0, NARC_FLOAT32},
-                                       {&pose[k][1], 0, NARC_FLOAT32},
-                                       {&pose[k][2], 0},
-                                       {&pose[k][3], 0},
-                                       {&pose[k][4], 0},
-                                       {&zero, 0},
-                                       {NULL, NULL}};
-            assert_int_equal(narc_place_parts(&set[0], &set[1], (narc_index_column){&zero, 0}, NULL, &row, NULL),
+            if (number % 5 < 2)
+                *(number % 5 ? &one->y : &one->x) = (double)bad[value];
+            else
+                *(float *[]){&one->cosine, &one->sine, &one->scale}[number % 5 - 2] = bad[value];
+            if (bad[value] == -1)
+                poses[0].scale = poses[1].scale = -1;
+            assert_int_equal(narc_place_parts(&owners, &parts, (narc_index_column){&zero, 0}, NULL, &row, NULL),
                              NARC_OK);
             assert_memory_equal(&row, &(narc_body){0}, sizeof row);
         }
