@@ -294,7 +294,7 @@ narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, v
         found = batch->count > 0 ? kernel(batch, batch->first, batch->count, &tally.skipped, &rows) : 0;
     else
         found = list_all(kernel, batch, row_size, &rows, capacity, &tally);
-    if (tally.further > 0 && !query->dense) {
+    if (NARC_PIECES && tally.further > 0 && !query->dense) {
         list_further(kernel, batch, row_size, &rows, found < capacity ? found : capacity, capacity);
         found += tally.further;
     }

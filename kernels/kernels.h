@@ -20,14 +20,6 @@
 #define NARC_SHORTCUTS 1
 #endif
 
-/* Is this the small module for WebAssembly, which leaves some kernels out, and all that is for pieces of chains? */
-#ifndef NARC_SMALL
-#define NARC_SMALL 0
-#endif
-
-/* Are there pieces of chains? */
-#define NARC_PIECES (!NARC_SMALL)
-
 /* What a batch call works on: pairs of a body of `a` and one of `b`, by their indices or, without, by the pair's own.
  * Asked of are pairs first .. first + count - 1 of the query's selection, or of all. */
 typedef struct narc_batch {

@@ -23,6 +23,14 @@
 
 #include "narc_pairs.h"
 
+/* Is this the small module for WebAssembly, which leaves some kernels out, and all that is for pieces of chains? */
+#ifndef NARC_SMALL
+#define NARC_SMALL 0
+#endif
+
+/* Are there pieces of chains? */
+#define NARC_PIECES (!NARC_SMALL)
+
 enum { NARC_CACHE_LINE = 64, NARC_RECORD_ANGLES = 16 };
 
 /* A diamond angle in 16 bits is (int)(angle * NARC_ANGLE_SCALE - NARC_ANGLE_OFFSET). NARC_ANGLE_NONE, which no
@@ -75,7 +83,7 @@ static inline bool narc_touches(const narc_shape_header *header, unsigned featur
 }
 
 static inline bool narc_is_piece(const narc_shape_header *header) {
-    return (header->first_arc & (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)) != 0;
+    return NARC_PIECES && (header->first_arc & (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)) != 0;
 }
 
 /* The upper half of a shape's flags is the class of its extent, from 2^(5 class - 32) up to 32 times that, the last one
