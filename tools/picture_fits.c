@@ -79,7 +79,9 @@ static void stroke_hull(canvas *page, double cell) {
 
 static void draw_outline(canvas *page, const placement *where, const narc_contours *contours, double cell) {
     trace_contours(page, where, contours);
+    cairo_set_fill_rule(page->pen, CAIRO_FILL_RULE_EVEN_ODD);
     paint_path(page, OUTLINE_FILL, OUTLINE_LINE, THIN_LINE * cell);
+    cairo_set_fill_rule(page->pen, CAIRO_FILL_RULE_WINDING);
 }
 
 /* "3 arcs", "1 arc"; nothing of none. */

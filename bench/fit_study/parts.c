@@ -56,12 +56,12 @@ static bool study_drawing(const char *file, double tolerance, bool fits_arcs, ro
             *out = (row){.parts = (double)parts.count, .cut_seconds = seconds_now() - begin, .distance = parts.distance / extent};
             narc_fit_result *fits = allocate(parts.count, sizeof *fits);
             double worst = 0, area;
-            for (size_t k = 0; k < parts.count && done; k++) {
+            for (size_t k = 0; k < parts.count && done && fits_arcs; k++) {
                 const narc_fit_request fit = {.tolerance = fits_arcs ? tolerance * extent - parts.distance : 0, .family = fits_arcs ? NARC_FIT_EDGES : NARC_FIT_POLYGON, .arc_count = fits_arcs ? 0 : 12, .starts = 1};
                 done = narc_fit_path(parts.paths[k], &fit, &fits[k], &error) == NARC_OK;
                 worst = done ? fmax(worst, fits[k].max_distance) : 0;
             }
-            if (done && (narc_measure_union(fits, parts.count, &area, &error) == NARC_OK || (printf("%s\n", error.message), 0))) {
+            if (done && fits_arcs && (narc_measure_union(fits, parts.count, &area, &error) == NARC_OK || (printf("%s\n", error.message), 0))) {
                 out->ratio = area / parts.area;
                 if (fits_arcs) out->distance += worst / extent;
             }

@@ -254,11 +254,16 @@ static narc_status cut_contours(const narc_contours *contours, const narc_parts_
     if (status)
         return status;
     status = find_pieces(&region, request, request->tolerance > 0 ? tolerance : 0, &pieces, error);
+    const double distance = status ? 0 : measure_gaps(&region, &pieces) + contours->flatness;
+    if (!status && request->lap == 0 && request->tolerance > 0 && distance > request->tolerance)
+        status = narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, distance,
+                           "the tolerance %g is not reached: parts were found that are within %g", request->tolerance,
+                           distance);
     narc_parts parts;
     if (!status && draw_pieces(&pieces, contours->flatness, &parts))
         status = narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "not enough memory for the parts of an outline");
     if (!status) {
-        parts.distance = measure_gaps(&region, &pieces) + contours->flatness;
+        parts.distance = distance;
         parts.area = narc_measure_region(&region);
         *out_parts = parts;
     }
