@@ -304,8 +304,8 @@ NARC_API narc_status narc_fit_bezier(const narc_point *controls, size_t degree, 
                                      narc_curve_arc *out_arcs, size_t capacity, size_t *out_count, double *out_distance,
                                      narc_error *error);
 
-/* The contours of a path as closed chains of arcs and lines: chain k has arcs[ends[k - 1] .. ends[k] - 1] (0 for
- * ends[-1]); each begins where the one before it ends, and the first where the last ends. */
+/* The contours of a path as chains of arcs and lines: chain k has arcs[ends[k - 1] .. ends[k] - 1] (0 for ends[-1]); each
+ * begins where the one before it ends, and the first of a closed chain where the last ends. */
 typedef struct narc_arc_chains {
     narc_curve_arc *arcs;
     size_t arc_count;
@@ -317,12 +317,21 @@ typedef struct narc_arc_chains {
 /* The curves of a path, and lines alone, by narc_fit_bezier(). Of lines one after the other, such as those of traced
  * outlines, as many as the tolerance lets be become one line or two arcs; pieces join with a common tangent but at
  * corners: where the lines turn by more than half a radian within some tolerances. A chain of lines that is a whole
- * contour may begin at another of its points. Contours are closed by a line where they are open, and those that are a
- * point are left out. Free the result with narc_release_chains(). Errors: those of narc_fit_bezier();
+ * contour may begin at another of its points. Contours are closed by a line where they are open, unless `open`, and those
+ * that are a point are left out. Closed chains have the inside on their left: what an odd number of chains is around;
+ * open ones go as they were drawn. Free the result with narc_release_chains(). Errors: those of narc_fit_bezier();
  * NARC_ERROR_ARGUMENT (NULL), NARC_ERROR_COUNT (nothing is drawn), NARC_ERROR_MEMORY. */
-NARC_API narc_status narc_fit_chains(const narc_path *path, double tolerance, narc_arc_chains *out_chains,
+NARC_API narc_status narc_fit_chains(const narc_path *path, double tolerance, bool open, narc_arc_chains *out_chains,
                                      narc_error *error);
 NARC_API void narc_release_chains(narc_arc_chains *chains);
+
+/* One chain, `pieces[0 .. count-1]`, as arcs in the form of shapes, for ground: with the inside on its left, normals that
+ * point to the right, and radii below 0 where it is concave (narc_files.h has it exactly). Straight pieces are the edges
+ * between arcs; where pieces meet with an angle above 1e-6 there is an arc of radius 0, or -0 in a valley, and plain
+ * points at the ends of an open chain that are ends of lines. `out_arcs` has room for 2 count + 1. NARC_ERROR_ARGUMENT
+ * (NULL), NARC_ERROR_COUNT (no pieces). */
+NARC_API narc_status narc_describe_chain(const narc_curve_arc *pieces, size_t count, bool closed, narc_arc *out_arcs,
+                                         size_t *out_count, narc_error *error);
 
 #ifdef __cplusplus
 }

@@ -9,6 +9,7 @@
 
 #include "calls.h"
 #include "canvas.h"
+#include "chains.h"
 #include "commands.h"
 #include "fail.h"
 #include "fit_inputs.h"
@@ -16,34 +17,31 @@
 #include "output.h"
 #include "picture_fits.h"
 #include "progress.h"
-#include "splines.h"
 #include "text.h"
 
 static const char HELP[] =
     "usage: narc fit INPUT... --arcs N|--tolerance T [--parts N] [--bound|--approximate]\n"
-    "                [--objective NAME] [--edges|--polygon|--paper] [--characters TEXT] [--silhouette NAME]\n"
-    "                [--threshold X] [--flatness F] [--min-radius R] [--starts N] [--keep-origin]\n"
-    "                [--keep-going] [--out shapes.json] [--picture FILE]\n"
-    "       narc fit INPUT... --spline --tolerance T [--characters TEXT] [--silhouette NAME]\n"
-    "                [--threshold X] [--keep-going] [--out splines.json] [--picture FILE]\n"
+    "                [--objective NAME] [--edges|--polygon|--paper] [--flatness F] [--min-radius R]\n"
+    "                [--starts N] [--keep-origin] [--keep-going] [--characters TEXT]\n"
+    "                [--silhouette NAME] [--threshold X] [--out shapes.json] [--picture FILE]\n"
+    "       narc fit INPUT... --chain --tolerance T [--open] [--keep-going] [--characters TEXT]\n"
+    "                [--silhouette NAME] [--threshold X] [--out shapes.json] [--picture FILE]\n"
     "\n"
     "Makes an arc shape of each input: the best that is found of those that bound the outline, or of\n"
-    "those that come close to it. Of an outline only the convex hull counts, unless --parts cuts it.\n"
+    "those that come close to it. Of an outline only the convex hull counts, without --parts or --chain.\n"
     "\n"
     "  INPUT           files; the first bytes tell their kind, or else the suffix:\n"
     "                  fonts         with --characters: each of these is one shape; lengths in em\n"
     "                  SVG           what is drawn, as one shape, traced at its edge\n"
-    "                  PNG           the silhouette: what is not transparent; lengths in pixels\n"
-    "                  CSV           points, one x,y a line, or columns x and y of a table; a blank\n"
-    "                                line begins another contour\n"
+    "                  PNG           the silhouette; lengths in pixels\n"
+    "                  CSV           points, one x,y a line; a blank line begins another contour\n"
     "                  JSON          points, [[x, y], ...], or a list of such lists\n"
     "  --arcs N        at most N arcs a shape, 1 to 32\n"
     "  --tolerance T   instead: as few arcs as stay within the distance T of the hull, in the\n"
     "                  input's unit of length\n"
-    "  --parts N       the outline itself, bays and holes respected, as at most N convex shapes, 1 to\n"
-    "                  256, that overlap at cuts and are named NAME/1, NAME/2 ...: with --tolerance as\n"
-    "                  few as stay within it, and the outline counts in place of the hull; with\n"
-    "                  --arcs, which is for each shape, those nearest to it\n"
+    "  --parts N       the outline with bays and holes, as at most N convex shapes NAME/1, NAME/2 ...\n"
+    "                  that overlap at cuts, 1 to 256: as few as stay within --tolerance of the\n"
+    "                  outline, or with --arcs, which is for each, the nearest\n"
     "  --bound         the shape contains the outline; the default\n"
     "  --approximate   it may also lie inside\n"
     "  --objective NAME\n"
@@ -54,24 +52,21 @@ static const char HELP[] =
     "                  distance      the largest distance of shape and hull; the default with\n"
     "                                --approximate\n"
     "  --edges         straight edges may stand between arcs; without it tangents are continuous\n"
-    "  --polygon       to compare: a bounding polygon of least area, its corners arcs of radius 0\n"
-    "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1,\n"
-    "                  enlarged until it bounds\n"
+    "  --polygon       to compare: a bounding polygon of least area\n"
+    "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1\n"
     "  --characters TEXT\n"
     "                  which glyphs of fonts, UTF-8; repeated characters are skipped\n"
     "  --silhouette NAME\n"
     "                  what counts in PNG and SVG: alpha (the default), dark or light\n"
     "  --threshold X   how much of that; above 0 and below 1, default 0.5 of PNG, 0.25 of SVG\n"
-    "  --flatness F    how far chords may be from curves, as a part of the larger side of the\n"
-    "                  outline's bounding box; 1e-9 to 0.1, default 2e-5\n"
-    "  --min-radius R  no arc has a smaller radius, in the input's unit of length: shapes are smooth\n"
+    "  --flatness F    how far chords may be from curves, in parts of the outline's larger side;\n"
+    "                  1e-9 to 0.1, default 2e-5\n"
+    "  --min-radius R  no arc has a smaller radius: shapes are smooth\n"
     "  --starts N      how many places the search starts from, 1 to 10000; more are never worse\n"
-    "  --keep-origin   the shapes keep the input's coordinates: a body at 0, 0 lies over its outline;\n"
-    "                  far from its origin a shape is rounded more\n"
-    "  --spline        instead of a convex shape: the outline itself as arcs that join with a common\n"
-    "                  tangent, within --tolerance of its curves\n"
-    "  --keep-going    what cannot be read or fitted is left out; its error is told, and the exit status\n"
-    "                  is 1\n"
+    "  --keep-origin   the shapes keep the input's coordinates\n"
+    "  --chain         instead of convex shapes: the outline itself as closed chains of arcs and edges,\n"
+    "                  within --tolerance, for ground; --open: contours are strokes, left open\n"
+    "  --keep-going    what cannot be read or fitted is left out; the exit status is 1\n"
     "  --out FILE      the shapes file to write; left out or -: standard output\n"
     "  --picture FILE  a .png or .svg picture of outlines, hulls and shapes\n"
     "\n"
@@ -79,8 +74,8 @@ static const char HELP[] =
     "its code point (U+1F47B); names that are taken get -2, -3 and so on. A shape's centroid is its\n"
     "origin; \"origin\" in the shapes file tells where that is in the input's coordinates.\n"
     "\n"
-    "The table has areas of shape and hull and their ratio, how far the shape is from the hull: at\n"
-    "most, and in the mean along the shape, and the origin.\n";
+    "The table has areas of shape and hull (of parts: of their union and the outline), distances, and\n"
+    "the origin.\n";
 
 enum {
     ARCS,
@@ -98,7 +93,8 @@ enum {
     FLATNESS,
     MIN_RADIUS,
     STARTS,
-    SPLINE,
+    CHAIN,
+    OPEN,
     KEEP_ORIGIN,
     KEEP_GOING,
     OUT,
@@ -126,7 +122,9 @@ static void check_combinations(const option *options) {
     static const int of_hulls[] = {ARCS, PARTS, BOUND, APPROXIMATE, OBJECTIVE, EDGES,
                                    POLYGON, PAPER, FLATNESS,    STARTS,    KEEP_ORIGIN};
     for (size_t k = 0; k < sizeof of_hulls / sizeof of_hulls[0]; k++)
-        exclude(&options[SPLINE], &options[of_hulls[k]], "a spline follows the outline itself, within --tolerance");
+        exclude(&options[CHAIN], &options[of_hulls[k]], "a chain follows the outline itself, within --tolerance");
+    if (options[OPEN].value && !options[CHAIN].value)
+        fail("--open is for --chain: shapes are closed");
     if (!options[ARCS].value && !options[TOLERANCE].value)
         fail("--arcs or --tolerance is missing");
 }
@@ -333,7 +331,6 @@ static void check_any(const outline_list *outlines) {
 
 /* All shapes, those of one outline one after the other: with its name if it has one, else NAME/1, NAME/2 ... */
 static narc_named_shape *name_shapes(const outline_list *outlines, const collider *fits, size_t *out_count) {
-    enum { DIGITS = 24 };
     size_t count = 0, used = 0;
     for (size_t i = 0; i < outlines->count; i++)
         count += fits[i].count;
@@ -341,29 +338,35 @@ static narc_named_shape *name_shapes(const outline_list *outlines, const collide
     for (size_t i = 0; i < outlines->count; i++) {
         for (size_t k = 0; k < fits[i].count; k++) {
             const narc_fit_result *fit = &fits[i].fits[k];
-            const char *whole = outlines->items[i].name;
-            char *name = allocate(strlen(whole) + DIGITS, 1);
-            snprintf(name, strlen(whole) + DIGITS, fits[i].count > 1 ? "%s/%zu" : "%s", whole, k + 1);
-            shapes[used++] = (narc_named_shape){
-                .name = name, .arcs = fit->arcs, .arc_count = fit->arc_count, .origin = fit->origin};
+            shapes[used++] = (narc_named_shape){.name = name_part(&outlines->items[i], k, fits[i].count),
+                                                .arcs = fit->arcs,
+                                                .arc_count = fit->arc_count,
+                                                .origin = fit->origin};
         }
     }
     *out_count = count;
     return shapes;
 }
 
-static void make_shapes(outline_list *outlines, fitting how, FILE *file, const char *picture, FILE *picture_file) {
-    collider *fits = fit_outlines(outlines, how);
-    check_any(outlines);
+static void write_file(FILE *file, narc_named_shape *shapes, size_t count) {
     char *text;
-    size_t size, count;
+    size_t size;
     narc_error error;
-    narc_named_shape *shapes = name_shapes(outlines, fits, &count);
     if (narc_write_shapes(shapes, count, NULL, &text, &size, &error) != NARC_OK)
         fail("%s", error.message);
     fwrite(text, 1, size, file);
     free(text);
     flush_output(file);
+    for (size_t k = 0; k < count; k++)
+        free((char *)shapes[k].name);
+}
+
+static void make_shapes(outline_list *outlines, fitting how, FILE *file, const char *picture, FILE *picture_file) {
+    collider *fits = fit_outlines(outlines, how);
+    check_any(outlines);
+    size_t count;
+    narc_named_shape *shapes = name_shapes(outlines, fits, &count);
+    write_file(file, shapes, count);
     if (picture)
         draw_fits(picture, picture_file, outlines, fits, NULL);
     FILE *report = finish_outputs();
@@ -373,28 +376,30 @@ static void make_shapes(outline_list *outlines, fitting how, FILE *file, const c
         print_table(report, outlines, fits);
     finish_report(report);
     commit_outputs();
-    for (size_t k = 0; k < count; k++)
-        free((char *)shapes[k].name);
     for (size_t i = 0; i < outlines->count; i++)
         free(fits[i].fits);
     free(shapes);
     free(fits);
 }
 
-static void make_splines(outline_list *outlines, double tolerance, FILE *file, const char *picture,
-                         FILE *picture_file) {
-    narc_arc_chains *chains = fit_splines(outlines, tolerance);
+static void make_chains(outline_list *outlines, double tolerance, bool open, FILE *file, const char *picture,
+                        FILE *picture_file) {
+    narc_arc_chains *chains = fit_chains(outlines, tolerance, open);
     check_any(outlines);
-    write_splines(file, outlines, chains);
-    flush_output(file);
+    size_t count;
+    narc_named_shape *shapes = describe_chains(outlines, chains, open, &count);
+    write_file(file, shapes, count);
     if (picture)
         draw_fits(picture, picture_file, outlines, NULL, chains);
     FILE *report = finish_outputs();
-    print_splines(report, outlines, chains);
+    print_chains(report, outlines, chains);
     finish_report(report);
     commit_outputs();
+    for (size_t k = 0; k < count; k++)
+        free((narc_arc *)shapes[k].arcs);
     for (size_t i = 0; i < outlines->count; i++)
         narc_release_chains(&chains[i]);
+    free(shapes);
     free(chains);
 }
 
@@ -414,7 +419,8 @@ static void run(int argc, char **argv) {
                                [FLATNESS] = {"--flatness", true, NULL},
                                [MIN_RADIUS] = {"--min-radius", true, NULL},
                                [STARTS] = {"--starts", true, NULL},
-                               [SPLINE] = {"--spline", false, NULL},
+                               [CHAIN] = {"--chain", false, NULL},
+                               [OPEN] = {"--open", false, NULL},
                                [KEEP_ORIGIN] = {"--keep-origin", false, NULL},
                                [KEEP_GOING] = {"--keep-going", false, NULL},
                                [OUT] = {"--out", true, NULL},
@@ -437,8 +443,8 @@ static void run(int argc, char **argv) {
     read_outlines(files, file_count, &how, &outlines);
     check_any(&outlines);
     FILE *shapes_file = open_output(out), *picture_file = picture ? open_output(picture) : NULL;
-    if (options[SPLINE].value)
-        make_splines(&outlines, request.tolerance, shapes_file, picture, picture_file);
+    if (options[CHAIN].value)
+        make_chains(&outlines, request.tolerance, options[OPEN].value, shapes_file, picture, picture_file);
     else
         make_shapes(&outlines, (fitting){.request = request, .parts = parts, .flatness = flatness}, shapes_file, picture,
                     picture_file);

@@ -9,11 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "chains.h"
 #include "draw_fit.h"
 #include "fail.h"
 #include "legend.h"
 #include "progress.h"
-#include "splines.h"
 
 /* In pixels; a page with many fits has smaller cells. */
 static const double CELL = 440, LARGEST_PAGE = 3000;
@@ -49,7 +49,7 @@ typedef struct drawing {
     size_t corner_count;
 } drawing;
 
-/* A spline needs no hull: its outline may lie on a line. */
+/* A chain and parts need no hull: its outline may lie on a line. */
 static drawing make_drawing(const outline *of, bool has_hull) {
     drawing made;
     narc_error error;
