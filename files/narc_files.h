@@ -27,14 +27,21 @@
 extern "C" {
 #endif
 
+/* What a named shape is: convex and closed, or a chain of pieces, such as ground, open or closed. A chain's arcs go with
+ * the solid on their left, like those of shapes. One with a radius below 0 is concave: the solid is outside of its circle,
+ * its normals turn clockwise from `start` to `end`, and its points are center + radius * normal too. Radius -0 is the
+ * bottom of a valley. An arc of radius 0 whose start is its end is a plain point, such as the free end of an edge. */
+typedef enum narc_form { NARC_FORM_SHAPE = 0, NARC_FORM_OPEN_CHAIN = 1, NARC_FORM_CLOSED_CHAIN = 2 } narc_form;
+
 typedef struct narc_named_shape {
     /* UTF-8, NUL-terminated, and fit to be a field of a CSV file: not empty, no comma, quote or control character, no
      * blank at either end. Digits alone may only be the shape's own number in its file. */
     const char *name;
-    const narc_arc *arcs; /* 1 .. NARC_MAX_ARCS */
+    const narc_arc *arcs; /* 1 .. NARC_MAX_ARCS; of chains any number */
     size_t arc_count;
     narc_point origin; /* of a fit: where the shape's origin is in the coordinates of its outline; else 0 */
-    uint32_t index;    /* in the store it was added to; 0 without a store, and not written */
+    uint32_t index;    /* in the store it was added to; 0 without a store and of chains, and not written */
+    narc_form form;
 } narc_named_shape;
 
 /* The shapes of a file, in its order, with names that differ. The list owns all of it. */
@@ -43,7 +50,7 @@ typedef struct narc_shape_list {
     const narc_named_shape *items;
 } narc_shape_list;
 
-/* Reads a shapes file of `size` bytes, and adds each shape to `store` unless that is NULL. The list's memory comes from
+/* Reads a shapes file of `size` bytes, and adds each shape, but no chain, to `store` unless that is NULL. The list's memory comes from
  * `allocator`, NULL: malloc() and free(); cJSON, which parses, uses malloc(). The list may outlive the data and the
  * store.
  * Errors: NARC_ERROR_ARGUMENT (NULL, an allocator without a function), NARC_ERROR_MEMORY; NARC_ERROR_FORMAT (no JSON, a

@@ -17,6 +17,8 @@
 #include "names.h"
 #include "narc_files.h"
 
+static const double FULL_TURN = 6.283185307179586;
+
 /* What is read now, for messages. After the first error numbers are 0 and lists are empty. */
 typedef struct reader {
     const char *text;
@@ -99,21 +101,21 @@ static narc_point as_point(reader *at, const cJSON *item, const char *what) {
                       : (narc_point){as_number(at, item->child, what), as_number(at, item->child->next, what)};
 }
 
-/* The length of a list that must have between 1 and NARC_MAX_ARCS items. */
-static size_t check_list(reader *at, const cJSON *list, const char *key) {
+/* The length of a list that must have between 1 and `most` items. */
+static size_t check_list(reader *at, const cJSON *list, const char *key, size_t most) {
     const size_t count = (size_t)cJSON_GetArraySize(list);
     if (!cJSON_IsArray(list))
         fail_value(at, list, key, "is not a list");
     else if (count == 0)
         fail_shape(at, NARC_ERROR_COUNT, list, 0, "%s is an empty list", key);
-    else if (count > NARC_MAX_ARCS)
-        fail_shape(at, NARC_ERROR_COUNT, list, (double)count, "%s has %zu items, at most %d are possible", key, count,
-                   NARC_MAX_ARCS);
+    else if (count > most)
+        fail_shape(at, NARC_ERROR_COUNT, list, (double)count, "%s has %zu items, at most %zu are possible", key, count,
+                   most);
     return at->status ? 0 : count;
 }
 
 static size_t get_points(reader *at, const cJSON *list, const char *key, narc_point *out_points) {
-    const size_t count = check_list(at, list, key);
+    const size_t count = check_list(at, list, key, NARC_MAX_ARCS);
     const cJSON *item = list->child;
     for (size_t i = 0; i < count; i++, item = item->next) {
         snprintf(at->element, sizeof at->element, "point %zu", i);
@@ -136,12 +138,10 @@ static void check_object(reader *at, const cJSON *item, const char *what, const 
 typedef narc_status build_form(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
                                narc_error *error);
 
-static narc_status build_arcs(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
-                              narc_error *error) {
+/* `count` arcs of a list, which has as many. */
+static void read_arcs(reader *at, const cJSON *list, size_t count, narc_arc *out_arcs) {
     static const char *const keys[] = {"center", "radius", "start", "end", NULL};
-    (void)radius;
-    const size_t count = check_list(at, item, "arcs");
-    const cJSON *arc = item->child;
+    const cJSON *arc = list->child;
     for (size_t i = 0; i < count; i++, arc = arc->next) {
         snprintf(at->element, sizeof at->element, "arc %zu", i);
         check_object(at, arc, "it", keys);
@@ -150,8 +150,14 @@ static narc_status build_arcs(reader *at, const cJSON *item, double radius, narc
                                  get_number(at, arc, "end")};
     }
     at->element[0] = 0;
-    *out_count = count;
-    return narc_validate_arcs(out_arcs, count, error);
+}
+
+static narc_status build_arcs(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
+                              narc_error *error) {
+    (void)radius;
+    *out_count = check_list(at, item, "arcs", NARC_MAX_ARCS);
+    read_arcs(at, item, *out_count, out_arcs);
+    return narc_validate_arcs(out_arcs, *out_count, error);
 }
 
 static narc_status build_points(reader *at, const cJSON *item, double radius, narc_arc *out_arcs, size_t *out_count,
@@ -214,7 +220,29 @@ static const struct {
     {"circle", false, build_circle},     {"capsule", false, build_capsule}, {"box", false, build_box},
     {"four_arc", false, build_four_arc},
 };
-enum { FORM_COUNT = sizeof forms / sizeof forms[0] };
+enum { FORM_COUNT = sizeof forms / sizeof forms[0], CHAIN = FORM_COUNT, NO_FORM };
+
+/* What can be wrong with an arc of a chain by itself: normals turn with the sign of the radius, by less than a full
+ * turn. Only a plain point has none. */
+static narc_status check_chain_arc(const narc_arc *arc, size_t index, narc_error *error) {
+    const double turn = arc->end - arc->start;
+    const double numbers[5] = {arc->center_x, arc->center_y, arc->radius, arc->start, arc->end};
+    for (int k = 0; k < 5; k++)
+        if (!isfinite(numbers[k]))
+            return narc_fail(error, NARC_ERROR_NOT_FINITE, index, numbers[k], "arc %zu: a number is not finite", index);
+    if (turn == 0 ? arc->radius != 0 : (turn < 0) != (signbit(arc->radius) != 0) || fabs(turn) > FULL_TURN)
+        return narc_fail(error, NARC_ERROR_SWEEP, index, turn,
+                         "arc %zu: from start to end it turns by %.9g, but its radius is %.9g", index, turn,
+                         arc->radius);
+    return NARC_OK;
+}
+
+static narc_status check_chain(const narc_arc *arcs, size_t count, narc_error *error) {
+    narc_status status = count ? NARC_OK : narc_fail(error, NARC_ERROR_COUNT, 0, 0, "a chain without arcs");
+    for (size_t i = 0; i < count && !status; i++)
+        status = check_chain_arc(&arcs[i], i, error);
+    return status;
+}
 
 /* ---------------------------------------------------------------------------- names */
 
@@ -311,18 +339,20 @@ size_t narc_find_named_shape(const narc_shape_list *shapes, const char *name) {
 
 /* ---------------------------------------------------------------------------- reading */
 
+static const char *key_of(size_t form) { return form == CHAIN ? "chain" : forms[form].key; }
+
 /* Finds the one form that a shape has. */
 static size_t find_form(reader *at, const cJSON *object) {
-    size_t found = FORM_COUNT;
-    for (size_t i = 0; i < FORM_COUNT; i++) {
-        const cJSON *item = find(object, forms[i].key);
-        if (item && found < FORM_COUNT)
-            fail_shape(at, NARC_ERROR_FORMAT, item, 0, "it has both '%s' and '%s'", forms[found].key, forms[i].key);
+    size_t found = NO_FORM;
+    for (size_t i = 0; i < NO_FORM; i++) {
+        const cJSON *item = find(object, key_of(i));
+        if (item && found < NO_FORM)
+            fail_shape(at, NARC_ERROR_FORMAT, item, 0, "it has both '%s' and '%s'", key_of(found), key_of(i));
         found = item ? i : found;
     }
-    if (found == FORM_COUNT)
+    if (found == NO_FORM)
         fail_shape(at, NARC_ERROR_FORMAT, object, 0,
-                   "none of arcs, points, polygon, circle, capsule, box and four_arc is there");
+                   "none of arcs, points, polygon, circle, capsule, box, four_arc and chain is there");
     return found;
 }
 
@@ -350,9 +380,53 @@ static void fail_build(reader *at, const cJSON *item, const narc_error *error) {
     fail_shape(at, error->status, item, error->value, "%s", error->message);
 }
 
+/* A convex shape, which also comes into the store. */
+static const narc_arc *read_convex(reader *at, const cJSON *item, size_t form, double radius, narc_shapes *store,
+                                   narc_arc *arcs, narc_named_shape *shape) {
+    narc_error error;
+    if (forms[form].build(at, item, radius, arcs, &shape->arc_count, &error) != NARC_OK ||
+        (store && !at->status && narc_add_shape(store, arcs, shape->arc_count, &shape->index, &error) != NARC_OK))
+        fail_build(at, item, &error);
+    return arcs;
+}
+
+/* A chain, whose arcs stay where they are until the shape has a block of its own; to be released if not NULL. */
+static narc_arc *read_chain(reader *at, const cJSON *item, const list *shapes, narc_named_shape *shape) {
+    static const char *const keys[] = {"closed", "arcs", NULL};
+    check_object(at, item, "chain", keys);
+    const cJSON *closed = at->status ? NULL : find(item, "closed"), *arcs = at->status ? NULL : require(at, item, "arcs");
+    if (closed && !cJSON_IsBool(closed))
+        fail_value(at, closed, "closed", "is neither true nor false");
+    shape->form = closed && cJSON_IsTrue(closed) ? NARC_FORM_CLOSED_CHAIN : NARC_FORM_OPEN_CHAIN;
+    shape->arc_count = at->status ? 0 : check_list(at, arcs, "arcs", SIZE_MAX / sizeof(narc_arc));
+    narc_arc *read = at->status ? NULL : allocate(&shapes->allocator, shape->arc_count * sizeof *read, "arcs", at->error);
+    narc_error error;
+    if (!at->status && !read)
+        at->status = NARC_ERROR_MEMORY;
+    if (read)
+        read_arcs(at, arcs, shape->arc_count, read);
+    if (read && !at->status && check_chain(read, shape->arc_count, &error) != NARC_OK)
+        fail_build(at, arcs, &error);
+    return read;
+}
+
+/* Gives the shape that comes next in the list its arcs, and the name behind them. */
+static void keep_shape(reader *at, list *shapes, const char *name, const narc_arc *arcs) {
+    narc_named_shape *shape = &shapes->items[shapes->shown.count];
+    const size_t size = shape->arc_count * sizeof *arcs, length = strlen(name) + 1;
+    char *block = allocate(&shapes->allocator, size + length, "a shape", at->error);
+    if (block) {
+        shape->arcs = memcpy(block, arcs, size);
+        shape->name = memcpy(block + size, name, length);
+        shapes->shown.count++;
+    } else {
+        at->status = NARC_ERROR_MEMORY;
+    }
+}
+
 static void read_shape(reader *at, const cJSON *object, narc_shapes *store, list *shapes) {
     static const char *const keys[] = {"name", "origin", "arcs",    "points",   "polygon", "circle",
-                                       "box",  "radius", "capsule", "four_arc", NULL};
+                                       "box",  "radius", "capsule", "four_arc", "chain",   NULL};
     narc_named_shape *shape = &shapes->items[shapes->shown.count];
     snprintf(at->shape, sizeof at->shape, "shape %zu", shapes->shown.count);
     if (!cJSON_IsObject(object))
@@ -365,30 +439,20 @@ static void read_shape(reader *at, const cJSON *object, narc_shapes *store, list
     const size_t form = find_form(at, object);
     if (at->status)
         return;
-    const cJSON *item = find(object, forms[form].key), *radius = find(object, "radius"),
-                *origin = find(object, "origin");
-    if (radius && !forms[form].takes_radius)
-        fail_shape(at, NARC_ERROR_FORMAT, radius, 0, "'%s' takes no 'radius' beside it", forms[form].key);
+    const cJSON *item = find(object, key_of(form)), *radius = find(object, "radius"), *origin = find(object, "origin");
+    if (radius && (form == CHAIN || !forms[form].takes_radius))
+        fail_shape(at, NARC_ERROR_FORMAT, radius, 0, "'%s' takes no 'radius' beside it", key_of(form));
     *shape = (narc_named_shape){.origin = origin ? as_point(at, origin, "origin") : (narc_point){0}};
 
-    narc_arc arcs[NARC_MAX_ARCS];
-    narc_error error;
     const double corner = get_number_or_zero(at, object, "radius");
-    if (forms[form].build(at, item, corner, arcs, &shape->arc_count, &error) != NARC_OK ||
-        (store && !at->status && narc_add_shape(store, arcs, shape->arc_count, &shape->index, &error) != NARC_OK))
-        fail_build(at, item, &error);
-    if (at->status)
-        return;
-    const size_t size = shape->arc_count * sizeof *arcs, length = strlen(name) + 1;
-    char *block = allocate(&shapes->allocator, size + length, "a shape", at->error);
-    if (block) {
-        shape->arcs = memcpy(block, arcs, size);
-        shape->name = memcpy(block + size, name, length);
-        shapes->shown.count++;
-        return;
-    }
-    at->status = NARC_ERROR_MEMORY;
-    if (store)
+    narc_arc own[NARC_MAX_ARCS], *chain = form == CHAIN ? read_chain(at, item, shapes, shape) : NULL;
+    const narc_arc *arcs = form == CHAIN ? chain : read_convex(at, item, form, corner, store, own, shape);
+    const bool added = !at->status && form != CHAIN;
+    if (!at->status)
+        keep_shape(at, shapes, name, arcs);
+    if (chain)
+        shapes->allocator.release(chain, shapes->allocator.context);
+    if (at->status && added && store)
         narc_remove_shape(store, shape->index, NULL);
 }
 
@@ -426,7 +490,8 @@ static list *read_list(reader *at, const narc_allocator *allocator, narc_shapes 
     if (!at->status)
         return shapes;
     for (size_t i = store ? shapes->shown.count : 0; i > 0; i--)
-        narc_remove_shape(store, shapes->items[i - 1].index, NULL);
+        if (shapes->items[i - 1].form == NARC_FORM_SHAPE)
+            narc_remove_shape(store, shapes->items[i - 1].index, NULL);
     narc_destroy_shape_list(&shapes->shown);
     return NULL;
 }
@@ -499,7 +564,9 @@ static void put_shapes(writer *to, const narc_named_shape *shapes, size_t count)
         put_name(to, shape->name);
         put_number(to, "\", \"origin\": [", shape->origin.x);
         put_number(to, ", ", shape->origin.y);
-        put(to, "], \"arcs\": [");
+        put(to, shape->form == NARC_FORM_SHAPE        ? "], \"arcs\": ["
+                : shape->form == NARC_FORM_OPEN_CHAIN ? "], \"chain\": {\"closed\": false, \"arcs\": ["
+                                                      : "], \"chain\": {\"closed\": true, \"arcs\": [");
         for (size_t k = 0; k < shape->arc_count; k++) {
             const narc_arc *arc = &shape->arcs[k];
             put_number(to, k ? ",\n    {\"center\": [" : "\n    {\"center\": [", arc->center_x);
@@ -509,7 +576,7 @@ static void put_shapes(writer *to, const narc_named_shape *shapes, size_t count)
             put_number(to, ", \"end\": ", arc->end);
             put(to, "}");
         }
-        put(to, "\n  ]}");
+        put(to, shape->form == NARC_FORM_SHAPE ? "\n  ]}" : "\n  ]}}");
     }
     put(to, "\n]}\n");
 }
@@ -526,8 +593,12 @@ static narc_status check_shape(const narc_named_shape *shape, size_t index, narc
     if (!isfinite(shape->origin.x) || !isfinite(shape->origin.y))
         return narc_fail(error, NARC_ERROR_NOT_FINITE, index, shape->origin.x + shape->origin.y,
                          "shape '%s': origin is not finite", narc_make_excerpt(shape->name).text);
+    if ((unsigned)shape->form > NARC_FORM_CLOSED_CHAIN)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, index, shape->form, "shape %zu: there is no form %d", index,
+                         (int)shape->form);
     narc_error wrong;
-    if (narc_validate_arcs(shape->arcs, shape->arc_count, &wrong) != NARC_OK)
+    if ((shape->form == NARC_FORM_SHAPE ? narc_validate_arcs(shape->arcs, shape->arc_count, &wrong)
+                                        : check_chain(shape->arcs, shape->arc_count, &wrong)) != NARC_OK)
         return narc_fail(error, wrong.status, index, wrong.value, "shape '%s': %s", narc_make_excerpt(shape->name).text,
                          wrong.message);
     return NARC_OK;

@@ -5,6 +5,7 @@
 #include "bodies.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "fail.h"
@@ -61,35 +62,104 @@ static double *measure_bounds(const narc_shape_list *shapes) {
     return bounds;
 }
 
+/* A shape of several parts: which, and where their common centroid is in the coordinates of their origins. */
+typedef struct compound {
+    size_t *parts; /* places of shapes */
+    size_t count, capacity;
+    narc_point centroid;
+} compound;
+
+/* The parts of a shape: itself, or NAME/1, NAME/2 ...; none if there is no such name. */
+static void find_parts(const narc_shape_list *shapes, const char *name, compound *out) {
+    enum { SIZE = 1024 };
+    char part[SIZE];
+    double area = 0;
+    const size_t found = find_shape(shapes, name);
+    out->count = 0;
+    out->centroid = (narc_point){0, 0};
+    out->parts = grow(out->parts, &out->capacity, 1, sizeof *out->parts);
+    if (found < shapes->count) {
+        out->parts[out->count++] = found;
+        out->centroid = shapes->items[found].origin;
+        return;
+    }
+    for (size_t next; snprintf(part, SIZE, "%s/%zu", name, out->count + 1) < SIZE &&
+                      (next = narc_find_named_shape(shapes, part)) < shapes->count;) {
+        out->parts = grow(out->parts, &out->capacity, out->count + 1, sizeof *out->parts);
+        out->parts[out->count++] = next;
+        const narc_named_shape *shape = &shapes->items[next];
+        narc_mass mass;
+        narc_compute_mass(shape->arcs, shape->arc_count, &mass);
+        area += mass.area;
+        out->centroid.x += mass.area * (shape->origin.x + mass.centroid_x);
+        out->centroid.y += mass.area * (shape->origin.y + mass.centroid_y);
+    }
+    if (area > 0)
+        out->centroid = (narc_point){out->centroid.x / area, out->centroid.y / area};
+}
+
+static void add_part(table *rows, body_list *bodies, const narc_shape_list *shapes, const compound *of, size_t part,
+                     const double *bounds) {
+    const narc_named_shape *shape = &shapes->items[of->parts[part]];
+    const double scale = has_column(rows, SCALE) ? (double)read_scale(rows, bounds[of->parts[part]]) : 1;
+    const double angle = remainder(row_number(rows, ANGLE), FULL_TURN);
+    const narc_point away = {scale * (shape->origin.x - of->centroid.x), scale * (shape->origin.y - of->centroid.y)};
+    if (bodies->count == UINT32_MAX)
+        fail_at(rows->path, rows->csv.line, "more than %u bodies", UINT32_MAX);
+    bodies->items = grow(bodies->items, &bodies->capacity, bodies->count + 1, sizeof *bodies->items);
+    bodies->items[bodies->count++] = (body){.x = row_number(rows, X) + cos(angle) * away.x - sin(angle) * away.y,
+                                            .y = row_number(rows, Y) + sin(angle) * away.x + cos(angle) * away.y,
+                                            .scale = (float)scale,
+                                            .shape = shape->index,
+                                            .item = (uint32_t)of->parts[part],
+                                            .row = (uint32_t)bodies->row_count,
+                                            .part = (uint32_t)part};
+}
+
 void read_bodies(const char *path, const narc_shape_list *shapes, body_list *out_bodies) {
     table rows;
     open_table(&rows, path, body_columns, BODY_COLUMNS, SCALE);
-    const bool scaled = has_column(&rows, SCALE);
     double *bounds = measure_bounds(shapes);
     body_list bodies = {0};
     bodies.items = grow(NULL, &bodies.capacity, 0, sizeof *bodies.items);
     size_t angle_capacity = 0;
     float *angles = grow(NULL, &angle_capacity, 0, sizeof *angles);
-    while (next_row(&rows, "reading bodies")) {
-        if (bodies.count == UINT32_MAX)
-            fail_at(path, rows.csv.line, "more than %u bodies", UINT32_MAX);
-        bodies.items = grow(bodies.items, &bodies.capacity, bodies.count + 1, sizeof *bodies.items);
-        angles = grow(angles, &angle_capacity, bodies.count + 1, sizeof *angles);
-        const size_t found = find_shape(shapes, row_field(&rows, SHAPE));
-        if (found == shapes->count)
+    compound of = {0};
+    for (; next_row(&rows, "reading bodies"); bodies.row_count++) {
+        find_parts(shapes, row_field(&rows, SHAPE), &of);
+        if (of.count == 0)
             fail_field(&rows, SHAPE, "is no name or index of a shape (there are %zu)", shapes->count);
-        angles[bodies.count] = (float)remainder(row_number(&rows, ANGLE), FULL_TURN);
-        bodies.items[bodies.count++] = (body){.x = row_number(&rows, X),
-                                              .y = row_number(&rows, Y),
-                                              .scale = scaled ? read_scale(&rows, bounds[found]) : 1.0f,
-                                              .shape = shapes->items[found].index,
-                                              .item = (uint32_t)found};
+        for (size_t part = 0; part < of.count; part++) {
+            add_part(&rows, &bodies, shapes, &of, part, bounds);
+            angles = grow(angles, &angle_capacity, bodies.count, sizeof *angles);
+            angles[bodies.count - 1] = (float)remainder(row_number(&rows, ANGLE), FULL_TURN);
+        }
     }
     compute_poses(&bodies, angles);
+    free(of.parts);
     free(angles);
     free(bounds);
     close_table(&rows);
     *out_bodies = bodies;
+}
+
+bool has_parts(const body_list *bodies) { return bodies->row_count < bodies->count; }
+
+void drop_own_pairs(const body_list *bodies, pair_list *pairs) {
+    size_t kept = 0;
+    for (size_t k = 0; k < pairs->count; k++)
+        if (bodies->items[pairs->items[k].a].row != bodies->items[pairs->items[k].b].row)
+            pairs->items[kept++] = pairs->items[k];
+    pairs->count = kept;
+}
+
+/* Where the parts of each row begin; one more at the end. */
+static size_t *list_rows(const body_list *bodies) {
+    size_t *begins = allocate(bodies->row_count + 1, sizeof *begins);
+    for (size_t k = bodies->count; k-- > 0;)
+        begins[bodies->items[k].row] = k;
+    begins[bodies->row_count] = bodies->count;
+    return begins;
 }
 
 static uint32_t read_index(const table *rows, size_t column, size_t body_count) {
@@ -101,18 +171,25 @@ static uint32_t read_index(const table *rows, size_t column, size_t body_count) 
     return (uint32_t)index;
 }
 
-void read_pairs(const char *path, size_t body_count, pair_list *out_pairs) {
+void read_pairs(const char *path, const body_list *bodies, pair_list *out_pairs) {
     static const char *const names[] = {"a", "b"};
     table rows;
     open_table(&rows, path, names, 2, 2);
     pair_list pairs = {0};
     pairs.items = grow(NULL, &pairs.capacity, 0, sizeof *pairs.items);
+    size_t *begins = list_rows(bodies);
     while (next_row(&rows, "reading pairs")) {
-        if (pairs.count == UINT32_MAX)
-            fail_at(path, rows.csv.line, "more than %u pairs", UINT32_MAX);
-        pairs.items = grow(pairs.items, &pairs.capacity, pairs.count + 1, sizeof *pairs.items);
-        pairs.items[pairs.count++] = (pair){read_index(&rows, 0, body_count), read_index(&rows, 1, body_count)};
+        const uint32_t a = read_index(&rows, 0, bodies->row_count), b = read_index(&rows, 1, bodies->row_count);
+        for (size_t i = begins[a]; i < begins[a + 1]; i++) {
+            for (size_t j = begins[b]; j < begins[b + 1]; j++) {
+                if (pairs.count == UINT32_MAX)
+                    fail_at(path, rows.csv.line, "more than %u pairs", UINT32_MAX);
+                pairs.items = grow(pairs.items, &pairs.capacity, pairs.count + 1, sizeof *pairs.items);
+                pairs.items[pairs.count++] = (pair){(uint32_t)i, (uint32_t)j};
+            }
+        }
     }
+    free(begins);
     close_table(&rows);
     *out_pairs = pairs;
 }

@@ -5,6 +5,8 @@
 #ifndef NARC_TOOL_BODIES_H
 #define NARC_TOOL_BODIES_H
 
+#include <stdbool.h>
+
 #include "narc_files.h"
 #include "narc_pairs.h"
 
@@ -12,11 +14,13 @@ typedef struct body {
     double x, y;
     float cosine, sine, scale;
     uint32_t shape, item; /* its place in the store, and in the file of shapes */
+    uint32_t row, part;   /* of a body in parts, each of which is a body here: its row in the file, the part's number */
 } body;
 
 typedef struct body_list {
     body *items;
     size_t count, capacity;
+    size_t row_count; /* of the file: fewer if bodies have several parts */
 } body_list;
 
 typedef struct pair {
@@ -28,11 +32,16 @@ typedef struct pair_list {
     size_t count, capacity;
 } pair_list;
 
-/* Reads a CSV file with the columns shape, x, y, angle and perhaps scale. */
+/* Reads a CSV file with the columns shape, x, y, angle and perhaps scale. A shape that is no name, but is with /1 behind
+ * it, is one in parts: that and /2, /3 ... as they lie about the centroid of all. */
 void read_bodies(const char *path, const narc_shape_list *shapes, body_list *out_bodies);
 
-/* Reads a CSV file with the columns a and b: indices of bodies. */
-void read_pairs(const char *path, size_t body_count, pair_list *out_pairs);
+/* Reads a CSV file with the columns a and b: rows of bodies. Of bodies in parts all pairs of parts are listed. */
+void read_pairs(const char *path, const body_list *bodies, pair_list *out_pairs);
+
+/* Has a body several parts? Drops the pairs of parts of one body. */
+bool has_parts(const body_list *bodies);
+void drop_own_pairs(const body_list *bodies, pair_list *pairs);
 
 /* The bodies' bounding boxes in the world, to be freed. */
 narc_aabb *bound_bodies(const narc_shapes *store, const body_list *bodies);

@@ -175,17 +175,21 @@ static void cast_rays(const settings *chosen, job *work) {
 /* The library's points are relative to the body, those of the file are in the world. Adding 0 makes a negative zero a
  * plain one. */
 static void write_hits(FILE *file, const job *work) {
-    fprintf(file, "ray,body,fraction,normal_x,normal_y,point_x,point_y,arc\n");
+    const bool in_parts = has_parts(&work->bodies);
+    fprintf(file, "ray,body,fraction,normal_x,normal_y,point_x,point_y,arc%s\n", in_parts ? ",part" : "");
     for (size_t k = 0; k < work->row_count && !ferror(file); k++) {
         const narc_ray_hit *hit = &work->hits[k];
         show_progress("writing hits", k, work->row_count);
         if (!hit->count)
             continue;
         const body *at = &work->bodies.items[hit->body];
-        fprintf(file, "%" PRIu32 ",%" PRIu32 ",%.9g,%.9g,%.9g,%.17g,%.17g,%d\n", hit->ray, hit->body,
+        fprintf(file, "%" PRIu32 ",%" PRIu32 ",%.9g,%.9g,%.9g,%.17g,%.17g,%d", hit->ray, at->row,
                 (double)hit->fraction, 0 + (double)hit->normal_x, 0 + (double)hit->normal_y,
                 0 + (at->x + (double)hit->point_x), 0 + (at->y + (double)hit->point_y),
                 hit->feature & (NARC_MAX_ARCS - 1));
+        if (in_parts)
+            fprintf(file, ",%" PRIu32, at->part);
+        fprintf(file, "\n");
     }
 }
 
@@ -222,7 +226,7 @@ static void draw(const settings *chosen, FILE *picture, const job *work) {
 
 static void print_report(FILE *file, const job *work) {
     fprintf(file, "shapes              %zu\n", work->shapes->count);
-    fprintf(file, "bodies              %zu\n", work->bodies.count);
+    fprintf(file, "bodies              %zu\n", work->bodies.row_count);
     fprintf(file, "all rays            %zu\n", work->rays.count);
     fprintf(file, "rays that hit       %zu\n", work->hit_rays);
     fprintf(file, "hits                %zu\n", work->hit_count);

@@ -105,6 +105,8 @@ enum {
     OPTIONS
 };
 
+static const char PART_COLUMNS[] = ",part_a,part_b";
+
 static void refuse_option(const option *given, const char *method, const char *reason) {
     if (given->value)
         fail("%s is not for method '%s', %s", given->name, method, reason);
@@ -182,6 +184,8 @@ static void find_pairs(job *work, const settings *chosen) {
     }
     find_candidates(chosen->bodies, widened ? widened : work->boxes, count, chosen->most_pairs, &chosen->narrow.workers,
                     &work->pairs);
+    if (has_parts(&work->bodies))
+        drop_own_pairs(&work->bodies, &work->pairs);
     free(widened);
 }
 
@@ -193,7 +197,7 @@ static void check_polygons(const job *work, const char *path) {
         for (int side = 0; side < 2; side++) {
             const body *used = &work->bodies.items[both[side]];
             if (!(narc_shape_flags(work->store, used->shape) & NARC_SHAPE_POLYGON)) {
-                fail_at(path, (size_t)both[side] + 2,
+                fail_at(path, (size_t)used->row + 2,
                         "method 'polygon-sat' needs polygons without rounding, but this body's shape has arcs '%s'",
                         work->shapes->items[used->item].name);
             }
@@ -212,13 +216,23 @@ static void mark_bodies(job *work) {
     }
 }
 
+/* Ends a row of bodies a and b: where a body has several parts, with the numbers of both. */
+static void end_row(FILE *file, const job *work, const body *a, const body *b) {
+    if (has_parts(&work->bodies))
+        fprintf(file, ",%" PRIu32 ",%" PRIu32, a->part, b->part);
+    fprintf(file, "\n");
+}
+
 /* What a filter lets pass, in the form of a pairs file. */
 static void write_passing(FILE *file, const job *work) {
-    fprintf(file, "a,b\n");
+    fprintf(file, "a,b%s\n", has_parts(&work->bodies) ? PART_COLUMNS : "");
     for (size_t k = 0; k < work->pairs.count && !ferror(file); k++) {
         const pair of = work->pairs.items[k];
-        if (pair_collides(&work->narrow, k))
-            fprintf(file, "%" PRIu32 ",%" PRIu32 "\n", of.a, of.b);
+        const body *a = &work->bodies.items[of.a], *b = &work->bodies.items[of.b];
+        if (pair_collides(&work->narrow, k)) {
+            fprintf(file, "%" PRIu32 ",%" PRIu32, a->row, b->row);
+            end_row(file, work, a, b);
+        }
         show_progress("writing pairs", k, work->pairs.count);
     }
 }
@@ -226,15 +240,17 @@ static void write_passing(FILE *file, const job *work) {
 /* The library's points are relative to body a, those of the file are in the world. Adding 0 makes a negative zero a
  * plain one. */
 static void write_contacts(FILE *file, const job *work) {
-    fprintf(file, "a,b,separation,normal_x,normal_y,point_x,point_y,arc_a,arc_b\n");
+    fprintf(file, "a,b,separation,normal_x,normal_y,point_x,point_y,arc_a,arc_b%s\n",
+            has_parts(&work->bodies) ? PART_COLUMNS : "");
     for (size_t k = 0; k < work->narrow.contact_count && !ferror(file); k++) {
         const narc_contact *found = &work->narrow.contacts[k];
         const pair of = work->pairs.items[found->pair];
-        const body *a = &work->bodies.items[of.a];
-        fprintf(file, "%" PRIu32 ",%" PRIu32 ",%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d\n", of.a, of.b,
+        const body *a = &work->bodies.items[of.a], *b = &work->bodies.items[of.b];
+        fprintf(file, "%" PRIu32 ",%" PRIu32 ",%.9g,%.9g,%.9g,%.9g,%.9g,%d,%d", a->row, b->row,
                 0 + (double)found->separation, 0 + (double)found->normal_x, 0 + (double)found->normal_y,
                 0 + (a->x + (double)found->point_x), 0 + (a->y + (double)found->point_y),
                 found->feature & (NARC_MAX_ARCS - 1), found->feature >> 8 & (NARC_MAX_ARCS - 1));
+        end_row(file, work, a, b);
         show_progress("writing contacts", k, work->narrow.contact_count);
     }
 }
@@ -272,7 +288,10 @@ static void print_answers(FILE *file, const narrow_result *found, narc_method me
 static void print_report(FILE *file, const job *work, const settings *chosen) {
     const narrow_result *found = &work->narrow;
     fprintf(file, "shapes              %zu\n", work->shapes->count);
-    fprintf(file, "bodies              %zu\n", work->bodies.count);
+    if (has_parts(&work->bodies))
+        fprintf(file, "bodies              %zu, of %zu parts\n", work->bodies.row_count, work->bodies.count);
+    else
+        fprintf(file, "bodies              %zu\n", work->bodies.count);
     fprintf(file, "candidate pairs     %zu%s\n", work->pairs.count, chosen->pairs ? " (from the file)" : "");
     print_method(file, &chosen->narrow);
     print_answers(file, found, chosen->narrow.method);
@@ -301,7 +320,7 @@ static void run(int argc, char **argv) {
     check_picture_size(chosen.picture, work.bodies.count);
     work.boxes = bound_bodies(work.store, &work.bodies);
     if (chosen.pairs)
-        read_pairs(chosen.pairs, work.bodies.count, &work.pairs);
+        read_pairs(chosen.pairs, &work.bodies, &work.pairs);
     /* Outputs that cannot be written are found before the work is done. */
     FILE *out = chosen.out ? open_output(chosen.out) : NULL;
     FILE *picture = chosen.picture ? open_output(chosen.picture) : NULL;

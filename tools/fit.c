@@ -7,7 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "calls.h"
 #include "canvas.h"
+#include "chains.h"
 #include "commands.h"
 #include "fail.h"
 #include "fit_inputs.h"
@@ -15,30 +17,31 @@
 #include "output.h"
 #include "picture_fits.h"
 #include "progress.h"
-#include "splines.h"
 #include "text.h"
 
 static const char HELP[] =
-    "usage: narc fit INPUT... --arcs N|--tolerance T [--bound|--approximate] [--objective NAME]\n"
-    "                [--edges|--polygon|--paper] [--characters TEXT] [--silhouette NAME]\n"
-    "                [--threshold X] [--flatness F] [--min-radius R] [--starts N] [--keep-origin]\n"
-    "                [--keep-going] [--out shapes.json] [--picture FILE]\n"
-    "       narc fit INPUT... --spline --tolerance T [--characters TEXT] [--silhouette NAME]\n"
-    "                [--threshold X] [--keep-going] [--out splines.json] [--picture FILE]\n"
+    "usage: narc fit INPUT... --arcs N|--tolerance T [--parts N] [--bound|--approximate]\n"
+    "                [--objective NAME] [--edges|--polygon|--paper] [--flatness F] [--min-radius R]\n"
+    "                [--starts N] [--keep-origin] [--keep-going] [--characters TEXT]\n"
+    "                [--silhouette NAME] [--threshold X] [--out shapes.json] [--picture FILE]\n"
+    "       narc fit INPUT... --chain --tolerance T [--open] [--keep-going] [--characters TEXT]\n"
+    "                [--silhouette NAME] [--threshold X] [--out shapes.json] [--picture FILE]\n"
     "\n"
     "Makes an arc shape of each input: the best that is found of those that bound the outline, or of\n"
-    "those that come close to it. Of an outline only the convex hull counts.\n"
+    "those that come close to it. Of an outline only the convex hull counts, without --parts or --chain.\n"
     "\n"
     "  INPUT           files; the first bytes tell their kind, or else the suffix:\n"
     "                  fonts         with --characters: each of these is one shape; lengths in em\n"
     "                  SVG           what is drawn, as one shape, traced at its edge\n"
-    "                  PNG           the silhouette: what is not transparent; lengths in pixels\n"
-    "                  CSV           points, one x,y a line, or columns x and y of a table; a blank\n"
-    "                                line begins another contour\n"
+    "                  PNG           the silhouette; lengths in pixels\n"
+    "                  CSV           points, one x,y a line; a blank line begins another contour\n"
     "                  JSON          points, [[x, y], ...], or a list of such lists\n"
     "  --arcs N        at most N arcs a shape, 1 to 32\n"
     "  --tolerance T   instead: as few arcs as stay within the distance T of the hull, in the\n"
     "                  input's unit of length\n"
+    "  --parts N       the outline with bays and holes, as at most N convex shapes NAME/1, NAME/2 ...\n"
+    "                  that overlap at cuts, 1 to 256: as few as stay within --tolerance of the\n"
+    "                  outline, or with --arcs, which is for each, the nearest\n"
     "  --bound         the shape contains the outline; the default\n"
     "  --approximate   it may also lie inside\n"
     "  --objective NAME\n"
@@ -49,24 +52,21 @@ static const char HELP[] =
     "                  distance      the largest distance of shape and hull; the default with\n"
     "                                --approximate\n"
     "  --edges         straight edges may stand between arcs; without it tangents are continuous\n"
-    "  --polygon       to compare: a bounding polygon of least area, its corners arcs of radius 0\n"
-    "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1,\n"
-    "                  enlarged until it bounds\n"
+    "  --polygon       to compare: a bounding polygon of least area\n"
+    "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1\n"
     "  --characters TEXT\n"
     "                  which glyphs of fonts, UTF-8; repeated characters are skipped\n"
     "  --silhouette NAME\n"
     "                  what counts in PNG and SVG: alpha (the default), dark or light\n"
     "  --threshold X   how much of that; above 0 and below 1, default 0.5 of PNG, 0.25 of SVG\n"
-    "  --flatness F    how far chords may be from curves, as a part of the larger side of the\n"
-    "                  outline's bounding box; 1e-9 to 0.1, default 2e-5\n"
-    "  --min-radius R  no arc has a smaller radius, in the input's unit of length: shapes are smooth\n"
+    "  --flatness F    how far chords may be from curves, in parts of the outline's larger side;\n"
+    "                  1e-9 to 0.1, default 2e-5\n"
+    "  --min-radius R  no arc has a smaller radius: shapes are smooth\n"
     "  --starts N      how many places the search starts from, 1 to 10000; more are never worse\n"
-    "  --keep-origin   the shapes keep the input's coordinates: a body at 0, 0 lies over its outline;\n"
-    "                  far from its origin a shape is rounded more\n"
-    "  --spline        instead of a convex shape: the outline itself as arcs that join with a common\n"
-    "                  tangent, within --tolerance of its curves\n"
-    "  --keep-going    what cannot be read or fitted is left out; its error is told, and the exit status\n"
-    "                  is 1\n"
+    "  --keep-origin   the shapes keep the input's coordinates\n"
+    "  --chain         instead of convex shapes: the outline itself as closed chains of arcs and edges,\n"
+    "                  within --tolerance, for ground; --open: contours are strokes, left open\n"
+    "  --keep-going    what cannot be read or fitted is left out; the exit status is 1\n"
     "  --out FILE      the shapes file to write; left out or -: standard output\n"
     "  --picture FILE  a .png or .svg picture of outlines, hulls and shapes\n"
     "\n"
@@ -74,12 +74,13 @@ static const char HELP[] =
     "its code point (U+1F47B); names that are taken get -2, -3 and so on. A shape's centroid is its\n"
     "origin; \"origin\" in the shapes file tells where that is in the input's coordinates.\n"
     "\n"
-    "The table has areas of shape and hull and their ratio, how far the shape is from the hull: at\n"
-    "most, and in the mean along the shape, and the origin.\n";
+    "The table has areas of shape and hull (of parts: of their union and the outline), distances, and\n"
+    "the origin.\n";
 
 enum {
     ARCS,
     TOLERANCE,
+    PARTS,
     BOUND,
     APPROXIMATE,
     OBJECTIVE,
@@ -92,7 +93,8 @@ enum {
     FLATNESS,
     MIN_RADIUS,
     STARTS,
-    SPLINE,
+    CHAIN,
+    OPEN,
     KEEP_ORIGIN,
     KEEP_GOING,
     OUT,
@@ -117,10 +119,12 @@ static void check_combinations(const option *options) {
     exclude(&options[TOLERANCE], &options[OBJECTIVE], "the least number of arcs is looked for");
     for (int family = POLYGON; family <= PAPER; family++)
         exclude(&options[family], &options[APPROXIMATE], "it bounds");
-    static const int of_hulls[] = {ARCS,    BOUND, APPROXIMATE, OBJECTIVE, EDGES,
+    static const int of_hulls[] = {ARCS, PARTS, BOUND, APPROXIMATE, OBJECTIVE, EDGES,
                                    POLYGON, PAPER, FLATNESS,    STARTS,    KEEP_ORIGIN};
     for (size_t k = 0; k < sizeof of_hulls / sizeof of_hulls[0]; k++)
-        exclude(&options[SPLINE], &options[of_hulls[k]], "a spline follows the outline itself, within --tolerance");
+        exclude(&options[CHAIN], &options[of_hulls[k]], "a chain follows the outline itself, within --tolerance");
+    if (options[OPEN].value && !options[CHAIN].value)
+        fail("--open is for --chain: shapes are closed");
     if (!options[ARCS].value && !options[TOLERANCE].value)
         fail("--arcs or --tolerance is missing");
 }
@@ -170,11 +174,12 @@ static narc_fit_request make_request(const option *options) {
 
 typedef struct stage {
     size_t done, total; /* outlines */
+    size_t part, parts; /* of the outline */
 } stage;
 
 static bool tell_progress(size_t done, size_t total, void *context) {
     const stage *at = context;
-    const double part = total ? (double)done / (double)total : 0;
+    const double part = ((double)at->part + (total ? (double)done / (double)total : 0)) / (double)at->parts;
     show_share("fitting", ((double)at->done + part) / (double)at->total);
     return true;
 }
@@ -193,33 +198,85 @@ static double measure_extent(const outline *of) {
     return fmax(box.max_x - box.min_x, box.max_y - box.min_y);
 }
 
-/* `flatness` is relative to an outline's extent; 0: the usual one. */
-static narc_fit_result *fit_outlines(outline_list *outlines, narc_fit_request request, double flatness,
-                                     narc_named_shape *out_shapes) {
-    narc_fit_result *fits = allocate(outlines->count, sizeof *fits);
+typedef struct fitting {
+    narc_fit_request request;
+    size_t parts;       /* at most; 0: the hull */
+    double flatness;    /* relative to an outline's extent; 0: the usual one */
     narc_shapes *store; /* takes what a file must be able to bring there */
-    size_t kept = 0;
-    if (narc_create_shapes(NULL, &store) != NARC_OK)
-        fail("not enough memory for a store of shapes");
-    stage at = {0, outlines->count};
+    stage at;
+} fitting;
+
+/* Of a tolerance, what cuts get; the rest is for the shapes that are fitted to parts. */
+static const double SHARE_OF_CUTS = 0.75;
+
+static bool fit_each(fitting *how, narc_path *const *paths, narc_fit_request request, collider *out, narc_error *error) {
     request.progress = tell_progress;
-    request.context = &at;
-    for (; at.done < at.total; at.done++) {
-        const outline *of = &outlines->items[at.done];
+    request.context = &how->at;
+    how->at.parts = out->count;
+    out->fits = allocate(out->count, sizeof *out->fits);
+    for (how->at.part = 0; how->at.part < out->count; how->at.part++) {
+        narc_fit_result *fit = &out->fits[how->at.part];
+        if (narc_fit_path(paths[how->at.part], &request, fit, error) != NARC_OK ||
+            narc_add_shape(how->store, fit->arcs, fit->arc_count, NULL, error) != NARC_OK)
+            return false;
+        out->distance = fmax(out->distance, fit->max_distance);
+    }
+    return true;
+}
+
+/* With a tolerance both kinds of distances share it. Parts that are approximated go on beyond their cuts by twice the
+ * distance of their shapes: with a number of arcs that is known only when they have been fitted once. */
+static bool fit_parts(fitting *how, const outline *of, narc_fit_request request, collider *out, narc_error *error) {
+    const bool approximates = request.goal > NARC_FIT_BOUND_DISTANCE;
+    narc_parts_request cut = {
+        .most = how->parts, .tolerance = SHARE_OF_CUTS * request.tolerance, .flatness = request.flatness};
+    if (approximates)
+        cut.lap = 2 * (request.tolerance - cut.tolerance);
+    for (int tries = approximates && request.arc_count ? 2 : 1; tries > 0; tries--) {
+        narc_parts parts;
+        if (narc_cut_path(of->path, &cut, &parts, error) != NARC_OK)
+            return false;
+        free(out->fits);
+        *out = (collider){.count = parts.count, .outline_area = parts.area};
+        if (request.arc_count == 0)
+            request.tolerance = fmax(DBL_MIN, request.tolerance - parts.distance);
+        const bool done = fit_each(how, parts.paths, request, out, error);
+        cut.lap = 2 * out->distance;
+        out->distance += parts.distance;
+        narc_release_parts(&parts);
+        if (!done)
+            return false;
+    }
+    return narc_measure_union(out->fits, out->count, &out->area, error) == NARC_OK;
+}
+
+static bool fit_outline(fitting *how, const outline *of, collider *out, narc_error *error) {
+    narc_fit_request request = how->request;
+    const double begin = seconds_now();
+    request.flatness = how->flatness > 0 ? how->flatness * measure_extent(of) : 0;
+    *out = (collider){.count = 1};
+    const bool done = how->parts ? fit_parts(how, of, request, out, error)
+                                 : fit_each(how, &(narc_path *){of->path}, request, out, error);
+    out->seconds = seconds_now() - begin;
+    if (!done)
+        free(out->fits);
+    return done;
+}
+
+static collider *fit_outlines(outline_list *outlines, fitting how) {
+    collider *fits = allocate(outlines->count, sizeof *fits);
+    size_t kept = 0;
+    if (narc_create_shapes(NULL, &how.store) != NARC_OK)
+        fail("not enough memory for a store of shapes");
+    for (how.at.total = outlines->count; how.at.done < how.at.total; how.at.done++) {
         narc_error error;
-        request.flatness = flatness > 0 ? flatness * measure_extent(of) : 0;
-        narc_fit_result *fit = &fits[kept];
-        if (narc_fit_path(of->path, &request, fit, &error) != NARC_OK ||
-            narc_add_shape(store, fit->arcs, fit->arc_count, NULL, &error) != NARC_OK) {
-            report_outline(of, error.message);
-            continue;
-        }
-        out_shapes[kept] =
-            (narc_named_shape){.name = of->name, .arcs = fit->arcs, .arc_count = fit->arc_count, .origin = fit->origin};
-        keep_outline(outlines, at.done, kept++);
+        if (fit_outline(&how, &outlines->items[how.at.done], &fits[kept], &error))
+            keep_outline(outlines, how.at.done, kept++);
+        else
+            report_outline(&outlines->items[how.at.done], error.message);
     }
     cut_outlines(outlines, kept);
-    narc_destroy_shapes(store);
+    narc_destroy_shapes(how.store);
     return fits;
 }
 
@@ -233,17 +290,34 @@ static narc_point find_centroid(const narc_fit_result *fit) {
     return (narc_point){fit->origin.x + mass.centroid_x, fit->origin.y + mass.centroid_y};
 }
 
-static void print_table(FILE *file, const outline_list *outlines, const narc_fit_result *fits) {
+static void print_table(FILE *file, const outline_list *outlines, const collider *fits) {
     const int width = print_name(file, outlines, "shape", 0);
     fprintf(file, " %5s %5s %11s %11s %8s %11s %12s %13s %11s %11s %8s\n", "arcs", "edges", "area", "hull area",
             "ratio", "perimeter", "max distance", "mean distance", "origin x", "origin y", "seconds");
     for (size_t i = 0; i < outlines->count; i++) {
-        const narc_fit_result *f = &fits[i];
+        const narc_fit_result *f = fits[i].fits;
         const narc_point centroid = find_centroid(f);
         print_name(file, outlines, outlines->items[i].name, width);
         fprintf(file, " %5zu %5zu %11.6g %11.6g %8.5f %11.6g %12.4g %13.4g %11.6g %11.6g %8.2f\n", f->arc_count,
                 f->edge_count, f->area, f->hull_area, f->area / f->hull_area, f->perimeter, f->max_distance,
                 f->mean_distance, centroid.x, centroid.y, f->seconds);
+    }
+}
+
+static void print_parts(FILE *file, const outline_list *outlines, const collider *fits) {
+    const int width = print_name(file, outlines, "shape", 0);
+    fprintf(file, " %5s %5s %5s %11s %12s %8s %12s %8s\n", "parts", "arcs", "edges", "area", "outline area", "ratio",
+            "max distance", "seconds");
+    for (size_t i = 0; i < outlines->count; i++) {
+        const collider *f = &fits[i];
+        size_t arcs = 0, edges = 0;
+        for (size_t k = 0; k < f->count; k++) {
+            arcs += f->fits[k].arc_count;
+            edges += f->fits[k].edge_count;
+        }
+        print_name(file, outlines, outlines->items[i].name, width);
+        fprintf(file, " %5zu %5zu %5zu %11.6g %12.6g %8.5f %12.4g %8.2f\n", f->count, arcs, edges, f->area,
+                f->outline_area, f->area / f->outline_area, f->distance, f->seconds);
     }
 }
 
@@ -255,49 +329,84 @@ static void check_any(const outline_list *outlines) {
         fail("no outline is left to fit");
 }
 
-static void make_shapes(outline_list *outlines, narc_fit_request request, double flatness, FILE *file,
-                        const char *picture, FILE *picture_file) {
-    narc_named_shape *shapes = allocate(outlines->count, sizeof *shapes);
-    narc_fit_result *fits = fit_outlines(outlines, request, flatness, shapes);
-    check_any(outlines);
+/* All shapes, those of one outline one after the other: with its name if it has one, else NAME/1, NAME/2 ... */
+static narc_named_shape *name_shapes(const outline_list *outlines, const collider *fits, size_t *out_count) {
+    size_t count = 0, used = 0;
+    for (size_t i = 0; i < outlines->count; i++)
+        count += fits[i].count;
+    narc_named_shape *shapes = allocate(count, sizeof *shapes);
+    for (size_t i = 0; i < outlines->count; i++) {
+        for (size_t k = 0; k < fits[i].count; k++) {
+            const narc_fit_result *fit = &fits[i].fits[k];
+            shapes[used++] = (narc_named_shape){.name = name_part(&outlines->items[i], k, fits[i].count),
+                                                .arcs = fit->arcs,
+                                                .arc_count = fit->arc_count,
+                                                .origin = fit->origin};
+        }
+    }
+    *out_count = count;
+    return shapes;
+}
+
+static void write_file(FILE *file, narc_named_shape *shapes, size_t count) {
     char *text;
     size_t size;
     narc_error error;
-    if (narc_write_shapes(shapes, outlines->count, NULL, &text, &size, &error) != NARC_OK)
+    if (narc_write_shapes(shapes, count, NULL, &text, &size, &error) != NARC_OK)
         fail("%s", error.message);
     fwrite(text, 1, size, file);
     free(text);
     flush_output(file);
+    for (size_t k = 0; k < count; k++)
+        free((char *)shapes[k].name);
+}
+
+static void make_shapes(outline_list *outlines, fitting how, FILE *file, const char *picture, FILE *picture_file) {
+    collider *fits = fit_outlines(outlines, how);
+    check_any(outlines);
+    size_t count;
+    narc_named_shape *shapes = name_shapes(outlines, fits, &count);
+    write_file(file, shapes, count);
     if (picture)
         draw_fits(picture, picture_file, outlines, fits, NULL);
     FILE *report = finish_outputs();
-    print_table(report, outlines, fits);
+    if (how.parts)
+        print_parts(report, outlines, fits);
+    else
+        print_table(report, outlines, fits);
     finish_report(report);
     commit_outputs();
+    for (size_t i = 0; i < outlines->count; i++)
+        free(fits[i].fits);
     free(shapes);
     free(fits);
 }
 
-static void make_splines(outline_list *outlines, double tolerance, FILE *file, const char *picture,
-                         FILE *picture_file) {
-    narc_arc_chains *chains = fit_splines(outlines, tolerance);
+static void make_chains(outline_list *outlines, double tolerance, bool open, FILE *file, const char *picture,
+                        FILE *picture_file) {
+    narc_arc_chains *chains = fit_chains(outlines, tolerance, open);
     check_any(outlines);
-    write_splines(file, outlines, chains);
-    flush_output(file);
+    size_t count;
+    narc_named_shape *shapes = describe_chains(outlines, chains, open, &count);
+    write_file(file, shapes, count);
     if (picture)
         draw_fits(picture, picture_file, outlines, NULL, chains);
     FILE *report = finish_outputs();
-    print_splines(report, outlines, chains);
+    print_chains(report, outlines, chains);
     finish_report(report);
     commit_outputs();
+    for (size_t k = 0; k < count; k++)
+        free((narc_arc *)shapes[k].arcs);
     for (size_t i = 0; i < outlines->count; i++)
         narc_release_chains(&chains[i]);
+    free(shapes);
     free(chains);
 }
 
 static void run(int argc, char **argv) {
     option options[OPTIONS] = {[ARCS] = {"--arcs", true, NULL},
                                [TOLERANCE] = {"--tolerance", true, NULL},
+                               [PARTS] = {"--parts", true, NULL},
                                [BOUND] = {"--bound", false, NULL},
                                [APPROXIMATE] = {"--approximate", false, NULL},
                                [OBJECTIVE] = {"--objective", true, NULL},
@@ -310,7 +419,8 @@ static void run(int argc, char **argv) {
                                [FLATNESS] = {"--flatness", true, NULL},
                                [MIN_RADIUS] = {"--min-radius", true, NULL},
                                [STARTS] = {"--starts", true, NULL},
-                               [SPLINE] = {"--spline", false, NULL},
+                               [CHAIN] = {"--chain", false, NULL},
+                               [OPEN] = {"--open", false, NULL},
                                [KEEP_ORIGIN] = {"--keep-origin", false, NULL},
                                [KEEP_GOING] = {"--keep-going", false, NULL},
                                [OUT] = {"--out", true, NULL},
@@ -318,6 +428,7 @@ static void run(int argc, char **argv) {
     const char **files = allocate((size_t)argc, sizeof *files);
     const size_t file_count = parse_options(argc, argv, options, OPTIONS, "INPUT", files);
     const narc_fit_request request = make_request(options);
+    const size_t parts = options[PARTS].value ? (size_t)whole_option(&options[PARTS], 1, NARC_MAX_PARTS) : 0;
     const double flatness = number_option(&options[FLATNESS], 1e-9, 0.1, "from 1e-9 to 0.1", 0);
     const reading how = {.characters = options[CHARACTERS].value,
                          .silhouette = options[SILHOUETTE].value,
@@ -332,10 +443,11 @@ static void run(int argc, char **argv) {
     read_outlines(files, file_count, &how, &outlines);
     check_any(&outlines);
     FILE *shapes_file = open_output(out), *picture_file = picture ? open_output(picture) : NULL;
-    if (options[SPLINE].value)
-        make_splines(&outlines, request.tolerance, shapes_file, picture, picture_file);
+    if (options[CHAIN].value)
+        make_chains(&outlines, request.tolerance, options[OPEN].value, shapes_file, picture, picture_file);
     else
-        make_shapes(&outlines, request, flatness, shapes_file, picture, picture_file);
+        make_shapes(&outlines, (fitting){.request = request, .parts = parts, .flatness = flatness}, shapes_file, picture,
+                    picture_file);
     if (count_reports())
         fprintf(stderr, "narc: errors: %zu; shapes written: %zu\n", count_reports(), outlines.count);
     free_outlines(&outlines);

@@ -165,6 +165,17 @@ int print_name(FILE *file, const outline_list *outlines, const char *name, int w
     return width;
 }
 
+char *name_part(const outline *of, size_t index, size_t count) {
+    enum { DIGITS = 24 };
+    const size_t size = strlen(of->name) + DIGITS;
+    char *name = allocate(size, 1);
+    if (count > 1)
+        snprintf(name, size, "%s/%zu", of->name, index + 1);
+    else
+        strcpy(name, of->name);
+    return name;
+}
+
 void free_outlines(outline_list *outlines) {
     cut_outlines(outlines, 0);
     free(outlines->items);

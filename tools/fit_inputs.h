@@ -44,6 +44,9 @@ void cut_outlines(outline_list *outlines, size_t count);
  * Returns the width. */
 int print_name(FILE *file, const outline_list *outlines, const char *name, int width);
 
+/* The name of part `index` of `count`: that of the outline if there is one part, else NAME/1, NAME/2 ... To be freed. */
+char *name_part(const outline *of, size_t index, size_t count);
+
 void free_outlines(outline_list *outlines);
 
 #endif

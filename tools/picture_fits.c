@@ -9,11 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "chains.h"
 #include "draw_fit.h"
 #include "fail.h"
 #include "legend.h"
 #include "progress.h"
-#include "splines.h"
 
 /* In pixels; a page with many fits has smaller cells. */
 static const double CELL = 440, LARGEST_PAGE = 3000;
@@ -25,7 +25,12 @@ static const double LINE = 0.009, THIN_LINE = 0.004, DOT = 0.012, TEXT = 0.05, S
 /* Half the width of a sample in the legend, in cells. */
 static const double HALF_SAMPLE = 0.045;
 
-/* Chains have many arcs: their lines and dots are thinner by this. */
+/* Parts overlap: their fills are thin. */
+static const color PART_FILLS[] = {
+    {0.09, 0.34, 0.66, 0.16}, {0.90, 0.42, 0.08, 0.16}, {0.55, 0.20, 0.58, 0.16}, {0.10, 0.55, 0.36, 0.16}};
+enum { PART_COLORS = sizeof PART_FILLS / sizeof PART_FILLS[0] };
+
+/* Chains and parts have many arcs: their lines and dots are thinner by this. */
 static const double CHAIN_LINES = 0.5;
 
 /* Edges are drawn, and arcs no corners, if they are longer than this. */
@@ -44,7 +49,7 @@ typedef struct drawing {
     size_t corner_count;
 } drawing;
 
-/* A spline needs no hull: its outline may lie on a line. */
+/* A chain and parts need no hull: its outline may lie on a line. */
 static drawing make_drawing(const outline *of, bool has_hull) {
     drawing made;
     narc_error error;
@@ -74,7 +79,9 @@ static void stroke_hull(canvas *page, double cell) {
 
 static void draw_outline(canvas *page, const placement *where, const narc_contours *contours, double cell) {
     trace_contours(page, where, contours);
+    cairo_set_fill_rule(page->pen, CAIRO_FILL_RULE_EVEN_ODD);
     paint_path(page, OUTLINE_FILL, OUTLINE_LINE, THIN_LINE * cell);
+    cairo_set_fill_rule(page->pen, CAIRO_FILL_RULE_WINDING);
 }
 
 /* "3 arcs", "1 arc"; nothing of none. */
@@ -89,33 +96,64 @@ static void draw_caption(canvas *page, const char *name, const char *text, doubl
     draw_text(page, text, x, y + 0.65 * CAPTION_HEIGHT * cell, SMALL_TEXT * cell, 0.95 * cell);
 }
 
-/* One of `fit` and `chains` is NULL. Notes what the legend has to explain. */
-static void draw_cell(canvas *page, const outline *of, const narc_fit_result *fit, const narc_arc_chains *chains,
+/* The outline's hull and the shape around it, or the shapes of its parts, each filled a little. */
+static void draw_collider(canvas *page, const placement *where, const drawing *drawn, const collider *fits, double cell,
+                          const fit_look *look, bool *shown) {
+    const bool has_hull = drawn->corner_count > 0;
+    if (has_hull) {
+        trace_points(page, where, drawn->corners, drawn->corner_count);
+        stroke_hull(page, cell);
+    }
+    for (size_t i = 0; i < fits->count && !has_hull; i++)
+        fill_fit(page, where, &fits->fits[i], PART_FILLS[i % PART_COLORS]);
+    for (size_t i = 0; i < fits->count; i++) {
+        const narc_fit_result *fit = &fits->fits[i];
+        draw_fit(page, where, fit, look);
+        shown[HULL] = shown[HULL] || has_hull;
+        shown[EDGES] = shown[EDGES] || fit->edge_count > 0;
+        for (size_t k = 0; k < fit->arc_count; k++)
+            shown[is_corner(where, &fit->arcs[k], look) ? CORNERS : ARCS] = true;
+    }
+}
+
+static void describe_collider(const collider *fits, char *text, size_t size) {
+    size_t arcs = 0, edges = 0;
+    for (size_t i = 0; i < fits->count; i++) {
+        arcs += fits->fits[i].arc_count;
+        edges += fits->fits[i].edge_count;
+    }
+    if (fits->outline_area > 0)
+        append_count(text, size, fits->count, "part");
+    append_count(text, size, arcs, "arc");
+    append_count(text, size, edges, "edge");
+    const size_t used = strlen(text);
+    if (fits->outline_area > 0)
+        snprintf(text + used, size - used, ", %.4f of the outline's area", fits->area / fits->outline_area);
+    else
+        snprintf(text + used, size - used, ", %.4f of the hull's area", fits->fits->area / fits->fits->hull_area);
+}
+
+/* One of `fits` and `chains` is NULL. Notes what the legend has to explain. */
+static void draw_cell(canvas *page, const outline *of, const collider *fits, const narc_arc_chains *chains,
                       double left, double top, double cell, bool *shown) {
     fit_look look = {.line = LINE * cell, .dot = DOT * cell, .shortest = SHORTEST * cell};
-    drawing drawn = make_drawing(of, fit);
-    const narc_aabb box =
-        join_boxes(bound_points(drawn.contours.points, drawn.contours.point_count), fit ? bound_fit(fit) : EMPTY_BOX);
+    drawing drawn = make_drawing(of, fits && fits->outline_area == 0);
+    narc_aabb box = bound_points(drawn.contours.points, drawn.contours.point_count);
+    for (size_t i = 0; fits && i < fits->count; i++)
+        box = join_boxes(box, bound_fit(&fits->fits[i]));
     const double inner = cell * (1 - 2 * PADDING);
     const placement where = place_box(box, left + PADDING * cell, top + PADDING * cell, inner, inner);
     char text[128] = "";
     draw_outline(page, &where, &drawn.contours, cell);
     shown[OUTLINE] = true;
-    if (fit) {
-        trace_points(page, &where, drawn.corners, drawn.corner_count);
-        stroke_hull(page, cell);
-        draw_fit(page, &where, fit, &look);
-        shown[HULL] = true;
-        shown[EDGES] = shown[EDGES] || fit->edge_count > 0;
-        for (size_t k = 0; k < fit->arc_count; k++)
-            shown[is_corner(&where, &fit->arcs[k], &look) ? CORNERS : ARCS] = true;
-        append_count(text, sizeof text, fit->arc_count, "arc");
-        append_count(text, sizeof text, fit->edge_count, "edge");
-        const size_t used = strlen(text);
-        snprintf(text + used, sizeof text - used, ", %.4f of the hull's area", fit->area / fit->hull_area);
-    } else {
+    if (chains || fits->count > 1) {
         look.line *= CHAIN_LINES;
         look.dot *= CHAIN_LINES;
+    }
+    if (fits) {
+        draw_collider(page, &where, &drawn, fits, cell, &look, shown);
+        describe_collider(fits, text, sizeof text);
+    } else {
         draw_chains(page, &where, chains, &look);
         const size_t curved = count_curved(chains);
         shown[ARCS] = shown[ARCS] || curved > 0;
@@ -153,7 +191,7 @@ static void draw_sample_of(canvas *page, int of, double x, double y, double half
     }
 }
 
-void draw_fits(const char *path, FILE *file, const outline_list *outlines, const narc_fit_result *fits,
+void draw_fits(const char *path, FILE *file, const outline_list *outlines, const collider *fits,
                const narc_arc_chains *chains) {
     const size_t count = outlines->count, columns = count <= 5 ? count : (size_t)ceil(sqrt(1.5 * (double)count));
     const size_t rows = (count + columns - 1) / columns;

@@ -9,9 +9,18 @@
 
 #include "fit_inputs.h"
 
-/* `file` is an open output for `path`, whose suffix tells the kind. Fit k, or chains k, are those of outline k; the
+/* The shapes of one outline: one around its hull, or those of its parts. */
+typedef struct collider {
+    narc_fit_result *fits;
+    size_t count;
+    /* Of parts: the area that all cover, that of the outline, how far they are from it at most. */
+    double area, outline_area, distance;
+    double seconds;
+} collider;
+
+/* `file` is an open output for `path`, whose suffix tells the kind. Fits k, or chains k, are those of outline k; the
  * other of both is NULL. */
-void draw_fits(const char *path, FILE *file, const outline_list *outlines, const narc_fit_result *fits,
+void draw_fits(const char *path, FILE *file, const outline_list *outlines, const collider *fits,
                const narc_arc_chains *chains);
 
 #endif

@@ -14,6 +14,7 @@ struct builder {
     narc_arc_chains chains;
     size_t arc_capacity, end_capacity;
     double tolerance;
+    bool open;
     narc_error *error;
 };
 
@@ -126,12 +127,13 @@ static narc_status end_chain(struct builder *builder) {
 static narc_status add_contour(struct builder *builder, const unsigned char *degrees, size_t count,
                                const narc_point *points, double slack) {
     const narc_point start = points[0];
+    const bool closes = !builder->open;
     narc_status status = NARC_OK;
-    for (size_t k = 0; !status && (k < count || (k == count && !is_same(points[0], start)));) {
+    for (size_t k = 0; !status && (k < count || (closes && k == count && !is_same(points[0], start)));) {
         size_t lines = 0;
         while (k + lines < count && degrees[k + lines] == 1)
             lines++;
-        const bool closing = k + lines == count;
+        const bool closing = closes && k + lines == count;
         if (lines || closing) {
             status = add_lines(builder, points, lines, closing ? &start : NULL, closing && k == 0, slack);
             points += lines;
@@ -158,13 +160,79 @@ static narc_status add_moves(struct builder *builder, const narc_path *path) {
     return status;
 }
 
-narc_status narc_fit_chains(const narc_path *path, double tolerance, narc_arc_chains *out_chains, narc_error *error) {
+/* ---------------------------------------------------------------------------- directions */
+
+static size_t begin_of(const narc_arc_chains *chains, size_t k) { return k ? chains->ends[k - 1] : 0; }
+
+/* A place in the middle of a piece. */
+static narc_point find_middle(const narc_curve_arc *piece) {
+    const narc_point chord = minus(piece->end, piece->start);
+    return along(along(piece->start, 0.5, chord), -0.5 * tan(piece->turn / 4), turned(chord));
+}
+
+/* By the chain's ends and middles of pieces, which is right but for chains closer to each other than their chords. */
+static bool is_around(const narc_arc_chains *chains, size_t k, narc_point p) {
+    bool inside = false;
+    for (size_t i = begin_of(chains, k); i < chains->ends[k]; i++) {
+        const narc_curve_arc *piece = &chains->arcs[i];
+        const narc_point corners[3] = {piece->start, find_middle(piece), piece->end};
+        for (int half = 0; half < 2; half++) {
+            const narc_point a = corners[half], b = corners[half + 1];
+            if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
+                inside = !inside;
+        }
+    }
+    return inside;
+}
+
+static double measure_chain(const narc_arc_chains *chains, size_t k) {
+    double twice = 0;
+    const narc_point base = chains->arcs[begin_of(chains, k)].start;
+    for (size_t i = begin_of(chains, k); i < chains->ends[k]; i++) {
+        const narc_curve_arc *piece = &chains->arcs[i];
+        const narc_point middle = minus(find_middle(piece), base);
+        twice += cross(minus(piece->start, base), middle) + cross(middle, minus(piece->end, base));
+    }
+    return 0.5 * twice;
+}
+
+static void reverse_chain(narc_arc_chains *chains, size_t k) {
+    for (size_t i = begin_of(chains, k); i < chains->ends[k]; i++) {
+        narc_curve_arc *piece = &chains->arcs[i];
+        const narc_point end = piece->end;
+        piece->end = piece->start;
+        piece->start = end;
+        piece->turn = -piece->turn;
+    }
+    for (size_t i = begin_of(chains, k), j = chains->ends[k] - 1; i < j; i++, j--) {
+        const narc_curve_arc piece = chains->arcs[i];
+        chains->arcs[i] = chains->arcs[j];
+        chains->arcs[j] = piece;
+    }
+}
+
+/* Outer chains go counter-clockwise, holes clockwise. */
+static void turn_chains(narc_arc_chains *chains) {
+    for (size_t k = 0; k < chains->count; k++) {
+        bool hole = false;
+        for (size_t other = 0; other < chains->count; other++)
+            if (other != k && is_around(chains, other, chains->arcs[begin_of(chains, k)].start))
+                hole = !hole;
+        if (hole ? measure_chain(chains, k) > 0 : measure_chain(chains, k) < 0)
+            reverse_chain(chains, k);
+    }
+}
+
+narc_status narc_fit_chains(const narc_path *path, double tolerance, bool open, narc_arc_chains *out_chains,
+                            narc_error *error) {
     if (!path || !out_chains)
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "%s is NULL", path ? "out_chains" : "path");
-    struct builder builder = {.tolerance = tolerance, .error = error};
+    struct builder builder = {.tolerance = tolerance, .open = open, .error = error};
     narc_status status = add_moves(&builder, path);
     if (!status && builder.chains.count == 0)
         status = narc_fail(error, NARC_ERROR_COUNT, 0, 0, "the path has no lines and no curves");
+    if (!status && !open)
+        turn_chains(&builder.chains);
     if (status)
         narc_release_chains(&builder.chains);
     else

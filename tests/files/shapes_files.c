@@ -139,12 +139,47 @@ TEST(keeps_bits) {
             made[k] = make_shape(&random, (enum family)(k % FAMILY_COUNT));
             snprintf(names[k], sizeof names[k], "%s%zu \\\\ \xf0\x9f\x91\xbb", k % 2 ? "a" : "\xc3\xa4", SHAPES - k);
             shapes[k] = (narc_named_shape){
-                names[k], made[k].arcs, made[k].count, {random_finite(&random), random_finite(&random)}, 0};
+                names[k], made[k].arcs, made[k].count, {random_finite(&random), random_finite(&random)}, 0,
+                NARC_FORM_SHAPE};
         }
         shapes[7].name = "7";
         expect_round_trip(shapes, SHAPES);
         free(made);
     }
+}
+
+/* Chains come back as they were, signs of zeros too, and not into the store. */
+TEST(keeps_chains) {
+    enum { ARCS = 300 };
+    struct test_random random = test_random_named("chains there and back");
+    for (size_t trial = 0; trial < test_trials(20); trial++) {
+        narc_arc arcs[ARCS];
+        const narc_arc disc = {0, 0, 1, 0, 6.283185307179586};
+        for (size_t k = 0; k < ARCS; k++) {
+            const double radius = k % 6 == 5   ? -1 - random_unit(&random)
+                                  : k % 3 == 0 ? 0.0
+                                  : k % 3 == 1 ? 1 + random_unit(&random)
+                                               : -0.0;
+            const double start = 6 * random_unit(&random), turn = k % 7 == 0 && radius == 0 ? 0 : random_unit(&random);
+            arcs[k] = (narc_arc){random_unit(&random), k % 5 ? -0.0 : 1, radius, start, start + (signbit(radius) ? -turn : turn)};
+        }
+        const narc_named_shape shapes[] = {{"open", arcs, ARCS, {1, 2}, 0, NARC_FORM_OPEN_CHAIN},
+                                           {"disc", &disc, 1, {0, 0}, 0, NARC_FORM_SHAPE},
+                                           {"closed", arcs, 1 + random_below(&random, ARCS), {0, 0}, 0,
+                                            NARC_FORM_CLOSED_CHAIN}};
+        expect_round_trip(shapes, 3);
+    }
+    static const char text[] = "{\"shapes\": [{\"name\": \"g\", \"chain\": {\"arcs\": [{\"center\": [1, 2], \"radius\": -0, "
+                               "\"start\": 1, \"end\": 0.5}]}}, {\"name\": \"c\", \"circle\": 1}]}";
+    narc_shapes *store = empty_store();
+    narc_shape_list *list;
+    assert_int_equal(narc_read_shapes(text, strlen(text), NULL, store, &list, NULL), NARC_OK);
+    assert_int_equal(narc_count_shapes(store), 1);
+    assert_int_equal(list->items[0].form, NARC_FORM_OPEN_CHAIN);
+    assert_true(signbit(list->items[0].arcs[0].radius));
+    assert_int_equal(list->items[1].form, NARC_FORM_SHAPE);
+    narc_destroy_shape_list(list);
+    narc_destroy_shapes(store);
 }
 
 /* Where the decimal point is a comma, files are the same. Skipped without such a locale. */
@@ -210,6 +245,15 @@ TEST(names_lines) {
          NARC_ERROR_FORMAT, 4, 0, "line 4: shape 2: another shape has that name 'a'"},
         {"{\"shapes\": [{\"name\": \"a\", \"circle\": 1},\n{\"circle\": 1,\n\"name\":\n\"0\"}]}", NARC_ERROR_FORMAT, 4,
          0, "line 4: shape 1: a name of digits would be taken for the index of another shape '0'"},
+        {"{\"shapes\": [{\"name\": \"a\", \"circle\": 1},\n{\"name\": \"g\", \"chain\": {\"arcs\": [\n{\"center\": [0, 0], "
+         "\"radius\": -1, \"start\": 0, \"end\": 3}]}}]}",
+         NARC_ERROR_SWEEP, 3, 3, "line 3: shape 'g', arc 0: from start to end it turns by 3, but its radius is -1"},
+        {"{\"shapes\": [{\"name\": \"g\", \"chain\": {\"closed\":\n1, \"arcs\": []}}]}", NARC_ERROR_FORMAT, 2, 0,
+         "line 2: shape 'g': closed is neither true nor false '1'"},
+        {"{\"shapes\": [{\"name\": \"g\", \"chain\": {\"arcs\":\n[]}}]}", NARC_ERROR_COUNT, 2, 0,
+         "line 2: shape 'g': arcs is an empty list"},
+        {"{\"shapes\": [{\"name\": \"g\", \"radius\": 1, \"chain\": {\"arcs\": []}}]}", NARC_ERROR_FORMAT, 1, 0,
+         "line 1: shape 'g': 'chain' takes no 'radius' beside it"},
         /* Valid, but with room for rounding too large for the store. */
         {"{\"shapes\": [{\"name\": \"b\", \"circle\": 1},\n{\"name\": \"a\", \"arcs\":\n[{\"center\": [9e8, 0], "
          "\"radius\": 1e9, \"start\": 0, \"end\": 6.283185307179586}]}]}",
@@ -241,7 +285,7 @@ static void *never(size_t size, void *context) {
 
 TEST(writes_nothing_wrong) {
     const narc_arc disc = {0, 0, 1, 0, 6.283185307179586}, half = {0, 0, 1, 0, 3};
-    const narc_named_shape good = {"a", &disc, 1, {0, 0}, 0};
+    const narc_named_shape good = {"a", &disc, 1, {0, 0}, 0, NARC_FORM_SHAPE};
     narc_named_shape shapes[2] = {good, good};
     char *text = NULL;
     size_t size = 7;
@@ -261,11 +305,11 @@ TEST(writes_nothing_wrong) {
         expect_error(narc_write_shapes(shapes, 2, NULL, &text, &size, &error), NARC_ERROR_FORMAT, &error,
                      "shape 1: a name");
     }
-    shapes[1] = (narc_named_shape){"b", &half, 1, {0, 0}, 0};
+    shapes[1] = (narc_named_shape){"b", &half, 1, {0, 0}, 0, NARC_FORM_SHAPE};
     expect_error(narc_write_shapes(shapes, 2, NULL, &text, &size, &error), NARC_ERROR_SWEEP, &error, "shape 'b': ");
-    shapes[1] = (narc_named_shape){"b", &disc, 1, {0, NAN}, 0};
+    shapes[1] = (narc_named_shape){"b", &disc, 1, {0, NAN}, 0, NARC_FORM_SHAPE};
     expect_error(narc_write_shapes(shapes, 2, NULL, &text, &size, &error), NARC_ERROR_NOT_FINITE, &error, "origin");
-    shapes[1] = (narc_named_shape){"b", NULL, 1, {0, 0}, 0};
+    shapes[1] = (narc_named_shape){"b", NULL, 1, {0, 0}, 0, NARC_FORM_SHAPE};
     expect_error(narc_write_shapes(shapes, 2, NULL, &text, &size, &error), NARC_ERROR_ARGUMENT, &error, "arcs is NULL");
     narc_shape_list *list = NULL;
     expect_error(narc_read_shapes(NULL, 0, NULL, NULL, &list, &error), NARC_ERROR_ARGUMENT, &error, "data is NULL");

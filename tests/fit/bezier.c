@@ -732,7 +732,7 @@ TEST(test_chains) {
     narc_error error;
     assert_int_equal(narc_create_path(&path), NARC_OK);
     narc_arc_chains chains;
-    assert_int_equal(narc_fit_chains(path, 1e-3, &chains, &error), NARC_ERROR_COUNT);
+    assert_int_equal(narc_fit_chains(path, 1e-3, false, &chains, &error), NARC_ERROR_COUNT);
     narc_move_to(path, bend[0], NULL);
     narc_cubic_to(path, bend[1], bend[2], bend[3], NULL);
     narc_line_to(path, (point){4, 4}, NULL);
@@ -743,7 +743,7 @@ TEST(test_chains) {
     narc_line_to(path, (point){10, 0}, NULL);
     narc_line_to(path, (point){9, 1}, NULL);
     narc_line_to(path, (point){9, 0}, NULL);
-    assert_int_equal(narc_fit_chains(path, 1e-3, &chains, &error), NARC_OK);
+    assert_int_equal(narc_fit_chains(path, 1e-3, false, &chains, &error), NARC_OK);
     assert_int_equal(chains.count, 2);
     assert_int_equal(chains.ends[0], count + 3);
     assert_int_equal(chains.ends[1], count + 6);
@@ -758,9 +758,9 @@ TEST(test_chains) {
     }
     narc_release_chains(&chains);
     assert_null(chains.arcs);
-    assert_int_equal(narc_fit_chains(path, 0, &chains, &error), NARC_ERROR_SIZE);
-    assert_int_equal(narc_fit_chains(path, NAN, &chains, &error), NARC_ERROR_NOT_FINITE);
-    assert_int_equal(narc_fit_chains(NULL, 1, &chains, &error), NARC_ERROR_ARGUMENT);
+    assert_int_equal(narc_fit_chains(path, 0, false, &chains, &error), NARC_ERROR_SIZE);
+    assert_int_equal(narc_fit_chains(path, NAN, false, &chains, &error), NARC_ERROR_NOT_FINITE);
+    assert_int_equal(narc_fit_chains(NULL, 1, false, &chains, &error), NARC_ERROR_ARGUMENT);
     narc_destroy_path(path);
 }
 

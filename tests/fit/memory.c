@@ -262,9 +262,21 @@ static void flatten_path(const void *input, struct outcome *out) {
 static void fit_chains(const void *input, struct outcome *out) {
     const struct outline *of = input;
     watch_all(true);
-    out->status = narc_fit_chains(of->path, 1e-3, &out->chains, &out->error);
+    out->status = narc_fit_chains(of->path, 1e-3, false, &out->chains, &out->error);
     watch_all(false);
     out->untouched = out->chains.arc_count == 0 && !out->chains.arcs;
+}
+
+static void cut_path(const void *input, struct outcome *out) {
+    const struct outline *of = input;
+    narc_parts parts = {.count = 77};
+    watch_all(true);
+    out->status = narc_cut_path(of->path, &(narc_parts_request){.most = 40, .tolerance = 0.05, .lap = 0.01}, &parts,
+                                &out->error);
+    watch_all(false);
+    out->untouched = parts.count == 77;
+    if (out->status == NARC_OK)
+        narc_release_parts(&parts);
 }
 
 TEST(test_paths) {
@@ -275,6 +287,7 @@ TEST(test_paths) {
     fail_all("drawing", draw_path, NULL);
     fail_all("hull", compute_hull, &star);
     fail_all("flattening", flatten_path, &blob);
+    fail_all("parts", cut_path, &star);
     fail_all("chains of curves", fit_chains, &blob);
     fail_all("chains of lines", fit_chains, &polygon);
     free_outline(&blob);

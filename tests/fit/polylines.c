@@ -57,6 +57,40 @@ static void check_near(const char *name, const narc_point *points, size_t count,
     free(samples);
 }
 
+
+/* The closed chain in the form of shapes: arcs lie on its pieces, edges are its lines, and normals go on where an arc
+ * follows. */
+static void check_arcs(const narc_arc_chains *chains) {
+    narc_arc *arcs = malloc((2 * chains->arc_count + 1) * sizeof *arcs);
+    size_t count, curved = 0, met = 0;
+    assert_non_null(arcs);
+    assert_int_equal(narc_describe_chain(chains->arcs, chains->arc_count, true, arcs, &count, NULL), NARC_OK);
+    double turn = 0;
+    for (size_t k = 0; k < count; k++) {
+        const narc_arc *arc = &arcs[k], *next = &arcs[(k + 1) % count];
+        const double sweep = arc->end - arc->start;
+        assert_true(sweep != 0 && (sweep < 0) == (signbit(arc->radius) != 0));
+        assert_true(fabs(sin(next->start - arc->end)) <= 1e-5 && cos(next->start - arc->end) > 0);
+        turn += sweep;
+        if (arc->radius == 0)
+            continue;
+        for (size_t i = 0; i < chains->arc_count; i++) {
+            const narc_curve_arc *piece = &chains->arcs[i];
+            const narc_point from = {arc->center_x + arc->radius * cos(arc->start),
+                                     arc->center_y + arc->radius * sin(arc->start)},
+                             to = {arc->center_x + arc->radius * cos(arc->end),
+                                   arc->center_y + arc->radius * sin(arc->end)};
+            const double scale = 1e-9 * (1 + fabs(arc->radius));
+            met += piece->turn != 0 && hypot(from.x - piece->start.x, from.y - piece->start.y) <= scale &&
+                   hypot(to.x - piece->end.x, to.y - piece->end.y) <= scale;
+        }
+        curved++;
+    }
+    assert_int_equal(met, curved);
+    assert_true(fabs(turn - 2 * PI) <= 1e-5 * (double)count); /* once round, the inside on the left */
+    free(arcs);
+}
+
 /* How many arcs and lines, which join, and with a common tangent but at `corners` places. */
 static size_t fit_ring(const char *name, const narc_point *points, size_t count, double tolerance, size_t corners) {
     narc_path *path = NULL;
@@ -66,7 +100,7 @@ static size_t fit_ring(const char *name, const narc_point *points, size_t count,
     narc_move_to(path, points[0], NULL);
     for (size_t k = 1; k < count; k++)
         narc_line_to(path, points[k], NULL);
-    if (narc_fit_chains(path, tolerance, &chains, &error) != NARC_OK)
+    if (narc_fit_chains(path, tolerance, false, &chains, &error) != NARC_OK)
         fail_msg("%s: %s", name, error.message);
     assert_int_equal(chains.count, 1);
     size_t bends = 0;
@@ -80,6 +114,7 @@ static size_t fit_ring(const char *name, const narc_point *points, size_t count,
     }
     if (bends > corners)
         fail_msg("%s: %zu corners, but the chain has %zu", name, bends, corners);
+    check_arcs(&chains);
     check_near(name, points, count, &chains, tolerance, 1e-3 * tolerance + 1e-3);
     const size_t arcs = chains.arc_count;
     narc_release_chains(&chains);

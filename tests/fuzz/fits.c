@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * fits.c - fits of arbitrary contours: the arcs are a valid shape, what bounds holds every point, and splines join and
+ * fits.c - fits of arbitrary contours: the arcs are a valid shape, what bounds holds every point, and chains join and
  * keep their tolerance.
  */
 #include <math.h>
@@ -48,7 +48,7 @@ static void check_fit(struct bytes *from, const struct outline *outline) {
 
 static void check_chains(const struct outline *outline, double tolerance) {
     narc_arc_chains chains;
-    if (narc_fit_chains(outline->path, tolerance, &chains, NULL) != NARC_OK)
+    if (narc_fit_chains(outline->path, tolerance, false, &chains, NULL) != NARC_OK)
         return;
     assert_true(chains.distance <= tolerance);
     for (size_t k = 0, first = 0; k < chains.count; first = chains.ends[k++])

@@ -19,6 +19,7 @@ static void compare_lists(const narc_shape_list *a, const narc_shape_list *b) {
         const narc_named_shape *const one = &a->items[k], *const other = &b->items[k];
         assert_string_equal(one->name, other->name);
         assert_int_equal(one->arc_count, other->arc_count);
+        assert_int_equal(one->form, other->form);
         assert_memory_equal(&one->origin, &other->origin, sizeof one->origin);
         assert_memory_equal(one->arcs, other->arcs, one->arc_count * sizeof *one->arcs);
     }

@@ -168,11 +168,49 @@ else
     echo "skipped: progress on a terminal (no script command)"
 fi
 
-# Splines: lines stay lines; a contour that goes round turns by a full turn, but for its corners.
-works "a spline of lines" fit fits/square.csv --spline --tolerance 0.1 --out spline.json --picture spline.svg
-check "a spline of lines: 4 of them" test "$(tail -n 1 out.txt | awk '{ print $1, $2, $3, $4 }')" = "square 1 0 4"
-check "a spline of lines: no radius" sh -c '! grep -q radius spline.json'
-check "a spline of lines: a picture" grep -q "</svg>" spline.svg
+# Chains: lines are edges between corners; of a hole these are valleys. Open strokes end in plain points.
+works "a chain of lines" fit fits/square.csv --chain --tolerance 0.1 --out chain.json --picture chain.svg
+check "a chain of lines: 4 of them" test "$(tail -n 1 out.txt | awk '{ print $1, $2, $3, $4 }')" = "square 1 0 4"
+check "a chain of lines: 4 corners" test "$(grep -c '"radius": 0,' chain.json)" = 4
+check "a chain of lines: closed" grep -q '"chain": {"closed": true' chain.json
+check "a chain of lines: a picture" grep -q "</svg>" chain.svg
+fails "a chain is no body" "narc: chain.json: shape 'square' is a chain" collide --shapes chain.json --bodies none.csv
+printf '0,0\n4,0\n4,4\n0,4\n\n1,1\n3,1\n3,3\n1,3\n' >fits/frame.csv
+works "a chain round a hole" fit fits/frame.csv --chain --tolerance 0.1 --out chain.json
+check "a chain round a hole: two chains" names chain.json "frame/1 frame/2 "
+check "a chain round a hole: 4 valleys" test "$(grep -c '"radius": -0,' chain.json)" = 4
+works "an open stroke" fit fits/square.csv --chain --open --tolerance 0.1 --out chain.json
+check "an open stroke: two corners, two ends" test "$(grep -c '"radius": 0,' chain.json)" = 4
+check "an open stroke: open" grep -q '"chain": {"closed": false' chain.json
+
+# Parts: the frame is four boxes; three cannot do it.
+works "parts" fit fits/frame.csv fits/square.csv --parts 9 --tolerance 0.1 --edges --starts 1 --out parts.json \
+    --picture parts.svg
+check "parts: 4 of the frame" test "$(value frame 2)" = 4
+check "parts: 1 of the square" test "$(value square 2)" = 1
+check "parts: names" names parts.json "frame/1 frame/2 frame/3 frame/4 square "
+check "parts: area" is frame 5 12
+check "parts: the outline's area" is frame 6 12
+check "parts: distance" less "$(value frame 8)" 0.1
+check "parts: a picture" grep -q "</svg>" parts.svg
+works "parts with arcs" fit fits/frame.csv --parts 4 --arcs 4 --edges --approximate --starts 1 --out some.json
+check "parts with arcs: 4" test "$(value frame 2)" = 4
+fails "too few parts" "narc: fits/frame.csv: the tolerance .* 3 parts" fit fits/frame.csv --parts 3 --tolerance 0.1 \
+    --out new.json
+
+# A body named after an outline in parts has all of them, and no contacts with itself.
+printf 'shape,x,y,angle,scale\nframe,0,0,0,1\nsquare,0,0,1,0.5\nframe,3.5,0,0,1\n' >frames.csv
+works "a body in parts" collide --shapes parts.json --bodies frames.csv --out frames.txt --picture frames.svg
+check "a body in parts: columns" grep -q "^a,b,.*,part_a,part_b$" frames.txt
+check "a body in parts: the square in the hole touches nothing" sh -c '! grep -qE "^(1,|[02],1,)" frames.txt'
+check "a body in parts: two frames touch" grep -q "^0,2," frames.txt
+check "a body in parts: not itself" sh -c '! grep -qE "^(0,0|2,2)," frames.txt'
+printf 'a,b\n0,2\n' >pair.csv
+works "pairs of such bodies" collide --shapes parts.json --bodies frames.csv --pairs pair.csv --out pair.txt
+check "pairs of such bodies: the same contacts" cmp frames.txt pair.txt
+printf 'x,y,motion_x,motion_y\n-10,0,20,0\n' >rays.csv
+works "a ray at a body in parts" cast --shapes parts.json --bodies frames.csv --rays rays.csv --out hit.txt
+check "a ray at a body in parts: the first frame" grep -qE "^0,0,0\.(4|39999)" hit.txt
 
 # Images: what narc draws.
 printf 'shape,x,y,angle\ndisc,0,0,0\n' >disc.csv
@@ -253,13 +291,11 @@ if [ -n "$font" ]; then
     check "glyphs touch" test "$(wc -l <glyphs.txt)" -gt 500
     check "picture of the scene" begins_with glyphs.png XPNG
 
-    works "spline of a glyph" fit "$font" --characters 👻 --spline --tolerance 0.01 --out spline.json --picture spline.png
-    check "spline of a glyph: kept" less "$(tail -n 1 out.txt | awk '{ print $5 }')" 0.0100001
+    works "chain of a glyph" fit "$font" --characters 👻 --chain --tolerance 0.01 --out chain.json --picture chain.png
+    check "chain of a glyph: kept" less "$(tail -n 1 out.txt | awk '{ print $5 }')" 0.0100001
     coarse=$(tail -n 1 out.txt | awk '{ print $3 }')
-    works "a finer spline" fit "$font" --characters 👻 --spline --tolerance 0.0001
-    check "a finer spline: more arcs" less "$coarse" "$(tail -n 1 err.txt | awk '{ print $3 }')"
-    check "a finer spline: each arc begins where another ends" awk -F'[][]' '/"start"/ { at[$2]++; at[$4]-- }
-        END { for (p in at) bad = bad || at[p] != 0; exit bad || NR < 100 }' out.txt
+    works "a finer chain" fit "$font" --characters 👻 --chain --tolerance 0.0001
+    check "a finer chain: more arcs" less "$coarse" "$(tail -n 1 err.txt | awk '{ print $3 }')"
 
     fails "no glyph" "narc: .*U+10FFFD" fit "$font" --characters "$(printf '\364\217\277\275')" --arcs 8 \
         --out new.json

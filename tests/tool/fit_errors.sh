@@ -64,9 +64,9 @@ for family in polygon paper; do
 done
 for option in "--arcs 4" --bound --approximate "--objective area" --edges --polygon --paper "--flatness 0.01" \
     "--starts 3" --keep-origin; do
-    nofit "a spline and ${option% *}" "narc: --spline and ${option% *} exclude" --spline $option
+    nofit "a chain and ${option% *}" "narc: --chain and ${option% *} exclude" --chain $option
 done
-nofit "a spline without a tolerance" "narc: --arcs or --tolerance is missing" --spline
+nofit "a chain without a tolerance" "narc: --arcs or --tolerance is missing" --chain
 nofit "characters without a font" "narc: --characters is for fonts" --arcs 4 --characters a
 nofit "threshold without an image" "narc: --threshold is for PNG and SVG" --arcs 4 --threshold 0.4
 nofit "silhouette without an image" "narc: --silhouette is for PNG and SVG" --arcs 4 --silhouette dark
@@ -115,11 +115,11 @@ fails "fit: points on a line" "narc: flat.csv: .*line" fit flat.csv --arcs 4 --o
 : >none.csv && cp fits/square.csv 0.csv && printf '0,0\n1,x\n' >word.csv
 fails "fit: one empty file of many" "narc: none.csv: the text is empty" fit 0.csv none.csv fits/square.csv --arcs 4 \
     --out new.json
-for kind in "--arcs 4" "--spline --tolerance 0.1"; do
+for kind in "--arcs 4" "--chain --tolerance 0.1"; do
     "$narc" fit none.csv 0.csv flat.csv word.csv absent.csv fits/square.csv fits $kind --keep-going --out some.json \
         --picture some.png >out.txt 2>err.txt
     check "keep going, $kind: status 1" test $? -eq 1
-    left="shape-0 square " # a spline may lie on a line
+    left="shape-0 square " # a chain may lie on a line
     [ "$kind" = "--arcs 4" ] || left="shape-0 flat square "
     check "keep going, $kind: the others" \
         test "$(grep -o '"name": "[^"]*"' some.json | cut -d'"' -f4 | tr '\n' ' ')" = "$left"

@@ -113,9 +113,20 @@ static void draw_piece(canvas *page, const placement *where, const narc_fit_resu
     }
 }
 
-void draw_fit(canvas *page, const placement *outline, const narc_fit_result *fit, const fit_look *look) {
+static placement place_fit(const placement *outline, const narc_fit_result *fit) {
     const narc_point origin = place_point(outline, fit->origin);
-    const placement where = {origin.x, origin.y, outline->cosine, outline->sine};
+    return (placement){origin.x, origin.y, outline->cosine, outline->sine};
+}
+
+void fill_fit(canvas *page, const placement *outline, const narc_fit_result *fit, color fill) {
+    const placement where = place_fit(outline, fit);
+    trace_arcs(page, &where, fit->arcs, fit->arc_count);
+    set_color(page, fill);
+    cairo_fill(page->pen);
+}
+
+void draw_fit(canvas *page, const placement *outline, const narc_fit_result *fit, const fit_look *look) {
+    const placement where = place_fit(outline, fit);
     size_t visible = 0;
     for (size_t i = 0; i < fit->arc_count; i++)
         visible += !is_corner(outline, &fit->arcs[i], look);

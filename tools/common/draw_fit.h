@@ -39,6 +39,9 @@ void draw_corner(canvas *page, narc_point center, double radius);
 
 bool is_corner(const placement *where, const narc_arc *arc, const fit_look *look);
 
+/* Fills the shape over its outline, whose coordinates are placed. */
+void fill_fit(canvas *page, const placement *outline, const narc_fit_result *fit, color fill);
+
 /* The shape over its outline, whose coordinates are placed: arcs and edges in their colours, then their junctions and
  * corners. */
 void draw_fit(canvas *page, const placement *outline, const narc_fit_result *fit, const fit_look *look);

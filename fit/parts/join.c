@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * join.c - pieces joined again where that goes: cuts are made one at a time, and some are not needed in the end.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "outline/vector.h"
+#include "parts/cut.h"
+
+/* Of more pieces than that no two are joined: it takes time with their square. */
+enum { MOST_JOINED = 1000 };
+
+/* What joining two pieces costs: the emptiness that their hull has and they have not; INFINITY where it is too far from
+ * the region. In a square of count by count, above the diagonal. */
+typedef struct joining {
+    const narc_region *region;
+    narc_pieces *pieces;
+    size_t count; /* at the beginning */
+    double *own;
+    float *costs;
+    narc_point *points, *corners;
+    size_t room;
+} joining;
+
+static bool make_room(joining *j, size_t count) {
+    if (count <= j->room)
+        return true;
+    narc_point *points = realloc(j->points, count * sizeof *points);
+    j->points = points ? points : j->points;
+    narc_point *corners = realloc(j->corners, (count + 1) * sizeof *corners);
+    j->corners = corners ? corners : j->corners;
+    j->room = points && corners ? count : j->room;
+    return points && corners;
+}
+
+/* The hull of two pieces, into j->corners. */
+static size_t wrap_pair(const joining *j, size_t a, size_t b) {
+    const narc_piece *p = &j->pieces->items[a], *q = &j->pieces->items[b];
+    memcpy(j->points, p->corners, p->count * sizeof *p->corners);
+    memcpy(j->points + p->count, q->corners, q->count * sizeof *q->corners);
+    return narc_wrap_points(j->points, p->count + q->count, j->corners);
+}
+
+static float *cost_of(const joining *j, size_t a, size_t b) {
+    return &j->costs[a < b ? a * j->count + b : b * j->count + a];
+}
+
+static bool measure_pair(joining *j, size_t a, size_t b) {
+    if (!make_room(j, j->pieces->items[a].count + j->pieces->items[b].count))
+        return false;
+    const size_t count = wrap_pair(j, a, b);
+    *cost_of(j, a, b) = narc_may_be_within_limit(j->region, j->corners, count)
+                            ? (float)(narc_measure_emptiness(j->region, j->corners, count) - j->own[a] - j->own[b])
+                            : INFINITY;
+    return true;
+}
+
+/* A piece that is gone has no corners. */
+static bool measure_pairs(joining *j, size_t a) {
+    bool done = true;
+    j->own[a] = narc_measure_emptiness(j->region, j->pieces->items[a].corners, j->pieces->items[a].count);
+    for (size_t b = 0; b < j->count && done; b++)
+        if (b != a && j->pieces->items[b].count)
+            done = measure_pair(j, a, b);
+    return done;
+}
+
+static float find_cheapest(const joining *j, size_t *out_a, size_t *out_b) {
+    float least = INFINITY;
+    for (size_t a = 0; a < j->count; a++) {
+        for (size_t b = a + 1; b < j->count && j->pieces->items[a].count; b++) {
+            if (j->pieces->items[b].count && j->costs[a * j->count + b] < least) {
+                least = j->costs[a * j->count + b];
+                *out_a = a;
+                *out_b = b;
+            }
+        }
+    }
+    return least;
+}
+
+/* The common hull takes the place of a. */
+static bool join_pair(joining *j, size_t a, size_t b) {
+    narc_piece *items = j->pieces->items;
+    const size_t count = wrap_pair(j, a, b);
+    if (!narc_is_within_limit(j->region, j->corners, count)) {
+        *cost_of(j, a, b) = INFINITY;
+        return true;
+    }
+    narc_point *corners = malloc(count * sizeof *corners);
+    if (!corners)
+        return false;
+    memcpy(corners, j->corners, count * sizeof *corners);
+    free(items[a].corners);
+    free(items[b].corners);
+    items[a] = (narc_piece){corners, count};
+    items[b] = (narc_piece){0};
+    return measure_pairs(j, a);
+}
+
+narc_status narc_join_pieces(const narc_region *region, narc_pieces *pieces) {
+    joining j = {.region = region, .pieces = pieces, .count = pieces->count};
+    if (j.count > MOST_JOINED)
+        return NARC_OK;
+    j.own = calloc(j.count, sizeof *j.own);
+    j.costs = malloc(j.count * j.count * sizeof *j.costs);
+    bool done = j.own && j.costs && make_room(&j, 64);
+    for (size_t a = 0; done && a < j.count; a++)
+        j.own[a] = narc_measure_emptiness(region, pieces->items[a].corners, pieces->items[a].count);
+    for (size_t a = 0; a < j.count; a++)
+        for (size_t b = a + 1; done && b < j.count; b++)
+            done = measure_pair(&j, a, b);
+    for (size_t a = 0, b = 0; done && find_cheapest(&j, &a, &b) < INFINITY;)
+        done = join_pair(&j, a, b);
+    size_t kept = 0;
+    for (size_t a = 0; a < j.count; a++) /* also where memory ran out */
+        if (pieces->items[a].count)
+            pieces->items[kept++] = pieces->items[a];
+    pieces->count = kept;
+    free(j.own);
+    free(j.costs);
+    free(j.points);
+    free(j.corners);
+    return done ? NARC_OK : NARC_ERROR_MEMORY;
+}
