@@ -186,6 +186,66 @@ narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_s
     return NARC_OK;
 }
 
+/* ------------------------------------------------------------------------------------------------ pieces of chains */
+
+narc_status narc_encode_run(const narc_arc *arcs, size_t count, narc_encoded_shape *out_shape, narc_error *error) {
+    const narc_status status = narc_encode_shape(arcs, count, out_shape, error);
+    if (status == NARC_OK)
+        out_shape->header.first_arc |= NARC_PIECE_RUN;
+    return status;
+}
+
+/* The header and the angles of a concave arc that is stored. */
+static void write_concave(narc_encoded_shape *shape, double least_bound) {
+    const narc_stored_arc *arc = &shape->records[1].arc;
+    const double x = (double)arc->center_x, y = (double)arc->center_y, radius = (double)arc->radius;
+    const double n_x = (double)arc->start_x, n_y = (double)arc->start_y, m_x = (double)arc->end_x,
+                 m_y = (double)arc->end_y;
+    /* Around the middle of the chord: the arc turns by less than half a turn. */
+    const double extent = narc_hypot(x, y) - radius, room = NARC_ROUNDING_ROOM * extent;
+    const float bound_x = (float)(x + radius * (n_x + m_x) / 2), bound_y = (float)(y + radius * (n_y + m_y) / 2);
+    const double start = narc_hypot(x + radius * n_x - (double)bound_x, y + radius * n_y - (double)bound_y);
+    const double end = narc_hypot(x + radius * m_x - (double)bound_x, y + radius * m_y - (double)bound_y);
+    const double bound = fmax(fmax(start, end), least_bound) + room;
+    shape->header = (narc_shape_header){.count = 1,
+                                        .first_arc = NARC_PIECE_CONCAVE,
+                                        .flags = (uint8_t)(find_size_class(extent) << NARC_SIZE_CLASS_SHIFT),
+                                        .bound_x = bound_x,
+                                        .bound_y = bound_y,
+                                        .bound_radius = round_up(bound),
+                                        .inner_radius = -INFINITY};
+    shape->header.extent_ratio =
+        (uint8_t)fmin(UINT8_MAX, ceil(extent * (1 + 1e-6) / (double)shape->header.bound_radius));
+    const float angle = find_diamond_angle(arc->start_x, arc->start_y);
+    for (size_t k = 0; k < NARC_RECORD_ANGLES; k++)
+        shape->records[0].angles[k] =
+            k == 0 ? (int16_t)(angle * NARC_ANGLE_SCALE - NARC_ANGLE_OFFSET) : NARC_ANGLE_NONE;
+}
+
+narc_status narc_encode_concave(const narc_arc *arc, double least_bound, narc_encoded_shape *out_shape,
+                                narc_error *error) {
+    narc_point start, end;
+    narc_find_normal(arc->start, &start.x, &start.y);
+    narc_find_normal(arc->end, &end.x, &end.y);
+    out_shape->records[1].arc = (narc_stored_arc){.center_x = (float)arc->center_x,
+                                                  .center_y = (float)arc->center_y,
+                                                  .radius = (float)arc->radius,
+                                                  .start_x = (float)start.x,
+                                                  .start_y = (float)start.y,
+                                                  .end_x = (float)end.x,
+                                                  .end_y = (float)end.y};
+    write_concave(out_shape, least_bound);
+    const double bound = (double)out_shape->header.bound_radius;
+    if (!(bound >= NARC_MIN_SIZE && bound <= NARC_MAX_BOUND_RADIUS))
+        return narc_fail(error, NARC_ERROR_SIZE, 0, bound, "its bounding radius is %g, not in %g .. %g", bound,
+                         NARC_MIN_SIZE, NARC_MAX_SIZE);
+    if (-arc->radius > 4 * NARC_MAX_RADIUS_RATIO * bound)
+        return narc_fail(error, NARC_ERROR_RADIUS, 0, arc->radius,
+                         "radius is %.9g, more than %g times half the chord %.9g", arc->radius,
+                         4 * NARC_MAX_RADIUS_RATIO, bound);
+    return NARC_OK;
+}
+
 static bool has_same_bits(float a, float b) {
     uint32_t bits[2];
     memcpy(&bits[0], &a, sizeof a);
@@ -349,11 +409,46 @@ static bool has_inner_radii(const narc_outline *o, size_t arc, uint32_t radii, d
            has_room(o, narc_find_end(o, arc), o->normal_x[arc + 1], o->normal_y[arc + 1], inner, room);
 }
 
+/* Is it a concave arc with the header that it should have? Its circle may be larger: that of a valley's bottom is. */
+static narc_status restore_concave(narc_encoded_shape *shape, narc_error *error) {
+    const narc_shape_header header = shape->header;
+    const narc_stored_arc *a = &shape->records[1].arc;
+    const double x = (double)a->start_x, y = (double)a->start_y, end_x = (double)a->end_x, end_y = (double)a->end_y;
+    if (header.count != 1 || header.first_arc != NARC_PIECE_CONCAVE || a->inner_radii != 0)
+        return fail_stored(error, "a piece of a chain that is none");
+    if (!isfinite(a->center_x) || !isfinite(a->center_y) || !isfinite(a->radius) || !signbit(a->radius) ||
+        !(header.bound_radius >= (float)NARC_MIN_SIZE && header.bound_radius <= (float)NARC_MAX_BOUND_RADIUS))
+        return fail_stored(error, "a number that no concave arc has");
+    if (!(fabs(x * x + y * y - 1) <= UNIT_SLACK) || !(fabs(end_x * end_x + end_y * end_y - 1) <= UNIT_SLACK) ||
+        !(x * end_y - y * end_x >= NARC_TOLERANCE / 4))
+        return fail_stored(error, "a concave arc that does not turn");
+    write_concave(shape, 0);
+    const float least = shape->header.bound_radius;
+    shape->header.bound_radius = header.bound_radius;
+    shape->header.extent_ratio = header.extent_ratio;
+    if (!(least <= header.bound_radius) || !((double)least >= -(double)a->radius / (5 * NARC_MAX_RADIUS_RATIO)) ||
+        memcmp(&shape->header, &header, sizeof header) != 0)
+        return fail_stored(error, "a concave arc whose header is another's");
+    return NARC_OK;
+}
+
+/* Are both ends and the far side of a closed run corners? */
+static bool is_closed_run(const narc_outline *o) {
+    bool corners = o->count >= 6;
+    for (size_t k = 0; corners && k < 6; k++)
+        corners = o->radius[k > 0 ? o->count - k : 0] == 0;
+    return corners;
+}
+
 narc_status narc_restore_shape(narc_encoded_shape *shape, narc_error *error) {
     narc_outline o;
     narc_record stored[NARC_MAX_ARCS];
     double extent = 0;
-    const narc_shape_header header = shape->header;
+    narc_shape_header header = shape->header;
+    const uint8_t mark = header.first_arc & NARC_PIECE_RUN;
+    if (header.first_arc & NARC_PIECE_CONCAVE)
+        return restore_concave(shape, error);
+    header.first_arc &= NARC_FIRST_ARC;
     if (header.count < 2 || header.count > NARC_MAX_ARCS || header.first_arc >= header.count)
         return fail_stored(error, "a number of arcs that no shape has");
     const size_t count = header.count, angles = narc_angle_records(count);
@@ -363,9 +458,12 @@ narc_status narc_restore_shape(narc_encoded_shape *shape, narc_error *error) {
         status = check_header(&header, &o, stored, extent, error);
     if (status != NARC_OK)
         return status;
+    if (mark && !is_closed_run(&o))
+        return fail_stored(error, "a piece of a chain that is none");
     write_records(&o, &shape->header, shape->records);
     if (shape->header.first_arc != header.first_arc)
         return fail_stored(error, "arcs out of order");
+    shape->header.first_arc |= mark;
     for (size_t k = 0; k < count; k++)
         if (!has_inner_radii(&o, (k + header.first_arc) % count, stored[k].arc.inner_radii, extent))
             return fail_stored(error, "an arc without the room behind it that it should have");

@@ -340,6 +340,8 @@ enum {
     NARC_SHAPE_CIRCLE = 2,         /* one arc, a full turn */
     NARC_SHAPE_POLYGON = 4,        /* every radius is 0 */
     NARC_SHAPE_CENTERS_INSIDE = 8, /* every arc's centre lies in the shape */
+    NARC_SHAPE_RUN = 16,           /* a part of a convex run of a chain (narc_chains.h) */
+    NARC_SHAPE_CONCAVE = 32,       /* a concave arc of a chain */
 };
 
 /* An empty store. `allocator` NULL: malloc and free. NARC_ERROR_MEMORY. */

@@ -292,6 +292,7 @@ narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, narc_enc
     }
     narc_open_indices(shapes, count);
     if (narc_has_shape(shapes, shape)) {
+        shapes->piece_count -= narc_is_piece(&shapes->headers[shape]);
         unlink_shape(shapes, shape, find_bucket(shapes, shapes->entries[shape].hash));
     } else {
         unlink_shape(shapes, shape, &shapes->last_removed);
@@ -299,6 +300,7 @@ narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, narc_enc
     }
     memcpy(&shapes->records[encoded->header.first_record], encoded->records, size * sizeof *encoded->records);
     shapes->headers[shape] = encoded->header;
+    shapes->piece_count += narc_is_piece(&encoded->header);
     put_box(shapes, shape, narc_find_box_form(encoded));
     shapes->entries[shape] = (narc_shape_entry){.uses = 1, .hash = hash};
     link_shape(shapes, shape, find_bucket(shapes, hash));
@@ -307,15 +309,10 @@ narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, narc_enc
     return NARC_OK;
 }
 
-narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t count, uint32_t *out_shape,
-                           narc_error *error) {
-    narc_encoded_shape encoded;
-    if (!shapes)
-        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "shapes is NULL");
-    narc_status status = narc_encode_shape(arcs, count, &encoded, error);
-    if (status != NARC_OK)
-        return status;
-    uint32_t shape = find_equal(shapes, &encoded, hash_shape(&encoded));
+narc_status narc_share_encoded_shape(narc_shapes *shapes, narc_encoded_shape *encoded, uint32_t *out_shape,
+                                     narc_error *error) {
+    narc_status status = NARC_OK;
+    uint32_t shape = find_equal(shapes, encoded, hash_shape(encoded));
     if (shape != NARC_NO_SHAPE) {
         if (shapes->entries[shape].uses == UINT32_MAX)
             return narc_fail(error, NARC_ERROR_COUNT, shape, UINT32_MAX, "shape %lu is used %lu times, which is most",
@@ -323,11 +320,20 @@ narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t cou
         shapes->entries[shape].uses++;
     } else {
         shape = shapes->removed_count ? shapes->last_removed : (uint32_t)shapes->count;
-        status = narc_put_encoded_shape(shapes, shape, &encoded, error);
+        status = narc_put_encoded_shape(shapes, shape, encoded, error);
     }
     if (status == NARC_OK && out_shape)
         *out_shape = shape;
     return status;
+}
+
+narc_status narc_add_shape(narc_shapes *shapes, const narc_arc *arcs, size_t count, uint32_t *out_shape,
+                           narc_error *error) {
+    narc_encoded_shape encoded;
+    if (!shapes)
+        return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "shapes is NULL");
+    const narc_status status = narc_encode_shape(arcs, count, &encoded, error);
+    return status == NARC_OK ? narc_share_encoded_shape(shapes, &encoded, out_shape, error) : status;
 }
 
 narc_status narc_add_shape_at(narc_shapes *shapes, uint32_t shape, const narc_arc *arcs, size_t count,
@@ -377,6 +383,7 @@ narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *e
         return status;
     narc_shape_header *header = &shapes->headers[shape];
     shapes->used_records -= narc_count_records(header->count);
+    shapes->piece_count -= narc_is_piece(header);
     header->bound_radius = 0;
     put_box(shapes, shape, (narc_box_form){.info = 0});
     unlink_shape(shapes, shape, find_bucket(shapes, shapes->entries[shape].hash));
@@ -395,7 +402,11 @@ uint32_t narc_count_uses(const narc_shapes *shapes, uint32_t shape) {
 }
 
 unsigned narc_shape_flags(const narc_shapes *shapes, uint32_t shape) {
-    return narc_has_shape(shapes, shape) ? shapes->headers[shape].flags % (1u << NARC_SIZE_CLASS_SHIFT) : 0;
+    _Static_assert(NARC_PIECE_RUN >> 2 == NARC_SHAPE_RUN && NARC_PIECE_CONCAVE >> 2 == NARC_SHAPE_CONCAVE, "marks");
+    if (!narc_has_shape(shapes, shape))
+        return 0;
+    const narc_shape_header *header = &shapes->headers[shape];
+    return header->flags % (1u << NARC_SIZE_CLASS_SHIFT) | (header->first_arc & ~NARC_FIRST_ARC & UINT8_MAX) >> 2;
 }
 
 size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_arcs) {
@@ -403,15 +414,22 @@ size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_ar
         return 0;
     narc_shape_header header = shapes->headers[shape];
     const narc_record *arcs = narc_arcs_of(shapes, &header);
-    size_t count = header.flags & NARC_SHAPE_CIRCLE ? 1 : header.count;
+    const bool is_circle = header.flags & NARC_SHAPE_CIRCLE, is_concave = header.first_arc & NARC_PIECE_CONCAVE;
+    size_t count = is_circle ? 1 : header.count;
+    header.first_arc &= NARC_FIRST_ARC;
     for (size_t i = 0; out_arcs && i < count; i++) {
         const narc_stored_arc *r = &arcs[(i + header.count - header.first_arc) % header.count].arc;
         double start = narc_atan2((double)r->start_y, (double)r->start_x),
                end = narc_atan2((double)r->end_y, (double)r->end_x);
-        if (count == 1)
+        if (is_circle)
             end = start;
         if (end <= start)
             end += 2 * NARC_PI;
+        if (is_concave) { /* clockwise */
+            const double last = start;
+            start = end;
+            end = last;
+        }
         out_arcs[i] = (narc_arc){(double)r->center_x, (double)r->center_y, (double)r->radius, start, end};
     }
     return count;

@@ -34,7 +34,7 @@ enum { NARC_CACHE_LINE = 64, NARC_RECORD_ANGLES = 16 };
 typedef struct narc_shape_header {
     uint32_t first_record; /* index into narc_shapes.records */
     /* Four bytes that the kernels read as one number, `count` its lowest byte:
-     *   count          arcs as stored, 2 .. NARC_MAX_ARCS
+     *   count          arcs as stored, 2 .. NARC_MAX_ARCS; 1 of a concave arc
      *   first_arc      the caller's arc that is stored first, and NARC_PIECE_... for pieces of chains
      *   flags          NARC_SHAPE_..., and in the upper half the size class
      *   extent_ratio   The extent (the largest |centre| + radius) is at most this many bounding radii. 255: it is more,
@@ -67,6 +67,10 @@ typedef struct narc_shape_header {
 #define NARC_PIECE_RUN     0x40u
 #define NARC_PIECE_CONCAVE 0x80u
 #define NARC_FIRST_ARC     0x3fu
+
+static inline bool narc_is_piece(const narc_shape_header *header) {
+    return (header->first_arc & (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)) != 0;
+}
 
 /* The upper half of a shape's flags is the class of its extent, from 2^(5 class - 32) up to 32 times that, the last one
  * open: up to 2^48 all that NARC_MAX_BOUND_RADIUS lets through. A straight part shorter than 2^(5 class - 47), between
@@ -152,6 +156,7 @@ struct narc_shapes {
     size_t count, capacity;               /* headers, those of removed shapes among them */
     size_t removed_count;                 /* removed shapes */
     size_t box_count;                     /* shapes with a form of a box or a capsule */
+    size_t piece_count;                   /* shapes that are pieces of chains */
     uint32_t last_removed;                /* the last of them, or NARC_NO_SHAPE */
     uint64_t change_count;                /* how often shapes came, changed or went */
     uint64_t history;                     /* a hash of which shapes did so, one after the other */
@@ -172,6 +177,10 @@ static inline bool narc_has_shape(const narc_shapes *shapes, uint32_t shape) {
 struct narc_encoded_shape;
 narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, struct narc_encoded_shape *encoded,
                                    narc_error *error);
+
+/* narc_add_shape() for a shape that is encoded. */
+narc_status narc_share_encoded_shape(narc_shapes *shapes, struct narc_encoded_shape *encoded, uint32_t *out_shape,
+                                     narc_error *error);
 
 /* Room for so many shapes in all, with so many more records. */
 narc_status narc_make_room(narc_shapes *shapes, size_t count, size_t records);

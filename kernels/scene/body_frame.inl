@@ -96,7 +96,7 @@ INLINE struct own_arcs load_own_arcs(const struct body_frame *frame, int first) 
 
 /* The number of a stored arc, or of the edge before it, as a row has it (narc_contact.feature). */
 INLINE unsigned find_feature_number(const narc_shape_header *header, int arc, bool is_edge) {
-    const unsigned number = (unsigned)arc + header->first_arc;
+    const unsigned number = (unsigned)arc + (header->first_arc & NARC_FIRST_ARC);
     if (header->flags & NARC_SHAPE_CIRCLE)
         return 0;
     return (number < header->count ? number : number - header->count) + (is_edge ? NARC_FEATURE_EDGE : 0);

@@ -1,0 +1,321 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * chain_pieces.c - divides a chain into pieces that the store keeps: concave arcs, and convex runs, which are closed far
+ * behind so that they are shapes as others are (store.h, NARC_PIECE_...).
+ *
+ * The closure of a run whose normals turn from mid - h to mid + h: at both ends a corner that turns by END_TURN, then the
+ * tangent for the length L to a far corner; from there the outline turns half of the way to -mid, goes down to a depth L
+ * below both far corners, and is closed by an edge with the normal -mid. What the far edges add to the support function
+ * makes gaps there deeply negative, so that the greatest gap of the closed shape is the greatest one over the run's own
+ * normals. The bottom is as wide as the front, and on both sides L (cos h - tan(h / 2)) wider, less what a front that
+ * ends lower on one side takes away: above 0 for h up to MAX_TURN / 2 and a little more.
+ */
+#include <math.h>
+
+#include "chain.h"
+#include "elementary.h"
+#include "encode.h"
+#include "error.h"
+#include "outline.h"
+
+/* How far, in radians, parts of a cut arc reach beyond the cut, and concave arcs beyond their ends. */
+#define SEAM 1e-4
+
+/* How far parts of a cut straight line reach beyond the cut, relative to the longest straight part; and edges beyond the
+ * bottom of a valley, relative to their length. */
+#define LINE_SEAM   0x1p-14
+#define VALLEY_SEAM 0x1p-16
+
+/* What the corners at the ends of a run turn by. */
+#define END_TURN 0x1p-10
+
+/* Most that the front of a piece turns by, but for seams. */
+#define MAX_TURN 1.9
+
+/* The far corners lie this many times the front's size away. */
+#define FAR 4.0
+
+/* The front of a run is a point if it is smaller than this many times its neighbours; then their size serves. */
+#define POINT 0x1p-20
+
+enum { CLOSURE_ARCS = 6, MAX_FRONT = NARC_MAX_ARCS - CLOSURE_ARCS - 1 };
+
+/* The piece of a run that is being made: its front are arcs 1 .. count. */
+typedef struct piece {
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    narc_point begin;
+    double begin_angle, end_angle; /* of normals */
+    uint32_t first_arc;
+} piece;
+
+typedef struct divider {
+    const narc_chain *chain;
+    narc_chain_division *out;
+    narc_error *error;
+    narc_status status; /* of the first error */
+    double reach;       /* the size of what is around */
+    double turn;        /* most that pieces of this run turn by */
+    bool is_used;       /* this run has pieces */
+    piece piece;
+} divider;
+
+static narc_point move(narc_point from, double angle, double length) {
+    double x, y;
+    narc_find_cosine(angle, &x, &y);
+    return (narc_point){from.x + length * x, from.y + length * y};
+}
+
+static double find_distance(narc_point a, narc_point b) { return narc_hypot(a.x - b.x, a.y - b.y); }
+
+static double find_length(const narc_chain_arc *arc) { return fabs(arc->radius * arc->turn); }
+
+/* Puts a piece into the store. */
+static void put_entry(divider *d, narc_encoded_shape *encoded, narc_chain_entry entry) {
+    narc_chain_division *out = d->out;
+    if (out->shapes) {
+        d->status = narc_share_encoded_shape(out->shapes, encoded, &entry.shape, d->error);
+        if (d->status != NARC_OK)
+            return;
+        out->entries[out->count] = entry;
+    }
+    out->count++;
+    out->records += narc_count_records(encoded->header.count);
+}
+
+static void fail_piece(divider *d, narc_status status, uint32_t number, const narc_error *reason) {
+    d->status = narc_fail(d->error, status, number, reason->value, "the piece of the chain that begins at arc %lu: %s",
+                          (unsigned long)number, reason->message);
+}
+
+/* ------------------------------------------------------------------------------------------------ runs */
+
+static narc_arc make_corner(narc_point p, double start, double end) { return (narc_arc){p.x, p.y, 0, start, end}; }
+
+/* How far the front reaches from its middle, the origin. */
+static double measure_front(const piece *p, narc_point begin) {
+    double size = narc_hypot(begin.x, begin.y); /* and so does its end */
+    for (size_t i = 1; i <= p->count; i++) {
+        const narc_arc *arc = &p->arcs[i];
+        const narc_point center = {arc->center_x, arc->center_y};
+        size = fmax(size, narc_hypot(center.x, center.y));
+        if (arc->radius == 0)
+            continue;
+        const narc_point start = move(center, arc->start, arc->radius), end = move(center, arc->end, arc->radius);
+        const double turned = narc_wrap_angle(narc_atan2(center.y, center.x) - (arc->start + arc->end) / 2);
+        const double ends = fmax(narc_hypot(start.x, start.y), narc_hypot(end.x, end.y));
+        size = fmax(size,
+                    fabs(turned) <= (arc->end - arc->start) / 2 ? narc_hypot(center.x, center.y) + arc->radius : ends);
+    }
+    return size;
+}
+
+/* Adds the corners at both ends and behind. */
+static size_t close_run(piece *p, narc_point begin, narc_point end, double length) {
+    const double mid = (p->begin_angle + p->end_angle) / 2, h = (p->end_angle - p->begin_angle) / 2 + END_TURN;
+    const double slant = (NARC_PI - h) / 2;
+    narc_point m;
+    narc_find_cosine(mid, &m.x, &m.y);
+    const narc_point after = move(end, mid + h + NARC_PI / 2, length);
+    const narc_point before = move(begin, mid - h - NARC_PI / 2, length);
+    const double height_after = after.x * m.x + after.y * m.y, height_before = before.x * m.x + before.y * m.y;
+    const double bottom = fmin(height_after, height_before) - length, fall = narc_cos(h / 2);
+    const double next = mid + h + slant, last = mid - h - slant;
+    const narc_point low_after = move(after, next + NARC_PI / 2, (height_after - bottom) / fall);
+    const narc_point low_before = move(before, last - NARC_PI / 2, (height_before - bottom) / fall);
+    const size_t n = p->count;
+    p->arcs[0] = make_corner(begin, p->begin_angle - END_TURN, p->begin_angle);
+    p->arcs[n + 1] = make_corner(end, p->end_angle, p->end_angle + END_TURN);
+    p->arcs[n + 2] = make_corner(after, mid + h, next);
+    p->arcs[n + 3] = make_corner(low_after, next, mid + NARC_PI);
+    p->arcs[n + 4] = make_corner(low_before, mid + NARC_PI, last + 2 * NARC_PI);
+    p->arcs[n + 5] = make_corner(before, last + 2 * NARC_PI, mid - h + 2 * NARC_PI);
+    return n + CLOSURE_ARCS;
+}
+
+static void open_piece(divider *d, narc_point begin, double angle, uint32_t first_arc) {
+    d->piece.count = 0;
+    d->piece.begin = begin;
+    d->piece.begin_angle = d->piece.end_angle = angle;
+    d->piece.first_arc = first_arc;
+}
+
+static void end_piece(divider *d, narc_point end) {
+    piece *p = &d->piece;
+    narc_encoded_shape encoded;
+    narc_error reason = {.status = NARC_OK};
+    const narc_point middle = {(p->begin.x + end.x) / 2, (p->begin.y + end.y) / 2};
+    const narc_point begin = {p->begin.x - middle.x, p->begin.y - middle.y};
+    if (d->status != NARC_OK)
+        return;
+    for (size_t i = 1; i <= p->count; i++) {
+        p->arcs[i].center_x -= middle.x;
+        p->arcs[i].center_y -= middle.y;
+    }
+    double size = measure_front(p, begin);
+    if (size <= POINT * d->reach)
+        size = d->reach / 8;
+    const size_t count = close_run(p, begin, (narc_point){-begin.x, -begin.y}, FAR * size);
+    const narc_status status = narc_encode_run(p->arcs, count, &encoded, &reason);
+    d->is_used = true;
+    if (status != NARC_OK)
+        fail_piece(d, status, p->first_arc, &reason);
+    else
+        put_entry(d, &encoded,
+                  (narc_chain_entry){.run = d->out->run,
+                                     .x = middle.x,
+                                     .y = middle.y,
+                                     .first_arc = p->first_arc,
+                                     .arc_count = (uint32_t)p->count});
+}
+
+/* A straight line to `to`, cut if it is too long. */
+static void add_line(divider *d, narc_point from, narc_point to, uint32_t next) {
+    const double length = find_distance(from, to), weld = d->chain->weld;
+    const double parts = ceil(length / weld * (1 - 4 * LINE_SEAM));
+    if (!((double)d->out->count + parts <= NARC_MAX_SHAPES))
+        d->status = narc_fail(d->error, NARC_ERROR_COUNT, next, parts, "arc %lu: the edge before it has %g parts",
+                              (unsigned long)next, parts);
+    const double step_x = (to.x - from.x) / length, step_y = (to.y - from.y) / length, over = LINE_SEAM * weld;
+    for (double k = 1; k < parts && d->status == NARC_OK; k++) {
+        const double at = length * (k / parts);
+        end_piece(d, (narc_point){from.x + step_x * (at + over), from.y + step_y * (at + over)});
+        open_piece(d, (narc_point){from.x + step_x * (at - over), from.y + step_y * (at - over)}, d->piece.end_angle,
+                   next);
+    }
+}
+
+static void put_arc(divider *d, const narc_chain_arc *arc, double from, double to) {
+    piece *p = &d->piece;
+    const double start = p->end_angle + narc_wrap_angle(arc->start + from - p->end_angle);
+    if (p->count == 0)
+        p->first_arc = arc->number;
+    p->arcs[++p->count] = (narc_arc){arc->x, arc->y, arc->radius, start, start + (to - from)};
+    p->end_angle = start + (to - from);
+}
+
+/* A convex arc, cut where the piece turns enough or has no room for another arc. */
+static void add_arc(divider *d, const narc_chain_arc *arc, double from, double to, bool is_last) {
+    double at = from;
+    while (d->status == NARC_OK) {
+        const double rest = to - at, room = d->turn - (d->piece.end_angle - d->piece.begin_angle);
+        if (rest <= room && (d->piece.count < MAX_FRONT || is_last))
+            break;
+        const double cut = at + fmin(fmax(0, room), rest / (rest <= room ? 2 : 1));
+        const double end = fmin(cut + SEAM, to), begin = fmax(cut - SEAM, from);
+        put_arc(d, arc, at, end);
+        end_piece(d, narc_find_chain_point(arc, end));
+        open_piece(d, narc_find_chain_point(arc, begin), arc->start + begin, arc->number);
+        at = begin;
+    }
+    put_arc(d, arc, at, to);
+}
+
+/* Where a run ends that meets the concave arc `concave` at `end`, if a line leads there from `from`: beyond the bottom of
+ * a valley. */
+static narc_point extend_line(const narc_chain_arc *concave, narc_point from, narc_point end, double weld) {
+    const double length = find_distance(from, end), over = VALLEY_SEAM * fmin(length, weld) / length;
+    if (concave->radius != 0)
+        return end;
+    return (narc_point){end.x + over * (end.x - from.x), end.y + over * (end.y - from.y)};
+}
+
+static double find_reach(const narc_chain *chain, size_t first, size_t last) {
+    double reach = 0;
+    for (size_t k = first; k <= last; k++) {
+        reach = fmax(reach, find_length(&chain->arcs[k]));
+        if (k > first)
+            reach = fmax(reach, fmin(chain->weld, find_distance(narc_find_chain_end(&chain->arcs[k - 1]),
+                                                                narc_find_chain_start(&chain->arcs[k]))));
+    }
+    return reach;
+}
+
+/* A run of the arcs first .. end - 1, and the edges at both ends. */
+static void divide_run(divider *d, size_t first, size_t end) {
+    const narc_chain *chain = d->chain;
+    const narc_chain_arc *arcs = chain->arcs, *before = first > 0 ? &arcs[first - 1] : NULL;
+    const narc_chain_arc *after = end < chain->count ? &arcs[end] : NULL;
+    if (first == end && !(before && after))
+        return;
+    const narc_chain_arc *begins = first < end ? &arcs[first] : after, *ends = first < end ? &arcs[end - 1] : before;
+    narc_point from = narc_find_chain_start(begins), to = narc_find_chain_end(ends);
+    const narc_point start = from, stop = to;
+    bool has_line = false, has_end_line = false;
+    double sum = 0;
+    if (before) {
+        from = narc_find_chain_end(before);
+        has_line = find_distance(from, start) > narc_find_chain_room(before, begins);
+        from = has_line ? extend_line(before, start, from, chain->weld) : start;
+    }
+    if (after) {
+        to = narc_find_chain_start(after);
+        has_end_line = find_distance(stop, to) > narc_find_chain_room(ends, after);
+        to = has_end_line ? extend_line(after, stop, to, chain->weld) : stop;
+    }
+    if (first == end && !has_line)
+        return;
+    for (size_t k = first; k < end; k++)
+        sum += arcs[k].turn;
+    d->turn = sum / fmax(1, ceil(sum / MAX_TURN)) + 3 * SEAM;
+    d->reach = find_reach(chain, before ? first - 1 : first, after ? end : end - 1);
+    d->is_used = false;
+    open_piece(d, from, begins->start, begins->number);
+    narc_point at = from;
+    for (size_t k = first; k < end && d->status == NARC_OK; k++) {
+        const narc_chain_arc *arc = &arcs[k];
+        const bool is_valley_before = k == first && before && !has_line && before->radius == 0;
+        const bool is_valley_after = k + 1 == end && after && !has_end_line && after->radius == 0;
+        if (k > first ? find_distance(at, narc_find_chain_start(arc)) > narc_find_chain_room(arc - 1, arc) : has_line)
+            add_line(d, at, narc_find_chain_start(arc), arc->number);
+        if (arc->turn > 0)
+            add_arc(d, arc, is_valley_before ? -SEAM : 0, arc->turn + (is_valley_after ? SEAM : 0), k + 1 == end);
+        at = narc_find_chain_end(arc);
+    }
+    if (has_end_line)
+        add_line(d, at, to, after->number);
+    end_piece(d, to);
+    d->out->run += d->is_used;
+}
+
+/* ------------------------------------------------------------------------------------------------ concave arcs */
+
+static void divide_concave(divider *d, size_t k) {
+    const narc_chain *chain = d->chain;
+    const narc_chain_arc *arc = &chain->arcs[k];
+    const bool has_before = k > 0 || chain->closed, has_after = k + 1 < chain->count;
+    const double parts = ceil(-arc->turn / 2);
+    const double near = find_reach(chain, k > 0 ? k - 1 : 0, has_after ? k + 1 : k);
+    for (double part = 0; part < parts && d->status == NARC_OK; part++) {
+        const double high = arc->turn * (part / parts) + (part > 0 || has_before ? SEAM : 0);
+        const double low = arc->turn * ((part + 1) / parts) - (part + 1 < parts || has_after ? SEAM : 0);
+        const narc_point start = narc_find_chain_point(arc, low), end = narc_find_chain_point(arc, high);
+        const narc_point middle = {(start.x + end.x) / 2, (start.y + end.y) / 2};
+        const narc_arc own = {arc->x - middle.x, arc->y - middle.y, arc->radius, arc->start + low, arc->start + high};
+        narc_encoded_shape encoded;
+        narc_error reason = {.status = NARC_OK};
+        const narc_status status = narc_encode_concave(&own, VALLEY_SEAM * near, &encoded, &reason);
+        if (status != NARC_OK)
+            fail_piece(d, status, arc->number, &reason);
+        else
+            put_entry(d, &encoded,
+                      (narc_chain_entry){
+                          .run = NARC_NO_RUN, .x = middle.x, .y = middle.y, .first_arc = arc->number, .arc_count = 1});
+    }
+}
+
+narc_status narc_divide_chain(const narc_chain *chain, narc_chain_division *division, narc_error *error) {
+    divider d = {.chain = chain, .out = division, .error = error};
+    size_t first = 0;
+    while (d.status == NARC_OK) {
+        size_t end = first;
+        while (end < chain->count && !(chain->arcs[end].turn < 0))
+            end++;
+        divide_run(&d, first, end);
+        if (end == chain->count || (chain->closed && end > 0 && end + 1 == chain->count) || d.status != NARC_OK)
+            break;
+        divide_concave(&d, end);
+        first = end + 1;
+    }
+    return d.status;
+}
