@@ -262,7 +262,7 @@ TEST(test_ground_of_shapes) {
 TEST(test_ground_under_discs) {
     struct test_random random = test_random_named("ground under discs");
     static narc_arc arcs[CHAIN_ARCS];
-    for (size_t trial = 0; trial < test_trials(2000); trial++) {
+    for (size_t trial = 0; trial < test_trials(300); trial++) {
         const struct chain chain = make_chain(&random, (enum chain_family)(trial % CHAIN_FAMILIES), arcs);
         const struct shape disc = circle_of(random_log_between(&random, 0.1, 1));
         const struct body body = ride_chain(&random, &chain, &disc, 0.1);

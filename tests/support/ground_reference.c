@@ -11,7 +11,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Rounding at the ends of pieces, relative to their size: a foot belongs to both pieces there. */
+/* Rounding at the ends of pieces, relative to their coordinates: a foot belongs to both pieces there. */
 static const double end_tolerance = 1e-12;
 
 /* Feet that are as near, relative to the body, and as far apart, are two. */
@@ -23,7 +23,7 @@ struct piece {
     bool is_edge, is_concave;
     narc_point from, to;
     narc_point center, low, high;
-    double radius;
+    double radius, room; /* what rounding leaves between pieces */
 };
 
 static const double widest = 2;
@@ -55,6 +55,7 @@ static void add_arc(struct ground *ground, const narc_arc *arc) {
         piece.from = on_arc(arc, low);
         piece.to = on_arc(arc, high);
         piece.radius = fabs(arc->radius);
+        piece.room = end_tolerance * (1 + fabs(piece.from.x) + fabs(piece.from.y) + piece.radius);
         piece.low = concave ? (narc_point){cos(high), sin(high)} : (narc_point){cos(low), sin(low)};
         piece.high = concave ? (narc_point){cos(low), sin(low)} : (narc_point){cos(high), sin(high)};
         ground->pieces[ground->count++] = piece;
@@ -71,9 +72,10 @@ struct ground *make_ground(const struct chain *chain) {
         const narc_arc *arc = &chain->arcs[k], *before = k ? arc - 1 : &chain->arcs[chain->count - 1];
         struct piece edge = {.is_edge = true, .from = on_arc(before, before->end), .to = on_arc(arc, arc->start)};
         const narc_point along = minus(edge.to, edge.from);
-        const double length = length_of(along), size = fabs(arc->center_x) + fabs(arc->center_y) + fabs(arc->radius);
+        const double length = length_of(along);
+        edge.room = end_tolerance * (1 + fabs(edge.from.x) + fabs(edge.from.y) + fabs(arc->radius));
         edge.low = (narc_point){along.y / length, -along.x / length};
-        if ((k || chain->closed) && length > end_tolerance * size)
+        if ((k || chain->closed) && length > edge.room)
             ground->pieces[ground->count++] = edge;
         add_arc(ground, arc);
     }
@@ -88,8 +90,8 @@ void destroy_ground(struct ground *ground) {
 static bool find_foot(const struct piece *piece, narc_point point, struct ground_foot *out) {
     if (piece->is_edge) {
         const narc_point along = minus(piece->to, piece->from), from = minus(point, piece->from);
-        const double length = dot(along, along), t = dot(along, from) / length;
-        if (t < -end_tolerance || t > 1 + end_tolerance)
+        const double length = length_of(along), t = dot(along, from) / (length * length);
+        if (t * length < -piece->room || (t - 1) * length > piece->room)
             return false;
         *out = (struct ground_foot){dot(piece->low, from),
                                     {piece->from.x + t * along.x, piece->from.y + t * along.y},
@@ -101,7 +103,7 @@ static bool find_foot(const struct piece *piece, narc_point point, struct ground
     const narc_point away = {sign * (point.x - piece->center.x), sign * (point.y - piece->center.y)};
     const double distance = length_of(away);
     const narc_point normal = distance > 0 ? (narc_point){away.x / distance, away.y / distance} : piece->low;
-    if (cross(piece->low, normal) < -end_tolerance || cross(normal, piece->high) < -end_tolerance)
+    if (cross(piece->low, away) < -piece->room || cross(away, piece->high) < -piece->room)
         return false;
     *out = (struct ground_foot){
         sign * (distance - piece->radius),
