@@ -20,6 +20,11 @@
 #define NARC_SHORTCUTS 1
 #endif
 
+/* Are there pieces of chains? A build without has no chains, and no shapes that are pieces. */
+#ifndef NARC_PIECES
+#define NARC_PIECES 1
+#endif
+
 /* What a batch call works on: pairs of a body of `a` and one of `b`, by their indices or, without, by the pair's own.
  * Asked of are pairs first .. first + count - 1 of the query's selection, or of all. */
 typedef struct narc_batch {
@@ -34,11 +39,18 @@ typedef struct narc_batch {
     narc_bodies filled[2];
 } narc_batch;
 
-/* Where a call's rows go: `base` is the place of its first one; of dense rows, of that of the batch's first pair. */
+/* Where a call's rows go: `base` is the place of its first one; of dense rows, of that of the batch's first pair.
+ *   further     Pairs with a concave arc can have several rows. The kernel writes the deepest one, adds how many there are
+ *               besides to `further`, and if rows are not dense NARC_FURTHER_ROW times that to the row's count.
+ *   lists_one   It is asked of one pair, and lists all of its rows, at most NARC_MAX_ARCS. */
 typedef struct narc_rows {
     char *base;
     ptrdiff_t stride;
+    size_t *further;
+    bool lists_one;
 } narc_rows;
+
+enum { NARC_FURTHER_ROW = 256 };
 
 /* The batch's number of the pair that is asked of at `place`. */
 static inline size_t narc_pair_at(const narc_batch *batch, size_t place) {

@@ -204,8 +204,9 @@ static size_t begin_pairs(const narc_cast_job *job, struct slots *slots, size_t 
 /* Takes all pairs under way a step further. Those that are done make room. */
 static void advance_pairs(const narc_cast_job *job, struct slots *slots, size_t *skipped) {
     const narc_kernel_table *const kernels = choose_kernels(job, slots->count);
-    const narc_rows rows = {(char *)slots->casts.contact, sizeof slots->casts.contact[0]};
     size_t unused = 0;
+    const narc_rows rows = {
+        .base = (char *)slots->casts.contact, .stride = sizeof slots->casts.contact[0], .further = &unused};
     kernels->place(&slots->casts, slots->count);
     kernels->contact(&slots->batch, 0, slots->count, &unused, &rows);
     kernels->advance(job->batch->shapes, &slots->casts, slots->count);

@@ -67,8 +67,11 @@ INLINE void store_polygon_rows(const struct call *call, const struct queue *queu
     const vi pairs = get_bits(queue, PAIR, k), numbers = find_numbers(call, pairs);
     const vi number_a = find_number_of(queue, k, on_a.record, false),
              number_b = find_number_of(queue, k, on_b.record, true);
+    const vi of_edge = vi_set(NARC_FEATURE_EDGE), zero = vi_set(0);
+    const vi feature_a = vi_add(number_a, vi_select(edge_a, of_edge, zero));
+    const vi feature_b = vi_add(number_b, vi_select(edge_b, of_edge, zero));
     char *to[V_WIDTH];
-    find_places(call, pairs, keep, to);
+    find_places(call, pairs, keep_fronts(call, queue, k, keep, feature_a, feature_b), to);
     if (call->edges) {
         const struct edge a = find_touching_edge(call, queue, k, &c->a, n, false);
         const struct edge b = find_touching_edge(call, queue, k, &c->b, n, true);
@@ -79,9 +82,6 @@ INLINE void store_polygon_rows(const struct call *call, const struct queue *queu
         return;
     }
     const vf flat = v_set(INFINITY);
-    const vi of_edge = vi_set(NARC_FEATURE_EDGE), zero = vi_set(0);
-    const vi feature_a = vi_add(number_a, vi_select(edge_a, of_edge, zero));
-    const vi feature_b = vi_add(number_b, vi_select(edge_b, of_edge, zero));
     const struct answer answer = {.separation = c->separation,
                                   .normal = normal,
                                   .point = v2_rotate(to_world, v2_rotate(n, place)),

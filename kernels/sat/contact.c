@@ -24,6 +24,7 @@
 #include "box/box_pairs.inl"
 #include "box/box_rows.inl"
 #include "kernels.h"
+#include "piece/concave.inl"
 #include "polygon/polygon_contact.inl"
 #include "polygon/polygon_edges.inl"
 #include "polygon/polygon_rows.inl"
@@ -66,14 +67,23 @@ INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf ite
 
 INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
     struct rows *rows = call->rows;
-    const vm open = vm_and_not(take_valid(call, pair, circles, item), circles->apart);
-    const bool due = !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid);
+    const vm near = vm_and_not(take_valid(call, pair, circles, item), circles->apart);
+    const vm open = NARC_PIECES && call->concave ? take_concave(call, near, item) : near;
+    const bool waits = vm_any(vm_and_not(near, open)); /* does one wait with the concave arcs? */
+    const bool due = !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid) && !waits;
     const bool room = (size_t)rows->listed + V_WIDTH <= call->count && !boxes_wait(call);
     const bool in_order = due && room;
     const vm left = are_discs(open, item) ? answer_discs(call, open, circles->margin, item, in_order) : open;
     if (due && !vm_any(left) && (in_order || !vm_any(open)))
         rows->done += V_WIDTH;
     return left;
+}
+
+/* That of stores with pieces where all else goes to the formula. */
+INLINE vm triage_pieces(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
+    const vm open = take_valid(call, pair, circles, item);
+    const vm left = take_concave(call, vm_and_not(open, circles->apart), item);
+    return vm_or(left, vm_and_not(vm_and(open, circles->apart), has_concave(item)));
 }
 
 /* Passes on the pairs k ... of a queue in the lanes `left`. */
@@ -103,8 +113,8 @@ INLINE vm probe(const struct call *call, const struct queue *queue, int k, vm li
         const vec2 n = v2_divide(p.u, p.length);
         const struct feature on_a = find_feature(&p.arcs.a, &p.arcs.a, n, record_a, false);
         const struct feature on_b = find_feature(&p.arcs.b, &p.arcs.b, n, record_b, true);
-        store_rows(call, queue, k, keep, p.separation, n, &on_a, &on_b);
-        collect_edges(call, queue, k, keep, p.separation, n, &on_a, &on_b);
+        const vm kept = store_rows(call, queue, k, keep, p.separation, n, &on_a, &on_b);
+        collect_edges(call, queue, k, kept, p.separation, n, &on_a, &on_b);
     }
     *out_u = p.u;
     return vm_and_not(live, vm_or(apart, certain));
@@ -121,8 +131,8 @@ INLINE vm climb_to(const struct call *call, struct queue *queue, int k, vm live,
     if (vm_any(keep)) {
         const struct feature on_a = find_feature(&m->after.a, &m->before.a, top.normal, m->record_a, false);
         const struct feature on_b = find_feature(&m->after.b, &m->before.b, top.normal, m->record_b, true);
-        store_rows(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b);
-        collect_edges(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b);
+        const vm kept = store_rows(call, queue, k, keep, top.separation, top.normal, &on_a, &on_b);
+        collect_edges(call, queue, k, kept, top.separation, top.normal, &on_a, &on_b);
     }
     const vm near = vm_or(m->found, m->turned);
     *out_lost = vm_and_not(live, near);
@@ -263,8 +273,8 @@ static void decide(const struct call *call, struct queue *queue, int begin, stru
         if (vm_any(keep)) {
             struct feature on_a, on_b;
             const vec2 n = find_gap_features(call, queue, k, &gap, &on_a, &on_b);
-            store_rows(call, queue, k, keep, gap.separation, n, &on_a, &on_b);
-            collect_edges(call, queue, k, keep, gap.separation, n, &on_a, &on_b);
+            const vm kept = store_rows(call, queue, k, keep, gap.separation, n, &on_a, &on_b);
+            collect_edges(call, queue, k, kept, gap.separation, n, &on_a, &on_b);
         }
     }
 }
@@ -287,18 +297,19 @@ size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, 
     struct box_queue boxes[BOX_QUEUES];
     struct rows rows;
     struct call call = begin_rows(batch, first, count, skipped, out, &rows);
+    struct queue concave;
+    start_concave(&call, &concave);
+    call.edges = !manifolds ? NULL : NARC_SHORTCUTS ? &queues[STAGES - 1] : &queues[1];
     if (!NARC_SHORTCUTS) {
-        call.edges = manifolds ? &queues[1] : NULL;
-        run_pairs(&call, NULL, take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
-        return end_rows(&call);
-    }
-    call.edges = manifolds ? &queues[STAGES - 1] : NULL;
-    if (batch->shapes->box_count > 0) {
+        run_pairs(&call, NULL, NARC_PIECES && call.concave ? triage_pieces : take_valid, FIELDS, formula,
+                  manifolds ? 2 : 1, 0, queues);
+    } else if (batch->shapes->box_count > 0) {
         start_boxes(&call, boxes);
         run_pairs(&call, detour_rows, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
         end_boxes(&call, manifolds ? manifold_detours : contact_detours);
     } else {
         run_pairs(&call, NULL, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
     }
+    end_concave(&call);
     return end_rows(&call);
 }

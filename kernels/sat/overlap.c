@@ -21,6 +21,7 @@
 #include "box/box_walk.inl"
 #include "box/capsules.inl"
 #include "kernels.h"
+#include "piece/overlaps.inl"
 #include "polygon/polygon_edges.inl"
 #include "sat/arc_lookup.inl"
 #include "sat/certificates.inl"
@@ -29,8 +30,10 @@
 #include "simd/simd.h"
 
 INLINE vm triage_overlaps(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
-    const vm open = vm_and_not(circles->valid, vm_or(circles->apart, circles->deep));
-    vm hits = vm_and(circles->valid, circles->deep), left = open;
+    const vm near = vm_and_not(circles->valid, circles->apart);
+    const vm mine = NARC_PIECES && call->pieces ? take_pieces(call, near, item) : near;
+    const vm open = vm_and_not(mine, circles->deep);
+    vm hits = vm_and(mine, circles->deep), left = open;
     if (are_discs(open, item)) {
         const struct probe p = probe_discs(call->batch->shapes->records, item, open, v_set(0));
         hits = vm_or(hits, vm_and(p.only, v_lt(p.separation, v_set(0))));
@@ -38,6 +41,13 @@ INLINE vm triage_overlaps(const struct call *call, size_t pair, const struct fil
     }
     call->bits[pair / 64] |= (uint64_t)vm_bits(hits) << pair % 64;
     return left;
+}
+
+/* That of stores with pieces where all else goes to the formula. */
+INLINE vm triage_piece_overlaps(const struct call *call, size_t pair, const struct filter *circles,
+                                const vf item[FIELDS]) {
+    (void)pair;
+    return take_pieces(call, circles->valid, item);
 }
 
 /* The centres and radii of the arcs that were looked up: u, and the sum of the radii. */
@@ -188,17 +198,19 @@ void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, si
     static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_from_overlaps,
                                     compare_polygon_overlaps, decide_overlaps};
     struct queue queues[STAGES];
-    if (!NARC_SHORTCUTS) {
-        run_overlap_method(decide_overlaps, batch, first, count, skipped, out_bits);
-        return;
-    }
     struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
-    if (batch->shapes->box_count == 0) {
-        run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, CLIMB, queues);
-        return;
-    }
+    struct piece_pairs pieces;
     struct box_queue boxes[BOX_QUEUES];
-    start_boxes(&call, boxes);
-    run_pairs(&call, detour_overlaps, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, CLIMB, queues);
-    end_boxes(&call, overlap_detours);
+    start_pieces(&call, &pieces);
+    if (!NARC_SHORTCUTS) {
+        run_pairs(&call, NULL, NARC_PIECES && call.pieces ? triage_piece_overlaps : take_valid, OVERLAP_FIELDS,
+                  &stages[DECIDE], 1, 0, queues);
+    } else if (batch->shapes->box_count == 0) {
+        run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, CLIMB, queues);
+    } else {
+        start_boxes(&call, boxes);
+        run_pairs(&call, detour_overlaps, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, CLIMB, queues);
+        end_boxes(&call, overlap_detours);
+    }
+    end_pieces(&call);
 }

@@ -62,6 +62,11 @@ INLINE bool load_body_frame(const narc_shapes *shapes, const narc_bodies *bodies
            size <= (float)NARC_MAX_BOUND_RADIUS; /* all false for NaN */
 }
 
+/* Is the shape a piece of a chain, with one of these marks (store.h)? */
+INLINE bool has_any_mark(const struct body_frame *frame, unsigned marks) {
+    return NARC_PIECES && (frame->header->first_arc & marks) != 0;
+}
+
 /* A direction of the world in the shape's axes, and back. */
 INLINE place turn_to_shape(const struct body_frame *frame, place a) {
     return (place){find_dot(frame->rotation, a), find_cross(frame->rotation, a)};

@@ -12,6 +12,7 @@
 #include "elementary.h"
 #include "kernels.h"
 #include "narc_scene.h"
+#include "piece/pieces.inl"
 #include "scene/cast_lanes.inl"
 #include "scene/cast_lines.inl"
 #include "scene/cast_turns.inl"
@@ -28,6 +29,7 @@
 struct outline {
     float bound_x[V_WIDTH], bound_y[V_WIDTH], bound[V_WIDTH], inner_x[V_WIDTH], inner_y[V_WIDTH], inner[V_WIDTH];
     float round[V_WIDTH];
+    vm piece; /* of a chain */
 };
 
 INLINE void load_outline(const narc_shapes *shapes, const struct narc_cast_side *side, const int32_t *slot,
@@ -41,18 +43,19 @@ INLINE void load_outline(const narc_shapes *shapes, const struct narc_cast_side 
     v_store(out->inner_x, h.inner_center.x);
     v_store(out->inner_y, h.inner_center.y);
     v_store(out->inner, h.inner_radius);
+    out->piece = has_mark(h.info, NARC_PIECES ? NARC_PIECE_RUN | NARC_PIECE_CONCAVE : 0);
     v_store(out->round, v_select(has_flag(h.info, NARC_SHAPE_CIRCLE), v_set(1), v_set(0)));
 }
 
-/* Which bodies have no broken numbers, by the kernels' rules (base/pair_setup.inl)? */
+/* Which bodies have no broken numbers, by the kernels' rules (base/pair_setup.inl)? Pieces of chains have no answer. */
 INLINE vm are_fine(const struct narc_cast_side *side, size_t k, const struct outline *outline) {
     const vf c = v_load(side->cosine + k), s = v_load(side->sine + k), one = v_set(1);
     const vf error = v_sub(v_add(v_mul(c, c), v_mul(s, s)), one);
     const vf size = v_mul(v_load(side->scale + k), v_load(outline->bound));
     const vm in_range =
         vm_and(v_le(v_set((float)NARC_MIN_SIZE), size), v_le(size, v_set((float)NARC_MAX_BOUND_RADIUS)));
-    return vm_and(vm_and(in_range, v_le(v_abs(error), v_set((float)NARC_ROTATION_TOLERANCE))),
-                  v_lt(v_abs(v_load(side->angle + k)), v_set(INFINITY)));
+    const vm fine = vm_and(in_range, v_le(v_abs(error), v_set((float)NARC_ROTATION_TOLERANCE)));
+    return vm_and(vm_and_not(fine, outline->piece), v_lt(v_abs(v_load(side->angle + k)), v_set(INFINITY)));
 }
 
 /* The largest |point x normal| of an outline, at most: the rate at which its support function changes when the shape

@@ -198,13 +198,18 @@ static void answer(const narc_shapes *shapes, struct questions *waiting) {
 
 INLINE void put_nothing(narc_distance *row, size_t point) { *row = (narc_distance){.point = (uint32_t)point}; }
 
+/* Pieces of chains have no answer. */
+INLINE bool load_whole_body(const narc_point_batch *batch, size_t body, struct body_frame *out) {
+    return load_body_frame(batch->shapes, batch->bodies, body, out) &&
+           !has_any_mark(out, NARC_PIECE_RUN | NARC_PIECE_CONCAVE);
+}
+
 /* Sees to it that the row of a point and a body is written, now or when others have come. */
 INLINE void ask(const narc_point_batch *batch, size_t point, size_t body, narc_distance *row,
                 struct questions *waiting) {
     struct body_frame frame;
     float x, y;
-    if (!load_body_frame(batch->shapes, batch->bodies, body, &frame) ||
-        !place_point(&frame, load_point(batch->points, point), &x, &y)) {
+    if (!load_whole_body(batch, body, &frame) || !place_point(&frame, load_point(batch->points, point), &x, &y)) {
         put_nothing(row, point);
         return;
     }
@@ -333,7 +338,7 @@ INLINE void look_at_body(struct search *search, uint32_t body) {
     const float shrink = 1 - 0x1p-16f; /* of a square, as in base/pair_setup.inl: the radius has room for separations */
     struct body_frame frame;
     float x, y;
-    if (body == search->ignored || !load_body_frame(search->batch->shapes, search->batch->bodies, body, &frame) ||
+    if (body == search->ignored || !load_whole_body(search->batch, body, &frame) ||
         !place_point(&frame, search->point, &x, &y))
         return;
     const float reach = (float)frame.scale * frame.header->bound_radius + search->limit;

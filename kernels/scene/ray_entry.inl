@@ -115,6 +115,35 @@ INLINE bool find_entry(const struct body_frame *frame, place foot, place directi
     return true;
 }
 
+/* ------------------------------------------------------------------------------------------------ pieces of chains */
+
+/* Where the line leaves the circle of a concave arc, whose normals point to the centre: coming from the air. */
+INLINE bool enter_concave(const struct body_frame *frame, place foot, place v, struct entry *out) {
+    const narc_stored_arc *const arc = &frame->arcs->arc;
+    const place center = {(double)arc->center_x - foot.x, (double)arc->center_y - foot.y};
+    const place start = {(double)arc->start_x, (double)arc->start_y}, end = {(double)arc->end_x, (double)arc->end_y};
+    const double radius = -(double)arc->radius, beside = find_cross(v, center) / radius;
+    if (!(fabs(beside) <= 1)) /* or it is the bottom of a valley, and has no width */
+        return false;
+    const double half = sqrt((1 - beside) * (1 + beside));
+    const place n = {-beside * v.y - half * v.x, beside * v.x - half * v.y};
+    *out = (struct entry){find_dot(v, center) + radius * half, n, 0, false};
+    return find_cross(start, n) >= 0 && find_cross(n, end) >= 0;
+}
+
+/* The same as find_entry() for any shape. Of a run only what lies in front is met (store.h). */
+INLINE bool find_first_entry(const struct body_frame *frame, place foot, place v, struct entry *out) {
+    const narc_shape_header *const header = frame->header;
+    if (has_any_mark(frame, NARC_PIECE_CONCAVE))
+        return enter_concave(frame, foot, v, out);
+    if (!find_entry(frame, foot, v, out))
+        return false;
+    if (!has_any_mark(frame, NARC_PIECE_RUN))
+        return true;
+    const unsigned number = find_feature_number(header, out->arc, false);
+    return number >= 1 && number + 6u - out->on_edge <= header->count;
+}
+
 /* ------------------------------------------------------------------------------------------------ one ray, one body */
 
 /* A ray in the world. */
@@ -155,9 +184,10 @@ INLINE void stop_inside(place way, narc_ray_hit *out) {
 
 /* Fills a row, but for the ray and the body, if the ray meets the body at no more than `limit` of its motion. What a body
  * is made of counts within its box alone: it should not reach beyond, but for rounding, and so boxes that the line
- * misses, or meets later, can never hold an answer. */
+ * misses, or meets later, can never hold an answer. A ray that starts in the ground does not meet it. */
 INLINE bool cast_at_body(const struct body_frame *frame, const struct ray *ray, narc_inside inside, const narc_box *box,
                          float limit, narc_ray_hit *out) {
+    const unsigned marks = NARC_PIECE_RUN | NARC_PIECE_CONCAVE;
     struct entry entry;
     const narc_shape_header *const header = frame->header;
     const place way = {frame->position.x - ray->origin.x, frame->position.y - ray->origin.y};
@@ -169,14 +199,14 @@ INLINE bool cast_at_body(const struct body_frame *frame, const struct ray *ray, 
     if (!(fabs(beside) <= radius) || ahead < -radius)
         return false;
     const place foot = {middle.x + beside * v.y, middle.y - beside * v.x};
-    if (!find_entry(frame, foot, v, &entry))
+    if (!find_first_entry(frame, foot, v, &entry))
         return false;
     const struct stretch in_box = find_box_stretch(ray, box);
     double distance = find_most((ahead + entry.along) * frame->scale, in_box.from);
     if (!(in_box.from <= in_box.to && distance <= in_box.to))
         return false;
     if (distance <= 0) {
-        if (inside == NARC_INSIDE_IGNORES) /* or it is behind */
+        if (inside == NARC_INSIDE_IGNORES || has_any_mark(frame, marks)) /* or it is behind */
             return false;
         struct entry exit;
         const double from = distance;

@@ -19,7 +19,7 @@ static size_t find_rows(const narc_batch *batch, void *rows) {
     size_t found = 0, skipped = 0;
     for (size_t k = 0; k < batch->asked; k += NARC_ROW_GROUP) {
         const size_t left = batch->asked - k;
-        const narc_rows out = {(char *)rows + found * size, (ptrdiff_t)size};
+        const narc_rows out = {.base = (char *)rows + found * size, .stride = (ptrdiff_t)size};
         found += narc_kernels_plain.contact(batch, k, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &skipped, &out);
     }
     return found;

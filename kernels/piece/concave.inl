@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * concave.inl - contacts of a body with a concave arc: a chain's piece with the solid outside its circle (store.h).
+ *
+ * Let the arc have the centre c and the radius R, and an arc of the body b and r. Of this the point farthest from c lies
+ * in the direction of b - c. Where that is within the sector of the body's arc, and its opposite among the normals of the
+ * concave one, both have a common normal there, and the separation is R - |b - c| - r. Each such arc is a contact: a box
+ * in a bowl stands on two corners. A straight edge has none of its own, as its ends are farther from c. With -R for the
+ * radius, which is how the piece is stored, all this is the gap of two arcs (normal_fan.inl) along -u.
+ *
+ * A direction belongs to the arc that it does not lie behind the end of, and which either it does not lie before the
+ * start of or the arc before has turned down: so whatever the rounding, none belongs to neither.
+ */
+#ifndef NARC_PIECE_CONCAVE_INL
+#define NARC_PIECE_CONCAVE_INL
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "base/call.inl"
+#include "base/contact_point.inl"
+#include "base/queue.inl"
+#include "base/rows.inl"
+#include "base/shape.inl"
+#include "base/vec2.inl"
+#include "kernels.h"
+#include "piece/pieces.inl"
+#include "simd/simd.h"
+
+/* Which arcs of the pairs k ... of a queue: of the piece the only one, of the body its arc i. */
+struct concave_pairs {
+    vm piece_is_a;
+    vi info; /* of the body */
+    struct ring ring_a, ring_b;
+    struct pose pose;
+};
+
+INLINE struct arc_pair load_concave_arcs(const narc_record *records, const struct concave_pairs *pairs, vi i,
+                                         struct gap *out) {
+    out->record_a = vi_add(pairs->ring_a.base, vi_select(pairs->piece_is_a, vi_set(0), i));
+    out->record_b = vi_add(pairs->ring_b.base, vi_select(pairs->piece_is_a, i, vi_set(0)));
+    return load_arc_pair(records, out->record_a, out->record_b, &pairs->pose);
+}
+
+/* The gap of arc i of the body. In *out_touch, where it is one that counts; `ended`: where the normal lies behind the
+ * end of the arc before, and then of this one. */
+INLINE struct gap find_concave_gap(const narc_record *records, const struct concave_pairs *pairs, vi i, vm *ended,
+                                   vm *out_touch) {
+    struct gap gap;
+    const struct arc_pair arcs = load_concave_arcs(records, pairs, i, &gap);
+    const struct arcs piece = select_arcs(pairs->piece_is_a, &arcs.a, &arcs.b);
+    const struct arcs body = select_arcs(pairs->piece_is_a, &arcs.b, &arcs.a);
+    const vf zero = v_set(0);
+    const vec2 back = v2_sub(arcs.a.center, arcs.b.center);
+    const vm centred = v_lt(v2_dot(back, back), v_set(LEAST_SQUARE)); /* then all directions are alike */
+    const vec2 n = v2_select(centred, v2_add(piece.start, piece.end), back);
+    gap.normal = n;
+    gap.length = v2_length(n);
+    const vf distance = v_select(centred, zero, gap.length);
+    gap.separation = v_sub(v_sub(v_neg(piece.radius), distance), body.radius);
+    const vm in_piece = vm_and(v_le(zero, v2_cross(piece.start, n)), v_le(zero, v2_cross(n, piece.end)));
+    const vf beyond = v2_cross(body.end, n); /* of half a turn, 0 is its start too */
+    const vm at_start = vm_and(v_le(beyond, zero), v_lt(v2_dot(body.end, n), zero));
+    const vm before_end = vm_or(v_lt(beyond, zero), at_start);
+    const vm behind_start = vm_or(*ended, v_le(zero, v2_cross(body.start, n)));
+    const vm round = has_flag(pairs->info, NARC_SHAPE_CIRCLE); /* its first half stands for both */
+    *out_touch = vm_and(in_piece, vm_or(round, vm_and(behind_start, before_end)));
+    *ended = vm_not(before_end);
+    return gap;
+}
+
+/* The rows of gaps, to these places. */
+INLINE void write_gaps(const struct call *call, const struct queue *queue, int k, const struct gap *gap,
+                       char *const *place) {
+    const struct pose pose = get_pose(queue, k);
+    const struct arc_pair arcs = load_arc_pair(call->batch->shapes->records, gap->record_a, gap->record_b, &pose);
+    const vec2 n = v2_divide(gap->normal, gap->length);
+    const struct feature on_a = find_feature(&arcs.a, &arcs.a, n, gap->record_a, false);
+    const struct feature on_b = find_feature(&arcs.b, &arcs.b, n, gap->record_b, true);
+    const struct answer answer = find_answer(call, queue, k, gap->separation, n, &on_a, &on_b);
+    write_answers(call, place, find_numbers(call, get_bits(queue, PAIR, k)), &answer);
+}
+
+/* Puts the last of a pair's rows among those before it: they are in the order of their normals, counter-clockwise. */
+INLINE void sort_last_row(const narc_rows *out, int last, size_t size, size_t normal_at) {
+    char row[sizeof(narc_manifold)];
+    float normal[2], other[2];
+    int k = last;
+    memcpy(row, out->base + last * out->stride, size);
+    memcpy(normal, row + normal_at, sizeof normal);
+    for (; k > 0; k--) {
+        const char *const before = out->base + (k - 1) * out->stride;
+        memcpy(other, before + normal_at, sizeof other);
+        if (!(other[0] * normal[1] - other[1] * normal[0] < 0))
+            break;
+        memcpy(out->base + k * out->stride, before, size);
+    }
+    memcpy(out->base + k * out->stride, row, size);
+}
+
+/* A call that asks for all rows of one pair: lists another. */
+INLINE void list_gap(const struct call *call, const struct queue *queue, const struct gap *gap) {
+    struct rows *const rows = call->rows;
+    char *place[V_WIDTH];
+    for (int lane = 0; lane < V_WIDTH; lane++)
+        place[lane] = lane > 0 ? rows->spare : rows->out.base + rows->listed * rows->out.stride;
+    write_gaps(call, queue, 0, gap, place);
+    if (call->batch->manifolds)
+        sort_last_row(&rows->out, rows->listed, sizeof(narc_manifold), offsetof(narc_manifold, normal_x));
+    else
+        sort_last_row(&rows->out, rows->listed, sizeof(narc_contact), offsetof(narc_contact, normal_x));
+    rows->listed++;
+}
+
+/* Notes in pairs' rows how many there are besides, of `counts` in all. */
+INLINE void note_further_rows(const struct call *call, vi counts, char *const *place) {
+    int32_t count[V_WIDTH];
+    if (call->rows->dense)
+        return;
+    vi_store(count, counts);
+    for (int lane = 0; lane < V_WIDTH; lane++) {
+        const uint32_t more = count[lane] > 1 ? (uint32_t)count[lane] - 1 : 0, word = 1 + NARC_FURTHER_ROW * more;
+        const uint16_t half = (uint16_t)word;
+        if (more > 0 && call->batch->manifolds)
+            memcpy(place[lane] + offsetof(narc_manifold, count), &word, sizeof word);
+        else if (more > 0)
+            memcpy(place[lane] + offsetof(narc_contact, count), &half, sizeof half);
+        *call->rows->out.further += more;
+    }
+}
+
+/* Answers the pairs k ... of a queue, in the lanes `live`. */
+INLINE void answer_concave(const struct call *call, const struct queue *queue, int k, vm live) {
+    const narc_record *const records = call->batch->shapes->records;
+    const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k), zero = vi_set(0);
+    const vm piece_is_a = has_mark(info_a, NARC_PIECE_CONCAVE);
+    const vi info = vi_select(piece_is_a, info_b, info_a);
+    const struct concave_pairs pairs = {piece_is_a, info, get_ring_a(queue, k), get_ring_b(queue, k),
+                                        get_pose(queue, k)};
+    const vi body_base = vi_select(piece_is_a, pairs.ring_b.base, pairs.ring_a.base);
+    const vi first_record =
+        vi_select(piece_is_a, get_bits(queue, FIRST_RECORD_B, k), get_bits(queue, FIRST_RECORD_A, k));
+    const vi all = get_arc_count(info), one = vi_set(1);
+    const vi count = vi_select(has_flag(info, NARC_SHAPE_CIRCLE), one, all); /* of its halves one counts */
+    const vf margin = get_margins(call, queue, k);
+    const vm open = vm_and_not(live, has_mark(info, NARC_PIECE_CONCAVE)); /* concave against concave: none */
+    const bool lists = call->rows->out.lists_one;
+    struct gap deepest = {v_set(INFINITY), {v_set(0), v_set(0)}, v_set(1), pairs.ring_a.base, pairs.ring_b.base};
+    vi found = zero;
+    vm ended = open, touch;
+    (void)find_concave_gap(records, &pairs, vi_sub(all, one), &ended, &touch);
+    for (int i = 0; vm_any(vm_and(open, vi_lt(vi_set(i), count))); i++) {
+        const vm exists = vm_and(open, vi_lt(vi_set(i), count));
+        const vi arc = vi_select(exists, vi_set(i), zero);
+        const struct gap gap = find_concave_gap(records, &pairs, arc, &ended, &touch);
+        const vm front = is_front(info, find_arc_number(vi_add(body_base, arc), first_record, info));
+        const vm keep = vm_and(vm_and(vm_and(exists, front), touch), is_below(gap.separation, margin));
+        if (!vm_any(keep))
+            continue;
+        const vm deeper = vm_and(keep, v_lt(gap.separation, deepest.separation));
+        deepest = select_gap(deeper, &gap, &deepest);
+        found = vi_add(found, vi_select(keep, one, zero));
+        if (lists)
+            list_gap(call, queue, &gap);
+    }
+    const vm any = vi_lt(zero, found);
+    if (lists || !vm_any(any))
+        return;
+    char *place[V_WIDTH];
+    find_places(call, get_bits(queue, PAIR, k), any, place);
+    write_gaps(call, queue, k, &deepest, place);
+    note_further_rows(call, found, place);
+}
+
+/* Answers all that wait. */
+NOINLINE void answer_concave_pairs(const struct call *call, struct queue *queue) {
+    if (queue->count % V_WIDTH != 0)
+        pad(queue);
+    for (int k = 0; k < queue->count; k += V_WIDTH)
+        answer_concave(call, queue, k, vm_front(queue->count - k));
+    queue->count = 0;
+    if (call->rows->out.lists_one)
+        call->rows->done = (int)call->count;
+}
+
+INLINE vm has_concave(const vf item[FIELDS]) {
+    return vm_or(has_mark(get_item_bits(item, INFO_A), NARC_PIECE_CONCAVE),
+                 has_mark(get_item_bits(item, INFO_B), NARC_PIECE_CONCAVE));
+}
+
+/* Takes the pairs with a concave arc of those in the lanes `open`, and returns the others. */
+INLINE vm take_concave(const struct call *call, vm open, const vf item[FIELDS]) {
+    const vm concave = vm_and(open, has_concave(item));
+    if (!vm_any(concave))
+        return open;
+    push(call->concave, concave, item, CONTACT_FIELDS);
+    if (call->concave->count >= FLUSH)
+        answer_concave_pairs(call, call->concave);
+    return vm_and_not(open, concave);
+}
+
+/* Of stores with pieces, begins with no pair that waits. */
+INLINE void start_concave(struct call *call, struct queue *queue) {
+    queue->count = 0;
+    call->concave = NARC_PIECES && call->batch->shapes->piece_count > 0 ? queue : NULL;
+}
+
+/* Answers all that wait. */
+INLINE void end_concave(const struct call *call) {
+    if (NARC_PIECES && call->concave && call->concave->count > 0)
+        answer_concave_pairs(call, call->concave);
+}
+
+#endif
