@@ -16,8 +16,8 @@ function(narc_install target component file)
 endfunction()
 
 narc_install(narc narc_runtime narcShared
-  soa/narc_export.h soa/narc_columns.h soa/narc_workers.h soa/narc_shapes.h soa/narc_pairs.h soa/narc_scene.h dispatch/narc.h
-  dispatch/narc_broad_phase.h dispatch/narc.hpp)
+  soa/narc_export.h soa/narc_columns.h soa/narc_workers.h soa/narc_shapes.h soa/narc_pairs.h soa/narc_scene.h soa/narc_chains.h
+  dispatch/narc.h dispatch/narc_broad_phase.h dispatch/narc.hpp)
 narc_install(narc_static narc_development narcStatic)
 # The others where they are built. The static library of shapes files needs cJSON of its users; what the fitting library
 # links itself, its users need not find.

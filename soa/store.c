@@ -20,6 +20,7 @@
 #include "error.h"
 #include "memory.h"
 #include "outline.h"
+#include "piece.h"
 
 /* The promised 2^31 floats. */
 #define MAX_RECORDS (((size_t)1 << 31) / (sizeof(narc_record) / sizeof(float)))
@@ -133,9 +134,9 @@ static bool move_records(narc_shapes *shapes, size_t capacity) {
     static const narc_arc circle = {0, 0, 1, 0, 2 * NARC_PI};
     narc_encoded_shape spare;
     void *array = NULL, *memory;
-    if (capacity > (SIZE_MAX - NARC_CACHE_LINE) / sizeof(narc_record))
+    if (capacity > (SIZE_MAX - NARC_CACHE_LINE) / sizeof(narc_record) - NARC_READ_AHEAD)
         return false;
-    memory = allocate(shapes, capacity * sizeof(narc_record), &array);
+    memory = allocate(shapes, (capacity + NARC_READ_AHEAD) * sizeof(narc_record), &array);
     if (!memory)
         return false;
     narc_record *records = array;
@@ -435,11 +436,15 @@ size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_ar
     return count;
 }
 
-/* The support function of the stored arcs: the furthest of all arc ends, or a point inside the arc that has the
- * direction. */
-static double find_stored_height(const narc_record *arcs, size_t count, double x, double y) {
-    double best = -INFINITY;
-    for (size_t i = 0; i < count; i++) {
+/* The support function of the stored arcs, with room: the furthest of all arc ends, or a point inside the arc that has
+ * the direction. */
+static double find_stored_height(const narc_shape_header *header, const narc_record *arcs, double x, double y) {
+    double best = -INFINITY, extent = 0;
+    if (narc_is_piece(header)) {
+        best = narc_find_piece_height(header, arcs, x, y, &extent);
+        return best + NARC_ROUNDING_ROOM * extent;
+    }
+    for (size_t i = 0; i < header->count; i++) {
         double ax = (double)arcs[i].arc.start_x, ay = (double)arcs[i].arc.start_y;
         double bx = (double)arcs[i].arc.end_x, by = (double)arcs[i].arc.end_y;
         double center = (double)arcs[i].arc.center_x * x + (double)arcs[i].arc.center_y * y,
@@ -448,28 +453,25 @@ static double find_stored_height(const narc_record *arcs, size_t count, double x
             best = fmax(best, center + radius * sqrt(x * x + y * y));
         else
             best = fmax(best, center + radius * fmax(ax * x + ay * y, bx * x + by * y));
+        extent = fmax(extent, fabs((double)arcs[i].arc.center_x) + fabs((double)arcs[i].arc.center_y) + radius);
     }
-    return best;
+    return best + NARC_ROUNDING_ROOM * extent;
 }
 
 bool narc_get_aabb(const narc_shapes *shapes, uint32_t shape, float cosine, float sine, float scale,
                    narc_aabb *out_aabb) {
     if (!out_aabb || !narc_has_shape(shapes, shape))
         return false;
-    const narc_record *arcs = narc_arcs_of(shapes, &shapes->headers[shape]);
-    size_t count = shapes->headers[shape].count;
+    const narc_shape_header *header = &shapes->headers[shape];
+    const narc_record *arcs = narc_arcs_of(shapes, header);
     double length = narc_hypot((double)cosine, (double)sine), c = (double)cosine / length, s = (double)sine / length;
-    double extent = 0;
+    double factor = (double)scale;
     if (!(length > 0) || !isfinite(length))
         return false;
-    for (size_t i = 0; i < count; i++)
-        extent = fmax(extent, fabs((double)arcs[i].arc.center_x) + fabs((double)arcs[i].arc.center_y) +
-                                  (double)arcs[i].arc.radius);
     /* The world's x axis is (c, -s) in the shape's axes, its y axis (s, c). */
-    double slack = NARC_ROUNDING_ROOM * extent, factor = (double)scale;
-    *out_aabb = (narc_aabb){.min_x = factor * -(find_stored_height(arcs, count, -c, s) + slack),
-                            .min_y = factor * -(find_stored_height(arcs, count, -s, -c) + slack),
-                            .max_x = factor * (find_stored_height(arcs, count, c, -s) + slack),
-                            .max_y = factor * (find_stored_height(arcs, count, s, c) + slack)};
+    *out_aabb = (narc_aabb){.min_x = factor * -find_stored_height(header, arcs, -c, s),
+                            .min_y = factor * -find_stored_height(header, arcs, -s, -c),
+                            .max_x = factor * find_stored_height(header, arcs, c, -s),
+                            .max_y = factor * find_stored_height(header, arcs, s, c)};
     return true;
 }

@@ -116,6 +116,10 @@ typedef struct narc_box_form {
 #define NARC_IS_BOX     4u
 #define NARC_IS_CAPSULE 8u
 
+/* Records that there is memory for behind the last one. Kernels read the angles of 64 arcs, four records, of shapes with
+ * fewer, and a concave arc has two. */
+enum { NARC_READ_AHEAD = 2 };
+
 /* How many records the junction angles of a shape take: its first arc lies behind them. */
 static inline size_t narc_angle_records(size_t count) { return (count + NARC_RECORD_ANGLES - 1) / NARC_RECORD_ANGLES; }
 
@@ -164,7 +168,7 @@ struct narc_shapes {
     size_t used_records;                  /* records in blocks of shapes, and of the circle that removed ones have */
     narc_allocator allocator;
     /* What the allocator returned: boxes, entries, buckets and headers; and records. Headers and records begin at cache
-     * lines, and end with the memory but for less than one. */
+     * lines, and end with the memory but for less than one, and records but for NARC_READ_AHEAD. */
     void *headers_memory, *records_memory;
 };
 

@@ -33,6 +33,7 @@
 #include "base/vec2.inl"
 #include "column.h"
 #include "kernels.h"
+#include "piece.h"
 #include "simd/simd.h"
 
 #define HEIGHT_ROOM (12.0f / 16777216.0f)
@@ -56,8 +57,8 @@ INLINE void count_angles(const narc_record *records, vi first_record, vi count, 
     vi_store(index, first_record);
     for (int k = 0; k < 2 * AXES; k++)
         before[k] = vi_set(0);
-    /* Eight angles at a time. Lanes with fewer count nothing: there is no angle below -2^15. They read on in their own
-     * shape, which has four records at least: angles, two arcs and a box. */
+    /* Eight angles at a time. Lanes with fewer count nothing: there is no angle below -2^15. They read on behind
+     * their own: of any shape four records may be read (NARC_READ_AHEAD). */
     _Static_assert(NARC_MAX_ARCS <= 4 * NARC_RECORD_ANGLES, "of a shape with two arcs four records are read");
     for (int done = 0; done < NARC_MAX_ARCS; done += 8) {
         const vm more = vi_lt(vi_set(done), count);
@@ -152,8 +153,30 @@ INLINE void add_motion(vf *forward, vf *backward, vf motion) {
 
 INLINE vm is_finite(vf a) { return v_le(v_abs(a), v_set(FLT_MAX)); }
 
-INLINE struct reaches find_reaches(const narc_shapes *shapes, const struct headers *headers,
-                                   const struct placed_bodies *bodies, vec2 rotation, vf margin) {
+/* Puts the heights of pieces of chains, with the same room, in place of those of their closed shapes. */
+static void find_piece_heights(const narc_shapes *shapes, const int32_t shape[V_WIDTH], const vec2 axis[AXES],
+                               vf height[AXES]) {
+    for (int k = 0; k < AXES; k++) {
+        float x[V_WIDTH], y[V_WIDTH], heights[V_WIDTH];
+        v_store(x, axis[k].x);
+        v_store(y, axis[k].y);
+        v_store(heights, height[k]);
+        for (int l = 0; l < V_WIDTH; l++) {
+            const narc_shape_header *header = &shapes->headers[shape[l]];
+            double size = 0;
+            if (!narc_is_piece(header))
+                continue;
+            const double along =
+                narc_find_piece_height(header, narc_arcs_of(shapes, header), (double)x[l], (double)y[l], &size);
+            heights[l] = (float)(along + (double)HEIGHT_ROOM * size);
+        }
+        height[k] = v_load(heights);
+    }
+}
+
+INLINE struct reaches find_reaches(const narc_shapes *shapes, const int32_t shape[V_WIDTH],
+                                   const struct headers *headers, const struct placed_bodies *bodies, vec2 rotation,
+                                   vf margin) {
     const vec2 right = {rotation.x, v_neg(rotation.y)}, up = {rotation.y, rotation.x};
     const vec2 axis[AXES] = {right, up, {v_neg(right.x), v_neg(right.y)}, {v_neg(up.x), v_neg(up.y)}};
     const vi count = get_arc_count(headers->info), arcs = find_first_arc(headers->first_record, headers->info);
@@ -162,8 +185,12 @@ INLINE struct reaches find_reaches(const narc_shapes *shapes, const struct heade
     find_arc_runs(shapes->records, headers->first_record, count, right, run);
     UNROLL
     for (int k = 0; k < AXES; k++)
-        height[k] =
-            v_add(v_mul(find_support_value(shapes->records, arcs, count, run[k], axis[k]), bodies->scale), margin);
+        height[k] = find_support_value(shapes->records, arcs, count, run[k], axis[k]);
+    if (shapes->piece_count > 0)
+        find_piece_heights(shapes, shape, axis, height);
+    UNROLL
+    for (int k = 0; k < AXES; k++)
+        height[k] = v_add(v_mul(height[k], bodies->scale), margin);
     const vec2 at = bodies->position, rest = bodies->rest;
     return (struct reaches){add_upwards(at.x, v_add(rest.x, height[0])), add_upwards(at.y, v_add(rest.y, height[1])),
                             add_upwards(v_neg(at.x), v_sub(height[2], rest.x)),
@@ -193,7 +220,7 @@ size_t NARC_NAMED(box)(const narc_box_batch *batch, const uint32_t *list, size_t
         const struct placed_bodies placed = load_placed_bodies(bodies, layout, body);
         vm valid;
         const vec2 rotation = normalise_rotation(placed.rotation, &valid);
-        struct reaches r = find_reaches(batch->shapes, &headers, &placed, rotation, margin);
+        struct reaches r = find_reaches(batch->shapes, shape, &headers, &placed, rotation, margin);
         valid = vm_and(valid, is_size_in_range(v_mul(placed.scale, headers.bound_radius)));
         if (batch->motion_x.base) {
             const vf motion = load_column(batch->motion_x, body);

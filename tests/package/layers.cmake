@@ -5,7 +5,7 @@
 cmake_minimum_required(VERSION 3.22)
 set(root "${SOURCE}")
 
-set(public narc_export.h narc_columns.h narc_workers.h narc_shapes.h narc_pairs.h narc_scene.h narc.h narc.hpp narc_methods.h narc_broad_phase.h
+set(public narc_export.h narc_columns.h narc_workers.h narc_shapes.h narc_pairs.h narc_scene.h narc_chains.h narc.h narc.hpp narc_methods.h narc_broad_phase.h
   narc_files.h narc_fit.h error.h memory.h compiler.h)
 set(layers soa kernels dispatch methods files fit tools examples apps tests bench)
 set(below_soa "")

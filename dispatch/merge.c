@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * merge.c - what several entries of a chain tell of one body: rows that are merged.
+ */
+#include <math.h>
+#include <stdbool.h>
+
+#include "column.h"
+#include "narc_chains.h"
+
+#define SAME_RUN_NORMAL  1e-4f
+#define SAME_SEAM_NORMAL 1e-3f
+#define SAME_POINT       0x1p-12f
+
+enum { LOOK_BACK = 64 };
+
+/* One of both kinds of rows. */
+typedef struct row_list {
+    const narc_pairs *pairs;
+    narc_index_column run;
+    narc_contact *contacts;
+    narc_manifold *manifolds;
+} row_list;
+
+static narc_manifold get_row(const row_list *list, size_t k) {
+    if (list->manifolds)
+        return list->manifolds[k];
+    const narc_contact *c = &list->contacts[k];
+    return (narc_manifold){.pair = c->pair,
+                           .count = c->count,
+                           .normal_x = c->normal_x,
+                           .normal_y = c->normal_y,
+                           .point = {{c->point_x, c->point_y, c->separation, c->feature}}};
+}
+
+static void drop_row(row_list *list, size_t k) {
+    if (list->manifolds)
+        list->manifolds[k].count = 0;
+    else
+        list->contacts[k].count = 0;
+}
+
+static void move_row(row_list *list, size_t from, size_t to) {
+    if (list->manifolds)
+        list->manifolds[to] = list->manifolds[from];
+    else
+        list->contacts[to] = list->contacts[from];
+}
+
+static size_t find_body_a(const narc_pairs *pairs, size_t pair) {
+    if (pairs->a.base)
+        return narc_index_at(pairs->a, pair);
+    return pairs->other_bodies ? pair : 2 * pair;
+}
+
+static uint32_t find_run(const row_list *list, uint32_t pair) {
+    const narc_pairs *pairs = list->pairs;
+    const size_t own = pairs->other_bodies ? pair : 2 * (size_t)pair + 1;
+    return list->run.base ? narc_index_at(list->run, pairs->b.base ? narc_index_at(pairs->b, pair) : own) : NARC_NO_RUN;
+}
+
+/* ------------------------------------------------------------------------------------------------ two rows */
+
+static bool has_same_normal(const narc_manifold *a, const narc_manifold *b, float limit) {
+    const float x = a->normal_x - b->normal_x, y = a->normal_y - b->normal_y;
+    return x * x + y * y <= limit * limit;
+}
+
+static bool is_same_point(const narc_manifold_point *p, const narc_manifold_point *q) {
+    const float x = p->x - q->x, y = p->y - q->y, square = fmaxf(p->x * p->x + p->y * p->y, q->x * q->x + q->y * q->y);
+    return x * x + y * y <= SAME_POINT * SAME_POINT * square;
+}
+
+/* Is each point of a one of b? */
+static bool has_all_points(const narc_manifold *a, const narc_manifold *b) {
+    bool all = true;
+    for (uint32_t i = 0; i < a->count; i++)
+        all = all && (is_same_point(&a->point[i], &b->point[0]) ||
+                      (b->count > 1 && is_same_point(&a->point[i], &b->point[1])));
+    return all;
+}
+
+static float find_separation(const narc_manifold *a) {
+    return a->count > 1 ? fminf(a->point[0].separation, a->point[1].separation) : a->point[0].separation;
+}
+
+/* Joins b to a, which have one normal: the outermost points along it turned a quarter turn, and of the deeper row what
+ * a row has once. */
+static void join_rows(narc_manifold *a, const narc_manifold *b) {
+    const narc_manifold first = *a, *const deeper = find_separation(b) < find_separation(a) ? b : &first;
+    narc_manifold_point low = first.point[0], high = low;
+    for (uint32_t i = 0; i < first.count + b->count; i++) {
+        const narc_manifold_point *p = i < first.count ? &first.point[i] : &b->point[i - first.count];
+        const float along = p->y * first.normal_x - p->x * first.normal_y;
+        low = along < low.y * first.normal_x - low.x * first.normal_y ? *p : low;
+        high = along > high.y * first.normal_x - high.x * first.normal_y ? *p : high;
+    }
+    const bool is_one = is_same_point(&low, &high);
+    *a = *deeper;
+    a->pair = first.pair;
+    a->count = is_one ? 1 : 2;
+    a->point[0] = is_one ? (low.separation <= high.separation ? low : high) : low;
+    a->point[1] = is_one ? (narc_manifold_point){0, 0, 0, 0} : high;
+}
+
+/* Row k and row j before it: does one go? */
+static void compare_rows(row_list *list, size_t j, size_t k) {
+    const narc_manifold a = get_row(list, j), b = get_row(list, k);
+    const uint32_t run = find_run(list, b.pair);
+    if (run != NARC_NO_RUN && run == find_run(list, a.pair)) {
+        const bool is_flush = has_same_normal(&a, &b, SAME_RUN_NORMAL);
+        const float one = find_separation(&a), other = find_separation(&b);
+        if (is_flush && list->manifolds)
+            join_rows(&list->manifolds[j], &b);
+        const bool is_better = is_flush ? !list->manifolds && other < one : other > one;
+        drop_row(list, is_better ? j : k);
+    } else if (has_same_normal(&a, &b, SAME_SEAM_NORMAL)) {
+        if (b.count <= a.count ? has_all_points(&b, &a) : has_all_points(&a, &b))
+            drop_row(list, b.count <= a.count ? k : j);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ lists */
+
+static size_t merge_rows(row_list *list, size_t count) {
+    size_t kept = 0, first = 0; /* the first row of the body */
+    for (size_t k = 0; k < count; k++) {
+        const uint32_t pair = get_row(list, k).pair;
+        if (kept == 0 || find_body_a(list->pairs, get_row(list, kept - 1).pair) != find_body_a(list->pairs, pair))
+            first = kept;
+        move_row(list, k, kept);
+        const size_t last = kept - first > LOOK_BACK ? kept - LOOK_BACK : first;
+        for (size_t j = kept; j-- > last && get_row(list, kept).count > 0;)
+            if (get_row(list, j).count > 0)
+                compare_rows(list, j, kept);
+        kept += get_row(list, kept).count > 0;
+    }
+    size_t left = 0;
+    for (size_t k = 0; k < kept; k++)
+        if (get_row(list, k).count > 0)
+            move_row(list, k, left++);
+    return left;
+}
+
+size_t narc_merge_contacts(const narc_pairs *pairs, narc_index_column run, narc_contact *rows, size_t count) {
+    return merge_rows(&(row_list){pairs, run, rows, NULL}, count);
+}
+
+size_t narc_merge_manifolds(const narc_pairs *pairs, narc_index_column run, narc_manifold *rows, size_t count) {
+    return merge_rows(&(row_list){pairs, run, NULL, rows}, count);
+}
