@@ -136,6 +136,8 @@ INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int
                 set_up_pairs(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block, item);
             *call->skipped += (size_t)COUNT_BITS(vm_bits(circles.invalid));
             const vm open = settle(call, block + (size_t)k, &circles, item);
+            if (NARC_PIECES && call->concave && call->concave->count >= FLUSH)
+                run_stages(call, stages, stage_count, queues, false);
             if (stage_count > 0 && vm_any(open)) {
                 enter(queues, open, item, fields, edged_stage, polygon_stage, not_first);
                 if (queues->count >= FLUSH || queues[edged_stage].count >= FLUSH ||
@@ -150,7 +152,12 @@ INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int
 static inline struct call begin_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
                                          uint64_t *out_bits) {
     memset(out_bits, 0, (count + 63) / 64 * sizeof *out_bits);
-    return (struct call){.batch = batch, .first = first, .count = count, .skipped = skipped, .bits = out_bits};
+    return (struct call){.batch = batch,
+                         .first = first,
+                         .count = count,
+                         .skipped = skipped,
+                         .bits = out_bits,
+                         .pieces = NARC_PIECES && batch->shapes->piece_count > 0};
 }
 
 static inline struct call begin_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
@@ -162,7 +169,8 @@ static inline struct call begin_rows(const narc_batch *batch, size_t first, size
                          .skipped = skipped,
                          .margin = batch->query->margin,
                          .margins = batch->query->margins,
-                         .rows = rows};
+                         .rows = rows,
+                         .pieces = NARC_PIECES && batch->shapes->piece_count > 0};
 }
 
 /* The kernels of a method with one stage. */

@@ -112,6 +112,7 @@ INLINE void list_gap(const struct call *call, const struct queue *queue, const s
     else
         sort_last_row(&rows->out, rows->listed, sizeof(narc_contact), offsetof(narc_contact, normal_x));
     rows->listed++;
+    rows->done = (int)call->count;
 }
 
 /* Notes in pairs' rows how many there are besides, of `counts` in all. */
@@ -132,7 +133,7 @@ INLINE void note_further_rows(const struct call *call, vi counts, char *const *p
 }
 
 /* Answers the pairs k ... of a queue, in the lanes `live`. */
-INLINE void answer_concave(const struct call *call, const struct queue *queue, int k, vm live) {
+NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *queue, int k, vm live) {
     const narc_record *const records = call->batch->shapes->records;
     const vi info_a = get_bits(queue, INFO_A, k), info_b = get_bits(queue, INFO_B, k), zero = vi_set(0);
     const vm piece_is_a = has_mark(info_a, NARC_PIECE_CONCAVE);
@@ -174,20 +175,20 @@ INLINE void answer_concave(const struct call *call, const struct queue *queue, i
     note_further_rows(call, found, place);
 }
 
-/* Answers all that wait. */
-NOINLINE void answer_concave_pairs(const struct call *call, struct queue *queue) {
-    if (queue->count % V_WIDTH != 0)
-        pad(queue);
-    for (int k = 0; k < queue->count; k += V_WIDTH)
-        answer_concave(call, queue, k, vm_front(queue->count - k));
-    queue->count = 0;
-    if (call->rows->out.lists_one)
-        call->rows->done = (int)call->count;
+INLINE vm is_concave(vi info_a, vi info_b) {
+    return vm_or(has_mark(info_a, NARC_PIECE_CONCAVE), has_mark(info_b, NARC_PIECE_CONCAVE));
 }
 
 INLINE vm has_concave(const vf item[FIELDS]) {
-    return vm_or(has_mark(get_item_bits(item, INFO_A), NARC_PIECE_CONCAVE),
-                 has_mark(get_item_bits(item, INFO_B), NARC_PIECE_CONCAVE));
+    return is_concave(get_item_bits(item, INFO_A), get_item_bits(item, INFO_B));
+}
+
+/* Answers the pairs k ... of a queue with a concave arc, of those in the lanes `live`, and returns the others. */
+INLINE vm answer_concave(const struct call *call, const struct queue *queue, int k, vm live) {
+    const vm concave = vm_and(live, is_concave(get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k)));
+    if (vm_any(concave))
+        answer_concave_pairs(call, queue, k, concave);
+    return vm_and_not(live, concave);
 }
 
 /* Takes the pairs with a concave arc of those in the lanes `open`, and returns the others. */
@@ -196,21 +197,7 @@ INLINE vm take_concave(const struct call *call, vm open, const vf item[FIELDS]) 
     if (!vm_any(concave))
         return open;
     push(call->concave, concave, item, CONTACT_FIELDS);
-    if (call->concave->count >= FLUSH)
-        answer_concave_pairs(call, call->concave);
     return vm_and_not(open, concave);
-}
-
-/* Of stores with pieces, begins with no pair that waits. */
-INLINE void start_concave(struct call *call, struct queue *queue) {
-    queue->count = 0;
-    call->concave = NARC_PIECES && call->batch->shapes->piece_count > 0 ? queue : NULL;
-}
-
-/* Answers all that wait. */
-INLINE void end_concave(const struct call *call) {
-    if (NARC_PIECES && call->concave && call->concave->count > 0)
-        answer_concave_pairs(call, call->concave);
 }
 
 #endif

@@ -1,78 +1,81 @@
 /* SPDX-License-Identifier: MIT
  *
- * overlaps.inl - overlaps of pieces of chains: those of which the contact kernel has a row with a separation below 0.
+ * overlaps.inl - overlaps of pieces of chains: pairs of which the contact kernel has a row with a separation below 0. It
+ * is asked when all other pairs are answered, so that neither's stack is added to the other's.
  */
 #ifndef NARC_PIECE_OVERLAPS_INL
 #define NARC_PIECE_OVERLAPS_INL
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "base/call.inl"
 #include "base/queue.inl"
+#include "column.h"
 #include "kernels.h"
 #include "piece/pieces.inl"
 #include "simd/simd.h"
 
-/* They wait until there are so many; take_pieces() writes up to a vector behind the last one. */
-enum { PIECE_FLUSH = 32 };
+enum { PIECE_MARKS = NARC_PIECE_RUN | NARC_PIECE_CONCAVE };
 
-/* Pairs with a piece, counted from the first of the call, in their order. */
+/* Takes the pairs with a piece of those in the lanes `open`, the first of which is `pair`: sets their bits. Returns the
+ * others. */
+INLINE vm take_pieces(const struct call *call, size_t pair, vm open, const vf item[FIELDS]) {
+    const vm pieces = vm_and(open, vm_or(has_mark(get_item_bits(item, INFO_A), PIECE_MARKS),
+                                         has_mark(get_item_bits(item, INFO_B), PIECE_MARKS)));
+    call->bits[pair / 64] |= (uint64_t)vm_bits(pieces) << pair % 64;
+    return vm_and_not(open, pieces);
+}
+
+static inline bool is_of_piece(const narc_batch *batch, const narc_bodies *bodies, narc_index_column column,
+                               size_t number) {
+    const size_t body = column.base ? narc_index_at(column, number) : number;
+    return batch->shapes->headers[narc_index_at(bodies->shape, body)].first_arc & PIECE_MARKS;
+}
+
+/* Pairs that are asked of at once. */
+enum { PIECE_GROUP = 32 };
+
 struct piece_pairs {
-    int count;
-    int32_t pair[PIECE_FLUSH + V_WIDTH];
+    size_t count;
+    uint32_t pair[PIECE_GROUP], number[PIECE_GROUP];
+    narc_contact contact[PIECE_GROUP];
 };
 
-/* Asks of all that wait. Rows come in the order of their pairs. */
-NOINLINE void ask_contacts(const struct call *call) {
-    struct piece_pairs *const pairs = call->pieces;
-    uint32_t number[PIECE_FLUSH + V_WIDTH];
-    narc_contact contact[PIECE_FLUSH + V_WIDTH];
-    size_t skipped = 0, further = 0;
-    for (int k = 0; k < pairs->count; k++)
-        number[k] = (uint32_t)find_number(call, pairs->pair[k]);
-    const narc_query query = {.selection = {number, sizeof *number}};
-    narc_batch batch = *call->batch;
-    batch.query = &query;
-    batch.manifolds = false;
-    const narc_rows rows = {.base = (char *)contact, .stride = sizeof *contact, .further = &further};
-    const size_t found = NARC_NAMED(contact)(&batch, 0, (size_t)pairs->count, &skipped, &rows);
-    size_t row = 0;
-    for (int k = 0; k < pairs->count && row < found; k++) {
-        const uint32_t pair = (uint32_t)pairs->pair[k];
-        if (contact[row].pair == number[k]) {
-            call->bits[pair / 64] |= (uint64_t)1 << pair % 64;
-            row++;
-        }
+/* Clears the bits of those that have no contact: rows come in the order of the pairs. */
+static void ask_contacts(const narc_batch *batch, struct piece_pairs *pairs, uint64_t *bits) {
+    size_t skipped = 0, further = 0, row = 0;
+    const narc_query query = {.selection = {pairs->number, sizeof *pairs->number}};
+    narc_batch selected = *batch;
+    selected.query = &query;
+    const narc_rows rows = {.base = (char *)pairs->contact, .stride = sizeof *pairs->contact, .further = &further};
+    const size_t found = NARC_NAMED(contact)(&selected, 0, pairs->count, &skipped, &rows);
+    for (size_t k = 0; k < pairs->count; k++) {
+        const bool touches = row < found && pairs->contact[row].pair == pairs->number[k];
+        row += touches;
+        bits[pairs->pair[k] / 64] &= ~((uint64_t)!touches << pairs->pair[k] % 64);
     }
     pairs->count = 0;
 }
 
-/* Takes the pairs with a piece of those in the lanes `open`, and returns the others. */
-INLINE vm take_pieces(const struct call *call, vm open, const vf item[FIELDS]) {
-    const unsigned marks = NARC_PIECE_RUN | NARC_PIECE_CONCAVE;
-    const vm mine =
-        vm_and(open, vm_or(has_mark(get_item_bits(item, INFO_A), marks), has_mark(get_item_bits(item, INFO_B), marks)));
-    if (!vm_any(mine))
-        return open;
-    struct piece_pairs *const pairs = call->pieces;
-    vi_store(pairs->pair + pairs->count, vi_bits(v_pack(vm_packing(mine), item[PAIR])));
-    pairs->count += COUNT_BITS(vm_bits(mine));
-    if (pairs->count >= PIECE_FLUSH)
-        ask_contacts(call);
-    return vm_and_not(open, mine);
-}
-
-/* Of stores with pieces, begins with no pair that waits. */
-INLINE void start_pieces(struct call *call, struct piece_pairs *pairs) {
-    pairs->count = 0;
-    call->pieces = NARC_PIECES && call->batch->shapes->piece_count > 0 ? pairs : NULL;
-}
-
-/* Answers all that wait. */
-INLINE void end_pieces(const struct call *call) {
-    if (NARC_PIECES && call->pieces && call->pieces->count > 0)
-        ask_contacts(call);
+/* Of pairs with a piece whose bits are set, clears those that do not overlap. */
+NOINLINE void decide_piece_overlaps(const narc_batch *batch, size_t first, size_t count, uint64_t *bits) {
+    struct piece_pairs pairs;
+    pairs.count = 0;
+    for (size_t word = 0; word < (count + 63) / 64; word++)
+        for (uint64_t left = bits[word]; left; left &= left - 1) {
+            const size_t pair = 64 * word + (size_t)FIND_LOWEST_64(left), number = narc_pair_at(batch, first + pair);
+            if (!is_of_piece(batch, batch->a, batch->pairs->a, number) &&
+                !is_of_piece(batch, batch->b, batch->pairs->b, number))
+                continue;
+            pairs.pair[pairs.count] = (uint32_t)pair;
+            pairs.number[pairs.count++] = (uint32_t)number;
+            if (pairs.count == PIECE_GROUP)
+                ask_contacts(batch, &pairs, bits);
+        }
+    if (pairs.count > 0)
+        ask_contacts(batch, &pairs, bits);
 }
 
 #endif

@@ -69,7 +69,7 @@ INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter 
     struct rows *rows = call->rows;
     const vm near = vm_and_not(take_valid(call, pair, circles, item), circles->apart);
     const vm open = NARC_PIECES && call->concave ? take_concave(call, near, item) : near;
-    const bool waits = vm_any(vm_and_not(near, open)); /* does one wait with the concave arcs? */
+    const bool waits = vm_any(vm_and_not(near, open)); /* is there one with a concave arc? */
     const bool due = !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid) && !waits;
     const bool room = (size_t)rows->listed + V_WIDTH <= call->count && !boxes_wait(call);
     const bool in_order = due && room;
@@ -266,7 +266,10 @@ INLINE struct gap decide_gap(const narc_shapes *shapes, const struct queue *queu
 static void decide(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     (void)next;
     for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm live = vm_front(queue->count - k);
+        const vm all = vm_front(queue->count - k);
+        const vm live = NARC_PIECES && call->concave ? answer_concave(call, queue, k, all) : all;
+        if (!vm_any(live))
+            continue;
         const struct gap gap = decide_gap(call->batch->shapes, queue, k, live);
         store_hints(call, queue, k, live, gap.record_a, gap.record_b);
         const vm keep = vm_and(live, is_below(gap.separation, get_margins(call, queue, k)));
@@ -297,12 +300,10 @@ size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, 
     struct box_queue boxes[BOX_QUEUES];
     struct rows rows;
     struct call call = begin_rows(batch, first, count, skipped, out, &rows);
-    struct queue concave;
-    start_concave(&call, &concave);
     call.edges = !manifolds ? NULL : NARC_SHORTCUTS ? &queues[STAGES - 1] : &queues[1];
+    call.concave = !call.pieces ? NULL : NARC_SHORTCUTS ? &queues[DECIDE] : &queues[0];
     if (!NARC_SHORTCUTS) {
-        run_pairs(&call, NULL, NARC_PIECES && call.concave ? triage_pieces : take_valid, FIELDS, formula,
-                  manifolds ? 2 : 1, 0, queues);
+        run_pairs(&call, NULL, call.pieces ? triage_pieces : take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
     } else if (batch->shapes->box_count > 0) {
         start_boxes(&call, boxes);
         run_pairs(&call, detour_rows, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
@@ -310,6 +311,5 @@ size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, 
     } else {
         run_pairs(&call, NULL, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
     }
-    end_concave(&call);
     return end_rows(&call);
 }

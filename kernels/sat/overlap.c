@@ -31,7 +31,7 @@
 
 INLINE vm triage_overlaps(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
     const vm near = vm_and_not(circles->valid, circles->apart);
-    const vm mine = NARC_PIECES && call->pieces ? take_pieces(call, near, item) : near;
+    const vm mine = call->pieces ? take_pieces(call, pair, near, item) : near;
     const vm open = vm_and_not(mine, circles->deep);
     vm hits = vm_and(mine, circles->deep), left = open;
     if (are_discs(open, item)) {
@@ -46,8 +46,7 @@ INLINE vm triage_overlaps(const struct call *call, size_t pair, const struct fil
 /* That of stores with pieces where all else goes to the formula. */
 INLINE vm triage_piece_overlaps(const struct call *call, size_t pair, const struct filter *circles,
                                 const vf item[FIELDS]) {
-    (void)pair;
-    return take_pieces(call, circles->valid, item);
+    return take_pieces(call, pair, circles->valid, item);
 }
 
 /* The centres and radii of the arcs that were looked up: u, and the sum of the radii. */
@@ -194,17 +193,16 @@ INLINE vm detour_overlaps(const struct call *call, const struct pair_indices *in
     return take_detour(call, indices, k, placement, open, number, overlap_detours);
 }
 
-void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
+/* All pairs; of those with a piece, which ones are near. */
+NOINLINE void find_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
     static stage *const stages[] = {probe_axis_overlaps, probe_again_overlaps, climb_from_overlaps,
                                     compare_polygon_overlaps, decide_overlaps};
     struct queue queues[STAGES];
     struct call call = begin_overlaps(batch, first, count, skipped, out_bits);
-    struct piece_pairs pieces;
     struct box_queue boxes[BOX_QUEUES];
-    start_pieces(&call, &pieces);
     if (!NARC_SHORTCUTS) {
-        run_pairs(&call, NULL, NARC_PIECES && call.pieces ? triage_piece_overlaps : take_valid, OVERLAP_FIELDS,
-                  &stages[DECIDE], 1, 0, queues);
+        run_pairs(&call, NULL, call.pieces ? triage_piece_overlaps : take_valid, OVERLAP_FIELDS, &stages[DECIDE], 1, 0,
+                  queues);
     } else if (batch->shapes->box_count == 0) {
         run_pairs(&call, NULL, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, CLIMB, queues);
     } else {
@@ -212,5 +210,10 @@ void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, si
         run_pairs(&call, detour_overlaps, triage_overlaps, OVERLAP_FIELDS, stages, STAGES, CLIMB, queues);
         end_boxes(&call, overlap_detours);
     }
-    end_pieces(&call);
+}
+
+void NARC_NAMED(overlap)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, uint64_t *out_bits) {
+    find_overlaps(batch, first, count, skipped, out_bits);
+    if (NARC_PIECES && batch->shapes->piece_count > 0)
+        decide_piece_overlaps(batch, first, count, out_bits);
 }
