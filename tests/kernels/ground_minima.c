@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ground.c - bodies on chains of pieces: none of the contacts that a search finds is missed or told twice, and none is
+ * ground_minima.c - bodies on chains of pieces: none of the contacts that a search finds is missed or told twice, and none is
  * told that is not there.
  *
  * A contact on the ground's air side is a local minimum of the ground's signed distance over the body. So it is on the
@@ -27,7 +27,7 @@ enum { SHOWN = 3, BODIES = 40, ENTRIES = 2 * CHAIN_ARCS, ROWS = 4096 };
 static const double steps_per_body = 96, steps_per_piece = 3, finer = 16;
 
 struct tally {
-    size_t bodies, minima, rows; /* minima that must be told and were; rows that are one of them */
+    size_t bodies, minima, rows;                /* minima that must be told and were; rows that are one of them */
     size_t beyond, deep, nearer, shallow, ends; /* not compared, or by themselves alone; see below */
     size_t wrong, refused;
     double worst; /* error of a separation, by its bound */
@@ -51,6 +51,7 @@ struct setting {
 struct told {
     narc_point at, foot; /* on the body, on the ground */
     double normal_x, normal_y, separation, bound;
+    uint32_t entry, count, feature;
 };
 
 static narc_point rotate(const struct body *place, double x, double y) {
@@ -71,8 +72,8 @@ static struct reference_body pose_on(const struct setting *setting, size_t k) {
     const narc_point at = rotate_back(&setting->place, body->x - setting->place.x, body->y - setting->place.y);
     const narc_point axis = rotate_back(&setting->place, (double)body->cosine, (double)body->sine);
     const double length = hypot(axis.x, axis.y);
-    return (struct reference_body){setting->shapes[k].arcs, setting->shapes[k].count, at.x, at.y,
-                                   axis.x / length,         axis.y / length,          (double)body->scale};
+    return (struct reference_body){setting->shapes[k].arcs, setting->shapes[k].count, at.x, at.y, axis.x / length,
+                                   axis.y / length,         (double)body->scale};
 }
 
 static struct body in_world(const struct setting *setting, struct body body) {
@@ -103,13 +104,20 @@ static bool make_setting(struct test_random *random, enum chain_family family, n
         narc_destroy_shapes(setting->store);
         return false;
     }
+    if (status != NARC_OK && getenv("NARC_TEST_SHOW")) {
+        print_error("weld %.17g closed %d: %s\n", options.weld, options.closed, error.message);
+        for (size_t k = 0; k < setting->chain.count; k++)
+            print_error("  {%.17g, %.17g, %.17g, %.17g, %.17g},\n", arcs[k].center_x, arcs[k].center_y, arcs[k].radius,
+                        arcs[k].start, arcs[k].end);
+        narc_destroy_shapes(setting->store);
+        return false;
+    }
     expect_ok(status, &error);
     setting->ground = make_ground(&setting->chain);
     for (size_t k = 0; k < BODIES; k++) {
         setting->shapes[k] = make_rider(random, &setting->chain, family);
         const double reach = setting->margin > 0 ? setting->margin : 0.01;
-        setting->bodies[k] =
-            in_world(setting, ride_chain(random, &setting->chain, &setting->shapes[k], reach));
+        setting->bodies[k] = in_world(setting, ride_chain(random, &setting->chain, &setting->shapes[k], reach));
         setting->bodies[k].shape = store_shape(setting->store, setting->shapes[k]);
     }
     for (size_t k = 0; k < setting->entry_count; k++) {
@@ -147,11 +155,10 @@ static size_t find_rows(const struct setting *setting, struct pair *pairs, narc_
     expect_ok(narc_compute_boxes(setting->store, &bodies, &options, boxes, &error), &error);
     size_t pair_count = 0, found = 0;
     for (uint32_t a = 0; a < BODIES; a++) {
-        for (uint32_t b = BODIES; b < count; b++) {
+        for (uint32_t b = BODIES; b < count; b++)
             if (boxes[a].min_x <= boxes[b].max_x && boxes[b].min_x <= boxes[a].max_x &&
                 boxes[a].min_y <= boxes[b].max_y && boxes[b].min_y <= boxes[a].max_y)
                 pairs[pair_count++] = (struct pair){a, b};
-        }
     }
     const narc_pairs list = {.count = pair_count, .a = NARC_COLUMN(pairs, a), .b = NARC_COLUMN(pairs, b)};
     size_t skipped = 0;
@@ -184,7 +191,29 @@ static struct told read_row(const struct setting *setting, const struct referenc
     told.at = (narc_point){body->x + offset.x - half * normal.x, body->y + offset.y - half * normal.y};
     told.foot = (narc_point){body->x + offset.x + half * normal.x, body->y + offset.y + half * normal.y};
     told.bound = entry_bound(setting, body, pair->b);
+    told.entry = pair->b - BODIES;
+    told.count = row->count;
+    told.feature = point->feature;
     return told;
+}
+
+static double distance_between(narc_point a, narc_point b) { return hypot(a.x - b.x, a.y - b.y); }
+
+/* How far a point is from the open ends of a chain. */
+static double find_end_distance(const struct chain *chain, narc_point point) {
+    const narc_arc *first = &chain->arcs[0], *last = &chain->arcs[chain->count - 1];
+    const narc_point from = {first->center_x + first->radius * cos(first->start),
+                             first->center_y + first->radius * sin(first->start)};
+    const narc_point to = {last->center_x + last->radius * cos(last->end),
+                           last->center_y + last->radius * sin(last->end)};
+    return chain->closed ? INFINITY : fmin(distance_between(from, point), distance_between(to, point));
+}
+
+/* Does a point of the chain lie in a body? */
+static bool holds(const struct reference_body *body, narc_point point) {
+    const double x = (point.x - body->x) / body->scale, y = (point.y - body->y) / body->scale;
+    return narc_contains_point(body->arcs, body->count,
+                               (narc_point){body->cosine * x + body->sine * y, body->cosine * y - body->sine * x});
 }
 
 /* Is a row what it says: do both points lie where they should, with that normal? `size` of the body. */
@@ -209,16 +238,27 @@ static const char *check_row(const struct setting *setting, const struct ground_
     }
     if (!(lowest >= -8 * told->bound))
         return "not the lowest point along the normal";
-    /* A point above the foot has that foot. Seams extend arcs by 1e-4 rad. */
-    const double height = 1e-3 * size;
-    const narc_point above = {told->foot.x + height * told->normal_x, told->foot.y + height * told->normal_y};
-    struct ground_foot feet[FEET];
-    const size_t count = ground_feet(setting->ground, above, feet, FEET);
-    for (size_t k = 0; k < count; k++)
-        if (fabs(feet[k].distance - height) <= 4 * told->bound &&
-            hypot(feet[k].at.x - told->foot.x, feet[k].at.y - told->foot.y) <= 4 * told->bound + 1e-3 * size)
-            return NULL;
-    return "foot not on the ground";
+    /* A point above the foot has that foot, or one below, at the bottom of a valley. Seams extend arcs by 1e-4 rad. Where
+     * points coincide the normal is any. */
+    if (fabs(told->separation) < 4 * told->bound)
+        return NULL;
+    for (int side = -1; side <= 1; side += 2) {
+        const double height = 1e-3 * size * side;
+        const narc_point beside = {told->foot.x + height * told->normal_x, told->foot.y + height * told->normal_y};
+        struct ground_foot feet[FEET];
+        const size_t count = ground_feet(setting->ground, beside, feet, FEET);
+        for (size_t k = 0; k < count; k++)
+            if (fabs(feet[k].distance - height) <= 4 * told->bound &&
+                distance_between(feet[k].at, told->foot) <= 4 * told->bound + 1e-3 * size)
+                return NULL;
+    }
+    return find_end_distance(&setting->chain, told->foot) <= 8 * told->bound ? NULL : "foot not on the ground";
+}
+
+/* Do two rows tell of one contact? With the same normal, and next to each other. */
+static bool is_same(const struct told *one, const struct told *other, double size) {
+    return hypot(one->normal_x - other->normal_x, one->normal_y - other->normal_y) < 1e-4 &&
+           distance_between(one->at, other->at) < 1e-2 * size;
 }
 
 /* What became of a row. */
@@ -237,7 +277,7 @@ static const char *compare(const struct setting *setting, size_t k, const struct
         bound = fmax(bound, told[i].bound);
     bound = fmax(bound, NARC_ERROR_BOUND * 4 * (reference_extent(body) + size));
     const size_t minimum_count = ground_minima(search, 2 * bound, minima);
-    size_t told_by[GROUND_MINIMA] = {0}, told_first[GROUND_MINIMA];
+    size_t told_by[GROUND_MINIMA] = {0};
     enum fate fate[ROWS / BODIES];
     (void)k;
 
@@ -252,11 +292,10 @@ static const char *compare(const struct setting *setting, size_t k, const struct
             const double error = fabs(minima[m].foot.distance - told[i].separation);
             if (error > told[i].bound || ground_barrier(search, along, minima[m].along) > level + 2 * bound)
                 continue;
-            const struct told *first = told_by[m] ? &told[told_first[m]] : NULL;
-            if (first && hypot(first->normal_x - told[i].normal_x, first->normal_y - told[i].normal_y) < 1e-2 &&
-                hypot(first->at.x - told[i].at.x, first->at.y - told[i].at.y) < 1e-2 * size)
-                wrong = "told twice";
-            told_first[m] = told_by[m]++ ? told_first[m] : i;
+            for (size_t j = 0; j < i; j++)
+                if (fate[j] == FATE_MATCHED && is_same(&told[i], &told[j], size))
+                    wrong = "told twice";
+            told_by[m]++;
             fate[i] = FATE_MATCHED;
             tally->worst = fmax(tally->worst, error / told[i].bound);
         }
@@ -266,7 +305,7 @@ static const char *compare(const struct setting *setting, size_t k, const struct
             fate[i] = FATE_NEARER; /* of a valley the other side */
         if (fate[i] == FATE_WRONG && !isfinite(nearest))
             fate[i] = FATE_DEEP; /* an open end is nearer */
-        if (fate[i] == FATE_WRONG && ground_least(search, along, 1e-3 * size) >= nearest - 4 * bound)
+        if (fate[i] == FATE_WRONG && ground_least(search, along, 2e-4 * size) >= nearest - 4 * bound)
             fate[i] = FATE_SHALLOW; /* the distance does not fall there but by rounding */
         if (fate[i] == FATE_WRONG && !wrong)
             wrong = "not a minimum";
@@ -276,7 +315,7 @@ static const char *compare(const struct setting *setting, size_t k, const struct
         const double distance = minima[m].foot.distance;
         if (told_by[m])
             matched++;
-        else if (minima[m].doubtful)
+        else if (minima[m].doubtful || (distance < 0 && !holds(body, minima[m].foot.at)))
             beyond++;
         else if (distance >= setting->margin - bound || minima[m].depth < 4 * bound)
             shallow++;
@@ -301,9 +340,21 @@ static const char *compare(const struct setting *setting, size_t k, const struct
                         minima[m].foot.distance, minima[m].at.x, minima[m].at.y, minima[m].foot.normal_x,
                         minima[m].foot.normal_y, minima[m].depth, minima[m].doubtful ? ", doubtful" : "", told_by[m]);
         for (size_t i = 0; i < count; i++)
-            print_error("  row %.9g at (%.9g, %.9g), normal (%.6g, %.6g), bound %.3g, distance there %.9g\n",
+            print_error("  row %.9g at (%.9g, %.9g), normal (%.6g, %.6g), bound %.3g, distance there %.9g; "
+                        "entry %u of run %d at (%.6g, %.6g), %u points, feature %04x\n",
                         told[i].separation, told[i].at.x, told[i].at.y, told[i].normal_x, told[i].normal_y,
-                        told[i].bound, ground_distance(setting->ground, told[i].at).distance);
+                        told[i].bound, ground_distance(setting->ground, told[i].at).distance, told[i].entry,
+                        (int)setting->entries[told[i].entry].run, setting->entries[told[i].entry].x,
+                        setting->entries[told[i].entry].y, told[i].count, told[i].feature);
+        for (size_t i = 0; i < count; i++) {
+            const narc_point above = {told[i].foot.x + 1e-3 * size * told[i].normal_x,
+                                      told[i].foot.y + 1e-3 * size * told[i].normal_y};
+            struct ground_foot feet[4];
+            for (size_t f = ground_feet(setting->ground, above, feet, 4); f > 0; f--)
+                print_error("    foot of (%.9g, %.9g): %.9g at (%.9g, %.9g), normal (%.6g, %.6g)\n", above.x, above.y,
+                            feet[f - 1].distance, feet[f - 1].at.x, feet[f - 1].at.y, feet[f - 1].normal_x,
+                            feet[f - 1].normal_y);
+        }
     }
     destroy_search(search);
     return wrong;
@@ -326,6 +377,17 @@ static void check_setting(const struct setting *setting, enum chain_family famil
         if (wrong)
             wrong = compare(setting, k, &body, told, of_body, step / finer, tally);
         if (wrong && tally->wrong++ < SHOWN) {
+            if (getenv("NARC_TEST_SHOW") && setting->chain.count < 40) {
+                for (size_t i = 0; i < setting->chain.count; i++) {
+                    const narc_arc *arc = &setting->chain.arcs[i];
+                    print_error("  {%.9g, %.9g, %.9g, %.9g, %.9g}\n", arc->center_x, arc->center_y, arc->radius,
+                                arc->start, arc->end);
+                }
+                for (size_t i = 0; i < setting->entry_count; i++)
+                    print_error("   entry %zu at (%.9g, %.9g), run %d, arc %u, %u arcs\n", i, setting->entries[i].x,
+                                setting->entries[i].y, (int)setting->entries[i].run, setting->entries[i].first_arc,
+                                setting->entries[i].arc_count);
+            }
             print_error("%s: %s; margin %.9g, body of %zu arcs at (%a, %a)\n", chain_family_name(family), wrong,
                         setting->margin, body.count, body.x, body.y);
         }
@@ -339,17 +401,17 @@ static void check_family(enum chain_family family) {
     snprintf(name, sizeof name, "ground, %s", chain_family_name(family));
     struct test_random random = test_random_named(name);
     struct tally tally = {0};
-    for (size_t trial = test_trials(50); trial > 0; trial--) {
+    for (size_t trial = test_trials(50); trial > 0; trial--)
         if (make_setting(&random, family, arcs, &setting)) {
             check_setting(&setting, family, &tally);
             end_setting(&setting);
         } else
             tally.refused++;
-    }
-    printf("  %s: %zu bodies, %zu minima told by %zu rows; %zu minima beyond reach, %zu rows deeper, %zu rows of farther "
-           "sides, %zu shallow; %zu wrong, %zu chains refused, largest error %.3f\n",
-           chain_family_name(family), tally.bodies, tally.minima, tally.rows, tally.beyond, tally.deep, tally.nearer,
-           tally.shallow, tally.wrong, tally.refused, tally.worst);
+    printf(
+        "  %s: %zu bodies, %zu minima told by %zu rows; %zu minima beyond reach, %zu rows deeper, %zu rows of farther "
+        "sides, %zu shallow; %zu wrong, %zu chains refused, largest error %.3f\n",
+        chain_family_name(family), tally.bodies, tally.minima, tally.rows, tally.beyond, tally.deep, tally.nearer,
+        tally.shallow, tally.wrong, tally.refused, tally.worst);
     assert_int_equal(tally.wrong, 0);
     assert_true(tally.minima > tally.bodies / 4);
 }
@@ -364,4 +426,4 @@ TEST(test_long) { check_family(CHAIN_LONG); }
 TEST(test_closed) { check_family(CHAIN_CLOSED); }
 TEST(test_ends) { check_family(CHAIN_ENDS); }
 
-TEST_MAIN("ground")
+TEST_MAIN("ground minima")
