@@ -1,0 +1,544 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ground.c - pieces of chains: contacts, overlaps and rays are those of an independent search in double precision, and
+ * the same in every form in which they can be asked for.
+ *
+ * Against a run, the gap of its closed shape by tests/support/reference.h counts if its normal is one of the front's.
+ * Against a concave arc, the body's outline is sampled, and where its distance from the arc's centre is largest, among
+ * points near by, is a contact if that direction is among the arc's.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "families.h"
+#include "layouts.h"
+#include "narc_chains.h"
+#include "narc_scene.h"
+#include "plain_kernels.h"
+#include "reference.h"
+#include "scene.h"
+#include "support.h"
+
+#define PI 3.14159265358979323846
+
+enum { ENTRIES = 400, SAMPLES = 300, MOST_ROWS = 64 };
+
+/* A chain of the caller's arcs, and the scene with its entries as bodies 0 .. entry_count - 1. */
+struct ground {
+    struct scene scene;
+    narc_chain_entry entries[ENTRIES];
+    size_t entry_count;
+    narc_arc arcs[128];
+    size_t arc_count;
+    /* while it is made */
+    double x, y, angle;
+};
+
+static const float margin = 0.05f;
+
+/* ------------------------------------------------------------------------------------------------ chains */
+
+static void begin_chain(struct ground *g, double x, double y, double angle) {
+    memset(g, 0, sizeof *g);
+    g->arcs[g->arc_count++] = (narc_arc){x, y, 0, angle, angle};
+    g->x = x;
+    g->y = y;
+    g->angle = angle;
+}
+
+/* Walks on: solid on the left. */
+static void add_line(struct ground *g, double length) {
+    g->x -= sin(g->angle) * length;
+    g->y += cos(g->angle) * length;
+}
+
+/* Turns counter-clockwise, or clockwise where turn < 0: radius is that of the row, negative or -0 there. */
+static void add_turn(struct ground *g, double radius, double turn) {
+    const double x = g->x - radius * cos(g->angle), y = g->y - radius * sin(g->angle);
+    g->arcs[g->arc_count++] = (narc_arc){x, y, radius, g->angle, g->angle + turn};
+    g->angle += turn;
+    g->x = x + radius * cos(g->angle);
+    g->y = y + radius * sin(g->angle);
+}
+
+static void end_chain(struct ground *g) { g->arcs[g->arc_count++] = (narc_arc){g->x, g->y, 0, g->angle, g->angle}; }
+
+/* A scene with the chain's entries. False if it crosses itself. */
+static bool place_chain(struct ground *g, const narc_chain_options *options, size_t bodies, size_t pairs) {
+    narc_error error;
+    g->scene = create_scene(NARC_FLOAT32, ENTRIES + bodies, ENTRIES + bodies, pairs);
+    const narc_status status =
+        narc_add_chain(g->scene.store, g->arcs, g->arc_count, options, g->entries, ENTRIES, &g->entry_count, &error);
+    if (status == NARC_ERROR_NOT_SIMPLE) {
+        destroy_scene(&g->scene);
+        return false;
+    }
+    if (status != NARC_OK)
+        fail_msg("%s", error.message);
+    for (size_t k = 0; k < g->entry_count; k++) {
+        const narc_chain_entry *e = &g->entries[k];
+        struct shape *shape = &g->scene.shapes[e->shape];
+        shape->count = narc_get_arcs(g->scene.store, e->shape, shape->arcs);
+        struct body body = {.x = e->x, .y = e->y, .cosine = 1, .scale = 1, .shape = e->shape};
+        scene_add_body(&g->scene, body);
+    }
+    g->scene.shape_count = narc_count_shapes(g->scene.store);
+    return true;
+}
+
+/* A hilly country from right to left. */
+static bool make_country(struct test_random *random, struct ground *g, size_t bodies, size_t pairs) {
+    begin_chain(g, 10, 0, PI / 2);
+    for (int k = 0; k < 24; k++) {
+        const double lean = g->angle - PI / 2;
+        const double turn = random_between(random, 0.1, 0.9), radius = random_log_between(random, 0.2, 6);
+        if (random_below(random, 3) == 0)
+            add_line(g, random_between(random, 0.2, 2));
+        if (random_below(random, 2) ? lean > -0.3 : lean > 0.6)
+            add_turn(g, random_below(random, 4) ? -radius : -0.0, -turn);
+        else
+            add_turn(g, random_below(random, 4) ? radius : 0, turn);
+    }
+    add_line(g, 1);
+    end_chain(g);
+    return place_chain(g, &(narc_chain_options){.first_run = 7}, bodies, pairs);
+}
+
+static struct shape make_body(struct test_random *random) {
+    const enum family families[] = {FAMILY_SMOOTH, FAMILY_POLYGON, FAMILY_BOX,    FAMILY_CAPSULE, FAMILY_ROUNDED,
+                                    FAMILY_CIRCLE, FAMILY_MIXED,   FAMILY_SMOOTH, FAMILY_HALF};
+    return make_shape(random, families[random_below(random, sizeof families / sizeof *families)]);
+}
+
+/* Bodies near the outline, each with a pair with every entry, as A and as B. */
+static void add_movers(struct test_random *random, struct ground *g, size_t count) {
+    struct scene *scene = &g->scene;
+    for (size_t k = 0; k < count; k++) {
+        const struct shape shape = make_body(random);
+        const narc_arc *near = &g->arcs[random_below(random, g->arc_count)];
+        const double angle = random_between(random, near->start, near->end), scale = random_between(random, 0.1, 0.8);
+        const double away = near->radius + scale * random_between(random, 0.2, 1.2);
+        struct body body = turned_body(random_between(random, -PI, PI), scale);
+        body.x = near->center_x + away * cos(angle);
+        body.y = near->center_y + away * sin(angle);
+        body.shape = scene_add_shape(scene, &shape);
+        const uint32_t mover = scene_add_body(scene, body);
+        for (uint32_t e = 0; e < g->entry_count; e++)
+            scene_add_pair(scene, (e + k) % 2 ? e : mover, (e + k) % 2 ? mover : e);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ the reference */
+
+struct spot {
+    double x, y;
+};
+
+static bool is_concave(const struct reference_body *b) { return b->count == 1 && signbit(b->arcs->radius); }
+static bool is_run(const struct scene *scene, uint32_t body) {
+    return narc_shape_flags(scene->store, scene->bodies[body].shape) & NARC_SHAPE_RUN;
+}
+
+static struct spot place_point(const struct reference_body *b, double x, double y) {
+    return (struct spot){b->x + b->scale * (b->cosine * x - b->sine * y),
+                         b->y + b->scale * (b->sine * x + b->cosine * y)};
+}
+
+/* The outline of a body: edges and arcs that are longer than nothing, each from a whole number to the next. Piece 2 k is
+ * the edge before arc k, piece 2 k + 1 that arc. */
+struct outline {
+    const struct reference_body *body;
+    size_t count, piece[2 * NARC_MAX_ARCS];
+};
+
+static struct spot find_arc_point(const struct reference_body *b, size_t k, double part) {
+    const narc_arc *arc = &b->arcs[k];
+    const double sweep = arc->end - arc->start, angle = arc->start + part * (sweep > 0 ? sweep : sweep + 2 * PI);
+    return place_point(b, arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle));
+}
+
+static struct spot find_outline_point(const struct outline *o, double s) {
+    const double around = fmod(s + (double)o->count, (double)o->count);
+    const size_t at = (size_t)around < o->count ? (size_t)around : 0, k = o->piece[at] / 2;
+    const double part = around - (double)at;
+    if (o->piece[at] % 2)
+        return find_arc_point(o->body, k, part);
+    const struct spot from = find_arc_point(o->body, (k + o->body->count - 1) % o->body->count, 1),
+                      to = find_arc_point(o->body, k, 0);
+    return (struct spot){from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)};
+}
+
+static struct outline make_outline(const struct reference_body *b) {
+    struct outline o = {.body = b};
+    for (size_t k = 0; k < b->count; k++) {
+        const struct spot from = find_arc_point(b, (k + b->count - 1) % b->count, 1), to = find_arc_point(b, k, 0);
+        if (hypot(to.x - from.x, to.y - from.y) > 1e-5 * b->scale)
+            o.piece[o.count++] = 2 * k;
+        if (b->arcs[k].radius > 0)
+            o.piece[o.count++] = 2 * k + 1;
+    }
+    return o;
+}
+
+static double find_far(const struct outline *o, double s, struct spot center) {
+    const struct spot p = find_outline_point(o, s);
+    return hypot(p.x - center.x, p.y - center.y);
+}
+
+/* What contacts there should be. */
+struct expected {
+    size_t count;
+    double separation[MOST_ROWS];
+    struct spot normal[MOST_ROWS]; /* from the piece to the body */
+    bool is_doubtful;              /* something is too close to call */
+};
+
+/* The maximum between s - step and s + step, where there is one. */
+static double refine(const struct outline *o, double s, double step, struct spot center) {
+    const double ratio = 0.6180339887498949;
+    double low = s - step, high = s + step;
+    for (int k = 0; k < 60; k++) {
+        const double a = high - ratio * (high - low), b = low + ratio * (high - low);
+        if (find_far(o, a, center) < find_far(o, b, center))
+            low = a;
+        else
+            high = b;
+    }
+    return (low + high) / 2;
+}
+
+static double wrap(double angle) { return remainder(angle, 2 * PI); }
+
+/* Of a run only its front counts: does what lies at s, or next to it, belong to it? */
+static bool lies_on_front(const struct outline *o, double s) {
+    const double around = fmod(s + (double)o->count, (double)o->count);
+    const size_t before = o->piece[(size_t)(around + (double)o->count - 1e-3) % o->count],
+                 after = o->piece[(size_t)(around + 1e-3) % o->count];
+    const size_t first = 2, last = 2 * (o->body->count - 5);
+    return before >= first && before <= last && after >= first && after <= last;
+}
+
+static void expect_concave(const struct reference_body *piece, const struct reference_body *body, bool run,
+                           double limit, struct expected *out) {
+    const narc_arc *arc = piece->arcs;
+    const struct spot center = place_point(piece, arc->center_x, arc->center_y);
+    const double radius = -arc->radius * piece->scale, turned = atan2(piece->sine, piece->cosine);
+    const double mid = (arc->start + arc->end) / 2 + turned, half = fabs(arc->end - arc->start) / 2;
+    const struct outline outline = make_outline(body), *const o = &outline;
+    const double step = 1.0 / SAMPLES;
+    double found[MOST_ROWS];
+    size_t count = 0;
+    for (double s = 0; s < (double)o->count - step / 2; s += step) {
+        const double here = find_far(o, s, center);
+        if (here < find_far(o, s - step, center) || here < find_far(o, s + step, center))
+            continue;
+        const double peak = refine(o, s, step, center), far = find_far(o, peak, center);
+        const struct spot p = find_outline_point(o, peak);
+        const double n_x = (center.x - p.x) / far, n_y = (center.y - p.y) / far,
+                     off = fabs(wrap(atan2(n_y, n_x) - mid));
+        bool is_known = false;
+        for (size_t k = 0; k < count; k++) {
+            const struct spot q = find_outline_point(o, found[k]);
+            is_known = is_known || hypot(q.x - p.x, q.y - p.y) < 1e-5;
+        }
+        if (is_known || count == MOST_ROWS)
+            continue;
+        found[count++] = peak;
+        const double separation = radius - far;
+        out->is_doubtful = out->is_doubtful || far < 0.02 || fabs(off - half) < 2e-5 || fabs(separation - limit) < 2e-5;
+        if (off <= half && separation < -radius * sin(half)) /* perhaps outside of the circle around the arc */
+            out->is_doubtful = true;
+        if (off > half || separation >= limit || (run && !lies_on_front(o, peak)))
+            continue;
+        out->separation[out->count] = separation;
+        out->normal[out->count++] = (struct spot){n_x, n_y};
+    }
+}
+
+/* Is a direction, away from a run in its own frame, one of the front's? */
+static bool is_in_front(const struct reference_body *run, double x, double y, bool *out_doubtful) {
+    const size_t n = run->count;
+    const double begin = run->arcs[0].end, sweep = wrap(run->arcs[n - 5].start - begin - 1) + 1;
+    const double beyond = fabs(wrap(atan2(y, x) - atan2(run->sine, run->cosine) - begin - sweep / 2)) - sweep / 2;
+    const bool is_flat = sweep < 1e-9;
+    *out_doubtful = *out_doubtful || (is_flat ? beyond > 2e-7 && beyond < 1e-5 : fabs(beyond) < 1e-5);
+    return beyond <= (is_flat ? 2e-7 : 0);
+}
+
+static struct expected find_expected(const struct scene *scene, struct pair pair, double limit) {
+    struct expected out = {.count = 0};
+    const struct reference_body a = scene_reference(scene, pair.a), b = scene_reference(scene, pair.b);
+    const bool run_a = is_run(scene, pair.a), run_b = is_run(scene, pair.b);
+    if (is_concave(&a) && is_concave(&b))
+        return out;
+    const double apart = hypot(a.x - b.x, a.y - b.y);
+    if (is_concave(&a) || is_concave(&b)) {
+        const struct reference_body *const piece = is_concave(&a) ? &a : &b, *const body = is_concave(&a) ? &b : &a;
+        const double chord = -piece->arcs->radius * sin((piece->arcs->start - piece->arcs->end) / 2);
+        if (apart > chord * 1.001 + reference_extent(body) + limit + 0.01)
+            return out;
+        expect_concave(piece, body, is_concave(&a) ? run_b : run_a, limit, &out);
+        return out;
+    }
+    const struct reference_gap gap = reference_find_gap(&a, &b);
+    out.is_doubtful = fabs(gap.gap - limit) < 2e-5;
+    const bool front_a = !run_a || is_in_front(&a, gap.normal_x, gap.normal_y, &out.is_doubtful);
+    const bool front_b = !run_b || is_in_front(&b, -gap.normal_x, -gap.normal_y, &out.is_doubtful);
+    if (gap.gap < limit && front_a && front_b) {
+        out.separation[out.count] = gap.gap;
+        out.normal[out.count++] = (struct spot){gap.normal_x, gap.normal_y};
+    }
+    return out;
+}
+
+/* ------------------------------------------------------------------------------------------------ answers */
+
+static size_t capacity_of(const struct ground *g) { return 8 * g->scene.pair_count + 64; }
+
+static struct contacts ask(const struct ground *g, const narc_query *query) {
+    struct contacts out = {make_junk(capacity_of(g) * sizeof *out.rows), 0};
+    assert_int_equal(ask_contacts(&g->scene, query, out.rows, capacity_of(g), &out.count, NULL), NARC_OK);
+    return out;
+}
+
+/* Checks all rows of a query with `margin` against the reference. Returns how many pairs have several. */
+static size_t check_rows(const struct ground *g, const struct contacts *rows) {
+    const struct scene *scene = &g->scene;
+    size_t row = 0, doubts = 0, several = 0;
+    for (uint32_t k = 0; k < scene->pair_count; k++) {
+        const struct pair pair = scene->pairs[k];
+        const struct reference_body a = scene_reference(scene, pair.a), b = scene_reference(scene, pair.b);
+        const struct expected e = find_expected(scene, pair, (double)margin);
+        size_t count = 0;
+        while (row + count < rows->count && rows->rows[row + count].pair == k)
+            count++;
+        if (!e.is_doubtful && count != e.count) {
+            print_pair(&a, &b);
+            fail_msg("pair %u has %zu rows, not %zu (first: %g, row: %g, normal %g %g, feature %04x)", k, count,
+                     e.count, e.count ? e.separation[0] : 0, count ? (double)rows->rows[row].separation : 0,
+                     count ? (double)rows->rows[row].normal_x : 0, count ? (double)rows->rows[row].normal_y : 0,
+                     count ? rows->rows[row].feature : 0);
+        }
+        for (size_t i = 0; i < count && !e.is_doubtful; i++) {
+            const narc_contact *c = &rows->rows[row + i];
+            const double n_x = is_concave(&b) ? -(double)c->normal_x : (double)c->normal_x,
+                         n_y = is_concave(&b) ? -(double)c->normal_y : (double)c->normal_y;
+            double least = INFINITY, other = INFINITY;
+            for (size_t j = 0; j < e.count; j++) {
+                const double turn = hypot(n_x - e.normal[j].x, n_y - e.normal[j].y);
+                other = turn < least ? fabs((double)c->separation - e.separation[j]) : other;
+                least = fmin(least, turn);
+            }
+            if (!(other <= separation_bound(&a, &b)) || (is_concave(&a) != is_concave(&b) && !(least < 1e-3)))
+                fail_msg("pair %u, row %zu of %zu: separation %g is off by %g, the normal by %g", k, i, count,
+                         (double)c->separation, other, least);
+            if (i > 0)
+                assert_true(c[-1].normal_x * c->normal_y - c[-1].normal_y * c->normal_x >= 0);
+            assert_int_equal(c->count, 1);
+        }
+        several += count > 1;
+        doubts += e.is_doubtful;
+        row += count;
+    }
+    assert_int_equal(row, rows->count);
+    if (20 * doubts > scene->pair_count)
+        fail_msg("%zu of %zu pairs are doubtful", doubts, scene->pair_count);
+    return several;
+}
+
+/* The deepest row of a pair, of those from `row` on; NULL if there is none. */
+static const narc_contact *find_deepest(const struct contacts *rows, size_t row, uint32_t pair) {
+    const narc_contact *deepest = NULL;
+    for (; row < rows->count && rows->rows[row].pair == pair; row++)
+        if (!deepest || rows->rows[row].separation < deepest->separation)
+            deepest = &rows->rows[row];
+    return deepest;
+}
+
+/* The same rows, in every form. */
+static void check_forms(const struct ground *g, const struct contacts *right) {
+    const struct scene *scene = &g->scene;
+    const size_t count = scene->pair_count, size = right->count * sizeof *right->rows;
+    const narc_workers two = narc_openmp_workers(2);
+    struct contacts rows = ask(g, &(narc_query){.margin = margin, .workers = &two});
+    assert_int_equal(rows.count, right->count);
+    assert_memory_equal(rows.rows, right->rows, size);
+    free(rows.rows);
+    test_use_isa("scalar");
+    rows = ask(g, &(narc_query){.margin = margin});
+    test_use_isa(test_isa());
+    assert_int_equal(rows.count, right->count);
+    assert_memory_equal(rows.rows, right->rows, size);
+
+    /* little room: the first rows, and how many are needed */
+    const size_t rooms[] = {0, 1, 7, right->count / 2, right->count - 1, right->count};
+    for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) {
+        size_t found = 0;
+        memset(rows.rows, 0x5a, size);
+        const narc_query query = {.margin = margin, .workers = k % 2 ? &two : NULL};
+        const narc_status status = ask_contacts(scene, &query, rows.rows, rooms[k], &found, NULL);
+        assert_int_equal(status, rooms[k] < right->count ? NARC_ERROR_CAPACITY : NARC_OK);
+        assert_int_equal(found, right->count);
+        assert_memory_equal(rows.rows, right->rows, rooms[k] * sizeof *rows.rows);
+        assert_true(is_junk(rows.rows + right->count, sizeof *rows.rows) || k < 10);
+    }
+
+    /* margins of their own, a selection, hints, and one pair at a time */
+    float *margins = malloc(count * sizeof *margins);
+    uint32_t *selection = malloc(count * sizeof *selection), *hints = calloc(count, sizeof *hints);
+    for (size_t k = 0; k < count; k++) {
+        margins[k] = margin;
+        selection[k] = (uint32_t)(count - 1 - k);
+    }
+    size_t found = 0;
+    const narc_query each = {.margins = {margins, sizeof *margins}, .hints = NARC_HINT_ARRAY(hints)};
+    for (int round = 0; round < 2; round++) {
+        assert_int_equal(ask_contacts(scene, &each, rows.rows, capacity_of(g), &found, NULL), NARC_OK);
+        assert_int_equal(found, right->count);
+        assert_memory_equal(rows.rows, right->rows, size);
+    }
+    const narc_query selected = {
+        .margin = margin, .selection = {selection, sizeof *selection}, .selection_count = count};
+    assert_int_equal(ask_contacts(scene, &selected, rows.rows, capacity_of(g), &found, NULL), NARC_OK);
+    assert_int_equal(found, right->count);
+    size_t row = right->count;
+    for (size_t k = 0; k < found;) {
+        size_t same = 0;
+        while (k + same < found && rows.rows[k + same].pair == rows.rows[k].pair)
+            same++;
+        row -= same;
+        assert_memory_equal(&rows.rows[k], &right->rows[row], same * sizeof *rows.rows);
+        k += same;
+    }
+    for (size_t k = 0, at = 0; k < count; k += 1) {
+        const narc_query one = {.margin = margin, .first = k, .count = 1};
+        assert_int_equal(ask_contacts(scene, &one, rows.rows, MOST_ROWS, &found, NULL), NARC_OK);
+        if (found > 0)
+            assert_memory_equal(rows.rows, &right->rows[at], found * sizeof *rows.rows);
+        at += found;
+        if (k + 1 == count)
+            assert_int_equal(at, right->count);
+    }
+
+    /* dense rows, the formula alone, and bits */
+    const narc_query dense = {.margin = margin, .dense = 1};
+    assert_int_equal(ask_contacts(scene, &dense, rows.rows, capacity_of(g), &found, NULL), NARC_OK);
+    uint64_t *bits = scene_overlaps(scene);
+    size_t deepest_count = 0;
+    row = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        const narc_contact *deepest = find_deepest(right, row, k);
+        assert_int_equal(rows.rows[k].count, deepest != NULL);
+        if (deepest)
+            assert_memory_equal(&rows.rows[k], deepest, sizeof *deepest);
+        assert_int_equal(bit_is_set(bits, k), deepest && deepest->separation < 0);
+        deepest_count += deepest != NULL;
+        while (row < right->count && right->rows[row].pair == k)
+            row++;
+    }
+    assert_int_equal(found, deepest_count);
+    test_use_isa("scalar");
+    uint64_t *others = scene_overlaps(scene);
+    test_use_isa(test_isa());
+    assert_memory_equal(bits, others, NARC_BIT_WORDS(count) * sizeof *bits);
+    free(others);
+    free(bits);
+    free(hints);
+    free(selection);
+    free(margins);
+    free(rows.rows);
+}
+
+/* Manifolds: as many rows, each with its contact's normal and separation; the same bits from plain C. */
+static void check_manifolds(const struct ground *g, const struct contacts *right) {
+    const narc_bodies bodies = scene_bodies(&g->scene);
+    const narc_pairs pairs = scene_pairs(&g->scene);
+    const narc_query query = {.margin = margin};
+    narc_manifold *rows = make_junk(capacity_of(g) * sizeof *rows), *others = make_junk(capacity_of(g) * sizeof *rows);
+    size_t found = 0, again = 0;
+    assert_int_equal(narc_find_manifolds(g->scene.store, &bodies, &pairs, &query, rows, capacity_of(g), &found, NULL),
+                     NARC_OK);
+    assert_int_equal(found, right->count);
+    for (size_t k = 0; k < found; k++) {
+        const narc_contact *c = &right->rows[k];
+        assert_int_equal(rows[k].pair, c->pair);
+        assert_true(rows[k].normal_x == c->normal_x && rows[k].normal_y == c->normal_y);
+        assert_in_range(rows[k].count, 1, 2);
+        const float first = rows[k].point[0].separation, second = rows[k].point[rows[k].count - 1].separation;
+        assert_true(c->separation == (first < second ? first : second));
+    }
+    test_use_isa("scalar");
+    assert_int_equal(narc_find_manifolds(g->scene.store, &bodies, &pairs, &query, others, capacity_of(g), &again, NULL),
+                     NARC_OK);
+    test_use_isa(test_isa());
+    assert_int_equal(found, again);
+    assert_memory_equal(rows, others, found * sizeof *rows);
+    free(rows);
+    free(others);
+}
+
+/* The formula alone gives the deepest rows: all batches of a build without shortcuts are answered so. */
+static void check_formula(const struct ground *g, const struct contacts *right) {
+    const narc_bodies bodies = scene_bodies(&g->scene);
+    const narc_pairs pairs = scene_pairs(&g->scene);
+    const narc_query query = {.margin = margin};
+    const narc_batch batch = {.shapes = g->scene.store,
+                              .a = &bodies,
+                              .b = &bodies,
+                              .pairs = &pairs,
+                              .query = &query,
+                              .count = pairs.count,
+                              .asked = pairs.count};
+    narc_contact *rows = make_junk(NARC_ROW_GROUP * sizeof *rows);
+    size_t skipped = 0, further = 0, row = 0, all = 0;
+    for (size_t first = 0; first < pairs.count; first += NARC_ROW_GROUP) {
+        const size_t left = pairs.count - first;
+        const narc_rows out = {.base = (char *)rows, .stride = sizeof *rows, .further = &further};
+        const size_t found =
+            narc_kernels_plain.contact(&batch, first, left < NARC_ROW_GROUP ? left : NARC_ROW_GROUP, &skipped, &out);
+        for (size_t k = 0; k < found; k++) {
+            const narc_contact *deepest = find_deepest(right, row, rows[k].pair);
+            assert_non_null(deepest);
+            rows[k].count %= NARC_FURTHER_ROW;
+            assert_memory_equal(&rows[k], deepest, sizeof *deepest);
+            while (row < right->count && right->rows[row].pair == rows[k].pair)
+                row++;
+        }
+        all += found;
+    }
+    assert_int_equal(row, right->count);
+    assert_int_equal(all + further, right->count);
+    uint64_t *bits = scene_overlaps(&g->scene), *plain = make_junk(NARC_BIT_WORDS(pairs.count) * sizeof *plain);
+    narc_kernels_plain.overlap(&batch, 0, pairs.count, &skipped, plain);
+    assert_memory_equal(bits, plain, NARC_BIT_WORDS(pairs.count) * sizeof *bits);
+    free(bits);
+    free(plain);
+    free(rows);
+}
+
+/* ------------------------------------------------------------------------------------------------ tests */
+
+TEST(test_country) {
+    struct test_random random = test_random_named("country");
+    size_t several = 0, rows = 0;
+    for (size_t round = 0; round < test_trials(12); round++) {
+        struct ground *g = malloc(sizeof *g);
+        while (!make_country(&random, g, 120, (size_t)ENTRIES * 120)) {
+        }
+        add_movers(&random, g, 60);
+        struct contacts right = ask(g, &(narc_query){.margin = margin});
+        several += check_rows(g, &right);
+        rows += right.count;
+        check_forms(g, &right);
+        check_manifolds(g, &right);
+        check_formula(g, &right);
+        free(right.rows);
+        destroy_scene(&g->scene);
+        free(g);
+    }
+    assert_true(several > 0 && rows > 0);
+}
+
+TEST_MAIN("ground")
