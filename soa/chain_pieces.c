@@ -56,7 +56,6 @@ typedef struct divider {
     narc_status status; /* of the first error */
     double reach;       /* the size of what is around */
     double turn;        /* most that pieces of this run turn by */
-    bool is_used;       /* this run has pieces */
     piece piece;
 } divider;
 
@@ -98,14 +97,11 @@ static double measure_front(const piece *p, narc_point begin) {
     for (size_t i = 1; i <= p->count; i++) {
         const narc_arc *arc = &p->arcs[i];
         const narc_point center = {arc->center_x, arc->center_y};
-        size = fmax(size, narc_hypot(center.x, center.y));
-        if (arc->radius == 0)
-            continue;
         const narc_point start = move(center, arc->start, arc->radius), end = move(center, arc->end, arc->radius);
         const double turned = narc_wrap_angle(narc_atan2(center.y, center.x) - (arc->start + arc->end) / 2);
         const double ends = fmax(narc_hypot(start.x, start.y), narc_hypot(end.x, end.y));
-        size = fmax(size,
-                    fabs(turned) <= (arc->end - arc->start) / 2 ? narc_hypot(center.x, center.y) + arc->radius : ends);
+        const bool holds = fabs(turned) <= (arc->end - arc->start) / 2; /* the furthest point of its circle */
+        size = fmax(size, holds ? narc_hypot(center.x, center.y) + arc->radius : ends);
     }
     return size;
 }
@@ -157,7 +153,6 @@ static void end_piece(divider *d, narc_point end) {
         size = d->reach / 8;
     const size_t count = close_run(p, begin, (narc_point){-begin.x, -begin.y}, FAR * size);
     const narc_status status = narc_encode_run(p->arcs, count, &encoded, &reason);
-    d->is_used = true;
     if (status != NARC_OK)
         fail_piece(d, status, p->first_arc, &reason);
     else
@@ -253,29 +248,33 @@ static void divide_run(divider *d, size_t first, size_t end) {
         has_end_line = find_distance(stop, to) > narc_find_chain_room(ends, after);
         to = has_end_line ? extend_line(after, stop, to, chain->weld) : stop;
     }
-    if (first == end && !has_line)
-        return;
     for (size_t k = first; k < end; k++)
         sum += arcs[k].turn;
+    if (sum == 0 && find_distance(from, to) <= narc_find_chain_room(begins, ends))
+        return;
     d->turn = sum / fmax(1, ceil(sum / MAX_TURN)) + 3 * SEAM;
     d->reach = find_reach(chain, before ? first - 1 : first, after ? end : end - 1);
-    d->is_used = false;
-    open_piece(d, from, begins->start, begins->number);
+    /* Without a line an arc itself goes on beyond the bottom of a valley. */
+    const double over = before && !has_line && before->radius == 0 ? SEAM : 0;
+    const double end_over = after && !has_end_line && after->radius == 0 ? SEAM : 0;
+    if (over > 0)
+        from = narc_find_chain_point(begins, -over);
+    if (end_over > 0)
+        to = narc_find_chain_point(ends, ends->turn + end_over);
+    open_piece(d, from, begins->start - over, begins->number);
     narc_point at = from;
     for (size_t k = first; k < end && d->status == NARC_OK; k++) {
         const narc_chain_arc *arc = &arcs[k];
-        const bool is_valley_before = k == first && before && !has_line && before->radius == 0;
-        const bool is_valley_after = k + 1 == end && after && !has_end_line && after->radius == 0;
         if (k > first ? find_distance(at, narc_find_chain_start(arc)) > narc_find_chain_room(arc - 1, arc) : has_line)
             add_line(d, at, narc_find_chain_start(arc), arc->number);
         if (arc->turn > 0)
-            add_arc(d, arc, is_valley_before ? -SEAM : 0, arc->turn + (is_valley_after ? SEAM : 0), k + 1 == end);
+            add_arc(d, arc, k == first ? -over : 0, arc->turn + (k + 1 == end ? end_over : 0), k + 1 == end);
         at = narc_find_chain_end(arc);
     }
     if (has_end_line)
         add_line(d, at, to, after->number);
     end_piece(d, to);
-    d->out->run += d->is_used;
+    d->out->run++;
 }
 
 /* ------------------------------------------------------------------------------------------------ concave arcs */

@@ -195,31 +195,43 @@ narc_status narc_encode_run(const narc_arc *arcs, size_t count, narc_encoded_sha
     return status;
 }
 
-/* The header and the angles of a concave arc that is stored. */
-static void write_concave(narc_encoded_shape *shape, double least_bound) {
-    const narc_stored_arc *arc = &shape->records[1].arc;
+/* Centre and radius of a concave arc that is stored, added. */
+static double find_concave_extent(const narc_stored_arc *arc) {
+    return narc_hypot((double)arc->center_x, (double)arc->center_y) - (double)arc->radius;
+}
+
+/* The circle around the chord's middle: the arc turns by less than half a turn. */
+static float bound_concave(const narc_stored_arc *arc, float *out_x, float *out_y) {
     const double x = (double)arc->center_x, y = (double)arc->center_y, radius = (double)arc->radius;
-    const double n_x = (double)arc->start_x, n_y = (double)arc->start_y, m_x = (double)arc->end_x,
-                 m_y = (double)arc->end_y;
-    /* Around the middle of the chord: the arc turns by less than half a turn. */
-    const double extent = narc_hypot(x, y) - radius, room = NARC_ROUNDING_ROOM * extent;
-    const float bound_x = (float)(x + radius * (n_x + m_x) / 2), bound_y = (float)(y + radius * (n_y + m_y) / 2);
-    const double start = narc_hypot(x + radius * n_x - (double)bound_x, y + radius * n_y - (double)bound_y);
-    const double end = narc_hypot(x + radius * m_x - (double)bound_x, y + radius * m_y - (double)bound_y);
-    const double bound = fmax(fmax(start, end), least_bound) + room;
-    shape->header = (narc_shape_header){.count = 1,
-                                        .first_arc = NARC_PIECE_CONCAVE,
-                                        .flags = (uint8_t)(find_size_class(extent) << NARC_SIZE_CLASS_SHIFT),
-                                        .bound_x = bound_x,
-                                        .bound_y = bound_y,
-                                        .bound_radius = round_up(bound),
-                                        .inner_radius = -INFINITY};
-    shape->header.extent_ratio =
-        (uint8_t)fmin(UINT8_MAX, ceil(extent * (1 + 1e-6) / (double)shape->header.bound_radius));
-    const float angle = find_diamond_angle(arc->start_x, arc->start_y);
+    const narc_point start = {x + radius * (double)arc->start_x, y + radius * (double)arc->start_y};
+    const narc_point end = {x + radius * (double)arc->end_x, y + radius * (double)arc->end_y};
+    const float m_x = (float)((start.x + end.x) / 2), m_y = (float)((start.y + end.y) / 2);
+    *out_x = m_x;
+    *out_y = m_y;
+    return round_up(fmax(narc_hypot(start.x - (double)m_x, start.y - (double)m_y),
+                         narc_hypot(end.x - (double)m_x, end.y - (double)m_y)) +
+                    NARC_ROUNDING_ROOM * find_concave_extent(arc));
+}
+
+/* The header and the angles of a concave arc that is stored, with a circle of at least this radius. */
+static void write_concave(narc_encoded_shape *shape, float least_bound) {
+    const narc_stored_arc *arc = &shape->records[1].arc;
+    const double extent = find_concave_extent(arc);
+    float x, y;
+    const float bound = fmaxf(bound_concave(arc, &x, &y), least_bound);
+    shape->header =
+        (narc_shape_header){.count = 1,
+                            .first_arc = NARC_PIECE_CONCAVE,
+                            .flags = (uint8_t)(find_size_class(extent) << NARC_SIZE_CLASS_SHIFT),
+                            .extent_ratio = (uint8_t)fmin(UINT8_MAX, ceil(extent * (1 + 1e-6) / (double)bound)),
+                            .bound_x = x,
+                            .bound_y = y,
+                            .bound_radius = bound,
+                            .inner_radius = -INFINITY};
     for (size_t k = 0; k < NARC_RECORD_ANGLES; k++)
-        shape->records[0].angles[k] =
-            k == 0 ? (int16_t)(angle * NARC_ANGLE_SCALE - NARC_ANGLE_OFFSET) : NARC_ANGLE_NONE;
+        shape->records[0].angles[k] = NARC_ANGLE_NONE;
+    shape->records[0].angles[0] =
+        (int16_t)(find_diamond_angle(arc->start_x, arc->start_y) * NARC_ANGLE_SCALE - NARC_ANGLE_OFFSET);
 }
 
 narc_status narc_encode_concave(const narc_arc *arc, double least_bound, narc_encoded_shape *out_shape,
@@ -234,7 +246,7 @@ narc_status narc_encode_concave(const narc_arc *arc, double least_bound, narc_en
                                                   .start_y = (float)start.y,
                                                   .end_x = (float)end.x,
                                                   .end_y = (float)end.y};
-    write_concave(out_shape, least_bound);
+    write_concave(out_shape, (float)least_bound);
     const double bound = (double)out_shape->header.bound_radius;
     if (!(bound >= NARC_MIN_SIZE && bound <= NARC_MAX_BOUND_RADIUS))
         return narc_fail(error, NARC_ERROR_SIZE, 0, bound, "its bounding radius is %g, not in %g .. %g", bound,
@@ -417,17 +429,15 @@ static narc_status restore_concave(narc_encoded_shape *shape, narc_error *error)
     if (header.count != 1 || header.first_arc != NARC_PIECE_CONCAVE || a->inner_radii != 0)
         return fail_stored(error, "a piece of a chain that is none");
     if (!isfinite(a->center_x) || !isfinite(a->center_y) || !isfinite(a->radius) || !signbit(a->radius) ||
-        !(header.bound_radius >= (float)NARC_MIN_SIZE && header.bound_radius <= (float)NARC_MAX_BOUND_RADIUS))
+        !(header.bound_radius >= (float)NARC_MIN_SIZE && header.bound_radius <= (float)NARC_MAX_BOUND_RADIUS) ||
+        find_concave_extent(a) > 5 * NARC_MAX_RADIUS_RATIO * NARC_MAX_SIZE)
         return fail_stored(error, "a number that no concave arc has");
     if (!(fabs(x * x + y * y - 1) <= UNIT_SLACK) || !(fabs(end_x * end_x + end_y * end_y - 1) <= UNIT_SLACK) ||
         !(x * end_y - y * end_x >= NARC_TOLERANCE / 4))
         return fail_stored(error, "a concave arc that does not turn");
-    write_concave(shape, 0);
-    const float least = shape->header.bound_radius;
-    shape->header.bound_radius = header.bound_radius;
-    shape->header.extent_ratio = header.extent_ratio;
-    if (!(least <= header.bound_radius) || !((double)least >= -(double)a->radius / (5 * NARC_MAX_RADIUS_RATIO)) ||
-        memcmp(&shape->header, &header, sizeof header) != 0)
+    write_concave(shape, header.bound_radius);
+    if (memcmp(&shape->header, &header, sizeof header) != 0 ||
+        -(double)a->radius > 5 * NARC_MAX_RADIUS_RATIO * (double)header.bound_radius)
         return fail_stored(error, "a concave arc whose header is another's");
     return NARC_OK;
 }

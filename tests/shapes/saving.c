@@ -13,6 +13,7 @@
 #include "store.h"
 #include "support.h"
 #include "tests.h"
+#include "turtle.h"
 
 enum { START = 40, AT_VERSION = 8, AT_SIZE = 24, AT_CHECKSUM = 32 };
 
@@ -47,6 +48,7 @@ static void expect_same_store(const narc_shapes *a, const narc_shapes *b) {
     assert_int_equal(a->last_removed, b->last_removed);
     assert_int_equal(a->used_records, b->used_records);
     assert_int_equal(a->box_count, b->box_count);
+    assert_int_equal(a->piece_count, b->piece_count);
     for (uint32_t k = 0; k < a->count; k++) {
         narc_shape_header header = a->headers[k];
         assert_int_equal(narc_count_uses(a, k), narc_count_uses(b, k));
@@ -59,7 +61,7 @@ static void expect_same_store(const narc_shapes *a, const narc_shapes *b) {
         assert_memory_equal(&header, &b->headers[k], sizeof header);
         assert_memory_equal(&a->boxes[k], &b->boxes[k], sizeof *a->boxes);
         assert_memory_equal(&a->records[a->headers[k].first_record], &b->records[header.first_record],
-                            (narc_angle_records(header.count) + header.count) * sizeof(narc_record));
+                            narc_count_records(header.count) * sizeof(narc_record));
     }
 }
 
@@ -329,4 +331,108 @@ TEST(forged_bytes_do_no_harm) {
     narc_destroy_shapes(shapes);
     free(bytes);
     free(forged);
+}
+
+/* ------------------------------------------------------------------------------------------------ pieces of chains */
+
+static narc_shapes *make_ground_store(struct test_random *random) {
+    narc_shapes *shapes = empty_store();
+    narc_chain_entry entries[400];
+    size_t count;
+    narc_error error;
+    for (int k = 0; k < 4; k++) {
+        struct turtle t = walk_ground(random, 20, 1.2);
+        expect_ok(narc_add_chain(shapes, t.arcs, t.count, NULL, entries, 400, &count, &error), &error);
+        free(t.arcs);
+        store_shape(shapes, box_of(1, 2 + k, 0));
+    }
+    return shapes;
+}
+
+TEST(saves_pieces_of_chains) {
+    struct test_random random = test_random_named("pieces"), again = random;
+    narc_shapes *shapes = make_ground_store(&random), *loaded = NULL;
+    size_t size;
+    unsigned char *bytes = save(shapes, &size), *copy = malloc(size);
+    narc_error error;
+    assert_non_null(copy);
+    expect_ok(narc_load_shapes(NULL, bytes, size, &loaded, &error), &error);
+    expect_same_store(shapes, loaded);
+    assert_int_equal(loaded->piece_count, narc_count_shapes(shapes) - 4);
+    expect_ok(narc_save_shapes(loaded, copy, size, &error), &error);
+    assert_memory_equal(copy, bytes, size);
+    narc_shapes *same = make_ground_store(&again); /* chains are divided into the same bits */
+    expect_same_store(shapes, same);
+    narc_destroy_shapes(same);
+    narc_destroy_shapes(shapes);
+    narc_destroy_shapes(loaded);
+    free(bytes);
+    free(copy);
+}
+
+/* A store of one shape from forged bytes: is it refused? */
+static void check_piece_forgery(const unsigned char *bytes, size_t size, size_t at, const void *forged, size_t length) {
+    narc_shapes *loaded = NULL;
+    unsigned char *copy = malloc(size);
+    narc_error error;
+    assert_non_null(copy);
+    memcpy(copy, bytes, size);
+    memcpy(copy + at, forged, length);
+    write_checksum(copy, size);
+    const narc_status status = narc_load_shapes(NULL, copy, size, &loaded, &error);
+    if (status != NARC_ERROR_FORMAT)
+        fail_msg("a forgery at byte %zu: %s", at, narc_status_name(status));
+    free(copy);
+}
+
+static void check_float_forgery(const unsigned char *bytes, size_t size, size_t at, float forged) {
+    unsigned char word[4];
+    uint32_t bits;
+    memcpy(&bits, &forged, sizeof bits);
+    write_word(word, bits);
+    check_piece_forgery(bytes, size, at, word, sizeof word);
+}
+
+/* What is stored of a piece is not believed: one number that is wrong, and it is refused. */
+TEST(refuses_forged_pieces) {
+    enum { SHAPE = START + 4, MARK = SHAPE + 1, CIRCLE = SHAPE + 4, ARCS = SHAPE + 28, ARC = 32 };
+    const struct {
+        size_t at;
+        float value;
+    } numbers[] = {{CIRCLE, 1},      {CIRCLE + 4, NAN}, {CIRCLE + 8, 1e-12f}, {CIRCLE + 8, 3e9f},
+                   {CIRCLE + 20, 1}, {ARCS, INFINITY},  {ARCS + 8, 1},        {ARCS + 8, -1e9f},
+                   {ARCS + 12, 1},   {ARCS + 16, 2},    {ARCS + 24, NAN}};
+    const unsigned char marks[] = {0, NARC_PIECE_RUN, NARC_PIECE_CONCAVE + 1, NARC_PIECE_CONCAVE + NARC_PIECE_RUN};
+    for (int concave = 0; concave < 2; concave++) {
+        struct turtle t = create_turtle(0, 0, 0);
+        narc_chain_entry entry;
+        narc_shapes *shapes = empty_store();
+        size_t size, count;
+        walk_arc(&t, 3, concave ? -1 : 1);
+        assert_int_equal(narc_add_chain(shapes, t.arcs, t.count, NULL, &entry, 1, &count, NULL), NARC_OK);
+        unsigned char *bytes = save(shapes, &size);
+        const unsigned char mark = bytes[MARK];
+        for (size_t k = 0; k < sizeof numbers / sizeof *numbers && concave; k++)
+            check_float_forgery(bytes, size, numbers[k].at, numbers[k].value);
+        for (size_t k = 0; k < sizeof marks && concave; k++)
+            check_piece_forgery(bytes, size, MARK, &marks[k], 1);
+        for (size_t k = 0; k < 7 && !concave; k++) /* a corner of the closure that is none */
+            if ((k + (mark & NARC_FIRST_ARC)) % 7 != 1)
+                check_float_forgery(bytes, size, ARCS + k * ARC + 8, 0x1p-21f);
+        if (!concave) {
+            const unsigned char forged = mark | NARC_PIECE_CONCAVE;
+            check_piece_forgery(bytes, size, MARK, &forged, 1);
+        }
+        free(bytes);
+        narc_destroy_shapes(shapes);
+        free(t.arcs);
+    }
+    narc_shapes *shapes = empty_store(); /* a shape that is no closed run */
+    size_t size;
+    store_shape(shapes, box_of(1, 2, 0));
+    unsigned char *bytes = save(shapes, &size);
+    const unsigned char forged = bytes[MARK] | NARC_PIECE_RUN;
+    check_piece_forgery(bytes, size, MARK, &forged, 1);
+    narc_destroy_shapes(shapes);
+    free(bytes);
 }
