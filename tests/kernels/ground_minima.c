@@ -255,10 +255,11 @@ static const char *check_row(const struct setting *setting, const struct ground_
     return find_end_distance(&setting->chain, told->foot) <= 8 * told->bound ? NULL : "foot not on the ground";
 }
 
-/* Do two rows tell of one contact? With the same normal, and next to each other. */
-static bool is_same(const struct told *one, const struct told *other, double size) {
-    return hypot(one->normal_x - other->normal_x, one->normal_y - other->normal_y) < 1e-4 &&
-           distance_between(one->at, other->at) < 1e-2 * size;
+/* Do two rows tell of one contact, which merging should have made one? */
+static bool is_same(const struct reference_body *body, const struct told *one, const struct told *other) {
+    const double away = hypot(one->at.x - body->x, one->at.y - body->y);
+    return hypot(one->normal_x - other->normal_x, one->normal_y - other->normal_y) < 0.9e-3 &&
+           distance_between(one->at, other->at) < 0.9 / 4096 * away;
 }
 
 /* What became of a row. */
@@ -293,7 +294,7 @@ static const char *compare(const struct setting *setting, size_t k, const struct
             if (error > told[i].bound || ground_barrier(search, along, minima[m].along) > level + 2 * bound)
                 continue;
             for (size_t j = 0; j < i; j++)
-                if (fate[j] == FATE_MATCHED && is_same(&told[i], &told[j], size))
+                if (fate[j] == FATE_MATCHED && is_same(body, &told[i], &told[j]))
                     wrong = "told twice";
             told_by[m]++;
             fate[i] = FATE_MATCHED;
@@ -305,7 +306,7 @@ static const char *compare(const struct setting *setting, size_t k, const struct
             fate[i] = FATE_NEARER; /* of a valley the other side */
         if (fate[i] == FATE_WRONG && !isfinite(nearest))
             fate[i] = FATE_DEEP; /* an open end is nearer */
-        if (fate[i] == FATE_WRONG && ground_least(search, along, 2e-4 * size) >= nearest - 4 * bound)
+        if (fate[i] == FATE_WRONG && ground_least(search, along, 8 * bound) >= nearest - 4 * bound)
             fate[i] = FATE_SHALLOW; /* the distance does not fall there but by rounding */
         if (fate[i] == FATE_WRONG && !wrong)
             wrong = "not a minimum";

@@ -41,6 +41,8 @@ static double choose_sweep(struct test_random *random, const struct walk *walk, 
 
 /* One piece, if there is room to turn. */
 static void put_piece(struct test_random *random, struct walk *walk, enum chain_family family, double size) {
+    if (walk->count == 0)
+        put_arc(walk, 0, 0); /* an edge needs a beginning */
     const bool left = random_below(random, 2);
     const bool sharp = family == CHAIN_STEPS || (family == CHAIN_MIXED && random_below(random, 2)) ||
                        (family != CHAIN_HILLS && random_below(random, 6) == 0);
@@ -134,6 +136,9 @@ static struct chain make_open(struct test_random *random, enum chain_family fami
     } else if (random_below(random, 2)) {
         put_arc(&walk, 0, 0);
         put_edge(&walk, random_log_between(random, 0.1, 2));
+    } else {
+        const double sign = random_below(random, 2) ? 1 : -1;
+        put_arc(&walk, sign * 0.5, sign * random_between(random, 0.05, 0.4));
     }
     const size_t begun = walk.count;
     for (size_t k = 0; k < pieces && walk.count < CHAIN_ARCS - 16; k++) {
