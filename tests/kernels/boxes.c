@@ -14,6 +14,8 @@
 #include "narc_broad_phase.h"
 #include "placements.h"
 #include "scene.h"
+#include "store.h"
+#include "turtle.h"
 
 enum { SIDES = 4 };
 
@@ -249,6 +251,136 @@ TEST(joins_both_ends_of_a_motion) {
     guard_release(both);
     guard_release(after);
     destroy_scene(&scene);
+}
+
+/* ------------------------------------------------------------------------------------------------ pieces of chains */
+
+/* What a body of a front reaches, seen at many of its points: of the stored arcs, all of a concave one, of a run arcs
+ * 1 .. count - 6 and the points of the corners beside them. */
+static void find_front_reaches(const narc_shapes *shapes, const narc_body *body, double reach[SIDES],
+                               double *out_extent) {
+    enum { STEPS = 500 };
+    narc_arc arcs[NARC_MAX_ARCS];
+    const size_t count = narc_get_arcs(shapes, body->shape, arcs);
+    const double length = hypot((double)body->cosine, (double)body->sine), scale = (double)body->scale;
+    const double c = (double)body->cosine / length, s = (double)body->sine / length;
+    *out_extent = 0;
+    for (int side = 0; side < SIDES; side++)
+        reach[side] = -INFINITY;
+    for (size_t k = 0; k < (count > 1 ? count - 4 : 1); k++) {
+        const bool is_end = count > 1 && (k == 0 || k == count - 5);
+        const double turn = is_end ? 0 : remainder(arcs[k].end - arcs[k].start, 2 * TEST_PI);
+        *out_extent = fmax(*out_extent, scale * (hypot(arcs[k].center_x, arcs[k].center_y) + fabs(arcs[k].radius)));
+        for (int step = 0; step <= STEPS; step++) {
+            const double angle = arcs[k].start + turn * step / STEPS;
+            const double x = scale * (arcs[k].center_x + arcs[k].radius * cos(angle));
+            const double y = scale * (arcs[k].center_y + arcs[k].radius * sin(angle));
+            const double own[SIDES] = {c * x - s * y, s * x + c * y, s * y - c * x, -s * x - c * y};
+            for (int side = 0; side < SIDES; side++)
+                reach[side] = fmax(reach[side], own[side]);
+        }
+    }
+}
+
+/* Bodies of pieces among others have the box of their front alone. */
+TEST(holds_fronts_of_chains) {
+    struct test_random random = test_random_named("fronts");
+    enum { BODIES = 300, ENTRIES = 200 };
+    for (size_t trial = 0; trial < test_trials(12); trial++) {
+        struct turtle t = walk_ground(&random, 1 + random_below(&random, 30), 1.2);
+        narc_chain_entry entries[ENTRIES];
+        narc_body rows[BODIES];
+        size_t count;
+        narc_shapes *shapes = NULL;
+        uint32_t plain;
+        assert_int_equal(narc_create_shapes(&guard_allocator, &shapes), NARC_OK);
+        const struct shape shape = make_shape(&random, (enum family)random_below(&random, FAMILY_COUNT));
+        assert_int_equal(narc_add_shape(shapes, shape.arcs, shape.count, &plain, NULL), NARC_OK);
+        narc_box *const without = guard_allocate(BODIES * sizeof *without);
+        narc_box *const boxes = guard_allocate(BODIES * sizeof *boxes);
+        for (size_t k = 0; k < BODIES; k++)
+            rows[k] = (narc_body){random_between(&random, -9, 9),
+                                  random_between(&random, -9, 9),
+                                  0,
+                                  0,
+                                  (float)random_log_between(&random, 0.1, 10),
+                                  plain};
+        for (size_t k = 0; k < BODIES; k++) {
+            const double angle = random_below(&random, 4) ? random_between(&random, 0, 7) : 0;
+            rows[k].cosine = (float)cos(angle);
+            rows[k].sine = (float)sin(angle);
+        }
+        const narc_bodies bodies = narc_view_bodies(rows, BODIES);
+        assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, without, NULL), NARC_OK);
+        assert_int_equal(narc_add_chain(shapes, t.arcs, t.count, NULL, entries, ENTRIES, &count, NULL), NARC_OK);
+        for (size_t k = 0; k < BODIES; k++)
+            if (random_below(&random, 3))
+                rows[k].shape = entries[random_below(&random, count)].shape;
+        test_use_isa("scalar");
+        narc_box *const scalar = guard_allocate(BODIES * sizeof *scalar);
+        assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, scalar, NULL), NARC_OK);
+        test_use_isa(test_isa());
+        assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, boxes, NULL), NARC_OK);
+        assert_memory_equal(boxes, scalar, BODIES * sizeof *boxes);
+        for (size_t k = 0; k < BODIES; k++) {
+            double reach[SIDES], found[SIDES], extent;
+            if (rows[k].shape == plain) {
+                assert_memory_equal(&boxes[k], &without[k], sizeof *boxes);
+                continue;
+            }
+            find_front_reaches(shapes, &rows[k], reach, &extent);
+            unfold(&boxes[k], found);
+            const double at[SIDES] = {rows[k].x, rows[k].y, -rows[k].x, -rows[k].y};
+            for (int side = 0; side < SIDES; side++) {
+                const double excess = found[side] - at[side] - reach[side];
+                const double unseen = 0x1p-20 * extent; /* 2 rad in 500 steps: a sagitta of 5e-7 */
+                if (!(excess >= -0x1p-40 * extent &&
+                      excess <= NARC_BOX_ROOM * (fabs(at[side]) + extent) + unseen + 0x1p-70))
+                    fail_msg("side %d of a front: %g too large, of %g", side, excess, extent);
+            }
+        }
+        narc_destroy_shapes(shapes);
+        guard_release(without);
+        guard_release(boxes);
+        guard_release(scalar);
+        free(t.arcs);
+    }
+}
+
+/* Shapes with two arcs, or one, beside one with most: their angles are read as if they had as many. Nothing behind the
+ * store's memory is. */
+TEST(reads_no_further_than_the_store) {
+    for (int concave = 0; concave < 2; concave++) {
+        narc_shapes *shapes = NULL;
+        narc_arc arcs[NARC_MAX_ARCS];
+        narc_body rows[32];
+        narc_box boxes[32];
+        size_t count;
+        assert_int_equal(narc_create_shapes(&guard_allocator, &shapes), NARC_OK);
+        assert_int_equal(narc_build_regular_polygon(64, 1, 0, arcs, &count, NULL), NARC_OK);
+        assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
+        uint32_t last = 0;
+        for (int k = 0; shapes->record_count < 2 * 71 - 2 * (size_t)concave; k++) { /* doubled when it was full */
+            assert_int_equal(narc_build_box(2, 3 + k, 0, arcs, &count, NULL), NARC_OK);
+            if (k > 0)
+                assert_int_equal(narc_build_circle(k, arcs, &count, NULL), NARC_OK);
+            if (concave && k == 1)
+                assert_int_equal(narc_build_regular_polygon(3, 1, 0, arcs, &count, NULL), NARC_OK);
+            assert_int_equal(narc_add_shape(shapes, arcs, count, &last, NULL), NARC_OK);
+        }
+        if (concave) {
+            const narc_arc valley = {0, 0, -1, 1, 0};
+            narc_chain_entry entry;
+            assert_int_equal(narc_add_chain(shapes, &valley, 1, NULL, &entry, 1, &count, NULL), NARC_OK);
+            last = entry.shape;
+        }
+        assert_int_equal(shapes->record_count, shapes->record_capacity);
+        for (size_t k = 0; k < 32; k++)
+            rows[k] = (narc_body){0, 0, 1, 0, 1, k % 2 ? last : 0};
+        const narc_bodies bodies = narc_view_bodies(rows, 32);
+        assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, boxes, NULL), NARC_OK);
+        narc_destroy_shapes(shapes);
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------ splits */
