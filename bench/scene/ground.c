@@ -216,9 +216,10 @@ static void slide_over_edges(void) {
                 worst_separation = fmax(worst_separation, fabs((double)rows[i].point[p].separation + 0.001));
         }
     }
-    printf("Box over %d edges in line (%zu entries): %zu steps, %zu without one contact of two points; greatest tilt of "
-           "the normal %.1e, greatest error of a separation %.1e\n",
-           EDGES, g.count, steps, others, worst, worst_separation);
+    printf(
+        "Box over %d edges in line (%zu entries): %zu steps, %zu without one contact of two points; greatest tilt of "
+        "the normal %.1e, greatest error of a separation %.1e\n",
+        EDGES, g.count, steps, others, worst, worst_separation);
     destroy_ground(&g);
     free(walk.arcs);
 }
@@ -348,11 +349,7 @@ static void compare_cost(size_t count, size_t pieces, size_t rounds) {
             continue;
         at = x;
         for (int level = 0; level < 3; level++, made++)
-            bodies[made] = (narc_body){.x = x,
-                                       .y = y + 0.53 + 1.001 * level,
-                                       .cosine = 1,
-                                       .scale = 1,
-                                       .shape = shape};
+            bodies[made] = (narc_body){.x = x, .y = y + 0.53 + 1.001 * level, .cosine = 1, .scale = 1, .shape = shape};
     }
     const narc_bodies all = narc_view_bodies(bodies, made);
     narc_broad_phase *broad;
@@ -374,9 +371,10 @@ static void compare_cost(size_t count, size_t pieces, size_t rounds) {
         ground[round] = (now() - between) / 1e6;
     }
     const double body_time = quantile(alone, rounds, 0.5), ground_time = quantile(ground, rounds, 0.5);
-    printf("%zu bodies on %zu pieces (%zu entries): pairs and manifolds of bodies %.2f ms (%zu rows), of the ground %.2f "
-           "ms more (%zu rows), %.0f %%\n",
-           made, walk.count, g.count, body_time, found, ground_time, merged, 100 * ground_time / body_time);
+    printf(
+        "%zu bodies on %zu pieces (%zu entries): pairs and manifolds of bodies %.2f ms (%zu rows), of the ground %.2f "
+        "ms more (%zu rows), %.0f %%\n",
+        made, walk.count, g.count, body_time, found, ground_time, merged, 100 * ground_time / body_time);
     narc_destroy_broad_phase(broad);
     destroy_ground(&g);
     free(bodies);

@@ -209,6 +209,21 @@ static double find_end_distance(const struct chain *chain, narc_point point) {
     return chain->closed ? INFINITY : fmin(distance_between(from, point), distance_between(to, point));
 }
 
+/* Does a point lie where two pieces meet? Seams reach beyond that: arcs by 1e-4 rad, edges by 2^-16 of their length. */
+static bool is_at_seam(const struct chain *chain, narc_point point, double bound) {
+    for (size_t k = 0; k < chain->count; k++) {
+        const narc_arc *arc = &chain->arcs[k];
+        const double seam = 4 * bound + 1.1e-4 * (1 + fabs(arc->radius));
+        for (int end = 0; end < 2; end++) {
+            const double angle = end ? arc->end : arc->start;
+            if (hypot(arc->center_x + arc->radius * cos(angle) - point.x,
+                      arc->center_y + arc->radius * sin(angle) - point.y) < seam)
+                return true;
+        }
+    }
+    return false;
+}
+
 /* Does a point of the chain lie in a body? */
 static bool holds(const struct reference_body *body, narc_point point) {
     const double x = (point.x - body->x) / body->scale, y = (point.y - body->y) / body->scale;
@@ -306,8 +321,9 @@ static const char *compare(const struct setting *setting, size_t k, const struct
             fate[i] = FATE_NEARER; /* of a valley the other side */
         if (fate[i] == FATE_WRONG && !isfinite(nearest))
             fate[i] = FATE_DEEP; /* an open end is nearer */
-        if (fate[i] == FATE_WRONG && ground_least(search, along, 8 * bound) >= nearest - 4 * bound)
-            fate[i] = FATE_SHALLOW; /* the distance does not fall there but by rounding */
+        if (fate[i] == FATE_WRONG && (ground_least(search, along, 2e-4 * size) >= nearest - 4 * bound ||
+                                      is_at_seam(&setting->chain, told[i].foot, told[i].bound)))
+            fate[i] = FATE_SHALLOW; /* the distance does not fall there but by rounding, or beyond a seam */
         if (fate[i] == FATE_WRONG && !wrong)
             wrong = "not a minimum";
     }

@@ -107,8 +107,8 @@ static struct chain make_closed(struct test_random *random, narc_arc *arcs) {
         const double before = hypot(q->x - p->x, q->y - p->y), after = hypot(r->x - q->x, r->y - q->y);
         const double heading = atan2(q->y - p->y, q->x - p->x);
         const double turn = remainder(atan2(r->y - q->y, r->x - q->x) - heading, 2 * pi);
-        if (fabs(turn) < 1e-3)
-            continue; /* the corner stays off by next to nothing: its edges would not join */
+        if (fabs(turn) < 1e-2)
+            return make_closed(random, arcs);
         const double most = fmin(before, after) / 2 / tan(fabs(turn) / 2);
         const double radius = random_below(random, 4) ? most * random_between(random, 0.05, 0.99) : 0;
         const double cut = radius * tan(fabs(turn) / 2), normal = heading - pi / 2;
