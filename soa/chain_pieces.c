@@ -20,7 +20,7 @@
 
 /* How far, in radians, parts of a cut arc reach beyond the cut, and concave arcs and runs beyond where they meet: an edge
  * of a body that lies along the tangent there has its normal on either side, by rounding. */
-#define SEAM 1e-4
+#define SEAM 2e-5
 
 /* How far parts of a cut straight line reach beyond the cut, relative to the longest straight part; and edges beyond the
  * bottom of a valley, relative to their length. */

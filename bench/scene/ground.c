@@ -16,8 +16,6 @@
 #include "random.h"
 #include "setting.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* ------------------------------------------------------------------------------------------------ ground */
 
 /* A chain by walking from right to left, the air above; and a place on it that a ball's contact is compared with. */

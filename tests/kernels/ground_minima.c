@@ -231,6 +231,21 @@ static bool holds(const struct reference_body *body, narc_point point) {
                                (narc_point){body->cosine * x + body->sine * y, body->cosine * y - body->sine * x});
 }
 
+/* Is the ground's outline there out of a body's reach: too deep for the body, or for pieces that are so small; or does
+ * the body have an open end within, where the ground has no other side? */
+static bool is_beyond(const struct setting *setting, const struct reference_body *body,
+                      const struct ground_minimum *minimum) {
+    const narc_arc *first = &setting->chain.arcs[0], *last = &setting->chain.arcs[setting->chain.count - 1];
+    const narc_point from = {first->center_x + first->radius * cos(first->start),
+                             first->center_y + first->radius * sin(first->start)};
+    const narc_point to = {last->center_x + last->radius * cos(last->end),
+                           last->center_y + last->radius * sin(last->end)};
+    if (minimum->foot.distance >= 0)
+        return false;
+    return !holds(body, minimum->foot.at) || minimum->foot.distance < -chain_grain(&setting->chain) ||
+           (!setting->chain.closed && (holds(body, from) || holds(body, to)));
+}
+
 /* Is a row what it says: do both points lie where they should, with that normal? `size` of the body. */
 static const char *check_row(const struct setting *setting, const struct ground_search *search,
                              const struct reference_body *body, const struct told *told, double size) {
@@ -332,7 +347,7 @@ static const char *compare(const struct setting *setting, size_t k, const struct
         const double distance = minima[m].foot.distance;
         if (told_by[m])
             matched++;
-        else if (minima[m].doubtful || (distance < 0 && !holds(body, minima[m].foot.at)))
+        else if (minima[m].doubtful || is_beyond(setting, body, &minima[m]))
             beyond++;
         else if (distance >= setting->margin - bound || minima[m].depth < 4 * bound)
             shallow++;

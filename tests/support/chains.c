@@ -133,6 +133,7 @@ static struct chain make_open(struct test_random *random, enum chain_family fami
     if (capped) {
         walk.heading -= pi / 2;
         put_arc(&walk, 0, pi / 2);
+        put_edge(&walk, random_log_between(random, 0.1, 2));
     } else if (random_below(random, 2)) {
         put_arc(&walk, 0, 0);
         put_edge(&walk, random_log_between(random, 0.1, 2));
