@@ -18,7 +18,7 @@
 #define DEFAULT_WELD 32.0
 
 /* Parts of a closed convex chain overlap so where it is cut first; see SEAM in chain_pieces.c. */
-#define CUT 1e-4
+#define CUT 2e-5
 
 static const size_t max_count = (size_t)1 << 30;
 

@@ -18,8 +18,9 @@
 #include "error.h"
 #include "outline.h"
 
-/* How far, in radians, parts of a cut arc reach beyond the cut, and concave arcs beyond their ends. */
-#define SEAM 1e-4
+/* How far, in radians, parts of a cut arc reach beyond the cut, and concave arcs and runs beyond where they meet: an edge
+ * of a body that lies along the tangent there has its normal on either side, by rounding. */
+#define SEAM 2e-5
 
 /* How far parts of a cut straight line reach beyond the cut, relative to the longest straight part; and edges beyond the
  * bottom of a valley, relative to their length. */
@@ -38,7 +39,7 @@
 /* The front of a run is a point if it is smaller than this many times its neighbours; then their size serves. */
 #define POINT 0x1p-20
 
-enum { CLOSURE_ARCS = 6, MAX_FRONT = NARC_MAX_ARCS - CLOSURE_ARCS - 1 };
+enum { CLOSURE_ARCS = 6, MAX_FRONT = NARC_MAX_ARCS - CLOSURE_ARCS - 3 };
 
 /* The piece of a run that is being made: its front are arcs 1 .. count. */
 typedef struct piece {
@@ -252,16 +253,18 @@ static void divide_run(divider *d, size_t first, size_t end) {
         sum += arcs[k].turn;
     if (sum == 0 && find_distance(from, to) <= narc_find_chain_room(begins, ends))
         return;
-    d->turn = sum / fmax(1, ceil(sum / MAX_TURN)) + 3 * SEAM;
+    d->turn = sum / fmax(1, ceil(sum / MAX_TURN)) + 4 * SEAM;
     d->reach = find_reach(chain, before ? first - 1 : first, after ? end : end - 1);
-    /* Without a line an arc itself goes on beyond the bottom of a valley. */
-    const double over = before && !has_line && before->radius == 0 ? SEAM : 0;
-    const double end_over = after && !has_end_line && after->radius == 0 ? SEAM : 0;
+    /* An arc goes on beyond the end itself, a line turns there by a corner, but at the bottom of a valley. */
+    const double over = before && !has_line ? SEAM : 0, end_over = after && !has_end_line ? SEAM : 0;
+    const bool has_corner = has_line && before->radius != 0, has_end_corner = has_end_line && after->radius != 0;
     if (over > 0)
         from = narc_find_chain_point(begins, -over);
     if (end_over > 0)
         to = narc_find_chain_point(ends, ends->turn + end_over);
-    open_piece(d, from, begins->start - over, begins->number);
+    open_piece(d, from, begins->start - (has_corner ? SEAM : over), begins->number);
+    if (has_corner)
+        put_arc(d, &(narc_chain_arc){from.x, from.y, 0, begins->start - SEAM, SEAM, before->number}, 0, SEAM);
     narc_point at = from;
     for (size_t k = first; k < end && d->status == NARC_OK; k++) {
         const narc_chain_arc *arc = &arcs[k];
@@ -273,6 +276,8 @@ static void divide_run(divider *d, size_t first, size_t end) {
     }
     if (has_end_line)
         add_line(d, at, to, after->number);
+    if (has_end_corner)
+        put_arc(d, &(narc_chain_arc){to.x, to.y, 0, d->piece.end_angle, SEAM, after->number}, 0, SEAM);
     end_piece(d, to);
     d->out->run++;
 }

@@ -86,9 +86,10 @@ NARC_API narc_status narc_add_chain(narc_shapes *shapes, const narc_arc *arcs, s
  *   pairs   those of the query, whose bodies `a` are asked about and whose bodies `b` are all entries of chains
  *   run     of each body `b`: its entry's run; base NULL: all are concave
  * Looked at are rows of one body a that follow each other, as a broad phase lists them, each beside the 64 before it:
- *   - Of two rows of one run that have one normal (within 1e-4 rad) the points are joined: the two outermost stay, in
- *     the row of the first. (A contact has one point: that with the smaller separation.) Else the row with the greater
- *     separation stays, which is that of the whole run.
+ *   - Of two rows of one run that have one normal (within 1e-4 rad) the points are joined: the two outermost stay,
+ *     in the first one's row. (A contact has one point: that with the smaller separation.) Else the row with the greater
+ *     separation stays, which is that of the whole run, unless what they touch is not convex: the sides of a run that
+ *     turns by more than half a turn may face each other.
  *   - Of two rows with one normal (within 1e-3 rad) and the same points (within 2^-12 of their distance from the
  *     position of a) the one with more points stays, or the first one: a seam, told by both sides.
  * The same bits on every machine. Time in proportion to the rows. Thread-safe. */

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "chains.h"
 #include "placements.h"
 
 static const double pi = 3.14159265358979323846;
@@ -220,6 +221,72 @@ TEST(test_point_distance) {
             fail_msg("%s: distance %.17g, by search %.17g", family_name((enum family)(trial % FAMILY_COUNT)), distance,
                      searched);
         }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ ground */
+
+/* A shape is a closed convex chain: the same signed distance, and of two shapes that are apart one minimum, the gap. */
+TEST(test_ground_of_shapes) {
+    struct test_random random = test_random_named("ground of shapes");
+    for (size_t trial = 0; trial < test_trials(300); trial++) {
+        struct shape below = make_shape(&random, (enum family)random_below(&random, FAMILY_SEGMENT));
+        struct shape above = make_shape(&random, (enum family)random_below(&random, FAMILY_SEGMENT));
+        for (size_t k = 0; k < below.count; k++)
+            below.arcs[k].end += below.arcs[k].end <= below.arcs[k].start ? 2 * pi : 0;
+        struct ground *ground = make_ground(&(struct chain){below.arcs, below.count, true});
+        const narc_point point = {random_between(&random, -2, 2), random_between(&random, -2, 2)};
+        double distance;
+        assert_true(narc_compute_distance(below.arcs, below.count, point, &distance));
+        const double bound = 1e-9 * (2 + hypot(below.arcs[0].center_x, below.arcs[0].center_y));
+        if (fabs(ground_distance(ground, point).distance - distance) > bound)
+            fail_msg("distance %.17g, of the ground %.17g", distance, ground_distance(ground, point).distance);
+
+        const struct body still = turned_body(0, 1);
+        struct body body = turned_body(random_between(&random, -pi, pi), 1);
+        place_at_gap(&below, &above, random_between(&random, -pi, pi), random_between(&random, 0, 0.1), &still, &body);
+        const struct reference_body a = pose_shape(&below, &still), b = pose_shape(&above, &body);
+        const double gap = reference_find_gap(&a, &b).gap;
+        struct ground_minimum minima[GROUND_MINIMA];
+        struct ground_search *search = search_ground(ground, &b, 1, 0.01);
+        const size_t count = ground_minima(search, 1e-9, minima);
+        if (count != 1 || fabs(minima[0].foot.distance - gap) > bound)
+            fail_msg("%zu minima, the first one %.12g, gap %.12g", count, minima[0].foot.distance, gap);
+        destroy_search(search);
+        destroy_ground(ground);
+    }
+}
+
+/* The least distance over a disc is that of its centre, less its radius, unless it is on the solid side; there it may be
+ * more: below a corner the corner is not the nearest. (Beyond open ends there is no distance.) */
+TEST(test_ground_under_discs) {
+    struct test_random random = test_random_named("ground under discs");
+    static narc_arc arcs[CHAIN_ARCS];
+    for (size_t trial = 0; trial < test_trials(300); trial++) {
+        const struct chain chain = make_chain(&random, (enum chain_family)(trial % CHAIN_FAMILIES), arcs);
+        const struct shape disc = circle_of(random_log_between(&random, 0.1, 1));
+        const struct body body = ride_chain(&random, &chain, &disc, 0.1);
+        const struct reference_body posed = pose_shape(&disc, &body);
+        struct ground *ground = make_ground(&chain);
+        struct ground_search *search = search_ground(ground, &posed, 0.5, 0.2 * fmin(chain_grain(&chain), 0.1));
+        const double middle = ground_distance(ground, (narc_point){body.x, body.y}).distance;
+        const double radius = disc.arcs[0].radius * hypot(posed.cosine, posed.sine);
+        struct ground_minimum minima[GROUND_MINIMA];
+        double least = INFINITY;
+        for (size_t k = ground_minima(search, 0, minima); k > 0; k--)
+            least = fmin(least, minima[k - 1].foot.distance);
+        const double off = least - fmin(middle - radius, 0.5);
+        const narc_arc *first = &arcs[0], *last = &arcs[chain.count - 1];
+        const double to_first = hypot(first->center_x + first->radius * cos(first->start) - body.x,
+                                      first->center_y + first->radius * sin(first->start) - body.y);
+        const double to_last = hypot(last->center_x + last->radius * cos(last->end) - body.x,
+                                     last->center_y + last->radius * sin(last->end) - body.y);
+        const double end = chain.closed ? INFINITY : fmin(to_first, to_last);
+        if (end > 2 * radius + fabs(middle) && (off < -1e-9 || (middle >= radius && off > 1e-9)))
+            fail_msg("%s: least distance %.12g instead of %.12g",
+                     chain_family_name((enum chain_family)(trial % CHAIN_FAMILIES)), least, middle - radius);
+        destroy_search(search);
+        destroy_ground(ground);
     }
 }
 

@@ -1,0 +1,461 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ground_minima.c - bodies on chains of pieces: none of the contacts that a search finds is missed or told twice, and none is
+ * told that is not there.
+ *
+ * A contact on the ground's air side is a local minimum of the ground's signed distance over the body. So it is on the
+ * solid side, too, while nothing else of the ground is as near (below a corner the corner is not the nearest): minima
+ * and rows beyond that reach are counted, and rows are looked at by themselves.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "chains.h"
+#include "check.h"
+#include "expect.h"
+#include "narc_broad_phase.h"
+#include "narc_chains.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { SHOWN = 3, BODIES = 40, ENTRIES = 2 * CHAIN_ARCS, ROWS = 4096 };
+
+/* A search with so many steps along a body, or across the chain's smallest piece; and how much finer where it seems to
+ * have missed something. */
+static const double steps_per_body = 96, steps_per_piece = 3, finer = 16;
+
+struct tally {
+    size_t bodies, minima, rows;                /* minima that must be told and were; rows that are one of them */
+    size_t beyond, deep, nearer, shallow, ends; /* not compared, or by themselves alone; see below */
+    size_t wrong, refused;
+    double worst; /* error of a separation, by its bound */
+};
+
+/* A chain in a store, in a place, and its entries as bodies. */
+struct setting {
+    struct chain chain;
+    struct ground *ground;
+    struct body place;
+    narc_shapes *store;
+    narc_chain_entry entries[ENTRIES];
+    size_t entry_count;
+    struct body bodies[BODIES + ENTRIES]; /* first what lies on the chain */
+    struct shape shapes[BODIES];
+    uint32_t runs[BODIES + ENTRIES];
+    double margin;
+};
+
+/* What a row says, in the chain's coordinates. */
+struct told {
+    narc_point at, foot; /* on the body, on the ground */
+    double normal_x, normal_y, separation, bound;
+    uint32_t entry, count, feature;
+};
+
+static narc_point rotate(const struct body *place, double x, double y) {
+    const double length = hypot((double)place->cosine, (double)place->sine);
+    const double c = (double)place->cosine / length, s = (double)place->sine / length;
+    return (narc_point){c * x - s * y, s * x + c * y};
+}
+
+static narc_point rotate_back(const struct body *place, double x, double y) {
+    struct body back = *place;
+    back.sine = -back.sine;
+    return rotate(&back, x, y);
+}
+
+/* A body of the world in the chain's coordinates. */
+static struct reference_body pose_on(const struct setting *setting, size_t k) {
+    const struct body *body = &setting->bodies[k];
+    const narc_point at = rotate_back(&setting->place, body->x - setting->place.x, body->y - setting->place.y);
+    const narc_point axis = rotate_back(&setting->place, (double)body->cosine, (double)body->sine);
+    const double length = hypot(axis.x, axis.y);
+    return (struct reference_body){setting->shapes[k].arcs, setting->shapes[k].count, at.x, at.y, axis.x / length,
+                                   axis.y / length,         (double)body->scale};
+}
+
+static struct body in_world(const struct setting *setting, struct body body) {
+    const narc_point at = rotate(&setting->place, body.x, body.y);
+    const narc_point axis = rotate(&setting->place, (double)body.cosine, (double)body.sine);
+    body.x = setting->place.x + at.x;
+    body.y = setting->place.y + at.y;
+    body.cosine = (float)axis.x;
+    body.sine = (float)axis.y;
+    return body;
+}
+
+static bool make_setting(struct test_random *random, enum chain_family family, narc_arc *arcs,
+                         struct setting *setting) {
+    setting->chain = make_chain(random, family, arcs);
+    setting->margin = random_below(random, 4) ? random_log_between(random, 1e-3, 0.1) : 0;
+    setting->place = turned_body(random_below(random, 2) ? random_between(random, -pi, pi) : 0, 1);
+    setting->place.x = random_below(random, 2) ? random_between(random, -100, 100) : 0;
+    setting->place.y = random_below(random, 2) ? random_between(random, -100, 100) : 0;
+    setting->store = empty_store();
+    const narc_chain_options options = {.closed = setting->chain.closed,
+                                        .weld = random_below(random, 2) ? random_log_between(random, 0.3, 10) : 0};
+    narc_error error = {0};
+    const narc_status status = narc_add_chain(setting->store, arcs, setting->chain.count, &options, setting->entries,
+                                              ENTRIES, &setting->entry_count, &error);
+    /* Arcs that turn by next to nothing are too flat. */
+    if (status == NARC_ERROR_RADIUS) {
+        narc_destroy_shapes(setting->store);
+        return false;
+    }
+    if (status != NARC_OK && getenv("NARC_TEST_SHOW")) {
+        print_error("weld %.17g closed %d: %s\n", options.weld, options.closed, error.message);
+        for (size_t k = 0; k < setting->chain.count; k++)
+            print_error("  {%.17g, %.17g, %.17g, %.17g, %.17g},\n", arcs[k].center_x, arcs[k].center_y, arcs[k].radius,
+                        arcs[k].start, arcs[k].end);
+        narc_destroy_shapes(setting->store);
+        return false;
+    }
+    expect_ok(status, &error);
+    setting->ground = make_ground(&setting->chain);
+    for (size_t k = 0; k < BODIES; k++) {
+        setting->shapes[k] = make_rider(random, &setting->chain, family);
+        const double reach = setting->margin > 0 ? setting->margin : 0.01;
+        setting->bodies[k] = in_world(setting, ride_chain(random, &setting->chain, &setting->shapes[k], reach));
+        setting->bodies[k].shape = store_shape(setting->store, setting->shapes[k]);
+    }
+    for (size_t k = 0; k < setting->entry_count; k++) {
+        struct body entry = turned_body(0, 1);
+        entry.x = setting->entries[k].x;
+        entry.y = setting->entries[k].y;
+        entry.shape = setting->entries[k].shape;
+        entry = in_world(setting, entry);
+        entry.cosine = setting->place.cosine;
+        entry.sine = setting->place.sine;
+        setting->bodies[BODIES + k] = entry;
+        setting->runs[BODIES + k] = setting->entries[k].run;
+    }
+    return true;
+}
+
+static void end_setting(struct setting *setting) {
+    destroy_ground(setting->ground);
+    narc_destroy_shapes(setting->store);
+}
+
+/* The rows of all bodies whose boxes meet an entry's, merged. */
+static size_t find_rows(const struct setting *setting, struct pair *pairs, narc_manifold *rows) {
+    static narc_box boxes[BODIES + ENTRIES];
+    const size_t count = BODIES + setting->entry_count;
+    const narc_bodies bodies = {.count = count,
+                                .x = NARC_POSITION_COLUMN(setting->bodies, x),
+                                .y = NARC_POSITION_COLUMN(setting->bodies, y),
+                                .cosine = NARC_COLUMN(setting->bodies, cosine),
+                                .sine = NARC_COLUMN(setting->bodies, sine),
+                                .scale = NARC_COLUMN(setting->bodies, scale),
+                                .shape = NARC_COLUMN(setting->bodies, shape)};
+    const narc_box_options options = {.margin = (float)(setting->margin / 2)};
+    narc_error error = {0};
+    expect_ok(narc_compute_boxes(setting->store, &bodies, &options, boxes, &error), &error);
+    size_t pair_count = 0, found = 0;
+    for (uint32_t a = 0; a < BODIES; a++) {
+        for (uint32_t b = BODIES; b < count; b++)
+            if (boxes[a].min_x <= boxes[b].max_x && boxes[b].min_x <= boxes[a].max_x &&
+                boxes[a].min_y <= boxes[b].max_y && boxes[b].min_y <= boxes[a].max_y)
+                pairs[pair_count++] = (struct pair){a, b};
+    }
+    const narc_pairs list = {.count = pair_count, .a = NARC_COLUMN(pairs, a), .b = NARC_COLUMN(pairs, b)};
+    size_t skipped = 0;
+    const narc_query query = {.margin = (float)setting->margin, .out_skipped = &skipped};
+    expect_ok(narc_find_manifolds(setting->store, &bodies, &list, &query, rows, ROWS, &found, &error), &error);
+    assert_int_equal(skipped, 0);
+    const uint32_t *runs = setting->runs;
+    return narc_merge_manifolds(&list, (narc_index_column){runs, sizeof *runs}, rows, found);
+}
+
+/* The documented bound of a separation's error, with the entry's extent, closure and all. */
+static double entry_bound(const struct setting *setting, const struct reference_body *body, uint32_t b) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    const narc_chain_entry *entry = &setting->entries[b - BODIES];
+    const size_t count = narc_get_arcs(setting->store, entry->shape, arcs);
+    double extent = 0;
+    for (size_t k = 0; k < count; k++)
+        extent = fmax(extent, hypot(arcs[k].center_x, arcs[k].center_y) + fabs(arcs[k].radius));
+    return NARC_ERROR_BOUND * (hypot(body->x - entry->x, body->y - entry->y) + extent + reference_extent(body));
+}
+
+static struct told read_row(const struct setting *setting, const struct reference_body *body, const struct pair *pair,
+                            const narc_manifold *row) {
+    const size_t deepest = row->count > 1 && row->point[1].separation < row->point[0].separation;
+    const narc_manifold_point *point = &row->point[deepest];
+    const narc_point normal = rotate_back(&setting->place, (double)row->normal_x, (double)row->normal_y);
+    const narc_point offset = rotate_back(&setting->place, (double)point->x, (double)point->y);
+    const double half = (double)point->separation / 2;
+    struct told told = {.normal_x = -normal.x, .normal_y = -normal.y, .separation = 2 * half};
+    told.at = (narc_point){body->x + offset.x - half * normal.x, body->y + offset.y - half * normal.y};
+    told.foot = (narc_point){body->x + offset.x + half * normal.x, body->y + offset.y + half * normal.y};
+    told.bound = entry_bound(setting, body, pair->b);
+    told.entry = pair->b - BODIES;
+    told.count = row->count;
+    told.feature = point->feature;
+    return told;
+}
+
+static double distance_between(narc_point a, narc_point b) { return hypot(a.x - b.x, a.y - b.y); }
+
+/* How far a point is from the open ends of a chain. */
+static double find_end_distance(const struct chain *chain, narc_point point) {
+    const narc_arc *first = &chain->arcs[0], *last = &chain->arcs[chain->count - 1];
+    const narc_point from = {first->center_x + first->radius * cos(first->start),
+                             first->center_y + first->radius * sin(first->start)};
+    const narc_point to = {last->center_x + last->radius * cos(last->end),
+                           last->center_y + last->radius * sin(last->end)};
+    return chain->closed ? INFINITY : fmin(distance_between(from, point), distance_between(to, point));
+}
+
+/* Does a point lie where two pieces meet? Seams reach beyond that: arcs by 1e-4 rad, edges by 2^-16 of their length. */
+static bool is_at_seam(const struct chain *chain, narc_point point, double bound) {
+    for (size_t k = 0; k < chain->count; k++) {
+        const narc_arc *arc = &chain->arcs[k];
+        const double seam = 4 * bound + 1.1e-4 * (1 + fabs(arc->radius));
+        for (int end = 0; end < 2; end++) {
+            const double angle = end ? arc->end : arc->start;
+            if (hypot(arc->center_x + arc->radius * cos(angle) - point.x,
+                      arc->center_y + arc->radius * sin(angle) - point.y) < seam)
+                return true;
+        }
+    }
+    return false;
+}
+
+/* Does a point of the chain lie in a body? */
+static bool holds(const struct reference_body *body, narc_point point) {
+    const double x = (point.x - body->x) / body->scale, y = (point.y - body->y) / body->scale;
+    return narc_contains_point(body->arcs, body->count,
+                               (narc_point){body->cosine * x + body->sine * y, body->cosine * y - body->sine * x});
+}
+
+/* Is the ground's outline there out of a body's reach: too deep for the body, or for pieces that are so small; or does
+ * the body have an open end within, where the ground has no other side? */
+static bool is_beyond(const struct setting *setting, const struct reference_body *body,
+                      const struct ground_minimum *minimum) {
+    const narc_arc *first = &setting->chain.arcs[0], *last = &setting->chain.arcs[setting->chain.count - 1];
+    const narc_point from = {first->center_x + first->radius * cos(first->start),
+                             first->center_y + first->radius * sin(first->start)};
+    const narc_point to = {last->center_x + last->radius * cos(last->end),
+                           last->center_y + last->radius * sin(last->end)};
+    if (minimum->foot.distance >= 0)
+        return false;
+    return !holds(body, minimum->foot.at) || minimum->foot.distance < -chain_grain(&setting->chain) ||
+           (!setting->chain.closed && (holds(body, from) || holds(body, to)));
+}
+
+/* Is a row what it says: do both points lie where they should, with that normal? `size` of the body. */
+static const char *check_row(const struct setting *setting, const struct ground_search *search,
+                             const struct reference_body *body, const struct told *told, double size) {
+    enum { FEET = 64 };
+    double off;
+    ground_project(search, told->at, &off);
+    if (!(fabs(hypot(told->normal_x, told->normal_y) - 1) < 1e-6))
+        return "normal not of length 1";
+    if (!(off <= 4 * told->bound))
+        return "point not on the body";
+    /* No point of the body lies further down. */
+    double lowest = INFINITY;
+    for (size_t k = 0; k < body->count; k++) {
+        const double turn = atan2(body->sine, body->cosine), down = atan2(-told->normal_y, -told->normal_x) - turn;
+        narc_point support;
+        narc_find_support(body->arcs, body->count, cos(down), sin(down), &support, NULL);
+        const double x = body->x + body->scale * (body->cosine * support.x - body->sine * support.y);
+        const double y = body->y + body->scale * (body->sine * support.x + body->cosine * support.y);
+        lowest = fmin(lowest, told->normal_x * (x - told->at.x) + told->normal_y * (y - told->at.y));
+    }
+    if (!(lowest >= -8 * told->bound))
+        return "not the lowest point along the normal";
+    /* A point above the foot has that foot, or one below, at the bottom of a valley. Seams extend arcs by 1e-4 rad. Where
+     * points coincide the normal is any. */
+    if (fabs(told->separation) < 4 * told->bound)
+        return NULL;
+    for (int side = -1; side <= 1; side += 2) {
+        const double height = 1e-3 * size * side;
+        const narc_point beside = {told->foot.x + height * told->normal_x, told->foot.y + height * told->normal_y};
+        struct ground_foot feet[FEET];
+        const size_t count = ground_feet(setting->ground, beside, feet, FEET);
+        for (size_t k = 0; k < count; k++)
+            if (fabs(feet[k].distance - height) <= 4 * told->bound &&
+                distance_between(feet[k].at, told->foot) <= 4 * told->bound + 1e-3 * size)
+                return NULL;
+    }
+    return find_end_distance(&setting->chain, told->foot) <= 8 * told->bound ? NULL : "foot not on the ground";
+}
+
+/* Do two rows tell of one contact, which merging should have made one? */
+static bool is_same(const struct reference_body *body, const struct told *one, const struct told *other) {
+    const double away = hypot(one->at.x - body->x, one->at.y - body->y);
+    return hypot(one->normal_x - other->normal_x, one->normal_y - other->normal_y) < 0.9e-3 &&
+           distance_between(one->at, other->at) < 0.9 / 4096 * away;
+}
+
+/* What became of a row. */
+enum fate { FATE_WRONG, FATE_MATCHED, FATE_NEARER, FATE_DEEP, FATE_SHALLOW };
+
+static const char *compare(const struct setting *setting, size_t k, const struct reference_body *body,
+                           const struct told *told, size_t count, double step, struct tally *tally) {
+    struct ground_search *search = search_ground(setting->ground, body, setting->margin + 0.01, step);
+    struct ground_minimum minima[GROUND_MINIMA];
+    const char *wrong = NULL;
+    double bound = 0, size = reference_extent(body);
+    narc_circle around;
+    if (narc_compute_bounding_circle(body->arcs, body->count, &around))
+        size = around.radius * body->scale;
+    for (size_t i = 0; i < count; i++)
+        bound = fmax(bound, told[i].bound);
+    bound = fmax(bound, NARC_ERROR_BOUND * 4 * (reference_extent(body) + size));
+    const size_t minimum_count = ground_minima(search, 2 * bound, minima);
+    size_t told_by[GROUND_MINIMA] = {0};
+    enum fate fate[ROWS / BODIES];
+    (void)k;
+
+    for (size_t i = 0; i < count && !wrong; i++) {
+        wrong = check_row(setting, search, body, &told[i], size);
+        fate[i] = FATE_WRONG;
+        double off;
+        const double along = ground_project(search, told[i].at, &off);
+        const double nearest = ground_distance(setting->ground, told[i].at).distance;
+        for (size_t m = 0; m < minimum_count && !wrong; m++) {
+            const double level = fmax(minima[m].foot.distance, nearest);
+            const double error = fabs(minima[m].foot.distance - told[i].separation);
+            if (error > told[i].bound || ground_barrier(search, along, minima[m].along) > level + 2 * bound)
+                continue;
+            for (size_t j = 0; j < i; j++)
+                if (fate[j] == FATE_MATCHED && is_same(body, &told[i], &told[j]))
+                    wrong = "told twice";
+            told_by[m]++;
+            fate[i] = FATE_MATCHED;
+            tally->worst = fmax(tally->worst, error / told[i].bound);
+        }
+        if (fate[i] == FATE_WRONG && told[i].separation < 0 && fabs(nearest) < fabs(told[i].separation) - bound)
+            fate[i] = FATE_DEEP; /* something else is nearer: beyond reach */
+        if (fate[i] == FATE_WRONG && told[i].separation >= 0 && nearest < told[i].separation - bound)
+            fate[i] = FATE_NEARER; /* of a valley the other side */
+        if (fate[i] == FATE_WRONG && !isfinite(nearest))
+            fate[i] = FATE_DEEP; /* an open end is nearer */
+        if (fate[i] == FATE_WRONG && (ground_least(search, along, 2e-4 * size) >= nearest - 4 * bound ||
+                                      is_at_seam(&setting->chain, told[i].foot, told[i].bound)))
+            fate[i] = FATE_SHALLOW; /* the distance does not fall there but by rounding, or beyond a seam */
+        if (fate[i] == FATE_WRONG && !wrong)
+            wrong = "not a minimum";
+    }
+    size_t beyond = 0, shallow = 0, ends = 0, matched = 0;
+    for (size_t m = 0; m < minimum_count && !wrong; m++) {
+        const double distance = minima[m].foot.distance;
+        if (told_by[m])
+            matched++;
+        else if (minima[m].doubtful || is_beyond(setting, body, &minima[m]))
+            beyond++;
+        else if (distance >= setting->margin - bound || minima[m].depth < 4 * bound)
+            shallow++;
+        else
+            wrong = "missed";
+    }
+    if (!wrong) {
+        tally->minima += matched;
+        tally->beyond += beyond;
+        tally->shallow += shallow;
+        tally->ends += ends;
+        for (size_t i = 0; i < count; i++) {
+            tally->rows += fate[i] == FATE_MATCHED;
+            tally->deep += fate[i] == FATE_DEEP;
+            tally->nearer += fate[i] == FATE_NEARER;
+            tally->shallow += fate[i] == FATE_SHALLOW;
+        }
+    }
+    if (wrong && getenv("NARC_TEST_SHOW")) {
+        for (size_t m = 0; m < minimum_count; m++)
+            print_error("  minimum %.9g at (%.9g, %.9g), normal (%.6g, %.6g), depth %.3g%s, told %zu times\n",
+                        minima[m].foot.distance, minima[m].at.x, minima[m].at.y, minima[m].foot.normal_x,
+                        minima[m].foot.normal_y, minima[m].depth, minima[m].doubtful ? ", doubtful" : "", told_by[m]);
+        for (size_t i = 0; i < count; i++)
+            print_error("  row %.9g at (%.9g, %.9g), normal (%.6g, %.6g), bound %.3g, distance there %.9g; "
+                        "entry %u of run %d at (%.6g, %.6g), %u points, feature %04x\n",
+                        told[i].separation, told[i].at.x, told[i].at.y, told[i].normal_x, told[i].normal_y,
+                        told[i].bound, ground_distance(setting->ground, told[i].at).distance, told[i].entry,
+                        (int)setting->entries[told[i].entry].run, setting->entries[told[i].entry].x,
+                        setting->entries[told[i].entry].y, told[i].count, told[i].feature);
+        for (size_t i = 0; i < count; i++) {
+            const narc_point above = {told[i].foot.x + 1e-3 * size * told[i].normal_x,
+                                      told[i].foot.y + 1e-3 * size * told[i].normal_y};
+            struct ground_foot feet[4];
+            for (size_t f = ground_feet(setting->ground, above, feet, 4); f > 0; f--)
+                print_error("    foot of (%.9g, %.9g): %.9g at (%.9g, %.9g), normal (%.6g, %.6g)\n", above.x, above.y,
+                            feet[f - 1].distance, feet[f - 1].at.x, feet[f - 1].at.y, feet[f - 1].normal_x,
+                            feet[f - 1].normal_y);
+        }
+    }
+    destroy_search(search);
+    return wrong;
+}
+
+static void check_setting(const struct setting *setting, enum chain_family family, struct tally *tally) {
+    static struct pair pairs[BODIES * ENTRIES];
+    static narc_manifold rows[ROWS];
+    static struct told told[ROWS];
+    const size_t count = find_rows(setting, pairs, rows);
+    const double grain = chain_grain(&setting->chain);
+    for (size_t k = 0, row = 0; k < BODIES; k++) {
+        const struct reference_body body = pose_on(setting, k);
+        size_t of_body = 0;
+        for (; row < count && pairs[rows[row].pair].a == k; row++)
+            told[of_body++] = read_row(setting, &body, &pairs[rows[row].pair], &rows[row]);
+        const double step = fmin(reference_extent(&body) / steps_per_body, grain / steps_per_piece);
+        tally->bodies++;
+        const char *wrong = compare(setting, k, &body, told, of_body, step, tally);
+        if (wrong)
+            wrong = compare(setting, k, &body, told, of_body, step / finer, tally);
+        if (wrong && tally->wrong++ < SHOWN) {
+            if (getenv("NARC_TEST_SHOW") && setting->chain.count < 40) {
+                for (size_t i = 0; i < setting->chain.count; i++) {
+                    const narc_arc *arc = &setting->chain.arcs[i];
+                    print_error("  {%.9g, %.9g, %.9g, %.9g, %.9g}\n", arc->center_x, arc->center_y, arc->radius,
+                                arc->start, arc->end);
+                }
+                for (size_t i = 0; i < setting->entry_count; i++)
+                    print_error("   entry %zu at (%.9g, %.9g), run %d, arc %u, %u arcs\n", i, setting->entries[i].x,
+                                setting->entries[i].y, (int)setting->entries[i].run, setting->entries[i].first_arc,
+                                setting->entries[i].arc_count);
+            }
+            print_error("%s: %s; margin %.9g, body of %zu arcs at (%a, %a)\n", chain_family_name(family), wrong,
+                        setting->margin, body.count, body.x, body.y);
+        }
+    }
+}
+
+static void check_family(enum chain_family family) {
+    static narc_arc arcs[CHAIN_ARCS];
+    static struct setting setting;
+    char name[64];
+    snprintf(name, sizeof name, "ground, %s", chain_family_name(family));
+    struct test_random random = test_random_named(name);
+    struct tally tally = {0};
+    for (size_t trial = test_trials(50); trial > 0; trial--)
+        if (make_setting(&random, family, arcs, &setting)) {
+            check_setting(&setting, family, &tally);
+            end_setting(&setting);
+        } else
+            tally.refused++;
+    printf(
+        "  %s: %zu bodies, %zu minima told by %zu rows; %zu minima beyond reach, %zu rows deeper, %zu rows of farther "
+        "sides, %zu shallow; %zu wrong, %zu chains refused, largest error %.3f\n",
+        chain_family_name(family), tally.bodies, tally.minima, tally.rows, tally.beyond, tally.deep, tally.nearer,
+        tally.shallow, tally.wrong, tally.refused, tally.worst);
+    assert_int_equal(tally.wrong, 0);
+    assert_true(tally.minima > tally.bodies / 4);
+}
+
+TEST(test_hills) { check_family(CHAIN_HILLS); }
+TEST(test_mixed) { check_family(CHAIN_MIXED); }
+TEST(test_bowls) { check_family(CHAIN_BOWLS); }
+TEST(test_tight) { check_family(CHAIN_TIGHT); }
+TEST(test_fine) { check_family(CHAIN_FINE); }
+TEST(test_steps) { check_family(CHAIN_STEPS); }
+TEST(test_long) { check_family(CHAIN_LONG); }
+TEST(test_closed) { check_family(CHAIN_CLOSED); }
+TEST(test_ends) { check_family(CHAIN_ENDS); }
+
+TEST_MAIN("ground minima")

@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * chains.c - random chains, made by walking with the solid on the left, and bodies on them.
+ */
+#include "chains.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* How steep open chains get: they go from right to left, the air above. */
+static const double steepest = 1.1;
+
+struct walk {
+    narc_arc *arcs;
+    size_t count;
+    narc_point at;
+    double heading; /* pi: to the left */
+};
+
+static void put_arc(struct walk *walk, double radius, double sweep) {
+    const double normal = walk->heading - pi / 2;
+    const narc_point center = {walk->at.x - radius * cos(normal), walk->at.y - radius * sin(normal)};
+    walk->arcs[walk->count++] = (narc_arc){center.x, center.y, radius, normal, normal + sweep};
+    walk->heading += sweep;
+    walk->at = (narc_point){center.x + radius * cos(normal + sweep), center.y + radius * sin(normal + sweep)};
+}
+
+static void put_edge(struct walk *walk, double length) {
+    walk->at.x += length * cos(walk->heading);
+    walk->at.y += length * sin(walk->heading);
+}
+
+/* A sweep that keeps the heading between the steepest ones, to the left or to the right. */
+static double choose_sweep(struct test_random *random, const struct walk *walk, double widest, bool left) {
+    const double room = left ? pi + steepest - walk->heading : walk->heading - (pi - steepest);
+    const double sweep =
+        random_below(random, 4) ? random_between(random, 0.05, widest) : random_log_between(random, 1e-3, widest);
+    return sweep < room ? sweep : 0;
+}
+
+/* One piece, if there is room to turn. */
+static void put_piece(struct test_random *random, struct walk *walk, enum chain_family family, double size) {
+    if (walk->count == 0)
+        put_arc(walk, 0, 0); /* an edge needs a beginning */
+    const bool left = random_below(random, 2);
+    const bool sharp = family == CHAIN_STEPS || (family == CHAIN_MIXED && random_below(random, 2)) ||
+                       (family != CHAIN_HILLS && random_below(random, 6) == 0);
+    const double sweep = choose_sweep(random, walk, 1.2, left);
+    const double radius = sharp ? 0 : size * random_log_between(random, 0.2, 3);
+    if (sweep > 0)
+        put_arc(walk, left ? radius : -radius, left ? sweep : -sweep);
+    if (sharp || random_below(random, 3) == 0) {
+        size_t edges = random_below(random, 4) ? 1 : 1 + random_below(random, 5);
+        put_edge(walk, size * random_log_between(random, 0.1, 2));
+        while (--edges > 0) {
+            put_arc(walk, 0, 0);
+            put_edge(walk, size * random_log_between(random, 0.1, 2));
+        }
+        if (sweep <= 0)
+            put_arc(walk, 0, 0);
+    }
+}
+
+/* A concave arc in several pieces, perhaps with a flat bottom, between convex arcs or corners. */
+static void put_bowl(struct test_random *random, struct walk *walk) {
+    const double radius = random_log_between(random, 0.3, 3), down = random_between(random, 0.3, steepest);
+    const double rim = random_below(random, 3) ? random_log_between(random, 0.1, 1) : 0;
+    const size_t pieces = 1 + random_below(random, 5);
+    if (walk->heading < pi + down)
+        put_arc(walk, rim, pi + down - walk->heading);
+    if (random_below(random, 2) || rim <= 0)
+        put_edge(walk, random_log_between(random, 0.1, 1));
+    const double turn = walk->heading - pi;
+    for (size_t k = 0; k < pieces; k++)
+        put_arc(walk, -radius, -turn / (double)pieces);
+    if (random_below(random, 2))
+        put_edge(walk, random_log_between(random, 0.1, 2));
+    for (size_t k = 0; k < pieces; k++)
+        put_arc(walk, -radius, -down / (double)pieces);
+}
+
+static struct chain finish(struct test_random *random, struct walk *walk, bool capped) {
+    if (capped)
+        put_arc(walk, 0, pi / 2);
+    else if (random_below(random, 2)) {
+        put_edge(walk, random_log_between(random, 0.1, 2));
+        put_arc(walk, 0, 0);
+    }
+    return (struct chain){walk->arcs, walk->count, false};
+}
+
+/* A polygon around the origin whose corners are arcs: convex ones and concave ones. */
+static struct chain make_closed(struct test_random *random, narc_arc *arcs) {
+    enum { MOST = 24 };
+    const size_t corners = 3 + random_below(random, MOST - 2);
+    const bool convex = random_below(random, 4) == 0;
+    narc_point point[MOST];
+    for (size_t k = 0; k < corners; k++) {
+        const double angle = 2 * pi * ((double)k + random_between(random, -0.2, 0.2)) / (double)corners;
+        const double radius = convex ? 2 : random_between(random, 1.2, 2.6);
+        point[k] = (narc_point){radius * cos(angle), radius * sin(angle)};
+    }
+    size_t count = 0;
+    for (size_t k = 0; k < corners; k++) {
+        const narc_point *p = &point[(k + corners - 1) % corners], *q = &point[k], *r = &point[(k + 1) % corners];
+        const double before = hypot(q->x - p->x, q->y - p->y), after = hypot(r->x - q->x, r->y - q->y);
+        const double heading = atan2(q->y - p->y, q->x - p->x);
+        const double turn = remainder(atan2(r->y - q->y, r->x - q->x) - heading, 2 * pi);
+        if (fabs(turn) < 1e-2)
+            return make_closed(random, arcs);
+        const double most = fmin(before, after) / 2 / tan(fabs(turn) / 2);
+        const double radius = random_below(random, 4) ? most * random_between(random, 0.05, 0.99) : 0;
+        const double cut = radius * tan(fabs(turn) / 2), normal = heading - pi / 2;
+        const double signed_radius = copysign(radius, turn);
+        const narc_point from = {q->x - cut * cos(heading), q->y - cut * sin(heading)};
+        arcs[count++] = (narc_arc){from.x - signed_radius * cos(normal), from.y - signed_radius * sin(normal),
+                                   signed_radius, normal, normal + turn};
+    }
+    return (struct chain){arcs, count, true};
+}
+
+static struct chain make_open(struct test_random *random, enum chain_family family, narc_arc *arcs) {
+    struct walk walk = {.arcs = arcs, .heading = pi + random_between(random, -0.5, 0.5)};
+    const bool capped = family == CHAIN_ENDS ? random_below(random, 2) : false;
+    size_t pieces = 4 + random_below(random, 12);
+    if (family == CHAIN_LONG)
+        pieces = 60 + random_below(random, 90);
+    if (family == CHAIN_FINE)
+        pieces = 30 + random_below(random, 40);
+    if (family == CHAIN_ENDS)
+        pieces = 1 + random_below(random, 4);
+    if (capped) {
+        walk.heading -= pi / 2;
+        put_arc(&walk, 0, pi / 2);
+        put_edge(&walk, random_log_between(random, 0.1, 2));
+    } else if (random_below(random, 2)) {
+        put_arc(&walk, 0, 0);
+        put_edge(&walk, random_log_between(random, 0.1, 2));
+    } else {
+        const double sign = random_below(random, 2) ? 1 : -1;
+        put_arc(&walk, sign * 0.5, sign * random_between(random, 0.05, 0.4));
+    }
+    const size_t begun = walk.count;
+    for (size_t k = 0; k < pieces && walk.count < CHAIN_ARCS - 16; k++) {
+        double size = 1;
+        if (family == CHAIN_LONG)
+            size = random_log_between(random, 3e-3, 3);
+        if (family == CHAIN_FINE)
+            size = random_log_between(random, 0.02, 0.2);
+        if (family == CHAIN_BOWLS || (family == CHAIN_TIGHT && random_below(random, 2)))
+            put_bowl(random, &walk);
+        else
+            put_piece(random, &walk, family, size);
+    }
+    if (walk.count == begun)
+        put_arc(&walk, walk.count ? 0.5 : 1, 0.5);
+    return finish(random, &walk, capped);
+}
+
+const char *chain_family_name(enum chain_family family) {
+    static const char *const names[CHAIN_FAMILIES] = {"hills", "mixed", "bowls",  "tight", "fine",
+                                                      "steps", "long",  "closed", "ends"};
+    return names[family];
+}
+
+struct chain make_chain(struct test_random *random, enum chain_family family, narc_arc *arcs) {
+    struct chain chain;
+    do
+        chain = family == CHAIN_CLOSED ? make_closed(random, arcs) : make_open(random, family, arcs);
+    while (chain.count < 2);
+    return chain;
+}
+
+double chain_grain(const struct chain *chain) {
+    double grain = 1;
+    for (size_t k = 0; k < chain->count; k++) {
+        const narc_arc *arc = &chain->arcs[k], *before = k ? arc - 1 : &chain->arcs[chain->count - 1];
+        const double x =
+            arc->center_x + arc->radius * cos(arc->start) - before->center_x - before->radius * cos(before->end);
+        const double y =
+            arc->center_y + arc->radius * sin(arc->start) - before->center_y - before->radius * sin(before->end);
+        const double edge = hypot(x, y), bow = fabs(arc->radius) * fabs(arc->end - arc->start);
+        grain = edge > 1e-3 ? fmin(grain, edge) : grain;
+        grain = bow > 1e-3 ? fmin(grain, bow) : grain;
+    }
+    return grain;
+}
+
+/* ------------------------------------------------------------------------------------------------ riders */
+
+static struct shape ellipse_of(double half_x, double half_y, size_t arcs) {
+    struct shape shape;
+    if (narc_build_ellipse(half_x, half_y, arcs, shape.arcs, &shape.count, NULL, NULL) != NARC_OK)
+        return circle_of(half_x);
+    return shape;
+}
+
+static double concave_radius(struct test_random *random, const struct chain *chain) {
+    for (size_t tries = 0; tries < 100; tries++) {
+        const double radius = chain->arcs[random_below(random, chain->count)].radius;
+        if (radius < -1e-2)
+            return -radius;
+    }
+    return 1;
+}
+
+struct shape make_rider(struct test_random *random, const struct chain *chain, enum chain_family family) {
+    double size = random_log_between(random, 0.1, 2);
+    if (family == CHAIN_TIGHT && random_below(random, 4)) {
+        size = concave_radius(random, chain) *
+               (1 + (random_below(random, 4) ? -1 : 1) * random_log_between(random, 1e-6, 0.3));
+        switch (random_below(random, 4)) {
+        case 0:
+            return ellipse_of(size, size * random_between(random, 0.7, 1), 8);
+        case 1:
+            return box_of(2.5 * size, 2.2 * size, size);
+        default:
+            return circle_of(size);
+        }
+    }
+    switch (random_below(random, 8)) {
+    case 0:
+        return circle_of(size);
+    case 1:
+        return box_of(2 * size, 2 * size * random_log_between(random, 0.1, 1), 0);
+    case 2:
+        return box_of(2 * size, size, size * random_between(random, 0.01, 0.4));
+    case 3:
+        return capsule_of(size, size * random_log_between(random, 0.1, 1));
+    case 4:
+        return ellipse_of(size, size * random_between(random, 0.3, 1), 4 + 4 * random_below(random, 4));
+    default:
+        return make_shape(random, (enum family)random_below(random, FAMILY_SEGMENT));
+    }
+}
+
+/* A place on the chain and an outward normal there: mostly the end of an arc, exactly or nearly. */
+static narc_point choose_place(struct test_random *random, const struct chain *chain, double *out_angle) {
+    const size_t k = random_below(random, chain->count);
+    const narc_arc *arc = &chain->arcs[k];
+    double part = random_unit(random);
+    if (random_below(random, 2))
+        part = (double)random_below(random, 2) + (random_below(random, 2) ? 0 : random_between(random, -1e-3, 1e-3));
+    *out_angle = arc->start + (arc->end - arc->start) * part;
+    narc_point place = {arc->center_x + arc->radius * cos(*out_angle), arc->center_y + arc->radius * sin(*out_angle)};
+    if ((k || chain->closed) && random_below(random, 3) == 0) {
+        const narc_arc *before = k ? arc - 1 : &chain->arcs[chain->count - 1];
+        const double t = random_unit(random);
+        *out_angle = arc->start;
+        place.x = (1 - t) * (before->center_x + before->radius * cos(arc->start)) +
+                  t * (arc->center_x + arc->radius * cos(arc->start));
+        place.y = (1 - t) * (before->center_y + before->radius * sin(arc->start)) +
+                  t * (arc->center_y + arc->radius * sin(arc->start));
+    }
+    return place;
+}
+
+struct body ride_chain(struct test_random *random, const struct chain *chain, const struct shape *shape,
+                       double margin) {
+    double normal;
+    const narc_point place = choose_place(random, chain, &normal);
+    /* The body's normal that meets it: one of its junctions, exactly or nearly, or any. */
+    const narc_arc *arc = &shape->arcs[random_below(random, shape->count)];
+    double own = random_between(random, -pi, pi);
+    if (random_below(random, 3))
+        own = arc->start;
+    if (random_below(random, 4) == 0)
+        own += (random_below(random, 2) ? -1 : 1) * random_log_between(random, 1e-8, 1e-2);
+    double gap = random_between(random, -margin, margin);
+    if (random_below(random, 3) == 0)
+        gap = margin * (random_below(random, 2) ? -1 : 1) * random_log_between(random, 1e-7, 1);
+    if (random_below(random, 8) == 0)
+        gap = -random_between(random, 0, 0.4); /* deep */
+    struct body body = turned_body(normal + pi - own, 1);
+    const struct reference_body posed = pose_shape(shape, &body);
+    const double turned = normal + pi - atan2(posed.sine, posed.cosine);
+    narc_point foot;
+    narc_find_support(shape->arcs, shape->count, cos(turned), sin(turned), &foot, NULL);
+    if (random_below(random, 3) == 0) { /* another point of the shape that is as far */
+        const double beside = turned + (random_below(random, 2) ? -1 : 1) * 1e-6;
+        narc_find_support(shape->arcs, shape->count, cos(beside), sin(beside), &foot, NULL);
+    }
+    body.x = place.x + gap * cos(normal) - (posed.cosine * foot.x - posed.sine * foot.y);
+    body.y = place.y + gap * sin(normal) - (posed.sine * foot.x + posed.cosine * foot.y);
+    round_position(&body, NARC_FLOAT64);
+    return body;
+}

@@ -1,0 +1,436 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ground_reference.c - the signed distance of the ground by all its pieces, and its minima by walking along a body's
+ * outline.
+ */
+#include "ground_reference.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Rounding at the ends of pieces, relative to their coordinates: a foot belongs to both pieces there. */
+static const double end_tolerance = 1e-12;
+
+/* Feet that are as near, relative to the body, and as far apart, are two. */
+static const double doubt = 1e-3;
+
+/* An edge from one point to another, or an arc that turns by at most `widest`: its sector from the normal `low`
+ * counter-clockwise to `high`. */
+struct piece {
+    bool is_edge, is_concave;
+    narc_point from, to;
+    narc_point center, low, high;
+    double radius, room; /* what rounding leaves between pieces */
+};
+
+static const double widest = 2;
+
+struct ground {
+    struct piece *pieces;
+    size_t count;
+    bool open;
+    narc_point ends[2];
+};
+
+static double cross(narc_point a, narc_point b) { return a.x * b.y - a.y * b.x; }
+static double dot(narc_point a, narc_point b) { return a.x * b.x + a.y * b.y; }
+static narc_point minus(narc_point a, narc_point b) { return (narc_point){a.x - b.x, a.y - b.y}; }
+static double length_of(narc_point a) { return sqrt(a.x * a.x + a.y * a.y); }
+
+static narc_point on_arc(const narc_arc *arc, double angle) {
+    return (narc_point){arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle)};
+}
+
+static void add_arc(struct ground *ground, const narc_arc *arc) {
+    const bool concave = signbit(arc->radius);
+    const double sweep = arc->end - arc->start;
+    const size_t parts = (size_t)ceil(fabs(sweep) / widest);
+    for (size_t k = 0; k < parts; k++) {
+        double low = arc->start + sweep * (double)k / (double)parts;
+        double high = arc->start + sweep * (double)(k + 1) / (double)parts;
+        struct piece piece = {.is_concave = concave, .center = {arc->center_x, arc->center_y}};
+        piece.from = on_arc(arc, low);
+        piece.to = on_arc(arc, high);
+        piece.radius = fabs(arc->radius);
+        piece.room = end_tolerance * (1 + fabs(piece.from.x) + fabs(piece.from.y) + piece.radius);
+        piece.low = concave ? (narc_point){cos(high), sin(high)} : (narc_point){cos(low), sin(low)};
+        piece.high = concave ? (narc_point){cos(low), sin(low)} : (narc_point){cos(high), sin(high)};
+        ground->pieces[ground->count++] = piece;
+    }
+}
+
+struct ground *make_ground(const struct chain *chain) {
+    struct ground *ground = calloc(1, sizeof *ground);
+    ground->pieces = malloc(5 * chain->count * sizeof *ground->pieces);
+    ground->open = !chain->closed;
+    ground->ends[0] = on_arc(&chain->arcs[0], chain->arcs[0].start);
+    ground->ends[1] = on_arc(&chain->arcs[chain->count - 1], chain->arcs[chain->count - 1].end);
+    for (size_t k = 0; k < chain->count; k++) {
+        const narc_arc *arc = &chain->arcs[k], *before = k ? arc - 1 : &chain->arcs[chain->count - 1];
+        struct piece edge = {.is_edge = true, .from = on_arc(before, before->end), .to = on_arc(arc, arc->start)};
+        const narc_point along = minus(edge.to, edge.from);
+        const double length = length_of(along);
+        edge.room = end_tolerance * (1 + fabs(edge.from.x) + fabs(edge.from.y) + fabs(arc->radius));
+        edge.low = (narc_point){along.y / length, -along.x / length};
+        if ((k || chain->closed) && length > edge.room)
+            ground->pieces[ground->count++] = edge;
+        add_arc(ground, arc);
+    }
+    return ground;
+}
+
+void destroy_ground(struct ground *ground) {
+    free(ground->pieces);
+    free(ground);
+}
+
+static bool find_foot(const struct piece *piece, narc_point point, struct ground_foot *out) {
+    if (piece->is_edge) {
+        const narc_point along = minus(piece->to, piece->from), from = minus(point, piece->from);
+        const double length = length_of(along), t = dot(along, from) / (length * length);
+        if (t * length < -piece->room || (t - 1) * length > piece->room)
+            return false;
+        *out = (struct ground_foot){dot(piece->low, from),
+                                    {piece->from.x + t * along.x, piece->from.y + t * along.y},
+                                    piece->low.x,
+                                    piece->low.y};
+        return true;
+    }
+    const double sign = piece->is_concave ? -1 : 1;
+    const narc_point away = {sign * (point.x - piece->center.x), sign * (point.y - piece->center.y)};
+    const double distance = length_of(away);
+    const narc_point normal = distance > 0 ? (narc_point){away.x / distance, away.y / distance} : piece->low;
+    if (cross(piece->low, away) < -piece->room || cross(away, piece->high) < -piece->room)
+        return false;
+    *out = (struct ground_foot){
+        sign * (distance - piece->radius),
+        {piece->center.x + sign * piece->radius * normal.x, piece->center.y + sign * piece->radius * normal.y},
+        normal.x,
+        normal.y};
+    return true;
+}
+
+/* From the nearest end of the chain. */
+static double end_distance(const struct ground *ground, narc_point point) {
+    return ground->open ? fmin(length_of(minus(point, ground->ends[0])), length_of(minus(point, ground->ends[1])))
+                        : INFINITY;
+}
+
+struct ground_foot ground_distance(const struct ground *ground, narc_point point) {
+    struct ground_foot nearest = {.distance = INFINITY}, foot;
+    for (size_t k = 0; k < ground->count; k++)
+        if (find_foot(&ground->pieces[k], point, &foot) && fabs(foot.distance) < fabs(nearest.distance))
+            nearest = foot;
+    if (end_distance(ground, point) < fabs(nearest.distance) * (1 - end_tolerance))
+        nearest.distance = INFINITY;
+    return nearest;
+}
+
+static int compare_feet(const void *left, const void *right) {
+    const double l = fabs(((const struct ground_foot *)left)->distance);
+    const double r = fabs(((const struct ground_foot *)right)->distance);
+    return (l > r) - (l < r);
+}
+
+size_t ground_feet(const struct ground *ground, narc_point point, struct ground_foot *out, size_t capacity) {
+    struct ground_foot *all = malloc(ground->count * sizeof *all);
+    size_t count = 0;
+    for (size_t k = 0; k < ground->count; k++)
+        count += find_foot(&ground->pieces[k], point, &all[count]);
+    qsort(all, count, sizeof *all, compare_feet);
+    count = count < capacity ? count : capacity;
+    for (size_t k = 0; k < count; k++)
+        out[k] = all[k];
+    free(all);
+    return count;
+}
+
+/* ------------------------------------------------------------------------------------------------ the outline */
+
+/* A part of a body's outline, an arc or an edge, from `start` on, measured along the outline. */
+struct stretch {
+    bool is_arc;
+    narc_point from, along; /* an edge's; `along` of length 1 */
+    narc_point center;
+    double radius, angle;
+    double start, length;
+};
+
+struct sample {
+    double along, distance;
+};
+
+struct ground_search {
+    struct ground near; /* the pieces that any point of the body may be next to */
+    struct stretch stretches[2 * NARC_MAX_ARCS];
+    size_t stretch_count;
+    double perimeter, size, margin, step;
+    narc_point inner; /* in the body */
+    struct sample *samples;
+    size_t count, capacity;
+};
+
+static void add_stretch(struct ground_search *search, struct stretch stretch) {
+    stretch.start = search->perimeter;
+    search->perimeter += stretch.length;
+    if (stretch.length > 0)
+        search->stretches[search->stretch_count++] = stretch;
+}
+
+static void walk_outline(struct ground_search *search, const struct reference_body *body) {
+    const double c = body->cosine * body->scale, s = body->sine * body->scale, scale = hypot(c, s);
+    const double turn = atan2(s, c), tiny = end_tolerance * reference_extent(body);
+    for (size_t k = 0; k < body->count; k++) {
+        const narc_arc *before = &body->arcs[(k + body->count - 1) % body->count], *arc = &body->arcs[k];
+        const narc_point p = on_arc(before, before->end), q = on_arc(arc, arc->start);
+        const narc_point from = {body->x + c * p.x - s * p.y, body->y + s * p.x + c * p.y};
+        const double x = c * (q.x - p.x) - s * (q.y - p.y), y = s * (q.x - p.x) + c * (q.y - p.y), length = hypot(x, y);
+        if (length > tiny)
+            add_stretch(search, (struct stretch){.from = from, .along = {x / length, y / length}, .length = length});
+        double sweep = arc->end - arc->start;
+        sweep = sweep <= 0 ? sweep + 2 * pi : sweep;
+        add_stretch(search, (struct stretch){.is_arc = true,
+                                             .center = {body->x + c * arc->center_x - s * arc->center_y,
+                                                        body->y + s * arc->center_x + c * arc->center_y},
+                                             .radius = scale * arc->radius,
+                                             .angle = arc->start + turn,
+                                             .length = scale * arc->radius * sweep});
+    }
+}
+
+static narc_point point_at(const struct ground_search *search, double along) {
+    along -= search->perimeter * floor(along / search->perimeter);
+    size_t k = search->stretch_count - 1;
+    while (k > 0 && search->stretches[k].start > along)
+        k--;
+    const struct stretch *stretch = &search->stretches[k];
+    const double t = fmin(along - stretch->start, stretch->length);
+    if (!stretch->is_arc)
+        return (narc_point){stretch->from.x + t * stretch->along.x, stretch->from.y + t * stretch->along.y};
+    const double angle = stretch->angle + t / stretch->radius;
+    return (narc_point){stretch->center.x + stretch->radius * cos(angle),
+                        stretch->center.y + stretch->radius * sin(angle)};
+}
+
+static double distance_at(const struct ground_search *search, double along) {
+    return ground_distance(&search->near, point_at(search, along)).distance;
+}
+
+static void add_sample(struct ground_search *search, double along, double distance) {
+    if (search->count == search->capacity) {
+        search->capacity = 2 * search->capacity + 256;
+        search->samples = realloc(search->samples, search->capacity * sizeof *search->samples);
+        assert(search->samples);
+    }
+    search->samples[search->count++] = (struct sample){along, distance};
+}
+
+/* Samples from `from` up to but without `to`, a step apart but where all is further than the margin: no distance changes
+ * by more than the way. */
+static void add_samples(struct ground_search *search, double from, double to) {
+    const double middle = (from + to) / 2, half = (to - from) / 2, distance = distance_at(search, middle);
+    if (2 * half <= search->step) {
+        add_sample(search, from, distance_at(search, from));
+        add_sample(search, middle, distance);
+        return;
+    }
+    if (isfinite(distance) && distance - half > search->margin) {
+        add_sample(search, middle, distance);
+        return;
+    }
+    add_samples(search, from, middle);
+    add_samples(search, middle, to);
+}
+
+/* How far a point is from a piece. */
+static double piece_distance(const struct piece *piece, narc_point point) {
+    struct ground_foot foot;
+    const double ends = fmin(length_of(minus(point, piece->from)), length_of(minus(point, piece->to)));
+    return find_foot(piece, point, &foot) ? fmin(fabs(foot.distance), ends) : ends;
+}
+
+/* A piece that is nearest to a point of the body is no further from the middle than the piece next to that, and twice
+ * the way between both. */
+static void choose_pieces(struct ground_search *search, const struct ground *ground, narc_point middle, double radius) {
+    double least = INFINITY;
+    for (size_t k = 0; k < ground->count; k++)
+        least = fmin(least, piece_distance(&ground->pieces[k], middle));
+    search->near = *ground;
+    search->near.pieces = malloc((ground->count + 1) * sizeof *ground->pieces);
+    search->near.count = 0;
+    for (size_t k = 0; k < ground->count; k++)
+        if (piece_distance(&ground->pieces[k], middle) <= least + 2.001 * radius)
+            search->near.pieces[search->near.count++] = ground->pieces[k];
+}
+
+struct ground_search *search_ground(const struct ground *ground, const struct reference_body *body, double margin,
+                                    double step) {
+    struct ground_search *search = calloc(1, sizeof *search);
+    narc_circle inner = {0, 0, 0}, around = {0, 0, 0};
+    narc_compute_inscribed_circle(body->arcs, body->count, &inner);
+    narc_compute_bounding_circle(body->arcs, body->count, &around);
+    const double c = body->cosine * body->scale, s = body->sine * body->scale;
+    search->inner = (narc_point){body->x + c * inner.x - s * inner.y, body->y + s * inner.x + c * inner.y};
+    const narc_point middle = {body->x + c * around.x - s * around.y, body->y + s * around.x + c * around.y};
+    search->size = around.radius * hypot(c, s);
+    search->margin = margin;
+    search->step = step;
+    walk_outline(search, body);
+    choose_pieces(search, ground, middle, search->size);
+    for (size_t k = 0; k < search->stretch_count; k++) {
+        const struct stretch *stretch = &search->stretches[k];
+        add_samples(search, stretch->start, stretch->start + stretch->length);
+    }
+    return search;
+}
+
+void destroy_search(struct ground_search *search) {
+    free(search->near.pieces);
+    free(search->samples);
+    free(search);
+}
+
+/* ------------------------------------------------------------------------------------------------ minima */
+
+/* A place's sample, counted beyond the last one: around the outline. */
+static struct sample sample_at(const struct ground_search *search, size_t k) {
+    struct sample sample = search->samples[k % search->count];
+    sample.along += (double)(k / search->count) * search->perimeter;
+    return sample;
+}
+
+/* Golden-section search between two samples beside a least one. */
+static double descend(const struct ground_search *search, double low, double high) {
+    const double ratio = 0.618033988749894848;
+    double left = high - ratio * (high - low), right = low + ratio * (high - low);
+    double at_left = distance_at(search, left), at_right = distance_at(search, right);
+    while (high - low > 1e-12 * search->perimeter) {
+        if (at_left < at_right) {
+            high = right;
+            right = left;
+            at_right = at_left;
+            left = high - ratio * (high - low);
+            at_left = distance_at(search, left);
+        } else {
+            low = left;
+            left = right;
+            at_left = at_right;
+            right = low + ratio * (high - low);
+            at_right = distance_at(search, right);
+        }
+    }
+    return (low + high) / 2;
+}
+
+/* Is another piece as near, with another normal, so that the distance has no gradient, or an open end? */
+static bool is_doubtful(const struct ground_search *search, const struct ground_minimum *minimum) {
+    const struct ground_foot *nearest = &minimum->foot;
+    const double tolerance = doubt * search->size, distance = fabs(nearest->distance);
+    struct ground_foot foot;
+    if (end_distance(&search->near, minimum->at) < distance + tolerance)
+        return true;
+    for (size_t k = 0; k < search->near.count && nearest->distance < 0; k++)
+        if (find_foot(&search->near.pieces[k], minimum->at, &foot) && fabs(foot.distance) < distance + tolerance &&
+            hypot(foot.normal_x - nearest->normal_x, foot.normal_y - nearest->normal_y) > doubt)
+            return true;
+    return false;
+}
+
+/* The refined minimum beside sample k, if it is one over the body: going inwards, the distance rises. */
+static bool refine(const struct ground_search *search, size_t k, struct ground_minimum *out) {
+    const struct sample before = sample_at(search, k + search->count - 1),
+                        after = sample_at(search, k + search->count + 1);
+    const struct sample here = sample_at(search, k + search->count);
+    double along = descend(search, before.along, after.along);
+    if (!(distance_at(search, along) < here.distance))
+        along = here.along;
+    along -= search->perimeter * floor(along / search->perimeter);
+    *out = (struct ground_minimum){.at = point_at(search, along), .along = along, .depth = INFINITY};
+    out->foot = ground_distance(&search->near, out->at);
+    const narc_point inwards = minus(search->inner, out->at);
+    return isfinite(out->foot.distance) && out->foot.distance < search->margin &&
+           out->foot.normal_x * inwards.x + out->foot.normal_y * inwards.y > 0;
+}
+
+/* The highest sample between two places, going counter-clockwise. */
+static double highest_between(const struct ground_search *search, double from, double to) {
+    double highest = fmax(distance_at(search, from), distance_at(search, to));
+    to += to < from ? search->perimeter : 0;
+    for (size_t k = 0; k < 2 * search->count; k++) {
+        const struct sample sample = sample_at(search, k);
+        if (sample.along > from && sample.along < to)
+            highest = fmax(highest, sample.distance);
+    }
+    return highest;
+}
+
+double ground_barrier(const struct ground_search *search, double from, double to) {
+    return fmin(highest_between(search, from, to), highest_between(search, to, from));
+}
+
+double ground_least(const struct ground_search *search, double along, double reach) {
+    enum { STEPS = 64 };
+    double least = INFINITY;
+    for (int k = -STEPS; k <= STEPS; k++)
+        least = fmin(least, distance_at(search, along + reach * k / STEPS));
+    return least;
+}
+
+/* Merges neighbours that nothing separates, and measures what separates the others. */
+static size_t merge_minima(const struct ground_search *search, double noise, struct ground_minimum *minima,
+                           size_t count) {
+    for (size_t k = 0; count > 1 && k < count;) {
+        const size_t next = (k + 1) % count;
+        const double wall = highest_between(search, minima[k].along, minima[next].along);
+        struct ground_minimum *higher =
+            minima[k].foot.distance > minima[next].foot.distance ? &minima[k] : &minima[next];
+        const double rise = wall - higher->foot.distance;
+        if (rise <= noise) {
+            for (size_t i = (size_t)(higher - minima); i + 1 < count; i++)
+                minima[i] = minima[i + 1];
+            count--;
+            k = 0; /* what is left may have other neighbours */
+            continue;
+        }
+        higher->depth = fmin(higher->depth, rise);
+        k++;
+    }
+    return count;
+}
+
+size_t ground_minima(const struct ground_search *search, double noise, struct ground_minimum *out) {
+    size_t count = 0;
+    for (size_t k = 0; k < search->count; k++) {
+        const double here = sample_at(search, k).distance;
+        const double before = sample_at(search, k + search->count - 1).distance,
+                     after = sample_at(search, k + 1).distance;
+        if (here < search->margin + search->step && here <= before && here < after && count < GROUND_MINIMA)
+            count += refine(search, k, &out[count]);
+    }
+    count = merge_minima(search, noise, out, count);
+    for (size_t k = 0; k < count; k++)
+        out[k].doubtful = is_doubtful(search, &out[k]);
+    return count;
+}
+
+double ground_project(const struct ground_search *search, narc_point point, double *out_distance) {
+    double best = 0;
+    *out_distance = INFINITY;
+    for (size_t k = 0; k < search->stretch_count; k++) {
+        const struct stretch *stretch = &search->stretches[k];
+        double t = (point.x - stretch->from.x) * stretch->along.x + (point.y - stretch->from.y) * stretch->along.y;
+        if (stretch->is_arc) {
+            const double middle = stretch->angle + stretch->length / stretch->radius / 2;
+            const double angle = atan2(point.y - stretch->center.y, point.x - stretch->center.x);
+            t = stretch->length / 2 + remainder(angle - middle, 2 * pi) * stretch->radius;
+        }
+        t = stretch->start + fmin(fmax(t, 0), stretch->length);
+        const double distance = length_of(minus(point_at(search, t), point));
+        best = distance < *out_distance ? t : best;
+        *out_distance = fmin(*out_distance, distance);
+    }
+    return best;
+}
