@@ -63,11 +63,12 @@ static inline struct turtle walk_ground(struct test_random *random, size_t steps
         if (random_below(random, 4) || kind < 3) /* corners have edges beside them */
             walk_line(&t, random_log_between(random, 0.1, 9));
     }
+    walk_line(&t, 0.5);
     walk_arc(&t, 0, 0);
     return t;
 }
 
-/* A closed ring of rounded teeth around the origin, or of what else `walk` does `times` times: a turn by 2 pi / times. */
+/* A closed ring of rounded teeth, each turned by an equal share of the whole turn: so it closes. */
 static inline struct turtle walk_gear(size_t teeth, double depth) {
     struct turtle t = create_turtle(1, 0, 0);
     const double share = 2 * TEST_PI / (double)teeth;
