@@ -263,14 +263,27 @@ static void expect_concave(const struct reference_body *piece, const struct refe
     }
 }
 
-/* Is a direction away from a run one of the front's? It is only as good as the root of the gap's precision. */
-static bool is_in_front(const struct reference_body *run, double x, double y, bool *out_doubtful) {
-    const size_t n = run->count;
-    const double begin = run->arcs[0].end, sweep = wrap(run->arcs[n - 5].start - begin - 1) + 1;
-    const double beyond = fabs(wrap(atan2(y, x) - atan2(run->sine, run->cosine) - begin - sweep / 2)) - sweep / 2;
-    const bool is_flat = sweep < 1e-9;
-    *out_doubtful = *out_doubtful || (is_flat ? beyond > 1e-5 && beyond < 1e-4 : fabs(beyond) < 1e-4);
-    return beyond <= (is_flat ? 1e-5 : 0);
+/* Is the gap as large along a normal of the run `run`, too? `sign`: 1 if that is A, else -1. */
+static bool is_tie(const struct reference_body *a, const struct reference_body *b, double gap, double sign,
+                   double angle) {
+    const struct reference_body *const run = sign > 0 ? a : b;
+    const double turned = angle + atan2(run->sine, run->cosine);
+    return reference_gap_along(a, b, sign * cos(turned), sign * sin(turned)) > gap - 1e-6;
+}
+
+/* Is the gap's direction one of the run's front? It is only as good as the root of the gap's precision. */
+static bool is_in_front(const struct reference_body *a, const struct reference_body *b, const struct reference_gap *gap,
+                        double sign, bool *out_doubtful) {
+    const struct reference_body *const run = sign > 0 ? a : b;
+    const narc_arc *first = &run->arcs[0], *last = &run->arcs[run->count - 5];
+    const double sweep = wrap(last->start - first->end - 1) + 1, turned = atan2(run->sine, run->cosine);
+    const double angle = atan2(sign * gap->normal_y, sign * gap->normal_x) - turned;
+    const double beyond = fabs(wrap(angle - first->end - sweep / 2)) - sweep / 2;
+    const bool is_flat = sweep < 1e-9, in_front = beyond <= (is_flat ? 1e-5 : 0);
+    const bool ties = is_tie(a, b, gap->gap, sign, in_front ? first->start : first->end) ||
+                      is_tie(a, b, gap->gap, sign, in_front ? last->end : last->start);
+    *out_doubtful = *out_doubtful || ties || (is_flat ? beyond > 1e-5 && beyond < 1e-4 : fabs(beyond) < 1e-4);
+    return in_front;
 }
 
 static struct expected find_expected(const struct scene *scene, struct pair pair, double limit) {
@@ -290,8 +303,8 @@ static struct expected find_expected(const struct scene *scene, struct pair pair
     }
     const struct reference_gap gap = reference_find_gap(&a, &b);
     out.is_doubtful = fabs(gap.gap - limit) < 2e-5;
-    const bool front_a = !run_a || is_in_front(&a, gap.normal_x, gap.normal_y, &out.is_doubtful);
-    const bool front_b = !run_b || is_in_front(&b, -gap.normal_x, -gap.normal_y, &out.is_doubtful);
+    const bool front_a = !run_a || is_in_front(&a, &b, &gap, 1, &out.is_doubtful);
+    const bool front_b = !run_b || is_in_front(&a, &b, &gap, -1, &out.is_doubtful);
     if (gap.gap < limit && front_a && front_b) {
         out.separation[out.count] = gap.gap;
         out.normal[out.count++] = (struct spot){gap.normal_x, gap.normal_y};
@@ -331,13 +344,15 @@ static size_t check_rows(const struct ground *g, const struct contacts *rows) {
             const narc_contact *c = &rows->rows[row + i];
             const double n_x = is_concave(&b) ? -(double)c->normal_x : (double)c->normal_x,
                          n_y = is_concave(&b) ? -(double)c->normal_y : (double)c->normal_y;
-            double least = INFINITY, other = INFINITY;
+            double least = INFINITY, other = INFINITY, bound = separation_bound(&a, &b);
+            if (is_concave(&a) || is_concave(&b)) /* the reference knows no radius below 0 */
+                bound += -2 * NARC_ERROR_BOUND * (is_concave(&a) ? &a : &b)->arcs->radius;
             for (size_t j = 0; j < e.count; j++) {
                 const double turn = hypot(n_x - e.normal[j].x, n_y - e.normal[j].y);
                 other = turn < least ? fabs((double)c->separation - e.separation[j]) : other;
                 least = fmin(least, turn);
             }
-            if (!(other <= separation_bound(&a, &b)) || (is_concave(&a) != is_concave(&b) && !(least < 1e-3)))
+            if (!(other <= bound) || (is_concave(&a) != is_concave(&b) && !(least < 1e-3)))
                 fail_msg("pair %u, row %zu of %zu: separation %g is off by %g, the normal by %g", k, i, count,
                          (double)c->separation, other, least);
             if (i > 0)
@@ -664,7 +679,8 @@ TEST(test_rays) {
             const bool at_seam = !in_ground && !random_below(&random, 3);
             const double angle = at_seam ? arc->start : random_between(&random, arc->start, arc->end);
             const struct spot p = find_chain_point(arc, angle);
-            const double way = angle + random_between(&random, -1.5, 1.5), away = random_log_between(&random, 1e-3, 30);
+            const double air = fabs(arc->radius) > 0 ? angle : (arc->start + arc->end) / 2;
+            const double way = air + random_between(&random, -1.2, 1.2), away = random_log_between(&random, 1e-3, 30);
             const double sign = in_ground ? -1 : 1;
             x[k] = p.x + sign * away * cos(way);
             y[k] = p.y + sign * away * sin(way);
@@ -699,12 +715,13 @@ TEST(test_rays) {
             const double along = hits[k].count ? (double)hits[k].fraction * length : INFINITY;
             const bool found = here.along < length;
             /* Rays that graze, meet a corner, or begin by next to nothing in the ground. */
+            const bool is_free = !isfinite(here.along) && !isfinite(beside.along) && !isfinite(other.along);
             const bool is_doubtful =
-                !(fabs(beside.along - here.along) < 0.01) || !(fabs(other.along - here.along) < 0.01) ||
-                !(hypot(beside.normal.x - other.normal.x, beside.normal.y - other.normal.y) < 1e-2) ||
-                here.along < 1e-4 || fabs(here.along - length) < 1e-3;
-            doubts += is_doubtful && isfinite(here.along);
-            if (is_doubtful && isfinite(here.along))
+                !is_free && (!(fabs(beside.along - here.along) < 0.01) || !(fabs(other.along - here.along) < 0.01) ||
+                             !(hypot(beside.normal.x - other.normal.x, beside.normal.y - other.normal.y) < 1e-2) ||
+                             here.along < 1e-4 || fabs(here.along - length) < 1e-3);
+            doubts += is_doubtful;
+            if (is_doubtful)
                 continue;
             hit_count += found;
             const double slope = fabs(here.normal.x * v.x + here.normal.y * v.y);
@@ -715,7 +732,8 @@ TEST(test_rays) {
                 assert_true(hypot((double)hits[k].normal_x - here.normal.x, (double)hits[k].normal_y - here.normal.y) <
                             1e-3);
         }
-        assert_true(hit_count > RAYS / 2 && doubts < RAYS / 10);
+        if (!(hit_count > RAYS / 4 && doubts < RAYS / 2))
+            fail_msg("of %d rays %zu hit, and %zu are doubtful", RAYS, hit_count, doubts);
         narc_destroy_index(index);
         free(boxes);
         destroy_scene(&g->scene);
