@@ -7,8 +7,8 @@
 
 #include "narc.h"
 #include "narc_broad_phase.h"
-#include "narc_files.h"
 #include "narc_chains.h"
+#include "narc_files.h"
 #include "narc_fit.h"
 #include "narc_methods.h"
 #include "narc_scene.h"
