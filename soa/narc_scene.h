@@ -177,9 +177,11 @@ typedef struct narc_ray_hit {
  *   out_rows   room for `capacity` rows, at least rays->count * most
  * The point is within NARC_ERROR_BOUND * (the body's extent) of the outline and of the ray, however far the ray has come
  * (from more than 1e9 extents away, the digits of doubles are lost too); a ray that passes a body by no more than that
- * may hit or miss it. A corner is hit as the end of an edge. Broken bodies, and those whose shape does not exist, are
- * not hit: so that a single ray takes no longer where there are many bodies, they are not looked at beforehand. Rays that
- * start at the same place and follow each other in the order of their directions, such as a scanner's, share their way.
+ * may hit or miss it. A corner is hit as the end of an edge. Pieces of chains (narc_chains.h) are hit from the air: a
+ * ray that starts in the ground does not hit it, whatever `inside` says; a concave arc's radius is below 0. Broken
+ * bodies, and those whose shape does not exist, are not hit: so that a single ray takes no longer where there are many
+ * bodies, they are not looked at beforehand. Rays that start at the same place and follow each other in the order of
+ * their directions, such as a scanner's, share their way.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_CAPACITY, and those for NARC_ISA.
  * Allocates nothing. Thread-safe.
  * Source: docs/algorithm.md, section 15. */
@@ -202,9 +204,9 @@ typedef struct narc_motions {
  *   tolerance     where a body turns, a hit has a separation within target .. target + tolerance; 0: 1/1024 of the
  *                 smaller body's bounding radius. Bodies that do not turn need none: they meet up to rounding
  *   workers       threads to use; NULL: the calling one
- *   out_skipped   how many pairs have no answer: a broken body, a motion that is not finite, more than
- *                 NARC_MAX_DISTANCE from A to B at the start. Of movers: those that are broken or whose motion is not
- *                 finite, and such pairs on the way of the others. NULL: nobody asks */
+ *   out_skipped   how many pairs have no answer: a broken body, a piece of a chain, a motion that is not finite, more
+ *                 than NARC_MAX_DISTANCE from A to B at the start. Of movers: those that are broken or whose motion is
+ *                 not finite, and such pairs on the way of the others. NULL: nobody asks */
 typedef struct narc_cast_options {
     float target;
     float tolerance;
@@ -283,7 +285,7 @@ typedef struct narc_points {
  *   point       its number
  *   body        its number
  *   feature     the nearest arc or edge, in the caller's numbering (see narc_contact.feature): one byte
- *   count       1; 0: there is no such body, or no answer, and all else but `point` is 0
+ *   count       1; 0: there is no such body, or no answer (pieces of chains have none), and all else but `point` is 0
  *   separation  the distance to the outline, negative within the body
  *   normal      unit, outwards, world axes, of the outline at the nearest place; at a corner, away from it
  *   place       the nearest place of the outline, world axes, relative to the position of the body. Where several are
@@ -330,7 +332,8 @@ typedef struct narc_nearest_options {
 
 /* The bodies nearest to each point: the least (separation, body), or the first `most` of them in this order. Rows are
  * those of narc_find_distances().
- *   index, bodies   as in narc_cast_rays(); a body whose box does not hold it may not be found
+ *   index, bodies   as in narc_cast_rays(); a body whose box does not hold it may not be found, and no piece of a chain
+ *                   is
  *   options         NULL: defaults, which are the nearest body at any distance
  *   out_rows        room for `capacity` rows, at least points->count * most
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_NOT_FINITE (a distance that is NaN),

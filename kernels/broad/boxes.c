@@ -186,7 +186,7 @@ INLINE struct reaches find_reaches(const narc_shapes *shapes, const int32_t shap
     UNROLL
     for (int k = 0; k < AXES; k++)
         height[k] = find_support_value(shapes->records, arcs, count, run[k], axis[k]);
-    if (shapes->piece_count > 0)
+    if (NARC_PIECES && shapes->piece_count > 0)
         find_piece_heights(shapes, shape, axis, height);
     UNROLL
     for (int k = 0; k < AXES; k++)
