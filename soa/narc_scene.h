@@ -204,9 +204,9 @@ typedef struct narc_motions {
  *   tolerance     where a body turns, a hit has a separation within target .. target + tolerance; 0: 1/1024 of the
  *                 smaller body's bounding radius. Bodies that do not turn need none: they meet up to rounding
  *   workers       threads to use; NULL: the calling one
- *   out_skipped   how many pairs have no answer: a broken body, a piece of a chain, a motion that is not finite, more
- *                 than NARC_MAX_DISTANCE from A to B at the start. Of movers: those that are broken or whose motion is
- *                 not finite, and such pairs on the way of the others. NULL: nobody asks */
+ *   out_skipped   how many pairs have no answer: a broken body, a motion that is not finite, more than
+ *                 NARC_MAX_DISTANCE from A to B at the start. Of movers: those that are broken or whose motion is not
+ *                 finite, and such pairs on the way of the others. NULL: nobody asks */
 typedef struct narc_cast_options {
     float target;
     float tolerance;
@@ -285,7 +285,7 @@ typedef struct narc_points {
  *   point       its number
  *   body        its number
  *   feature     the nearest arc or edge, in the caller's numbering (see narc_contact.feature): one byte
- *   count       1; 0: there is no such body, or no answer (pieces of chains have none), and all else but `point` is 0
+ *   count       1; 0: there is no such body, or no answer, and all else but `point` is 0
  *   separation  the distance to the outline, negative within the body
  *   normal      unit, outwards, world axes, of the outline at the nearest place; at a corner, away from it
  *   place       the nearest place of the outline, world axes, relative to the position of the body. Where several are
@@ -332,8 +332,7 @@ typedef struct narc_nearest_options {
 
 /* The bodies nearest to each point: the least (separation, body), or the first `most` of them in this order. Rows are
  * those of narc_find_distances().
- *   index, bodies   as in narc_cast_rays(); a body whose box does not hold it may not be found, and no piece of a chain
- *                   is
+ *   index, bodies   as in narc_cast_rays(); a body whose box does not hold it may not be found
  *   options         NULL: defaults, which are the nearest body at any distance
  *   out_rows        room for `capacity` rows, at least points->count * most
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_NOT_FINITE (a distance that is NaN),
