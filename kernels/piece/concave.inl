@@ -2,11 +2,12 @@
  *
  * concave.inl - contacts of a body with a concave arc: a chain's piece with the solid outside its circle (store.h).
  *
- * Let the arc have the centre c and the radius R, and an arc of the body b and r. Of this the point farthest from c lies
- * in the direction of b - c. Where that is within the sector of the body's arc, and its opposite among the normals of the
- * concave one, both have a common normal there, and the separation is R - |b - c| - r. Each such arc is a contact: a box
- * in a bowl stands on two corners. A straight edge has none of its own, as its ends are farther from c. With -R for the
- * radius, which is how the piece is stored, all this is the gap of two arcs (normal_fan.inl) along -u.
+ * Let the arc have the centre c and the radius R, and an arc of the body b and r. Of this the point farthest from c
+ * lies in the direction of b - c. Where that is within the sector of the body's arc, and its opposite among the
+ * normals of the concave one, both have a common normal there, and the separation is R - |b - c| - r. Each such arc
+ * is a contact: a box in a bowl stands on two corners. A straight edge has none of its own, as its ends are farther
+ * from c. With -R for the radius, which is how the piece is stored, all this is the gap of two arcs (normal_fan.inl)
+ * along -u.
  *
  * A direction belongs to the arc that it does not lie behind the end of, and which either it does not lie before the
  * start of or the arc before has turned down: so whatever the rounding, none belongs to neither.
@@ -21,6 +22,7 @@
 
 #include "base/call.inl"
 #include "base/contact_point.inl"
+#include "base/pair_setup.inl"
 #include "base/queue.inl"
 #include "base/rows.inl"
 #include "base/shape.inl"
@@ -147,6 +149,7 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
     const vi count = vi_select(has_flag(info, NARC_SHAPE_CIRCLE), one, all); /* of its halves one counts */
     const vf margin = get_margins(call, queue, k);
     const vm open = vm_and_not(live, has_mark(info, NARC_PIECE_CONCAVE)); /* concave against concave: none */
+    const vm beside = v_lt(v_set(0), get(queue, SLACK, k));
     const bool lists = call->rows->out.lists_one;
     struct gap deepest = {v_set(INFINITY), {v_set(0), v_set(0)}, v_set(1), pairs.ring_a.base, pairs.ring_b.base};
     vi found = zero;
@@ -157,7 +160,9 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
         const vi arc = vi_select(exists, vi_set(i), zero);
         const struct gap gap = find_concave_gap(records, &pairs, arc, &ended, &touch);
         const vm front = is_front(info, find_arc_number(vi_add(body_base, arc), first_record, info));
-        const vm keep = vm_and(vm_and(vm_and(exists, front), touch), is_below(gap.separation, margin));
+        const vm real = vm_not(vm_and(beside, v_lt(gap.separation, v_set(0))));
+        const vm counts = vm_and(vm_and(exists, front), vm_and(touch, real));
+        const vm keep = vm_and(counts, is_below(gap.separation, margin));
         if (!vm_any(keep))
             continue;
         const vm deeper = vm_and(keep, v_lt(gap.separation, deepest.separation));
@@ -191,13 +196,23 @@ INLINE vm answer_concave(const struct call *call, const struct queue *queue, int
     return vm_and_not(live, concave);
 }
 
-/* Takes the pairs with a concave arc of those in the lanes `open`, and returns the others. */
-INLINE vm take_concave(const struct call *call, vm open, const vf item[FIELDS]) {
-    const vm concave = vm_and(open, has_concave(item));
+/* Takes the pairs with a concave arc of those in the lanes `valid`, and returns the others of `near`. What is apart by
+ * its circles has no contact with a separation below 0, whatever the margin: a body may then be deep under the arc, but
+ * not on it. So negative margins count as 0 here, and where circles are apart SLACK tells so. */
+INLINE vm take_concave(const struct call *call, vm valid, vm near, const struct filter *circles,
+                       const vf item[FIELDS]) {
+    const vm concave = vm_and(valid, has_concave(item));
     if (!vm_any(concave))
-        return open;
-    push(call->concave, concave, item, CONTACT_FIELDS);
-    return vm_and_not(open, concave);
+        return near;
+    const vf zero = v_set(0), reach = v_add(circles->size, v_max(circles->margin, zero));
+    const vm apart = v_lt(v_mul(reach, reach), circles->square);
+    const vm beside = v_lt(v_mul(circles->size, circles->size), circles->square);
+    vf own[FIELDS];
+    for (int f = 0; f < FIELDS; f++)
+        own[f] = item[f];
+    own[SLACK] = v_select(beside, v_set(1), zero);
+    push(call->concave, vm_and_not(concave, apart), own, CONTACT_FIELDS);
+    return vm_and_not(near, concave);
 }
 
 #endif
