@@ -376,7 +376,8 @@ static narc_status add_piece(narc_pieces *pieces, narc_piece added) {
 static size_t list_points(const narc_region *region, node from, node to, narc_point *out_points) {
     const size_t contour = narc_find_contour(region, from.point), begin = begin_of(region->ends, contour);
     size_t count = 0;
-    for (size_t k = from.point; count == 0 || (k != to.point && !from.is_cut); k = k + 1 < region->ends[contour] ? k + 1 : begin) {
+    for (size_t k = from.point; count == 0 || (k != to.point && !from.is_cut);
+         k = k + 1 < region->ends[contour] ? k + 1 : begin) {
         if (out_points)
             out_points[count] = region->points[k];
         count++;
@@ -435,12 +436,11 @@ narc_status narc_cut_region(const narc_region *region, size_t most, narc_pieces 
     for (size_t k = 0; k < region->count && !status; k++)
         if (region->parents[k] == SIZE_MAX && !add_contour(&w, k))
             status = NARC_ERROR_MEMORY;
-    while (w.rings.count && !status) {
+    while (w.rings.count && !status)
         if (w.rings.count + pieces.count > most)
             status = NARC_ERROR_CAPACITY;
         else
             status = cut_ring(&w, w.rings.items[--w.rings.count], &pieces);
-    }
     for (size_t k = 0; k < w.rings.count; k++)
         free(w.rings.items[k].nodes);
     free(w.rings.items);

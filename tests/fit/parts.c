@@ -56,8 +56,8 @@ static walls wall_in(const narc_fit_result *fit) {
     for (size_t k = 0; k < DIRECTIONS; k++) {
         const double angle = k < 96 ? 2 * PI * (double)k / 96 : fit->arcs[k % fit->arc_count].start;
         made.normals[k] = (narc_point){cos(angle), sin(angle)};
-        made.supports[k] = reference_arcs_support(fit->arcs, fit->arc_count, angle) +
-                           fit->origin.x * cos(angle) + fit->origin.y * sin(angle);
+        made.supports[k] = reference_arcs_support(fit->arcs, fit->arc_count, angle) + fit->origin.x * cos(angle) +
+                           fit->origin.y * sin(angle);
     }
     return made;
 }
@@ -303,7 +303,8 @@ TEST(test_any_points) {
         narc_point points[40];
         const size_t count = 2 + random_below(&random, 38), lattice = 1 + random_below(&random, 20);
         for (size_t k = 0; k < count; k++)
-            points[k] = (narc_point){(double)random_below(&random, lattice), (double)random_below(&random, lattice + 1)};
+            points[k] =
+                (narc_point){(double)random_below(&random, lattice), (double)random_below(&random, lattice + 1)};
         points[0].x += 1;
         add_corners(&of, points, count / 2);
         add_corners(&of, points + count / 2, count - count / 2);
