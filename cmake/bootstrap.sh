@@ -255,7 +255,7 @@ paper() {
 
 fit_study() {
     require_packages $study_packages
-    build release fit_study
+    build release fit_study parts_study
     font=$(dpkg -L fonts-symbola | grep -i -m 1 '\.[ot]tf$') || fail "fonts-symbola has no font file"
     drawings=$(dpkg -L openclipart-svg | grep -m 1 '/svg$') || fail "openclipart-svg has no folder svg"
     sand=$(dpkg -L r-cran-shapes | grep -m 1 '/sand\.rda$') || fail "r-cran-shapes has no file sand.rda"
@@ -266,6 +266,10 @@ fit_study() {
     say "the paper's study of goodness of fit"
     build/release/bench/fit_study/fit_study --font="$font" --drawings="$drawings" \
         --grains=out/grains --out=out
+    say "200 drawings as convex parts"
+    build/release/bench/fit_study/parts_study 0.02 \
+        $(find "$drawings" -name '*.svg' | LC_ALL=C sort | awk 'NR % 40 == 7' | head -200) >out/fit-parts.txt
+    tail -n 4 out/fit-parts.txt
     say "plot"
     gnuplot -e "folder='out'" bench/fit_study/plots.gp
     say "written"

@@ -394,12 +394,14 @@ static const narc_arc *read_convex(reader *at, const cJSON *item, size_t form, d
 static narc_arc *read_chain(reader *at, const cJSON *item, const list *shapes, narc_named_shape *shape) {
     static const char *const keys[] = {"closed", "arcs", NULL};
     check_object(at, item, "chain", keys);
-    const cJSON *closed = at->status ? NULL : find(item, "closed"), *arcs = at->status ? NULL : require(at, item, "arcs");
+    const cJSON *closed = at->status ? NULL : find(item, "closed"),
+                *arcs = at->status ? NULL : require(at, item, "arcs");
     if (closed && !cJSON_IsBool(closed))
         fail_value(at, closed, "closed", "is neither true nor false");
     shape->form = closed && cJSON_IsTrue(closed) ? NARC_FORM_CLOSED_CHAIN : NARC_FORM_OPEN_CHAIN;
     shape->arc_count = at->status ? 0 : check_list(at, arcs, "arcs", SIZE_MAX / sizeof(narc_arc));
-    narc_arc *read = at->status ? NULL : allocate(&shapes->allocator, shape->arc_count * sizeof *read, "arcs", at->error);
+    narc_arc *read =
+        at->status ? NULL : allocate(&shapes->allocator, shape->arc_count * sizeof *read, "arcs", at->error);
     narc_error error;
     if (!at->status && !read)
         at->status = NARC_ERROR_MEMORY;

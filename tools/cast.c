@@ -183,10 +183,9 @@ static void write_hits(FILE *file, const job *work) {
         if (!hit->count)
             continue;
         const body *at = &work->bodies.items[hit->body];
-        fprintf(file, "%" PRIu32 ",%" PRIu32 ",%.9g,%.9g,%.9g,%.17g,%.17g,%d", hit->ray, at->row,
-                (double)hit->fraction, 0 + (double)hit->normal_x, 0 + (double)hit->normal_y,
-                0 + (at->x + (double)hit->point_x), 0 + (at->y + (double)hit->point_y),
-                hit->feature & (NARC_MAX_ARCS - 1));
+        fprintf(file, "%" PRIu32 ",%" PRIu32 ",%.9g,%.9g,%.9g,%.17g,%.17g,%d", hit->ray, at->row, (double)hit->fraction,
+                0 + (double)hit->normal_x, 0 + (double)hit->normal_y, 0 + (at->x + (double)hit->point_x),
+                0 + (at->y + (double)hit->point_y), hit->feature & (NARC_MAX_ARCS - 1));
         if (in_parts)
             fprintf(file, ",%" PRIu32, at->part);
         fprintf(file, "\n");

@@ -23,9 +23,11 @@ static const char HELP[] =
     "usage: narc fit INPUT... --arcs N|--tolerance T [--parts N] [--bound|--approximate]\n"
     "                [--objective NAME] [--edges|--polygon|--paper] [--flatness F] [--min-radius R]\n"
     "                [--starts N] [--keep-origin] [--keep-going] [--characters TEXT]\n"
-    "                [--silhouette NAME] [--threshold X] [--out shapes.json] [--picture FILE]\n"
+    "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--out shapes.json]\n"
+    "                [--picture FILE]\n"
     "       narc fit INPUT... --chain --tolerance T [--open] [--keep-going] [--characters TEXT]\n"
-    "                [--silhouette NAME] [--threshold X] [--out shapes.json] [--picture FILE]\n"
+    "                [--ids A,B,...] [--silhouette NAME] [--threshold X] [--out shapes.json]\n"
+    "                [--picture FILE]\n"
     "\n"
     "Makes an arc shape of each input: the best that is found of those that bound the outline, or of\n"
     "those that come close to it. Of an outline only the convex hull counts, without --parts or --chain.\n"
@@ -56,6 +58,7 @@ static const char HELP[] =
     "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1\n"
     "  --characters TEXT\n"
     "                  which glyphs of fonts, UTF-8; repeated characters are skipped\n"
+    "  --ids A,B,...   of SVG: a shape for each element, such as a layer, with one of these ids\n"
     "  --silhouette NAME\n"
     "                  what counts in PNG and SVG: alpha (the default), dark or light\n"
     "  --threshold X   how much of that; above 0 and below 1, default 0.5 of PNG, 0.25 of SVG\n"
@@ -88,6 +91,7 @@ enum {
     POLYGON,
     PAPER,
     CHARACTERS,
+    IDS,
     SILHOUETTE,
     THRESHOLD,
     FLATNESS,
@@ -119,8 +123,8 @@ static void check_combinations(const option *options) {
     exclude(&options[TOLERANCE], &options[OBJECTIVE], "the least number of arcs is looked for");
     for (int family = POLYGON; family <= PAPER; family++)
         exclude(&options[family], &options[APPROXIMATE], "it bounds");
-    static const int of_hulls[] = {ARCS, PARTS, BOUND, APPROXIMATE, OBJECTIVE, EDGES,
-                                   POLYGON, PAPER, FLATNESS,    STARTS,    KEEP_ORIGIN};
+    static const int of_hulls[] = {ARCS,    PARTS, BOUND,    APPROXIMATE, OBJECTIVE,  EDGES,
+                                   POLYGON, PAPER, FLATNESS, STARTS,      KEEP_ORIGIN};
     for (size_t k = 0; k < sizeof of_hulls / sizeof of_hulls[0]; k++)
         exclude(&options[CHAIN], &options[of_hulls[k]], "a chain follows the outline itself, within --tolerance");
     if (options[OPEN].value && !options[CHAIN].value)
@@ -209,7 +213,8 @@ typedef struct fitting {
 /* Of a tolerance, what cuts get; the rest is for the shapes that are fitted to parts. */
 static const double SHARE_OF_CUTS = 0.75;
 
-static bool fit_each(fitting *how, narc_path *const *paths, narc_fit_request request, collider *out, narc_error *error) {
+static bool fit_each(fitting *how, narc_path *const *paths, narc_fit_request request, collider *out,
+                     narc_error *error) {
     request.progress = tell_progress;
     request.context = &how->at;
     how->at.parts = out->count;
@@ -414,6 +419,7 @@ static void run(int argc, char **argv) {
                                [POLYGON] = {"--polygon", false, NULL},
                                [PAPER] = {"--paper", false, NULL},
                                [CHARACTERS] = {"--characters", true, NULL},
+                               [IDS] = {"--ids", true, NULL},
                                [SILHOUETTE] = {"--silhouette", true, NULL},
                                [THRESHOLD] = {"--threshold", true, NULL},
                                [FLATNESS] = {"--flatness", true, NULL},
@@ -431,6 +437,7 @@ static void run(int argc, char **argv) {
     const size_t parts = options[PARTS].value ? (size_t)whole_option(&options[PARTS], 1, NARC_MAX_PARTS) : 0;
     const double flatness = number_option(&options[FLATNESS], 1e-9, 0.1, "from 1e-9 to 0.1", 0);
     const reading how = {.characters = options[CHARACTERS].value,
+                         .ids = options[IDS].value,
                          .silhouette = options[SILHOUETTE].value,
                          .threshold = number_option(&options[THRESHOLD], DBL_MIN, 1 - DBL_EPSILON / 2,
                                                     "more than 0 and less than 1", 0)};
@@ -446,8 +453,8 @@ static void run(int argc, char **argv) {
     if (options[CHAIN].value)
         make_chains(&outlines, request.tolerance, options[OPEN].value, shapes_file, picture, picture_file);
     else
-        make_shapes(&outlines, (fitting){.request = request, .parts = parts, .flatness = flatness}, shapes_file, picture,
-                    picture_file);
+        make_shapes(&outlines, (fitting){.request = request, .parts = parts, .flatness = flatness}, shapes_file,
+                    picture, picture_file);
     if (count_reports())
         fprintf(stderr, "narc: errors: %zu; shapes written: %zu\n", count_reports(), outlines.count);
     free_outlines(&outlines);

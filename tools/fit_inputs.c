@@ -313,16 +313,18 @@ static char *make_shape_name(const char *text, size_t length) {
     return name;
 }
 
+/* The outline of a file, or of an element of it, which then gives the name. */
 static void read_outline(const char *file, file_kind kind, const char *bytes, size_t size, const reading *how,
-                         outline_list *outlines) {
+                         const char *element, outline_list *outlines) {
     size_t stem;
     const char *base = base_name(file, &stem);
-    outline *added = add_outline(outlines, file, 0, make_shape_name(base, stem));
+    outline *added = add_outline(outlines, file, 0,
+                                 element ? make_shape_name(element, strlen(element)) : make_shape_name(base, stem));
     narc_error error;
     if (kind == SVG)
         show_stage("drawing", size / KB, "KB of SVG", size >= LARGE_DRAWING * KB);
     bool whole = false;
-    const narc_image_request image = {choose_silhouette(how->silhouette), how->threshold, &whole};
+    const narc_image_request image = {choose_silhouette(how->silhouette), how->threshold, element, &whole};
     warning[0] = 0;
     if (call_reader(kind, bytes, size, &image, added->path, &error) != NARC_OK) {
         report_text(file, &error);
@@ -335,6 +337,19 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
         warn_at(file, "opaque throughout, its outline is a rectangle; --silhouette dark or light traces what it shows");
     else if (whole)
         warn_at(file, "%s throughout, its outline is a rectangle", how->silhouette);
+}
+
+static void read_elements(const char *file, const char *bytes, size_t size, const reading *how,
+                          outline_list *outlines) {
+    char *ids = strcpy(allocate(strlen(how->ids) + 1, 1), how->ids), *rest = ids;
+    while (rest) {
+        char *comma = strchr(rest, ',');
+        if (comma)
+            *comma = 0;
+        read_outline(file, SVG, bytes, size, how, rest, outlines);
+        rest = comma ? comma + 1 : NULL;
+    }
+    free(ids);
 }
 
 void read_outlines(const char *const *files, size_t count, const reading *how, outline_list *out_outlines) {
@@ -353,12 +368,16 @@ void read_outlines(const char *const *files, size_t count, const reading *how, o
                       "neither its beginning nor its suffix is that of a font, or of SVG, PNG, CSV or JSON");
         else if (kind == FONT)
             read_glyphs(files[i], bytes, size, how->characters, out_outlines);
+        else if (kind == SVG && how->ids)
+            read_elements(files[i], bytes, size, how, out_outlines);
         else
-            read_outline(files[i], kind, bytes, size, how, out_outlines);
+            read_outline(files[i], kind, bytes, size, how, NULL, out_outlines);
         free(bytes);
     }
     if (how->characters && !met[FONT])
         fail("--characters is for fonts, and none is given");
+    if (how->ids && !met[SVG])
+        fail("--ids is for SVG, and none is given");
     if (how->threshold > 0 && !met[PNG] && !met[SVG])
         fail("--threshold is for PNG and SVG, and neither is given");
     if (how->silhouette && !met[PNG] && !met[SVG])

@@ -24,11 +24,12 @@ typedef struct outline_list {
 typedef struct reading {
     const char *characters; /* which glyphs of fonts; NULL: none */
     const char *silhouette; /* of images and drawings: alpha, dark, light; NULL: the usual one */
+    const char *ids;        /* of elements of SVG, with commas between; NULL: what all draw together */
     double threshold;       /* of images and drawings, as in narc_image_request; 0: the usual one */
 } reading;
 
-/* Reads files: each font gives an outline for each character (once, without variation selectors), each other file gives
- * one. What a file is, its first bytes tell, and its suffix where they do not. It is an error if a setting has no file
+/* Reads files: each font gives an outline for each character (once, without variation selectors), SVG one for each
+ * id, each other file one. What a file is, its first bytes tell, and its suffix where they do not. It is an error if a setting has no file
  * to apply to. A command that keeps going leaves out what cannot be read. */
 void read_outlines(const char *const *files, size_t count, const reading *how, outline_list *out_outlines);
 

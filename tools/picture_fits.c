@@ -134,8 +134,8 @@ static void describe_collider(const collider *fits, char *text, size_t size) {
 }
 
 /* One of `fits` and `chains` is NULL. Notes what the legend has to explain. */
-static void draw_cell(canvas *page, const outline *of, const collider *fits, const narc_arc_chains *chains,
-                      double left, double top, double cell, bool *shown) {
+static void draw_cell(canvas *page, const outline *of, const collider *fits, const narc_arc_chains *chains, double left,
+                      double top, double cell, bool *shown) {
     fit_look look = {.line = LINE * cell, .dot = DOT * cell, .shortest = SHORTEST * cell};
     drawing drawn = make_drawing(of, fits && fits->outline_area == 0);
     narc_aabb box = bound_points(drawn.contours.points, drawn.contours.point_count);

@@ -1,30 +1,38 @@
 /* SPDX-License-Identifier: MIT
  *
- * parts.c - parts_study TOLERANCE ARCS FILE...: drawings as convex parts, within a part of their larger side, each part
- * with at most so many arcs and edges (0: the parts alone); a row for each drawing, then medians.
+ * parts.c - parts_study TOLERANCE FILE...: drawings as convex parts, within a part of their larger side, three quarters
+ * of it for the cuts as in the narc command; a row for each drawing, then medians. Ends with 1 if
+ * more than half of the drawings have more than six parts, or more than a tenth of them are not cut.
  */
-#define _POSIX_C_SOURCE 199309L
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "draw_fit.h"
 #include "fail.h"
-#include "output.h"
+#include "progress.h"
 #include "text.h"
 
+static const double SHARE_OF_CUTS = 0.75, MOST_PARTS = 6;
+
 typedef struct row {
-    double parts, distance, ratio, cut_seconds, seconds;
+    double parts, distance, seconds;
 } row;
 
-/* Of the tolerance, what parts get; the rest is for the shapes that are fitted to them. */
-static const double SHARE_OF_PARTS = 0.75;
-
-static double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+static narc_path *read_drawing(const char *file) {
+    size_t size;
+    char *bytes = read_bytes(file, &size);
+    narc_path *path;
+    narc_error error;
+    if (narc_create_path(&path) != NARC_OK)
+        fail("not enough memory for an outline");
+    if (narc_read_svg(bytes, size, NULL, path, &error) != NARC_OK) {
+        printf("%s: %s\n", file, error.message);
+        narc_destroy_path(path);
+        path = NULL;
+    }
+    free(bytes);
+    return path;
 }
 
 static double measure_extent(const narc_path *path, const char *file) {
@@ -37,52 +45,62 @@ static double measure_extent(const narc_path *path, const char *file) {
     return fmax(box.max_x - box.min_x, box.max_y - box.min_y);
 }
 
-static bool study_drawing(const char *file, double tolerance, bool fits_arcs, row *out) {
-    size_t size;
-    char *bytes = read_bytes(file, &size);
-    narc_path *path;
-    narc_error error;
+/* False if parts are not found. */
+static bool study_drawing(const narc_path *path, const char *file, double tolerance, row *out) {
+    const double extent = measure_extent(path, file), begin = seconds_now();
+    const narc_parts_request cut = {.most = NARC_MAX_PARTS, .tolerance = SHARE_OF_CUTS * tolerance * extent};
     narc_parts parts;
-    if (narc_create_path(&path) != NARC_OK)
-        fail("not enough memory for an outline");
-    bool done = narc_read_svg(bytes, size, NULL, path, &error) == NARC_OK;
-    free(bytes);
+    narc_error error;
+    const bool done = narc_cut_path(path, &cut, &parts, &error) == NARC_OK;
+    *out = (row){NARC_MAX_PARTS + 1, INFINITY, seconds_now() - begin};
     if (done) {
-        const double extent = measure_extent(path, file), begin = seconds_now();
-        const double share = fits_arcs ? SHARE_OF_PARTS : 1;
-        const narc_parts_request cut = {.most = NARC_MAX_PARTS, .tolerance = share * tolerance * extent};
-        done = narc_cut_path(path, &cut, &parts, &error) == NARC_OK;
-        if (done) {
-            *out = (row){.parts = (double)parts.count, .cut_seconds = seconds_now() - begin, .distance = parts.distance / extent};
-            narc_fit_result *fits = allocate(parts.count, sizeof *fits);
-            double worst = 0, area;
-            for (size_t k = 0; k < parts.count && done && fits_arcs; k++) {
-                const narc_fit_request fit = {.tolerance = fits_arcs ? tolerance * extent - parts.distance : 0, .family = fits_arcs ? NARC_FIT_EDGES : NARC_FIT_POLYGON, .arc_count = fits_arcs ? 0 : 12, .starts = 1};
-                done = narc_fit_path(parts.paths[k], &fit, &fits[k], &error) == NARC_OK;
-                worst = done ? fmax(worst, fits[k].max_distance) : 0;
-            }
-            if (done && fits_arcs && (narc_measure_union(fits, parts.count, &area, &error) == NARC_OK || (printf("%s\n", error.message), 0))) {
-                out->ratio = area / parts.area;
-                if (fits_arcs) out->distance += worst / extent;
-            }
-            out->seconds = seconds_now() - begin;
-            free(fits);
-            narc_release_parts(&parts);
-        }
-    }
-    if (!done)
+        out->parts = (double)parts.count;
+        out->distance = parts.distance / extent;
+        printf("%s: %zu parts, distance %.4f, %.3f s\n", file, parts.count, out->distance, out->seconds);
+        narc_release_parts(&parts);
+    } else {
         printf("%s: %s\n", file, error.message);
-    else
-        printf("%s: parts %g, distance %.4f, area %.4f, cut in %.3f s, all in %.3f s\n", file, out->parts, out->distance, out->ratio, out->cut_seconds, out->seconds);
-    fflush(stdout);
-    narc_destroy_path(path);
+    }
     return done;
 }
 
+static int compare_numbers(const void *left, const void *right) {
+    const double *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}
+
+static double find_quantile(const row *rows, size_t count, size_t field, double part) {
+    double *sorted = allocate(count, sizeof *sorted);
+    for (size_t k = 0; k < count; k++)
+        sorted[k] = field == 0 ? rows[k].parts : field == 1 ? rows[k].distance : rows[k].seconds;
+    qsort(sorted, count, sizeof *sorted, compare_numbers);
+    const double found = sorted[(size_t)(part * (double)(count - 1))];
+    free(sorted);
+    return found;
+}
+
 int main(int argc, char **argv) {
-    for (int k = 3; k < argc; k++) {
-        row r;
-        study_drawing(argv[k], atof(argv[1]), atoi(argv[2]), &r);
+    const double tolerance = argc > 2 ? strtod(argv[1], NULL) : 0;
+    if (!(tolerance > 0))
+        fail("usage: parts_study TOLERANCE FILE...");
+    row *rows = allocate((size_t)argc, sizeof *rows);
+    size_t count = 0, failed = 0;
+    for (int k = 2; k < argc; k++) {
+        narc_path *path = read_drawing(argv[k]);
+        if (path)
+            failed += !study_drawing(path, argv[k], tolerance, &rows[count++]);
+        narc_destroy_path(path);
+        fflush(stdout);
     }
-    return 0;
+    if (count == 0)
+        fail("no drawing has anything to see");
+    printf("drawings %zu, not cut %zu\n", count, failed);
+    static const char *const names[] = {"parts", "distance", "seconds"};
+    for (size_t field = 0; field < 3; field++)
+        printf("%-8s median %.3g, 75 %% up to %.3g, 90 %% up to %.3g\n", names[field],
+               find_quantile(rows, count, field, 0.5), find_quantile(rows, count, field, 0.75),
+               find_quantile(rows, count, field, 0.9));
+    const bool good = find_quantile(rows, count, 0, 0.5) <= MOST_PARTS && 10 * failed <= count;
+    free(rows);
+    return good ? EXIT_SUCCESS : EXIT_FAILURE;
 }

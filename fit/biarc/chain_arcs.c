@@ -39,8 +39,9 @@ static void put_corner(writer *to, narc_point at, double next, bool is_end) {
 static void put_piece(writer *to, const narc_curve_arc *piece) {
     if (piece->turn == 0)
         return;
-    to->arcs[to->count++] = (narc_arc){piece->center.x, piece->center.y, piece->turn < 0 ? -piece->radius : piece->radius,
-                                       to->normal, to->normal + piece->turn};
+    to->arcs[to->count++] =
+        (narc_arc){piece->center.x, piece->center.y, piece->turn < 0 ? -piece->radius : piece->radius, to->normal,
+                   to->normal + piece->turn};
     to->normal += piece->turn;
 }
 

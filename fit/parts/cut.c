@@ -308,10 +308,10 @@ static size_t choose_starts(const work *w, const ring *of, size_t *out_starts) {
     return count;
 }
 
-/* The cut from one start that leaves least; returns what that is. */
-static double try_start(const work *w, const ring *of, size_t start, double least, size_t *out_end) {
+/* The cut from one start that leaves least, of every `stride`th end; returns what that is. */
+static double try_start(const work *w, const ring *of, size_t start, size_t stride, double least, size_t *out_end) {
     const size_t n = of->count;
-    for (size_t step = 2; step + 1 < n; step += 1 + n / MOST_ENDS) {
+    for (size_t step = 2; step + 1 < n; step += stride) {
         const size_t end = (start + step) % n;
         if (!is_open(w, of, start, end))
             continue;
@@ -329,7 +329,8 @@ static double try_start(const work *w, const ring *of, size_t start, double leas
     return least;
 }
 
-/* Where to cut a ring of four nodes or more. If no cut is open, anywhere: both halves are smaller. */
+/* Where to cut a ring of four nodes or more: from its deepest bays to some ends, or to any, or else from any node. If no cut
+ * is open, anywhere: both halves are smaller. */
 static void find_cut(const work *w, const ring *of, size_t *out_i, size_t *out_j) {
     size_t starts[STARTS], end = 0;
     find_depths(w, of);
@@ -338,11 +339,15 @@ static void find_cut(const work *w, const ring *of, size_t *out_i, size_t *out_j
     *out_i = 0;
     *out_j = of->count / 2;
     double least = INFINITY;
-    for (size_t k = 0; k < count; k++) {
-        const double cost = try_start(w, of, starts[k], least, &end);
+    for (size_t k = 0; k < 2 * count + of->count; k++) {
+        const bool is_round = k == 0 || k == count || k >= 2 * count; /* what was tried before may be enough */
+        if (is_round && !isinf(least))
+            break;
+        const size_t start = k < 2 * count ? starts[k % count] : k - 2 * count;
+        const double cost = try_start(w, of, start, k < count ? 1 + of->count / MOST_ENDS : 1, least, &end);
         if (cost < least) {
             least = cost;
-            *out_i = starts[k];
+            *out_i = start;
             *out_j = end;
         }
     }
@@ -376,7 +381,8 @@ static narc_status add_piece(narc_pieces *pieces, narc_piece added) {
 static size_t list_points(const narc_region *region, node from, node to, narc_point *out_points) {
     const size_t contour = narc_find_contour(region, from.point), begin = begin_of(region->ends, contour);
     size_t count = 0;
-    for (size_t k = from.point; count == 0 || (k != to.point && !from.is_cut); k = k + 1 < region->ends[contour] ? k + 1 : begin) {
+    for (size_t k = from.point; count == 0 || (k != to.point && !from.is_cut);
+         k = k + 1 < region->ends[contour] ? k + 1 : begin) {
         if (out_points)
             out_points[count] = region->points[k];
         count++;
@@ -435,12 +441,11 @@ narc_status narc_cut_region(const narc_region *region, size_t most, narc_pieces 
     for (size_t k = 0; k < region->count && !status; k++)
         if (region->parents[k] == SIZE_MAX && !add_contour(&w, k))
             status = NARC_ERROR_MEMORY;
-    while (w.rings.count && !status) {
+    while (w.rings.count && !status)
         if (w.rings.count + pieces.count > most)
             status = NARC_ERROR_CAPACITY;
         else
             status = cut_ring(&w, w.rings.items[--w.rings.count], &pieces);
-    }
     for (size_t k = 0; k < w.rings.count; k++)
         free(w.rings.items[k].nodes);
     free(w.rings.items);

@@ -198,9 +198,8 @@ static void transform_line(float *samples, size_t count, size_t step, float *val
             if (border > borders[last] || last == 0)
                 break;
         }
-        if (border > borders[last]) {
+        if (border > borders[last])
             last++;
-        }
         apexes[last] = k;
         borders[last] = last ? border : -INFINITY;
     }
@@ -280,8 +279,8 @@ struct spans {
 };
 
 static void widen_span(struct spans *spans, size_t row, double x) {
-    spans->left[row] = fmin(spans->left[row], x);
-    spans->right[row] = fmax(spans->right[row], x);
+    spans->left[row] = x < spans->left[row] ? x : spans->left[row];
+    spans->right[row] = x > spans->right[row] ? x : spans->right[row];
 }
 
 static void find_spans(const narc_region *region, const narc_point *corners, size_t count, struct spans *out_spans) {
@@ -421,8 +420,7 @@ static struct search begin_search(const narc_region *region, const narc_point *c
 bool narc_is_within_limit(const narc_region *region, const narc_point *corners, size_t count) {
     struct spans spans;
     narc_point points[MOST_SIDES], normals[MOST_SIDES];
-    struct search s =
-        begin_search(region, corners, count, region->limit, PRECISION * region->extent, points, normals);
+    struct search s = begin_search(region, corners, count, region->limit, PRECISION * region->extent, points, normals);
     find_spans(region, corners, count, &spans);
     if (!may_be_within(region, &spans))
         return false;

@@ -19,6 +19,7 @@ typedef struct joining {
     size_t count; /* at the beginning */
     double *own;
     float *costs;
+    size_t *partners; /* with which each costs least */
     narc_point *points, *corners;
     size_t room;
 } joining;
@@ -66,18 +67,41 @@ static bool measure_pairs(joining *j, size_t a) {
     return done;
 }
 
-static float find_cheapest(const joining *j, size_t *out_a, size_t *out_b) {
+static float cost_with_partner(const joining *j, size_t a) {
+    const size_t b = j->partners[a];
+    return j->pieces->items[a].count && j->pieces->items[b].count && a != b ? *cost_of(j, a, b) : INFINITY;
+}
+
+static void find_partner(joining *j, size_t a) {
     float least = INFINITY;
-    for (size_t a = 0; a < j->count; a++) {
-        for (size_t b = a + 1; b < j->count && j->pieces->items[a].count; b++) {
-            if (j->pieces->items[b].count && j->costs[a * j->count + b] < least) {
-                least = j->costs[a * j->count + b];
-                *out_a = a;
-                *out_b = b;
-            }
+    j->partners[a] = a;
+    for (size_t b = 0; b < j->count; b++) {
+        if (b != a && j->pieces->items[b].count && *cost_of(j, a, b) < least) {
+            least = *cost_of(j, a, b);
+            j->partners[a] = b;
         }
     }
-    return least;
+}
+
+/* After a has changed, and b perhaps gone. */
+static void update_partners(joining *j, size_t a, size_t b) {
+    find_partner(j, a);
+    find_partner(j, b);
+    for (size_t k = 0; k < j->count; k++) {
+        if (k == a || k == b || !j->pieces->items[k].count)
+            continue;
+        if (j->partners[k] == a || j->partners[k] == b)
+            find_partner(j, k);
+        else if (j->pieces->items[a].count && *cost_of(j, a, k) < cost_with_partner(j, k))
+            j->partners[k] = a;
+    }
+}
+
+static size_t find_cheapest(const joining *j) {
+    size_t found = 0;
+    for (size_t a = 1; a < j->count; a++)
+        found = cost_with_partner(j, a) < cost_with_partner(j, found) ? a : found;
+    return found;
 }
 
 /* The common hull takes the place of a. */
@@ -105,14 +129,20 @@ narc_status narc_join_pieces(const narc_region *region, narc_pieces *pieces) {
         return NARC_OK;
     j.own = calloc(j.count, sizeof *j.own);
     j.costs = malloc(j.count * j.count * sizeof *j.costs);
-    bool done = j.own && j.costs && make_room(&j, 64);
+    j.partners = malloc(j.count * sizeof *j.partners);
+    bool done = j.own && j.costs && j.partners && make_room(&j, 64);
     for (size_t a = 0; done && a < j.count; a++)
         j.own[a] = narc_measure_emptiness(region, pieces->items[a].corners, pieces->items[a].count);
     for (size_t a = 0; a < j.count; a++)
         for (size_t b = a + 1; done && b < j.count; b++)
             done = measure_pair(&j, a, b);
-    for (size_t a = 0, b = 0; done && find_cheapest(&j, &a, &b) < INFINITY;)
+    for (size_t a = 0; done && a < j.count; a++)
+        find_partner(&j, a);
+    for (size_t a; done && cost_with_partner(&j, a = find_cheapest(&j)) < INFINITY;) {
+        const size_t b = j.partners[a];
         done = join_pair(&j, a, b);
+        update_partners(&j, a, b);
+    }
     size_t kept = 0;
     for (size_t a = 0; a < j.count; a++) /* also where memory ran out */
         if (pieces->items[a].count)
@@ -120,6 +150,7 @@ narc_status narc_join_pieces(const narc_region *region, narc_pieces *pieces) {
     pieces->count = kept;
     free(j.own);
     free(j.costs);
+    free(j.partners);
     free(j.points);
     free(j.corners);
     return done ? NARC_OK : NARC_ERROR_MEMORY;

@@ -254,6 +254,9 @@ static narc_status cut_contours(const narc_contours *contours, const narc_parts_
     if (status)
         return status;
     status = find_pieces(&region, request, request->tolerance > 0 ? tolerance : 0, &pieces, error);
+    /* The hulls are those of the outline's own points, which may be further out than the simpler ones by the slack. */
+    if (!status && request->tolerance > 0)
+        narc_limit_region(&region, tolerance - region.slack);
     const double distance = status ? 0 : measure_gaps(&region, &pieces) + contours->flatness;
     if (!status && request->lap == 0 && request->tolerance > 0 && distance > request->tolerance)
         status = narc_fail(error, NARC_ERROR_NO_SOLUTION, 0, distance,

@@ -159,11 +159,12 @@ static bool simplify_contours(narc_region *region) {
 
 /* ---------------------------------------------------------------------------- holes */
 
+/* By the contour itself: simpler ones may cross where two are near each other. */
 static bool is_inside(const narc_region *region, size_t k, narc_point p) {
-    const size_t begin = begin_of(region->kept_ends, k), end = region->kept_ends[k];
+    const size_t begin = begin_of(region->ends, k), end = region->ends[k];
     bool inside = false;
     for (size_t i = begin; i < end; i++) {
-        const narc_point a = region->points[region->kept[i]], b = region->points[region->kept[i + 1 < end ? i + 1 : begin]];
+        const narc_point a = region->points[i], b = region->points[i + 1 < end ? i + 1 : begin];
         if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
             inside = !inside;
     }

@@ -19,6 +19,7 @@
  */
 #include <librsvg/rsvg.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,6 +52,7 @@ struct page {
 struct subject {
     RsvgHandle *handle;
     struct page page;
+    const char *element; /* "#id" of what counts; NULL: all */
     narc_silhouette silhouette;
     double threshold;
     int least;
@@ -107,6 +109,7 @@ static narc_status open_svg(const void *data, size_t size, RsvgHandle **out_hand
 struct rendering {
     RsvgHandle *handle;
     cairo_t *cairo;
+    const char *element; /* "#id"; NULL: all */
     RsvgRectangle viewport, ink;
     GError *problem;
 };
@@ -114,7 +117,7 @@ struct rendering {
 static void *render(void *context) {
     struct rendering *r = context;
     const gboolean done =
-        r->cairo ? rsvg_handle_render_document(r->handle, r->cairo, &r->viewport, &r->problem)
+        r->cairo ? rsvg_handle_render_layer(r->handle, r->cairo, r->element, &r->viewport, &r->problem)
                  : rsvg_handle_get_geometry_for_layer(r->handle, NULL, &r->viewport, &r->ink, NULL, &r->problem);
     return done ? context : NULL;
 }
@@ -195,7 +198,8 @@ static narc_status draw(const struct subject *of, double scale, struct drawing *
     cairo_t *cairo = cairo_create(drawing.surface);
     cairo_scale(cairo, scale, scale);
     cairo_translate(cairo, -page->box.x, -page->box.y);
-    struct rendering rendering = {.handle = of->handle, .cairo = cairo, .viewport = page->viewport};
+    struct rendering rendering = {
+        .handle = of->handle, .cairo = cairo, .element = of->element, .viewport = page->viewport};
     const bool drawn = render_apart(&rendering);
     const bool sound = cairo_status(cairo) == CAIRO_STATUS_SUCCESS;
     cairo_destroy(cairo);
@@ -345,6 +349,24 @@ static narc_status draw_and_trace(const struct subject *of, bool *out_whole, nar
     return status;
 }
 
+/* "#id" of an element that is there; NULL in *out_element: no one is asked for. */
+static narc_status find_element(RsvgHandle *handle, const char *id, char **out_element, narc_error *error) {
+    *out_element = NULL;
+    if (!id)
+        return NARC_OK;
+    const size_t size = strlen(id) + 2;
+    char *element = malloc(size);
+    if (!element)
+        return narc_fail(error, NARC_ERROR_MEMORY, 0, 0, "no memory for an id of the SVG file");
+    snprintf(element, size, "#%s", id);
+    if (!rsvg_handle_has_sub(handle, element)) {
+        free(element);
+        return narc_fail(error, NARC_ERROR_INDEX, 0, 0, "the SVG file has no element with the id '%s'", id);
+    }
+    *out_element = element;
+    return NARC_OK;
+}
+
 narc_status narc_read_svg(const void *data, size_t size, const narc_image_request *request, narc_path *path,
                           narc_error *error) {
     const narc_image_request usual = {0}, *how = request ? request : &usual;
@@ -357,8 +379,14 @@ narc_status narc_read_svg(const void *data, size_t size, const narc_image_reques
     status = open_svg(data, size, &of.handle, error);
     if (status)
         return status;
-    status = find_page(of.handle, &of.page, error);
-    status = status ? status : draw_and_trace(&of, how->out_whole, path, error);
+    char *element;
+    status = find_element(of.handle, how->element, &element, error);
+    if (!status) {
+        of.element = element;
+        status = find_page(of.handle, &of.page, error);
+        status = status ? status : draw_and_trace(&of, how->out_whole, path, error);
+        free(element);
+    }
     g_object_unref(of.handle);
     return status;
 }

@@ -139,8 +139,8 @@ TEST(keeps_bits) {
             made[k] = make_shape(&random, (enum family)(k % FAMILY_COUNT));
             snprintf(names[k], sizeof names[k], "%s%zu \\\\ \xf0\x9f\x91\xbb", k % 2 ? "a" : "\xc3\xa4", SHAPES - k);
             shapes[k] = (narc_named_shape){
-                names[k], made[k].arcs, made[k].count, {random_finite(&random), random_finite(&random)}, 0,
-                NARC_FORM_SHAPE};
+                names[k], made[k].arcs,   made[k].count, {random_finite(&random), random_finite(&random)},
+                0,        NARC_FORM_SHAPE};
         }
         shapes[7].name = "7";
         expect_round_trip(shapes, SHAPES);
@@ -161,16 +161,18 @@ TEST(keeps_chains) {
                                   : k % 3 == 1 ? 1 + random_unit(&random)
                                                : -0.0;
             const double start = 6 * random_unit(&random), turn = k % 7 == 0 && radius == 0 ? 0 : random_unit(&random);
-            arcs[k] = (narc_arc){random_unit(&random), k % 5 ? -0.0 : 1, radius, start, start + (signbit(radius) ? -turn : turn)};
+            arcs[k] = (narc_arc){random_unit(&random), k % 5 ? -0.0 : 1, radius, start,
+                                 start + (signbit(radius) ? -turn : turn)};
         }
-        const narc_named_shape shapes[] = {{"open", arcs, ARCS, {1, 2}, 0, NARC_FORM_OPEN_CHAIN},
-                                           {"disc", &disc, 1, {0, 0}, 0, NARC_FORM_SHAPE},
-                                           {"closed", arcs, 1 + random_below(&random, ARCS), {0, 0}, 0,
-                                            NARC_FORM_CLOSED_CHAIN}};
+        const narc_named_shape shapes[] = {
+            {"open", arcs, ARCS, {1, 2}, 0, NARC_FORM_OPEN_CHAIN},
+            {"disc", &disc, 1, {0, 0}, 0, NARC_FORM_SHAPE},
+            {"closed", arcs, 1 + random_below(&random, ARCS), {0, 0}, 0, NARC_FORM_CLOSED_CHAIN}};
         expect_round_trip(shapes, 3);
     }
-    static const char text[] = "{\"shapes\": [{\"name\": \"g\", \"chain\": {\"arcs\": [{\"center\": [1, 2], \"radius\": -0, "
-                               "\"start\": 1, \"end\": 0.5}]}}, {\"name\": \"c\", \"circle\": 1}]}";
+    static const char text[] =
+        "{\"shapes\": [{\"name\": \"g\", \"chain\": {\"arcs\": [{\"center\": [1, 2], \"radius\": -0, "
+        "\"start\": 1, \"end\": 0.5}]}}, {\"name\": \"c\", \"circle\": 1}]}";
     narc_shapes *store = empty_store();
     narc_shape_list *list;
     assert_int_equal(narc_read_shapes(text, strlen(text), NULL, store, &list, NULL), NARC_OK);
@@ -245,7 +247,8 @@ TEST(names_lines) {
          NARC_ERROR_FORMAT, 4, 0, "line 4: shape 2: another shape has that name 'a'"},
         {"{\"shapes\": [{\"name\": \"a\", \"circle\": 1},\n{\"circle\": 1,\n\"name\":\n\"0\"}]}", NARC_ERROR_FORMAT, 4,
          0, "line 4: shape 1: a name of digits would be taken for the index of another shape '0'"},
-        {"{\"shapes\": [{\"name\": \"a\", \"circle\": 1},\n{\"name\": \"g\", \"chain\": {\"arcs\": [\n{\"center\": [0, 0], "
+        {"{\"shapes\": [{\"name\": \"a\", \"circle\": 1},\n{\"name\": \"g\", \"chain\": {\"arcs\": [\n{\"center\": [0, "
+         "0], "
          "\"radius\": -1, \"start\": 0, \"end\": 3}]}}]}",
          NARC_ERROR_SWEEP, 3, 3, "line 3: shape 'g', arc 0: from start to end it turns by 3, but its radius is -1"},
         {"{\"shapes\": [{\"name\": \"g\", \"chain\": {\"closed\":\n1, \"arcs\": []}}]}", NARC_ERROR_FORMAT, 2, 0,

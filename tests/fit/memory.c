@@ -271,8 +271,8 @@ static void cut_path(const void *input, struct outcome *out) {
     const struct outline *of = input;
     narc_parts parts = {.count = 77};
     watch_all(true);
-    out->status = narc_cut_path(of->path, &(narc_parts_request){.most = 40, .tolerance = 0.05, .lap = 0.01}, &parts,
-                                &out->error);
+    out->status =
+        narc_cut_path(of->path, &(narc_parts_request){.most = 40, .tolerance = 0.05, .lap = 0.01}, &parts, &out->error);
     watch_all(false);
     out->untouched = parts.count == 77;
     if (out->status == NARC_OK)

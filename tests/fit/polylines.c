@@ -57,7 +57,6 @@ static void check_near(const char *name, const narc_point *points, size_t count,
     free(samples);
 }
 
-
 /* The closed chain in the form of shapes: arcs lie on its pieces, edges are its lines, and normals go on where an arc
  * follows. */
 static void check_arcs(const narc_arc_chains *chains) {

@@ -501,4 +501,21 @@ TEST(survives_changed_bytes) {
     assert_true(read > 0 && read < trials);
 }
 
+/* One element of several, where it is on the page; an id that is not there is an error. */
+TEST(test_elements) {
+    static const char body[] = "<g id='a' transform='translate(1 2)'><rect width='2' height='4'/></g>"
+                               "<rect id='b' x='7' y='1' width='1' height='1'/>";
+    const narc_point reach = measure_reach(body, (narc_image_request){.element = "a"});
+    const narc_point other = measure_reach(body, (narc_image_request){.element = "b"});
+    assert_true(fabs(reach.x - 3) <= 0.01 && fabs(reach.y + 2) <= 0.01);
+    assert_true(fabs(other.x - 8) <= 0.01 && fabs(other.y + 1) <= 0.01);
+    static const char text[] = "<svg xmlns='http://www.w3.org/2000/svg'><rect id='a' width='1' height='1'/></svg>";
+    narc_path *path = make_path();
+    narc_error error = {.message = ""};
+    const narc_status status =
+        narc_read_svg(text, sizeof text - 1, &(narc_image_request){.element = "c"}, path, &error);
+    expect_error(status, NARC_ERROR_INDEX, &error, "'c'");
+    narc_destroy_path(path);
+}
+
 TEST_MAIN("SVG")

@@ -212,6 +212,22 @@ printf 'x,y,motion_x,motion_y\n-10,0,20,0\n' >rays.csv
 works "a ray at a body in parts" cast --shapes parts.json --bodies frames.csv --rays rays.csv --out hit.txt
 check "a ray at a body in parts: the first frame" grep -qE "^0,0,0\.(4|39999)" hit.txt
 
+# Elements of a drawing by their ids, where they are in it.
+cat >fits/layers.svg <<'EOT'
+<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10">
+  <g id="walls" transform="translate(1 2)"><rect width="2" height="4"/><rect x="4" width="2" height="4" id="right"/></g>
+  <circle id="ball" cx="8" cy="8" r="1"/>
+</svg>
+EOT
+works "elements" fit fits/layers.svg --ids walls,ball,right --arcs 4 --edges --starts 1 --out layers.json
+check "elements: names" names layers.json "walls ball right "
+check "elements: the layer's hull" is walls 5 24
+check "elements: the ball" is ball 5 3.141593
+check "elements: the right one's place" is right 10 6
+check "elements: the same, y up" less "$(value right 11)" -3.99
+fails "no such element" "narc: fits/layers.svg: .*'roof'" fit fits/layers.svg --ids roof --arcs 4 --out new.json
+fails "ids without SVG" "narc: --ids is for SVG" fit fits/square.csv --ids roof --arcs 4 --out new.json
+
 # Images: what narc draws.
 printf 'shape,x,y,angle\ndisc,0,0,0\n' >disc.csv
 works "an image of a disc" collide --shapes shapes.json --bodies disc.csv --picture fits/disc.png
