@@ -43,8 +43,9 @@ extern "C" {
 typedef struct narc_methods narc_methods;
 
 /* Makes one of a store, which must outlive it and not change meanwhile. `allocator` NULL: malloc and free. Errors:
- * NARC_ERROR_VERSION (this library and narc are not of the same version), NARC_ERROR_ARGUMENT (NULL;
- * a store with pieces of chains, which these methods do not know), NARC_ERROR_MEMORY, NARC_ERROR_COUNT (more arcs than the copy has room for). `out_methods` is untouched then. */
+ * NARC_ERROR_VERSION (this library and narc are not of the same version), NARC_ERROR_ARGUMENT (NULL; a store with pieces
+ * of chains, which these methods do not know), NARC_ERROR_MEMORY, NARC_ERROR_COUNT (more arcs than the copy has room
+ * for). `out_methods` is untouched then. */
 NARC_API narc_status narc_create_methods(const narc_shapes *shapes, const narc_allocator *allocator,
                                          narc_methods **out_methods, narc_error *error);
 

@@ -188,6 +188,9 @@ narc_status narc_add_chain(narc_shapes *shapes, const narc_arc *arcs, size_t cou
     if (!(chosen->weld >= 0 && chosen->least_radius >= 0))
         return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "weld is %g and the least radius %g, not 0 or more",
                          chosen->weld, chosen->least_radius);
+    for (int k = 0; k < 4; k++)
+        if (chosen->reserved[k])
+            return narc_fail(error, NARC_ERROR_ARGUMENT, 0, 0, "options.reserved is not NULL");
     if (count == 0 || count > max_count)
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)count, "the chain has %zu arcs, not 1 to %zu", count,
                          max_count);

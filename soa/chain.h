@@ -7,8 +7,8 @@
 
 #include "narc_chains.h"
 
-/* An arc of a chain. `turn` is signed: above 0 of a convex arc or corner, below 0 of a concave one, 0 for the open end of
- * an edge. The point at an angle is centre + radius * normal, with the radius's sign. */
+/* An arc of a chain. `turn` is signed: above 0 of a convex arc or corner, below 0 of a concave one, 0 for the open end
+ * of an edge. The point at an angle is centre + radius * normal, with the radius's sign. */
 typedef struct narc_chain_arc {
     double x, y, radius, start, turn;
     uint32_t number; /* the caller's */

@@ -5,30 +5,32 @@
  * The mental model
  *
  *   A CHAIN is a list of arcs, walked with the solid on the left, as a shape is: normals point right, out of the solid.
- *   Straight edges join consecutive arcs where the end point of one is not the start point of the next; their normal is
- *   that of both. So the outline has one tangent everywhere, and corners are arcs of radius 0. Of each arc, an arc as in
- *   a shape but for its sign, a point is centre + radius * normal:
+ *   Straight edges join consecutive arcs where the end point of one is not the start point of the next; an edge has the
+ *   normal of both. So there is one tangent everywhere, and a corner is an arc of radius 0. Of each arc a point is
+ *   centre + radius * normal, with the sign of the radius:
  *
  *       radius > 0     convex: normals turn counter-clockwise from `start` to `end`, by at most half a turn
  *       radius 0       a convex corner; or with `start` and `end` equal a plain point: an end of an edge
  *       radius < 0     concave, solid outside the circle: normals turn clockwise from `start` to `end`
  *       radius -0.0    the bottom of a valley, a concave corner
  *
- *   A level ground from x = 0 to x = 9, walked so that the solid lies below, begins at its right end:
+ *   A level ground from x = 0 to x = 9 with the solid below is walked from its right end:
  *
  *       {{9, 0, 0, pi/2, pi/2}, {0, 0, 0, pi/2, pi/2}}
  *
  *   narc_add_chain() divides a chain into ENTRIES, which are shapes of a store: concave arcs, and pieces of convex RUNS,
  *   the maximal stretches between concave arcs. Each entry becomes a body of the caller's, with its shape, placed where
- *   the entry says. A run's shape is closed far behind, but only its front touches, never that closure. It is right for
- *   bodies that are less deep in the ground than four times the size of the entry's front, and where the ground is
- *   thicker than bodies are deep.
+ *   the entry says. A run's shape is closed far behind, but only its front touches, never that closure. Answers are
+ *   right for bodies that are less deep in the ground than the size of the entry's front, and where the ground is
+ *   thicker than bodies are deep; faster ones want smaller steps or casts. An open end just ends: what lies beyond it
+ *   touches nothing. A corner of a quarter turn there caps it.
  *   Entries overlap by next to nothing, so that no body falls between two; what both tell of one body is merged by
  *   narc_merge_contacts() or narc_merge_manifolds().
  *
  *   Of an entry's shape narc_shape_flags() has NARC_SHAPE_RUN or NARC_SHAPE_CONCAVE. narc_get_arcs() gives a concave arc
- *   as it is in a chain; of a run all arcs of the closed shape: the front is what lies between edge 1 and edge
- *   count - 5, arcs 1 .. count - 6 (edge i is the one before arc i). Features of rows are numbered so.
+ *   as it is in a chain, and of a run all arcs of the closed shape: its front is what lies between edge 1 and edge
+ *   count - 5, arcs 1 .. count - 6 (edge i is the one before arc i). Features of rows are numbered so. narc_get_aabb()
+ *   and the boxes of bodies are those of the front alone.
  */
 #ifndef NARC_CHAINS_H
 #define NARC_CHAINS_H
@@ -48,7 +50,7 @@ typedef struct narc_chain_options {
     uint32_t first_run;  /* the number of the first run, so that chains of one scene have runs of their own */
     double weld;         /* the longest straight part of an entry; 0: 32 times the mean of the edges as given */
     double least_radius; /* concave arcs with a smaller radius, valleys too, are refused: those too tight for bodies */
-    void *reserved[4];
+    void *reserved[4];   /* NULL */
 } narc_chain_options;
 
 /* A part of a chain, a shape about its own middle. */

@@ -79,8 +79,9 @@ extern "C" {
 #define NARC_TOLERANCE 1e-5
 
 /* Bytes of stack. A thread that has this much, for itself too, may call every function of narc_shapes.h, narc.h,
- * narc_scene.h and narc_broad_phase.h, and tasks of these calls run in it; OpenMP's own threads need as much (OMP_STACKSIZE). Of a
- * library that was compiled with optimisation and without sanitizers, by GCC or clang, which leave some 4 KB of it.
+ * narc_chains.h, narc_scene.h and narc_broad_phase.h, and tasks of these calls run in it; OpenMP's own threads need as
+ * much (OMP_STACKSIZE). Of a library that was compiled with optimisation and without sanitizers, by GCC or clang, which
+ * leave some 4 KB of it.
  * (Other methods: NARC_METHODS_STACK_SIZE. narc_fit.h calls other libraries and needs what they need.) */
 #define NARC_STACK_SIZE (64 * 1024)
 

@@ -48,6 +48,7 @@ struct filter {
     vm apart;          /* the separation is above the margin, for certain */
     vm deep;           /* the bodies collide, for certain */
     vf margin;
+    vf size, square; /* the sum of the bounding radii; what circles that are apart have a smaller square of it than */
 };
 
 /* From the centre of a circle of A to that of a circle of B. */
@@ -102,8 +103,9 @@ INLINE struct filter set_up_pairs(const struct call *call, const struct pair_ind
     const vec2 axis = find_circle_difference(a.inner_center, b.inner_center, &pose);
     const vf size = v_add(size_a, size_b), limit = v_add(size, margin);
     const vf core = v_add(v_mul(scale_a, a.inner_radius), v_mul(scale_b, b.inner_radius));
-    filter.apart =
-        vm_or(v_lt(limit, v_set(0)), v_lt(v_mul(limit, limit), v_mul(v2_dot(bounds, bounds), v_set(shrink))));
+    filter.size = size;
+    filter.square = v_mul(v2_dot(bounds, bounds), v_set(shrink));
+    filter.apart = vm_or(v_lt(limit, v_set(0)), v_lt(v_mul(limit, limit), filter.square));
     filter.deep = v_lt(v_mul(v2_dot(axis, axis), v_set(grow)), v_mul(core, v_abs(core))); /* a core below 0 is none */
 
     set_vec2(item, POSITION, pose.position);

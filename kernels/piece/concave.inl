@@ -8,6 +8,9 @@
  * in a bowl stands on two corners. A straight edge has none of its own, as its ends are farther from c. With -R for the
  * radius, which is how the piece is stored, all this is the gap of two arcs (normal_fan.inl) along -u.
  *
+ * Beyond its ends the piece has a contact where the centres lie no further than what is rounded: seams are for that, but
+ * where the centres nearly coincide they are too narrow.
+ *
  * A direction belongs to the arc that it does not lie behind the end of, and which either it does not lie before the
  * start of or the arc before has turned down: so whatever the rounding, none belongs to neither.
  */
@@ -21,6 +24,7 @@
 
 #include "base/call.inl"
 #include "base/contact_point.inl"
+#include "base/pair_setup.inl"
 #include "base/queue.inl"
 #include "base/rows.inl"
 #include "base/shape.inl"
@@ -44,6 +48,10 @@ INLINE struct arc_pair load_concave_arcs(const narc_record *records, const struc
     return load_arc_pair(records, out->record_a, out->record_b, &pairs->pose);
 }
 
+/* How far beside the sector of a piece, relative to the radii, the centre of the body's arc may lie: what the centres were
+ * rounded by, of pieces whose distance is not much more than their size. */
+#define CONCAVE_ROOM 0x1p-20f
+
 /* The gap of arc i of the body. In *out_touch, where it is one that counts; `ended`: where the normal lies behind the
  * end of the arc before, and then of this one. */
 INLINE struct gap find_concave_gap(const narc_record *records, const struct concave_pairs *pairs, vi i, vm *ended,
@@ -60,7 +68,9 @@ INLINE struct gap find_concave_gap(const narc_record *records, const struct conc
     gap.length = v2_length(n);
     const vf distance = v_select(centred, zero, gap.length);
     gap.separation = v_sub(v_sub(v_neg(piece.radius), distance), body.radius);
-    const vm in_piece = vm_and(v_le(zero, v2_cross(piece.start, n)), v_le(zero, v2_cross(n, piece.end)));
+    /* Where both radii are nearly one, n is next to nothing and its direction that of rounding. */
+    const vf room = v_mul(v_set(-CONCAVE_ROOM), v_sub(body.radius, piece.radius));
+    const vm in_piece = vm_and(v_le(room, v2_cross(piece.start, n)), v_le(room, v2_cross(n, piece.end)));
     const vf beyond = v2_cross(body.end, n); /* of half a turn, 0 is its start too */
     const vm at_start = vm_and(v_le(beyond, zero), v_lt(v2_dot(body.end, n), zero));
     const vm before_end = vm_or(v_lt(beyond, zero), at_start);
@@ -147,6 +157,7 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
     const vi count = vi_select(has_flag(info, NARC_SHAPE_CIRCLE), one, all); /* of its halves one counts */
     const vf margin = get_margins(call, queue, k);
     const vm open = vm_and_not(live, has_mark(info, NARC_PIECE_CONCAVE)); /* concave against concave: none */
+    const vm beside = v_lt(v_set(0), get(queue, SLACK, k));
     const bool lists = call->rows->out.lists_one;
     struct gap deepest = {v_set(INFINITY), {v_set(0), v_set(0)}, v_set(1), pairs.ring_a.base, pairs.ring_b.base};
     vi found = zero;
@@ -157,7 +168,9 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
         const vi arc = vi_select(exists, vi_set(i), zero);
         const struct gap gap = find_concave_gap(records, &pairs, arc, &ended, &touch);
         const vm front = is_front(info, find_arc_number(vi_add(body_base, arc), first_record, info));
-        const vm keep = vm_and(vm_and(vm_and(exists, front), touch), is_below(gap.separation, margin));
+        const vm real = vm_not(vm_and(beside, v_lt(gap.separation, v_set(0))));
+        const vm counts = vm_and(vm_and(exists, front), vm_and(touch, real));
+        const vm keep = vm_and(counts, is_below(gap.separation, margin));
         if (!vm_any(keep))
             continue;
         const vm deeper = vm_and(keep, v_lt(gap.separation, deepest.separation));
@@ -191,13 +204,23 @@ INLINE vm answer_concave(const struct call *call, const struct queue *queue, int
     return vm_and_not(live, concave);
 }
 
-/* Takes the pairs with a concave arc of those in the lanes `open`, and returns the others. */
-INLINE vm take_concave(const struct call *call, vm open, const vf item[FIELDS]) {
-    const vm concave = vm_and(open, has_concave(item));
+/* Takes the pairs with a concave arc of those in the lanes `valid`, and returns the others of `near`. What is apart by
+ * its circles has no contact with a separation below 0, whatever the margin: a body may then be deep under the arc, but
+ * not on it. So negative margins count as 0 here, and where circles are apart SLACK tells so. */
+INLINE vm take_concave(const struct call *call, vm valid, vm near, const struct filter *circles,
+                       const vf item[FIELDS]) {
+    const vm concave = vm_and(valid, has_concave(item));
     if (!vm_any(concave))
-        return open;
-    push(call->concave, concave, item, CONTACT_FIELDS);
-    return vm_and_not(open, concave);
+        return near;
+    const vf zero = v_set(0), reach = v_add(circles->size, v_max(circles->margin, zero));
+    const vm apart = v_lt(v_mul(reach, reach), circles->square);
+    const vm beside = v_lt(v_mul(circles->size, circles->size), circles->square);
+    vf own[FIELDS];
+    for (int f = 0; f < FIELDS; f++)
+        own[f] = item[f];
+    own[SLACK] = v_select(beside, v_set(1), zero);
+    push(call->concave, vm_and_not(concave, apart), own, CONTACT_FIELDS);
+    return vm_and_not(near, concave);
 }
 
 #endif

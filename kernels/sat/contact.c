@@ -67,9 +67,9 @@ INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf ite
 
 INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
     struct rows *rows = call->rows;
-    const vm near = vm_and_not(take_valid(call, pair, circles, item), circles->apart);
-    const vm open = NARC_PIECES && call->concave ? take_concave(call, near, item) : near;
-    const bool waits = vm_any(vm_and_not(near, open)); /* is there one with a concave arc? */
+    const vm valid = take_valid(call, pair, circles, item), near = vm_and_not(valid, circles->apart);
+    const vm open = NARC_PIECES && call->concave ? take_concave(call, valid, near, circles, item) : near;
+    const bool waits = NARC_PIECES && call->concave && vm_any(vm_and(valid, has_concave(item)));
     const bool due = !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid) && !waits;
     const bool room = (size_t)rows->listed + V_WIDTH <= call->count && !boxes_wait(call);
     const bool in_order = due && room;
@@ -81,9 +81,8 @@ INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter 
 
 /* That of stores with pieces where all else goes to the formula. */
 INLINE vm triage_pieces(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
-    const vm open = take_valid(call, pair, circles, item);
-    const vm left = take_concave(call, vm_and_not(open, circles->apart), item);
-    return vm_or(left, vm_and_not(vm_and(open, circles->apart), has_concave(item)));
+    const vm valid = take_valid(call, pair, circles, item);
+    return take_concave(call, valid, valid, circles, item);
 }
 
 /* Passes on the pairs k ... of a queue in the lanes `left`. */

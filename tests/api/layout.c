@@ -7,6 +7,7 @@
 
 #include "narc.h"
 #include "narc_broad_phase.h"
+#include "narc_chains.h"
 #include "narc_files.h"
 #include "narc_fit.h"
 #include "narc_methods.h"
@@ -38,6 +39,8 @@ static void check_numbers(void) {
     LAYOUT(narc_distance, 36,
            AT(point, 0) && AT(body, 4) && AT(feature, 8) && AT(count, 10) && AT(separation, 12) && AT(normal_x, 16) &&
                AT(normal_y, 20) && AT(place_x, 24) && AT(place_y, 28) && AT(radius, 32));
+    LAYOUT(narc_chain_entry, 32,
+           AT(shape, 0) && AT(run, 4) && AT(x, 8) && AT(y, 16) && AT(first_arc, 24) && AT(arc_count, 28));
     LAYOUT(narc_point, 16, AT(x, 0) && AT(y, 8));
     LAYOUT(narc_arc, 40, AT(center_x, 0) && AT(center_y, 8) && AT(radius, 16) && AT(start, 24) && AT(end, 32));
     LAYOUT(narc_four_arc, 40,
@@ -64,6 +67,8 @@ static void check_pointers(void) {
     LAYOUT(narc_motions, 64, AT(x, 0) && AT(y, 16) && AT(angle, 32) && AT(reserved, 48));
     LAYOUT(narc_cast_options, 56,
            AT(target, 0) && AT(tolerance, 4) && AT(workers, 8) && AT(out_skipped, 16) && AT(reserved, 24));
+    LAYOUT(narc_chain_options, 56,
+           AT(closed, 0) && AT(first_run, 4) && AT(weld, 8) && AT(least_radius, 16) && AT(reserved, 24));
     LAYOUT(narc_workers, 24, AT(context, 0) && AT(count, 8) && AT(run, 16));
     LAYOUT(narc_error, 216, AT(status, 0) && AT(index, 8) && AT(value, 16) && AT(message, 24));
     LAYOUT(narc_allocator, 24, AT(allocate, 0) && AT(release, 8) && AT(context, 16));

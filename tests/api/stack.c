@@ -17,6 +17,7 @@
 #include "methods.h"
 #include "narc_broad_phase.h"
 #include "narc_scene.h"
+#include "turtle.h"
 
 /* Sanitizers make frames larger, and so does a compiler that does not optimise. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
@@ -100,6 +101,23 @@ static narc_status keep_shapes(narc_error *error) {
     narc_destroy_methods(methods);
     narc_destroy_shapes(loaded);
     narc_destroy_shapes(shapes);
+    return TRUE(fine);
+}
+
+/* A chain, and rows as of its entries. */
+static narc_status add_chain(narc_error *error) {
+    enum { ARCS = 4000 };
+    static narc_chain_entry entries[ARCS];
+    struct turtle t = create_turtle(0, 0, 1);
+    narc_shapes *shapes = NULL;
+    for (int k = 0; k < ARCS; k++)
+        walk_arc(&t, 2, k % 2 ? -1 : 1);
+    const bool fine = narc_create_shapes(NULL, &shapes) == NARC_OK &&
+                      narc_add_chain(shapes, t.arcs, t.count, NULL, entries, ARCS, &count, error) == NARC_OK &&
+                      narc_merge_contacts(&one, (narc_index_column){0}, contacts, 1) <= 1 &&
+                      narc_merge_manifolds(&one, (narc_index_column){0}, manifolds, 1) <= 1;
+    narc_destroy_shapes(shapes);
+    free(t.arcs);
     return TRUE(fine);
 }
 
@@ -195,6 +213,7 @@ static narc_status ask_index(narc_error *error) {
               narc_find_support(arcs, arc_count, 1, 2, points, &count) &&                                              \
               narc_compute_distance(arcs, arc_count, ring[0], number) &&                                               \
               narc_contains_point(arcs, arc_count, (narc_point){0, 0})))                                               \
+    CALL(chain, add_chain(error))                                                                                      \
     CALL(keep, keep_shapes(error))
 
 #define DEFINE(name, expression)                                                                                       \

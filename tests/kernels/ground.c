@@ -14,6 +14,7 @@
 #include "check.h"
 #include "families.h"
 #include "layouts.h"
+#include "narc_broad_phase.h"
 #include "narc_chains.h"
 #include "narc_scene.h"
 #include "plain_kernels.h"
@@ -262,14 +263,27 @@ static void expect_concave(const struct reference_body *piece, const struct refe
     }
 }
 
-/* Is a direction away from a run one of the front's? It is only as good as the root of the gap's precision. */
-static bool is_in_front(const struct reference_body *run, double x, double y, bool *out_doubtful) {
-    const size_t n = run->count;
-    const double begin = run->arcs[0].end, sweep = wrap(run->arcs[n - 5].start - begin - 1) + 1;
-    const double beyond = fabs(wrap(atan2(y, x) - atan2(run->sine, run->cosine) - begin - sweep / 2)) - sweep / 2;
-    const bool is_flat = sweep < 1e-9;
-    *out_doubtful = *out_doubtful || (is_flat ? beyond > 1e-5 && beyond < 1e-4 : fabs(beyond) < 1e-4);
-    return beyond <= (is_flat ? 1e-5 : 0);
+/* Is the gap as large along a normal of the run `run`, too? `sign`: 1 if that is A, else -1. */
+static bool is_tie(const struct reference_body *a, const struct reference_body *b, double gap, double sign,
+                   double angle) {
+    const struct reference_body *const run = sign > 0 ? a : b;
+    const double turned = angle + atan2(run->sine, run->cosine);
+    return reference_gap_along(a, b, sign * cos(turned), sign * sin(turned)) > gap - 1e-6;
+}
+
+/* Is the gap's direction one of the run's front? It is only as good as the root of the gap's precision. */
+static bool is_in_front(const struct reference_body *a, const struct reference_body *b, const struct reference_gap *gap,
+                        double sign, bool *out_doubtful) {
+    const struct reference_body *const run = sign > 0 ? a : b;
+    const narc_arc *first = &run->arcs[0], *last = &run->arcs[run->count - 5];
+    const double sweep = wrap(last->start - first->end - 1) + 1, turned = atan2(run->sine, run->cosine);
+    const double angle = atan2(sign * gap->normal_y, sign * gap->normal_x) - turned;
+    const double beyond = fabs(wrap(angle - first->end - sweep / 2)) - sweep / 2;
+    const bool is_flat = sweep < 1e-9, in_front = beyond <= (is_flat ? 1e-5 : 0);
+    const bool ties = is_tie(a, b, gap->gap, sign, in_front ? first->start : first->end) ||
+                      is_tie(a, b, gap->gap, sign, in_front ? last->end : last->start);
+    *out_doubtful = *out_doubtful || ties || (is_flat ? beyond > 1e-5 && beyond < 1e-4 : fabs(beyond) < 1e-4);
+    return in_front;
 }
 
 static struct expected find_expected(const struct scene *scene, struct pair pair, double limit) {
@@ -289,8 +303,8 @@ static struct expected find_expected(const struct scene *scene, struct pair pair
     }
     const struct reference_gap gap = reference_find_gap(&a, &b);
     out.is_doubtful = fabs(gap.gap - limit) < 2e-5;
-    const bool front_a = !run_a || is_in_front(&a, gap.normal_x, gap.normal_y, &out.is_doubtful);
-    const bool front_b = !run_b || is_in_front(&b, -gap.normal_x, -gap.normal_y, &out.is_doubtful);
+    const bool front_a = !run_a || is_in_front(&a, &b, &gap, 1, &out.is_doubtful);
+    const bool front_b = !run_b || is_in_front(&a, &b, &gap, -1, &out.is_doubtful);
     if (gap.gap < limit && front_a && front_b) {
         out.separation[out.count] = gap.gap;
         out.normal[out.count++] = (struct spot){gap.normal_x, gap.normal_y};
@@ -330,13 +344,15 @@ static size_t check_rows(const struct ground *g, const struct contacts *rows) {
             const narc_contact *c = &rows->rows[row + i];
             const double n_x = is_concave(&b) ? -(double)c->normal_x : (double)c->normal_x,
                          n_y = is_concave(&b) ? -(double)c->normal_y : (double)c->normal_y;
-            double least = INFINITY, other = INFINITY;
+            double least = INFINITY, other = INFINITY, bound = separation_bound(&a, &b);
+            if (is_concave(&a) || is_concave(&b)) /* the reference knows no radius below 0 */
+                bound += -2 * NARC_ERROR_BOUND * (is_concave(&a) ? &a : &b)->arcs->radius;
             for (size_t j = 0; j < e.count; j++) {
                 const double turn = hypot(n_x - e.normal[j].x, n_y - e.normal[j].y);
                 other = turn < least ? fabs((double)c->separation - e.separation[j]) : other;
                 least = fmin(least, turn);
             }
-            if (!(other <= separation_bound(&a, &b)) || (is_concave(&a) != is_concave(&b) && !(least < 1e-3)))
+            if (!(other <= bound) || (is_concave(&a) != is_concave(&b) && !(least < 1e-3)))
                 fail_msg("pair %u, row %zu of %zu: separation %g is off by %g, the normal by %g", k, i, count,
                          (double)c->separation, other, least);
             if (i > 0)
@@ -398,14 +414,13 @@ static void check_forms(const struct ground *g, const struct contacts *right) {
         selection[k] = (uint32_t)(count - 1 - k);
     }
     size_t found = 0;
-    const narc_query each = {.margins = {margins, sizeof *margins}, .hints = NARC_HINT_ARRAY(hints)};
+    const narc_query each = {.margins = NARC_ARRAY(margins), .hints = NARC_HINT_ARRAY(hints)};
     for (int round = 0; round < 2; round++) {
         assert_int_equal(ask_contacts(scene, &each, rows.rows, capacity_of(g), &found, NULL), NARC_OK);
         assert_int_equal(found, right->count);
         assert_memory_equal(rows.rows, right->rows, size);
     }
-    const narc_query selected = {
-        .margin = margin, .selection = {selection, sizeof *selection}, .selection_count = count};
+    const narc_query selected = {.margin = margin, .selection = NARC_ARRAY(selection), .selection_count = count};
     assert_int_equal(ask_contacts(scene, &selected, rows.rows, capacity_of(g), &found, NULL), NARC_OK);
     assert_int_equal(found, right->count);
     size_t row = right->count;
@@ -544,6 +559,277 @@ TEST(test_country) {
         free(g);
     }
     assert_true(several > 0 && rows > 0);
+}
+
+/* The place of a chain's arc at a normal. */
+static struct spot find_chain_point(const narc_arc *arc, double angle) {
+    return (struct spot){arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle)};
+}
+
+/* No ball falls between two entries, and none finds the ground where it is not. */
+TEST(test_seams) {
+    struct test_random random = test_random_named("seams");
+    const double radius = 0.1, above = 0.01;
+    for (size_t round = 0; round < test_trials(12); round++) {
+        struct ground *g = malloc(sizeof *g);
+        while (!make_country(&random, g, 2000, (size_t)ENTRIES * 2000)) {
+        }
+        const struct shape ball = circle_of(radius);
+        const uint32_t shape = scene_add_shape(&g->scene, &ball);
+        for (size_t k = 1; k + 1 < g->arc_count; k++) {
+            const narc_arc *arc = &g->arcs[k];
+            for (int i = 0; i < 40; i++) {
+                const double off = random_below(&random, 3) ? random_log_between(&random, 1e-8, 1e-2) : 0;
+                const double part = (arc->end - arc->start) * (0.5 * (double)(i % 3)); /* and where arcs are cut */
+                const struct spot p = find_chain_point(arc, arc->start + part);
+                const double normal = arc->start + part, side = i % 2 ? off : -off;
+                if (arc->radius < 0.15 && signbit(arc->radius))
+                    continue;
+                const struct body body = {.x = p.x + (radius + above) * cos(normal) + side * sin(normal),
+                                          .y = p.y + (radius + above) * sin(normal) - side * cos(normal),
+                                          .cosine = 1,
+                                          .scale = 1,
+                                          .shape = shape};
+                if (g->scene.body_count == g->entry_count + 2000)
+                    continue;
+                const uint32_t mover = scene_add_body(&g->scene, body);
+                for (uint32_t e = 0; e < g->entry_count; e++)
+                    scene_add_pair(&g->scene, mover, e);
+            }
+        }
+        struct contacts rows = ask(g, &(narc_query){.margin = margin});
+        const size_t balls = g->scene.body_count - g->entry_count;
+        float *least = malloc(balls * sizeof *least);
+        for (size_t k = 0; k < balls; k++)
+            least[k] = INFINITY;
+        for (size_t k = 0; k < rows.count; k++) {
+            float *const of = &least[rows.rows[k].pair / g->entry_count];
+            *of = fminf(*of, rows.rows[k].separation);
+        }
+        for (size_t k = 0; k < balls; k++)
+            if (!(fabs((double)least[k] - above) <= 1e-5 + 1e-2 * 1e-2 / radius))
+                fail_msg("ball %zu is %g away", k, (double)least[k]);
+        free(least);
+        free(rows.rows);
+        destroy_scene(&g->scene);
+        free(g);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ rays */
+
+struct crossing {
+    double along;
+    struct spot normal;
+};
+
+/* Keeps a crossing of the line o + t v, |v| = 1, if it is ahead, comes from the air, and is the first. */
+static void keep_crossing(double along, struct spot n, struct spot v, struct crossing *out) {
+    if (along > 0 && along < out->along && n.x * v.x + n.y * v.y < 0)
+        *out = (struct crossing){along, n};
+}
+
+static struct crossing cross_chain(const struct ground *g, struct spot o, struct spot v) {
+    struct crossing out = {INFINITY, {0, 0}};
+    for (size_t k = 0; k < g->arc_count; k++) {
+        const narc_arc *arc = &g->arcs[k];
+        const double x = arc->center_x - o.x, y = arc->center_y - o.y, ahead = x * v.x + y * v.y,
+                     beside = v.x * y - v.y * x, square = arc->radius * arc->radius - beside * beside;
+        for (int side = -1; side <= 1 && square > 0; side += 2) {
+            const double along = ahead + side * sqrt(square);
+            const struct spot n = {(along * v.x - x) / arc->radius, (along * v.y - y) / arc->radius};
+            const double mid = (arc->start + arc->end) / 2, half = fabs(arc->end - arc->start) / 2;
+            if (fabs(wrap(atan2(n.y, n.x) - mid)) <= half)
+                keep_crossing(along, n, v, &out);
+        }
+        if (k == 0)
+            continue;
+        const struct spot from = find_chain_point(&g->arcs[k - 1], g->arcs[k - 1].end),
+                          to = find_chain_point(arc, arc->start), n = {cos(arc->start), sin(arc->start)};
+        const double left = v.x * (from.y - o.y) - v.y * (from.x - o.x),
+                     right = v.x * (to.y - o.y) - v.y * (to.x - o.x);
+        if (hypot(to.x - from.x, to.y - from.y) > 1e-9 && left * right <= 0 && fabs(left - right) > 0) {
+            const double part = left / (left - right);
+            const struct spot p = {from.x + part * (to.x - from.x) - o.x, from.y + part * (to.y - from.y) - o.y};
+            keep_crossing(p.x * v.x + p.y * v.y, n, v, &out);
+        }
+    }
+    return out;
+}
+
+TEST(test_rays) {
+    enum { RAYS = 400 };
+    struct test_random random = test_random_named("rays");
+    for (size_t round = 0; round < test_trials(20); round++) {
+        struct ground *g = malloc(sizeof *g);
+        while (!make_country(&random, g, 1, 1)) {
+        }
+        const narc_bodies bodies = scene_bodies(&g->scene);
+        narc_box *boxes = malloc(g->entry_count * sizeof *boxes);
+        narc_index *index = NULL;
+        assert_int_equal(narc_compute_boxes(g->scene.store, &bodies, NULL, boxes, NULL), NARC_OK);
+        assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+        assert_int_equal(narc_build_index(index, boxes, g->entry_count, NULL, NULL), NARC_OK);
+        double x[RAYS], y[RAYS];
+        float motion_x[RAYS], motion_y[RAYS];
+        for (size_t k = 0; k < RAYS; k++) {
+            const narc_arc *arc = &g->arcs[1 + random_below(&random, g->arc_count - 2)];
+            const bool in_ground = fabs(arc->radius) > 0 &&
+                                   !random_below(&random, 4); /* not at seams, which reach a little into the ground */
+            const bool at_seam = !in_ground && !random_below(&random, 3);
+            const double angle = at_seam ? arc->start : random_between(&random, arc->start, arc->end);
+            const struct spot p = find_chain_point(arc, angle);
+            const double air = fabs(arc->radius) > 0 ? angle : (arc->start + arc->end) / 2;
+            const double way = air + random_between(&random, -1.2, 1.2), away = random_log_between(&random, 1e-3, 30);
+            const double sign = in_ground ? -1 : 1;
+            x[k] = p.x + sign * away * cos(way);
+            y[k] = p.y + sign * away * sin(way);
+            motion_x[k] = (float)((p.x - x[k]) * 3);
+            motion_y[k] = (float)((p.y - y[k]) * 3);
+        }
+        const narc_rays rays = {.count = RAYS,
+                                .x = NARC_POSITION_ARRAY(x),
+                                .y = NARC_POSITION_ARRAY(y),
+                                .motion_x = NARC_ARRAY(motion_x),
+                                .motion_y = NARC_ARRAY(motion_y)};
+        narc_ray_hit hits[RAYS], others[RAYS];
+        size_t hit_count = 0, doubts = 0;
+        for (int inside = NARC_INSIDE_STOPS; inside <= NARC_INSIDE_IGNORES; inside++) {
+            const narc_ray_options options = {.inside = (narc_inside)inside};
+            assert_int_equal(
+                narc_cast_rays(index, g->scene.store, &bodies, &rays, &options, inside ? others : hits, RAYS, NULL),
+                NARC_OK);
+            if (inside)
+                assert_memory_equal(hits, others, sizeof hits);
+        }
+        test_use_isa("scalar");
+        assert_int_equal(narc_cast_rays(index, g->scene.store, &bodies, &rays, NULL, others, RAYS, NULL), NARC_OK);
+        test_use_isa(test_isa());
+        assert_memory_equal(hits, others, sizeof hits);
+        for (size_t k = 0; k < RAYS; k++) {
+            const double length = hypot((double)motion_x[k], (double)motion_y[k]), room = 2e-5;
+            const struct spot o = {x[k], y[k]}, v = {(double)motion_x[k] / length, (double)motion_y[k] / length};
+            const struct spot left = {o.x - room * v.y, o.y + room * v.x}, right = {o.x + room * v.y, o.y - room * v.x};
+            const struct crossing here = cross_chain(g, o, v), beside = cross_chain(g, left, v),
+                                  other = cross_chain(g, right, v);
+            const double along = hits[k].count ? (double)hits[k].fraction * length : INFINITY;
+            const bool found = here.along < length;
+            /* Rays that graze, meet a corner, or begin by next to nothing in the ground. */
+            const bool is_free = !isfinite(here.along) && !isfinite(beside.along) && !isfinite(other.along);
+            const bool is_doubtful =
+                !is_free && (!(fabs(beside.along - here.along) < 0.01) || !(fabs(other.along - here.along) < 0.01) ||
+                             !(hypot(beside.normal.x - other.normal.x, beside.normal.y - other.normal.y) < 1e-2) ||
+                             here.along < 1e-4 || fabs(here.along - length) < 1e-3);
+            doubts += is_doubtful;
+            if (is_doubtful)
+                continue;
+            hit_count += found;
+            const double slope = fabs(here.normal.x * v.x + here.normal.y * v.y);
+            if (found != (hits[k].count > 0) || (found && !(fabs(along - here.along) * slope <= 1e-5)))
+                fail_msg("ray %zu from (%.9g, %.9g) along (%g, %g): %g, not %g", k, o.x, o.y, v.x, v.y, along,
+                         here.along);
+            if (found)
+                assert_true(hypot((double)hits[k].normal_x - here.normal.x, (double)hits[k].normal_y - here.normal.y) <
+                            1e-3);
+        }
+        if (!(hit_count > RAYS / 4 && doubts < RAYS / 2))
+            fail_msg("of %d rays %zu hit, and %zu are doubtful", RAYS, hit_count, doubts);
+        narc_destroy_index(index);
+        free(boxes);
+        destroy_scene(&g->scene);
+        free(g);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ plain cases */
+
+/* The rows of a body of this shape in one place against all entries, as A. */
+static struct contacts ask_one(struct ground *g, struct shape shape, double x, double y) {
+    const uint32_t mover = scene_add_body(
+        &g->scene, (struct body){.x = x, .y = y, .cosine = 1, .scale = 1, .shape = scene_add_shape(&g->scene, &shape)});
+    for (uint32_t e = 0; e < g->entry_count; e++)
+        scene_add_pair(&g->scene, mover, e);
+    struct contacts rows = ask(g, &(narc_query){.margin = margin});
+    g->scene.pair_count = 0;
+    return rows;
+}
+
+static void check_separations(const struct contacts *rows, size_t count, double separation) {
+    assert_int_equal(rows->count, count);
+    for (size_t k = 0; k < count; k++)
+        assert_true(fabs((double)rows->rows[k].separation - separation) < 1e-6);
+    free(rows->rows);
+}
+
+/* A bowl of radius 2 about the origin with rims that are flat. */
+TEST(test_bowl) {
+    struct ground *g = malloc(sizeof *g);
+    const double half = 0.8, deep = 2 * cos(half);
+    begin_chain(g, 2 * sin(half), -deep, PI / 2 + half);
+    add_turn(g, -2, -2 * half);
+    end_chain(g);
+    assert_true(place_chain(g, NULL, 8, 64));
+    assert_int_equal(g->entry_count, 1);
+
+    /* A box on two corners, each sqrt(0.6^2 + 1.87^2) from the centre; the body is A, so that normals point down. */
+    struct contacts rows = ask_one(g, box_of(1.2, 1, 0), 0, -1.37);
+    assert_int_equal(rows.count, 2);
+    const double far = hypot(0.6, 1.87);
+    assert_true((double)fabsf(rows.rows[0].normal_x + (float)(0.6 / far)) < 1e-6);
+    assert_true((double)fabsf(rows.rows[1].normal_x - (float)(0.6 / far)) < 1e-6);
+    assert_true(rows.rows[0].radius_a == 0 && rows.rows[0].radius_b == -2);
+    check_separations(&rows, 2, 2 - far);
+
+    /* A ball at the bottom; one that is larger than the bowl touches the rims alone, which are bare ends. */
+    rows = ask_one(g, circle_of(0.5), 0, -1.48);
+    assert_true(fabs((double)rows.rows[0].point_y + 0.51) < 1e-6);
+    check_separations(&rows, 1, 0.02);
+    rows = ask_one(g, circle_of(3), 0, 1);
+    check_separations(&rows, 0, 0);
+    destroy_scene(&g->scene);
+    free(g);
+}
+
+/* A rounded plateau: a box that is narrower, or wider, lies on its edge, or on the arc. */
+TEST(test_plateau) {
+    struct ground *g = malloc(sizeof *g);
+    begin_chain(g, sin(0.5), cos(0.5) - 1, PI / 2 - 0.5);
+    add_turn(g, 1, 0.5);
+    add_line(g, 1);
+    add_turn(g, 1, 0.5);
+    end_chain(g);
+    assert_true(place_chain(g, NULL, 8, 64));
+    struct contacts rows = ask_one(g, box_of(0.5, 0.5, 0), -0.5, 0.26);
+    assert_true(rows.rows[0].radius_b == INFINITY);
+    check_separations(&rows, 1, 0.01);
+    rows = ask_one(g, box_of(3, 0.5, 0), -0.5, 0.24);
+    check_separations(&rows, 1, -0.01);
+    rows = ask_one(g, box_of(3, 0.5, 0), -0.5, 0.31); /* further than the margin */
+    check_separations(&rows, 0, 0);
+    destroy_scene(&g->scene);
+    free(g);
+}
+
+/* A valley with slopes of 45 degrees: a capsule in its bottom touches both, and the bottom itself only if it is below. */
+TEST(test_valley) {
+    struct ground *g = malloc(sizeof *g);
+    begin_chain(g, 2, 2, 3 * PI / 4);
+    add_line(g, sqrt(8));
+    add_turn(g, -0.0, -PI / 2);
+    add_line(g, sqrt(8));
+    end_chain(g);
+    assert_true(place_chain(g, NULL, 8, 64));
+    assert_int_equal(g->entry_count, 3);
+    const double height = 0.5 * sqrt(2) + 0.25, above = 0.01 * sqrt(2);
+    struct contacts rows = ask_one(g, capsule_of(0.5, 0.5), 0, height + above);
+    check_separations(&rows, 2, 0.01);
+    rows = ask_one(g, circle_of(0.5), 0, 0.45);
+    assert_int_equal(rows.count, 2);
+    free(rows.rows);
+    rows = ask_one(g, circle_of(0.5), 0, -0.25);
+    check_separations(&rows, 1, -0.75);
+    destroy_scene(&g->scene);
+    free(g);
 }
 
 TEST_MAIN("ground")

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "counting.h"
+#include "narc_methods.h"
 #include "store.h"
 #include "tests.h"
 #include "turtle.h"
@@ -401,6 +402,7 @@ TEST(refuses_bad_arguments) {
     check_refused(arcs, GROUND, &(narc_chain_options){.weld = -1}, NARC_ERROR_ARGUMENT, 0, "weld is -1");
     check_refused(arcs, GROUND, &(narc_chain_options){.weld = NAN}, NARC_ERROR_ARGUMENT, 0, "weld is");
     check_refused(arcs, GROUND, &(narc_chain_options){.least_radius = NAN}, NARC_ERROR_ARGUMENT, 0, "least radius");
+    check_refused(arcs, GROUND, &(narc_chain_options){.reserved = {0, 0, 0, arcs}}, NARC_ERROR_ARGUMENT, 0, "reserved");
     check_refused(arcs, GROUND, &(narc_chain_options){.weld = 1e-9}, NARC_ERROR_COUNT, 2, "parts");
     assert_int_equal(narc_add_chain(shapes, arcs, GROUND, NULL, NULL, 0, &found, &error), NARC_ERROR_CAPACITY);
     assert_int_equal(found, 7);
@@ -510,7 +512,7 @@ TEST(refuses_chains_that_cross_themselves) {
         for (int i = 0; k == 1499 && i < 2; i++)
             walk_arc(&t, 100, 3); /* nearly back, and downhill */
     }
-    check_division(t.arcs, 900, NULL);
+    check_division(t.arcs, 300, NULL);
     narc_shapes *shapes = create_store(NULL);
     assert_true(add(shapes, t.arcs, 1501, NULL) > 1500);
     narc_destroy_shapes(shapes);
@@ -596,6 +598,11 @@ TEST(keeps_pieces_as_shapes) {
     assert_int_equal(narc_shape_flags(shapes, plain),
                      narc_shape_flags(shapes, first[run].shape) & ~(unsigned)NARC_SHAPE_RUN);
     assert_int_equal(shapes->piece_count, shape_count);
+    /* Other methods have no answer for pieces. */
+    narc_methods *methods = NULL;
+    narc_error error;
+    expect_error(narc_create_methods(shapes, NULL, &methods, &error), NARC_ERROR_ARGUMENT, &error, "pieces of chains");
+    assert_null(methods);
     /* A piece may be replaced by a shape, once it has one use. */
     const uint32_t uses = narc_count_uses(shapes, first[run].shape);
     for (uint32_t k = 1; k < uses; k++)

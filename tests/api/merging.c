@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * merging.c - narc_merge_manifolds() and narc_merge_contacts(): what stays of rows that entries of one chain tell of a
+ * body.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "guard.h"
+#include "narc_chains.h"
+#include "support.h"
+
+enum { MOST = 16 };
+
+/* Rows k of pairs k: body `a` on the ground's body `b`. */
+struct rows {
+    uint32_t a[MOST], b[MOST];
+    narc_manifold manifolds[MOST];
+    size_t count;
+};
+
+/* A row of body a on entry b with a normal's angle and one point, or two. */
+static void add_row(struct rows *rows, uint32_t a, uint32_t b, double angle, size_t count, const float points[][3]) {
+    narc_manifold *row = &rows->manifolds[rows->count];
+    *row = (narc_manifold){.pair = (uint32_t)rows->count,
+                           .count = (uint32_t)count,
+                           .normal_x = (float)cos(angle),
+                           .normal_y = (float)sin(angle),
+                           .radius_a = (float)rows->count,
+                           .radius_b = (float)b};
+    for (size_t k = 0; k < count; k++)
+        row->point[k] = (narc_manifold_point){points[k][0], points[k][1], points[k][2], 100 * b + (uint32_t)k};
+    rows->a[rows->count] = a;
+    rows->b[rows->count++] = b;
+}
+
+static const double down = -1.57079632679489661923; /* the ground is below: the normal from the body to it */
+
+static size_t merge(struct rows *rows, const uint32_t *runs) {
+    const narc_pairs pairs = {.count = rows->count, .a = NARC_ARRAY(rows->a), .b = NARC_ARRAY(rows->b)};
+    narc_manifold *own = guard_copy(rows->manifolds, rows->count * sizeof *own);
+    const narc_index_column run = {runs, runs ? sizeof *runs : 0};
+    const size_t left = narc_merge_manifolds(&pairs, run, own, rows->count);
+    memcpy(rows->manifolds, own, left * sizeof *own);
+    guard_release(own);
+    return left;
+}
+
+static void expect_point(const narc_manifold_point *p, float x, float y, float separation, uint32_t feature) {
+    assert_true(p->x == x && p->y == y && p->separation == separation);
+    assert_int_equal(p->feature, feature);
+}
+
+/* A box flat on collinear entries keeps the outermost points. Along (n_y, -n_x) turned: with the normal down, the order
+ * of points is that of x. */
+TEST(joins_flush_rows_of_a_run) {
+    const uint32_t runs[MOST] = {4, 4, 4, 4, 4, 4, 4, 4, 4, 4};
+    struct rows rows = {.count = 0};
+    for (uint32_t b = 0; b < 10; b++) {
+        const float x = (float)b - 5;
+        add_row(&rows, 7, b, down + 3e-5 * (b % 2), 2,
+                (const float[][3]){{x, -1, -0.001f * (float)b}, {x + 1, -1, -0.001f * (float)(b + 1)}});
+    }
+    assert_int_equal(merge(&rows, runs), 1);
+    const narc_manifold *row = &rows.manifolds[0];
+    assert_int_equal(row->pair, 0);
+    assert_int_equal(row->count, 2);
+    expect_point(&row->point[0], -5, -1, 0, 0);
+    expect_point(&row->point[1], 5, -1, -0.001f * 10, 901);
+    assert_true(row->radius_a == 9 && row->radius_b == 9); /* of the deepest */
+}
+
+/* The same point told by both parts of a cut arc is one. */
+TEST(joins_one_point_of_a_run) {
+    const uint32_t runs[MOST] = {4, 4};
+    struct rows rows = {.count = 0};
+    add_row(&rows, 7, 0, down, 1, (const float[][3]){{0, -1, -0.01f}});
+    add_row(&rows, 7, 1, down, 1, (const float[][3]){{0.0001f, -1, -0.02f}});
+    assert_int_equal(merge(&rows, runs), 1);
+    assert_int_equal(rows.manifolds[0].count, 1);
+    expect_point(&rows.manifolds[0].point[0], 0.0001f, -1, -0.02f, 100);
+    expect_point(&rows.manifolds[0].point[1], 0, 0, 0, 0);
+}
+
+/* A box over a ledge: sideways it is deep, upwards it is not. Wherever the row stands, it stays alone. */
+TEST(keeps_the_greatest_separation_of_a_run) {
+    const uint32_t runs[MOST] = {4, 4, 4, 4};
+    for (uint32_t best = 0; best < 4; best++) {
+        struct rows rows = {.count = 0};
+        for (uint32_t b = 0; b < 4; b++)
+            add_row(&rows, 7, b, b == best ? down : b * 0.3, 1,
+                    (const float[][3]){{(float)b, -1, b == best ? -0.01f : -0.4f - (float)b}});
+        assert_int_equal(merge(&rows, runs), 1);
+        assert_int_equal(rows.manifolds[0].pair, best);
+        expect_point(&rows.manifolds[0].point[0], (float)best, -1, -0.01f, 100 * best);
+    }
+}
+
+/* Seams between a run and concave arcs: one row of points that are told twice, wherever the larger one stands. */
+TEST(drops_points_that_are_told_twice) {
+    const uint32_t runs[MOST] = {4, NARC_NO_RUN, NARC_NO_RUN, 5};
+    for (int order = 0; order < 2; order++) {
+        struct rows rows = {.count = 0};
+        const float points[][3] = {{-1, -1, -0.01f}, {1, -1, -0.01f}};
+        for (int k = 0; k < 2; k++)
+            if (k == order)
+                add_row(&rows, 7, 0, down, 2, points);
+            else
+                add_row(&rows, 7, 1, down + 5e-4, 1, points + 1);
+        add_row(&rows, 7, 2, down + 0.002, 1, points + 1);                       /* another normal */
+        add_row(&rows, 7, 3, down, 1, (const float[][3]){{1.001f, -1, -0.01f}}); /* another point */
+        assert_int_equal(merge(&rows, runs), 3);
+        assert_int_equal(rows.manifolds[0].pair, order);
+        assert_int_equal(rows.manifolds[0].count, 2);
+        assert_int_equal(rows.manifolds[1].pair, 2);
+        assert_int_equal(rows.manifolds[2].pair, 3);
+    }
+}
+
+/* A box in a bowl stands on two corners of one arc. Rows of other bodies, or of this one elsewhere in the list, are
+ * nobody's seam; rows without a contact go. */
+TEST(keeps_what_is_not_the_same) {
+    const uint32_t runs[MOST] = {NARC_NO_RUN, 4, 5};
+    struct rows rows = {.count = 0};
+    const float left[][3] = {{-1, -1, -0.01f}}, right[][3] = {{1, -1, -0.01f}};
+    add_row(&rows, 7, 0, down - 0.3, 1, left);
+    add_row(&rows, 7, 0, down + 0.3, 1, right);
+    add_row(&rows, 8, 1, down, 1, left);
+    add_row(&rows, 8, 2, down, 0, left);
+    add_row(&rows, 7, 1, down, 1, left);
+    add_row(&rows, 9, 1, down, 1, left);
+    struct rows all = rows;
+    assert_int_equal(merge(&rows, runs), 5);
+    for (size_t k = 0; k < 5; k++)
+        assert_memory_equal(&rows.manifolds[k], &all.manifolds[k < 3 ? k : k + 1], sizeof(narc_manifold));
+    assert_int_equal(merge(&all, NULL), 5); /* all concave */
+    rows.count = 0;
+    assert_int_equal(merge(&rows, runs), 0);
+}
+
+/* Contacts have one point: of one run the greatest separation, of flush rows the smaller one. Pairs without columns name
+ * the bodies of two sets. */
+TEST(merges_contacts) {
+    const uint32_t runs[] = {4, 4, 4, NARC_NO_RUN, NARC_NO_RUN, 4};
+    const uint32_t a[] = {3, 3, 3, 3, 3, 2};
+    const float separations[] = {-0.02f, -0.03f, -0.4f, -0.03f, -0.01f, -1};
+    const double angles[] = {down, down, 0, down + 4e-4, down + 1, down};
+    narc_contact rows[6];
+    for (uint32_t k = 0; k < 6; k++)
+        rows[k] = (narc_contact){.pair = k,
+                                 .count = 1,
+                                 .separation = separations[k],
+                                 .normal_x = (float)cos(angles[k]),
+                                 .normal_y = (float)sin(angles[k]),
+                                 .point_x = 0.0001f * (float)k,
+                                 .point_y = -1};
+    const narc_bodies ground = {.count = 6};
+    const narc_pairs pairs = {.count = 6, .a = NARC_ARRAY(a), .other_bodies = &ground};
+    assert_int_equal(narc_merge_contacts(&pairs, NARC_ARRAY(runs), rows, 6), 3);
+    assert_int_equal(rows[0].pair, 1);
+    assert_int_equal(rows[1].pair, 4);
+    assert_int_equal(rows[2].pair, 5);
+    /* Pairs that bring two bodies each: none has two rows. */
+    narc_contact own[2] = {rows[0], rows[0]};
+    own[0].pair = 0;
+    own[1].pair = 1;
+    const uint32_t four[] = {9, 4, 9, 4};
+    assert_int_equal(narc_merge_contacts(&(narc_pairs){.count = 2}, NARC_ARRAY(four), own, 2), 2);
+}
+
+/* In any long list what stays is what a search through all rows of the body says. */
+TEST(merges_long_lists) {
+    struct test_random random = test_random_named("merging");
+    enum { ROWS = 5000, RUNS = 6 };
+    static narc_contact rows[ROWS], before[ROWS];
+    static uint32_t a[ROWS], b[ROWS];
+    uint32_t runs[RUNS + 2];
+    for (uint32_t k = 0; k < RUNS + 2; k++)
+        runs[k] = k < RUNS ? k / 2 : NARC_NO_RUN;
+    for (size_t trial = 0; trial < test_trials(20); trial++) {
+        for (uint32_t k = 0; k < ROWS; k++) {
+            const double angle = 0.5 * (double)random_below(&random, 5);
+            a[k] = k == 0 ? 0 : a[k - 1] + (random_below(&random, 6) == 0);
+            b[k] = (uint32_t)random_below(&random, RUNS + 2);
+            rows[k] = (narc_contact){.pair = k,
+                                     .count = random_below(&random, 9) != 0,
+                                     .separation = (float)random_unit(&random),
+                                     .normal_x = (float)cos(angle),
+                                     .normal_y = (float)sin(angle),
+                                     .point_x = 1 + (float)random_below(&random, 4),
+                                     .point_y = 1};
+        }
+        memcpy(before, rows, sizeof rows);
+        const narc_pairs pairs = {.count = ROWS, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
+        const size_t left = narc_merge_contacts(&pairs, NARC_ARRAY(runs), rows, ROWS);
+        size_t next = 0;
+        for (size_t k = 0; k < left; k++) { /* some of the rows, untouched and in their order */
+            while (next < ROWS && rows[k].pair != before[next].pair)
+                next++;
+            assert_true(next < ROWS);
+            assert_memory_equal(&rows[k], &before[next], sizeof *rows);
+            for (size_t i = k; i-- > 0 && a[rows[i].pair] == a[rows[k].pair];) {
+                const uint32_t run = runs[b[rows[k].pair]];
+                assert_false(run != NARC_NO_RUN && run == runs[b[rows[i].pair]]);
+                assert_false(rows[i].normal_x == rows[k].normal_x && rows[i].point_x == rows[k].point_x);
+            }
+        }
+        size_t kept[ROWS / 2] = {0}, there[ROWS / 2] = {0}; /* no body loses all */
+        for (size_t k = 0; k < left; k++)
+            kept[a[rows[k].pair]] = 1;
+        for (size_t k = 0; k < ROWS; k++)
+            there[a[k]] |= before[k].count;
+        assert_memory_equal(kept, there, (a[ROWS - 1] + 1) * sizeof *kept);
+    }
+}
+
+TEST_MAIN("merging")
