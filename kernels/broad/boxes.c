@@ -154,23 +154,24 @@ INLINE void add_motion(vf *forward, vf *backward, vf motion) {
 INLINE vm is_finite(vf a) { return v_le(v_abs(a), v_set(FLT_MAX)); }
 
 /* Puts the heights of pieces of chains, with the same room, in place of those of their closed shapes. */
-static void find_piece_heights(const narc_shapes *shapes, const int32_t shape[V_WIDTH], const vec2 axis[AXES],
-                               vf height[AXES]) {
+NOINLINE void put_piece_heights(const narc_shapes *shapes, const int32_t shape[V_WIDTH], const vec2 axis[AXES],
+                                vf scale, vf margin, vf height[AXES]) {
     for (int k = 0; k < AXES; k++) {
-        float x[V_WIDTH], y[V_WIDTH], heights[V_WIDTH];
+        float x[V_WIDTH], y[V_WIDTH], support[V_WIDTH], is_piece[V_WIDTH];
         v_store(x, axis[k].x);
         v_store(y, axis[k].y);
-        v_store(heights, height[k]);
         for (int l = 0; l < V_WIDTH; l++) {
             const narc_shape_header *header = &shapes->headers[shape[l]];
             double size = 0;
-            if (!narc_is_piece(header))
-                continue;
-            const double along =
-                narc_find_piece_height(header, narc_arcs_of(shapes, header), (double)x[l], (double)y[l], &size);
-            heights[l] = (float)(along + (double)HEIGHT_ROOM * size);
+            is_piece[l] = narc_is_piece(header) ? 1 : 0;
+            support[l] = 0;
+            if (is_piece[l] > 0)
+                support[l] = (float)(narc_find_piece_height(header, narc_arcs_of(shapes, header), (double)x[l],
+                                                            (double)y[l], &size) +
+                                     (double)HEIGHT_ROOM * size);
         }
-        height[k] = v_load(heights);
+        const vf own = v_add(v_mul(v_load(support), scale), margin);
+        height[k] = v_select(v_lt(v_set(0), v_load(is_piece)), own, height[k]);
     }
 }
 
@@ -185,12 +186,16 @@ INLINE struct reaches find_reaches(const narc_shapes *shapes, const int32_t shap
     find_arc_runs(shapes->records, headers->first_record, count, right, run);
     UNROLL
     for (int k = 0; k < AXES; k++)
-        height[k] = find_support_value(shapes->records, arcs, count, run[k], axis[k]);
-    if (shapes->piece_count > 0)
-        find_piece_heights(shapes, shape, axis, height);
-    UNROLL
-    for (int k = 0; k < AXES; k++)
-        height[k] = v_add(v_mul(height[k], bodies->scale), margin);
+        height[k] =
+            v_add(v_mul(find_support_value(shapes->records, arcs, count, run[k], axis[k]), bodies->scale), margin);
+    if (shapes->piece_count > 0) { /* copies, so that the others stay in registers */
+        const vec2 axes[AXES] = {axis[0], axis[1], axis[2], axis[3]};
+        vf heights[AXES] = {height[0], height[1], height[2], height[3]};
+        put_piece_heights(shapes, shape, axes, bodies->scale, margin, heights);
+        UNROLL
+        for (int k = 0; k < AXES; k++)
+            height[k] = heights[k];
+    }
     const vec2 at = bodies->position, rest = bodies->rest;
     return (struct reaches){add_upwards(at.x, v_add(rest.x, height[0])), add_upwards(at.y, v_add(rest.y, height[1])),
                             add_upwards(v_neg(at.x), v_sub(height[2], rest.x)),
