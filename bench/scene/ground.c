@@ -337,8 +337,7 @@ struct country {
     size_t room;
 };
 
-static struct country make_country(const struct walk *walk, size_t count) {
-    const double pitch = 1.1;
+static struct country make_country(const struct walk *walk, size_t count, double pitch) {
     narc_shapes *const shapes = make_store();
     struct country c = {.ground = make_ground(shapes, walk), .room = 20 * count + 1000};
     const uint32_t shape = add_shape(shapes, 1, 1, 0.1);
@@ -384,11 +383,13 @@ static size_t step_country(const struct country *c, narc_broad_phase *broad, siz
                : found;
 }
 
-static void compare_cost(size_t count, size_t pieces, size_t rounds) {
+/* On as many pieces, each `length` long. */
+static void compare_cost(size_t count, size_t pieces, double length, size_t rounds) {
     enum { ALONE, AMONG, INDEX, WAYS };
     uint64_t random = 7;
-    const struct walk walk = walk_hills(pieces * 4 / 3, 1.1 * 1.1 * (double)count / 3 / (double)pieces / 0.45, &random);
-    struct country c = make_country(&walk, count);
+    const double pitch = fmax(1.1, 0.9 * length * (double)pieces / ((double)count / 3));
+    const struct walk walk = walk_hills(pieces * 4 / 3, length / 0.45, &random);
+    struct country c = make_country(&walk, count, pitch);
     for (size_t k = 0; k < c.made; k++)
         c.runs[k] = (uint32_t)(0x80000000u + k);
     const narc_bodies boxes = narc_view_bodies(c.bodies, c.made);
@@ -397,7 +398,7 @@ static void compare_cost(size_t count, size_t pieces, size_t rounds) {
     for (int k = 0; k < 2; k++)
         must(narc_create_broad_phase(NULL, &broad[k]), NULL);
     double ms[WAYS][MOST_ROUNDS], median[WAYS];
-    size_t rows[WAYS];
+    size_t rows[WAYS] = {0};
     for (size_t round = 0; round < rounds; round++) {
         for (size_t k = 0; k < c.made; k++)
             c.bodies[k].x += round % 2 ? 1e-3 : -1e-3;
@@ -413,13 +414,13 @@ static void compare_cost(size_t count, size_t pieces, size_t rounds) {
     }
     for (int way = 0; way < WAYS; way++)
         median[way] = quantile(ms[way], rounds, 0.5);
-    printf(
-        "%zu bodies on %zu pieces (%zu entries), pairs and manifolds of a step: %.2f ms without the ground (%zu rows); "
-        "%.2f ms (%+.0f %%) with it among the bodies (%zu rows); %.2f ms (%+.0f %%) with an index of it (%zu rows "
-        "more)\n",
-        c.made, walk.count, c.ground.count, median[ALONE], rows[ALONE], median[AMONG],
-        100 * (median[AMONG] / median[ALONE] - 1), rows[AMONG], median[INDEX],
-        100 * (median[INDEX] / median[ALONE] - 1), rows[INDEX]);
+    printf("%zu bodies of 1 m on %zu pieces of %.2f m (%zu entries), pairs and manifolds of a step: %.2f ms without "
+           "the ground (%zu rows); "
+           "%.2f ms (%+.0f %%) with it among the bodies (%zu rows); %.2f ms (%+.0f %%) with an index of it (%zu rows "
+           "more)\n",
+           c.made, walk.count, length, c.ground.count, median[ALONE], rows[ALONE], median[AMONG],
+           100 * (median[AMONG] / median[ALONE] - 1), rows[AMONG], median[INDEX],
+           100 * (median[INDEX] / median[ALONE] - 1), rows[INDEX]);
     narc_destroy_broad_phase(broad[0]);
     narc_destroy_broad_phase(broad[1]);
     destroy_ground(&c.ground);
@@ -443,6 +444,8 @@ int main(int argc, char **argv) {
     swing(SIDES_60, "polyline, 60 sides a turn");
     swing(SIDES_240, "polyline, 240 sides a turn");
     printf("\n");
-    compare_cost(s.bodies ? s.bodies : 30000, s.questions, s.rounds);
+    const size_t bodies = s.bodies ? s.bodies : 30000;
+    compare_cost(bodies, s.questions, 1.1, s.rounds);
+    compare_cost(bodies, s.questions, 1.2 * 1.1 * (double)bodies / 3 / (double)s.questions, s.rounds);
     return 0;
 }
