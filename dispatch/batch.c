@@ -259,8 +259,8 @@ static void list_pair(narc_row_kernel *kernel, const narc_batch *batch, size_t r
         memcpy(find_row(rows, to + k), find_row(&apart, k), row_size);
 }
 
-/* Where pairs with concave arcs have several rows, the deepest one is there, of `count` rows: lists the others, from the
- * last pair on. What has no room is left out. */
+/* Where pairs with concave arcs have several rows, the deepest one is there, of `count` rows: lists the others, from
+ * the last pair on. What has no room is left out. */
 NOINLINE void list_further(narc_row_kernel *kernel, const narc_batch *batch, size_t row_size, const narc_rows *rows,
                            size_t count, size_t capacity) {
     size_t to = count;

@@ -105,7 +105,8 @@ NARC_API narc_status narc_find_overlaps(const narc_shapes *shapes, const narc_bo
  *              too, as far as there is room
  *   out_count  the number of contacts found, which may be more than the capacity: then the first `capacity` of them are
  *              written and NARC_ERROR_CAPACITY is returned. Dense rows: how many are contacts; a capacity that ends
- *              before the last pair is NARC_ERROR_CAPACITY with nothing written.
+ *              before the last pair is NARC_ERROR_CAPACITY with nothing written. No pair has more than one, but for
+ *              those with a concave arc of a chain (narc_contact), which this thread lists after all others.
  * Fastest where there is room for a row for each pair that is asked of. Other errors as narc_find_overlaps(). With
  * margin 0 a pair is reported exactly if its bit there is set. Allocates nothing. */
 NARC_API narc_status narc_find_contacts(const narc_shapes *shapes, const narc_bodies *bodies, const narc_pairs *pairs,

@@ -145,7 +145,12 @@ typedef struct narc_query {
  *               position of body A, so that it is precise in a large world; where two edges touch along a stretch,
  *               the middle of that stretch. The point less half the separation along the normal lies on A, and plus
  *               that on B: the closest points, or the deepest. They are within 1.5 times the separation's error bound.
- *   radius_a    radius of curvature of A where it touches, scaled: 0 at a corner, INFINITY on an edge. And of B. */
+ *   radius_a    radius of curvature of A where it touches, scaled: 0 at a corner, INFINITY on an edge. And of B
+ * A concave arc of a chain (narc_chains.h) has its radius below 0, so that 1/radius_a + 1/radius_b is how much the
+ * two outlines are curved against each other; the bottom of a valley has -0. With such an arc a pair has a contact
+ * for each arc of the other body that touches: rows that follow each other, counter-clockwise by the outward normal
+ * of the concave arc. Dense rows, and hints, know only the deepest, or nothing. Pairs with a piece have a row only
+ * where they touch within the margin, also an infinite one. */
 typedef struct narc_contact {
     uint32_t pair;
     uint16_t feature;
@@ -173,7 +178,7 @@ typedef struct narc_manifold_point {
  *             margin of +INFINITY no answer, and point[0].separation +INFINITY
  *   normal    unit, from A to B, world axes
  *   radius_a  radius of curvature of A, scaled, at the deepest point: 0 at a corner, INFINITY on an edge; at an edge's
- *             end that of the arc next to it. And of B
+ *             end that of the arc next to it; below 0 on a concave arc (see narc_contact). And of B
  *   reach_a   how far the normal may turn clockwise [0] and counter-clockwise [1] until it leaves the arc of A that it
  *             touches, where both stay in touch by rolling: the sine of that angle, of a quarter turn at most, times
  *             NARC_REACH_ONE, rounded down. An edge has none. And of B

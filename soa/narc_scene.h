@@ -177,9 +177,11 @@ typedef struct narc_ray_hit {
  *   out_rows   room for `capacity` rows, at least rays->count * most
  * The point is within NARC_ERROR_BOUND * (the body's extent) of the outline and of the ray, however far the ray has come
  * (from more than 1e9 extents away, the digits of doubles are lost too); a ray that passes a body by no more than that
- * may hit or miss it. A corner is hit as the end of an edge. Broken bodies, and those whose shape does not exist, are
- * not hit: so that a single ray takes no longer where there are many bodies, they are not looked at beforehand. Rays that
- * start at the same place and follow each other in the order of their directions, such as a scanner's, share their way.
+ * may hit or miss it. A corner is hit as the end of an edge. Pieces of chains (narc_chains.h) are hit from the air: a
+ * ray that starts in the ground does not hit it, whatever `inside` says; a concave arc's radius is below 0. Broken
+ * bodies, and those whose shape does not exist, are not hit: so that a single ray takes no longer where there are many
+ * bodies, they are not looked at beforehand. Rays that start at the same place and follow each other in the order of
+ * their directions, such as a scanner's, share their way.
  * Errors, all found before anything is written: NARC_ERROR_ARGUMENT, NARC_ERROR_CAPACITY, and those for NARC_ISA.
  * Allocates nothing. Thread-safe.
  * Source: docs/algorithm.md, section 15. */

@@ -2,11 +2,12 @@
  *
  * concave.inl - contacts of a body with a concave arc: a chain's piece with the solid outside its circle (store.h).
  *
- * Let the arc have the centre c and the radius R, and an arc of the body b and r. Of this the point farthest from c lies
- * in the direction of b - c. Where that is within the sector of the body's arc, and its opposite among the normals of the
- * concave one, both have a common normal there, and the separation is R - |b - c| - r. Each such arc is a contact: a box
- * in a bowl stands on two corners. A straight edge has none of its own, as its ends are farther from c. With -R for the
- * radius, which is how the piece is stored, all this is the gap of two arcs (normal_fan.inl) along -u.
+ * Let the arc have the centre c and the radius R, and an arc of the body b and r. Of this the point farthest from c
+ * lies in the direction of b - c. Where that is within the sector of the body's arc, and its opposite among the
+ * normals of the concave one, both have a common normal there, and the separation is R - |b - c| - r. Each such arc
+ * is a contact: a box in a bowl stands on two corners. A straight edge has none of its own, as its ends are farther
+ * from c. With -R for the radius, which is how the piece is stored, all this is the gap of two arcs (normal_fan.inl)
+ * along -u.
  *
  * Beyond its ends the piece has a contact where the centres lie no further than what is rounded: seams are for that, but
  * where the centres nearly coincide they are too narrow.

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * overlaps.inl - overlaps of pieces of chains: pairs of which the contact kernel has a row with a separation below 0. It
- * is asked when all other pairs are answered, so that neither's stack is added to the other's.
+ * overlaps.inl - overlaps of pieces of chains: pairs of which the contact kernel has a row with a separation below 0.
+ * It is asked when all other pairs are answered, so that neither's stack is added to the other's.
  */
 #ifndef NARC_PIECE_OVERLAPS_INL
 #define NARC_PIECE_OVERLAPS_INL

@@ -147,8 +147,8 @@ static struct spot place_point(const struct reference_body *b, double x, double 
                          b->y + b->scale * (b->sine * x + b->cosine * y)};
 }
 
-/* The outline of a body: edges and arcs that are longer than nothing, each from a whole number to the next. Piece 2 k is
- * the edge before arc k, piece 2 k + 1 that arc. */
+/* The outline of a body: edges and arcs that are longer than nothing, each from a whole number to the next. Piece
+ * 2 k is the edge before arc k, piece 2 k + 1 that arc. */
 struct outline {
     const struct reference_body *body;
     size_t count, piece[2 * NARC_MAX_ARCS];
@@ -196,7 +196,8 @@ struct expected {
     bool is_doubtful;              /* something is too close to call */
 };
 
-/* A place of the outline, 0 .. SAMPLES - 1 in each piece: dense at its ends, where a maximum can be as shallow as may be. */
+/* A place of the outline, 0 .. SAMPLES - 1 in each piece: dense at its ends, where a maximum can be as shallow as
+ * may be. */
 static double find_sample(int k) {
     const int piece = k >= 0 ? k / SAMPLES : -1;
     return piece + 0.5 - 0.5 * cos(PI * (k - piece * SAMPLES) / SAMPLES);
@@ -810,7 +811,8 @@ TEST(test_plateau) {
     free(g);
 }
 
-/* A valley with slopes of 45 degrees: a capsule in its bottom touches both, and the bottom itself only if it is below. */
+/* A valley with slopes of 45 degrees: a capsule in its bottom touches both, and the bottom itself only if it is
+ * below. */
 TEST(test_valley) {
     struct ground *g = malloc(sizeof *g);
     begin_chain(g, 2, 2, 3 * PI / 4);
