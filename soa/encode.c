@@ -455,10 +455,11 @@ narc_status narc_restore_shape(narc_encoded_shape *shape, narc_error *error) {
     narc_record stored[NARC_MAX_ARCS];
     double extent = 0;
     narc_shape_header header = shape->header;
-    const uint8_t mark = header.first_arc & NARC_PIECE_RUN;
-    if (header.first_arc & NARC_PIECE_CONCAVE)
+    const uint8_t mark = NARC_PIECES ? header.first_arc & NARC_PIECE_RUN : 0;
+    if (NARC_PIECES && (header.first_arc & NARC_PIECE_CONCAVE))
         return restore_concave(shape, error);
-    header.first_arc &= NARC_FIRST_ARC;
+    if (NARC_PIECES) /* else no shape has such a number */
+        header.first_arc &= NARC_FIRST_ARC;
     if (header.count < 2 || header.count > NARC_MAX_ARCS || header.first_arc >= header.count)
         return fail_stored(error, "a number of arcs that no shape has");
     const size_t count = header.count, angles = narc_angle_records(count);

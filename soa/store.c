@@ -407,7 +407,8 @@ unsigned narc_shape_flags(const narc_shapes *shapes, uint32_t shape) {
     if (!narc_has_shape(shapes, shape))
         return 0;
     const narc_shape_header *header = &shapes->headers[shape];
-    return header->flags % (1u << NARC_SIZE_CLASS_SHIFT) | (header->first_arc & ~NARC_FIRST_ARC & UINT8_MAX) >> 2;
+    const unsigned marks = NARC_PIECES ? (header->first_arc & (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)) >> 2 : 0;
+    return header->flags % (1u << NARC_SIZE_CLASS_SHIFT) | marks;
 }
 
 size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_arcs) {
@@ -415,9 +416,10 @@ size_t narc_get_arcs(const narc_shapes *shapes, uint32_t shape, narc_arc *out_ar
         return 0;
     narc_shape_header header = shapes->headers[shape];
     const narc_record *arcs = narc_arcs_of(shapes, &header);
-    const bool is_circle = header.flags & NARC_SHAPE_CIRCLE, is_concave = header.first_arc & NARC_PIECE_CONCAVE;
+    const bool is_circle = header.flags & NARC_SHAPE_CIRCLE,
+               is_concave = NARC_PIECES && header.first_arc & NARC_PIECE_CONCAVE;
     size_t count = is_circle ? 1 : header.count;
-    header.first_arc &= NARC_FIRST_ARC;
+    header.first_arc = NARC_PIECES ? header.first_arc & NARC_FIRST_ARC : header.first_arc;
     for (size_t i = 0; out_arcs && i < count; i++) {
         const narc_stored_arc *r = &arcs[(i + header.count - header.first_arc) % header.count].arc;
         double start = narc_atan2((double)r->start_y, (double)r->start_x),

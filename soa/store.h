@@ -68,8 +68,13 @@ typedef struct narc_shape_header {
 #define NARC_PIECE_CONCAVE 0x80u
 #define NARC_FIRST_ARC     0x3fu
 
+/* A build without has no chains, and no shapes that are pieces. */
+#ifndef NARC_PIECES
+#define NARC_PIECES 1
+#endif
+
 static inline bool narc_is_piece(const narc_shape_header *header) {
-    return (header->first_arc & (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)) != 0;
+    return NARC_PIECES && (header->first_arc & (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)) != 0;
 }
 
 /* The upper half of a shape's flags is the class of its extent, from 2^(5 class - 32) up to 32 times that, the last one
