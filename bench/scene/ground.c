@@ -325,59 +325,110 @@ static void swing(enum bowl bowl, const char *name) {
 
 /* ------------------------------------------------------------------------------------------------ cost */
 
-/* Columns of three rounded boxes on hills, at rest but for rounding. */
-static void compare_cost(size_t count, size_t pieces, size_t rounds) {
-    uint64_t random = 7;
-    const double pitch = 1.1;
-    const struct walk walk = walk_hills(pieces, 1.1 * pitch * (double)count / 3 / (double)pieces / 0.45, &random);
+/* Columns of three rounded boxes on hills, which shake a little: bodies by themselves; and then with the ground, its
+ * entries among the bodies of the broad phase, which keeps the list, or asked of an index in every step. */
+struct country {
+    struct ground ground;
+    narc_body *bodies; /* the boxes, and behind them the ground */
+    uint8_t *kinds;
+    uint32_t *runs;
+    size_t made;
+    narc_manifold *rows;
+    size_t room;
+};
+
+static struct country make_country(const struct walk *walk, size_t count, double pitch) {
     narc_shapes *const shapes = make_store();
-    struct ground g = make_ground(shapes, &walk);
+    struct country c = {.ground = make_ground(shapes, walk), .room = 20 * count + 1000};
     const uint32_t shape = add_shape(shapes, 1, 1, 0.1);
-    narc_body *const bodies = allocate(count, sizeof *bodies);
-    narc_box *const boxes = allocate(count, sizeof *boxes);
-    const size_t room = 16 * count;
-    narc_manifold *const rows = allocate(room, sizeof *rows);
-    /* A column stands where an arc begins. */
-    size_t arc = 1, made = 0;
-    double at = walk.arcs[0].center_x;
-    while (made + 3 <= count && arc < walk.count) {
-        const narc_arc *a = &walk.arcs[arc++];
+    const size_t all = count + c.ground.count;
+    c.bodies = allocate(all, sizeof *c.bodies);
+    c.kinds = allocate(all, 1);
+    c.runs = allocate(all, sizeof *c.runs);
+    c.rows = allocate(c.room, sizeof *c.rows);
+    double at = walk->arcs[0].center_x;
+    for (size_t k = 1; k < walk->count && c.made + 3 <= count; k++) { /* a column stands where an arc begins */
+        const narc_arc *a = &walk->arcs[k];
         const double x = a->center_x + a->radius * cos(a->start), y = a->center_y + a->radius * sin(a->start);
         if (x > at - pitch)
             continue;
         at = x;
-        for (int level = 0; level < 3; level++, made++)
-            bodies[made] = (narc_body){.x = x, .y = y + 0.53 + 1.001 * level, .cosine = 1, .scale = 1, .shape = shape};
+        for (int level = 0; level < 3; level++)
+            c.bodies[c.made++] =
+                (narc_body){.x = x, .y = y + 0.53 + 1.001 * level, .cosine = 1, .scale = 1, .shape = shape};
     }
-    const narc_bodies all = narc_view_bodies(bodies, made);
-    narc_broad_phase *broad;
-    must(narc_create_broad_phase(NULL, &broad), NULL);
-    const narc_pair_options options = {.margin = 0.02f, .skin = 0.05f};
+    for (size_t k = 0; k < c.ground.count; k++) {
+        c.bodies[c.made + k] = c.ground.bodies[k];
+        c.kinds[c.made + k] = NARC_STATIC;
+        c.runs[c.made + k] = c.ground.runs[k];
+    }
+    return c;
+}
+
+/* Pairs and manifolds of the first `count` bodies; merged, those of the ground among them. */
+static size_t step_country(const struct country *c, narc_broad_phase *broad, size_t count) {
+    const narc_bodies bodies = narc_view_bodies(c->bodies, count);
+    const narc_pair_filter filter = {.kind = {c->kinds, 1}};
+    const narc_pair_options options = {.margin = 0.02f, .skin = 0.05f, .filter = &filter};
     const narc_query query = {.margin = 0.02f};
-    double alone[MOST_ROUNDS], ground[MOST_ROUNDS];
-    size_t found = 0, merged = 0;
+    const narc_pair_list *list;
+    size_t found;
+    narc_error error;
+    must(narc_update_pairs(broad, c->ground.shapes, &bodies, &options, &list, &error), &error);
+    must(narc_find_manifolds(c->ground.shapes, &bodies, &list->pairs, &query, c->rows, c->room, &found, &error),
+         &error);
+    /* Rows of two boxes are of runs of their own, and stay. */
+    return count > c->made
+               ? narc_merge_manifolds(&list->pairs, (narc_index_column){c->runs, sizeof *c->runs}, c->rows, found)
+               : found;
+}
+
+/* On as many pieces, each `length` long. */
+static void compare_cost(size_t count, size_t pieces, double length, size_t rounds) {
+    enum { ALONE, AMONG, INDEX, WAYS };
+    uint64_t random = 7;
+    const double pitch = fmax(1.1, 0.9 * length * (double)pieces / ((double)count / 3));
+    const struct walk walk = walk_hills(pieces * 4 / 3, length / 0.45, &random);
+    struct country c = make_country(&walk, count, pitch);
+    for (size_t k = 0; k < c.made; k++)
+        c.runs[k] = (uint32_t)(0x80000000u + k);
+    const narc_bodies boxes = narc_view_bodies(c.bodies, c.made);
+    narc_box *const room = allocate(c.made, sizeof *room);
+    narc_broad_phase *broad[2];
+    for (int k = 0; k < 2; k++)
+        must(narc_create_broad_phase(NULL, &broad[k]), NULL);
+    double ms[WAYS][MOST_ROUNDS], median[WAYS];
+    size_t rows[WAYS] = {0};
     for (size_t round = 0; round < rounds; round++) {
-        for (size_t k = 0; k < made; k++)
-            bodies[k].x += round % 2 ? 1e-3 : -1e-3;
-        const narc_pair_list *list;
+        for (size_t k = 0; k < c.made; k++)
+            c.bodies[k].x += round % 2 ? 1e-3 : -1e-3;
         const double start = now();
-        must(narc_update_pairs(broad, shapes, &all, &options, &list, NULL), NULL);
-        must(narc_find_manifolds(shapes, &all, &list->pairs, &query, rows, room, &found, NULL), NULL);
-        const double between = now();
-        merged = touch_ground(&g, &all, 0.02f, boxes, rows, room);
-        alone[round] = (between - start) / 1e6;
-        ground[round] = (now() - between) / 1e6;
+        rows[ALONE] = step_country(&c, broad[0], c.made);
+        const double second = now();
+        rows[AMONG] = step_country(&c, broad[1], c.made + c.ground.count);
+        const double third = now();
+        rows[INDEX] = touch_ground(&c.ground, &boxes, 0.02f, room, c.rows, c.room);
+        ms[INDEX][round] = (now() - third + second - start) / 1e6;
+        ms[AMONG][round] = (third - second) / 1e6;
+        ms[ALONE][round] = (second - start) / 1e6;
     }
-    const double body_time = quantile(alone, rounds, 0.5), ground_time = quantile(ground, rounds, 0.5);
-    printf(
-        "%zu bodies on %zu pieces (%zu entries): pairs and manifolds of bodies %.2f ms (%zu rows), of the ground %.2f "
-        "ms more (%zu rows), %.0f %%\n",
-        made, walk.count, g.count, body_time, found, ground_time, merged, 100 * ground_time / body_time);
-    narc_destroy_broad_phase(broad);
-    destroy_ground(&g);
-    free(bodies);
-    free(boxes);
-    free(rows);
+    for (int way = 0; way < WAYS; way++)
+        median[way] = quantile(ms[way], rounds, 0.5);
+    printf("%zu bodies of 1 m on %zu pieces of %.2f m (%zu entries), pairs and manifolds of a step: %.2f ms without "
+           "the ground (%zu rows); "
+           "%.2f ms (%+.0f %%) with it among the bodies (%zu rows); %.2f ms (%+.0f %%) with an index of it (%zu rows "
+           "more)\n",
+           c.made, walk.count, length, c.ground.count, median[ALONE], rows[ALONE], median[AMONG],
+           100 * (median[AMONG] / median[ALONE] - 1), rows[AMONG], median[INDEX],
+           100 * (median[INDEX] / median[ALONE] - 1), rows[INDEX]);
+    narc_destroy_broad_phase(broad[0]);
+    narc_destroy_broad_phase(broad[1]);
+    destroy_ground(&c.ground);
+    free(c.bodies);
+    free(c.kinds);
+    free(c.runs);
+    free(c.rows);
+    free(room);
     free(walk.arcs);
 }
 
@@ -393,6 +444,8 @@ int main(int argc, char **argv) {
     swing(SIDES_60, "polyline, 60 sides a turn");
     swing(SIDES_240, "polyline, 240 sides a turn");
     printf("\n");
-    compare_cost(s.bodies ? s.bodies : 30000, s.questions, s.rounds);
+    const size_t bodies = s.bodies ? s.bodies : 30000;
+    compare_cost(bodies, s.questions, 1.1, s.rounds);
+    compare_cost(bodies, s.questions, 1.2 * 1.1 * (double)bodies / 3 / (double)s.questions, s.rounds);
     return 0;
 }

@@ -9,6 +9,9 @@
  * from c. With -R for the radius, which is how the piece is stored, all this is the gap of two arcs (normal_fan.inl)
  * along -u.
  *
+ * Beyond its ends the piece has a contact where the centres lie no further than what is rounded: seams are for that, but
+ * where the centres nearly coincide they are too narrow.
+ *
  * A direction belongs to the arc that it does not lie behind the end of, and which either it does not lie before the
  * start of or the arc before has turned down: so whatever the rounding, none belongs to neither.
  */
@@ -46,6 +49,10 @@ INLINE struct arc_pair load_concave_arcs(const narc_record *records, const struc
     return load_arc_pair(records, out->record_a, out->record_b, &pairs->pose);
 }
 
+/* How far beside the sector of a piece, relative to the radii, the centre of the body's arc may lie: what the centres were
+ * rounded by, of pieces whose distance is not much more than their size. */
+#define CONCAVE_ROOM 0x1p-20f
+
 /* The gap of arc i of the body. In *out_touch, where it is one that counts; `ended`: where the normal lies behind the
  * end of the arc before, and then of this one. */
 INLINE struct gap find_concave_gap(const narc_record *records, const struct concave_pairs *pairs, vi i, vm *ended,
@@ -62,7 +69,9 @@ INLINE struct gap find_concave_gap(const narc_record *records, const struct conc
     gap.length = v2_length(n);
     const vf distance = v_select(centred, zero, gap.length);
     gap.separation = v_sub(v_sub(v_neg(piece.radius), distance), body.radius);
-    const vm in_piece = vm_and(v_le(zero, v2_cross(piece.start, n)), v_le(zero, v2_cross(n, piece.end)));
+    /* Where both radii are nearly one, n is next to nothing and its direction that of rounding. */
+    const vf room = v_mul(v_set(-CONCAVE_ROOM), v_sub(body.radius, piece.radius));
+    const vm in_piece = vm_and(v_le(room, v2_cross(piece.start, n)), v_le(room, v2_cross(n, piece.end)));
     const vf beyond = v2_cross(body.end, n); /* of half a turn, 0 is its start too */
     const vm at_start = vm_and(v_le(beyond, zero), v_lt(v2_dot(body.end, n), zero));
     const vm before_end = vm_or(v_lt(beyond, zero), at_start);

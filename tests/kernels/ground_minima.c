@@ -27,8 +27,8 @@ enum { SHOWN = 3, BODIES = 40, ENTRIES = 2 * CHAIN_ARCS, ROWS = 4096 };
 static const double steps_per_body = 96, steps_per_piece = 3, finer = 16;
 
 struct tally {
-    size_t bodies, minima, rows;                /* minima that must be told and were; rows that are one of them */
-    size_t beyond, deep, nearer, shallow, ends; /* not compared, or by themselves alone; see below */
+    size_t bodies, minima, rows;                    /* minima that must be told and were; rows that are one of them */
+    size_t beyond, deep, nearer, shallow, touching; /* not compared, or by themselves alone; see below */
     size_t wrong, refused;
     double worst; /* error of a separation, by its bound */
 };
@@ -49,7 +49,9 @@ struct setting {
 
 /* What a row says, in the chain's coordinates. */
 struct told {
-    narc_point at, foot; /* on the body, on the ground */
+    narc_point at, foot; /* on the body, on the ground; the deepest point */
+    narc_point other;    /* on the body, the other point, or the same */
+    double other_separation;
     double normal_x, normal_y, separation, bound;
     uint32_t entry, count, feature;
 };
@@ -187,9 +189,15 @@ static struct told read_row(const struct setting *setting, const struct referenc
     const narc_point normal = rotate_back(&setting->place, (double)row->normal_x, (double)row->normal_y);
     const narc_point offset = rotate_back(&setting->place, (double)point->x, (double)point->y);
     const double half = (double)point->separation / 2;
+    const narc_manifold_point *second = &row->point[row->count > 1 ? 1 - deepest : deepest];
+    const narc_point second_offset = rotate_back(&setting->place, (double)second->x, (double)second->y);
+    const double second_half = (double)second->separation / 2;
     struct told told = {.normal_x = -normal.x, .normal_y = -normal.y, .separation = 2 * half};
     told.at = (narc_point){body->x + offset.x - half * normal.x, body->y + offset.y - half * normal.y};
     told.foot = (narc_point){body->x + offset.x + half * normal.x, body->y + offset.y + half * normal.y};
+    told.other = (narc_point){body->x + second_offset.x - second_half * normal.x,
+                              body->y + second_offset.y - second_half * normal.y};
+    told.other_separation = 2 * second_half;
     told.bound = entry_bound(setting, body, pair->b);
     told.entry = pair->b - BODIES;
     told.count = row->count;
@@ -266,11 +274,12 @@ static const char *check_row(const struct setting *setting, const struct ground_
         const double y = body->y + body->scale * (body->sine * support.x + body->cosine * support.y);
         lowest = fmin(lowest, told->normal_x * (x - told->at.x) + told->normal_y * (y - told->at.y));
     }
-    if (!(lowest >= -8 * told->bound))
+    const bool is_touch = fabs(told->separation) < 4 * told->bound; /* corner on corner: any normal */
+    if (!(lowest >= -8 * told->bound) && !(is_touch && is_at_seam(&setting->chain, told->foot, told->bound)))
         return "not the lowest point along the normal";
     /* A point above the foot has that foot, or one below, at the bottom of a valley. Seams extend arcs by 1e-4 rad. Where
      * points coincide the normal is any. */
-    if (fabs(told->separation) < 4 * told->bound)
+    if (is_touch)
         return NULL;
     for (int side = -1; side <= 1; side += 2) {
         const double height = 1e-3 * size * side;
@@ -318,10 +327,13 @@ static const char *compare(const struct setting *setting, size_t k, const struct
         double off;
         const double along = ground_project(search, told[i].at, &off);
         const double nearest = ground_distance(setting->ground, told[i].at).distance;
+        const double other_along = ground_project(search, told[i].other, &off);
+        const bool is_level = told[i].other_separation <= told[i].separation + told[i].bound;
         for (size_t m = 0; m < minimum_count && !wrong; m++) {
-            const double level = fmax(minima[m].foot.distance, nearest);
+            const double level = fmax(minima[m].foot.distance, nearest) + 2 * bound;
             const double error = fabs(minima[m].foot.distance - told[i].separation);
-            if (error > told[i].bound || ground_barrier(search, along, minima[m].along) > level + 2 * bound)
+            if (error > told[i].bound || (ground_barrier(search, along, minima[m].along) > level &&
+                                          !(is_level && ground_barrier(search, other_along, minima[m].along) <= level)))
                 continue;
             for (size_t j = 0; j < i; j++)
                 if (fate[j] == FATE_MATCHED && is_same(body, &told[i], &told[j]))
@@ -342,11 +354,13 @@ static const char *compare(const struct setting *setting, size_t k, const struct
         if (fate[i] == FATE_WRONG && !wrong)
             wrong = "not a minimum";
     }
-    size_t beyond = 0, shallow = 0, ends = 0, matched = 0;
+    size_t beyond = 0, shallow = 0, matched = 0;
     for (size_t m = 0; m < minimum_count && !wrong; m++) {
         const double distance = minima[m].foot.distance;
         if (told_by[m])
             matched++;
+        else if (distance > setting->margin + bound)
+            continue;
         else if (minima[m].doubtful || is_beyond(setting, body, &minima[m]))
             beyond++;
         else if (distance >= setting->margin - bound || minima[m].depth < 4 * bound)
@@ -358,15 +372,19 @@ static const char *compare(const struct setting *setting, size_t k, const struct
         tally->minima += matched;
         tally->beyond += beyond;
         tally->shallow += shallow;
-        tally->ends += ends;
         for (size_t i = 0; i < count; i++) {
             tally->rows += fate[i] == FATE_MATCHED;
             tally->deep += fate[i] == FATE_DEEP;
             tally->nearer += fate[i] == FATE_NEARER;
-            tally->shallow += fate[i] == FATE_SHALLOW;
+            tally->touching += fate[i] == FATE_SHALLOW;
         }
     }
-    if (wrong && getenv("NARC_TEST_SHOW")) {
+    bool odd = false;
+    for (size_t i = 0; i < count; i++)
+        odd = odd || (!wrong && getenv("NARC_ODD") && fate[i] == FATE_SHALLOW);
+    if (odd)
+        print_error("ODD\n");
+    if ((odd || wrong) && getenv("NARC_TEST_SHOW")) {
         for (size_t m = 0; m < minimum_count; m++)
             print_error("  minimum %.9g at (%.9g, %.9g), normal (%.6g, %.6g), depth %.3g%s, told %zu times\n",
                         minima[m].foot.distance, minima[m].at.x, minima[m].at.y, minima[m].foot.normal_x,
@@ -433,7 +451,7 @@ static void check_family(enum chain_family family) {
     snprintf(name, sizeof name, "ground, %s", chain_family_name(family));
     struct test_random random = test_random_named(name);
     struct tally tally = {0};
-    for (size_t trial = test_trials(50); trial > 0; trial--)
+    for (size_t trial = test_trials(20); trial > 0; trial--)
         if (make_setting(&random, family, arcs, &setting)) {
             check_setting(&setting, family, &tally);
             end_setting(&setting);
@@ -441,9 +459,9 @@ static void check_family(enum chain_family family) {
             tally.refused++;
     printf(
         "  %s: %zu bodies, %zu minima told by %zu rows; %zu minima beyond reach, %zu rows deeper, %zu rows of farther "
-        "sides, %zu shallow; %zu wrong, %zu chains refused, largest error %.3f\n",
+        "sides, %zu minima and %zu rows shallow; %zu wrong, %zu chains refused, largest error %.3f\n",
         chain_family_name(family), tally.bodies, tally.minima, tally.rows, tally.beyond, tally.deep, tally.nearer,
-        tally.shallow, tally.wrong, tally.refused, tally.worst);
+        tally.shallow, tally.touching, tally.wrong, tally.refused, tally.worst);
     assert_int_equal(tally.wrong, 0);
     assert_true(tally.minima > tally.bodies / 4);
 }

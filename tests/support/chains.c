@@ -35,7 +35,7 @@ static void put_edge(struct walk *walk, double length) {
 static double choose_sweep(struct test_random *random, const struct walk *walk, double widest, bool left) {
     const double room = left ? pi + steepest - walk->heading : walk->heading - (pi - steepest);
     const double sweep =
-        random_below(random, 4) ? random_between(random, 0.05, widest) : random_log_between(random, 1e-3, widest);
+        random_below(random, 4) ? random_between(random, 0.05, widest) : random_log_between(random, 0.02, widest);
     return sweep < room ? sweep : 0;
 }
 
