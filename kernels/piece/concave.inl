@@ -220,11 +220,10 @@ INLINE vm take_concave(const struct call *call, vm valid, vm near, const struct 
     const vf zero = v_set(0), reach = v_add(circles->size, v_max(circles->margin, zero));
     const vm apart = v_lt(v_mul(reach, reach), circles->square);
     const vm beside = v_lt(v_mul(circles->size, circles->size), circles->square);
-    vf own[FIELDS];
-    for (int f = 0; f < FIELDS; f++)
-        own[f] = item[f];
-    own[SLACK] = v_select(beside, v_set(1), zero);
-    push(call->concave, vm_and_not(concave, apart), own, CONTACT_FIELDS);
+    const vm waits = vm_and_not(concave, apart);
+    const int end = call->concave->count;
+    push(call->concave, waits, item, CONTACT_FIELDS);
+    v_store(call->concave->item[SLACK] + end, v_pack(vm_packing(waits), v_select(beside, v_set(1), zero)));
     return vm_and_not(near, concave);
 }
 
