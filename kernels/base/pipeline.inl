@@ -136,7 +136,7 @@ INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int
                 set_up_pairs(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block, item);
             *call->skipped += (size_t)COUNT_BITS(vm_bits(circles.invalid));
             const vm open = settle(call, block + (size_t)k, &circles, item);
-            if (NARC_PIECES && call->concave && call->concave->count >= FLUSH)
+            if (NARC_PIECES && !LIKELY(!call->concave) && call->concave->count >= FLUSH)
                 run_stages(call, stages, stage_count, queues, false);
             if (stage_count > 0 && vm_any(open)) {
                 enter(queues, open, item, fields, edged_stage, polygon_stage, not_first);

@@ -212,7 +212,7 @@ INLINE size_t end_rows(const struct call *call) {
 /* Of the pairs k ... of a queue in the lanes `keep`, those that touch with what may touch: all but with the back of a
  * run. */
 INLINE vm keep_fronts(const struct call *call, const struct queue *queue, int k, vm keep, vi feature_a, vi feature_b) {
-    if (!NARC_PIECES || !call->pieces)
+    if (!NARC_PIECES || LIKELY(!call->pieces))
         return keep;
     return vm_and(
         keep, vm_and(is_front(get_bits(queue, INFO_A, k), feature_a), is_front(get_bits(queue, INFO_B, k), feature_b)));

@@ -42,11 +42,21 @@ struct concave_pairs {
     struct pose pose;
 };
 
-INLINE struct arc_pair load_concave_arcs(const narc_record *records, const struct concave_pairs *pairs, vi i,
-                                         struct gap *out) {
-    out->record_a = vi_add(pairs->ring_a.base, vi_select(pairs->piece_is_a, vi_set(0), i));
-    out->record_b = vi_add(pairs->ring_b.base, vi_select(pairs->piece_is_a, i, vi_set(0)));
-    return load_arc_pair(records, out->record_a, out->record_b, &pairs->pose);
+/* The piece's arc. */
+INLINE struct arcs load_piece(const narc_record *records, const struct concave_pairs *pairs) {
+    const vi record = vi_select(pairs->piece_is_a, pairs->ring_a.base, pairs->ring_b.base);
+    vf field[8];
+    load_records(records, record, field);
+    const struct arcs of_a = place_a(field, &pairs->pose), of_b = place_b(field, &pairs->pose);
+    return select_arcs(pairs->piece_is_a, &of_a, &of_b);
+}
+
+/* The body's arc in a record. */
+INLINE struct arcs load_body_arc(const narc_record *records, const struct concave_pairs *pairs, vi record) {
+    vf field[8];
+    load_records(records, record, field);
+    const struct arcs of_a = place_a(field, &pairs->pose), of_b = place_b(field, &pairs->pose);
+    return select_arcs(pairs->piece_is_a, &of_b, &of_a);
 }
 
 /* How far beside the sector of a piece, relative to the radii, the centre of the body's arc may lie: what the centres were
@@ -55,14 +65,16 @@ INLINE struct arc_pair load_concave_arcs(const narc_record *records, const struc
 
 /* The gap of arc i of the body. In *out_touch, where it is one that counts; `ended`: where the normal lies behind the
  * end of the arc before, and then of this one. */
-INLINE struct gap find_concave_gap(const narc_record *records, const struct concave_pairs *pairs, vi i, vm *ended,
-                                   vm *out_touch) {
-    struct gap gap;
-    const struct arc_pair arcs = load_concave_arcs(records, pairs, i, &gap);
-    const struct arcs piece = select_arcs(pairs->piece_is_a, &arcs.a, &arcs.b);
-    const struct arcs body = select_arcs(pairs->piece_is_a, &arcs.b, &arcs.a);
+INLINE struct gap find_concave_gap(const narc_record *records, const struct concave_pairs *pairs, struct arcs piece,
+                                   vi i, vm *ended, vm *out_touch) {
     const vf zero = v_set(0);
-    const vec2 back = v2_sub(arcs.a.center, arcs.b.center);
+    const vm piece_is_a = pairs->piece_is_a;
+    struct gap gap;
+    gap.record_a = vi_add(pairs->ring_a.base, vi_select(piece_is_a, vi_set(0), i));
+    gap.record_b = vi_add(pairs->ring_b.base, vi_select(piece_is_a, i, vi_set(0)));
+    const struct arcs body = load_body_arc(records, pairs, vi_select(piece_is_a, gap.record_b, gap.record_a));
+    const vec2 back =
+        v2_select(piece_is_a, v2_sub(piece.center, body.center), v2_sub(body.center, piece.center)); /* -u */
     const vm centred = v_lt(v2_dot(back, back), v_set(LEAST_SQUARE)); /* then all directions are alike */
     const vec2 n = v2_select(centred, v2_add(piece.start, piece.end), back);
     gap.normal = n;
@@ -162,12 +174,13 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
     const bool lists = call->rows->out.lists_one;
     struct gap deepest = {v_set(INFINITY), {v_set(0), v_set(0)}, v_set(1), pairs.ring_a.base, pairs.ring_b.base};
     vi found = zero;
+    const struct arcs piece = load_piece(records, &pairs);
     vm ended = open, touch;
-    (void)find_concave_gap(records, &pairs, vi_sub(all, one), &ended, &touch);
+    (void)find_concave_gap(records, &pairs, piece, vi_sub(all, one), &ended, &touch);
     for (int i = 0; vm_any(vm_and(open, vi_lt(vi_set(i), count))); i++) {
         const vm exists = vm_and(open, vi_lt(vi_set(i), count));
         const vi arc = vi_select(exists, vi_set(i), zero);
-        const struct gap gap = find_concave_gap(records, &pairs, arc, &ended, &touch);
+        const struct gap gap = find_concave_gap(records, &pairs, piece, arc, &ended, &touch);
         const vm front = is_front(info, find_arc_number(vi_add(body_base, arc), first_record, info));
         const vm real = vm_not(vm_and(beside, v_lt(gap.separation, v_set(0))));
         const vm counts = vm_and(vm_and(exists, front), vm_and(touch, real));
@@ -216,11 +229,10 @@ INLINE vm take_concave(const struct call *call, vm valid, vm near, const struct 
     const vf zero = v_set(0), reach = v_add(circles->size, v_max(circles->margin, zero));
     const vm apart = v_lt(v_mul(reach, reach), circles->square);
     const vm beside = v_lt(v_mul(circles->size, circles->size), circles->square);
-    vf own[FIELDS];
-    for (int f = 0; f < FIELDS; f++)
-        own[f] = item[f];
-    own[SLACK] = v_select(beside, v_set(1), zero);
-    push(call->concave, vm_and_not(concave, apart), own, CONTACT_FIELDS);
+    const vm waits = vm_and_not(concave, apart);
+    const int end = call->concave->count;
+    push(call->concave, waits, item, CONTACT_FIELDS);
+    v_store(call->concave->item[SLACK] + end, v_pack(vm_packing(waits), v_select(beside, v_set(1), zero)));
     return vm_and_not(near, concave);
 }
 

@@ -68,8 +68,10 @@ INLINE vm answer_discs(const struct call *call, vm open, vf margin, const vf ite
 INLINE vm triage_rows(const struct call *call, size_t pair, const struct filter *circles, const vf item[FIELDS]) {
     struct rows *rows = call->rows;
     const vm valid = take_valid(call, pair, circles, item), near = vm_and_not(valid, circles->apart);
-    const vm open = NARC_PIECES && call->concave ? take_concave(call, valid, near, circles, item) : near;
-    const bool waits = NARC_PIECES && call->concave && vm_any(vm_and(valid, has_concave(item)));
+    vm open = near;
+    if (NARC_PIECES && !LIKELY(!call->concave))
+        open = take_concave(call, valid, near, circles, item);
+    const bool waits = NARC_PIECES && !LIKELY(!call->concave) && vm_any(vm_and(valid, has_concave(item)));
     const bool due = !rows->dense && rows->done == (int)pair && !vm_any(circles->invalid) && !waits;
     const bool room = (size_t)rows->listed + V_WIDTH <= call->count && !boxes_wait(call);
     const bool in_order = due && room;

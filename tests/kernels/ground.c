@@ -640,7 +640,7 @@ static struct crossing cross_chain(const struct ground *g, struct spot o, struct
             const double along = ahead + side * sqrt(square);
             const struct spot n = {(along * v.x - x) / arc->radius, (along * v.y - y) / arc->radius};
             const double mid = (arc->start + arc->end) / 2, half = fabs(arc->end - arc->start) / 2;
-            if (fabs(wrap(atan2(n.y, n.x) - mid)) <= half)
+            if (fabs(wrap(atan2(n.y, n.x) - mid)) <= half + 1e-9) /* a ray through a seam meets both */
                 keep_crossing(along, n, v, &out);
         }
         if (k == 0)
@@ -649,7 +649,8 @@ static struct crossing cross_chain(const struct ground *g, struct spot o, struct
                           to = find_chain_point(arc, arc->start), n = {cos(arc->start), sin(arc->start)};
         const double left = v.x * (from.y - o.y) - v.y * (from.x - o.x),
                      right = v.x * (to.y - o.y) - v.y * (to.x - o.x);
-        if (hypot(to.x - from.x, to.y - from.y) > 1e-9 && left * right <= 0 && fabs(left - right) > 0) {
+        if (hypot(to.x - from.x, to.y - from.y) > 1e-9 && fmin(left, right) <= 1e-9 && fmax(left, right) >= -1e-9 &&
+            fabs(left - right) > 0) {
             const double part = left / (left - right);
             const struct spot p = {from.x + part * (to.x - from.x) - o.x, from.y + part * (to.y - from.y) - o.y};
             keep_crossing(p.x * v.x + p.y * v.y, n, v, &out);
@@ -679,7 +680,9 @@ TEST(test_rays) {
                                    !random_below(&random, 4); /* not at seams, which reach a little into the ground */
             const bool at_seam = !in_ground && !random_below(&random, 3);
             const double angle = at_seam ? arc->start : random_between(&random, arc->start, arc->end);
-            const struct spot p = find_chain_point(arc, angle);
+            struct spot p = find_chain_point(arc, angle);
+            if (!(fabs(arc->radius) > 0)) /* beside a corner */
+                p.x += random_between(&random, -0.1, 0.1);
             const double air = fabs(arc->radius) > 0 ? angle : (arc->start + arc->end) / 2;
             const double way = air + random_between(&random, -1.2, 1.2), away = random_log_between(&random, 1e-3, 30);
             const double sign = in_ground ? -1 : 1;
@@ -729,11 +732,14 @@ TEST(test_rays) {
             if (found != (hits[k].count > 0) || (found && !(fabs(along - here.along) * slope <= 1e-5)))
                 fail_msg("ray %zu from (%.9g, %.9g) along (%g, %g): %g, not %g", k, o.x, o.y, v.x, v.y, along,
                          here.along);
-            if (found)
-                assert_true(hypot((double)hits[k].normal_x - here.normal.x, (double)hits[k].normal_y - here.normal.y) <
-                            1e-3);
+            const double turned =
+                hypot((double)hits[k].normal_x - here.normal.x, (double)hits[k].normal_y - here.normal.y);
+            /* Within a seam it is the neighbour's: 1e-4 of the largest radius, as an angle of the smallest. */
+            if (found && !(turned < 1e-4 * (1 + 6 / 0.2) + 2e-4 / slope))
+                fail_msg("ray %zu from (%.9g, %.9g) along (%g, %g): at %g the normal is off by %g", k, o.x, o.y, v.x,
+                         v.y, along, turned);
         }
-        if (!(hit_count > RAYS / 4 && doubts < RAYS / 2))
+        if (!(hit_count > RAYS / 4 && doubts < RAYS / 5))
             fail_msg("of %d rays %zu hit, and %zu are doubtful", RAYS, hit_count, doubts);
         narc_destroy_index(index);
         free(boxes);
