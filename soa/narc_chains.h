@@ -59,7 +59,8 @@ typedef struct narc_chain_entry {
     uint32_t run;       /* the same for all entries of one convex run; NARC_NO_RUN for a concave arc */
     double x, y;        /* where the shape's origin lies in the chain's coordinates; it is not turned */
     uint32_t first_arc; /* of a run the chain's arc that is the shape's arc 1, or the one behind its edge if it has no
-                           other feature; plain points do not count. Of a concave arc its own number */
+                           other feature; plain points do not count; a corner where the front's edge meets a
+                           concave arc is of that arc. Of a concave arc its own number */
     uint32_t arc_count; /* of a run how many arcs its front has, of a concave arc 1 */
 } narc_chain_entry;
 
