@@ -127,10 +127,10 @@ typedef enum narc_silhouette {
 /* How images and drawings are read; NULL in its place or zeros: as usual. */
 typedef struct narc_image_request {
     narc_silhouette silhouette;
-    double threshold;    /* of alpha, darkness or lightness, above 0 and below 1; 0: 0.5 of PNG, 0.25 of SVG */
+    double threshold; /* of alpha, darkness or lightness, above 0 and below 1; 0: 0.5 of PNG, 0.25 of SVG */
+    bool *out_whole;  /* NULL, or set on success: all of the image or page counts, and the outline is its rectangle */
     const char *element; /* of SVG: the id of the one element, such as a layer, that counts; NULL: all. One that is not
                             there is NARC_ERROR_INDEX */
-    bool *out_whole; /* NULL, or set on success: all of the image or page counts, and the outline is its rectangle */
 } narc_image_request;
 
 /* What is seen of an SVG file: librsvg draws it, whatever it uses (strokes, clipping, text, style sheets, filters), and

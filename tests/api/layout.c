@@ -111,7 +111,9 @@ static void check_pointers(void) {
     LAYOUT(narc_named_shape, 48, AT(name, 0) && AT(arcs, 8) && AT(arc_count, 16) && AT(origin, 24) && AT(index, 40));
     LAYOUT(narc_shape_list, 16, AT(count, 0) && AT(items, 8));
     LAYOUT(narc_contours, 40, AT(points, 0) && AT(point_count, 8) && AT(ends, 16) && AT(count, 24) && AT(flatness, 32));
-    LAYOUT(narc_image_request, 24, AT(silhouette, 0) && AT(threshold, 8) && AT(out_whole, 16));
+    LAYOUT(narc_image_request, 32, AT(threshold, 8) && AT(out_whole, 16) && AT(element, 24));
+    LAYOUT(narc_parts_request, 48, AT(tolerance, 8) && AT(lap, 16) && AT(flatness, 24));
+    LAYOUT(narc_parts, 32, AT(count, 8) && AT(distance, 16) && AT(area, 24));
     LAYOUT(narc_fit_request, 64,
            AT(arc_count, 0) && AT(tolerance, 8) && AT(family, 16) && AT(goal, 20) && AT(flatness, 24) &&
                AT(min_radius, 32) && AT(keep_origin, 40) && AT(starts, 44) && AT(progress, 48) && AT(context, 56));
