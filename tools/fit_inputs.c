@@ -324,7 +324,7 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
     if (kind == SVG)
         show_stage("drawing", size / KB, "KB of SVG", size >= LARGE_DRAWING * KB);
     bool whole = false;
-    const narc_image_request image = {choose_silhouette(how->silhouette), how->threshold, element, &whole};
+    const narc_image_request image = {choose_silhouette(how->silhouette), how->threshold, &whole, element};
     warning[0] = 0;
     if (call_reader(kind, bytes, size, &image, added->path, &error) != NARC_OK) {
         report_text(file, &error);

@@ -187,7 +187,7 @@ static bool has_concave_arc(const narc_cast_job *job, const struct slots *slots,
 static void cast_concave(const narc_cast_job *job, struct slots *slots, size_t slot) {
     int outcome = NARC_CAST_MISS;
 #if NARC_PIECES
-    outcome = job->kernels->cast_concave(job->batch->shapes, &slots->casts, slot);
+    outcome = job->kernels->concave(job->batch->shapes, &slots->casts, slot);
 #endif
     if (outcome == NARC_CAST_MISS)
         write_miss(job, slots->pair[slot]);

@@ -244,7 +244,7 @@ INLINE int cast_turning(const narc_shapes *shapes, narc_casts *casts, size_t slo
 }
 
 /* Of a cast that has begun: the whole of it. Returns what becomes of it; time and contact are then the answer's. */
-int NARC_NAMED(cast_concave)(const narc_shapes *shapes, narc_casts *casts, size_t slot) {
+int NARC_NAMED(concave)(const narc_shapes *shapes, narc_casts *casts, size_t slot) {
     const int side = is_concave(shapes, casts, slot, 0) ? 0 : 1;
     if (is_concave(shapes, casts, slot, 1 - side))
         return NARC_CAST_MISS;

@@ -20,7 +20,13 @@ struct rows {
     size_t count;
 };
 
-/* A row of body a on entry b with a normal's angle and one point, or two. */
+/* Halfway between the surfaces where the ground is at (x, y). */
+static narc_manifold_point find_half_way(const float ground[3], float normal_x, float normal_y) {
+    const float half = ground[2] / 2;
+    return (narc_manifold_point){ground[0] - half * normal_x, ground[1] - half * normal_y, ground[2], 0};
+}
+
+/* A row of body a on entry b with a normal's angle and one point, or two: where the ground is, and the separation. */
 static void add_row(struct rows *rows, uint32_t a, uint32_t b, double angle, size_t count, const float points[][3]) {
     narc_manifold *row = &rows->manifolds[rows->count];
     *row = (narc_manifold){.pair = (uint32_t)rows->count,
@@ -29,8 +35,10 @@ static void add_row(struct rows *rows, uint32_t a, uint32_t b, double angle, siz
                            .normal_y = (float)sin(angle),
                            .radius_a = (float)rows->count,
                            .radius_b = (float)b};
-    for (size_t k = 0; k < count; k++)
-        row->point[k] = (narc_manifold_point){points[k][0], points[k][1], points[k][2], 100 * b + (uint32_t)k};
+    for (size_t k = 0; k < count; k++) {
+        row->point[k] = find_half_way(points[k], row->normal_x, row->normal_y);
+        row->point[k].feature = 100 * b + (uint32_t)k;
+    }
     rows->a[rows->count] = a;
     rows->b[rows->count++] = b;
 }
@@ -47,8 +55,9 @@ static size_t merge(struct rows *rows, const uint32_t *runs) {
     return left;
 }
 
+/* With the ground at (x, y) and the normal down, or nearly. */
 static void expect_point(const narc_manifold_point *p, float x, float y, float separation, uint32_t feature) {
-    assert_true(p->x == x && p->y == y && p->separation == separation);
+    assert_true(fabsf(p->x - x) <= 1e-6f && fabsf(p->y - (y + separation / 2)) <= 1e-6f && p->separation == separation);
     assert_int_equal(p->feature, feature);
 }
 
@@ -76,25 +85,38 @@ TEST(joins_one_point_of_a_run) {
     const uint32_t runs[MOST] = {4, 4};
     struct rows rows = {.count = 0};
     add_row(&rows, 7, 0, down, 1, (const float[][3]){{0, -1, -0.01f}});
-    add_row(&rows, 7, 1, down, 1, (const float[][3]){{0.0001f, -1, -0.02f}});
+    add_row(&rows, 7, 1, down, 1, (const float[][3]){{0.0001f, -1, -0.0101f}});
     assert_int_equal(merge(&rows, runs), 1);
     assert_int_equal(rows.manifolds[0].count, 1);
-    expect_point(&rows.manifolds[0].point[0], 0.0001f, -1, -0.02f, 100);
+    expect_point(&rows.manifolds[0].point[0], 0.0001f, -1, -0.0101f, 100);
     expect_point(&rows.manifolds[0].point[1], 0, 0, 0, 0);
 }
 
-/* A box over a ledge: sideways it is deep, upwards it is not. Wherever the row stands, it stays alone. */
+/* Deep in a run that turns, a box has maxima to other sides. Wherever the row of the greatest separation stands, it
+ * stays alone. */
 TEST(keeps_the_greatest_separation_of_a_run) {
     const uint32_t runs[MOST] = {4, 4, 4, 4};
     for (uint32_t best = 0; best < 4; best++) {
         struct rows rows = {.count = 0};
-        for (uint32_t b = 0; b < 4; b++)
-            add_row(&rows, 7, b, b == best ? down : b * 0.3, 1,
-                    (const float[][3]){{(float)b, -1, b == best ? -0.01f : -0.4f - (float)b}});
+        for (uint32_t b = 0; b < 4; b++) { /* on a disc of radius 10 */
+            const double angle = b == best ? down : down + 0.3 * (b + 1);
+            add_row(&rows, 7, b, angle, 1,
+                    (const float[][3]){{(float)(-10 * cos(angle)), (float)(-11 - 10 * sin(angle)),
+                                        b == best ? -0.01f : -0.4f - (float)b}});
+        }
         assert_int_equal(merge(&rows, runs), 1);
         assert_int_equal(rows.manifolds[0].pair, best);
-        expect_point(&rows.manifolds[0].point[0], (float)best, -1, -0.01f, 100 * best);
+        expect_point(&rows.manifolds[0].point[0], 0, -1, -0.01f, 100 * best);
     }
+}
+
+/* Sides of a run that face each other both hold what lies between them. */
+TEST(keeps_sides_that_face_each_other) {
+    const uint32_t runs[MOST] = {4, 4};
+    struct rows rows = {.count = 0};
+    add_row(&rows, 7, 0, 0, 1, (const float[][3]){{1, 0, -0.01f}});
+    add_row(&rows, 7, 1, 2 * down, 1, (const float[][3]){{-1, 0, -0.02f}});
+    assert_int_equal(merge(&rows, runs), 2);
 }
 
 /* Seams between a run and concave arcs: one row of points that are told twice, wherever the larger one stands. */
@@ -147,14 +169,18 @@ TEST(merges_contacts) {
     const float separations[] = {-0.02f, -0.03f, -0.4f, -0.03f, -0.01f, -1};
     const double angles[] = {down, down, 0, down + 4e-4, down + 1, down};
     narc_contact rows[6];
-    for (uint32_t k = 0; k < 6; k++)
+    for (uint32_t k = 0; k < 6; k++) {
+        const float ground[3] = {k == 2 ? -0.1f : 0.0001f * (float)k, k == 2 ? -1.1f : -1, separations[k]};
+        const float x = (float)cos(angles[k]), y = (float)sin(angles[k]);
+        const narc_manifold_point p = find_half_way(ground, x, y);
         rows[k] = (narc_contact){.pair = k,
                                  .count = 1,
                                  .separation = separations[k],
-                                 .normal_x = (float)cos(angles[k]),
-                                 .normal_y = (float)sin(angles[k]),
-                                 .point_x = 0.0001f * (float)k,
-                                 .point_y = -1};
+                                 .normal_x = x,
+                                 .normal_y = y,
+                                 .point_x = p.x,
+                                 .point_y = p.y};
+    }
     const narc_bodies ground = {.count = 6};
     const narc_pairs pairs = {.count = 6, .a = NARC_ARRAY(a), .other_bodies = &ground};
     assert_int_equal(narc_merge_contacts(&pairs, NARC_ARRAY(runs), rows, 6), 3);
@@ -183,13 +209,18 @@ TEST(merges_long_lists) {
             const double angle = 0.5 * (double)random_below(&random, 5);
             a[k] = k == 0 ? 0 : a[k - 1] + (random_below(&random, 6) == 0);
             b[k] = (uint32_t)random_below(&random, RUNS + 2);
+            const double aside = 0.125 * (double)random_below(&random, 4); /* along the tangent of a disc */
+            const float x = (float)cos(angle), y = (float)sin(angle);
+            const float ground[3] = {(float)(-10 * cos(angle) - aside * sin(angle)),
+                                     (float)(aside * cos(angle) - 10 * sin(angle)), (float)random_unit(&random)};
+            const narc_manifold_point p = find_half_way(ground, x, y);
             rows[k] = (narc_contact){.pair = k,
                                      .count = random_below(&random, 9) != 0,
-                                     .separation = (float)random_unit(&random),
-                                     .normal_x = (float)cos(angle),
-                                     .normal_y = (float)sin(angle),
-                                     .point_x = 1 + (float)random_below(&random, 4),
-                                     .point_y = 1};
+                                     .separation = ground[2],
+                                     .normal_x = x,
+                                     .normal_y = y,
+                                     .point_x = p.x,
+                                     .point_y = p.y};
         }
         memcpy(before, rows, sizeof rows);
         const narc_pairs pairs = {.count = ROWS, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
