@@ -413,7 +413,7 @@ check_style() {
 
 gate() {
     require_packages $gate_packages
-    build ci bench_narc bench_paper fit_study bench_scenes
+    build ci bench_narc bench_paper fit_study bench_scenes bench_ground parts_study
     ctest --preset ci || fail "tests failed in build/ci"
     check_style
     build release all
