@@ -51,44 +51,100 @@ static size_t find_shape(const narc_shape_list *shapes, const char *text) {
     return found == shapes->count && parse_whole(text, shapes->count - 1, &index) ? (size_t)index : found;
 }
 
-/* The radius of the smallest circle around each shape. */
-static double *measure_bounds(const narc_shape_list *shapes) {
-    double *bounds = allocate(shapes->count, sizeof *bounds);
-    for (size_t k = 0; k < shapes->count; k++) {
-        narc_circle bound;
-        narc_compute_bounding_circle(shapes->items[k].arcs, shapes->items[k].arc_count, &bound);
-        bounds[k] = bound.radius;
+/* What bodies may be: the shapes of a file, the radius of the smallest circle around each, and the entries of chains. */
+typedef struct catalogue {
+    const char *path;
+    const narc_shape_list *shapes;
+    narc_shapes *store;
+    double *bounds;
+    chain_entries *chains;
+} catalogue;
+
+/* Adds a chain to the store, the first time that a body names it. */
+static void add_chain(catalogue *c, size_t k) {
+    const narc_named_shape *shape = &c->shapes->items[k];
+    const narc_chain_options options = {.closed = shape->form == NARC_FORM_CLOSED_CHAIN};
+    chain_entries *chain = &c->chains[k];
+    narc_error error;
+    narc_add_chain(c->store, shape->arcs, shape->arc_count, &options, NULL, 0, &chain->count, &error);
+    chain->items = allocate(chain->count, sizeof *chain->items);
+    if (narc_add_chain(c->store, shape->arcs, shape->arc_count, &options, chain->items, chain->count, &chain->count,
+                       &error) != NARC_OK)
+        fail_at(c->path, 0, "chain '%s': %s", shape->name, error.message);
+    for (size_t i = 0; i < chain->count; i++) {
+        narc_aabb box;
+        narc_get_aabb(c->store, chain->items[i].shape, 1, 0, 1, &box);
+        c->bounds[k] = fmax(c->bounds[k], hypot(box.max_x - box.min_x, box.max_y - box.min_y) / 2);
     }
-    return bounds;
 }
 
-/* A shape of several parts: which, and where their common centroid is in the coordinates of their origins. */
+static catalogue open_catalogue(const char *path, const narc_shape_list *shapes, narc_shapes *store) {
+    catalogue c = {path, shapes, store, allocate(shapes->count, sizeof *c.bounds),
+                   allocate(shapes->count, sizeof *c.chains)};
+    for (size_t k = 0; k < shapes->count; k++) {
+        narc_circle bound = {0, 0, 0};
+        if (shapes->items[k].form == NARC_FORM_SHAPE)
+            narc_compute_bounding_circle(shapes->items[k].arcs, shapes->items[k].arc_count, &bound);
+        c.bounds[k] = bound.radius;
+        c.chains[k] = (chain_entries){NULL, 0};
+    }
+    return c;
+}
+
+static void close_catalogue(catalogue *c) {
+    for (size_t k = 0; k < c->shapes->count; k++)
+        free(c->chains[k].items);
+    free(c->chains);
+    free(c->bounds);
+}
+
+/* A part of a body: its shape, in the file and in the store, and where it lies in the body's coordinates. */
+typedef struct body_part {
+    size_t item;
+    uint32_t shape;
+    narc_point at;
+} body_part;
+
+/* A shape of several parts, and where their common centroid is in the coordinates of their origins. */
 typedef struct compound {
-    size_t *parts; /* places of shapes */
+    body_part *parts;
     size_t count, capacity;
     narc_point centroid;
 } compound;
 
-/* The parts of a shape: itself, or NAME/1, NAME/2 ...; none if there is no such name. */
-static void find_parts(const narc_shape_list *shapes, const char *name, compound *out) {
+static void put_part(compound *out, size_t item, uint32_t shape, double x, double y) {
+    out->parts = grow(out->parts, &out->capacity, out->count + 1, sizeof *out->parts);
+    out->parts[out->count++] = (body_part){item, shape, {x, y}};
+}
+
+/* The parts of a shape: itself, or those of a chain, or NAME/1, NAME/2 ...; none if there is no such name. */
+static void find_parts(catalogue *c, const char *name, compound *out) {
     enum { SIZE = 1024 };
-    char part[SIZE];
+    const narc_shape_list *shapes = c->shapes;
+    char text[SIZE];
     double area = 0;
     const size_t found = find_shape(shapes, name);
     out->count = 0;
     out->centroid = (narc_point){0, 0};
-    out->parts = grow(out->parts, &out->capacity, 1, sizeof *out->parts);
-    if (found < shapes->count) {
-        out->parts[out->count++] = found;
-        out->centroid = shapes->items[found].origin;
+    if (found < shapes->count && shapes->items[found].form != NARC_FORM_SHAPE) {
+        if (!c->chains[found].items)
+            add_chain(c, found);
+        for (size_t k = 0; k < c->chains[found].count; k++) {
+            const narc_chain_entry *entry = &c->chains[found].items[k];
+            put_part(out, found, entry->shape, entry->x, entry->y);
+        }
         return;
     }
-    for (size_t next; snprintf(part, SIZE, "%s/%zu", name, out->count + 1) < SIZE &&
-                      (next = narc_find_named_shape(shapes, part)) < shapes->count;) {
-        out->parts = grow(out->parts, &out->capacity, out->count + 1, sizeof *out->parts);
-        out->parts[out->count++] = next;
+    if (found < shapes->count) {
+        put_part(out, found, shapes->items[found].index, 0, 0);
+        return;
+    }
+    for (size_t next; snprintf(text, SIZE, "%s/%zu", name, out->count + 1) < SIZE &&
+                      (next = narc_find_named_shape(shapes, text)) < shapes->count &&
+                      shapes->items[next].form == NARC_FORM_SHAPE;) {
         const narc_named_shape *shape = &shapes->items[next];
         narc_mass mass;
+        put_part(out, next, shape->index, shape->origin.x, shape->origin.y);
         narc_compute_mass(shape->arcs, shape->arc_count, &mass);
         area += mass.area;
         out->centroid.x += mass.area * (shape->origin.x + mass.centroid_x);
@@ -98,39 +154,39 @@ static void find_parts(const narc_shape_list *shapes, const char *name, compound
         out->centroid = (narc_point){out->centroid.x / area, out->centroid.y / area};
 }
 
-static void add_part(table *rows, body_list *bodies, const narc_shape_list *shapes, const compound *of, size_t part,
-                     const double *bounds) {
-    const narc_named_shape *shape = &shapes->items[of->parts[part]];
-    const double scale = has_column(rows, SCALE) ? (double)read_scale(rows, bounds[of->parts[part]]) : 1;
+static void add_part(table *rows, body_list *bodies, const compound *of, size_t k, const double *bounds) {
+    const body_part *part = &of->parts[k];
+    const double scale = has_column(rows, SCALE) ? (double)read_scale(rows, bounds[part->item]) : 1;
     const double angle = remainder(row_number(rows, ANGLE), FULL_TURN);
-    const narc_point away = {scale * (shape->origin.x - of->centroid.x), scale * (shape->origin.y - of->centroid.y)};
+    const narc_point away = {scale * (part->at.x - of->centroid.x), scale * (part->at.y - of->centroid.y)};
     if (bodies->count == UINT32_MAX)
         fail_at(rows->path, rows->csv.line, "more than %u bodies", UINT32_MAX);
     bodies->items = grow(bodies->items, &bodies->capacity, bodies->count + 1, sizeof *bodies->items);
     bodies->items[bodies->count++] = (body){.x = row_number(rows, X) + cos(angle) * away.x - sin(angle) * away.y,
                                             .y = row_number(rows, Y) + sin(angle) * away.x + cos(angle) * away.y,
                                             .scale = (float)scale,
-                                            .shape = shape->index,
-                                            .item = (uint32_t)of->parts[part],
+                                            .shape = part->shape,
+                                            .item = (uint32_t)part->item,
                                             .row = (uint32_t)bodies->row_count,
-                                            .part = (uint32_t)part};
+                                            .part = (uint32_t)k};
 }
 
-void read_bodies(const char *path, const narc_shape_list *shapes, body_list *out_bodies) {
+void read_bodies(const char *path, const char *shapes_path, const narc_shape_list *shapes, narc_shapes *store,
+                 body_list *out_bodies) {
     table rows;
     open_table(&rows, path, body_columns, BODY_COLUMNS, SCALE);
-    double *bounds = measure_bounds(shapes);
+    catalogue known = open_catalogue(shapes_path, shapes, store);
     body_list bodies = {0};
     bodies.items = grow(NULL, &bodies.capacity, 0, sizeof *bodies.items);
     size_t angle_capacity = 0;
     float *angles = grow(NULL, &angle_capacity, 0, sizeof *angles);
     compound of = {0};
     for (; next_row(&rows, "reading bodies"); bodies.row_count++) {
-        find_parts(shapes, row_field(&rows, SHAPE), &of);
+        find_parts(&known, row_field(&rows, SHAPE), &of);
         if (of.count == 0)
             fail_field(&rows, SHAPE, "is no name or index of a shape (there are %zu)", shapes->count);
         for (size_t part = 0; part < of.count; part++) {
-            add_part(&rows, &bodies, shapes, &of, part, bounds);
+            add_part(&rows, &bodies, &of, part, known.bounds);
             angles = grow(angles, &angle_capacity, bodies.count, sizeof *angles);
             angles[bodies.count - 1] = (float)remainder(row_number(&rows, ANGLE), FULL_TURN);
         }
@@ -138,7 +194,7 @@ void read_bodies(const char *path, const narc_shape_list *shapes, body_list *out
     compute_poses(&bodies, angles);
     free(of.parts);
     free(angles);
-    free(bounds);
+    close_catalogue(&known);
     close_table(&rows);
     *out_bodies = bodies;
 }

@@ -7,8 +7,8 @@
 
 #include <stdbool.h>
 
+#include "narc_chains.h"
 #include "narc_files.h"
-#include "narc_pairs.h"
 
 typedef struct body {
     double x, y;
@@ -23,6 +23,12 @@ typedef struct body_list {
     size_t row_count; /* of the file: fewer if bodies have several parts */
 } body_list;
 
+/* The entries of a chain in the store; none of other shapes. */
+typedef struct chain_entries {
+    narc_chain_entry *items;
+    size_t count;
+} chain_entries;
+
 typedef struct pair {
     uint32_t a, b;
 } pair;
@@ -33,8 +39,10 @@ typedef struct pair_list {
 } pair_list;
 
 /* Reads a CSV file with the columns shape, x, y, angle and perhaps scale. A shape that is no name, but is with /1 behind
- * it, is one in parts: that and /2, /3 ... as they lie about the centroid of all. */
-void read_bodies(const char *path, const narc_shape_list *shapes, body_list *out_bodies);
+ * it, is one in parts: that and /2, /3 ... as they lie about the centroid of all. The parts of a chain are its entries;
+ * chains that bodies name are added to the store. `shapes_path` is for errors of theirs. */
+void read_bodies(const char *path, const char *shapes_path, const narc_shape_list *shapes, narc_shapes *store,
+                 body_list *out_bodies);
 
 /* Reads a CSV file with the columns a and b: rows of bodies. Of bodies in parts all pairs of parts are listed. */
 void read_pairs(const char *path, const body_list *bodies, pair_list *out_pairs);

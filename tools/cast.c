@@ -212,6 +212,7 @@ static void draw(const settings *chosen, FILE *picture, const job *work) {
     narc_aabb *boxes = bound_bodies(work->store, &work->bodies);
     draw_bodies(chosen->picture, picture,
                 &(body_scene){.shapes = work->shapes,
+                              .store = work->store,
                               .bodies = &work->bodies,
                               .boxes = boxes,
                               .marked = is_hit,
@@ -239,7 +240,7 @@ static void run(int argc, char **argv) {
     const settings chosen = read_settings(argc, argv);
     job work = {0};
     work.shapes = read_shapes(chosen.shapes, &work.store);
-    read_bodies(chosen.bodies, work.shapes, &work.bodies);
+    read_bodies(chosen.bodies, chosen.shapes, work.shapes, work.store, &work.bodies);
     check_picture_size(chosen.picture, work.bodies.count);
     read_rays(chosen.rays, &work.rays);
     FILE *out = chosen.out ? open_output(chosen.out) : NULL;

@@ -316,7 +316,7 @@ static void run(int argc, char **argv) {
     job work = {0};
     choose_isa(chosen.isa);
     work.shapes = read_shapes(chosen.shapes, &work.store);
-    read_bodies(chosen.bodies, work.shapes, &work.bodies);
+    read_bodies(chosen.bodies, chosen.shapes, work.shapes, work.store, &work.bodies);
     check_picture_size(chosen.picture, work.bodies.count);
     work.boxes = bound_bodies(work.store, &work.bodies);
     if (chosen.pairs)
@@ -341,6 +341,7 @@ static void run(int argc, char **argv) {
         flush_output(out);
     if (picture) {
         const body_scene scene = {.shapes = work.shapes,
+                                  .store = work.store,
                                   .bodies = &work.bodies,
                                   .boxes = work.boxes,
                                   .marked = work.marked,

@@ -58,20 +58,28 @@ static narc_status find_overlaps(const batch *asked, uint64_t *bits, narc_error 
 }
 
 static narc_status find_contacts(const batch *asked, narrow_result *result, narc_error *error) {
-    const size_t count = asked->pairs.count;
+    const size_t room = result->room;
     return asked->methods ? narc_find_contacts_by(asked->methods, &asked->bodies, &asked->pairs, &asked->options,
-                                                  &asked->query, result->contacts, count, &result->contact_count, error)
+                                                  &asked->query, result->contacts, room, &result->contact_count, error)
                           : narc_find_contacts(asked->store, &asked->bodies, &asked->pairs, &asked->query,
-                                               result->contacts, count, &result->contact_count, error);
+                                               result->contacts, room, &result->contact_count, error);
 }
 
-/* The call that is timed. */
+/* The call that is timed. Pairs with a concave arc of a chain may have several contacts: it is made again with more room
+ * then. */
 static void call_library(const batch *asked, narrow_result *result) {
     narc_error error;
     const double start = seconds_now();
     const narc_status status = is_filter(asked->options.method) ? find_overlaps(asked, result->colliding, &error)
                                                                 : find_contacts(asked, result, &error);
     result->seconds = seconds_now() - start;
+    if (status == NARC_ERROR_CAPACITY) {
+        result->room = result->contact_count;
+        free(result->contacts);
+        result->contacts = allocate(result->room, sizeof *result->contacts);
+        call_library(asked, result);
+        return;
+    }
     check_call(status, &error);
 }
 
@@ -142,6 +150,7 @@ void run_narrow_phase(const narrow_settings *chosen, const narc_shapes *shapes, 
     *out_result = (narrow_result){.call = is_filter(chosen->method) ? "narc_find_overlaps_by"
                                           : is_exact                ? "narc_find_contacts"
                                                                     : "narc_find_contacts_by",
+                                  .room = count,
                                   .contacts = allocate(count, sizeof *out_result->contacts),
                                   .colliding = allocate(NARC_BIT_WORDS(count), sizeof *out_result->colliding)};
     uint8_t *outcomes = allocate(count, sizeof *outcomes);

@@ -20,6 +20,7 @@ enum { OUTCOME_COUNT = NARC_OUTCOME_NONE + 1 };
 
 typedef struct narrow_result {
     narc_contact *contacts; /* none from a filter */
+    size_t room;            /* for contacts */
     size_t contact_count;
     uint64_t *colliding; /* one bit for each pair, see pair_collides() */
     size_t colliding_count;

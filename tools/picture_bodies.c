@@ -137,15 +137,30 @@ static void open_body_stamp(canvas *stamp, const narc_named_shape *form, bool hi
     paint_body(stamp, &(placement){0, 0, zoom, 0}, form, hit, size);
 }
 
+/* An entry of a chain: its line. Of a run, which is closed behind (narc_chains.h), the front. */
+static void paint_entry(canvas *page, const placement *where, const narc_shapes *store, uint32_t shape, bool hit,
+                        double size) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    const size_t count = narc_get_arcs(store, shape, arcs);
+    const bool run = narc_shape_flags(store, shape) & NARC_SHAPE_RUN;
+    trace_arcs(page, where, arcs, run ? count - 4 : count);
+    stroke_path(page, hit ? HIT_LINE : FREE_LINE, clamp(2 * OUTLINE * size, THINNEST, THICKEST));
+}
+
 static void draw_body(canvas *page, const view *seen, const body_scene *scene, stamps *made, size_t index) {
     const body *drawn = &scene->bodies->items[index];
     const narc_named_shape *form = &scene->shapes->items[drawn->item];
     const double zoom = seen->zoom * (double)drawn->scale, size = seen->zoom * box_size(scene->boxes[index]);
     const double cosine = (double)drawn->cosine, sine = (double)drawn->sine;
     const narc_point origin = to_page(seen, drawn->x, drawn->y);
+    const placement where = {origin.x, origin.y, zoom * cosine, zoom * sine};
     const bool hit = scene->marked[index];
+    if (form->form != NARC_FORM_SHAPE) {
+        paint_entry(page, &where, scene->store, drawn->shape, hit, size);
+        return;
+    }
     if (!made->bodies) {
-        paint_body(page, &(placement){origin.x, origin.y, zoom * cosine, zoom * sine}, form, hit, size);
+        paint_body(page, &where, form, hit, size);
         return;
     }
     const size_t k = 2 * (size_t)drawn->item + hit;

@@ -18,6 +18,7 @@ typedef struct drawn_ray {
 
 typedef struct body_scene {
     const narc_shape_list *shapes;
+    const narc_shapes *store; /* entries of chains are drawn as it has them */
     const body_list *bodies;
     const narc_aabb *boxes; /* of the bodies */
     const bool *marked;     /* of the bodies: is it in a colliding pair, or hit by a ray? */

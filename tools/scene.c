@@ -60,6 +60,8 @@ static void run(int argc, char **argv) {
     double *areas = allocate(shapes->count, sizeof *areas);
     for (size_t k = 0; k < shapes->count; k++) {
         narc_mass mass;
+        if (shapes->items[k].form != NARC_FORM_SHAPE)
+            fail_at(path, 0, "shape '%s' is a chain, which this command does not take", shapes->items[k].name);
         narc_compute_mass(shapes->items[k].arcs, shapes->items[k].arc_count, &mass);
         areas[k] = mass.area;
     }

@@ -174,11 +174,32 @@ check "a chain of lines: 4 of them" test "$(tail -n 1 out.txt | awk '{ print $1,
 check "a chain of lines: 4 corners" test "$(grep -c '"radius": 0,' chain.json)" = 4
 check "a chain of lines: closed" grep -q '"chain": {"closed": true' chain.json
 check "a chain of lines: a picture" grep -q "</svg>" chain.svg
-fails "a chain is no body" "narc: chain.json: shape 'square' is a chain" collide --shapes chain.json --bodies none.csv
 printf '0,0\n4,0\n4,4\n0,4\n\n1,1\n3,1\n3,3\n1,3\n' >fits/frame.csv
 works "a chain round a hole" fit fits/frame.csv --chain --tolerance 0.1 --out chain.json
 check "a chain round a hole: two chains" names chain.json "frame/1 frame/2 "
 check "a chain round a hole: 4 valleys" test "$(grep -c '"radius": -0,' chain.json)" = 4
+# Ground as a body: a level stretch, a rim and a bowl. A ball on the level, a box that stands in the bowl on two corners.
+cat >ground.json <<'END'
+{"shapes": [{"name": "ball", "arcs": [{"center": [0, 0], "radius": 0.5, "start": 0, "end": 6.283185307179586}]},
+            {"name": "box", "box": {"width": 1.4, "height": 0.6}},
+            {"name": "hill", "chain": {"closed": false, "arcs": [
+              {"center": [9, 0], "radius": 0, "start": 1.5707963267948966, "end": 1.5707963267948966},
+              {"center": [0, -2], "radius": 2, "start": 1.5707963267948966, "end": 2.0707963267948966},
+              {"center": [-3.3559787702294297, 4.14307793323261], "radius": -5, "start": 2.0707963267948966,
+               "end": 0.7707963267948966}]}}]}
+END
+printf 'shape,x,y,angle\nhill,0,0,0\nball,4,0.49,0\nbox,-3.4,-0.55,0\nbox,2,2,0.3\n' >ground.csv
+works "ground" collide --shapes ground.json --bodies ground.csv --out on_ground.csv --picture ground.svg
+check "ground: three contacts" test "$(tail -n +2 on_ground.csv | cut -d, -f1,2,10,11 | tr '\n' ' ')" = "0,1,0,0 0,2,1,0 0,2,1,0 "
+check "ground: the ball's" grep -q "^0,1,-0.0099.*,0,1,4,-0.005" on_ground.csv
+check "ground: a picture" grep -q "</svg>" ground.svg
+printf 'x,y,motion_x,motion_y\n5,3,0,-6\n-3,3,0,-6\n5,-3,0,6\n' >down.csv
+works "rays on ground" cast --shapes ground.json --bodies ground.csv --rays down.csv --out hits.csv
+check "rays on ground: two from the air hit" test "$(tail -n +2 hits.csv | cut -d, -f1,2 | tr '\n' ' ')" = "0,0 1,2 "
+fails "ground is not strewn" "narc: ground.json: shape 'hill' is a chain" scene --shapes ground.json --bodies 3 --density 1 --seed 1
+sed 's/"radius": 2,/"radius": 1,/' ground.json >broken.json
+fails "broken ground" "narc: broken.json: chain 'hill': arc 1: starts 1 away" collide --shapes broken.json --bodies ground.csv
+
 works "an open stroke" fit fits/square.csv --chain --open --tolerance 0.1 --out chain.json
 check "an open stroke: two corners, two ends" test "$(grep -c '"radius": 0,' chain.json)" = 4
 check "an open stroke: open" grep -q '"chain": {"closed": false' chain.json

@@ -142,7 +142,12 @@ void trace_arcs(canvas *page, const placement *where, const narc_arc *arcs, size
     enter_shape(page, where);
     for (size_t i = 0; i < count; i++) {
         /* cairo joins an arc to what is there by a line: the edge between arcs, or nothing. */
-        cairo_arc(page->pen, arcs[i].center_x, arcs[i].center_y, arcs[i].radius, arcs[i].start, arcs[i].end);
+        const narc_arc *a = &arcs[i];
+        if (signbit(a->radius)) /* concave, of a chain */
+            cairo_arc_negative(page->pen, a->center_x, a->center_y, -a->radius, a->start + FULL_TURN / 2,
+                               a->end + FULL_TURN / 2);
+        else
+            cairo_arc(page->pen, a->center_x, a->center_y, a->radius, a->start, a->end);
     }
     leave_shape(page);
 }

@@ -91,9 +91,6 @@ narc_shape_list *read_shapes(const char *path, narc_shapes **out_store) {
     if (narc_read_shapes(bytes, size, NULL, out_store ? *out_store : NULL, &shapes, &error) != NARC_OK)
         fail_text(path, &error);
     free(bytes);
-    for (size_t k = 0; k < shapes->count; k++)
-        if (shapes->items[k].form != NARC_FORM_SHAPE)
-            fail_at(path, 0, "shape '%s' is a chain, which this command does not take", shapes->items[k].name);
     return shapes;
 }
 
