@@ -436,7 +436,7 @@ static narc_status restore_concave(narc_encoded_shape *shape, narc_error *error)
         !(x * end_y - y * end_x >= NARC_TOLERANCE / 4))
         return fail_stored(error, "a concave arc that does not turn");
     write_concave(shape, header.bound_radius);
-    if (memcmp(&shape->header, &header, sizeof header) != 0 ||
+    if (memcmp((const char *)&shape->header, (const char *)&header, sizeof header) != 0 ||
         -(double)a->radius > 5 * NARC_MAX_RADIUS_RATIO * (double)header.bound_radius)
         return fail_stored(error, "a concave arc whose header is another's");
     return NARC_OK;

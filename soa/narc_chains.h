@@ -23,7 +23,9 @@
  *   the entry says. A run's shape is closed far behind, but only its front touches, never that closure. Answers are
  *   right for bodies that are less deep in the ground than the size of the entry's front, and where the ground is
  *   thicker than bodies are deep; faster ones want smaller steps or casts. An open end just ends: what lies beyond it
- *   touches nothing. A corner of a quarter turn there caps it.
+ *   touches nothing. A corner of a quarter turn there caps it. Behind thin ground, such as under a bridge, a body in the
+ *   air is within the closure, or beyond a concave arc: a row with a separation below -(the body's width along the
+ *   normal) is that, and no contact.
  *   Entries overlap by next to nothing, so that no body falls between two; what both tell of one body is merged by
  *   narc_merge_contacts() or narc_merge_manifolds().
  *

@@ -253,7 +253,9 @@ typedef struct narc_impact {
  * separation lies within target .. target + tolerance both are lawful. Turning counts for what it moves: not for a circle
  * about its position.
  * Pieces of chains (narc_chains.h) are hit from the air, within their ends, where another piece goes on; a concave arc by
- * what turns at its ends, too.
+ * what turns at its ends, too. What turns and first meets that which closes a run behind, such as from below where ground
+ * is thinner than that closure is deep, is NARC_CAST_UNFINISHED there; from there what does not turn may hit at fraction
+ * 0, with a separation below -(its own width).
  * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance below 0), NARC_ERROR_CAPACITY. Allocates nothing.
  * Source: conservative advancement (Mirtich 1996) by bounds of their own: docs/algorithm.md, section 13. */
 NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,

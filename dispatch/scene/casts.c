@@ -246,7 +246,9 @@ static void advance_pairs(const narc_cast_job *job, struct slots *slots, size_t 
         const narc_casts *const c = &slots->casts;
         const bool broken = c->contact[slot].count == 0;
         const bool behind = pieces && c->outcome[slot] == NARC_CAST_HIT && is_behind(job, slots, slot);
-        const int outcome = broken || behind ? NARC_CAST_MISS : c->outcome[slot];
+        /* What turns may come out again, and meet the front. */
+        const int closed = c->turning[slot] > 0 ? NARC_CAST_UNFINISHED : NARC_CAST_MISS;
+        const int outcome = broken ? NARC_CAST_MISS : behind ? closed : c->outcome[slot];
         const size_t pair = slots->pair[slot];
         *skipped += broken;
         if (outcome == NARC_CAST_GOES_ON && !is_late(job, pair, c->back[slot] >= 0 ? c->back[slot] : c->time[slot]))
