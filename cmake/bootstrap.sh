@@ -223,9 +223,12 @@ bench() {
 
 bench_scene() {
     require_packages $bench_packages
-    build bench bench_scenes
+    build bench bench_scenes bench_ground
     mkdir -p out
     rm -f out/scene-*.md
+    say "ground"
+    build/bench/bench/scene/bench_ground >out/scene-ground.md
+    cat out/scene-ground.md
     for bodies in 1000 30000 1000000; do
         say "rays, $bodies bodies"
         build/bench/bench/scene/bench_rays --bodies=$bodies --rays=10800 >out/scene-rays-$bodies.md

@@ -17,9 +17,6 @@
 /* Edges are welded to parts of this many times their mean. */
 #define DEFAULT_WELD 32.0
 
-/* Parts of a closed convex chain overlap so where it is cut first; see SEAM in chain_pieces.c. */
-#define CUT 2e-5
-
 static const size_t max_count = (size_t)1 << 30;
 
 narc_point narc_find_chain_point(const narc_chain_arc *arc, double turned) {
@@ -105,7 +102,8 @@ static size_t find_first(const narc_arc *arcs, size_t count, bool closed) {
 /* Cuts the first arc of a closed convex chain: its first part becomes the last arc. */
 static void cut_first(narc_chain *chain) {
     narc_chain_arc *first = &chain->arcs[0], *last = &chain->arcs[chain->count - 1];
-    const double cut = first->turn / 2, end = fmin(cut + CUT, first->turn), begin = fmax(cut - CUT, 0);
+    const double cut = first->turn / 2, end = fmin(cut + NARC_CHAIN_SEAM, first->turn),
+                 begin = fmax(cut - NARC_CHAIN_SEAM, 0);
     *last = *first;
     last->turn = end;
     first->start += begin;

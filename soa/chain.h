@@ -7,6 +7,10 @@
 
 #include "narc_chains.h"
 
+/* How far, in radians, parts of a cut arc reach beyond the cut, and concave arcs and runs beyond where they meet: an edge
+ * of a body that lies along the tangent there has its normal on either side, by rounding. */
+#define NARC_CHAIN_SEAM 2e-5
+
 /* An arc of a chain. `turn` is signed: above 0 of a convex arc or corner, below 0 of a concave one, 0 for the open end
  * of an edge. The point at an angle is centre + radius * normal, with the radius's sign. */
 typedef struct narc_chain_arc {

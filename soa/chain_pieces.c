@@ -18,10 +18,6 @@
 #include "error.h"
 #include "outline.h"
 
-/* How far, in radians, parts of a cut arc reach beyond the cut, and concave arcs and runs beyond where they meet: an edge
- * of a body that lies along the tangent there has its normal on either side, by rounding. */
-#define SEAM 2e-5
-
 /* How far parts of a cut straight line reach beyond the cut, relative to the longest straight part; and edges beyond the
  * bottom of a valley, relative to their length. */
 #define LINE_SEAM   0x1p-14
@@ -198,7 +194,7 @@ static void add_arc(divider *d, const narc_chain_arc *arc, double from, double t
         if (rest <= room && (d->piece.count < MAX_FRONT || is_last))
             break;
         const double cut = at + fmin(fmax(0, room), rest / (rest <= room ? 2 : 1));
-        const double end = fmin(cut + SEAM, to), begin = fmax(cut - SEAM, from);
+        const double end = fmin(cut + NARC_CHAIN_SEAM, to), begin = fmax(cut - NARC_CHAIN_SEAM, from);
         put_arc(d, arc, at, end);
         end_piece(d, narc_find_chain_point(arc, end));
         open_piece(d, narc_find_chain_point(arc, begin), arc->start + begin, arc->number);
@@ -253,18 +249,21 @@ static void divide_run(divider *d, size_t first, size_t end) {
         sum += arcs[k].turn;
     if (sum == 0 && find_distance(from, to) <= narc_find_chain_room(begins, ends))
         return;
-    d->turn = sum / fmax(1, ceil(sum / MAX_TURN)) + 4 * SEAM;
+    d->turn = sum / fmax(1, ceil(sum / MAX_TURN)) + 4 * NARC_CHAIN_SEAM;
     d->reach = find_reach(chain, before ? first - 1 : first, after ? end : end - 1);
     /* An arc goes on beyond the end itself, a line turns there by a corner, but at the bottom of a valley. */
-    const double over = before && !has_line ? SEAM : 0, end_over = after && !has_end_line ? SEAM : 0;
+    const double over = before && !has_line ? NARC_CHAIN_SEAM : 0,
+                 end_over = after && !has_end_line ? NARC_CHAIN_SEAM : 0;
     const bool has_corner = has_line && before->radius != 0, has_end_corner = has_end_line && after->radius != 0;
     if (over > 0)
         from = narc_find_chain_point(begins, -over);
     if (end_over > 0)
         to = narc_find_chain_point(ends, ends->turn + end_over);
-    open_piece(d, from, begins->start - (has_corner ? SEAM : over), begins->number);
+    open_piece(d, from, begins->start - (has_corner ? NARC_CHAIN_SEAM : over), begins->number);
     if (has_corner)
-        put_arc(d, &(narc_chain_arc){from.x, from.y, 0, begins->start - SEAM, SEAM, before->number}, 0, SEAM);
+        put_arc(d,
+                &(narc_chain_arc){from.x, from.y, 0, begins->start - NARC_CHAIN_SEAM, NARC_CHAIN_SEAM, before->number},
+                0, NARC_CHAIN_SEAM);
     narc_point at = from;
     for (size_t k = first; k < end && d->status == NARC_OK; k++) {
         const narc_chain_arc *arc = &arcs[k];
@@ -277,7 +276,8 @@ static void divide_run(divider *d, size_t first, size_t end) {
     if (has_end_line)
         add_line(d, at, to, after->number);
     if (has_end_corner)
-        put_arc(d, &(narc_chain_arc){to.x, to.y, 0, d->piece.end_angle, SEAM, after->number}, 0, SEAM);
+        put_arc(d, &(narc_chain_arc){to.x, to.y, 0, d->piece.end_angle, NARC_CHAIN_SEAM, after->number}, 0,
+                NARC_CHAIN_SEAM);
     end_piece(d, to);
     d->out->run++;
 }
@@ -291,8 +291,8 @@ static void divide_concave(divider *d, size_t k) {
     const double parts = ceil(-arc->turn / 2);
     const double near = find_reach(chain, k > 0 ? k - 1 : 0, has_after ? k + 1 : k);
     for (double part = 0; part < parts && d->status == NARC_OK; part++) {
-        const double high = arc->turn * (part / parts) + (part > 0 || has_before ? SEAM : 0);
-        const double low = arc->turn * ((part + 1) / parts) - (part + 1 < parts || has_after ? SEAM : 0);
+        const double high = arc->turn * (part / parts) + (part > 0 || has_before ? NARC_CHAIN_SEAM : 0);
+        const double low = arc->turn * ((part + 1) / parts) - (part + 1 < parts || has_after ? NARC_CHAIN_SEAM : 0);
         const narc_point start = narc_find_chain_point(arc, low), end = narc_find_chain_point(arc, high);
         const narc_point middle = {(start.x + end.x) / 2, (start.y + end.y) / 2};
         const narc_arc own = {arc->x - middle.x, arc->y - middle.y, arc->radius, arc->start + low, arc->start + high};

@@ -407,7 +407,7 @@ unsigned narc_shape_flags(const narc_shapes *shapes, uint32_t shape) {
     if (!narc_has_shape(shapes, shape))
         return 0;
     const narc_shape_header *header = &shapes->headers[shape];
-    const unsigned marks = NARC_PIECES ? (header->first_arc & (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)) >> 2 : 0;
+    const unsigned marks = NARC_PIECES ? (header->first_arc & NARC_PIECE_MARKS) >> 2 : 0;
     return header->flags % (1u << NARC_SIZE_CLASS_SHIFT) | marks;
 }
 

@@ -74,6 +74,7 @@ typedef struct narc_shape_header {
  *                       radius is -infinity, the extent ratio that of centre and radius. */
 #define NARC_PIECE_RUN     0x40u
 #define NARC_PIECE_CONCAVE 0x80u
+#define NARC_PIECE_MARKS   (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)
 #define NARC_FIRST_ARC     0x3fu
 
 /* Is a feature, as rows have it, one that may touch? Of a run those of its closure may not. */
@@ -83,7 +84,7 @@ static inline bool narc_touches(const narc_shape_header *header, unsigned featur
 }
 
 static inline bool narc_is_piece(const narc_shape_header *header) {
-    return NARC_PIECES && (header->first_arc & (NARC_PIECE_RUN | NARC_PIECE_CONCAVE)) != 0;
+    return NARC_PIECES && (header->first_arc & NARC_PIECE_MARKS) != 0;
 }
 
 /* The upper half of a shape's flags is the class of its extent, from 2^(5 class - 32) up to 32 times that, the last one

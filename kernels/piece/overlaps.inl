@@ -17,13 +17,11 @@
 #include "piece/pieces.inl"
 #include "simd/simd.h"
 
-enum { PIECE_MARKS = NARC_PIECE_RUN | NARC_PIECE_CONCAVE };
-
 /* Takes the pairs with a piece of those in the lanes `open`, the first of which is `pair`: sets their bits. Returns the
  * others. */
 INLINE vm take_pieces(const struct call *call, size_t pair, vm open, const vf item[FIELDS]) {
-    const vm pieces = vm_and(open, vm_or(has_mark(get_item_bits(item, INFO_A), PIECE_MARKS),
-                                         has_mark(get_item_bits(item, INFO_B), PIECE_MARKS)));
+    const vm pieces = vm_and(open, vm_or(has_mark(get_item_bits(item, INFO_A), NARC_PIECE_MARKS),
+                                         has_mark(get_item_bits(item, INFO_B), NARC_PIECE_MARKS)));
     call->bits[pair / 64] |= (uint64_t)vm_bits(pieces) << pair % 64;
     return vm_and_not(open, pieces);
 }
@@ -31,7 +29,7 @@ INLINE vm take_pieces(const struct call *call, size_t pair, vm open, const vf it
 static inline bool is_of_piece(const narc_batch *batch, const narc_bodies *bodies, narc_index_column column,
                                size_t number) {
     const size_t body = column.base ? narc_index_at(column, number) : number;
-    return batch->shapes->headers[narc_index_at(bodies->shape, body)].first_arc & PIECE_MARKS;
+    return narc_is_piece(&batch->shapes->headers[narc_index_at(bodies->shape, body)]);
 }
 
 /* Pairs that are asked of at once. */

@@ -12,8 +12,8 @@
 /* Does a shape have one of these marks? */
 INLINE vm has_mark(vi info, unsigned marks) { return vi_lt(vi_set(0), vi_and(info, vi_set((int32_t)(marks << 8)))); }
 
-/* May a shape touch with this feature, as a contact has it? Of a run only front ones count: arcs 1 to count - 6
- * and edges 1 to count - 5. */
+/* narc_touches() (store.h) in lanes: may a shape touch with this feature, as a contact has it? Of a run only front ones
+ * count: arcs 1 to count - 6 and edges 1 to count - 5. */
 INLINE vm is_front(vi info, vi feature) {
     _Static_assert(NARC_FEATURE_EDGE == 64, "the shift divides by it");
     const vi number = vi_and(feature, vi_set(NARC_FEATURE_EDGE - 1));

@@ -372,7 +372,7 @@ INLINE void look_at_body(struct search *search, uint32_t body) {
     struct body_frame frame;
     float x, y;
     if (body == search->ignored || !load_body_frame(search->batch->shapes, search->batch->bodies, body, &frame) ||
-        has_any_mark(&frame, NARC_PIECE_RUN | NARC_PIECE_CONCAVE) || !place_point(&frame, search->point, &x, &y))
+        narc_is_piece(frame.header) || !place_point(&frame, search->point, &x, &y))
         return;
     const float reach = (float)frame.scale * frame.header->bound_radius + search->limit;
     if (reach < 0 || reach * reach < (x * x + y * y) * shrink)

@@ -138,10 +138,7 @@ INLINE bool find_first_entry(const struct body_frame *frame, place foot, place v
         return enter_concave(frame, foot, v, out);
     if (!find_entry(frame, foot, v, out))
         return false;
-    if (!has_any_mark(frame, NARC_PIECE_RUN))
-        return true;
-    const unsigned number = find_feature_number(header, out->arc, false);
-    return number >= 1 && number + 6u - out->on_edge <= header->count;
+    return !NARC_PIECES || narc_touches(header, find_feature_number(header, out->arc, out->on_edge));
 }
 
 /* ------------------------------------------------------------------------------------------------ one ray, one body */
@@ -187,7 +184,6 @@ INLINE void stop_inside(place way, narc_ray_hit *out) {
  * misses, or meets later, can never hold an answer. A ray that starts in the ground does not meet it. */
 INLINE bool cast_at_body(const struct body_frame *frame, const struct ray *ray, narc_inside inside, const narc_box *box,
                          float limit, narc_ray_hit *out) {
-    const unsigned marks = NARC_PIECE_RUN | NARC_PIECE_CONCAVE;
     struct entry entry;
     const narc_shape_header *const header = frame->header;
     const place way = {frame->position.x - ray->origin.x, frame->position.y - ray->origin.y};
@@ -206,7 +202,7 @@ INLINE bool cast_at_body(const struct body_frame *frame, const struct ray *ray, 
     if (!(in_box.from <= in_box.to && distance <= in_box.to))
         return false;
     if (distance <= 0) {
-        if (inside == NARC_INSIDE_IGNORES || has_any_mark(frame, marks)) /* or it is behind */
+        if (inside == NARC_INSIDE_IGNORES || narc_is_piece(header)) /* or it is behind */
             return false;
         struct entry exit;
         const double from = distance;
