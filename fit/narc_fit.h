@@ -279,10 +279,6 @@ NARC_API narc_status narc_cut_path(const narc_path *path, const narc_parts_reque
                                    narc_error *error);
 NARC_API void narc_release_parts(narc_parts *parts);
 
-/* The area that shapes cover together, where their origins tell, to some 1e-4 of it. NARC_ERROR_ARGUMENT (NULL),
- * NARC_ERROR_MEMORY. */
-NARC_API narc_status narc_measure_union(const narc_fit_result *fits, size_t count, double *out_area, narc_error *error);
-
 /* ------------------------------------------------------------------------------------------------ biarcs */
 
 /* One piece of an open, tangent-continuous arc spline. */

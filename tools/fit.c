@@ -229,6 +229,26 @@ static bool fit_each(fitting *how, narc_path *const *paths, narc_fit_request req
     return true;
 }
 
+static bool measure_union(collider *of, narc_error *error) {
+    narc_arc *arcs = allocate(of->count, sizeof of->fits->arcs);
+    size_t *counts = allocate(of->count, sizeof *counts), next = 0;
+    narc_mass mass;
+    for (size_t k = 0; k < of->count; k++) {
+        const narc_fit_result *fit = &of->fits[k];
+        counts[k] = fit->arc_count;
+        for (size_t i = 0; i < fit->arc_count; i++, next++) {
+            arcs[next] = fit->arcs[i];
+            arcs[next].center_x += fit->origin.x;
+            arcs[next].center_y += fit->origin.y;
+        }
+    }
+    const bool done = narc_compute_union_mass(arcs, counts, of->count, NULL, &mass, error) == NARC_OK;
+    of->area = done ? mass.area : 0;
+    free(arcs);
+    free(counts);
+    return done;
+}
+
 /* With a tolerance both kinds of distances share it. Parts that are approximated go on beyond their cuts by twice the
  * distance of their shapes: with a number of arcs that is known only when they have been fitted once. */
 static bool fit_parts(fitting *how, const outline *of, narc_fit_request request, collider *out, narc_error *error) {
@@ -252,7 +272,7 @@ static bool fit_parts(fitting *how, const outline *of, narc_fit_request request,
         if (!done)
             return false;
     }
-    return narc_measure_union(out->fits, out->count, &out->area, error) == NARC_OK;
+    return measure_union(out, error);
 }
 
 static bool fit_outline(fitting *how, const outline *of, collider *out, narc_error *error) {
