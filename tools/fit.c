@@ -58,7 +58,7 @@ static const char HELP[] =
     "  --paper         to compare: such a polygon turned into an n-arc by the paper's Algorithm 1\n"
     "  --characters TEXT\n"
     "                  which glyphs of fonts, UTF-8; repeated characters are skipped\n"
-    "  --ids A,B,...   of SVG: a shape for each element, such as a layer, with one of these ids\n"
+    "  --ids A,B|'*'   of SVG: a shape for each element with one of these ids, or each layer\n"
     "  --silhouette NAME\n"
     "                  what counts in PNG and SVG: alpha (the default), dark or light\n"
     "  --threshold X   how much of that; above 0 and below 1, default 0.5 of PNG, 0.25 of SVG\n"

@@ -339,9 +339,41 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
         warn_at(file, "%s throughout, its outline is a rectangle", how->silhouette);
 }
 
+/* Notes the id of an element that a drawing itself holds, if it shows something. */
+static void note_id(GMarkupParseContext *context, const char *element, const char **names, const char **values,
+                    gpointer ids, GError **error) {
+    static const char *const seen[] = {"a",        "circle", "ellipse", "g",      "image", "line", "path", "polygon",
+                                       "polyline", "rect",   "svg",     "switch", "text",  "use",  NULL};
+    (void)error;
+    if (g_slist_length((GSList *)g_markup_parse_context_get_element_stack(context)) != 2 ||
+        !g_strv_contains(seen, element))
+        return;
+    for (size_t k = 0; names[k]; k++)
+        if (strcmp(names[k], "id") == 0)
+            g_string_append_printf(ids, ",%s", values[k]);
+}
+
+/* The ids of all elements that a drawing itself holds, with commas between them; NULL, and an error is told. */
+static char *list_ids(const char *file, const char *bytes, size_t size) {
+    const GMarkupParser parser = {.start_element = note_id};
+    GString *ids = g_string_new(NULL);
+    GError *error = NULL;
+    GMarkupParseContext *context = g_markup_parse_context_new(&parser, G_MARKUP_DEFAULT_FLAGS, ids, NULL);
+    if (!g_markup_parse_context_parse(context, bytes, (gssize)size, &error))
+        report_at(file, 0, "its ids cannot be listed, name them: %s", error->message);
+    else if (ids->len == 0)
+        report_at(file, 0, "no element of the drawing itself has an id");
+    char *list = ids->len > 0 && !error ? strcpy(allocate(ids->len, 1), ids->str + 1) : NULL;
+    g_clear_error(&error);
+    g_markup_parse_context_free(context);
+    g_string_free(ids, TRUE);
+    return list;
+}
+
 static void read_elements(const char *file, const char *bytes, size_t size, const reading *how,
                           outline_list *outlines) {
-    char *ids = strcpy(allocate(strlen(how->ids) + 1, 1), how->ids), *rest = ids;
+    const bool all = strcmp(how->ids, "*") == 0;
+    char *ids = all ? list_ids(file, bytes, size) : strcpy(allocate(strlen(how->ids) + 1, 1), how->ids), *rest = ids;
     while (rest) {
         char *comma = strchr(rest, ',');
         if (comma)

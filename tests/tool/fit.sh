@@ -240,12 +240,18 @@ cat >fits/layers.svg <<'EOT'
   <circle id="ball" cx="8" cy="8" r="1"/>
 </svg>
 EOT
+echo '<svg xmlns="http://www.w3.org/2000/svg"><rect width="2" height="4"/></svg>' >fits/plain.svg
+echo '<svg xmlns="http://www.w3.org/2000/svg"><g id="a"></svg>' >fits/broken.svg
 works "elements" fit fits/layers.svg --ids walls,ball,right --arcs 4 --edges --starts 1 --out layers.json
 check "elements: names" names layers.json "walls ball right "
 check "elements: the layer's hull" is walls 5 24
 check "elements: the ball" is ball 5 3.141593
 check "elements: the right one's place" is right 10 6
 check "elements: the same, y up" less "$(value right 11)" -3.99
+works "all elements" fit fits/layers.svg --ids '*' --arcs 4 --edges --starts 1 --out all.json
+check "all elements: those of the drawing itself" names all.json "walls ball "
+fails "no ids" "narc: fits/plain.svg: no element of the drawing itself has an id" fit fits/plain.svg --ids '*' --arcs 4 --out new.json
+fails "ids of a broken drawing" "narc: fits/broken.svg: its ids cannot be listed" fit fits/broken.svg --ids '*' --arcs 4 --out new.json
 fails "no such element" "narc: fits/layers.svg: .*'roof'" fit fits/layers.svg --ids roof --arcs 4 --out new.json
 fails "ids without SVG" "narc: --ids is for SVG" fit fits/square.csv --ids roof --arcs 4 --out new.json
 
