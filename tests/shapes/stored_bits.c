@@ -9,6 +9,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "elementary.h"
+#include "narc_chains.h"
 #include "store.h"
 #include "support.h"
 
@@ -20,6 +22,8 @@ static const char *const names[BUILDERS] = {
 static const uint64_t golden[BUILDERS] = {
     0x19d216eacbbdc8e8u, 0xbc49f8946e15cd80u, 0x281bfae381ac007fu, 0xade32b2c6f131b14u, 0x3294aeac499b4ddcu,
     0xffd05cbd707cf129u, 0xc2f482952a4c9808u, 0x1e27dd554ac4b776u, 0xb94ba0f8df1204c1u, 0x391432fe6bacf207u};
+
+static const uint64_t golden_unions = 0xa19967682e62241cu, golden_chains = 0xe8b230d9cbbc24c9u;
 
 /* Of each builder. An ellipse takes much longer than the others. */
 static size_t shapes_of(enum builder builder) { return builder == ELLIPSE ? 24 : 300; }
@@ -139,6 +143,80 @@ TEST(test_builders) {
         narc_destroy_shapes(shapes);
     }
     assert_true(same);
+}
+
+/* Compounds of a few shapes over each other. */
+TEST(test_unions) {
+    struct test_random random = {BUILDERS};
+    uint64_t hash = TEST_HASH_START;
+    for (size_t k = 0; k < 200; k++) {
+        narc_arc arcs[4 * NARC_MAX_ARCS];
+        size_t counts[4], used = 0, parts = 0;
+        narc_mass mass;
+        while (parts < 4) {
+            narc_arc *const next = arcs + used;
+            const enum builder builder = (enum builder)random_below(&random, ELLIPSE);
+            const double x = random_between(&random, -4, 4), y = random_between(&random, -4, 4);
+            if (build(builder, &random, k, next, &counts[parts]) == NARC_OK &&
+                narc_move_arcs(next, counts[parts], x, y, x * y, 1, next, NULL) == NARC_OK)
+                used += counts[parts++];
+        }
+        assert_int_equal(narc_compute_union_mass(arcs, counts, parts, NULL, &mass, NULL), NARC_OK);
+        hash = hash_double(hash_double(hash, mass.area), mass.centroid_x);
+        hash = hash_double(hash_double(hash, mass.centroid_y), mass.second_moment);
+    }
+    printf("  unions: 0x%016" PRIx64 "\n", hash);
+    assert_true(hash == golden_unions);
+}
+
+/* Ground from right to left: arcs and corners both ways, edges between them. */
+static size_t walk_ground(struct test_random *random, size_t steps, narc_arc *out_arcs) {
+    const double level = 1.5707963267948966;
+    double x = 0, y = 0, angle = level, c, s;
+    for (size_t k = 0; k < steps; k++) {
+        const double to = k % 5 && k + 1 < steps ? level + random_between(random, -1, 1) : angle,
+                     length = random_between(random, 0, 2);
+        const double size = k % 3 && to != angle ? random_between(random, 0.25, 4) : 0,
+                     radius = to < angle ? -size : size;
+        narc_find_cosine(angle, &c, &s);
+        out_arcs[k] = (narc_arc){x - radius * c, y - radius * s, radius, angle, to};
+        narc_find_cosine(to, &c, &s);
+        x = out_arcs[k].center_x + radius * c - (k % 4 ? length * s : 0);
+        y = out_arcs[k].center_y + radius * s + (k % 4 ? length * c : 0);
+        angle = to;
+    }
+    return steps;
+}
+
+/* What chains are divided into: ground, and rings. */
+TEST(test_chains) {
+    enum { ENTRIES = 256 };
+    struct test_random random = {BUILDERS + 1};
+    uint64_t hash = TEST_HASH_START;
+    size_t divided = 0;
+    for (size_t k = 0; k < 200; k++) {
+        narc_arc arcs[NARC_MAX_ARCS];
+        size_t length = 0;
+        if (k % 4 || build(RING, &random, k, arcs, &length) != NARC_OK)
+            length = walk_ground(&random, 11 + k % 2, arcs);
+        const narc_chain_options options = {.closed = k % 4 == 0, .weld = k % 2 ? 0 : 2};
+        narc_chain_entry entries[ENTRIES];
+        narc_shapes *shapes;
+        size_t count = 0;
+        assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
+        divided += narc_add_chain(shapes, arcs, length, &options, entries, ENTRIES, &count, NULL) == NARC_OK;
+        for (size_t i = 0; i < count; i++) {
+            const uint32_t numbers[] = {entries[i].shape, entries[i].run, entries[i].first_arc, entries[i].arc_count};
+            hash = test_hash_items(hash, numbers, 4, sizeof *numbers);
+            hash = hash_double(hash_double(hash, entries[i].x), entries[i].y);
+        }
+        if (count > 0)
+            hash = hash_stored(hash, shapes);
+        narc_destroy_shapes(shapes);
+    }
+    printf("  chains: %zu of 200, 0x%016" PRIx64 "\n", divided, hash);
+    assert_true(divided > 150);
+    assert_true(hash == golden_chains);
 }
 
 TEST_MAIN("stored bits")
