@@ -18,9 +18,14 @@
 #include "error.h"
 #include "outline.h"
 
-/* How far parts of a cut straight line reach beyond the cut, relative to the longest straight part; and edges beyond the
- * bottom of a valley, relative to their length. */
-#define LINE_SEAM   0x1p-14
+/* What two parts of a cut straight line have in common, relative to the longest part: a body that is no wider along the
+ * line lies on one of them with all that it touches there. */
+#define LINE_OVERLAP 0.25
+
+/* What the number of a line's parts may be rounded by: then they are longer than `weld`, by as much. */
+#define PART_ROOM 1e-9
+
+/* How far edges reach beyond the bottom of a valley, relative to their length. */
 #define VALLEY_SEAM 0x1p-16
 
 /* What the corners at the ends of a run turn by. */
@@ -161,19 +166,18 @@ static void end_piece(divider *d, narc_point end) {
                                      .arc_count = (uint32_t)p->count});
 }
 
-/* A straight line to `to`, cut if it is too long. */
+/* A straight line to `to`, cut into parts of one length if it is too long. */
 static void add_line(divider *d, narc_point from, narc_point to, uint32_t next) {
-    const double length = find_distance(from, to), weld = d->chain->weld;
-    const double parts = ceil(length / weld * (1 - 4 * LINE_SEAM));
+    const double length = find_distance(from, to), weld = d->chain->weld, common = LINE_OVERLAP * weld;
+    const double parts = fmax(1, ceil((length - common) / (weld - common) - PART_ROOM)); /* 1 if weld is infinite */
     if (!((double)d->out->count + parts <= NARC_MAX_SHAPES))
         d->status = narc_fail(d->error, NARC_ERROR_COUNT, next, parts, "arc %lu: the edge before it has %g parts",
                               (unsigned long)next, parts);
-    const double step_x = (to.x - from.x) / length, step_y = (to.y - from.y) / length, over = LINE_SEAM * weld;
+    const double step_x = (to.x - from.x) / length, step_y = (to.y - from.y) / length;
     for (double k = 1; k < parts && d->status == NARC_OK; k++) {
-        const double at = length * (k / parts);
-        end_piece(d, (narc_point){from.x + step_x * (at + over), from.y + step_y * (at + over)});
-        open_piece(d, (narc_point){from.x + step_x * (at - over), from.y + step_y * (at - over)}, d->piece.end_angle,
-                   next);
+        const double at = (length - common) * (k / parts), end = at + common;
+        end_piece(d, (narc_point){from.x + step_x * end, from.y + step_y * end});
+        open_piece(d, (narc_point){from.x + step_x * at, from.y + step_y * at}, d->piece.end_angle, next);
     }
 }
 

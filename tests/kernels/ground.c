@@ -842,4 +842,76 @@ TEST(test_valley) {
     free(g);
 }
 
+/* ------------------------------------------------------------------------------------------------ cut lines */
+
+static narc_manifold merge_one(const struct scene *scene, const uint32_t *runs, size_t entries) {
+    struct pair pairs[ENTRIES];
+    for (uint32_t e = 0; e < entries; e++)
+        pairs[e] = (struct pair){(uint32_t)entries, e};
+    const narc_pairs list = {.count = entries, .a = NARC_COLUMN(pairs, a), .b = NARC_COLUMN(pairs, b)};
+    const narc_bodies bodies = scene_bodies(scene);
+    struct manifolds rows = find_manifolds(scene->store, &bodies, &list, &(narc_query){.margin = margin});
+    const size_t left = narc_merge_manifolds(&list, (narc_index_column){runs, sizeof *runs}, rows.rows, rows.count);
+    if (left != 1)
+        fail_msg("%zu rows of %zu", left, rows.count);
+    const narc_manifold row = rows.rows[0];
+    free(rows.rows);
+    return row;
+}
+
+/* A box as wide as a quarter of `weld`, or less, has the same manifold on a line that is cut as on one that is not,
+ * wherever it lies and however little it is tilted. */
+TEST(test_cut_lines) {
+    struct test_random random = test_random_named("cut lines");
+    enum { TRIALS = 2000, LENGTH = 12 };
+    static const uint32_t runs[ENTRIES] = {0};
+    for (size_t round = 0; round < test_trials(4); round++) {
+        struct ground *ground[2];
+        const double angle = round % 4 ? random_between(&random, 0, 2 * PI) : PI / 2;
+        const double weld = random_between(&random, 0.5, 3);
+        for (int cut = 0; cut < 2; cut++) {
+            ground[cut] = malloc(sizeof *ground[cut]);
+            begin_chain(ground[cut], LENGTH / 2.0 * sin(angle), -LENGTH / 2.0 * cos(angle), angle);
+            add_line(ground[cut], LENGTH);
+            end_chain(ground[cut]);
+            assert_true(place_chain(ground[cut], &(narc_chain_options){.weld = cut ? weld : LENGTH}, TRIALS, 1));
+        }
+        assert_int_equal(ground[0]->entry_count, 1);
+        assert_in_range(ground[1]->entry_count, (size_t)(LENGTH / weld), (size_t)(1.5 * LENGTH / weld) + 1);
+        size_t pairs = 0;
+        for (size_t k = 0; k < TRIALS; k++) {
+            const double width = weld / 4 * (k % 3 ? random_between(&random, 0.1, 1) : 1);
+            const struct shape box = box_of(width, width / 2, k % 2 ? 0 : 0.1 * width);
+            const double tilt = random_below(&random, 4) ? random_log_between(&random, 1e-7, 0.1) : 0;
+            const double low = random_between(&random, -0.02, 0.02) * width, up = width / 4 + low;
+            const double along = random_between(&random, 0.6 - LENGTH / 2.0, LENGTH / 2.0 - 0.6);
+            struct body body = turned_body(angle - PI / 2 + (random_below(&random, 2) ? tilt : -tilt), 1);
+            body.x = up * cos(angle) - along * sin(angle);
+            body.y = up * sin(angle) + along * cos(angle);
+            narc_manifold row[2];
+            for (int cut = 0; cut < 2; cut++) {
+                struct scene *scene = &ground[cut]->scene;
+                body.shape = scene_add_shape(scene, &box);
+                scene->body_count = ground[cut]->entry_count;
+                scene_add_body(scene, body);
+                row[cut] = merge_one(scene, runs, ground[cut]->entry_count);
+            }
+            pairs += row[0].count == 2;
+            assert_int_equal(row[1].count, row[0].count);
+            assert_true(
+                hypot((double)(row[0].normal_x - row[1].normal_x), (double)(row[0].normal_y - row[1].normal_y)) < 1e-6);
+            for (uint32_t i = 0; i < row[0].count; i++) {
+                const narc_manifold_point *p = &row[0].point[i], *q = &row[1].point[i];
+                assert_true(fabs((double)(p->separation - q->separation)) < 1e-5);
+                assert_true(hypot((double)(p->x - q->x), (double)(p->y - q->y)) < 4e-5 * LENGTH);
+            }
+        }
+        assert_true(pairs > TRIALS / 2);
+        for (int cut = 0; cut < 2; cut++) {
+            destroy_scene(&ground[cut]->scene);
+            free(ground[cut]);
+        }
+    }
+}
+
 TEST_MAIN("ground")
