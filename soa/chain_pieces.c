@@ -71,6 +71,12 @@ static double find_distance(narc_point a, narc_point b) { return narc_hypot(a.x 
 
 static double find_length(const narc_chain_arc *arc) { return fabs(arc->radius * arc->turn); }
 
+/* The line before arc k, but no more than one part of it. */
+static double find_line(const narc_chain *chain, size_t k) {
+    return fmin(chain->weld,
+                find_distance(narc_find_chain_end(&chain->arcs[k - 1]), narc_find_chain_start(&chain->arcs[k])));
+}
+
 /* Puts a piece into the store. */
 static void put_entry(divider *d, narc_encoded_shape *encoded, narc_chain_entry entry) {
     narc_chain_division *out = d->out;
@@ -216,14 +222,13 @@ static narc_point extend_line(const narc_chain_arc *concave, narc_point from, na
     return (narc_point){end.x + over * (end.x - from.x), end.y + over * (end.y - from.y)};
 }
 
+/* The size of the arcs first .. last and the lines between them, and of as many more as it takes if all are one point. */
 static double find_reach(const narc_chain *chain, size_t first, size_t last) {
-    double reach = 0;
-    for (size_t k = first; k <= last; k++) {
-        reach = fmax(reach, find_length(&chain->arcs[k]));
-        if (k > first)
-            reach = fmax(reach, fmin(chain->weld, find_distance(narc_find_chain_end(&chain->arcs[k - 1]),
-                                                                narc_find_chain_start(&chain->arcs[k]))));
-    }
+    double reach = find_length(&chain->arcs[last]);
+    for (size_t k = last; k > 0 && (k > first || reach == 0); k--)
+        reach = fmax(reach, fmax(find_length(&chain->arcs[k - 1]), find_line(chain, k)));
+    for (size_t k = last + 1; k < chain->count && reach == 0; k++)
+        reach = fmax(find_length(&chain->arcs[k]), find_line(chain, k));
     return reach;
 }
 

@@ -311,6 +311,23 @@ TEST(divides_one_edge_and_valleys) {
     free(t.arcs);
 }
 
+/* A corner and a valley at one point, where a chain begins or ends or both: the corner has no size but its neighbours'. */
+TEST(divides_corners_beside_valleys) {
+    for (int ends = 1; ends < 4; ends++)
+        for (int first = -1; first < 2; first += 2) {
+            struct turtle t = create_turtle(1, 2, TEST_PI / 2);
+            for (int end = 1; end < 3; end++) {
+                walk_arc(&t, 0, ends & end ? 0.5 * first : 0);
+                if (ends & end)
+                    walk_arc(&t, 0, -0.7 * first);
+                if (end == 1)
+                    walk_line(&t, 3);
+            }
+            assert_in_range(check_division(t.arcs, t.count, NULL), 2, 5);
+            free(t.arcs);
+        }
+}
+
 TEST(welds_collinear_edges) {
     enum { EDGES = 10000 };
     struct turtle t = create_turtle(3, 1, 2);
