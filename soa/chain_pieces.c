@@ -31,8 +31,8 @@
 /* What the corners at the ends of a run turn by. */
 #define END_TURN 0x1p-10
 
-/* Most that the front of a piece turns by, but for seams. */
-#define MAX_TURN 1.9
+/* Most that the front of a piece turns by, but for what it shares with others. */
+#define MAX_TURN 1.7
 
 /* The far corners lie this many times the front's size away. */
 #define FAR 4.0
@@ -204,7 +204,8 @@ static void add_arc(divider *d, const narc_chain_arc *arc, double from, double t
         if (rest <= room && (d->piece.count < MAX_FRONT || is_last))
             break;
         const double cut = at + fmin(fmax(0, room), rest / (rest <= room ? 2 : 1));
-        const double end = fmin(cut + NARC_CHAIN_SEAM, to), begin = fmax(cut - NARC_CHAIN_SEAM, from);
+        const double seam = narc_find_seam(arc);
+        const double end = fmin(cut + seam, to), begin = fmax(cut - seam, fmax(at, from));
         put_arc(d, arc, at, end);
         end_piece(d, narc_find_chain_point(arc, end));
         open_piece(d, narc_find_chain_point(arc, begin), arc->start + begin, arc->number);
@@ -258,7 +259,7 @@ static void divide_run(divider *d, size_t first, size_t end) {
         sum += arcs[k].turn;
     if (sum == 0 && find_distance(from, to) <= narc_find_chain_room(begins, ends))
         return;
-    d->turn = sum / fmax(1, ceil(sum / MAX_TURN)) + 4 * NARC_CHAIN_SEAM;
+    d->turn = sum / fmax(1, ceil(sum / MAX_TURN)) + 3 * NARC_CORNER_SEAM;
     d->reach = find_reach(chain, before ? first - 1 : first, after ? end : end - 1);
     /* An arc goes on beyond the end itself, a line turns there by a corner, but at the bottom of a valley. */
     const double over = before && !has_line ? NARC_CHAIN_SEAM : 0,

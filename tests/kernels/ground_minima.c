@@ -299,7 +299,8 @@ static const char *check_row(const struct setting *setting, struct ground_search
 
 /* Do two rows tell of one contact, which merging should have made one? */
 static bool is_same(const struct reference_body *body, const struct told *one, const struct told *other) {
-    const double away = hypot(one->at.x - body->x, one->at.y - body->y);
+    const narc_point point = {(one->at.x + one->foot.x) / 2, (one->at.y + one->foot.y) / 2};
+    const double away = hypot(point.x - body->x, point.y - body->y);
     return hypot(one->normal_x - other->normal_x, one->normal_y - other->normal_y) < 0.9e-3 &&
            distance_between(one->at, other->at) < 0.9 / 4096 * away;
 }

@@ -235,7 +235,7 @@ TEST(divides_rings) {
     walk_arc(&shoe, 0, TEST_PI / 2);
     walk_line(&shoe, 1);
     walk_arc(&shoe, 0, TEST_PI / 2);
-    assert_int_equal(check_division(shoe.arcs, shoe.count, &ring), 7);
+    assert_int_equal(check_division(shoe.arcs, shoe.count, &ring), 8);
     free(shoe.arcs);
     struct turtle cave = create_turtle(-1, 0, 0); /* a round hole */
     walk_arc(&cave, 1, -TEST_PI);
