@@ -30,6 +30,7 @@ static narc_manifold get_row(const row_list *list, size_t k) {
                            .count = c->count,
                            .normal_x = c->normal_x,
                            .normal_y = c->normal_y,
+                           .radius_b = c->radius_b,
                            .point = {{c->point_x, c->point_y, c->separation, c->feature}}};
 }
 
@@ -131,8 +132,9 @@ static void compare_rows(row_list *list, size_t j, size_t k) {
         const bool is_better = is_flush ? !list->manifolds && other < one : other > one;
         drop_row(list, is_better ? j : k);
     } else if (has_same_normal(&a, &b, SAME_SEAM_NORMAL)) {
-        if (b.count <= a.count ? has_all_points(&b, &a) : has_all_points(&a, &b))
-            drop_row(list, b.count <= a.count ? k : j);
+        const bool is_better = b.count == a.count ? b.radius_b < 0 && !(a.radius_b < 0) : b.count > a.count;
+        if (is_better ? has_all_points(&a, &b) : has_all_points(&b, &a))
+            drop_row(list, is_better ? j : k);
     }
 }
 
