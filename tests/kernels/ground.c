@@ -914,4 +914,69 @@ TEST(test_cut_lines) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------ junctions */
+
+/* The separation next to -deep of a box with a corner that points against the normal, `deep` below the place `beside` a chain's
+ * arc's start, along the tangent there. */
+static double find_corner(struct ground *g, const uint32_t *runs, uint32_t box, double turn, size_t arc, double deep,
+                          double beside) {
+    struct pair pairs[ENTRIES];
+    const double normal = g->arcs[arc].start, c = cos(normal), s = sin(normal), half = 0.2;
+    const struct spot p = find_chain_point(&g->arcs[arc], normal);
+    struct body body = turned_body(normal - PI / 4 + turn, 1);
+    const double x = -half, y = -half, cosine = (double)body.cosine, sine = (double)body.sine;
+    body.x = p.x - deep * c - beside * s - (cosine * x - sine * y);
+    body.y = p.y - deep * s + beside * c - (sine * x + cosine * y);
+    body.shape = box;
+    g->scene.body_count = g->entry_count;
+    const uint32_t mover = scene_add_body(&g->scene, body);
+    for (uint32_t e = 0; e < g->entry_count; e++)
+        pairs[e] = (struct pair){mover, e};
+    const narc_pairs list = {.count = g->entry_count, .a = NARC_COLUMN(pairs, a), .b = NARC_COLUMN(pairs, b)};
+    const narc_bodies bodies = scene_bodies(&g->scene);
+    struct manifolds rows = find_manifolds(g->scene.store, &bodies, &list, &(narc_query){.margin = margin});
+    const size_t left = narc_merge_manifolds(&list, (narc_index_column){runs, sizeof *runs}, rows.rows, rows.count);
+    double best = INFINITY;
+    for (size_t k = 0; k < left; k++)
+        for (uint32_t i = 0; i < rows.rows[k].count; i++)
+            if (fabs((double)rows.rows[k].point[i].separation + deep) < fabs(best + deep))
+                best = (double)rows.rows[k].point[i].separation;
+    free(rows.rows);
+    return best;
+}
+
+/* A corner that is deep below where pieces meet, or next to that, is told of: at concave arcs by lines and by convex arcs,
+ * at the bottom of a valley, at a cut. */
+TEST(test_corners_below_junctions) {
+    struct test_random random = test_random_named("corners below junctions");
+    for (size_t round = 0; round < test_trials(20); round++) {
+        struct ground *g = malloc(sizeof *g);
+        static const uint32_t runs[ENTRIES] = {0, NARC_NO_RUN, 1, NARC_NO_RUN, 2};
+        begin_chain(g, 5, 0, PI / 2 + 0.3);
+        add_line(g, random_between(&random, 0.5, 2)); /* line, concave arc, convex arc, line, valley, line */
+        add_turn(g, -random_between(&random, 0.5, 3), -0.4);
+        add_turn(g, random_between(&random, 0.5, 2), 0.5);
+        add_line(g, random_between(&random, 0.5, 2));
+        add_turn(g, -0.0, -random_between(&random, 0.1, 0.6));
+        add_line(g, random_between(&random, 0.5, 2));
+        end_chain(g);
+        assert_true(place_chain(g, NULL, 2, 8));
+        assert_int_equal(g->entry_count, 5);
+        const struct shape shape = box_of(0.4, 0.4, 0);
+        const uint32_t box = scene_add_shape(&g->scene, &shape);
+        for (size_t trial = 0; trial < 300; trial++) {
+            const size_t arc = 1 + random_below(&random, 3);
+            const double deep = random_log_between(&random, 1e-4, 0.04), turn = random_between(&random, -0.5, 0.5);
+            const double beside =
+                random_below(&random, 3) ? random_log_between(&random, 1e-9, 1e-3) * deep * (trial % 2 ? 1 : -1) : 0;
+            const double found = find_corner(g, runs, box, turn, arc, deep, beside);
+            if (!(fabs(found + deep) < 1e-5))
+                fail_msg("round %zu: at arc %zu, %g deep, %g beside, turned by %g: %g", round, arc, deep, beside, turn,
+                         found);
+        }
+        destroy_scene(&g->scene);
+        free(g);
+    }
+}
+
 TEST_MAIN("ground")
