@@ -30,6 +30,7 @@ static narc_manifold get_row(const row_list *list, size_t k) {
                            .count = c->count,
                            .normal_x = c->normal_x,
                            .normal_y = c->normal_y,
+                           .radius_b = c->radius_b,
                            .point = {{c->point_x, c->point_y, c->separation, c->feature}}};
 }
 
@@ -103,13 +104,19 @@ static void join_rows(narc_manifold *a, const narc_manifold *b) {
     a->point[1] = is_one ? (narc_manifold_point){0, 0, 0, 0} : high;
 }
 
-/* Does what a row touches of the ground lie behind the tangent where another row touches it? */
-static bool is_behind(const narc_manifold *a, const narc_manifold *b) {
+/* Is what two rows touch of the ground convex from the one to the other: does either place lie behind the tangent of the
+ * other one, and does the normal turn with the way between both? A valley may be too shallow for the first to tell. */
+static bool is_convex(const narc_manifold *a, const narc_manifold *b) {
     const narc_manifold_point *p = &a->point[0], *q = &b->point[0];
     const float x = p->x + a->normal_x * p->separation / 2 - q->x - b->normal_x * q->separation / 2;
     const float y = p->y + a->normal_y * p->separation / 2 - q->y - b->normal_y * q->separation / 2;
-    const float reach = fmaxf(fabsf(p->x) + fabsf(p->y), fabsf(q->x) + fabsf(q->y));
-    return x * b->normal_x + y * b->normal_y >= -SAME_POINT * reach;
+    const float reach = fmaxf(fabsf(p->x) + fabsf(p->y), fabsf(q->x) + fabsf(q->y)), room = SAME_POINT * reach;
+    const float at_a = x * a->normal_x + y * a->normal_y, at_b = x * b->normal_x + y * b->normal_y;
+    const float turn_x = b->normal_x - a->normal_x, turn_y = b->normal_y - a->normal_y;
+    const bool turns_back =
+        at_b - at_a < 0 && 4 * (at_b - at_a) * (at_b - at_a) > (x * x + y * y) * (turn_x * turn_x + turn_y * turn_y);
+    return at_a <= room && at_b >= -room &&
+           (!turns_back || x * x + y * y <= room * room || has_same_normal(a, b, SAME_RUN_NORMAL));
 }
 
 /* Row k and row j before it: does one go? Of one run both stay where what they touch is not convex: a run that turns far
@@ -117,7 +124,7 @@ static bool is_behind(const narc_manifold *a, const narc_manifold *b) {
 static void compare_rows(row_list *list, size_t j, size_t k) {
     const narc_manifold a = get_row(list, j), b = get_row(list, k);
     const uint32_t run = find_run(list, b.pair);
-    if (run != NARC_NO_RUN && run == find_run(list, a.pair) && is_behind(&a, &b) && is_behind(&b, &a)) {
+    if (run != NARC_NO_RUN && run == find_run(list, a.pair) && is_convex(&a, &b)) {
         const bool is_flush = has_same_normal(&a, &b, SAME_RUN_NORMAL);
         const float one = find_separation(&a), other = find_separation(&b);
         if (is_flush && list->manifolds)
@@ -125,8 +132,9 @@ static void compare_rows(row_list *list, size_t j, size_t k) {
         const bool is_better = is_flush ? !list->manifolds && other < one : other > one;
         drop_row(list, is_better ? j : k);
     } else if (has_same_normal(&a, &b, SAME_SEAM_NORMAL)) {
-        if (b.count <= a.count ? has_all_points(&b, &a) : has_all_points(&a, &b))
-            drop_row(list, b.count <= a.count ? k : j);
+        const bool is_better = b.count == a.count ? b.radius_b < 0 && !(a.radius_b < 0) : b.count > a.count;
+        if (is_better ? has_all_points(&a, &b) : has_all_points(&b, &a))
+            drop_row(list, is_better ? j : k);
     }
 }
 

@@ -223,14 +223,16 @@ static const struct {
 enum { FORM_COUNT = sizeof forms / sizeof forms[0], CHAIN = FORM_COUNT, NO_FORM };
 
 /* What can be wrong with an arc of a chain by itself: normals turn with the sign of the radius, by less than a full
- * turn. Only a plain point has none. */
+ * turn, or if angles wrap by no more than half of one. Only a plain point turns by nothing. */
 static narc_status check_chain_arc(const narc_arc *arc, size_t index, narc_error *error) {
-    const double turn = arc->end - arc->start;
+    const double turn = arc->end - arc->start, onwards = signbit(arc->radius) ? -turn : turn;
+    const bool is_point = arc->radius == 0 && fabs(turn) <= NARC_TOLERANCE, wraps = onwards < 0;
+    const double most = wraps ? FULL_TURN / 2 + NARC_TOLERANCE : FULL_TURN;
     const double numbers[5] = {arc->center_x, arc->center_y, arc->radius, arc->start, arc->end};
     for (int k = 0; k < 5; k++)
         if (!isfinite(numbers[k]))
             return narc_fail(error, NARC_ERROR_NOT_FINITE, index, numbers[k], "arc %zu: a number is not finite", index);
-    if (turn == 0 ? arc->radius != 0 : (turn < 0) != (signbit(arc->radius) != 0) || fabs(turn) > FULL_TURN)
+    if (!is_point && (turn == 0 || onwards + (wraps ? FULL_TURN : 0) > most || onwards < -FULL_TURN))
         return narc_fail(error, NARC_ERROR_SWEEP, index, turn,
                          "arc %zu: from start to end it turns by %.9g, but its radius is %.9g", index, turn,
                          arc->radius);

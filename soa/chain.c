@@ -102,8 +102,8 @@ static size_t find_first(const narc_arc *arcs, size_t count, bool closed) {
 /* Cuts the first arc of a closed convex chain: its first part becomes the last arc. */
 static void cut_first(narc_chain *chain) {
     narc_chain_arc *first = &chain->arcs[0], *last = &chain->arcs[chain->count - 1];
-    const double cut = first->turn / 2, end = fmin(cut + NARC_CHAIN_SEAM, first->turn),
-                 begin = fmax(cut - NARC_CHAIN_SEAM, 0);
+    const double cut = first->turn / 2, seam = narc_find_seam(first);
+    const double end = fmin(cut + seam, first->turn), begin = fmax(cut - seam, 0);
     *last = *first;
     last->turn = end;
     first->start += begin;

@@ -11,6 +11,9 @@
  * of a body that lies along the tangent there has its normal on either side, by rounding. */
 #define NARC_CHAIN_SEAM 2e-5
 
+/* So far where a corner is cut: the nearer a point is to another one, the less is known of its direction from there. */
+#define NARC_CORNER_SEAM 0.05
+
 /* An arc of a chain. `turn` is signed: above 0 of a convex arc or corner, below 0 of a concave one, 0 for the open end
  * of an edge. The point at an angle is centre + radius * normal, with the radius's sign. */
 typedef struct narc_chain_arc {
@@ -26,6 +29,10 @@ typedef struct narc_chain {
     bool closed;
     double weld;
 } narc_chain;
+
+static inline double narc_find_seam(const narc_chain_arc *convex) {
+    return convex->radius > 0 ? NARC_CHAIN_SEAM : NARC_CORNER_SEAM;
+}
 
 /* The point of an arc, `turned` radians counter-clockwise from its start. */
 narc_point narc_find_chain_point(const narc_chain_arc *arc, double turned);

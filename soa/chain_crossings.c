@@ -15,6 +15,10 @@
  * many times their size. */
 #define NEAR_ENDS 1e-7
 
+/* What coordinates are off by, relative to them: some fifty roundings. Curves that are as near along a stretch lie on
+ * each other. */
+#define ROUNDING 1e-14
+
 /* A line from `from` to `to`, or with a radius above 0 an arc, counter-clockwise from the normal u to the normal v, with
  * its ends. */
 typedef struct curve {
@@ -90,10 +94,51 @@ static bool do_arcs_meet(const curve *a, const curve *b, double away) {
     return square >= 0 && has_common(a, b, foot, (narc_point){-along.y, along.x}, sqrt(square), away);
 }
 
+static double find_room(const curve *c) {
+    return ROUNDING * (fabs(c->from.x) + fabs(c->from.y) + fabs(c->to.x) + fabs(c->to.y) + c->radius);
+}
+
+/* Does a curve go through a point, but for `room`? */
+static bool holds(const curve *c, narc_point p, double room) {
+    const narc_point from = subtract(p, c->from), along = subtract(c->to, c->from), a = subtract(p, c->center);
+    const double length = sqrt(along.x * along.x + along.y * along.y), t = from.x * along.x + from.y * along.y;
+    if (c->radius > 0)
+        return fabs(sqrt(a.x * a.x + a.y * a.y) - c->radius) <= room && cross(c->u, a) >= -room &&
+               cross(a, c->v) >= -room;
+    return fabs(cross(along, from)) <= room * length && t >= -room * length && t <= (length + room) * length;
+}
+
+/* The middle of a curve between two of its points. */
+static narc_point find_middle(const curve *c, narc_point p, narc_point q) {
+    const narc_point d = subtract(q, p);
+    const double length = sqrt(d.x * d.x + d.y * d.y);
+    const double side = is_in_sector(c, (narc_point){d.y, -d.x}) ? c->radius / length : -c->radius / length;
+    return c->radius > 0 ? (narc_point){c->center.x + side * d.y, c->center.y - side * d.x}
+                         : (narc_point){(p.x + q.x) / 2, (p.y + q.y) / 2};
+}
+
+/* Do curves lie on each other, along a stretch longer than `away`? It begins and ends where one of them does. */
+static bool do_curves_coincide(const curve *a, const curve *b, double away) {
+    const narc_point ends[] = {a->from, a->to, b->from, b->to};
+    const double room = find_room(a) + find_room(b), least = fmax(away, 4 * room);
+    bool is_common_end[4];
+    for (int k = 0; k < 4; k++)
+        is_common_end[k] = holds(k < 2 ? b : a, ends[k], room);
+    for (int k = 0; k < 4; k++)
+        for (int i = 0; i < k; i++)
+            if (is_common_end[k] && is_common_end[i] &&
+                fmax(fabs(ends[k].x - ends[i].x), fabs(ends[k].y - ends[i].y)) > least &&
+                holds(b, find_middle(a, ends[k], ends[i]), room))
+                return true;
+    return false;
+}
+
 static bool do_curves_meet(const tree *t, size_t i, size_t j) {
     const curve *a = &t->curves[i], *b = &t->curves[j];
     const size_t apart = j - i, around = t->closed ? t->count - apart : apart;
     const double away = apart <= 2 || around <= 2 ? NEAR_ENDS * (measure(a) + measure(b)) : 0;
+    if (do_curves_coincide(a, b, away))
+        return true;
     if (a->radius > 0 && b->radius > 0)
         return do_arcs_meet(a, b, away);
     if (a->radius > 0 || b->radius > 0)
@@ -116,7 +161,8 @@ static narc_aabb find_box(const curve *c) {
             const double x = c->center.x + c->radius * axes[k].x, y = c->center.y + c->radius * axes[k].y;
             box = join(box, (narc_aabb){x, y, x, y});
         }
-    return box;
+    const double room = find_room(c);
+    return (narc_aabb){box.min_x - room, box.min_y - room, box.max_x + room, box.max_y + room};
 }
 
 /* The curves first .. end - 1 are below a node; its halves are split so that the depth is the logarithm of the count. */
@@ -188,8 +234,11 @@ static void collect_curves(const narc_chain *chain, tree *t) {
             if (fmax(fabs(to.x - from.x), fabs(to.y - from.y)) > narc_find_chain_room(arc - 1, arc))
                 t->curves[t->count++] = (curve){.from = from, .to = to, .number = arc->number};
         }
-        if (arc->radius != 0 && !(chain->closed && !is_convex && k + 1 == chain->count))
-            t->curves[t->count++] = make_arc(arc);
+        narc_chain_arc part = *arc;
+        if (chain->closed && k + 1 == chain->count) /* up to where the first one begins */
+            part.turn = is_convex ? narc_wrap_angle(chain->arcs[0].start - arc->start) : 0;
+        if (arc->radius != 0 && part.turn != 0)
+            t->curves[t->count++] = make_arc(&part);
     }
 }
 

@@ -18,16 +18,32 @@
 #include "error.h"
 #include "outline.h"
 
-/* How far parts of a cut straight line reach beyond the cut, relative to the longest straight part; and edges beyond the
- * bottom of a valley, relative to their length. */
-#define LINE_SEAM   0x1p-14
-#define VALLEY_SEAM 0x1p-16
+/* What two parts of a cut straight line have in common, relative to the longest part: a body that is no wider along the
+ * line lies on one of them with all that it touches there. */
+#define LINE_OVERLAP 0.25
+
+/* What the number of a line's parts may be rounded by: then they are longer than `weld`, by as much. */
+#define PART_ROOM 1e-9
 
 /* What the corners at the ends of a run turn by. */
 #define END_TURN 0x1p-10
 
-/* Most that the front of a piece turns by, but for seams. */
-#define MAX_TURN 1.9
+/* A body that is d deep, and less than d times END_TURN from the end of a run, may have its greatest gap beyond that, and
+ * then no contact here. So pieces have that much in common, and no more than merging takes for one. A run reaches beyond
+ * where it meets a concave arc by this many times the length of its line or the radius of its arc, and of the concave one,
+ * whose rows merging prefers; these reach beyond their ends by less. */
+#define END_SEAM     1e-4
+#define CONCAVE_SEAM 5e-6
+
+/* The bottom of a valley turns further, as does what is right below it; lines reach beyond it by their roundings alone. */
+#define VALLEY_TURN 0.99e-3
+#define VALLEY_SEAM 0x1p-16
+
+/* How large the bottom of a valley is, relative to what is around. */
+#define VALLEY_SIZE 0x1p-16
+
+/* Most that the front of a piece turns by, but for what it shares with others. */
+#define MAX_TURN 1.7
 
 /* The far corners lie this many times the front's size away. */
 #define FAR 4.0
@@ -65,6 +81,12 @@ static narc_point move(narc_point from, double angle, double length) {
 static double find_distance(narc_point a, narc_point b) { return narc_hypot(a.x - b.x, a.y - b.y); }
 
 static double find_length(const narc_chain_arc *arc) { return fabs(arc->radius * arc->turn); }
+
+/* The line before arc k, but no more than one part of it. */
+static double find_line(const narc_chain *chain, size_t k) {
+    return fmin(chain->weld,
+                find_distance(narc_find_chain_end(&chain->arcs[k - 1]), narc_find_chain_start(&chain->arcs[k])));
+}
 
 /* Puts a piece into the store. */
 static void put_entry(divider *d, narc_encoded_shape *encoded, narc_chain_entry entry) {
@@ -161,19 +183,18 @@ static void end_piece(divider *d, narc_point end) {
                                      .arc_count = (uint32_t)p->count});
 }
 
-/* A straight line to `to`, cut if it is too long. */
+/* A straight line to `to`, cut into parts of one length if it is too long. */
 static void add_line(divider *d, narc_point from, narc_point to, uint32_t next) {
-    const double length = find_distance(from, to), weld = d->chain->weld;
-    const double parts = ceil(length / weld * (1 - 4 * LINE_SEAM));
+    const double length = find_distance(from, to), weld = d->chain->weld, common = LINE_OVERLAP * weld;
+    const double parts = fmax(1, ceil((length - common) / (weld - common) - PART_ROOM)); /* 1 if weld is infinite */
     if (!((double)d->out->count + parts <= NARC_MAX_SHAPES))
         d->status = narc_fail(d->error, NARC_ERROR_COUNT, next, parts, "arc %lu: the edge before it has %g parts",
                               (unsigned long)next, parts);
-    const double step_x = (to.x - from.x) / length, step_y = (to.y - from.y) / length, over = LINE_SEAM * weld;
+    const double step_x = (to.x - from.x) / length, step_y = (to.y - from.y) / length;
     for (double k = 1; k < parts && d->status == NARC_OK; k++) {
-        const double at = length * (k / parts);
-        end_piece(d, (narc_point){from.x + step_x * (at + over), from.y + step_y * (at + over)});
-        open_piece(d, (narc_point){from.x + step_x * (at - over), from.y + step_y * (at - over)}, d->piece.end_angle,
-                   next);
+        const double at = (length - common) * (k / parts), end = at + common;
+        end_piece(d, (narc_point){from.x + step_x * end, from.y + step_y * end});
+        open_piece(d, (narc_point){from.x + step_x * at, from.y + step_y * at}, d->piece.end_angle, next);
     }
 }
 
@@ -194,7 +215,8 @@ static void add_arc(divider *d, const narc_chain_arc *arc, double from, double t
         if (rest <= room && (d->piece.count < MAX_FRONT || is_last))
             break;
         const double cut = at + fmin(fmax(0, room), rest / (rest <= room ? 2 : 1));
-        const double end = fmin(cut + NARC_CHAIN_SEAM, to), begin = fmax(cut - NARC_CHAIN_SEAM, from);
+        const double seam = narc_find_seam(arc);
+        const double end = fmin(cut + seam, to), begin = fmax(cut - seam, fmax(at, from));
         put_arc(d, arc, at, end);
         end_piece(d, narc_find_chain_point(arc, end));
         open_piece(d, narc_find_chain_point(arc, begin), arc->start + begin, arc->number);
@@ -203,23 +225,26 @@ static void add_arc(divider *d, const narc_chain_arc *arc, double from, double t
     put_arc(d, arc, at, to);
 }
 
-/* Where a run ends that meets the concave arc `concave` at `end`, if a line leads there from `from`: beyond the bottom of
- * a valley. */
+/* Where a run ends that meets the concave arc `concave` at `end`, if a line leads there from `from`. */
 static narc_point extend_line(const narc_chain_arc *concave, narc_point from, narc_point end, double weld) {
-    const double length = find_distance(from, end), over = VALLEY_SEAM * fmin(length, weld) / length;
-    if (concave->radius != 0)
-        return end;
+    const double length = find_distance(from, end), part = fmin(length, weld);
+    const double over = (concave->radius != 0 ? END_SEAM * fmin(part, -concave->radius) : VALLEY_SEAM * part) / length;
     return (narc_point){end.x + over * (end.x - from.x), end.y + over * (end.y - from.y)};
 }
 
+/* How far, in radians, a run's last arc goes on where it meets a concave one. */
+static double extend_arc(const narc_chain_arc *concave, const narc_chain_arc *arc) {
+    return concave->radius != 0 && -concave->radius < arc->radius ? END_SEAM * (-concave->radius / arc->radius)
+                                                                  : END_SEAM;
+}
+
+/* The size of the arcs first .. last and the lines between them, and of as many more as it takes if all are one point. */
 static double find_reach(const narc_chain *chain, size_t first, size_t last) {
-    double reach = 0;
-    for (size_t k = first; k <= last; k++) {
-        reach = fmax(reach, find_length(&chain->arcs[k]));
-        if (k > first)
-            reach = fmax(reach, fmin(chain->weld, find_distance(narc_find_chain_end(&chain->arcs[k - 1]),
-                                                                narc_find_chain_start(&chain->arcs[k]))));
-    }
+    double reach = find_length(&chain->arcs[last]);
+    for (size_t k = last; k > 0 && (k > first || reach == 0); k--)
+        reach = fmax(reach, fmax(find_length(&chain->arcs[k - 1]), find_line(chain, k)));
+    for (size_t k = last + 1; k < chain->count && reach == 0; k++)
+        reach = fmax(find_length(&chain->arcs[k]), find_line(chain, k));
     return reach;
 }
 
@@ -249,11 +274,11 @@ static void divide_run(divider *d, size_t first, size_t end) {
         sum += arcs[k].turn;
     if (sum == 0 && find_distance(from, to) <= narc_find_chain_room(begins, ends))
         return;
-    d->turn = sum / fmax(1, ceil(sum / MAX_TURN)) + 4 * NARC_CHAIN_SEAM;
+    d->turn = sum / fmax(1, ceil(sum / MAX_TURN)) + 3 * NARC_CORNER_SEAM;
     d->reach = find_reach(chain, before ? first - 1 : first, after ? end : end - 1);
-    /* An arc goes on beyond the end itself, a line turns there by a corner, but at the bottom of a valley. */
-    const double over = before && !has_line ? NARC_CHAIN_SEAM : 0,
-                 end_over = after && !has_end_line ? NARC_CHAIN_SEAM : 0;
+    /* An arc goes on beyond the end itself; a line turns there by a corner, too, but at the bottom of a valley. */
+    const double over = before && !has_line ? extend_arc(before, begins) : 0,
+                 end_over = after && !has_end_line ? extend_arc(after, ends) : 0;
     const bool has_corner = has_line && before->radius != 0, has_end_corner = has_end_line && after->radius != 0;
     if (over > 0)
         from = narc_find_chain_point(begins, -over);
@@ -290,15 +315,16 @@ static void divide_concave(divider *d, size_t k) {
     const bool has_before = k > 0 || chain->closed, has_after = k + 1 < chain->count;
     const double parts = ceil(-arc->turn / 2);
     const double near = find_reach(chain, k > 0 ? k - 1 : 0, has_after ? k + 1 : k);
+    const double seam = arc->radius != 0 ? CONCAVE_SEAM : VALLEY_TURN;
     for (double part = 0; part < parts && d->status == NARC_OK; part++) {
-        const double high = arc->turn * (part / parts) + (part > 0 || has_before ? NARC_CHAIN_SEAM : 0);
-        const double low = arc->turn * ((part + 1) / parts) - (part + 1 < parts || has_after ? NARC_CHAIN_SEAM : 0);
+        const double high = arc->turn * (part / parts) + (part > 0 || has_before ? seam : 0);
+        const double low = arc->turn * ((part + 1) / parts) - (part + 1 < parts || has_after ? seam : 0);
         const narc_point start = narc_find_chain_point(arc, low), end = narc_find_chain_point(arc, high);
         const narc_point middle = {(start.x + end.x) / 2, (start.y + end.y) / 2};
         const narc_arc own = {arc->x - middle.x, arc->y - middle.y, arc->radius, arc->start + low, arc->start + high};
         narc_encoded_shape encoded;
         narc_error reason = {.status = NARC_OK};
-        const narc_status status = narc_encode_concave(&own, VALLEY_SEAM * near, &encoded, &reason);
+        const narc_status status = narc_encode_concave(&own, VALLEY_SIZE * near, &encoded, &reason);
         if (status != NARC_OK)
             fail_piece(d, status, arc->number, &reason);
         else

@@ -69,7 +69,10 @@ typedef struct narc_chain_entry {
 /* Adds a chain of `count` arcs (1 .. 2^30), in their order, to a store. The entries, in the order of the chain (of a
  * closed one from any place), go to `out_entries`, which has room for `capacity`, their number to `out_count`. Each
  * entry is a use of its shape, which narc_remove_shape() gives back.
- *   Plain points within a straight line vanish. Edges longer than `weld` are divided.
+ *   Plain points within a straight line vanish. Straight lines longer than `weld` are divided into parts of one length,
+ * of which two that follow each other have a quarter of `weld` in common. So a body that touches no wider a stretch of
+ * the line has all of its contact, both points, on one part. Of a wider one that lies across such a stretch, tilted by
+ * 1e-6 rad or more, the deeper side's contact alone is told.
  *   Errors, with the arc's number in error->index: NARC_ERROR_ARGUMENT (NULL; options that are negative or no numbers),
  * NARC_ERROR_COUNT, NARC_ERROR_NOT_FINITE, NARC_ERROR_RADIUS (a concave arc tighter than `least_radius`; an arc flatter
  * than NARC_MAX_RADIUS_RATIO allows, of a concave one relative to four times half of its chord),

@@ -119,6 +119,22 @@ TEST(keeps_sides_that_face_each_other) {
     assert_int_equal(merge(&rows, runs), 2);
 }
 
+/* Of a closed outline with one valley both sides are of one run, however shallow the valley is. A hill as shallow is
+ * convex: there the greater separation is that of all. */
+TEST(keeps_both_sides_of_a_shallow_valley) {
+    const uint32_t runs[MOST] = {4, 4};
+    for (int hill = 0; hill < 2; hill++)
+        for (double turn = 3e-4; turn < 1; turn *= 3)
+            for (double apart = 1e-3; apart < 0.5; apart *= 3) {
+                const double side = hill ? -turn / 2 : turn / 2, fall = apart / 2 * sin(turn / 2);
+                const float height = (float)(hill ? -1 - fall : -1 + fall), half = (float)(apart / 2);
+                struct rows rows = {.count = 0};
+                add_row(&rows, 7, 0, down - side, 1, (const float[][3]){{-half, height, -0.01f}});
+                add_row(&rows, 7, 1, down + side, 1, (const float[][3]){{half, height, -0.02f}});
+                assert_int_equal(merge(&rows, runs), hill ? 1 : 2);
+            }
+}
+
 /* Seams between a run and concave arcs: one row of points that are told twice, wherever the larger one stands. */
 TEST(drops_points_that_are_told_twice) {
     const uint32_t runs[MOST] = {4, NARC_NO_RUN, NARC_NO_RUN, 5};

@@ -161,8 +161,9 @@ TEST(keeps_chains) {
                                   : k % 3 == 1 ? 1 + random_unit(&random)
                                                : -0.0;
             const double start = 6 * random_unit(&random), turn = k % 7 == 0 && radius == 0 ? 0 : random_unit(&random);
+            const double wrapped = k % 4 == 0 && turn > 0 ? turn - 6.283185307179586 : turn; /* through +-pi */
             arcs[k] = (narc_arc){random_unit(&random), k % 5 ? -0.0 : 1, radius, start,
-                                 start + (signbit(radius) ? -turn : turn)};
+                                 start + (signbit(radius) ? -wrapped : wrapped)};
         }
         const narc_named_shape shapes[] = {
             {"open", arcs, ARCS, {1, 2}, 0, NARC_FORM_OPEN_CHAIN},

@@ -842,4 +842,141 @@ TEST(test_valley) {
     free(g);
 }
 
+/* ------------------------------------------------------------------------------------------------ cut lines */
+
+static narc_manifold merge_one(const struct scene *scene, const uint32_t *runs, size_t entries) {
+    struct pair pairs[ENTRIES];
+    for (uint32_t e = 0; e < entries; e++)
+        pairs[e] = (struct pair){(uint32_t)entries, e};
+    const narc_pairs list = {.count = entries, .a = NARC_COLUMN(pairs, a), .b = NARC_COLUMN(pairs, b)};
+    const narc_bodies bodies = scene_bodies(scene);
+    struct manifolds rows = find_manifolds(scene->store, &bodies, &list, &(narc_query){.margin = margin});
+    const size_t left = narc_merge_manifolds(&list, (narc_index_column){runs, sizeof *runs}, rows.rows, rows.count);
+    if (left != 1)
+        fail_msg("%zu rows of %zu", left, rows.count);
+    const narc_manifold row = rows.rows[0];
+    free(rows.rows);
+    return row;
+}
+
+/* A box as wide as a quarter of `weld`, or less, has the same manifold on a line that is cut as on one that is not,
+ * wherever it lies and however little it is tilted. */
+TEST(test_cut_lines) {
+    struct test_random random = test_random_named("cut lines");
+    enum { TRIALS = 2000, LENGTH = 12 };
+    static const uint32_t runs[ENTRIES] = {0};
+    for (size_t round = 0; round < test_trials(4); round++) {
+        struct ground *ground[2];
+        const double angle = round % 4 ? random_between(&random, 0, 2 * PI) : PI / 2;
+        const double weld = random_between(&random, 0.5, 3);
+        for (int cut = 0; cut < 2; cut++) {
+            ground[cut] = malloc(sizeof *ground[cut]);
+            begin_chain(ground[cut], LENGTH / 2.0 * sin(angle), -LENGTH / 2.0 * cos(angle), angle);
+            add_line(ground[cut], LENGTH);
+            end_chain(ground[cut]);
+            assert_true(place_chain(ground[cut], &(narc_chain_options){.weld = cut ? weld : LENGTH}, TRIALS, 1));
+        }
+        assert_int_equal(ground[0]->entry_count, 1);
+        assert_in_range(ground[1]->entry_count, (size_t)(LENGTH / weld), (size_t)(1.5 * LENGTH / weld) + 1);
+        size_t pairs = 0;
+        for (size_t k = 0; k < TRIALS; k++) {
+            const double width = weld / 4 * (k % 3 ? random_between(&random, 0.1, 1) : 1);
+            const struct shape box = box_of(width, width / 2, k % 2 ? 0 : 0.1 * width);
+            const double tilt = random_below(&random, 4) ? random_log_between(&random, 1e-7, 0.1) : 0;
+            const double low = random_between(&random, -0.02, 0.02) * width, up = width / 4 + low;
+            const double along = random_between(&random, 0.6 - LENGTH / 2.0, LENGTH / 2.0 - 0.6);
+            struct body body = turned_body(angle - PI / 2 + (random_below(&random, 2) ? tilt : -tilt), 1);
+            body.x = up * cos(angle) - along * sin(angle);
+            body.y = up * sin(angle) + along * cos(angle);
+            narc_manifold row[2];
+            for (int cut = 0; cut < 2; cut++) {
+                struct scene *scene = &ground[cut]->scene;
+                body.shape = scene_add_shape(scene, &box);
+                scene->body_count = ground[cut]->entry_count;
+                scene_add_body(scene, body);
+                row[cut] = merge_one(scene, runs, ground[cut]->entry_count);
+            }
+            pairs += row[0].count == 2;
+            assert_int_equal(row[1].count, row[0].count);
+            assert_true(
+                hypot((double)(row[0].normal_x - row[1].normal_x), (double)(row[0].normal_y - row[1].normal_y)) < 1e-6);
+            for (uint32_t i = 0; i < row[0].count; i++) {
+                const narc_manifold_point *p = &row[0].point[i], *q = &row[1].point[i];
+                assert_true(fabs((double)(p->separation - q->separation)) < 1e-5);
+                assert_true(hypot((double)(p->x - q->x), (double)(p->y - q->y)) < 4e-5 * LENGTH);
+            }
+        }
+        assert_true(pairs > TRIALS / 2);
+        for (int cut = 0; cut < 2; cut++) {
+            destroy_scene(&ground[cut]->scene);
+            free(ground[cut]);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ junctions */
+
+/* The separation next to -deep of a box with a corner that points against the normal, `deep` below the place `beside` a chain's
+ * arc's start, along the tangent there. */
+static double find_corner(struct ground *g, const uint32_t *runs, uint32_t box, double turn, size_t arc, double deep,
+                          double beside) {
+    struct pair pairs[ENTRIES];
+    const double normal = g->arcs[arc].start, c = cos(normal), s = sin(normal), half = 0.2;
+    const struct spot p = find_chain_point(&g->arcs[arc], normal);
+    struct body body = turned_body(normal - PI / 4 + turn, 1);
+    const double x = -half, y = -half, cosine = (double)body.cosine, sine = (double)body.sine;
+    body.x = p.x - deep * c - beside * s - (cosine * x - sine * y);
+    body.y = p.y - deep * s + beside * c - (sine * x + cosine * y);
+    body.shape = box;
+    g->scene.body_count = g->entry_count;
+    const uint32_t mover = scene_add_body(&g->scene, body);
+    for (uint32_t e = 0; e < g->entry_count; e++)
+        pairs[e] = (struct pair){mover, e};
+    const narc_pairs list = {.count = g->entry_count, .a = NARC_COLUMN(pairs, a), .b = NARC_COLUMN(pairs, b)};
+    const narc_bodies bodies = scene_bodies(&g->scene);
+    struct manifolds rows = find_manifolds(g->scene.store, &bodies, &list, &(narc_query){.margin = margin});
+    const size_t left = narc_merge_manifolds(&list, (narc_index_column){runs, sizeof *runs}, rows.rows, rows.count);
+    double best = INFINITY;
+    for (size_t k = 0; k < left; k++)
+        for (uint32_t i = 0; i < rows.rows[k].count; i++)
+            if (fabs((double)rows.rows[k].point[i].separation + deep) < fabs(best + deep))
+                best = (double)rows.rows[k].point[i].separation;
+    free(rows.rows);
+    return best;
+}
+
+/* A corner that is deep below where pieces meet, or next to that, is told of: at concave arcs by lines and by convex arcs,
+ * at the bottom of a valley, at a cut. */
+TEST(test_corners_below_junctions) {
+    struct test_random random = test_random_named("corners below junctions");
+    for (size_t round = 0; round < test_trials(20); round++) {
+        struct ground *g = malloc(sizeof *g);
+        static const uint32_t runs[ENTRIES] = {0, NARC_NO_RUN, 1, NARC_NO_RUN, 2};
+        begin_chain(g, 5, 0, PI / 2 + 0.3);
+        add_line(g, random_between(&random, 0.5, 2)); /* line, concave arc, convex arc, line, valley, line */
+        add_turn(g, -random_between(&random, 0.5, 3), -0.4);
+        add_turn(g, random_between(&random, 0.5, 2), 0.5);
+        add_line(g, random_between(&random, 0.5, 2));
+        add_turn(g, -0.0, -random_between(&random, 0.1, 0.6));
+        add_line(g, random_between(&random, 0.5, 2));
+        end_chain(g);
+        assert_true(place_chain(g, NULL, 2, 8));
+        assert_int_equal(g->entry_count, 5);
+        const struct shape shape = box_of(0.4, 0.4, 0);
+        const uint32_t box = scene_add_shape(&g->scene, &shape);
+        for (size_t trial = 0; trial < 300; trial++) {
+            const size_t arc = 1 + random_below(&random, 3);
+            const double deep = random_log_between(&random, 1e-4, 0.04), turn = random_between(&random, -0.5, 0.5);
+            const double beside =
+                random_below(&random, 3) ? random_log_between(&random, 1e-9, 1e-3) * deep * (trial % 2 ? 1 : -1) : 0;
+            const double found = find_corner(g, runs, box, turn, arc, deep, beside);
+            if (!(fabs(found + deep) < 1e-5))
+                fail_msg("round %zu: at arc %zu, %g deep, %g beside, turned by %g: %g", round, arc, deep, beside, turn,
+                         found);
+        }
+        destroy_scene(&g->scene);
+        free(g);
+    }
+}
+
 TEST_MAIN("ground")

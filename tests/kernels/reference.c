@@ -248,7 +248,7 @@ TEST(test_ground_of_shapes) {
         const struct reference_body a = pose_shape(&below, &still), b = pose_shape(&above, &body);
         const double gap = reference_find_gap(&a, &b).gap;
         struct ground_minimum minima[GROUND_MINIMA];
-        struct ground_search *search = search_ground(ground, &b, 1, 0.01);
+        struct ground_search *search = search_ground(ground, &b, 1, 0.01, 1);
         const size_t count = ground_minima(search, 1e-9, minima);
         if (count != 1 || fabs(minima[0].foot.distance - gap) > bound)
             fail_msg("%zu minima, the first one %.12g, gap %.12g", count, minima[0].foot.distance, gap);
@@ -268,7 +268,7 @@ TEST(test_ground_under_discs) {
         const struct body body = ride_chain(&random, &chain, &disc, 0.1);
         const struct reference_body posed = pose_shape(&disc, &body);
         struct ground *ground = make_ground(&chain);
-        struct ground_search *search = search_ground(ground, &posed, 0.5, 0.2 * fmin(chain_grain(&chain), 0.1));
+        struct ground_search *search = search_ground(ground, &posed, 0.5, 0.02, 0.2);
         const double middle = ground_distance(ground, (narc_point){body.x, body.y}).distance;
         const double radius = disc.arcs[0].radius * hypot(posed.cosine, posed.sine);
         struct ground_minimum minima[GROUND_MINIMA];

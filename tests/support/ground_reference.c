@@ -8,6 +8,7 @@
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -18,19 +19,26 @@ static const double end_tolerance = 1e-12;
 static const double doubt = 1e-3;
 
 /* An edge from one point to another, or an arc that turns by at most `widest`: its sector from the normal `low`
- * counter-clockwise to `high`. */
+ * counter-clockwise to `high`. All of it is within `half` of `middle`. */
 struct piece {
     bool is_edge, is_concave;
-    narc_point from, to;
-    narc_point center, low, high;
-    double radius, room; /* what rounding leaves between pieces */
+    narc_point from, to, along; /* an edge's direction, of length 1 */
+    narc_point center, low, high, middle;
+    double radius, length, half, room; /* what rounding leaves between pieces */
+    double size;                       /* of all of its arc or edge; INFINITY if that is next to a point */
 };
+
+/* Most halvings of a stretch of the outline, and two. */
+enum { DEPTH = 64 };
+
+/* Arcs and edges that are no longer are points to the search. */
+static const double point_size = 1e-3;
 
 static const double widest = 2;
 
 struct ground {
     struct piece *pieces;
-    size_t count;
+    size_t count, last; /* that which was nearest is looked at first */
     bool open;
     narc_point ends[2];
 };
@@ -44,6 +52,13 @@ static narc_point on_arc(const narc_arc *arc, double angle) {
     return (narc_point){arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle)};
 }
 
+static void add_piece(struct ground *ground, struct piece piece) {
+    const narc_point chord = minus(piece.to, piece.from);
+    piece.middle = (narc_point){(piece.from.x + piece.to.x) / 2, (piece.from.y + piece.to.y) / 2};
+    piece.half = length_of(chord) / 2 + 4 * piece.room;
+    ground->pieces[ground->count++] = piece;
+}
+
 static void add_arc(struct ground *ground, const narc_arc *arc) {
     const bool concave = signbit(arc->radius);
     const double sweep = arc->end - arc->start;
@@ -55,10 +70,11 @@ static void add_arc(struct ground *ground, const narc_arc *arc) {
         piece.from = on_arc(arc, low);
         piece.to = on_arc(arc, high);
         piece.radius = fabs(arc->radius);
+        piece.size = fabs(arc->radius * sweep) > point_size ? fabs(arc->radius * sweep) : INFINITY;
         piece.room = end_tolerance * (1 + fabs(piece.from.x) + fabs(piece.from.y) + piece.radius);
         piece.low = concave ? (narc_point){cos(high), sin(high)} : (narc_point){cos(low), sin(low)};
         piece.high = concave ? (narc_point){cos(low), sin(low)} : (narc_point){cos(high), sin(high)};
-        ground->pieces[ground->count++] = piece;
+        add_piece(ground, piece);
     }
 }
 
@@ -72,11 +88,13 @@ struct ground *make_ground(const struct chain *chain) {
         const narc_arc *arc = &chain->arcs[k], *before = k ? arc - 1 : &chain->arcs[chain->count - 1];
         struct piece edge = {.is_edge = true, .from = on_arc(before, before->end), .to = on_arc(arc, arc->start)};
         const narc_point along = minus(edge.to, edge.from);
-        const double length = length_of(along);
+        edge.length = length_of(along);
+        edge.size = edge.length > point_size ? edge.length : INFINITY;
         edge.room = end_tolerance * (1 + fabs(edge.from.x) + fabs(edge.from.y) + fabs(arc->radius));
-        edge.low = (narc_point){along.y / length, -along.x / length};
-        if ((k || chain->closed) && length > edge.room)
-            ground->pieces[ground->count++] = edge;
+        edge.along = (narc_point){along.x / edge.length, along.y / edge.length};
+        edge.low = (narc_point){edge.along.y, -edge.along.x};
+        if ((k || chain->closed) && edge.length > edge.room)
+            add_piece(ground, edge);
         add_arc(ground, arc);
     }
     return ground;
@@ -89,12 +107,12 @@ void destroy_ground(struct ground *ground) {
 
 static bool find_foot(const struct piece *piece, narc_point point, struct ground_foot *out) {
     if (piece->is_edge) {
-        const narc_point along = minus(piece->to, piece->from), from = minus(point, piece->from);
-        const double length = length_of(along), t = dot(along, from) / (length * length);
-        if (t * length < -piece->room || (t - 1) * length > piece->room)
+        const narc_point from = minus(point, piece->from);
+        const double t = dot(piece->along, from);
+        if (t < -piece->room || t - piece->length > piece->room)
             return false;
         *out = (struct ground_foot){dot(piece->low, from),
-                                    {piece->from.x + t * along.x, piece->from.y + t * along.y},
+                                    {piece->from.x + t * piece->along.x, piece->from.y + t * piece->along.y},
                                     piece->low.x,
                                     piece->low.y};
         return true;
@@ -119,11 +137,18 @@ static double end_distance(const struct ground *ground, narc_point point) {
                         : INFINITY;
 }
 
-struct ground_foot ground_distance(const struct ground *ground, narc_point point) {
+struct ground_foot ground_distance(struct ground *ground, narc_point point) {
     struct ground_foot nearest = {.distance = INFINITY}, foot;
-    for (size_t k = 0; k < ground->count; k++)
-        if (find_foot(&ground->pieces[k], point, &foot) && fabs(foot.distance) < fabs(nearest.distance))
+    (void)(ground->last < ground->count && find_foot(&ground->pieces[ground->last], point, &nearest));
+    for (size_t k = 0; k < ground->count; k++) {
+        const narc_point away = minus(point, ground->pieces[k].middle);
+        const double reach = fabs(nearest.distance) + ground->pieces[k].half;
+        if (dot(away, away) <= reach * reach && find_foot(&ground->pieces[k], point, &foot) &&
+            fabs(foot.distance) < fabs(nearest.distance)) {
             nearest = foot;
+            ground->last = k;
+        }
+    }
     if (end_distance(ground, point) < fabs(nearest.distance) * (1 - end_tolerance))
         nearest.distance = INFINITY;
     return nearest;
@@ -164,10 +189,10 @@ struct sample {
 };
 
 struct ground_search {
-    struct ground near; /* the pieces that any point of the body may be next to */
+    struct ground near; /* the pieces that any point of the body may be next to; behind them there is room for others */
     struct stretch stretches[2 * NARC_MAX_ARCS];
     size_t stretch_count;
-    double perimeter, size, margin, step;
+    double perimeter, size, margin, step, part;
     narc_point inner; /* in the body */
     struct sample *samples;
     size_t count, capacity;
@@ -215,7 +240,7 @@ static narc_point point_at(const struct ground_search *search, double along) {
                         stretch->center.y + stretch->radius * sin(angle)};
 }
 
-static double distance_at(const struct ground_search *search, double along) {
+static double distance_at(struct ground_search *search, double along) {
     return ground_distance(&search->near, point_at(search, along)).distance;
 }
 
@@ -228,46 +253,60 @@ static void add_sample(struct ground_search *search, double along, double distan
     search->samples[search->count++] = (struct sample){along, distance};
 }
 
-/* Samples from `from` up to but without `to`, a step apart but where all is further than the margin: no distance changes
- * by more than the way. */
-static void add_samples(struct ground_search *search, double from, double to) {
-    const double middle = (from + to) / 2, half = (to - from) / 2, distance = distance_at(search, middle);
-    if (2 * half <= search->step) {
-        add_sample(search, from, distance_at(search, from));
-        add_sample(search, middle, distance);
-        return;
-    }
-    if (isfinite(distance) && distance - half > search->margin) {
-        add_sample(search, middle, distance);
-        return;
-    }
-    add_samples(search, from, middle);
-    add_samples(search, middle, to);
-}
-
 /* How far a point is from a piece. */
 static double piece_distance(const struct piece *piece, narc_point point) {
     struct ground_foot foot;
-    const double ends = fmin(length_of(minus(point, piece->from)), length_of(minus(point, piece->to)));
+    const narc_point from = minus(point, piece->from), to = minus(point, piece->to);
+    const double ends = sqrt(fmin(dot(from, from), dot(to, to)));
     return find_foot(piece, point, &foot) ? fmin(fabs(foot.distance), ends) : ends;
 }
 
-/* A piece that is nearest to a point of the body is no further from the middle than the piece next to that, and twice
- * the way between both. */
-static void choose_pieces(struct ground_search *search, const struct ground *ground, narc_point middle, double radius) {
+/* Those pieces, in `out`, that a point within `radius` of `middle` may be next to. Such a one is no further from the
+ * middle than the piece next to that, and twice the way between both. */
+static struct ground choose_pieces(const struct ground *ground, narc_point middle, double radius, struct piece *out) {
+    struct ground chosen = *ground;
     double least = INFINITY;
-    for (size_t k = 0; k < ground->count; k++)
-        least = fmin(least, piece_distance(&ground->pieces[k], middle));
-    search->near = *ground;
-    search->near.pieces = malloc((ground->count + 1) * sizeof *ground->pieces);
-    search->near.count = 0;
-    for (size_t k = 0; k < ground->count; k++)
-        if (piece_distance(&ground->pieces[k], middle) <= least + 2.001 * radius)
-            search->near.pieces[search->near.count++] = ground->pieces[k];
+    chosen.pieces = out;
+    chosen.count = chosen.last = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t k = 0; k < ground->count; k++) {
+            const narc_point away = minus(middle, ground->pieces[k].middle);
+            const double limit = pass ? least + 2.001 * radius : least, reach = limit + ground->pieces[k].half;
+            if (!(dot(away, away) <= reach * reach))
+                continue;
+            const double distance = piece_distance(&ground->pieces[k], middle);
+            least = fmin(least, distance);
+            if (pass && distance <= limit)
+                out[chosen.count++] = ground->pieces[k];
+        }
+    return chosen;
+}
+
+/* Samples from `from` up to but without `to`, of which pieces of `above` are next to all: a step apart, less beside small
+ * pieces, but where all is further than the margin. No distance changes by more than the way. Behind `room` is memory. */
+static void add_samples(struct ground_search *search, const struct ground *above, struct piece *room, double from,
+                        double to) {
+    const double along = (from + to) / 2, half = (to - from) / 2;
+    const narc_point middle = point_at(search, along);
+    struct ground near = choose_pieces(above, middle, half, room);
+    const double distance = ground_distance(&near, middle).distance;
+    double step = search->step;
+    for (size_t k = 0; k < near.count; k++)
+        step = fmin(step, near.pieces[k].size * search->part);
+    assert(room + near.count <= search->near.pieces + DEPTH * search->near.count);
+    if (2 * half <= step) {
+        add_sample(search, from, ground_distance(&near, point_at(search, from)).distance);
+        add_sample(search, along, distance);
+    } else if (isfinite(distance) && distance - half > search->margin) {
+        add_sample(search, along, distance);
+    } else {
+        add_samples(search, &near, room + near.count, from, along);
+        add_samples(search, &near, room + near.count, along, to);
+    }
 }
 
 struct ground_search *search_ground(const struct ground *ground, const struct reference_body *body, double margin,
-                                    double step) {
+                                    double step, double part) {
     struct ground_search *search = calloc(1, sizeof *search);
     narc_circle inner = {0, 0, 0}, around = {0, 0, 0};
     narc_compute_inscribed_circle(body->arcs, body->count, &inner);
@@ -278,11 +317,17 @@ struct ground_search *search_ground(const struct ground *ground, const struct re
     search->size = around.radius * hypot(c, s);
     search->margin = margin;
     search->step = step;
+    search->part = part;
     walk_outline(search, body);
-    choose_pieces(search, ground, middle, search->size);
+    struct piece *near = malloc((ground->count + 1) * sizeof *near);
+    search->near = choose_pieces(ground, middle, search->size, near);
+    search->near.pieces = malloc(DEPTH * (search->near.count + 1) * sizeof *near);
+    memcpy(search->near.pieces, near, search->near.count * sizeof *near);
+    free(near);
     for (size_t k = 0; k < search->stretch_count; k++) {
         const struct stretch *stretch = &search->stretches[k];
-        add_samples(search, stretch->start, stretch->start + stretch->length);
+        add_samples(search, &search->near, search->near.pieces + search->near.count, stretch->start,
+                    stretch->start + stretch->length);
     }
     return search;
 }
@@ -303,7 +348,7 @@ static struct sample sample_at(const struct ground_search *search, size_t k) {
 }
 
 /* Golden-section search between two samples beside a least one. */
-static double descend(const struct ground_search *search, double low, double high) {
+static double descend(struct ground_search *search, double low, double high) {
     const double ratio = 0.618033988749894848;
     double left = high - ratio * (high - low), right = low + ratio * (high - low);
     double at_left = distance_at(search, left), at_right = distance_at(search, right);
@@ -326,7 +371,7 @@ static double descend(const struct ground_search *search, double low, double hig
 }
 
 /* Is another piece as near, with another normal, so that the distance has no gradient, or an open end? */
-static bool is_doubtful(const struct ground_search *search, const struct ground_minimum *minimum) {
+static bool is_doubtful(struct ground_search *search, const struct ground_minimum *minimum) {
     const struct ground_foot *nearest = &minimum->foot;
     const double tolerance = doubt * search->size, distance = fabs(nearest->distance);
     struct ground_foot foot;
@@ -340,7 +385,7 @@ static bool is_doubtful(const struct ground_search *search, const struct ground_
 }
 
 /* The refined minimum beside sample k, if it is one over the body: going inwards, the distance rises. */
-static bool refine(const struct ground_search *search, size_t k, struct ground_minimum *out) {
+static bool refine(struct ground_search *search, size_t k, struct ground_minimum *out) {
     const struct sample before = sample_at(search, k + search->count - 1),
                         after = sample_at(search, k + search->count + 1);
     const struct sample here = sample_at(search, k + search->count);
@@ -356,7 +401,7 @@ static bool refine(const struct ground_search *search, size_t k, struct ground_m
 }
 
 /* The highest sample between two places, going counter-clockwise. */
-static double highest_between(const struct ground_search *search, double from, double to) {
+static double highest_between(struct ground_search *search, double from, double to) {
     double highest = fmax(distance_at(search, from), distance_at(search, to));
     to += to < from ? search->perimeter : 0;
     for (size_t k = 0; k < 2 * search->count; k++) {
@@ -367,11 +412,11 @@ static double highest_between(const struct ground_search *search, double from, d
     return highest;
 }
 
-double ground_barrier(const struct ground_search *search, double from, double to) {
+double ground_barrier(struct ground_search *search, double from, double to) {
     return fmin(highest_between(search, from, to), highest_between(search, to, from));
 }
 
-double ground_least(const struct ground_search *search, double along, double reach) {
+double ground_least(struct ground_search *search, double along, double reach) {
     enum { STEPS = 64 };
     double least = INFINITY;
     for (int k = -STEPS; k <= STEPS; k++)
@@ -380,8 +425,7 @@ double ground_least(const struct ground_search *search, double along, double rea
 }
 
 /* Merges neighbours that nothing separates, and measures what separates the others. */
-static size_t merge_minima(const struct ground_search *search, double noise, struct ground_minimum *minima,
-                           size_t count) {
+static size_t merge_minima(struct ground_search *search, double noise, struct ground_minimum *minima, size_t count) {
     for (size_t k = 0; count > 1 && k < count;) {
         const size_t next = (k + 1) % count;
         const double wall = highest_between(search, minima[k].along, minima[next].along);
@@ -401,7 +445,7 @@ static size_t merge_minima(const struct ground_search *search, double noise, str
     return count;
 }
 
-size_t ground_minima(const struct ground_search *search, double noise, struct ground_minimum *out) {
+size_t ground_minima(struct ground_search *search, double noise, struct ground_minimum *out) {
     size_t count = 0;
     for (size_t k = 0; k < search->count; k++) {
         const double here = sample_at(search, k).distance;

@@ -31,7 +31,7 @@ void destroy_ground(struct ground *ground);
 
 /* The nearest of all feet, which is the signed distance of the ground. Where an open end is nearer than all feet there
  * is no such distance: +INFINITY. */
-struct ground_foot ground_distance(const struct ground *ground, narc_point point);
+struct ground_foot ground_distance(struct ground *ground, narc_point point);
 
 /* All feet of a point, nearest first, at most `capacity`. */
 size_t ground_feet(const struct ground *ground, narc_point point, struct ground_foot *out, size_t capacity);
@@ -52,24 +52,25 @@ struct ground_minimum {
 
 enum { GROUND_MINIMA = 64 };
 
-/* The search of one body: make, ask, destroy. */
+/* The search of one body: make, ask, destroy. It looks at places that are `step` apart, or that part of the smallest piece
+ * that may be next to them. */
 struct ground_search;
 struct ground_search *search_ground(const struct ground *ground, const struct reference_body *body, double margin,
-                                    double step);
+                                    double step, double part);
 void destroy_search(struct ground_search *search);
 
-/* Minima below the margin, in their order along the outline. Fewer than `step` apart they may be taken for one, and
+/* Minima below the margin, in their order along the outline. Fewer than that apart they may be taken for one, and
  * those that the distance rises between by less than `noise` are one: that with the least distance. At most
  * GROUND_MINIMA. */
-size_t ground_minima(const struct ground_search *search, double noise, struct ground_minimum *out);
+size_t ground_minima(struct ground_search *search, double noise, struct ground_minimum *out);
 
 /* The point of the outline next to a point: its place there, and how far it is. */
 double ground_project(const struct ground_search *search, narc_point point, double *out_distance);
 
 /* How high the distance rises on the way along the outline between two places, the lower of both ways. */
-double ground_barrier(const struct ground_search *search, double from, double to);
+double ground_barrier(struct ground_search *search, double from, double to);
 
 /* The least distance along the outline within `reach` of a place. */
-double ground_least(const struct ground_search *search, double along, double reach);
+double ground_least(struct ground_search *search, double along, double reach);
 
 #endif
