@@ -196,6 +196,22 @@ struct expected {
     bool is_doubtful;              /* something is too close to call */
 };
 
+/* How wide a body is along a direction of the world. */
+static double find_width(const struct reference_body *b, double x, double y) {
+    const double own_x = b->cosine * x + b->sine * y, own_y = b->cosine * y - b->sine * x;
+    narc_point most, least;
+    assert_true(narc_find_support(b->arcs, b->count, own_x, own_y, &most, NULL) &&
+                narc_find_support(b->arcs, b->count, -own_x, -own_y, &least, NULL));
+    return b->scale * ((most.x - least.x) * own_x + (most.y - least.y) * own_y);
+}
+
+/* A body that is no piece, and the only one of its pair, is to reach the surface: else what is told is behind it. */
+static bool reaches(const struct reference_body *body, double separation, struct spot n, bool *out_doubtful) {
+    const double width = find_width(body, n.x, n.y);
+    *out_doubtful = *out_doubtful || fabs(separation + width) < 2e-5 + 0.002 * width;
+    return separation > -width;
+}
+
 /* A place of the outline, 0 .. SAMPLES - 1 in each piece: dense at its ends, where a maximum can be as shallow as
  * may be. */
 static double find_sample(int k) {
@@ -257,7 +273,8 @@ static void expect_concave(const struct reference_body *piece, const struct refe
         out->is_doubtful = out->is_doubtful || far < 0.02 || fabs(off - half) < 2e-5 || fabs(separation - limit) < 2e-5;
         if (off <= half && separation < -radius * sin(half)) /* perhaps outside of the circle around the arc */
             out->is_doubtful = true;
-        if (off > half || separation >= limit || (run && !lies_on_front(o, peak)))
+        if (off > half || separation >= limit || (run && !lies_on_front(o, peak)) ||
+            (!run && !reaches(body, separation, (struct spot){n_x, n_y}, &out->is_doubtful)))
             continue;
         out->separation[out->count] = separation;
         out->normal[out->count++] = (struct spot){n_x, n_y};
@@ -306,9 +323,11 @@ static struct expected find_expected(const struct scene *scene, struct pair pair
     out.is_doubtful = fabs(gap.gap - limit) < 2e-5;
     const bool front_a = !run_a || is_in_front(&a, &b, &gap, 1, &out.is_doubtful);
     const bool front_b = !run_b || is_in_front(&a, &b, &gap, -1, &out.is_doubtful);
-    if (gap.gap < limit && front_a && front_b) {
+    const struct spot normal = {gap.normal_x, gap.normal_y};
+    const bool reached = run_a == run_b || reaches(run_a ? &b : &a, gap.gap, normal, &out.is_doubtful);
+    if (gap.gap < limit && front_a && front_b && reached) {
         out.separation[out.count] = gap.gap;
-        out.normal[out.count++] = (struct spot){gap.normal_x, gap.normal_y};
+        out.normal[out.count++] = normal;
     }
     return out;
 }
@@ -562,6 +581,59 @@ TEST(test_country) {
         free(g);
     }
     assert_true(several > 0 && rows > 0);
+}
+
+/* A closed strip that is thinner than bodies: straight, or an arch, turned anyhow. */
+static void make_strip(struct test_random *random, struct ground *g, bool is_arch, size_t bodies, size_t pairs) {
+    const double thickness = random_log_between(random, 0.02, 0.2), length = random_between(random, 1, 4);
+    const double radius = random_between(random, 1, 4), turn = random_between(random, 1, 3);
+    begin_chain(g, random_between(random, -1, 1), random_between(random, -1, 1), random_between(random, -PI, PI));
+    if (is_arch)
+        add_turn(g, radius + thickness, turn);
+    else
+        add_line(g, length);
+    add_turn(g, 0, PI / 2);
+    add_line(g, thickness);
+    add_turn(g, 0, PI / 2);
+    if (is_arch)
+        add_turn(g, -radius, -turn);
+    else
+        add_line(g, length);
+    add_turn(g, 0, PI / 2);
+    add_line(g, thickness);
+    add_turn(g, 0, PI / 2);
+    assert_true(place_chain(g, &(narc_chain_options){.closed = 1}, bodies, pairs));
+}
+
+/* Behind thin ground nothing is told by what faces away, in every form. */
+TEST(test_thin_ground) {
+    struct test_random random = test_random_named("thin ground");
+    size_t unreached = 0;
+    for (size_t round = 0; round < test_trials(24); round++) {
+        struct ground *g = malloc(sizeof *g);
+        make_strip(&random, g, round % 2, 60, (size_t)ENTRIES * 60);
+        add_movers(&random, g, 60);
+        struct contacts right = ask(g, &(narc_query){.margin = margin});
+        (void)check_rows(g, &right);
+        check_forms(g, &right);
+        check_manifolds(g, &right);
+        check_formula(g, &right);
+        for (uint32_t k = 0; k < g->scene.pair_count; k++) {
+            const struct pair pair = g->scene.pairs[k];
+            const struct reference_body a = scene_reference(&g->scene, pair.a), b = scene_reference(&g->scene, pair.b);
+            const bool run_a = is_run(&g->scene, pair.a), run_b = is_run(&g->scene, pair.b);
+            bool doubtful = false;
+            if (is_concave(&a) || is_concave(&b) || run_a == run_b)
+                continue;
+            const struct reference_gap gap = reference_find_gap(&a, &b);
+            unreached += is_in_front(&a, &b, &gap, run_a ? 1 : -1, &doubtful) &&
+                         !reaches(run_a ? &b : &a, gap.gap, (struct spot){gap.normal_x, gap.normal_y}, &doubtful);
+        }
+        free(right.rows);
+        destroy_scene(&g->scene);
+        free(g);
+    }
+    assert_true(unreached > 0);
 }
 
 /* The place of a chain's arc at a normal. */
