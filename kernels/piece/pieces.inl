@@ -38,17 +38,17 @@ INLINE const narc_shape_header *find_header(const narc_batch *batch, const narc_
  * `n`: in A's frame. */
 NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, int k, vm which, vf separation, vec2 n) {
     const narc_batch *const batch = call->batch;
-    const vec2 rotation = get_vec2(queue, ROTATION, k);
-    const vec2 of_b = v2_rotate((vec2){rotation.x, v_neg(rotation.y)}, n);
+    const vec2 rotation = get_vec2(queue, ROTATION, k), position = get_vec2(queue, POSITION, k);
+    const vec2 normal[2] = {n, v2_unrotate(rotation, n)}, way[2] = {position, v2_unrotate_opposite(rotation, position)};
     int32_t pair[V_WIDTH];
-    float x[2][V_WIDTH], y[2][V_WIDTH], scale[2][V_WIDTH], depth[V_WIDTH], unreached[V_WIDTH] = {0};
+    float field[2][5][V_WIDTH], depth[V_WIDTH], unreached[V_WIDTH] = {0};
+    for (int side = 0; side < 2; side++) {
+        const vf fields[5] = {get(queue, side ? SCALE_B : SCALE_A, k), normal[side].x, normal[side].y, way[side].x,
+                              way[side].y};
+        for (int f = 0; f < 5; f++)
+            v_store(field[side][f], fields[f]);
+    }
     get_pairs(queue, k, pair);
-    v_store(x[0], n.x);
-    v_store(y[0], n.y);
-    v_store(x[1], of_b.x);
-    v_store(y[1], of_b.y);
-    v_store(scale[0], get(queue, SCALE_A, k));
-    v_store(scale[1], get(queue, SCALE_B, k));
     v_store(depth, separation);
     for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
         const int l = FIND_LOWEST(lanes);
@@ -57,8 +57,13 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
         for (int side = 0; side < 2; side++) {
             const narc_shape_header *const header =
                 find_header(batch, side ? batch->b : batch->a, side ? batch->pairs->b : batch->pairs->a, number);
-            touching[side] = (narc_toucher){header, narc_arcs_of(batch->shapes, header), (double)scale[side][l],
-                                            (double)x[side][l], (double)y[side][l]};
+            touching[side] = (narc_toucher){header,
+                                            narc_arcs_of(batch->shapes, header),
+                                            (double)field[side][0][l],
+                                            (double)field[side][1][l],
+                                            (double)field[side][2][l],
+                                            (double)field[side][3][l],
+                                            (double)field[side][4][l]};
         }
         unreached[l] = narc_is_reached(&touching[0], &touching[1], (double)depth[l]) ? 0 : 1;
     }
