@@ -61,10 +61,6 @@ typedef struct narc_toucher {
     double scale, x, y, other_x, other_y;
 } narc_toucher;
 
-static inline bool narc_is_concave(const narc_shape_header *header) {
-    return NARC_PIECES && (header->first_arc & NARC_PIECE_CONCAVE) != 0;
-}
-
 /* How large a piece is: of a concave arc its chord, of a run half the way to its first far corner, which is twice what its
  * front reaches from its middle (chain_pieces.c). */
 static inline double narc_find_piece_size(const narc_toucher *t) {

@@ -205,10 +205,37 @@ static double find_width(const struct reference_body *b, double x, double y) {
     return b->scale * ((most.x - least.x) * own_x + (most.y - least.y) * own_y);
 }
 
-/* A body that is no piece, and the only one of its pair, is to reach the surface: else what is told is behind it. */
-static bool reaches(const struct reference_body *body, double separation, struct spot n, bool *out_doubtful) {
+/* Does a piece's outline, of a run its front, meet a body? Or nearly so. */
+static bool meets(const struct reference_body *piece, const struct reference_body *body) {
+    const bool run = !is_concave(piece);
+    double least = INFINITY;
+    for (size_t k = run ? 1 : 0; run ? k + 5 <= piece->count : k < 1; k++) {
+        const narc_arc *arc = &piece->arcs[k], *before = k > 0 ? arc - 1 : arc;
+        const double from_x = before->center_x + before->radius * cos(before->end),
+                     from_y = before->center_y + before->radius * sin(before->end),
+                     to_x = arc->center_x + arc->radius * cos(arc->start),
+                     to_y = arc->center_y + arc->radius * sin(arc->start);
+        for (int i = 0; i <= SAMPLES; i++) {
+            const double part = (double)i / SAMPLES, angle = arc->start + part * (arc->end - arc->start);
+            const struct spot p = place_point(piece, from_x + part * (to_x - from_x), from_y + part * (to_y - from_y));
+            const struct spot q =
+                place_point(piece, arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle));
+            if (run)
+                least = fmin(least, reference_point_distance(body, p.x - body->x, p.y - body->y));
+            if (!run || k + 5 < piece->count)
+                least = fmin(least, reference_point_distance(body, q.x - body->x, q.y - body->y));
+        }
+    }
+    return least < 0;
+}
+
+/* A body that is no piece, and the only one of its pair, is to reach the surface: else what is told is behind it. What
+ * meets the next piece alone may be told of or not. */
+static bool reaches(const struct reference_body *piece, const struct reference_body *body, double separation,
+                    struct spot n, bool *out_doubtful) {
     const double width = find_width(body, n.x, n.y);
-    *out_doubtful = *out_doubtful || fabs(separation + width) < 2e-5 + 0.002 * width;
+    *out_doubtful = *out_doubtful || fabs(separation + width) < 2e-5 + 0.002 * width ||
+                    (separation < 0 && separation > -width && !meets(piece, body));
     return separation > -width;
 }
 
@@ -274,7 +301,7 @@ static void expect_concave(const struct reference_body *piece, const struct refe
         if (off <= half && separation < -radius * sin(half)) /* perhaps outside of the circle around the arc */
             out->is_doubtful = true;
         if (off > half || separation >= limit || (run && !lies_on_front(o, peak)) ||
-            (!run && !reaches(body, separation, (struct spot){n_x, n_y}, &out->is_doubtful)))
+            (!run && !reaches(piece, body, separation, (struct spot){n_x, n_y}, &out->is_doubtful)))
             continue;
         out->separation[out->count] = separation;
         out->normal[out->count++] = (struct spot){n_x, n_y};
@@ -324,7 +351,7 @@ static struct expected find_expected(const struct scene *scene, struct pair pair
     const bool front_a = !run_a || is_in_front(&a, &b, &gap, 1, &out.is_doubtful);
     const bool front_b = !run_b || is_in_front(&a, &b, &gap, -1, &out.is_doubtful);
     const struct spot normal = {gap.normal_x, gap.normal_y};
-    const bool reached = run_a == run_b || reaches(run_a ? &b : &a, gap.gap, normal, &out.is_doubtful);
+    const bool reached = run_a == run_b || reaches(run_a ? &a : &b, run_a ? &b : &a, gap.gap, normal, &out.is_doubtful);
     if (gap.gap < limit && front_a && front_b && reached) {
         out.separation[out.count] = gap.gap;
         out.normal[out.count++] = normal;
@@ -342,8 +369,9 @@ static struct contacts ask(const struct ground *g, const narc_query *query) {
     return out;
 }
 
-/* Checks all rows of a query with `margin` against the reference. Returns how many pairs have several. */
-static size_t check_rows(const struct ground *g, const struct contacts *rows) {
+/* Checks all rows of a query with `margin` against the reference. Returns how many pairs have several. Of so many pairs at
+ * most the reference may not be sure. */
+static size_t check_rows(const struct ground *g, const struct contacts *rows, size_t most_doubts) {
     const struct scene *scene = &g->scene;
     size_t row = 0, doubts = 0, several = 0;
     for (uint32_t k = 0; k < scene->pair_count; k++) {
@@ -384,7 +412,7 @@ static size_t check_rows(const struct ground *g, const struct contacts *rows) {
         row += count;
     }
     assert_int_equal(row, rows->count);
-    if (20 * doubts > scene->pair_count)
+    if (doubts > most_doubts)
         fail_msg("%zu of %zu pairs are doubtful", doubts, scene->pair_count);
     return several;
 }
@@ -571,7 +599,7 @@ TEST(test_country) {
         }
         add_movers(&random, g, 60);
         struct contacts right = ask(g, &(narc_query){.margin = margin});
-        several += check_rows(g, &right);
+        several += check_rows(g, &right, g->scene.pair_count / 20);
         rows += right.count;
         check_forms(g, &right);
         check_manifolds(g, &right);
@@ -614,7 +642,7 @@ TEST(test_thin_ground) {
         make_strip(&random, g, round % 2, 60, (size_t)ENTRIES * 60);
         add_movers(&random, g, 60);
         struct contacts right = ask(g, &(narc_query){.margin = margin});
-        (void)check_rows(g, &right);
+        (void)check_rows(g, &right, g->scene.pair_count / 3);
         check_forms(g, &right);
         check_manifolds(g, &right);
         check_formula(g, &right);
@@ -627,7 +655,8 @@ TEST(test_thin_ground) {
                 continue;
             const struct reference_gap gap = reference_find_gap(&a, &b);
             unreached += is_in_front(&a, &b, &gap, run_a ? 1 : -1, &doubtful) &&
-                         !reaches(run_a ? &b : &a, gap.gap, (struct spot){gap.normal_x, gap.normal_y}, &doubtful);
+                         !reaches(run_a ? &a : &b, run_a ? &b : &a, gap.gap, (struct spot){gap.normal_x, gap.normal_y},
+                                  &doubtful);
         }
         free(right.rows);
         destroy_scene(&g->scene);
