@@ -12,7 +12,7 @@ include(CheckCSourceCompiles)
 
 set(NARC_KERNEL_SOURCES)
 foreach(file sat/overlap sat/contact broad/boxes broad/sweep pose parts scene/rays scene/regions scene/points scene/casts
-    scene/concave_casts scene/fit table)
+    scene/piece_casts scene/fit table)
   list(APPEND NARC_KERNEL_SOURCES "${PROJECT_SOURCE_DIR}/kernels/${file}.c")
 endforeach()
 

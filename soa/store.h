@@ -87,6 +87,10 @@ static inline bool narc_is_piece(const narc_shape_header *header) {
     return NARC_PIECES && (header->first_arc & NARC_PIECE_MARKS) != 0;
 }
 
+static inline bool narc_is_concave(const narc_shape_header *header) {
+    return NARC_PIECES && (header->first_arc & NARC_PIECE_CONCAVE) != 0;
+}
+
 /* The upper half of a shape's flags is the class of its extent, from 2^(5 class - 32) up to 32 times that, the last one
  * open: up to 2^48 all that NARC_MAX_BOUND_RADIUS lets through. A straight part shorter than 2^(5 class - 47), between
  * 2^-20 and 2^-15 of the extent, is no edge: it is what centres and radii lost when they were stored, 2^-22 of the

@@ -176,32 +176,42 @@ static void load_pair(const narc_cast_job *job, struct slots *slots, size_t slot
     slots->hint[slot] = 0;
 }
 
+/* The shape of a side. */
+static const narc_shape_header *find_header(const narc_cast_job *job, const struct slots *slots, size_t slot,
+                                            int side) {
+    return &job->batch->shapes->headers[slots->casts.side[side].shape[slot]];
+}
+
+/* Is there a concave arc? Such pairs are cast one by one. */
 static bool has_concave_arc(const narc_cast_job *job, const struct slots *slots, size_t slot) {
-    const narc_shape_header *const headers = job->batch->shapes->headers;
-    const struct narc_cast_side *const side = slots->casts.side;
-    return NARC_PIECES && ((headers[side[0].shape[slot]].first_arc | headers[side[1].shape[slot]].first_arc) &
-                           NARC_PIECE_CONCAVE) != 0;
+    return narc_is_concave(find_header(job, slots, slot, 0)) || narc_is_concave(find_header(job, slots, slot, 1));
 }
 
-/* These are cast one by one. */
-static void cast_concave(const narc_cast_job *job, struct slots *slots, size_t slot) {
-    int outcome = NARC_CAST_MISS;
+/* Casts a pair alone, from where it is. */
+static int cast_alone(const narc_cast_job *job, struct slots *slots, size_t slot) {
 #if NARC_PIECES
-    outcome = job->kernels->concave(job->batch->shapes, &slots->casts, slot);
+    return job->kernels->piece(job->batch->shapes, &slots->casts, slot);
+#else
+    (void)job, (void)slots, (void)slot;
+    return NARC_CAST_MISS;
 #endif
-    if (outcome == NARC_CAST_MISS)
-        write_miss(job, slots->pair[slot]);
-    else
-        write_row(job, slots, slot, outcome);
 }
 
-/* Does what touches belong to a run's closure? */
-static bool is_behind(const narc_cast_job *job, const struct slots *slots, size_t slot) {
-    const narc_shape_header *const headers = job->batch->shapes->headers;
-    const struct narc_cast_side *const side = slots->casts.side;
-    const unsigned feature = slots->casts.contact[slot].feature;
-    return !narc_touches(&headers[side[0].shape[slot]], feature & 0xff) ||
-           !narc_touches(&headers[side[1].shape[slot]], feature >> 8);
+/* Is what touches a piece's front for certain? Else it may be a run's closure, or behind a piece: where it has been from
+ * the start, or is to be so deep. */
+static bool is_in_front(const narc_cast_job *job, const struct slots *slots, size_t slot) {
+    const narc_shape_header *const a = find_header(job, slots, slot, 0), *const b = find_header(job, slots, slot, 1);
+    const narc_contact *const c = &slots->casts.contact[slot];
+    const bool starts = !(slots->casts.time[slot] > 0), deep = c->separation < 0 && (starts || job->target < 0);
+    return narc_touches(a, c->feature & 0xff) && narc_touches(b, c->feature >> 8) &&
+           !(deep && (narc_is_piece(a) || narc_is_piece(b)));
+}
+
+static void end_pair(const narc_cast_job *job, const struct slots *slots, size_t slot, int outcome) {
+    if (outcome == NARC_CAST_HIT || outcome == NARC_CAST_UNFINISHED)
+        write_row(job, slots, slot, outcome);
+    else
+        write_miss(job, slots->pair[slot]);
 }
 
 static const narc_kernel_table *choose_kernels(const narc_cast_job *job, size_t count) {
@@ -222,7 +232,7 @@ static size_t begin_pairs(const narc_cast_job *job, struct slots *slots, size_t 
             const int outcome = slots->casts.outcome[slot];
             *skipped += outcome == NARC_CAST_BROKEN;
             if (outcome == NARC_CAST_GOES_ON && has_concave_arc(job, slots, slot))
-                cast_concave(job, slots, slot);
+                end_pair(job, slots, slot, cast_alone(job, slots, slot));
             else if (outcome != NARC_CAST_GOES_ON || is_late(job, slots->pair[slot], slots->casts.time[slot]))
                 write_miss(job, slots->pair[slot]);
             else if (slots->count++ < slot)
@@ -245,18 +255,13 @@ static void advance_pairs(const narc_cast_job *job, struct slots *slots, size_t 
     for (size_t slot = slots->count; slot-- > 0;) {
         const narc_casts *const c = &slots->casts;
         const bool broken = c->contact[slot].count == 0;
-        const bool behind = pieces && c->outcome[slot] == NARC_CAST_HIT && is_behind(job, slots, slot);
-        /* What turns may come out again, and meet the front. */
-        const int closed = c->turning[slot] > 0 ? NARC_CAST_UNFINISHED : NARC_CAST_MISS;
-        const int outcome = broken ? NARC_CAST_MISS : behind ? closed : c->outcome[slot];
+        const bool goes_alone = pieces && c->outcome[slot] == NARC_CAST_HIT && !is_in_front(job, slots, slot);
+        const int outcome = broken ? NARC_CAST_MISS : goes_alone ? cast_alone(job, slots, slot) : c->outcome[slot];
         const size_t pair = slots->pair[slot];
         *skipped += broken;
         if (outcome == NARC_CAST_GOES_ON && !is_late(job, pair, c->back[slot] >= 0 ? c->back[slot] : c->time[slot]))
             continue;
-        if (outcome == NARC_CAST_HIT || outcome == NARC_CAST_UNFINISHED)
-            write_row(job, slots, slot, outcome);
-        else
-            write_miss(job, pair);
+        end_pair(job, slots, slot, outcome);
         if (--slots->count > slot)
             move_slot(slots, slots->count, slot);
     }

@@ -210,12 +210,14 @@ INLINE size_t end_rows(const struct call *call) {
 }
 
 /* Of the pairs k ... of a queue in the lanes `keep`, those that touch with what may touch: all but with the back of a
- * run. */
-INLINE vm keep_fronts(const struct call *call, const struct queue *queue, int k, vm keep, vi feature_a, vi feature_b) {
+ * run, or from behind a piece. */
+INLINE vm keep_fronts(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n,
+                      vi feature_a, vi feature_b) {
     if (!NARC_PIECES || LIKELY(!call->pieces))
         return keep;
-    return vm_and(
-        keep, vm_and(is_front(get_bits(queue, INFO_A, k), feature_a), is_front(get_bits(queue, INFO_B, k), feature_b)));
+    const vm front =
+        vm_and(is_front(get_bits(queue, INFO_A, k), feature_a), is_front(get_bits(queue, INFO_B, k), feature_b));
+    return keep_reached(call, queue, k, vm_and(keep, front), separation, n);
 }
 
 /* Writes the rows of the pairs k ... of a queue in the lanes `keep`. Returns those that have one. */
@@ -223,8 +225,8 @@ INLINE vm store_rows(const struct call *call, const struct queue *queue, int k, 
                      const struct feature *on_a, const struct feature *on_b) {
     const struct answer answer = find_answer(call, queue, k, separation, n, on_a, on_b);
     const vi pairs = get_bits(queue, PAIR, k);
-    const vm kept =
-        keep_fronts(call, queue, k, keep, vi_and(answer.feature, vi_set(0xff)), vi_shift_right(answer.feature, 8));
+    const vm kept = keep_fronts(call, queue, k, keep, separation, n, vi_and(answer.feature, vi_set(0xff)),
+                                vi_shift_right(answer.feature, 8));
     char *place[V_WIDTH];
     find_places(call, pairs, kept, place);
     write_answers(call, place, find_numbers(call, pairs), &answer);

@@ -166,7 +166,7 @@ NOINLINE void put_piece_heights(const narc_shapes *shapes, const int32_t shape[V
             is_piece[l] = narc_is_piece(header) ? 1 : 0;
             support[l] = 0;
             if (is_piece[l] > 0)
-                support[l] = (float)(narc_find_piece_height(header, narc_arcs_of(shapes, header), (double)x[l],
+                support[l] = (float)(narc_find_front_height(header, narc_arcs_of(shapes, header), (double)x[l],
                                                             (double)y[l], &size) +
                                      (double)HEIGHT_ROOM * size);
         }

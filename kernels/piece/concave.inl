@@ -184,7 +184,11 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
         const vm front = is_front(info, find_arc_number(vi_add(body_base, arc), first_record, info));
         const vm real = vm_not(vm_and(beside, v_lt(gap.separation, v_set(0))));
         const vm counts = vm_and(vm_and(exists, front), vm_and(touch, real));
-        const vm keep = vm_and(counts, is_below(gap.separation, margin));
+        const vm below = vm_and(counts, is_below(gap.separation, margin));
+        if (!vm_any(below))
+            continue;
+        const vec2 n = v2_divide(gap.normal, gap.length);
+        const vm keep = keep_reached(call, queue, k, below, gap.separation, n);
         if (!vm_any(keep))
             continue;
         const vm deeper = vm_and(keep, v_lt(gap.separation, deepest.separation));

@@ -12,7 +12,6 @@
 
 #include "base/call.inl"
 #include "base/queue.inl"
-#include "column.h"
 #include "kernels.h"
 #include "piece/pieces.inl"
 #include "simd/simd.h"
@@ -24,12 +23,6 @@ INLINE vm take_pieces(const struct call *call, size_t pair, vm open, const vf it
                                          has_mark(get_item_bits(item, INFO_B), NARC_PIECE_MARKS)));
     call->bits[pair / 64] |= (uint64_t)vm_bits(pieces) << pair % 64;
     return vm_and_not(open, pieces);
-}
-
-static inline bool is_of_piece(const narc_batch *batch, const narc_bodies *bodies, narc_index_column column,
-                               size_t number) {
-    const size_t body = column.base ? narc_index_at(column, number) : number;
-    return narc_is_piece(&batch->shapes->headers[narc_index_at(bodies->shape, body)]);
 }
 
 /* Pairs that are asked of at once. */
@@ -64,8 +57,8 @@ NOINLINE void decide_piece_overlaps(const narc_batch *batch, size_t first, size_
     for (size_t word = 0; word < (count + 63) / 64; word++)
         for (uint64_t left = bits[word]; left; left &= left - 1) {
             const size_t pair = 64 * word + (size_t)FIND_LOWEST_64(left), number = narc_pair_at(batch, first + pair);
-            if (!is_of_piece(batch, batch->a, batch->pairs->a, number) &&
-                !is_of_piece(batch, batch->b, batch->pairs->b, number))
+            if (!narc_is_piece(find_header(batch, batch->a, batch->pairs->a, number)) &&
+                !narc_is_piece(find_header(batch, batch->b, batch->pairs->b, number)))
                 continue;
             pairs.pair[pairs.count] = (uint32_t)pair;
             pairs.number[pairs.count++] = (uint32_t)number;

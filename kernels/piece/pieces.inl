@@ -1,12 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * pieces.inl - the marks of a chain's pieces (store.h), and what of a run can touch.
+ * pieces.inl - the marks of a chain's pieces (store.h), what of a run can touch, and what reaches pieces.
  */
 #ifndef NARC_PIECE_PIECES_INL
 #define NARC_PIECE_PIECES_INL
 
+#include "base/call.inl"
+#include "base/queue.inl"
 #include "base/shape.inl"
+#include "base/vec2.inl"
+#include "column.h"
 #include "kernels.h"
+#include "piece.h"
 #include "simd/simd.h"
 
 /* Does a shape have one of these marks? */
@@ -21,6 +26,57 @@ INLINE vm is_front(vi info, vi feature) {
     const vi end = vi_add(vi_sub(get_arc_count(info), vi_set(5)), edge);
     const vm front = vm_and(vi_lt(vi_set(0), number), vi_lt(number, end));
     return vm_or(vm_not(has_mark(info, NARC_PIECE_RUN)), front);
+}
+
+INLINE const narc_shape_header *find_header(const narc_batch *batch, const narc_bodies *bodies,
+                                            narc_index_column column, size_t number) {
+    const size_t body = column.base ? narc_index_at(column, number) : number;
+    return &batch->shapes->headers[narc_index_at(bodies->shape, body)];
+}
+
+/* Of the pairs k ... of a queue in the lanes `which`, those whose bodies do not reach each other's surface (soa/piece.h).
+ * `n`: in A's frame. */
+NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, int k, vm which, vf separation, vec2 n) {
+    const narc_batch *const batch = call->batch;
+    const vec2 rotation = get_vec2(queue, ROTATION, k), position = get_vec2(queue, POSITION, k);
+    const vec2 normal[2] = {n, v2_unrotate(rotation, n)}, way[2] = {position, v2_unrotate_opposite(rotation, position)};
+    int32_t pair[V_WIDTH];
+    float field[2][5][V_WIDTH], depth[V_WIDTH], unreached[V_WIDTH] = {0};
+    for (int side = 0; side < 2; side++) {
+        const vf fields[5] = {get(queue, side ? SCALE_B : SCALE_A, k), normal[side].x, normal[side].y, way[side].x,
+                              way[side].y};
+        for (int f = 0; f < 5; f++)
+            v_store(field[side][f], fields[f]);
+    }
+    get_pairs(queue, k, pair);
+    v_store(depth, separation);
+    for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
+        const int l = FIND_LOWEST(lanes);
+        const size_t number = find_number(call, pair[l]);
+        narc_toucher touching[2];
+        for (int side = 0; side < 2; side++) {
+            const narc_shape_header *const header =
+                find_header(batch, side ? batch->b : batch->a, side ? batch->pairs->b : batch->pairs->a, number);
+            touching[side] = (narc_toucher){header,
+                                            narc_arcs_of(batch->shapes, header),
+                                            (double)field[side][0][l],
+                                            (double)field[side][1][l],
+                                            (double)field[side][2][l],
+                                            (double)field[side][3][l],
+                                            (double)field[side][4][l]};
+        }
+        unreached[l] = narc_is_reached(&touching[0], &touching[1], (double)depth[l]) ? 0 : 1;
+    }
+    return v_lt(v_set(0), v_load(unreached));
+}
+
+/* Of the pairs k ... of a queue in the lanes `keep`, but those where one is a piece that the other one
+ * does not reach. */
+INLINE vm keep_reached(const struct call *call, const struct queue *queue, int k, vm keep, vf separation, vec2 n) {
+    const vm pieces = vm_or(has_mark(get_bits(queue, INFO_A, k), NARC_PIECE_MARKS),
+                            has_mark(get_bits(queue, INFO_B, k), NARC_PIECE_MARKS));
+    const vm deep = vm_and(vm_and(keep, pieces), v_lt(separation, v_set(0)));
+    return vm_any(deep) ? vm_and_not(keep, find_unreached(call, queue, k, deep, separation, n)) : keep;
 }
 
 #endif

@@ -71,7 +71,7 @@ INLINE void store_polygon_rows(const struct call *call, const struct queue *queu
     const vi feature_a = vi_add(number_a, vi_select(edge_a, of_edge, zero));
     const vi feature_b = vi_add(number_b, vi_select(edge_b, of_edge, zero));
     char *to[V_WIDTH];
-    find_places(call, pairs, keep_fronts(call, queue, k, keep, feature_a, feature_b), to);
+    find_places(call, pairs, keep_fronts(call, queue, k, keep, c->separation, n, feature_a, feature_b), to);
     if (call->edges) {
         const struct edge a = find_touching_edge(call, queue, k, &c->a, n, false);
         const struct edge b = find_touching_edge(call, queue, k, &c->b, n, true);

@@ -196,6 +196,49 @@ struct expected {
     bool is_doubtful;              /* something is too close to call */
 };
 
+/* How wide a body is along a direction of the world. */
+static double find_width(const struct reference_body *b, double x, double y) {
+    const double own_x = b->cosine * x + b->sine * y, own_y = b->cosine * y - b->sine * x;
+    narc_point most, least;
+    assert_true(narc_find_support(b->arcs, b->count, own_x, own_y, &most, NULL) &&
+                narc_find_support(b->arcs, b->count, -own_x, -own_y, &least, NULL));
+    return b->scale * ((most.x - least.x) * own_x + (most.y - least.y) * own_y);
+}
+
+/* Does a piece's outline, of a run its front, meet a body? Or nearly so. */
+static bool meets(const struct reference_body *piece, const struct reference_body *body) {
+    const bool run = !is_concave(piece);
+    double least = INFINITY;
+    for (size_t k = run ? 1 : 0; run ? k + 5 <= piece->count : k < 1; k++) {
+        const narc_arc *arc = &piece->arcs[k], *before = k > 0 ? arc - 1 : arc;
+        const double from_x = before->center_x + before->radius * cos(before->end),
+                     from_y = before->center_y + before->radius * sin(before->end),
+                     to_x = arc->center_x + arc->radius * cos(arc->start),
+                     to_y = arc->center_y + arc->radius * sin(arc->start);
+        for (int i = 0; i <= SAMPLES; i++) {
+            const double part = (double)i / SAMPLES, angle = arc->start + part * (arc->end - arc->start);
+            const struct spot p = place_point(piece, from_x + part * (to_x - from_x), from_y + part * (to_y - from_y));
+            const struct spot q =
+                place_point(piece, arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle));
+            if (run)
+                least = fmin(least, reference_point_distance(body, p.x - body->x, p.y - body->y));
+            if (!run || k + 5 < piece->count)
+                least = fmin(least, reference_point_distance(body, q.x - body->x, q.y - body->y));
+        }
+    }
+    return least < 0;
+}
+
+/* A body that is no piece, and the only one of its pair, is to reach the surface: else what is told is behind it. What
+ * meets the next piece alone may be told of or not. */
+static bool reaches(const struct reference_body *piece, const struct reference_body *body, double separation,
+                    struct spot n, bool *out_doubtful) {
+    const double width = find_width(body, n.x, n.y);
+    *out_doubtful = *out_doubtful || fabs(separation + width) < 2e-5 + 0.002 * width ||
+                    (separation < 0 && separation > -width && !meets(piece, body));
+    return separation > -width;
+}
+
 /* A place of the outline, 0 .. SAMPLES - 1 in each piece: dense at its ends, where a maximum can be as shallow as
  * may be. */
 static double find_sample(int k) {
@@ -257,7 +300,8 @@ static void expect_concave(const struct reference_body *piece, const struct refe
         out->is_doubtful = out->is_doubtful || far < 0.02 || fabs(off - half) < 2e-5 || fabs(separation - limit) < 2e-5;
         if (off <= half && separation < -radius * sin(half)) /* perhaps outside of the circle around the arc */
             out->is_doubtful = true;
-        if (off > half || separation >= limit || (run && !lies_on_front(o, peak)))
+        if (off > half || separation >= limit || (run && !lies_on_front(o, peak)) ||
+            (!run && !reaches(piece, body, separation, (struct spot){n_x, n_y}, &out->is_doubtful)))
             continue;
         out->separation[out->count] = separation;
         out->normal[out->count++] = (struct spot){n_x, n_y};
@@ -306,9 +350,11 @@ static struct expected find_expected(const struct scene *scene, struct pair pair
     out.is_doubtful = fabs(gap.gap - limit) < 2e-5;
     const bool front_a = !run_a || is_in_front(&a, &b, &gap, 1, &out.is_doubtful);
     const bool front_b = !run_b || is_in_front(&a, &b, &gap, -1, &out.is_doubtful);
-    if (gap.gap < limit && front_a && front_b) {
+    const struct spot normal = {gap.normal_x, gap.normal_y};
+    const bool reached = run_a == run_b || reaches(run_a ? &a : &b, run_a ? &b : &a, gap.gap, normal, &out.is_doubtful);
+    if (gap.gap < limit && front_a && front_b && reached) {
         out.separation[out.count] = gap.gap;
-        out.normal[out.count++] = (struct spot){gap.normal_x, gap.normal_y};
+        out.normal[out.count++] = normal;
     }
     return out;
 }
@@ -323,8 +369,9 @@ static struct contacts ask(const struct ground *g, const narc_query *query) {
     return out;
 }
 
-/* Checks all rows of a query with `margin` against the reference. Returns how many pairs have several. */
-static size_t check_rows(const struct ground *g, const struct contacts *rows) {
+/* Checks all rows of a query with `margin` against the reference. Returns how many pairs have several. Of so many pairs at
+ * most the reference may not be sure. */
+static size_t check_rows(const struct ground *g, const struct contacts *rows, size_t most_doubts) {
     const struct scene *scene = &g->scene;
     size_t row = 0, doubts = 0, several = 0;
     for (uint32_t k = 0; k < scene->pair_count; k++) {
@@ -365,7 +412,7 @@ static size_t check_rows(const struct ground *g, const struct contacts *rows) {
         row += count;
     }
     assert_int_equal(row, rows->count);
-    if (20 * doubts > scene->pair_count)
+    if (doubts > most_doubts)
         fail_msg("%zu of %zu pairs are doubtful", doubts, scene->pair_count);
     return several;
 }
@@ -552,7 +599,7 @@ TEST(test_country) {
         }
         add_movers(&random, g, 60);
         struct contacts right = ask(g, &(narc_query){.margin = margin});
-        several += check_rows(g, &right);
+        several += check_rows(g, &right, g->scene.pair_count / 20);
         rows += right.count;
         check_forms(g, &right);
         check_manifolds(g, &right);
@@ -562,6 +609,60 @@ TEST(test_country) {
         free(g);
     }
     assert_true(several > 0 && rows > 0);
+}
+
+/* A closed strip that is thinner than bodies: straight, or an arch, turned anyhow. */
+static void make_strip(struct test_random *random, struct ground *g, bool is_arch, size_t bodies, size_t pairs) {
+    const double thickness = random_log_between(random, 0.02, 0.2), length = random_between(random, 1, 4);
+    const double radius = random_between(random, 1, 4), turn = random_between(random, 1, 3);
+    begin_chain(g, random_between(random, -1, 1), random_between(random, -1, 1), random_between(random, -PI, PI));
+    if (is_arch)
+        add_turn(g, radius + thickness, turn);
+    else
+        add_line(g, length);
+    add_turn(g, 0, PI / 2);
+    add_line(g, thickness);
+    add_turn(g, 0, PI / 2);
+    if (is_arch)
+        add_turn(g, -radius, -turn);
+    else
+        add_line(g, length);
+    add_turn(g, 0, PI / 2);
+    add_line(g, thickness);
+    add_turn(g, 0, PI / 2);
+    assert_true(place_chain(g, &(narc_chain_options){.closed = 1}, bodies, pairs));
+}
+
+/* Behind thin ground nothing is told by what faces away, in every form. */
+TEST(test_thin_ground) {
+    struct test_random random = test_random_named("thin ground");
+    size_t unreached = 0;
+    for (size_t round = 0; round < test_trials(24); round++) {
+        struct ground *g = malloc(sizeof *g);
+        make_strip(&random, g, round % 2, 60, (size_t)ENTRIES * 60);
+        add_movers(&random, g, 60);
+        struct contacts right = ask(g, &(narc_query){.margin = margin});
+        (void)check_rows(g, &right, g->scene.pair_count / 3);
+        check_forms(g, &right);
+        check_manifolds(g, &right);
+        check_formula(g, &right);
+        for (uint32_t k = 0; k < g->scene.pair_count; k++) {
+            const struct pair pair = g->scene.pairs[k];
+            const struct reference_body a = scene_reference(&g->scene, pair.a), b = scene_reference(&g->scene, pair.b);
+            const bool run_a = is_run(&g->scene, pair.a), run_b = is_run(&g->scene, pair.b);
+            bool doubtful = false;
+            if (is_concave(&a) || is_concave(&b) || run_a == run_b)
+                continue;
+            const struct reference_gap gap = reference_find_gap(&a, &b);
+            unreached += is_in_front(&a, &b, &gap, run_a ? 1 : -1, &doubtful) &&
+                         !reaches(run_a ? &a : &b, run_a ? &b : &a, gap.gap, (struct spot){gap.normal_x, gap.normal_y},
+                                  &doubtful);
+        }
+        free(right.rows);
+        destroy_scene(&g->scene);
+        free(g);
+    }
+    assert_true(unreached > 0);
 }
 
 /* The place of a chain's arc at a normal. */

@@ -1,0 +1,594 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * piece_casts.c - the kernel of one time of impact with a piece of a chain: with a concave arc, or with a run from where
+ * it is met from elsewhere than its front.
+ *
+ * A cast hits when the first contact is told whose separation is the target, or less. It goes on by times before which
+ * there can be none (Mirtich 1996):
+ *
+ * With u from a concave arc's centre to that of an arc of the other body, R and r their radii, the bodies are R - |u| - r
+ * apart there, if u lies in both sectors. So there is none before all of this can be, each by the speed of what moves.
+ * What does not turn is found at once: u moves along a line, and leaves the circle of R - r - target at the larger root.
+ *
+ * Of a run let f be the greatest gap of the closed shape, and g that along normals of the front. There is a contact where
+ * f = g, and none before f - g can be 0, nor before f can be the target.
+ *
+ * What lies behind a piece, so that there is a contact which does not reach it (soa/piece.h), comes from behind until
+ * there is none.
+ */
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "elementary.h"
+#include "kernels.h"
+#include "piece.h"
+#include "scene/body_frame.inl"
+#include "scene/concave.inl"
+
+/* Contacts after which a cast that turns is unfinished. */
+enum { MOST_CONTACTS = 1024, HALVINGS = 24 };
+
+/* The bodies at a time, from A's position. */
+struct scene {
+    struct body_frame ground, body;
+    struct concave_arc arc; /* from the ground's position */
+};
+
+/* Where they are nearest: on the ground, from its position; the normal points to the body. */
+struct nearest {
+    double separation;
+    place normal, at;
+    int arc; /* of the body, or the one behind its edge */
+    bool on_edge, at_end;
+    bool unreached; /* is there a contact that does not reach the piece? */
+};
+
+/* One of two bodies with a contact along a normal of the world, as soa/piece.h wants it. */
+INLINE narc_toucher make_toucher(const struct body_frame *frame, const struct body_frame *other, place normal) {
+    const place n = turn_to_shape(frame, normal);
+    const place way =
+        turn_to_shape(frame, (place){other->position.x - frame->position.x, other->position.y - frame->position.y});
+    return (narc_toucher){frame->header, frame->arcs, frame->scale, n.x, n.y, way.x, way.y};
+}
+
+INLINE bool reach_each_other(const struct body_frame *a, const struct body_frame *b, place normal, double separation) {
+    const narc_toucher of_a = make_toucher(a, b, normal), of_b = make_toucher(b, a, normal);
+    return narc_is_reached(&of_a, &of_b, separation);
+}
+
+INLINE void place_side(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side, double time,
+                       struct body_frame *out) {
+    const struct narc_cast_side *const of = &casts->side[side];
+    const double cosine = (double)of->cosine[slot], sine = (double)of->sine[slot];
+    const double factor = find_inverse_length(cosine * cosine + sine * sine - 1);
+    double turn_x = 1, turn_y = 0;
+    if (of->angle[slot] != 0)
+        narc_find_cosine((double)of->angle[slot] * time, &turn_x, &turn_y);
+    out->position = side == 0 ? (place){0, 0}
+                              : (place){casts->x[slot] + time * casts->motion_x[slot],
+                                        casts->y[slot] + time * casts->motion_y[slot]};
+    out->rotation = (place){factor * (turn_x * cosine - turn_y * sine), factor * (turn_y * cosine + turn_x * sine)};
+    out->scale = (double)of->scale[slot];
+    out->header = &shapes->headers[of->shape[slot]];
+    out->arcs = narc_arcs_of(shapes, out->header);
+}
+
+INLINE bool is_hollow(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side) {
+    return narc_is_concave(&shapes->headers[casts->side[side].shape[slot]]);
+}
+
+/* `side`: which of them the ground is. */
+INLINE struct scene place_scene(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side,
+                                double time) {
+    struct scene scene;
+    place_side(shapes, casts, slot, side, time, &scene.ground);
+    place_side(shapes, casts, slot, 1 - side, time, &scene.body);
+    scene.arc = place_concave(&scene.ground);
+    return scene;
+}
+
+/* From the concave arc's centre to that of an arc of the body. */
+INLINE place find_way(const struct scene *scene, int arc) {
+    const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
+    const place center = turn_to_world(&scene->body, (place){scene->body.scale * (double)stored->center_x,
+                                                             scene->body.scale * (double)stored->center_y});
+    return (place){scene->body.position.x + center.x - scene->ground.position.x - scene->arc.center.x,
+                   scene->body.position.y + center.y - scene->ground.position.y - scene->arc.center.y};
+}
+
+INLINE double get_radius(const struct scene *scene, int arc) {
+    return scene->body.scale * (double)scene->body.arcs[arc].arc.radius;
+}
+
+/* Is this arc's place that is furthest along u one that may touch? */
+INLINE bool may_touch(const struct scene *scene, int arc, place u) {
+    const narc_shape_header *const header = scene->body.header;
+    const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
+    const place own = turn_to_shape(&scene->body, u);
+    const bool held = find_cross((place){(double)stored->start_x, (double)stored->start_y}, own) >= 0 &&
+                      find_cross(own, (place){(double)stored->end_x, (double)stored->end_y}) >= 0;
+    return held && narc_touches(header, find_feature_number(header, arc, false)) &&
+           holds_normal(&scene->arc, (place){-u.x, -u.y});
+}
+
+INLINE void compare_arc(const struct scene *scene, int arc, struct nearest *best) {
+    place u = find_way(scene, arc);
+    const double length = sqrt(find_dot(u, u)), separation = scene->arc.radius - length - get_radius(scene, arc);
+    if (separation >= best->separation)
+        return;
+    if (length == 0) {
+        const place middle = find_middle_normal(&scene->arc);
+        u = (place){-middle.x, -middle.y};
+    }
+    if (!may_touch(scene, arc, u))
+        return;
+    const double size = sqrt(find_dot(u, u));
+    const place n = {-u.x / size, -u.y / size};
+    if (!reach_each_other(&scene->ground, &scene->body, n, separation)) {
+        best->unreached = true;
+        return;
+    }
+    *best =
+        (struct nearest){separation,
+                         n,
+                         {scene->arc.center.x - scene->arc.radius * n.x, scene->arc.center.y - scene->arc.radius * n.y},
+                         arc,
+                         false,
+                         false,
+                         best->unreached};
+}
+
+/* An end of the concave arc, where `normal` is its normal: how far is it from the body? The largest gap of all normals
+ * of the body is at one of its arcs or junctions. */
+INLINE void compare_end(const struct scene *scene, place normal, struct nearest *best) {
+    const struct body_frame *const body = &scene->body;
+    const place at = {scene->arc.center.x - scene->arc.radius * normal.x,
+                      scene->arc.center.y - scene->arc.radius * normal.y};
+    const place from = {scene->ground.position.x + at.x - body->position.x,
+                        scene->ground.position.y + at.y - body->position.y};
+    const place own = turn_to_shape(body, from);
+    struct nearest found = {-INFINITY, {0, 0}, at, 0, false, true, best->unreached};
+    for (int k = 0; k < body->header->count; k++) {
+        const narc_stored_arc *const arc = &body->arcs[k].arc;
+        const place u = {own.x - body->scale * (double)arc->center_x, own.y - body->scale * (double)arc->center_y};
+        const place start = {(double)arc->start_x, (double)arc->start_y},
+                    end = {(double)arc->end_x, (double)arc->end_y};
+        const double length = sqrt(find_dot(u, u));
+        const bool held = length > 0 && find_cross(start, u) >= 0 && find_cross(u, end) >= 0;
+        const double gap = (held ? length : find_dot(u, start)) - get_radius(scene, k);
+        if (gap <= found.separation)
+            continue;
+        found.separation = gap;
+        found.normal = held ? (place){u.x / length, u.y / length} : start;
+        found.arc = k;
+        found.on_edge = !held && is_edge_before(body, k);
+    }
+    if (found.separation >= best->separation ||
+        !narc_touches(body->header, find_feature_number(body->header, found.arc, found.on_edge)))
+        return;
+    const place n = turn_to_world(body, found.normal);
+    *best = found;
+    best->normal = (place){-n.x, -n.y};
+}
+
+/* The least separation; infinite if nothing of them may touch. */
+INLINE struct nearest find_nearest(const struct scene *scene, bool with_ends) {
+    struct nearest best = {INFINITY, {0, 0}, {0, 0}, 0, false, false, false};
+    for (int arc = 0; arc < scene->body.header->count; arc++)
+        compare_arc(scene, arc, &best);
+    if (with_ends) {
+        compare_end(scene, scene->arc.start, &best);
+        compare_end(scene, scene->arc.end, &best);
+    }
+    return best;
+}
+
+/* A float that is not above a time of 0 or more. */
+INLINE float round_time(double time) {
+    const float rounded = (float)time;
+    return (double)rounded > time ? rounded - rounded * 0x1p-24f : rounded;
+}
+
+INLINE void write_contact(const struct scene *scene, const struct nearest *n, int side, narc_contact *out) {
+    const bool round = scene->body.header->flags & NARC_SHAPE_CIRCLE;
+    const unsigned feature = round ? 0 : find_feature_number(scene->body.header, n->arc, n->on_edge);
+    const double sign = side == 0 ? 1 : -1, half = n->separation / 2;
+    const float curved = n->on_edge ? INFINITY : (float)get_radius(scene, n->arc);
+    const float hollow = n->at_end ? 0 : -(float)scene->arc.radius;
+    *out = (narc_contact){.feature = (uint16_t)(side == 0 ? feature << 8 : feature),
+                          .count = 1,
+                          .separation = (float)n->separation,
+                          .normal_x = (float)(sign * n->normal.x),
+                          .normal_y = (float)(sign * n->normal.y),
+                          .point_x = (float)(scene->ground.position.x + n->at.x + half * n->normal.x),
+                          .point_y = (float)(scene->ground.position.y + n->at.y + half * n->normal.y),
+                          .radius_a = side == 0 ? hollow : curved,
+                          .radius_b = side == 0 ? curved : hollow};
+}
+
+/* When does an arc that moves along a line leave the circle of `goal`, where it may touch? Infinite: never. */
+INLINE double find_leaving(const struct scene *scene, int arc, double goal, place motion) {
+    const place u = find_way(scene, arc);
+    const double square = find_dot(motion, motion), across = find_cross(u, motion);
+    const double height = goal * goal * square - across * across;
+    if (!(goal >= 0) || !(square > 0) || height < 0)
+        return INFINITY;
+    const double time = (sqrt(height) - find_dot(u, motion)) / square;
+    const place then = {u.x + time * motion.x, u.y + time * motion.y};
+    return time >= 0 && may_touch(scene, arc, then) ? time : INFINITY;
+}
+
+INLINE int cast_straight(const narc_shapes *shapes, narc_casts *casts, size_t slot, int side) {
+    const double sign = side == 0 ? 1 : -1, target = (double)casts->target;
+    const place motion = {sign * casts->motion_x[slot], sign * casts->motion_y[slot]};
+    struct scene scene = place_scene(shapes, casts, slot, side, 0);
+    struct nearest nearest = find_nearest(&scene, false);
+    double least = nearest.separation <= target ? 0 : INFINITY;
+    for (int arc = 0; arc < scene.body.header->count; arc++)
+        least =
+            find_least(least, find_leaving(&scene, arc, scene.arc.radius - get_radius(&scene, arc) - target, motion));
+    if (!(least <= 1))
+        return NARC_CAST_MISS;
+    casts->time[slot] = round_time(least);
+    scene = place_scene(shapes, casts, slot, side, (double)casts->time[slot]);
+    nearest = find_nearest(&scene, false);
+    if (!(nearest.separation < INFINITY)) /* at the very end of a sector */
+        nearest = find_nearest(&scene, true);
+    write_contact(&scene, &nearest, side, &casts->contact[slot]);
+    return nearest.separation < INFINITY ? NARC_CAST_HIT : NARC_CAST_MISS;
+}
+
+/* ------------------------------------------------------------------------------------------------ steps in time */
+
+/* What is known of a contact at a time: for how long there is none yet; below 0: for how long there is one. In
+ * `separation` what it has, if there is one; does it reach the piece? */
+struct outlook {
+    double wait, separation;
+    bool reached;
+};
+
+/* How fast things move, at most: what does in the world by turning, and in another body's axes. */
+struct speeds {
+    double motion, turn[2], reach[2], apart; /* `reach`: of points from the positions; `apart`: of the positions */
+};
+
+INLINE struct speeds find_speeds(const struct body_frame bodies[2], const narc_casts *casts, size_t slot) {
+    const place motion = {casts->motion_x[slot], casts->motion_y[slot]}, from = {casts->x[slot], casts->y[slot]};
+    struct speeds s = {.motion = sqrt(find_dot(motion, motion))};
+    s.apart = sqrt(find_dot(from, from)) + s.motion;
+    for (int side = 0; side < 2; side++) {
+        const narc_shape_header *const h = bodies[side].header;
+        const double x = (double)h->bound_x, y = (double)h->bound_y;
+        s.turn[side] = fabs((double)casts->side[side].angle[slot]);
+        s.reach[side] = bodies[side].scale * (sqrt(x * x + y * y) + (double)h->bound_radius);
+    }
+    return s;
+}
+
+/* The speed of points of a body in the axes of the other one; of any point that is no further from that. */
+INLINE double find_speed_seen(const struct speeds *s, int body, double reach) {
+    return s->motion + s->turn[body] * reach + s->turn[1 - body] * (s->apart + reach);
+}
+
+/* Goes on from a cast's time by what `look` says, until there is a contact that reaches a piece and did not come from
+ * behind. What is nearer than `enough` is as good as there. */
+typedef struct outlook looker(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time);
+
+/* A contact may be deep when it is told at last: of what has passed an end. Finds the first time, between one without and
+ * this one. */
+INLINE void find_first_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, looker *look, float before) {
+    float after = casts->time[slot];
+    const double enough = (double)casts->target + casts->enough[slot];
+    for (int halving = 0; halving < HALVINGS; halving++) {
+        const float middle = (float)(((double)before + (double)after) / 2);
+        const struct outlook o = look(shapes, casts, slot, (double)middle);
+        *(o.reached && o.separation <= enough ? &after : &before) = middle;
+    }
+    casts->time[slot] = after;
+    (void)look(shapes, casts, slot, (double)after);
+}
+
+INLINE int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, looker *look, double speed,
+                           double size) {
+    const double target = (double)casts->target, enough = casts->enough[slot],
+                 least = NARC_TURNING_TOLERANCE * size / speed;
+    const double end = casts->target < 0 ? 1 : casts->end[slot]; /* circles say nothing of how deep it is in a hollow */
+    double time = (double)casts->time[slot];
+    float before = casts->time[slot];
+    bool behind = false;
+    for (int round = 0; round < MOST_CONTACTS; round++) {
+        casts->time[slot] = round_time(time);
+        const struct outlook o = look(shapes, casts, slot, (double)casts->time[slot]);
+        const bool near = o.separation <= target + enough;
+        if (near && o.reached && !behind) {
+            if (o.separation < target && before < casts->time[slot])
+                find_first_time(shapes, casts, slot, look, before);
+            return NARC_CAST_HIT;
+        }
+        behind = near && (behind || !o.reached);
+        if (behind && !(casts->turning[slot] > 0)) /* it leaves the piece once */
+            return NARC_CAST_MISS;
+        before = casts->time[slot];
+        const bool comes = o.separation > target && o.separation < INFINITY; /* then it goes by what is left alone */
+        time = (double)before + find_most(fabs(o.wait), comes ? 0 : least);
+        if (!(time <= end))
+            return NARC_CAST_MISS;
+        if (round_time(time) <= before)
+            time = (double)before * (1 + 0x1p-23) + 0x1p-126;
+    }
+    return NARC_CAST_UNFINISHED;
+}
+
+/* ------------------------------------------------------------------------------------------------ turning, concave */
+
+/* When can an arc of the body have a contact, or no more? */
+INLINE double find_arc_wait(const struct scene *scene, int arc, double target, const struct speeds *s, int side) {
+    const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
+    const place u = find_way(scene, arc), own = turn_to_shape(&scene->body, u), back = {-u.x, -u.y};
+    const place start = {(double)stored->start_x, (double)stored->start_y},
+                end = {(double)stored->end_x, (double)stored->end_y};
+    const bool round = scene->body.header->flags & NARC_SHAPE_CIRCLE;
+    const double apart = scene->arc.radius - sqrt(find_dot(u, u)) - get_radius(scene, arc) - target;
+    const double beside = find_most(-find_cross(scene->arc.start, back), -find_cross(back, scene->arc.end)),
+                 beyond = round ? -INFINITY : find_most(-find_cross(start, own), -find_cross(own, end));
+    const double speed = find_speed_seen(s, 1 - side, s->reach[1 - side]),
+                 its = find_speed_seen(s, side, sqrt(find_dot(scene->arc.center, scene->arc.center)));
+    return find_most(find_most(apart, beside) / speed, beyond / its);
+}
+
+INLINE struct outlook look_at_concave(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time) {
+    const int side = is_hollow(shapes, casts, slot, 0) ? 0 : 1;
+    const struct scene scene = place_scene(shapes, casts, slot, side, time);
+    const struct body_frame both[2] = {side ? scene.body : scene.ground, side ? scene.ground : scene.body};
+    const struct speeds s = find_speeds(both, casts, slot);
+    const struct nearest nearest = find_nearest(&scene, false);
+    const bool reached = nearest.separation < INFINITY;
+    struct outlook out = {INFINITY, !reached && nearest.unreached ? -INFINITY : nearest.separation, reached};
+    for (int arc = 0; arc < scene.body.header->count; arc++)
+        if (narc_touches(scene.body.header, find_feature_number(scene.body.header, arc, false)))
+            out.wait = find_least(out.wait, find_arc_wait(&scene, arc, (double)casts->target, &s, side));
+    if (reached)
+        write_contact(&scene, &nearest, side, &casts->contact[slot]);
+    return out;
+}
+
+/* ------------------------------------------------------------------------------------------------ runs */
+
+/* The outline of a body in the world's axes, from A's position; normals point out of the body. */
+struct outline {
+    int count;
+    place center[NARC_MAX_ARCS], start[NARC_MAX_ARCS], end[NARC_MAX_ARCS];
+    double radius[NARC_MAX_ARCS];
+};
+
+INLINE void place_outline(const struct body_frame *frame, struct outline *out) {
+    out->count = frame->header->count;
+    for (int k = 0; k < out->count; k++) {
+        const narc_stored_arc *const a = &frame->arcs[k].arc;
+        const place center = turn_to_world(frame, (place){(double)a->center_x, (double)a->center_y});
+        out->center[k] =
+            (place){frame->position.x + frame->scale * center.x, frame->position.y + frame->scale * center.y};
+        out->radius[k] = frame->scale * (double)a->radius;
+        out->start[k] = turn_to_world(frame, (place){(double)a->start_x, (double)a->start_y});
+        out->end[k] = turn_to_world(frame, (place){(double)a->end_x, (double)a->end_y});
+    }
+}
+
+INLINE bool is_held(const struct outline *o, int arc, place n) {
+    return find_cross(o->start[arc], n) >= 0 && find_cross(n, o->end[arc]) >= 0 &&
+           find_dot(n, o->start[arc]) + find_dot(n, o->end[arc]) >= 0;
+}
+
+/* The arc that reaches furthest along a unit vector, and how far. */
+INLINE int find_furthest(const struct outline *o, place n, double *out_height) {
+    int best = 0;
+    *out_height = -INFINITY;
+    for (int k = 0; k < o->count; k++) {
+        const place p = o->center[k];
+        const double turn = is_held(o, k, n) ? 1 : find_most(find_dot(o->start[k], n), find_dot(o->end[k], n));
+        const double height = find_dot(p, n) + o->radius[k] * turn;
+        if (height > *out_height) {
+            *out_height = height;
+            best = k;
+        }
+    }
+    return best;
+}
+
+/* Gaps of closed shapes: the greatest, its normal from A to B, the arcs; and the greatest along normals of each front. */
+struct gaps {
+    double most, of_front[2];
+    place normal;
+    int arc[2];
+    bool front[2];
+};
+
+INLINE bool may_touch_at(const struct body_frame *frame, int arc, bool at_start) {
+    const unsigned number = find_feature_number(frame->header, arc, at_start);
+    return narc_touches(frame->header, number);
+}
+
+/* Compares a gap; at the start of an arc its junction is what touches. */
+INLINE void compare_gap(const struct body_frame bodies[2], double gap, place n, int a, int b, int at_start,
+                        struct gaps *out) {
+    const bool front[2] = {may_touch_at(&bodies[0], a, at_start == 0), may_touch_at(&bodies[1], b, at_start == 1)};
+    for (int side = 0; side < 2; side++)
+        if (front[side] && gap > out->of_front[side])
+            out->of_front[side] = gap;
+    if (gap < out->most || (gap == out->most && !(front[0] && front[1])))
+        return;
+    *out = (struct gaps){gap, {out->of_front[0], out->of_front[1]}, n, {a, b}, {front[0], front[1]}};
+}
+
+INLINE struct gaps find_gaps(const struct body_frame bodies[2], const struct outline *a, const struct outline *b) {
+    struct gaps out = {.most = -INFINITY, .of_front = {-INFINITY, -INFINITY}};
+    double height;
+    for (int i = 0; i < a->count; i++)
+        for (int j = 0; j < b->count; j++) {
+            const place u = {b->center[j].x - a->center[i].x, b->center[j].y - a->center[i].y}, back = {-u.x, -u.y};
+            const double length = sqrt(find_dot(u, u));
+            if (length > 0 && is_held(a, i, u) && is_held(b, j, back))
+                compare_gap(bodies, length - a->radius[i] - b->radius[j], (place){u.x / length, u.y / length}, i, j, -1,
+                            &out);
+        }
+    for (int i = 0; i < a->count; i++) {
+        const place n = a->start[i];
+        const int j = find_furthest(b, (place){-n.x, -n.y}, &height);
+        compare_gap(bodies, -find_dot(a->center[i], n) - a->radius[i] - height, n, i, j, 0, &out);
+    }
+    for (int j = 0; j < b->count; j++) {
+        const place n = {-b->start[j].x, -b->start[j].y};
+        const int i = find_furthest(a, n, &height);
+        compare_gap(bodies, find_dot(b->center[j], n) - b->radius[j] - height, n, i, j, 1, &out);
+    }
+    return out;
+}
+
+/* What a body touches with along its outward normal: how far it reaches along n, the stretch across it, and what it is. */
+struct stretch {
+    double across, low, high;
+    unsigned feature;
+    float radius;
+};
+
+/* Edges whose normal is nearer to n than this lie along it, as in base/contact_point.inl. */
+#define ALONG_EDGE 0x1p-20
+
+INLINE struct stretch find_stretch(const struct body_frame *frame, const struct outline *o, place n, double sign,
+                                   int arc) {
+    const place out = {sign * n.x, sign * n.y};
+    struct stretch s = {.low = INFINITY,
+                        .high = -INFINITY,
+                        .feature = find_feature_number(frame->header, arc, false),
+                        .radius = (float)o->radius[arc]};
+    for (int k = 0; k < o->count; k++) {
+        const double from = find_cross(o->start[k], out), to = find_cross(out, o->end[k]);
+        const place p = {o->center[k].x + o->radius[k] * out.x, o->center[k].y + o->radius[k] * out.y};
+        const double along = find_cross(n, p);
+        if (!(from >= -ALONG_EDGE && to >= -ALONG_EDGE && find_dot(out, o->start[k]) + find_dot(out, o->end[k]) >= 0))
+            continue;
+        s.low = find_least(s.low, along);
+        s.high = find_most(s.high, along);
+        if (k == arc)
+            s.across = find_dot(n, p);
+        if (fabs(from) <= ALONG_EDGE && is_edge_before(frame, k) && may_touch_at(frame, k, true)) {
+            s.feature = find_feature_number(frame->header, k, true);
+            s.radius = INFINITY;
+        }
+    }
+    return s;
+}
+
+INLINE void write_run_contact(const struct body_frame bodies[2], const struct outline *a, const struct outline *b,
+                              const struct gaps *g, narc_contact *out) {
+    const place n = g->normal;
+    const struct stretch on_a = find_stretch(&bodies[0], a, n, 1, g->arc[0]),
+                         on_b = find_stretch(&bodies[1], b, n, -1, g->arc[1]);
+    const double across = (on_a.across + on_b.across) / 2,
+                 along = (find_most(on_a.low, on_b.low) + find_least(on_a.high, on_b.high)) / 2;
+    *out = (narc_contact){.feature = (uint16_t)(on_a.feature + (on_b.feature << 8)),
+                          .count = 1,
+                          .separation = (float)g->most,
+                          .normal_x = (float)n.x,
+                          .normal_y = (float)n.y,
+                          .point_x = (float)(across * n.x - along * n.y),
+                          .point_y = (float)(across * n.y + along * n.x),
+                          .radius_a = on_a.radius,
+                          .radius_b = on_b.radius};
+}
+
+/* A direction so far beyond the normal at an end of a front: a body that is past the end is further from the end in it
+ * than along the front's normals, but for one that is deep, and then by next to nothing. */
+#define BESIDE_COSINE 0.96891242171064478 /* of 1/4 */
+#define BESIDE_SINE   0.24740395925452293
+
+/* How far the front reaches along a unit vector. */
+INLINE double find_front_reach(const struct body_frame *frame, place n) {
+    double size;
+    const place own = turn_to_shape(frame, n);
+    return find_dot(frame->position, n) +
+           frame->scale * narc_find_front_height(frame->header, frame->arcs, own.x, own.y, &size);
+}
+
+/* How far a body is from a run's front alone, at least. In *out_beside, the greatest gap beside its ends. */
+INLINE double find_front_distance(const struct body_frame *run, const struct outline *of_run,
+                                  const struct outline *body, double *out_beside) {
+    const int count = run->header->count, first = run->header->first_arc & NARC_FIRST_ARC;
+    double most = -INFINITY, height;
+    *out_beside = -INFINITY;
+    for (int end = 0; end < 2; end++) {
+        const int corner = (2 * count - (end ? 5 : 0) - first) % count;
+        const place p = of_run->center[corner], n = end ? of_run->start[corner] : of_run->end[corner];
+        const double sine = end ? BESIDE_SINE : -BESIDE_SINE;
+        const place beside = {BESIDE_COSINE * n.x - sine * n.y, BESIDE_COSINE * n.y + sine * n.x};
+        (void)find_furthest(body, (place){-beside.x, -beside.y}, &height);
+        *out_beside = find_most(*out_beside, -find_dot(p, beside) - height);
+        for (int k = 0; k < body->count; k++) {
+            const place u = {body->center[k].x - p.x, body->center[k].y - p.y}, back = {-u.x, -u.y};
+            const double length = sqrt(find_dot(u, u));
+            if (!(length > 0) || !is_held(body, k, back))
+                continue;
+            const place m = {u.x / length, u.y / length};
+            most = find_most(most, find_dot(body->center[k], m) - body->radius[k] - find_front_reach(run, m));
+        }
+    }
+    for (int k = 0; k < body->count; k++) {
+        const place m = {-body->start[k].x, -body->start[k].y};
+        most = find_most(most, find_dot(body->center[k], m) - body->radius[k] - find_front_reach(run, m));
+    }
+    return most;
+}
+
+INLINE struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time) {
+    struct body_frame bodies[2];
+    struct outline outlines[2];
+    for (int side = 0; side < 2; side++) {
+        place_side(shapes, casts, slot, side, time, &bodies[side]);
+        place_outline(&bodies[side], &outlines[side]);
+    }
+    const struct gaps g = find_gaps(bodies, &outlines[0], &outlines[1]);
+    const struct speeds s = find_speeds(bodies, casts, slot);
+    const double speed = s.motion + s.turn[0] * s.reach[0] + s.turn[1] * s.reach[1], target = (double)casts->target;
+    struct outlook out = {(g.most - target) / speed, INFINITY, true};
+    bool told = true;
+    for (int side = 0; side < 2; side++) {
+        if (!(bodies[side].header->first_arc & NARC_PIECE_RUN) || g.of_front[side] == g.most)
+            continue;
+        const double seen = find_speed_seen(&s, 1 - side, s.reach[1 - side]);
+        double beside;
+        const double away = find_front_distance(&bodies[side], &outlines[side], &outlines[1 - side], &beside);
+        out.wait = find_most(out.wait, (find_most(g.most, beside) - g.of_front[side]) / (speed + seen));
+        out.wait = find_most(out.wait, (away - find_most(target, 0)) / seen);
+        told = false;
+    }
+    if (!told)
+        return out;
+    out.separation = g.most;
+    out.reached = reach_each_other(&bodies[0], &bodies[1], g.normal, g.most);
+    write_run_contact(bodies, &outlines[0], &outlines[1], &g, &casts->contact[slot]);
+    return out;
+}
+
+/* ------------------------------------------------------------------------------------------------ the kernel */
+
+/* Of a cast that has begun, or that is where a run's closed shape is at the target: what becomes of it. Time and contact
+ * are then the answer's. */
+int NARC_NAMED(piece)(const narc_shapes *shapes, narc_casts *casts, size_t slot) {
+    const bool of_a = is_hollow(shapes, casts, slot, 0), of_b = is_hollow(shapes, casts, slot, 1);
+    const place motion = {casts->motion_x[slot], casts->motion_y[slot]};
+    const double angles = fabs((double)casts->side[0].angle[slot]) * casts->side[0].lever[slot] +
+                          fabs((double)casts->side[1].angle[slot]) * casts->side[1].lever[slot];
+    const double speed = sqrt(find_dot(motion, motion)) + angles;
+    double size = INFINITY;
+    for (int side = 0; side < 2; side++)
+        size = find_least(size, (double)casts->side[side].scale[slot] *
+                                    (double)shapes->headers[casts->side[side].shape[slot]].bound_radius);
+    if (of_a && of_b)
+        return NARC_CAST_MISS;
+    if (!of_a && !of_b)
+        return advance_in_time(shapes, casts, slot, look_at_run, speed, size);
+    if (casts->turning[slot] > 0)
+        return advance_in_time(shapes, casts, slot, look_at_concave, speed, size);
+    return cast_straight(shapes, casts, slot, of_a ? 0 : 1);
+}

@@ -1,0 +1,353 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ground_casts.c - bodies in the air beside ground of all kinds: nothing is told of them, whatever is behind; and when
+ * they fly, the first impact of a cast with all entries is where narc_find_contacts() first tells of one, looked for at
+ * many times.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "chains.h"
+#include "expect.h"
+#include "narc_chains.h"
+#include "narc_scene.h"
+#include "turtle.h"
+
+enum { ENTRIES = 2 * CHAIN_ARCS, ROWS = 8 * ENTRIES, OUTLINE = 40 * NARC_MAX_ARCS, TIMES = 160 };
+
+/* A chain in a store, and its entries as bodies; the last body moves. */
+struct setting {
+    narc_shapes *store;
+    narc_arc arcs[CHAIN_ARCS];
+    struct chain chain;
+    struct ground *ground;
+    narc_chain_entry entries[ENTRIES];
+    size_t count;
+    struct body bodies[ENTRIES], mover;
+    struct shape shape; /* the mover's */
+};
+
+/* ------------------------------------------------------------------------------------------------ ground */
+
+static bool add_chain(struct setting *s) {
+    narc_error error = {0};
+    const narc_chain_options options = {.closed = s->chain.closed};
+    const narc_status status =
+        narc_add_chain(s->store, s->arcs, s->chain.count, &options, s->entries, ENTRIES, &s->count, &error);
+    if (status == NARC_ERROR_RADIUS || status == NARC_ERROR_NOT_SIMPLE)
+        return false;
+    expect_ok(status, &error);
+    for (size_t k = 0; k < s->count; k++)
+        s->bodies[k] = (struct body){
+            .x = s->entries[k].x, .y = s->entries[k].y, .cosine = 1, .scale = 1, .shape = s->entries[k].shape};
+    return true;
+}
+
+static void take_turtle(struct setting *s, struct turtle *t, bool closed) {
+    assert_true(t->count <= CHAIN_ARCS);
+    memcpy(s->arcs, t->arcs, t->count * sizeof *t->arcs);
+    s->chain = (struct chain){s->arcs, t->count, closed};
+    free(t->arcs);
+}
+
+/* By up to a whole turn. */
+static void walk_turn(struct turtle *t, double radius, double turn) {
+    walk_arc(t, radius, turn / 2);
+    walk_arc(t, radius, turn / 2);
+}
+
+/* A closed strip: straight, or an arch that turns by `turn`. Its outside faces up in the middle. */
+static void make_strip(struct setting *s, double radius, double length, double thickness, double turn) {
+    struct turtle t = create_turtle(0.1, 0, TEST_PI / 2 - turn / 2);
+    if (turn > 0)
+        walk_turn(&t, radius + thickness, turn);
+    else
+        walk_arc(&t, 0, 0);
+    walk_line(&t, turn > 0 ? 0 : length);
+    walk_arc(&t, 0, TEST_PI / 2);
+    walk_line(&t, thickness);
+    walk_arc(&t, 0, TEST_PI / 2);
+    if (turn > 0)
+        walk_turn(&t, radius, -turn);
+    walk_line(&t, turn > 0 ? 0 : length);
+    walk_arc(&t, 0, TEST_PI / 2);
+    walk_line(&t, thickness);
+    walk_arc(&t, 0, TEST_PI / 2);
+    take_turtle(s, &t, true);
+}
+
+enum { STRAIGHT = CHAIN_FAMILIES, ARCH, HORSESHOE, GEAR, KINDS };
+
+static const char *kind_name(int kind) {
+    static const char *const names[] = {"platform", "bridge", "horseshoe", "gear"};
+    return kind < CHAIN_FAMILIES ? chain_family_name((enum chain_family)kind) : names[kind - CHAIN_FAMILIES];
+}
+
+static struct setting *make_setting(struct test_random *random, int kind) {
+    struct setting *s = calloc(1, sizeof *s);
+    do {
+        narc_destroy_shapes(s->store);
+        s->store = empty_store();
+        const double thickness = random_log_between(random, 0.03, 0.2);
+        if (kind < CHAIN_FAMILIES) {
+            s->chain = make_chain(random, (enum chain_family)kind, s->arcs);
+        } else if (kind == GEAR) {
+            struct turtle t = walk_gear(5 + random_below(random, 20), random_between(random, 0.1, 0.5));
+            take_turtle(s, &t, true);
+        } else {
+            const double turn = kind == STRAIGHT ? 0 : kind == ARCH ? random_between(random, 0.5, 3) : 5;
+            make_strip(s, random_between(random, 1, 3), random_between(random, 1, 4), thickness, turn);
+        }
+    } while (!add_chain(s));
+    s->ground = make_ground(&s->chain);
+    return s;
+}
+
+static void end_setting(struct setting *s) {
+    destroy_ground(s->ground);
+    narc_destroy_shapes(s->store);
+    free(s);
+}
+
+/* ------------------------------------------------------------------------------------------------ the truth */
+
+static narc_point place_point(const struct reference_body *b, double x, double y) {
+    return (narc_point){b->x + b->scale * (b->cosine * x - b->sine * y),
+                        b->y + b->scale * (b->sine * x + b->cosine * y)};
+}
+
+/* Does a body hold an end of an arc of the chain? */
+static bool holds_ground(const struct setting *s, const struct reference_body *b) {
+    for (size_t k = 0; k < s->chain.count; k++) {
+        const narc_arc *arc = &s->arcs[k];
+        const double x = arc->center_x + arc->radius * cos(arc->start) - b->x,
+                     y = arc->center_y + arc->radius * sin(arc->start) - b->y;
+        const narc_point own = {(b->cosine * x + b->sine * y) / b->scale, (b->cosine * y - b->sine * x) / b->scale};
+        if (narc_contains_point(b->arcs, b->count, own))
+            return true;
+    }
+    return false;
+}
+
+/* The least signed distance of a body's outline from the ground, at places `step` apart at most; 0 if it is around some
+ * of the ground. */
+static double find_clearance(const struct setting *s, const struct reference_body *b, double step) {
+    double least = holds_ground(s, b) ? 0 : INFINITY;
+    for (size_t k = 0; k < b->count; k++) {
+        const narc_arc *arc = &b->arcs[k], *next = &b->arcs[(k + 1) % b->count];
+        const double sweep = b->count > 1 ? arc->end - arc->start : 2 * TEST_PI,
+                     turn = sweep < 0 ? sweep + 2 * TEST_PI : sweep;
+        const int parts = 1 + (int)(arc->radius * turn * b->scale / step);
+        narc_point last = {0, 0};
+        for (int i = 0; i <= parts; i++) {
+            const double angle = arc->start + turn * i / parts;
+            last = place_point(b, arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle));
+            least = fmin(least, ground_distance(s->ground, last).distance);
+        }
+        const narc_point to = place_point(b, next->center_x + next->radius * cos(next->start),
+                                          next->center_y + next->radius * sin(next->start));
+        const int steps = (int)(hypot(to.x - last.x, to.y - last.y) / step);
+        for (int i = 1; i <= steps; i++) {
+            const double part = (double)i / (steps + 1);
+            const narc_point p = {last.x + part * (to.x - last.x), last.y + part * (to.y - last.y)};
+            least = fmin(least, ground_distance(s->ground, p).distance);
+        }
+    }
+    return least;
+}
+
+/* How large the chain is: the furthest end of a piece from the origin. */
+static double find_extent(const struct chain *chain) {
+    double most = 0;
+    for (size_t k = 0; k < chain->count; k++) {
+        const narc_arc *arc = &chain->arcs[k];
+        most = fmax(
+            most, hypot(arc->center_x + arc->radius * cos(arc->start), arc->center_y + arc->radius * sin(arc->start)));
+    }
+    return most;
+}
+
+/* ------------------------------------------------------------------------------------------------ what is told */
+
+static narc_bodies bodies_of(const struct body *bodies, size_t count) {
+    return (narc_bodies){.count = count,
+                         .x = NARC_POSITION_COLUMN(bodies, x),
+                         .y = NARC_POSITION_COLUMN(bodies, y),
+                         .cosine = NARC_COLUMN(bodies, cosine),
+                         .sine = NARC_COLUMN(bodies, sine),
+                         .scale = NARC_COLUMN(bodies, scale),
+                         .shape = NARC_COLUMN(bodies, shape)};
+}
+
+/* The rows of a body with all entries; it is A. */
+static size_t ask(const struct setting *s, const struct body *mover, double margin, narc_contact *rows) {
+    const uint32_t zero = 0;
+    const narc_bodies a = bodies_of(mover, 1), b = bodies_of(s->bodies, s->count);
+    uint32_t *entry = malloc(s->count * sizeof *entry);
+    for (size_t k = 0; k < s->count; k++)
+        entry[k] = (uint32_t)k;
+    const narc_pairs pairs = {.count = s->count, .a = {&zero, 0}, .b = NARC_ARRAY(entry), .other_bodies = &b};
+    const narc_query query = {.margin = (float)margin};
+    narc_error error = {0};
+    size_t found = 0;
+    expect_ok(narc_find_contacts(s->store, &a, &pairs, &query, rows, ROWS, &found, &error), &error);
+    free(entry);
+    return found;
+}
+
+static double find_deepest(const struct setting *s, const struct body *mover, double margin) {
+    static narc_contact rows[ROWS];
+    const size_t count = ask(s, mover, margin, rows);
+    double least = INFINITY;
+    for (size_t k = 0; k < count; k++)
+        least = fmin(least, (double)rows[k].separation);
+    return least;
+}
+
+/* A body of any shape anywhere near the chain. */
+static void choose_body(struct test_random *random, struct setting *s, double largest) {
+    const double extent = find_extent(&s->chain);
+    s->shape = make_shape(random, (enum family)random_below(random, FAMILY_COUNT));
+    s->mover = turned_body(random_between(random, -TEST_PI, TEST_PI), random_log_between(random, 0.05, largest));
+    s->mover.x = random_between(random, -extent, extent);
+    s->mover.y = random_between(random, -extent, extent);
+    s->mover.shape = store_shape(s->store, s->shape);
+}
+
+/* Nothing is told of a body in the air. */
+TEST(test_air) {
+    struct test_random random = test_random_named("air");
+    const double margin = 0.01, step = 0.01;
+    size_t asked = 0;
+    for (size_t round = 0; round < test_trials(30 * KINDS); round++) {
+        const int kind = (int)(round % KINDS);
+        struct setting *s = make_setting(&random, kind);
+        for (int k = 0; k < 12; k++) {
+            choose_body(&random, s, 1);
+            const struct reference_body body = pose_shape(&s->shape, &s->mover);
+            if (!s->chain.closed || !(find_clearance(s, &body, step) > margin + step))
+                continue;
+            asked++;
+            const double deepest = find_deepest(s, &s->mover, margin);
+            if (deepest < INFINITY)
+                fail_msg("%s, round %zu, body %d at %g, %g in the air is told of: %g", kind_name(kind), round, k,
+                         body.x, body.y, deepest);
+        }
+        end_setting(s);
+    }
+    assert_true(asked > 100);
+}
+
+/* ------------------------------------------------------------------------------------------------ casts */
+
+struct flight {
+    float x, y, angle;
+};
+
+static struct body move_body(const struct body *body, const struct flight *by, double time) {
+    const double angle = time * (double)by->angle, c = cos(angle), sn = sin(angle);
+    struct body out = *body;
+    out.x += time * (double)by->x;
+    out.y += time * (double)by->y;
+    out.cosine = (float)(c * (double)body->cosine - sn * (double)body->sine);
+    out.sine = (float)(c * (double)body->sine + sn * (double)body->cosine);
+    return out;
+}
+
+/* Casts of the mover with all entries, A or B; the first hit, or a miss, or what is not finished before that. */
+static narc_impact cast(const struct setting *s, const struct flight *flight, float target, bool ground_first) {
+    const uint32_t zero = 0;
+    const narc_bodies mover = bodies_of(&s->mover, 1), entries = bodies_of(s->bodies, s->count);
+    const narc_motions motion = {.x = {&flight->x, 0}, .y = {&flight->y, 0}, .angle = {&flight->angle, 0}};
+    uint32_t *entry = malloc(s->count * sizeof *entry);
+    narc_impact *rows = malloc(s->count * sizeof *rows), first = {.fraction = 2};
+    for (size_t k = 0; k < s->count; k++)
+        entry[k] = (uint32_t)k;
+    const narc_index_column all = NARC_ARRAY(entry), one = {&zero, 0};
+    const narc_pairs pairs = {.count = s->count,
+                              .a = ground_first ? all : one,
+                              .b = ground_first ? one : all,
+                              .other_bodies = ground_first ? &mover : &entries};
+    const narc_cast_options options = {.target = target};
+    narc_error error = {0};
+    expect_ok(narc_cast_pairs(s->store, ground_first ? &entries : &mover, ground_first ? NULL : &motion, &pairs,
+                              ground_first ? &motion : NULL, &options, rows, s->count, &error),
+              &error);
+    for (size_t k = 0; k < s->count; k++)
+        if (rows[k].count != NARC_CAST_MISS && rows[k].fraction < first.fraction)
+            first = rows[k];
+    free(entry);
+    free(rows);
+    return first;
+}
+
+struct tally {
+    size_t flights, hits, misses, unfinished, round_ends;
+};
+
+static void fly(struct test_random *random, struct setting *s, const char *kind, bool turns, struct tally *tally) {
+    const double extent = find_extent(&s->chain), step = 0.02;
+    choose_body(random, s, 1);
+    struct reference_body body = pose_shape(&s->shape, &s->mover);
+    const bool near = random_below(random, 2);
+    if (!(find_clearance(s, &body, step) > step + 0.05))
+        return;
+    const double way = near ? random_log_between(random, 0.05, 1) : extent, toward = atan2(-s->mover.y, -s->mover.x),
+                 angle = random_between(random, -TEST_PI, TEST_PI);
+    const double along = random_below(random, 2) ? toward + 0.3 * angle : angle;
+    const struct flight flight = {(float)(way * cos(along)), (float)(way * sin(along)),
+                                  turns ? (float)random_between(random, -3, 3) : 0};
+    const float target = random_below(random, 3) ? 0 : (float)random_between(random, 0, 0.05);
+    const bool ground_first = random_below(random, 2);
+    const narc_impact hit = cast(s, &flight, target, ground_first);
+    const double size = (double)s->mover.scale, tolerance = turns ? size * 4e-3 : 0, room = 1e-5 * (1 + extent);
+    tally->flights++;
+    if (hit.count == NARC_CAST_UNFINISHED)
+        tally->unfinished++;
+    const double until = hit.count == NARC_CAST_MISS ? 1 : (double)hit.fraction;
+    for (int k = 0; k <= TIMES; k++) {
+        const struct body now = move_body(&s->mover, &flight, until * k / TIMES);
+        const struct reference_body placed = pose_shape(&s->shape, &now);
+        if (until * k / TIMES < until || hit.count == NARC_CAST_MISS) {
+            const double deepest = find_deepest(s, &now, (double)target + 0.01);
+            if (deepest < (double)target - room)
+                fail_msg("%s: told of %g at %g (%d), but %s at %g; %zu", kind, deepest, until * k / TIMES, k,
+                         hit.count == NARC_CAST_MISS ? "a miss" : "met", until, tally->flights);
+        }
+        if (!s->chain.closed && find_clearance(s, &placed, step) < -step) { /* round an open end, from behind */
+            tally->round_ends++;
+            return;
+        }
+    }
+    tally->misses += hit.count == NARC_CAST_MISS;
+    if (hit.count != NARC_CAST_HIT)
+        return;
+    tally->hits++;
+    const struct body then = move_body(&s->mover, &flight, until);
+    const double deepest = find_deepest(s, &then, (double)target + tolerance + 2 * room);
+    if (!(deepest < INFINITY))
+        fail_msg("%s: met at %g with separation %g, but nothing is told there; %zu", kind, until,
+                 (double)hit.separation, tally->flights);
+}
+
+/* No body gets through the ground between two entries, whichever side of a piece it meets first. */
+static void fly_all(const char *name, bool turns) {
+    struct test_random random = test_random_named(name);
+    struct tally tally = {0};
+    for (size_t round = 0; round < test_trials(20 * KINDS); round++) {
+        const int kind = (int)(round % KINDS);
+        struct setting *s = make_setting(&random, kind);
+        for (int k = 0; k < 10; k++)
+            fly(&random, s, kind_name(kind), turns, &tally);
+        end_setting(s);
+    }
+    print_message("%zu flights: %zu hits, %zu misses, %zu unfinished, %zu past an end\n", tally.flights, tally.hits,
+                  tally.misses, tally.unfinished, tally.round_ends);
+    assert_true(tally.hits > tally.flights / 8 && tally.misses > 0 && 200 * tally.unfinished <= tally.flights);
+}
+
+TEST(test_straight_flights) { fly_all("straight flights", false); }
+TEST(test_turning_flights) { fly_all("turning flights", true); }
+
+TEST_MAIN("ground_casts")
