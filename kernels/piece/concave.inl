@@ -79,7 +79,7 @@ INLINE struct gap find_concave_gap(const narc_record *records, const struct conc
     gap.record_a = vi_add(pairs->ring_a.base, vi_select(piece_is_a, vi_set(0), i));
     gap.record_b = vi_add(pairs->ring_b.base, vi_select(piece_is_a, i, vi_set(0)));
     const struct arcs body = load_body_arc(records, pairs, vi_select(piece_is_a, gap.record_b, gap.record_a));
-    const vec2 back = look_back(pairs, piece.center, body.center); /* -u */
+    const vec2 back = look_back(pairs, piece.center, body.center);    /* -u */
     const vm centred = v_lt(v2_dot(back, back), v_set(LEAST_SQUARE)); /* then all directions are alike */
     const vec2 n = v2_select(centred, v2_add(piece.start, piece.end), back);
     gap.normal = n;
