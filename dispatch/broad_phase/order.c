@@ -16,14 +16,6 @@ static void put_in_order(uint32_t *one, uint32_t *other) {
 
 /* ------------------------------------------------------------------------------------------------ filter */
 
-narc_body_filter narc_read_filter(const narc_pair_filter *filter, size_t body) {
-    const narc_word_column category = filter->category, mask = filter->mask;
-    return (narc_body_filter){.category = category.base ? narc_word_at(category, body) : UINT64_MAX,
-                              .mask = mask.base ? narc_word_at(mask, body) : UINT64_MAX,
-                              .group = filter->group.base ? narc_index_at(filter->group, body) : 0,
-                              .kind = filter->kind.base ? narc_byte_at(filter->kind, body) & NARC_KINDS : 0};
-}
-
 /* Two static bodies do not meet, nor do two sensors. */
 static bool lets_pair(const narc_pair_filter *filter, uint32_t a, uint32_t b) {
     const narc_body_filter one = narc_read_filter(filter, a), other = narc_read_filter(filter, b);

@@ -6,6 +6,7 @@
 #define NARC_BROAD_PHASE_STEPS_H
 
 #include "broad_phase.h"
+#include "column.h"
 #include "narc_broad_phase.h"
 #include "narc_workers.h"
 
@@ -70,7 +71,13 @@ static inline bool narc_is_box(const narc_box *box) {
 }
 
 /* What the filter says of one body. */
-narc_body_filter narc_read_filter(const narc_pair_filter *filter, size_t body);
+static inline narc_body_filter narc_read_filter(const narc_pair_filter *filter, size_t body) {
+    const narc_word_column category = filter->category, mask = filter->mask;
+    return (narc_body_filter){.category = category.base ? narc_word_at(category, body) : UINT64_MAX,
+                              .mask = mask.base ? narc_word_at(mask, body) : UINT64_MAX,
+                              .group = filter->group.base ? narc_index_at(filter->group, body) : 0,
+                              .kind = filter->kind.base ? narc_byte_at(filter->kind, body) & NARC_KINDS : 0};
+}
 
 static inline narc_box narc_empty_box(void) { return (narc_box){INFINITY, INFINITY, -INFINITY, -INFINITY}; }
 

@@ -48,9 +48,13 @@ static bool is_near(const narc_box *box, const narc_box *kept, float half) {
            has_room(kept->max_x - box->max_x, half) && has_room(kept->max_y - box->max_y, half);
 }
 
+static narc_pair_filter filter_in_use(const update *u) {
+    return u->options->filter ? *u->options->filter : (narc_pair_filter){.kind = {0}};
+}
+
 static narc_body_filter filter_of(const update *u, size_t body) {
-    static const narc_pair_filter none = {.kind = {0}};
-    return narc_read_filter(u->options->filter ? u->options->filter : &none, body);
+    const narc_pair_filter filter = filter_in_use(u);
+    return narc_read_filter(&filter, body);
 }
 
 typedef struct changes {
@@ -65,6 +69,7 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
     changes *const all = argument;
     const update *const u = all->update;
     const narc_broad_phase *const broad = u->broad;
+    const narc_pair_filter filter = filter_in_use(u); /* a copy, which nothing that is written could change */
     const float half = u->options->skin / 2;
     bool left = false, rest = false;
     size_t fresh_count = 0, k = first;
@@ -72,15 +77,19 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
     memset(broad->fresh + first, 0, end - first);
     for (; (k = all->use_filters ? k : narc_find_flag(broad->known.moved, k, end)) < end; k++) {
         const narc_box *const box = &u->boxes[k], *const kept = &broad->kept_boxes[k];
-        const bool moved = broad->known.moved[k], has = narc_is_box(box), had = has_kept_box(broad, k);
-        bool out = moved && (has ? !is_inside(box, kept) : had);
+        const bool moved = broad->known.moved[k];
+        bool out = false;
         if (all->use_filters) {
-            const narc_body_filter now = filter_of(u, k), *const then = &broad->filters[k];
+            const narc_body_filter now = narc_read_filter(&filter, k), *const then = &broad->filters[k];
             const unsigned other = now.kind ^ then->kind;
-            out |= now.category != then->category || now.mask != then->mask || now.group != then->group ||
-                   (other & (NARC_STATIC | NARC_SENSOR));
+            out = now.category != then->category || now.mask != then->mask || now.group != then->group ||
+                  (other & (NARC_STATIC | NARC_SENSOR));
             rest |= (other & NARC_ASLEEP) != 0;
         }
+        if (!moved && !out)
+            continue;
+        const bool has = narc_is_box(box);
+        out |= moved && (has ? !is_inside(box, kept) : has_kept_box(broad, k));
         const bool fresh = out || (moved && has && !is_near(box, kept, half));
         broad->fresh[k] = fresh;
         fresh_count += fresh;

@@ -49,6 +49,7 @@ struct filter {
     vm deep;           /* the bodies collide, for certain */
     vf margin;
     vf size, square; /* the sum of the bounding radii; what circles that are apart have a smaller square of it than */
+    vec2 between;    /* from the centre of A's bounding circle to that of B's */
 };
 
 /* From the centre of a circle of A to that of a circle of B. */
@@ -104,6 +105,7 @@ INLINE struct filter set_up_pairs(const struct call *call, const struct pair_ind
     const vf size = v_add(size_a, size_b), limit = v_add(size, margin);
     const vf core = v_add(v_mul(scale_a, a.inner_radius), v_mul(scale_b, b.inner_radius));
     filter.size = size;
+    filter.between = bounds;
     filter.square = v_mul(v2_dot(bounds, bounds), v_set(shrink));
     filter.apart = vm_or(v_lt(limit, v_set(0)), v_lt(v_mul(limit, limit), filter.square));
     filter.deep = v_lt(v_mul(v2_dot(axis, axis), v_set(grow)), v_mul(core, v_abs(core))); /* a core below 0 is none */

@@ -34,6 +34,7 @@
 #include "column.h"
 #include "kernels.h"
 #include "piece.h"
+#include "piece/pieces.inl"
 #include "simd/simd.h"
 
 #define HEIGHT_ROOM (12.0f / 16777216.0f)
@@ -188,7 +189,8 @@ INLINE struct reaches find_reaches(const narc_shapes *shapes, const int32_t shap
     for (int k = 0; k < AXES; k++)
         height[k] =
             v_add(v_mul(find_support_value(shapes->records, arcs, count, run[k], axis[k]), bodies->scale), margin);
-    if (NARC_PIECES && shapes->piece_count > 0) { /* copies, so that the others stay in registers */
+    if (NARC_PIECES &&
+        vm_any(has_mark(headers->info, NARC_PIECE_MARKS))) { /* copies, so that the others stay in registers */
         const vec2 axes[AXES] = {axis[0], axis[1], axis[2], axis[3]};
         vf heights[AXES] = {height[0], height[1], height[2], height[3]};
         put_piece_heights(shapes, shape, axes, bodies->scale, margin, heights);

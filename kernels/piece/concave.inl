@@ -32,6 +32,7 @@
 #include "base/vec2.inl"
 #include "kernels.h"
 #include "piece/pieces.inl"
+#include "sat/arc_lookup.inl"
 #include "simd/simd.h"
 
 /* Which arcs of the pairs k ... of a queue: of the piece the only one, of the body its arc i. */
@@ -63,18 +64,22 @@ INLINE struct arcs load_body_arc(const narc_record *records, const struct concav
  * rounded by, of pieces whose distance is not much more than their size. */
 #define CONCAVE_ROOM 0x1p-20f
 
+/* From the centre of B's arc to that of A's. */
+INLINE vec2 look_back(const struct concave_pairs *pairs, vec2 piece, vec2 body) {
+    return v2_select(pairs->piece_is_a, v2_sub(piece, body), v2_sub(body, piece));
+}
+
 /* The gap of arc i of the body. In *out_touch, where it is one that counts; `ended`: where the normal lies behind the
  * end of the arc before, and then of this one. */
 INLINE struct gap find_concave_gap(const narc_record *records, const struct concave_pairs *pairs, struct arcs piece,
-                                   vi i, vm *ended, vm *out_touch) {
+                                   vi i, vm *ended, vm *out_touch, vec2 *out_end) {
     const vf zero = v_set(0);
     const vm piece_is_a = pairs->piece_is_a;
     struct gap gap;
     gap.record_a = vi_add(pairs->ring_a.base, vi_select(piece_is_a, vi_set(0), i));
     gap.record_b = vi_add(pairs->ring_b.base, vi_select(piece_is_a, i, vi_set(0)));
     const struct arcs body = load_body_arc(records, pairs, vi_select(piece_is_a, gap.record_b, gap.record_a));
-    const vec2 back =
-        v2_select(piece_is_a, v2_sub(piece.center, body.center), v2_sub(body.center, piece.center)); /* -u */
+    const vec2 back = look_back(pairs, piece.center, body.center);    /* -u */
     const vm centred = v_lt(v2_dot(back, back), v_set(LEAST_SQUARE)); /* then all directions are alike */
     const vec2 n = v2_select(centred, v2_add(piece.start, piece.end), back);
     gap.normal = n;
@@ -91,7 +96,43 @@ INLINE struct gap find_concave_gap(const narc_record *records, const struct conc
     const vm round = has_flag(pairs->info, NARC_SHAPE_CIRCLE); /* its first half stands for both */
     *out_touch = vm_and(in_piece, vm_or(round, vm_and(behind_start, before_end)));
     *ended = vm_not(before_end);
+    *out_end = body.end;
     return gap;
+}
+
+/* Which arcs of a body may touch. Where one does, the direction of its centre from the piece's is that of a point of the
+ * outline, which lies between the tangents from there to the circle around the body: if `narrow`, only the arcs from
+ * *out_first to that which does not end before `last`, as gaps' normals have it. */
+struct arc_window {
+    vm narrow;
+    vec2 last;
+};
+
+/* Half of a window is that much wider, as a sine: junctions are looked up in 2^-13 radians. A window is narrow up to a
+ * sine of WIDEST, and where the centre of the piece is not so near that directions lose digits. */
+#define WINDOW_ROOM 0x1p-10f
+#define WIDEST      0.9f
+#define NEAREST     0x1p-8f
+
+INLINE struct arc_window find_window(const narc_record *records, const struct queue *queue, int k,
+                                     const struct concave_pairs *pairs, const struct arcs *piece, vi first_record,
+                                     vi *out_first) {
+    const vf half = v_set(0.5f), reach = v_neg(piece->radius);
+    /* The circle around the piece has its middle in that of the chord, and no smaller radius than half of that: what is
+     * left of the sum is the body's. */
+    const vec2 middle = v2_scale(v2_add(piece->start, piece->end), v_mul(half, reach));
+    const vec2 back = v2_sub(middle, get_vec2(queue, AXIS, k)), chord = v2_sub(piece->end, piece->start);
+    const vf sizes = get(queue, CORE, k), room = v_mul(reach, v_set(0x1p-18f));
+    const vf bound = v_add(v_sub(sizes, v_mul(v_mul(half, reach), v2_length(chord))), room);
+    const vf distance = v2_length(back), sine = v_add(v_div(bound, distance), v_set(WINDOW_ROOM));
+    const vm known = vi_lt(get_extent_ratio(pairs->info), vi_set(255));
+    const vm clear = vm_and(v_lt(v_mul(reach, v_set(NEAREST)), distance), v_lt(sine, v_set(WIDEST)));
+    const vm narrow = vm_and_not(vm_and(known, clear), has_flag(pairs->info, NARC_SHAPE_CIRCLE));
+    const vec2 turn = {v_sqrt(v_sub(v_set(1), v_mul(sine, sine))), sine}, first = v2_unrotate(turn, back);
+    const vec2 own = v2_select(pairs->piece_is_a, v2_unrotate_opposite(pairs->pose.rotation, first), first);
+    const vi record = find_arc(records, first_record, pairs->info, own);
+    *out_first = vi_select(narrow, vi_sub(record, find_first_arc(first_record, pairs->info)), vi_set(0));
+    return (struct arc_window){narrow, v2_rotate(turn, back)};
 }
 
 /* The rows of gaps, to these places. */
@@ -173,26 +214,34 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
     const vm beside = v_lt(v_set(0), get(queue, SLACK, k));
     const bool lists = call->rows->out.lists_one;
     struct gap deepest = {v_set(INFINITY), {v_set(0), v_set(0)}, v_set(1), pairs.ring_a.base, pairs.ring_b.base};
-    vi found = zero;
+    vi found = zero, first = zero, lowest = zero; /* lowest: the number of the deepest one's arc */
     const struct arcs piece = load_piece(records, &pairs);
-    vm ended = open, touch;
-    (void)find_concave_gap(records, &pairs, piece, vi_sub(all, one), &ended, &touch);
-    for (int i = 0; vm_any(vm_and(open, vi_lt(vi_set(i), count))); i++) {
-        const vm exists = vm_and(open, vi_lt(vi_set(i), count));
-        const vi arc = vi_select(exists, vi_set(i), zero);
-        const struct gap gap = find_concave_gap(records, &pairs, piece, arc, &ended, &touch);
-        const vm front = is_front(info, find_arc_number(vi_add(body_base, arc), first_record, info));
+    struct arc_window window = {vm_front(0), {v_set(0), v_set(0)}};
+    if (!lists)
+        window = find_window(records, queue, k, &pairs, &piece, first_record, &first);
+    const bool runs = vm_any(has_mark(info, NARC_PIECE_RUN));
+    vm ended = open, touch, left = open;
+    vec2 end;
+    if (vm_any(vm_and_not(open, window.narrow)))
+        (void)find_concave_gap(records, &pairs, piece, vi_sub(all, one), &ended, &touch, &end);
+    ended = vm_and_not(ended, window.narrow); /* its first arc starts before all directions */
+    for (int i = 0; vm_any(left = vm_and(left, vi_lt(vi_set(i), count))); i++) {
+        const vi next = vi_add(first, vi_set(i)), arc = vi_select(vi_lt(next, all), next, vi_sub(next, all));
+        const vi own = vi_select(left, arc, zero);
+        const struct gap gap = find_concave_gap(records, &pairs, piece, own, &ended, &touch, &end);
         const vm real = vm_not(vm_and(beside, v_lt(gap.separation, v_set(0))));
-        const vm counts = vm_and(vm_and(exists, front), vm_and(touch, real));
-        const vm below = vm_and(counts, is_below(gap.separation, margin));
-        if (!vm_any(below))
-            continue;
-        const vec2 n = v2_divide(gap.normal, gap.length);
-        const vm keep = keep_reached(call, queue, k, below, gap.separation, n);
+        vm keep = vm_and(vm_and(left, touch), vm_and(real, is_below(gap.separation, margin)));
+        left = vm_and_not(left, vm_and(window.narrow, v_le(v_set(0), v2_cross(window.last, end))));
+        if (runs)
+            keep = vm_and(keep, is_front(info, find_arc_number(vi_add(body_base, own), first_record, info)));
+        if (vm_any(keep))
+            keep = keep_reached(call, queue, k, keep, gap.separation, v2_divide(gap.normal, gap.length));
         if (!vm_any(keep))
             continue;
-        const vm deeper = vm_and(keep, v_lt(gap.separation, deepest.separation));
+        const vm tie = vm_and(vi_lt(own, lowest), v_le(gap.separation, deepest.separation));
+        const vm deeper = vm_and(keep, vm_or(tie, v_lt(gap.separation, deepest.separation)));
         deepest = select_gap(deeper, &gap, &deepest);
+        lowest = vi_select(deeper, own, lowest);
         found = vi_add(found, vi_select(keep, one, zero));
         if (lists)
             list_gap(call, queue, &gap);
@@ -234,9 +283,12 @@ INLINE vm take_concave(const struct call *call, vm valid, vm near, const struct 
     const vm apart = v_lt(v_mul(reach, reach), circles->square);
     const vm beside = v_lt(v_mul(circles->size, circles->size), circles->square);
     const vm waits = vm_and_not(concave, apart);
-    const int end = call->concave->count;
-    push(call->concave, waits, item, CONTACT_FIELDS);
-    v_store(call->concave->item[SLACK] + end, v_pack(vm_packing(waits), v_select(beside, v_set(1), zero)));
+    vf own[FIELDS];
+    memcpy(own, item, sizeof own);
+    own[SLACK] = v_select(beside, v_set(1), zero);
+    own[CORE] = circles->size; /* it, and what joins the circles, for find_window() */
+    set_vec2(own, AXIS, circles->between);
+    push(call->concave, waits, own, CONTACT_FIELDS);
     return vm_and_not(near, concave);
 }
 
