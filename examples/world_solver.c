@@ -35,7 +35,7 @@ static vec find_velocity(const world_contact *c, const world_point *p) {
 }
 
 static float find_separation(const world_contact *c, const world_point *p) {
-    return dot(find_span(c, p), c->normal) - p->radii;
+    return dot(find_span(c, p), p->normal) - (p->radius_a + p->radius_b);
 }
 
 /* The impulse that changes the speed along a direction by 1. */
@@ -60,7 +60,7 @@ static void apply_rotation(const world_contact *c, float impulse) {
 /* The impulse along the normal becomes another one, which pushes or is 0. */
 static void change_normal_impulse(const world_contact *c, world_point *p, float change) {
     const float impulse = fmaxf(0, p->normal_impulse + change);
-    apply(c, p, scale(impulse - p->normal_impulse, c->normal));
+    apply(c, p, scale(impulse - p->normal_impulse, p->normal));
     p->normal_impulse = impulse;
     p->greatest_impulse = fmaxf(p->greatest_impulse, impulse);
 }
@@ -68,10 +68,10 @@ static void change_normal_impulse(const world_contact *c, world_point *p, float 
 static void prepare(world_contact *c) {
     for (unsigned i = 0; i < c->point_count; i++) {
         world_point *p = &c->points[i];
-        p->normal_mass = find_mass(c, p, c->normal);
-        p->tangent_mass = find_mass(c, p, quarter_turn(c->normal));
+        p->normal_mass = find_mass(c, p, p->normal);
+        p->tangent_mass = find_mass(c, p, quarter_turn(p->normal));
         p->separation = find_separation(c, p);
-        p->approach = -dot(find_velocity(c, p), c->normal);
+        p->approach = -dot(find_velocity(c, p), p->normal);
         p->greatest_impulse = 0;
     }
 }
@@ -85,20 +85,18 @@ static bool is_in_fan(vec first, vec normal, const uint16_t reach[2]) {
 
 /* While bodies roll, the point where two arcs touch walks along them, and the normal is that of their centres; on an
  * edge it is the edge's. Where one of the arcs ends, the contact stays with the bodies until the next step. */
-static void walk(world_contact *c) {
-    world_point *p = &c->points[0];
-    const bool edge_a = isinf(c->row.radius_a), edge_b = isinf(c->row.radius_b);
+static void walk(const world_contact *c, world_point *p) {
     const vec to_b = subtract(c->b->position, c->a->position), way = find_span(c, p);
-    const vec normal = edge_a   ? to_world(c->a, c->normal_in_a)
-                       : edge_b ? to_world(c->b, c->normal_in_b)
-                                : scale(1 / copysignf(length(way), dot(way, c->normal)), way);
-    if (!is_in_fan(c->normal_in_a, to_local(c->a, normal), c->row.reach_a) ||
-        !is_in_fan(c->normal_in_b, to_local(c->b, normal), c->row.reach_b))
+    const vec normal = p->edge_a   ? to_world(c->a, p->normal_in_a)
+                       : p->edge_b ? to_world(c->b, p->normal_in_b)
+                                   : scale(1 / copysignf(length(way), dot(way, p->normal)), way);
+    if (!is_in_fan(p->normal_in_a, to_local(c->a, normal), p->reach_a) ||
+        !is_in_fan(p->normal_in_b, to_local(c->b, normal), p->reach_b))
         return;
-    c->normal = normal;
+    p->normal = normal;
     const float half = 0.5f * find_separation(c, p);
-    p->anchor_a = edge_a ? subtract(add(to_b, to_world(c->b, p->local_b)), scale(c->row.radius_b + half, normal))
-                         : add(to_world(c->a, p->local_a), scale(c->row.radius_a + half, normal));
+    p->anchor_a = p->edge_a ? subtract(add(to_b, to_world(c->b, p->local_b)), scale(p->radius_b + half, normal))
+                            : add(to_world(c->a, p->local_a), scale(p->radius_a + half, normal));
     p->anchor_b = subtract(p->anchor_a, to_b);
     p->normal_mass = find_mass(c, p, normal);
     p->tangent_mass = find_mass(c, p, quarter_turn(normal));
@@ -106,13 +104,13 @@ static void walk(world_contact *c) {
 
 /* The impulses of the last sub-step again, where the points are now. */
 static void warm_start(world_contact *c) {
-    if (c->walks)
-        walk(c);
     apply_rotation(c, c->rolling_impulse);
     for (unsigned i = 0; i < c->point_count; i++) {
-        const world_point *p = &c->points[i];
-        const vec along = scale(p->normal_impulse, c->normal);
-        apply(c, p, add(along, scale(p->tangent_impulse, quarter_turn(c->normal))));
+        world_point *p = &c->points[i];
+        if (p->walks)
+            walk(c, p);
+        const vec along = scale(p->normal_impulse, p->normal);
+        apply(c, p, add(along, scale(p->tangent_impulse, quarter_turn(p->normal))));
     }
 }
 
@@ -127,7 +125,7 @@ static void solve_rolling(world_contact *c, float arm) {
 
 /* Coulomb: no more than friction times the normal impulse. */
 static void solve_friction(const world_contact *c, world_point *p) {
-    const vec tangent = quarter_turn(c->normal);
+    const vec tangent = quarter_turn(p->normal);
     const float limit = c->friction * p->normal_impulse;
     const float wanted = p->tangent_impulse - p->tangent_mass * dot(find_velocity(c, p), tangent);
     const float impulse = fmaxf(-limit, fminf(wanted, limit));
@@ -138,7 +136,7 @@ static void solve_friction(const world_contact *c, world_point *p) {
 /* Points that are apart may come together within the sub-step, and no further. Those that overlap are pushed apart as
  * the spring says. */
 static void solve_normal(const world_contact *c, world_point *p, const spring *soft, float time) {
-    const float separation = find_separation(c, p), speed = dot(find_velocity(c, p), c->normal);
+    const float separation = find_separation(c, p), speed = dot(find_velocity(c, p), p->normal);
     if (separation > 0)
         change_normal_impulse(c, p, -p->normal_mass * (speed + separation / time));
     else {
@@ -190,7 +188,7 @@ static void integrate_positions(world *w, float time) {
 static void bounce(const world_contact *c, world_point *p) {
     if (c->restitution > 0 && p->approach > least_bounce && p->greatest_impulse > 0)
         change_normal_impulse(c, p,
-                              -p->normal_mass * (dot(find_velocity(c, p), c->normal) - c->restitution * p->approach));
+                              -p->normal_mass * (dot(find_velocity(c, p), p->normal) - c->restitution * p->approach));
 }
 
 void world_solve(world *w) {
