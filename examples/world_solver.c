@@ -86,6 +86,8 @@ static bool is_in_fan(vec first, vec normal, const uint16_t reach[2]) {
 /* While bodies roll, the point where two arcs touch walks along them, and the normal is that of their centres; on an
  * edge it is the edge's. Where one of the arcs ends, the contact stays with the bodies until the next step. */
 static void walk(const world_contact *c, world_point *p) {
+    if (!p->walks)
+        return;
     const vec to_b = subtract(c->b->position, c->a->position), way = find_span(c, p);
     const vec normal = p->edge_a   ? to_world(c->a, p->normal_in_a)
                        : p->edge_b ? to_world(c->b, p->normal_in_b)
@@ -102,15 +104,31 @@ static void walk(const world_contact *c, world_point *p) {
     p->tangent_mass = find_mass(c, p, quarter_turn(normal));
 }
 
-/* The impulses of the last sub-step again, where the points are now. */
-static void warm_start(world_contact *c) {
+/* The impulses of the last sub-step again. */
+static void warm_start(const world_contact *c) {
     apply_rotation(c, c->rolling_impulse);
     for (unsigned i = 0; i < c->point_count; i++) {
-        world_point *p = &c->points[i];
-        if (p->walks)
-            walk(c, p);
+        const world_point *p = &c->points[i];
         const vec along = scale(p->normal_impulse, p->normal);
         apply(c, p, add(along, scale(p->tangent_impulse, quarter_turn(p->normal))));
+    }
+}
+
+/* A pin pulls along both axes, as the spring says. */
+static void pull(const world_contact *joint, world_point *p, vec axis, const spring *soft, float *impulse) {
+    const float wanted = dot(find_velocity(joint, p), axis) + soft->rate * dot(find_span(joint, p), axis);
+    const float change = -find_mass(joint, p, axis) * soft->strength * wanted - soft->loss * *impulse;
+    apply(joint, p, scale(change, axis));
+    *impulse += change;
+}
+
+static void solve_joints(world *w, const spring *soft) {
+    for (world_contact *joint = w->joints; joint < w->joints + w->joint_count; joint++) {
+        world_point *p = joint->points;
+        p->anchor_a = to_world(joint->a, p->local_a);
+        p->anchor_b = to_world(joint->b, p->local_b);
+        pull(joint, p, p->normal, soft, &p->normal_impulse);
+        pull(joint, p, quarter_turn(p->normal), soft, &p->tangent_impulse);
     }
 }
 
@@ -147,6 +165,7 @@ static void solve_normal(const world_contact *c, world_point *p, const spring *s
 
 /* One round over all contacts, in the order of the pairs: the same bits however narc spread its work. */
 static void solve_contacts(world *w, const spring *soft, float time, bool friction) {
+    solve_joints(w, soft);
     for (size_t k = 0; k < w->active_count; k++) {
         world_contact *c = w->active[k];
         if (friction)
@@ -198,10 +217,15 @@ void world_solve(world *w) {
         prepare(w->active[k]);
     for (unsigned step = 0; step < w->settings.substeps; step++) {
         integrate_velocities(w, time);
+        for (size_t k = 0; k < w->joint_count; k++)
+            warm_start(&w->joints[k]);
         for (size_t k = 0; k < w->active_count; k++)
             warm_start(w->active[k]);
         solve_contacts(w, &soft, time, false);
         integrate_positions(w, time);
+        for (size_t k = 0; k < w->active_count; k++)
+            for (unsigned i = 0; i < w->active[k]->point_count; i++)
+                walk(w->active[k], &w->active[k]->points[i]);
         solve_contacts(w, &rigid, time, true);
     }
     for (size_t k = 0; k < w->active_count; k++)
