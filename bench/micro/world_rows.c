@@ -63,9 +63,8 @@ static void prepare(struct bench_row *bench_row) {
     find_manifolds(row);
     world_make_contacts(w);
     row->row.pairs = w->list->pairs.count;
-    for (size_t k = 0; k < row->row.pairs; k++) {
+    for (size_t k = 0; k < row->row.pairs; k++)
         row->row.colliding += (w->contacts[k].point_count > 0) / (double)row->row.pairs;
-    }
     for (size_t k = 0; k < w->row_count; k++)
         row->row.wrong += w->contacts[w->rows[k].pair].point_count != w->rows[k].count;
 }
