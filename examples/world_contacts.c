@@ -2,6 +2,8 @@
  *
  * world_contacts.c - from bodies to contacts: pairs, what the last step knew of them, manifolds.
  */
+#include <string.h>
+
 #include "world.h"
 
 /* The bodies as narc sees them: nothing is copied. */
@@ -95,7 +97,6 @@ void world_recycle_contacts(world *w) {
         if (c->depth == 0 && (on_ground || c->point_count > 0) &&
             (on_ground ? find_way(w, c->a) : find_change(w, c)) < w->settings.recycling)
             continue;
-        c->point_count = 0;
         w->asked[w->asked_count++] = w->list->contacts[k];
     }
 }
@@ -125,52 +126,51 @@ narc_status world_find_overlaps(world *w) {
     return narc_find_overlaps(w->store, &bodies, &w->list->pairs, &query, w->overlaps, &w->error);
 }
 
-/* What the solver wants of a point of narc's row. */
-static world_point make_point(const world_contact *c, const narc_manifold *m, unsigned i) {
+/* What the solver wants of a point of narc's row. A point starts with the impulses of that of the last step where the
+ * same features touched. */
+static void make_point(const world_contact *c, const narc_manifold *m, unsigned i, const world_point last[2],
+                       world_point *p) {
     const world_body *a = c->a, *b = c->b;
-    const vec normal = {m->normal_x, m->normal_y};
-    const bool edge_a = isinf(m->radius_a), edge_b = isinf(m->radius_b), walks = m->count == 1 && !(edge_a && edge_b);
-    world_point p = {.feature = m->point[i].feature,
-                     .walks = walks,
-                     .edge_a = edge_a,
-                     .edge_b = edge_b,
-                     .normal = normal,
-                     .normal_in_a = to_local(a, normal),
-                     .normal_in_b = to_local(b, normal),
-                     .anchor_a = {m->point[i].x, m->point[i].y}, /* narc's points count from A's position */
-                     .radius_a = walks && !edge_a ? m->radius_a : 0,
-                     .radius_b = walks && !edge_b ? m->radius_b : 0,
-                     .reach_a = {m->reach_a[0], m->reach_a[1]},
-                     .reach_b = {m->reach_b[0], m->reach_b[1]},
-                     .separation = m->point[i].separation};
-    const float half = 0.5f * p.separation;
-    p.anchor_b = add(p.anchor_a, subtract(a->position, b->position));
-    p.local_a = to_local(a, subtract(p.anchor_a, scale(half + p.radius_a, normal)));
-    p.local_b = to_local(b, add(p.anchor_b, scale(half + p.radius_b, normal)));
-    return p;
+    const float half = 0.5f * m->point[i].separation;
+    p->feature = m->point[i].feature;
+    p->edge_a = isinf(m->radius_a);
+    p->edge_b = isinf(m->radius_b);
+    p->walks = m->count == 1 && !(p->edge_a && p->edge_b);
+    p->normal = (vec){m->normal_x, m->normal_y};
+    p->normal_in_a = to_local(a, p->normal);
+    p->normal_in_b = to_local(b, p->normal);
+    p->radius_a = p->walks && !p->edge_a ? m->radius_a : 0;
+    p->radius_b = p->walks && !p->edge_b ? m->radius_b : 0;
+    memcpy(p->reach_a, m->reach_a, sizeof p->reach_a);
+    memcpy(p->reach_b, m->reach_b, sizeof p->reach_b);
+    p->separation = m->point[i].separation;
+    p->anchor_a = (vec){m->point[i].x, m->point[i].y}; /* narc's points count from A's position */
+    p->anchor_b = add(p->anchor_a, subtract(a->position, b->position));
+    p->local_a = to_local(a, subtract(p->anchor_a, scale(half + p->radius_a, p->normal)));
+    p->local_b = to_local(b, add(p->anchor_b, scale(half + p->radius_b, p->normal)));
+    const world_point *const same = &last[last[0].feature == p->feature ? 0 : 1];
+    const bool warm = same->feature == p->feature && same->normal_impulse > 0;
+    p->normal_impulse = warm ? same->normal_impulse : 0;
+    p->tangent_impulse = warm ? same->tangent_impulse : 0;
 }
 
 /* A contact of all rows of its pair: two points of one row, or of what touches a concave arc in several places the
- * deepest two, each with its own normal. A point starts with the impulses of the point of the last step where the same
- * features touched; a pair without a point keeps nothing. */
+ * deepest two, each with its own normal. A pair without a point keeps nothing. */
 static void make_contact(world_contact *c, const narc_manifold *rows, size_t count) {
     const world_point last[2] = {c->points[0], c->points[1]};
     c->friction = sqrtf(c->a->friction * c->b->friction);
     c->restitution = fmaxf(c->a->restitution, c->b->restitution);
-    c->points[0] = c->points[1] = (world_point){.separation = INFINITY};
+    c->point_count = 0;
     for (const narc_manifold *row = rows; row < rows + count; row++)
         for (unsigned i = 0; i < row->count; i++) {
-            world_point *shallower = &c->points[c->points[1].separation > c->points[0].separation];
-            if (row->point[i].separation < shallower->separation)
-                *shallower = make_point(c, row, i);
-            c->point_count = c->point_count == 0 ? 1 : 2;
+            const bool full = c->point_count == 2;
+            const size_t place = full ? c->points[1].separation > c->points[0].separation : c->point_count++;
+            if (!full || row->point[i].separation < c->points[place].separation)
+                make_point(c, row, i, last, &c->points[place]);
         }
-    for (world_point *p = c->points; p < c->points + c->point_count; p++) {
-        const world_point *const same = &last[last[0].feature == p->feature ? 0 : 1];
-        if (same->feature == p->feature && same->normal_impulse > 0) {
-            p->normal_impulse = same->normal_impulse;
-            p->tangent_impulse = same->tangent_impulse;
-        }
+    for (unsigned i = c->point_count; i < 2; i++) {
+        c->points[i].separation = INFINITY;
+        c->points[i].normal_impulse = 0;
     }
     c->rolling_impulse = count > 0 ? c->rolling_impulse : 0;
     c->span = find_span(c, &c->points[0]);
