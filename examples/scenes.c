@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * scenes.c - stacks, pyramids, piles, bullets, rain.
+ * scenes.c - stacks, pyramids, piles, bullets, rain; and on ground a car, marbles, a box and dominoes.
  */
 #include "scenes.h"
 
 #include <string.h>
 
 #include "glyphs.h"
+
+static const double pi = 3.14159265358979;
 
 /* SplitMix64; in [low, high). */
 static float random_between(uint64_t *state, float low, float high) {
@@ -168,6 +170,140 @@ static narc_status act_rain(world *w, long step) {
     return world_add_body(w, body);
 }
 
+/* ------------------------------------------------------------------------------------------------ ground */
+
+void put_arc(track *t, double radius, double sweep) {
+    const double x = t->x - radius * cos(t->normal), y = t->y - radius * sin(t->normal);
+    t->arcs[t->count++] = (narc_arc){x, y, radius, t->normal, t->normal + sweep};
+    t->normal += sweep;
+    t->x = x + radius * cos(t->normal);
+    t->y = y + radius * sin(t->normal);
+}
+
+void put_edge(track *t, double length) {
+    t->x -= length * sin(t->normal);
+    t->y += length * cos(t->normal);
+}
+
+static void add_ground(world *w, const track *t) {
+    if (w->error.status == NARC_OK)
+        world_add_ground(w, t->arcs, t->count, false, 0.6f);
+}
+
+static world_body *add_ball(world *w, double radius, double x, double y, float friction) {
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    narc_build_circle(radius, arcs, &count, &w->error);
+    world_body ball = make_body(add_shape(w, arcs, count), (float)x, (float)y, 0);
+    ball.friction = friction;
+    add_body(w, ball);
+    return &w->bodies[w->body_count - 1];
+}
+
+/* Hills as {angle of the slopes, radius of the valleys, radius of the crest}, and a car. */
+static void build_car(world *w, uint64_t seed) {
+    static const double hills[][3] = {{0.5, 4, 7}, {0.7, 3, 2.5}, {0.5, 4, 4}};
+    const narc_point hull[] = {{-1.2, -0.3}, {1.2, -0.3}, {1.3, 0}, {0.5, 0.5}, {-0.7, 0.5}, {-1.3, 0.1}};
+    track t = {.x = 0, .normal = pi / 2};
+    narc_arc arcs[NARC_MAX_ARCS];
+    size_t count;
+    put_arc(&t, 0, 0);
+    put_edge(&t, 3);
+    for (size_t k = 0; k < sizeof hills / sizeof hills[0]; k++) {
+        put_arc(&t, -hills[k][1], -hills[k][0]);
+        put_arc(&t, hills[k][2], 2 * hills[k][0]);
+        put_arc(&t, -hills[k][1], -hills[k][0]);
+        put_edge(&t, 1);
+    }
+    put_edge(&t, 4);
+    put_arc(&t, 0, 0);
+    add_ground(w, &t);
+    narc_build_polygon(hull, sizeof hull / sizeof hull[0], 0.1, arcs, &count, &w->error);
+    const float x = (float)t.x + 2 + random_between(&seed, 0, 0.1f);
+    add_body(w, make_body(add_shape(w, arcs, count), x, 0.9f, 0));
+    for (int k = 0; k < 2; k++)
+        add_ball(w, 0.4, (double)x + (k ? 0.85 : -0.85), 0.4, 1);
+    for (int k = 0; k < 3; k++) {
+        w->bodies[k].group = 1;
+        w->bodies[k].velocity.x = 5;
+    }
+    for (int k = 1; k < 3 && w->error.status == NARC_OK; k++)
+        world_pin(w, &w->bodies[0], &w->bodies[k], w->bodies[k].position);
+}
+
+/* The motor turns the wheels against the car, with at most 6 N m each, towards 6 m/s. */
+static narc_status act_car(world *w, long step) {
+    const float most = 6 * w->settings.time_step, wanted = -6 / 0.4f;
+    for (int k = 1; k < 3; k++) {
+        world_body *wheel = &w->bodies[k];
+        const float push = fmaxf(-most, fminf((wanted - wheel->spin) / wheel->inverse_inertia, most));
+        wheel->spin += wheel->inverse_inertia * push;
+        w->bodies[0].spin -= w->bodies[0].inverse_inertia * push;
+        world_wake_body(wheel);
+    }
+    (void)step;
+    return NARC_OK;
+}
+
+void add_looping(world *w, double x, double height) {
+    const double radius = 2, marble = 0.25, slope = 0.8, gap = 0.8, valley = 3;
+    track t = {.normal = 2.5 * pi - gap};
+    t.x = x + radius * cos(t.normal + pi);
+    t.y = radius + radius * sin(t.normal + pi);
+    put_arc(&t, -radius, gap / 2 - pi);
+    put_arc(&t, -radius, gap / 2 - pi);
+    put_edge(&t, 3);
+    put_arc(&t, -valley, -slope);
+    put_edge(&t, 6);
+    put_arc(&t, 0, 0);
+    add_ground(w, &t);
+    const double rise = height + marble * (1 - cos(slope)) - valley * (1 - cos(slope)); /* along the slope */
+    add_ball(w, marble, x - 3 - valley * sin(slope) - rise / tan(slope) + marble * sin(slope), height + marble, 0);
+}
+
+/* What slides without friction comes through a looping if it starts 2.5 times as high as its centre's circle is wide. */
+static void build_looping(world *w, uint64_t seed) {
+    const double radius = 2 - 0.25;
+    add_looping(w, 0, (2.6 + (double)random_between(&seed, 0, 0.02f)) * radius);
+    add_looping(w, 12, 2.2 * radius);
+}
+
+/* A box slides to and fro in a bowl of radius 5, and comes to rest on two corners. */
+static void build_bowl(world *w, uint64_t seed) {
+    track t = {.x = 5 * sin(1.3), .y = 5 - 5 * cos(1.3), .normal = pi / 2 + 1.3};
+    put_arc(&t, -5, -2.6);
+    add_ground(w, &t);
+    const float angle = -1 + random_between(&seed, -0.01f, 0.01f);
+    world_body box = make_body(add_box(w, 2, 1, 0), 4.3f * sinf(angle), 5 - 4.3f * cosf(angle), angle);
+    box.friction = 0.02f;
+    add_body(w, box);
+}
+
+/* A ball rolls down a hill and into dominoes, which stand on a slope. */
+static void build_dominoes(world *w, uint64_t seed) {
+    const double slope = 0.12, apart = 0.55;
+    track t = {.x = 3, .normal = pi / 2};
+    put_arc(&t, 0, 0);
+    put_edge(&t, 3);
+    put_arc(&t, -4, -slope);
+    const double x = t.x, y = t.y;
+    put_edge(&t, 20 * apart + 1);
+    put_arc(&t, -5, -0.5);
+    put_edge(&t, 2);
+    put_arc(&t, 2, 0.5 + slope);
+    put_edge(&t, 1);
+    put_arc(&t, 0, 0);
+    add_ground(w, &t);
+    const uint32_t domino = add_box(w, 0.2, 1, 0);
+    for (int k = 1; k <= 20; k++) {
+        const double along = apart * k, up = 0.5;
+        add_body(w, make_body(domino, (float)(x - along * cos(slope) + up * sin(slope)),
+                              (float)(y + along * sin(slope) + up * cos(slope)),
+                              random_between(&seed, -0.001f, 0.001f) - (float)slope));
+    }
+    add_ball(w, 0.4, t.x + 1.6, t.y + 0.4, 0.6f)->velocity.x = 1;
+}
+
 /* ------------------------------------------------------------------------------------------------ the list */
 
 const scene scenes[] = {
@@ -178,6 +314,10 @@ const scene scenes[] = {
     {"pile", "600 bodies", 20, 1024, build_pile, NULL},
     {"bullets", "120 m/s against a thin wall", 3, 16, build_bullets, NULL},
     {"rain", "bodies come, pile up on a table, fall off, and go", 60, 256, build_rain, act_rain},
+    {"car", "drives over hills", 6, 128, build_car, act_car},
+    {"looping", "a marble comes through it, another one does not", 3.2f, 64, build_looping, NULL},
+    {"bowl", "a box slides in it, and rests on two corners", 20, 32, build_bowl, NULL},
+    {"dominoes", "fall on a slope", 8, 128, build_dominoes, NULL},
     {0},
 };
 

@@ -23,6 +23,19 @@ const scene *find_scene(const char *name);
 /* Builds the scene in a new world. Another seed puts bodies a little elsewhere. */
 narc_status build_scene(const scene *chosen, world_settings settings, uint64_t seed, world *out_world);
 
+/* Ground that is walked from right to left with the air above (narc_chains.h): arcs with common tangents, and edges. */
+typedef struct track {
+    narc_arc arcs[256];
+    size_t count;
+    double x, y, normal; /* where it is; the angle of the outward normal */
+} track;
+
+void put_arc(track *t, double radius, double sweep);
+void put_edge(track *t, double length);
+
+/* A looping of radius 2 around (x, 2), a ramp on its left, and on the ramp a marble, so far above its lowest place. */
+void add_looping(world *w, double x, double height);
+
 typedef struct scene_state {
     double energy;       /* J */
     double displacement; /* the largest distance of a body from where it was added, m */

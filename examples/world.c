@@ -4,6 +4,7 @@
  */
 #include "world.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,16 +31,18 @@ narc_status world_fail(world *w, narc_status status, const char *message) {
 narc_status world_create(world *w, world_settings settings, size_t capacity) {
     const size_t pairs = 16 * capacity;
     *w = (world){.settings = settings, .capacity = capacity, .pair_room = pairs};
-    w->shapes = calloc(capacity, sizeof *w->shapes);
+    w->shapes = calloc(2 * capacity, sizeof *w->shapes);
     w->bodies = calloc(capacity, sizeof *w->bodies);
     w->contacts = calloc(pairs, sizeof *w->contacts);
     w->next_contacts = calloc(pairs, sizeof *w->next_contacts);
     w->overlaps = calloc(NARC_BIT_WORDS(pairs), sizeof *w->overlaps);
     w->asked = calloc(pairs, sizeof *w->asked);
+    w->rows = calloc(2 * pairs, sizeof *w->rows);
     w->active = calloc(pairs, sizeof *w->active);
+    w->joints = calloc(capacity, sizeof *w->joints);
     w->events = calloc(2 * pairs, sizeof *w->events); /* of each pair one, of this list and of the last */
-    if (!w->shapes || !w->bodies || !w->contacts || !w->next_contacts || !w->overlaps || !w->asked || !w->active ||
-        !w->events || narc_create_shapes(NULL, &w->store) != NARC_OK ||
+    if (!w->shapes || !w->bodies || !w->contacts || !w->next_contacts || !w->overlaps || !w->asked || !w->rows ||
+        !w->active || !w->joints || !w->events || narc_create_shapes(NULL, &w->store) != NARC_OK ||
         narc_create_broad_phase(NULL, &w->broad_phase) != NARC_OK)
         return world_fail(w, NARC_ERROR_MEMORY, "no memory for a world");
     return NARC_OK;
@@ -54,7 +57,9 @@ void world_destroy(world *w) {
     free(w->next_contacts);
     free(w->overlaps);
     free(w->asked);
+    free(w->rows);
     free(w->active);
+    free(w->joints);
     free(w->events);
     *w = (world){.body_count = 0};
 }
@@ -87,7 +92,7 @@ narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32
 
 narc_status world_add_body(world *w, world_body body) {
     const bool moved_by_contacts = (body.kind & (NARC_STATIC | NARC_SENSOR)) == 0;
-    if (w->body_count == w->capacity)
+    if (w->body_count + w->ground_count == w->capacity)
         return world_fail(w, NARC_ERROR_CAPACITY, "too many bodies");
     if (body.shape >= narc_count_shapes(w->store))
         return world_fail(w, NARC_ERROR_INDEX, "a body's shape does not exist");
@@ -96,13 +101,54 @@ narc_status world_add_body(world *w, world_body body) {
     body.inverse_mass = moved_by_contacts ? 1 / w->shapes[body.shape].mass : 0;
     body.inverse_inertia = moved_by_contacts ? 1 / w->shapes[body.shape].inertia : 0;
     body.id = ++w->last_id;
+    body.run = NARC_NO_RUN;
     body.start = body.position;
     world_wake_body(&body);
+    w->bodies[w->body_count + w->ground_count] = w->bodies[w->body_count]; /* the ground stays behind all bodies */
     w->bodies[w->body_count++] = body;
     return NARC_OK;
 }
 
-void world_remove_body(world *w, world_body *body) { *body = w->bodies[--w->body_count]; }
+void world_remove_body(world *w, world_body *body) {
+    *body = w->bodies[--w->body_count];
+    w->bodies[w->body_count] = w->bodies[w->body_count + w->ground_count];
+}
+
+/* Solid however deep: what is fast against it is so by its own measure. */
+narc_status world_add_ground(world *w, const narc_arc *arcs, size_t count, bool closed, float friction) {
+    const size_t room = w->capacity - w->body_count - w->ground_count;
+    const narc_chain_options options = {.closed = closed, .first_run = w->run_count};
+    narc_chain_entry *const entries = calloc(room + 1, sizeof *entries);
+    size_t added = 0;
+    const narc_status status = entries
+                                   ? narc_add_chain(w->store, arcs, count, &options, entries, room, &added, &w->error)
+                                   : world_fail(w, NARC_ERROR_MEMORY, "no memory for ground");
+    for (const narc_chain_entry *entry = entries; status == NARC_OK && entry < entries + added; entry++) {
+        w->shapes[entry->shape] = (world_shape){.reach = FLT_MAX, .thickness = FLT_MAX};
+        w->run_count = entry->run == NARC_NO_RUN ? w->run_count : entry->run + 1;
+        w->bodies[w->body_count + w->ground_count++] = (world_body){.position = {(float)entry->x, (float)entry->y},
+                                                                    .cosine = 1,
+                                                                    .shape = entry->shape,
+                                                                    .kind = NARC_STATIC,
+                                                                    .friction = friction,
+                                                                    .id = ++w->last_id,
+                                                                    .run = entry->run,
+                                                                    .stop = 1};
+    }
+    free(entries);
+    return status;
+}
+
+narc_status world_pin(world *w, world_body *a, world_body *b, vec point) {
+    if (w->joint_count == w->capacity)
+        return world_fail(w, NARC_ERROR_CAPACITY, "too many joints");
+    world_contact *const joint = &w->joints[w->joint_count++];
+    *joint = (world_contact){.a = a, .b = b};
+    joint->points[0] = (world_point){.normal = {1, 0},
+                                     .local_a = to_local(a, subtract(point, a->position)),
+                                     .local_b = to_local(b, subtract(point, b->position))};
+    return NARC_OK;
+}
 
 world_body *world_find_body(const world *w, uint64_t id) {
     for (size_t k = 0; k < w->body_count; k++)

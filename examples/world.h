@@ -8,7 +8,7 @@
  *     world_events.c    what begins and ends, what sleeps and wakes
  *     scenes.c          worlds to look at; world_main.c runs them
  *
- * It leaves out joints and a solver on several threads. docs/solver.md tells why everything is as it is.
+ * Of joints it has pins alone, and its solver has one thread. docs/solver.md tells why everything is as it is.
  */
 #ifndef WORLD_H
 #define WORLD_H
@@ -17,6 +17,7 @@
 
 #include <narc.h>
 #include <narc_broad_phase.h>
+#include <narc_chains.h>
 #include <narc_scene.h>
 
 typedef struct vec {
@@ -28,13 +29,16 @@ typedef struct world_body {
     vec position;       /* of its centre of mass, its shape's origin */
     float cosine, sine; /* next to the position: the kernels load all four at once */
     uint32_t shape;
-    uint8_t kind; /* 0: it moves; NARC_STATIC; NARC_SENSOR: it goes where its velocity takes it, and pushes nothing */
+    uint8_t kind;   /* 0: it moves; NARC_STATIC; NARC_SENSOR: it goes where its velocity takes it, and pushes nothing */
+    uint32_t group; /* bodies of one group, but 0, do not meet: those of a machine */
     vec velocity;
     float spin; /* radians per second */
     float friction, restitution;
 
     /* What follows is the world's. */
     uint64_t id;                         /* never given twice, whatever number the body has */
+    uint32_t run;                        /* of ground: see narc_chain_entry */
+    vec stood, stood_rotation;           /* its pose when its contacts with the ground were found */
     vec start;                           /* where it was added */
     float inverse_mass, inverse_inertia; /* 0 if contacts do not move it */
     vec motion;                          /* in this step, at first if nothing stops it, then as it was */
@@ -72,11 +76,14 @@ extern const world_settings world_defaults;
 
 typedef struct world_point {
     uint32_t feature;
-    vec anchor_a, anchor_b; /* from the centres of mass, world axes: the lever arms of impulses */
-    vec local_a, local_b;   /* in the frames of A and B: their surfaces there, or the centres of the arcs that touch */
-    float radii;            /* of these arcs: what lies between the centres and the surfaces */
-    float separation;       /* as the step begins */
-    float approach;         /* the speed at which it closes then */
+    bool walks, edge_a, edge_b;           /* along arcs while the bodies roll; what touches is an edge */
+    vec normal, normal_in_a, normal_in_b; /* from A to B: world axes; as it was found, in the frames of A and B */
+    vec anchor_a, anchor_b;               /* from the centres of mass, world axes: the lever arms of impulses */
+    vec local_a, local_b; /* in the frames of A and B: their surfaces there, or the centres of the arcs that touch */
+    float radius_a, radius_b;        /* of these arcs: what lies between the centres and the surfaces */
+    uint16_t reach_a[2], reach_b[2]; /* how far the normal may turn on them */
+    float separation;                /* as the step begins */
+    float approach;                  /* the speed at which it closes then */
     float normal_mass, tangent_mass;
     float normal_impulse, tangent_impulse; /* the next step starts with them */
     float greatest_impulse;                /* in this step */
@@ -85,14 +92,12 @@ typedef struct world_point {
 /* What the engine knows of a pair in the list of pairs; zeros for one that is new. */
 typedef struct world_contact {
     world_body *a, *b;
-    uint32_t hint;     /* narc's */
-    narc_manifold row; /* narc's answer */
+    uint32_t hint; /* narc's */
     float margin;
     float depth;   /* above 0: the bodies could pass through each other in this step, and may get so deep */
     bool touching; /* has begun and has not ended */
-    bool walks;    /* its point walks along arcs while the bodies roll */
     unsigned point_count;
-    vec normal, normal_in_a, normal_in_b; /* world axes; as it was found, in the frames of A and B */
+    vec span; /* that of its first point as it was found */
     float friction, restitution;
     float rolling_impulse; /* of rotation */
     world_point points[2];
@@ -108,22 +113,25 @@ typedef struct world {
     world_settings settings;
     narc_shapes *store;
     world_shape *shapes;
-    world_body *bodies;
-    size_t body_count, capacity, pair_room;
+    world_body *bodies; /* behind them the ground's entries, which nothing but contacts knows of */
+    size_t body_count, ground_count, capacity, pair_room;
+    uint32_t run_count;
     uint64_t last_id;
     narc_broad_phase *broad_phase;
     const narc_pair_list *list;              /* pairs of bodies that are close; the broad phase owns it */
     world_contact *contacts, *next_contacts; /* one for each pair of this list; room for the next one */
     uint64_t *overlaps;                      /* of sensors, as bits */
     uint32_t *asked;                         /* pairs to find contacts of */
+    narc_manifold *rows;                     /* narc's answers, in that order; a pair may have several */
     world_contact **active;                  /* those with points and a body that moves: what the solver goes through */
+    world_contact *joints;
     world_event *events;
-    size_t asked_count, active_count, event_count;
+    size_t asked_count, row_count, active_count, joint_count, event_count;
     narc_error error; /* what went wrong, when a function here says that something did */
 } world;
 
-/* Room for `capacity` bodies and shapes, and 16 times as many pairs. world_destroy() frees what there is, on an error
- * too. */
+/* Room for `capacity` bodies, entries of ground among them, and as many shapes, and 16 times as many pairs.
+ * world_destroy() frees what there is, on an error too. */
 narc_status world_create(world *w, world_settings settings, size_t capacity);
 void world_destroy(world *w);
 
@@ -132,6 +140,12 @@ narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32
 
 /* Adds a body of density 1, and gives it an id, from 1 on. */
 narc_status world_add_body(world *w, world_body body);
+
+/* Adds a chain (narc_chains.h). Of the bodies, which stay where they are, nothing but its contacts shows it. */
+narc_status world_add_ground(world *w, const narc_arc *arcs, size_t count, bool closed, float friction);
+
+/* Joins two bodies at a point, about which they may turn. Neither can be removed, nor the last body in its place. */
+narc_status world_pin(world *w, world_body *a, world_body *b, vec point);
 
 /* The body goes, and the last one takes its place. */
 void world_remove_body(world *w, world_body *body);

@@ -2,11 +2,13 @@
  *
  * world_contacts.c - from bodies to contacts: pairs, what the last step knew of them, manifolds.
  */
+#include <string.h>
+
 #include "world.h"
 
 /* The bodies as narc sees them: nothing is copied. */
 static narc_bodies view_bodies(const world *w) {
-    return (narc_bodies){.count = w->body_count,
+    return (narc_bodies){.count = w->body_count + w->ground_count,
                          .x = NARC_POSITION_COLUMN(w->bodies, position.x),
                          .y = NARC_POSITION_COLUMN(w->bodies, position.y),
                          .cosine = NARC_COLUMN(w->bodies, cosine),
@@ -25,7 +27,7 @@ static narc_status find_broken_body(world *w) {
  * what is known of the pairs that were in the last is carried over; zeros for the others. */
 narc_status world_update_pairs(world *w) {
     const narc_bodies bodies = view_bodies(w);
-    const narc_pair_filter filter = {.kind = NARC_COLUMN(w->bodies, kind)};
+    const narc_pair_filter filter = {.kind = NARC_COLUMN(w->bodies, kind), .group = NARC_COLUMN(w->bodies, group)};
     const narc_pair_options options = {.margin = w->settings.margin,
                                        .skin = w->settings.skin,
                                        .motion_x = NARC_COLUMN(w->bodies, motion.x),
@@ -52,6 +54,8 @@ narc_status world_update_pairs(world *w) {
             *c = (world_contact){.touching = c->touching};
         c->a = &w->bodies[w->list->pairs.a.base[k]];
         c->b = &w->bodies[w->list->pairs.b.base[k]];
+        if (w->list->previous[k] == NARC_NO_MATCH)
+            c->a->stood.x = INFINITY; /* its contacts with the ground are found anew */
     }
     return w->list->skipped > 0 ? find_broken_body(w) : NARC_OK;
 }
@@ -67,12 +71,18 @@ static void find_depth(const world *w, world_contact *c) {
 
 /* By how much have a contact's bodies moved since it was found? */
 static float find_change(const world *w, const world_contact *c) {
-    const float turn_a = fabsf(cross(c->normal_in_a, to_local(c->a, c->normal)));
-    const float turn_b = fabsf(cross(c->normal_in_b, to_local(c->b, c->normal)));
-    const float reach = fminf(w->shapes[c->a->shape].reach, w->shapes[c->b->shape].reach);
     const world_point *p = &c->points[0];
-    const vec way = scale(c->row.point[0].separation + p->radii, (vec){c->row.normal_x, c->row.normal_y}); /* then */
-    return length(subtract(find_span(c, p), way)) + fmaxf(turn_a, turn_b) * reach;
+    const float turn_a = fabsf(cross(p->normal_in_a, to_local(c->a, p->normal)));
+    const float turn_b = fabsf(cross(p->normal_in_b, to_local(c->b, p->normal)));
+    const float reach = fminf(w->shapes[c->a->shape].reach, w->shapes[c->b->shape].reach);
+    return length(subtract(find_span(c, p), c->span)) + fmaxf(turn_a, turn_b) * reach;
+}
+
+/* By how much has a body moved since its contacts with the ground were found? They are found or serve again together:
+ * what several entries tell of a body is merged. */
+static float find_way(const world *w, const world_body *body) {
+    const float turn = fabsf(cross(body->stood_rotation, (vec){body->cosine, body->sine}));
+    return length(subtract(body->position, body->stood)) + turn * w->shapes[body->shape].reach;
 }
 
 /* A contact of bodies that have hardly moved since it was found serves again: normal and anchors stay as they are in
@@ -83,28 +93,28 @@ void world_recycle_contacts(world *w) {
     for (size_t k = 0; k < w->list->contact_count; k++) {
         world_contact *c = &w->contacts[w->list->contacts[k]];
         find_depth(w, c);
-        if (c->point_count > 0 && c->depth == 0 && find_change(w, c) < w->settings.recycling)
+        const bool on_ground = c->b >= w->bodies + w->body_count;
+        if (c->depth == 0 && (on_ground || c->point_count > 0) &&
+            (on_ground ? find_way(w, c->a) : find_change(w, c)) < w->settings.recycling)
             continue;
-        c->point_count = 0;
         w->asked[w->asked_count++] = w->list->contacts[k];
     }
 }
 
-/* Each contact's row is written where the contact is. */
 narc_status world_find_manifolds(world *w) {
     const narc_bodies bodies = view_bodies(w);
-    size_t count, skipped = 0;
+    size_t skipped = 0;
     const narc_query query = {.margins = NARC_COLUMN(w->contacts, margin),
                               .flat_angle = w->settings.flat_angle,
-                              .dense = true,
-                              .row_stride = sizeof *w->contacts,
                               .hints = NARC_HINT_COLUMN(w->contacts, hint),
                               .selection = NARC_ARRAY(w->asked),
                               .selection_count = w->asked_count,
                               .workers = &w->settings.workers,
                               .out_skipped = &skipped};
-    const narc_status status = narc_find_manifolds(w->store, &bodies, &w->list->pairs, &query, &w->contacts->row,
-                                                   w->pair_room, &count, &w->error);
+    const narc_status status = narc_find_manifolds(w->store, &bodies, &w->list->pairs, &query, w->rows,
+                                                   2 * w->pair_room, &w->row_count, &w->error);
+    if (status == NARC_OK && w->ground_count > 0)
+        w->row_count = narc_merge_manifolds(&w->list->pairs, NARC_COLUMN(w->bodies, run), w->rows, w->row_count);
     return status == NARC_OK && skipped > 0 ? find_broken_body(w) : status;
 }
 
@@ -116,43 +126,66 @@ narc_status world_find_overlaps(world *w) {
     return narc_find_overlaps(w->store, &bodies, &w->list->pairs, &query, w->overlaps, &w->error);
 }
 
-/* What the solver wants of narc's row. A point starts with the impulses of the point of the last step where the same
- * features touched; a pair without a point keeps nothing. */
-static void make_contact(world_contact *c) {
+/* What the solver wants of a point of narc's row. A point starts with the impulses of that of the last step where the
+ * same features touched. */
+static void make_point(const world_contact *c, const narc_manifold *m, unsigned i, const world_point last[2],
+                       world_point *p) {
     const world_body *a = c->a, *b = c->b;
-    const narc_manifold *m = &c->row;
+    const float half = 0.5f * m->point[i].separation;
+    p->feature = m->point[i].feature;
+    p->edge_a = isinf(m->radius_a);
+    p->edge_b = isinf(m->radius_b);
+    p->walks = m->count == 1 && !(p->edge_a && p->edge_b);
+    p->normal = (vec){m->normal_x, m->normal_y};
+    p->normal_in_a = to_local(a, p->normal);
+    p->normal_in_b = to_local(b, p->normal);
+    p->radius_a = p->walks && !p->edge_a ? m->radius_a : 0;
+    p->radius_b = p->walks && !p->edge_b ? m->radius_b : 0;
+    memcpy(p->reach_a, m->reach_a, sizeof p->reach_a);
+    memcpy(p->reach_b, m->reach_b, sizeof p->reach_b);
+    p->separation = m->point[i].separation;
+    p->anchor_a = (vec){m->point[i].x, m->point[i].y}; /* narc's points count from A's position */
+    p->anchor_b = add(p->anchor_a, subtract(a->position, b->position));
+    p->local_a = to_local(a, subtract(p->anchor_a, scale(half + p->radius_a, p->normal)));
+    p->local_b = to_local(b, add(p->anchor_b, scale(half + p->radius_b, p->normal)));
+    const world_point *const same = &last[last[0].feature == p->feature ? 0 : 1];
+    const bool warm = same->feature == p->feature && same->normal_impulse > 0;
+    p->normal_impulse = warm ? same->normal_impulse : 0;
+    p->tangent_impulse = warm ? same->tangent_impulse : 0;
+}
+
+/* A contact of all rows of its pair: two points of one row, or of what touches a concave arc in several places the
+ * deepest two, each with its own normal. A pair without a point keeps nothing. */
+static void make_contact(world_contact *c, const narc_manifold *rows, size_t count) {
     const world_point last[2] = {c->points[0], c->points[1]};
-    const bool edge_a = isinf(m->radius_a), edge_b = isinf(m->radius_b);
-    c->normal = (vec){m->normal_x, m->normal_y};
-    c->normal_in_a = to_local(a, c->normal);
-    c->normal_in_b = to_local(b, c->normal);
-    c->friction = sqrtf(a->friction * b->friction);
-    c->restitution = fmaxf(a->restitution, b->restitution);
-    c->point_count = m->count;
-    c->walks = m->count == 1 && !(edge_a && edge_b);
-    c->points[0] = c->points[1] = (world_point){.feature = 0};
-    c->rolling_impulse = m->count > 0 ? c->rolling_impulse : 0;
-    for (unsigned i = 0; i < m->count; i++) {
-        world_point *p = &c->points[i];
-        const float half = 0.5f * m->point[i].separation;
-        const float radius_a = c->walks && !edge_a ? m->radius_a : 0, radius_b = c->walks && !edge_b ? m->radius_b : 0;
-        p->feature = m->point[i].feature;
-        p->radii = radius_a + radius_b;
-        p->anchor_a = (vec){m->point[i].x, m->point[i].y}; /* narc's points count from A's position */
-        p->anchor_b = add(p->anchor_a, subtract(a->position, b->position));
-        p->local_a = to_local(a, subtract(p->anchor_a, scale(half + radius_a, c->normal)));
-        p->local_b = to_local(b, add(p->anchor_b, scale(half + radius_b, c->normal)));
-        const world_point *const same = &last[last[0].feature == p->feature ? 0 : 1];
-        if (same->feature == p->feature && same->normal_impulse > 0) {
-            p->normal_impulse = same->normal_impulse;
-            p->tangent_impulse = same->tangent_impulse;
+    c->friction = sqrtf(c->a->friction * c->b->friction);
+    c->restitution = fmaxf(c->a->restitution, c->b->restitution);
+    c->point_count = 0;
+    for (const narc_manifold *row = rows; row < rows + count; row++)
+        for (unsigned i = 0; i < row->count; i++) {
+            const bool full = c->point_count == 2;
+            const size_t place = full ? c->points[1].separation > c->points[0].separation : c->point_count++;
+            if (!full || row->point[i].separation < c->points[place].separation)
+                make_point(c, row, i, last, &c->points[place]);
         }
+    for (unsigned i = c->point_count; i < 2; i++) {
+        c->points[i].separation = INFINITY;
+        c->points[i].normal_impulse = 0;
     }
+    c->rolling_impulse = count > 0 ? c->rolling_impulse : 0;
+    c->span = find_span(c, &c->points[0]);
+    c->a->stood = c->a->position;
+    c->a->stood_rotation = (vec){c->a->cosine, c->a->sine};
 }
 
 void world_make_contacts(world *w) {
-    for (size_t k = 0; k < w->asked_count; k++)
-        make_contact(&w->contacts[w->asked[k]]);
+    const narc_manifold *row = w->rows, *const end = row + w->row_count;
+    for (size_t k = 0; k < w->asked_count; k++) {
+        const narc_manifold *const first = row;
+        while (row < end && row->pair == w->asked[k])
+            row++;
+        make_contact(&w->contacts[w->asked[k]], first, (size_t)(row - first));
+    }
 }
 
 /* Bodies that were deeper before may get hardly deeper; else the solver sees to them. */
@@ -170,7 +203,7 @@ narc_status world_stop_bullets(world *w) {
     for (size_t k = 0; k < w->list->contact_count; k++) {
         const uint32_t pair = w->list->contacts[k];
         const world_contact *c = &w->contacts[pair];
-        const float deepest = fminf(c->row.point[0].separation, c->row.point[1].separation);
+        const float deepest = fminf(c->points[0].separation, c->points[1].separation);
         const narc_pairs one = {
             .count = 1, .a = {w->list->pairs.a.base + pair, 0}, .b = {w->list->pairs.b.base + pair, 0}};
         const narc_cast_options options = {.target = -fmaxf(c->depth, 0.03f * c->depth - deepest)};

@@ -53,7 +53,16 @@ static world_body *find_root(world_body *body) {
     return body;
 }
 
-/* Bodies that touch, directly or through others that move, are an island. It sleeps when all of its bodies have been
+static void join(world_body *a, world_body *b) {
+    a = find_root(a);
+    b = find_root(b);
+    if (a < b)
+        b->island = a;
+    else
+        a->island = b;
+}
+
+/* Bodies that touch or are joined, directly or through others that move, are an island. It sleeps when all of its bodies have been
  * slow for a while, and is awake as long as one has not. */
 void world_sleep(world *w) {
     world_body *const end = w->bodies + w->body_count;
@@ -63,14 +72,11 @@ void world_sleep(world *w) {
     }
     for (size_t k = 0; k < w->list->pairs.count; k++) {
         const world_contact *c = &w->contacts[k];
-        if ((c->point_count == 0 && !c->touching) || (w->list->marks[k] & (NARC_STATIC | NARC_SENSOR)))
-            continue;
-        world_body *const a = find_root(c->a), *const b = find_root(c->b);
-        if (a < b)
-            b->island = a;
-        else
-            a->island = b;
+        if ((c->point_count > 0 || c->touching) && !(w->list->marks[k] & (NARC_STATIC | NARC_SENSOR)))
+            join(c->a, c->b);
     }
+    for (size_t k = 0; k < w->joint_count; k++)
+        join(w->joints[k].a, w->joints[k].b);
     for (world_body *body = w->bodies; body < end; body++) { /* a root's rest: that of its island's least quiet body */
         world_body *const root = find_root(body);
         root->rest = fminf(root->rest, body->rest);

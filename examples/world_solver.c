@@ -35,7 +35,7 @@ static vec find_velocity(const world_contact *c, const world_point *p) {
 }
 
 static float find_separation(const world_contact *c, const world_point *p) {
-    return dot(find_span(c, p), c->normal) - p->radii;
+    return dot(find_span(c, p), p->normal) - (p->radius_a + p->radius_b);
 }
 
 /* The impulse that changes the speed along a direction by 1. */
@@ -60,7 +60,7 @@ static void apply_rotation(const world_contact *c, float impulse) {
 /* The impulse along the normal becomes another one, which pushes or is 0. */
 static void change_normal_impulse(const world_contact *c, world_point *p, float change) {
     const float impulse = fmaxf(0, p->normal_impulse + change);
-    apply(c, p, scale(impulse - p->normal_impulse, c->normal));
+    apply(c, p, scale(impulse - p->normal_impulse, p->normal));
     p->normal_impulse = impulse;
     p->greatest_impulse = fmaxf(p->greatest_impulse, impulse);
 }
@@ -68,10 +68,10 @@ static void change_normal_impulse(const world_contact *c, world_point *p, float 
 static void prepare(world_contact *c) {
     for (unsigned i = 0; i < c->point_count; i++) {
         world_point *p = &c->points[i];
-        p->normal_mass = find_mass(c, p, c->normal);
-        p->tangent_mass = find_mass(c, p, quarter_turn(c->normal));
+        p->normal_mass = find_mass(c, p, p->normal);
+        p->tangent_mass = find_mass(c, p, quarter_turn(p->normal));
         p->separation = find_separation(c, p);
-        p->approach = -dot(find_velocity(c, p), c->normal);
+        p->approach = -dot(find_velocity(c, p), p->normal);
         p->greatest_impulse = 0;
     }
 }
@@ -85,34 +85,50 @@ static bool is_in_fan(vec first, vec normal, const uint16_t reach[2]) {
 
 /* While bodies roll, the point where two arcs touch walks along them, and the normal is that of their centres; on an
  * edge it is the edge's. Where one of the arcs ends, the contact stays with the bodies until the next step. */
-static void walk(world_contact *c) {
-    world_point *p = &c->points[0];
-    const bool edge_a = isinf(c->row.radius_a), edge_b = isinf(c->row.radius_b);
-    const vec to_b = subtract(c->b->position, c->a->position), way = find_span(c, p);
-    const vec normal = edge_a   ? to_world(c->a, c->normal_in_a)
-                       : edge_b ? to_world(c->b, c->normal_in_b)
-                                : scale(1 / copysignf(length(way), dot(way, c->normal)), way);
-    if (!is_in_fan(c->normal_in_a, to_local(c->a, normal), c->row.reach_a) ||
-        !is_in_fan(c->normal_in_b, to_local(c->b, normal), c->row.reach_b))
+static void walk(const world_contact *c, world_point *p) {
+    if (!p->walks)
         return;
-    c->normal = normal;
+    const vec to_b = subtract(c->b->position, c->a->position), way = find_span(c, p);
+    const vec normal = p->edge_a   ? to_world(c->a, p->normal_in_a)
+                       : p->edge_b ? to_world(c->b, p->normal_in_b)
+                                   : scale(1 / copysignf(length(way), dot(way, p->normal)), way);
+    if (!is_in_fan(p->normal_in_a, to_local(c->a, normal), p->reach_a) ||
+        !is_in_fan(p->normal_in_b, to_local(c->b, normal), p->reach_b))
+        return;
+    p->normal = normal;
     const float half = 0.5f * find_separation(c, p);
-    p->anchor_a = edge_a ? subtract(add(to_b, to_world(c->b, p->local_b)), scale(c->row.radius_b + half, normal))
-                         : add(to_world(c->a, p->local_a), scale(c->row.radius_a + half, normal));
+    p->anchor_a = p->edge_a ? subtract(add(to_b, to_world(c->b, p->local_b)), scale(p->radius_b + half, normal))
+                            : add(to_world(c->a, p->local_a), scale(p->radius_a + half, normal));
     p->anchor_b = subtract(p->anchor_a, to_b);
     p->normal_mass = find_mass(c, p, normal);
     p->tangent_mass = find_mass(c, p, quarter_turn(normal));
 }
 
-/* The impulses of the last sub-step again, where the points are now. */
-static void warm_start(world_contact *c) {
-    if (c->walks)
-        walk(c);
+/* The impulses of the last sub-step again. */
+static void warm_start(const world_contact *c) {
     apply_rotation(c, c->rolling_impulse);
     for (unsigned i = 0; i < c->point_count; i++) {
         const world_point *p = &c->points[i];
-        const vec along = scale(p->normal_impulse, c->normal);
-        apply(c, p, add(along, scale(p->tangent_impulse, quarter_turn(c->normal))));
+        const vec along = scale(p->normal_impulse, p->normal);
+        apply(c, p, add(along, scale(p->tangent_impulse, quarter_turn(p->normal))));
+    }
+}
+
+/* A pin pulls along both axes, as the spring says. */
+static void pull(const world_contact *joint, world_point *p, vec axis, const spring *soft, float *impulse) {
+    const float wanted = dot(find_velocity(joint, p), axis) + soft->rate * dot(find_span(joint, p), axis);
+    const float change = -find_mass(joint, p, axis) * soft->strength * wanted - soft->loss * *impulse;
+    apply(joint, p, scale(change, axis));
+    *impulse += change;
+}
+
+static void solve_joints(world *w, const spring *soft) {
+    for (world_contact *joint = w->joints; joint < w->joints + w->joint_count; joint++) {
+        world_point *p = joint->points;
+        p->anchor_a = to_world(joint->a, p->local_a);
+        p->anchor_b = to_world(joint->b, p->local_b);
+        pull(joint, p, p->normal, soft, &p->normal_impulse);
+        pull(joint, p, quarter_turn(p->normal), soft, &p->tangent_impulse);
     }
 }
 
@@ -127,7 +143,7 @@ static void solve_rolling(world_contact *c, float arm) {
 
 /* Coulomb: no more than friction times the normal impulse. */
 static void solve_friction(const world_contact *c, world_point *p) {
-    const vec tangent = quarter_turn(c->normal);
+    const vec tangent = quarter_turn(p->normal);
     const float limit = c->friction * p->normal_impulse;
     const float wanted = p->tangent_impulse - p->tangent_mass * dot(find_velocity(c, p), tangent);
     const float impulse = fmaxf(-limit, fminf(wanted, limit));
@@ -138,7 +154,7 @@ static void solve_friction(const world_contact *c, world_point *p) {
 /* Points that are apart may come together within the sub-step, and no further. Those that overlap are pushed apart as
  * the spring says. */
 static void solve_normal(const world_contact *c, world_point *p, const spring *soft, float time) {
-    const float separation = find_separation(c, p), speed = dot(find_velocity(c, p), c->normal);
+    const float separation = find_separation(c, p), speed = dot(find_velocity(c, p), p->normal);
     if (separation > 0)
         change_normal_impulse(c, p, -p->normal_mass * (speed + separation / time));
     else {
@@ -149,6 +165,7 @@ static void solve_normal(const world_contact *c, world_point *p, const spring *s
 
 /* One round over all contacts, in the order of the pairs: the same bits however narc spread its work. */
 static void solve_contacts(world *w, const spring *soft, float time, bool friction) {
+    solve_joints(w, soft);
     for (size_t k = 0; k < w->active_count; k++) {
         world_contact *c = w->active[k];
         if (friction)
@@ -190,7 +207,7 @@ static void integrate_positions(world *w, float time) {
 static void bounce(const world_contact *c, world_point *p) {
     if (c->restitution > 0 && p->approach > least_bounce && p->greatest_impulse > 0)
         change_normal_impulse(c, p,
-                              -p->normal_mass * (dot(find_velocity(c, p), c->normal) - c->restitution * p->approach));
+                              -p->normal_mass * (dot(find_velocity(c, p), p->normal) - c->restitution * p->approach));
 }
 
 void world_solve(world *w) {
@@ -200,10 +217,15 @@ void world_solve(world *w) {
         prepare(w->active[k]);
     for (unsigned step = 0; step < w->settings.substeps; step++) {
         integrate_velocities(w, time);
+        for (size_t k = 0; k < w->joint_count; k++)
+            warm_start(&w->joints[k]);
         for (size_t k = 0; k < w->active_count; k++)
             warm_start(w->active[k]);
         solve_contacts(w, &soft, time, false);
         integrate_positions(w, time);
+        for (size_t k = 0; k < w->active_count; k++)
+            for (unsigned i = 0; i < w->active[k]->point_count; i++)
+                walk(w->active[k], &w->active[k]->points[i]);
         solve_contacts(w, &rigid, time, true);
     }
     for (size_t k = 0; k < w->active_count; k++)

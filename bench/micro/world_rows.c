@@ -63,10 +63,10 @@ static void prepare(struct bench_row *bench_row) {
     find_manifolds(row);
     world_make_contacts(w);
     row->row.pairs = w->list->pairs.count;
-    for (size_t k = 0; k < row->row.pairs; k++) {
+    for (size_t k = 0; k < row->row.pairs; k++)
         row->row.colliding += (w->contacts[k].point_count > 0) / (double)row->row.pairs;
-        row->row.wrong += w->contacts[k].point_count != w->contacts[k].row.count;
-    }
+    for (size_t k = 0; k < w->row_count; k++)
+        row->row.wrong += w->contacts[w->rows[k].pair].point_count != w->rows[k].count;
 }
 
 struct bench_row *make_world_part_row(const char *name, enum world_part part, const struct workload_key *key,

@@ -177,7 +177,7 @@ TEST(test_turned_together) {
     world_body *const boxes[] = {&w.bodies[1], &w.bodies[2]};
     step_for(&w, 0.1);
     assert_int_equal(w.active_count, 1);
-    assert_near((double)w.active[0]->normal.y, 1, 1e-6);
+    assert_near((double)w.active[0]->points[0].normal.y, 1, 1e-6);
     for (int k = 0; k < 2; k++) {
         boxes[k]->cosine = 0.8f;
         boxes[k]->sine = 0.6f;
@@ -185,7 +185,7 @@ TEST(test_turned_together) {
     boxes[1]->position = (vec){-0.6f, 10.8f};
     step_for(&w, 1.0 / 60);
     assert_int_equal(w.active_count, 1);
-    assert_near((double)w.active[0]->normal.x, -0.6, 1e-4);
+    assert_near((double)w.active[0]->points[0].normal.x, -0.6, 1e-4);
     world_destroy(&w);
 }
 

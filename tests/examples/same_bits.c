@@ -50,6 +50,12 @@ TEST(test_heap) { check_same_bits("heap", 0.3f); }
 /* Bodies come and go. */
 TEST(test_rain) { check_same_bits("rain", 0.02f); }
 
+/* Ground, whose rows are merged, and joints. */
+TEST(test_ground) {
+    check_same_bits("car", 0.02f);
+    check_same_bits("dominoes", 0.02f);
+}
+
 /* The hash sees a last bit. */
 TEST(test_hash_sees_all) {
     run r = begin_run("stack", world_defaults, 1);

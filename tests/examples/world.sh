@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# usage: sh world.sh WORLD NARC: the example world from its command line; narc reads and draws what it writes.
+# usage: sh world.sh WORLD: the example world from its command line, and what it draws.
 set -eu
-world=$1 narc=$2
+world=$1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 fail() {
@@ -15,12 +15,11 @@ for wrong in "" "nothing" "stack --seconds" "stack --seconds x" "stack --seconds
     # shellcheck disable=SC2086 # words are arguments
     "$world" $wrong >/dev/null 2>&1 && fail "no error: world $wrong"
 done
-"$world" stack --out "$folder/none" >/dev/null 2>&1 && fail "no error for a folder that does not exist"
+"$world" stack --picture "$folder/none/world.svg" >/dev/null 2>&1 && fail "no error for a folder that does not exist"
 
-"$world" heap --seconds 4 --seed 3 --substeps 4 --flat-angle 20 --threads 2 --out "$folder" >"$folder/report"
+"$world" car --seconds 4 --seed 3 --substeps 4 --flat-angle 20 --threads 2 --picture "$folder/world.svg" --every 2 \
+    >"$folder/report"
 [ "$(wc -l <"$folder/report")" -eq 6 ] || fail "a line for each second, a title, and the hash: $(cat "$folder/report")"
-"$narc" collide --shapes "$folder/shapes.json" --bodies "$folder/bodies.csv" --out "$folder/contacts.csv" \
-    --picture "$folder/world.png" >/dev/null
-[ "$(wc -l <"$folder/bodies.csv")" -eq 204 ] || fail "203 bodies and a header: $(wc -l <"$folder/bodies.csv")"
-[ "$(wc -l <"$folder/contacts.csv")" -gt 200 ] || fail "bodies that lie on each other touch"
-[ -s "$folder/world.png" ] || fail "no picture"
+[ "$(grep -c '<path.*fill=.hsl' "$folder/world.svg")" -eq 9 ] || fail "three bodies at three times"
+[ "$(grep -c '<path.*fill=.none' "$folder/world.svg")" -gt 9 ] || fail "ground"
+[ "$(head -n 1 "$folder/world.svg" | grep -c "viewBox='.*[1-9].*'")" -eq 1 ] || fail "the picture has no size"
