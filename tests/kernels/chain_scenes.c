@@ -179,7 +179,7 @@ static void check_cast(const struct way *way, const struct bowl *bowl, const nar
     }
     if (row->count != NARC_CAST_HIT)
         return;
-    const double depth = find_depth(&then, bowl), ends = find_ends(&then, bowl);
+    const double depth = find_depth(&then, bowl);
     assert_true(fabs(depth) <= room);
     const double x = (double)row->point_x + (ground_first ? bowl->entry.x : then.x);
     const double y = (double)row->point_y + (ground_first ? bowl->entry.y : then.y);
