@@ -256,7 +256,7 @@ static bool is_beyond(const struct setting *setting, const struct reference_body
                            last->center_y + last->radius * sin(last->end)};
     if (minimum->foot.distance >= 0)
         return false;
-    return !holds(body, minimum->foot.at) || minimum->foot.distance < -chain_grain(&setting->chain) ||
+    return !holds(body, minimum->foot.at) || minimum->foot.distance < -chain_grain(&setting->chain) / 2 ||
            (!setting->chain.closed && (holds(body, from) || holds(body, to)));
 }
 
@@ -347,9 +347,9 @@ static const char *compare(const struct setting *setting, const struct reference
             fate[i] = FATE_MATCHED;
             tally->worst = fmax(tally->worst, error / told[i].bound);
         }
-        if (fate[i] == FATE_WRONG && told[i].separation < 0 && fabs(nearest) < fabs(told[i].separation) - bound)
+        if (fate[i] == FATE_WRONG && told[i].separation < 0 && fabs(nearest) < fabs(told[i].separation) - told[i].bound)
             fate[i] = FATE_DEEP; /* something else is nearer: beyond reach */
-        if (fate[i] == FATE_WRONG && told[i].separation >= 0 && nearest < told[i].separation - bound)
+        if (fate[i] == FATE_WRONG && told[i].separation >= 0 && nearest < told[i].separation - told[i].bound)
             fate[i] = FATE_NEARER; /* of a valley the other side */
         if (fate[i] == FATE_WRONG && !isfinite(nearest))
             fate[i] = FATE_DEEP; /* an open end is nearer */
