@@ -81,9 +81,11 @@ static bool has_all_points(const narc_manifold *a, const narc_manifold *b) {
     return all;
 }
 
-static float find_separation(const narc_manifold *a) {
-    return a->count > 1 ? fminf(a->point[0].separation, a->point[1].separation) : a->point[0].separation;
+static const narc_manifold_point *find_deepest(const narc_manifold *a) {
+    return a->count > 1 && a->point[1].separation < a->point[0].separation ? &a->point[1] : &a->point[0];
 }
+
+static float find_separation(const narc_manifold *a) { return find_deepest(a)->separation; }
 
 /* Joins b to a, which have one normal: the outermost points along it turned a quarter turn, and of the deeper row what
  * a row has once. */
@@ -107,7 +109,7 @@ static void join_rows(narc_manifold *a, const narc_manifold *b) {
 /* Is what two rows touch of the ground convex from the one to the other: does either place lie behind the tangent of the
  * other one, and does the normal turn with the way between both? A valley may be too shallow for the first to tell. */
 static bool is_convex(const narc_manifold *a, const narc_manifold *b) {
-    const narc_manifold_point *p = &a->point[0], *q = &b->point[0];
+    const narc_manifold_point *p = find_deepest(a), *q = find_deepest(b);
     const float x = p->x + a->normal_x * p->separation / 2 - q->x - b->normal_x * q->separation / 2;
     const float y = p->y + a->normal_y * p->separation / 2 - q->y - b->normal_y * q->separation / 2;
     const float reach = fmaxf(fabsf(p->x) + fabsf(p->y), fabsf(q->x) + fabsf(q->y)), room = SAME_POINT * reach;

@@ -31,9 +31,11 @@
 /* A body that is d deep, and less than d times END_TURN from the end of a run, may have its greatest gap beyond that, and
  * then no contact here. So pieces have that much in common, and no more than merging takes for one. A run reaches beyond
  * where it meets a concave arc by this many times the length of its line or the radius of its arc, and of the concave one,
- * whose rows merging prefers; these reach beyond their ends by less. */
-#define END_SEAM     1e-4
-#define CONCAVE_SEAM 5e-6
+ * whose rows merging prefers. These reach beyond their ends by less, in radians; the smaller they are, beside what is
+ * around, the more are they seen from it with rounded directions. */
+#define END_SEAM          1e-4
+#define CONCAVE_SEAM      2e-6
+#define MOST_CONCAVE_SEAM 2e-4
 
 /* The bottom of a valley turns further, as does what is right below it; lines reach beyond it by their roundings alone. */
 #define VALLEY_TURN 0.99e-3
@@ -315,7 +317,8 @@ static void divide_concave(divider *d, size_t k) {
     const bool has_before = k > 0 || chain->closed, has_after = k + 1 < chain->count;
     const double parts = ceil(-arc->turn / 2);
     const double near = find_reach(chain, k > 0 ? k - 1 : 0, has_after ? k + 1 : k);
-    const double seam = arc->radius != 0 ? CONCAVE_SEAM : VALLEY_TURN;
+    const double seam =
+        arc->radius != 0 ? fmin(CONCAVE_SEAM * fmax(1, near / -arc->radius), MOST_CONCAVE_SEAM) : VALLEY_TURN;
     for (double part = 0; part < parts && d->status == NARC_OK; part++) {
         const double high = arc->turn * (part / parts) + (part > 0 || has_before ? seam : 0);
         const double low = arc->turn * ((part + 1) / parts) - (part + 1 < parts || has_after ? seam : 0);

@@ -21,7 +21,7 @@
  *   narc_add_chain() divides a chain into ENTRIES, which are shapes of a store: concave arcs, and pieces of convex RUNS,
  *   the maximal stretches between concave arcs. Each entry becomes a body of the caller's, with its shape, placed where
  *   the entry says. A run's shape is closed far behind, but only its front touches, never that closure. Answers are
- *   right for bodies that are less deep in the ground than the size of the entry's front, and where the ground is
+ *   right for bodies that are less deep in the ground than half the entry's front is long, and where the ground is
  *   thicker than bodies are deep; faster ones want smaller steps or casts. An open end just ends: what lies beyond it
  *   touches nothing. A corner of a quarter turn there caps it. Behind thin ground, such as under a bridge, a body in the
  *   air is within the closure, or beyond a concave arc: a row with a separation below -(the body's width along the
@@ -97,7 +97,7 @@ NARC_API narc_status narc_add_chain(narc_shapes *shapes, const narc_arc *arcs, s
  *     separation stays, which is that of the whole run, unless what they touch is not convex: the sides of a run that
  *     turns by more than half a turn may face each other.
  *   - Of two rows with one normal (within 1e-3 rad) and the same points (within 2^-12 of their distance from the
- *     position of a) the one with more points stays, or the first one: a seam, told by both sides.
+ *     position of a) the one with more points stays, else that of a concave arc, or the first one: a seam, told by both.
  * The same bits on every machine. Time in proportion to the rows. Thread-safe. */
 NARC_API size_t narc_merge_contacts(const narc_pairs *pairs, narc_index_column run, narc_contact *rows, size_t count);
 NARC_API size_t narc_merge_manifolds(const narc_pairs *pairs, narc_index_column run, narc_manifold *rows, size_t count);

@@ -119,6 +119,20 @@ TEST(keeps_sides_that_face_each_other) {
     assert_int_equal(merge(&rows, runs), 2);
 }
 
+/* A box's edge on two parts of a hill: what counts is where each is deepest, not how high the edge is above the rest. */
+TEST(joins_an_edge_on_a_hill) {
+    const uint32_t runs[MOST] = {4, 4};
+    for (int first = 0; first < 2; first++) {
+        struct rows rows = {.count = 0};
+        const float level[][3] = {{-1, -1, -0.01f}, {0, -1, -0.01f}},
+                    falling[][3] = {{1, -1.05f, 0.04f}, {0, -1, -0.01f}};
+        add_row(&rows, 7, 0, down, 2, first ? level : falling);
+        add_row(&rows, 7, 1, down, 2, first ? falling : level);
+        assert_int_equal(merge(&rows, runs), 1);
+        assert_int_equal(rows.manifolds[0].count, 2);
+    }
+}
+
 /* Of a closed outline with one valley both sides are of one run, however shallow the valley is. A hill as shallow is
  * convex: there the greater separation is that of all. */
 TEST(keeps_both_sides_of_a_shallow_valley) {

@@ -54,6 +54,7 @@ struct told {
     double other_separation;
     double normal_x, normal_y, separation, bound;
     uint32_t entry, count, feature;
+    bool is_centred; /* in an arc of nearly its radius: the direction between the centres is that of rounding */
 };
 
 static narc_point rotate(const struct body *place, double x, double y) {
@@ -208,6 +209,8 @@ static struct told read_row(const struct setting *setting, const struct referenc
     told.entry = pair->b - BODIES;
     told.count = row->count;
     told.feature = point->feature;
+    const double apart = -(double)row->radius_a - (double)row->radius_b - told.separation; /* the centres */
+    told.is_centred = row->radius_b < 0 && apart < -(double)row->radius_b / 256;
     return told;
 }
 
@@ -256,7 +259,7 @@ static bool is_beyond(const struct setting *setting, const struct reference_body
                            last->center_y + last->radius * sin(last->end)};
     if (minimum->foot.distance >= 0)
         return false;
-    return !holds(body, minimum->foot.at) || minimum->foot.distance < -chain_grain(&setting->chain) ||
+    return !holds(body, minimum->foot.at) || minimum->foot.distance < -chain_grain(&setting->chain) / 2 ||
            (!setting->chain.closed && (holds(body, from) || holds(body, to)));
 }
 
@@ -297,6 +300,18 @@ static const char *check_row(const struct setting *setting, struct ground_search
     return find_end_distance(&setting->chain, told->foot) <= 8 * told->bound ? NULL : "foot not on the ground";
 }
 
+/* Of a disc with its centre next to that of a concave arc the separation alone is promised. */
+static const char *check_centred(const struct setting *setting, const struct reference_body *body,
+                                 const struct told *told) {
+    const narc_arc *arc = &setting->chain.arcs[setting->entries[told->entry].first_arc], *own = &body->arcs[0];
+    const double x =
+        body->x + body->scale * (body->cosine * own->center_x - body->sine * own->center_y) - arc->center_x;
+    const double y =
+        body->y + body->scale * (body->sine * own->center_x + body->cosine * own->center_y) - arc->center_y;
+    const double separation = -arc->radius - hypot(x, y) - body->scale * own->radius;
+    return body->count > 1 || fabs(separation - told->separation) <= told->bound ? NULL : "separation wrong";
+}
+
 /* Do two rows tell of one contact, which merging should have made one? */
 static bool is_same(const struct reference_body *body, const struct told *one, const struct told *other) {
     const narc_point point = {(one->at.x + one->foot.x) / 2, (one->at.y + one->foot.y) / 2};
@@ -327,8 +342,13 @@ static const char *compare(const struct setting *setting, const struct reference
     enum fate fate[ROWS / BODIES];
 
     for (size_t i = 0; i < count && !wrong; i++) {
-        wrong = check_row(setting, search, body, &told[i], size);
-        fate[i] = FATE_WRONG;
+        wrong = told[i].is_centred ? check_centred(setting, body, &told[i])
+                                   : check_row(setting, search, body, &told[i], size);
+        fate[i] = told[i].is_centred ? FATE_SHALLOW : FATE_WRONG;
+        for (size_t m = 0; m < minimum_count && told[i].is_centred; m++)
+            told_by[m] += fabs(minima[m].foot.distance - told[i].separation) <= told[i].bound;
+        if (told[i].is_centred)
+            continue;
         double off;
         const double along = ground_project(search, told[i].at, &off);
         const double nearest = ground_distance(setting->ground, told[i].at).distance;
@@ -347,9 +367,9 @@ static const char *compare(const struct setting *setting, const struct reference
             fate[i] = FATE_MATCHED;
             tally->worst = fmax(tally->worst, error / told[i].bound);
         }
-        if (fate[i] == FATE_WRONG && told[i].separation < 0 && fabs(nearest) < fabs(told[i].separation) - bound)
+        if (fate[i] == FATE_WRONG && told[i].separation < 0 && fabs(nearest) < fabs(told[i].separation) - told[i].bound)
             fate[i] = FATE_DEEP; /* something else is nearer: beyond reach */
-        if (fate[i] == FATE_WRONG && told[i].separation >= 0 && nearest < told[i].separation - bound)
+        if (fate[i] == FATE_WRONG && told[i].separation >= 0 && nearest < told[i].separation - told[i].bound)
             fate[i] = FATE_NEARER; /* of a valley the other side */
         if (fate[i] == FATE_WRONG && !isfinite(nearest))
             fate[i] = FATE_DEEP; /* an open end is nearer */

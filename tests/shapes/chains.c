@@ -129,10 +129,9 @@ static void check_cover(const narc_arc *arcs, size_t count, bool closed, const s
 static bool has_end(const struct front *f, bool at_end, const struct front *other) {
     const narc_arc *arc = &f->arcs[at_end && !f->is_concave ? f->count - 1 : 0];
     const double normal = at_end != f->is_concave ? arc->end : arc->start;
-    static const double back[] = {0, 5e-6, 2e-5, 0.99e-3}; /* of concave arcs, corners, bottoms of valleys */
     bool found = false;
-    for (int k = 0; k < (arc->radius != 0 ? 3 : 4); k++) {
-        const double inside = normal - (at_end != f->is_concave ? back[k] : -back[k]);
+    for (int k = 0; k <= 1000 && !found; k++) { /* the bottom of a valley reaches on the furthest */
+        const double back = 1e-6 * k, inside = normal - (at_end != f->is_concave ? back : -back);
         found = found || has_point(other, point_at(arc, inside), inside, 1e-6, 1e-6 * fmin(f->size, other->size));
     }
     return found;
