@@ -48,9 +48,8 @@ static inline double narc_find_front_height(const narc_shape_header *header, con
 /* ------------------------------------------------------------------------------------------------ what reaches them
  *
  * A contact with a piece is one only if the other body reaches the piece's surface: what lies behind it by more than its
- * own width along the normal is in the air behind thin ground, or too deep. What rounding may do to both is far less
- * than NARC_WIDTH_ROOM of the width where ground is as large as bodies are; where it is not, a body that is nearly all
- * in the ground may be counted either way. */
+ * own width along the normal is in the air behind thin ground, or too deep. The width has NARC_WIDTH_ROOM of what is around
+ * the body as room, which is far more than rounding where ground is as large as bodies are, and lets rods lie. */
 #define NARC_WIDTH_ROOM 0x1p-10
 
 /* One of two bodies: its shape and scale, and in its own axes the contact's normal, either way round, and the way to the
@@ -84,7 +83,8 @@ static inline double narc_find_reach(const narc_toucher *a, const narc_toucher *
     double size;
     if (!narc_is_piece(body->header))
         return body->scale * (narc_find_front_height(body->header, body->arcs, body->x, body->y, &size) +
-                              narc_find_front_height(body->header, body->arcs, -body->x, -body->y, &size));
+                              narc_find_front_height(body->header, body->arcs, -body->x, -body->y, &size) +
+                              NARC_WIDTH_ROOM * (double)body->header->bound_radius);
     const double size_a = narc_find_piece_size(a), size_b = narc_find_piece_size(b);
     const double least = size_a < size_b ? size_a : size_b, most = 0.125 * (size_a < size_b ? size_b : size_a);
     return least > most ? least : most;
@@ -100,7 +100,10 @@ static inline double narc_find_reach(const narc_toucher *a, const narc_toucher *
 typedef struct narc_surface {
     double x[4], y[4];
     double radius, from_x, from_y, to_x, to_y;
+    double room; /* for rounding */
 } narc_surface;
+
+#define NARC_SURFACE_ROOM 0x1p-16 /* of the piece's size and the body's together */
 
 /* Puts a point that is `beyond` behind an end along the tangent, counter-clockwise or (-1) clockwise. */
 static inline void narc_extend_surface(narc_surface *s, int end, int point, double n_x, double n_y, double beyond) {
@@ -121,7 +124,8 @@ static inline narc_surface narc_see_surface(const narc_toucher *piece, const nar
                  to_y = (double)(hollow ? low->end_y : high->start_y);
     const double size = narc_find_piece_size(piece), least = 0.25 * body->scale * (double)body->header->bound_radius;
     const double beyond = depth <= NARC_SHALLOW * (hollow && size < least ? least : size) ? 2 * depth / body->scale : 0;
-    narc_surface out = {.radius = hollow ? fabs(part * (double)low->radius) : INFINITY,
+    narc_surface out = {.room = NARC_SURFACE_ROOM * (size / body->scale + (double)body->header->bound_radius),
+                        .radius = hollow ? fabs(part * (double)low->radius) : INFINITY,
                         .from_x = sign * (c * from_x - s * from_y),
                         .from_y = sign * (s * from_x + c * from_y),
                         .to_x = sign * (c * to_x - s * to_y),
@@ -156,7 +160,7 @@ static inline bool narc_is_apart(const narc_surface *s, double x, double y, doub
         const double along = -(s->x[k] * x + s->y[k] * y);
         best = along > best ? along : best;
     }
-    return best < -height;
+    return best + s->room < -height;
 }
 
 /* Is a body apart from it? Then so along a normal of one of them, or the way from a point to a centre. */
@@ -201,7 +205,7 @@ static inline bool narc_is_reached(const narc_toucher *a, const narc_toucher *b,
     const narc_toucher *const piece = of_a ? a : b, *const body = of_a ? b : a;
     const bool is_body = !narc_is_piece(body->header);
     const double depth = -separation, inner = is_body ? 2 * body->scale * (double)body->header->inner_radius : 0;
-    if (depth <= 0 || (depth > inner && depth > (1 + NARC_WIDTH_ROOM) * narc_find_reach(a, b)))
+    if (depth <= 0 || (depth > inner && depth > narc_find_reach(a, b)))
         return depth <= 0;
     if (!is_body)
         return true;

@@ -27,7 +27,10 @@
 #include "scene/concave.inl"
 
 /* Contacts after which a cast that turns is unfinished. */
-enum { MOST_CONTACTS = 1024, HALVINGS = 24 };
+enum { MOST_CONTACTS = 1024, HALVINGS = 8 };
+
+/* So much of a step behind a time signs are not those of rounding. */
+#define JUST_BEHIND 0x1p-20
 
 /* The bodies at a time, from A's position. */
 struct scene {
@@ -219,15 +222,40 @@ INLINE double find_leaving(const struct scene *scene, int arc, double goal, plac
     return time >= 0 && may_touch(scene, arc, then) ? time : INFINITY;
 }
 
+/* When does an arc that moves along a line come to be where it may touch, and is beyond the target then? It has come past
+ * an end. */
+INLINE double find_entering(const struct scene *scene, int arc, double target, place motion) {
+    const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
+    const place u = find_way(scene, arc),
+                start = turn_to_world(&scene->body, (place){(double)stored->start_x, (double)stored->start_y}),
+                end = turn_to_world(&scene->body, (place){(double)stored->end_x, (double)stored->end_y});
+    const place sides[4] = {scene->arc.start, scene->arc.end, start, end};
+    double least = INFINITY;
+    for (int k = 0; k < 4; k++) {
+        const double time = -find_cross(sides[k], u) / find_cross(sides[k], motion) + JUST_BEHIND;
+        struct scene then = *scene;
+        struct nearest nearest = {.separation = INFINITY};
+        if (!(time >= 0 && time < least))
+            continue;
+        then.body.position.x += time * motion.x;
+        then.body.position.y += time * motion.y;
+        compare_arc(&then, arc, &nearest);
+        least = nearest.separation <= target ? time : least;
+    }
+    return least;
+}
+
 INLINE int cast_straight(const narc_shapes *shapes, narc_casts *casts, size_t slot, int side) {
     const double sign = side == 0 ? 1 : -1, target = (double)casts->target;
     const place motion = {sign * casts->motion_x[slot], sign * casts->motion_y[slot]};
     struct scene scene = place_scene(shapes, casts, slot, side, 0);
     struct nearest nearest = find_nearest(&scene, false);
     double least = nearest.separation <= target ? 0 : INFINITY;
-    for (int arc = 0; arc < scene.body.header->count; arc++)
-        least =
-            find_least(least, find_leaving(&scene, arc, scene.arc.radius - get_radius(&scene, arc) - target, motion));
+    for (int arc = 0; arc < scene.body.header->count; arc++) {
+        const double goal = scene.arc.radius - get_radius(&scene, arc) - target;
+        least = find_least(least, find_leaving(&scene, arc, goal, motion));
+        least = find_least(least, find_entering(&scene, arc, target, motion));
+    }
     if (!(least <= 1))
         return NARC_CAST_MISS;
     casts->time[slot] = round_time(least);
