@@ -47,21 +47,22 @@ static inline double narc_find_front_height(const narc_shape_header *header, con
 
 /* ------------------------------------------------------------------------------------------------ what reaches them
  *
- * A contact with a piece is one only if the other body reaches the piece's surface: what lies behind it by more than its
- * own width along the normal is in the air behind thin ground, or too deep. The width has NARC_WIDTH_ROOM of what is around
- * the body as room, which is far more than rounding where ground is as large as bodies are, and lets rods lie. */
+ * A contact with a piece is one only if the other body reaches the piece's surface: what lies behind it by more than
+ * its own width along the normal is in the air behind thin ground, or too deep. The width has NARC_WIDTH_ROOM of what
+ * is around the body as room, which is far more than rounding where ground is as large as bodies are, and lets rods
+ * lie. */
 #define NARC_WIDTH_ROOM 0x1p-10
 
-/* One of two bodies: its shape and scale, and in its own axes the contact's normal, either way round, and the way to the
- * other's position. */
+/* One of two bodies: its shape and scale, and in its own axes the contact's normal, either way round, and the way to
+ * the other's position. */
 typedef struct narc_toucher {
     const narc_shape_header *header;
     const narc_record *arcs;
     double scale, x, y, other_x, other_y;
 } narc_toucher;
 
-/* How large a piece is: of a concave arc its chord, of a run half the way to its first far corner, which is twice what its
- * front reaches from its middle (chain_pieces.c). */
+/* How large a piece is: of a concave arc its chord, of a run half the way to its first far corner, which is twice what
+ * its front reaches from its middle (chain_pieces.c). */
 static inline double narc_find_piece_size(const narc_toucher *t) {
     const size_t count = t->header->count, first = t->header->first_arc & NARC_FIRST_ARC;
     const narc_stored_arc *const a = &t->arcs[0].arc;
@@ -76,8 +77,9 @@ static inline double narc_find_piece_size(const narc_toucher *t) {
     return t->scale * 0.5 * sqrt(x * x + y * y);
 }
 
-/* How deep a contact of two bodies, one of them a piece, may be. How thick the solid behind a piece is, is not known: of
- * two pieces the smaller one counts, or an eighth of the larger one where a tip or the bottom of a valley is smaller. */
+/* How deep a contact of two bodies, one of them a piece, may be. How thick the solid behind a piece is, is not known:
+ * of two pieces the smaller one counts, or an eighth of the larger one where a tip or the bottom of a valley is
+ * smaller. */
 static inline double narc_find_reach(const narc_toucher *a, const narc_toucher *b) {
     const narc_toucher *const body = narc_is_piece(a->header) ? b : a;
     double size;
@@ -90,8 +92,8 @@ static inline double narc_find_reach(const narc_toucher *a, const narc_toucher *
     return least > most ? least : most;
 }
 
-/* What of a piece faces the air, as a body sees it: a convex outline in the body's axes and unit, within the points and,
- * in directions between two, a circle about the first one.
+/* What of a piece faces the air, as a body sees it: a convex outline in the body's axes and unit, within the points
+ * and, in directions between two, a circle about the first one.
  *   of a concave arc   its sector: points are the centre, and beyond the arc's ends
  *   of a run           its front and what lies before its chord: both ends, and beyond them. In directions of the front
  *                      it has no end: along those a contact says how deep it is
