@@ -113,7 +113,8 @@ static inline void narc_extend_surface(narc_surface *s, int end, int point, doub
     s->y[point] = s->y[end] + beyond * n_x;
 }
 
-static inline narc_surface narc_see_surface(const narc_toucher *piece, const narc_toucher *body, double depth) {
+/* But for what is beyond its ends. */
+static inline narc_surface narc_see_surface(const narc_toucher *piece, const narc_toucher *body) {
     const size_t count = piece->header->count, first = piece->header->first_arc & NARC_FIRST_ARC;
     const bool hollow = narc_is_concave(piece->header);
     const narc_stored_arc *const low = &piece->arcs[hollow ? 0 : (count - first) % count].arc,
@@ -124,10 +125,7 @@ static inline narc_surface narc_see_surface(const narc_toucher *piece, const nar
                  to_x = (double)(hollow ? low->end_x : high->start_x);
     const double from_y = (double)(hollow ? low->start_y : low->end_y),
                  to_y = (double)(hollow ? low->end_y : high->start_y);
-    const double size = narc_find_piece_size(piece), least = 0.25 * body->scale * (double)body->header->bound_radius;
-    const double beyond = depth <= NARC_SHALLOW * (hollow && size < least ? least : size) ? 2 * depth / body->scale : 0;
-    narc_surface out = {.room = NARC_SURFACE_ROOM * (size / body->scale + (double)body->header->bound_radius),
-                        .radius = hollow ? fabs(part * (double)low->radius) : INFINITY,
+    narc_surface out = {.radius = hollow ? fabs(part * (double)low->radius) : INFINITY,
                         .from_x = sign * (c * from_x - s * from_y),
                         .from_y = sign * (s * from_x + c * from_y),
                         .to_x = sign * (c * to_x - s * to_y),
@@ -138,15 +136,23 @@ static inline narc_surface narc_see_surface(const narc_toucher *piece, const nar
         out.x[k] = body->other_x / body->scale + c * x - s * y;
         out.y[k] = body->other_y / body->scale + s * x + c * y;
     }
-    narc_extend_surface(&out, 0, 2, out.from_x, out.from_y, -beyond);
-    narc_extend_surface(&out, 1, 3, out.to_x, out.to_y, beyond);
-    if (hollow) { /* both were beside the centre */
-        out.x[2] += out.radius * out.from_x;
-        out.y[2] += out.radius * out.from_y;
-        out.x[3] += out.radius * out.to_x;
-        out.y[3] += out.radius * out.to_y;
-    }
     return out;
+}
+
+static inline void narc_widen_surface(narc_surface *s, const narc_toucher *piece, const narc_toucher *body,
+                                      double depth) {
+    const double size = narc_find_piece_size(piece), least = 0.25 * body->scale * (double)body->header->bound_radius;
+    const bool hollow = narc_is_concave(piece->header);
+    const double beyond = depth <= NARC_SHALLOW * (hollow && size < least ? least : size) ? 2 * depth / body->scale : 0;
+    s->room = NARC_SURFACE_ROOM * (size / body->scale + (double)body->header->bound_radius);
+    narc_extend_surface(s, 0, 2, s->from_x, s->from_y, -beyond);
+    narc_extend_surface(s, 1, 3, s->to_x, s->to_y, beyond);
+    if (hollow) { /* both were beside the centre */
+        s->x[2] += s->radius * s->from_x;
+        s->y[2] += s->radius * s->from_y;
+        s->x[3] += s->radius * s->to_x;
+        s->y[3] += s->radius * s->to_y;
+    }
 }
 
 /* Is a direction between the two? They are less than half a turn apart. */
@@ -211,8 +217,11 @@ static inline bool narc_is_reached(const narc_toucher *a, const narc_toucher *b,
         return depth <= 0;
     if (!is_body)
         return true;
-    const narc_surface surface = narc_see_surface(piece, body, depth);
-    return narc_lies_before(&surface, body) || !narc_misses(&surface, body);
+    narc_surface surface = narc_see_surface(piece, body);
+    if (narc_lies_before(&surface, body))
+        return true;
+    narc_widen_surface(&surface, piece, body, depth);
+    return !narc_misses(&surface, body);
 }
 
 #endif
