@@ -24,8 +24,9 @@
  *   right for bodies that are less deep in the ground than half the entry's front is long, and where the ground is
  *   thicker than bodies are deep; faster ones want smaller steps or casts. An open end just ends: what lies beyond it
  *   touches nothing. A corner of a quarter turn there caps it. Behind thin ground, such as under a bridge, a body in the
- *   air is within the closure, or beyond a concave arc: a row with a separation below -(the body's width along the
- *   normal) is that, and no contact.
+ *   air is within the closure, or beyond a concave arc: there is no contact unless the body reaches the entry's surface.
+ *   So none is deeper than the body is wide along the normal, but for 2^-10 of its bounding radius; of two entries, as
+ *   a gear in a ring, none is deeper than the smaller one's front is large, or an eighth of the larger one's.
  *   Entries overlap by next to nothing, so that no body falls between two; what both tell of one body is merged by
  *   narc_merge_contacts() or narc_merge_manifolds().
  *

@@ -252,10 +252,9 @@ typedef struct narc_impact {
  * and none below the target earlier; a miss has none below the target (up to the same rounding). Where the least
  * separation lies within target .. target + tolerance both are lawful. Turning counts for what it moves: not for a circle
  * about its position.
- * Pieces of chains (narc_chains.h) are hit from the air, within their ends, where another piece goes on; a concave arc by
- * what turns at its ends, too. What turns and first meets that which closes a run behind, such as from below where ground
- * is thinner than that closure is deep, is NARC_CAST_UNFINISHED there; from there what does not turn may hit at fraction
- * 0, with a separation below -(its own width).
+ * Pieces of chains (narc_chains.h) are hit from the air, within their ends, where another piece goes on: at the first time
+ * at which narc_find_contacts() has a row whose separation is the target (or within the tolerance), or less where the
+ * body comes past an open end; not by a body that comes from behind, before it has left the piece.
  * Errors as narc_find_contacts(); NARC_ERROR_ARGUMENT (a tolerance below 0), NARC_ERROR_CAPACITY. Allocates nothing.
  * Source: conservative advancement (Mirtich 1996) by bounds of their own: docs/algorithm.md, section 13. */
 NARC_API narc_status narc_cast_pairs(const narc_shapes *shapes, const narc_bodies *bodies, const narc_motions *motions,

@@ -47,22 +47,22 @@ static inline double narc_find_front_height(const narc_shape_header *header, con
 
 /* ------------------------------------------------------------------------------------------------ what reaches them
  *
- * A contact with a piece is one only if the other body reaches the piece's surface: what lies behind it by more than its
- * own width along the normal is in the air behind thin ground, or too deep. What rounding may do to both is far less
- * than NARC_WIDTH_ROOM of the width where ground is as large as bodies are; where it is not, a body that is nearly all
- * in the ground may be counted either way. */
+ * A contact with a piece is one only if the other body reaches the piece's surface: what lies behind it by more than
+ * its own width along the normal is in the air behind thin ground, or too deep. The width has NARC_WIDTH_ROOM of what
+ * is around the body as room, which is far more than rounding where ground is as large as bodies are, and lets rods
+ * lie. */
 #define NARC_WIDTH_ROOM 0x1p-10
 
-/* One of two bodies: its shape and scale, and in its own axes the contact's normal, either way round, and the way to the
- * other's position. */
+/* One of two bodies: its shape and scale, and in its own axes the contact's normal, either way round, and the way to
+ * the other's position. */
 typedef struct narc_toucher {
     const narc_shape_header *header;
     const narc_record *arcs;
     double scale, x, y, other_x, other_y;
 } narc_toucher;
 
-/* How large a piece is: of a concave arc its chord, of a run half the way to its first far corner, which is twice what its
- * front reaches from its middle (chain_pieces.c). */
+/* How large a piece is: of a concave arc its chord, of a run half the way to its first far corner, which is twice what
+ * its front reaches from its middle (chain_pieces.c). */
 static inline double narc_find_piece_size(const narc_toucher *t) {
     const size_t count = t->header->count, first = t->header->first_arc & NARC_FIRST_ARC;
     const narc_stored_arc *const a = &t->arcs[0].arc;
@@ -77,21 +77,23 @@ static inline double narc_find_piece_size(const narc_toucher *t) {
     return t->scale * 0.5 * sqrt(x * x + y * y);
 }
 
-/* How deep a contact of two bodies, one of them a piece, may be. How thick the solid behind a piece is, is not known: of
- * two pieces the smaller one counts, or an eighth of the larger one where a tip or the bottom of a valley is smaller. */
+/* How deep a contact of two bodies, one of them a piece, may be. How thick the solid behind a piece is, is not known:
+ * of two pieces the smaller one counts, or an eighth of the larger one where a tip or the bottom of a valley is
+ * smaller. */
 static inline double narc_find_reach(const narc_toucher *a, const narc_toucher *b) {
     const narc_toucher *const body = narc_is_piece(a->header) ? b : a;
     double size;
     if (!narc_is_piece(body->header))
         return body->scale * (narc_find_front_height(body->header, body->arcs, body->x, body->y, &size) +
-                              narc_find_front_height(body->header, body->arcs, -body->x, -body->y, &size));
+                              narc_find_front_height(body->header, body->arcs, -body->x, -body->y, &size) +
+                              NARC_WIDTH_ROOM * (double)body->header->bound_radius);
     const double size_a = narc_find_piece_size(a), size_b = narc_find_piece_size(b);
     const double least = size_a < size_b ? size_a : size_b, most = 0.125 * (size_a < size_b ? size_b : size_a);
     return least > most ? least : most;
 }
 
-/* What of a piece faces the air, as a body sees it: a convex outline in the body's axes and unit, within the points and,
- * in directions between two, a circle about the first one.
+/* What of a piece faces the air, as a body sees it: a convex outline in the body's axes and unit, within the points
+ * and, in directions between two, a circle about the first one.
  *   of a concave arc   its sector: points are the centre, and beyond the arc's ends
  *   of a run           its front and what lies before its chord: both ends, and beyond them. In directions of the front
  *                      it has no end: along those a contact says how deep it is
@@ -100,7 +102,10 @@ static inline double narc_find_reach(const narc_toucher *a, const narc_toucher *
 typedef struct narc_surface {
     double x[4], y[4];
     double radius, from_x, from_y, to_x, to_y;
+    double room; /* for rounding */
 } narc_surface;
+
+#define NARC_SURFACE_ROOM 0x1p-16 /* of the piece's size and the body's together */
 
 /* Puts a point that is `beyond` behind an end along the tangent, counter-clockwise or (-1) clockwise. */
 static inline void narc_extend_surface(narc_surface *s, int end, int point, double n_x, double n_y, double beyond) {
@@ -108,7 +113,8 @@ static inline void narc_extend_surface(narc_surface *s, int end, int point, doub
     s->y[point] = s->y[end] + beyond * n_x;
 }
 
-static inline narc_surface narc_see_surface(const narc_toucher *piece, const narc_toucher *body, double depth) {
+/* But for what is beyond its ends. */
+static inline narc_surface narc_see_surface(const narc_toucher *piece, const narc_toucher *body) {
     const size_t count = piece->header->count, first = piece->header->first_arc & NARC_FIRST_ARC;
     const bool hollow = narc_is_concave(piece->header);
     const narc_stored_arc *const low = &piece->arcs[hollow ? 0 : (count - first) % count].arc,
@@ -119,8 +125,6 @@ static inline narc_surface narc_see_surface(const narc_toucher *piece, const nar
                  to_x = (double)(hollow ? low->end_x : high->start_x);
     const double from_y = (double)(hollow ? low->start_y : low->end_y),
                  to_y = (double)(hollow ? low->end_y : high->start_y);
-    const double size = narc_find_piece_size(piece), least = 0.25 * body->scale * (double)body->header->bound_radius;
-    const double beyond = depth <= NARC_SHALLOW * (hollow && size < least ? least : size) ? 2 * depth / body->scale : 0;
     narc_surface out = {.radius = hollow ? fabs(part * (double)low->radius) : INFINITY,
                         .from_x = sign * (c * from_x - s * from_y),
                         .from_y = sign * (s * from_x + c * from_y),
@@ -132,15 +136,23 @@ static inline narc_surface narc_see_surface(const narc_toucher *piece, const nar
         out.x[k] = body->other_x / body->scale + c * x - s * y;
         out.y[k] = body->other_y / body->scale + s * x + c * y;
     }
-    narc_extend_surface(&out, 0, 2, out.from_x, out.from_y, -beyond);
-    narc_extend_surface(&out, 1, 3, out.to_x, out.to_y, beyond);
-    if (hollow) { /* both were beside the centre */
-        out.x[2] += out.radius * out.from_x;
-        out.y[2] += out.radius * out.from_y;
-        out.x[3] += out.radius * out.to_x;
-        out.y[3] += out.radius * out.to_y;
-    }
     return out;
+}
+
+static inline void narc_widen_surface(narc_surface *s, const narc_toucher *piece, const narc_toucher *body,
+                                      double depth) {
+    const double size = narc_find_piece_size(piece), least = 0.25 * body->scale * (double)body->header->bound_radius;
+    const bool hollow = narc_is_concave(piece->header);
+    const double beyond = depth <= NARC_SHALLOW * (hollow && size < least ? least : size) ? 2 * depth / body->scale : 0;
+    s->room = NARC_SURFACE_ROOM * (size / body->scale + (double)body->header->bound_radius);
+    narc_extend_surface(s, 0, 2, s->from_x, s->from_y, -beyond);
+    narc_extend_surface(s, 1, 3, s->to_x, s->to_y, beyond);
+    if (hollow) { /* both were beside the centre */
+        s->x[2] += s->radius * s->from_x;
+        s->y[2] += s->radius * s->from_y;
+        s->x[3] += s->radius * s->to_x;
+        s->y[3] += s->radius * s->to_y;
+    }
 }
 
 /* Is a direction between the two? They are less than half a turn apart. */
@@ -156,7 +168,7 @@ static inline bool narc_is_apart(const narc_surface *s, double x, double y, doub
         const double along = -(s->x[k] * x + s->y[k] * y);
         best = along > best ? along : best;
     }
-    return best < -height;
+    return best + s->room < -height;
 }
 
 /* Is a body apart from it? Then so along a normal of one of them, or the way from a point to a centre. */
@@ -201,12 +213,15 @@ static inline bool narc_is_reached(const narc_toucher *a, const narc_toucher *b,
     const narc_toucher *const piece = of_a ? a : b, *const body = of_a ? b : a;
     const bool is_body = !narc_is_piece(body->header);
     const double depth = -separation, inner = is_body ? 2 * body->scale * (double)body->header->inner_radius : 0;
-    if (depth <= 0 || (depth > inner && depth > (1 + NARC_WIDTH_ROOM) * narc_find_reach(a, b)))
-        return depth <= 0;
+    if (depth <= inner || depth > narc_find_reach(a, b))
+        return depth <= inner;
     if (!is_body)
         return true;
-    const narc_surface surface = narc_see_surface(piece, body, depth);
-    return narc_lies_before(&surface, body) || !narc_misses(&surface, body);
+    narc_surface surface = narc_see_surface(piece, body);
+    if (narc_lies_before(&surface, body))
+        return true;
+    narc_widen_surface(&surface, piece, body, depth);
+    return !narc_misses(&surface, body);
 }
 
 #endif

@@ -197,8 +197,8 @@ static int cast_alone(const narc_cast_job *job, struct slots *slots, size_t slot
 #endif
 }
 
-/* Is what touches a piece's front for certain? Else it may be a run's closure, or behind a piece: where it has been from
- * the start, or is to be so deep. */
+/* Is what touches a piece's front for certain? Else it may be a run's closure, or behind a piece: where it has been
+ * from the start, or is to be so deep. */
 static bool is_in_front(const narc_cast_job *job, const struct slots *slots, size_t slot) {
     const narc_shape_header *const a = find_header(job, slots, slot, 0), *const b = find_header(job, slots, slot, 1);
     const narc_contact *const c = &slots->casts.contact[slot];

@@ -34,8 +34,8 @@ INLINE const narc_shape_header *find_header(const narc_batch *batch, const narc_
     return &batch->shapes->headers[narc_index_at(bodies->shape, body)];
 }
 
-/* Of the pairs k ... of a queue in the lanes `which`, those whose bodies do not reach each other's surface (soa/piece.h).
- * `n`: in A's frame. */
+/* Of the pairs k ... of a queue in the lanes `which`, those whose bodies do not reach each other's surface
+ * (soa/piece.h). `n`: in A's frame. */
 NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, int k, vm which, vf separation, vec2 n) {
     const narc_batch *const batch = call->batch;
     const vec2 rotation = get_vec2(queue, ROTATION, k), position = get_vec2(queue, POSITION, k);

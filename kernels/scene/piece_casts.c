@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * piece_casts.c - the kernel of one time of impact with a piece of a chain: with a concave arc, or with a run from where
- * it is met from elsewhere than its front.
+ * piece_casts.c - the kernel of one time of impact with a piece of a chain: with a concave arc, or with a run from
+ * where it is met from elsewhere than its front.
  *
  * A cast hits when the first contact is told whose separation is the target, or less. It goes on by times before which
  * there can be none (Mirtich 1996):
  *
- * With u from a concave arc's centre to that of an arc of the other body, R and r their radii, the bodies are R - |u| - r
- * apart there, if u lies in both sectors. So there is none before all of this can be, each by the speed of what moves.
- * What does not turn is found at once: u moves along a line, and leaves the circle of R - r - target at the larger root.
+ * With u from a concave arc's centre to that of an arc of the other body, R and r their radii, the bodies are R - |u|
+ * - r apart there, if u lies in both sectors. So there is none before all of this can be, each by the speed of what
+ * moves. What does not turn is found at once: u moves along a line, and leaves the circle of R - r - target at the
+ * larger root.
  *
- * Of a run let f be the greatest gap of the closed shape, and g that along normals of the front. There is a contact where
- * f = g, and none before f - g can be 0, nor before f can be the target.
+ * Of a run let f be the greatest gap of the closed shape, and g that along normals of the front. There is a contact
+ * where f = g, and none before f - g can be 0, nor before f can be the target.
  *
  * What lies behind a piece, so that there is a contact which does not reach it (soa/piece.h), comes from behind until
  * there is none.
@@ -27,7 +28,10 @@
 #include "scene/concave.inl"
 
 /* Contacts after which a cast that turns is unfinished. */
-enum { MOST_CONTACTS = 1024, HALVINGS = 24 };
+enum { MOST_CONTACTS = 1024, HALVINGS = 8 };
+
+/* So much of a step behind a time signs are not those of rounding. */
+#define JUST_BEHIND 0x1p-20
 
 /* The bodies at a time, from A's position. */
 struct scene {
@@ -219,15 +223,40 @@ INLINE double find_leaving(const struct scene *scene, int arc, double goal, plac
     return time >= 0 && may_touch(scene, arc, then) ? time : INFINITY;
 }
 
+/* When does an arc that moves along a line come to be where it may touch, and is beyond the target then? It has come
+ * past an end. */
+INLINE double find_entering(const struct scene *scene, int arc, double target, place motion) {
+    const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
+    const place u = find_way(scene, arc),
+                start = turn_to_world(&scene->body, (place){(double)stored->start_x, (double)stored->start_y}),
+                end = turn_to_world(&scene->body, (place){(double)stored->end_x, (double)stored->end_y});
+    const place sides[4] = {scene->arc.start, scene->arc.end, start, end};
+    double least = INFINITY;
+    for (int k = 0; k < 4; k++) {
+        const double time = -find_cross(sides[k], u) / find_cross(sides[k], motion) + JUST_BEHIND;
+        struct scene then = *scene;
+        struct nearest nearest = {.separation = INFINITY};
+        if (!(time >= 0 && time < least))
+            continue;
+        then.body.position.x += time * motion.x;
+        then.body.position.y += time * motion.y;
+        compare_arc(&then, arc, &nearest);
+        least = nearest.separation <= target ? time : least;
+    }
+    return least;
+}
+
 INLINE int cast_straight(const narc_shapes *shapes, narc_casts *casts, size_t slot, int side) {
     const double sign = side == 0 ? 1 : -1, target = (double)casts->target;
     const place motion = {sign * casts->motion_x[slot], sign * casts->motion_y[slot]};
     struct scene scene = place_scene(shapes, casts, slot, side, 0);
     struct nearest nearest = find_nearest(&scene, false);
     double least = nearest.separation <= target ? 0 : INFINITY;
-    for (int arc = 0; arc < scene.body.header->count; arc++)
-        least =
-            find_least(least, find_leaving(&scene, arc, scene.arc.radius - get_radius(&scene, arc) - target, motion));
+    for (int arc = 0; arc < scene.body.header->count; arc++) {
+        const double goal = scene.arc.radius - get_radius(&scene, arc) - target;
+        least = find_least(least, find_leaving(&scene, arc, goal, motion));
+        least = find_least(least, find_entering(&scene, arc, target, motion));
+    }
     if (!(least <= 1))
         return NARC_CAST_MISS;
     casts->time[slot] = round_time(least);
@@ -275,8 +304,8 @@ INLINE double find_speed_seen(const struct speeds *s, int body, double reach) {
  * behind. What is nearer than `enough` is as good as there. */
 typedef struct outlook looker(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time);
 
-/* A contact may be deep when it is told at last: of what has passed an end. Finds the first time, between one without and
- * this one. */
+/* A contact may be deep when it is told at last: of what has passed an end. Finds the first time, between one without
+ * and this one. */
 INLINE void find_first_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, looker *look, float before) {
     float after = casts->time[slot];
     const double enough = (double)casts->target + casts->enough[slot];
@@ -396,7 +425,8 @@ INLINE int find_furthest(const struct outline *o, place n, double *out_height) {
     return best;
 }
 
-/* Gaps of closed shapes: the greatest, its normal from A to B, the arcs; and the greatest along normals of each front. */
+/* Gaps of closed shapes: the greatest, its normal from A to B, the arcs; and the greatest along normals of each front.
+ * */
 struct gaps {
     double most, of_front[2];
     place normal;
@@ -445,7 +475,8 @@ INLINE struct gaps find_gaps(const struct body_frame bodies[2], const struct out
     return out;
 }
 
-/* What a body touches with along its outward normal: how far it reaches along n, the stretch across it, and what it is. */
+/* What a body touches with along its outward normal: how far it reaches along n, the stretch across it, and what it
+ * is. */
 struct stretch {
     double across, low, high;
     unsigned feature;
@@ -572,8 +603,8 @@ INLINE struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, 
 
 /* ------------------------------------------------------------------------------------------------ the kernel */
 
-/* Of a cast that has begun, or that is where a run's closed shape is at the target: what becomes of it. Time and contact
- * are then the answer's. */
+/* Of a cast that has begun, or that is where a run's closed shape is at the target: what becomes of it. Time and
+ * contact are then the answer's. */
 int NARC_NAMED(piece)(const narc_shapes *shapes, narc_casts *casts, size_t slot) {
     const bool of_a = is_hollow(shapes, casts, slot, 0), of_b = is_hollow(shapes, casts, slot, 1);
     const place motion = {casts->motion_x[slot], casts->motion_y[slot]};

@@ -185,10 +185,8 @@ static void check_cast(const struct way *way, const struct bowl *bowl, const nar
     const double y = (double)row->point_y + (ground_first ? bowl->entry.y : then.y);
     EXPECT(hypot(x, y), bowl->radius, 2 * room + 1e-5);
     const double sign = ground_first ? -1 : 1;
-    if (row->radius_a < 0 || row->radius_b < 0) { /* not an end */
-        EXPECT(sign * (double)row->normal_x, x / bowl->radius, 1e-3);
-        EXPECT(sign * (double)row->normal_y, y / bowl->radius, 1e-3);
-    }
+    EXPECT(sign * (double)row->normal_x, x / bowl->radius, 1e-3);
+    EXPECT(sign * (double)row->normal_y, y / bowl->radius, 1e-3);
 }
 
 TEST(test_casts) {
