@@ -335,8 +335,12 @@ typedef struct narc_nearest_options {
 } narc_nearest_options;
 
 /* The bodies nearest to each point: the least (separation, body), or the first `most` of them in this order. Rows are
- * those of narc_find_distances(). Pieces of chains are not found: narc_query_index() with a box about the point finds
- * them, narc_find_distances() how far they are.
+ * those of narc_find_distances(), but for pieces of chains (narc_chains.h). Of these the nearest place of the ground's own
+ * curve counts, ends among it, from either side: its distance takes the place of the separation in that order and in
+ * `distance`, so that a piece of ground that is far in front of a point, such as the other side of a wall, comes behind
+ * one that is near. The row's separation is above 0 in the air, and below 0 behind the tangent at the place: of the
+ * nearest piece, where the point is in the ground. Beyond an open end that is what its tangent says, and the normal leads
+ * from the end to the point, or from the point to the end. No point is within a piece (`inside`).
  *   index, bodies   as in narc_cast_rays(); a body whose box does not hold it may not be found
  *   options         NULL: defaults, which are the nearest body at any distance
  *   out_rows        room for `capacity` rows, at least points->count * most

@@ -26,6 +26,7 @@
 #include "kernels.h"
 #include "scene/body_frame.inl"
 #include "scene/concave.inl"
+#include "scene/piece_places.inl"
 #include "simd/simd.h"
 
 /* ------------------------------------------------------------------------------------------------ separations */
@@ -367,10 +368,21 @@ INLINE void add_body(struct search *search, uint32_t body, float separation) {
     }
 }
 
+/* The frame of a piece of a chain, and its nearest place. False for all else. */
+INLINE bool find_piece(const narc_point_batch *batch, uint32_t body, place point, struct body_frame *frame,
+                       struct piece_place *out) {
+    return NARC_PIECES && batch->shapes->piece_count > 0 &&
+           load_body_frame(batch->shapes, batch->bodies, body, frame) && narc_is_piece(frame->header) &&
+           find_piece_place(frame, point, out);
+}
+
 INLINE void look_at_body(struct search *search, uint32_t body) {
     const float shrink = 1 - 0x1p-16f; /* of a square, as in base/pair_setup.inl: the radius has room for separations */
     struct body_frame frame;
+    struct piece_place nearest;
     float x, y;
+    if (body != search->ignored && find_piece(search->batch, body, search->point, &frame, &nearest))
+        add_body(search, body, (float)(frame.scale * nearest.distance));
     if (body == search->ignored || !load_body_frame(search->batch->shapes, search->batch->bodies, body, &frame) ||
         narc_is_piece(frame.header) || !place_point(&frame, search->point, &x, &y))
         return;
@@ -378,6 +390,22 @@ INLINE void look_at_body(struct search *search, uint32_t body) {
     if (reach < 0 || reach * reach < (x * x + y * y) * shrink)
         return;
     add_body(search, body, find_separation(&frame, x, y));
+}
+
+/* Writes the rows of what was found, or sees to it. */
+INLINE void ask_nearest(const struct search *search, size_t point, struct questions *waiting) {
+    const narc_point_batch *const batch = search->batch;
+    for (size_t i = 0; i < batch->most; i++) {
+        narc_distance *const row = &search->rows[i];
+        struct body_frame frame;
+        struct piece_place nearest;
+        if (i >= search->found)
+            put_nothing(row, point);
+        else if (find_piece(batch, row->body, search->point, &frame, &nearest))
+            *row = make_piece_row(&frame, &nearest, point, row->body);
+        else
+            ask(batch, point, row->body, row, waiting);
+    }
 }
 
 /* Goes through the index, at each node to the nearest slot first. */
@@ -424,11 +452,7 @@ void NARC_NAMED(nearest)(const narc_point_batch *batch, size_t first, size_t end
         search.limit_key = find_limit_key(search.limit);
         if (batch->index->level_count > 0 && search.mask != 0)
             find_nearest(&search);
-        for (size_t i = 0; i < batch->most; i++)
-            if (i < search.found)
-                ask(batch, k, search.rows[i].body, &search.rows[i], &waiting);
-            else
-                put_nothing(&search.rows[i], k);
+        ask_nearest(&search, k, &waiting);
     }
     answer(batch->shapes, &waiting);
 }

@@ -8,8 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "chains.h"
 #include "check.h"
 #include "expect.h"
+#include "narc_broad_phase.h"
 #include "narc_chains.h"
 #include "narc_scene.h"
 #include "scene.h"
@@ -305,6 +307,155 @@ TEST(test_runs) {
     EXPECT(row[0].separation, 2, 1e-6);
     EXPECT(row[2].separation, -0.25, 1e-6);
     narc_destroy_shapes(store);
+}
+
+/* ------------------------------------------------------------------------------------------------ nearest */
+
+static double find_segment_distance(narc_point p, narc_point a, narc_point b) {
+    const double x = b.x - a.x, y = b.y - a.y, square = x * x + y * y;
+    const double part = square > 0 ? fmin(fmax(((p.x - a.x) * x + (p.y - a.y) * y) / square, 0), 1) : 0;
+    return hypot(p.x - a.x - part * x, p.y - a.y - part * y);
+}
+
+static narc_point find_arc_point(const narc_arc *arc, double part) {
+    const double angle = arc->start + part * (arc->end - arc->start);
+    return (narc_point){arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle)};
+}
+
+/* How far a point is from the outline of a chain, whose arcs are taken for many chords. */
+static double find_outline_distance(const struct chain *chain, narc_point p) {
+    enum { CHORDS = 256 };
+    double least = INFINITY;
+    for (size_t k = 0; k < chain->count; k++) {
+        const narc_arc *const arc = &chain->arcs[k];
+        narc_point from = find_arc_point(arc, 0);
+        if (k > 0 || chain->closed)
+            least = fmin(
+                least, find_segment_distance(p, find_arc_point(&chain->arcs[(k > 0 ? k : chain->count) - 1], 1), from));
+        for (int i = 1; i <= CHORDS; i++) {
+            const narc_point to = find_arc_point(arc, (double)i / CHORDS);
+            least = fmin(least, find_segment_distance(p, from, to));
+            from = to;
+        }
+    }
+    return least;
+}
+
+/* The entries of a chain that is turned, and an index of them. */
+enum { ENTRIES = 4 * CHAIN_ARCS, POINTS = 50 };
+
+struct ground_scene {
+    narc_shapes *store;
+    narc_index *index;
+    narc_body bodies[ENTRIES];
+    narc_box boxes[ENTRIES];
+    size_t count;
+    float cosine, sine;
+};
+
+static bool lay_ground(struct ground_scene *scene, const struct chain *chain, double angle) {
+    static narc_chain_entry entries[ENTRIES];
+    const narc_chain_options options = {.closed = chain->closed};
+    scene->store = empty_store();
+    if (narc_add_chain(scene->store, chain->arcs, chain->count, &options, entries, ENTRIES, &scene->count, NULL) !=
+        NARC_OK) {
+        narc_destroy_shapes(scene->store);
+        return false;
+    }
+    scene->cosine = (float)cos(angle);
+    scene->sine = (float)sin(angle);
+    const double length = hypot((double)scene->cosine, (double)scene->sine);
+    const double c = (double)scene->cosine / length, s = (double)scene->sine / length;
+    for (size_t k = 0; k < scene->count; k++)
+        scene->bodies[k] = (narc_body){.x = c * entries[k].x - s * entries[k].y,
+                                       .y = s * entries[k].x + c * entries[k].y,
+                                       .cosine = scene->cosine,
+                                       .sine = scene->sine,
+                                       .scale = 1,
+                                       .shape = entries[k].shape};
+    const narc_bodies bodies = narc_view_bodies(scene->bodies, scene->count);
+    assert_int_equal(narc_compute_boxes(scene->store, &bodies, NULL, scene->boxes, NULL), NARC_OK);
+    assert_int_equal(narc_create_index(NULL, &scene->index), NARC_OK);
+    assert_int_equal(narc_build_index(scene->index, scene->boxes, scene->count, NULL, NULL), NARC_OK);
+    return true;
+}
+
+/* Is a row that of the nearest place of the ground? `size`: what the chain's numbers are in proportion to. */
+static void check_nearest(const struct ground_scene *scene, const struct chain *chain, const struct ground *ground,
+                          narc_point p, const narc_distance *row, double size) {
+    const double length = hypot((double)scene->cosine, (double)scene->sine);
+    const double c = (double)scene->cosine / length, s = (double)scene->sine / length;
+    const narc_body *const body = &scene->bodies[row->body];
+    const double x = body->x + (double)row->place_x, y = body->y + (double)row->place_y;
+    const narc_point at = {c * x + s * y, c * y - s * x};
+    const double distance = find_outline_distance(chain, p), room = 3e-5 * (size + distance);
+    assert_int_equal(row->count, 1);
+    EXPECT(fabsf(row->separation), distance, room);
+    EXPECT(find_outline_distance(chain, at), 0, room);
+    EXPECT(hypot(p.x - at.x, p.y - at.y), distance, room);
+    if (distance > 100 * room) {
+        const double n_x = (c * (p.x - at.x) - s * (p.y - at.y)) / (double)row->separation;
+        const double n_y = (s * (p.x - at.x) + c * (p.y - at.y)) / (double)row->separation;
+        EXPECT(row->normal_x, n_x, 0.05);
+        EXPECT(row->normal_y, n_y, 0.05);
+    }
+    const struct ground_foot foot = ground_distance(ground, p);
+    if (isfinite(foot.distance) && distance > 2 * room) /* else an open end is nearer */
+        assert_true((row->separation < 0) == (foot.distance < 0));
+}
+
+TEST(test_nearest) {
+    struct test_random random = test_random_named("points and ground");
+    static narc_arc arcs[CHAIN_ARCS];
+    static struct ground_scene scene;
+    const size_t trials = test_trials(100);
+    size_t behind = 0, all = 0;
+    for (size_t k = 0; k < trials; k++) {
+        const struct chain chain = make_chain(&random, (enum chain_family)(k % CHAIN_FAMILIES), arcs);
+        const double angle = random_between(&random, -PI, PI);
+        double x[POINTS], y[POINTS], size = 1;
+        narc_point point[POINTS];
+        narc_distance rows[2 * POINTS], others[2 * POINTS];
+        if (!lay_ground(&scene, &chain, angle))
+            continue;
+        struct ground *const ground = make_ground(&chain);
+        const double length = hypot((double)scene.cosine, (double)scene.sine);
+        for (size_t i = 0; i < chain.count; i++) {
+            const narc_point at = find_arc_point(&arcs[i], 0);
+            size = fmax(size, fmax(fabs(arcs[i].radius), fabs(at.x) + fabs(at.y)));
+        }
+        for (int i = 0; i < POINTS; i++) {
+            const narc_point at =
+                find_arc_point(&arcs[random_below(&random, chain.count)], random_between(&random, 0, 1));
+            const double away = random_log_between(&random, 1e-3, 10);
+            point[i] =
+                (narc_point){at.x + random_between(&random, -away, away), at.y + random_between(&random, -away, away)};
+            x[i] = ((double)scene.cosine * point[i].x - (double)scene.sine * point[i].y) / length;
+            y[i] = ((double)scene.sine * point[i].x + (double)scene.cosine * point[i].y) / length;
+        }
+        const narc_bodies bodies = narc_view_bodies(scene.bodies, scene.count);
+        const narc_points points = {POINTS, NARC_POSITION_ARRAY(x), NARC_POSITION_ARRAY(y), {NULL}};
+        const narc_nearest_options two = {.most = 2};
+        narc_error error;
+        expect_ok(narc_find_nearest(scene.index, scene.store, &bodies, &points, &two, rows, 2 * POINTS, &error),
+                  &error);
+        for (int i = 0; i < POINTS; i++, all++) {
+            check_nearest(&scene, &chain, ground, point[i], &rows[2 * i], size);
+            behind += rows[2 * i].separation < 0;
+            if (rows[2 * i + 1].count == 1)
+                assert_true(fabs((double)rows[2 * i].separation) <=
+                            fabs((double)rows[2 * i + 1].separation) + 4e-5 * size);
+        }
+        test_use_isa("scalar");
+        expect_ok(narc_find_nearest(scene.index, scene.store, &bodies, &points, &two, others, 2 * POINTS, &error),
+                  &error);
+        assert_memory_equal(rows, others, sizeof rows);
+        test_use_isa(test_isa());
+        destroy_ground(ground);
+        narc_destroy_index(scene.index);
+        narc_destroy_shapes(scene.store);
+    }
+    assert_true(behind > all / 8 && behind < all);
 }
 
 TEST_MAIN("chain_scenes")
