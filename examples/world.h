@@ -141,7 +141,7 @@ narc_status world_add_shape(world *w, const narc_arc *arcs, size_t count, uint32
 /* Adds a body of density 1, and gives it an id, from 1 on. */
 narc_status world_add_body(world *w, world_body body);
 
-/* Adds a chain (narc_chains.h). Of the bodies, which stay where they are, nothing but its contacts shows it. */
+/* Adds a chain (narc_chains.h), whose entries are static bodies behind all others. */
 narc_status world_add_ground(world *w, const narc_arc *arcs, size_t count, bool closed, float friction);
 
 /* Joins two bodies at a point, about which they may turn. Neither can be removed, nor the last body in its place. */

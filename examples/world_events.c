@@ -62,8 +62,8 @@ static void join(world_body *a, world_body *b) {
         a->island = b;
 }
 
-/* Bodies that touch or are joined, directly or through others that move, are an island. It sleeps when all of its bodies have been
- * slow for a while, and is awake as long as one has not. */
+/* Bodies that touch or are joined, directly or through others that move, are an island. It sleeps when all of its bodies
+ * have been slow for a while, and is awake as long as one has not. */
 void world_sleep(world *w) {
     world_body *const end = w->bodies + w->body_count;
     for (world_body *body = w->bodies; body < end; body++) {

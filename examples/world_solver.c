@@ -86,8 +86,6 @@ static bool is_in_fan(vec first, vec normal, const uint16_t reach[2]) {
 /* While bodies roll, the point where two arcs touch walks along them, and the normal is that of their centres; on an
  * edge it is the edge's. Where one of the arcs ends, the contact stays with the bodies until the next step. */
 static void walk(const world_contact *c, world_point *p) {
-    if (!p->walks)
-        return;
     const vec to_b = subtract(c->b->position, c->a->position), way = find_span(c, p);
     const vec normal = p->edge_a   ? to_world(c->a, p->normal_in_a)
                        : p->edge_b ? to_world(c->b, p->normal_in_b)
@@ -164,14 +162,17 @@ static void solve_normal(const world_contact *c, world_point *p, const spring *s
 }
 
 /* One round over all contacts, in the order of the pairs: the same bits however narc spread its work. */
-static void solve_contacts(world *w, const spring *soft, float time, bool friction) {
+static void solve_contacts(world *w, const spring *soft, float time, bool relax) {
     solve_joints(w, soft);
     for (size_t k = 0; k < w->active_count; k++) {
         world_contact *c = w->active[k];
-        if (friction)
+        if (relax)
             solve_rolling(c, w->settings.rolling_arm);
-        for (unsigned i = 0; i < c->point_count && friction; i++)
+        for (unsigned i = 0; i < c->point_count && relax; i++) {
+            if (c->points[i].walks) /* the bodies have moved */
+                walk(c, &c->points[i]);
             solve_friction(c, &c->points[i]);
+        }
         for (unsigned i = 0; i < c->point_count; i++)
             solve_normal(c, &c->points[i], soft, time);
     }
@@ -223,9 +224,6 @@ void world_solve(world *w) {
             warm_start(w->active[k]);
         solve_contacts(w, &soft, time, false);
         integrate_positions(w, time);
-        for (size_t k = 0; k < w->active_count; k++)
-            for (unsigned i = 0; i < w->active[k]->point_count; i++)
-                walk(w->active[k], &w->active[k]->points[i]);
         solve_contacts(w, &rigid, time, true);
     }
     for (size_t k = 0; k < w->active_count; k++)
