@@ -381,7 +381,7 @@ static bool lay_ground(struct ground_scene *scene, const struct chain *chain, do
 }
 
 /* Is a row that of the nearest place of the ground? `size`: what the chain's numbers are in proportion to. */
-static void check_nearest(const struct ground_scene *scene, const struct chain *chain, const struct ground *ground,
+static void check_nearest(const struct ground_scene *scene, const struct chain *chain, struct ground *ground,
                           narc_point p, const narc_distance *row, double size) {
     const double length = hypot((double)scene->cosine, (double)scene->sine);
     const double c = (double)scene->cosine / length, s = (double)scene->sine / length;

@@ -253,9 +253,9 @@ TEST(test_chains_in_chains) {
         take_turtle(inner, &t, true);
         assert_true(add_chain(inner));
         double far = 0, x = 0, y = 0; /* its middle, and how far it reaches from there */
-        for (size_t k = 0; k < inner->count; k++) {
-            x += inner->bodies[k].x / (double)inner->count;
-            y += inner->bodies[k].y / (double)inner->count;
+        for (size_t k = 0; k < inner->chain.count; k++) {
+            x += inner->arcs[k].center_x / (double)inner->chain.count;
+            y += inner->arcs[k].center_y / (double)inner->chain.count;
         }
         for (size_t k = 0; k < inner->chain.count; k++)
             far = fmax(far,
