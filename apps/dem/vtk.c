@@ -125,7 +125,7 @@ static void put_fields(FILE *file, const dem *d, const dem_load *loads) {
     static const char *const words[] = {"id", "wall", "shape", "material", "coordination", "bearing"};
     static const char *const numbers[] = {"speed", "spin", "size", "pressure"};
     const dem_bodies *b = &d->bodies;
-    fprintf(file, "\nCELL_DATA %zu\nFIELD FieldData 12", b->count);
+    fprintf(file, "\nCELL_DATA %zu\nFIELD FieldData 13", b->count);
     for (size_t i = 0; i < 6; i++) {
         fprintf(file, "\n%s 1 %zu int\n", words[i], b->count);
         for (size_t k = 0; k < b->count; k++)
@@ -141,6 +141,9 @@ static void put_fields(FILE *file, const dem *d, const dem_load *loads) {
     fprintf(file, "\nvelocity 3 %zu float\n", b->count);
     for (size_t k = 0; k < b->count; k++)
         put_place(file, b->vx[k], b->vy[k]);
+    fprintf(file, "\ncentre 3 %zu float\n", b->count);
+    for (size_t k = 0; k < b->count; k++)
+        put_place(file, b->x[k], b->y[k]);
     fprintf(file, "\nstress 9 %zu float\n", b->count);
     for (size_t k = 0; k < b->count; k++) {
         put_place(file, loads[k].stress_xx, loads[k].stress_xy);
