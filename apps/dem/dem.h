@@ -124,7 +124,7 @@ typedef struct dem_servo {
     double force;           /* the target: what grains press against the direction with. Used if `between` is empty */
     double stress;          /* times the distance of the two walls of `between` times the thickness */
     int between[2];         /* walls, or -1 */
-    double gain, max_speed; /* the share of a step's error that the next step removes */
+    double gain, max_speed; /* its speed is the gain times the force that is missing */
     double travel; /* the run ends if the wall moves further without touching a grain; 0: the world's diagonal */
 } dem_servo;
 
@@ -144,9 +144,8 @@ typedef struct dem_wall {
     double spin;      /* about the pivot, which moves with the velocity */
     dem_vec pivot;
     dem_servo servo;
-    double work;       /* done on the grains since the start */
-    double resistance; /* how its force grows with its speed in a step, if some wall has servo control */
-    double idle_way;   /* how far servo control has moved it since it touched a grain */
+    double work;     /* done on the grains since the start */
+    double idle_way; /* how far servo control has moved it since it touched a grain */
 } dem_wall;
 
 /* The memory of a pair that touches. It counts only if `step` is the step before. */

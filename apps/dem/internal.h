@@ -82,7 +82,6 @@ bool dem_take_image_pairs(dem *d); /* adds the found pairs with images to the ex
 bool dem_steer_walls(dem *d);
 void dem_move_walls(dem *d);
 void dem_count_wall_work(dem *d);
-void dem_find_resistances(dem *d);
 bool dem_add_plate_pairs(dem *d);
 
 /* laws.c, gather.c */

@@ -21,7 +21,7 @@ typedef struct header {
 } header;
 
 static const char MAGIC[8] = {'n', 'a', 'r', 'c', '-', 'd', 'e', 'm'};
-enum { VERSION = 4, BYTE_ORDER_MARK = 0x01020304 };
+enum { VERSION = 5, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct counts {
     uint64_t bodies, walls, pairs, contacts, extra;
@@ -70,7 +70,7 @@ static void pass_walls(stream *s, dem *d) {
         dem_wall *w = &d->walls[i];
         dem_servo *servo = &w->servo;
         int32_t on[2] = {servo->on, 0};
-        double *const numbers[] = {&w->spin,       &w->work,     &w->resistance,    &w->idle_way,  &servo->force,
+        double *const numbers[] = {&w->spin,       &w->work,     &w->idle_way,      &servo->force,
                                    &servo->stress, &servo->gain, &servo->max_speed, &servo->travel};
         pass(s, &w->velocity, sizeof w->velocity);
         pass(s, &w->pivot, sizeof w->pivot);

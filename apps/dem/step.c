@@ -120,7 +120,6 @@ bool dem_find_first_forces(dem *d) {
     if (!found)
         return false;
     dem_gather_forces(d);
-    dem_find_resistances(d);
     return true;
 }
 
@@ -146,7 +145,6 @@ bool dem_step(dem *d) {
         return false;
     dem_gather_forces(d);
     dem_count_wall_work(d);
-    dem_find_resistances(d);
     kick(d);
     return true;
 }

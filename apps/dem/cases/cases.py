@@ -260,7 +260,9 @@ def run_biaxial(cases, name, shapes, begin, friction):
         filling.update(count=289, region=[-15, -15, 15, 15], spacing=[1.75, 1.75])
         for wall in walls.values():
             wall["plate"]["point"] = [x * 15 / 57 for x in wall["plate"]["point"]]
-        world["stages"][0]["duration"], world["stages"][1]["duration"], world["output"]["every"] = 110, 150, 5
+            if "servo" in wall:
+                wall["servo"]["gain"] *= 57 / 15
+        world["stages"][0]["duration"], world["stages"][1]["duration"], world["output"]["every"] = 200, 150, 5
         world["stages"][1]["walls"]["top"]["velocity"] = [0, -0.008]
 
     folder, world = cases.run("biaxial", name, change, shapes)

@@ -29,7 +29,7 @@ cat >good.json <<'END'
   "walls": [
     {"name": "floor", "material": "steel", "plate": {"point": [0, 0], "normal": [0, 1]}},
     {"name": "block", "material": "steel", "box": {"width": 0.5, "height": 0.5, "radius": 0.1}, "at": [2, 0], "angle": 0.3, "spin": 1, "pivot": [2.1, 0]},
-    {"name": "lid", "material": "steel", "plate": {"point": [0, 12], "normal": [0, -1]}, "servo": {"direction": [0, -1], "stress": 100, "between": ["floor", "block"], "max_speed": 1}}
+    {"name": "lid", "material": "steel", "plate": {"point": [0, 12], "normal": [0, -1]}, "servo": {"direction": [0, -1], "stress": 100, "between": ["floor", "block"], "gain": 1, "max_speed": 1}}
   ],
   "boundary": {"x": [0, 4]},
   "gravity": [0, -9.81],
@@ -256,7 +256,7 @@ wrong 's/"stress": 100/"force": 100/' "walls\[2\].servo.between: is for stress, 
 wrong 's/"between": \["floor", "block"\], //' "walls\[2\].servo.between: is missing"
 wrong 's/"direction": \[0, -1\]/"direction": [1, 0]/' "walls\[2\].servo.direction: runs along the plate, which has no ends '\[1,0\]'"
 wrong 's/"max_speed": 1/"max_speed": 1, "travel": 0/' "walls\[2\].servo.travel: is not above 0 '0'"
-wrong 's/"max_speed": 1}/"max_speed": 1}, "velocity": [0, 1]/' "walls\[2\].velocity: is of a wall that its servo moves"
+wrong 's/"gain": 1, "max_speed": 1}/"gain": 1, "max_speed": 1}, "velocity": [0, 1]/' "walls\[2\].velocity: is of a wall that its servo moves"
 wrong 's/"block": {"spin": -1}/"lid": {"velocity": [1, 0]}/' "stages\[1\].walls.lid.velocity: is of a wall that its servo moves"
 sed 's/"law": "hertz"/"law": "hertz", "kn": 1e7/' hertz.json >bad.json
 fails "kn with hertz" "dem: bad.json: contact.kn: is not of the Hertz law: stiffness comes from the materials" bad.json
@@ -280,7 +280,7 @@ sed 's|"csv": "out.csv"|"csv": "no/folder/out.csv"|' good.json >bad.json
 fails "no folder for the table" "dem: no/folder/out.csv: " bad.json
 
 # A lid that goes away from the grains.
-sed 's/"direction": \[0, -1\], "stress": 100, "between": \["floor", "block"\], "max_speed": 1/"direction": [0, 1], "force": 1, "max_speed": 50, "travel": 1.999/' \
+sed 's/"direction": \[0, -1\], "stress": 100, "between": \["floor", "block"\], "gain": 1, "max_speed": 1/"direction": [0, 1], "force": 1, "gain": 50, "max_speed": 50, "travel": 1.999/' \
     good.json >bad.json
 fails "nothing to press" "dem: step 400: wall 'lid' has moved by more than 1.999 without touching a grain: its servo has nothing to press" \
     bad.json --threads 1

@@ -126,7 +126,7 @@ dem make_busy_world(unsigned threads) {
                                           .spin = 2,
                                           .servo = {.between = {-1, -1}}}));
     d.walls[0].servo =
-        (dem_servo){.on = true, .direction = {0, 1}, .stress = 100, .between = {0, 1}, .gain = 0.1, .max_speed = 2};
+        (dem_servo){.on = true, .direction = {0, 1}, .stress = 100, .between = {0, 1}, .gain = 1e-4, .max_speed = 2};
     const dem_filling filling = {.count = 120,
                                  .region = {true, 0, 24, 1.2, 21.3},
                                  .shapes = {DISC, ROUND, OCTAGON, ARCS},
