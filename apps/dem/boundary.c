@@ -44,27 +44,37 @@ void dem_wrap_bodies(dem *d) {
 
 static bool is_empty(narc_box box) { return !(box.min_x <= box.max_x); }
 
+/* Of a part's box; of a body of several, what its whole may take at most. */
+static narc_point find_size(const dem *d, size_t part) {
+    const narc_box box = d->scratch->boxes[part];
+    const size_t k = d->parts.body[part];
+    if (d->shapes[d->bodies.shape[k]].outline_count == 1)
+        return (narc_point){(double)(box.max_x - box.min_x), (double)(box.max_y - box.min_y)};
+    const double whole = 2 * d->bodies.reach[k] + d->settings.skin;
+    return (narc_point){whole, whole};
+}
+
 /* The box around the boxes of all grains; and is the cell wide enough for each body and the largest grain? */
 static bool find_widths(dem *d, narc_box *out_all) {
     const narc_box *boxes = d->scratch->boxes;
     narc_box all = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    float grain_width = 0, grain_height = 0;
-    for (size_t k = 0; k < d->bodies.count; k++) {
-        const narc_box box = boxes[k];
+    double grain_width = 0, grain_height = 0;
+    for (size_t i = 0; i < d->parts.count; i++) {
+        const narc_box box = boxes[i];
         if (is_empty(box))
             continue;
-        if (k < d->grain_count) {
+        if (d->parts.body[i] < d->grain_count) {
             all = (narc_box){fminf(all.min_x, box.min_x), fminf(all.min_y, box.min_y), fmaxf(all.max_x, box.max_x),
                              fmaxf(all.max_y, box.max_y)};
-            grain_width = fmaxf(grain_width, box.max_x - box.min_x);
-            grain_height = fmaxf(grain_height, box.max_y - box.min_y);
+            grain_width = fmax(grain_width, find_size(d, i).x);
+            grain_height = fmax(grain_height, find_size(d, i).y);
         }
     }
-    for (size_t k = 0; k < d->bodies.count; k++) {
-        const double width = (double)(boxes[k].max_x - boxes[k].min_x) + (double)grain_width;
-        const double height = (double)(boxes[k].max_y - boxes[k].min_y) + (double)grain_height;
-        if ((d->settings.periodic_x && !is_empty(boxes[k]) && width >= dem_cell_width(d)) ||
-            (d->settings.periodic_y && !is_empty(boxes[k]) && height >= dem_cell_height(d)))
+    for (size_t i = 0; i < d->parts.count; i++) {
+        const size_t k = d->parts.body[i];
+        const double width = find_size(d, i).x + grain_width, height = find_size(d, i).y + grain_height;
+        if ((d->settings.periodic_x && !is_empty(boxes[i]) && width >= dem_cell_width(d)) ||
+            (d->settings.periodic_y && !is_empty(boxes[i]) && height >= dem_cell_height(d)))
             return dem_fail(d,
                             "the periodic cell is too small: %s %zu and the largest grain, with the skin, are %g by %g "
                             "together",
@@ -79,22 +89,23 @@ static bool overlap(narc_box a, narc_box b) {
     return a.min_x <= b.max_x && b.min_x <= a.max_x && a.min_y <= b.max_y && b.min_y <= a.max_y;
 }
 
-static bool add_image(dem *d, size_t body, float x, float y, narc_box all) {
+static bool add_image(dem *d, size_t part, float x, float y, narc_box all) {
     dem_scratch *s = d->scratch;
-    const narc_box box = s->boxes[body];
+    const narc_box box = s->boxes[part];
     const narc_box moved = {box.min_x + x, box.min_y + y, box.max_x + x, box.max_y + y};
     /* Rounding of the sums may take away what it is of a coordinate: give it back. */
     const float room = 4e-7f * (fabsf(x) + fabsf(y) + fabsf(moved.max_x) + fabsf(moved.max_y) + fabsf(moved.min_x) +
                                 fabsf(moved.min_y));
     const narc_box image = {moved.min_x - room, moved.min_y - room, moved.max_x + room, moved.max_y + room};
-    const size_t k = d->bodies.count + s->image_count;
+    const size_t k = d->parts.count + s->image_count;
     if (!overlap(image, all))
         return true;
     if (!dem_make_room_for_boxes(d, k + 1))
         return false;
     s->boxes[k] = image;
     s->still[k] = 1;
-    s->image_of[k] = (uint32_t)body;
+    s->group[k] = s->group[part];
+    s->image_of[k] = (uint32_t)part;
     s->image_x[k] = x;
     s->image_y[k] = y;
     s->image_count++;
@@ -110,8 +121,8 @@ bool dem_add_images(dem *d) {
         return true;
     if (!find_widths(d, &all))
         return false;
-    for (size_t k = 0; k < d->bodies.count; k++) {
-        const int count = k < d->grain_count ? 4 : 8;
+    for (size_t k = 0; k < d->parts.count; k++) {
+        const int count = d->parts.body[k] < d->grain_count ? 4 : 8;
         for (int i = 0; i < count && !is_empty(d->scratch->boxes[k]); i++) {
             if ((steps[i].x != 0 && !s->periodic_x) || (steps[i].y != 0 && !s->periodic_y))
                 continue;
@@ -128,7 +139,7 @@ bool dem_take_image_pairs(dem *d) {
     dem_scratch *s = d->scratch;
     for (size_t k = 0; k < s->found_count; k++) {
         const uint32_t a = s->found_a[k], image = s->found_b[k];
-        if (image < d->bodies.count)
+        if (image < d->parts.count)
             continue;
         if (!dem_reserve(d, &s->extra, &s->extra_capacity, s->extra_count + 1, sizeof *s->extra))
             return false;

@@ -62,14 +62,20 @@ typedef struct dem_material {
     double young, poisson; /* of the Hertz law; else 0 */
 } dem_material;
 
-/* A shape of the store, its centroid at the origin, for scale 1 and density * thickness 1. */
+/* A convex outline, for touch.h: that of the store's shape with the same index. */
+typedef struct dem_outline {
+    touch_side *sides; /* `side_count` of them */
+    size_t side_count;
+} dem_outline;
+
+/* What a body is: one convex outline, or several that move as one, which may lie over each other. The centroid of what
+ * they cover is the origin; for scale 1 and density * thickness 1. */
 typedef struct dem_shape {
     char name[DEM_NAME_SIZE];
     double area, second_moment;
-    double reach;      /* the largest distance of a point from the origin */
-    double extent;     /* the diameter of the disc of equal area */
-    touch_side *sides; /* `side_count` of them */
-    size_t side_count;
+    double reach;  /* the largest distance of a point from the origin */
+    double extent; /* the diameter of the disc of equal area */
+    uint32_t first_outline, outline_count;
 } dem_shape;
 
 typedef enum dem_law { DEM_LINEAR, DEM_HERTZ } dem_law;
@@ -110,10 +116,17 @@ typedef struct dem_bodies {
     double *reach, *extent;                            /* of the scaled shape */
     double *disc;                                      /* its radius, of a disc; 0: it is none */
     float *scale;
-    uint32_t *shape;
+    uint32_t *shape, *first_part;
     uint8_t *material, *still; /* still: a wall. Two of them form no pair */
     int32_t *cell_x, *cell_y;  /* how often it crossed the periodic border, for true displacements */
 } dem_bodies;
+
+/* The convex parts of all bodies, in their order: what narc is asked about, with the place of their body. Parts of one
+ * body form no pair. A body of one outline has one, so without others part k is body k. */
+typedef struct dem_parts {
+    size_t count, capacity;
+    uint32_t *body, *outline;
+} dem_parts;
 
 typedef enum dem_wall_kind { DEM_BOX, DEM_PLATE } dem_wall_kind;
 
@@ -165,10 +178,10 @@ typedef struct dem_rolling {
     double angle, torque;
 } dem_rolling;
 
-/* Pairs whose boxes, half the skin larger, overlap, in the order of (a, b). No pair stands there twice. */
+/* Pairs of parts whose boxes, half the skin larger, overlap, in the order of (a, b). No pair stands there twice. */
 typedef struct dem_pairs {
     size_t count, capacity;
-    uint32_t *a, *b;
+    uint32_t *a, *b;          /* parts */
     float *shift_x, *shift_y; /* added to B's position */
     uint32_t *hints;          /* narc's */
     dem_dashpot *dashpot;
@@ -225,7 +238,7 @@ typedef struct dem_region {
     double low_x, high_x, low_y, high_y;
 } dem_region;
 
-/* An incidence list: which pairs have body i as B, ascending: of[first[i]] .. of[first[i + 1] - 1]; and where the pairs
+/* An incidence list: which pairs have a part of body i as B, ascending: of[first[i]] .. of[first[i + 1] - 1]; and where the pairs
  * that have it as A begin. */
 typedef struct dem_incidence {
     uint32_t *first_b, *of_b, *first_a;
@@ -239,10 +252,13 @@ typedef struct dem {
     dem_contact_law laws[DEM_MAX_MATERIALS][DEM_MAX_MATERIALS];
 
     narc_shapes *store;
-    dem_shape *shapes; /* shape k of the store */
+    dem_outline *outlines; /* outline k is shape k of the store */
+    size_t outline_count, outline_capacity;
+    dem_shape *shapes;
     size_t shape_count, shape_capacity;
 
     dem_bodies bodies;
+    dem_parts parts;
     size_t grain_count;
     dem_wall *walls;
     size_t wall_count, wall_capacity;
@@ -276,8 +292,11 @@ extern const dem_settings dem_defaults;
 bool dem_create(dem *d, dem_settings settings);
 void dem_destroy(dem *d);
 
-/* Adds a shape, moved so that its centroid is its origin. */
+/* Adds a shape, moved so that its centroid is its origin: of one outline; of `part_count`, whose arcs, counts[i] each,
+ * stand one behind the other in common coordinates. */
 bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count, uint32_t *out_shape);
+bool dem_add_compound(dem *d, const char *name, const narc_arc *arcs, const size_t *counts, size_t part_count,
+                      uint32_t *out_shape);
 
 /* Adds a material. Laws with it are set in d->laws by dem_set_law(). */
 bool dem_add_material(dem *d, dem_material material, uint8_t *out_material);

@@ -65,7 +65,7 @@ void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measu
     for (size_t k = 0; k < c->count; k++) {
         const dem_contact *row = &c->rows[k];
         const dem_force *f = &row->force;
-        const size_t p = row->pair, i = d->pairs.a[p], j = d->pairs.b[p];
+        const size_t p = row->pair, i = dem_body_a(d, p), j = dem_body_b(d, p);
         const bool is_wall = j >= d->grain_count;
         const double smaller = is_wall ? b->extent[i] : fmin(b->extent[i], b->extent[j]);
         ends += is_wall ? 1 : 2;

@@ -155,13 +155,14 @@ static bool check_header(dem *d, const char *path, const char *bytes, size_t siz
 /* The checksum has passed: what is checked here only fails for a file that was made to fail. */
 static bool check_indices(const dem *d) {
     for (size_t k = 0; k < d->pairs.count; k++)
-        if (d->pairs.a[k] >= d->pairs.b[k] || d->pairs.b[k] >= d->bodies.count || d->pairs.a[k] >= d->grain_count)
+        if (d->pairs.a[k] >= d->pairs.b[k] || d->pairs.b[k] >= d->parts.count || dem_body_a(d, k) >= d->grain_count)
             return false;
     for (size_t k = 0; k < d->contacts.count; k++)
         if (d->contacts.rows[k].pair >= d->pairs.count)
             return false;
     for (size_t k = 0; k < d->bodies.count; k++)
-        if (d->bodies.shape[k] >= d->shape_count || d->bodies.material[k] >= d->material_count)
+        if (d->bodies.shape[k] >= d->shape_count || d->parts.body[d->bodies.first_part[k]] != k ||
+            d->bodies.material[k] >= d->material_count)
             return false;
     for (size_t w = 0; w < d->wall_count; w++)
         for (size_t i = 0; i < 2; i++) {

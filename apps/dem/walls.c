@@ -130,7 +130,8 @@ static bool add_pairs_of_plate(dem *d, uint32_t body, const dem_wall *plate) {
     dem_scratch *s = d->scratch;
     const dem_bodies *b = &d->bodies;
     const double half = dem_half_block(d, plate);
-    for (size_t k = 0; k < d->grain_count; k++) {
+    for (uint32_t part = 0; part < b->first_part[d->grain_count]; part++) { /* those of grains */
+        const size_t k = d->parts.body[part];
         const double x = b->x[k] - b->x[body], y = b->y[k] - b->y[body];
         const double height = x * plate->normal.x + y * plate->normal.y - half;
         if (height - b->reach[k] > d->settings.skin * 1.001)
@@ -139,7 +140,7 @@ static bool add_pairs_of_plate(dem *d, uint32_t body, const dem_wall *plate) {
             return false;
         const double along = plate->normal.x * y - plate->normal.y * x; /* the tangent is (-ny, nx) */
         s->extra[s->extra_count++] =
-            (dem_extra){(uint32_t)k, body, (float)(-plate->normal.y * along), (float)(plate->normal.x * along)};
+            (dem_extra){part, b->first_part[body], (float)(-plate->normal.y * along), (float)(plate->normal.x * along)};
     }
     return true;
 }

@@ -297,6 +297,11 @@ grep -q 'time step' err.txt && miss "a step that is short enough is told"
 # Too fast: which grain, and what to do.
 sed 's/"velocity": \[1, 0\]/"velocity": [300, -800]/' good.json >bad.json
 fails "too fast" "dem: step [0-9]*: grain [0-9]* .*Use a shorter time step" bad.json
+# Ground is no grain.
+sed 's/\]}$/, {"name": "ground", "chain": {"closed": false, "arcs": [{"center": [0, 0], "radius": 0, "start": 1.6, "end": 1.6}, {"center": [-2, 0], "radius": 0, "start": 1.6, "end": 1.6}]}}]}/' \
+    shapes.json >ground.json
+sed 's/"shapes.json"/"ground.json"/' good.json >bad.json
+fails "a chain" "dem: ground.json: shape 'ground' is a chain" bad.json
 # Grains that overlap before the run begins.
 sed 's/"at": \[2, 9.5\]/"at": [2, 0.3]/' good.json >bad.json
 fails "grains in a wall" "dem: bad.json: step 0: grain 28 overlaps wall .*They are placed so" bad.json
