@@ -7,6 +7,10 @@
  * Of the eight neighbours of a cell, four are enough for pairs of grains: what is missing is found from the other
  * grain's side. Walls have all eight, for two bodies that are marked "still" form no pair, and images are so marked.
  *
+ * A sheared cell (Lees and Edwards 1972): the cell above moves to the right, by the rate of shear times the height. Who is
+ * in it is `offset` further right than its image here, and faster by that speed; who crosses the border gets both. Shifts
+ * of pairs across it change in each step. A float is enough for narc; forces take them anew in double precision.
+ *
  * A pair of bodies must stand in the list once, so that its history can find it: two images of B that both are near A
  * would be two. This cannot be if the cell is as wide as the boxes of the two together, which find_widths() demands.
  */
@@ -23,20 +27,71 @@ static double wrap(double value, double low, double width, int32_t *cell) {
     return value - turns * width;
 }
 
+double dem_find_drift(const dem *d) { return d->settings.shear * dem_cell_height(d); }
+
+/* Changes a grain's velocity, and counts the work. */
+static void push_grain(dem *d, size_t k, double by) {
+    const double old = d->bodies.vx[k];
+    d->bodies.vx[k] += by;
+    d->shear_work += 0.5 * d->bodies.mass[k] * (d->bodies.vx[k] * d->bodies.vx[k] - old * old);
+}
+
+void dem_set_shear(dem *d, double rate) {
+    const double middle = 0.5 * (d->settings.low_y + d->settings.high_y);
+    for (size_t k = 0; k < d->grain_count; k++)
+        push_grain(d, k, (rate - d->settings.shear) * (d->bodies.y[k] - middle));
+    d->settings.shear = rate;
+}
+
+/* The x shift of a pair across the upper or lower border: whole widths, and the offset. */
+static double find_shear_shift(const dem *d, size_t p, double old_offset) {
+    const double lift = dem_find_lift(d, p), width = dem_cell_width(d);
+    return width * nearbyint(((double)d->pairs.shift_x[p] - lift * old_offset) / width) + lift * d->offset;
+}
+
+dem_vec dem_find_shift(const dem *d, size_t p) {
+    const dem_vec shift = {(double)d->pairs.shift_x[p], (double)d->pairs.shift_y[p]};
+    return d->settings.sheared && shift.y != 0 ? (dem_vec){find_shear_shift(d, p, d->offset), shift.y} : shift;
+}
+
+void dem_shear_cell(dem *d) {
+    const double old = d->offset;
+    d->offset += d->settings.time_step * dem_find_drift(d);
+    for (size_t p = 0; d->settings.sheared && p < d->pairs.count; p++)
+        if (d->pairs.shift_y[p] != 0)
+            d->pairs.shift_x[p] = (float)find_shear_shift(d, p, old);
+}
+
+void dem_count_shear_work(dem *d) { d->shear_work -= 0.5 * d->settings.time_step * dem_find_drift(d) * d->pull; }
+
+/* Grains cross the lower or upper border of a sheared cell. */
+static void wrap_height(dem *d, size_t k) {
+    const int32_t before = d->bodies.cell_y[k];
+    d->bodies.y[k] = wrap(d->bodies.y[k], d->settings.low_y, dem_cell_height(d), &d->bodies.cell_y[k]);
+    const double turns = d->bodies.cell_y[k] - before;
+    if (turns == 0 || !d->settings.sheared)
+        return;
+    d->bodies.x[k] -= turns * d->offset;
+    push_grain(d, k, -turns * dem_find_drift(d));
+}
+
 void dem_wrap_bodies(dem *d) {
     const dem_settings *s = &d->settings;
     dem_bodies *b = &d->bodies;
     if (!s->periodic_x && !s->periodic_y)
         return;
+    if (s->sheared)
+        d->offset -= dem_cell_width(d) * nearbyint(d->offset / dem_cell_width(d));
+    d->list_offset = d->offset;
     for (size_t k = 0; k < b->count; k++) {
         const double old_x = b->x[k], old_y = b->y[k];
         dem_wall *wall = k < d->grain_count ? NULL : &d->walls[k - d->grain_count];
         if ((wall && wall->kind == DEM_PLATE))
             continue;
-        if (s->periodic_x)
-            b->x[k] = wrap(old_x, s->low_x, dem_cell_width(d), &b->cell_x[k]);
         if (s->periodic_y)
-            b->y[k] = wrap(old_y, s->low_y, dem_cell_height(d), &b->cell_y[k]);
+            wrap_height(d, k);
+        if (s->periodic_x)
+            b->x[k] = wrap(b->x[k], s->low_x, dem_cell_width(d), &b->cell_x[k]);
         if (wall)
             wall->pivot = (dem_vec){wall->pivot.x + (b->x[k] - old_x), wall->pivot.y + (b->y[k] - old_y)};
     }
@@ -126,9 +181,9 @@ bool dem_add_images(dem *d) {
         for (int i = 0; i < count && !is_empty(d->scratch->boxes[k]); i++) {
             if ((steps[i].x != 0 && !s->periodic_x) || (steps[i].y != 0 && !s->periodic_y))
                 continue;
-            const float x = steps[i].x != 0 ? (float)steps[i].x * (float)dem_cell_width(d) : 0;
+            const double x = steps[i].x * (s->periodic_x ? dem_cell_width(d) : 0) + steps[i].y * d->offset;
             const float y = steps[i].y != 0 ? (float)steps[i].y * (float)dem_cell_height(d) : 0;
-            if (!add_image(d, k, x, y, all))
+            if (!add_image(d, k, (float)x, y, all))
                 return false;
         }
     }

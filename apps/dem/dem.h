@@ -13,7 +13,7 @@
  *       model.c       memory, shapes, bodies
  *       place.c       where grains start
  *       neighbours.c  boxes, pairs with a skin, history
- *       boundary.c    periodic images, wrapping
+ *       boundary.c    periodic images, wrapping, shear
  *       step.c        velocity Verlet, the narrow phase
  *       laws.c        forces of contacts
  *       gather.c      forces of bodies
@@ -100,6 +100,8 @@ typedef struct dem_settings {
     double max_overlap; /* a deeper contact stops the run; a share of the smaller body's extent */
     bool periodic_x, periodic_y;
     double low_x, high_x, low_y, high_y; /* the periodic cell; where it is periodic */
+    bool sheared;                        /* a Lees-Edwards cell: periodic in x and y, without walls and gravity */
+    double shear;                        /* its rate: how vx grows with y */
     unsigned threads;                    /* 0: one */
 } dem_settings;
 
@@ -278,6 +280,10 @@ typedef struct dem {
     double damping, friction;
     double normal_energy, tangential_energy, rolling_energy; /* of the springs now */
 
+    /* Of a sheared cell: how far the cell above is to the right of this one, and was when the pairs were found; what
+     * that cell's contacts pull; and the work done so. */
+    double offset, list_offset, pull, shear_work;
+
     narc_broad_phase *broad;
     struct dem_scratch *scratch; /* memory of the neighbour list and of sums */
     char error[512];             /* what went wrong, when a function here says that something did */
@@ -316,6 +322,9 @@ bool dem_add_wall(dem *d, dem_wall wall);
 
 /* Checks the whole, makes room. To be called once, before the first step. */
 bool dem_start(dem *d);
+
+/* Another rate of shear, from now on: all grains get the velocities that go with it. */
+void dem_set_shear(dem *d, double rate);
 
 /* Reports an error; returns false. */
 bool dem_fail(dem *d, const char *format, ...);

@@ -53,6 +53,11 @@ bool dem_grow_pairs(dem *d, dem_pairs *pairs, size_t needed);
 static inline size_t dem_body_a(const dem *d, size_t pair) { return d->parts.body[d->pairs.a[pair]]; }
 static inline size_t dem_body_b(const dem *d, size_t pair) { return d->parts.body[d->pairs.b[pair]]; }
 
+/* By how many cells the B of a pair is above A: its image. */
+static inline int dem_find_lift(const dem *d, size_t pair) {
+    return (d->pairs.shift_y[pair] > 0) - (d->pairs.shift_y[pair] < 0);
+}
+
 /* All parts where they are now, for narc, until the next call. */
 bool dem_make_poses(dem *d, narc_bodies *out);
 bool dem_fail_narc(dem *d, const char *what, const narc_error *error);
@@ -80,7 +85,11 @@ bool dem_make_room_for_contacts(dem *d);
 /* boundary.c */
 void dem_wrap_bodies(dem *d);
 bool dem_add_images(dem *d);
-bool dem_take_image_pairs(dem *d); /* adds the found pairs with images to the extra ones */
+void dem_shear_cell(dem *d);                       /* the way of a step */
+void dem_count_shear_work(dem *d);                 /* of half a step, with the forces as they are */
+dem_vec dem_find_shift(const dem *d, size_t pair); /* of B, exactly */
+double dem_find_drift(const dem *d);               /* the speed of the cell above */
+bool dem_take_image_pairs(dem *d);                 /* adds the found pairs with images to the extra ones */
 
 /* walls.c */
 bool dem_steer_walls(dem *d);

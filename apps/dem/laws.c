@@ -100,6 +100,7 @@ typedef struct contact {
     double depth;
     dem_vec normal, point; /* of all ends */
     dem_vec arm_b;         /* from the centre of B to the point */
+    double drift;          /* what B's image is faster along x */
     double vn, vt, turn;   /* relative velocities: apart, along the tangent, rotation */
 } contact;
 
@@ -118,14 +119,14 @@ INLINE touch_grain look_at(const dem *d, size_t part) {
 
 /* Of A and B's relative motion at a place: B's surface moves away with it. */
 INLINE dem_vec find_velocity(const dem_bodies *b, const contact *c, dem_vec at_a, dem_vec at_b) {
-    return (dem_vec){b->vx[c->b] - b->vx[c->a] - (b->spin[c->b] * at_b.y - b->spin[c->a] * at_a.y),
+    return (dem_vec){b->vx[c->b] - b->vx[c->a] + c->drift - (b->spin[c->b] * at_b.y - b->spin[c->a] * at_a.y),
                      b->vy[c->b] - b->vy[c->a] + (b->spin[c->b] * at_b.x - b->spin[c->a] * at_a.x)};
 }
 
 /* Where B is from A. A plate's shift is rounded: what of it is across the plate is left out. */
 INLINE dem_vec find_way(const dem *d, size_t p, size_t i, size_t j) {
     const dem_bodies *b = &d->bodies;
-    dem_vec shift = {(double)d->pairs.shift_x[p], (double)d->pairs.shift_y[p]};
+    dem_vec shift = dem_find_shift(d, p);
     if (j >= d->grain_count) {
         const dem_vec n = d->walls[j - d->grain_count].normal; /* 0 of a box */
         const double across = shift.x * n.x + shift.y * n.y;
@@ -169,6 +170,7 @@ INLINE int load_contact(const dem *d, size_t k, contact *c, touch *t) {
     c->point = (dem_vec){end.x, end.y};
     if (count == 2)
         join_ends(t->end, c);
+    c->drift = d->settings.sheared ? dem_find_lift(d, p) * dem_find_drift(d) : 0;
     c->arm_b = (dem_vec){c->point.x - way.x, c->point.y - way.y};
     const dem_vec v = find_velocity(b, c, c->point, c->arm_b);
     c->vn = v.x * c->normal.x + v.y * c->normal.y;
@@ -374,6 +376,9 @@ bool dem_apply_laws(dem *d) {
         s->sums[block] = apply_block(d, first, end, hertz, rolls);
     }
     join_blocks(d, blocks);
+    d->pull = 0;
+    for (size_t k = 0; d->settings.sheared && k < d->contacts.count; k++)
+        d->pull += dem_find_lift(d, d->contacts.rows[k].pair) * d->contacts.rows[k].force.x;
     dem_sums all = {.too_deep = SIZE_MAX};
     for (size_t block = blocks; block-- > 0;) {
         const dem_sums *sums = &s->sums[block];

@@ -402,10 +402,16 @@ bool dem_start(dem *d) {
             "time step %g is more than a fifth of what the shortest contact lasts, %g. Take a 15th, or less "
             "stiff contacts",
             s->time_step, shortest);
+    if (s->sheared && (!s->periodic_x || !s->periodic_y || d->wall_count > 0 || s->gravity.x != 0 || s->gravity.y != 0))
+        return dem_fail(d, "a sheared cell is periodic in x and y, and has neither walls nor gravity");
     if ((s->periodic_x && !check_cell(d, "x", s->low_x, &s->high_x)) ||
         (s->periodic_y && !check_cell(d, "y", s->low_y, &s->high_y)) || !add_walls(d))
         return false;
     d->started = true;
+    const double rate = s->shear;
+    s->shear = 0;
+    dem_set_shear(d, rate);
+    d->shear_work = 0; /* grains begin so */
     d->diagonal = find_diagonal(d);
     return dem_renew_lists(d) && dem_find_first_forces(d);
 }

@@ -55,8 +55,9 @@ static void pass(stream *s, void *data, size_t size) {
 static void pass_sums(stream *s, dem *d, dem_place *place) {
     pass(s, &d->step, sizeof d->step);
     pass(s, &d->list_builds, sizeof d->list_builds);
-    double *const sums[] = {&d->time,          &d->damping,           &d->friction,
-                            &d->normal_energy, &d->tangential_energy, &d->rolling_energy};
+    double *const sums[] = {&d->time,           &d->damping, &d->friction,    &d->normal_energy, &d->tangential_energy,
+                            &d->rolling_energy, &d->offset,  &d->list_offset, &d->pull,          &d->shear_work,
+                            &d->settings.shear};
     for (size_t i = 0; i < sizeof sums / sizeof sums[0]; i++)
         pass(s, sums[i], sizeof *sums[i]);
     pass(s, &d->settings.gravity, sizeof d->settings.gravity);
