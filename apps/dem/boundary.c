@@ -7,9 +7,9 @@
  * Of the eight neighbours of a cell, four are enough for pairs of grains: what is missing is found from the other
  * grain's side. Walls have all eight, for two bodies that are marked "still" form no pair, and images are so marked.
  *
- * A sheared cell (Lees and Edwards 1972): the cell above moves to the right, by the rate of shear times the height. Who is
- * in it is `offset` further right than its image here, and faster by that speed; who crosses the border gets both. Shifts
- * of pairs across it change in each step. A float is enough for narc; forces take them anew in double precision.
+ * A sheared cell (Lees and Edwards 1972): the cell above moves to the right, by the rate of shear times the height. Who
+ * is in it is `offset` further right than its image here, and faster by that speed; who crosses the border gets both.
+ * Shifts of pairs across it change in each step. A float is enough for narc; forces take them anew in double precision.
  *
  * A pair of bodies must stand in the list once, so that its history can find it: two images of B that both are near A
  * would be two. This cannot be if the cell is as wide as the boxes of the two together, which find_widths() demands.

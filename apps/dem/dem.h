@@ -240,8 +240,8 @@ typedef struct dem_region {
     double low_x, high_x, low_y, high_y;
 } dem_region;
 
-/* An incidence list: which pairs have a part of body i as B, ascending: of[first[i]] .. of[first[i + 1] - 1]; and where the pairs
- * that have it as A begin. */
+/* An incidence list: which pairs have a part of body i as B, ascending: of[first[i]] .. of[first[i + 1] - 1];
+ * and where the pairs that have it as A begin. */
 typedef struct dem_incidence {
     uint32_t *first_b, *of_b, *first_a;
     size_t capacity;

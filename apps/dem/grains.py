@@ -126,6 +126,24 @@ def find_repose(x, y, radius, half):
     return angles
 
 
+def find_packing_fraction(frame, region, rows=800):
+    """The share of a region, low x, low y, high x, high y, that grains cover, by a raster of so many rows."""
+    low_x, low_y, high_x, high_y = region
+    step = (high_y - low_y) / rows
+    covered = np.zeros((rows, round((high_x - low_x) / step)), bool)
+    for cell, wall in zip(frame["cells"], frame["fields"]["wall"]):
+        corners = (frame["points"][cell] - (low_x, low_y)) / step
+        (left, down), (right, up) = np.maximum(corners.min(0), 0).astype(int), corners.max(0).astype(int) + 1
+        x, y = np.meshgrid(np.arange(left, min(right, covered.shape[1])) + 0.5, np.arange(down, min(up, rows)) + 0.5)
+        if wall or x.size == 0:
+            continue
+        inside = np.ones(x.shape, bool)
+        for a, b in zip(corners, np.roll(corners, -1, 0)):  # a part is convex
+            inside &= (b[0] - a[0]) * (y - a[1]) >= (b[1] - a[1]) * (x - a[0])
+        covered[down:up, left:right] |= inside
+    return covered.mean()
+
+
 def load_grains(path):
     """Places and radii, of discs of equal area or as LAMMPS has them."""
     table = read_table(path)

@@ -53,8 +53,8 @@ static void kick_and_drift(dem *d) {
     }
 }
 
-/* Has a point of any body moved half of the skin since the pairs were found, or of what shear has left of it? A turn moves it by at most the body's
- * reach times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below
+/* Has a point of any body moved half of the skin since the pairs were found, or of what shear has left of it? A turn
+ * moves it by at most the body's reach times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below
  * the limit so has not moved, and only if all is not, roots are drawn. A NaN has moved. */
 static bool have_moved(const dem *d, bool exactly) {
     const dem_bodies b = d->bodies;

@@ -10,7 +10,8 @@
 #include "frames.h"
 #include "internal.h"
 
-/* A polygon is nowhere further from its outline than this share of the diameter of the disc of equal area; its corners are on it. */
+/* A polygon is nowhere further from its outline than this share of the diameter of the disc of equal area;
+ * its corners are on it. */
 static const double PI = 3.14159265358979323846;
 static const double OUTLINE_TOLERANCE = 1.0 / 400;
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """python3 cases.py PROGRAM FOLDER [--sand SHAPES] [--jobs N] CASE ...: runs cases of apps/dem/README.md and tells what
 they found; inputs, tables and pictures go to FOLDER. --small PROGRAM FOLDER CASE: a small version, which must be right.
-CASE is one of the functions below: rolling, collision, sand (with --sand), pile, biaxial, hopper; or all."""
+CASE is one of the functions below: rolling, collision, sand (with --sand), pile, biaxial, hopper, packing,
+angularity, flow, drum; or all."""
 import argparse
 import concurrent.futures
 import json
@@ -248,22 +249,25 @@ def sand(cases):
     grains.draw(last, os.path.join(cases.folder, "flow.png"), color="none", forces=False)
 
 
-def run_biaxial(cases, name, shapes, begin, friction):
+def run_biaxial(cases, name, shapes, begin, friction, count=1250):
     """Contacts of a grain that is no rattler and the share of rattlers before shear; strains and stresses from there;
     the angle of friction, over the last third: its sine is (s_yy - s_xx) / (s_yy + s_xx)."""
 
     def change(world):
         filling, walls = world["grains"][0], {wall["name"]: wall for wall in world["walls"]}
         filling["shapes"], world["contact"]["friction"] = names_of(shapes, begin), friction
-        if not cases.small:
+        smaller = math.sqrt((289 if cases.small else count) / 5000)
+        if smaller == 1:
             return
-        filling.update(count=289, region=[-15, -15, 15, 15], spacing=[1.75, 1.75])
+        half = 57 * smaller + 1
+        filling.update(count=289 if cases.small else count, region=[-half, -half, half, half])
         for wall in walls.values():
-            wall["plate"]["point"] = [x * 15 / 57 for x in wall["plate"]["point"]]
+            wall["plate"]["point"] = [math.copysign(half, x) if x else 0 for x in wall["plate"]["point"]]
             if "servo" in wall:
-                wall["servo"]["gain"] *= 57 / 15
-        world["stages"][0]["duration"], world["stages"][1]["duration"], world["output"]["every"] = 200, 150, 5
-        world["stages"][1]["walls"]["top"]["velocity"] = [0, -0.008]
+                wall["servo"]["gain"] /= smaller
+        world["stages"][0]["duration"], world["output"]["every"] = 40 * round(15 * smaller + 1), 5
+        world["stages"][1]["walls"]["top"]["velocity"] = [0, -0.01 * smaller]
+        world["stages"][1]["duration"] = 250 if cases.small else 500
 
     folder, world = cases.run("biaxial", name, change, shapes)
     pressed, table = world["stages"][0]["duration"], grains.read_table(os.path.join(folder, "biaxial.csv"))
@@ -284,8 +288,8 @@ def run_biaxial(cases, name, shapes, begin, friction):
 
 
 def biaxial(cases):
-    """Discs without friction carry a load with 4 contacts each in the limit of small overlaps, counting those with walls
-    once, so a little less in a small box; with friction it is between 3 and 4. Their angle of friction is 5 to 6
+    """Discs without friction carry a load with 4 contacts each in the limit of small overlaps, counting those with
+    walls once, so a little less in a small box; with friction it is between 3 and 4. Their angle of friction is 5 to 6
     degrees, and 15 to 20 with friction of 0.5; 289 of them tell it within 5."""
     kinds = [("biaxial-smooth", SHAPES, "disc", 0), ("biaxial-disc", SHAPES, "disc", 0.5)]
     kinds += [("biaxial-sand", cases.sand, "", 0.5)] if cases.sand else []
@@ -309,7 +313,138 @@ def biaxial(cases):
     if cases.sand:
         last = find_frames(os.path.join(cases.folder, "biaxial-sand"), "biaxial")[-1].replace(".csv", ".vtk")
         grains.draw(last, os.path.join(cases.folder, "forces.png"), color="coordination", width=6,
-                    region=[-38, -36, -14, -22])
+                    region=[-22, -22, -6, -12.7])
+
+
+# ----------------------------------------------------------------------------------------------- shapes
+
+
+def make_ellipse(aspect, quarter=4):
+    """An ellipse as arcs that turn alike, each as long as the ellipse's between the same normals."""
+    a, b, angles = math.sqrt(aspect), 1 / math.sqrt(aspect), np.linspace(0, 2 * math.pi, 4 * quarter + 1)
+    arcs, at = [], np.array([a, 0.0])
+    for start, end in zip(angles, angles[1:]):
+        turn = start + (end - start) * (np.arange(1000) + 0.5) / 1000
+        radius = np.mean((a * b) ** 2 / ((a * np.cos(turn)) ** 2 + (b * np.sin(turn)) ** 2) ** 1.5)
+        center = at - radius * np.array([math.cos(start), math.sin(start)])
+        arcs.append({"center": list(center), "radius": radius, "start": start, "end": end})
+        at = center + radius * np.array([math.cos(end), math.sin(end)])
+    return {"arcs": arcs}
+
+
+def make_polygon(sides):
+    angles = 2 * math.pi * np.arange(sides) / sides
+    return {"polygon": np.transpose([np.cos(angles), np.sin(angles)]).tolist()}
+
+
+def write_shapes(cases, name, shapes):
+    path = os.path.join(cases.folder, name + ".json")
+    os.makedirs(cases.folder, exist_ok=True)
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump({"shapes": shapes}, file)
+    return path
+
+
+def run_packing(cases, name, shapes):
+    """The share of the area, contacts of a grain that is no rattler, and the share of rattlers: five grains from walls
+    on."""
+
+    def change(world):
+        world["grains"][0]["shapes"] = [name]
+        if not cases.small:
+            return
+        world["grains"][0].update(count=400, region=[0, 0, 40, 40])
+        for wall in world["walls"][1::2]:
+            wall["plate"]["point"] = [40 if x else 0 for x in wall["plate"]["point"]]
+        world["stages"][0]["duration"], world["stages"][1]["duration"] = 95, 220
+        for change in world["stages"][1]["walls"].values():
+            change["servo"]["gain"] *= 35 / 20
+        world["output"]["vtk"] = "packing"
+
+    folder, _ = cases.run("packing", "packing-" + name, change, shapes)
+    last = find_frames(folder, "packing")[-1]
+    stress = grains.read_table(os.path.join(folder, "packing.csv"))
+    table, frame = grains.read_table(last), grains.read_vtk(last.replace(".csv", ".vtk"))
+    high = np.array([table["x"].max(), table["y"].max()]) - 4.5
+    fraction = grains.find_packing_fraction(frame, [5, 5, *high])
+    within = (table["x"] > 5) & (table["x"] < high[0]) & (table["y"] > 5) & (table["y"] < high[1])
+    bearing = table["bearing"][within]
+    return fraction, bearing[bearing > 0].mean(), np.mean(bearing == 0), stress["stress_xx"][-1], stress["kinetic"][-1]
+
+
+def packing(cases):
+    """Packings of ellipses and dimers without friction. Discs have 4 contacts in the limit of small overlaps; what
+    turns has at most 6 then, if none is more than stability takes; ellipses fewer, dimers those."""
+    aspects = [1, 2] if cases.small else [1, 1.1, 1.2, 1.4, 1.7, 2, 3]
+    away = {"dimer-1.25": 0.25, "dimer-1.5": 0.5, "dimer-2": 1}
+    shapes = [{"name": "ellipse-%g" % aspect, **make_ellipse(aspect)} for aspect in aspects]
+    shapes += [{"name": "%s/%d" % (name, 1 + (x > 0)), "circle": 1, "origin": [x, 0]}
+               for name, half in away.items() for x in (-half, half)]
+    names = ["ellipse-%g" % aspect for aspect in aspects] + (["dimer-1.5"] if cases.small else list(away))
+    path = write_shapes(cases, "shapes-packing", shapes)
+    found = list(cases.pool.map(lambda name: run_packing(cases, name, path), names))
+    cases.tell("\n".join("%s: fraction %.3f, contacts %.2f, rattlers %.3f (stress %.2f, kinetic %.1g)" % ((name,) + one)
+                         for name, one in zip(names, found)),
+               all(abs(one[3] - 1) < 0.1 for one in found), 0.82 < found[0][0] < 0.87, 3.7 < found[0][1] < 4.3,
+               4.9 < found[1][1] < 6.1, 5.2 < found[2][1] < 6.3, found[1][0] > found[0][0])
+
+
+def angularity(cases):
+    """The angle of friction of regular polygons, between 5 and 7 % of strain."""
+    sides = [4, 5, 6, 8, 12]
+    shapes = [{"name": "polygon-%d" % n, **make_polygon(n)} for n in sides] + [{"name": "disc", "circle": 1}]
+    path = write_shapes(cases, "shapes-angularity", shapes)
+    names = [shape["name"] for shape in shapes]
+    found = list(cases.pool.map(lambda name: run_biaxial(cases, "biaxial-" + name, path, name, 0.5), names))
+    cases.tell("\n".join("%s: contacts %.3f, rattlers %.3f, angle of friction %.1f" % ((name,) + one[:3])
+                         for name, one in zip(names, found)), found[2][2] > found[5][2] + 4)
+
+
+# ----------------------------------------------------------------------------------------------- flows
+
+
+def run_flow(cases, share):
+    """Of a sheared cell that grains fill to a share: inertial number, and shear stress over pressure with its error."""
+
+    def change(world):
+        side = math.sqrt(400 * math.pi / 4 * (1 + 0.4**2 / 12) / share)
+        world["boundary"].update(x=[0, side], y=[0, side])
+        world["grains"][0].update(region=[0, 0, side, side], spacing=[side / 20.0001, side / 20.0001])
+        world["stages"][0]["duration"] = 6 if cases.small else 12
+
+    folder, _ = cases.run("flow", "flow-%g" % share, change)
+    table = grains.read_table(os.path.join(folder, "flow.csv"))
+    late = table["time"] > 2
+    pressure = 0.5 * (table["stress_xx"] + table["stress_yy"])[late]
+    shear = -0.5 * (table["stress_xy"] + table["stress_yx"])[late]
+    return 1 / math.sqrt(pressure.mean()), shear.mean() / pressure.mean(), grains.average(shear)[1] / pressure.mean()
+
+
+def flow(cases):
+    """Friction of a flow over its inertial number, rate * size * sqrt(density / pressure): more for faster ones."""
+    shares = [0.7, 0.79] if cases.small else [0.65, 0.7, 0.74, 0.77, 0.79, 0.8]
+    found = list(cases.pool.map(lambda share: run_flow(cases, share), shares))
+    cases.tell("\n".join("flow: share %.2f, inertial number %.4f, friction %.3f +- %.3f" % ((share,) + one)
+                         for share, one in zip(shares, found)),
+               found[0][0] > found[1][0] > 0, 0.2 < found[1][1] < found[0][1] < 0.9)
+
+
+def drum(cases):
+    """Fitted grains in a drum, and a picture."""
+
+    def change(world):
+        radius, count = 19, 24
+        for k in range(count):
+            angle = 2 * math.pi * k / count
+            world["walls"].append({
+                "name": "side%d" % k, "material": "grain", "box": {"width": 1, "height": 2 * math.pi * radius / count},
+                "at": [radius * math.cos(angle), radius * math.sin(angle)], "angle": angle, "pivot": [0, 0],
+                "spin": 0.05})
+        world["grains"][0]["shapes"] = names_of(cases.sand, "") if cases.sand else ["square"]
+
+    folder, _ = cases.run("drum", "drum", change, cases.sand or SHAPES)
+    grains.draw(find_frames(folder, "drum")[-1].replace(".csv", ".vtk"), os.path.join(cases.folder, "drum.png"),
+                color="speed", forces=False, width=6, top=1.5)
 
 
 # ----------------------------------------------------------------------------------------------- hoppers
@@ -332,7 +467,8 @@ def run_hopper(cases, opening):
     folder, world = cases.run("hopper", "hopper-%g" % opening, change)
     frames = find_frames(folder, "hopper")
     last, first = len(frames) - 1, (len(frames) - 1) // 3
-    passed = [-np.sum(table["mass"] * table["cell_y"]) for table in map(grains.read_table, (frames[first], frames[last]))]
+    tables = [grains.read_table(frames[k]) for k in (first, last)]
+    passed = [-np.sum(table["mass"] * table["cell_y"]) for table in tables]
     return (passed[1] - passed[0]) / (world["output"]["every"] * (last - first))
 
 
@@ -361,7 +497,8 @@ def hopper(cases):
 
 
 def main():
-    known = {function.__name__: function for function in (rolling, collision, sand, pile, biaxial, hopper)}
+    known = {case.__name__: case for case in (rolling, collision, sand, pile, biaxial, hopper, packing, angularity,
+                                              flow, drum)}
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("--small", action="store_true")
     parser.add_argument("--sand", help="a file of fitted grains")

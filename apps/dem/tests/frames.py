@@ -36,7 +36,8 @@ WORLD = {
 
 def run(dem, durations, *options, **output):
     with open("in.json", "w", encoding="utf-8") as file:
-        json.dump(dict(WORLD, stages=[{"duration": d} for d in durations], output=dict(WORLD["output"], **output)), file)
+        stages = [{"duration": d} for d in durations]
+        json.dump(dict(WORLD, stages=stages, output=dict(WORLD["output"], **output)), file)
     return subprocess.run([dem, "in.json", "--threads", "1", *options], capture_output=True, check=False, text=True)
 
 
@@ -57,7 +58,8 @@ def check_bodies(path, table):
         points = frame["points"][outlines[i]]
         if table["shape"][k] == "dimer":  # their polygons are circles whose places are known
             away = 0.4 * scale[k] * (-1 if i == 0 or body[i - 1] != k else 1)
-            centre = cells["centre"][i, :2] + away * np.array([math.cos(table["angle"][k]), math.sin(table["angle"][k])])
+            angle = table["angle"][k]
+            centre = cells["centre"][i, :2] + away * np.array([math.cos(angle), math.sin(angle)])
             assert np.allclose(np.hypot(*(points - centre).T), 0.5 * scale[k], atol=1e-5)
             continue
         # Corners are on the outline, chords at most size / 400 inside: so is the area, times the perimeter.
@@ -103,6 +105,10 @@ def check_measures():
     assert np.allclose(density, np.exp(-force), rtol=0.05)
     mean, error = grains.average(random.normal(2, 3, 40000))
     assert abs(mean - 2) < 0.06 and 0.005 < error < 0.03
+    circle = 0.3 * np.transpose([np.cos(angle := np.linspace(0, 2 * math.pi, 721)[:-1]), np.sin(angle)])
+    frame = {"points": np.concatenate([circle, circle + (1, 0)]), "cells": np.split(np.arange(1440), 2),
+             "fields": {"wall": np.array([0, 1])}}  # what walls cover does not count
+    assert abs(grains.find_packing_fraction(frame, [-0.5, 0, 1, 0.5]) - math.pi * 0.3**2 / 2 / 0.75) < 1e-3
     x = np.linspace(-1, 1, 4001)
     left, right = grains.find_repose(x, np.where(x < 0, 1 + 0.5 * x, 1 - 0.25 * x), 0 * x, 1)
     assert abs(left - math.degrees(math.atan(0.5))) < 1 and abs(right - math.degrees(math.atan(0.25))) < 1
@@ -113,7 +119,8 @@ def check_lammps():
         file.write("LAMMPS (1)\nStep Temp\n 0 1\n 10 3\nLoop time of 1\nStep Temp\n 20 5\nLoop time of 1\n")
     with open("dump", "w", encoding="utf-8") as file:
         for y in 1, 2:
-            file.write("ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS id x y radius\n7 0.5 %d 0.25\n" % (y, y))
+            file.write("ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n1\n" % y)
+            file.write("ITEM: ATOMS id x y radius\n7 0.5 %d 0.25\n" % y)
     assert list(grains.read_table("log.lammps")["Temp"]) == [1, 3, 5]
     assert [list(v) for v in grains.load_grains("dump")] == [[0.5], [2], [0.25]]
 
