@@ -24,8 +24,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
              tables of times beside LAMMPS' own styles; all goes to out/lammps/
   dem        a pile of 5,000 sand grains with the discrete element program: pictures, files for ParaView, tables and the
              angle of repose go to out/dem/, in some minutes. dem cases: slopes, collisions, piles of discs and long
-             grains, biaxial tests, hoppers besides, in 10 to 20 minutes on two cores. apps/dem/README.md says
-             what they mean
+             grains, biaxial tests, hoppers, packings, flows, a drum besides, in an hour on two cores.
+             apps/dem/README.md says what they mean
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.
