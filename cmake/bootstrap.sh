@@ -24,8 +24,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
              tables of times beside LAMMPS' own styles; all goes to out/lammps/
   dem        a pile of 5,000 sand grains with the discrete element program: pictures, files for ParaView, tables and the
              angle of repose go to out/dem/, in some minutes. dem cases: slopes, collisions, piles of discs and long
-             grains, biaxial tests, hoppers besides, in 10 to 20 minutes on two cores. apps/dem/README.md says
-             what they mean
+             grains, biaxial tests, hoppers, packings, flows, a drum besides, in an hour on two cores.
+             apps/dem/README.md says what they mean
   docs       the reference of the public headers, out/api/index.html
 
 Each command installs what is missing and builds what it needs.
@@ -49,14 +49,14 @@ fit_packages="g++ libfreetype-dev librsvg2-dev libpng-dev libcjson-dev coinor-li
 build_packages="$library_packages $fit_packages libcairo2-dev libglib2.0-dev libcmocka-dev"
 run_packages="$build_packages fonts-symbola"
 peer_packages="g++ libbenchmark-dev libbox2d-dev libchipmunk-dev libccd-dev libgeos-dev"
-test_packages="$run_packages g++ binutils python3 dpkg-dev file meson"
+test_packages="$run_packages g++ binutils python3 python3-numpy dpkg-dev file meson"
 gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang-tidy"
 bench_packages="$library_packages $peer_packages gnuplot-nox"
 study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
 lammps_packages="$run_packages g++ liblammps-dev libopenmpi-dev openmpi-bin"
 wasm_packages="$library_packages binaryen clang llvm lld wasi-libc libclang-rt-dev-wasm32 nodejs"
 windows_packages="$library_packages gcc-mingw-w64-x86-64-posix wine64"
-dem_packages="$run_packages r-cran-shapes gnuplot-nox python3"
+dem_packages="$run_packages r-cran-shapes python3 python3-numpy python3-matplotlib"
 
 missing_of() {
     for package; do
@@ -350,51 +350,23 @@ fit_sand() {
         --out out/dem/sand.json --picture out/dem/sand.png
 }
 
-# draw_last FOLDER NAME: the grains and contacts of the last table of a run.
-draw_last() {
-    build/release/tools/narc collide --shapes "$1/shapes.json" --out "$1/contacts.csv" --picture "$1.png" \
-        --bodies "$(find "$1" -name "$2-0*.csv" | sort | tail -n 1)"
-}
-
-dem_pile() {
-    fit_sand
-    say "a pile of 5,000 sand grains"
-    sh $dem_cases/pile.sh "$dem_program" out/dem/pile out/dem/sand.json "" >out/dem/pile.txt
-    say "pictures of it"
-    draw_last out/dem/pile pile
-    last=$(find out/dem/pile -name 'pile-contacts-0*.vtk' | sort | tail -n 1)
-    python3 apps/dem/draw.py "$(echo "$last" | sed 's/-contacts//')" out/dem/pile-close.svg --color none --width 900 \
-        --region -0.064 -0.006 0.064 0.034
-    gnuplot -e "folder='out/dem/pile'" $dem_cases/pile.gp
-    say "angle of repose, left, right, mean, in degrees"
-    cat out/dem/pile.txt
-}
-
-# As many at a time as there are processors.
-dem_all() {
-    dem_pile
-    say "other cases"
-    sh $dem_cases/all.sh "$dem_program" out/dem out/dem/sand.json "$jobs"
-    draw_last out/dem/biaxial-sand biaxial
-    last=$(find out/dem/biaxial-sand -name 'biaxial-contacts-0*.vtk' | sort | tail -n 1)
-    python3 apps/dem/draw.py "$(echo "$last" | sed 's/-contacts//')" out/dem/biaxial-close.svg --color coordination \
-        --width 560 --region -38 -36 -14 -22
-    gnuplot -e "folder='out/dem'" $dem_cases/plots.gp
-    say "results"
-    cat out/dem/results.txt
-}
-
+# The pile alone, or all cases, as many runs at a time as there are processors. The command draws the grains that a run
+# has written.
 dem() {
     require_packages $dem_packages
     build release narc_tool dem
-    dem_program=$PWD/build/release/apps/dem/dem dem_cases=apps/dem/cases
-    mkdir -p out
     case ${1:-pile} in
-    pile) rm -rf out/dem && dem_pile ;;
-    cases) rm -rf out/dem && dem_all ;;
+    pile | cases) rm -rf out/dem && mkdir -p out && fit_sand ;;
     *) fail "dem $1: it is pile or cases" ;;
     esac
-    [ ! -d out/dem ] || ls -ld out/dem/*
+    say "cases"
+    [ "${1:-pile}" = pile ] && which=sand || which=all
+    # Debian's Python has its packages.
+    /usr/bin/python3 apps/dem/cases/cases.py build/release/apps/dem/dem out/dem --sand out/dem/sand.json --jobs "$jobs" \
+        $which | tee out/dem/results.txt
+    build/release/tools/narc collide --shapes out/dem/pile/shapes.json --out out/dem/contacts.csv \
+        --picture out/dem/grains.png --bodies "$(find out/dem/pile -name 'pile-0*.csv' | sort | tail -n 1)"
+    ls -ld out/dem/*
 }
 
 # One build, the one that users have, and what answers in minutes; the gate has the rest.

@@ -13,7 +13,7 @@
  *       model.c       memory, shapes, bodies
  *       place.c       where grains start
  *       neighbours.c  boxes, pairs with a skin, history
- *       boundary.c    periodic images, wrapping
+ *       boundary.c    periodic images, wrapping, shear
  *       step.c        velocity Verlet, the narrow phase
  *       laws.c        forces of contacts
  *       gather.c      forces of bodies
@@ -62,14 +62,20 @@ typedef struct dem_material {
     double young, poisson; /* of the Hertz law; else 0 */
 } dem_material;
 
-/* A shape of the store, its centroid at the origin, for scale 1 and density * thickness 1. */
+/* A convex outline, for touch.h: that of the store's shape with the same index. */
+typedef struct dem_outline {
+    touch_side *sides; /* `side_count` of them */
+    size_t side_count;
+} dem_outline;
+
+/* What a body is: one convex outline, or several that move as one, which may lie over each other. The centroid of what
+ * they cover is the origin; for scale 1 and density * thickness 1. */
 typedef struct dem_shape {
     char name[DEM_NAME_SIZE];
     double area, second_moment;
-    double reach;      /* the largest distance of a point from the origin */
-    double extent;     /* the diameter of the disc of equal area */
-    touch_side *sides; /* `side_count` of them */
-    size_t side_count;
+    double reach;  /* the largest distance of a point from the origin */
+    double extent; /* the diameter of the disc of equal area */
+    uint32_t first_outline, outline_count;
 } dem_shape;
 
 typedef enum dem_law { DEM_LINEAR, DEM_HERTZ } dem_law;
@@ -94,6 +100,8 @@ typedef struct dem_settings {
     double max_overlap; /* a deeper contact stops the run; a share of the smaller body's extent */
     bool periodic_x, periodic_y;
     double low_x, high_x, low_y, high_y; /* the periodic cell; where it is periodic */
+    bool sheared;                        /* a Lees-Edwards cell: periodic in x and y, without walls and gravity */
+    double shear;                        /* its rate: how vx grows with y */
     unsigned threads;                    /* 0: one */
 } dem_settings;
 
@@ -110,10 +118,17 @@ typedef struct dem_bodies {
     double *reach, *extent;                            /* of the scaled shape */
     double *disc;                                      /* its radius, of a disc; 0: it is none */
     float *scale;
-    uint32_t *shape;
+    uint32_t *shape, *first_part;
     uint8_t *material, *still; /* still: a wall. Two of them form no pair */
     int32_t *cell_x, *cell_y;  /* how often it crossed the periodic border, for true displacements */
 } dem_bodies;
+
+/* The convex parts of all bodies, in their order: what narc is asked about, with the place of their body. Parts of one
+ * body form no pair. A body of one outline has one, so without others part k is body k. */
+typedef struct dem_parts {
+    size_t count, capacity;
+    uint32_t *body, *outline;
+} dem_parts;
 
 typedef enum dem_wall_kind { DEM_BOX, DEM_PLATE } dem_wall_kind;
 
@@ -124,7 +139,7 @@ typedef struct dem_servo {
     double force;           /* the target: what grains press against the direction with. Used if `between` is empty */
     double stress;          /* times the distance of the two walls of `between` times the thickness */
     int between[2];         /* walls, or -1 */
-    double gain, max_speed; /* the share of a step's error that the next step removes */
+    double gain, max_speed; /* its speed is the gain times the force that is missing */
     double travel; /* the run ends if the wall moves further without touching a grain; 0: the world's diagonal */
 } dem_servo;
 
@@ -144,9 +159,8 @@ typedef struct dem_wall {
     double spin;      /* about the pivot, which moves with the velocity */
     dem_vec pivot;
     dem_servo servo;
-    double work;       /* done on the grains since the start */
-    double resistance; /* how its force grows with its speed in a step, if some wall has servo control */
-    double idle_way;   /* how far servo control has moved it since it touched a grain */
+    double work;     /* done on the grains since the start */
+    double idle_way; /* how far servo control has moved it since it touched a grain */
 } dem_wall;
 
 /* The memory of a pair that touches. It counts only if `step` is the step before. */
@@ -166,10 +180,10 @@ typedef struct dem_rolling {
     double angle, torque;
 } dem_rolling;
 
-/* Pairs whose boxes, half the skin larger, overlap, in the order of (a, b). No pair stands there twice. */
+/* Pairs of parts whose boxes, half the skin larger, overlap, in the order of (a, b). No pair stands there twice. */
 typedef struct dem_pairs {
     size_t count, capacity;
-    uint32_t *a, *b;
+    uint32_t *a, *b;          /* parts */
     float *shift_x, *shift_y; /* added to B's position */
     uint32_t *hints;          /* narc's */
     dem_dashpot *dashpot;
@@ -226,8 +240,8 @@ typedef struct dem_region {
     double low_x, high_x, low_y, high_y;
 } dem_region;
 
-/* An incidence list: which pairs have body i as B, ascending: of[first[i]] .. of[first[i + 1] - 1]; and where the pairs
- * that have it as A begin. */
+/* An incidence list: which pairs have a part of body i as B, ascending: of[first[i]] .. of[first[i + 1] - 1];
+ * and where the pairs that have it as A begin. */
 typedef struct dem_incidence {
     uint32_t *first_b, *of_b, *first_a;
     size_t capacity;
@@ -240,10 +254,13 @@ typedef struct dem {
     dem_contact_law laws[DEM_MAX_MATERIALS][DEM_MAX_MATERIALS];
 
     narc_shapes *store;
-    dem_shape *shapes; /* shape k of the store */
+    dem_outline *outlines; /* outline k is shape k of the store */
+    size_t outline_count, outline_capacity;
+    dem_shape *shapes;
     size_t shape_count, shape_capacity;
 
     dem_bodies bodies;
+    dem_parts parts;
     size_t grain_count;
     dem_wall *walls;
     size_t wall_count, wall_capacity;
@@ -263,6 +280,10 @@ typedef struct dem {
     double damping, friction;
     double normal_energy, tangential_energy, rolling_energy; /* of the springs now */
 
+    /* Of a sheared cell: how far the cell above is to the right of this one, and was when the pairs were found; what
+     * that cell's contacts pull; and the work done so. */
+    double offset, list_offset, pull, shear_work;
+
     narc_broad_phase *broad;
     struct dem_scratch *scratch; /* memory of the neighbour list and of sums */
     char error[512];             /* what went wrong, when a function here says that something did */
@@ -277,8 +298,11 @@ extern const dem_settings dem_defaults;
 bool dem_create(dem *d, dem_settings settings);
 void dem_destroy(dem *d);
 
-/* Adds a shape, moved so that its centroid is its origin. */
+/* Adds a shape, moved so that its centroid is its origin: of one outline; of `part_count`, whose arcs, counts[i] each,
+ * stand one behind the other in common coordinates. */
 bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count, uint32_t *out_shape);
+bool dem_add_compound(dem *d, const char *name, const narc_arc *arcs, const size_t *counts, size_t part_count,
+                      uint32_t *out_shape);
 
 /* Adds a material. Laws with it are set in d->laws by dem_set_law(). */
 bool dem_add_material(dem *d, dem_material material, uint8_t *out_material);
@@ -298,6 +322,9 @@ bool dem_add_wall(dem *d, dem_wall wall);
 
 /* Checks the whole, makes room. To be called once, before the first step. */
 bool dem_start(dem *d);
+
+/* Another rate of shear, from now on: all grains get the velocities that go with it. */
+void dem_set_shear(dem *d, double rate);
 
 /* Reports an error; returns false. */
 bool dem_fail(dem *d, const char *format, ...);

@@ -7,6 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "internal.h"
+
 static void add_load(dem_load *load, dem_vec force, dem_vec arm) {
     load->contacts++;
     load->stress_xx -= force.x * arm.x;
@@ -41,7 +43,7 @@ static void find_bearing(const dem *d, dem_load *loads) {
             loads[k].count = 0;
         for (size_t k = 0; k < d->contacts.count; k++) {
             const size_t p = d->contacts.rows[k].pair;
-            dem_load *a = &loads[d->pairs.a[p]], *b = &loads[d->pairs.b[p]];
+            dem_load *a = &loads[dem_body_a(d, p)], *b = &loads[dem_body_b(d, p)];
             const bool bears = a->bearing > 0 && b->bearing > 0 && dem_normal_force(d, k) > 0;
             a->count += bears;
             b->count += bears;
@@ -65,7 +67,7 @@ dem_load *dem_find_loads(const dem *d, char *error) {
         return NULL;
     }
     for (size_t k = 0; k < c->count; k++) {
-        const size_t p = c->rows[k].pair, i = d->pairs.a[p], j = d->pairs.b[p];
+        const size_t p = c->rows[k].pair, i = dem_body_a(d, p), j = dem_body_b(d, p);
         const dem_force f = c->rows[k].force;
         const dem_vec arm_i = c->rows[k].point;
         const dem_vec arm_j = {arm_i.x + (b->x[i] - b->x[j] - (double)d->pairs.shift_x[p]),
@@ -107,13 +109,14 @@ dem_region dem_bound_all(const dem *d) {
         const size_t k = d->grain_count + w;
         narc_arc arcs[NARC_MAX_ARCS];
         narc_aabb box;
-        if (d->walls[w].kind == DEM_PLATE)
-            continue;
-        const size_t count = narc_get_arcs(d->store, b->shape[k], arcs);
-        const double scale = (double)b->scale[k];
-        if (narc_compute_aabb(arcs, count, atan2(b->sine[k], b->cosine[k]), &box))
-            add_box(&r, b->x[k] + scale * box.min_x, b->y[k] + scale * box.min_y, b->x[k] + scale * box.max_x,
-                    b->y[k] + scale * box.max_y);
+        const size_t first = b->first_part[k], parts = d->shapes[b->shape[k]].outline_count;
+        for (size_t i = first; i < first + parts && d->walls[w].kind != DEM_PLATE; i++) {
+            const size_t count = narc_get_arcs(d->store, d->parts.outline[i], arcs);
+            const double scale = (double)b->scale[k];
+            if (narc_compute_aabb(arcs, count, atan2(b->sine[k], b->cosine[k]), &box))
+                add_box(&r, b->x[k] + scale * box.min_x, b->y[k] + scale * box.min_y, b->x[k] + scale * box.max_x,
+                        b->y[k] + scale * box.max_y);
+        }
     }
     return r;
 }

@@ -167,7 +167,9 @@ static dem_settings read_settings(const json_value *root, unsigned threads) {
     s.gravity = json_vec_or(root, "gravity", s.gravity);
     const json_value boundary = json_member(root, "boundary");
     if (boundary.item) {
-        json_check_object(&boundary, "x y");
+        json_check_object(&boundary, "x y shear");
+        s.sheared = json_member(&boundary, "shear").item != NULL;
+        s.shear = json_number_or(&boundary, "shear", -1e300, 1e300, 0);
         read_cell(&boundary, "x", &s.periodic_x, &s.low_x, &s.high_x);
         read_cell(&boundary, "y", &s.periodic_y, &s.low_y, &s.high_y);
     }

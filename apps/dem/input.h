@@ -20,9 +20,10 @@ typedef struct dem_wall_change {
 typedef struct dem_stage {
     char name[DEM_NAME_SIZE];
     uint64_t steps;
-    bool sets_gravity, sets_friction;
+    bool sets_gravity, sets_friction, sets_shear;
     dem_vec gravity;
     double friction; /* of all contacts */
+    double shear;
     dem_wall_change *changes;
     size_t change_count;
 } dem_stage;

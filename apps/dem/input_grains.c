@@ -25,6 +25,33 @@ void dem_find_shapes_file(const json_value *root, char path[DEM_SHAPES_PATH_SIZE
         snprintf(path, DEM_SHAPES_PATH_SIZE, "%s", text);
 }
 
+/* NAME/1, NAME/2 ... are the parts of NAME, where their origins tell, if there is no shape of that name. */
+static void read_parts(const json_value *file, const narc_shape_list *shapes, const char *name, int length, dem *d) {
+    char base[1024], text[1056];
+    narc_arc *arcs = calloc(shapes->count, NARC_MAX_ARCS * sizeof *arcs);
+    size_t *counts = calloc(shapes->count, sizeof *counts), count = 0, used = 0;
+    uint32_t index;
+    if (!arcs || !counts)
+        fail("not enough memory for shapes");
+    snprintf(base, sizeof base, "%.*s", length, name);
+    const bool ok = narc_find_named_shape(shapes, base) == shapes->count;
+    for (size_t k; ok; used += counts[count++]) {
+        snprintf(text, sizeof text, "%s/%zu", base, count + 1);
+        if ((k = narc_find_named_shape(shapes, text)) == shapes->count)
+            break;
+        const narc_named_shape *part = &shapes->items[k];
+        narc_error error;
+        counts[count] = part->arc_count;
+        if (narc_move_arcs(part->arcs, part->arc_count, part->origin.x, part->origin.y, 0, 1, arcs + used, &error) !=
+            NARC_OK)
+            fail("%s: shape '%s': %s", file->file, text, error.message);
+    }
+    if (ok && !dem_add_compound(d, base, arcs, counts, count, &index))
+        dem_fail_at(file, d);
+    free(arcs);
+    free(counts);
+}
+
 void dem_read_shapes(const json_value *root, dem *d) {
     const json_value name = json_require(root, "shapes");
     char path[DEM_SHAPES_PATH_SIZE];
@@ -41,8 +68,15 @@ void dem_read_shapes(const json_value *root, dem *d) {
     for (size_t k = 0; k < shapes->count; k++) {
         const narc_named_shape *shape = &shapes->items[k];
         uint32_t index;
+        if (shape->form != NARC_FORM_SHAPE)
+            fail("%s: shape '%s' is a chain: grains and walls are shapes, or parts", path, shape->name);
         if (!dem_add_shape(d, shape->name, shape->arcs, shape->arc_count, &index))
             dem_fail_at(&name, d);
+    }
+    for (size_t k = 0; k < shapes->count; k++) {
+        const char *slash = strrchr(shapes->items[k].name, '/');
+        if (slash && strcmp(slash, "/1") == 0)
+            read_parts(&name, shapes, shapes->items[k].name, (int)(slash - shapes->items[k].name), d);
     }
     narc_destroy_shape_list(shapes);
 }

@@ -62,14 +62,20 @@ void dem_read_stages(const json_value *root, dem *d, dem_input *input) {
         has_servo[w] = d->walls[w].servo.on;
     for (size_t i = 0; i < count; i++) {
         const json_value item = json_at(&list, i);
-        json_check_object(&item, "name duration gravity friction walls");
+        json_check_object(&item, "name duration gravity friction shear walls");
         const json_value name = json_member(&item, "name"), duration = json_require(&item, "duration");
-        const json_value walls = json_member(&item, "walls");
+        const json_value walls = json_member(&item, "walls"), shear = json_member(&item, "shear");
         dem_stage stage = {.steps = read_steps(&duration, d),
                            .sets_gravity = json_member(&item, "gravity").item != NULL,
                            .gravity = json_vec_or(&item, "gravity", (dem_vec){0, 0}),
                            .sets_friction = json_member(&item, "friction").item != NULL,
-                           .friction = json_number_or(&item, "friction", 0, 1e6, 0)};
+                           .friction = json_number_or(&item, "friction", 0, 1e6, 0),
+                           .sets_shear = shear.item != NULL,
+                           .shear = json_number_or(&item, "shear", -1e300, 1e300, 0)};
+        if (shear.item && !d->settings.sheared)
+            json_fail(&shear, "is of a cell whose boundary has shear");
+        if (stage.sets_gravity && d->settings.sheared)
+            json_fail(&item, "has gravity in a sheared cell");
         snprintf(stage.name, sizeof stage.name, "stage %zu", i);
         if (name.item)
             json_name(&name, stage.name, sizeof stage.name);

@@ -43,7 +43,7 @@ static dem_servo read_servo(const json_value *value, const dem *d, size_t wall) 
     if (d->walls[wall].kind == DEM_PLATE &&
         fabs(servo.direction.x * normal.x + servo.direction.y * normal.y) < LEAST_ACROSS)
         json_fail(&direction, "runs along the plate, which has no ends");
-    servo.gain = json_number_or(value, "gain", 1e-6, 1, 0.1);
+    servo.gain = json_positive(value, "gain");
     servo.max_speed = json_positive(value, "max_speed");
     servo.travel = json_member(value, "travel").item ? json_positive(value, "travel") : 0;
     if ((force.item != NULL) == (stress.item != NULL))
@@ -87,7 +87,7 @@ void dem_apply_change(dem *d, const dem_wall_change *change) {
         wall->spin = change->spin;
     if (change->sets_servo) {
         wall->servo = change->servo;
-        wall->resistance = wall->idle_way = 0;
+        wall->idle_way = 0;
     }
 }
 

@@ -26,9 +26,10 @@ typedef struct dem_extra {
 } dem_extra;
 
 typedef struct dem_scratch {
-    narc_box *boxes; /* bodies, then images */
+    narc_box *boxes; /* parts, then images of parts */
     uint8_t *still;
-    uint32_t *image_of;
+    uint32_t *group;          /* the body + 1, of an image too */
+    uint32_t *image_of;       /* a part */
     float *image_x, *image_y; /* where an image is, from its body */
     size_t box_capacity, image_count;
     const uint32_t *found_a, *found_b; /* pairs of boxes; the broad phase owns them */
@@ -40,7 +41,7 @@ typedef struct dem_scratch {
     bool adds;      /* a single thread adds forces to bodies as it finds them */
     dem_sums *sums;
     size_t sums_capacity;
-    narc_body *poses; /* of all bodies, when narc was last asked */
+    narc_body *poses; /* of all parts, when narc was last asked */
     size_t pose_capacity;
 } dem_scratch;
 
@@ -48,8 +49,16 @@ typedef struct dem_scratch {
 bool dem_reserve(dem *d, void *array_pointer, size_t *capacity, size_t needed, size_t size);
 bool dem_resize(dem *d, void *array_pointer, size_t count, size_t size);
 bool dem_grow_pairs(dem *d, dem_pairs *pairs, size_t needed);
-narc_body dem_make_pose(const dem_bodies *b, size_t k); /* a body where it is now, for narc */
-/* All of them, until the next call. */
+/* The bodies of a pair. */
+static inline size_t dem_body_a(const dem *d, size_t pair) { return d->parts.body[d->pairs.a[pair]]; }
+static inline size_t dem_body_b(const dem *d, size_t pair) { return d->parts.body[d->pairs.b[pair]]; }
+
+/* By how many cells the B of a pair is above A: its image. */
+static inline int dem_find_lift(const dem *d, size_t pair) {
+    return (d->pairs.shift_y[pair] > 0) - (d->pairs.shift_y[pair] < 0);
+}
+
+/* All parts where they are now, for narc, until the next call. */
 bool dem_make_poses(dem *d, narc_bodies *out);
 bool dem_fail_narc(dem *d, const char *what, const narc_error *error);
 bool dem_find_broken_body(dem *d);
@@ -76,13 +85,16 @@ bool dem_make_room_for_contacts(dem *d);
 /* boundary.c */
 void dem_wrap_bodies(dem *d);
 bool dem_add_images(dem *d);
-bool dem_take_image_pairs(dem *d); /* adds the found pairs with images to the extra ones */
+void dem_shear_cell(dem *d);                       /* the way of a step */
+void dem_count_shear_work(dem *d);                 /* of half a step, with the forces as they are */
+dem_vec dem_find_shift(const dem *d, size_t pair); /* of B, exactly */
+double dem_find_drift(const dem *d);               /* the speed of the cell above */
+bool dem_take_image_pairs(dem *d);                 /* adds the found pairs with images to the extra ones */
 
 /* walls.c */
 bool dem_steer_walls(dem *d);
 void dem_move_walls(dem *d);
 void dem_count_wall_work(dem *d);
-void dem_find_resistances(dem *d);
 bool dem_add_plate_pairs(dem *d);
 
 /* laws.c, gather.c */

@@ -85,7 +85,7 @@ double dem_find_shortest_contact(const dem *d) {
 void dem_find_dashpots(dem *d) {
     const dem_bodies *b = &d->bodies;
     for (size_t k = 0; k < d->pairs.count; k++) {
-        const size_t i = d->pairs.a[k], j = d->pairs.b[k];
+        const size_t i = dem_body_a(d, k), j = dem_body_b(d, k);
         const dem_contact_law *law = &d->laws[b->material[i]][b->material[j]];
         const double mass = 1 / (b->inverse_mass[i] + b->inverse_mass[j]);
         const double by_ratio = law->damping_ratio * sqrt(law->kn * mass);
@@ -100,6 +100,7 @@ typedef struct contact {
     double depth;
     dem_vec normal, point; /* of all ends */
     dem_vec arm_b;         /* from the centre of B to the point */
+    double drift;          /* what B's image is faster along x */
     double vn, vt, turn;   /* relative velocities: apart, along the tangent, rotation */
 } contact;
 
@@ -109,22 +110,23 @@ static double find_radius(const dem_bodies *b, size_t i, size_t j) {
     return b->inverse_mass[j] > 0 ? half_i * half_j / (half_i + half_j) : half_i;
 }
 
-INLINE touch_grain look_at(const dem *d, size_t body) {
+INLINE touch_grain look_at(const dem *d, size_t part) {
     const dem_bodies *b = &d->bodies;
-    const dem_shape *shape = &d->shapes[b->shape[body]];
-    return (touch_grain){shape->sides, shape->side_count, b->cosine[body], b->sine[body], (double)b->scale[body]};
+    const dem_outline *outline = &d->outlines[d->parts.outline[part]];
+    const size_t k = d->parts.body[part];
+    return (touch_grain){outline->sides, outline->side_count, b->cosine[k], b->sine[k], (double)b->scale[k]};
 }
 
 /* Of A and B's relative motion at a place: B's surface moves away with it. */
 INLINE dem_vec find_velocity(const dem_bodies *b, const contact *c, dem_vec at_a, dem_vec at_b) {
-    return (dem_vec){b->vx[c->b] - b->vx[c->a] - (b->spin[c->b] * at_b.y - b->spin[c->a] * at_a.y),
+    return (dem_vec){b->vx[c->b] - b->vx[c->a] + c->drift - (b->spin[c->b] * at_b.y - b->spin[c->a] * at_a.y),
                      b->vy[c->b] - b->vy[c->a] + (b->spin[c->b] * at_b.x - b->spin[c->a] * at_a.x)};
 }
 
 /* Where B is from A. A plate's shift is rounded: what of it is across the plate is left out. */
 INLINE dem_vec find_way(const dem *d, size_t p, size_t i, size_t j) {
     const dem_bodies *b = &d->bodies;
-    dem_vec shift = {(double)d->pairs.shift_x[p], (double)d->pairs.shift_y[p]};
+    dem_vec shift = dem_find_shift(d, p);
     if (j >= d->grain_count) {
         const dem_vec n = d->walls[j - d->grain_count].normal; /* 0 of a box */
         const double across = shift.x * n.x + shift.y * n.y;
@@ -146,7 +148,7 @@ INLINE void join_ends(const touch_end *end, contact *c) {
 INLINE int load_contact(const dem *d, size_t k, contact *c, touch *t) {
     const narc_contact *row = &d->contacts.found[k];
     const dem_bodies *b = &d->bodies;
-    const size_t p = row->pair, i = d->pairs.a[p], j = d->pairs.b[p];
+    const size_t p = row->pair, i = dem_body_a(d, p), j = dem_body_b(d, p);
     const dem_vec way = find_way(d, p, i, j);
     touch_end end;
     int count = 1;
@@ -154,7 +156,7 @@ INLINE int load_contact(const dem *d, size_t k, contact *c, touch *t) {
         end = meet_discs(b->disc[i], b->disc[j], way.x, way.y);
         c->depth = end.depth;
     } else {
-        const touch_grain of_a = look_at(d, i), of_b = look_at(d, j);
+        const touch_grain of_a = look_at(d, d->pairs.a[p]), of_b = look_at(d, d->pairs.b[p]);
         find_touch(&of_a, &of_b, way.x, way.y, row->feature, t);
         end = t->end[0];
         c->depth = t->depth;
@@ -168,6 +170,7 @@ INLINE int load_contact(const dem *d, size_t k, contact *c, touch *t) {
     c->point = (dem_vec){end.x, end.y};
     if (count == 2)
         join_ends(t->end, c);
+    c->drift = d->settings.sheared ? dem_find_lift(d, p) * dem_find_drift(d) : 0;
     c->arm_b = (dem_vec){c->point.x - way.x, c->point.y - way.y};
     const dem_vec v = find_velocity(b, c, c->point, c->arm_b);
     c->vn = v.x * c->normal.x + v.y * c->normal.y;
@@ -331,7 +334,7 @@ static dem_sums apply_block(dem *d, size_t first, size_t end, bool hertz, bool r
 }
 
 static bool fail_depth(dem *d, size_t p) {
-    const size_t a = d->pairs.a[p], b = d->pairs.b[p], k = d->contacts.count;
+    const size_t a = dem_body_a(d, p), b = dem_body_b(d, p), k = d->contacts.count;
     const bool is_grain = b < d->grain_count;
     double depth = 0;
     for (size_t i = 0; i < k; i++)
@@ -373,6 +376,9 @@ bool dem_apply_laws(dem *d) {
         s->sums[block] = apply_block(d, first, end, hertz, rolls);
     }
     join_blocks(d, blocks);
+    d->pull = 0;
+    for (size_t k = 0; d->settings.sheared && k < d->contacts.count; k++)
+        d->pull += dem_find_lift(d, d->contacts.rows[k].pair) * d->contacts.rows[k].force.x;
     dem_sums all = {.too_deep = SIZE_MAX};
     for (size_t block = blocks; block-- > 0;) {
         const dem_sums *sums = &s->sums[block];

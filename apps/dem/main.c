@@ -92,6 +92,8 @@ static void enter_stage(run *r, const dem_stage *stage) {
     dem *d = &r->world;
     if (stage->sets_gravity)
         d->settings.gravity = stage->gravity;
+    if (stage->sets_shear)
+        dem_set_shear(d, stage->shear);
     for (size_t a = 0; stage->sets_friction && a < d->material_count; a++)
         for (size_t b = 0; b < d->material_count; b++)
             d->laws[a][b].friction = stage->friction;

@@ -23,6 +23,7 @@ static dem_energies measure_energies(const dem *d, double *out_fastest) {
         e.potential -= b->mass[k] * (g.x * x + g.y * y);
         fastest = fmax(fastest, speed);
     }
+    e.walls = d->shear_work;
     for (size_t w = 0; w < d->wall_count; w++)
         e.walls += d->walls[w].work;
     *out_fastest = sqrt(fastest);
@@ -38,8 +39,9 @@ static bool is_inside(const dem *d, const dem_region *r, size_t contact, size_t 
     const dem_settings *s = &d->settings;
     const double point_x = d->bodies.x[a] + d->contacts.rows[contact].point.x;
     const double point_y = d->bodies.y[a] + d->contacts.rows[contact].point.y;
-    const double x = find_image(s->periodic_x, point_x, r->low_x, dem_cell_width(d));
     const double y = find_image(s->periodic_y, point_y, r->low_y, dem_cell_height(d));
+    const double aside = s->sheared ? d->offset * nearbyint((point_y - y) / dem_cell_height(d)) : 0;
+    const double x = find_image(s->periodic_x, point_x - aside, r->low_x, dem_cell_width(d));
     return !r->given || (x >= r->low_x && x < r->high_x && y >= r->low_y && y < r->high_y);
 }
 
@@ -65,7 +67,7 @@ void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measu
     for (size_t k = 0; k < c->count; k++) {
         const dem_contact *row = &c->rows[k];
         const dem_force *f = &row->force;
-        const size_t p = row->pair, i = d->pairs.a[p], j = d->pairs.b[p];
+        const size_t p = row->pair, i = dem_body_a(d, p), j = dem_body_b(d, p);
         const bool is_wall = j >= d->grain_count;
         const double smaller = is_wall ? b->extent[i] : fmin(b->extent[i], b->extent[j]);
         ends += is_wall ? 1 : 2;
@@ -106,7 +108,8 @@ uint64_t dem_hash(const dem *d) {
     for (size_t k = 0; k < d->pairs.count; k++)
         if (d->pairs.memory[k].step == d->step)
             hash = dem_hash_bytes(hash, &d->pairs.memory[k], sizeof d->pairs.memory[k]);
-    const double sums[] = {d->time, d->damping, d->friction, d->normal_energy, d->tangential_energy, d->rolling_energy};
+    const double sums[] = {d->time,       d->damping,       d->friction,          d->offset,
+                           d->shear_work, d->normal_energy, d->tangential_energy, d->rolling_energy};
     for (size_t w = 0; w < d->wall_count; w++)
         hash = dem_hash_bytes(hash, &d->walls[w].work, sizeof d->walls[w].work);
     hash = dem_hash_bytes(hash, &d->step, sizeof d->step);

@@ -57,11 +57,12 @@ typedef struct column {
     { offsetof(dem_pairs, field), sizeof(*((dem_pairs *)0)->field) }
 
 static const column body_columns[] = {
-    BODY(x),           BODY(y),         BODY(cosine), BODY(sine),    BODY(vx),           BODY(vy),
-    BODY(spin),        BODY(fx),        BODY(fy),     BODY(torque),  BODY(list_x),       BODY(list_y),
-    BODY(list_cosine), BODY(list_sine), BODY(cell_x), BODY(cell_y),  BODY(scale),        BODY(shape),
-    BODY(material),    BODY(still),     BODY(mass),   BODY(inertia), BODY(inverse_mass), BODY(inverse_inertia),
-    BODY(reach),       BODY(extent),    BODY(disc)};
+    BODY(x),      BODY(y),      BODY(cosine),      BODY(sine),         BODY(vx),
+    BODY(vy),     BODY(spin),   BODY(fx),          BODY(fy),           BODY(torque),
+    BODY(list_x), BODY(list_y), BODY(list_cosine), BODY(list_sine),    BODY(cell_x),
+    BODY(cell_y), BODY(scale),  BODY(shape),       BODY(first_part),   BODY(material),
+    BODY(still),  BODY(mass),   BODY(inertia),     BODY(inverse_mass), BODY(inverse_inertia),
+    BODY(reach),  BODY(extent), BODY(disc)};
 enum { BODY_COLUMNS = sizeof body_columns / sizeof body_columns[0] };
 
 static const column pair_columns[] = {PAIR(a),     PAIR(b),      PAIR(shift_x), PAIR(shift_y),
@@ -114,18 +115,20 @@ bool dem_create(dem *d, dem_settings settings) {
 void dem_destroy(dem *d) {
     dem_scratch *s = d->scratch;
     dem_contacts *c = &d->contacts;
-    void *const arrays[] = {d->shapes,        d->walls, c->rows, c->found, d->incidence.first_a, d->incidence.first_b,
+    void *const arrays[] = {d->shapes,        d->outlines,          d->walls,
+                            d->parts.body,    d->parts.outline,     c->rows,
+                            c->found,         d->incidence.first_a, d->incidence.first_b,
                             d->incidence.of_b};
-    for (size_t k = 0; k < d->shape_count; k++)
-        free(d->shapes[k].sides);
+    for (size_t k = 0; k < d->outline_count; k++)
+        free(d->outlines[k].sides);
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++)
         free(arrays[i]);
     free_columns(&d->bodies, body_columns, BODY_COLUMNS);
     free_columns(&d->pairs, pair_columns, PAIR_COLUMNS);
     free_columns(&d->last_pairs, pair_columns, PAIR_COLUMNS);
     if (s) {
-        void *const scratch[] = {s->boxes, s->still, s->image_of, s->image_x, s->image_y,
-                                 s->match, s->extra, s->slot,     s->sums,    s->poses};
+        void *const scratch[] = {s->boxes, s->still, s->group, s->image_of, s->image_x, s->image_y,
+                                 s->match, s->extra, s->slot,  s->sums,     s->poses};
         for (size_t i = 0; i < sizeof scratch / sizeof scratch[0]; i++)
             free(scratch[i]);
         free(s);
@@ -152,33 +155,54 @@ static double find_reach(const narc_arc *arcs, size_t count) {
     return reach;
 }
 
-bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count, uint32_t *out_shape) {
-    narc_arc centred[NARC_MAX_ARCS];
+/* Moves an outline by -centroid, and adds it to the store: one index for each, also of equal ones. */
+static bool add_outline(dem *d, const char *name, const narc_arc *arcs, size_t count, narc_point centroid,
+                        double *reach) {
+    narc_arc moved[NARC_MAX_ARCS];
+    narc_error error;
+    const uint32_t index = (uint32_t)d->outline_count;
+    if (!dem_reserve(d, &d->outlines, &d->outline_capacity, d->outline_count + 1, sizeof *d->outlines))
+        return false;
+    if (narc_move_arcs(arcs, count, -centroid.x, -centroid.y, 0, 1, moved, &error) != NARC_OK ||
+        narc_add_shape_at(d->store, index, moved, count, &error) != NARC_OK)
+        return dem_fail_narc(d, name, &error);
+    dem_outline *outline = &d->outlines[d->outline_count];
+    *outline = (dem_outline){.side_count = count};
+    if (!dem_resize(d, &outline->sides, count, sizeof *outline->sides))
+        return false;
+    d->outline_count++;
+    make_touch_sides(moved, count, outline->sides);
+    *reach = fmax(*reach, find_reach(moved, count));
+    return true;
+}
+
+bool dem_add_compound(dem *d, const char *name, const narc_arc *arcs, const size_t *counts, size_t part_count,
+                      uint32_t *out_shape) {
     narc_error error;
     narc_mass mass;
-    /* One index for each name, also of equal shapes: d->shapes goes with the store. */
-    const uint32_t index = (uint32_t)d->shape_count;
-    if (narc_center_arcs(arcs, count, centred, NULL, &error) != NARC_OK)
+    dem_shape shape = {.first_outline = (uint32_t)d->outline_count, .outline_count = (uint32_t)part_count};
+    if (narc_compute_union_mass(arcs, counts, part_count, NULL, &mass, &error) != NARC_OK)
         return dem_fail_narc(d, name, &error);
-    narc_compute_mass(centred, count, &mass);
     if (!(mass.area > 0))
         return dem_fail(d, "%s: the shape encloses no area", name);
-    if (narc_add_shape_at(d->store, index, centred, count, &error) != NARC_OK)
-        return dem_fail_narc(d, name, &error);
-    *out_shape = index;
+    if (part_count == 1) /* simpler sums, of fewer roundings */
+        narc_compute_mass(arcs, counts[0], &mass);
+    for (size_t part = 0; part < part_count; arcs += counts[part++])
+        if (!add_outline(d, name, arcs, counts[part], (narc_point){mass.centroid_x, mass.centroid_y}, &shape.reach))
+            return false;
     if (!dem_reserve(d, &d->shapes, &d->shape_capacity, d->shape_count + 1, sizeof *d->shapes))
         return false;
-    dem_shape *shape = &d->shapes[d->shape_count++];
-    *shape = (dem_shape){.area = mass.area,
-                         .second_moment = mass.second_moment,
-                         .reach = find_reach(centred, count),
-                         .extent = 2 * sqrt(mass.area / 3.14159265358979323846),
-                         .side_count = count};
-    if (!dem_resize(d, &shape->sides, count, sizeof *shape->sides))
-        return false;
-    make_touch_sides(centred, count, shape->sides);
-    snprintf(shape->name, sizeof shape->name, "%s", name);
+    shape.area = mass.area;
+    shape.second_moment = mass.second_moment;
+    shape.extent = 2 * sqrt(mass.area / 3.14159265358979323846);
+    snprintf(shape.name, sizeof shape.name, "%s", name);
+    *out_shape = (uint32_t)d->shape_count;
+    d->shapes[d->shape_count++] = shape;
     return true;
+}
+
+bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count, uint32_t *out_shape) {
+    return dem_add_compound(d, name, arcs, &count, 1, out_shape);
 }
 
 bool dem_add_material(dem *d, dem_material material, uint8_t *out_material) {
@@ -190,6 +214,24 @@ bool dem_add_material(dem *d, dem_material material, uint8_t *out_material) {
 }
 
 /* ------------------------------------------------------------------------------------------------ bodies */
+
+static bool add_parts(dem *d, uint32_t body) {
+    dem_parts *p = &d->parts;
+    const dem_shape *shape = &d->shapes[d->bodies.shape[body]];
+    const size_t needed = p->count + shape->outline_count;
+    if (needed > p->capacity) {
+        const size_t capacity = 2 * needed + 64;
+        if (!dem_resize(d, &p->body, capacity, sizeof *p->body) ||
+            !dem_resize(d, &p->outline, capacity, sizeof *p->outline))
+            return false;
+        p->capacity = capacity;
+    }
+    for (uint32_t i = 0; i < shape->outline_count; i++) {
+        p->body[p->count] = body;
+        p->outline[p->count++] = shape->first_outline + i;
+    }
+    return true;
+}
 
 /* A body of scale 1 and mass 0, without speed. */
 static bool add_body(dem *d, uint32_t shape, uint8_t material, double x, double y, double angle, float scale) {
@@ -215,10 +257,13 @@ static bool add_body(dem *d, uint32_t shape, uint8_t material, double x, double 
     b->material[k] = material;
     b->reach[k] = (double)scale * d->shapes[shape].reach;
     b->extent[k] = (double)scale * d->shapes[shape].extent;
-    const touch_side *side = d->shapes[shape].sides;
-    const bool is_disc = d->shapes[shape].side_count == 1 && side->x == 0 && side->y == 0;
+    b->first_part[k] = (uint32_t)d->parts.count;
+    const dem_outline *outline = &d->outlines[d->shapes[shape].first_outline];
+    const touch_side *side = outline->sides;
+    const bool is_disc =
+        d->shapes[shape].outline_count == 1 && outline->side_count == 1 && side->x == 0 && side->y == 0;
     b->disc[k] = is_disc ? (double)scale * side->radius : 0;
-    return true;
+    return add_parts(d, (uint32_t)k);
 }
 
 bool dem_add_grain(dem *d, dem_grain grain) {
@@ -357,29 +402,34 @@ bool dem_start(dem *d) {
             "time step %g is more than a fifth of what the shortest contact lasts, %g. Take a 15th, or less "
             "stiff contacts",
             s->time_step, shortest);
+    if (s->sheared && (!s->periodic_x || !s->periodic_y || d->wall_count > 0 || s->gravity.x != 0 || s->gravity.y != 0))
+        return dem_fail(d, "a sheared cell is periodic in x and y, and has neither walls nor gravity");
     if ((s->periodic_x && !check_cell(d, "x", s->low_x, &s->high_x)) ||
         (s->periodic_y && !check_cell(d, "y", s->low_y, &s->high_y)) || !add_walls(d))
         return false;
     d->started = true;
+    const double rate = s->shear;
+    s->shear = 0;
+    dem_set_shear(d, rate);
+    d->shear_work = 0; /* grains begin so */
     d->diagonal = find_diagonal(d);
     return dem_renew_lists(d) && dem_find_first_forces(d);
 }
 
 /* ------------------------------------------------------------------------------------------------ poses */
 
-narc_body dem_make_pose(const dem_bodies *b, size_t k) {
-    return (narc_body){b->x[k], b->y[k], (float)b->cosine[k], (float)b->sine[k], b->scale[k], b->shape[k]};
-}
-
 bool dem_make_poses(dem *d, narc_bodies *out) {
     const dem_bodies *b = &d->bodies;
-    const size_t count = b->count;
+    const dem_parts *p = &d->parts;
+    const size_t count = p->count;
     if (!dem_reserve(d, &d->scratch->poses, &d->scratch->pose_capacity, count, sizeof *d->scratch->poses))
         return false;
     narc_body *const pose = d->scratch->poses;
 #pragma omp parallel for schedule(static) num_threads(dem_team(d)) if (dem_team(d) > 1)
-    for (size_t k = 0; k < count; k++)
-        pose[k] = dem_make_pose(b, k);
+    for (size_t i = 0; i < count; i++) {
+        const size_t k = p->body[i];
+        pose[i] = (narc_body){b->x[k], b->y[k], (float)b->cosine[k], (float)b->sine[k], b->scale[k], p->outline[i]};
+    }
     *out = narc_view_bodies(pose, count);
     return true;
 }
@@ -389,14 +439,16 @@ bool dem_find_broken_body(dem *d) {
     narc_error error = {.message = "its place is out of range"};
     if (!dem_make_poses(d, &bodies))
         return false;
-    if (narc_validate_bodies(d->store, &bodies, &error) == NARC_OK)
-        while (error.index + 1 < d->bodies.count &&
-               fabs(d->bodies.x[error.index]) + fabs(d->bodies.y[error.index]) < NARC_MAX_DISTANCE)
-            error.index++;
-    const bool is_grain = error.index < d->grain_count;
+    size_t k = 0;
+    if (narc_validate_bodies(d->store, &bodies, &error) != NARC_OK)
+        k = d->parts.body[error.index];
+    else
+        while (k + 1 < d->bodies.count && fabs(d->bodies.x[k]) + fabs(d->bodies.y[k]) < NARC_MAX_DISTANCE)
+            k++;
+    const bool is_grain = k < d->grain_count;
     return dem_fail(d, "step %llu: %s %zu is lost (%s): forces became too large. Use a shorter time step",
-                    (unsigned long long)d->step, is_grain ? "grain" : "wall",
-                    is_grain ? error.index : error.index - d->grain_count, error.message);
+                    (unsigned long long)d->step, is_grain ? "grain" : "wall", is_grain ? k : k - d->grain_count,
+                    error.message);
 }
 
 /* Threads wait for each other several times a step: unless they are asked for there is one. */

@@ -17,6 +17,7 @@ bool dem_make_room_for_boxes(dem *d, size_t count) {
         return true;
     if (!dem_resize(d, &s->boxes, capacity, sizeof *s->boxes) ||
         !dem_resize(d, &s->still, capacity, sizeof *s->still) ||
+        !dem_resize(d, &s->group, capacity, sizeof *s->group) ||
         !dem_resize(d, &s->image_of, capacity, sizeof *s->image_of) ||
         !dem_resize(d, &s->image_x, capacity, sizeof *s->image_x) ||
         !dem_resize(d, &s->image_y, capacity, sizeof *s->image_y))
@@ -32,28 +33,33 @@ static bool find_boxes(dem *d) {
     const narc_box_options options = {
         .margin = (float)(0.5 * d->settings.skin), .workers = &workers, .out_skipped = &skipped};
     narc_error error;
-    if (!dem_make_room_for_boxes(d, d->bodies.count) || !dem_make_poses(d, &bodies))
+    if (!dem_make_room_for_boxes(d, d->parts.count) || !dem_make_poses(d, &bodies))
         return false;
-    memcpy(d->scratch->still, d->bodies.still, d->bodies.count * sizeof *d->bodies.still);
+    for (size_t i = 0; i < d->parts.count; i++) {
+        d->scratch->still[i] = d->bodies.still[d->parts.body[i]];
+        d->scratch->group[i] = d->parts.body[i] + 1;
+    }
     if (narc_compute_boxes(d->store, &bodies, &options, d->scratch->boxes, &error) != NARC_OK)
         return dem_fail_narc(d, "boxes", &error);
     if (skipped > 0)
         return dem_find_broken_body(d);
     for (size_t w = 0; w < d->wall_count; w++) /* plates have pairs of their own */
         if (d->walls[w].kind == DEM_PLATE)
-            d->scratch->boxes[d->grain_count + w] = (narc_box){1, 1, -1, -1};
+            d->scratch->boxes[d->bodies.first_part[d->grain_count + w]] = (narc_box){1, 1, -1, -1};
     return dem_add_images(d);
 }
 
 static bool find_pairs(dem *d) {
     dem_scratch *s = d->scratch;
-    const narc_pair_filter filter = {.kind = NARC_ARRAY(s->still)};
+    narc_pair_filter filter = {.kind = NARC_ARRAY(s->still)};
     const narc_workers workers = dem_workers(d);
     const narc_pair_options options = {.filter = &filter, .workers = &workers};
     const narc_pair_list *list;
     narc_error error;
+    if (d->parts.count > d->bodies.count)
+        filter.group = NARC_ARRAY(s->group);
     narc_forget_pairs(d->broad); /* pairs are matched when those of images have become those of bodies */
-    if (narc_update_box_pairs(d->broad, s->boxes, d->bodies.count + s->image_count, &options, &list, &error) != NARC_OK)
+    if (narc_update_box_pairs(d->broad, s->boxes, d->parts.count + s->image_count, &options, &list, &error) != NARC_OK)
         return dem_fail_narc(d, "pairs", &error);
     s->found_a = list->pairs.a.base;
     s->found_b = list->pairs.b.base;
@@ -81,7 +87,7 @@ static bool merge_pairs(dem *d) {
         qsort(s->extra, s->extra_count, sizeof *s->extra, compare_extra);
     size_t i = 0, j = 0;
     for (p->count = 0;; p->count++) {
-        while (i < s->found_count && s->found_b[i] >= d->bodies.count) /* of an image, among the extra ones too */
+        while (i < s->found_count && s->found_b[i] >= d->parts.count) /* of an image, among the extra ones too */
             i++;
         if (i == s->found_count && j == s->extra_count)
             return true;
@@ -126,17 +132,17 @@ bool dem_index_pairs(dem *d) {
         !dem_resize(d, &d->scratch->slot, p->capacity + 1, sizeof *d->scratch->slot))
         return false;
     for (size_t k = 0, next = 0; k <= bodies; k++) {
-        while (next < p->count && p->a[next] < k)
+        while (next < p->count && dem_body_a(d, next) < k)
             next++;
         n->first_a[k] = (uint32_t)next;
     }
     memset(n->first_b, 0, (bodies + 2) * sizeof *n->first_b);
     for (size_t k = 0; k < p->count; k++)
-        n->first_b[p->b[k] + 2]++;
+        n->first_b[dem_body_b(d, k) + 2]++;
     for (size_t k = 2; k < bodies + 2; k++)
         n->first_b[k] += n->first_b[k - 1];
     for (size_t k = 0; k < p->count; k++) /* moves each beginning to the next body's */
-        n->of_b[n->first_b[p->b[k] + 1]++] = (uint32_t)k;
+        n->of_b[n->first_b[dem_body_b(d, k) + 1]++] = (uint32_t)k;
     memset(d->scratch->slot, 0, p->count * sizeof *d->scratch->slot);
     dem_find_dashpots(d);
     return true;

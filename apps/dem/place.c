@@ -123,16 +123,23 @@ static narc_body make_body(uint32_t shape, double x, double y, double angle, dou
     return body;
 }
 
-/* Is the grain further than the gap from a body? */
+/* Is the grain further than the gap from a body? Their shapes are those of the world: all outlines of both. */
 static bool is_clear_of(const dem *d, narc_body grain, narc_body other, double gap) {
-    const narc_body two[2] = {grain, other};
-    const narc_bodies bodies = narc_view_bodies(two, 2);
-    const narc_pairs pair = {.count = 1};
-    const narc_query query = {.margin = INFINITY};
-    narc_contact contact;
-    size_t found;
-    return narc_find_contacts(d->store, &bodies, &pair, &query, &contact, 1, &found, NULL) == NARC_OK &&
-           contact.count > 0 && (double)contact.separation > gap;
+    const dem_shape *own = &d->shapes[grain.shape], *its = &d->shapes[other.shape];
+    for (uint32_t i = 0; i < own->outline_count * its->outline_count; i++) {
+        narc_body two[2] = {grain, other};
+        two[0].shape = own->first_outline + i / its->outline_count;
+        two[1].shape = its->first_outline + i % its->outline_count;
+        const narc_bodies bodies = narc_view_bodies(two, 2);
+        const narc_pairs pair = {.count = 1};
+        const narc_query query = {.margin = INFINITY};
+        narc_contact contact;
+        size_t found;
+        if (narc_find_contacts(d->store, &bodies, &pair, &query, &contact, 1, &found, NULL) != NARC_OK ||
+            contact.count == 0 || !((double)contact.separation > gap))
+            return false;
+    }
+    return true;
 }
 
 static bool is_clear_of_cell(const dem *d, const grid *g, const dem_filling *f, narc_body grain) {
@@ -146,7 +153,10 @@ static bool is_clear_of_cell(const dem *d, const grid *g, const dem_filling *f, 
             for (uint32_t k = g->first[i * g->columns + j]; k != NOBODY; k = g->next[k]) {
                 const double far = reach + b->reach[k] + f->gap;
                 if ((b->x[k] - x) * (b->x[k] - x) + (b->y[k] - y) * (b->y[k] - y) <= far * far &&
-                    !is_clear_of(d, grain, dem_make_pose(b, k), f->gap))
+                    !is_clear_of(
+                        d, grain,
+                        (narc_body){b->x[k], b->y[k], (float)b->cosine[k], (float)b->sine[k], b->scale[k], b->shape[k]},
+                        f->gap))
                     return false;
             }
     return true;
@@ -164,11 +174,25 @@ static bool is_clear_of_boxes(const dem *d, const dem_filling *f, narc_body grai
     return true;
 }
 
-/* Also of images, and of walls. A plate is asked by the grain's support. */
+/* By the supports of its outlines. */
+static bool is_clear_of_plate(const dem *d, const dem_grain *grain, const dem_wall *wall, double gap) {
+    const dem_shape *shape = &d->shapes[grain->shape];
+    const double c = cos(grain->angle), s = sin(grain->angle), x = -wall->normal.x, y = -wall->normal.y;
+    for (uint32_t i = 0; i < shape->outline_count; i++) {
+        narc_arc arcs[NARC_MAX_ARCS];
+        const size_t count = narc_get_arcs(d->store, shape->first_outline + i, arcs);
+        narc_point lowest;
+        narc_find_support(arcs, count, c * x + s * y, c * y - s * x, &lowest, NULL);
+        const double depth = grain->scale * (lowest.x * (c * x + s * y) + lowest.y * (c * y - s * x));
+        if ((grain->x - wall->place.x) * -x + (grain->y - wall->place.y) * -y - depth <= gap)
+            return false;
+    }
+    return true;
+}
+
+/* Also of images, and of walls. */
 static bool is_free(const dem *d, const grid *g, const dem_filling *f, const dem_grain *grain) {
     const dem_settings *s = &d->settings;
-    narc_arc arcs[NARC_MAX_ARCS];
-    const size_t count = narc_get_arcs(d->store, grain->shape, arcs);
     narc_body body = make_body(grain->shape, 0, 0, grain->angle, grain->scale);
     for (int i = s->periodic_x ? -1 : 0; i <= (s->periodic_x ? 1 : 0); i++)
         for (int j = s->periodic_y ? -1 : 0; j <= (s->periodic_y ? 1 : 0); j++) {
@@ -177,17 +201,9 @@ static bool is_free(const dem *d, const grid *g, const dem_filling *f, const dem
             if (!is_clear_of_cell(d, g, f, body) || !is_clear_of_boxes(d, f, body))
                 return false;
         }
-    for (size_t w = 0; w < d->wall_count; w++) {
-        const dem_wall *wall = &d->walls[w];
-        if (wall->kind != DEM_PLATE)
-            continue;
-        const double c = cos(grain->angle), e = sin(grain->angle), x = -wall->normal.x, y = -wall->normal.y;
-        narc_point lowest;
-        narc_find_support(arcs, count, c * x + e * y, c * y - e * x, &lowest, NULL);
-        const double depth = grain->scale * (lowest.x * (c * x + e * y) + lowest.y * (c * y - e * x));
-        if ((grain->x - wall->place.x) * -x + (grain->y - wall->place.y) * -y - depth <= f->gap)
+    for (size_t w = 0; w < d->wall_count; w++)
+        if (d->walls[w].kind == DEM_PLATE && !is_clear_of_plate(d, grain, &d->walls[w], f->gap))
             return false;
-    }
     return true;
 }
 

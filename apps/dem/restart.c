@@ -21,7 +21,7 @@ typedef struct header {
 } header;
 
 static const char MAGIC[8] = {'n', 'a', 'r', 'c', '-', 'd', 'e', 'm'};
-enum { VERSION = 4, BYTE_ORDER_MARK = 0x01020304 };
+enum { VERSION = 5, BYTE_ORDER_MARK = 0x01020304 };
 
 typedef struct counts {
     uint64_t bodies, walls, pairs, contacts, extra;
@@ -55,8 +55,9 @@ static void pass(stream *s, void *data, size_t size) {
 static void pass_sums(stream *s, dem *d, dem_place *place) {
     pass(s, &d->step, sizeof d->step);
     pass(s, &d->list_builds, sizeof d->list_builds);
-    double *const sums[] = {&d->time,          &d->damping,           &d->friction,
-                            &d->normal_energy, &d->tangential_energy, &d->rolling_energy};
+    double *const sums[] = {&d->time,           &d->damping, &d->friction,    &d->normal_energy, &d->tangential_energy,
+                            &d->rolling_energy, &d->offset,  &d->list_offset, &d->pull,          &d->shear_work,
+                            &d->settings.shear};
     for (size_t i = 0; i < sizeof sums / sizeof sums[0]; i++)
         pass(s, sums[i], sizeof *sums[i]);
     pass(s, &d->settings.gravity, sizeof d->settings.gravity);
@@ -70,7 +71,7 @@ static void pass_walls(stream *s, dem *d) {
         dem_wall *w = &d->walls[i];
         dem_servo *servo = &w->servo;
         int32_t on[2] = {servo->on, 0};
-        double *const numbers[] = {&w->spin,       &w->work,     &w->resistance,    &w->idle_way,  &servo->force,
+        double *const numbers[] = {&w->spin,       &w->work,     &w->idle_way,      &servo->force,
                                    &servo->stress, &servo->gain, &servo->max_speed, &servo->travel};
         pass(s, &w->velocity, sizeof w->velocity);
         pass(s, &w->pivot, sizeof w->pivot);
@@ -155,13 +156,14 @@ static bool check_header(dem *d, const char *path, const char *bytes, size_t siz
 /* The checksum has passed: what is checked here only fails for a file that was made to fail. */
 static bool check_indices(const dem *d) {
     for (size_t k = 0; k < d->pairs.count; k++)
-        if (d->pairs.a[k] >= d->pairs.b[k] || d->pairs.b[k] >= d->bodies.count || d->pairs.a[k] >= d->grain_count)
+        if (d->pairs.a[k] >= d->pairs.b[k] || d->pairs.b[k] >= d->parts.count || dem_body_a(d, k) >= d->grain_count)
             return false;
     for (size_t k = 0; k < d->contacts.count; k++)
         if (d->contacts.rows[k].pair >= d->pairs.count)
             return false;
     for (size_t k = 0; k < d->bodies.count; k++)
-        if (d->bodies.shape[k] >= d->shape_count || d->bodies.material[k] >= d->material_count)
+        if (d->bodies.shape[k] >= d->shape_count || d->parts.body[d->bodies.first_part[k]] != k ||
+            d->bodies.material[k] >= d->material_count)
             return false;
     for (size_t w = 0; w < d->wall_count; w++)
         for (size_t i = 0; i < 2; i++) {

@@ -53,14 +53,14 @@ static void kick_and_drift(dem *d) {
     }
 }
 
-/* Has a point of any body moved half of the skin since the pairs were found? A turn moves it by at most the body's
- * reach times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below
+/* Has a point of any body moved half of the skin since the pairs were found, or of what shear has left of it? A turn
+ * moves it by at most the body's reach times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below
  * the limit so has not moved, and only if all is not, roots are drawn. A NaN has moved. */
 static bool have_moved(const dem *d, bool exactly) {
     const dem_bodies b = d->bodies;
-    const double limit = 0.5 * d->settings.skin;
+    const double limit = 0.5 * (d->settings.skin - fabs(d->offset - d->list_offset));
     const size_t count = b.count;
-    int moved = 0;
+    int moved = !(limit > 0);
 #pragma omp parallel for schedule(static) num_threads(dem_team(d)) if (dem_team(d) > 1) reduction(| : moved)
     for (size_t k = 0; k < count; k++) {
         const double x = b.x[k] - b.list_x[k], y = b.y[k] - b.list_y[k];
@@ -95,7 +95,9 @@ static bool find_contacts(dem *d) {
     }
     const narc_workers workers = dem_workers(d);
     size_t skipped = 0;
-    const narc_query query = {.margin = (float)(4 * NARC_ERROR_BOUND * d->grain_reach), /* touch.h decides */
+    /* touch.h decides; shifts of a sheared cell are rounded. */
+    const double rounding = d->settings.sheared ? 2e-7 * dem_cell_width(d) : 0;
+    const narc_query query = {.margin = (float)(4 * NARC_ERROR_BOUND * d->grain_reach + rounding),
                               .hints = NARC_HINT_ARRAY(p->hints),
                               .workers = &workers,
                               .out_skipped = &skipped};
@@ -120,7 +122,6 @@ bool dem_find_first_forces(dem *d) {
     if (!found)
         return false;
     dem_gather_forces(d);
-    dem_find_resistances(d);
     return true;
 }
 
@@ -137,16 +138,18 @@ bool dem_step(dem *d) {
         return false;
     kick_and_drift(d);
     dem_move_walls(d);
+    dem_shear_cell(d);
     if (have_moved(d, false) && have_moved(d, true) && !dem_renew_lists(d))
         return false;
     if (!find_contacts(d))
         return false;
     dem_count_wall_work(d);
+    dem_count_shear_work(d);
     if (!dem_apply_laws(d))
         return false;
     dem_gather_forces(d);
     dem_count_wall_work(d);
-    dem_find_resistances(d);
+    dem_count_shear_work(d);
     kick(d);
     return true;
 }

@@ -8,8 +8,11 @@
 #include <string.h>
 
 #include "frames.h"
+#include "internal.h"
 
-/* A polygon is nowhere further from the outline than this share of the shape's extent; its corners are on it. */
+/* A polygon is nowhere further from its outline than this share of the diameter of the disc of equal area;
+ * its corners are on it. */
+static const double PI = 3.14159265358979323846;
 static const double OUTLINE_TOLERANCE = 1.0 / 400;
 
 enum { MOST_CORNERS = 4096 };
@@ -83,30 +86,34 @@ static void free_outlines(outline *outlines, size_t count) {
 
 /* Of each shape. NULL: there is not enough memory. */
 static outline *sample_shapes(const dem *d) {
-    outline *outlines = calloc(d->shape_count, sizeof *outlines);
-    for (size_t k = 0; outlines && k < d->shape_count; k++) {
+    outline *outlines = calloc(d->outline_count, sizeof *outlines);
+    for (size_t k = 0; outlines && k < d->outline_count; k++) {
         narc_arc arcs[NARC_MAX_ARCS];
         const size_t count = narc_get_arcs(d->store, (uint32_t)k, arcs);
         outlines[k].corners = malloc(MOST_CORNERS * sizeof *outlines[k].corners);
         if (!outlines[k].corners) {
-            free_outlines(outlines, d->shape_count);
+            free_outlines(outlines, d->outline_count);
             return NULL;
         }
-        outlines[k].count = sample_arcs(arcs, count, OUTLINE_TOLERANCE * d->shapes[k].extent, outlines[k].corners);
+        narc_mass mass;
+        narc_compute_mass(arcs, count, &mass);
+        outlines[k].count = sample_arcs(arcs, count, OUTLINE_TOLERANCE * 2 * sqrt(mass.area / PI), outlines[k].corners);
     }
     return outlines;
 }
 
 /* ------------------------------------------------------------------------------------------------ bodies */
 
-static size_t count_corners(const dem *d, const outline *outlines, size_t k) {
+static size_t count_corners(const dem *d, const outline *outlines, size_t part) {
+    const size_t k = d->parts.body[part];
     const bool is_plate = k >= d->grain_count && d->walls[k - d->grain_count].kind == DEM_PLATE;
-    return is_plate ? 4 : outlines[d->bodies.shape[k]].count;
+    return is_plate ? 4 : outlines[d->parts.outline[part]].count;
 }
 
-static void put_outline(FILE *file, const dem *d, const outline *outlines, const dem_region *all, size_t k) {
+static void put_outline(FILE *file, const dem *d, const outline *outlines, const dem_region *all, size_t part) {
     const dem_bodies *b = &d->bodies;
-    const outline *form = &outlines[b->shape[k]];
+    const outline *form = &outlines[d->parts.outline[part]];
+    const size_t k = d->parts.body[part];
     const double c = (double)b->scale[k] * b->cosine[k], s = (double)b->scale[k] * b->sine[k];
     dem_vec corners[4];
     if (k >= d->grain_count && d->walls[k - d->grain_count].kind == DEM_PLATE) {
@@ -121,30 +128,36 @@ static void put_outline(FILE *file, const dem *d, const outline *outlines, const
     }
 }
 
+/* Of each part those of its body. */
 static void put_fields(FILE *file, const dem *d, const dem_load *loads) {
     static const char *const words[] = {"id", "wall", "shape", "material", "coordination", "bearing"};
     static const char *const numbers[] = {"speed", "spin", "size", "pressure"};
+    static const char *const vectors[] = {"velocity", "centre"};
     const dem_bodies *b = &d->bodies;
-    fprintf(file, "\nCELL_DATA %zu\nFIELD FieldData 12", b->count);
+    const size_t count = d->parts.count;
+    const uint32_t *body = d->parts.body, *end = body + count;
+    fprintf(file, "\nCELL_DATA %zu\nFIELD FieldData 13", count);
     for (size_t i = 0; i < 6; i++) {
-        fprintf(file, "\n%s 1 %zu int\n", words[i], b->count);
-        for (size_t k = 0; k < b->count; k++)
-            put_word(file, (const uint32_t[]){(uint32_t)k, k >= d->grain_count, b->shape[k], b->material[k],
-                                              loads[k].contacts, loads[k].bearing}[i]);
+        fprintf(file, "\n%s 1 %zu int\n", words[i], count);
+        for (const uint32_t *k = body; k < end; k++)
+            put_word(file, (const uint32_t[]){*k, *k >= d->grain_count, b->shape[*k], b->material[*k],
+                                              loads[*k].contacts, loads[*k].bearing}[i]);
     }
     for (size_t i = 0; i < 4; i++) {
-        fprintf(file, "\n%s 1 %zu float\n", numbers[i], b->count);
-        for (size_t k = 0; k < b->count; k++)
-            put_number(file, (const double[]){hypot(b->vx[k], b->vy[k]), b->spin[k], b->extent[k],
-                                              0.5 * (loads[k].stress_xx + loads[k].stress_yy)}[i]);
+        fprintf(file, "\n%s 1 %zu float\n", numbers[i], count);
+        for (const uint32_t *k = body; k < end; k++)
+            put_number(file, (const double[]){hypot(b->vx[*k], b->vy[*k]), b->spin[*k], b->extent[*k],
+                                              0.5 * (loads[*k].stress_xx + loads[*k].stress_yy)}[i]);
     }
-    fprintf(file, "\nvelocity 3 %zu float\n", b->count);
-    for (size_t k = 0; k < b->count; k++)
-        put_place(file, b->vx[k], b->vy[k]);
-    fprintf(file, "\nstress 9 %zu float\n", b->count);
-    for (size_t k = 0; k < b->count; k++) {
-        put_place(file, loads[k].stress_xx, loads[k].stress_xy);
-        put_place(file, loads[k].stress_yx, loads[k].stress_yy);
+    for (size_t i = 0; i < 2; i++) {
+        fprintf(file, "\n%s 3 %zu float\n", vectors[i], count);
+        for (const uint32_t *k = body; k < end; k++)
+            put_place(file, (i ? b->x : b->vx)[*k], (i ? b->y : b->vy)[*k]);
+    }
+    fprintf(file, "\nstress 9 %zu float\n", count);
+    for (const uint32_t *k = body; k < end; k++) {
+        put_place(file, loads[*k].stress_xx, loads[*k].stress_xy);
+        put_place(file, loads[*k].stress_yx, loads[*k].stress_yy);
         put_place(file, 0, 0);
     }
 }
@@ -156,14 +169,14 @@ static bool write_bodies(FILE *file, const dem *d, char *error) {
     size_t points = 0, first = 0;
     if (!outlines)
         snprintf(error, 512, "not enough memory for a VTK file");
-    for (size_t k = 0; loads && k < d->bodies.count; k++)
+    for (size_t k = 0; loads && k < d->parts.count; k++)
         points += count_corners(d, outlines, k);
     if (loads) {
         put_head(file, d, points);
-        for (size_t k = 0; k < d->bodies.count; k++)
+        for (size_t k = 0; k < d->parts.count; k++)
             put_outline(file, d, outlines, &all, k);
-        fprintf(file, "\nPOLYGONS %zu %zu\n", d->bodies.count, d->bodies.count + points);
-        for (size_t k = 0; k < d->bodies.count; k++) {
+        fprintf(file, "\nPOLYGONS %zu %zu\n", d->parts.count, d->parts.count + points);
+        for (size_t k = 0; k < d->parts.count; k++) {
             const size_t corners = count_corners(d, outlines, k);
             put_word(file, (uint32_t)corners);
             for (size_t i = 0; i < corners; i++)
@@ -171,7 +184,7 @@ static bool write_bodies(FILE *file, const dem *d, char *error) {
         }
         put_fields(file, d, loads);
     }
-    free_outlines(outlines, d->shape_count);
+    free_outlines(outlines, d->outline_count);
     free(loads);
     return loads != NULL;
 }
@@ -182,7 +195,7 @@ static bool write_bodies(FILE *file, const dem *d, char *error) {
 static double find_mobilised_friction(const dem *d, size_t k) {
     const size_t p = d->contacts.rows[k].pair;
     const uint8_t *material = d->bodies.material;
-    const double bound = d->laws[material[d->pairs.a[p]]][material[d->pairs.b[p]]].friction;
+    const double bound = d->laws[material[dem_body_a(d, p)]][material[dem_body_b(d, p)]].friction;
     const double most = bound * fabs(dem_normal_force(d, k));
     return most > 0 ? fmin(fabs(dem_tangential_force(d, k)) / most, 1) : 0;
 }
@@ -195,7 +208,7 @@ static bool write_contacts(FILE *file, const dem *d, char *error) {
     (void)error;
     put_head(file, d, count);
     for (size_t k = 0; k < count; k++) {
-        const size_t a = d->pairs.a[row[k].pair];
+        const size_t a = dem_body_a(d, row[k].pair);
         put_place(file, d->bodies.x[a] + row[k].point.x, d->bodies.y[a] + row[k].point.y);
     }
     fprintf(file, "\nVERTICES %zu %zu\n", count, 2 * count);
@@ -207,7 +220,7 @@ static bool write_contacts(FILE *file, const dem *d, char *error) {
     for (size_t i = 0; i < 2; i++) {
         fprintf(file, "\n%s 1 %zu int\n", words[i], count);
         for (size_t k = 0; k < count; k++)
-            put_word(file, i == 0 ? d->pairs.a[row[k].pair] : d->pairs.b[row[k].pair]);
+            put_word(file, (uint32_t)(i == 0 ? dem_body_a(d, row[k].pair) : dem_body_b(d, row[k].pair)));
     }
     for (size_t i = 0; i < 2; i++) {
         fprintf(file, "\n%s 3 %zu float\n", vectors[i], count);

@@ -36,44 +36,10 @@ static double find_distance(const dem *d, int first, int second) {
     return fabs(between.x * a->normal.x + between.y * a->normal.y);
 }
 
-/* How much more a contact presses a wall that moves with speed 1 for a step: by its spring and its dashpot. Of the
- * Hertz law with half the extent for a radius. */
-static double find_resistance(const dem *d, size_t contact) {
-    const size_t p = d->contacts.rows[contact].pair, a = d->pairs.a[p], b = d->pairs.b[p];
-    const dem_contact_law *law = &d->laws[d->bodies.material[a]][d->bodies.material[b]];
-    const double depth = d->contacts.rows[contact].depth;
-    const bool hertz = d->settings.law == DEM_HERTZ;
-    const double size = hertz ? sqrt(0.5 * d->bodies.extent[a] * depth) : 1,
-                 damped = law->damping_ratio >= 0 ? sqrt(size) : size;
-    return law->kn * (hertz ? 1.5 : 1) * size * d->settings.time_step + d->pairs.dashpot[p].normal * damped;
-}
-
-void dem_find_resistances(dem *d) {
-    bool any = false;
-    for (size_t w = 0; w < d->wall_count; w++) {
-        any |= d->walls[w].servo.on;
-        d->walls[w].resistance = 0;
-    }
-    for (size_t k = 0; any && k < d->contacts.count; k++) {
-        const size_t b = d->pairs.b[d->contacts.rows[k].pair];
-        if (b >= d->grain_count)
-            d->walls[b - d->grain_count].resistance += find_resistance(d, k);
-    }
-}
-
-/* The speed that removes the share `gain` of what is missing within a step, as far as springs and dashpots at the wall
- * decide. A wall that touches nothing comes at its largest speed, and not at all if it misses nothing. */
-static double find_servo_speed(const dem_wall *wall, double missing) {
-    const dem_servo *servo = &wall->servo;
-    if (servo->gain * fabs(missing) < wall->resistance * servo->max_speed)
-        return servo->gain * missing / wall->resistance;
-    return missing > 0 ? servo->max_speed : missing < 0 ? -servo->max_speed : 0;
-}
-
 /* A wall with nothing to press would go on without end. */
-static bool count_idle_way(dem *d, dem_wall *wall, double speed) {
+static bool count_idle_way(dem *d, dem_wall *wall, double speed, bool touches) {
     const double travel = wall->servo.travel > 0 ? wall->servo.travel : d->diagonal;
-    wall->idle_way = wall->resistance > 0 ? 0 : wall->idle_way + fabs(speed) * d->settings.time_step;
+    wall->idle_way = touches ? 0 : wall->idle_way + fabs(speed) * d->settings.time_step;
     if (wall->idle_way <= travel)
         return true;
     return dem_fail(d,
@@ -93,9 +59,9 @@ bool dem_steer_walls(dem *d) {
                                                            find_distance(d, servo->between[0], servo->between[1])
                                                      : servo->force;
         const double missing = target + force.x * servo->direction.x + force.y * servo->direction.y;
-        const double speed = find_servo_speed(wall, missing);
+        const double speed = fmin(fmax(servo->gain * missing, -servo->max_speed), servo->max_speed);
         wall->velocity = (dem_vec){speed * servo->direction.x, speed * servo->direction.y};
-        if (!count_idle_way(d, wall, speed))
+        if (!count_idle_way(d, wall, speed, force.x != 0 || force.y != 0))
             return false;
     }
     return true;
@@ -164,7 +130,8 @@ static bool add_pairs_of_plate(dem *d, uint32_t body, const dem_wall *plate) {
     dem_scratch *s = d->scratch;
     const dem_bodies *b = &d->bodies;
     const double half = dem_half_block(d, plate);
-    for (size_t k = 0; k < d->grain_count; k++) {
+    for (uint32_t part = 0; part < b->first_part[d->grain_count]; part++) { /* those of grains */
+        const size_t k = d->parts.body[part];
         const double x = b->x[k] - b->x[body], y = b->y[k] - b->y[body];
         const double height = x * plate->normal.x + y * plate->normal.y - half;
         if (height - b->reach[k] > d->settings.skin * 1.001)
@@ -173,7 +140,7 @@ static bool add_pairs_of_plate(dem *d, uint32_t body, const dem_wall *plate) {
             return false;
         const double along = plate->normal.x * y - plate->normal.y * x; /* the tangent is (-ny, nx) */
         s->extra[s->extra_count++] =
-            (dem_extra){(uint32_t)k, body, (float)(-plate->normal.y * along), (float)(plate->normal.x * along)};
+            (dem_extra){part, b->first_part[body], (float)(-plate->normal.y * along), (float)(plate->normal.x * along)};
     }
     return true;
 }

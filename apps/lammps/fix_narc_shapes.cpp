@@ -117,6 +117,11 @@ void FixNarcShapes::read_forms(const char *path, int count, char **names) {
         for (int i = 0; i < count; i++) {
             const auto found =
                 std::find_if(all.begin(), all.end(), [&](const Form &form) { return form.name == names[i]; });
+            const std::string part = std::string(names[i]) + "/1";
+            if (found == all.end() &&
+                std::any_of(all.begin(), all.end(), [&](const Form &form) { return form.name == part; }))
+                throw std::runtime_error(std::string(path) + ": '" + names[i] + "' has parts, " + part +
+                                         " and so on: a grain here is one shape");
             if (found == all.end())
                 throw std::runtime_error(std::string(path) + ": it has no shape '" + names[i] + "'");
             narc_error failure;

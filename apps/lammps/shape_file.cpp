@@ -58,6 +58,8 @@ std::vector<Form> parse_forms(const std::string &path, const std::string &text) 
     for (size_t k = 0; k < list->count; k++) {
         const narc_named_shape &shape = list->items[k];
         try {
+            if (shape.form != NARC_FORM_SHAPE)
+                throw std::runtime_error("is a chain, which no grain can be");
             forms.push_back(make_form(shape.name, std::vector<narc_arc>(shape.arcs, shape.arcs + shape.arc_count)));
         } catch (const std::runtime_error &wrong) {
             throw std::runtime_error(path + ": shape '" + shape.name + "': " + wrong.what());

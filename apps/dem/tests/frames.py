@@ -1,77 +1,160 @@
 # SPDX-License-Identifier: MIT
-"""python3 frames.py FOLDER: reads the files for ParaView that frames.sh made, and checks what they say against each
-other, the table of grains and closed forms."""
-import csv
+"""python3 frames.py DEM: files for ParaView and tables of grains of a run that was interrupted are checked against each
+other and closed forms; so are measures and pictures of ../grains.py."""
+import json
 import math
 import os
+import subprocess
 import sys
+import tempfile
+
+import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-from draw import read_vtk  # noqa: E402
+import grains  # noqa: E402
+
+SHAPES = {"shapes": [{"name": "disc", "circle": 1}, {"name": "brick", "box": {"width": 2, "height": 1, "radius": 0.2}},
+                     {"name": "dimer/1", "circle": 0.5, "origin": [-0.4, 0]},
+                     {"name": "dimer/2", "circle": 0.5, "origin": [0.4, 0]}]}
+WORLD = {
+    "materials": [{"name": "sand", "density": 1000}],
+    "shapes": "shapes.json",
+    "grains": [{"place": "lattice", "region": [0, 1, 6.8, 7.8], "spacing": [0.68, 0.68], "jitter": 0.2,
+                "shapes": ["disc", "brick", "dimer"], "size": {"uniform": [0.3, 0.45]}, "material": "sand"}],
+    "walls": [
+        {"name": "floor", "material": "sand", "plate": {"point": [0, 0], "normal": [0, 1]}},
+        {"name": "slope", "material": "sand", "plate": {"point": [-0.2, 0], "normal": [2, 1]}},
+        {"name": "block", "material": "sand", "box": {"width": 0.5, "height": 0.5}, "at": [7.2, 0.5], "angle": 0.3}],
+    "gravity": [0, -9.81],
+    "contact": {"law": "linear", "kn": 1e7, "restitution": 0.5, "friction": 0.5},
+    "time_step": 1e-4, "skin": 0.1,
+    "stages": [{"duration": 0.6}, {"duration": 0.4}],
+    "output": {"every": 0.1, "csv": "table.csv", "grains": "out.csv", "vtk": "out", "restart": "out.restart"},
+}
+
+
+def run(dem, durations, *options, **output):
+    with open("in.json", "w", encoding="utf-8") as file:
+        stages = [{"duration": d} for d in durations]
+        json.dump(dict(WORLD, stages=stages, output=dict(WORLD["output"], **output)), file)
+    return subprocess.run([dem, "in.json", "--threads", "1", *options], capture_output=True, check=False, text=True)
 
 
 def area_of(points):
-    return sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(points, points[1:] + points[:1])) / 2
-
-
-def is_near(a, b, tolerance):
-    return abs(a - b) <= tolerance
+    after = np.roll(points, -1, 0)
+    return np.sum(points[:, 0] * after[:, 1] - after[:, 0] * points[:, 1]) / 2
 
 
 def check_bodies(path, table):
-    frame = read_vtk(path)
+    frame = grains.read_vtk(path)
     cells, outlines = frame["fields"], frame["cells"]
-    assert [i for outline in outlines for i in outline] == list(range(len(frame["points"])))
-    assert len(outlines) == len(table) + sum(w for (w,) in cells["wall"])
-    assert len(cells) == 12 and all(len(values) == len(outlines) for values in cells.values())
-    for k, grain in enumerate(table):
-        points = [frame["points"][i] for i in outlines[k]]
-        x, y, size = float(grain["x"]), float(grain["y"]), float(grain["size"])
+    count = len(table["x"])
+    body, scale = cells["id"], table["scale"]
+    assert list(np.concatenate(outlines)) == list(range(len(frame["points"])))
+    assert all(len(values) == len(outlines) for values in cells.values()) and np.all(np.diff(body) >= 0)
+    assert np.array_equal(np.unique(body), np.arange(count + 3)) and np.array_equal(cells["wall"], body >= count)
+    for i, k in enumerate(body[body < count]):
+        points = frame["points"][outlines[i]]
+        if table["shape"][k] == "dimer":  # their polygons are circles whose places are known
+            away = 0.4 * scale[k] * (-1 if i == 0 or body[i - 1] != k else 1)
+            angle = table["angle"][k]
+            centre = cells["centre"][i, :2] + away * np.array([math.cos(angle), math.sin(angle)])
+            assert np.allclose(np.hypot(*(points - centre).T), 0.5 * scale[k], atol=1e-5)
+            continue
         # Corners are on the outline, chords at most size / 400 inside: so is the area, times the perimeter.
-        area, full = area_of(points), math.pi / 4 * size * size
+        area, full = area_of(points), math.pi / 4 * table["size"][k] ** 2
         assert full * (1 - 4.4 / 400) - 1e-5 <= area <= full + 1e-5, (area, full)
-        if grain["shape"] == "disc":
-            assert all(is_near(math.hypot(p[0] - x, p[1] - y), size / 2, 1e-5) for p in points)
-        assert cells["id"][k] == (k,) and cells["coordination"][k] == (int(grain["contacts"]),)
-        assert is_near(cells["velocity"][k][0], float(grain["vx"]), 1e-6 + 1e-6 * abs(float(grain["vx"])))
-        assert is_near(cells["speed"][k][0], math.hypot(*cells["velocity"][k]), 1e-5)
-        assert is_near(cells["size"][k][0], size, 1e-6)
-        stress = cells["stress"][k]
-        assert is_near(cells["pressure"][k][0], (stress[0] + stress[4]) / 2, 1e-4 * (1 + abs(stress[0]) + abs(stress[4])))
-    return cells, len(table)
+        if table["shape"][k] == "disc":
+            assert np.allclose(np.hypot(*(points - cells["centre"][i, :2]).T), table["size"][k] / 2, atol=1e-5)
+    assert np.sum(table["shape"] == "dimer") > 10
+    stress = cells["stress"]
+    assert np.allclose(cells["pressure"], (stress[:, 0] + stress[:, 4]) / 2, rtol=1e-4,
+                       atol=1e-4 * (1 + abs(stress).max()))
+    cells = {name: values[np.unique(body, return_index=True)[1]] for name, values in cells.items()}
+    assert np.array_equal(cells["coordination"][:count], table["contacts"])
+    for name, columns in ("velocity", ("vx", "vy")), ("centre", ("x", "y")):
+        assert np.allclose(cells[name][:count, :2], np.transpose([table[c] for c in columns]), rtol=1e-6, atol=1e-6)
+    assert np.allclose(cells["speed"], np.hypot(*cells["velocity"][:, :2].T), atol=1e-5)
+    assert np.allclose(cells["size"][:count], table["size"], atol=1e-6)
+    return cells, count
 
 
-def check_contacts(path, cells, grain_count):
-    frame = read_vtk(path)
-    data, count = frame["fields"], len(frame["points"])
-    assert count == len(frame["cells"]) and all(len(values) == count for values in data.values())
-    ends = [0] * len(cells["id"])
-    for k in range(count):
-        a, b = data["body_a"][k][0], data["body_b"][k][0]
-        assert a < b and a < grain_count
-        ends[a] += 1
-        ends[b] += 1
-        n, f = data["normal"][k], data["force"][k]
-        assert is_near(math.hypot(n[0], n[1]), 1, 1e-5) and data["overlap"][k][0] > 0
-        assert is_near(f[0] * n[0] + f[1] * n[1], data["normal_force"][k][0], 1e-4 * (1 + math.hypot(f[0], f[1])))
-        assert 0 <= data["mobilised_friction"][k][0] <= 1
-    assert [(n,) for n in ends] == cells["coordination"]
-    return count
+def check_contacts(path, cells, count):
+    frame = grains.read_vtk(path)
+    data = frame["fields"]
+    a, b, n, f = (data[name] for name in ("body_a", "body_b", "normal", "force"))
+    assert len(frame["points"]) == len(frame["cells"]) and all(len(v) == len(frame["points"]) for v in data.values())
+    assert np.all(a < b) and np.all(a < count) and np.all(data["overlap"] > 0)
+    assert np.array_equal(np.bincount(np.append(a, b).astype(int), minlength=len(cells["id"])), cells["coordination"])
+    assert np.allclose(np.hypot(*n[:, :2].T), 1, atol=1e-5)
+    assert np.allclose(np.sum(f * n, 1), data["normal_force"], rtol=1e-4, atol=1e-4)
+    assert np.all((data["mobilised_friction"] >= 0) & (data["mobilised_friction"] <= 1))
+    return len(a)
 
 
-def main(folder):
-    os.chdir(folder)
-    for name in "out", "out-contacts":
+def check_measures():
+    """A fabric whose anisotropy is known, forces that are exponential, a mean whose error is known, a wedge."""
+    random = np.random.default_rng(1)
+    angle = random.uniform(0, 2 * math.pi, 400000)
+    angle = angle[random.uniform(0, 1.5, len(angle)) < 1 + 0.5 * np.cos(2 * (angle - 0.4))]
+    fabric, anisotropy, principal = grains.find_fabric(np.transpose([np.cos(angle), np.sin(angle)]))
+    assert abs(np.trace(fabric) - 1) < 1e-12 and abs(anisotropy - 0.5) < 0.02
+    assert abs(principal - math.degrees(0.4)) < 1
+    force, density = grains.find_force_distribution(random.exponential(3, 400000))
+    assert np.allclose(density, np.exp(-force), rtol=0.05)
+    mean, error = grains.average(random.normal(2, 3, 40000))
+    assert abs(mean - 2) < 0.06 and 0.005 < error < 0.03
+    circle = 0.3 * np.transpose([np.cos(angle := np.linspace(0, 2 * math.pi, 721)[:-1]), np.sin(angle)])
+    frame = {"points": np.concatenate([circle, circle + (1, 0)]), "cells": np.split(np.arange(1440), 2),
+             "fields": {"wall": np.array([0, 1])}}  # what walls cover does not count
+    assert abs(grains.find_packing_fraction(frame, [-0.5, 0, 1, 0.5]) - math.pi * 0.3**2 / 2 / 0.75) < 1e-3
+    x = np.linspace(-1, 1, 4001)
+    left, right = grains.find_repose(x, np.where(x < 0, 1 + 0.5 * x, 1 - 0.25 * x), 0 * x, 1)
+    assert abs(left - math.degrees(math.atan(0.5))) < 1 and abs(right - math.degrees(math.atan(0.25))) < 1
+
+
+def check_lammps():
+    with open("log.lammps", "w", encoding="utf-8") as file:
+        file.write("LAMMPS (1)\nStep Temp\n 0 1\n 10 3\nLoop time of 1\nStep Temp\n 20 5\nLoop time of 1\n")
+    with open("dump", "w", encoding="utf-8") as file:
+        for y in 1, 2:
+            file.write("ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n1\n" % y)
+            file.write("ITEM: ATOMS id x y radius\n7 0.5 %d 0.25\n" % y)
+    assert list(grains.read_table("log.lammps")["Temp"]) == [1, 3, 5]
+    assert [list(v) for v in grains.load_grains("dump")] == [[0.5], [2], [0.25]]
+
+
+def main(dem):
+    dem = os.path.abspath(dem)
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        with open("shapes.json", "w", encoding="utf-8") as file:
+            json.dump(SHAPES, file)
+        # As if it had been interrupted after frame 6, and another run, given up, had left frames up to 7.
+        assert run(dem, [0.7]).returncode == 0 and os.path.exists("out-contacts-000007.vtk")
+        assert run(dem, [0.6]).returncode == 0
+        assert run(dem, [0.6, 0.4], "--restart", "out.restart").returncode == 0
+        contacts = 0
         for k in range(11):
-            assert is_near(read_vtk("%s-%06d.vtk" % (name, k))["time"], 0.1 * k, 1e-9)
-    contacts = 0
-    for k in range(11):
-        with open("out-%06d.csv" % k, encoding="utf-8") as file:
-            table = list(csv.DictReader(file))
-        cells, grain_count = check_bodies("out-%06d.vtk" % k, table)
-        contacts += check_contacts("out-contacts-%06d.vtk" % k, cells, grain_count)
-    assert contacts > 100, contacts
+            cells, count = check_bodies("out-%06d.vtk" % k, grains.read_table("out-%06d.csv" % k))
+            contacts += check_contacts("out-contacts-%06d.vtk" % k, cells, count)
+            for name in "out", "out-contacts":
+                assert abs(grains.read_vtk("%s-%06d.vtk" % (name, k))["time"] - 0.1 * k) < 1e-9
+        assert contacts > 100, contacts
+        bad = run(dem, [0.6], vtk="none/out")
+        assert bad.returncode == 2 and "none/out-000000.vtk" in bad.stderr, bad.stderr
+        check_measures()
+        check_lammps()
+        try:
+            import matplotlib  # noqa: F401
+        except ImportError:
+            return
+        # A path for each body, and lines for contacts that bear.
+        grains.draw("out-000010.vtk", "drawn.svg", color="coordination")
+        with open("drawn.svg", encoding="utf-8") as file:
+            svg = file.read()
+        assert svg.count("<path") > 83 + 20, svg.count("<path")
 
 
 main(sys.argv[1])

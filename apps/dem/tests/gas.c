@@ -60,8 +60,9 @@ TEST(test_gas_keeps_its_energy) {
     static const gas_case cases[] = {{"ellipses", ELLIPSE, 1e-4, 2.5e-5},
                                      {"octagons", SHARP, 1e-3, 2.5e-4},
                                      {"rounded octagons", OCTAGON, 1e-4, 2.5e-5},
-                                     {"fitted grains", SAND, 1e-4, 2.5e-5}};
-    for (int k = 0; k < 8; k++) {
+                                     {"fitted grains", SAND, 1e-4, 2.5e-5},
+                                     {"Ls of two bars", ELL, 1e-4, 2.5e-5}};
+    for (int k = 0; k < 10; k++) {
         const gas_case *at = &cases[k / 2];
         const dem_law kind = k % 2 ? DEM_HERTZ : DEM_LINEAR;
         size_t contacts;

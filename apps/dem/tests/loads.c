@@ -12,14 +12,16 @@
 
 /* The furthest of the points that the shape has in many directions. Its distance from the centroid is missed by at most
  * 1 - cos of half a step between directions. */
-static double sample_reach(const dem *d, uint32_t shape) {
-    narc_arc arcs[NARC_MAX_ARCS];
-    const size_t count = narc_get_arcs(d->store, shape, arcs);
+static double sample_reach(const dem *d, const dem_shape *shape) {
     double reach = 0;
-    for (int i = 0; i < 100000; i++) {
-        narc_point p;
-        assert_true(narc_find_support(arcs, count, cos(i * PI / 50000), sin(i * PI / 50000), &p, NULL));
-        reach = fmax(reach, hypot(p.x, p.y));
+    for (uint32_t k = 0; k < shape->outline_count; k++) {
+        narc_arc arcs[NARC_MAX_ARCS];
+        const size_t count = narc_get_arcs(d->store, shape->first_outline + k, arcs);
+        for (int i = 0; i < 100000; i++) {
+            narc_point p;
+            assert_true(narc_find_support(arcs, count, cos(i * PI / 50000), sin(i * PI / 50000), &p, NULL));
+            reach = fmax(reach, hypot(p.x, p.y));
+        }
     }
     return reach;
 }
@@ -35,7 +37,7 @@ TEST(test_reach) {
     assert_int_equal(narc_build_box(4, 1, 0, arcs, &count, NULL), NARC_OK);
     assert_true(dem_add_shape(&d, "box", arcs, count, &lens));
     for (uint32_t k = 0; k < d.shape_count; k++) {
-        const double sampled = sample_reach(&d, k);
+        const double sampled = sample_reach(&d, &d.shapes[k]);
         print_message("%s: reach %.9g, sampled %.9g\n", d.shapes[k].name, d.shapes[k].reach, sampled);
         assert_true(fabs(d.shapes[k].reach - sampled) <= 1e-6 * sampled);
     }

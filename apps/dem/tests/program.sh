@@ -29,7 +29,7 @@ cat >good.json <<'END'
   "walls": [
     {"name": "floor", "material": "steel", "plate": {"point": [0, 0], "normal": [0, 1]}},
     {"name": "block", "material": "steel", "box": {"width": 0.5, "height": 0.5, "radius": 0.1}, "at": [2, 0], "angle": 0.3, "spin": 1, "pivot": [2.1, 0]},
-    {"name": "lid", "material": "steel", "plate": {"point": [0, 12], "normal": [0, -1]}, "servo": {"direction": [0, -1], "stress": 100, "between": ["floor", "block"], "max_speed": 1}}
+    {"name": "lid", "material": "steel", "plate": {"point": [0, 12], "normal": [0, -1]}, "servo": {"direction": [0, -1], "stress": 100, "between": ["floor", "block"], "gain": 1, "max_speed": 1}}
   ],
   "boundary": {"x": [0, 4]},
   "gravity": [0, -9.81],
@@ -197,6 +197,9 @@ wrong 's/"gravity": \[0, -9.81/"gravity": [0, "a"/' "gravity\[1\]: is not a numb
 wrong 's/"x": \[0, 4\]/"x": [4, 0]/' "boundary.x: is not a range \[low, high\] '\[4,0\]'"
 wrong 's/"x": \[0, 4\]/"x": [0, 1]/' "the periodic cell is too small"
 wrong 's/"x": \[0, 4\]/"y": [0, 20]/' "wall 'floor': a plate with normal 0, 1 crosses a periodic border"
+wrong 's/"x": \[0, 4\]/"x": [0, 4], "shear": 1/; s/"gravity": \[1, -9\], //' "a sheared cell is periodic in x and y, and has neither walls nor gravity"
+wrong 's/"x": \[0, 4\]/"x": [0, 4], "shear": 1/' "stages\[1\]: has gravity in a sheared cell"
+wrong 's/"friction": 0.4/"friction": 0.4, "shear": 1/' "stages\[1\].shear: is of a cell whose boundary has shear '1'"
 wrong 's/"density": 1000/"density": 0/' "materials\[0\].density: is not above 0"
 wrong 's/"name": "steel"/"name": "sand"/' "materials\[1\].name: is the name of another material 'sand'\|materials\[1\].name: is the name of another material"
 wrong 's/"name": "sand"/"name": ""/' "materials\[0\].name: is empty"
@@ -256,7 +259,7 @@ wrong 's/"stress": 100/"force": 100/' "walls\[2\].servo.between: is for stress, 
 wrong 's/"between": \["floor", "block"\], //' "walls\[2\].servo.between: is missing"
 wrong 's/"direction": \[0, -1\]/"direction": [1, 0]/' "walls\[2\].servo.direction: runs along the plate, which has no ends '\[1,0\]'"
 wrong 's/"max_speed": 1/"max_speed": 1, "travel": 0/' "walls\[2\].servo.travel: is not above 0 '0'"
-wrong 's/"max_speed": 1}/"max_speed": 1}, "velocity": [0, 1]/' "walls\[2\].velocity: is of a wall that its servo moves"
+wrong 's/"gain": 1, "max_speed": 1}/"gain": 1, "max_speed": 1}, "velocity": [0, 1]/' "walls\[2\].velocity: is of a wall that its servo moves"
 wrong 's/"block": {"spin": -1}/"lid": {"velocity": [1, 0]}/' "stages\[1\].walls.lid.velocity: is of a wall that its servo moves"
 sed 's/"law": "hertz"/"law": "hertz", "kn": 1e7/' hertz.json >bad.json
 fails "kn with hertz" "dem: bad.json: contact.kn: is not of the Hertz law: stiffness comes from the materials" bad.json
@@ -280,7 +283,7 @@ sed 's|"csv": "out.csv"|"csv": "no/folder/out.csv"|' good.json >bad.json
 fails "no folder for the table" "dem: no/folder/out.csv: " bad.json
 
 # A lid that goes away from the grains.
-sed 's/"direction": \[0, -1\], "stress": 100, "between": \["floor", "block"\], "max_speed": 1/"direction": [0, 1], "force": 1, "max_speed": 50, "travel": 1.999/' \
+sed 's/"direction": \[0, -1\], "stress": 100, "between": \["floor", "block"\], "gain": 1, "max_speed": 1/"direction": [0, 1], "force": 1, "gain": 50, "max_speed": 50, "travel": 1.999/' \
     good.json >bad.json
 fails "nothing to press" "dem: step 400: wall 'lid' has moved by more than 1.999 without touching a grain: its servo has nothing to press" \
     bad.json --threads 1
@@ -297,6 +300,11 @@ grep -q 'time step' err.txt && miss "a step that is short enough is told"
 # Too fast: which grain, and what to do.
 sed 's/"velocity": \[1, 0\]/"velocity": [300, -800]/' good.json >bad.json
 fails "too fast" "dem: step [0-9]*: grain [0-9]* .*Use a shorter time step" bad.json
+# Ground is no grain.
+sed 's/\]}$/, {"name": "ground", "chain": {"closed": false, "arcs": [{"center": [0, 0], "radius": 0, "start": 1.6, "end": 1.6}, {"center": [-2, 0], "radius": 0, "start": 1.6, "end": 1.6}]}}]}/' \
+    shapes.json >ground.json
+sed 's/"shapes.json"/"ground.json"/' good.json >bad.json
+fails "a chain" "dem: ground.json: shape 'ground' is a chain" bad.json
 # Grains that overlap before the run begins.
 sed 's/"at": \[2, 9.5\]/"at": [2, 0.3]/' good.json >bad.json
 fails "grains in a wall" "dem: bad.json: step 0: grain 28 overlaps wall .*They are placed so" bad.json

@@ -28,12 +28,12 @@ static void check_same_walls(const dem *d, const dem *other) {
     for (size_t w = 0; w < d->wall_count; w++) {
         const dem_wall *a = &d->walls[w], *b = &other->walls[w];
         const dem_servo *s = &a->servo, *t = &b->servo;
-        const double numbers[] = {a->velocity.x, a->velocity.y,  a->pivot.x,     a->pivot.y, a->spin,
-                                  a->work,       a->resistance,  a->idle_way,    s->force,   s->stress,
-                                  s->gain,       s->direction.x, s->direction.y, s->travel,  s->max_speed};
-        const double others[] = {b->velocity.x, b->velocity.y,  b->pivot.x,     b->pivot.y, b->spin,
-                                 b->work,       b->resistance,  b->idle_way,    t->force,   t->stress,
-                                 t->gain,       t->direction.x, t->direction.y, t->travel,  t->max_speed};
+        const double numbers[] = {a->velocity.x,  a->velocity.y,  a->pivot.x, a->pivot.y,  a->spin,
+                                  a->work,        a->idle_way,    s->force,   s->stress,   s->gain,
+                                  s->direction.x, s->direction.y, s->travel,  s->max_speed};
+        const double others[] = {b->velocity.x,  b->velocity.y,  b->pivot.x, b->pivot.y,  b->spin,
+                                 b->work,        b->idle_way,    t->force,   t->stress,   t->gain,
+                                 t->direction.x, t->direction.y, t->travel,  t->max_speed};
         assert_memory_equal(numbers, others, sizeof numbers);
         assert_memory_equal(s->between, t->between, sizeof s->between);
         assert_true(s->on == t->on);

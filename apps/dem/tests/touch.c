@@ -17,8 +17,8 @@ typedef struct pose {
 /* Both grains are of a shape; `feature` is what the library says, or goes in if `asks` is not set. The deeper end is as
  * deep as the library says, as far as it knows. */
 static touch ask(const dem *d, uint32_t shape, pose p, bool asks, unsigned *feature) {
-    const touch_side *sides = d->shapes[shape].sides;
-    const size_t count = d->shapes[shape].side_count;
+    const touch_side *sides = d->outlines[shape].sides; /* shapes of one outline */
+    const size_t count = d->outlines[shape].side_count;
     const touch_grain a = {sides, count, cos(p.angle_a), sin(p.angle_a), 1};
     const touch_grain b = {sides, count, cos(p.angle_b), sin(p.angle_b), 1};
     touch t;

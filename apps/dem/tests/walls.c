@@ -90,7 +90,7 @@ static dem make_press(dem_servo servo) {
 TEST(test_servo_force) {
     const double force = 150;
     dem d = make_press((dem_servo){
-        .on = true, .direction = {0, -1}, .force = force, .between = {-1, -1}, .gain = 0.1, .max_speed = 0.5});
+        .on = true, .direction = {0, -1}, .force = force, .between = {-1, -1}, .gain = 5e-4, .max_speed = 0.5});
     step(&d, 20000);
     print_message("forces %.6g and %.6g\n", dem_wall_force(&d, 0).y, dem_wall_force(&d, 1).y);
     assert_true(fabs(dem_wall_force(&d, 1).y / force - 1) < 1e-3);
@@ -111,7 +111,7 @@ TEST(test_servo_force) {
 /* A stress acts on the length between two walls. */
 TEST(test_servo_stress) {
     dem d = make_press(
-        (dem_servo){.on = true, .direction = {0, -1}, .stress = 25, .between = {0, 1}, .gain = 0.1, .max_speed = 0.5});
+        (dem_servo){.on = true, .direction = {0, -1}, .stress = 25, .between = {0, 1}, .gain = 5e-4, .max_speed = 0.5});
     step(&d, 20000);
     assert_true(fabs(dem_wall_force(&d, 1).y / (25 * 6) - 1) < 2e-3);
     dem_destroy(&d);
@@ -120,7 +120,7 @@ TEST(test_servo_stress) {
 /* A lid that finds nothing to press goes as far as it may, 0.01 a step, then the run ends. */
 TEST(test_servo_without_grains) {
     const dem_servo servo = {
-        .on = true, .direction = {0, 1}, .force = 1, .between = {-1, -1}, .gain = 0.1, .max_speed = 100};
+        .on = true, .direction = {0, 1}, .force = 1, .between = {-1, -1}, .gain = 100, .max_speed = 100};
     const double travels[] = {0, 2.495, 39.995};
     for (size_t i = 0; i < 3; i++) {
         dem_servo up = servo;
@@ -142,7 +142,7 @@ TEST(test_servo_touches_in_time) {
                                    .direction = {0, -1},
                                    .force = 150,
                                    .between = {-1, -1},
-                                   .gain = 0.1,
+                                   .gain = 5e-4,
                                    .max_speed = 0.5,
                                    .travel = 0.011});
     step(&d, 20000);
@@ -153,7 +153,7 @@ TEST(test_servo_touches_in_time) {
 /* Who is to press with no force, and touches nothing, stays. */
 TEST(test_servo_of_no_force) {
     dem d = make_press(
-        (dem_servo){.on = true, .direction = {0, -1}, .force = 0, .between = {-1, -1}, .gain = 0.1, .max_speed = 0.5});
+        (dem_servo){.on = true, .direction = {0, -1}, .force = 0, .between = {-1, -1}, .gain = 5e-4, .max_speed = 0.5});
     const double before = d.bodies.y[4];
     step(&d, 1000);
     assert_true(d.bodies.y[4] == before);

@@ -78,6 +78,15 @@ static void add_shapes(dem *d) {
     check(d, dem_add_shape(d, "long", arcs, count, &index));
     check(d, dem_add_shape(d, "sand", sand, sizeof sand / sizeof sand[0], &index));
     assert_int_equal(index, SAND);
+    const size_t discs[2] = {1, 1}, bars[2] = {2, 2};
+    for (int i = 0; i < 2; i++)
+        arcs[i] = (narc_arc){i - 0.5, 0, 0.5, 0, 2 * PI};
+    check(d, dem_add_compound(d, "dimer", arcs, discs, 2, &index));
+    assert_int_equal(narc_build_capsule(1.2, 0.3, arcs, &count, NULL), NARC_OK);
+    assert_int_equal(narc_move_arcs(arcs, 2, 0.6, 0, 0, 1, arcs, NULL), NARC_OK);
+    assert_int_equal(narc_move_arcs(arcs, 2, 0, 0, PI / 2, 1, arcs + 2, NULL), NARC_OK);
+    check(d, dem_add_compound(d, "ell", arcs, bars, 2, &index));
+    assert_int_equal(index, ELL);
 }
 
 dem make_world(dem_settings settings, dem_contact_law law) {
@@ -126,11 +135,11 @@ dem make_busy_world(unsigned threads) {
                                           .spin = 2,
                                           .servo = {.between = {-1, -1}}}));
     d.walls[0].servo =
-        (dem_servo){.on = true, .direction = {0, 1}, .stress = 100, .between = {0, 1}, .gain = 0.1, .max_speed = 2};
+        (dem_servo){.on = true, .direction = {0, 1}, .stress = 100, .between = {0, 1}, .gain = 1e-4, .max_speed = 2};
     const dem_filling filling = {.count = 120,
                                  .region = {true, 0, 24, 1.2, 21.3},
-                                 .shapes = {DISC, ROUND, OCTAGON, ARCS},
-                                 .shape_count = 4,
+                                 .shapes = {DISC, ROUND, OCTAGON, ARCS, ELL},
+                                 .shape_count = 5,
                                  .sizes = {DEM_UNIFORM, 0, 0, 1.2, 2},
                                  .speed = 3,
                                  .spin = 1,

@@ -23,8 +23,9 @@ void test_add(const char *name, CMUnitTestFunction test);
 
 /* Shapes of every world, in this order: a disc of radius 1; the same circle, given as eight arcs; an octagon with
  * rounded corners; eight arcs of two radii; an ellipse; a sharp octagon; a square of side 1; a capsule; a sand
- * grain, fitted. */
-enum { DISC, ROUND, OCTAGON, ARCS, ELLIPSE, SHARP, SQUARE, LONG, SAND };
+ * grain, fitted; two discs of radius 0.5 that touch, at x = -0.5 and 0.5; two bars with round ends that lie over each
+ * other as an L. */
+enum { DISC, ROUND, OCTAGON, ARCS, ELLIPSE, SHARP, SQUARE, LONG, SAND, DIMER, ELL };
 
 /* No gravity, thickness 1, one thread, a material of density 1 (and E = 1e6, nu = 0.25), no damping or friction. */
 dem_settings plain_settings(void);

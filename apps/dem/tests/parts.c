@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * parts.c - grains of several outlines: their mass, a collision off the centre, and that they are one body.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "internal.h"
+#include "worlds.h"
+
+#define PI 3.14159265358979323846
+
+/* Two discs that touch, and two boxes whose union is one of 3 by 1, far from their centroid. */
+TEST(test_mass_of_parts) {
+    dem d = make_world(plain_settings(), plain_law());
+    const double r = 0.5, dimer = 2 * (PI * pow(r, 4) / 2 + PI * pow(r, 4)), box = 3.0 * (9 + 1) / 12;
+    narc_arc arcs[2 * NARC_MAX_ARCS], moved[NARC_MAX_ARCS];
+    size_t counts[2];
+    uint32_t index;
+    assert_int_equal(narc_build_box(2, 1, 0, moved, &counts[0], NULL), NARC_OK);
+    counts[1] = counts[0];
+    for (size_t i = 0; i < 2; i++)
+        assert_int_equal(narc_move_arcs(moved, counts[i], 7 + (double)i, -3, 0, 1, arcs + i * counts[0], NULL),
+                         NARC_OK);
+    assert_true(dem_add_compound(&d, "long box", arcs, counts, 2, &index));
+    const dem_shape *shape = &d.shapes[index];
+    assert_true(fabs(shape->area - 3) < 1e-12 && fabs(shape->second_moment - box) < 1e-11);
+    assert_true(fabs(shape->reach - sqrt(2.5)) < 1e-9 && shape->outline_count == 2);
+    shape = &d.shapes[DIMER];
+    assert_true(fabs(shape->area - 2 * PI * r * r) < 1e-12 && fabs(shape->second_moment - dimer) < 1e-12);
+    assert_true(fabs(shape->reach - 2 * r) < 1e-12);
+    dem_destroy(&d);
+}
+
+/* A disc meets one end of a dimer square to its axis, without friction or damping. The push P along y changes the
+ * momenta of both by P and the dimer's spin by P a / I; energy tells P. Contacts are soft: the dimer turns a little while
+ * they last, by the speed times their time, 2e-3 of the arm. */
+TEST(test_collision_off_centre) {
+    dem_settings settings = plain_settings();
+    dem_contact_law law = plain_law();
+    settings.time_step = 1e-5;
+    law.kn = 1e7;
+    dem d = make_world(settings, law);
+    add_grain(&d, DIMER, 0, 0, 0, 0);
+    add_grain(&d, DISC, 0.5, 1.51, 0, -1);
+    start(&d);
+    const double m = d.bodies.mass[1], mass = d.bodies.mass[0], inertia = d.bodies.inertia[0], arm = 0.5;
+    const double push = 2 / (1 / m + 1 / mass + arm * arm / inertia);
+    step(&d, 4000);
+    print_message("spin %.6g, %.6g of theory; disc %.6g, %.6g\n", d.bodies.spin[0], -push * arm / inertia,
+                  d.bodies.vy[1], -1 + push / m);
+    assert_int_equal(d.contacts.count, 0);
+    assert_true(fabs(d.bodies.spin[0] / (-push * arm / inertia) - 1) < 5e-3);
+    assert_true(fabs(d.bodies.vy[1] - (-1 + push / m)) < 5e-3 && fabs(d.bodies.vy[0] + push / mass) < 5e-3);
+    dem_destroy(&d);
+}
+
+/* Forces within a grain there are none, though its parts lie over each other; pairs are of parts, forces on bodies. */
+TEST(test_parts_are_one_body) {
+    dem_contact_law law = plain_law();
+    dem_settings settings = plain_settings();
+    settings.periodic_x = settings.periodic_y = true;
+    settings.high_x = settings.high_y = 8;
+    dem d = make_world(settings, law);
+    add_grain(&d, ELL, 0.1, 0.1, 0, 0); /* across both borders */
+    add_grain(&d, ELL, 4, 4, 0, 0);
+    start(&d);
+    assert_int_equal(d.parts.count, 4);
+    assert_int_equal(d.contacts.count, 0);
+    for (size_t p = 0; p < d.pairs.count; p++)
+        assert_int_not_equal(dem_body_a(&d, p), dem_body_b(&d, p));
+    dem_destroy(&d);
+}
+
+/* An upright dimer on a plate and one that lies on it: one contact and two, each of which bears its share. */
+TEST(test_dimers_on_a_plate) {
+    dem_settings settings = plain_settings();
+    settings.gravity = (dem_vec){0, -10};
+    dem_contact_law law = plain_law();
+    law.damping_ratio = 1;
+    dem d = make_world(settings, law);
+    add_plate(&d, "floor", 0, 0, 0, 1);
+    add_grain(&d, DIMER, 0, 0.5, 0, 0);
+    assert_true(dem_add_grain(&d, (dem_grain){.shape = DIMER, .x = 5, .y = 1, .angle = PI / 2, .scale = 1}));
+    start(&d);
+    step(&d, 3000);
+    assert_int_equal(d.contacts.count, 3);
+    const double weight = 10 * d.bodies.mass[0];
+    assert_true(fabs(d.bodies.fy[0] / weight - 1) < 1e-3 && fabs(d.bodies.fy[1] / weight - 1) < 1e-3);
+    assert_true(fabs(d.bodies.y[0] - (0.5 - weight / 2 / 1e5)) < 1e-6);
+    assert_true(fabs(d.bodies.y[1] - (1 - weight / 1e5)) < 1e-6);
+    dem_destroy(&d);
+}
+
+/* Momentum stays in collisions of many grains of parts, with friction. */
+TEST(test_momentum_of_parts) {
+    dem_settings settings = plain_settings();
+    dem_contact_law law = plain_law();
+    settings.periodic_x = settings.periodic_y = true;
+    settings.high_x = settings.high_y = 20;
+    law.friction = 0.5;
+    law.kn = 3e3; /* long contacts */
+    settings.max_overlap = 0.5;
+    dem d = make_world(settings, law);
+    for (int k = 0; k < 64; k++)
+        assert_true(dem_add_grain(&d, (dem_grain){.shape = k % 2 ? ELL : DIMER,
+                                                  .x = 2.5 * (k % 8) + 1,
+                                                  .y = 2.5 * (k / 8.0) - 2.5 * (k % 8) / 8.0 + 1,
+                                                  .angle = k,
+                                                  .scale = 0.9,
+                                                  .vx = 3 * cos(7.0 * k),
+                                                  .vy = 3 * sin(7.0 * k)}));
+    start(&d);
+    double before[2] = {0, 0}, after[2] = {0, 0}, scale = 0;
+    size_t most = 0;
+    for (int i = 0; i < 2; i++) {
+        for (size_t k = 0; k < d.grain_count; k++) {
+            (i ? after : before)[0] += d.bodies.mass[k] * d.bodies.vx[k];
+            (i ? after : before)[1] += d.bodies.mass[k] * d.bodies.vy[k];
+            scale += d.bodies.mass[k] * hypot(d.bodies.vx[k], d.bodies.vy[k]);
+        }
+        for (int s = 0; s < 20000 && i == 0; s++) {
+            step(&d, 1);
+            most = d.contacts.count > most ? d.contacts.count : most;
+        }
+    }
+    assert_true(most > 5);
+    assert_true(hypot(after[0] - before[0], after[1] - before[1]) < 1e-11 * scale);
+    dem_destroy(&d);
+}
