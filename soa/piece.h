@@ -207,15 +207,25 @@ static inline bool narc_lies_before(const narc_surface *s, const narc_toucher *b
     return along >= 0 && along <= way_x * way_x + way_y * way_y && x * way_y - y * way_x >= 0;
 }
 
+/* Of two bodies, one of them a piece: is a contact less deep than what is all behind a surface can be? That is at least as
+ * deep as its inscribed circle is wide, behind a line or outside of a circle. */
+static inline bool narc_is_shallow(const narc_shape_header *a, double scale_a, const narc_shape_header *b,
+                                   double scale_b, double separation) {
+    const bool of_a = narc_is_piece(a);
+    const narc_shape_header *const body = of_a ? b : a;
+    return !narc_is_piece(body) && -separation <= 2 * (of_a ? scale_b : scale_a) * (double)body->inner_radius;
+}
+
 /* Of two bodies, one of them a piece: do they reach each other's surface? */
 static inline bool narc_is_reached(const narc_toucher *a, const narc_toucher *b, double separation) {
     const bool of_a = narc_is_piece(a->header);
     const narc_toucher *const piece = of_a ? a : b, *const body = of_a ? b : a;
-    const bool is_body = !narc_is_piece(body->header);
-    const double depth = -separation, inner = is_body ? 2 * body->scale * (double)body->header->inner_radius : 0;
-    if (depth <= inner || depth > narc_find_reach(a, b))
-        return depth <= inner;
-    if (!is_body)
+    const double depth = -separation;
+    if (narc_is_shallow(a->header, a->scale, b->header, b->scale, separation))
+        return true;
+    if (depth <= 0 || depth > narc_find_reach(a, b))
+        return depth <= 0;
+    if (narc_is_piece(body->header))
         return true;
     narc_surface surface = narc_see_surface(piece, body);
     if (narc_lies_before(&surface, body))

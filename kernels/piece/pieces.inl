@@ -53,18 +53,19 @@ NOINLINE vm find_unreached(const struct call *call, const struct queue *queue, i
     for (uint32_t lanes = vm_bits(which); lanes; lanes &= lanes - 1) {
         const int l = FIND_LOWEST(lanes);
         const size_t number = find_number(call, pair[l]);
+        const narc_shape_header *const header[2] = {find_header(batch, batch->a, batch->pairs->a, number),
+                                                    find_header(batch, batch->b, batch->pairs->b, number)};
         narc_toucher touching[2];
-        for (int side = 0; side < 2; side++) {
-            const narc_shape_header *const header =
-                find_header(batch, side ? batch->b : batch->a, side ? batch->pairs->b : batch->pairs->a, number);
-            touching[side] = (narc_toucher){header,
-                                            narc_arcs_of(batch->shapes, header),
+        if (narc_is_shallow(header[0], (double)field[0][0][l], header[1], (double)field[1][0][l], (double)depth[l]))
+            continue;
+        for (int side = 0; side < 2; side++)
+            touching[side] = (narc_toucher){header[side],
+                                            narc_arcs_of(batch->shapes, header[side]),
                                             (double)field[side][0][l],
                                             (double)field[side][1][l],
                                             (double)field[side][2][l],
                                             (double)field[side][3][l],
                                             (double)field[side][4][l]};
-        }
         unreached[l] = narc_is_reached(&touching[0], &touching[1], (double)depth[l]) ? 0 : 1;
     }
     return v_lt(v_set(0), v_load(unreached));
