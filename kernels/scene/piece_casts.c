@@ -49,19 +49,19 @@ struct nearest {
 };
 
 /* One of two bodies with a contact along a normal of the world, as soa/piece.h wants it. */
-INLINE narc_toucher make_toucher(const struct body_frame *frame, const struct body_frame *other, place normal) {
+static narc_toucher make_toucher(const struct body_frame *frame, const struct body_frame *other, place normal) {
     const place n = turn_to_shape(frame, normal);
     const place way =
         turn_to_shape(frame, (place){other->position.x - frame->position.x, other->position.y - frame->position.y});
     return (narc_toucher){frame->header, frame->arcs, frame->scale, n.x, n.y, way.x, way.y};
 }
 
-INLINE bool reach_each_other(const struct body_frame *a, const struct body_frame *b, place normal, double separation) {
+static bool reach_each_other(const struct body_frame *a, const struct body_frame *b, place normal, double separation) {
     const narc_toucher of_a = make_toucher(a, b, normal), of_b = make_toucher(b, a, normal);
     return narc_is_reached(&of_a, &of_b, separation);
 }
 
-INLINE void place_side(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side, double time,
+static void place_side(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side, double time,
                        struct body_frame *out) {
     const struct narc_cast_side *const of = &casts->side[side];
     const double cosine = (double)of->cosine[slot], sine = (double)of->sine[slot];
@@ -78,12 +78,12 @@ INLINE void place_side(const narc_shapes *shapes, const narc_casts *casts, size_
     out->arcs = narc_arcs_of(shapes, out->header);
 }
 
-INLINE bool is_hollow(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side) {
+static bool is_hollow(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side) {
     return narc_is_concave(&shapes->headers[casts->side[side].shape[slot]]);
 }
 
 /* `side`: which of them the ground is. */
-INLINE struct scene place_scene(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side,
+static struct scene place_scene(const narc_shapes *shapes, const narc_casts *casts, size_t slot, int side,
                                 double time) {
     struct scene scene;
     place_side(shapes, casts, slot, side, time, &scene.ground);
@@ -93,7 +93,7 @@ INLINE struct scene place_scene(const narc_shapes *shapes, const narc_casts *cas
 }
 
 /* From the concave arc's centre to that of an arc of the body. */
-INLINE place find_way(const struct scene *scene, int arc) {
+static place find_way(const struct scene *scene, int arc) {
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place center = turn_to_world(&scene->body, (place){scene->body.scale * (double)stored->center_x,
                                                              scene->body.scale * (double)stored->center_y});
@@ -101,12 +101,12 @@ INLINE place find_way(const struct scene *scene, int arc) {
                    scene->body.position.y + center.y - scene->ground.position.y - scene->arc.center.y};
 }
 
-INLINE double get_radius(const struct scene *scene, int arc) {
+static double get_radius(const struct scene *scene, int arc) {
     return scene->body.scale * (double)scene->body.arcs[arc].arc.radius;
 }
 
 /* Is this arc's place that is furthest along u one that may touch? */
-INLINE bool may_touch(const struct scene *scene, int arc, place u) {
+static bool may_touch(const struct scene *scene, int arc, place u) {
     const narc_shape_header *const header = scene->body.header;
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place own = turn_to_shape(&scene->body, u);
@@ -116,7 +116,7 @@ INLINE bool may_touch(const struct scene *scene, int arc, place u) {
            holds_normal(&scene->arc, (place){-u.x, -u.y});
 }
 
-INLINE void compare_arc(const struct scene *scene, int arc, struct nearest *best) {
+static void compare_arc(const struct scene *scene, int arc, struct nearest *best) {
     place u = find_way(scene, arc);
     const double length = sqrt(find_dot(u, u)), separation = scene->arc.radius - length - get_radius(scene, arc);
     if (separation >= best->separation)
@@ -145,7 +145,7 @@ INLINE void compare_arc(const struct scene *scene, int arc, struct nearest *best
 
 /* An end of the concave arc, where `normal` is its normal: how far is it from the body? The largest gap of all normals
  * of the body is at one of its arcs or junctions. */
-INLINE void compare_end(const struct scene *scene, place normal, struct nearest *best) {
+static void compare_end(const struct scene *scene, place normal, struct nearest *best) {
     const struct body_frame *const body = &scene->body;
     const place at = {scene->arc.center.x - scene->arc.radius * normal.x,
                       scene->arc.center.y - scene->arc.radius * normal.y};
@@ -177,7 +177,7 @@ INLINE void compare_end(const struct scene *scene, place normal, struct nearest 
 }
 
 /* The least separation; infinite if nothing of them may touch. */
-INLINE struct nearest find_nearest(const struct scene *scene, bool with_ends) {
+static struct nearest find_nearest(const struct scene *scene, bool with_ends) {
     struct nearest best = {INFINITY, {0, 0}, {0, 0}, 0, false, false, false};
     for (int arc = 0; arc < scene->body.header->count; arc++)
         compare_arc(scene, arc, &best);
@@ -189,12 +189,12 @@ INLINE struct nearest find_nearest(const struct scene *scene, bool with_ends) {
 }
 
 /* A float that is not above a time of 0 or more. */
-INLINE float round_time(double time) {
+static float round_time(double time) {
     const float rounded = (float)time;
     return (double)rounded > time ? rounded - rounded * 0x1p-24f : rounded;
 }
 
-INLINE void write_contact(const struct scene *scene, const struct nearest *n, int side, narc_contact *out) {
+static void write_contact(const struct scene *scene, const struct nearest *n, int side, narc_contact *out) {
     const bool round = scene->body.header->flags & NARC_SHAPE_CIRCLE;
     const unsigned feature = round ? 0 : find_feature_number(scene->body.header, n->arc, n->on_edge);
     const double sign = side == 0 ? 1 : -1, half = n->separation / 2;
@@ -212,7 +212,7 @@ INLINE void write_contact(const struct scene *scene, const struct nearest *n, in
 }
 
 /* When does an arc that moves along a line leave the circle of `goal`, where it may touch? Infinite: never. */
-INLINE double find_leaving(const struct scene *scene, int arc, double goal, place motion) {
+static double find_leaving(const struct scene *scene, int arc, double goal, place motion) {
     const place u = find_way(scene, arc);
     const double square = find_dot(motion, motion), across = find_cross(u, motion);
     const double height = goal * goal * square - across * across;
@@ -225,7 +225,7 @@ INLINE double find_leaving(const struct scene *scene, int arc, double goal, plac
 
 /* When does an arc that moves along a line come to be where it may touch, and is beyond the target then? It has come
  * past an end. */
-INLINE double find_entering(const struct scene *scene, int arc, double target, place motion) {
+static double find_entering(const struct scene *scene, int arc, double target, place motion) {
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place u = find_way(scene, arc),
                 start = turn_to_world(&scene->body, (place){(double)stored->start_x, (double)stored->start_y}),
@@ -246,7 +246,7 @@ INLINE double find_entering(const struct scene *scene, int arc, double target, p
     return least;
 }
 
-INLINE int cast_straight(const narc_shapes *shapes, narc_casts *casts, size_t slot, int side) {
+static int cast_straight(const narc_shapes *shapes, narc_casts *casts, size_t slot, int side) {
     const double sign = side == 0 ? 1 : -1, target = (double)casts->target;
     const place motion = {sign * casts->motion_x[slot], sign * casts->motion_y[slot]};
     struct scene scene = place_scene(shapes, casts, slot, side, 0);
@@ -282,7 +282,7 @@ struct speeds {
     double motion, turn[2], reach[2], apart; /* `reach`: of points from the positions; `apart`: of the positions */
 };
 
-INLINE struct speeds find_speeds(const struct body_frame bodies[2], const narc_casts *casts, size_t slot) {
+static struct speeds find_speeds(const struct body_frame bodies[2], const narc_casts *casts, size_t slot) {
     const place motion = {casts->motion_x[slot], casts->motion_y[slot]}, from = {casts->x[slot], casts->y[slot]};
     struct speeds s = {.motion = sqrt(find_dot(motion, motion))};
     s.apart = sqrt(find_dot(from, from)) + s.motion;
@@ -296,7 +296,7 @@ INLINE struct speeds find_speeds(const struct body_frame bodies[2], const narc_c
 }
 
 /* The speed of points of a body in the axes of the other one; of any point that is no further from that. */
-INLINE double find_speed_seen(const struct speeds *s, int body, double reach) {
+static double find_speed_seen(const struct speeds *s, int body, double reach) {
     return s->motion + s->turn[body] * reach + s->turn[1 - body] * (s->apart + reach);
 }
 
@@ -306,7 +306,7 @@ typedef struct outlook looker(const narc_shapes *shapes, narc_casts *casts, size
 
 /* A contact may be deep when it is told at last: of what has passed an end. Finds the first time, between one without
  * and this one. */
-INLINE void find_first_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, looker *look, float before) {
+static void find_first_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, looker *look, float before) {
     float after = casts->time[slot];
     const double enough = (double)casts->target + casts->enough[slot];
     for (int halving = 0; halving < HALVINGS; halving++) {
@@ -318,7 +318,7 @@ INLINE void find_first_time(const narc_shapes *shapes, narc_casts *casts, size_t
     (void)look(shapes, casts, slot, (double)after);
 }
 
-INLINE int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, looker *look, double speed,
+static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t slot, looker *look, double speed,
                            double size) {
     const double target = (double)casts->target, enough = casts->enough[slot],
                  least = NARC_TURNING_TOLERANCE * size / speed;
@@ -352,7 +352,7 @@ INLINE int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t 
 /* ------------------------------------------------------------------------------------------------ turning, concave */
 
 /* When can an arc of the body have a contact, or no more? */
-INLINE double find_arc_wait(const struct scene *scene, int arc, double target, const struct speeds *s, int side) {
+static double find_arc_wait(const struct scene *scene, int arc, double target, const struct speeds *s, int side) {
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place u = find_way(scene, arc), own = turn_to_shape(&scene->body, u), back = {-u.x, -u.y};
     const place start = {(double)stored->start_x, (double)stored->start_y},
@@ -366,7 +366,7 @@ INLINE double find_arc_wait(const struct scene *scene, int arc, double target, c
     return find_most(find_most(apart, beside) / speed, beyond / its);
 }
 
-INLINE struct outlook look_at_concave(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time) {
+static struct outlook look_at_concave(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time) {
     const int side = is_hollow(shapes, casts, slot, 0) ? 0 : 1;
     const struct scene scene = place_scene(shapes, casts, slot, side, time);
     const struct body_frame both[2] = {side ? scene.body : scene.ground, side ? scene.ground : scene.body};
@@ -391,7 +391,7 @@ struct outline {
     double radius[NARC_MAX_ARCS];
 };
 
-INLINE void place_outline(const struct body_frame *frame, struct outline *out) {
+static void place_outline(const struct body_frame *frame, struct outline *out) {
     out->count = frame->header->count;
     for (int k = 0; k < out->count; k++) {
         const narc_stored_arc *const a = &frame->arcs[k].arc;
@@ -404,13 +404,13 @@ INLINE void place_outline(const struct body_frame *frame, struct outline *out) {
     }
 }
 
-INLINE bool is_held(const struct outline *o, int arc, place n) {
+static bool is_held(const struct outline *o, int arc, place n) {
     return find_cross(o->start[arc], n) >= 0 && find_cross(n, o->end[arc]) >= 0 &&
            find_dot(n, o->start[arc]) + find_dot(n, o->end[arc]) >= 0;
 }
 
 /* The arc that reaches furthest along a unit vector, and how far. */
-INLINE int find_furthest(const struct outline *o, place n, double *out_height) {
+static int find_furthest(const struct outline *o, place n, double *out_height) {
     int best = 0;
     *out_height = -INFINITY;
     for (int k = 0; k < o->count; k++) {
@@ -434,13 +434,13 @@ struct gaps {
     bool front[2];
 };
 
-INLINE bool may_touch_at(const struct body_frame *frame, int arc, bool at_start) {
+static bool may_touch_at(const struct body_frame *frame, int arc, bool at_start) {
     const unsigned number = find_feature_number(frame->header, arc, at_start);
     return narc_touches(frame->header, number);
 }
 
 /* Compares a gap; at the start of an arc its junction is what touches. */
-INLINE void compare_gap(const struct body_frame bodies[2], double gap, place n, int a, int b, int at_start,
+static void compare_gap(const struct body_frame bodies[2], double gap, place n, int a, int b, int at_start,
                         struct gaps *out) {
     const bool front[2] = {may_touch_at(&bodies[0], a, at_start == 0), may_touch_at(&bodies[1], b, at_start == 1)};
     for (int side = 0; side < 2; side++)
@@ -451,7 +451,7 @@ INLINE void compare_gap(const struct body_frame bodies[2], double gap, place n, 
     *out = (struct gaps){gap, {out->of_front[0], out->of_front[1]}, n, {a, b}, {front[0], front[1]}};
 }
 
-INLINE struct gaps find_gaps(const struct body_frame bodies[2], const struct outline *a, const struct outline *b) {
+static struct gaps find_gaps(const struct body_frame bodies[2], const struct outline *a, const struct outline *b) {
     struct gaps out = {.most = -INFINITY, .of_front = {-INFINITY, -INFINITY}};
     double height;
     for (int i = 0; i < a->count; i++)
@@ -486,7 +486,7 @@ struct stretch {
 /* Edges whose normal is nearer to n than this lie along it, as in base/contact_point.inl. */
 #define ALONG_EDGE 0x1p-20
 
-INLINE struct stretch find_stretch(const struct body_frame *frame, const struct outline *o, place n, double sign,
+static struct stretch find_stretch(const struct body_frame *frame, const struct outline *o, place n, double sign,
                                    int arc) {
     const place out = {sign * n.x, sign * n.y};
     struct stretch s = {.low = INFINITY,
@@ -511,7 +511,7 @@ INLINE struct stretch find_stretch(const struct body_frame *frame, const struct 
     return s;
 }
 
-INLINE void write_run_contact(const struct body_frame bodies[2], const struct outline *a, const struct outline *b,
+static void write_run_contact(const struct body_frame bodies[2], const struct outline *a, const struct outline *b,
                               const struct gaps *g, narc_contact *out) {
     const place n = g->normal;
     const struct stretch on_a = find_stretch(&bodies[0], a, n, 1, g->arc[0]),
@@ -535,7 +535,7 @@ INLINE void write_run_contact(const struct body_frame bodies[2], const struct ou
 #define BESIDE_SINE   0.24740395925452293
 
 /* How far the front reaches along a unit vector. */
-INLINE double find_front_reach(const struct body_frame *frame, place n) {
+static double find_front_reach(const struct body_frame *frame, place n) {
     double size;
     const place own = turn_to_shape(frame, n);
     return find_dot(frame->position, n) +
@@ -543,7 +543,7 @@ INLINE double find_front_reach(const struct body_frame *frame, place n) {
 }
 
 /* How far a body is from a run's front alone, at least. In *out_beside, the greatest gap beside its ends. */
-INLINE double find_front_distance(const struct body_frame *run, const struct outline *of_run,
+static double find_front_distance(const struct body_frame *run, const struct outline *of_run,
                                   const struct outline *body, double *out_beside) {
     const int count = run->header->count, first = run->header->first_arc & NARC_FIRST_ARC;
     double most = -INFINITY, height;
@@ -571,7 +571,7 @@ INLINE double find_front_distance(const struct body_frame *run, const struct out
     return most;
 }
 
-INLINE struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time) {
+static struct outlook look_at_run(const narc_shapes *shapes, narc_casts *casts, size_t slot, double time) {
     struct body_frame bodies[2];
     struct outline outlines[2];
     for (int side = 0; side < 2; side++) {
