@@ -240,10 +240,25 @@ TEST(test_air) {
 
 /* The mean of the arcs' centres. */
 static narc_point find_middle(const struct chain *chain) {
-    narc_point sum = {0, 0};
+    const double part = 1 / (double)chain->count;
+    narc_point middle = {0, 0};
     for (size_t k = 0; k < chain->count; k++)
-        sum = (narc_point){sum.x + chain->arcs[k].center_x, sum.y + chain->arcs[k].center_y};
-    return (narc_point){sum.x / (double)chain->count, sum.y / (double)chain->count};
+        middle.x += part * chain->arcs[k].center_x;
+    for (size_t k = 0; k < chain->count; k++)
+        middle.y += part * chain->arcs[k].center_y;
+    return middle;
+}
+
+/* How far its arcs' circles reach from a point. */
+static double find_reach_of(const struct chain *chain, narc_point from) {
+    double far = 0;
+    for (size_t k = 0; k < chain->count; k++) {
+        const narc_arc *const arc = &chain->arcs[k];
+        const double reach = hypot(arc->center_x - from.x, arc->center_y - from.y) + fabs(arc->radius);
+        if (reach > far)
+            far = reach;
+    }
+    return far;
 }
 
 /* Two chains: a peg in a horseshoe, a gear in a ring. Nothing is told of them while there is air between them, and the
@@ -259,12 +274,8 @@ TEST(test_chains_in_chains) {
         outer->store = inner->store = empty_store();
         take_turtle(inner, &t, true);
         assert_true(add_chain(inner));
-        double far = 0; /* how far it reaches from its middle */
         const narc_point middle = find_middle(&inner->chain);
-        const double x = middle.x, y = middle.y;
-        for (size_t k = 0; k < inner->chain.count; k++)
-            far = fmax(far,
-                       hypot(inner->arcs[k].center_x - x, inner->arcs[k].center_y - y) + fabs(inner->arcs[k].radius));
+        const double x = middle.x, y = middle.y, far = find_reach_of(&inner->chain, middle);
         const double thickness = random_between(&random, 0.05, 0.5) * far, radius = 1.1 * far;
         make_strip(outer, radius, 0, thickness, 5);
         assert_true(add_chain(outer));
