@@ -26,7 +26,9 @@
  *   touches nothing. A corner of a quarter turn there caps it. Behind thin ground, such as under a bridge, a body in the
  *   air is within the closure, or beyond a concave arc: there is no contact unless the body reaches the entry's surface.
  *   So none is deeper than the body is wide along the normal, but for 2^-10 of its bounding radius; of two entries, as
- *   a gear in a ring, none is deeper than the smaller one's front is large, or an eighth of the larger one's.
+ *   a gear in a ring, none is deeper than the smaller one's front is large, or an eighth of the larger one's. Rods and
+ *   other bodies deeper than their inscribed circle is wide may lose contacts earlier, and what leans round an end of
+ *   thin ground may be told of falsely: docs/terrain.md has the figures.
  *   Entries overlap by next to nothing, so that no body falls between two; what both tell of one body is merged by
  *   narc_merge_contacts() or narc_merge_manifolds().
  *
