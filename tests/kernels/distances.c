@@ -352,41 +352,6 @@ TEST(test_short_arcs) {
 
 /* ------------------------------------------------------------------------------------------------ the rest */
 
-/* Separations have the sign that narc_find_overlaps() says of a tiny circle there. */
-TEST(test_signs_of_overlaps) {
-    struct test_random random = test_random_named("points, overlaps");
-    const size_t count = POINT_PLACES * test_trials(4);
-    for (int kind = 0; kind < FAMILY_COUNT; kind++) {
-        struct point_scene scene = make_point_scene(&random, NARC_FLOAT64, kind, count);
-        const double radius = 1e-8;
-        const struct shape circle = circle_of(radius);
-        uint32_t shape = 0, clear = 0;
-        narc_body *dots = calloc(count, sizeof *dots);
-        assert_non_null(dots);
-        assert_int_equal(narc_add_shape(scene.scene.store, circle.arcs, circle.count, &shape, NULL), NARC_OK);
-        for (size_t k = 0; k < count; k++)
-            dots[k] = (narc_body){scene.points[k].x, scene.points[k].y, 1, 0, 1, shape};
-        const narc_bodies bodies = scene_bodies(&scene.scene), others = narc_view_bodies(dots, count);
-        uint64_t *bits =
-            find_overlaps(scene.scene.store, &bodies, &(narc_pairs){.count = count, .other_bodies = &others}, NULL);
-        narc_distance *rows = find_distances(&scene);
-        for (size_t k = 0; k < count; k++) {
-            const struct reference_body body = unit_reference(&scene.scene, scene.points[k].body);
-            const double bound = NARC_ERROR_BOUND * (hypot(scene.points[k].x - body.x, scene.points[k].y - body.y) +
-                                                     reference_extent(&body));
-            if (fabs((double)rows[k].separation) <= 2 * bound + 2 * radius)
-                continue;
-            clear++;
-            assert_int_equal(bit_is_set(bits, k), rows[k].separation < 0);
-        }
-        assert_true(clear > count / 3);
-        free(bits);
-        free(dots);
-        free(rows);
-        destroy_point_scene(&scene);
-    }
-}
-
 /* What has no answer: the numbers of broken bodies, and of points. */
 TEST(test_no_answer) {
     static const float broken[] = {NAN, INFINITY, -INFINITY, 2, 0};
