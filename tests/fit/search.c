@@ -104,11 +104,11 @@ TEST(test_thinnest_rhombus) {
  * polygons choose from, so that it is thinned first. */
 TEST(test_fine_ellipse) {
     enum { CORNERS = 1800 };
-    const double pi = 3.14159265358979323846, squeeze = 0.5;
+    const double squeeze = 0.5;
     struct outline ellipse = make_regular("fine ellipse", CORNERS, 0, squeeze);
     for (size_t k = 3; k <= 7; k += 2) {
         const narc_fit_result fit = fit_shape(&ellipse, NARC_FIT_POLYGON, NARC_FIT_BOUND_AREA, k);
-        const double known = (double)k * tan(pi / (double)k) * squeeze;
+        const double known = (double)k * tan(PI / (double)k) * squeeze;
         if (!(fit.area <= known * (1 + NEAR)))
             fail_msg("fine ellipse, %zu sides: area %.6f, but %.6f is known", k, fit.area, known);
         check_contained(&ellipse, &fit, "fine ellipse");
@@ -256,7 +256,7 @@ TEST(test_least_radius_of_a_box) {
     const narc_fit_result fit =
         fit_outline(&box, (narc_fit_request){.arc_count = 4, .family = NARC_FIT_EDGES, .min_radius = 0.1});
     /* Arcs around its corners, pushed in along the diagonals until these touch them: sides out by 0.1 (1 - 1/sqrt 2). */
-    const double out = 0.1 * (1 - sqrt(0.5)), corners = (4 - 3.14159265358979323846) * 0.01;
+    const double out = 0.1 * (1 - sqrt(0.5)), corners = (4 - PI) * 0.01;
     assert_true(fit.area <= ((3 + 2 * out) * (1 + 2 * out) - corners) * (1 + NEAR));
     free_outline(&box);
 }

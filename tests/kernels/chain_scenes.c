@@ -18,7 +18,6 @@
 
 enum { SAMPLES = 1000, TIMES = 50 };
 
-#define PI                                 3.14159265358979323846
 #define EXPECT(found, expected, tolerance) assert_true(fabs((double)(found) - (expected)) <= (tolerance))
 
 /* A bowl of one arc about the origin, from the angle `low` to `high` as seen from its centre. */

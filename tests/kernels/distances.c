@@ -19,8 +19,6 @@
 #include "narc_scene.h"
 #include "scene.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* How far from 1 a normal's length may be, and how far, in radians, a normal may stray from a sector. */
 static const double unit_tolerance = 1e-6;
 
@@ -48,7 +46,7 @@ static const char *const placement_names[POINT_PLACES] = {"near",   "deep", "tou
 /* In a shape's own coordinates; the shape's size is about 1. */
 static narc_point place_point(struct test_random *random, const struct shape *shape, enum point_placement placement) {
     const narc_arc arc = shape->arcs[random_below(random, shape->count)];
-    const double angle = random_between(random, -pi, pi), x = cos(arc.start), y = sin(arc.start);
+    const double angle = random_between(random, -PI, PI), x = cos(arc.start), y = sin(arc.start);
     const narc_point start = {arc.center_x + arc.radius * x, arc.center_y + arc.radius * y};
     const double series = (random_below(random, 2) ? 1 : -1) * random_log_between(random, 1e-8, 1e-3);
     narc_point p;
@@ -125,7 +123,7 @@ static struct shape make_kind(struct test_random *random, int kind) {
 static struct body random_body(struct test_random *random, narc_precision precision) {
     const double scale = random_below(random, 2) ? 1 : random_log_between(random, 1e-6, 1e6);
     const double way = random_below(random, 2) ? 2 : scale * (precision == NARC_FLOAT64 ? 1e7 : 1e3);
-    struct body body = turned_body(random_between(random, -pi, pi), scale);
+    struct body body = turned_body(random_between(random, -PI, PI), scale);
     if (random_below(random, 4) == 0) {
         const float factor = (float)(1 + 0.498 * NARC_ROTATION_TOLERANCE * random_between(random, -1, 1));
         body.cosine *= factor;
@@ -199,8 +197,8 @@ static struct reference_body unit_reference(const struct scene *scene, uint32_t 
 /* How far a direction lies outside the sector of an arc, in radians. */
 static double angle_outside(const narc_arc *arc, double angle) {
     double sweep = arc->end - arc->start;
-    sweep = sweep <= 0 ? sweep + 2 * pi : sweep;
-    const double from_middle = remainder(angle - (arc->start + sweep / 2), 2 * pi);
+    sweep = sweep <= 0 ? sweep + 2 * PI : sweep;
+    const double from_middle = remainder(angle - (arc->start + sweep / 2), 2 * PI);
     return fmax(fabs(from_middle) - sweep / 2, 0);
 }
 
@@ -217,7 +215,7 @@ static const char *check_feature(const struct reference_body *body, const narc_d
     const double center_x = c * arc->center_x - s * arc->center_y, center_y = s * arc->center_x + c * arc->center_y;
     const double radius = body->scale * arc->radius;
     if (row->feature & NARC_FEATURE_EDGE) {
-        const double off = remainder(angle - arc->start, 2 * pi);
+        const double off = remainder(angle - arc->start, 2 * PI);
         const double across = (place_x - center_x) * x + (place_y - center_y) * y - radius;
         return row->radius != INFINITY                         ? "radius of an edge"
                : fabs(off) > 2 * unit_tolerance                ? "the edge has another normal"
@@ -237,7 +235,7 @@ static const char *check_feature(const struct reference_body *body, const narc_d
 /* What is wrong with a row, or NULL; raises the errors as fractions of the bound. */
 static const char *check_row(const struct reference_body *body, const struct asked_point *point,
                              const narc_distance *row, struct fractions *worst) {
-    const narc_arc dot = {0, 0, 0, 0, 2 * pi};
+    const narc_arc dot = {0, 0, 0, 0, 2 * PI};
     const struct reference_body other = {&dot, 1, point->x, point->y, 1, 0, 1};
     const double dx = point->x - body->x, dy = point->y - body->y;
     const double bound = NARC_ERROR_BOUND * (hypot(dx, dy) + reference_extent(body));
@@ -325,14 +323,14 @@ TEST(test_double_positions) { check_all_kinds("points, double positions", NARC_F
  * the arc's end and the arc behind the edge have the same separation but for rounding. */
 TEST(test_short_arcs) {
     const double turn = 4.7e-5, flat = 1e-3;
-    const struct shape shape = {{{0, 0, 1, 0, turn}, {-flat * turn, flat, 1, turn, pi}, {0, 0, 1, pi, 2 * pi}}, 3};
+    const struct shape shape = {{{0, 0, 1, 0, turn}, {-flat * turn, flat, 1, turn, PI}, {0, 0, 1, PI, 2 * PI}}, 3};
     struct test_random random = test_random_named("points, short arcs");
     const size_t count = test_trials(1000);
     struct point_scene scene = {create_scene(NARC_FLOAT64, 1, count, 0), calloc(count, sizeof *scene.points), count};
     assert_non_null(scene.points);
     scene_add_shape(&scene.scene, &shape);
     for (size_t k = 0; k < count; k++) {
-        const struct body body = turned_body(random_between(&random, -pi, pi), 1);
+        const struct body body = turned_body(random_between(&random, -PI, PI), 1);
         const double along = flat * random_between(&random, -1, 2), c = (double)body.cosine, s = (double)body.sine;
         const double x = cos(turn) - along * sin(turn), y = sin(turn) + along * cos(turn);
         const uint32_t index = scene_add_body(&scene.scene, body);

@@ -34,8 +34,6 @@ static const uint64_t golden_methods[] = {0x85810ad0d8fcad45u, 0xde05f3d86d13b14
 static const uint64_t golden_poses[] = {0x04246f5f8f209554u, 0x8b6998bde9bc55d9u};
 #endif
 
-#define PI 3.14159265358979323846
-
 /* Angles of the directions (3, 4) / 5, (7, 24) / 25 and (20, 99) / 101. */
 #define ANGLE_5   0.92729521800161224
 #define ANGLE_25  1.28700221758656973

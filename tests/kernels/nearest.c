@@ -19,8 +19,6 @@
 #include "narc_scene.h"
 #include "scene.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* ------------------------------------------------------------------------------------------------ scenes */
 
 /* Bodies, their boxes and an index, and points to ask of. */
@@ -54,7 +52,7 @@ static struct scene make_scene(struct test_random *random, narc_precision precis
         scene_add_shape(&scene, &shape);
     }
     for (size_t k = 0; k < count; k++) {
-        struct body body = turned_body(random_between(random, -pi, pi), random_log_between(random, 0.1, 2));
+        struct body body = turned_body(random_between(random, -PI, PI), random_log_between(random, 0.1, 2));
         body.shape = (uint32_t)random_below(random, SHAPES);
         body.x = away + random_between(random, -spread, spread);
         body.y = away + random_between(random, -spread, spread);

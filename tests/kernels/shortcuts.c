@@ -14,8 +14,6 @@
 #include "placements.h"
 #include "plain.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* The ordinary families first, then the hard ones. */
 enum { FAMILIES = FAMILY_COUNT + HARD_COUNT };
 
@@ -87,7 +85,7 @@ static struct shape make_faced(struct test_random *random) {
     const narc_point *const corners[] = {octagon, pentagon, triangle};
     const size_t counts[] = {8, 5, 3}, kind = random_below(random, 4);
     struct shape shape = {.count = 3,
-                          .arcs = {{0, -1, 0, -pi / 2, 0}, {0, 1, 0, 0, pi / 2}, {0, 0, 1, pi / 2, 1.5 * pi}}};
+                          .arcs = {{0, -1, 0, -PI / 2, 0}, {0, 1, 0, 0, PI / 2}, {0, 0, 1, PI / 2, 1.5 * PI}}};
     if (kind == 3)
         return shape; /* half a disc */
     shape.count = NARC_MAX_ARCS;
@@ -108,9 +106,9 @@ TEST(test_faces_at_x) {
     }
     for (size_t k = 0; k < count; k++) {
         const double beside = random_log_between(&random, 1e-10, random_below(&random, 4) ? 1e-4 : 0.03);
-        const double turned = random_below(&random, 2) ? 0 : random_between(&random, -pi, pi);
+        const double turned = random_below(&random, 2) ? 0 : random_between(&random, -PI, PI);
         struct body a = turned_body(turned, 1),
-                    b = turned_body(turned + pi + (random_below(&random, 3) ? -beside : beside), 1);
+                    b = turned_body(turned + PI + (random_below(&random, 3) ? -beside : beside), 1);
         const double gap = random_below(&random, 2)
                                ? -random_between(&random, 0, 0.4)
                                : random_log_between(&random, 1e-8, 0.1) * (random_below(&random, 2) ? 1 : -1);
@@ -326,7 +324,7 @@ TEST(test_specks) {
     for (size_t round = 0; round < test_trials(2); round++) {
         struct scene scene = create_scene(NARC_FLOAT64, SHAPES, 2 * PAIRS, PAIRS);
         const struct shape half = {
-            .count = 3, .arcs = {{0, -1, 0, -pi / 2, 0}, {0, 1, 0, 0, pi / 2}, {0, 0, 1, pi / 2, 3 * pi / 2}}};
+            .count = 3, .arcs = {{0, -1, 0, -PI / 2, 0}, {0, 1, 0, 0, PI / 2}, {0, 0, 1, PI / 2, 3 * PI / 2}}};
         const uint32_t disc = scene_add_shape(&scene, &half);
         for (size_t k = 1; k < SHAPES; k++) {
             const struct shape speck = k % 2 ? make_hard_shape(&random, k % 4 == 1 ? HARD_LONG : HARD_CORNERS)
@@ -334,8 +332,8 @@ TEST(test_specks) {
             scene_add_shape(&scene, &speck);
         }
         for (size_t k = 0; k < PAIRS; k++) {
-            const double size = random_log_between(&random, 1e3, 1e4), angle = random_between(&random, -pi, pi);
-            struct body a = turned_body(random_between(&random, -pi, pi), 1), b = turned_body(angle, size);
+            const double size = random_log_between(&random, 1e3, 1e4), angle = random_between(&random, -PI, PI);
+            struct body a = turned_body(random_between(&random, -PI, PI), 1), b = turned_body(angle, size);
             a.shape = 1 + (uint32_t)random_below(&random, SHAPES - 1);
             b.shape = disc;
             /* The speck's point furthest towards the side, a way from the corner along it, a little in or out. */
@@ -358,7 +356,7 @@ TEST(test_specks) {
 static struct shape move_away(struct test_random *random, struct shape shape, double size, double shift) {
     narc_circle bound;
     assert_true(narc_compute_bounding_circle(shape.arcs, shape.count, &bound));
-    const double angle = random_between(random, -pi, pi), factor = size / bound.radius;
+    const double angle = random_between(random, -PI, PI), factor = size / bound.radius;
     for (size_t i = 0; i < shape.count; i++) {
         narc_arc *arc = &shape.arcs[i];
         arc->center_x = (arc->center_x - bound.x) * factor + shift * cos(angle);
@@ -370,7 +368,7 @@ static struct shape move_away(struct test_random *random, struct shape shape, do
 
 /* Adds a body somewhere within `reach` of the world's origin, seen from the middle of its shape. */
 static uint32_t add_near_origin(struct test_random *random, struct scene *scene, uint32_t shape, double reach) {
-    struct body body = turned_body(random_below(random, 2) ? 0 : random_between(random, -pi, pi), 1);
+    struct body body = turned_body(random_below(random, 2) ? 0 : random_between(random, -PI, PI), 1);
     const double c = (double)body.cosine, s = (double)body.sine;
     narc_circle bound;
     assert_true(narc_compute_bounding_circle(scene->shapes[shape].arcs, scene->shapes[shape].count, &bound));

@@ -235,7 +235,7 @@ static narc_point place_point(const struct reference_body *body, double x, doubl
 
 double reference_height(const struct reference_body *body, double x, double y) {
     /* A point at the position: what lies between the two along (x, y) is the height, negative. */
-    static const narc_arc point = {0, 0, 0, -3.14159265358979323846, 3.14159265358979323846};
+    static const narc_arc point = {0, 0, 0, -PI, PI};
     const struct reference_body at_position = {&point, 1, body->x, body->y, 1, 0, 1};
     return -reference_gap_along(body, &at_position, x, y);
 }

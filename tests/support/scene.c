@@ -11,8 +11,6 @@
 #include "expect.h"
 #include "guard.h"
 
-static const double pi = 3.14159265358979323846;
-
 static void *allocate(size_t count, size_t size) {
     void *memory = calloc(count ? count : 1, size);
     assert_non_null(memory);
@@ -206,7 +204,7 @@ struct scene make_random_scene(struct test_random *random, narc_precision precis
     }
     for (size_t k = 0; k < bodies; k++) {
         bool lattice = random_below(random, 8) == 0;
-        double angle = lattice ? pi / 2 * (double)random_below(random, 4) : random_between(random, -pi, pi);
+        double angle = lattice ? PI / 2 * (double)random_below(random, 4) : random_between(random, -PI, PI);
         struct body body = turned_body(angle, lattice ? 1 : random_log_between(random, 0.25, 2));
         body.x = random_between(random, 0, world);
         body.y = random_between(random, 0, world);
