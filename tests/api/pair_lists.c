@@ -10,9 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "boxes.h"
 #include "broad_phase.h"
-#include "counting.h"
 #include "families.h"
+#include "ledger.h"
 #include "narc.h"
 
 /* One object for each number of threads, and one that finds all pairs whenever it makes a list. */
@@ -67,18 +68,13 @@ static const narc_pair_list *update(narc_broad_phase *broad, const narc_shapes *
 
 static double half_of_margin = 0.25, skin = 0.5625;
 
-static bool exists(const narc_box *b) {
-    return isfinite(b->min_x) && isfinite(b->min_y) && isfinite(b->max_x) && isfinite(b->max_y) &&
-           b->min_x <= b->max_x && b->min_y <= b->max_y;
-}
-
 static wide_box widen(const wide_box *b, double by) {
     return (wide_box){b->min_x - by, b->min_y - by, b->max_x + by, b->max_y + by, b->exists};
 }
 
 static wide_box reach_of(const body *b) {
     const wide_box box = {(double)b->box.min_x, (double)b->box.min_y, (double)b->box.max_x, (double)b->box.max_y,
-                          exists(&b->box) && b->reach >= 0 && isfinite(b->reach)};
+                          !is_empty(&b->box) && b->reach >= 0 && isfinite(b->reach)};
     return widen(&box, half_of_margin + (double)b->reach);
 }
 
@@ -329,7 +325,7 @@ static void check_step(reference *r, narc_broad_phase *const *broads, body *bodi
 
 static float eighths(struct test_random *random, size_t most) { return (float)random_below(random, most + 1) / 8; }
 
-static narc_box random_box(struct test_random *random, size_t side) {
+static narc_box eighths_box(struct test_random *random, size_t side) {
     const float x = eighths(random, 8 * side), y = eighths(random, 8 * side);
     return (narc_box){x, y, x + eighths(random, 16), y + eighths(random, 16)};
 }
@@ -342,7 +338,7 @@ static body random_body(struct test_random *random, size_t side, uint64_t id) {
     return (body){.id = id * 0x9e3779b97f4a7c15u,
                   .category = choose_mask(random),
                   .mask = choose_mask(random),
-                  .box = random_box(random, side),
+                  .box = eighths_box(random, side),
                   .group = random_below(random, 4) ? 0 : 1 + (uint32_t)random_below(random, 3),
                   .kind = random_below(random, 2) ? 0 : (uint8_t)random_below(random, 8)};
 }
@@ -382,7 +378,7 @@ static size_t change(struct test_random *random, body *bodies, size_t count, siz
         return count - 1;
     case 6:
     case 7:
-        bodies[k].box = random_box(random, side);
+        bodies[k].box = eighths_box(random, side);
         break;
     default: /* within the skin, mostly */
         shift(&bodies[k].box, eighths(random, 2) - 0.125f, eighths(random, 2) - 0.125f);
@@ -821,8 +817,8 @@ TEST(notices_another_store_in_the_same_place) {
 TEST(allocates_nothing_once_it_has_grown) {
     enum { COUNT = 3000, STEPS = 30 };
     struct test_random random = test_random_named("steady lists");
-    struct counter counter = {.left = SIZE_MAX};
-    narc_broad_phase *broad = create_broad_phase(&counter);
+    struct ledger ledger = {0};
+    narc_broad_phase *broad = create_broad_phase(&ledger);
     const narc_workers workers = narc_openmp_workers(2);
     narc_box boxes[COUNT];
     uint64_t ids[COUNT];
@@ -830,16 +826,16 @@ TEST(allocates_nothing_once_it_has_grown) {
     for (int step = 0; step < STEPS; step++) {
         const narc_pair_options options = {.margin = 0.5f, .skin = 0.125f, .id = NARC_ARRAY(ids), .workers = &workers};
         for (size_t k = 0; k < COUNT && step % 2 == 0; k++) { /* all others, and all in other places */
-            boxes[k] = random_box(&random, 60);
+            boxes[k] = eighths_box(&random, 60);
             ids[k] = random_bits(&random);
         }
         const narc_pair_list *list = update_boxes(broad, boxes, COUNT, &options);
         assert_int_equal(list->kept, step % 2 == 1);
         assert_true(list->kept || list->added_count == list->pairs.count);
         if (step == 7)
-            after = counter.allocations;
+            after = ledger.allocations;
     }
-    assert_int_equal(counter.allocations, after);
+    assert_int_equal(ledger.allocations, after);
     narc_destroy_broad_phase(broad);
 }
 
@@ -850,21 +846,22 @@ TEST(survives_failing_allocations) {
     static uint64_t ids[MANY], later_ids[MANY];
     struct test_random random = test_random_named("failing lists");
     for (size_t k = 0; k < MANY; k++) {
-        boxes[k] = random_box(&random, 30);
+        boxes[k] = eighths_box(&random, 30);
         ids[k] = random_bits(&random);
         later_ids[k] = k % 3 ? ids[k] : random_bits(&random);
     }
     narc_pair_options options = {.skin = 0.125f};
     size_t failures = 0;
     for (size_t left = 0;; left++) {
-        struct counter counter = {.left = SIZE_MAX}, free_counter = {.left = SIZE_MAX};
-        narc_broad_phase *broad = create_broad_phase(&counter), *whole = create_broad_phase(&free_counter);
+        struct ledger ledger = {0}, other_ledger = {0};
+        narc_broad_phase *broad = create_broad_phase(&ledger), *whole = create_broad_phase(&other_ledger);
         const narc_pair_list *list, *whole_list, *untouched;
         options.id = (narc_word_column){ids, sizeof *ids};
         list = update_boxes(broad, boxes, FEW, &options);
         whole_list = update_boxes(whole, boxes, FEW, &options);
         options.id = (narc_word_column){later_ids, sizeof *later_ids};
-        counter.left = left;
+        ledger.limited = true;
+        ledger.left = left;
         untouched = list;
         narc_error error;
         const narc_status status = narc_update_box_pairs(broad, boxes, MANY, &options, &untouched, &error);
@@ -873,7 +870,7 @@ TEST(survives_failing_allocations) {
             assert_int_equal(status, NARC_ERROR_MEMORY);
             assert_ptr_equal(untouched, list);
             check_equal_lists(list, whole_list);
-            counter.left = SIZE_MAX;
+            ledger.limited = false;
             /* The same bodies again, which must not be taken for those that the step that failed had. */
             options.id = (narc_word_column){ids, sizeof *ids};
             list = update_boxes(broad, boxes, FEW, &options);
@@ -897,20 +894,20 @@ TEST(survives_failing_allocations) {
 TEST(keeps_no_list_that_was_not_made) {
     enum { COUNT = 500 };
     narc_box boxes[COUNT];
-    struct counter counter = {.left = SIZE_MAX};
+    struct ledger ledger = {0};
     const narc_pair_options options = {.skin = 0.125f};
-    narc_broad_phase *broad = create_broad_phase(&counter);
+    narc_broad_phase *broad = create_broad_phase(&ledger);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){2 * (float)k, 0, 2 * (float)k + 1, 1};
     const narc_pair_list *list = update_boxes(broad, boxes, COUNT, &options);
     assert_int_equal(list->pairs.count, 0);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){0, 0, 1, 1};
-    counter.left = 0;
+    ledger.limited = true;
     for (int trial = 0; trial < 3; trial++)
         assert_int_equal(narc_update_box_pairs(broad, boxes, COUNT, &options, &list, NULL), NARC_ERROR_MEMORY);
     assert_int_equal(list->pairs.count, 0);
-    counter.left = SIZE_MAX;
+    ledger.limited = false;
     list = update_boxes(broad, boxes, COUNT, &options);
     assert_int_equal(list->pairs.count, COUNT * (COUNT - 1) / 2);
     assert_int_equal(list->added_count, list->pairs.count);

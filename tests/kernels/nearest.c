@@ -5,7 +5,6 @@
  */
 #include <float.h>
 #include <math.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -269,37 +268,12 @@ TEST(test_ties) {
 
 /* ------------------------------------------------------------------------------------------------ the same bytes */
 
-struct task {
-    void (*function)(void *, unsigned);
-    void *argument;
-    unsigned index;
-};
-
-static void *run_task(void *argument) {
-    const struct task *task = argument;
-    task->function(task->argument, task->index);
-    return NULL;
-}
-
-static void run_threads(void *context, unsigned count, void (*task)(void *, unsigned), void *argument) {
-    pthread_t thread[8];
-    struct task tasks[8];
-    (void)context;
-    assert_true(count <= 8);
-    for (unsigned k = 0; k < count; k++) {
-        tasks[k] = (struct task){task, argument, k};
-        assert_int_equal(pthread_create(&thread[k], NULL, run_task, &tasks[k]), 0);
-    }
-    for (unsigned k = 0; k < count; k++)
-        pthread_join(thread[k], NULL);
-}
-
 TEST(test_same_bytes) {
     enum { POINTS = 700, MOST = 3 };
     struct test_random random = test_random_named("nearest, bytes");
     for (int precision = NARC_FLOAT32; precision <= NARC_FLOAT64; precision++) {
         struct question q = ask(&random, (narc_precision)precision, 300, POINTS, 20, 0);
-        const narc_workers workers = {NULL, 5, run_threads};
+        const narc_workers workers = narc_openmp_workers(5);
         const narc_nearest_options options = {.most = MOST};
         narc_nearest_options threaded = options;
         threaded.search.workers = &workers;

@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "counting.h"
+#include "families.h"
+#include "ledger.h"
 #include "narc_methods.h"
 #include "store.h"
 #include "tests.h"
@@ -16,13 +17,6 @@
 enum { MOST = 4096 };
 
 static narc_chain_entry entries[MOST];
-
-static narc_shapes *create_store(struct counter *counter) {
-    const narc_allocator allocator = {counted_allocate, counted_release, counter};
-    narc_shapes *shapes = NULL;
-    assert_int_equal(narc_create_shapes(counter ? &allocator : NULL, &shapes), NARC_OK);
-    return shapes;
-}
 
 static size_t add(narc_shapes *shapes, const narc_arc *arcs, size_t count, const narc_chain_options *options) {
     size_t found = 0;
@@ -175,7 +169,7 @@ static void check_numbers(const narc_arc *arcs, size_t count, const narc_chain_e
 
 /* Divides a chain and looks at all of it; returns the number of entries. */
 static size_t check_division(const narc_arc *arcs, size_t count, const narc_chain_options *options) {
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     const size_t found = add(shapes, arcs, count, options);
     const bool closed = options && options->closed;
     struct front *fronts = malloc(found * sizeof *fronts);
@@ -336,7 +330,7 @@ TEST(welds_collinear_edges) {
         walk_arc(&t, 0, 0);
         walk_line(&t, 0.125);
     }
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     assert_int_equal(add(shapes, t.arcs, t.count, NULL), EDGES / 24 + 1); /* 4 long, 1 in common */
     assert_int_equal(narc_count_shapes(shapes), 1);
     assert_int_equal(add(shapes, t.arcs, t.count, &(narc_chain_options){.weld = 0.125 * EDGES}), 1);
@@ -349,7 +343,7 @@ TEST(welds_collinear_edges) {
     }
     narc_error error;
     size_t found;
-    shapes = create_store(NULL);
+    shapes = empty_store();
     expect_error(narc_add_chain(shapes, t.arcs, t.count, NULL, entries, MOST, &found, &error), NARC_ERROR_NOT_CLOSED,
                  &error, "arc 5: its start normal is");
     narc_destroy_shapes(shapes);
@@ -374,7 +368,7 @@ TEST(divides_runs_of_many_arcs) {
 /* The store is as it was before, and so are the outputs. */
 static void check_refused(const narc_arc *arcs, size_t count, const narc_chain_options *options, narc_status status,
                           size_t index, const char *words) {
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     const uint64_t changes = shapes->change_count;
     size_t found = 77;
     narc_error error;
@@ -415,7 +409,7 @@ static void make_ground(narc_arc arcs[GROUND]) {
 TEST(refuses_bad_arguments) {
     narc_arc arcs[GROUND];
     make_ground(arcs);
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     size_t found = 77;
     narc_error error;
     assert_int_equal(check_division(arcs, GROUND, NULL), 7);
@@ -543,7 +537,7 @@ TEST(refuses_chains_that_cross_themselves) {
             walk_arc(&t, 100, 3); /* nearly back, and downhill */
     }
     check_division(t.arcs, 300, NULL);
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     assert_true(add(shapes, t.arcs, 1501, NULL) > 1500);
     narc_destroy_shapes(shapes);
     check_refused(t.arcs, t.count, NULL, NARC_ERROR_NOT_SIMPLE, SIZE_MAX, "meets arc");
@@ -620,7 +614,7 @@ TEST(accepts_parts_that_are_alike) {
         }
         walk_line(&t, size * random_between(&random, 0.1, 2));
         walk_arc(&t, 0, 0);
-        narc_shapes *shapes = create_store(NULL);
+        narc_shapes *shapes = empty_store();
         add(shapes, t.arcs, t.count, NULL);
         free(t.arcs);
         t = create_turtle(x, y, random_between(&random, -9, 9)); /* a cusp, with one tangent on both sides */
@@ -649,7 +643,7 @@ TEST(accepts_chains_that_come_near_themselves) {
     struct turtle t = create_turtle(0, 0, 0);
     for (int k = 1; k < 60; k++)
         walk_arc(&t, 1 + 0.01 * k, 1.5); /* a spiral */
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     assert_in_range(add(shapes, t.arcs, t.count, NULL), 45, 60);
     narc_destroy_shapes(shapes);
     free(t.arcs);
@@ -666,16 +660,17 @@ TEST(fails_wherever_memory_ends) {
     size_t failures = 0;
     narc_status status = NARC_ERROR_MEMORY;
     for (size_t left = 0; status != NARC_OK; left++) {
-        struct counter counter = {.left = SIZE_MAX};
-        narc_shapes *shapes = create_store(&counter);
+        struct ledger ledger = {0};
+        narc_shapes *shapes = ledger_store(&ledger);
         const narc_arc ball = {0, 0, 1, 0, 2 * PI};
         size_t found = 77;
         narc_error error;
         assert_int_equal(narc_add_shape(shapes, &ball, 1, NULL, NULL), NARC_OK);
         const uint64_t changes = shapes->change_count;
-        counter.left = left;
+        ledger.limited = true;
+        ledger.left = left;
         status = narc_add_chain(shapes, t.arcs, t.count, &ring, entries, MOST, &found, &error);
-        counter.left = SIZE_MAX;
+        ledger.limited = false;
         if (status != NARC_OK) {
             expect_error(status, NARC_ERROR_MEMORY, &error, "no ");
             assert_int_equal(found, 77);
@@ -703,7 +698,7 @@ static void add_ring(narc_shapes *shapes, size_t teeth, narc_chain_entry *out_en
 /* Pieces come and go as shapes do, and are none that a list of arcs makes. */
 TEST(keeps_pieces_as_shapes) {
     static narc_chain_entry first[MOST], second[MOST];
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     size_t count, again;
     narc_arc arcs[NARC_MAX_ARCS];
     add_ring(shapes, 6, first, &count);
@@ -736,7 +731,7 @@ TEST(keeps_pieces_as_shapes) {
     assert_int_equal(shapes->piece_count, shape_count - 1);
     assert_int_equal(narc_shape_flags(shapes, first[run].shape) & NARC_SHAPE_RUN, 0);
     narc_destroy_shapes(shapes);
-    shapes = create_store(NULL);
+    shapes = empty_store();
     add_ring(shapes, 6, first, &count);
     for (size_t k = 0; k < count; k++)
         assert_int_equal(narc_remove_shape(shapes, first[k].shape, NULL), NARC_OK);
@@ -753,7 +748,7 @@ TEST(finds_boxes_of_fronts) {
     struct test_random random = test_random_named("front boxes");
     for (size_t trial = 0; trial < test_trials(50); trial++) {
         struct turtle t = walk_ground(&random, 20, 1.2);
-        narc_shapes *shapes = create_store(NULL);
+        narc_shapes *shapes = empty_store();
         const size_t found = add(shapes, t.arcs, t.count, NULL);
         for (size_t k = 0; k < found; k++) {
             const struct front f = get_front(shapes, &entries[k]);

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "counting.h"
 #include "families.h"
 #include "guard.h"
+#include "ledger.h"
 #include "oracle.h"
 #include "support.h"
 #include "tests.h"
@@ -425,8 +425,8 @@ TEST(unions_refuse_bad_arguments) {
     const struct shape box = box_of(2, 1, 0.25);
     narc_mass mass;
     narc_error error;
-    struct counter counter = {.left = 0};
-    const narc_allocator failing = {counted_allocate, counted_release, &counter};
+    struct ledger ledger = {.limited = true};
+    const narc_allocator failing = ledger_allocator(&ledger);
     memset(&mass, GUARD_JUNK, sizeof mass);
     const narc_mass junk = mass;
     add_part(&two, &box, 0, 0, 0);
@@ -442,9 +442,9 @@ TEST(unions_refuse_bad_arguments) {
     UNION(two.arcs, two.counts, 2, NULL, &mass, NARC_ERROR_NOT_FINITE, "part 1: arc 1: radius is");
     assert_int_equal(error.index, 1);
     assert_memory_equal(&mass, &junk, sizeof mass);
-    counter.left = 1;
+    ledger.left = 1;
     expect_ok(narc_compute_union_mass(two.arcs, two.counts, 1, &failing, &mass, &error), &error);
-    assert_int_equal(counter.allocations, 1);
+    assert_int_equal(ledger.allocations, 1);
 }
 
 TEST(moves_refuse_bad_arguments) {
