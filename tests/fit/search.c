@@ -204,21 +204,6 @@ TEST(test_more_is_never_worse) {
     }
 }
 
-TEST(test_turned_and_mirrored) {
-    struct test_random random = test_random_named("turned");
-    struct outline of = make_random_points(&random, 10);
-    const double area = fit_shape(&of, NARC_FIT_N_ARC, NARC_FIT_BOUND_AREA, 6).area;
-    for (int k = 1; k <= 4; k++) {
-        const double scale = 1 + 0.5 * k;
-        struct outline moved = make_moved(&of, scale, 0.9 * k, k % 2, (narc_point){k, -2 * k});
-        const double there = fit_shape(&moved, NARC_FIT_N_ARC, NARC_FIT_BOUND_AREA, 6).area / (scale * scale);
-        if (!(fabs(there / area - 1) <= NEAR))
-            fail_msg("turned by %g, mirrored %d: area times %.6f", 0.9 * k, k % 2, there / area);
-        free_outline(&moved);
-    }
-    free_outline(&of);
-}
-
 /* ---------------------------------------------------------------------------- a least radius */
 
 static void check_least_radius(const struct outline *of, narc_fit_family family, narc_fit_goal goal, size_t arcs,

@@ -107,17 +107,7 @@ struct point_scene {
     size_t count;
 };
 
-enum { SHAPES = 4, KINDS = FAMILY_COUNT + HARD_COUNT };
-
-static const char *kind_name(int kind) {
-    return kind < FAMILY_COUNT ? family_name((enum family)kind)
-                               : hard_family_name((enum hard_family)(kind - FAMILY_COUNT));
-}
-
-static struct shape make_kind(struct test_random *random, int kind) {
-    return kind < FAMILY_COUNT ? make_shape(random, (enum family)kind)
-                               : make_hard_shape(random, (enum hard_family)(kind - FAMILY_COUNT));
-}
+enum { SHAPES = 4 };
 
 /* A pose near the origin or far from it; sizes about 1, or not at all; rotations now and then drifted. */
 static struct body random_body(struct test_random *random, narc_precision precision) {
@@ -141,7 +131,7 @@ static struct point_scene make_point_scene(struct test_random *random, narc_prec
     made.points = calloc(count, sizeof *made.points);
     assert_non_null(made.points);
     for (int k = 0; k < SHAPES; k++) {
-        const struct shape shape = make_kind(random, kind);
+        const struct shape shape = make_any_shape(random, (size_t)kind);
         scene_add_shape(&made.scene, &shape);
     }
     for (size_t k = 0; k < count; k++) {
@@ -275,9 +265,9 @@ static const double expected_part = 0.2;
 
 static void check_all_kinds(const char *name, narc_precision precision, size_t rounds) {
     struct test_random random = test_random_named(name);
-    struct fractions worst[KINDS + POINT_PLACES] = {{0}};
+    struct fractions worst[ALL_FAMILIES + POINT_PLACES] = {{0}};
     size_t wrong_count = 0, count = POINT_PLACES * test_trials(rounds);
-    for (int kind = 0; kind < KINDS; kind++) {
+    for (int kind = 0; kind < ALL_FAMILIES; kind++) {
         struct point_scene scene = make_point_scene(&random, precision, kind, count);
         narc_distance *rows = find_distances(&scene);
         for (size_t k = 0; k < count; k++) {
@@ -286,7 +276,7 @@ static void check_all_kinds(const char *name, narc_precision precision, size_t r
             const char *wrong = check_row(&body, &scene.points[k], &rows[k], &errors);
             if (rows[k].point != k || rows[k].body != scene.points[k].body)
                 wrong = "numbers";
-            struct fractions *const tallies[2] = {&worst[kind], &worst[KINDS + k % POINT_PLACES]};
+            struct fractions *const tallies[2] = {&worst[kind], &worst[ALL_FAMILIES + k % POINT_PLACES]};
             for (int t = 0; t < 2; t++) {
                 tallies[t]->separation = fmax(tallies[t]->separation, errors.separation);
                 tallies[t]->normal = fmax(tallies[t]->normal, errors.normal);
@@ -295,7 +285,7 @@ static void check_all_kinds(const char *name, narc_precision precision, size_t r
             if (wrong && wrong_count++ < SHOWN) {
                 print_error("%s, %s: %s; point (%a, %a); separation %.9g, normal (%.9g, %.9g), place (%.9g, %.9g), "
                             "feature %d, radius %g; errors %g %g %g\n",
-                            kind_name(kind), placement_names[k % POINT_PLACES], wrong, scene.points[k].x,
+                            any_family_name((size_t)kind), placement_names[k % POINT_PLACES], wrong, scene.points[k].x,
                             scene.points[k].y, (double)rows[k].separation, (double)rows[k].normal_x,
                             (double)rows[k].normal_y, (double)rows[k].place_x, (double)rows[k].place_y, rows[k].feature,
                             (double)rows[k].radius, errors.separation, errors.normal, errors.point);
@@ -306,12 +296,13 @@ static void check_all_kinds(const char *name, narc_precision precision, size_t r
         destroy_point_scene(&scene);
     }
     printf("  %-11s %12s %7s %7s   (largest errors, as fractions of the bound)\n", "", "separation", "normal", "place");
-    for (int k = 0; k < KINDS + POINT_PLACES; k++)
-        printf("  %-11s %12.3f %7.3f %7.3f\n", k < KINDS ? kind_name(k) : placement_names[k - KINDS],
-               worst[k].separation, worst[k].normal, worst[k].point);
+    for (int k = 0; k < ALL_FAMILIES + POINT_PLACES; k++)
+        printf("  %-11s %12.3f %7.3f %7.3f\n",
+               k < ALL_FAMILIES ? any_family_name((size_t)k) : placement_names[k - ALL_FAMILIES], worst[k].separation,
+               worst[k].normal, worst[k].point);
     if (wrong_count)
         fail_msg("%zu wrong rows", wrong_count);
-    for (int k = 0; k < KINDS; k++)
+    for (int k = 0; k < ALL_FAMILIES; k++)
         assert_true(worst[k].separation < expected_part && worst[k].normal < expected_part);
 }
 

@@ -6,18 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "layouts.h"
 #include "plain.h"
-
-static void check_scene(const struct scene *scene, const char *name) {
-    struct columns columns = create_columns(scene, LAYOUT_STRUCTURES, 0, scene->pair_count);
-    const struct plain_batch batch = make_plain_batch(scene, &columns.bodies, &columns.pairs, name);
-    check_plain_overlaps(&batch, NULL);
-    check_plain_contacts(&batch, &(narc_query){.margin = 0});
-    check_plain_contacts(&batch, &(narc_query){.margin = INFINITY});
-    free(batch.right);
-    destroy_columns(&columns);
-}
 
 static void add_pair(struct scene *scene, struct body a, struct body b) {
     round_position(&a, scene->precision);
@@ -50,7 +39,7 @@ TEST(test_vanishing_axes) {
         b.y = random_below(&random, 4) ? distance * sin(angle) : 0;
         add_pair(&scene, a, b);
     }
-    check_scene(&scene, "vanishing axes");
+    check_plain_scene(&random, &scene, "vanishing axes");
     destroy_scene(&scene);
 }
 
@@ -88,7 +77,7 @@ TEST(test_loose_joins) {
             b.shape = second;
             add_pair(&scene, a, b);
         }
-        check_scene(&scene, "loose joins");
+        check_plain_scene(&random, &scene, "loose joins");
         destroy_scene(&scene);
     }
 }

@@ -14,19 +14,6 @@
 #include "placements.h"
 #include "plain.h"
 
-/* The ordinary families first, then the hard ones. */
-enum { FAMILIES = FAMILY_COUNT + HARD_COUNT };
-
-static struct shape make_any(struct test_random *random, size_t family) {
-    return family < FAMILY_COUNT ? make_shape(random, (enum family)family)
-                                 : make_hard_shape(random, (enum hard_family)(family - FAMILY_COUNT));
-}
-
-static const char *any_name(size_t family) {
-    return family < FAMILY_COUNT ? family_name((enum family)family)
-                                 : hard_family_name((enum hard_family)(family - FAMILY_COUNT));
-}
-
 /* All answers of a scene in one layout: with the usual margins, and with margins beside the separation of one pair,
  * which the others must not mind. */
 static void check_scene(struct test_random *random, const struct scene *scene, enum layout layout, const char *name) {
@@ -49,18 +36,19 @@ static enum layout any_layout(struct test_random *random) {
 /* Every family against every other, in one kind of place. */
 static void check_hard_places(enum hard_placement placement, size_t trials) {
     struct test_random random = test_random_named(hard_placement_name(placement));
-    for (size_t a = 0; a < FAMILIES; a++) {
-        for (size_t b = 0; b < FAMILIES; b++) {
+    for (size_t a = 0; a < ALL_FAMILIES; a++) {
+        for (size_t b = 0; b < ALL_FAMILIES; b++) {
             const narc_precision precision = random_below(&random, 2) ? NARC_FLOAT64 : NARC_FLOAT32;
             const size_t rounds = test_trials(trials);
             struct scene scene = create_scene(precision, 2 * rounds, HARD_BODIES * rounds, HARD_BODIES / 2 * rounds);
             for (size_t round = 0; round < rounds; round++) {
-                const struct shape shape_a = make_any(&random, a), shape_b = make_any(&random, b);
+                const struct shape shape_a = make_any_shape(&random, a), shape_b = make_any_shape(&random, b);
                 const uint32_t index = scene_add_shape(&scene, &shape_a);
                 add_hard_pairs(&random, &scene, placement, index, scene_add_shape(&scene, &shape_b));
             }
             char name[128];
-            snprintf(name, sizeof name, "%s, %s against %s", hard_placement_name(placement), any_name(a), any_name(b));
+            snprintf(name, sizeof name, "%s, %s against %s", hard_placement_name(placement), any_family_name(a),
+                     any_family_name(b));
             check_scene(&random, &scene, any_layout(&random), name);
             destroy_scene(&scene);
         }
@@ -133,8 +121,8 @@ TEST(test_all_places) {
         const size_t count = test_trials(80);
         struct scene scene = create_scene(precision, 2 * count, 2 * count, count);
         for (size_t k = 0; k < count; k++) {
-            const struct shape shape_a = make_any(&random, random_below(&random, FAMILIES));
-            const struct shape shape_b = make_any(&random, random_below(&random, FAMILIES));
+            const struct shape shape_a = make_any_shape(&random, random_below(&random, ALL_FAMILIES));
+            const struct shape shape_b = make_any_shape(&random, random_below(&random, ALL_FAMILIES));
             struct body a, b;
             place_pair(&random, (enum placement)place, precision, &shape_a, &shape_b, &a, &b);
             a.shape = scene_add_shape(&scene, &shape_a);
@@ -156,7 +144,8 @@ TEST(test_crowds) {
         struct scene scene = create_scene(round % 3 ? NARC_FLOAT32 : NARC_FLOAT64, SHAPES, BODIES, PAIRS);
         const double world = random_log_between(&random, 0.3, 4);
         for (size_t k = 0; k < SHAPES; k++) {
-            const struct shape shape = make_any(&random, random_below(&random, FAMILIES - 1)); /* none far away */
+            const struct shape shape =
+                make_any_shape(&random, random_below(&random, ALL_FAMILIES - 1)); /* none far away */
             scene_add_shape(&scene, &shape);
         }
         for (size_t k = 0; k < BODIES; k++) {
@@ -193,8 +182,8 @@ TEST(test_runs) {
         struct scene scene =
             create_scene(NARC_FLOAT32, 2 * KINDS, HARD_BODIES * KINDS, HARD_BODIES / 2 * KINDS + PAIRS);
         for (size_t k = 0; k < KINDS; k++) {
-            const struct shape shape_a = make_any(&random, random_below(&random, FAMILIES));
-            const struct shape shape_b = make_any(&random, random_below(&random, FAMILIES));
+            const struct shape shape_a = make_any_shape(&random, random_below(&random, ALL_FAMILIES));
+            const struct shape shape_b = make_any_shape(&random, random_below(&random, ALL_FAMILIES));
             const uint32_t index = scene_add_shape(&scene, &shape_a);
             add_hard_pairs(&random, &scene, (enum hard_placement)(k % HARD_PLACES), index,
                            scene_add_shape(&scene, &shape_b));
@@ -246,8 +235,8 @@ static bool is_change(enum change change, const narc_contact *a, const narc_cont
 
 /* Two bodies somewhere near each other and a way for the second. */
 static struct way add_way(struct test_random *random, struct scene *scene) {
-    const struct shape shape_a = make_any(random, random_below(random, FAMILIES));
-    const struct shape shape_b = make_any(random, random_below(random, FAMILIES));
+    const struct shape shape_a = make_any_shape(random, random_below(random, ALL_FAMILIES));
+    const struct shape shape_b = make_any_shape(random, random_below(random, ALL_FAMILIES));
     const double ratio = random_below(random, 2) ? 1 : random_log_between(random, 1e-4, 1e4);
     struct body a = turned_body(random_between(random, -4, 4), 1), b = turned_body(0, ratio);
     narc_circle inner_a, inner_b;
@@ -328,7 +317,7 @@ TEST(test_specks) {
         const uint32_t disc = scene_add_shape(&scene, &half);
         for (size_t k = 1; k < SHAPES; k++) {
             const struct shape speck = k % 2 ? make_hard_shape(&random, k % 4 == 1 ? HARD_LONG : HARD_CORNERS)
-                                             : make_any(&random, random_below(&random, FAMILIES - 1));
+                                             : make_any_shape(&random, random_below(&random, ALL_FAMILIES - 1));
             scene_add_shape(&scene, &speck);
         }
         for (size_t k = 0; k < PAIRS; k++) {
@@ -401,7 +390,8 @@ TEST(test_far_from_origin) {
         struct scene scene = create_scene(NARC_FLOAT64, SHAPES, 2 * PAIRS, PAIRS);
         for (size_t k = 0; k < SHAPES; k++) {
             const bool joins = decade < 10 || k % 2;
-            const struct shape shape = make_any(&random, joins ? random_below(&random, FAMILIES - 1) : FAMILY_CIRCLE);
+            const struct shape shape =
+                make_any_shape(&random, joins ? random_below(&random, ALL_FAMILIES - 1) : FAMILY_CIRCLE);
             const struct shape moved = move_away(&random, shape, size, k % 2 ? 0 : shift);
             scene_add_shape(&scene, &moved);
         }

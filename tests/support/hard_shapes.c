@@ -223,3 +223,13 @@ struct shape make_hard_shape(struct test_random *random, enum hard_family family
         return make_away(random);
     }
 }
+
+struct shape make_any_shape(struct test_random *random, size_t family) {
+    return family < FAMILY_COUNT ? make_shape(random, (enum family)family)
+                                 : make_hard_shape(random, (enum hard_family)(family - FAMILY_COUNT));
+}
+
+const char *any_family_name(size_t family) {
+    return family < FAMILY_COUNT ? family_name((enum family)family)
+                                 : hard_family_name((enum hard_family)(family - FAMILY_COUNT));
+}
