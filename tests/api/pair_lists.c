@@ -40,7 +40,7 @@ typedef struct known_pair {
     bool seen;
 } known_pair;
 
-/* The reference: the last list, by ids. */
+/* The reference, the last list by ids, and what is compared with it. */
 typedef struct reference {
     wide_box kept[MOST_BODIES];
     body bodies[MOST_BODIES];
@@ -49,6 +49,7 @@ typedef struct reference {
     known_pair *pairs, *next;
     size_t pair_count, next_count, capacity;
     uint32_t *table; /* hash table of pairs: one more than their index */
+    narc_broad_phase *broads[OBJECTS];
 } reference;
 
 /* The calls where nothing fails. */
@@ -123,10 +124,14 @@ static reference *create_reference(size_t capacity) {
     r->next = calloc(capacity, sizeof *r->next);
     r->table = calloc(2 * capacity, sizeof *r->table);
     assert_true(r->pairs && r->next && r->table);
+    for (size_t t = 0; t < OBJECTS; t++)
+        r->broads[t] = create_broad_phase(NULL);
     return r;
 }
 
 static void destroy_reference(reference *r) {
+    for (size_t t = 0; t < OBJECTS; t++)
+        narc_destroy_broad_phase(r->broads[t]);
     free(r->pairs);
     free(r->next);
     free(r->table);
@@ -273,8 +278,7 @@ typedef struct totals {
 } totals;
 
 /* Gives all objects the same step. */
-static void check_step(reference *r, narc_broad_phase *const *broads, body *bodies, size_t count, bool with_ids,
-                       totals *sums) {
+static void check_step(reference *r, body *bodies, size_t count, bool with_ids, totals *sums) {
     narc_box *boxes = malloc((count + 1) * sizeof *boxes);
     for (size_t k = 0; k < count; k++)
         boxes[k] = bodies[k].box;
@@ -294,8 +298,8 @@ static void check_step(reference *r, narc_broad_phase *const *broads, body *bodi
         size_t none;
         options.workers = &workers;
         if (t == WHOLE)
-            assert_int_equal(narc_find_pairs(broads[t], NULL, 0, NULL, NULL, NULL, NULL, 0, &none, NULL), NARC_OK);
-        const narc_pair_list *const list = update_boxes(broads[t], boxes, count, &options);
+            assert_int_equal(narc_find_pairs(r->broads[t], NULL, 0, NULL, NULL, NULL, NULL, 0, &none, NULL), NARC_OK);
+        const narc_pair_list *const list = update_boxes(r->broads[t], boxes, count, &options);
         first = first ? first : list;
         check_equal_lists(list, first);
         check_pairs(r, bodies, list, renew);
@@ -310,8 +314,8 @@ static void check_step(reference *r, narc_broad_phase *const *broads, body *bodi
             sums->flipped += list->marks[k] >> 7;
     }
     sums->kept += !renew;
-    sums->few += renew && broads[0]->stray_count > 0;
-    assert_int_equal(broads[WHOLE]->stray_count, 0);
+    sums->few += renew && r->broads[0]->stray_count > 0;
+    assert_int_equal(r->broads[WHOLE]->stray_count, 0);
     sums->renewed += renew;
     known_pair *const last = r->pairs;
     r->pairs = r->next;
@@ -411,18 +415,15 @@ static totals run_world(const char *name, size_t steps, size_t start, size_t mos
     struct test_random random = test_random_named(name);
     reference *r = create_reference(most * 16 + 1000);
     body *bodies = calloc(most + 1, sizeof *bodies);
-    narc_broad_phase *broads[OBJECTS];
     uint64_t next_id = start;
     totals sums = {0};
-    for (size_t t = 0; t < OBJECTS; t++)
-        broads[t] = create_broad_phase(NULL);
     for (size_t k = 0; k < start; k++) {
         bodies[k] = random_body(&random, side, k);
         bodies[k].id = with_ids ? bodies[k].id : k;
     }
     size_t count = start;
     for (size_t step = 0; step < steps; step++) {
-        check_step(r, broads, bodies, count, with_ids, &sums);
+        check_step(r, bodies, count, with_ids, &sums);
         if (random_below(&random, 3) == 0) { /* sleep alone renews nothing */
             bodies[random_below(&random, count + 1)].kind ^= NARC_ASLEEP;
             continue;
@@ -430,8 +431,6 @@ static totals run_world(const char *name, size_t steps, size_t start, size_t mos
         for (size_t changes = (size_t)random_below(&random, 4); changes-- > 0;)
             count = change(&random, bodies, count, most, side, with_ids, &next_id);
     }
-    for (size_t t = 0; t < OBJECTS; t++)
-        narc_destroy_broad_phase(broads[t]);
     free(bodies);
     destroy_reference(r);
     return sums;
@@ -471,12 +470,9 @@ static totals run_scene_at_rest(const char *isa, size_t steps) {
     struct test_random random = test_random_named("rest");
     reference *r = create_reference(40 * MOST);
     body *bodies = calloc(MOST + 1, sizeof *bodies);
-    narc_broad_phase *broads[OBJECTS];
     uint64_t next_id = START;
     totals sums = {0};
     assert_int_equal(narc_set_isa(isa, NULL), NARC_OK);
-    for (size_t t = 0; t < OBJECTS; t++)
-        broads[t] = create_broad_phase(NULL);
     for (size_t k = 0; k < START; k++) {
         bodies[k] = random_body(&random, SIDE, k);
         if (k % 100 == 1)
@@ -488,15 +484,13 @@ static totals run_scene_at_rest(const char *isa, size_t steps) {
     }
     size_t count = START;
     for (size_t step = 0; step < steps; step++) {
-        check_step(r, broads, bodies, count, true, &sums);
+        check_step(r, bodies, count, true, &sums);
         shift(&bodies[0].box, 0, -1.5f * (float)step);
         for (size_t moves = (size_t)random_below(&random, MOVERS); moves-- > 0;)
             shift(&bodies[random_below(&random, count)].box, eighths(&random, 16) - 1, eighths(&random, 16) - 1);
         if (random_below(&random, 3) == 0)
             count = change(&random, bodies, count, MOST, SIDE, random_below(&random, 2), &next_id);
     }
-    for (size_t t = 0; t < OBJECTS; t++)
-        narc_destroy_broad_phase(broads[t]);
     free(bodies);
     destroy_reference(r);
     return sums;

@@ -393,10 +393,7 @@ TEST(same_bits_whatever_the_split) {
         for (enum layout layout = 0; layout < LAYOUT_COUNT; layout++) {
             enum { MOST = 2200 };
             struct scene scene = make_random_scene(&random, (narc_precision)precision, MOST, 1);
-            if (layout == LAYOUT_SHARED)
-                share_values(&scene);
-            if (layout == LAYOUT_UNSCALED)
-                unit_scales(&scene);
+            suit_layout(&scene, layout);
             if (layout != LAYOUT_SHARED)
                 scene.bodies[1].sine = 3;
             test_use_isa("scalar");

@@ -406,10 +406,7 @@ TEST(test_layouts) {
             for (size_t count = 1; count <= 40; count += count < 18 ? 1 : 11) {
                 struct point_scene scene =
                     make_point_scene(&random, (narc_precision)precision, (int)(count % FAMILY_COUNT), count);
-                if (layout == LAYOUT_SHARED)
-                    share_values(&scene.scene);
-                if (layout == LAYOUT_UNSCALED)
-                    unit_scales(&scene.scene);
+                suit_layout(&scene.scene, (enum layout)layout);
                 struct columns columns = create_columns(&scene.scene, (enum layout)layout, 0, 0);
                 narc_shapes *store = guard_store(&scene.scene);
                 narc_distance *expected = find_distances(&scene), *rows = guard_allocate(count * sizeof *rows);
@@ -480,12 +477,9 @@ TEST(test_errors) {
     assert_int_equal(narc_find_distances(store, &bodies, &wrong, own, NULL, NULL, NULL), NARC_OK);
     assert_int_equal(narc_find_distances(store, &bodies, &points, NARC_ARRAY(others), NULL, rows, NULL), NARC_OK);
 
-    narc_index *index = NULL;
     narc_box boxes[9];
-    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     scene.scene.bodies[3].shape = 0;
-    assert_int_equal(narc_compute_boxes(store, &bodies, NULL, boxes, NULL), NARC_OK);
-    assert_int_equal(narc_build_index(index, boxes, 9, NULL, NULL), NARC_OK);
+    narc_index *const index = index_bodies(store, &bodies, NULL, boxes);
     free(rows);
     rows = make_junk(18 * sizeof *rows);
     const narc_nearest_options two = {.most = 2}, nan = {.distance = NAN};
@@ -523,14 +517,10 @@ TEST(test_near_a_body) {
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, 60, 1);
     const narc_bodies bodies = scene_bodies(&scene);
     narc_box box[60];
-    narc_index *index = NULL;
     narc_pairs pairs;
     narc_contact contact[60], *all = make_junk(60 * sizeof *all);
     size_t found = 0, expected = 0;
-    assert_int_equal(narc_compute_boxes(scene.store, &bodies, NULL, box, NULL), NARC_OK);
-    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
-    assert_int_equal(narc_build_index(index, box, 60, NULL, NULL), NARC_OK);
-
+    narc_index *const index = index_bodies(scene.store, &bodies, NULL, box);
     const narc_box_options around = {.first = 7, .count = 1, .margin = 0.5f};
     const uint32_t seven = 7;
     const narc_index_query others = {.ignored = {&seven, 0}};

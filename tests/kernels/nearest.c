@@ -96,9 +96,7 @@ static struct question ask(struct test_random *random, narc_precision precision,
     q.points = (narc_points){.count = points,
                              .x = single ? NARC_POSITION_ARRAY(q.x_single) : NARC_POSITION_ARRAY(q.x),
                              .y = single ? NARC_POSITION_ARRAY(q.y_single) : NARC_POSITION_ARRAY(q.y)};
-    assert_int_equal(narc_compute_boxes(q.scene.store, &q.bodies, NULL, q.boxes, NULL), NARC_OK);
-    assert_int_equal(narc_create_index(NULL, &q.index), NARC_OK);
-    assert_int_equal(narc_build_index(q.index, q.boxes, bodies, NULL, NULL), NARC_OK);
+    q.index = index_bodies(q.scene.store, &q.bodies, NULL, q.boxes);
     return q;
 }
 

@@ -198,10 +198,7 @@ TEST(reads_nothing_but_what_it_is_given) {
     for (int precision = 0; precision < 2; precision++)
         for (enum layout layout = 0; layout < LAYOUT_COUNT; layout++) {
             struct scene scene = make_random_scene(&random, (narc_precision)precision, COUNT, 1);
-            if (layout == LAYOUT_SHARED)
-                share_values(&scene);
-            if (layout == LAYOUT_UNSCALED)
-                unit_scales(&scene);
+            suit_layout(&scene, layout);
             struct columns columns = create_columns(&scene, layout, 0, 0);
             narc_shapes *const store = guard_store(&scene);
             struct room room = {.scene = scene};

@@ -165,10 +165,8 @@ TEST(test_crowds) {
         if (layout == LAYOUT_SHARED) {
             scene.bodies[0].scale = scene.bodies[0].cosine = 1;
             scene.bodies[0].sine = 0;
-            share_values(&scene);
-        } else if (layout == LAYOUT_UNSCALED) {
-            unit_scales(&scene);
         }
+        suit_layout(&scene, layout);
         check_scene(&random, &scene, layout, "crowd");
         destroy_scene(&scene);
     }

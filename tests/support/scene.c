@@ -10,6 +10,7 @@
 
 #include "expect.h"
 #include "guard.h"
+#include "narc_broad_phase.h"
 
 static void *allocate(size_t count, size_t size) {
     void *memory = calloc(count ? count : 1, size);
@@ -216,4 +217,13 @@ struct scene make_random_scene(struct test_random *random, narc_precision precis
         scene_add_pair(&scene, a, (uint32_t)random_below(random, bodies));
     }
     return scene;
+}
+
+narc_index *index_bodies(const narc_shapes *shapes, const narc_bodies *bodies, const narc_index_options *options,
+                         narc_box *out_boxes) {
+    narc_index *index = NULL;
+    assert_int_equal(narc_compute_boxes(shapes, bodies, NULL, out_boxes, NULL), NARC_OK);
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    assert_int_equal(narc_build_index(index, out_boxes, bodies->count, options, NULL), NARC_OK);
+    return index;
 }
