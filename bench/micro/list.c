@@ -9,9 +9,8 @@
 #include <string.h>
 
 #include "common.h"
-#include "narc_rows.h"
 #include "peers.h"
-#include "settled_list.h"
+#include "rows.h"
 
 enum { MAX_ROWS = 4096 };
 

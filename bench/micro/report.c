@@ -8,9 +8,6 @@
 #include <string.h>
 
 #include "common.h"
-#include "settled_tables.h"
-#include "targets.h"
-#include "times.h"
 
 /* ------------------------------------------------------------------------------------------------ times against n */
 
