@@ -226,15 +226,7 @@ bench_scene() {
     build bench bench_scenes bench_ground
     mkdir -p out
     rm -f out/scene-*.md
-    say "ground"
-    build/bench/bench/scene/bench_ground >out/scene-ground.md
-    cat out/scene-ground.md
-    for bodies in 1000 30000 1000000; do
-        say "rays, $bodies bodies"
-        build/bench/bench/scene/bench_rays --bodies=$bodies --rays=10800 >out/scene-rays-$bodies.md
-        cat out/scene-rays-$bodies.md
-    done
-    for name in casts points regions index; do
+    for name in ground rays casts points regions index; do
         say "$name"
         build/bench/bench/scene/bench_$name >out/scene-$name.md
         cat out/scene-$name.md

@@ -28,6 +28,10 @@ struct bench_row {
     double ns;          /* set when the row has run: nanoseconds per pair, the median of the repetitions; else 0 */
 };
 
+/* What a row is and does; the rest of it stays. */
+void bench_set(struct bench_row *row, const char *name, void (*prepare)(struct bench_row *row),
+               void (*run)(struct bench_row *row), void *context, bool must_be_right);
+
 /* Registers a row, which must outlive bench_run(). */
 void bench_add(struct bench_row *row);
 

@@ -9,10 +9,8 @@
 #include <string.h>
 
 #include "common.h"
-#include "layout_rows.h"
-#include "narc_rows.h"
 #include "peers.h"
-#include "settled_list.h"
+#include "rows.h"
 
 enum { MAX_ROWS = 4096 };
 
@@ -112,23 +110,6 @@ static void add_isa(const char *isa) {
     add_narc("hinted", QUERY_HINTED, templates(mixed), isa, 1, mixed.pair_count);
 }
 
-/* The first stage by layout, for few, many, and very many shapes. */
-static void add_layouts(const char *isa) {
-    for (enum variety variety = 0; variety <= MANY; variety++)
-        for (int order = 0; order < 2; order++)
-            for (size_t layout = 0; layout_name(layout); layout++) {
-                struct workload_key key = n_arcs(8, SCENE_MIXED);
-                char workload[BENCH_NAME / 2], name[BENCH_NAME];
-                key.variety = variety;
-                key.sorted = order == 1;
-                name_workload(&key, workload, sizeof workload);
-                snprintf(name, sizeof name, "layout-%s/%s/%s", layout_name(layout), workload, isa);
-                struct bench_row *row = make_layout_row(name, layout, &key, isa);
-                if (row)
-                    list_row(row);
-            }
-}
-
 static void add_best(const char *isa) {
     const struct workload_key packing = sorted(n_arcs(8, SCENE_PACKING));
     for (unsigned threads = 1; threads <= 2; threads++) {
@@ -189,9 +170,6 @@ struct row_list list_rows(const struct row_choice *choice) {
     for (size_t k = 0; narc_isa_name(k); k++)
         if (narc_isa_supported(narc_isa_name(k)))
             add_isa(narc_isa_name(k));
-    for (size_t k = 0; narc_isa_name(k); k++)
-        if (narc_isa_supported(narc_isa_name(k)))
-            add_layouts(narc_isa_name(k));
     add_best(choice->best_isa);
     add_peers();
     if (choice->all)

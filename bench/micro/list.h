@@ -28,4 +28,7 @@ struct row_list list_rows(const struct row_choice *choice);
 void list_row(struct bench_row *row);
 bool is_listed(const char *name);
 
+/* Those of settled piles. */
+void list_settled(const struct row_choice *choice);
+
 #endif

@@ -2,10 +2,9 @@
  *
  * narc_rows.c - the rows of this library: a batch call, and the check of what it answers.
  */
-#include "narc_rows.h"
+#include "rows.h"
 
 #include <math.h>
-#include <stdio.h>
 
 #include "common.h"
 #include "disc_loops.h"
@@ -146,11 +145,7 @@ struct bench_row *make_narc_row(const char *name, const struct narc_job *job) {
     struct narc_row *row = allocate(1, sizeof *row);
     row->job = *job;
     row->workers = narc_openmp_workers(job->threads);
-    snprintf(row->row.name, sizeof row->row.name, "%s", name);
-    row->row.prepare = prepare;
-    row->row.run = run;
-    row->row.context = row;
+    bench_set(&row->row, name, prepare, run, row, true);
     row->row.threaded = job->threads > 1;
-    row->row.must_be_right = true;
     return &row->row;
 }

@@ -5,7 +5,6 @@
 #include "peers.h"
 
 #include <math.h>
-#include <stdio.h>
 
 #include "bench.h"
 #include "common.h"
@@ -68,11 +67,7 @@ struct bench_row *make_peer_row(const char *name, const struct peer *peer, const
         row->key.family = FAMILY_POLYGONS;
     if (peer == &box2d_collide && key->family == FAMILY_CAPSULES) /* this version has none */
         row->key.family = FAMILY_CAPSULE_BOXES;
-    snprintf(row->row.name, sizeof row->row.name, "%s", name);
-    row->row.prepare = prepare;
-    row->row.run = run;
-    row->row.context = row;
-    row->row.must_be_right = peer == &plain_exact;
+    bench_set(&row->row, name, prepare, run, row, peer == &plain_exact);
     return &row->row;
 }
 
@@ -108,9 +103,6 @@ struct bench_row *make_world_row(const char *name, const struct world_peer *peer
     row->peer = peer;
     row->key = *key;
     row->key.family = FAMILY_POLYGONS;
-    snprintf(row->row.name, sizeof row->row.name, "%s", name);
-    row->row.prepare = prepare_world;
-    row->row.run = step_world;
-    row->row.context = row;
+    bench_set(&row->row, name, prepare_world, step_world, row, false);
     return &row->row;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * report.c - the report's tables of times against n and of layouts, and the data of the plots, from the rows that ran.
+ * report.c - the report's tables of times against n, and the data of the plots, from the rows that ran.
  */
 #include "report.h"
 
@@ -8,10 +8,6 @@
 #include <string.h>
 
 #include "common.h"
-#include "layout_rows.h"
-#include "settled_tables.h"
-#include "targets.h"
-#include "times.h"
 
 /* ------------------------------------------------------------------------------------------------ times against n */
 
@@ -69,37 +65,6 @@ static void print_times(const struct report *report, FILE *out) {
         fputc('\n', out);
 }
 
-/* The first stage of a pair by layout. */
-static void print_layouts(const struct report *report, FILE *out) {
-    static const char *const isas[] = {"avx512", "avx2"}, *const orders[] = {"random", "sorted"};
-    static const char *const varieties[] = {"templates", "unique", "many"};
-    bool any = false;
-    for (size_t isa = 0; isa < 2; isa++)
-        for (size_t layout = 0; layout_name(layout); layout++) {
-            double times[6];
-            bool ran_all = true;
-            for (size_t k = 0; k < 6; k++) {
-                char name[BENCH_NAME];
-                snprintf(name, sizeof name, "layout-%s/n8/mixed/%s/%s/%s", layout_name(layout), varieties[k / 2],
-                         orders[k % 2], isas[isa]);
-                times[k] = time_of(report, name);
-                ran_all &= !isnan(times[k]);
-            }
-            if (!ran_all)
-                continue;
-            if (!any)
-                fprintf(out, "| ns per pair, first stage only | 16 shapes, random | sorted | 4,096, random | sorted | "
-                             "65,536, random | sorted |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n");
-            any = true;
-            fprintf(out, "| %s, %s |", layout_name(layout), isas[isa]);
-            for (size_t k = 0; k < 6; k++)
-                print_cell(out, times[k]);
-            fputc('\n', out);
-        }
-    if (any)
-        fputc('\n', out);
-}
-
 void print_report(const struct report *report, FILE *out) {
     bool any = false;
     for (size_t k = 0; k < report->row_count; k++)
@@ -112,7 +77,6 @@ void print_report(const struct report *report, FILE *out) {
     print_settled_times(report, out);
     print_targets(report, out);
     print_times(report, out);
-    print_layouts(report, out);
 }
 
 /* ------------------------------------------------------------------------------------------------ plots */

@@ -2,9 +2,8 @@
  *
  * rest_rows.c - lists of pairs of a settled pile of which all bodies move, a few, or none.
  */
-#include "rest_rows.h"
+#include "rows.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -93,10 +92,6 @@ struct bench_row *make_rest_row(const char *name, size_t one_of, const struct wo
     row->one_of = one_of;
     row->key = *key;
     row->isa = isa;
-    snprintf(row->row.name, sizeof row->row.name, "%s", name);
-    row->row.prepare = prepare;
-    row->row.run = run;
-    row->row.context = row;
-    row->row.must_be_right = true;
+    bench_set(&row->row, name, prepare, run, row, true);
     return &row->row;
 }

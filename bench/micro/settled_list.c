@@ -2,18 +2,15 @@
  *
  * settled_list.c - which rows there are of settled piles.
  */
-#include "settled_list.h"
+#include "list.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #include "common.h"
 #include "disc_loops.h"
-#include "narc_rows.h"
 #include "peers.h"
-#include "rest_rows.h"
-#include "step_rows.h"
-#include "world_rows.h"
+#include "rows.h"
 
 /* Bodies of a pile for 65,536 pairs of the other scenes: small, middle and large. */
 static const size_t body_counts[] = {2000, 30000, 1000008};

@@ -2,12 +2,10 @@
  *
  * settled_tables.c - the times of settled piles: by kind of shape, and of a step by the size of the pile.
  */
-#include "settled_tables.h"
+#include "report.h"
 
 #include <math.h>
 #include <stdbool.h>
-
-#include "times.h"
 
 enum { COLUMNS = 7 };
 

@@ -5,6 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <cstdio>
 #include <map>
 #include <string>
 #include <vector>
@@ -35,6 +36,15 @@ class Console : public benchmark::ConsoleReporter {
 };
 
 } // namespace
+
+void bench_set(bench_row *row, const char *name, void (*prepare)(bench_row *row), void (*run)(bench_row *row),
+               void *context, bool must_be_right) {
+    std::snprintf(row->name, sizeof row->name, "%s", name);
+    row->prepare = prepare;
+    row->run = run;
+    row->context = context;
+    row->must_be_right = must_be_right;
+}
 
 void bench_add(bench_row *row) {
     const auto measure = [row](benchmark::State &state) {

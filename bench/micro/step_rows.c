@@ -2,10 +2,9 @@
  *
  * step_rows.c - the steps of a simulation from bodies to manifolds, one by one and together.
  */
-#include "step_rows.h"
+#include "rows.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "common.h"
@@ -190,11 +189,7 @@ struct bench_row *make_step_row(const char *name, const struct step_job *job) {
     struct step_row *row = allocate(1, sizeof *row);
     row->job = *job;
     row->workers = narc_openmp_workers(job->threads);
-    snprintf(row->row.name, sizeof row->row.name, "%s", name);
-    row->row.prepare = prepare;
-    row->row.run = run;
-    row->row.context = row;
+    bench_set(&row->row, name, prepare, run, row, true);
     row->row.threaded = job->threads > 1;
-    row->row.must_be_right = true;
     return &row->row;
 }

@@ -2,13 +2,11 @@
  *
  * targets.c - the targets: the time of one row divided by that of another, of the same run.
  */
-#include "targets.h"
+#include "report.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
-
-#include "times.h"
 
 enum bound { AT_LEAST, AT_MOST, WITHIN /* a factor, either way */ };
 

@@ -2,7 +2,7 @@
  *
  * times.c - the times of rows by their names.
  */
-#include "times.h"
+#include "report.h"
 
 #include <math.h>
 #include <string.h>

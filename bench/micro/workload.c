@@ -16,7 +16,7 @@
 
 enum { MAX_WORKLOADS = 256 };
 
-static const size_t shape_counts[VARIETIES] = {[UNIQUE] = 4096, [TEMPLATES] = 16, [MANY] = 65536, [FEW] = 64};
+static const size_t shape_counts[VARIETIES] = {[UNIQUE] = 4096, [TEMPLATES] = 16, [FEW] = 64};
 
 static bool same_key(const struct workload_key *a, const struct workload_key *b) {
     return a->edges == b->edges && a->family == b->family && a->scene == b->scene && a->variety == b->variety &&
@@ -182,8 +182,7 @@ const struct workload *get_workload(const struct workload_key *key) {
 void name_workload(const struct workload_key *key, char *out, size_t size) {
     static const char *const scenes[] = {"disjoint", "colliding",     "mixed",   "packing",      "pyramid",
                                          "lattice",  "settled-small", "settled", "settled-large"};
-    static const char *const varieties[VARIETIES] = {
-        [UNIQUE] = "unique", [TEMPLATES] = "templates", [MANY] = "many", [FEW] = "few"};
+    static const char *const varieties[VARIETIES] = {[UNIQUE] = "unique", [TEMPLATES] = "templates", [FEW] = "few"};
     static const char *const families[] = {
         [FAMILY_KINDS] = "kinds", [FAMILY_GENERAL] = "general", [FAMILY_ROUNDED] = "rounded",
         [FAMILY_BOXES] = "boxes", [FAMILY_DISCS] = "discs",     [FAMILY_CAPSULES] = "capsules"};

@@ -49,7 +49,7 @@ enum scene {
 };
 
 /* How many distinct shapes. */
-enum variety { UNIQUE /* 4,096 */, TEMPLATES /* 16 */, MANY /* 65,536 */, FEW /* 64 */, VARIETIES };
+enum variety { UNIQUE /* 4,096 */, TEMPLATES /* 16 */, FEW /* 64 */, VARIETIES };
 
 /* What a workload is made from. */
 struct workload_key {

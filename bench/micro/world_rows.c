@@ -2,9 +2,7 @@
  *
  * world_rows.c - a settled pile in the example world: its manifolds, and its solver's contacts made of them.
  */
-#include "world_rows.h"
-
-#include <stdio.h>
+#include "rows.h"
 
 #include "../../examples/world.h" /* by its place: both folders have a scenes.h */
 #include "common.h"
@@ -72,11 +70,7 @@ static void prepare(struct bench_row *bench_row) {
 struct bench_row *make_world_part_row(const char *name, enum world_part part, const struct workload_key *key,
                                       const char *isa) {
     struct world_row *row = allocate(1, sizeof *row);
-    snprintf(row->row.name, sizeof row->row.name, "%s", name);
-    row->row.prepare = prepare;
-    row->row.run = run;
-    row->row.context = row;
-    row->row.must_be_right = true;
+    bench_set(&row->row, name, prepare, run, row, true);
     row->part = part;
     row->key = *key;
     row->isa = isa;

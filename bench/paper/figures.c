@@ -3,6 +3,7 @@
  * figures.c - the paper's figures 4 and 5: time against the number of arcs or edges.
  */
 #include <math.h>
+#include <string.h>
 
 #include "paper.h"
 
@@ -72,6 +73,18 @@ double slope_of(const struct paper *paper, const double *times) {
 
 /* ------------------------------------------------------------------------------------------------ tables */
 
+void print_sizes_head(const struct paper *paper, const char *title, const char *labels, const char *last, FILE *out) {
+    fprintf(out, "\n### %s\n\n%s", title, labels);
+    for (size_t size = 0; size < paper->settings.size_count; size++)
+        fprintf(out, size ? " %zu |" : " n = %zu |", paper->settings.sizes[size]);
+    fprintf(out, "%s\n|", last);
+    for (const char *bar = strchr(labels + 1, '|'); bar; bar = strchr(bar + 1, '|'))
+        fprintf(out, " --- |");
+    for (size_t size = 0; size < paper->settings.size_count + (*last != 0); size++)
+        fprintf(out, " ---: |");
+    fputc('\n', out);
+}
+
 /* Wrong answers per thousand, of the row of any instruction set: all give the same. */
 static void print_wrong(const struct paper *paper, const struct figures *figures, enum test test,
                         enum algorithm algorithm, FILE *out) {
@@ -88,13 +101,7 @@ static void print_wrong(const struct paper *paper, const struct figures *figures
 }
 
 static void print_table(const struct paper *paper, const struct figures *figures, enum test test, FILE *out) {
-    fprintf(out, "\n### %s\n\n| µs for 1,000 checks | |", tests[test].title);
-    for (size_t size = 0; size < paper->settings.size_count; size++)
-        fprintf(out, size ? " %zu |" : " n = %zu |", paper->settings.sizes[size]);
-    fprintf(out, " wrong |\n| --- | --- |");
-    for (size_t size = 0; size <= paper->settings.size_count; size++)
-        fprintf(out, " ---: |");
-    fputc('\n', out);
+    print_sizes_head(paper, tests[test].title, "| µs for 1,000 checks | |", " wrong |", out);
     for (enum algorithm algorithm = 0; algorithm < ALGORITHMS; algorithm++) {
         for (int isa = ISAS - 1; isa >= 0 && is_asked(test, algorithm); isa--) {
             fprintf(out, "| %s | %s |", algorithms[algorithm].title, paper->isas[isa]);

@@ -175,13 +175,9 @@ static void print_motions(const struct paper *paper, const struct frames *frames
 }
 
 static void print_sizes(const struct paper *paper, const struct frames *frames, FILE *out) {
-    fprintf(out, "\n### Moving pairs, motion %g: µs for 1,000 checks by n\n\n| | |", motions[SLOW_MOTION]);
-    for (size_t size = 0; size < paper->settings.size_count; size++)
-        fprintf(out, size ? " %zu |" : " n = %zu |", paper->settings.sizes[size]);
-    fprintf(out, "\n| --- | --- |");
-    for (size_t size = 0; size < paper->settings.size_count; size++)
-        fprintf(out, " ---: |");
-    fputc('\n', out);
+    char title[80];
+    snprintf(title, sizeof title, "Moving pairs, motion %g: µs for 1,000 checks by n", motions[SLOW_MOTION]);
+    print_sizes_head(paper, title, "| | |", "", out);
     for (enum question question = 0; question < QUESTIONS; question++)
         for (enum start start = 0; start <= GJK_WARM; start++)
             for (int isa = ISAS - 1; isa >= 0; isa--) {

@@ -51,6 +51,10 @@ void add_figures(struct paper *paper, struct figures *figures);
 /* ns per check; the number of a size is its index. */
 double time_of(const struct paper *paper, const struct figures *figures, enum isa isa, enum test test,
                enum algorithm algorithm, size_t size);
+/* A title and the head of a table with a column for each n, behind those of `labels` and before `last`, which may be
+ * "". */
+void print_sizes_head(const struct paper *paper, const char *title, const char *labels, const char *last, FILE *out);
+
 void print_figures(const struct paper *paper, const struct figures *figures, FILE *out);
 void write_figures(const struct paper *paper, const struct figures *figures);
 

@@ -136,17 +136,13 @@ void time_perpendiculars(const struct paper *paper, struct perpendiculars *times
 void print_perpendiculars(const struct paper *paper, const struct perpendiculars *times, FILE *out) {
     static const char *const titles[PERPENDICULARS] = {"yes or no, stored", "yes or no, computed, any length",
                                                        "depth, stored", "depth, computed and normalised"};
-    fprintf(out, "\n### Perpendiculars of polygons: µs for 1,000 checks of plain C, one after the other, collision "
-                 "scene\n\n| |");
-    for (size_t size = 0; size < paper->settings.size_count; size++)
-        fprintf(out, size ? " %zu |" : " n = %zu |", paper->settings.sizes[size]);
-    fprintf(out, "\n| --- |");
-    for (size_t size = 0; size < paper->settings.size_count; size++)
-        fprintf(out, " ---: |");
+    print_sizes_head(paper,
+                     "Perpendiculars of polygons: µs for 1,000 checks of plain C, one after the other, collision scene",
+                     "| |", "", out);
     for (enum perpendicular way = 0; way < PERPENDICULARS; way++) {
-        fprintf(out, "\n| %s |", titles[way]);
+        fprintf(out, "| %s |", titles[way]);
         for (size_t size = 0; size < paper->settings.size_count; size++)
             fprintf(out, " %.0f |", times->ns[way][size]);
+        fputc('\n', out);
     }
-    fputc('\n', out);
 }

@@ -59,16 +59,6 @@ void count_steps(const struct paper *paper, struct steps *steps) {
 
 /* ------------------------------------------------------------------------------------------------ tables */
 
-static void print_head(const struct paper *paper, const char *title, FILE *out) {
-    fprintf(out, "\n### %s\n\n| |", title);
-    for (size_t size = 0; size < paper->settings.size_count; size++)
-        fprintf(out, size ? " %zu |" : " n = %zu |", paper->settings.sizes[size]);
-    fprintf(out, "\n| --- |");
-    for (size_t size = 0; size < paper->settings.size_count; size++)
-        fprintf(out, " ---: |");
-    fputc('\n', out);
-}
-
 /* The mean of each scene, and the most of any pair. */
 static void print_row(const struct paper *paper, const char *title, const struct step_count *counts, FILE *out) {
     fprintf(out, "| %s |", title);
@@ -80,13 +70,15 @@ static void print_row(const struct paper *paper, const char *title, const struct
 void print_steps(const struct paper *paper, const struct steps *steps, FILE *out) {
     static const char *const kinds[KINDS] = {"arcs", "gons"};
     char title[64];
-    print_head(paper, "Support points of each body until GJK knows whether they collide: mean, most", out);
+    print_sizes_head(paper, "Support points of each body until GJK knows whether they collide: mean, most", "| |", "",
+                     out);
     for (enum situation situation = 0; situation < SITUATIONS; situation++)
         for (enum kind kind = 0; kind < KINDS; kind++) {
             snprintf(title, sizeof title, "n-%s, %s", kinds[kind], situation == APART ? "no collision" : "collision");
             print_row(paper, title, steps->overlap[situation][kind], out);
         }
-    print_head(paper, "Support points in the longer of GJK's and EPA's search, collision scene: mean, most", out);
+    print_sizes_head(paper, "Support points in the longer of GJK's and EPA's search, collision scene: mean, most",
+                     "| |", "", out);
     for (enum kind kind = 0; kind < KINDS; kind++)
         for (size_t threshold = 0; threshold < THRESHOLDS; threshold++) {
             snprintf(title, sizeof title, "n-%s, threshold %.0e", kinds[kind], threshold_of(threshold));

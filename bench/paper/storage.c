@@ -16,21 +16,16 @@ static size_t store_bytes(size_t n) {
 }
 
 void print_storage(const struct paper *paper, FILE *out) {
-    fprintf(out, "\n### Bytes of a shape, single precision\n\n| |");
-    for (size_t size = 0; size < paper->settings.size_count; size++)
-        fprintf(out, size ? " %zu |" : " n = %zu |", paper->settings.sizes[size]);
-    fprintf(out, "\n| --- |");
-    for (size_t size = 0; size < paper->settings.size_count; size++)
-        fprintf(out, " ---: |");
     static size_t (*const counts[])(size_t) = {arc_bytes, gon_bytes, store_bytes};
     static const char *const titles[] = {
         "n-arc, SAT and GJK: centres, directions, radii, centroid",
         "n-gon, SAT (GJK: half of it): vertices, perpendiculars",
         "this library, n-arc or n-gon, all methods: circles around and inside, junction angles, arcs, box"};
+    print_sizes_head(paper, "Bytes of a shape, single precision", "| |", "", out);
     for (size_t what = 0; what < sizeof counts / sizeof counts[0]; what++) {
-        fprintf(out, "\n| %s |", titles[what]);
+        fprintf(out, "| %s |", titles[what]);
         for (size_t size = 0; size < paper->settings.size_count; size++)
             fprintf(out, " %zu |", counts[what](paper->settings.sizes[size]));
+        fputc('\n', out);
     }
-    fputc('\n', out);
 }

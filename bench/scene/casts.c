@@ -13,12 +13,9 @@
 #include "narc_scene.h"
 #include "peers.h"
 #include "random.h"
+#include "setting.h"
 
-enum { MOST_ROUNDS = 100, POINTS = 8 };
-
-struct setting {
-    size_t pairs, rounds;
-};
+enum { POINTS = 8 };
 
 /* ------------------------------------------------------------------------------------------------ shapes */
 
@@ -78,7 +75,7 @@ struct questions {
 static void make_pairs(struct questions *q, double turning, bool astray) {
     uint64_t random = 99;
     q->turning = turning > 0;
-    for (size_t k = 0; k < 2 * q->setting->pairs; k++) {
+    for (size_t k = 0; k < 2 * q->setting->questions; k++) {
         const bool is_b = k % 2;
         static double direction, distance;
         if (!is_b) {
@@ -106,7 +103,7 @@ static narc_motions motions_of(const struct questions *q, size_t first) {
 }
 
 static void cast_pairs(const struct questions *q, size_t batch) {
-    for (size_t k = 0; k < q->setting->pairs; k += batch) {
+    for (size_t k = 0; k < q->setting->questions; k += batch) {
         const narc_bodies bodies = narc_view_bodies(q->bodies + 2 * k, 2 * batch);
         const narc_motions motions = motions_of(q, 2 * k);
         const narc_pairs pairs = {.count = batch};
@@ -116,7 +113,7 @@ static void cast_pairs(const struct questions *q, size_t batch) {
 }
 
 static void find_contacts(const struct questions *q) {
-    const size_t count = q->setting->pairs;
+    const size_t count = q->setting->questions;
     const narc_bodies bodies = narc_view_bodies(q->bodies, 2 * count);
     const narc_query query = {.margin = INFINITY, .dense = 1};
     size_t found;
@@ -133,7 +130,7 @@ enum { CONTACT, CAST, ONE, PEER, WAYS };
 static void compare(const struct questions *q, const char *name) {
     double ns[WAYS][MOST_ROUNDS], median[WAYS];
     size_t hits = 0, peer_hits = 0, unfinished = 0;
-    const size_t count = q->setting->pairs;
+    const size_t count = q->setting->questions;
     for (size_t round = 0; round < q->setting->rounds; round++)
         for (int way = 0; way < WAYS; way++) {
             const double start = now();
@@ -159,27 +156,19 @@ static void compare(const struct questions *q, const char *name) {
 }
 
 int main(int argc, char **argv) {
-    struct setting s = {1000, 25};
+    const struct setting s = read_setting(argc, argv, "--pairs=", 1000, 25);
     struct kind kinds[KINDS];
-    for (int k = 1; k < argc; k++) {
-        const char *const pairs = option_value(argv[k], "--pairs="), *const rounds = option_value(argv[k], "--rounds=");
-        if (!pairs && !rounds)
-            fail("%s: unknown; see the head of casts.c", argv[k]);
-        *(pairs ? &s.pairs : &s.rounds) = strtoul(pairs ? pairs : rounds, NULL, 10);
-    }
-    if (s.rounds < 1 || s.rounds > MOST_ROUNDS || s.pairs < 1)
-        fail("--rounds=1 .. %d, --pairs=1 or more", MOST_ROUNDS);
     make_kinds(kinds);
     printf("%s, %s, %s; one thread, ns a pair\n\n", processor_name(), compiler_name, choose_best_isa());
     printf("| Shapes | Motion | Hit (unfinished), Box2D | Contact | Cast (times contact) | one by one | Box2D (times "
            "batch, one by one) |\n| --- | --- | --- | --- | --- | --- | --- |\n");
     for (int k = 0; k < KINDS; k++) {
         struct questions q = {.setting = &s, .kind = &kinds[k]};
-        q.bodies = allocate(2 * s.pairs, sizeof *q.bodies);
-        q.motions = allocate(2 * s.pairs, sizeof *q.motions);
-        q.contacts = allocate(s.pairs, sizeof *q.contacts);
-        q.impacts = allocate(s.pairs, sizeof *q.impacts);
-        q.fractions = allocate(s.pairs, sizeof *q.fractions);
+        q.bodies = allocate(2 * s.questions, sizeof *q.bodies);
+        q.motions = allocate(2 * s.questions, sizeof *q.motions);
+        q.contacts = allocate(s.questions, sizeof *q.contacts);
+        q.impacts = allocate(s.questions, sizeof *q.impacts);
+        q.fractions = allocate(s.questions, sizeof *q.fractions);
         uint32_t shape;
         must(narc_create_shapes(NULL, &q.shapes), NULL);
         must(narc_add_shape(q.shapes, kinds[k].arcs, kinds[k].count, &shape, NULL), NULL);

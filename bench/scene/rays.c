@@ -3,7 +3,7 @@
  * rays.c - rays beside Box2D and Chipmunk: settled piles and sparse scenes of polygons; fans, long and short rays; in
  * batches and one by one. The libraries take turns within one process.
  *
- *     bench_rays [--bodies=30000] [--rays=64800] [--rounds=7]
+ *     bench_rays [--bodies=1000, 30000 and 1000000] [--rays=10800] [--rounds=7]
  */
 #include <math.h>
 #include <stdio.h>
@@ -13,12 +13,9 @@
 #include "own.h"
 #include "peers.h"
 #include "random.h"
+#include "setting.h"
 
-enum { FAN = 1080, MOST_ROUNDS = 100, WAYS = 3 };
-
-struct setting {
-    size_t bodies, rays, rounds;
-};
+enum { FAN = 1080, WAYS = 3 };
 
 /* ------------------------------------------------------------------------------------------------ rays */
 
@@ -89,10 +86,10 @@ static size_t count_differences(const struct questions *q) {
 
 /* ------------------------------------------------------------------------------------------------ table */
 
-static void compare(const struct setting *s, const char *scene_name, const struct own *arcs, const struct own *own,
-                    void *const *peer_scenes, enum kind kind) {
+static void compare_rays(const struct setting *s, const char *scene_name, const struct own *arcs, const struct own *own,
+                         void *const *peer_scenes, enum kind kind) {
     static const struct scene_peer *const peers[] = {&box2d_scene, &chipmunk_scene};
-    const struct questions q = make_questions(own->half, kind, s->rays / FAN * FAN);
+    const struct questions q = make_questions(own->half, kind, s->questions / FAN * FAN);
     double ns[WAYS + 2][MOST_ROUNDS], median[WAYS + 2];
     size_t hits = 0, differences = 0;
     for (size_t round = 0; round < s->rounds; round++) {
@@ -126,27 +123,21 @@ static void compare(const struct setting *s, const char *scene_name, const struc
     free(q.hits);
 }
 
+static void compare(const struct setting *s, const char *name, size_t bodies, double spread) {
+    const struct own arcs = make_own(FAMILY_N_ARCS, bodies, spread), own = make_own(FAMILY_POLYGONS, bodies, spread);
+    void *const peer_scenes[] = {box2d_scene.create(own.scene), chipmunk_scene.create(own.scene)};
+    for (enum kind kind = 0; kind < KINDS; kind++)
+        compare_rays(s, name, &arcs, &own, peer_scenes, kind);
+}
+
 int main(int argc, char **argv) {
-    struct setting s = {30000, 64800, 7};
-    for (int k = 1; k < argc; k++) {
-        const char *const bodies = option_value(argv[k], "--bodies="), *const rays = option_value(argv[k], "--rays=");
-        const char *const rounds = option_value(argv[k], "--rounds=");
-        if (!bodies && !rays && !rounds)
-            fail("%s: unknown; see the head of rays.c", argv[k]);
-        *(bodies ? &s.bodies : rays ? &s.rays : &s.rounds) = strtoul(bodies ? bodies : rays ? rays : rounds, NULL, 10);
-    }
-    if (s.rounds < 1 || s.rounds > MOST_ROUNDS || s.rays < FAN || s.bodies < 100)
-        fail("--rounds=1 .. %d, --rays=%d or more, --bodies=100 or more", MOST_ROUNDS, FAN);
+    const struct setting s = read_setting(argc, argv, "--rays=", 10800, 7);
+    if (s.questions < FAN)
+        fail("--rays=%d or more", FAN);
     printf("%s, %s, %s; one thread, ns a ray\n\n", processor_name(), compiler_name, choose_best_isa());
     printf("| Scene | Rays | Hit | n-arcs | Polygons | one by one | Box2D (times batch, one by one) | Chipmunk | "
            "Differ |\n");
     printf("| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
-    for (int sparse = 0; sparse < 2; sparse++) {
-        const struct own arcs = make_own(FAMILY_N_ARCS, s.bodies, sparse ? 3 : 1);
-        const struct own own = make_own(FAMILY_POLYGONS, s.bodies, sparse ? 3 : 1);
-        void *const peer_scenes[] = {box2d_scene.create(own.scene), chipmunk_scene.create(own.scene)};
-        for (enum kind kind = 0; kind < KINDS; kind++)
-            compare(&s, sparse ? "sparse" : "pile", &arcs, &own, peer_scenes, kind);
-    }
+    compare_scenes(&s, compare);
     return 0;
 }

@@ -10,9 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "boxes.h"
 #include "broad_phase.h"
-#include "counting.h"
 #include "families.h"
+#include "ledger.h"
 #include "narc.h"
 
 /* One object for each number of threads, and one that finds all pairs whenever it makes a list. */
@@ -39,7 +40,7 @@ typedef struct known_pair {
     bool seen;
 } known_pair;
 
-/* The reference: the last list, by ids. */
+/* The reference, the last list by ids, and what is compared with it. */
 typedef struct reference {
     wide_box kept[MOST_BODIES];
     body bodies[MOST_BODIES];
@@ -48,6 +49,7 @@ typedef struct reference {
     known_pair *pairs, *next;
     size_t pair_count, next_count, capacity;
     uint32_t *table; /* hash table of pairs: one more than their index */
+    narc_broad_phase *broads[OBJECTS];
 } reference;
 
 /* The calls where nothing fails. */
@@ -67,18 +69,13 @@ static const narc_pair_list *update(narc_broad_phase *broad, const narc_shapes *
 
 static double half_of_margin = 0.25, skin = 0.5625;
 
-static bool exists(const narc_box *b) {
-    return isfinite(b->min_x) && isfinite(b->min_y) && isfinite(b->max_x) && isfinite(b->max_y) &&
-           b->min_x <= b->max_x && b->min_y <= b->max_y;
-}
-
 static wide_box widen(const wide_box *b, double by) {
     return (wide_box){b->min_x - by, b->min_y - by, b->max_x + by, b->max_y + by, b->exists};
 }
 
 static wide_box reach_of(const body *b) {
     const wide_box box = {(double)b->box.min_x, (double)b->box.min_y, (double)b->box.max_x, (double)b->box.max_y,
-                          exists(&b->box) && b->reach >= 0 && isfinite(b->reach)};
+                          !is_empty(&b->box) && b->reach >= 0 && isfinite(b->reach)};
     return widen(&box, half_of_margin + (double)b->reach);
 }
 
@@ -127,10 +124,14 @@ static reference *create_reference(size_t capacity) {
     r->next = calloc(capacity, sizeof *r->next);
     r->table = calloc(2 * capacity, sizeof *r->table);
     assert_true(r->pairs && r->next && r->table);
+    for (size_t t = 0; t < OBJECTS; t++)
+        r->broads[t] = create_broad_phase(NULL);
     return r;
 }
 
 static void destroy_reference(reference *r) {
+    for (size_t t = 0; t < OBJECTS; t++)
+        narc_destroy_broad_phase(r->broads[t]);
     free(r->pairs);
     free(r->next);
     free(r->table);
@@ -277,8 +278,7 @@ typedef struct totals {
 } totals;
 
 /* Gives all objects the same step. */
-static void check_step(reference *r, narc_broad_phase *const *broads, body *bodies, size_t count, bool with_ids,
-                       totals *sums) {
+static void check_step(reference *r, body *bodies, size_t count, bool with_ids, totals *sums) {
     narc_box *boxes = malloc((count + 1) * sizeof *boxes);
     for (size_t k = 0; k < count; k++)
         boxes[k] = bodies[k].box;
@@ -298,8 +298,8 @@ static void check_step(reference *r, narc_broad_phase *const *broads, body *bodi
         size_t none;
         options.workers = &workers;
         if (t == WHOLE)
-            assert_int_equal(narc_find_pairs(broads[t], NULL, 0, NULL, NULL, NULL, NULL, 0, &none, NULL), NARC_OK);
-        const narc_pair_list *const list = update_boxes(broads[t], boxes, count, &options);
+            assert_int_equal(narc_find_pairs(r->broads[t], NULL, 0, NULL, NULL, NULL, NULL, 0, &none, NULL), NARC_OK);
+        const narc_pair_list *const list = update_boxes(r->broads[t], boxes, count, &options);
         first = first ? first : list;
         check_equal_lists(list, first);
         check_pairs(r, bodies, list, renew);
@@ -314,8 +314,8 @@ static void check_step(reference *r, narc_broad_phase *const *broads, body *bodi
             sums->flipped += list->marks[k] >> 7;
     }
     sums->kept += !renew;
-    sums->few += renew && broads[0]->stray_count > 0;
-    assert_int_equal(broads[WHOLE]->stray_count, 0);
+    sums->few += renew && r->broads[0]->stray_count > 0;
+    assert_int_equal(r->broads[WHOLE]->stray_count, 0);
     sums->renewed += renew;
     known_pair *const last = r->pairs;
     r->pairs = r->next;
@@ -329,7 +329,7 @@ static void check_step(reference *r, narc_broad_phase *const *broads, body *bodi
 
 static float eighths(struct test_random *random, size_t most) { return (float)random_below(random, most + 1) / 8; }
 
-static narc_box random_box(struct test_random *random, size_t side) {
+static narc_box eighths_box(struct test_random *random, size_t side) {
     const float x = eighths(random, 8 * side), y = eighths(random, 8 * side);
     return (narc_box){x, y, x + eighths(random, 16), y + eighths(random, 16)};
 }
@@ -342,7 +342,7 @@ static body random_body(struct test_random *random, size_t side, uint64_t id) {
     return (body){.id = id * 0x9e3779b97f4a7c15u,
                   .category = choose_mask(random),
                   .mask = choose_mask(random),
-                  .box = random_box(random, side),
+                  .box = eighths_box(random, side),
                   .group = random_below(random, 4) ? 0 : 1 + (uint32_t)random_below(random, 3),
                   .kind = random_below(random, 2) ? 0 : (uint8_t)random_below(random, 8)};
 }
@@ -382,7 +382,7 @@ static size_t change(struct test_random *random, body *bodies, size_t count, siz
         return count - 1;
     case 6:
     case 7:
-        bodies[k].box = random_box(random, side);
+        bodies[k].box = eighths_box(random, side);
         break;
     default: /* within the skin, mostly */
         shift(&bodies[k].box, eighths(random, 2) - 0.125f, eighths(random, 2) - 0.125f);
@@ -415,18 +415,15 @@ static totals run_world(const char *name, size_t steps, size_t start, size_t mos
     struct test_random random = test_random_named(name);
     reference *r = create_reference(most * 16 + 1000);
     body *bodies = calloc(most + 1, sizeof *bodies);
-    narc_broad_phase *broads[OBJECTS];
     uint64_t next_id = start;
     totals sums = {0};
-    for (size_t t = 0; t < OBJECTS; t++)
-        broads[t] = create_broad_phase(NULL);
     for (size_t k = 0; k < start; k++) {
         bodies[k] = random_body(&random, side, k);
         bodies[k].id = with_ids ? bodies[k].id : k;
     }
     size_t count = start;
     for (size_t step = 0; step < steps; step++) {
-        check_step(r, broads, bodies, count, with_ids, &sums);
+        check_step(r, bodies, count, with_ids, &sums);
         if (random_below(&random, 3) == 0) { /* sleep alone renews nothing */
             bodies[random_below(&random, count + 1)].kind ^= NARC_ASLEEP;
             continue;
@@ -434,8 +431,6 @@ static totals run_world(const char *name, size_t steps, size_t start, size_t mos
         for (size_t changes = (size_t)random_below(&random, 4); changes-- > 0;)
             count = change(&random, bodies, count, most, side, with_ids, &next_id);
     }
-    for (size_t t = 0; t < OBJECTS; t++)
-        narc_destroy_broad_phase(broads[t]);
     free(bodies);
     destroy_reference(r);
     return sums;
@@ -475,12 +470,9 @@ static totals run_scene_at_rest(const char *isa, size_t steps) {
     struct test_random random = test_random_named("rest");
     reference *r = create_reference(40 * MOST);
     body *bodies = calloc(MOST + 1, sizeof *bodies);
-    narc_broad_phase *broads[OBJECTS];
     uint64_t next_id = START;
     totals sums = {0};
     assert_int_equal(narc_set_isa(isa, NULL), NARC_OK);
-    for (size_t t = 0; t < OBJECTS; t++)
-        broads[t] = create_broad_phase(NULL);
     for (size_t k = 0; k < START; k++) {
         bodies[k] = random_body(&random, SIDE, k);
         if (k % 100 == 1)
@@ -492,15 +484,13 @@ static totals run_scene_at_rest(const char *isa, size_t steps) {
     }
     size_t count = START;
     for (size_t step = 0; step < steps; step++) {
-        check_step(r, broads, bodies, count, true, &sums);
+        check_step(r, bodies, count, true, &sums);
         shift(&bodies[0].box, 0, -1.5f * (float)step);
         for (size_t moves = (size_t)random_below(&random, MOVERS); moves-- > 0;)
             shift(&bodies[random_below(&random, count)].box, eighths(&random, 16) - 1, eighths(&random, 16) - 1);
         if (random_below(&random, 3) == 0)
             count = change(&random, bodies, count, MOST, SIDE, random_below(&random, 2), &next_id);
     }
-    for (size_t t = 0; t < OBJECTS; t++)
-        narc_destroy_broad_phase(broads[t]);
     free(bodies);
     destroy_reference(r);
     return sums;
@@ -821,8 +811,8 @@ TEST(notices_another_store_in_the_same_place) {
 TEST(allocates_nothing_once_it_has_grown) {
     enum { COUNT = 3000, STEPS = 30 };
     struct test_random random = test_random_named("steady lists");
-    struct counter counter = {.left = SIZE_MAX};
-    narc_broad_phase *broad = create_broad_phase(&counter);
+    struct ledger ledger = {0};
+    narc_broad_phase *broad = create_broad_phase(&ledger);
     const narc_workers workers = narc_openmp_workers(2);
     narc_box boxes[COUNT];
     uint64_t ids[COUNT];
@@ -830,16 +820,16 @@ TEST(allocates_nothing_once_it_has_grown) {
     for (int step = 0; step < STEPS; step++) {
         const narc_pair_options options = {.margin = 0.5f, .skin = 0.125f, .id = NARC_ARRAY(ids), .workers = &workers};
         for (size_t k = 0; k < COUNT && step % 2 == 0; k++) { /* all others, and all in other places */
-            boxes[k] = random_box(&random, 60);
+            boxes[k] = eighths_box(&random, 60);
             ids[k] = random_bits(&random);
         }
         const narc_pair_list *list = update_boxes(broad, boxes, COUNT, &options);
         assert_int_equal(list->kept, step % 2 == 1);
         assert_true(list->kept || list->added_count == list->pairs.count);
         if (step == 7)
-            after = counter.allocations;
+            after = ledger.allocations;
     }
-    assert_int_equal(counter.allocations, after);
+    assert_int_equal(ledger.allocations, after);
     narc_destroy_broad_phase(broad);
 }
 
@@ -850,21 +840,22 @@ TEST(survives_failing_allocations) {
     static uint64_t ids[MANY], later_ids[MANY];
     struct test_random random = test_random_named("failing lists");
     for (size_t k = 0; k < MANY; k++) {
-        boxes[k] = random_box(&random, 30);
+        boxes[k] = eighths_box(&random, 30);
         ids[k] = random_bits(&random);
         later_ids[k] = k % 3 ? ids[k] : random_bits(&random);
     }
     narc_pair_options options = {.skin = 0.125f};
     size_t failures = 0;
     for (size_t left = 0;; left++) {
-        struct counter counter = {.left = SIZE_MAX}, free_counter = {.left = SIZE_MAX};
-        narc_broad_phase *broad = create_broad_phase(&counter), *whole = create_broad_phase(&free_counter);
+        struct ledger ledger = {0}, other_ledger = {0};
+        narc_broad_phase *broad = create_broad_phase(&ledger), *whole = create_broad_phase(&other_ledger);
         const narc_pair_list *list, *whole_list, *untouched;
         options.id = (narc_word_column){ids, sizeof *ids};
         list = update_boxes(broad, boxes, FEW, &options);
         whole_list = update_boxes(whole, boxes, FEW, &options);
         options.id = (narc_word_column){later_ids, sizeof *later_ids};
-        counter.left = left;
+        ledger.limited = true;
+        ledger.left = left;
         untouched = list;
         narc_error error;
         const narc_status status = narc_update_box_pairs(broad, boxes, MANY, &options, &untouched, &error);
@@ -873,7 +864,7 @@ TEST(survives_failing_allocations) {
             assert_int_equal(status, NARC_ERROR_MEMORY);
             assert_ptr_equal(untouched, list);
             check_equal_lists(list, whole_list);
-            counter.left = SIZE_MAX;
+            ledger.limited = false;
             /* The same bodies again, which must not be taken for those that the step that failed had. */
             options.id = (narc_word_column){ids, sizeof *ids};
             list = update_boxes(broad, boxes, FEW, &options);
@@ -897,20 +888,20 @@ TEST(survives_failing_allocations) {
 TEST(keeps_no_list_that_was_not_made) {
     enum { COUNT = 500 };
     narc_box boxes[COUNT];
-    struct counter counter = {.left = SIZE_MAX};
+    struct ledger ledger = {0};
     const narc_pair_options options = {.skin = 0.125f};
-    narc_broad_phase *broad = create_broad_phase(&counter);
+    narc_broad_phase *broad = create_broad_phase(&ledger);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){2 * (float)k, 0, 2 * (float)k + 1, 1};
     const narc_pair_list *list = update_boxes(broad, boxes, COUNT, &options);
     assert_int_equal(list->pairs.count, 0);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){0, 0, 1, 1};
-    counter.left = 0;
+    ledger.limited = true;
     for (int trial = 0; trial < 3; trial++)
         assert_int_equal(narc_update_box_pairs(broad, boxes, COUNT, &options, &list, NULL), NARC_ERROR_MEMORY);
     assert_int_equal(list->pairs.count, 0);
-    counter.left = SIZE_MAX;
+    ledger.limited = false;
     list = update_boxes(broad, boxes, COUNT, &options);
     assert_int_equal(list->pairs.count, COUNT * (COUNT - 1) / 2);
     assert_int_equal(list->added_count, list->pairs.count);

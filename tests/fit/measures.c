@@ -9,8 +9,6 @@
 
 #include "support.h"
 
-#define PI 3.14159265358979323846
-
 typedef narc_point point;
 
 static point minus(point a, point b) { return (point){a.x - b.x, a.y - b.y}; }

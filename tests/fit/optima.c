@@ -9,8 +9,6 @@
 
 #include "outlines.h"
 
-#define PI 3.14159265358979323846
-
 /* Where the optimum is a corner of what is allowed, the search reaches it but for its last steps' gains (1e-7 of the
  * value), the certificate for single precision (some 2^-22 of the size) and the largest radius allowed, 64 times the
  * size, which bends what would be straight. */

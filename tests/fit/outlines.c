@@ -8,8 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define PI 3.14159265358979323846
-
 /* ---------------------------------------------------------------------------- outlines */
 
 struct outline make_outline(const char *name) {

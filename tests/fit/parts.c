@@ -9,8 +9,6 @@
 
 #include "outlines.h"
 
-#define PI 3.14159265358979323846
-
 enum { SAMPLES = 64 };
 
 /* Inside by odd crossings. */

@@ -79,7 +79,7 @@ static const double EDGE_ERROR = 1.5 - 1.4142135623730951;
 TEST(knows_its_error_at_straight_edges) {
     double most = 0;
     for (int k = 1; k <= 90; k++) {
-        const double angle = k * (3.14159265358979323846 / 180), step = sin(angle);
+        const double angle = k * (PI / 180), step = sin(angle);
         for (int i = 0; i < 50; i++) { /* the centre is s inside, the next one up is s - step */
             const double s = step * i / 50, high = cover_half_plane(angle, s), low = cover_half_plane(angle, s - step);
             const double part = (high - 0.5) / (high - low);

@@ -8,8 +8,6 @@
 #include "fit_support.h"
 #include "narc_fit.h"
 
-#define PI 3.14159265358979323846
-
 static narc_point minus(narc_point a, narc_point b) { return (narc_point){a.x - b.x, a.y - b.y}; }
 
 static double distance_to_line(narc_point p, narc_point q, narc_point x) {

@@ -8,8 +8,6 @@
 
 #include "outlines.h"
 
-#define PI 3.14159265358979323846
-
 static void check(const struct outline *of, narc_fit_family family, narc_fit_goal goal, size_t arcs) {
     const narc_fit_request request = {.arc_count = arcs, .family = family, .goal = goal, .starts = 1};
     const narc_fit_result fit = fit_outline(of, request);

@@ -11,7 +11,7 @@
 #include "outlines.h"
 
 typedef long double real;
-#define PI 3.14159265358979323846264338327950288L
+#define LONG_PI 3.14159265358979323846264338327950288L
 
 typedef struct vector {
     real x, y;
@@ -89,7 +89,7 @@ static struct shape see_arcs(const narc_arc *arcs, size_t count) {
         seen.arcs[k].center = (vector){arcs[k].center_x, arcs[k].center_y};
         seen.arcs[k].radius = arcs[k].radius;
         seen.arcs[k].from = from;
-        seen.arcs[k].sweep = sweep > 0 ? sweep : sweep + 2 * PI;
+        seen.arcs[k].sweep = sweep > 0 ? sweep : sweep + 2 * LONG_PI;
         seen.arcs[k].start = unit_at(from);
         seen.arcs[k].end = unit_at(from + seen.arcs[k].sweep);
     }
@@ -118,8 +118,8 @@ static real reach_arcs(const struct shape *of, vector u) {
     const real angle = atan2l(u.y, u.x);
     real most = -INFINITY;
     for (size_t k = 0; k < of->count; k++) {
-        real turn = fmodl(angle - of->arcs[k].from, 2 * PI);
-        turn = turn < 0 ? turn + 2 * PI : turn;
+        real turn = fmodl(angle - of->arcs[k].from, 2 * LONG_PI);
+        turn = turn < 0 ? turn + 2 * LONG_PI : turn;
         most = fmaxl(most, fmaxl(dot(arc_end(of, k, false), u), dot(arc_end(of, k, true), u)));
         most = turn <= of->arcs[k].sweep ? fmaxl(most, dot(of->arcs[k].center, u) + of->arcs[k].radius) : most;
     }
@@ -168,7 +168,7 @@ static real differ_at(const struct shape *of, const struct points *points, real 
 static real find_distance(const struct shape *of, const struct points *points) {
     enum { DIRECTIONS = 720, THIRDS = 60 };
     real values[DIRECTIONS], most = 0;
-    const real step = 2 * PI / DIRECTIONS;
+    const real step = 2 * LONG_PI / DIRECTIONS;
     for (int k = 0; k < DIRECTIONS; k++)
         values[k] = differ_at(of, points, step * k);
     for (int k = 0; k < DIRECTIONS; k++) {
@@ -246,7 +246,7 @@ static void fit_and_check(const struct outline *of, narc_fit_request request) {
 static struct outline make_closed_by_hand(void) {
     narc_point p[24];
     for (int k = 0; k < 24; k++)
-        p[k] = (narc_point){cos(2 * (double)PI * k / 23), sin(2 * (double)PI * k / 23)};
+        p[k] = (narc_point){cos(2 * PI * k / 23), sin(2 * PI * k / 23)};
     assert_true(p[23].y != p[0].y && fabs(p[23].y) < 1e-15);
     struct outline made = make_outline("closed by hand");
     add_corners(&made, p, 24);
@@ -265,7 +265,7 @@ TEST(test_closed_by_hand) {
         }
     }
     const narc_fit_result circle = fit_shape(&of, NARC_FIT_N_ARC, NARC_FIT_BOUND_AREA, 4);
-    assert_true(circle.area <= (double)PI * (1 + 1e-6));
+    assert_true(circle.area <= PI * (1 + 1e-6));
     fit_and_check(&of, (narc_fit_request){.tolerance = 0.01, .starts = 1});
     free_outline(&of);
 }
@@ -276,7 +276,7 @@ static struct outline make_steps(struct test_random *random) {
     const size_t count = 5 + random_below(random, 20);
     narc_point p[32], at = {random_between(random, -100, 100), random_between(random, -100, 100)};
     for (size_t k = 0; k < count; k++) {
-        const double angle = 2 * (double)PI * (double)k / (double)count, radius = random_between(random, 3, 5);
+        const double angle = 2 * PI * (double)k / (double)count, radius = random_between(random, 3, 5);
         const narc_point to = {radius * cos(angle), radius * sin(angle)};
         p[k] = (narc_point){round(100 * to.x) / 100, round(100 * to.y) / 100};
     }
@@ -333,7 +333,7 @@ static struct outline make_hard(struct test_random *random) {
     narc_point corners[10], p[MOST_POINTS];
     size_t made = 0;
     for (size_t k = 0; k < count; k++) {
-        const double angle = 2 * (double)PI * ((double)k + random_between(random, 0, 0.8)) / (double)count;
+        const double angle = 2 * PI * ((double)k + random_between(random, 0, 0.8)) / (double)count;
         const double x = size * cos(angle), y = size * squeeze * sin(angle);
         corners[k] = (narc_point){middle.x + x * cos(tilt) - y * sin(tilt), middle.y + x * sin(tilt) + y * cos(tilt)};
     }
@@ -358,8 +358,7 @@ static struct outline make_hard_curves(struct test_random *random) {
     const double size = random_log_between(random, 1e-6, 1e6);
     narc_point c[4 * 3 + 1];
     for (size_t k = 0; k < 3 * count; k++) {
-        const double angle = 2 * (double)PI * (double)k / (double)(3 * count),
-                     r = size * random_between(random, 0.3, 1);
+        const double angle = 2 * PI * (double)k / (double)(3 * count), r = size * random_between(random, 0.3, 1);
         c[k] = (narc_point){r * cos(angle), r * sin(angle)};
         c[k] = k % 3 && random_below(random, 2) ? double_point(random, c[k - 1], size) : c[k];
     }
@@ -457,10 +456,10 @@ TEST(test_without_area) {
 /* ---------------------------------------------------------------------------- far from the origin */
 
 static struct outline make_far(struct test_random *random, double away) {
-    const double angle = random_between(random, 0, 2 * (double)PI), turn = random_between(random, 0, 1);
+    const double angle = random_between(random, 0, 2 * PI), turn = random_between(random, 0, 1);
     narc_point p[5];
     for (int k = 0; k < 5; k++) {
-        const double at = turn + 2 * (double)PI * k / 5, r = random_between(random, 0.6, 1);
+        const double at = turn + 2 * PI * k / 5, r = random_between(random, 0.6, 1);
         p[k] = (narc_point){away * cos(angle) + r * cos(at), away * sin(angle) + r * sin(at)};
     }
     struct outline made = make_outline("far");

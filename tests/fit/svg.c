@@ -10,8 +10,6 @@
 
 #include "fit_support.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* The largest part of its radius by which a circle of four cubics, which librsvg draws, is too large. */
 static const double CIRCLE_ERROR = 2.8e-4;
 

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "boxes.h"
 #include "fuzz.h"
 #include "narc.h"
 #include "narc_broad_phase.h"
@@ -26,16 +27,6 @@ struct world {
     uint64_t category[MOST];
     size_t count;
 };
-
-static bool is_box(const narc_box *box) {
-    return isfinite(box->min_x) && isfinite(box->min_y) && isfinite(box->max_x) && isfinite(box->max_y) &&
-           box->min_x <= box->max_x && box->min_y <= box->max_y;
-}
-
-static bool overlap(const narc_box *a, const narc_box *b) {
-    return is_box(a) && is_box(b) && a->min_x <= b->max_x && b->min_x <= a->max_x && a->min_y <= b->max_y &&
-           b->min_y <= a->max_y;
-}
 
 static bool may_pair(const struct world *w, size_t a, size_t b) {
     return !(w->kind[a] & w->kind[b] & (NARC_STATIC | NARC_SENSOR)) && (w->category[a] & w->category[b]) != 0;

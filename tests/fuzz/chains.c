@@ -112,7 +112,7 @@ static double distance_from_chain(const struct question *q, narc_point p) {
         const narc_arc *const arc = &q->chain.arcs[k];
         const double sign = signbit(arc->radius) ? -1 : 1, middle = (arc->start + arc->end) / 2;
         const double x = sign * (p.x - arc->center_x), y = sign * (p.y - arc->center_y);
-        if (fabs(remainder(atan2(y, x) - middle, 2 * TEST_PI)) <= fabs(arc->end - arc->start) / 2)
+        if (fabs(remainder(atan2(y, x) - middle, 2 * PI)) <= fabs(arc->end - arc->start) / 2)
             least = fmin(least, fabs(hypot(x, y) - fabs(arc->radius)));
         if (k > 0 || q->closed) {
             const narc_arc *const before = k ? arc - 1 : &q->chain.arcs[q->chain.count - 1];
@@ -229,7 +229,7 @@ static struct turtle take_chain(struct bytes *from, bool *out_closed) {
     *out_closed = take_below(from, 8) == 0;
     for (size_t k = 0; k < steps; k++)
         take_step(from, &t);
-    walk_arc(&t, 0, take_below(from, 2) ? 0 : TEST_PI / 2);
+    walk_arc(&t, 0, take_below(from, 2) ? 0 : PI / 2);
     return t;
 }
 

@@ -24,45 +24,9 @@ static void check_same_rows(const struct contacts *expected, size_t from, const 
     assert_memory_equal(expected->rows + from, rows, count * sizeof *rows);
 }
 
-static void test_threads(void **state) {
-    (void)state;
-    static const unsigned threads[] = {0, 2, 3, 7, 64};
-    static const size_t counts[] = {1, 63, 1024, 1025, PAIRS};
-    for (size_t s = 0; s < sizeof(counts) / sizeof(counts[0]); s++) {
-        struct scene scene = make_scene("threads", counts[s]);
-        size_t words = NARC_BIT_WORDS(counts[s]);
-        uint64_t *serial_bits = scene_overlaps(&scene), *bits = calloc(words + 1, sizeof(uint64_t));
-        struct contacts serial = scene_contacts(&scene, 0), all = scene_contacts(&scene, INFINITY);
-        for (size_t t = 0; t < sizeof(threads) / sizeof(threads[0]); t++) {
-            const narc_workers workers = narc_openmp_workers(threads[t]);
-            narc_query query = {.workers = &workers};
-            bits[words] = 0x0123456789abcdefu;
-            assert_int_equal(ask_overlaps(&scene, &query, bits, NULL), NARC_OK);
-            assert_memory_equal(bits, serial_bits, words * sizeof(uint64_t));
-            assert_true(bits[words] == 0x0123456789abcdefu);
-            for (int every = 0; every < 2; every++) {
-                const struct contacts *expected = every ? &all : &serial;
-                narc_contact *rows = guard_allocate(counts[s] * sizeof *rows);
-                size_t found = 0;
-                query.margin = every ? INFINITY : 0;
-                assert_int_equal(ask_contacts(&scene, &query, rows, counts[s], &found, NULL), NARC_OK);
-                assert_int_equal(found, expected->count);
-                check_same_rows(expected, 0, rows, found);
-                guard_release(rows);
-            }
-        }
-        free(serial.rows);
-        free(all.rows);
-        free(serial_bits);
-        free(bits);
-        destroy_scene(&scene);
-    }
-}
-
 /* Sub-ranges of 64, 128 ... pairs, in any order, write their own words only and together say what the whole call
  * says. */
-static void test_overlap_ranges(void **state) {
-    (void)state;
+TEST(test_overlap_ranges) {
     struct test_random random = test_random_named("overlap ranges");
     for (size_t round = 0; round < test_trials(40); round++) {
         size_t count = 1 + random_below(&random, 3000), words = NARC_BIT_WORDS(count);
@@ -99,35 +63,8 @@ static void test_overlap_ranges(void **state) {
     }
 }
 
-/* Sub-ranges of any length: their lists one after another are the whole list. */
-static void test_contact_ranges(void **state) {
-    (void)state;
-    struct test_random random = test_random_named("contact ranges");
-    for (size_t round = 0; round < test_trials(40); round++) {
-        size_t count = 1 + random_below(&random, 3000), seen = 0;
-        struct scene scene = make_scene("ranges", count);
-        float margin = round % 3 ? 0.1f : INFINITY;
-        struct contacts whole = scene_contacts(&scene, margin);
-        narc_contact *part = make_junk(count * sizeof *part);
-        for (size_t first = 0; first < count;) {
-            size_t step = 1 + random_below(&random, 300), size = step < count - first ? step : count - first;
-            const narc_query query = {.margin = margin, .first = first, .count = first + size < count ? size : 0};
-            size_t found = 0;
-            assert_int_equal(ask_contacts(&scene, &query, part, size, &found, NULL), NARC_OK);
-            check_same_rows(&whole, seen, part, found);
-            seen += found;
-            first += size;
-        }
-        assert_int_equal(seen, whole.count);
-        free(whole.rows);
-        free(part);
-        destroy_scene(&scene);
-    }
-}
-
 /* A margin keeps exactly the contacts below it out of the list of all, unchanged. */
-static void test_margins(void **state) {
-    (void)state;
+TEST(test_margins) {
     const float margins[] = {0.0f,   -0.0f,  1e-6f, 0.05f,   0.7f,   100.0f,   3e38f,
                              -1e-6f, -0.05f, -0.7f, -100.0f, -3e38f, -INFINITY};
     struct scene scene = make_scene("margins", 5000);
@@ -153,46 +90,7 @@ static void test_margins(void **state) {
     destroy_scene(&scene);
 }
 
-/* Too short a list: what fits is there, the needed size is told, nothing behind the list is written. No list at all: the
- * call counts. */
-static void test_capacity(void **state) {
-    (void)state;
-    struct test_random random = test_random_named("capacity");
-    struct scene scene = make_scene("capacity", 4000);
-    struct contacts all = scene_contacts(&scene, 0);
-    assert_true(all.count > 100);
-    for (size_t trial = 0; trial < 60; trial++) {
-        static const size_t fixed[] = {0, 1, 63, 64, 65};
-        const size_t capacity = trial < 5    ? fixed[trial]
-                                : trial == 5 ? all.count - 1
-                                             : random_below(&random, all.count);
-        const narc_workers workers = narc_openmp_workers((unsigned)(trial % 4));
-        narc_contact *some = guard_allocate(capacity * sizeof *some);
-        narc_error error = {0};
-        size_t needed = 0;
-        narc_query query = {.workers = &workers};
-        if (trial % 2)
-            query.row_stride = sizeof *some;
-        assert_int_equal(ask_contacts(&scene, &query, some, capacity, &needed, &error), NARC_ERROR_CAPACITY);
-        assert_int_equal(error.status, NARC_ERROR_CAPACITY);
-        assert_int_equal(needed, all.count);
-        check_same_rows(&all, 0, some, capacity);
-        guard_release(some);
-    }
-    narc_contact *exact = guard_allocate(all.count * sizeof *exact);
-    const narc_workers two = narc_openmp_workers(2);
-    size_t found = 0;
-    assert_int_equal(ask_contacts(&scene, &(narc_query){.workers = &two}, exact, all.count, &found, NULL), NARC_OK);
-    check_same_rows(&all, 0, exact, found);
-    guard_release(exact);
-    assert_int_equal(ask_contacts(&scene, NULL, NULL, 0, &found, NULL), NARC_ERROR_CAPACITY);
-    assert_int_equal(found, all.count);
-    free(all.rows);
-    destroy_scene(&scene);
-}
-
-static void test_no_pairs(void **state) {
-    (void)state;
+TEST(test_no_pairs) {
     struct scene scene = make_scene("no pairs", 1);
     narc_bodies bodies = scene_bodies(&scene), no_bodies = {0};
     narc_pairs none = {0};
@@ -214,8 +112,7 @@ static void test_no_pairs(void **state) {
 }
 
 /* A body and itself: as deep as it gets, and still an answer. (Only a segment has no depth, it touches itself.) */
-static void test_pairs_with_itself(void **state) {
-    (void)state;
+TEST(test_pairs_with_itself) {
     struct scene scene = make_scene("itself", 500);
     for (uint32_t k = 0; k < 500; k++)
         scene.pairs[k] = (struct pair){k, k};
@@ -260,12 +157,12 @@ static size_t row_size(const struct asked *asked) {
 }
 
 static narc_status ask(const struct asked *asked, const narc_query *query, void *rows, size_t capacity,
-                       size_t *out_count) {
+                       size_t *out_count, narc_error *error) {
     const narc_bodies bodies = scene_bodies(asked->scene);
     const narc_pairs pairs = scene_pairs(asked->scene);
     const narc_shapes *store = asked->scene->store;
-    return asked->manifolds ? narc_find_manifolds(store, &bodies, &pairs, query, rows, capacity, out_count, NULL)
-                            : narc_find_contacts(store, &bodies, &pairs, query, rows, capacity, out_count, NULL);
+    return asked->manifolds ? narc_find_manifolds(store, &bodies, &pairs, query, rows, capacity, out_count, error)
+                            : narc_find_contacts(store, &bodies, &pairs, query, rows, capacity, out_count, error);
 }
 
 /* Has a row a point, or is it that of a pair that has no answer? */
@@ -327,31 +224,31 @@ static void check_rows(struct test_random *random, const struct asked *asked, fl
     unsigned char *listed = make_junk(count * size);
     uint32_t *selection = make_junk(count * sizeof *selection);
     size_t found = 0, again = 0, points = 0, part_points = 0;
-    assert_int_equal(ask(asked, &plain, listed, count, &found), NARC_OK);
+    assert_int_equal(ask(asked, &plain, listed, count, &found, NULL), NARC_OK);
     unsigned char *dense = make_dense(asked, listed, found);
     for (size_t k = 0; k < found; k++)
         points += has_point(asked, listed + k * size);
     struct place *places = make_junk(count * sizeof *places);
 
     narc_query query = {.margin = margin, .row_stride = sizeof *places, .workers = &workers};
-    assert_int_equal(ask(asked, &query, &places->row, found, &again), NARC_OK);
+    assert_int_equal(ask(asked, &query, &places->row, found, &again, NULL), NARC_OK);
     assert_int_equal(again, found);
     check_places(places, listed, found, size);
     assert_true(is_junk(places + found, (count - found) * sizeof *places));
     query.dense = 1;
-    assert_int_equal(ask(asked, &query, &places->row, count, &again), NARC_OK);
+    assert_int_equal(ask(asked, &query, &places->row, count, &again, NULL), NARC_OK);
     assert_int_equal(again, points);
     check_places(places, dense, count, size);
     query.row_stride = 0;
     unsigned char *rows = guard_allocate(count * size);
-    assert_int_equal(ask(asked, &query, rows, count, &again), NARC_OK);
+    assert_int_equal(ask(asked, &query, rows, count, &again, NULL), NARC_OK);
     assert_int_equal(again, points);
     assert_memory_equal(rows, dense, count * size);
 
     /* From the last one in memory backwards. */
     struct place *backwards = make_junk(count * sizeof *backwards);
     query.row_stride = -(ptrdiff_t)sizeof *places;
-    assert_int_equal(ask(asked, &query, &backwards[count - 1].row, count, &again), NARC_OK);
+    assert_int_equal(ask(asked, &query, &backwards[count - 1].row, count, &again, NULL), NARC_OK);
     for (size_t k = 0; k < count; k++)
         assert_memory_equal(&backwards[k], &places[count - 1 - k], sizeof *places);
     free(backwards);
@@ -365,7 +262,7 @@ static void check_rows(struct test_random *random, const struct asked *asked, fl
     query.first = first;
     query.count = first + part < selected ? part : 0;
     memset(rows, 0xa5, count * size);
-    assert_int_equal(ask(asked, &query, rows, count, &again), NARC_OK);
+    assert_int_equal(ask(asked, &query, rows, count, &again, NULL), NARC_OK);
     bool *is_asked = calloc(count, sizeof *is_asked);
     assert_non_null(is_asked);
     for (size_t k = first; k < first + part; k++) {
@@ -379,7 +276,7 @@ static void check_rows(struct test_random *random, const struct asked *asked, fl
         else
             assert_true(is_junk(rows + k * size, size));
     query.dense = 0;
-    assert_int_equal(ask(asked, &query, rows, count, &again), NARC_OK);
+    assert_int_equal(ask(asked, &query, rows, count, &again, NULL), NARC_OK);
     bool *is_listed = calloc(count, sizeof *is_listed);
     assert_non_null(is_listed);
     for (size_t k = 0; k < found; k++) {
@@ -401,8 +298,7 @@ static void check_rows(struct test_random *random, const struct asked *asked, fl
     free(selection);
 }
 
-static void test_places_of_rows(void **state) {
-    (void)state;
+TEST(test_places_of_rows) {
     struct test_random random = test_random_named("places of rows");
     static const size_t counts[] = {1, 2, 17, 64, 1000, 1025, 5003};
     for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
@@ -421,29 +317,66 @@ static void test_places_of_rows(void **state) {
     }
 }
 
+/* Too short a list: what fits is there, the needed size is told, nothing behind the list is written. No list at all: the
+ * call counts. */
+TEST(test_capacity) {
+    struct test_random random = test_random_named("capacity");
+    struct scene scene = make_scene("capacity", 4000);
+    for (int kind = 0; kind < 2; kind++) {
+        const struct asked asked = {&scene, kind == 1};
+        const size_t size = row_size(&asked);
+        unsigned char *const all = make_junk(4000 * size);
+        size_t count = 0, needed = 0;
+        assert_int_equal(ask(&asked, NULL, all, 4000, &count, NULL), NARC_OK);
+        assert_true(count > 100);
+        for (size_t trial = 0; trial < 60; trial++) {
+            static const size_t fixed[] = {0, 1, 63, 64, 65};
+            const size_t capacity = trial < 5 ? fixed[trial] : trial == 5 ? count - 1 : random_below(&random, count);
+            const narc_workers workers = narc_openmp_workers((unsigned)(trial % 4));
+            const narc_query query = {.workers = &workers, .row_stride = trial % 2 ? (ptrdiff_t)size : 0};
+            unsigned char *const some = guard_allocate(capacity * size);
+            narc_error error = {0};
+            assert_int_equal(ask(&asked, &query, some, capacity, &needed, &error), NARC_ERROR_CAPACITY);
+            assert_int_equal(error.status, NARC_ERROR_CAPACITY);
+            assert_non_null(strstr(error.message, "rows"));
+            assert_int_equal(needed, count);
+            assert_memory_equal(some, all, capacity * size);
+            guard_release(some);
+        }
+        unsigned char *const exact = guard_allocate(count * size);
+        const narc_workers two = narc_openmp_workers(2);
+        assert_int_equal(ask(&asked, &(narc_query){.workers = &two}, exact, count, &needed, NULL), NARC_OK);
+        assert_memory_equal(exact, all, count * size);
+        guard_release(exact);
+        assert_int_equal(ask(&asked, NULL, NULL, 0, &needed, NULL), NARC_ERROR_CAPACITY);
+        assert_int_equal(needed, count);
+        free(all);
+    }
+    destroy_scene(&scene);
+}
+
 /* Dense rows need room up to the last pair, of a selection that of the batch: less is an error, and nothing is
  * written. */
-static void test_dense_capacity(void **state) {
-    (void)state;
+TEST(test_dense_capacity) {
     struct scene scene = make_scene("dense capacity", 1500);
     for (int kind = 0; kind < 2; kind++) {
         const struct asked asked = {&scene, kind == 1};
         unsigned char *rows = make_junk(1500 * row_size(&asked));
         const uint32_t selection[] = {700, 1200, 3};
         size_t found = 12345;
-        assert_int_equal(ask(&asked, &(narc_query){.dense = 1}, rows, 1499, &found), NARC_ERROR_CAPACITY);
+        assert_int_equal(ask(&asked, &(narc_query){.dense = 1}, rows, 1499, &found, NULL), NARC_ERROR_CAPACITY);
         assert_true(is_junk(rows, 1500 * row_size(&asked)));
         const narc_query range = {.dense = 1, .first = 100, .count = 200};
-        assert_int_equal(ask(&asked, &range, rows, 299, &found), NARC_ERROR_CAPACITY);
+        assert_int_equal(ask(&asked, &range, rows, 299, &found, NULL), NARC_ERROR_CAPACITY);
         assert_true(is_junk(rows, 1500 * row_size(&asked)));
-        assert_int_equal(ask(&asked, &range, rows, 300, &found), NARC_OK);
+        assert_int_equal(ask(&asked, &range, rows, 300, &found, NULL), NARC_OK);
         assert_true(is_junk(rows, 100 * row_size(&asked)));
         assert_true(is_junk(rows + 300 * row_size(&asked), 1200 * row_size(&asked)));
         memset(rows, 0xa5, 300 * row_size(&asked));
         const narc_query some = {.dense = 1, .selection = NARC_ARRAY(selection), .selection_count = 3};
-        assert_int_equal(ask(&asked, &some, rows, 1499, &found), NARC_ERROR_CAPACITY);
+        assert_int_equal(ask(&asked, &some, rows, 1499, &found, NULL), NARC_ERROR_CAPACITY);
         assert_true(is_junk(rows, 1500 * row_size(&asked)));
-        assert_int_equal(ask(&asked, &some, rows, 1500, &found), NARC_OK);
+        assert_int_equal(ask(&asked, &some, rows, 1500, &found, NULL), NARC_OK);
         assert_false(is_junk(rows + 1200 * row_size(&asked), row_size(&asked)));
         free(rows);
     }
@@ -451,8 +384,7 @@ static void test_dense_capacity(void **state) {
 }
 
 /* Bit k of a selection is that of pair selection[k]; the bits behind the last are 0. */
-static void test_selected_bits(void **state) {
-    (void)state;
+TEST(test_selected_bits) {
     struct test_random random = test_random_named("selected bits");
     for (size_t round = 0; round < test_trials(20); round++) {
         const size_t count = 1 + random_below(&random, 5000);
@@ -483,13 +415,4 @@ static void test_selected_bits(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_threads),        cmocka_unit_test(test_overlap_ranges),
-        cmocka_unit_test(test_contact_ranges), cmocka_unit_test(test_margins),
-        cmocka_unit_test(test_capacity),       cmocka_unit_test(test_no_pairs),
-        cmocka_unit_test(test_places_of_rows), cmocka_unit_test(test_dense_capacity),
-        cmocka_unit_test(test_selected_bits),  cmocka_unit_test(test_pairs_with_itself),
-    };
-    return test_begin() ? cmocka_run_group_tests_name("batch", tests, NULL, NULL) : TEST_SKIPPED;
-}
+TEST_MAIN("batch")

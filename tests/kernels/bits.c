@@ -257,10 +257,7 @@ TEST(test_shared_values) {
             struct test_random random = test_random_named("shared");
             const narc_precision precision = (q + (size_t)layout) % 2 ? NARC_FLOAT64 : NARC_FLOAT32;
             struct scene scene = make_query_scene(&random, &settings[q], precision, BODIES, 2 * SMALL_COUNTS);
-            if (layout == LAYOUT_SHARED)
-                share_values(&scene);
-            else
-                unit_scales(&scene);
+            suit_layout(&scene, layout);
             struct guarded guarded = guard_shapes(&scene);
             struct expected expected = expect(&scene, &settings[q], NULL);
             for (size_t count = 1; count < SMALL_COUNTS; count += 1 + count / 4)

@@ -14,8 +14,6 @@
 #include "layouts.h"
 #include "plain.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum { SHAPES = 24, PAIRS = 4000 };
 
 /* How boxes of a scene differ. */
@@ -56,7 +54,7 @@ static struct shape make_form(struct test_random *random, enum sizes sizes, doub
 static struct shape make_other(struct test_random *random, double unit) {
     struct shape shape = make_form(random, USUAL, unit, random_below(random, 2));
     const size_t kind = random_below(random, 5);
-    const double turns[] = {0.5, pi / 2}, turn = kind == 2 || kind == 4 ? turns[kind == 4] : 0;
+    const double turns[] = {0.5, PI / 2}, turn = kind == 2 || kind == 4 ? turns[kind == 4] : 0;
     const double move = kind == 1 ? unit * random_between(random, -1, 1) : 0;
     struct shape other = {.count = shape.count};
     if (kind == 3)
@@ -72,7 +70,7 @@ static struct shape make_other(struct test_random *random, double unit) {
 
 /* A multiple of 45 degrees exactly, or beside it by a few units in the last place, or by any small angle. */
 static void turn_nearly(struct test_random *random, struct body *body, size_t steps) {
-    const double turn = pi / (double)steps * (double)random_below(random, 2 * steps);
+    const double turn = PI / (double)steps * (double)random_below(random, 2 * steps);
     const double beside = (random_below(random, 2) ? 1 : -1) * random_log_between(random, 1e-10, 1e-2);
     const size_t kind = random_below(random, 4);
     body->cosine = (float)cos(turn + (kind == 3 ? beside : 0));
@@ -90,7 +88,7 @@ static void turn_nearly(struct test_random *random, struct body *body, size_t st
 }
 
 static void turn(struct test_random *random, struct body *body) {
-    const double angle = random_between(random, -pi, pi);
+    const double angle = random_between(random, -PI, PI);
     const float drift = random_below(random, 3) ? 1 : (float)(1 + 2e-4 * random_between(random, -1, 1));
     body->cosine = (float)cos(angle);
     body->sine = (float)sin(angle);

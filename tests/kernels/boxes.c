@@ -32,8 +32,8 @@ static double find_support(const struct reference_body *body, double x, double y
     double furthest = -INFINITY;
     for (size_t k = 0; k < body->count; k++) {
         const narc_arc *const arc = &body->arcs[k];
-        const double sweep = fmod(arc->end - arc->start + 8 * 3.14159265358979323846, 2 * 3.14159265358979323846);
-        const double beyond = fmod(atan2(y, x) - arc->start + 16 * 3.14159265358979323846, 2 * 3.14159265358979323846);
+        const double sweep = fmod(arc->end - arc->start + 8 * PI, 2 * PI);
+        const double beyond = fmod(atan2(y, x) - arc->start + 16 * PI, 2 * PI);
         const double middle = arc->center_x * x + arc->center_y * y;
         const double along_start = cos(arc->start) * x + sin(arc->start) * y;
         const double along_end = cos(arc->end) * x + sin(arc->end) * y;
@@ -269,7 +269,7 @@ static void find_front_reaches(const narc_shapes *shapes, const narc_body *body,
         reach[side] = -INFINITY;
     for (size_t k = 0; k < (count > 1 ? count - 4 : 1); k++) {
         const bool is_end = count > 1 && (k == 0 || k == count - 5);
-        const double turn = is_end ? 0 : remainder(arcs[k].end - arcs[k].start, 2 * TEST_PI);
+        const double turn = is_end ? 0 : remainder(arcs[k].end - arcs[k].start, 2 * PI);
         *out_extent = fmax(*out_extent, scale * (hypot(arcs[k].center_x, arcs[k].center_y) + fabs(arcs[k].radius)));
         for (int step = 0; step <= STEPS; step++) {
             const double angle = arcs[k].start + turn * step / STEPS;
@@ -393,10 +393,7 @@ TEST(same_bits_whatever_the_split) {
         for (enum layout layout = 0; layout < LAYOUT_COUNT; layout++) {
             enum { MOST = 2200 };
             struct scene scene = make_random_scene(&random, (narc_precision)precision, MOST, 1);
-            if (layout == LAYOUT_SHARED)
-                share_values(&scene);
-            if (layout == LAYOUT_UNSCALED)
-                unit_scales(&scene);
+            suit_layout(&scene, layout);
             if (layout != LAYOUT_SHARED)
                 scene.bodies[1].sine = 3;
             test_use_isa("scalar");

@@ -8,23 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "boxes.h"
 #include "broad_phase.h"
-#include "counting.h"
 #include "guard.h"
-
-struct pair_list {
-    uint32_t *a, *b;
-    size_t count;
-};
-
-static bool overlap(const narc_box *a, const narc_box *b) {
-    return a->min_x <= b->max_x && b->min_x <= a->max_x && a->min_y <= b->max_y && b->min_y <= a->max_y;
-}
-
-static bool is_empty(const narc_box *box) {
-    const bool finite = isfinite(box->min_x) && isfinite(box->min_y) && isfinite(box->max_x) && isfinite(box->max_y);
-    return !finite || box->min_x > box->max_x || box->min_y > box->max_y;
-}
+#include "ledger.h"
 
 static uint32_t word(narc_index_column column, size_t k, uint32_t none) {
     const char *const base = (const char *)column.base;
@@ -50,27 +37,12 @@ static bool lets(const narc_pair_filter *f, size_t a, size_t b) {
 
 /* Every pair, one after the other: in the order that is promised. */
 static struct pair_list all_pairs(const narc_box *boxes, size_t count, const narc_pair_filter *filter) {
-    struct pair_list list = {malloc(sizeof(uint32_t)), malloc(sizeof(uint32_t)), 0};
-    size_t capacity = 1;
-    for (size_t a = 0; a < count; a++) {
-        for (size_t b = a + 1; b < count; b++) {
-            if (is_empty(&boxes[a]) || is_empty(&boxes[b]) || !overlap(&boxes[a], &boxes[b]) || !lets(filter, a, b))
-                continue;
-            if (list.count == capacity) {
-                capacity *= 2;
-                list.a = realloc(list.a, capacity * sizeof(uint32_t));
-                list.b = realloc(list.b, capacity * sizeof(uint32_t));
-            }
-            list.a[list.count] = (uint32_t)a;
-            list.b[list.count++] = (uint32_t)b;
-        }
-    }
+    struct pair_list list = {0};
+    for (size_t a = 0; a < count; a++)
+        for (size_t b = a + 1; b < count; b++)
+            if (overlap(&boxes[a], &boxes[b]) && lets(filter, a, b))
+                list_pair(&list, a, b);
     return list;
-}
-
-static void free_list(struct pair_list *list) {
-    free(list->a);
-    free(list->b);
 }
 
 static void check_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t count, const narc_pair_filter *filter) {
@@ -94,7 +66,8 @@ static void check_pairs(narc_broad_phase *broad, const narc_box *boxes, size_t c
     free_list(&expected);
 }
 
-static narc_box random_box(struct test_random *random, double side, double smallest, double largest) {
+/* Anywhere around the origin, sizes of all orders. */
+static narc_box spread_box(struct test_random *random, double side, double smallest, double largest) {
     const double x = random_between(random, -side, side), y = random_between(random, -side, side);
     const double w = random_log_between(random, smallest, largest), h = random_log_between(random, smallest, largest);
     return (narc_box){(float)(x - w), (float)(y - h), (float)(x + w), (float)(y + h)};
@@ -125,7 +98,7 @@ TEST(finds_all_pairs_of_random_boxes) {
         const double side = random_log_between(&random, 1, 300), ratio = random_below(&random, 2) ? 1.5 : 1e4;
         narc_box *boxes = malloc((count + 1) * sizeof *boxes);
         for (size_t k = 0; k < count; k++)
-            boxes[k] = random_box(&random, side, 1 / sqrt(ratio), sqrt(ratio));
+            boxes[k] = spread_box(&random, side, 1 / sqrt(ratio), sqrt(ratio));
         check_pairs(broad, boxes, count, NULL);
         free(boxes);
     }
@@ -220,7 +193,7 @@ TEST(orders_the_partners_of_a_floor) {
     narc_box boxes[COUNT];
     boxes[0] = (narc_box){-1000, -1000, 1000, 1000};
     for (size_t k = 1; k < COUNT; k++)
-        boxes[k] = random_box(&random, 900, 0.5, 1);
+        boxes[k] = spread_box(&random, 900, 0.5, 1);
     check_pairs(broad, boxes, COUNT, NULL);
     narc_destroy_broad_phase(broad);
 }
@@ -237,7 +210,7 @@ TEST(filters_pairs) {
         narc_box boxes[200];
         struct body bodies[200];
         for (size_t k = 0; k < 200; k++) {
-            boxes[k] = random_box(&random, 10, 0.5, 2);
+            boxes[k] = spread_box(&random, 10, 0.5, 2);
             bodies[k] =
                 (struct body){(uint64_t)random_below(&random, 8) << 31, (uint64_t)random_below(&random, 8) << 31,
                               (uint32_t)random_below(&random, 4), (uint8_t)random_below(&random, 256)};
@@ -328,8 +301,8 @@ TEST(grows_no_faster_than_boxes_and_pairs) {
 
 TEST(allocates_nothing_once_it_has_grown) {
     struct test_random random = test_random_named("steady state");
-    struct counter counter = {.left = SIZE_MAX};
-    narc_broad_phase *broad = create_broad_phase(&counter);
+    struct ledger ledger = {0};
+    narc_broad_phase *broad = create_broad_phase(&ledger);
     const narc_workers workers = narc_openmp_workers(2);
     enum { COUNT = 5000, CAPACITY = 100000 };
     narc_box *boxes = malloc(COUNT * sizeof *boxes);
@@ -338,16 +311,16 @@ TEST(allocates_nothing_once_it_has_grown) {
     size_t after_first = 0;
     for (int step = 0; step < 5; step++) {
         for (size_t k = 0; k < COUNT; k++)
-            boxes[k] = random_box(&random, 60, 0.5, 1);
+            boxes[k] = spread_box(&random, 60, 0.5, 1);
         size_t found;
         assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, &workers, a, b, CAPACITY, &found, NULL), NARC_OK);
         assert_true(found > 1000);
         const narc_pairs reversed = {.count = found, .a = {a + found - 1, -4}, .b = {b + found - 1, -4}};
         assert_int_equal(narc_match_pairs(broad, &reversed, &reversed, NULL, match, NULL), NARC_OK);
         if (step == 0)
-            after_first = counter.allocations;
+            after_first = ledger.allocations;
     }
-    assert_int_equal(counter.allocations, after_first);
+    assert_int_equal(ledger.allocations, after_first);
     narc_destroy_broad_phase(broad);
     free(boxes);
     free(a);
@@ -371,15 +344,15 @@ TEST(finds_nothing_among_no_boxes) {
 /* Boxes in a row, none of which overlap: memory is for boxes and pairs, and not for questions without an answer. */
 TEST(takes_memory_for_pairs_alone) {
     enum { COUNT = 4000 };
-    struct counter counter = {.left = SIZE_MAX};
-    narc_broad_phase *broad = create_broad_phase(&counter);
+    struct ledger ledger = {0};
+    narc_broad_phase *broad = create_broad_phase(&ledger);
     size_t found = 9;
     narc_box *boxes = malloc(COUNT * sizeof *boxes);
     for (size_t k = 0; k < COUNT; k++)
         boxes[k] = (narc_box){2 * (float)k, 0, 2 * (float)k + 1, 1};
     assert_int_equal(narc_find_pairs(broad, boxes, COUNT, NULL, NULL, NULL, NULL, 0, &found, NULL), NARC_OK);
     assert_int_equal(found, 0);
-    assert_true(counter.bytes < (size_t)1 << 20); /* 128 bytes for a box, and a few blocks of 32 KB */
+    assert_true(ledger.most < (size_t)1 << 20); /* 128 bytes for a box, and a few blocks of 32 KB */
     narc_destroy_broad_phase(broad);
     free(boxes);
 }
@@ -390,8 +363,8 @@ TEST(survives_failing_allocations) {
     fill_one_place(boxes, 300);
     bool succeeded = false;
     for (size_t left = 0; !succeeded; left++) {
-        struct counter counter = {.left = left};
-        narc_broad_phase *broad = create_broad_phase(&counter);
+        struct ledger ledger = {.limited = true, .left = left};
+        narc_broad_phase *broad = create_broad_phase(&ledger);
         if (broad) {
             size_t found = 77;
             const narc_status status = narc_find_pairs(broad, boxes, 300, NULL, NULL, a, b, 45000, &found, NULL);

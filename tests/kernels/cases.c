@@ -8,10 +8,8 @@
 
 #include "check.h"
 
-static const double pi = 3.14159265358979323846;
-
 static struct shape half_disc(void) {
-    return (struct shape){{{0, -1, 0, -pi / 2, 0}, {0, 1, 0, 0, pi / 2}, {0, 0, 1, pi / 2, 3 * pi / 2}}, 3};
+    return (struct shape){{{0, -1, 0, -PI / 2, 0}, {0, 1, 0, 0, PI / 2}, {0, 0, 1, PI / 2, 3 * PI / 2}}, 3};
 }
 
 /* The answer for one pair: A at the origin, turned, B at (x, y); checked against the reference before anything else. */
@@ -112,8 +110,8 @@ TEST(test_turned_faces_share_a_stretch) {
     struct test_random random = test_random_named("turned faces");
     struct shape wide = box_of(4, 1, 0), narrow;
     for (size_t trial = 0; trial < test_trials(2000); trial++) {
-        double angle = random_between(&random, -pi, pi), c = cos(angle), s = sin(angle);
-        double own = random_between(&random, -pi, pi), oc = 0.5 * cos(own), os = 0.5 * sin(own);
+        double angle = random_between(&random, -PI, PI), c = cos(angle), s = sin(angle);
+        double own = random_between(&random, -PI, PI), oc = 0.5 * cos(own), os = 0.5 * sin(own);
         const narc_point corners[4] = {
             {oc - os, os + oc}, {-oc - os, oc - os}, {os - oc, -os - oc}, {oc + os, os - oc}};
         assert_int_equal(narc_build_polygon(corners, 4, 0.25, narrow.arcs, &narrow.count, NULL), NARC_OK);
@@ -135,7 +133,7 @@ TEST(test_turned_faces_share_a_stretch) {
 TEST(test_gap_rises_all_around) {
     struct shape spiral = {.count = 3}, circle = circle_of(1.5);
     for (size_t k = 0; k < 3; k++) {
-        double start = 0.1 + 2 * pi / 3 * (double)k, end = start + 2 * pi / 3, ahead = end + 0.5;
+        double start = 0.1 + 2 * PI / 3 * (double)k, end = start + 2 * PI / 3, ahead = end + 0.5;
         spiral.arcs[k] = (narc_arc){-2e-7 * cos(ahead), -2e-7 * sin(ahead), 1, start, end};
     }
     for (double angle = -3; angle < 3; angle += 0.01) {
@@ -174,7 +172,7 @@ TEST(test_just_beyond_a_junction) {
     assert_int_equal(narc_build_four_arc(form, lens.arcs, &lens.count, NULL), NARC_OK);
     for (size_t trial = 0; trial < test_trials(10000); trial++) {
         const narc_arc *arc = &lens.arcs[trial % 4];
-        double turn = random_between(&random, -pi, pi), c = cos(turn), s = sin(turn);
+        double turn = random_between(&random, -PI, PI), c = cos(turn), s = sin(turn);
         double beyond = random_between(&random, -1, 1) * random_log_between(&random, 1e-5, 1e-2);
         double angle = arc->start + beyond, distance = random_between(&random, 1, 4);
         double x = arc->center_x + arc->radius * cos(arc->start) + distance * cos(angle);
@@ -191,11 +189,11 @@ TEST(test_half_turns) {
     assert_int_equal(narc_build_capsule(1, 0.5, shapes[2].arcs, &shapes[2].count, NULL), NARC_OK);
     for (size_t trial = 0; trial < test_trials(10000); trial++) {
         const struct shape *a = &shapes[trial % 3], *b = &shapes[trial / 3 % 3];
-        double quarter = pi / 2 * (double)random_below(&random, 4);
+        double quarter = PI / 2 * (double)random_below(&random, 4);
         double tilt = random_below(&random, 2) ? 0x1p-24 * random_between(&random, -8, 8) : 0;
-        double turn = random_below(&random, 2) ? quarter + tilt : random_between(&random, -pi, pi);
+        double turn = random_below(&random, 2) ? quarter + tilt : random_between(&random, -PI, PI);
         /* Along an end of A's arcs, or along an axis, where B's are; from deep to apart. */
-        double direction = random_below(&random, 2) ? turn + pi / 2 * (double)random_below(&random, 4) : quarter;
+        double direction = random_below(&random, 2) ? turn + PI / 2 * (double)random_below(&random, 4) : quarter;
         double distance = random_between(&random, 0, 3);
         ask_turned(a, turn, b, distance * cos(direction), distance * sin(direction));
     }

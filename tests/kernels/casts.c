@@ -359,55 +359,6 @@ TEST(test_quarter_turn) {
     }
 }
 
-/* A step is two halves of it: what hits in the whole one hits in one of the two, and what misses in neither, but where it
- * only grazes. */
-TEST(test_two_halves) {
-    struct test_random random = test_random_named("two halves");
-    size_t differ = 0, hits = 0;
-    for (size_t k = 0; k < test_trials(60); k++) {
-        struct scene scene = make_placed_scene(&random, NARC_FLOAT64, (enum family)random_below(&random, FAMILY_COUNT),
-                                               (enum family)random_below(&random, FAMILY_COUNT), PLACE_COUNT * 4);
-        struct moving m = set_in_motion(&random, scene, k % 2 ? 3 : 0);
-        narc_impact *const whole = cast_all(&m, 1, NULL), *half[2];
-        for (int part = 0; part < 2; part++) {
-            for (size_t b = 0; b < m.scene.body_count; b++) {
-                struct motion *const motion = &m.motion[b];
-                if (part == 0)
-                    *motion = (struct motion){motion->x / 2, motion->y / 2, motion->angle / 2};
-                else
-                    move_back(&m.scene.bodies[b], motion, -1, NARC_FLOAT64);
-            }
-            half[part] = cast_all(&m, 1, NULL);
-        }
-        for (size_t pair = 0; pair < m.scene.pair_count; pair++) {
-            const bool hit = whole[pair].count == NARC_CAST_HIT;
-            const bool parts = half[0][pair].count == NARC_CAST_HIT || half[1][pair].count == NARC_CAST_HIT;
-            hits += hit;
-            if (hit == parts)
-                continue;
-            struct way w = find_way(&m, pair); /* of the second half: backwards over the whole step */
-            w.x -= w.motion_x;
-            w.y -= w.motion_y;
-            w.start_a -= w.angle_a;
-            w.start_b -= w.angle_b;
-            w.motion_x *= 2;
-            w.motion_y *= 2;
-            w.angle_a *= 2;
-            w.angle_b *= 2;
-            const double least = find_least(&w, 1, -1e9);
-            const double size = reference_reach(&w.a, &w.b);
-            if (!(fabs(least) <= size * (turns(&w) ? 4.0 / 1024 : 1e-5)))
-                fail_cast(&m, pair, &whole[pair], "halves differ", least, 0);
-            differ++;
-        }
-        guard_release(whole);
-        guard_release(half[0]);
-        guard_release(half[1]);
-        destroy_moving(&m);
-    }
-    print_message("%zu hits, %zu grazes differ\n", hits, differ);
-}
-
 /* A pair's row depends on that pair alone: all of a call, of which some end as soon as they begin, together, and one
  * after the other, have the rows of each alone. */
 TEST(test_divisions) {

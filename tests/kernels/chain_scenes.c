@@ -18,7 +18,6 @@
 
 enum { SAMPLES = 1000, TIMES = 50 };
 
-#define PI                                 3.14159265358979323846
 #define EXPECT(found, expected, tolerance) assert_true(fabs((double)(found) - (expected)) <= (tolerance))
 
 /* A bowl of one arc about the origin, from the angle `low` to `high` as seen from its centre. */
@@ -374,9 +373,7 @@ static bool lay_ground(struct ground_scene *scene, const struct chain *chain, do
                                        .scale = 1,
                                        .shape = entries[k].shape};
     const narc_bodies bodies = narc_view_bodies(scene->bodies, scene->count);
-    assert_int_equal(narc_compute_boxes(scene->store, &bodies, NULL, scene->boxes, NULL), NARC_OK);
-    assert_int_equal(narc_create_index(NULL, &scene->index), NARC_OK);
-    assert_int_equal(narc_build_index(scene->index, scene->boxes, scene->count, NULL, NULL), NARC_OK);
+    scene->index = index_bodies(scene->store, &bodies, NULL, scene->boxes);
     return true;
 }
 

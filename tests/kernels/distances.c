@@ -19,8 +19,6 @@
 #include "narc_scene.h"
 #include "scene.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* How far from 1 a normal's length may be, and how far, in radians, a normal may stray from a sector. */
 static const double unit_tolerance = 1e-6;
 
@@ -48,7 +46,7 @@ static const char *const placement_names[POINT_PLACES] = {"near",   "deep", "tou
 /* In a shape's own coordinates; the shape's size is about 1. */
 static narc_point place_point(struct test_random *random, const struct shape *shape, enum point_placement placement) {
     const narc_arc arc = shape->arcs[random_below(random, shape->count)];
-    const double angle = random_between(random, -pi, pi), x = cos(arc.start), y = sin(arc.start);
+    const double angle = random_between(random, -PI, PI), x = cos(arc.start), y = sin(arc.start);
     const narc_point start = {arc.center_x + arc.radius * x, arc.center_y + arc.radius * y};
     const double series = (random_below(random, 2) ? 1 : -1) * random_log_between(random, 1e-8, 1e-3);
     narc_point p;
@@ -109,23 +107,13 @@ struct point_scene {
     size_t count;
 };
 
-enum { SHAPES = 4, KINDS = FAMILY_COUNT + HARD_COUNT };
-
-static const char *kind_name(int kind) {
-    return kind < FAMILY_COUNT ? family_name((enum family)kind)
-                               : hard_family_name((enum hard_family)(kind - FAMILY_COUNT));
-}
-
-static struct shape make_kind(struct test_random *random, int kind) {
-    return kind < FAMILY_COUNT ? make_shape(random, (enum family)kind)
-                               : make_hard_shape(random, (enum hard_family)(kind - FAMILY_COUNT));
-}
+enum { SHAPES = 4 };
 
 /* A pose near the origin or far from it; sizes about 1, or not at all; rotations now and then drifted. */
 static struct body random_body(struct test_random *random, narc_precision precision) {
     const double scale = random_below(random, 2) ? 1 : random_log_between(random, 1e-6, 1e6);
     const double way = random_below(random, 2) ? 2 : scale * (precision == NARC_FLOAT64 ? 1e7 : 1e3);
-    struct body body = turned_body(random_between(random, -pi, pi), scale);
+    struct body body = turned_body(random_between(random, -PI, PI), scale);
     if (random_below(random, 4) == 0) {
         const float factor = (float)(1 + 0.498 * NARC_ROTATION_TOLERANCE * random_between(random, -1, 1));
         body.cosine *= factor;
@@ -143,7 +131,7 @@ static struct point_scene make_point_scene(struct test_random *random, narc_prec
     made.points = calloc(count, sizeof *made.points);
     assert_non_null(made.points);
     for (int k = 0; k < SHAPES; k++) {
-        const struct shape shape = make_kind(random, kind);
+        const struct shape shape = make_any_shape(random, (size_t)kind);
         scene_add_shape(&made.scene, &shape);
     }
     for (size_t k = 0; k < count; k++) {
@@ -199,8 +187,8 @@ static struct reference_body unit_reference(const struct scene *scene, uint32_t 
 /* How far a direction lies outside the sector of an arc, in radians. */
 static double angle_outside(const narc_arc *arc, double angle) {
     double sweep = arc->end - arc->start;
-    sweep = sweep <= 0 ? sweep + 2 * pi : sweep;
-    const double from_middle = remainder(angle - (arc->start + sweep / 2), 2 * pi);
+    sweep = sweep <= 0 ? sweep + 2 * PI : sweep;
+    const double from_middle = remainder(angle - (arc->start + sweep / 2), 2 * PI);
     return fmax(fabs(from_middle) - sweep / 2, 0);
 }
 
@@ -217,7 +205,7 @@ static const char *check_feature(const struct reference_body *body, const narc_d
     const double center_x = c * arc->center_x - s * arc->center_y, center_y = s * arc->center_x + c * arc->center_y;
     const double radius = body->scale * arc->radius;
     if (row->feature & NARC_FEATURE_EDGE) {
-        const double off = remainder(angle - arc->start, 2 * pi);
+        const double off = remainder(angle - arc->start, 2 * PI);
         const double across = (place_x - center_x) * x + (place_y - center_y) * y - radius;
         return row->radius != INFINITY                         ? "radius of an edge"
                : fabs(off) > 2 * unit_tolerance                ? "the edge has another normal"
@@ -237,7 +225,7 @@ static const char *check_feature(const struct reference_body *body, const narc_d
 /* What is wrong with a row, or NULL; raises the errors as fractions of the bound. */
 static const char *check_row(const struct reference_body *body, const struct asked_point *point,
                              const narc_distance *row, struct fractions *worst) {
-    const narc_arc dot = {0, 0, 0, 0, 2 * pi};
+    const narc_arc dot = {0, 0, 0, 0, 2 * PI};
     const struct reference_body other = {&dot, 1, point->x, point->y, 1, 0, 1};
     const double dx = point->x - body->x, dy = point->y - body->y;
     const double bound = NARC_ERROR_BOUND * (hypot(dx, dy) + reference_extent(body));
@@ -277,9 +265,9 @@ static const double expected_part = 0.2;
 
 static void check_all_kinds(const char *name, narc_precision precision, size_t rounds) {
     struct test_random random = test_random_named(name);
-    struct fractions worst[KINDS + POINT_PLACES] = {{0}};
+    struct fractions worst[ALL_FAMILIES + POINT_PLACES] = {{0}};
     size_t wrong_count = 0, count = POINT_PLACES * test_trials(rounds);
-    for (int kind = 0; kind < KINDS; kind++) {
+    for (int kind = 0; kind < ALL_FAMILIES; kind++) {
         struct point_scene scene = make_point_scene(&random, precision, kind, count);
         narc_distance *rows = find_distances(&scene);
         for (size_t k = 0; k < count; k++) {
@@ -288,7 +276,7 @@ static void check_all_kinds(const char *name, narc_precision precision, size_t r
             const char *wrong = check_row(&body, &scene.points[k], &rows[k], &errors);
             if (rows[k].point != k || rows[k].body != scene.points[k].body)
                 wrong = "numbers";
-            struct fractions *const tallies[2] = {&worst[kind], &worst[KINDS + k % POINT_PLACES]};
+            struct fractions *const tallies[2] = {&worst[kind], &worst[ALL_FAMILIES + k % POINT_PLACES]};
             for (int t = 0; t < 2; t++) {
                 tallies[t]->separation = fmax(tallies[t]->separation, errors.separation);
                 tallies[t]->normal = fmax(tallies[t]->normal, errors.normal);
@@ -297,7 +285,7 @@ static void check_all_kinds(const char *name, narc_precision precision, size_t r
             if (wrong && wrong_count++ < SHOWN) {
                 print_error("%s, %s: %s; point (%a, %a); separation %.9g, normal (%.9g, %.9g), place (%.9g, %.9g), "
                             "feature %d, radius %g; errors %g %g %g\n",
-                            kind_name(kind), placement_names[k % POINT_PLACES], wrong, scene.points[k].x,
+                            any_family_name((size_t)kind), placement_names[k % POINT_PLACES], wrong, scene.points[k].x,
                             scene.points[k].y, (double)rows[k].separation, (double)rows[k].normal_x,
                             (double)rows[k].normal_y, (double)rows[k].place_x, (double)rows[k].place_y, rows[k].feature,
                             (double)rows[k].radius, errors.separation, errors.normal, errors.point);
@@ -308,12 +296,13 @@ static void check_all_kinds(const char *name, narc_precision precision, size_t r
         destroy_point_scene(&scene);
     }
     printf("  %-11s %12s %7s %7s   (largest errors, as fractions of the bound)\n", "", "separation", "normal", "place");
-    for (int k = 0; k < KINDS + POINT_PLACES; k++)
-        printf("  %-11s %12.3f %7.3f %7.3f\n", k < KINDS ? kind_name(k) : placement_names[k - KINDS],
-               worst[k].separation, worst[k].normal, worst[k].point);
+    for (int k = 0; k < ALL_FAMILIES + POINT_PLACES; k++)
+        printf("  %-11s %12.3f %7.3f %7.3f\n",
+               k < ALL_FAMILIES ? any_family_name((size_t)k) : placement_names[k - ALL_FAMILIES], worst[k].separation,
+               worst[k].normal, worst[k].point);
     if (wrong_count)
         fail_msg("%zu wrong rows", wrong_count);
-    for (int k = 0; k < KINDS; k++)
+    for (int k = 0; k < ALL_FAMILIES; k++)
         assert_true(worst[k].separation < expected_part && worst[k].normal < expected_part);
 }
 
@@ -325,14 +314,14 @@ TEST(test_double_positions) { check_all_kinds("points, double positions", NARC_F
  * the arc's end and the arc behind the edge have the same separation but for rounding. */
 TEST(test_short_arcs) {
     const double turn = 4.7e-5, flat = 1e-3;
-    const struct shape shape = {{{0, 0, 1, 0, turn}, {-flat * turn, flat, 1, turn, pi}, {0, 0, 1, pi, 2 * pi}}, 3};
+    const struct shape shape = {{{0, 0, 1, 0, turn}, {-flat * turn, flat, 1, turn, PI}, {0, 0, 1, PI, 2 * PI}}, 3};
     struct test_random random = test_random_named("points, short arcs");
     const size_t count = test_trials(1000);
     struct point_scene scene = {create_scene(NARC_FLOAT64, 1, count, 0), calloc(count, sizeof *scene.points), count};
     assert_non_null(scene.points);
     scene_add_shape(&scene.scene, &shape);
     for (size_t k = 0; k < count; k++) {
-        const struct body body = turned_body(random_between(&random, -pi, pi), 1);
+        const struct body body = turned_body(random_between(&random, -PI, PI), 1);
         const double along = flat * random_between(&random, -1, 2), c = (double)body.cosine, s = (double)body.sine;
         const double x = cos(turn) - along * sin(turn), y = sin(turn) + along * cos(turn);
         const uint32_t index = scene_add_body(&scene.scene, body);
@@ -351,41 +340,6 @@ TEST(test_short_arcs) {
 }
 
 /* ------------------------------------------------------------------------------------------------ the rest */
-
-/* Separations have the sign that narc_find_overlaps() says of a tiny circle there. */
-TEST(test_signs_of_overlaps) {
-    struct test_random random = test_random_named("points, overlaps");
-    const size_t count = POINT_PLACES * test_trials(4);
-    for (int kind = 0; kind < FAMILY_COUNT; kind++) {
-        struct point_scene scene = make_point_scene(&random, NARC_FLOAT64, kind, count);
-        const double radius = 1e-8;
-        const struct shape circle = circle_of(radius);
-        uint32_t shape = 0, clear = 0;
-        narc_body *dots = calloc(count, sizeof *dots);
-        assert_non_null(dots);
-        assert_int_equal(narc_add_shape(scene.scene.store, circle.arcs, circle.count, &shape, NULL), NARC_OK);
-        for (size_t k = 0; k < count; k++)
-            dots[k] = (narc_body){scene.points[k].x, scene.points[k].y, 1, 0, 1, shape};
-        const narc_bodies bodies = scene_bodies(&scene.scene), others = narc_view_bodies(dots, count);
-        uint64_t *bits =
-            find_overlaps(scene.scene.store, &bodies, &(narc_pairs){.count = count, .other_bodies = &others}, NULL);
-        narc_distance *rows = find_distances(&scene);
-        for (size_t k = 0; k < count; k++) {
-            const struct reference_body body = unit_reference(&scene.scene, scene.points[k].body);
-            const double bound = NARC_ERROR_BOUND * (hypot(scene.points[k].x - body.x, scene.points[k].y - body.y) +
-                                                     reference_extent(&body));
-            if (fabs((double)rows[k].separation) <= 2 * bound + 2 * radius)
-                continue;
-            clear++;
-            assert_int_equal(bit_is_set(bits, k), rows[k].separation < 0);
-        }
-        assert_true(clear > count / 3);
-        free(bits);
-        free(dots);
-        free(rows);
-        destroy_point_scene(&scene);
-    }
-}
 
 /* What has no answer: the numbers of broken bodies, and of points. */
 TEST(test_no_answer) {
@@ -452,10 +406,7 @@ TEST(test_layouts) {
             for (size_t count = 1; count <= 40; count += count < 18 ? 1 : 11) {
                 struct point_scene scene =
                     make_point_scene(&random, (narc_precision)precision, (int)(count % FAMILY_COUNT), count);
-                if (layout == LAYOUT_SHARED)
-                    share_values(&scene.scene);
-                if (layout == LAYOUT_UNSCALED)
-                    unit_scales(&scene.scene);
+                suit_layout(&scene.scene, (enum layout)layout);
                 struct columns columns = create_columns(&scene.scene, (enum layout)layout, 0, 0);
                 narc_shapes *store = guard_store(&scene.scene);
                 narc_distance *expected = find_distances(&scene), *rows = guard_allocate(count * sizeof *rows);
@@ -526,12 +477,9 @@ TEST(test_errors) {
     assert_int_equal(narc_find_distances(store, &bodies, &wrong, own, NULL, NULL, NULL), NARC_OK);
     assert_int_equal(narc_find_distances(store, &bodies, &points, NARC_ARRAY(others), NULL, rows, NULL), NARC_OK);
 
-    narc_index *index = NULL;
     narc_box boxes[9];
-    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
     scene.scene.bodies[3].shape = 0;
-    assert_int_equal(narc_compute_boxes(store, &bodies, NULL, boxes, NULL), NARC_OK);
-    assert_int_equal(narc_build_index(index, boxes, 9, NULL, NULL), NARC_OK);
+    narc_index *const index = index_bodies(store, &bodies, NULL, boxes);
     free(rows);
     rows = make_junk(18 * sizeof *rows);
     const narc_nearest_options two = {.most = 2}, nan = {.distance = NAN};
@@ -569,14 +517,10 @@ TEST(test_near_a_body) {
     struct scene scene = make_random_scene(&random, NARC_FLOAT32, 60, 1);
     const narc_bodies bodies = scene_bodies(&scene);
     narc_box box[60];
-    narc_index *index = NULL;
     narc_pairs pairs;
     narc_contact contact[60], *all = make_junk(60 * sizeof *all);
     size_t found = 0, expected = 0;
-    assert_int_equal(narc_compute_boxes(scene.store, &bodies, NULL, box, NULL), NARC_OK);
-    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
-    assert_int_equal(narc_build_index(index, box, 60, NULL, NULL), NARC_OK);
-
+    narc_index *const index = index_bodies(scene.store, &bodies, NULL, box);
     const narc_box_options around = {.first = 7, .count = 1, .margin = 0.5f};
     const uint32_t seven = 7;
     const narc_index_query others = {.ignored = {&seven, 0}};

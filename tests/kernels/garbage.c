@@ -10,8 +10,6 @@
 
 #include "check.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum { BODIES = 200 };
 
 /* Every number is one, and both answers agree. */
@@ -140,7 +138,7 @@ TEST(test_huge_positions) {
         narc_precision precision = distances[d] > (double)FLT_MAX ? NARC_FLOAT64 : NARC_FLOAT32;
         struct scene scene = make_random_scene(&random, precision, BODIES, 2000);
         for (size_t k = 0; k < BODIES; k++) {
-            double angle = 2 * pi * (double)k / BODIES;
+            double angle = 2 * PI * (double)k / BODIES;
             struct body *body = &scene.bodies[k];
             body->x = distances[d] * cos(angle);
             body->y = distances[d] * sin(angle);

@@ -30,9 +30,6 @@ static int destroy_corpora(void **state) {
     return 0;
 }
 
-/* How many wrong pairs are shown in full. */
-enum { SHOWN = 3 };
-
 /* What a run on a corpus came to. */
 struct tally {
     size_t pairs, outcomes[4], wrong;
@@ -44,13 +41,6 @@ static void print_tally(const char *name, const struct tally *t) {
     printf("  %-28s %7zu pairs: done %zu, limit %zu, rounding %zu; largest error %.3f of the tolerance, points' %.3f\n",
            name, t->pairs, t->outcomes[NARC_OUTCOME_DONE], t->outcomes[NARC_OUTCOME_LIMIT],
            t->outcomes[NARC_OUTCOME_ROUNDING], t->worst, t->off);
-}
-
-static void show_wrong(const struct corpus *corpus, size_t k, const char *name, const char *wrong, size_t *count) {
-    if ((*count)++ < SHOWN) {
-        print_error("wrong, %s: %s\n", name, wrong);
-        print_corpus_pair(corpus, k);
-    }
 }
 
 /* ------------------------------------------------------------------------------------------------ contacts */
@@ -109,13 +99,8 @@ static struct tally check_contacts(const struct corpus *corpus, const narc_metho
         tally.outcomes[outcome % 4]++;
         if (all.rows[k].pair != k)
             wrong = "pair index";
-        if (wrong) {
-            show_wrong(corpus, k, name, wrong, &tally.wrong);
-            print_error("  answer: outcome %u, separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), arcs %d, %d\n",
-                        outcome, (double)all.rows[k].separation, (double)all.rows[k].normal_x,
-                        (double)all.rows[k].normal_y, (double)all.rows[k].point_x, (double)all.rows[k].point_y,
-                        arc_of_a(all.rows[k].feature), arc_of_b(all.rows[k].feature));
-        }
+        if (wrong)
+            show_wrong_pair(corpus, k, name, wrong, &all.rows[k], outcome, &tally.wrong);
     }
     free(all.rows);
     return tally;
@@ -204,7 +189,7 @@ TEST(test_margins) {
                          away > tolerance_of(&options) * pair->size + 2 * pair->bound)
                     wrong = "above the margin, but reported";
                 if (wrong) {
-                    show_wrong(corpus, k, "margin", wrong, &wrong_pairs);
+                    show_wrong_pair(corpus, k, "margin", wrong, NULL, outcomes[k], &wrong_pairs);
                     print_error("  margin %g, outcome %u\n", (double)margins[m], outcomes[k]);
                 }
                 next += listed;
@@ -248,7 +233,7 @@ static struct tally check_overlaps(const struct corpus *corpus, const narc_metho
                  (outcome == NARC_OUTCOME_DONE || bit_is_set(bits, k)))
             wrong = "overlap";
         if (wrong) {
-            show_wrong(corpus, k, name, wrong, &tally.wrong);
+            show_wrong_pair(corpus, k, name, wrong, NULL, outcome, &tally.wrong);
             print_error("  answer: outcome %u, bit %d\n", outcome, bit_is_set(bits, k));
         }
     }

@@ -34,8 +34,6 @@ static const uint64_t golden_methods[] = {0x85810ad0d8fcad45u, 0xde05f3d86d13b14
 static const uint64_t golden_poses[] = {0x04246f5f8f209554u, 0x8b6998bde9bc55d9u};
 #endif
 
-#define PI 3.14159265358979323846
-
 /* Angles of the directions (3, 4) / 5, (7, 24) / 25 and (20, 99) / 101. */
 #define ANGLE_5   0.92729521800161224
 #define ANGLE_25  1.28700221758656973
@@ -340,15 +338,12 @@ TEST(test_points) {
         uint32_t own[BODIES], other[BODIES];
         narc_distance rows[3 * BODIES];
         narc_box boxes[BODIES];
-        narc_index *index = NULL;
         for (uint32_t k = 0; k < BODIES; k++) {
             own[k] = k;
             other[k] = (7 * k + 3) % BODIES;
         }
         const narc_nearest_options options = {.search.ignored = NARC_ARRAY(own), .most = 2};
-        assert_int_equal(narc_compute_boxes(scene.store, &bodies, NULL, boxes, NULL), NARC_OK);
-        assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
-        assert_int_equal(narc_build_index(index, boxes, BODIES, NULL, NULL), NARC_OK);
+        narc_index *const index = index_bodies(scene.store, &bodies, NULL, boxes);
         assert_int_equal(narc_find_distances(scene.store, &bodies, &points, NARC_ARRAY(other), NULL, rows, NULL),
                          NARC_OK);
         assert_int_equal(
@@ -375,7 +370,6 @@ TEST(test_rays) {
         float motion[BODIES + 2];
         uint64_t category[BODIES], mask[BODIES];
         narc_box boxes[BODIES];
-        narc_index *index = NULL;
         for (size_t k = 0; k < BODIES + 2; k++)
             motion[k] = ((float)(k % 17) - 8) / 4;
         for (size_t k = 0; k < BODIES; k++) {
@@ -388,9 +382,7 @@ TEST(test_rays) {
                                 .y = bodies.y,
                                 .motion_x = NARC_ARRAY(motion),
                                 .motion_y = {motion + BODIES + 1, -(ptrdiff_t)sizeof *motion}};
-        assert_int_equal(narc_compute_boxes(scene.store, &bodies, NULL, boxes, NULL), NARC_OK);
-        assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
-        assert_int_equal(narc_build_index(index, boxes, BODIES, &seen, NULL), NARC_OK);
+        narc_index *const index = index_bodies(scene.store, &bodies, &seen, boxes);
         for (int inside = 0; inside < 3; inside++) {
             struct {
                 narc_ray_hit rows[ROWS];

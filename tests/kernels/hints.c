@@ -294,30 +294,4 @@ TEST(test_errors) {
     destroy_scene(&scene);
 }
 
-/* Circles alone, as far from each other as not: pairs that are apart keep their hints. */
-TEST(test_discs) {
-    enum { SHAPES = 8, DISCS = 200, DISC_PAIRS = 1003 };
-    struct test_random random = test_random_named("hints of discs");
-    struct scene scene = create_scene(NARC_FLOAT32, SHAPES, DISCS, DISC_PAIRS);
-    for (size_t k = 0; k < SHAPES; k++) {
-        const struct shape shape = make_shape(&random, FAMILY_CIRCLE);
-        scene_add_shape(&scene, &shape);
-    }
-    for (size_t k = 0; k < DISCS; k++) {
-        struct body body = turned_body(random_between(&random, 0, 6), random_between(&random, 0.5, 2));
-        body.x = random_between(&random, 0, 8);
-        body.y = random_between(&random, 0, 8);
-        body.shape = (uint32_t)random_below(&random, SHAPES);
-        scene_add_body(&scene, body);
-    }
-    uint32_t *hints = create_hints(DISC_PAIRS);
-    for (size_t k = 0; k < DISC_PAIRS; k++) {
-        scene_add_pair(&scene, (uint32_t)random_below(&random, DISCS), (uint32_t)random_below(&random, DISCS));
-        hints[k] = (uint32_t)random_bits(&random);
-    }
-    check_hints(&scene, hints, NULL, "discs");
-    free(hints);
-    destroy_scene(&scene);
-}
-
 TEST_MAIN("hints")

@@ -7,23 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "boxes.h"
 #include "expect.h"
 #include "guard.h"
 #include "index.h"
 #include "ledger.h"
 #include "narc.h"
 #include "support.h"
-
-static bool is_empty(const narc_box *box) {
-    const bool finite = isfinite(box->min_x) && isfinite(box->min_y) && isfinite(box->max_x) && isfinite(box->max_y);
-    return !finite || box->min_x > box->max_x || box->min_y > box->max_y;
-}
-
-static narc_box random_box(struct test_random *random, double side, double least, double most) {
-    const double x = random_between(random, 0, side), y = random_between(random, 0, side);
-    const double width = random_between(random, least, most), height = random_between(random, least, most);
-    return (narc_box){(float)x, (float)y, (float)(x + width), (float)(y + height)};
-}
 
 static narc_box slot_box(const narc_index_node *node, size_t slot) {
     return (narc_box){node->min_x[slot], node->min_y[slot], node->max_x[slot], node->max_y[slot]};

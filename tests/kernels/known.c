@@ -9,8 +9,6 @@
 
 #include "methods.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* ------------------------------------------------------------------------------------------------ shapes */
 
 static struct shape polygon(const narc_point *point, size_t count) {
@@ -170,7 +168,7 @@ TEST(test_nearly_touching) {
         check_known("lens and box",
                     &(struct known){lens(), box_of(1, 1, 0.25), 0, 1.5 + gap, .gap = gap, .normal_y = 1}, false);
         check_known("capsules crosswise",
-                    &(struct known){capsule_of(2, 0.25), capsule_of(2, 0.25), 0.5, 1.5 + gap, pi / 2, .gap = gap,
+                    &(struct known){capsule_of(2, 0.25), capsule_of(2, 0.25), 0.5, 1.5 + gap, PI / 2, .gap = gap,
                                     .normal_y = 1},
                     false);
     }
@@ -183,11 +181,11 @@ TEST(test_vertices) {
         const double gap = tiny_gaps[k];
         check_known(
             "vertex to edge",
-            &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), 0.4, 1 + corner + gap, pi / 4, .gap = gap, .normal_y = 1},
+            &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), 0.4, 1 + corner + gap, PI / 4, .gap = gap, .normal_y = 1},
             true);
         check_known("edge to vertex",
                     &(struct known){box_of(2, 2, 0), box_of(1, 1, 0), 1 + corner * (0.5 + gap),
-                                    1 + corner * (0.5 + gap), pi / 4, .gap = gap, .normal_x = corner,
+                                    1 + corner * (0.5 + gap), PI / 4, .gap = gap, .normal_x = corner,
                                     .normal_y = corner},
                     true);
         if (gap > 0) {
@@ -227,14 +225,14 @@ TEST(test_deep) {
                 false);
     check_known("box across a box", &(struct known){box_of(4, 1, 0), box_of(1, 4, 0), .gap = -2.5}, true);
     check_known("capsule across a capsule",
-                &(struct known){capsule_of(4, 0.5), capsule_of(4, 0.5), 0, 0, pi / 2, .gap = -3}, false);
+                &(struct known){capsule_of(4, 0.5), capsule_of(4, 0.5), 0, 0, PI / 2, .gap = -3}, false);
 }
 
 /* One in the same place as the other. */
 TEST(test_equal_places) {
     check_known("square in its place", &(struct known){box_of(2, 2, 0), box_of(2, 2, 0), .gap = -2}, true);
     check_known("square in its place, turned",
-                &(struct known){box_of(2, 2, 0), box_of(2, 2, 0), 0, 0, pi / 4, .gap = -(1 + sqrt(2))}, true);
+                &(struct known){box_of(2, 2, 0), box_of(2, 2, 0), 0, 0, PI / 4, .gap = -(1 + sqrt(2))}, true);
     check_known("rounded box in its place", &(struct known){box_of(4, 2, 0.5), box_of(4, 2, 0.5), .gap = -2}, false);
     check_known("lens in its place", &(struct known){lens(), lens(), .gap = -2}, false);
     check_known("capsule in its place", &(struct known){capsule_of(2, 0.5), capsule_of(2, 0.5), .gap = -1}, false);
@@ -314,16 +312,16 @@ TEST(test_needles) {
             "thin boxes side by side",
             &(struct known){box_of(2, 2e-3, 0), box_of(2, 2e-3, 0), -0.7, 2e-3 + gap, .gap = gap, .normal_y = 1}, true);
         check_known("needle's tip to a needle's side",
-                    &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 0.2, 1 + 2e-3 + gap, pi / 2, .gap = gap,
+                    &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 0.2, 1 + 2e-3 + gap, PI / 2, .gap = gap,
                                     .normal_y = 1},
                     false);
         check_known("thin box's end to a side",
-                    &(struct known){box_of(2, 2e-3, 0), box_of(2, 2e-3, 0), 0.2, 1 + 1e-3 + gap, pi / 2, .gap = gap,
+                    &(struct known){box_of(2, 2e-3, 0), box_of(2, 2e-3, 0), 0.2, 1 + 1e-3 + gap, PI / 2, .gap = gap,
                                     .normal_y = 1},
                     true);
     }
     check_known("needles crosswise",
-                &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 0, 0, pi / 2, .gap = -1.002}, false);
+                &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 0, 0, PI / 2, .gap = -1.002}, false);
     check_known("needles far apart",
                 &(struct known){capsule_of(2, 1e-3), capsule_of(2, 1e-3), 5, 3, .gap = hypot(3, 3) - 2e-3,
                                 .normal_x = sqrt(0.5), .normal_y = sqrt(0.5)},
@@ -343,7 +341,7 @@ TEST(test_size_ratios) {
         check_known("on a large box", &on_box, true);
     }
     check_known("deep in a large box",
-                &(struct known){box_of(2, 2, 0), lens(), -ratio / 2, 0, .scale_a = ratio, .angle = pi / 2,
+                &(struct known){box_of(2, 2, 0), lens(), -ratio / 2, 0, .scale_a = ratio, .angle = PI / 2,
                                 .gap = -ratio / 2 - 1, .normal_x = -1},
                 false);
 }
@@ -365,7 +363,7 @@ TEST(test_dyn4j) {
  * capsule here: with a radius of 1/8, 7/8 are left. */
 TEST(test_box2d) {
     check_known("Box2D",
-                &(struct known){box_of(2, 2, 0), capsule_of(2, 0.125), 2, 0, pi / 2, .gap = 0.875, .normal_x = 1},
+                &(struct known){box_of(2, 2, 0), capsule_of(2, 0.125), 2, 0, PI / 2, .gap = 0.875, .normal_x = 1},
                 false);
 }
 

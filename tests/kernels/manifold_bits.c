@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * manifold_bits.c - manifolds are the same bits however they are asked for: by every instruction set, without
- * shortcuts, with any hints, any number of threads, in sub-ranges, into too few rows.
+ * shortcuts, with any hints, any number of threads, in sub-ranges.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -14,36 +14,9 @@
 static const float margins[] = {0, 0.3f, -0.1f, INFINITY};
 enum { MARGINS = sizeof margins / sizeof *margins, BODIES = 200, PAIRS = 3000 };
 
-/* Fails unless both lists hold the same bits. */
-static void check_same(const struct manifolds *right, const struct manifolds *found) {
-    assert_int_equal(found->count, right->count);
-    assert_memory_equal(found->rows, right->rows, right->count * sizeof *right->rows);
-}
-
 static struct scene make_scene(const char *name, narc_precision precision) {
     struct test_random random = test_random_named(name);
     return make_random_scene(&random, precision, BODIES, PAIRS);
-}
-
-TEST(test_plain) {
-    for (int precision = 0; precision < 2; precision++) {
-        struct scene scene = make_scene("plain manifolds", (narc_precision)precision);
-        const narc_bodies bodies = scene_bodies(&scene);
-        const narc_pairs pairs = scene_pairs(&scene);
-        for (size_t m = 0; m < MARGINS; m++) {
-            struct manifolds right =
-                find_plain_manifolds(scene.store, &bodies, &pairs, &(narc_query){.margin = margins[m]});
-            struct manifolds found = scene_manifolds(&scene, margins[m]);
-            size_t two = 0;
-            check_same(&right, &found);
-            for (size_t k = 0; k < right.count; k++)
-                two += right.rows[k].count == 2;
-            assert_true(two > right.count / 20 && two < right.count / 2);
-            free(right.rows);
-            free(found.rows);
-        }
-        destroy_scene(&scene);
-    }
 }
 
 /* Finds into rows that end where a forbidden page begins. */
@@ -54,35 +27,45 @@ static void find_and_check(const struct scene *scene, const narc_query *query, c
     narc_error error;
     expect_ok(narc_find_manifolds(scene->store, &bodies, &pairs, query, found.rows, right->count, &found.count, &error),
               &error);
-    check_same(right, &found);
+    assert_int_equal(found.count, right->count);
+    assert_memory_equal(found.rows, right->rows, right->count * sizeof *right->rows);
     guard_release(found.rows);
+}
+
+/* Those found without shortcuts are right, some of two points. */
+static void check_threads_and_hints(struct test_random *random, const struct scene *scene, float margin) {
+    const narc_bodies bodies = scene_bodies(scene);
+    const narc_pairs pairs = scene_pairs(scene);
+    static uint32_t hints[PAIRS], right_hints[PAIRS];
+    struct manifolds right = find_plain_manifolds(scene->store, &bodies, &pairs, &(narc_query){.margin = margin});
+    size_t two = 0;
+    for (size_t k = 0; k < right.count; k++)
+        two += right.rows[k].count == 2;
+    assert_true(two > right.count / 20 && two < right.count / 2);
+    for (unsigned threads = 0; threads < 4; threads++) {
+        const narc_workers workers = narc_openmp_workers(threads);
+        const narc_query query = {.margin = margin, .hints = NARC_HINT_ARRAY(hints), .workers = &workers};
+        find_and_check(scene, &(narc_query){.margin = margin, .workers = &workers}, &right);
+        /* Hints made up; those that are left are those of contacts. */
+        for (size_t k = 0; k < PAIRS; k++)
+            hints[k] = right_hints[k] = threads == 0 ? 0 : (uint32_t)random_bits(random) & 0x0f0f;
+        find_and_check(scene, &query, &right);
+        const narc_query own = {.margin = margin, .hints = NARC_HINT_ARRAY(right_hints)};
+        free(find_contacts(scene->store, &bodies, &pairs, &own).rows);
+        assert_memory_equal(hints, right_hints, sizeof hints);
+        find_and_check(scene, &query, &right);
+    }
+    free(right.rows);
 }
 
 TEST(test_threads_and_hints) {
     struct test_random random = test_random_named("manifold hints");
-    struct scene scene = make_scene("manifold hints", NARC_FLOAT32);
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene);
-    static uint32_t hints[PAIRS], right_hints[PAIRS];
-    for (size_t m = 0; m < MARGINS; m++) {
-        struct manifolds right =
-            find_plain_manifolds(scene.store, &bodies, &pairs, &(narc_query){.margin = margins[m]});
-        for (unsigned threads = 0; threads < 4; threads++) {
-            const narc_workers workers = narc_openmp_workers(threads);
-            const narc_query query = {.margin = margins[m], .hints = NARC_HINT_ARRAY(hints), .workers = &workers};
-            find_and_check(&scene, &(narc_query){.margin = margins[m], .workers = &workers}, &right);
-            /* Hints made up; those that are left are those of contacts. */
-            for (size_t k = 0; k < PAIRS; k++)
-                hints[k] = right_hints[k] = threads == 0 ? 0 : (uint32_t)random_bits(&random) & 0x0f0f;
-            find_and_check(&scene, &query, &right);
-            const narc_query own = {.margin = margins[m], .hints = NARC_HINT_ARRAY(right_hints)};
-            free(find_contacts(scene.store, &bodies, &pairs, &own).rows);
-            assert_memory_equal(hints, right_hints, sizeof hints);
-            find_and_check(&scene, &query, &right);
-        }
-        free(right.rows);
+    for (int precision = 0; precision < 2; precision++) {
+        struct scene scene = make_scene("manifold hints", (narc_precision)precision);
+        for (size_t m = 0; m < MARGINS; m++)
+            check_threads_and_hints(&random, &scene, margins[m]);
+        destroy_scene(&scene);
     }
-    destroy_scene(&scene);
 }
 
 /* Sub-ranges of all lengths. */
@@ -102,30 +85,6 @@ TEST(test_ranges) {
         listed += found;
         first += round % 2 ? 0 : count; /* every other one is asked for again, longer */
         listed -= round % 2 ? found : 0;
-    }
-    free(all.rows);
-    destroy_scene(&scene);
-}
-
-TEST(test_capacity) {
-    struct test_random random = test_random_named("manifold capacity");
-    struct scene scene = make_scene("manifold capacity", NARC_FLOAT32);
-    const narc_bodies bodies = scene_bodies(&scene);
-    const narc_pairs pairs = scene_pairs(&scene);
-    struct manifolds all = scene_manifolds(&scene, 0);
-    for (size_t round = 0; round < 40; round++) {
-        const size_t capacity = round == 0 ? 0 : random_below(&random, all.count);
-        const narc_workers workers = narc_openmp_workers(1 + (unsigned)round % 3);
-        narc_manifold *part = guard_allocate(capacity * sizeof *part);
-        size_t found = 0;
-        narc_error error;
-        assert_int_equal(narc_find_manifolds(scene.store, &bodies, &pairs, &(narc_query){.workers = &workers}, part,
-                                             capacity, &found, &error),
-                         NARC_ERROR_CAPACITY);
-        assert_int_equal(found, all.count);
-        assert_non_null(strstr(error.message, "rows"));
-        assert_memory_equal(part, all.rows, capacity * sizeof *part);
-        guard_release(part);
     }
     free(all.rows);
     destroy_scene(&scene);

@@ -12,8 +12,6 @@
 #include "manifold_reference.h"
 #include "placements.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum { SHOWN = 5 };
 
 /* A point's place and separation may be off by that many bounds of a separation: both edges' ends, a rotated normal,
@@ -65,9 +63,9 @@ static bool is_reach(const struct reference_body *body, unsigned feature, double
     const narc_arc *arc = &body->arcs[feature];
     const double angle = atan2(sign * y, sign * x) - atan2(body->sine, body->cosine);
     for (size_t i = 0; i < 2; i++) {
-        double turn = remainder(i ? arc->end - angle : angle - arc->start, 2 * pi);
-        turn = turn < -pi / 2 ? turn + 2 * pi : turn; /* half a turn, and a rounding */
-        const double right = NARC_REACH_ONE * sin(fmin(fmax(turn, 0), pi / 2)), doubt = NARC_REACH_ONE * normal_doubt;
+        double turn = remainder(i ? arc->end - angle : angle - arc->start, 2 * PI);
+        turn = turn < -PI / 2 ? turn + 2 * PI : turn; /* half a turn, and a rounding */
+        const double right = NARC_REACH_ONE * sin(fmin(fmax(turn, 0), PI / 2)), doubt = NARC_REACH_ONE * normal_doubt;
         if (reach[i] < right - 1 - doubt || reach[i] > right + doubt)
             return false;
     }
@@ -243,7 +241,7 @@ static void put(struct scene *scene, uint32_t index, double x, double y, double 
 /* The edge of a box whose normal points up, and the one whose normal points down. */
 static unsigned find_edge_with(const struct shape *shape, double normal) {
     for (size_t i = 0; i < shape->count; i++)
-        if (fabs(remainder(shape->arcs[i].start - normal, 2 * pi)) < 1e-9)
+        if (fabs(remainder(shape->arcs[i].start - normal, 2 * PI)) < 1e-9)
             return (unsigned)i | NARC_FEATURE_EDGE;
     fail_msg("no edge with the normal %g", normal);
     return 0;
@@ -258,7 +256,7 @@ TEST(test_box_on_box) {
         const double rounding = round % 2 ? 0.1 : 0, width = round < 2 ? 2 : 1;
         const struct shape below = box_of(2, 1, 0), above = box_of(width, 1, rounding);
         struct scene scene = make_duo(&below, &above);
-        const unsigned up = find_edge_with(&below, pi / 2), down = find_edge_with(&above, -pi / 2);
+        const unsigned up = find_edge_with(&below, PI / 2), down = find_edge_with(&above, -PI / 2);
         const unsigned up_arc = up & 0x3f, down_arc = down & 0x3f; /* counter-clockwise behind these edges */
         const unsigned first = (round == 0 ? (up_arc + 3) % 4 : up) | down_arc << 8;
         const unsigned second = (round == 0 ? up_arc : up) | (down_arc + 3) % 4 << 8;
@@ -358,11 +356,11 @@ TEST(test_rolling) {
     const struct shape box = box_of(2, 2, 0);
     const struct shape circle = circle_of(0.5);
     struct scene scene = make_duo(&circle, &box);
-    const unsigned top = find_edge_with(&box, pi / 2), right = find_edge_with(&box, 0), corner = right & 0x3f;
+    const unsigned top = find_edge_with(&box, PI / 2), right = find_edge_with(&box, 0), corner = right & 0x3f;
     size_t seen[3] = {0};
     for (double way = -1; way < 3; way += 0.01) {
         /* Along the top for x < 1, around the corner (1, 1) for half a turn's quarter, and down. */
-        const double turn = fmin(fmax(way - 1, 0) / 0.5, pi / 2), down = fmax(way - 1 - pi / 4, 0);
+        const double turn = fmin(fmax(way - 1, 0) / 0.5, PI / 2), down = fmax(way - 1 - PI / 4, 0);
         put(&scene, 0, fmin(way, 1) + 0.5 * sin(turn), 1 + 0.5 * cos(turn) - down, way);
         struct manifolds list = scene_manifolds(&scene, 0.01f);
         assert_int_equal(list.count, 1);
@@ -372,13 +370,13 @@ TEST(test_rolling) {
         assert_int_equal(list.rows[0].point[0].feature & 0xff, 0);
         assert_true(list.rows[0].radius_a == 0.5f);
         assert_true(list.rows[0].point[1].separation == 0 && list.rows[0].point[1].feature == 0);
-        if (fabs(way - 1) < 0.02 || fabs(way - 1 - pi / 4) < 0.02) { /* on either side of the corner's end */
+        if (fabs(way - 1) < 0.02 || fabs(way - 1 - PI / 4) < 0.02) { /* on either side of the corner's end */
             assert_true(on_box == top || on_box == corner || on_box == right);
         } else if (way < 1) {
             assert_int_equal(on_box, top);
             assert_true(curved == INFINITY);
             seen[0]++;
-        } else if (turn < pi / 2) {
+        } else if (turn < PI / 2) {
             assert_int_equal(on_box, corner);
             assert_true(curved == 0);
             seen[1]++;
@@ -399,13 +397,13 @@ TEST(test_reach) {
     const struct shape box = box_of(2, 2, 0.25);
     const struct shape circle = circle_of(0.5);
     struct scene scene = make_duo(&box, &circle);
-    for (double angle = 0; angle <= pi / 2; angle += pi / 64) {
+    for (double angle = 0; angle <= PI / 2; angle += PI / 64) {
         put(&scene, 1, 0.75 + 0.7 * cos(angle), 0.75 + 0.7 * sin(angle), 0);
         struct manifolds list = scene_manifolds(&scene, 0);
         const narc_manifold *m = list.rows;
         assert_int_equal(list.count, 1);
         const bool edge = m->radius_a == INFINITY;
-        assert_true(!edge || angle < 1e-6 || angle > pi / 2 - 1e-6);
+        assert_true(!edge || angle < 1e-6 || angle > PI / 2 - 1e-6);
         assert_true(fabs(m->reach_a[0] + 0.5 - (edge ? 0.5 : NARC_REACH_ONE * sin(angle))) < 0.7);
         assert_true(fabs(m->reach_a[1] + 0.5 - (edge ? 0.5 : NARC_REACH_ONE * cos(angle))) < 0.7);
         assert_true(m->reach_b[0] == NARC_REACH_ONE && m->reach_b[1] == NARC_REACH_ONE);
@@ -513,11 +511,11 @@ static unsigned find_ids(const struct manifolds *list, size_t k) {
 static unsigned swap_bytes(unsigned id) { return (id >> 8 & 0x00ff00ff) | (id & 0x00ff00ff) << 8; }
 
 static struct shape doubled_corner(double x, double y, double gap, double normal) {
-    struct shape shape = {{{x, y, 0, -pi / 2, normal},
+    struct shape shape = {{{x, y, 0, -PI / 2, normal},
                            {x - gap * sin(normal), y + gap * cos(normal), 0, normal, 0},
-                           {x, y + 1, 0, 0, pi / 2},
-                           {x - 2, y + 1, 0, pi / 2, pi},
-                           {x - 2, y, 0, pi, 1.5 * pi}},
+                           {x, y + 1, 0, 0, PI / 2},
+                           {x - 2, y + 1, 0, PI / 2, PI},
+                           {x - 2, y, 0, PI, 1.5 * PI}},
                           5};
     return shape;
 }
@@ -543,7 +541,7 @@ TEST(test_doubled_corner) {
         scene_add_pair(&scene, 1, 0);
         for (size_t trial = 0; trial < test_trials(400); trial++) {
             /* The corner is 0.01 deep in the ground's top, which is looked at from the joint's side. */
-            const double tilt = -random_between(&random, 0.02, pi / 2 - 0.02), c = cos(tilt), s = sin(tilt);
+            const double tilt = -random_between(&random, 0.02, PI / 2 - 0.02), c = cos(tilt), s = sin(tilt);
             const double place = random_between(&random, -2, 2);
             unsigned ids[2];
             for (uint32_t moved = 0; moved < 2; moved++) {
@@ -566,7 +564,7 @@ TEST(test_doubled_corner) {
                 free(list.rows);
             }
             assert_int_equal(ids[0], ids[1]);
-            near_joint += fabs(-pi / 2 - normal - tilt) < 0.4;
+            near_joint += fabs(-PI / 2 - normal - tilt) < 0.4;
         }
         destroy_scene(&scene);
     }
@@ -581,13 +579,13 @@ TEST(test_short_edges_swapped) {
     const size_t trials = test_trials(2000);
     size_t differ = 0, two = 0;
     for (size_t trial = 0; trial < trials; trial++) {
-        const double cut = random_between(&random, 0.8e-5, 2e-5), normal = -pi / 4;
+        const double cut = random_between(&random, 0.8e-5, 2e-5), normal = -PI / 4;
         struct shape shape = doubled_corner(1, 1, 0, normal);
         shape.arcs[0].center_x -= cut;
         shape.arcs[1].center_y += cut;
         struct scene scene = make_duo(&ground, &shape);
         scene_add_pair(&scene, 1, 0);
-        const double tilt = -pi / 2 - normal + random_between(&random, -0.4, 0.4), c = cos(tilt), s = sin(tilt);
+        const double tilt = -PI / 2 - normal + random_between(&random, -0.4, 0.4), c = cos(tilt), s = sin(tilt);
         put(&scene, 1, random_between(&random, -0.2, 0.2) - c + s, 0.49 - s - c, tilt);
         struct manifolds list = scene_manifolds(&scene, 1);
         assert_int_equal(list.count, 2);
@@ -613,10 +611,10 @@ TEST(test_far_origin) {
             /* The second arc goes on from where the first one ends. */
             const double moved_x = (first - second) * cos(joint), moved_y = (first - second) * sin(joint);
             struct shape shape = {{{x + 0.7, y + 0.7, first, 0, joint},
-                                   {x + 0.7 + moved_x, y + 0.7 + moved_y, second, joint, pi / 2},
-                                   {x - 1, y + 0.7 + moved_y + second, 0, pi / 2, pi},
-                                   {x - 1, y - 1, 0, pi, 1.5 * pi},
-                                   {x + 1, y - 1, 0, 1.5 * pi, 2 * pi}},
+                                   {x + 0.7 + moved_x, y + 0.7 + moved_y, second, joint, PI / 2},
+                                   {x - 1, y + 0.7 + moved_y + second, 0, PI / 2, PI},
+                                   {x - 1, y - 1, 0, PI, 1.5 * PI},
+                                   {x + 1, y - 1, 0, 1.5 * PI, 2 * PI}},
                                   5};
             const double out_x = cos(joint), out_y = sin(joint), top_x = x + 0.7 + first * out_x;
             const double top_y = y + 0.7 + first * out_y;
@@ -624,7 +622,7 @@ TEST(test_far_origin) {
                 struct scene scene = make_duo(edged ? &flat : &ball, &shape);
                 /* The other body's right side, turned round to the joint. */
                 const double reach = edged ? 1 : 0.5;
-                put(&scene, 0, 0, 0, joint + pi);
+                put(&scene, 0, 0, 0, joint + PI);
                 put(&scene, 1, -top_x - reach * out_x, -top_y - reach * out_y, 0);
                 scene_add_pair(&scene, 1, 0);
                 struct manifolds list = scene_manifolds(&scene, INFINITY);
@@ -643,7 +641,7 @@ TEST(test_far_origin) {
  * to lying on the other: the deepest point keeps its id, which names the corner's arc and the edge. */
 TEST(test_leaning) {
     const struct shape ground = box_of(20, 1, 0);
-    const unsigned top = find_edge_with(&ground, pi / 2);
+    const unsigned top = find_edge_with(&ground, PI / 2);
     for (int rounded = 0; rounded < 2; rounded++) {
         const double radius = rounded ? 0.2 : 0;
         const struct shape box = box_of(2, 1, radius);
@@ -651,8 +649,8 @@ TEST(test_leaning) {
         size_t one = 0, two = 0;
         const unsigned corner = (find_edge_with(&box, 0) & 0x3f) - 1 + (unsigned)box.count; /* the lower right arc */
         for (double tilt = -89; tilt < -1; tilt += 0.01) {
-            const double c = cos(tilt * pi / 180), s = sin(tilt * pi / 180), right = 1 - radius, low = radius - 0.5;
-            put(&scene, 1, 0.3 - (c * right - s * low), 0.5 + radius - 0.01 - (s * right + c * low), tilt * pi / 180);
+            const double c = cos(tilt * PI / 180), s = sin(tilt * PI / 180), right = 1 - radius, low = radius - 0.5;
+            put(&scene, 1, 0.3 - (c * right - s * low), 0.5 + radius - 0.01 - (s * right + c * low), tilt * PI / 180);
             struct manifolds list = scene_manifolds(&scene, 0.5f);
             assert_int_equal(list.count, 1);
             const size_t count = list.rows[0].count;

@@ -9,8 +9,6 @@
 #include "check.h"
 #include "placements.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* Positions in multiples of this much stay exact in single precision when moved by up to 2^12. */
 static const double grid = 0x1p-10;
 
@@ -129,7 +127,7 @@ TEST(test_translate_far) {
 TEST(test_rotate) {
     struct change change = begin_change("rotate");
     struct test_random random = test_random_named("angle");
-    double angle = random_between(&random, -pi, pi), c = cos(angle), s = sin(angle);
+    double angle = random_between(&random, -PI, PI), c = cos(angle), s = sin(angle);
     change.scene.precision = NARC_FLOAT64;
     for (size_t k = 0; k < change.scene.body_count; k++) {
         struct body *body = &change.scene.bodies[k];

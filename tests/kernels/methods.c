@@ -34,24 +34,6 @@ static int destroy_corpora(void **state) {
 static const float margins[] = {0, 0.2f, -0.1f, INFINITY};
 enum { MARGINS = sizeof margins / sizeof *margins };
 
-/* How many wrong pairs are shown in full. */
-enum { SHOWN = 3 };
-
-static void show_wrong(const struct corpus *corpus, size_t k, const char *wrong, size_t *count) {
-    if ((*count)++ < SHOWN) {
-        print_error("wrong: %s\n", wrong);
-        print_corpus_pair(corpus, k);
-    }
-}
-
-static void print_contact(const struct exact_pair *pair, const struct contacts *all, size_t k, unsigned outcome) {
-    print_error("  answer: outcome %u, separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), arcs %d and %d, point "
-                "off %.3g\n",
-                outcome, (double)all->rows[k].separation, (double)all->rows[k].normal_x, (double)all->rows[k].normal_y,
-                (double)all->rows[k].point_x, (double)all->rows[k].point_y, arc_of_a(all->rows[k].feature),
-                arc_of_b(all->rows[k].feature), distance_from_outlines(pair, &all->rows[k]));
-}
-
 /* ------------------------------------------------------------------------------------------------ sat */
 
 static void check_all_done(const uint8_t *outcomes, size_t count) {
@@ -113,10 +95,8 @@ TEST(test_sat_is_exact) {
                 wrong = "sat: the point is not on the outlines";
             if (!wrong && fabs((double)all.rows[k].separation - pair->gap) > pair->bound)
                 wrong = "sat: not the exact separation";
-            if (wrong) {
-                show_wrong(corpus, k, wrong, &wrong_pairs);
-                print_contact(pair, &all, k, 0);
-            }
+            if (wrong)
+                show_wrong_pair(corpus, k, "sat", wrong, &all.rows[k], 0, &wrong_pairs);
         }
         free(all.rows);
     }
@@ -236,10 +216,8 @@ static void check_first_pair(const struct corpus *corpus, const struct contacts 
     tally->doubted += verdict.doubted;
     tally->none += outcome == NARC_OUTCOME_NONE;
     tally->late += verdict.found && verdict.before > 0;
-    if (wrong) {
-        show_wrong(corpus, k, wrong, &tally->wrong);
-        print_contact(pair, all, k, outcome);
-    }
+    if (wrong)
+        show_wrong_pair(corpus, k, "sat-first", wrong, &all->rows[k], outcome, &tally->wrong);
 }
 
 TEST(test_first_pair) {
@@ -329,10 +307,8 @@ TEST(test_polygons) {
             apart += pair->gap > pair->bound;
             colliding += pair->gap < -pair->bound;
             less += (double)all.rows[k].separation < pair->gap - pair->bound;
-            if (wrong) {
-                show_wrong(corpus, k, wrong, &wrong_pairs);
-                print_contact(pair, &all, k, outcomes[k]);
-            }
+            if (wrong)
+                show_wrong_pair(corpus, k, "polygon-sat", wrong, &all.rows[k], outcomes[k], &wrong_pairs);
         }
         /* It may end early, but reports the same. */
         const float more[] = {0, 0.2f, 1e-6f, -1e-6f, -0.1f, -10, 10};
@@ -383,7 +359,7 @@ static void check_filter(const struct corpus *corpus, size_t k, bool told, doubl
     tally->colliding += most < -band;
     tally->false_alarms += told && pair->gap > 0;
     if (wrong) {
-        show_wrong(corpus, k, wrong, &tally->wrong);
+        show_wrong_pair(corpus, k, "filter", wrong, NULL, 0, &tally->wrong);
         print_error("  filter: told %d, gap %.9g .. %.9g, band %.3g\n", told, least, most, band);
     }
 }

@@ -5,7 +5,6 @@
  */
 #include <float.h>
 #include <math.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,8 +17,6 @@
 #include "narc_broad_phase.h"
 #include "narc_scene.h"
 #include "scene.h"
-
-static const double pi = 3.14159265358979323846;
 
 /* ------------------------------------------------------------------------------------------------ scenes */
 
@@ -54,7 +51,7 @@ static struct scene make_scene(struct test_random *random, narc_precision precis
         scene_add_shape(&scene, &shape);
     }
     for (size_t k = 0; k < count; k++) {
-        struct body body = turned_body(random_between(random, -pi, pi), random_log_between(random, 0.1, 2));
+        struct body body = turned_body(random_between(random, -PI, PI), random_log_between(random, 0.1, 2));
         body.shape = (uint32_t)random_below(random, SHAPES);
         body.x = away + random_between(random, -spread, spread);
         body.y = away + random_between(random, -spread, spread);
@@ -99,9 +96,7 @@ static struct question ask(struct test_random *random, narc_precision precision,
     q.points = (narc_points){.count = points,
                              .x = single ? NARC_POSITION_ARRAY(q.x_single) : NARC_POSITION_ARRAY(q.x),
                              .y = single ? NARC_POSITION_ARRAY(q.y_single) : NARC_POSITION_ARRAY(q.y)};
-    assert_int_equal(narc_compute_boxes(q.scene.store, &q.bodies, NULL, q.boxes, NULL), NARC_OK);
-    assert_int_equal(narc_create_index(NULL, &q.index), NARC_OK);
-    assert_int_equal(narc_build_index(q.index, q.boxes, bodies, NULL, NULL), NARC_OK);
+    q.index = index_bodies(q.scene.store, &q.bodies, NULL, q.boxes);
     return q;
 }
 
@@ -271,37 +266,12 @@ TEST(test_ties) {
 
 /* ------------------------------------------------------------------------------------------------ the same bytes */
 
-struct task {
-    void (*function)(void *, unsigned);
-    void *argument;
-    unsigned index;
-};
-
-static void *run_task(void *argument) {
-    const struct task *task = argument;
-    task->function(task->argument, task->index);
-    return NULL;
-}
-
-static void run_threads(void *context, unsigned count, void (*task)(void *, unsigned), void *argument) {
-    pthread_t thread[8];
-    struct task tasks[8];
-    (void)context;
-    assert_true(count <= 8);
-    for (unsigned k = 0; k < count; k++) {
-        tasks[k] = (struct task){task, argument, k};
-        assert_int_equal(pthread_create(&thread[k], NULL, run_task, &tasks[k]), 0);
-    }
-    for (unsigned k = 0; k < count; k++)
-        pthread_join(thread[k], NULL);
-}
-
 TEST(test_same_bytes) {
     enum { POINTS = 700, MOST = 3 };
     struct test_random random = test_random_named("nearest, bytes");
     for (int precision = NARC_FLOAT32; precision <= NARC_FLOAT64; precision++) {
         struct question q = ask(&random, (narc_precision)precision, 300, POINTS, 20, 0);
-        const narc_workers workers = {NULL, 5, run_threads};
+        const narc_workers workers = narc_openmp_workers(5);
         const narc_nearest_options options = {.most = MOST};
         narc_nearest_options threaded = options;
         threaded.search.workers = &workers;

@@ -12,8 +12,6 @@
 #include "hard.h"
 #include "plain.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum { SHAPES = 12, PAIRS = 128 * HARD_BODIES / 2, MOST_CORNERS = 8 };
 
 /* What a scene is made of. */
@@ -35,9 +33,9 @@ static bool try_polygon(const narc_point *point, size_t count, double radius, st
 
 static size_t make_ellipse(struct test_random *random, double flat, narc_point *out) {
     const size_t count = 3 + random_below(random, MOST_CORNERS - 2);
-    const double turn = random_between(random, -pi, pi);
+    const double turn = random_between(random, -PI, PI);
     for (size_t i = 0; i < count; i++) {
-        const double angle = turn + 2 * pi * ((double)i + random_between(random, -0.4, 0.4)) / (double)count;
+        const double angle = turn + 2 * PI * ((double)i + random_between(random, -0.4, 0.4)) / (double)count;
         out[i] = (narc_point){cos(angle), flat * sin(angle)};
     }
     return count;
@@ -45,10 +43,10 @@ static size_t make_ellipse(struct test_random *random, double flat, narc_point *
 
 static size_t make_regular(struct test_random *random, narc_point *out) {
     const size_t counts[] = {3, 4, 5, 6, 8, 8}, count = counts[random_below(random, 6)];
-    const double turn = random_below(random, 2) ? 0 : pi / (double)count;
+    const double turn = random_below(random, 2) ? 0 : PI / (double)count;
     for (size_t i = 0; i < count; i++)
-        out[i] = (narc_point){cos(turn + 2 * pi * (double)i / (double)count),
-                              sin(turn + 2 * pi * (double)i / (double)count)};
+        out[i] = (narc_point){cos(turn + 2 * PI * (double)i / (double)count),
+                              sin(turn + 2 * PI * (double)i / (double)count)};
     return count;
 }
 
@@ -111,7 +109,7 @@ static struct shape make_polygon(struct test_random *random, enum kinds kind) {
         for (size_t k = random_below(random, 4); k > 0 && kind == FLAT; k--)
             count = bend_edge(point, count, random_below(random, count), random_log_between(random, 3e-6, 0.1));
         const double far = kind == AWAY ? random_log_between(random, 0.1, 1e4) : 0,
-                     angle = random_between(random, -pi, pi);
+                     angle = random_between(random, -PI, PI);
         for (size_t i = 0; i < count; i++)
             point[i] = (narc_point){point[i].x + far * cos(angle), point[i].y + far * sin(angle)};
         if (try_polygon(point, count, 0, &shape))
@@ -184,11 +182,11 @@ TEST(test_piles) {
             scene_add_shape(&scene, &shape);
         }
         for (size_t k = 0; k < PAIRS; k++) {
-            struct body a = turned_body(random_between(&random, -pi, pi), 1), b = a;
-            b = turned_body(random_between(&random, -pi, pi), 1);
+            struct body a = turned_body(random_between(&random, -PI, PI), 1), b = a;
+            b = turned_body(random_between(&random, -PI, PI), 1);
             a.shape = (uint32_t)random_below(&random, SHAPES);
             b.shape = (uint32_t)random_below(&random, SHAPES);
-            const double angle = random_between(&random, -pi, pi), distance = random_between(&random, 1, 2.1);
+            const double angle = random_between(&random, -PI, PI), distance = random_between(&random, 1, 2.1);
             b.x = distance * cos(angle);
             b.y = distance * sin(angle);
             scene_add_two(&scene, a, b);

@@ -6,20 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "layouts.h"
 #include "plain.h"
-
-static const double pi = 3.14159265358979323846;
-
-static void check_scene(const struct scene *scene, const char *name) {
-    struct columns columns = create_columns(scene, LAYOUT_STRUCTURES, 0, scene->pair_count);
-    const struct plain_batch batch = make_plain_batch(scene, &columns.bodies, &columns.pairs, name);
-    check_plain_overlaps(&batch, NULL);
-    check_plain_contacts(&batch, &(narc_query){.margin = 0});
-    check_plain_contacts(&batch, &(narc_query){.margin = INFINITY});
-    free(batch.right);
-    destroy_columns(&columns);
-}
 
 static void add_pair(struct scene *scene, struct body a, struct body b) {
     round_position(&a, scene->precision);
@@ -52,14 +39,14 @@ TEST(test_vanishing_axes) {
         b.y = random_below(&random, 4) ? distance * sin(angle) : 0;
         add_pair(&scene, a, b);
     }
-    check_scene(&scene, "vanishing axes");
+    check_plain_scene(&random, &scene, "vanishing axes");
     destroy_scene(&scene);
 }
 
 /* A flat rhombus with rounded corners; its upper corner is two arcs whose centres are `overlap` too far to their own
  * side, so that a tiny edge between them runs backwards. */
 static struct shape make_loose_rhombus(double slope, double radius, double overlap) {
-    const double top = (1 - radius) * tan(slope), up = pi / 2, down = 3 * pi / 2;
+    const double top = (1 - radius) * tan(slope), up = PI / 2, down = 3 * PI / 2;
     return (struct shape){.arcs = {{1 - radius, 0, radius, slope - up, up - slope},
                                    {-overlap / 2, top, radius, up - slope, up},
                                    {overlap / 2, top, radius, up, up + slope},
@@ -77,7 +64,7 @@ TEST(test_loose_joins) {
         const double slope = random_between(&random, 0.03, 0.35), radius = random_between(&random, 0.015, 0.055);
         const double small = random_between(&random, 0.005, 0.015);
         const struct shape rhombus = make_loose_rhombus(slope, radius, random_between(&random, 0.2e-5, 0.99e-5));
-        const struct shape circle = {.arcs = {{0, 0, small, -pi, pi}}, .count = 1};
+        const struct shape circle = {.arcs = {{0, 0, small, -PI, PI}}, .count = 1};
         const uint32_t first = scene_add_shape(&scene, &rhombus), second = scene_add_shape(&scene, &circle);
         for (size_t k = 0; k < PAIRS; k++) {
             const double angle = random_between(&random, -6e-4, 6e-4);
@@ -90,7 +77,7 @@ TEST(test_loose_joins) {
             b.shape = second;
             add_pair(&scene, a, b);
         }
-        check_scene(&scene, "loose joins");
+        check_plain_scene(&random, &scene, "loose joins");
         destroy_scene(&scene);
     }
 }

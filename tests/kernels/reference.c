@@ -8,19 +8,17 @@
 #include "chains.h"
 #include "placements.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* What the reference claims, relative to sizes near 1. */
 static const double tolerance = 1e-12;
 
-static struct shape circle_shape(double radius) { return (struct shape){{{0, 0, radius, 0, 2 * pi}}, 1}; }
+static struct shape circle_shape(double radius) { return (struct shape){{{0, 0, radius, 0, 2 * PI}}, 1}; }
 
 /* A polygon of four vertices of radius 0, or of `radius` around them. */
 static struct shape box_shape(double half_width, double half_height, double radius) {
-    return (struct shape){{{half_width, half_height, radius, 0, pi / 2},
-                           {-half_width, half_height, radius, pi / 2, pi},
-                           {-half_width, -half_height, radius, pi, 3 * pi / 2},
-                           {half_width, -half_height, radius, 3 * pi / 2, 2 * pi}},
+    return (struct shape){{{half_width, half_height, radius, 0, PI / 2},
+                           {-half_width, half_height, radius, PI / 2, PI},
+                           {-half_width, -half_height, radius, PI, 3 * PI / 2},
+                           {half_width, -half_height, radius, 3 * PI / 2, 2 * PI}},
                           4};
 }
 
@@ -39,7 +37,7 @@ TEST(test_circles) {
     for (size_t trial = 0; trial < test_trials(200); trial++) {
         struct shape shape_a = circle_shape(random_unit(&random)), shape_b = circle_shape(random_unit(&random));
         double x = random_between(&random, -2, 2), y = random_between(&random, -2, 2);
-        struct reference_body a = at(&shape_a, 0, 0, 0), b = at(&shape_b, x, y, random_between(&random, -pi, pi));
+        struct reference_body a = at(&shape_a, 0, 0, 0), b = at(&shape_b, x, y, random_between(&random, -PI, PI));
         check_gap(&a, &b, hypot(x, y) - shape_a.arcs[0].radius - shape_b.arcs[0].radius);
     }
 }
@@ -56,7 +54,7 @@ TEST(test_circle_and_box) {
         double width = random_unit(&random), height = random_unit(&random), corner = random_unit(&random) / 4;
         struct shape shape_a = box_shape(width, height, corner), shape_b = circle_shape(random_unit(&random));
         double x = random_between(&random, -2, 2), y = random_between(&random, -2, 2);
-        double angle = random_between(&random, -pi, pi), c = cos(angle), s = sin(angle);
+        double angle = random_between(&random, -PI, PI), c = cos(angle), s = sin(angle);
         struct reference_body a = at(&shape_a, 3, -4, angle),
                               b = at(&shape_b, 3 + c * x - s * y, -4 + s * x + c * y, 1);
         check_gap(&a, &b, box_distance(width, height, x, y) - corner - shape_b.arcs[0].radius);
@@ -98,7 +96,7 @@ TEST(test_boxes) {
         struct reference_body body[2];
         narc_point corner[2][4];
         for (int k = 0; k < 2; k++) {
-            double angle = trial % 4 ? random_between(&random, -pi, pi) : pi / 2 * (double)random_below(&random, 4);
+            double angle = trial % 4 ? random_between(&random, -PI, PI) : PI / 2 * (double)random_below(&random, 4);
             shape[k] = box_shape(random_between(&random, 0.1, 1), random_between(&random, 0.1, 1), 0);
             body[k] = at(&shape[k], random_between(&random, -1, 1), random_between(&random, -1, 1), angle);
             for (int i = 0; i < 4; i++) {
@@ -121,7 +119,7 @@ TEST(test_capsules) {
         for (int k = 0; k < 2; k++) {
             double angle = random_between(&random, -1, 1), half = random_between(&random, 0.1, 1);
             double radius = random_unit(&random), x = 0, y = (k ? 1 : -1) * random_between(&random, 1, 2);
-            shape[k] = (struct shape){{{half, 0, radius, -pi / 2, pi / 2}, {-half, 0, radius, pi / 2, 3 * pi / 2}}, 2};
+            shape[k] = (struct shape){{{half, 0, radius, -PI / 2, PI / 2}, {-half, 0, radius, PI / 2, 3 * PI / 2}}, 2};
             body[k] = at(&shape[k], x, y, angle);
             end[k][0] = (narc_point){x + half * cos(angle), y + half * sin(angle)};
             end[k][1] = (narc_point){x - half * cos(angle), y - half * sin(angle)};
@@ -145,7 +143,7 @@ static double sample_outline(const struct reference_body *body, narc_point out[O
     for (size_t i = 0; i < body->count; i++) {
         const narc_arc *arc = &body->arcs[i];
         double sweep = arc->end - arc->start;
-        sweep = sweep <= 0 ? sweep + 2 * pi : sweep;
+        sweep = sweep <= 0 ? sweep + 2 * PI : sweep;
         for (size_t k = 0; k < per_arc; k++) {
             double angle = arc->start + sweep * (double)k / (double)(per_arc - 1);
             double x = arc->center_x + arc->radius * cos(angle), y = arc->center_y + arc->radius * sin(angle);
@@ -169,8 +167,8 @@ TEST(test_sampled_points) {
     for (size_t trial = 0; trial < test_trials(40); trial++) {
         struct shape shape_a = make_shape(&random, families[trial % 4]);
         struct shape shape_b = make_shape(&random, families[trial / 4 % 4]);
-        struct body body_a = turned_body(random_between(&random, -pi, pi), 1), body_b = turned_body((double)trial, 1);
-        place_at_gap(&shape_a, &shape_b, random_between(&random, -pi, pi), 0.3, &body_a, &body_b);
+        struct body body_a = turned_body(random_between(&random, -PI, PI), 1), body_b = turned_body((double)trial, 1);
+        place_at_gap(&shape_a, &shape_b, random_between(&random, -PI, PI), 0.3, &body_a, &body_b);
         struct reference_body a = pose_shape(&shape_a, &body_a), b = pose_shape(&shape_b, &body_b);
         double gap = reference_find_gap(&a, &b).gap, least = INFINITY;
         double step = sample_outline(&a, point_a) + sample_outline(&b, point_b);
@@ -201,7 +199,7 @@ TEST(test_maximum) {
         double reach = reference_reach(&a, &b);
         assert_true(fabs(reference_gap_along(&a, &b, found.normal_x, found.normal_y) - found.gap) <= tolerance * reach);
         for (int k = 0; k < 1000; k++) {
-            double angle = 2 * pi * random_unit(&random);
+            double angle = 2 * PI * random_unit(&random);
             assert_true(reference_gap_along(&a, &b, cos(angle), sin(angle)) <= found.gap + tolerance * reach);
         }
     }
@@ -233,7 +231,7 @@ TEST(test_ground_of_shapes) {
         struct shape below = make_shape(&random, (enum family)random_below(&random, FAMILY_SEGMENT));
         struct shape above = make_shape(&random, (enum family)random_below(&random, FAMILY_SEGMENT));
         for (size_t k = 0; k < below.count; k++)
-            below.arcs[k].end += below.arcs[k].end <= below.arcs[k].start ? 2 * pi : 0;
+            below.arcs[k].end += below.arcs[k].end <= below.arcs[k].start ? 2 * PI : 0;
         struct ground *ground = make_ground(&(struct chain){below.arcs, below.count, true});
         const narc_point point = {random_between(&random, -2, 2), random_between(&random, -2, 2)};
         double distance;
@@ -243,8 +241,8 @@ TEST(test_ground_of_shapes) {
             fail_msg("distance %.17g, of the ground %.17g", distance, ground_distance(ground, point).distance);
 
         const struct body still = turned_body(0, 1);
-        struct body body = turned_body(random_between(&random, -pi, pi), 1);
-        place_at_gap(&below, &above, random_between(&random, -pi, pi), random_between(&random, 0, 0.1), &still, &body);
+        struct body body = turned_body(random_between(&random, -PI, PI), 1);
+        place_at_gap(&below, &above, random_between(&random, -PI, PI), random_between(&random, 0, 0.1), &still, &body);
         const struct reference_body a = pose_shape(&below, &still), b = pose_shape(&above, &body);
         const double gap = reference_find_gap(&a, &b).gap;
         struct ground_minimum minima[GROUND_MINIMA];

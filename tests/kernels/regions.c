@@ -7,28 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "boxes.h"
 #include "expect.h"
 #include "guard.h"
 #include "index.h"
 #include "ledger.h"
 #include "narc.h"
 #include "support.h"
-
-static bool is_empty(const narc_box *box) {
-    const bool finite = isfinite(box->min_x) && isfinite(box->min_y) && isfinite(box->max_x) && isfinite(box->max_y);
-    return !finite || box->min_x > box->max_x || box->min_y > box->max_y;
-}
-
-static bool overlap(const narc_box *a, const narc_box *b) {
-    return !is_empty(a) && !is_empty(b) && a->min_x <= b->max_x && b->min_x <= a->max_x && a->min_y <= b->max_y &&
-           b->min_y <= a->max_y;
-}
-
-static narc_box random_box(struct test_random *random, double side, double least, double most) {
-    const double x = random_between(random, 0, side), y = random_between(random, 0, side);
-    const double width = random_between(random, least, most), height = random_between(random, least, most);
-    return (narc_box){(float)x, (float)y, (float)(x + width), (float)(y + height)};
-}
 
 /* Boxes and queries, and what they are asked by; what is NULL is left out. */
 struct question {
@@ -46,30 +31,16 @@ static bool is_found(const struct question *q, size_t query, size_t body) {
 }
 
 /* Every query with every body, in the order that is promised. */
-struct rows {
-    uint32_t *a, *b;
-    size_t count;
-};
-
-static struct rows find_all(const struct question *q) {
-    size_t capacity = 1024;
-    struct rows rows = {malloc(capacity * sizeof(uint32_t)), malloc(capacity * sizeof(uint32_t)), 0};
+static struct pair_list find_all(const struct question *q) {
+    struct pair_list rows = {0};
     for (size_t query = 0; query < q->query_count; query++)
-        for (size_t body = 0; body < q->box_count; body++) {
-            if (!is_found(q, query, body))
-                continue;
-            if (rows.count == capacity) {
-                capacity *= 2;
-                rows.a = realloc(rows.a, capacity * sizeof(uint32_t));
-                rows.b = realloc(rows.b, capacity * sizeof(uint32_t));
-            }
-            rows.a[rows.count] = (uint32_t)query;
-            rows.b[rows.count++] = (uint32_t)body;
-        }
+        for (size_t body = 0; body < q->box_count; body++)
+            if (is_found(q, query, body))
+                list_pair(&rows, query, body);
     return rows;
 }
 
-static void check_rows(const struct rows *expected, const narc_pairs *pairs) {
+static void check_rows(const struct pair_list *expected, const narc_pairs *pairs) {
     assert_int_equal(pairs->count, expected->count);
     assert_int_equal(pairs->a.stride, sizeof(uint32_t));
     assert_int_equal(pairs->b.stride, sizeof(uint32_t));
@@ -94,7 +65,7 @@ static void ask(narc_index *index, const struct question *q, unsigned workers, n
 /* Builds, fast and well, asks, and asks again after a refit from other boxes. */
 static void check_question(narc_index *index, const struct question *q) {
     static const unsigned workers[] = {1, 2, 3, 7};
-    struct rows expected = find_all(q);
+    struct pair_list expected = find_all(q);
     for (unsigned way = 0; way < 3; way++) {
         const narc_index_options options = {.category = {q->category, sizeof *q->category}, .fast = way == 1};
         narc_box *other = NULL;
@@ -113,8 +84,7 @@ static void check_question(narc_index *index, const struct question *q) {
             check_rows(&expected, &pairs);
         }
     }
-    free(expected.a);
-    free(expected.b);
+    free_list(&expected);
 }
 
 static const size_t counts[] = {0, 1, 7, 8, 9, 64, 65, 513, 5000};
@@ -238,7 +208,7 @@ TEST(survives_failing_allocations) {
         expect_error(status, NARC_ERROR_MEMORY, &error, "no memory for");
         assert_int_equal(pairs.count, 7);
     }
-    struct rows expected = find_all(&q);
+    struct pair_list expected = find_all(&q);
     check_rows(&expected, &pairs);
     assert_true(failures >= 3); /* queries, bodies, rows */
     const size_t allocations = ledger.allocations;
@@ -247,8 +217,7 @@ TEST(survives_failing_allocations) {
         check_rows(&expected, &pairs);
     }
     assert_int_equal(ledger.allocations, allocations);
-    free(expected.a);
-    free(expected.b);
+    free_list(&expected);
     narc_destroy_index(index);
     assert_int_equal(ledger.live, 0);
 }
@@ -277,7 +246,7 @@ TEST(reads_columns_with_any_stride) {
     const struct question q = {boxes, queries, COUNT, ASKED, category, mask, ignored};
     const narc_index_options options = {.category = {&bodies[COUNT - 1].word, -(ptrdiff_t)sizeof *bodies}};
     const narc_index_query query = {.mask = NARC_COLUMN(asked, word), .ignored = NARC_COLUMN(asked, index)};
-    struct rows expected = find_all(&q);
+    struct pair_list expected = find_all(&q);
     narc_index *index;
     narc_pairs pairs;
     assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
@@ -285,8 +254,7 @@ TEST(reads_columns_with_any_stride) {
     assert_int_equal(narc_query_index(index, queries, ASKED, &query, &pairs, NULL), NARC_OK);
     assert_true(expected.count > 50);
     check_rows(&expected, &pairs);
-    free(expected.a);
-    free(expected.b);
+    free_list(&expected);
     guard_release(bodies);
     guard_release(asked);
     narc_destroy_index(index);

@@ -10,7 +10,6 @@
 #include "guard.h"
 #include "plain.h"
 
-static const double pi = 3.14159265358979323846;
 static const float margins[] = {0, 0.3f, -0.1f, INFINITY};
 enum { MARGINS = sizeof margins / sizeof *margins, BODIES = 300, PAIRS = 2600 };
 
@@ -151,7 +150,7 @@ TEST(test_one_other) {
 TEST(test_hints_at_the_limit) {
     struct test_random random = test_random_named("limit");
     struct scene scene = create_scene(NARC_FLOAT32, 3, 2 * PAIRS, PAIRS);
-    const struct shape left = {{{-0.6, -0.8, 1, -pi, pi}}, 1}, right = {{{0.6, 0.8, 1, -pi, pi}}, 1};
+    const struct shape left = {{{-0.6, -0.8, 1, -PI, PI}}, 1}, right = {{{0.6, 0.8, 1, -PI, PI}}, 1};
     const struct shape box = box_of(2, 2, 0.2);
     scene_add_shape(&scene, &left);
     scene_add_shape(&scene, &right);
@@ -180,7 +179,7 @@ TEST(test_resting_edges) {
     scene_add_shape(&scene, &ellipse);
     for (uint32_t k = 0; k < PAIRS; k++) {
         const bool rests = k / 100 % 3 < 2;
-        const double angle = random_between(&random, -pi, pi), along = random_between(&random, -1.5, 1.5);
+        const double angle = random_between(&random, -PI, PI), along = random_between(&random, -1.5, 1.5);
         const double across = rests ? 1 + 1e-4 * random_between(&random, -1, 1) : random_between(&random, 0, 2);
         struct body a = turned_body(angle, 1), b = turned_body(rests ? angle : 3 * angle, 1);
         a.shape = (uint32_t)random_below(&random, k % 7 ? 2 : 3);

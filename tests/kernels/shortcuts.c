@@ -14,21 +14,6 @@
 #include "placements.h"
 #include "plain.h"
 
-static const double pi = 3.14159265358979323846;
-
-/* The ordinary families first, then the hard ones. */
-enum { FAMILIES = FAMILY_COUNT + HARD_COUNT };
-
-static struct shape make_any(struct test_random *random, size_t family) {
-    return family < FAMILY_COUNT ? make_shape(random, (enum family)family)
-                                 : make_hard_shape(random, (enum hard_family)(family - FAMILY_COUNT));
-}
-
-static const char *any_name(size_t family) {
-    return family < FAMILY_COUNT ? family_name((enum family)family)
-                                 : hard_family_name((enum hard_family)(family - FAMILY_COUNT));
-}
-
 /* All answers of a scene in one layout: with the usual margins, and with margins beside the separation of one pair,
  * which the others must not mind. */
 static void check_scene(struct test_random *random, const struct scene *scene, enum layout layout, const char *name) {
@@ -51,18 +36,19 @@ static enum layout any_layout(struct test_random *random) {
 /* Every family against every other, in one kind of place. */
 static void check_hard_places(enum hard_placement placement, size_t trials) {
     struct test_random random = test_random_named(hard_placement_name(placement));
-    for (size_t a = 0; a < FAMILIES; a++) {
-        for (size_t b = 0; b < FAMILIES; b++) {
+    for (size_t a = 0; a < ALL_FAMILIES; a++) {
+        for (size_t b = 0; b < ALL_FAMILIES; b++) {
             const narc_precision precision = random_below(&random, 2) ? NARC_FLOAT64 : NARC_FLOAT32;
             const size_t rounds = test_trials(trials);
             struct scene scene = create_scene(precision, 2 * rounds, HARD_BODIES * rounds, HARD_BODIES / 2 * rounds);
             for (size_t round = 0; round < rounds; round++) {
-                const struct shape shape_a = make_any(&random, a), shape_b = make_any(&random, b);
+                const struct shape shape_a = make_any_shape(&random, a), shape_b = make_any_shape(&random, b);
                 const uint32_t index = scene_add_shape(&scene, &shape_a);
                 add_hard_pairs(&random, &scene, placement, index, scene_add_shape(&scene, &shape_b));
             }
             char name[128];
-            snprintf(name, sizeof name, "%s, %s against %s", hard_placement_name(placement), any_name(a), any_name(b));
+            snprintf(name, sizeof name, "%s, %s against %s", hard_placement_name(placement), any_family_name(a),
+                     any_family_name(b));
             check_scene(&random, &scene, any_layout(&random), name);
             destroy_scene(&scene);
         }
@@ -87,7 +73,7 @@ static struct shape make_faced(struct test_random *random) {
     const narc_point *const corners[] = {octagon, pentagon, triangle};
     const size_t counts[] = {8, 5, 3}, kind = random_below(random, 4);
     struct shape shape = {.count = 3,
-                          .arcs = {{0, -1, 0, -pi / 2, 0}, {0, 1, 0, 0, pi / 2}, {0, 0, 1, pi / 2, 1.5 * pi}}};
+                          .arcs = {{0, -1, 0, -PI / 2, 0}, {0, 1, 0, 0, PI / 2}, {0, 0, 1, PI / 2, 1.5 * PI}}};
     if (kind == 3)
         return shape; /* half a disc */
     shape.count = NARC_MAX_ARCS;
@@ -108,9 +94,9 @@ TEST(test_faces_at_x) {
     }
     for (size_t k = 0; k < count; k++) {
         const double beside = random_log_between(&random, 1e-10, random_below(&random, 4) ? 1e-4 : 0.03);
-        const double turned = random_below(&random, 2) ? 0 : random_between(&random, -pi, pi);
+        const double turned = random_below(&random, 2) ? 0 : random_between(&random, -PI, PI);
         struct body a = turned_body(turned, 1),
-                    b = turned_body(turned + pi + (random_below(&random, 3) ? -beside : beside), 1);
+                    b = turned_body(turned + PI + (random_below(&random, 3) ? -beside : beside), 1);
         const double gap = random_below(&random, 2)
                                ? -random_between(&random, 0, 0.4)
                                : random_log_between(&random, 1e-8, 0.1) * (random_below(&random, 2) ? 1 : -1);
@@ -135,8 +121,8 @@ TEST(test_all_places) {
         const size_t count = test_trials(80);
         struct scene scene = create_scene(precision, 2 * count, 2 * count, count);
         for (size_t k = 0; k < count; k++) {
-            const struct shape shape_a = make_any(&random, random_below(&random, FAMILIES));
-            const struct shape shape_b = make_any(&random, random_below(&random, FAMILIES));
+            const struct shape shape_a = make_any_shape(&random, random_below(&random, ALL_FAMILIES));
+            const struct shape shape_b = make_any_shape(&random, random_below(&random, ALL_FAMILIES));
             struct body a, b;
             place_pair(&random, (enum placement)place, precision, &shape_a, &shape_b, &a, &b);
             a.shape = scene_add_shape(&scene, &shape_a);
@@ -158,7 +144,8 @@ TEST(test_crowds) {
         struct scene scene = create_scene(round % 3 ? NARC_FLOAT32 : NARC_FLOAT64, SHAPES, BODIES, PAIRS);
         const double world = random_log_between(&random, 0.3, 4);
         for (size_t k = 0; k < SHAPES; k++) {
-            const struct shape shape = make_any(&random, random_below(&random, FAMILIES - 1)); /* none far away */
+            const struct shape shape =
+                make_any_shape(&random, random_below(&random, ALL_FAMILIES - 1)); /* none far away */
             scene_add_shape(&scene, &shape);
         }
         for (size_t k = 0; k < BODIES; k++) {
@@ -178,10 +165,8 @@ TEST(test_crowds) {
         if (layout == LAYOUT_SHARED) {
             scene.bodies[0].scale = scene.bodies[0].cosine = 1;
             scene.bodies[0].sine = 0;
-            share_values(&scene);
-        } else if (layout == LAYOUT_UNSCALED) {
-            unit_scales(&scene);
         }
+        suit_layout(&scene, layout);
         check_scene(&random, &scene, layout, "crowd");
         destroy_scene(&scene);
     }
@@ -195,8 +180,8 @@ TEST(test_runs) {
         struct scene scene =
             create_scene(NARC_FLOAT32, 2 * KINDS, HARD_BODIES * KINDS, HARD_BODIES / 2 * KINDS + PAIRS);
         for (size_t k = 0; k < KINDS; k++) {
-            const struct shape shape_a = make_any(&random, random_below(&random, FAMILIES));
-            const struct shape shape_b = make_any(&random, random_below(&random, FAMILIES));
+            const struct shape shape_a = make_any_shape(&random, random_below(&random, ALL_FAMILIES));
+            const struct shape shape_b = make_any_shape(&random, random_below(&random, ALL_FAMILIES));
             const uint32_t index = scene_add_shape(&scene, &shape_a);
             add_hard_pairs(&random, &scene, (enum hard_placement)(k % HARD_PLACES), index,
                            scene_add_shape(&scene, &shape_b));
@@ -248,8 +233,8 @@ static bool is_change(enum change change, const narc_contact *a, const narc_cont
 
 /* Two bodies somewhere near each other and a way for the second. */
 static struct way add_way(struct test_random *random, struct scene *scene) {
-    const struct shape shape_a = make_any(random, random_below(random, FAMILIES));
-    const struct shape shape_b = make_any(random, random_below(random, FAMILIES));
+    const struct shape shape_a = make_any_shape(random, random_below(random, ALL_FAMILIES));
+    const struct shape shape_b = make_any_shape(random, random_below(random, ALL_FAMILIES));
     const double ratio = random_below(random, 2) ? 1 : random_log_between(random, 1e-4, 1e4);
     struct body a = turned_body(random_between(random, -4, 4), 1), b = turned_body(0, ratio);
     narc_circle inner_a, inner_b;
@@ -326,16 +311,16 @@ TEST(test_specks) {
     for (size_t round = 0; round < test_trials(2); round++) {
         struct scene scene = create_scene(NARC_FLOAT64, SHAPES, 2 * PAIRS, PAIRS);
         const struct shape half = {
-            .count = 3, .arcs = {{0, -1, 0, -pi / 2, 0}, {0, 1, 0, 0, pi / 2}, {0, 0, 1, pi / 2, 3 * pi / 2}}};
+            .count = 3, .arcs = {{0, -1, 0, -PI / 2, 0}, {0, 1, 0, 0, PI / 2}, {0, 0, 1, PI / 2, 3 * PI / 2}}};
         const uint32_t disc = scene_add_shape(&scene, &half);
         for (size_t k = 1; k < SHAPES; k++) {
             const struct shape speck = k % 2 ? make_hard_shape(&random, k % 4 == 1 ? HARD_LONG : HARD_CORNERS)
-                                             : make_any(&random, random_below(&random, FAMILIES - 1));
+                                             : make_any_shape(&random, random_below(&random, ALL_FAMILIES - 1));
             scene_add_shape(&scene, &speck);
         }
         for (size_t k = 0; k < PAIRS; k++) {
-            const double size = random_log_between(&random, 1e3, 1e4), angle = random_between(&random, -pi, pi);
-            struct body a = turned_body(random_between(&random, -pi, pi), 1), b = turned_body(angle, size);
+            const double size = random_log_between(&random, 1e3, 1e4), angle = random_between(&random, -PI, PI);
+            struct body a = turned_body(random_between(&random, -PI, PI), 1), b = turned_body(angle, size);
             a.shape = 1 + (uint32_t)random_below(&random, SHAPES - 1);
             b.shape = disc;
             /* The speck's point furthest towards the side, a way from the corner along it, a little in or out. */
@@ -358,7 +343,7 @@ TEST(test_specks) {
 static struct shape move_away(struct test_random *random, struct shape shape, double size, double shift) {
     narc_circle bound;
     assert_true(narc_compute_bounding_circle(shape.arcs, shape.count, &bound));
-    const double angle = random_between(random, -pi, pi), factor = size / bound.radius;
+    const double angle = random_between(random, -PI, PI), factor = size / bound.radius;
     for (size_t i = 0; i < shape.count; i++) {
         narc_arc *arc = &shape.arcs[i];
         arc->center_x = (arc->center_x - bound.x) * factor + shift * cos(angle);
@@ -370,7 +355,7 @@ static struct shape move_away(struct test_random *random, struct shape shape, do
 
 /* Adds a body somewhere within `reach` of the world's origin, seen from the middle of its shape. */
 static uint32_t add_near_origin(struct test_random *random, struct scene *scene, uint32_t shape, double reach) {
-    struct body body = turned_body(random_below(random, 2) ? 0 : random_between(random, -pi, pi), 1);
+    struct body body = turned_body(random_below(random, 2) ? 0 : random_between(random, -PI, PI), 1);
     const double c = (double)body.cosine, s = (double)body.sine;
     narc_circle bound;
     assert_true(narc_compute_bounding_circle(scene->shapes[shape].arcs, scene->shapes[shape].count, &bound));
@@ -403,7 +388,8 @@ TEST(test_far_from_origin) {
         struct scene scene = create_scene(NARC_FLOAT64, SHAPES, 2 * PAIRS, PAIRS);
         for (size_t k = 0; k < SHAPES; k++) {
             const bool joins = decade < 10 || k % 2;
-            const struct shape shape = make_any(&random, joins ? random_below(&random, FAMILIES - 1) : FAMILY_CIRCLE);
+            const struct shape shape =
+                make_any_shape(&random, joins ? random_below(&random, ALL_FAMILIES - 1) : FAMILY_CIRCLE);
             const struct shape moved = move_away(&random, shape, size, k % 2 ? 0 : shift);
             scene_add_shape(&scene, &moved);
         }

@@ -10,8 +10,6 @@
 #include "support.h"
 #include "tests.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* What a builder was given to write to, full of a pattern, so that a stray write shows. */
 struct output {
     narc_arc arcs[NARC_MAX_ARCS];
@@ -47,8 +45,8 @@ TEST(builds_circles) {
     struct output out = make_output();
     expect_ok(narc_build_circle(3, out.arcs, &out.count, &out.error), &out.error);
     assert_int_equal(out.count, 1);
-    assert_true(out.arcs[0].end - out.arcs[0].start == 2 * pi);
-    expect_measures(&out, 9 * pi, 81 * pi / 2, 6 * pi);
+    assert_true(out.arcs[0].end - out.arcs[0].start == 2 * PI);
+    expect_measures(&out, 9 * PI, 81 * PI / 2, 6 * PI);
 }
 
 TEST(builds_capsules) {
@@ -58,10 +56,10 @@ TEST(builds_capsules) {
         expect_ok(narc_build_capsule(l, r, out.arcs, &out.count, &out.error), &out.error);
         assert_int_equal(out.count, 2);
         /* A rectangle l by 2r, and two half discs, whose centroids are 4r / (3 pi) from their middles. */
-        double half = pi * r * r / 2, c = 4 * r / (3 * pi);
+        double half = PI * r * r / 2, c = 4 * r / (3 * PI);
         double moment = l * 2 * r * (l * l + 4 * r * r) / 12 +
                         2 * (half * r * r / 2 - half * c * c + half * (c + l / 2) * (c + l / 2));
-        expect_measures(&out, pi * r * r + 2 * r * l, moment, 2 * pi * r + 2 * l);
+        expect_measures(&out, PI * r * r + 2 * r * l, moment, 2 * PI * r + 2 * l);
     }
 }
 
@@ -73,11 +71,11 @@ TEST(builds_boxes) {
         expect_ok(narc_build_box(w, h, r, out.arcs, &out.count, &out.error), &out.error);
         assert_int_equal(out.count, 4);
         /* Of a corner's square, r by r with its inner corner at (x, y), the quarter disc stays. */
-        double x = w / 2 - r, y = h / 2 - r, c = 4 * r / (3 * pi), quarter = pi * r * r / 4;
+        double x = w / 2 - r, y = h / 2 - r, c = 4 * r / (3 * PI), quarter = PI * r * r / 4;
         double corner = quarter * r * r / 2 + 2 * quarter * c * (x + y) + quarter * (x * x + y * y);
         double square = (pow(x + r, 3) - pow(x, 3)) / 3 * r + (pow(y + r, 3) - pow(y, 3)) / 3 * r;
         double moment = w * h * (w * w + h * h) / 12 - 4 * (square - corner);
-        expect_measures(&out, w * h - (4 - pi) * r * r, moment, 2 * (w + h) - (8 - 2 * pi) * r);
+        expect_measures(&out, w * h - (4 - PI) * r * r, moment, 2 * (w + h) - (8 - 2 * PI) * r);
         narc_aabb box;
         assert_true(narc_compute_aabb(out.arcs, out.count, 0, &box));
         assert_true(box.min_x == -1.5 && box.max_x == 1.5 && box.min_y == -1 && box.max_y == 1);
@@ -88,7 +86,7 @@ TEST(builds_boxes) {
 TEST(builds_polygons) {
     for (size_t n = 3; n <= NARC_MAX_ARCS; n++) {
         narc_point points[NARC_MAX_ARCS];
-        double turn = 2 * pi / (double)n, apothem = 2 * cos(turn / 2), side = 4 * sin(turn / 2), count = (double)n;
+        double turn = 2 * PI / (double)n, apothem = 2 * cos(turn / 2), side = 4 * sin(turn / 2), count = (double)n;
         for (size_t i = 0; i < n; i++)
             points[i] = (narc_point){2 * cos(0.3 + turn * (double)i), 2 * sin(0.3 + turn * (double)i)};
         struct output out = make_output();
@@ -109,10 +107,10 @@ TEST(builds_polygons) {
         assert_true(narc_compute_perimeter(out.arcs, out.count, &length));
         expect_near(mass.area, count * side * apothem / 2 - count * r * r * (cut - turn / 2), 1e-13 * mass.area,
                     "area");
-        expect_near(length, count * (side - 2 * r * cut) + 2 * pi * r, 1e-13 * length, "perimeter");
+        expect_near(length, count * (side - 2 * r * cut) + 2 * PI * r, 1e-13 * length, "perimeter");
         /* As round as it gets: the inscribed circle. */
         expect_ok(narc_build_polygon(points, n, apothem, out.arcs, &out.count, &out.error), &out.error);
-        expect_measures(&out, pi * apothem * apothem, pi * pow(apothem, 4) / 2, 2 * pi * apothem);
+        expect_measures(&out, PI * apothem * apothem, PI * pow(apothem, 4) / 2, 2 * PI * apothem);
     }
 }
 
@@ -122,7 +120,7 @@ TEST(rounded_polygon_stays_inside) {
         narc_point points[16];
         size_t n = 3 + random_below(&random, 14);
         for (size_t i = 0; i < n; i++) {
-            double angle = 2 * pi * ((double)i + 0.8 * random_unit(&random)) / (double)n;
+            double angle = 2 * PI * ((double)i + 0.8 * random_unit(&random)) / (double)n;
             points[i] = (narc_point){1 + 3 * cos(angle), sin(angle) - 2};
         }
         struct output out = make_output();
@@ -214,7 +212,7 @@ TEST(refuses_what_does_not_fit) {
     const narc_point twice[5] = {{0, 0}, {2, 0}, {2, 1}, {2, 1}, {0, 1}}, nan[3] = {{0, 0}, {1, NAN}, {0, 1}};
     narc_point star[5];
     for (size_t i = 0; i < 5; i++)
-        star[i] = (narc_point){cos(0.8 * pi * (double)i), sin(0.8 * pi * (double)i)};
+        star[i] = (narc_point){cos(0.8 * PI * (double)i), sin(0.8 * PI * (double)i)};
     struct output o = make_output();
     narc_arc *arcs = o.arcs;
     size_t *count = &o.count;
@@ -262,7 +260,7 @@ TEST(refuses_what_does_not_fit) {
 /* The same outline as the polygon with corners at equal angles, whose measures are checked above. */
 TEST(builds_regular_polygons) {
     for (size_t n = 3; n <= NARC_MAX_ARCS; n++) {
-        const double turn = 2 * pi / (double)n, apothem = 3 * cos(turn / 2), r = 0.4 * apothem, count = (double)n;
+        const double turn = 2 * PI / (double)n, apothem = 3 * cos(turn / 2), r = 0.4 * apothem, count = (double)n;
         struct output out = make_output();
         narc_mass mass;
         expect_ok(narc_build_regular_polygon(n, 3, 0, out.arcs, &out.count, &out.error), &out.error);
@@ -296,7 +294,7 @@ static double measure_distance(const narc_arc *arcs, size_t count, double half_x
     enum { SAMPLES = 1000 };
     double largest = 0;
     for (int k = 0; k <= SAMPLES; k++) {
-        const double angle = atan2(sqrt(half_x) * sin(pi / 2 * k / SAMPLES), sqrt(half_y) * cos(pi / 2 * k / SAMPLES)),
+        const double angle = atan2(sqrt(half_x) * sin(PI / 2 * k / SAMPLES), sqrt(half_y) * cos(PI / 2 * k / SAMPLES)),
                      x = cos(angle), y = sin(angle);
         double height = -INFINITY;
         for (size_t i = 0; i < count; i++)
@@ -404,7 +402,7 @@ TEST(builds_rings) {
         const bool backwards = random_below(&random, 2), convex = random_below(&random, 2);
         narc_point points[16];
         for (size_t i = 0; i < n; i++) {
-            const double angle = 2 * pi * ((double)i + 0.8 * random_unit(&random)) / (double)n;
+            const double angle = 2 * PI * ((double)i + 0.8 * random_unit(&random)) / (double)n;
             const double r = convex ? 1 : random_between(&random, 0.4, 1);
             points[backwards ? n - 1 - i : i] = (narc_point){4 + 3 * r * cos(angle), r * sin(angle) - 2};
         }
@@ -449,7 +447,7 @@ TEST(moves_arcs) {
         expect_near(hypot(moved.centroid_x, moved.centroid_y), 0, tolerance, "centroid");
         assert_true(mirror.arcs[0].radius == shape.arcs[shape.count - 1].radius);
         for (int i = 0; i < 50; i++) {
-            const double angle = random_between(&random, -pi, pi), x = cos(angle), y = sin(angle);
+            const double angle = random_between(&random, -PI, PI), x = cos(angle), y = sin(angle);
             assert_true(narc_find_support(shape.arcs, shape.count, x, y, &a, NULL));
             assert_true(narc_find_support(mirror.arcs, shape.count, -x, y, &b, NULL));
             assert_true(narc_find_support(centered.arcs, shape.count, x, y, &c, NULL));
@@ -463,7 +461,7 @@ TEST(moves_arcs) {
         expect_ok(narc_center_arcs(centered.arcs, shape.count, centered.arcs, NULL, NULL), NULL);
     }
     struct output o = make_output();
-    narc_arc broken = {0, 0, -1, -pi, pi};
+    narc_arc broken = {0, 0, -1, -PI, PI};
     expect_refused(&o, narc_center_arcs(&broken, 1, o.arcs, NULL, &o.error), NARC_ERROR_RADIUS, "radius is -1");
     expect_refused(&o, narc_mirror_arcs(NULL, 1, o.arcs, &o.error), NARC_ERROR_ARGUMENT, "arcs is NULL");
     expect_refused(&o, narc_mirror_arcs(&broken, 1, NULL, &o.error), NARC_ERROR_ARGUMENT, "out_arcs is NULL");
@@ -484,8 +482,8 @@ TEST(builds_segments) {
         assert_int_equal(out.count, 2);
         assert_true(out.arcs[0].center_x == to.x && out.arcs[1].center_y == from.y && out.arcs[0].radius == r);
         assert_true(narc_compute_mass(out.arcs, 2, &mass) && narc_compute_perimeter(out.arcs, 2, &length));
-        expect_near(mass.area, pi * r * r + 2 * r * l, 1e-12, "area");
-        expect_near(length, 2 * pi * r + 2 * l, 1e-12, "perimeter");
+        expect_near(mass.area, PI * r * r + 2 * r * l, 1e-12, "area");
+        expect_near(length, 2 * PI * r + 2 * l, 1e-12, "perimeter");
         expect_near(mass.centroid_x, (from.x + to.x) / 2, 1e-12, "centroid x");
         expect_near(mass.centroid_y, (from.y + to.y) / 2, 1e-12, "centroid y");
         const double t = random_unit(&random), side = k % 4 < 2 ? 1 : -1, up = random_between(&random, 0.1, 1);
@@ -504,7 +502,7 @@ TEST(builds_segments) {
     expect_ok(narc_build_segment(p, p, 2, o.arcs, &o.count, &o.error), &o.error); /* a disc */
     narc_mass disc;
     assert_true(narc_compute_mass(o.arcs, o.count, &disc));
-    expect_near(disc.area, 4 * pi, 1e-12, "area");
+    expect_near(disc.area, 4 * PI, 1e-12, "area");
 }
 
 /* Steiner's formula: area + perimeter r + pi r^2; and the heights are those of the polygon and r more. */
@@ -523,7 +521,7 @@ TEST(builds_skin_polygons) {
             assert_true(narc_compute_mass(sharp.arcs, n, &mass) && narc_compute_perimeter(sharp.arcs, n, &length));
             area = mass.area;
             assert_true(narc_compute_mass(skin.arcs, n, &mass));
-            expect_near(mass.area, area + length * r + pi * r * r, 1e-13 * mass.area, "area");
+            expect_near(mass.area, area + length * r + PI * r * r, 1e-13 * mass.area, "area");
             for (size_t i = 0; i < n; i++) {
                 assert_true(skin.arcs[i].center_x == polygons[k][i].x && skin.arcs[i].center_y == polygons[k][i].y);
                 assert_true(skin.arcs[i].radius == r);
@@ -572,7 +570,7 @@ TEST(welds_polygons) {
         narc_point points[NARC_MAX_ARCS];
         size_t next = 0;
         for (size_t i = 0; i < n; i++) {
-            const double angle = 2 * pi * ((double)i + 0.4 * random_unit(&random)) / (double)n;
+            const double angle = 2 * PI * ((double)i + 0.4 * random_unit(&random)) / (double)n;
             points[i] = (narc_point){2 * cos(angle), sin(angle)};
         }
         expect_ok(narc_weld_polygon(points, n, tolerance, left, &count, &error), &error);

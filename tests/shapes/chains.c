@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "counting.h"
+#include "families.h"
+#include "ledger.h"
 #include "narc_methods.h"
 #include "store.h"
 #include "tests.h"
@@ -16,13 +17,6 @@
 enum { MOST = 4096 };
 
 static narc_chain_entry entries[MOST];
-
-static narc_shapes *create_store(struct counter *counter) {
-    const narc_allocator allocator = {counted_allocate, counted_release, counter};
-    narc_shapes *shapes = NULL;
-    assert_int_equal(narc_create_shapes(counter ? &allocator : NULL, &shapes), NARC_OK);
-    return shapes;
-}
 
 static size_t add(narc_shapes *shapes, const narc_arc *arcs, size_t count, const narc_chain_options *options) {
     size_t found = 0;
@@ -70,7 +64,7 @@ static struct front get_front(const narc_shapes *shapes, const narc_chain_entry 
     return f;
 }
 
-static double find_turn(double from, double to) { return remainder(to - from, 2 * TEST_PI); }
+static double find_turn(double from, double to) { return remainder(to - from, 2 * PI); }
 
 /* Does a front have this point with this normal, further from its ends than some radians on its first or last arc, and
  * than some length on its edges? */
@@ -175,7 +169,7 @@ static void check_numbers(const narc_arc *arcs, size_t count, const narc_chain_e
 
 /* Divides a chain and looks at all of it; returns the number of entries. */
 static size_t check_division(const narc_arc *arcs, size_t count, const narc_chain_options *options) {
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     const size_t found = add(shapes, arcs, count, options);
     const bool closed = options && options->closed;
     struct front *fronts = malloc(found * sizeof *fronts);
@@ -228,19 +222,19 @@ TEST(divides_rings) {
         free(t.arcs);
     }
     struct turtle shoe = create_turtle(2, 0, 0); /* a horseshoe */
-    walk_arc(&shoe, 2, TEST_PI);
-    walk_arc(&shoe, 0, TEST_PI / 2);
+    walk_arc(&shoe, 2, PI);
+    walk_arc(&shoe, 0, PI / 2);
     walk_line(&shoe, 1);
-    walk_arc(&shoe, 0, TEST_PI / 2);
-    walk_arc(&shoe, 1, -TEST_PI);
-    walk_arc(&shoe, 0, TEST_PI / 2);
+    walk_arc(&shoe, 0, PI / 2);
+    walk_arc(&shoe, 1, -PI);
+    walk_arc(&shoe, 0, PI / 2);
     walk_line(&shoe, 1);
-    walk_arc(&shoe, 0, TEST_PI / 2);
+    walk_arc(&shoe, 0, PI / 2);
     assert_int_equal(check_division(shoe.arcs, shoe.count, &ring), 8);
     free(shoe.arcs);
     struct turtle cave = create_turtle(-1, 0, 0); /* a round hole */
-    walk_arc(&cave, 1, -TEST_PI);
-    walk_arc(&cave, 1, -TEST_PI);
+    walk_arc(&cave, 1, -PI);
+    walk_arc(&cave, 1, -PI);
     assert_int_equal(check_division(cave.arcs, cave.count, &ring), 4);
     free(cave.arcs);
     for (size_t corners = 3; corners < 400; corners = corners * 3 / 2) { /* convex polygons, from a plain point on */
@@ -248,7 +242,7 @@ TEST(divides_rings) {
         for (size_t k = 0; k < corners; k++) {
             walk_arc(&t, 0, 0);
             walk_line(&t, 1);
-            walk_arc(&t, k % 2 ? 0.3 : 0, 2 * TEST_PI / (double)corners);
+            walk_arc(&t, k % 2 ? 0.3 : 0, 2 * PI / (double)corners);
             walk_line(&t, corners % 2 ? 1 : 0.5);
         }
         if (corners % 2 == 0 || corners == 3) /* else it does not close: every other corner is another one */
@@ -261,15 +255,15 @@ TEST(divides_rings) {
 TEST(divides_sharp_corners) {
     struct turtle sliver = create_turtle(0, 0, 0);
     const double tip = 2.9;
-    walk_line(&sliver, 4 * cos(TEST_PI - tip));
+    walk_line(&sliver, 4 * cos(PI - tip));
     walk_arc(&sliver, 0, tip);
     walk_line(&sliver, 2);
-    walk_arc(&sliver, 0, 2 * (TEST_PI - tip));
+    walk_arc(&sliver, 0, 2 * (PI - tip));
     walk_line(&sliver, 2);
     walk_arc(&sliver, 0, tip);
     assert_int_equal(check_division(sliver.arcs, sliver.count, &(narc_chain_options){.closed = 1}), 4);
     free(sliver.arcs);
-    struct turtle spike = create_turtle(4, 0, TEST_PI / 2); /* up and down from level ground */
+    struct turtle spike = create_turtle(4, 0, PI / 2); /* up and down from level ground */
     walk_arc(&spike, 0, 0);
     walk_line(&spike, 2);
     walk_arc(&spike, 0, -1.4);
@@ -281,7 +275,7 @@ TEST(divides_sharp_corners) {
     walk_arc(&spike, 0, 0);
     assert_int_equal(check_division(spike.arcs, spike.count, NULL), 6);
     free(spike.arcs);
-    struct turtle cusp = create_turtle(4, 0, TEST_PI / 2); /* between two concave arcs, without an edge */
+    struct turtle cusp = create_turtle(4, 0, PI / 2); /* between two concave arcs, without an edge */
     walk_arc(&cusp, 2, -1.5);
     walk_arc(&cusp, 0, 3);
     walk_arc(&cusp, 2, -1.5);
@@ -290,23 +284,23 @@ TEST(divides_sharp_corners) {
 }
 
 TEST(divides_one_edge_and_valleys) {
-    const narc_arc edge[] = {{9, 0, 0, TEST_PI / 2, TEST_PI / 2}, {0, 0, 0, TEST_PI / 2, TEST_PI / 2}};
+    const narc_arc edge[] = {{9, 0, 0, PI / 2, PI / 2}, {0, 0, 0, PI / 2, PI / 2}};
     assert_int_equal(check_division(edge, 2, NULL), 1);
     assert_int_equal(entries[0].arc_count, 0);
     assert_true(entries[0].x == 4.5 && entries[0].y == 0);
     assert_int_equal(check_division(edge, 2, &(narc_chain_options){.weld = 2}), 6); /* 1.5 apart */
     assert_int_equal(check_division(edge, 2, &(narc_chain_options){.weld = INFINITY}), 1);
-    struct turtle t = create_turtle(3, 3, TEST_PI * 3 / 4); /* a zigzag of edges, then valleys beside arcs */
+    struct turtle t = create_turtle(3, 3, PI * 3 / 4); /* a zigzag of edges, then valleys beside arcs */
     walk_arc(&t, 0, 0);
     for (int k = 0; k < 3; k++) {
         walk_line(&t, 1);
-        walk_arc(&t, 0, -TEST_PI / 2);
+        walk_arc(&t, 0, -PI / 2);
         walk_line(&t, 1);
-        walk_arc(&t, 0, TEST_PI / 2);
+        walk_arc(&t, 0, PI / 2);
     }
     for (int k = 0; k < 3; k++) {
-        walk_arc(&t, 0, -TEST_PI / 2);
-        walk_arc(&t, 1, TEST_PI / 2);
+        walk_arc(&t, 0, -PI / 2);
+        walk_arc(&t, 1, PI / 2);
     }
     assert_int_equal(check_division(t.arcs, t.count, NULL), 13);
     free(t.arcs);
@@ -316,7 +310,7 @@ TEST(divides_one_edge_and_valleys) {
 TEST(divides_corners_beside_valleys) {
     for (int ends = 1; ends < 4; ends++)
         for (int first = -1; first < 2; first += 2) {
-            struct turtle t = create_turtle(1, 2, TEST_PI / 2);
+            struct turtle t = create_turtle(1, 2, PI / 2);
             for (int end = 1; end < 3; end++) {
                 walk_arc(&t, 0, ends & end ? 0.5 * first : 0);
                 if (ends & end)
@@ -336,7 +330,7 @@ TEST(welds_collinear_edges) {
         walk_arc(&t, 0, 0);
         walk_line(&t, 0.125);
     }
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     assert_int_equal(add(shapes, t.arcs, t.count, NULL), EDGES / 24 + 1); /* 4 long, 1 in common */
     assert_int_equal(narc_count_shapes(shapes), 1);
     assert_int_equal(add(shapes, t.arcs, t.count, &(narc_chain_options){.weld = 0.125 * EDGES}), 1);
@@ -349,7 +343,7 @@ TEST(welds_collinear_edges) {
     }
     narc_error error;
     size_t found;
-    shapes = create_store(NULL);
+    shapes = empty_store();
     expect_error(narc_add_chain(shapes, t.arcs, t.count, NULL, entries, MOST, &found, &error), NARC_ERROR_NOT_CLOSED,
                  &error, "arc 5: its start normal is");
     narc_destroy_shapes(shapes);
@@ -374,7 +368,7 @@ TEST(divides_runs_of_many_arcs) {
 /* The store is as it was before, and so are the outputs. */
 static void check_refused(const narc_arc *arcs, size_t count, const narc_chain_options *options, narc_status status,
                           size_t index, const char *words) {
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     const uint64_t changes = shapes->change_count;
     size_t found = 77;
     narc_error error;
@@ -392,7 +386,7 @@ static void check_refused(const narc_arc *arcs, size_t count, const narc_chain_o
 /* A plain, a hill, a valley with a round bottom, a corner, a plain. */
 enum { GROUND = 8 };
 static void make_ground(narc_arc arcs[GROUND]) {
-    struct turtle t = create_turtle(20, 0, TEST_PI / 2);
+    struct turtle t = create_turtle(20, 0, PI / 2);
     walk_arc(&t, 0, 0);
     walk_line(&t, 2);
     walk_arc(&t, 0, 0);
@@ -415,7 +409,7 @@ static void make_ground(narc_arc arcs[GROUND]) {
 TEST(refuses_bad_arguments) {
     narc_arc arcs[GROUND];
     make_ground(arcs);
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     size_t found = 77;
     narc_error error;
     assert_int_equal(check_division(arcs, GROUND, NULL), 7);
@@ -485,7 +479,7 @@ TEST(refuses_arcs_that_are_wrong) {
 /* Arcs that are flatter than single precision can tell from edges, and parts that are too large. */
 TEST(refuses_sizes_out_of_range) {
     for (int concave = 0; concave < 2; concave++) {
-        struct turtle t = create_turtle(0, 0, TEST_PI / 2);
+        struct turtle t = create_turtle(0, 0, PI / 2);
         walk_arc(&t, 1, 0.5);
         walk_arc(&t, 1, -0.25);
         walk_arc(&t, 1e4, concave ? -1e-4 : 1e-4);
@@ -493,7 +487,7 @@ TEST(refuses_sizes_out_of_range) {
         check_refused(t.arcs, t.count, NULL, NARC_ERROR_RADIUS, 2, "begins at arc 2");
         free(t.arcs);
     }
-    const narc_arc far[] = {{2e10, 0, 0, TEST_PI / 2, TEST_PI / 2}, {0, 0, 0, TEST_PI / 2, TEST_PI / 2}};
+    const narc_arc far[] = {{2e10, 0, 0, PI / 2, PI / 2}, {0, 0, 0, PI / 2, PI / 2}};
     check_refused(far, 2, NULL, NARC_ERROR_SIZE, 0, "bounding radius");
     const narc_arc point[] = {{2, 0, 0, 0, 1}};
     check_refused(point, 1, NULL, NARC_ERROR_SIZE, 0, "begins at arc 0");
@@ -505,7 +499,7 @@ TEST(refuses_chains_that_cross_themselves) {
     walk_arc(&t, 0, 0);
     walk_line(&t, 3);
     for (int k = 0; k < 3; k++) {
-        walk_arc(&t, 0.5, TEST_PI / 2);
+        walk_arc(&t, 0.5, PI / 2);
         walk_line(&t, 1);
     }
     walk_line(&t, 1);
@@ -516,7 +510,7 @@ TEST(refuses_chains_that_cross_themselves) {
     t = create_turtle(0, 0, 0); /* a figure of eight: each half is closed by a line across the other one's */
     for (int half = 0; half < 2; half++) {
         walk_line(&t, 4);
-        walk_arc(&t, 1, half ? -TEST_PI : TEST_PI);
+        walk_arc(&t, 1, half ? -PI : PI);
         walk_line(&t, 4);
         walk_arc(&t, 0, half ? -2.2 : 2.2);
     }
@@ -536,14 +530,14 @@ TEST(refuses_chains_that_cross_themselves) {
     walk_arc(&t, 1, 3);
     check_refused(t.arcs, t.count, NULL, NARC_ERROR_NOT_SIMPLE, 2, "arc 2");
     free(t.arcs);
-    t = create_turtle(0, 0, TEST_PI / 2);
+    t = create_turtle(0, 0, PI / 2);
     for (int k = 0; k < 3000; k++) {
         walk_arc(&t, 1, k % 2 ? 0.5 : -0.5);
         for (int i = 0; k == 1499 && i < 2; i++)
             walk_arc(&t, 100, 3); /* nearly back, and downhill */
     }
     check_division(t.arcs, 300, NULL);
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     assert_true(add(shapes, t.arcs, 1501, NULL) > 1500);
     narc_destroy_shapes(shapes);
     check_refused(t.arcs, t.count, NULL, NARC_ERROR_NOT_SIMPLE, SIZE_MAX, "meets arc");
@@ -557,7 +551,7 @@ TEST(refuses_chains_that_lie_on_themselves) {
     for (size_t trial = 0; trial < test_trials(300); trial++) {
         const bool exact = trial < 16;
         struct turtle t = create_turtle(exact ? 0 : random_between(&random, -9, 9), 0,
-                                        exact ? TEST_PI / 2 : random_between(&random, -9, 9));
+                                        exact ? PI / 2 : random_between(&random, -9, 9));
         const double size = exact ? 1 : random_log_between(&random, 0.1, 10);
         const double back = random_below(&random, 2) ? 1 : random_between(&random, 0.1, 2);
         const bool concave = random_below(&random, 2);
@@ -566,23 +560,23 @@ TEST(refuses_chains_that_lie_on_themselves) {
         switch (trial % 4) {
         case 0: /* a line of no thickness, or a slit of no width */
             walk_line(&t, size);
-            walk_arc(&t, 0, concave ? -TEST_PI : TEST_PI);
+            walk_arc(&t, 0, concave ? -PI : PI);
             walk_line(&t, back * size);
             break;
         case 1: /* an arc and back */
             walk_arc(&t, size, turn);
-            walk_arc(&t, 0, concave ? -TEST_PI : TEST_PI);
+            walk_arc(&t, 0, concave ? -PI : PI);
             walk_arc(&t, size, -turn * fmin(back, 2));
             break;
         case 2: /* more than once around */
             for (int k = 0; k < 5; k++)
-                walk_arc(&t, size, copysign(fmin(1.26 + 0.2 * back, TEST_PI), turn));
+                walk_arc(&t, size, copysign(fmin(1.26 + 0.2 * back, PI), turn));
             break;
         default: /* back to the line that it began with, by an arc that is no wider than it; on along the line */
             walk_line(&t, 3 * size);
-            walk_arc(&t, size / 2, TEST_PI);
+            walk_arc(&t, size / 2, PI);
             walk_line(&t, 2 * size);
-            walk_arc(&t, size / 2, TEST_PI);
+            walk_arc(&t, size / 2, PI);
             walk_line(&t, size);
         }
         walk_arc(&t, 0, 0);
@@ -592,7 +586,7 @@ TEST(refuses_chains_that_lie_on_themselves) {
     struct turtle t = create_turtle(0, 0, 0); /* a closed outline that is walked twice */
     for (int k = 0; k < 8; k++) {
         walk_line(&t, 1);
-        walk_arc(&t, k % 2 ? 0.5 : 0, TEST_PI / 2);
+        walk_arc(&t, k % 2 ? 0.5 : 0, PI / 2);
     }
     check_refused(t.arcs, t.count, &(narc_chain_options){.closed = 1}, NARC_ERROR_NOT_SIMPLE, SIZE_MAX, "meets arc");
     check_division(t.arcs, 4, &(narc_chain_options){.closed = 1});
@@ -616,28 +610,28 @@ TEST(accepts_parts_that_are_alike) {
         walk_arc(&t, 0, 0);
         for (size_t k = 0; k < parts; k++) {
             walk_line(&t, size);
-            walk_arc(&t, 0, k + 1 < parts ? 0 : side * (TEST_PI - thin));
+            walk_arc(&t, 0, k + 1 < parts ? 0 : side * (PI - thin));
         }
         walk_line(&t, size * random_between(&random, 0.1, 2));
         walk_arc(&t, 0, 0);
-        narc_shapes *shapes = create_store(NULL);
+        narc_shapes *shapes = empty_store();
         add(shapes, t.arcs, t.count, NULL);
         free(t.arcs);
         t = create_turtle(x, y, random_between(&random, -9, 9)); /* a cusp, with one tangent on both sides */
         walk_arc(&t, size, -1);
-        walk_arc(&t, 0, TEST_PI);
+        walk_arc(&t, 0, PI);
         walk_arc(&t, size * random_between(&random, 0.5, 2), -1);
         add(shapes, t.arcs, t.count, NULL);
         free(t.arcs);
         t = create_turtle(x, y, random_between(&random, -9, 9)); /* a lens, and a closed circle of equal parts */
         for (int k = 0; k < 2; k++) {
             walk_arc(&t, size, 0.1 + thin);
-            walk_arc(&t, 0, TEST_PI - 0.1 - thin);
+            walk_arc(&t, 0, PI - 0.1 - thin);
         }
         add(shapes, t.arcs, t.count, &(narc_chain_options){.closed = 1});
         t.count = 0;
         for (size_t k = 0; k <= parts; k++)
-            walk_arc(&t, size, 2 * TEST_PI / (double)(parts + 1) * (trial % 2 ? 1 : -1));
+            walk_arc(&t, size, 2 * PI / (double)(parts + 1) * (trial % 2 ? 1 : -1));
         add(shapes, t.arcs, t.count, &(narc_chain_options){.closed = 1});
         narc_destroy_shapes(shapes);
         free(t.arcs);
@@ -649,7 +643,7 @@ TEST(accepts_chains_that_come_near_themselves) {
     struct turtle t = create_turtle(0, 0, 0);
     for (int k = 1; k < 60; k++)
         walk_arc(&t, 1 + 0.01 * k, 1.5); /* a spiral */
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     assert_in_range(add(shapes, t.arcs, t.count, NULL), 45, 60);
     narc_destroy_shapes(shapes);
     free(t.arcs);
@@ -666,16 +660,17 @@ TEST(fails_wherever_memory_ends) {
     size_t failures = 0;
     narc_status status = NARC_ERROR_MEMORY;
     for (size_t left = 0; status != NARC_OK; left++) {
-        struct counter counter = {.left = SIZE_MAX};
-        narc_shapes *shapes = create_store(&counter);
-        const narc_arc ball = {0, 0, 1, 0, 2 * TEST_PI};
+        struct ledger ledger = {0};
+        narc_shapes *shapes = ledger_store(&ledger);
+        const narc_arc ball = {0, 0, 1, 0, 2 * PI};
         size_t found = 77;
         narc_error error;
         assert_int_equal(narc_add_shape(shapes, &ball, 1, NULL, NULL), NARC_OK);
         const uint64_t changes = shapes->change_count;
-        counter.left = left;
+        ledger.limited = true;
+        ledger.left = left;
         status = narc_add_chain(shapes, t.arcs, t.count, &ring, entries, MOST, &found, &error);
-        counter.left = SIZE_MAX;
+        ledger.limited = false;
         if (status != NARC_OK) {
             expect_error(status, NARC_ERROR_MEMORY, &error, "no ");
             assert_int_equal(found, 77);
@@ -703,7 +698,7 @@ static void add_ring(narc_shapes *shapes, size_t teeth, narc_chain_entry *out_en
 /* Pieces come and go as shapes do, and are none that a list of arcs makes. */
 TEST(keeps_pieces_as_shapes) {
     static narc_chain_entry first[MOST], second[MOST];
-    narc_shapes *shapes = create_store(NULL);
+    narc_shapes *shapes = empty_store();
     size_t count, again;
     narc_arc arcs[NARC_MAX_ARCS];
     add_ring(shapes, 6, first, &count);
@@ -731,12 +726,12 @@ TEST(keeps_pieces_as_shapes) {
     const uint32_t uses = narc_count_uses(shapes, first[run].shape);
     for (uint32_t k = 1; k < uses; k++)
         assert_int_equal(narc_remove_shape(shapes, first[run].shape, NULL), NARC_OK);
-    const narc_arc ball = {0, 0, 1, 0, 2 * TEST_PI};
+    const narc_arc ball = {0, 0, 1, 0, 2 * PI};
     assert_int_equal(narc_replace_shape(shapes, first[run].shape, &ball, 1, NULL), NARC_OK);
     assert_int_equal(shapes->piece_count, shape_count - 1);
     assert_int_equal(narc_shape_flags(shapes, first[run].shape) & NARC_SHAPE_RUN, 0);
     narc_destroy_shapes(shapes);
-    shapes = create_store(NULL);
+    shapes = empty_store();
     add_ring(shapes, 6, first, &count);
     for (size_t k = 0; k < count; k++)
         assert_int_equal(narc_remove_shape(shapes, first[k].shape, NULL), NARC_OK);
@@ -753,7 +748,7 @@ TEST(finds_boxes_of_fronts) {
     struct test_random random = test_random_named("front boxes");
     for (size_t trial = 0; trial < test_trials(50); trial++) {
         struct turtle t = walk_ground(&random, 20, 1.2);
-        narc_shapes *shapes = create_store(NULL);
+        narc_shapes *shapes = empty_store();
         const size_t found = add(shapes, t.arcs, t.count, NULL);
         for (size_t k = 0; k < found; k++) {
             const struct front f = get_front(shapes, &entries[k]);

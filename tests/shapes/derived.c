@@ -10,8 +10,6 @@
 #include "support.h"
 #include "tests.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum { PER_ARC = 500 };
 
 typedef void check(struct test_random *random, const struct shape *shape, const struct samples *samples);
@@ -65,7 +63,7 @@ static void check_support(struct test_random *random, const struct shape *shape,
     double rounding = 1e-13 + 2 * samples->defect, error = samples->height_error + rounding;
     for (size_t k = 0; k < 40; k++) {
         /* Any direction, or exactly a normal that two arcs or an edge share. */
-        double angle = k % 2 ? random_between(random, -pi, pi) : shape->arcs[random_below(random, shape->count)].start;
+        double angle = k % 2 ? random_between(random, -PI, PI) : shape->arcs[random_below(random, shape->count)].start;
         double length = random_log_between(random, 1e-3, 1e3), x = cos(angle), y = sin(angle);
         narc_point point;
         size_t arc;
@@ -108,7 +106,7 @@ static void check_distance(struct test_random *random, const struct shape *shape
     double rounding = 1e-12 + 2 * samples->defect;
     for (size_t k = 0; k < 60; k++) {
         narc_point near = samples->point[random_below(random, samples->count)], point;
-        double reach = random_log_between(random, 1e-3, 3), angle = random_between(random, -pi, pi), distance;
+        double reach = random_log_between(random, 1e-3, 3), angle = random_between(random, -PI, PI), distance;
         point = (narc_point){near.x + reach * cos(angle), near.y + reach * sin(angle)};
         if (k < shape->count) /* the centres too: the worst case of an arc's sector */
             point = (narc_point){shape->arcs[k].center_x, shape->arcs[k].center_y};
@@ -148,7 +146,7 @@ TEST(circles_match_searches) { for_all_families("circles", 4, check_circles); }
 /* Everything moves and scales with the shape. */
 static void check_motion(struct test_random *random, const struct shape *shape, const struct samples *samples) {
     (void)samples;
-    double angle = random_between(random, -pi, pi), scale = random_log_between(random, 1e-6, 1e6);
+    double angle = random_between(random, -PI, PI), scale = random_log_between(random, 1e-6, 1e6);
     double c = cos(angle), s = sin(angle), x = 3 * scale, y = -5 * scale;
     narc_arc moved[NARC_MAX_ARCS];
     for (size_t i = 0; i < shape->count; i++) {

@@ -12,8 +12,6 @@
 #include "store.h"
 #include "tests.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* Half a float has 8 digits, of which rounding down takes the last. */
 static const double half_precision = 1.0 / 128;
 
@@ -21,12 +19,12 @@ static const double half_precision = 1.0 / 128;
 static const double room = 1e-10;
 
 static double sweep_of(const narc_arc *arc) {
-    const double sweep = fmod(arc->end - arc->start, 2 * pi);
-    return sweep > 0 ? sweep : sweep + 2 * pi;
+    const double sweep = fmod(arc->end - arc->start, 2 * PI);
+    return sweep > 0 ? sweep : sweep + 2 * PI;
 }
 
 static double least_sweep(const struct shape *shape) {
-    double least = 2 * pi;
+    double least = 2 * PI;
     for (size_t i = 0; i < shape->count; i++)
         least = fmin(least, sweep_of(&shape->arcs[i]));
     return least;
@@ -157,13 +155,13 @@ TEST(is_tight_for_known_shapes) {
     expect_inner_radii(shapes, 0, 0.25, 0.25);
     expect_inner_radii(shapes, 1, 0.25, 0.25);
     /* Half a disc closed by an edge: at the ends of its arc it has the corners' directions. */
-    const narc_arc half[] = {{0, 0, 1, -pi / 2, pi / 2}, {0, 1, 0, pi / 2, pi}, {0, -1, 0, -pi, -pi / 2}};
+    const narc_arc half[] = {{0, 0, 1, -PI / 2, PI / 2}, {0, 1, 0, PI / 2, PI}, {0, -1, 0, -PI, -PI / 2}};
     assert_int_equal(narc_add_shape(shapes, half, 3, NULL, NULL), NARC_OK);
     expect_inner_radii(shapes, 0, 0, 0);
     /* An oval of 16 arcs: within 60 degrees of its flat sides no arc is as sharp as those at its tips. */
     narc_point points[16];
     for (size_t i = 0; i < 16; i++)
-        points[i] = (narc_point){1.5 * cos(pi / 8 * ((double)i + 0.5)), sin(pi / 8 * ((double)i + 0.5))};
+        points[i] = (narc_point){1.5 * cos(PI / 8 * ((double)i + 0.5)), sin(PI / 8 * ((double)i + 0.5))};
     assert_int_equal(narc_build_points(points, 16, 0, arcs, &count, NULL), NARC_OK);
     assert_int_equal(narc_add_shape(shapes, arcs, count, NULL, NULL), NARC_OK);
     double sharpest = INFINITY;

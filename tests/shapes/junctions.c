@@ -9,8 +9,6 @@
 #include "support.h"
 #include "tests.h"
 
-static const double pi = 3.14159265358979323846;
-
 static double apart(narc_point a, narc_point b) { return hypot(a.x - b.x, a.y - b.y); }
 
 static narc_point point_on(const narc_arc *arc, double angle) {
@@ -27,7 +25,7 @@ static void expect_n_arc(const narc_arc *arcs, size_t count, const narc_point *p
         size_t next = (i + 1) % count;
         expect_near(apart(point_on(&arcs[i], arcs[i].start), points[i]), 0, tolerance, "distance of an arc's start");
         expect_near(apart(point_on(&arcs[i], arcs[i].end), points[next]), 0, tolerance, "distance of an arc's end");
-        expect_near(remainder(arcs[i].end - arcs[next].start, 2 * pi), 0, 1e-12, "angle between two arcs");
+        expect_near(remainder(arcs[i].end - arcs[next].start, 2 * PI), 0, 1e-12, "angle between two arcs");
     }
 }
 
@@ -37,7 +35,7 @@ static void walk(const double *turns, const double *sides, size_t count, narc_po
     narc_point at = {0, 0};
     for (size_t i = 0; i < count; i++) {
         points[i] = at;
-        angle += i ? turns[i] * pi / 180 : 0;
+        angle += i ? turns[i] * PI / 180 : 0;
         at = (narc_point){at.x + sides[i] * cos(angle), at.y + sides[i] * sin(angle)};
     }
     expect_near(hypot(at.x, at.y), 0, 1e-9, "gap of the outline");
@@ -59,8 +57,8 @@ TEST(three_points_give_their_circle) {
     narc_mass mass;
     assert_true(narc_compute_bounding_circle(arcs, 3, &bound) && narc_compute_mass(arcs, 3, &mass));
     expect_near(bound.radius, arcs[0].radius, 1e-14, "bounding radius");
-    expect_near(mass.area, pi * bound.radius * bound.radius, 1e-13, "area");
-    expect_near(mass.second_moment, pi * pow(bound.radius, 4) / 2, 1e-12, "second moment");
+    expect_near(mass.area, PI * bound.radius * bound.radius, 1e-13, "area");
+    expect_near(mass.second_moment, PI * pow(bound.radius, 4) / 2, 1e-12, "second moment");
 }
 
 /* Pentagons with convex corners near a circle: always one solution, and giving another radius is an error. */
@@ -72,7 +70,7 @@ TEST(random_pentagons_have_one_solution) {
         size_t count;
         narc_error error;
         for (size_t i = 0; i < 5; i++) {
-            double angle = 2 * pi * ((double)i + random_between(&random, -0.15, 0.15)) / 5;
+            double angle = 2 * PI * ((double)i + random_between(&random, -0.15, 0.15)) / 5;
             double distance = random_between(&random, 0.95, 1.05);
             points[i] = (narc_point){distance * cos(angle), distance * sin(angle)};
         }
@@ -227,7 +225,7 @@ TEST(adjusts_random_polygons) {
         double flatness = random_below(&random, 3) ? 1 : random_log_between(&random, 1e-4, 1);
         narc_point middle = {random_between(&random, -9, 9), random_between(&random, -9, 9)};
         for (size_t i = 0; i < n; i++) {
-            double angle = sense * 2 * pi * ((double)i + 0.45 * random_unit(&random)) / (double)n;
+            double angle = sense * 2 * PI * ((double)i + 0.45 * random_unit(&random)) / (double)n;
             double distance = exp(-depth * random_unit(&random));
             p[i] = (narc_point){middle.x + distance * cos(angle), middle.y + flatness * distance * sin(angle)};
         }
@@ -248,7 +246,7 @@ TEST(adjusts_nasty_polygons) {
         }
         /* Corners ever closer together. */
         for (size_t i = 0; i < n; i++) {
-            double angle = 2 * pi * pow((double)i / (double)n, 2.5);
+            double angle = 2 * PI * pow((double)i / (double)n, 2.5);
             p[i] = (narc_point){cos(angle), sin(angle)};
         }
         expect_adjusted(p, n, "a crowd");
@@ -262,7 +260,7 @@ TEST(adjusts_nasty_polygons) {
         /* A band wound up as a spiral, 1.5 turns. */
         size_t half = n / 2;
         for (size_t i = 0; i < half && n % 2 == 0 && n >= 24; i++) {
-            double angle = 3 * pi * (double)i / (double)(half - 1), distance = 1 + 0.4 * angle;
+            double angle = 3 * PI * (double)i / (double)(half - 1), distance = 1 + 0.4 * angle;
             p[i] = (narc_point){(distance + 0.2) * cos(angle), (distance + 0.2) * sin(angle)};
             p[n - 1 - i] = (narc_point){(distance - 0.2) * cos(angle), (distance - 0.2) * sin(angle)};
             if (i + 1 == half)
@@ -283,7 +281,7 @@ TEST(leaves_good_polygons_alone) {
         for (size_t i = 0; i < shape.count; i++) {
             points[i] = point_on(&shape.arcs[i], shape.arcs[i].start);
             double half = (shape.arcs[i].end - shape.arcs[i].start) / 2;
-            roomy = roomy && half > 0.3 * pi / (double)shape.count && half < pi / 2;
+            roomy = roomy && half > 0.3 * PI / (double)shape.count && half < PI / 2;
         }
         if (!roomy)
             continue;
@@ -314,7 +312,7 @@ TEST(changes_angles_least) {
         size_t n = 6 + 2 * random_below(&random, 4);
         narc_error error;
         for (size_t i = 0; i < n; i++) {
-            double angle = 2 * pi * ((double)i + random_between(&random, -0.05, 0.05)) / (double)n;
+            double angle = 2 * PI * ((double)i + random_between(&random, -0.05, 0.05)) / (double)n;
             double distance = random_between(&random, 0.99, 1.01);
             points[i] = (narc_point){distance * cos(angle), distance * sin(angle)};
         }
@@ -340,7 +338,7 @@ TEST(takes_either_orientation) {
         size_t n = 3 + random_below(&random, 14);
         narc_error error;
         for (size_t i = 0; i < n; i++) {
-            double angle = 2 * pi * ((double)i + random_between(&random, -0.3, 0.3)) / (double)n;
+            double angle = 2 * PI * ((double)i + random_between(&random, -0.3, 0.3)) / (double)n;
             double distance = random_between(&random, 0.3, 1);
             points[i] = backwards[(n - i) % n] = (narc_point){distance * cos(angle), distance * sin(angle)};
         }

@@ -7,11 +7,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double pi = 3.14159265358979323846;
+#include "support.h"
 
 static double sweep_of(const narc_arc *arc) {
     double sweep = arc->end - arc->start;
-    return sweep < 0 ? sweep + 2 * pi : sweep;
+    return sweep < 0 ? sweep + 2 * PI : sweep;
 }
 
 static narc_point point_on(const narc_arc *arc, double angle) {
@@ -90,8 +90,8 @@ double oracle_height(const struct samples *samples, double x, double y) {
 
 /* Does the arc have this angle? */
 static bool has_angle(const narc_arc *arc, double angle) {
-    double after = fmod(angle - arc->start, 2 * pi);
-    return (after < 0 ? after + 2 * pi : after) <= sweep_of(arc);
+    double after = fmod(angle - arc->start, 2 * PI);
+    return (after < 0 ? after + 2 * PI : after) <= sweep_of(arc);
 }
 
 static double segment_distance(narc_point p, narc_point a, narc_point b) {

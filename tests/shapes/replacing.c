@@ -16,8 +16,6 @@
 #include "support.h"
 #include "tests.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* A shape that was added to a store of its own has the same bits wherever it is. */
 static void expect_same_shape(const narc_shapes *shapes, uint32_t index, const struct shape *shape) {
     narc_shapes *fresh = empty_store();
@@ -133,7 +131,7 @@ static struct shape make_polygon(size_t corners) {
     struct shape shape = {.count = 0};
     narc_point points[NARC_MAX_ARCS];
     for (size_t i = 0; i < corners; i++) {
-        const double angle = 2 * pi * (double)i / (double)corners;
+        const double angle = 2 * PI * (double)i / (double)corners;
         points[i] = (narc_point){cos(angle), sin(angle)};
     }
     assert_int_equal(narc_build_polygon(points, corners, 0, shape.arcs, &shape.count, NULL), NARC_OK);
@@ -236,7 +234,7 @@ TEST(refused_replacement_changes_nothing) {
     struct model *model = calloc(1, sizeof *model);
     narc_shapes *shapes = ledger_store(&ledger);
     const struct shape small = make_polygon(3), large = make_polygon(64);
-    narc_arc broken = {0, 0, -1, -pi, pi};
+    narc_arc broken = {0, 0, -1, -PI, PI};
     narc_error error;
     assert_non_null(model);
     for (uint32_t k = 0; k < 20; k++) {

@@ -13,8 +13,6 @@
 #include "support.h"
 #include "tests.h"
 
-static const double pi = 3.14159265358979323846;
-
 TEST(equal_shapes_are_stored_once) {
     struct test_random random = test_random_named("sharing");
     struct ledger ledger = {0};
@@ -60,7 +58,7 @@ TEST(other_bits_are_another_shape) {
     other.arcs[0].center_x = other.arcs[3].center_x = (double)nextafterf(1, 2);
     assert_int_equal(store_shape(shapes, other), 3);
     for (uint32_t k = 0; k < 2; k++) {
-        const struct shape circle = {{{k, 0, 1, -pi, pi}}, 1};
+        const struct shape circle = {{{k, 0, 1, -PI, PI}}, 1};
         assert_int_equal(store_shape(shapes, circle), 4 + k);
     }
     narc_destroy_shapes(shapes);

@@ -14,8 +14,6 @@
 #include "support.h"
 #include "tests.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* One rounding to single precision, relative. */
 static const double ulp = 1.0 / 16777216.0;
 
@@ -27,10 +25,10 @@ static void expect_same_arcs(const struct shape *shape, const narc_arc *stored, 
         expect_near(b->center_x, a->center_x, ulp * fabs(a->center_x) + 1e-15, "center x");
         expect_near(b->center_y, a->center_y, ulp * fabs(a->center_y) + 1e-15, "center y");
         expect_near(b->radius, a->radius, ulp * a->radius, "radius");
-        expect_near(remainder(b->start - a->start, 2 * pi), 0, 2 * ulp, "start");
-        expect_near(remainder(b->end - a->end, 2 * pi), 0, 2 * ulp, "end");
+        expect_near(remainder(b->start - a->start, 2 * PI), 0, 2 * ulp, "start");
+        expect_near(remainder(b->end - a->end, 2 * PI), 0, 2 * ulp, "end");
         double sweep = b->end - b->start;
-        assert_true(sweep > 0 && sweep <= (count == 1 ? 2 * pi : pi) + 1e-15);
+        assert_true(sweep > 0 && sweep <= (count == 1 ? 2 * PI : PI) + 1e-15);
     }
 }
 
@@ -95,7 +93,7 @@ static void expect_box(const struct shape *shape, const narc_shape_header *heade
     expect_near((double)box->centroid_x, mass.centroid_x, ulp * extent, "centroid x");
     expect_near((double)box->centroid_y, mass.centroid_y, ulp * extent, "centroid y");
     for (size_t i = 0; i < header->count; i++) {
-        const double start = shape->count == 1 ? shape->arcs[0].start + pi * (double)i
+        const double start = shape->count == 1 ? shape->arcs[0].start + PI * (double)i
                                                : shape->arcs[(i + header->first_arc) % header->count].start;
         find_half_sides(shape, cos(start), sin(start), &half_x, &half_y);
         if (box->axis_x == arcs[i].arc.start_x && box->axis_y == arcs[i].arc.start_y)
@@ -192,8 +190,8 @@ TEST(stores_exact_quarter_turns) {
         uint32_t index;
         for (size_t i = 0; i < 4; i++) {
             turned[i] = arcs[i];
-            turned[i].start += 2 * pi * turns;
-            turned[i].end += 2 * pi * turns;
+            turned[i].start += 2 * PI * turns;
+            turned[i].end += 2 * PI * turns;
         }
         assert_int_equal(narc_add_shape(shapes, turned, 4, &index, NULL), NARC_OK);
         for (size_t i = 0; i < 4; i++) {
@@ -349,7 +347,7 @@ TEST(bounds_what_is_stored) {
         assert_true((double)header.inner_radius <= room - least * extent || header.inner_radius == 0);
         assert_true((double)header.inner_radius >= inner.radius - most * extent);
         /* The box of the body, turned and scaled. */
-        float angle = (float)random_between(&random, -pi, pi), c = cosf(angle), s = sinf(angle);
+        float angle = (float)random_between(&random, -PI, PI), c = cosf(angle), s = sinf(angle);
         float scale = (float)random_log_between(&random, 0.1, 10);
         double cosine = (double)c, sine = (double)s, size = (double)scale;
         narc_aabb box;
@@ -435,9 +433,9 @@ TEST(reserve_is_enough) {
 TEST(leaves_room_for_arcs_that_are_apart) {
     const double apart = 9e-6;
     for (int along = 0; along < 2; along++) {
-        for (double angle = 0; angle < 2 * pi; angle += 0.1) {
-            const double x = apart * cos(angle + along * pi / 2), y = apart * sin(angle + along * pi / 2);
-            const narc_arc halves[2] = {{0, 0, 1, angle, angle + pi}, {x, y, 1, angle + pi, angle + 2 * pi}};
+        for (double angle = 0; angle < 2 * PI; angle += 0.1) {
+            const double x = apart * cos(angle + along * PI / 2), y = apart * sin(angle + along * PI / 2);
+            const narc_arc halves[2] = {{0, 0, 1, angle, angle + PI}, {x, y, 1, angle + PI, angle + 2 * PI}};
             const double room = along ? apart : 2 * apart;
             narc_shapes *shapes = empty_store();
             assert_int_equal(narc_add_shape(shapes, halves, 2, NULL, NULL), NARC_OK);
@@ -454,7 +452,7 @@ TEST(refuses_bad_arguments) {
     struct ledger ledger = {0};
     narc_allocator incomplete = ledger_allocator(&ledger);
     incomplete.allocate = NULL;
-    narc_arc arc = {0, 0, -1, -pi, pi};
+    narc_arc arc = {0, 0, -1, -PI, PI};
     uint32_t index = 12345;
     assert_int_equal(narc_create_shapes(NULL, NULL), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_create_shapes(&incomplete, &shapes), NARC_ERROR_ARGUMENT);

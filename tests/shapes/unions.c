@@ -7,14 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "counting.h"
 #include "families.h"
 #include "guard.h"
+#include "ledger.h"
 #include "oracle.h"
 #include "support.h"
 #include "tests.h"
-
-static const double pi = 3.14159265358979323846;
 
 /* Of compounds some units large: what roundings come to. */
 static const double rounding = 1e-12;
@@ -82,7 +80,7 @@ TEST(one_part_is_itself) {
     for (size_t k = 0; k < FAMILY_COUNT * test_trials(100); k++) {
         const struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         const double x = random_between(&random, -1, 1), y = random_between(&random, -1, 1);
-        const double angle = k % 3 ? random_between(&random, -9, 9) : pi / 2 * (double)random_below(&random, 9);
+        const double angle = k % 3 ? random_between(&random, -9, 9) : PI / 2 * (double)random_below(&random, 9);
         struct compound one = {.parts = 0};
         struct samples samples = oracle_sample(shape.arcs, shape.count, 1);
         narc_mass moved = mass_of(&shape);
@@ -133,7 +131,7 @@ static void make_triangles(struct test_random *random, struct known *k) {
     const size_t count = 3 + random_below(random, 10);
     const narc_point middle = {random_between(random, -0.1, 0.1), random_between(random, -0.1, 0.1)};
     for (size_t i = 0; i < count; i++) {
-        const double angle = 2 * pi * ((double)i + random_between(random, 0.1, 0.9) * (count > 3)) / (double)count;
+        const double angle = 2 * PI * ((double)i + random_between(random, 0.1, 0.9) * (count > 3)) / (double)count;
         corner[i] = (narc_point){2 * cos(angle), sin(angle)};
     }
     assert_int_equal(narc_build_polygon(corner, count, 0, whole.arcs, &whole.count, NULL), NARC_OK);
@@ -155,11 +153,11 @@ static void make_slices(struct test_random *random, struct known *k) {
     assert_int_equal(narc_build_regular_polygon(count, radius, 0, polygon.arcs, &polygon.count, NULL), NARC_OK);
     add_part(&k->compound, &polygon, 0, 0, turn);
     for (size_t i = 0; i < count; i++) {
-        const double start = 2 * pi * (double)i / (double)count, end = 2 * pi * ((double)i + 1) / (double)count;
-        const double back = (start + end) / 2 + pi;
+        const double start = 2 * PI * (double)i / (double)count, end = 2 * PI * ((double)i + 1) / (double)count;
+        const double back = (start + end) / 2 + PI;
         const struct shape slice = {{{0, 0, radius, start, end},
                                      {radius * cos(end), radius * sin(end), 0, end, back},
-                                     {radius * cos(start), radius * sin(start), 0, back, start + 2 * pi}},
+                                     {radius * cos(start), radius * sin(start), 0, back, start + 2 * PI}},
                                     3};
         add_part(&k->compound, &slice, 0, 0, turn);
     }
@@ -174,7 +172,7 @@ static void make_squares(struct test_random *random, struct known *k) {
     const struct shape whole = box_of(step * ((double)side - 1) + size, step * ((double)side - 1) + size, 0);
     for (size_t i = 0; i < side * side; i++)
         add_part(&k->compound, &square, step * ((double)(i % side) - ((double)side - 1) / 2),
-                 step * ((double)(i / side) - ((double)side - 1) / 2), pi / 2 * (double)random_below(random, 4));
+                 step * ((double)(i / side) - ((double)side - 1) / 2), PI / 2 * (double)random_below(random, 4));
     k->mass = mass_of(&whole);
 }
 
@@ -186,7 +184,7 @@ static void make_capsules(struct test_random *random, struct known *k) {
     const struct shape capsule = capsule_of(length, radius),
                        whole = capsule_of(length + step * ((double)count - 1), radius);
     for (size_t i = 0; i < count; i++)
-        add_part(&k->compound, &capsule, step * ((double)i - ((double)count - 1) / 2), 0, pi * (double)(i % 2));
+        add_part(&k->compound, &capsule, step * ((double)i - ((double)count - 1) / 2), 0, PI * (double)(i % 2));
     k->mass = mass_of(&whole);
 }
 
@@ -229,9 +227,9 @@ static void make_two_circles(struct test_random *random, struct known *k) {
     const double first_a = 2.0 / 3 * pow(r * sin(f), 3), first_b = 2.0 / 3 * pow(s * sin(g), 3);
     const double second_a = pow(r, 4) / 2 * (f - sin(f) * cos(f) + 2.0 / 3 * sin(f) * cos(f) * sin(f) * sin(f));
     const double second_b = pow(s, 4) / 2 * (g - sin(g) * cos(g) + 2.0 / 3 * sin(g) * cos(g) * sin(g) * sin(g));
-    const double area = pi * (one * one + s * s) - area_a - area_b;
-    const double first = pi * s * s * d - first_a - (d * area_b - first_b);
-    const double second = pi / 2 * (pow(r, 4) + pow(s, 4)) + pi * s * s * d * d - second_a -
+    const double area = PI * (one * one + s * s) - area_a - area_b;
+    const double first = PI * s * s * d - first_a - (d * area_b - first_b);
+    const double second = PI / 2 * (pow(r, 4) + pow(s, 4)) + PI * s * s * d * d - second_a -
                           (second_b + d * d * area_b - 2 * d * first_b);
     k->mass = (narc_mass){area, first / area, 0, second - first * first / area};
 }
@@ -239,20 +237,20 @@ static void make_two_circles(struct test_random *random, struct known *k) {
 /* Discs in a ring that touch their neighbours: the sum. */
 static void make_touching(struct test_random *random, struct known *k) {
     const size_t count = 3 + random_below(random, 20);
-    const double radius = 1.5 * sin(pi / (double)count);
+    const double radius = 1.5 * sin(PI / (double)count);
     const struct shape disc = circle_of(radius);
     for (size_t i = 0; i < count; i++) {
-        const double angle = 2 * pi * (double)i / (double)count;
+        const double angle = 2 * PI * (double)i / (double)count;
         add_part(&k->compound, &disc, 1.5 * cos(angle), 1.5 * sin(angle), angle);
     }
-    const double area = (double)count * pi * radius * radius;
+    const double area = (double)count * PI * radius * radius;
     k->mass = (narc_mass){area, 0, 0, area * (radius * radius / 2 + 1.5 * 1.5)};
 }
 
 /* Discs that touch a box in the middle of its sides: the sum. */
 static void make_resting(struct test_random *random, struct known *k) {
     const double width = random_between(random, 1, 2), height = random_between(random, 0.5, 1);
-    const double radius = random_between(random, 0.1, 0.5), area = pi * radius * radius;
+    const double radius = random_between(random, 0.1, 0.5), area = PI * radius * radius;
     const double x = width / 2 + radius, y = height / 2 + radius;
     const struct shape box = box_of(width, height, 0), disc = circle_of(radius);
     add_part(&k->compound, &box, 0, 0, 0);
@@ -427,8 +425,8 @@ TEST(unions_refuse_bad_arguments) {
     const struct shape box = box_of(2, 1, 0.25);
     narc_mass mass;
     narc_error error;
-    struct counter counter = {.left = 0};
-    const narc_allocator failing = {counted_allocate, counted_release, &counter};
+    struct ledger ledger = {.limited = true};
+    const narc_allocator failing = ledger_allocator(&ledger);
     memset(&mass, GUARD_JUNK, sizeof mass);
     const narc_mass junk = mass;
     add_part(&two, &box, 0, 0, 0);
@@ -444,9 +442,9 @@ TEST(unions_refuse_bad_arguments) {
     UNION(two.arcs, two.counts, 2, NULL, &mass, NARC_ERROR_NOT_FINITE, "part 1: arc 1: radius is");
     assert_int_equal(error.index, 1);
     assert_memory_equal(&mass, &junk, sizeof mass);
-    counter.left = 1;
+    ledger.left = 1;
     expect_ok(narc_compute_union_mass(two.arcs, two.counts, 1, &failing, &mass, &error), &error);
-    assert_int_equal(counter.allocations, 1);
+    assert_int_equal(ledger.allocations, 1);
 }
 
 TEST(moves_refuse_bad_arguments) {
@@ -463,6 +461,6 @@ TEST(moves_refuse_bad_arguments) {
     MOVE(box.arcs, 0, 0, 0, 0, out, NARC_ERROR_SIZE, "scale is 0");
     MOVE(box.arcs, 0, 0, 0, 1e10, out, NARC_ERROR_SIZE, "");
     MOVE(box.arcs, 1e10, 0, 0, 1, out, NARC_ERROR_SIZE, "");
-    assert_int_equal(narc_move_arcs(box.arcs, box.count, 1, 2, pi / 2, 2, box.arcs, NULL), NARC_OK); /* in place */
+    assert_int_equal(narc_move_arcs(box.arcs, box.count, 1, 2, PI / 2, 2, box.arcs, NULL), NARC_OK); /* in place */
     assert_true(box.arcs[0].radius == 0.5);
 }

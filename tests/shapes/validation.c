@@ -10,8 +10,6 @@
 #include "support.h"
 #include "tests.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* A box, 2 by 1 with corners of 0.25, with which one thing is wrong at a time. */
 static void make_box(narc_arc arcs[NARC_MAX_ARCS]) {
     size_t count;
@@ -56,10 +54,10 @@ TEST(refuses_bad_radii) {
     /* Lenses of two arcs as wide as 2: the radius divided by the bounding radius, 1, is the radius. */
     for (double radius = 63.9; radius < 64.2; radius += 0.2) {
         double y = sqrt(radius * radius - 1), half = asin(1 / radius);
-        narc_arc lens[4] = {{1, 0, 0, -pi / 2 + half, pi / 2 - half},
-                            {0, -y, radius, pi / 2 - half, pi / 2 + half},
-                            {-1, 0, 0, pi / 2 + half, 3 * pi / 2 - half},
-                            {0, y, radius, 3 * pi / 2 - half, 3 * pi / 2 + half}};
+        narc_arc lens[4] = {{1, 0, 0, -PI / 2 + half, PI / 2 - half},
+                            {0, -y, radius, PI / 2 - half, PI / 2 + half},
+                            {-1, 0, 0, PI / 2 + half, 3 * PI / 2 - half},
+                            {0, y, radius, 3 * PI / 2 - half, 3 * PI / 2 + half}};
         narc_status status = narc_validate_arcs(lens, 4, &error);
         if (radius < NARC_MAX_RADIUS_RATIO) {
             expect_ok(status, &error);
@@ -85,13 +83,13 @@ TEST(refuses_bad_sweeps) {
     make_box(arcs);
     arcs[1].end = arcs[1].start - 7;
     expect_error(narc_validate_arcs(arcs, 4, &error), NARC_ERROR_SWEEP, &error, "backwards");
-    narc_arc half = {0, 0, 1, 0, pi};
+    narc_arc half = {0, 0, 1, 0, PI};
     expect_error(narc_validate_arcs(&half, 1, &error), NARC_ERROR_SWEEP, &error, "arc 0: sweep is 3.14");
     /* Twice around: four half circles. */
-    narc_arc twice[4] = {{0, 0, 1, 0, pi}, {0, 0, 1, pi, 2 * pi}, {0, 0, 1, 0, pi}, {0, 0, 1, pi, 2 * pi}};
+    narc_arc twice[4] = {{0, 0, 1, 0, PI}, {0, 0, 1, PI, 2 * PI}, {0, 0, 1, 0, PI}, {0, 0, 1, PI, 2 * PI}};
     expect_error(narc_validate_arcs(twice, 4, &error), NARC_ERROR_SWEEP, &error, "12.566");
     /* The kernels need normals that differ by more than their rounding. */
-    narc_arc sliver[3] = {{0, 0, 1, 0, 0.9e-5}, {0, 0, 1, 0.9e-5, pi}, {0, 0, 1, pi, 2 * pi}};
+    narc_arc sliver[3] = {{0, 0, 1, 0, 0.9e-5}, {0, 0, 1, 0.9e-5, PI}, {0, 0, 1, PI, 2 * PI}};
     expect_error(narc_validate_arcs(sliver, 3, &error), NARC_ERROR_SWEEP, &error,
                  "arc 0: sweep is 9e-06 rad, it turns by nothing");
     sliver[0].end = sliver[1].start = 1.1e-5;
@@ -128,25 +126,25 @@ TEST(refuses_bad_sizes) {
     static const double radii[] = {0, 0.5e-9, 2e9, 1e200, DBL_MAX, DBL_MIN};
     narc_error error;
     for (size_t k = 0; k < sizeof radii / sizeof radii[0]; k++) {
-        narc_arc circle = {0, 0, radii[k], -pi, pi};
+        narc_arc circle = {0, 0, radii[k], -PI, PI};
         expect_error(narc_validate_arcs(&circle, 1, &error), NARC_ERROR_SIZE, &error, "radius is");
     }
-    narc_arc smallest = {0, 0, NARC_MIN_SIZE, -pi, pi}, largest = {0, 0, NARC_MAX_SIZE, -pi, pi};
+    narc_arc smallest = {0, 0, NARC_MIN_SIZE, -PI, PI}, largest = {0, 0, NARC_MAX_SIZE, -PI, PI};
     expect_ok(narc_validate_arcs(&smallest, 1, &error), &error);
     expect_ok(narc_validate_arcs(&largest, 1, &error), &error);
-    narc_arc far = {2e9, 0, 1, -pi, pi};
+    narc_arc far = {2e9, 0, 1, -PI, PI};
     expect_error(narc_validate_arcs(&far, 1, &error), NARC_ERROR_SIZE, &error, "away from its origin");
     /* A segment, a point, and a triangle whose corners lie on a line. */
-    narc_arc segment[2] = {{1, 2, 0, -pi / 2, pi / 2}, {-1, 2, 0, pi / 2, -pi / 2}};
+    narc_arc segment[2] = {{1, 2, 0, -PI / 2, PI / 2}, {-1, 2, 0, PI / 2, -PI / 2}};
     expect_ok(narc_validate_arcs(segment, 2, &error), &error);
-    narc_arc flat[2] = {{1, 0, 1e-14, -pi / 2, pi / 2}, {-1, 0, 1e-14, pi / 2, -pi / 2}};
+    narc_arc flat[2] = {{1, 0, 1e-14, -PI / 2, PI / 2}, {-1, 0, 1e-14, PI / 2, -PI / 2}};
     expect_error(narc_validate_arcs(flat, 2, &error), NARC_ERROR_SIZE, &error, "no area");
-    narc_arc point[2] = {{3, 1, 0, 0, pi}, {3, 1, 0, pi, 2 * pi}};
+    narc_arc point[2] = {{3, 1, 0, 0, PI}, {3, 1, 0, PI, 2 * PI}};
     expect_error(narc_validate_arcs(point, 2, &error), NARC_ERROR_SIZE, &error, "bounding radius is 0");
-    narc_arc line[3] = {{1, 0, 0, -pi / 2, 0.5}, {1, 0, 0, 0.5, pi / 2}, {-1, 0, 0, pi / 2, 3 * pi / 2}};
+    narc_arc line[3] = {{1, 0, 0, -PI / 2, 0.5}, {1, 0, 0, 0.5, PI / 2}, {-1, 0, 0, PI / 2, 3 * PI / 2}};
     expect_error(narc_validate_arcs(line, 3, &error), NARC_ERROR_SIZE, &error, "no area");
     /* The thinnest capsule there is a use for. */
-    narc_arc thin[2] = {{1, 0, 1e-6, -pi / 2, pi / 2}, {-1, 0, 1e-6, pi / 2, -pi / 2}};
+    narc_arc thin[2] = {{1, 0, 1e-6, -PI / 2, PI / 2}, {-1, 0, 1e-6, PI / 2, -PI / 2}};
     expect_ok(narc_validate_arcs(thin, 2, &error), &error);
 }
 
@@ -156,7 +154,7 @@ TEST(accepts_whole_turns) {
         struct shape shape = make_shape(&random, (enum family)(k % FAMILY_COUNT));
         narc_error error;
         for (size_t i = 0; i < shape.count; i++) {
-            double turns = 2 * pi * ((double)random_below(&random, 7) - 3);
+            double turns = 2 * PI * ((double)random_below(&random, 7) - 3);
             shape.arcs[i].start += turns;
             shape.arcs[i].end += turns;
             if (shape.count > 1 && random_below(&random, 2)) {

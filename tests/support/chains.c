@@ -6,8 +6,6 @@
 
 #include <math.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* How steep open chains get: they go from right to left, the air above. */
 static const double steepest = 1.1;
 
@@ -19,7 +17,7 @@ struct walk {
 };
 
 static void put_arc(struct walk *walk, double radius, double sweep) {
-    const double normal = walk->heading - pi / 2;
+    const double normal = walk->heading - PI / 2;
     const narc_point center = {walk->at.x - radius * cos(normal), walk->at.y - radius * sin(normal)};
     walk->arcs[walk->count++] = (narc_arc){center.x, center.y, radius, normal, normal + sweep};
     walk->heading += sweep;
@@ -33,7 +31,7 @@ static void put_edge(struct walk *walk, double length) {
 
 /* A sweep that keeps the heading between the steepest ones, to the left or to the right. */
 static double choose_sweep(struct test_random *random, const struct walk *walk, double widest, bool left) {
-    const double room = left ? pi + steepest - walk->heading : walk->heading - (pi - steepest);
+    const double room = left ? PI + steepest - walk->heading : walk->heading - (PI - steepest);
     const double sweep =
         random_below(random, 4) ? random_between(random, 0.05, widest) : random_log_between(random, 0.02, widest);
     return sweep < room ? sweep : 0;
@@ -67,11 +65,11 @@ static void put_bowl(struct test_random *random, struct walk *walk) {
     const double radius = random_log_between(random, 0.3, 3), down = random_between(random, 0.3, steepest);
     const double rim = random_below(random, 3) ? random_log_between(random, 0.1, 1) : 0;
     const size_t pieces = 1 + random_below(random, 5);
-    if (walk->heading < pi + down)
-        put_arc(walk, rim, pi + down - walk->heading);
+    if (walk->heading < PI + down)
+        put_arc(walk, rim, PI + down - walk->heading);
     if (random_below(random, 2) || rim <= 0)
         put_edge(walk, random_log_between(random, 0.1, 1));
-    const double turn = walk->heading - pi;
+    const double turn = walk->heading - PI;
     for (size_t k = 0; k < pieces; k++)
         put_arc(walk, -radius, -turn / (double)pieces);
     if (random_below(random, 2))
@@ -82,7 +80,7 @@ static void put_bowl(struct test_random *random, struct walk *walk) {
 
 static struct chain finish(struct test_random *random, struct walk *walk, bool capped) {
     if (capped)
-        put_arc(walk, 0, pi / 2);
+        put_arc(walk, 0, PI / 2);
     else if (random_below(random, 2)) {
         put_edge(walk, random_log_between(random, 0.1, 2));
         put_arc(walk, 0, 0);
@@ -97,7 +95,7 @@ static struct chain make_closed(struct test_random *random, narc_arc *arcs) {
     const bool convex = random_below(random, 4) == 0;
     narc_point point[MOST];
     for (size_t k = 0; k < corners; k++) {
-        const double angle = 2 * pi * ((double)k + random_between(random, -0.2, 0.2)) / (double)corners;
+        const double angle = 2 * PI * ((double)k + random_between(random, -0.2, 0.2)) / (double)corners;
         const double radius = convex ? 2 : random_between(random, 1.2, 2.6);
         point[k] = (narc_point){radius * cos(angle), radius * sin(angle)};
     }
@@ -106,12 +104,12 @@ static struct chain make_closed(struct test_random *random, narc_arc *arcs) {
         const narc_point *p = &point[(k + corners - 1) % corners], *q = &point[k], *r = &point[(k + 1) % corners];
         const double before = hypot(q->x - p->x, q->y - p->y), after = hypot(r->x - q->x, r->y - q->y);
         const double heading = atan2(q->y - p->y, q->x - p->x);
-        const double turn = remainder(atan2(r->y - q->y, r->x - q->x) - heading, 2 * pi);
+        const double turn = remainder(atan2(r->y - q->y, r->x - q->x) - heading, 2 * PI);
         if (fabs(turn) < 1e-2)
             return make_closed(random, arcs);
         const double most = fmin(before, after) / 2 / tan(fabs(turn) / 2);
         const double radius = random_below(random, 4) ? most * random_between(random, 0.05, 0.99) : 0;
-        const double cut = radius * tan(fabs(turn) / 2), normal = heading - pi / 2;
+        const double cut = radius * tan(fabs(turn) / 2), normal = heading - PI / 2;
         const double signed_radius = copysign(radius, turn);
         const narc_point from = {q->x - cut * cos(heading), q->y - cut * sin(heading)};
         arcs[count++] = (narc_arc){from.x - signed_radius * cos(normal), from.y - signed_radius * sin(normal),
@@ -121,7 +119,7 @@ static struct chain make_closed(struct test_random *random, narc_arc *arcs) {
 }
 
 static struct chain make_open(struct test_random *random, enum chain_family family, narc_arc *arcs) {
-    struct walk walk = {.arcs = arcs, .heading = pi + random_between(random, -0.5, 0.5)};
+    struct walk walk = {.arcs = arcs, .heading = PI + random_between(random, -0.5, 0.5)};
     const bool capped = family == CHAIN_ENDS ? random_below(random, 2) : false;
     size_t pieces = 4 + random_below(random, 12);
     if (family == CHAIN_LONG)
@@ -131,8 +129,8 @@ static struct chain make_open(struct test_random *random, enum chain_family fami
     if (family == CHAIN_ENDS)
         pieces = 1 + random_below(random, 4);
     if (capped) {
-        walk.heading -= pi / 2;
-        put_arc(&walk, 0, pi / 2);
+        walk.heading -= PI / 2;
+        put_arc(&walk, 0, PI / 2);
         put_edge(&walk, random_log_between(random, 0.1, 2));
     } else if (random_below(random, 2)) {
         put_arc(&walk, 0, 0);
@@ -262,7 +260,7 @@ struct body ride_chain(struct test_random *random, const struct chain *chain, co
     const narc_point place = choose_place(random, chain, &normal);
     /* The body's normal that meets it: one of its junctions, exactly or nearly, or any. */
     const narc_arc *arc = &shape->arcs[random_below(random, shape->count)];
-    double own = random_between(random, -pi, pi);
+    double own = random_between(random, -PI, PI);
     if (random_below(random, 3))
         own = arc->start;
     if (random_below(random, 4) == 0)
@@ -272,9 +270,9 @@ struct body ride_chain(struct test_random *random, const struct chain *chain, co
         gap = margin * (random_below(random, 2) ? -1 : 1) * random_log_between(random, 1e-7, 1);
     if (random_below(random, 8) == 0)
         gap = -random_between(random, 0, 0.4); /* deep */
-    struct body body = turned_body(normal + pi - own, 1);
+    struct body body = turned_body(normal + PI - own, 1);
     const struct reference_body posed = pose_shape(shape, &body);
-    const double turned = normal + pi - atan2(posed.sine, posed.cosine);
+    const double turned = normal + PI - atan2(posed.sine, posed.cosine);
     narc_point foot;
     narc_find_support(shape->arcs, shape->count, cos(turned), sin(turned), &foot, NULL);
     if (random_below(random, 3) == 0) { /* another point of the shape that is as far */

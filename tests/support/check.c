@@ -7,8 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* How far from 1 a normal's length may be, and how far, in radians, a normal may stray from a stored one: a dozen
  * roundings of a float for square root, division and two rotations. */
 static const double unit_tolerance = 1e-6;
@@ -29,9 +27,9 @@ static double local_angle(const struct reference_body *body, double x, double y)
 /* How far a direction lies outside the sector of an arc, in radians. */
 static double angle_outside(const narc_arc *arc, double angle) {
     double sweep = arc->end - arc->start;
-    sweep = sweep <= 0 ? sweep + 2 * pi : sweep;
+    sweep = sweep <= 0 ? sweep + 2 * PI : sweep;
     /* Measured from the middle of the sector. */
-    double from_middle = remainder(angle - (arc->start + sweep / 2), 2 * pi);
+    double from_middle = remainder(angle - (arc->start + sweep / 2), 2 * PI);
     return fmax(fabs(from_middle) - sweep / 2, 0);
 }
 

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* Flatter arcs are refused by the library (NARC_MAX_RADIUS_RATIO); this leaves room for a bounding circle that is only
  * estimated here. */
 static const double max_radius_ratio = 32.0;
@@ -23,25 +21,25 @@ struct outline {
 };
 
 static double end_of(const struct outline *outline, size_t i) {
-    return i + 1 < outline->count ? outline->start[i + 1] : outline->start[0] + 2 * pi;
+    return i + 1 < outline->count ? outline->start[i + 1] : outline->start[0] + 2 * PI;
 }
 
 /* Random end normals. Each lies in its own part of the turn, `spread` (0 .. 1) of that part wide; no sweep is above
  * pi or so small that its ends could be mistaken for one. */
 static void choose_normals(struct test_random *random, struct outline *outline, size_t count, double spread) {
     const double least_sweep = 0.01;
-    double origin = random_between(random, -pi, pi);
+    double origin = random_between(random, -PI, PI);
     bool valid;
     outline->count = count;
     do {
         valid = true;
         for (size_t i = 0; i < count; i++) {
             double jitter = spread * (random_unit(random) - 0.5);
-            outline->start[i] = origin + 2 * pi * ((double)i + jitter) / (double)count;
+            outline->start[i] = origin + 2 * PI * ((double)i + jitter) / (double)count;
         }
         for (size_t i = 0; i < count; i++) {
             double sweep = end_of(outline, i) - outline->start[i];
-            valid = valid && sweep >= least_sweep && sweep < pi;
+            valid = valid && sweep >= least_sweep && sweep < PI;
         }
     } while (!valid);
 }
@@ -224,7 +222,7 @@ static struct shape make_thin_smooth(struct test_random *random) {
             double flat = random_log_between(random, 0.05, 0.4);
             outline.count = 2 * side + 2;
             for (size_t half = 0; half < 2; half++) {
-                double middle = pi * ((double)half + 0.5);
+                double middle = PI * ((double)half + 0.5);
                 for (size_t k = 0; k <= side; k++) {
                     size_t i = half * (side + 1) + k;
                     outline.start[i] = middle + flat * ((double)k / (double)side - 0.5);
@@ -251,13 +249,13 @@ static struct shape make_thin(struct test_random *random) {
 
 /* A slice of the unit disc left of a vertical line: half a disc, or less. */
 static struct shape make_half(struct test_random *random) {
-    double half = random_below(random, 2) ? pi / 2 : random_between(random, 0.3, pi / 2);
+    double half = random_below(random, 2) ? PI / 2 : random_between(random, 0.3, PI / 2);
     double x = -cos(half), y = sin(half);
-    if (half == pi / 2)
+    if (half == PI / 2)
         x = 0;
     struct shape shape = {
         .count = 3,
-        .arcs = {{x, -y, 0, pi + half - 2 * pi, 0}, {x, y, 0, 0, pi - half}, {0, 0, 1, pi - half, pi + half}}};
+        .arcs = {{x, -y, 0, PI + half - 2 * PI, 0}, {x, y, 0, 0, PI - half}, {0, 0, 1, PI - half, PI + half}}};
     return shape;
 }
 
@@ -268,7 +266,7 @@ static struct shape make_fitted(struct test_random *random) {
     for (;;) {
         size_t count = 3 + random_below(random, 14);
         for (size_t i = 0; i < count; i++) {
-            double angle = 2 * pi * ((double)i + random_between(random, -0.3, 0.3)) / (double)count;
+            double angle = 2 * PI * ((double)i + random_between(random, -0.3, 0.3)) / (double)count;
             double distance = random_between(random, 0.5, 1);
             polygon[i] = (narc_point){distance * cos(angle), distance * sin(angle)};
         }
@@ -283,7 +281,7 @@ static struct shape make_segment(struct test_random *random) {
     struct shape shape;
     narc_error error;
     const double angle =
-        random_below(random, 3) ? random_between(random, -pi, pi) : pi / 2 * (double)random_below(random, 4);
+        random_below(random, 3) ? random_between(random, -PI, PI) : PI / 2 * (double)random_below(random, 4);
     const double half = random_between(random, 0.25, 1),
                  part = random_below(random, 2) ? 1 : random_between(random, 0.2, 1);
     const double x = random_below(random, 3) ? half * cos(angle) : half, y = x == half ? 0 : half * sin(angle);

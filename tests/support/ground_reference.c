@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
+#include "support.h"
 
 /* Rounding at the ends of pieces, relative to their coordinates: a foot belongs to both pieces there. */
 static const double end_tolerance = 1e-12;
@@ -216,7 +216,7 @@ static void walk_outline(struct ground_search *search, const struct reference_bo
         if (length > tiny)
             add_stretch(search, (struct stretch){.from = from, .along = {x / length, y / length}, .length = length});
         double sweep = arc->end - arc->start;
-        sweep = sweep <= 0 ? sweep + 2 * pi : sweep;
+        sweep = sweep <= 0 ? sweep + 2 * PI : sweep;
         add_stretch(search, (struct stretch){.is_arc = true,
                                              .center = {body->x + c * arc->center_x - s * arc->center_y,
                                                         body->y + s * arc->center_x + c * arc->center_y},
@@ -469,7 +469,7 @@ double ground_project(const struct ground_search *search, narc_point point, doub
         if (stretch->is_arc) {
             const double middle = stretch->angle + stretch->length / stretch->radius / 2;
             const double angle = atan2(point.y - stretch->center.y, point.x - stretch->center.x);
-            t = stretch->length / 2 + remainder(angle - middle, 2 * pi) * stretch->radius;
+            t = stretch->length / 2 + remainder(angle - middle, 2 * PI) * stretch->radius;
         }
         t = stretch->start + fmin(fmax(t, 0), stretch->length);
         const double distance = length_of(minus(point_at(search, t), point));

@@ -26,6 +26,11 @@ const char *hard_family_name(enum hard_family family);
 /* A random shape with a bounding radius of about 1. */
 struct shape make_hard_shape(struct test_random *random, enum hard_family family);
 
+/* The ordinary families first, then the hard ones. */
+enum { ALL_FAMILIES = FAMILY_COUNT + HARD_COUNT };
+struct shape make_any_shape(struct test_random *random, size_t family);
+const char *any_family_name(size_t family);
+
 enum hard_placement {
     HARD_TOUCH,      /* exact separations of 0 and +-1e-8 .. +-1e-2 of the size, from a random touch */
     HARD_JUNCTION,   /* the contact's normal 0 or 1e-8 .. 1e-3 beside a junction, mostly one of each shape, those 0.05

@@ -6,8 +6,6 @@
 
 #include "hard.h"
 
-static const double pi = 3.14159265358979323846;
-
 const char *hard_placement_name(enum hard_placement placement) {
     static const char *const names[HARD_PLACES] = {"touch", "junction", "aligned", "concentric"};
     return names[placement];
@@ -52,7 +50,7 @@ static narc_point support_point(const struct scene *scene, const struct body *bo
 static narc_point middle_of(const struct scene *scene, const struct body *body) {
     narc_point sum = {0, 0};
     for (int k = 0; k < 4; k++) {
-        const narc_point p = support_point(scene, body, 0.5 + pi / 2 * k);
+        const narc_point p = support_point(scene, body, 0.5 + PI / 2 * k);
         sum.x += p.x / 4;
         sum.y += p.y / 4;
     }
@@ -85,7 +83,7 @@ static void add_pair(struct place *place) {
 /* The support points across a normal meet, but for a gap and a shift along the tangent. */
 static void meet(struct place *place, double normal, double gap, double shift) {
     const narc_point from = support_point(place->scene, &place->a, normal);
-    const narc_point to = support_point(place->scene, &place->b, normal + pi);
+    const narc_point to = support_point(place->scene, &place->b, normal + PI);
     place->b.x = from.x - to.x + gap * cos(normal) - shift * sin(normal);
     place->b.y = from.y - to.y + gap * sin(normal) + shift * cos(normal);
 }
@@ -103,9 +101,9 @@ static double junction_of(const struct place *place, const struct body *body) {
 /* Apart at first, B moves along the normal, which is that of the touch, too. */
 static void add_touches(struct place *place) {
     struct test_random *random = place->random;
-    turn(&place->a, random_between(random, -pi, pi));
-    turn(&place->b, random_between(random, -pi, pi));
-    meet(place, random_between(random, -pi, pi), place->size * random_log_between(random, 1e-3, 3), 0);
+    turn(&place->a, random_between(random, -PI, PI));
+    turn(&place->b, random_between(random, -PI, PI));
+    meet(place, random_between(random, -PI, PI), place->size * random_log_between(random, 1e-3, 3), 0);
     struct reference_body a = pose_shape(&place->scene->shapes[place->a.shape], &place->a);
     struct reference_body b = pose_shape(&place->scene->shapes[place->b.shape], &place->b);
     a.x = a.y = 0;
@@ -123,16 +121,16 @@ static void add_junctions(struct place *place) {
     const bool of_both = random_below(random, 4) != 0, quarter = random_below(random, 4) == 0;
     const double start_a = junction_of(place, &place->a), start_b = junction_of(place, &place->b);
     /* With the normal along an axis of A, or a quarter turn between the bodies, many roundings vanish. */
-    const double normal = quarter ? start_a : random_between(random, -pi, pi);
+    const double normal = quarter ? start_a : random_between(random, -PI, PI);
     for (size_t k = 0; k < HARD_BODIES / 2 - 5; k++) {
         const double gaps[] = {0, 1e-7, 1e-6, 1e-5, 1e-3, 0.1, 0.4};
         const double gap = gaps[random_below(random, sizeof gaps / sizeof *gaps)] * (random_below(random, 2) ? 1 : -1);
-        double beside = of_both ? nearly_nothing(random) : random_between(random, -pi, pi);
+        double beside = of_both ? nearly_nothing(random) : random_between(random, -PI, PI);
         if (of_both && random_below(random, 4) == 0)
             beside = random_log_between(random, 1e-4, 0.05) * (random_below(random, 2) ? 1 : -1);
         const double shift = random_below(random, 2) ? 0 : random_between(random, -0.5, 0.5);
         turn(&place->a, normal - start_a + series_item(k, 1e-8, 3));
-        turn(&place->b, normal + pi - start_b + beside);
+        turn(&place->b, normal + PI - start_b + beside);
         meet(place, normal, place->size * gap, fmin((double)place->a.scale, (double)place->b.scale) * shift);
         add_pair(place);
     }
@@ -141,10 +139,10 @@ static void add_junctions(struct place *place) {
 static void add_aligned(struct place *place) {
     struct test_random *random = place->random;
     for (size_t k = 0; k < HARD_BODIES / 2 - 5; k++) {
-        const double angle = random_below(random, 4) ? random_between(random, -pi, pi) : 0;
+        const double angle = random_below(random, 4) ? random_between(random, -PI, PI) : 0;
         turn(&place->a, angle);
         turn(&place->b,
-             angle + junction_of(place, &place->a) + pi - junction_of(place, &place->b) + series_item(k, 1e-8, 3));
+             angle + junction_of(place, &place->a) + PI - junction_of(place, &place->b) + series_item(k, 1e-8, 3));
         const narc_point from = middle_of(place->scene, &place->a), to = middle_of(place->scene, &place->b);
         place->b.x = from.x - to.x + place->size * random_between(random, -0.8, 0.8);
         place->b.y = from.y - to.y + place->size * random_between(random, -0.8, 0.8);
@@ -155,11 +153,11 @@ static void add_aligned(struct place *place) {
 static void add_concentric(struct place *place) {
     struct test_random *random = place->random;
     for (size_t k = 0; k < HARD_BODIES / 2 - 5; k++) {
-        const double angle = random_below(random, 4) ? random_between(random, -pi, pi) : 0;
+        const double angle = random_below(random, 4) ? random_between(random, -PI, PI) : 0;
         const double between =
-            random_below(random, 2) ? pi / 2 * (double)random_below(random, 4) : random_between(random, -pi, pi);
+            random_below(random, 2) ? PI / 2 * (double)random_below(random, 4) : random_between(random, -PI, PI);
         const double direction =
-            random_below(random, 2) ? pi / 2 * (double)random_below(random, 4) : random_between(random, -pi, pi);
+            random_below(random, 2) ? PI / 2 * (double)random_below(random, 4) : random_between(random, -PI, PI);
         turn(&place->a, angle);
         turn(&place->b, angle + between + nearly_nothing(random));
         const narc_point from = middle_of(place->scene, &place->a), to = middle_of(place->scene, &place->b);

@@ -7,8 +7,6 @@
 
 #include "hard.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* A little more than the library's least sweep. */
 static const double least_sweep = 1.02 * NARC_TOLERANCE;
 
@@ -19,8 +17,8 @@ const char *hard_family_name(enum hard_family family) {
 }
 
 static double wrap(double angle) {
-    angle = fmod(angle, 2 * pi);
-    return angle < 0 ? angle + 2 * pi : angle;
+    angle = fmod(angle, 2 * PI);
+    return angle < 0 ? angle + 2 * PI : angle;
 }
 
 /* Corners at random angles of an ellipse, at least 1/4 of the mean distance apart. */
@@ -31,7 +29,7 @@ static struct shape make_corners(struct test_random *random) {
         const size_t count = 3 + random_below(random, NARC_MAX_ARCS - 2);
         const double flat = random_below(random, 2) ? 1 : random_log_between(random, 0.05, 1);
         for (size_t i = 0; i < count; i++) {
-            const double angle = 2 * pi * ((double)i + random_between(random, -0.37, 0.37)) / (double)count;
+            const double angle = 2 * PI * ((double)i + random_between(random, -0.37, 0.37)) / (double)count;
             point[i] = (narc_point){cos(angle), flat * sin(angle)};
         }
         if (narc_build_polygon(point, count, 0, shape.arcs, &shape.count, NULL) == NARC_OK)
@@ -43,14 +41,14 @@ static struct shape make_regular(struct test_random *random) {
     struct shape shape;
     narc_point point[NARC_MAX_ARCS];
     const size_t count = 3 + random_below(random, random_below(random, 2) ? 10 : NARC_MAX_ARCS - 2);
-    const double turn = random_below(random, 2) ? 0 : random_between(random, -pi, pi);
+    const double turn = random_below(random, 2) ? 0 : random_between(random, -PI, PI);
     for (size_t i = 0; i < count; i++) {
-        const double angle = turn + 2 * pi * (double)i / (double)count;
+        const double angle = turn + 2 * PI * (double)i / (double)count;
         point[i] = (narc_point){cos(angle), sin(angle)};
     }
     if (random_below(random, 2) && narc_build_points(point, count, 0, shape.arcs, &shape.count, NULL) == NARC_OK)
         return shape;
-    const double radius = random_below(random, 2) ? 0 : cos(pi / (double)count) * random_between(random, 0.01, 0.9);
+    const double radius = random_below(random, 2) ? 0 : cos(PI / (double)count) * random_between(random, 0.01, 0.9);
     assert_int_equal(narc_build_polygon(point, count, radius, shape.arcs, &shape.count, NULL), NARC_OK);
     return shape;
 }
@@ -116,7 +114,7 @@ static struct shape make_split(struct test_random *random) {
     while (shape.count == 2 && shape.arcs[0].radius == 0 && shape.arcs[1].radius == 0);
     size_t splits = 1 + random_below(random, 6);
     if (shape.count == 1) { /* a circle: first into halves */
-        const double middle = shape.arcs[0].start + pi;
+        const double middle = shape.arcs[0].start + PI;
         shape.arcs[1] = shape.arcs[0];
         shape.arcs[0].end = shape.arcs[1].start = middle;
         shape.count = 2;
@@ -166,7 +164,7 @@ static bool add_shapes(const struct shape *a, const struct shape *b, double scal
     qsort(start, count, sizeof *start, compare_angles);
     out->count = count;
     for (size_t i = 0; i < count; i++) {
-        const double end = i + 1 < count ? start[i + 1] : start[0] + 2 * pi, middle = (start[i] + end) / 2;
+        const double end = i + 1 < count ? start[i + 1] : start[0] + 2 * PI, middle = (start[i] + end) / 2;
         const narc_arc *of_a = find_arc(a, middle), *of_b = find_arc(b, middle - turn);
         const double c = scale * cos(turn), s = scale * sin(turn);
         out->arcs[i] = (narc_arc){of_a->center_x + c * of_b->center_x - s * of_b->center_y,
@@ -185,7 +183,7 @@ static struct shape make_sum(struct test_random *random, double least_scale) {
         const double close = random_log_between(random, least_sweep, 1e-2) * (random_below(random, 2) ? 1 : -1);
         const double meeting =
             a.arcs[random_below(random, a.count)].start - b.arcs[random_below(random, b.count)].start;
-        const double turn = random_below(random, 3) ? meeting + close : random_between(random, -pi, pi);
+        const double turn = random_below(random, 3) ? meeting + close : random_between(random, -PI, PI);
         done = add_shapes(&a, &b, random_log_between(random, least_scale, 1), turn, &sum);
     }
     return sum;
@@ -193,7 +191,7 @@ static struct shape make_sum(struct test_random *random, double least_scale) {
 
 static struct shape make_away(struct test_random *random) {
     struct shape shape = make_shape(random, (enum family)random_below(random, FAMILY_OFFSET));
-    const double distance = random_log_between(random, 1, 1e4), angle = random_between(random, -pi, pi);
+    const double distance = random_log_between(random, 1, 1e4), angle = random_between(random, -PI, PI);
     for (size_t i = 0; i < shape.count; i++) {
         shape.arcs[i].center_x += distance * cos(angle);
         shape.arcs[i].center_y += distance * sin(angle);
@@ -224,4 +222,14 @@ struct shape make_hard_shape(struct test_random *random, enum hard_family family
     default:
         return make_away(random);
     }
+}
+
+struct shape make_any_shape(struct test_random *random, size_t family) {
+    return family < FAMILY_COUNT ? make_shape(random, (enum family)family)
+                                 : make_hard_shape(random, (enum hard_family)(family - FAMILY_COUNT));
+}
+
+const char *any_family_name(size_t family) {
+    return family < FAMILY_COUNT ? family_name((enum family)family)
+                                 : hard_family_name((enum hard_family)(family - FAMILY_COUNT));
 }

@@ -177,18 +177,18 @@ void destroy_columns(struct columns *columns) {
         guard_release(columns->memory[k]);
 }
 
-void share_values(struct scene *scene) {
-    for (size_t k = 1; k < scene->body_count; k++) {
-        scene->bodies[k].cosine = scene->bodies[0].cosine;
-        scene->bodies[k].sine = scene->bodies[0].sine;
-        scene->bodies[k].scale = scene->bodies[0].scale;
-        scene->bodies[k].shape = scene->bodies[0].shape;
+void suit_layout(struct scene *scene, enum layout layout) {
+    for (size_t k = 0; k < scene->body_count; k++) {
+        struct body *const body = &scene->bodies[k];
+        if (layout == LAYOUT_SHARED) {
+            body->cosine = scene->bodies[0].cosine;
+            body->sine = scene->bodies[0].sine;
+            body->scale = scene->bodies[0].scale;
+            body->shape = scene->bodies[0].shape;
+        } else if (layout == LAYOUT_UNSCALED) {
+            body->scale = 1;
+        }
     }
-}
-
-void unit_scales(struct scene *scene) {
-    for (size_t k = 0; k < scene->body_count; k++)
-        scene->bodies[k].scale = 1;
 }
 
 narc_shapes *guard_store(const struct scene *scene) {

@@ -12,8 +12,8 @@ enum layout {
     LAYOUT_STRUCTURES, /* an engine's bodies, position first; pairs as structures */
     LAYOUT_REVERSED,   /* the same the other way round, so that positions too end where the guard begins */
     LAYOUT_BACKWARDS,  /* packed arrays from the last item to the first, with strides below 0 */
-    LAYOUT_SHARED,     /* angle, scale and shape are one value for all, with a stride of 0; needs share_values() */
-    LAYOUT_UNSCALED,   /* no scales; needs unit_scales() */
+    LAYOUT_SHARED,     /* angle, scale and shape are one value for all, with a stride of 0; needs suit_layout() */
+    LAYOUT_UNSCALED,   /* no scales; needs suit_layout() */
     LAYOUT_COUNT
 };
 
@@ -28,11 +28,9 @@ struct columns {
 struct columns create_columns(const struct scene *scene, enum layout layout, size_t first, size_t count);
 void destroy_columns(struct columns *columns);
 
-/* Makes a scene fit for LAYOUT_SHARED: every body like the first, but for its position. */
-void share_values(struct scene *scene);
-
-/* Makes a scene fit for LAYOUT_UNSCALED. */
-void unit_scales(struct scene *scene);
+/* Makes a scene fit for a layout: for LAYOUT_SHARED every body like the first, but for its position, for LAYOUT_UNSCALED
+ * all of a scale of 1. */
+void suit_layout(struct scene *scene, enum layout layout);
 
 /* A copy of a scene's store in guarded memory, no larger than needed. */
 narc_shapes *guard_store(const struct scene *scene);

@@ -43,3 +43,11 @@ narc_shapes *ledger_store(struct ledger *ledger) {
     assert_int_equal(narc_create_shapes(&allocator, &shapes), NARC_OK);
     return shapes;
 }
+
+narc_broad_phase *create_broad_phase(struct ledger *ledger) {
+    const narc_allocator allocator = ledger_allocator(ledger);
+    narc_broad_phase *broad = NULL;
+    const narc_status status = narc_create_broad_phase(ledger ? &allocator : NULL, &broad);
+    assert_int_equal(status, broad ? NARC_OK : NARC_ERROR_MEMORY);
+    return broad;
+}

@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include "narc_shapes.h"
+#include "narc_broad_phase.h"
 
 struct ledger {
     size_t allocations;
@@ -21,5 +21,8 @@ narc_allocator ledger_allocator(struct ledger *ledger);
 
 /* An empty store of such memory. */
 narc_shapes *ledger_store(struct ledger *ledger);
+
+/* A broad phase of such memory, NULL if it has none; NULL: of malloc's. */
+narc_broad_phase *create_broad_phase(struct ledger *ledger);
 
 #endif

@@ -8,8 +8,7 @@
 #include <math.h>
 
 #include "narc_pairs.h"
-
-static const double pi = 3.14159265358979323846;
+#include "support.h"
 
 /* Two angles that differ by less may be taken for the same, or not. */
 static const double angle_doubt = 1e-5;
@@ -60,7 +59,7 @@ static struct side look_at(const struct frame *frame, const struct reference_bod
         const size_t number = (arc + k) % count;
         const narc_arc *before = &body->arcs[(number + count - 1) % count], *after = &body->arcs[number];
         const double normal = after->start, c = cos(normal), s = sin(normal);
-        angle[k] = fabs(remainder(turned - normal, 2 * pi));
+        angle[k] = fabs(remainder(turned - normal, 2 * PI));
         start[k] = place(frame, body, before->center_x + before->radius * c, before->center_y + before->radius * s,
                          before->radius);
         end[k] =
@@ -76,9 +75,9 @@ static struct side look_at(const struct frame *frame, const struct reference_bod
             side.doubtful_parallel || (is_edge[k] && angle[k] > parallel_certain && angle[k] < parallel_doubt);
     }
     const size_t chosen = is_edge[1] && !(is_edge[0] && angle[0] < angle[1]);
-    side.has_edge = is_edge[chosen] && angle[chosen] < pi / 2;
+    side.has_edge = is_edge[chosen] && angle[chosen] < PI / 2;
     side.offered = is_edge[chosen] && angle[chosen] <= flat_angle;
-    side.doubtful = side.doubtful || (is_edge[chosen] && fabs(angle[chosen] - pi / 2) < angle_doubt) ||
+    side.doubtful = side.doubtful || (is_edge[chosen] && fabs(angle[chosen] - PI / 2) < angle_doubt) ||
                     (is_edge[0] && is_edge[1] && fabs(angle[0] - angle[1]) < angle_doubt);
     side.number = (arc + chosen) % count;
     side.low = sign > 0 ? start[chosen] : end[chosen];

@@ -6,8 +6,6 @@
 
 #include <math.h>
 
-static const double pi = 3.14159265358979323846;
-
 struct vector {
     double x, y;
 };
@@ -34,7 +32,7 @@ struct first_body make_first_body(const struct reference_body *body, const struc
     for (size_t i = 0; i <= out.count; i++) {
         const size_t k = out.circle ? 0 : i % out.count;
         const narc_arc *arc = &body->arcs[k];
-        const double start = arc->start + angle + (out.circle ? pi * (double)i : 0);
+        const double start = arc->start + angle + (out.circle ? PI * (double)i : 0);
         out.start_x[i] = cos(start);
         out.start_y[i] = sin(start);
         if (i < out.count) {

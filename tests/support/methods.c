@@ -158,6 +158,21 @@ void print_corpus_pair(const struct corpus *corpus, size_t k) {
     print_pair(&a, &b);
 }
 
+void show_wrong_pair(const struct corpus *corpus, size_t k, const char *name, const char *wrong,
+                     const narc_contact *told, unsigned outcome, size_t *count) {
+    enum { SHOWN = 3 };
+    if ((*count)++ >= SHOWN)
+        return;
+    print_error("wrong, %s: %s\n", name, wrong);
+    print_corpus_pair(corpus, k);
+    if (told)
+        print_error("  answer: outcome %u, separation %.9g, normal (%.9g, %.9g), point (%.9g, %.9g), arcs %d and %d, "
+                    "point off %.3g\n",
+                    outcome, (double)told->separation, (double)told->normal_x, (double)told->normal_y,
+                    (double)told->point_x, (double)told->point_y, arc_of_a(told->feature), arc_of_b(told->feature),
+                    distance_from_outlines(&corpus->pairs[k], told));
+}
+
 /* ------------------------------------------------------------------------------------------------ calls */
 
 uint64_t *query_overlaps(const struct scene *scene, const narc_method_options *options, const narc_query *query) {
@@ -235,7 +250,7 @@ static narc_point place_point(const struct reference_body *body, double x, doubl
 
 double reference_height(const struct reference_body *body, double x, double y) {
     /* A point at the position: what lies between the two along (x, y) is the height, negative. */
-    static const narc_arc point = {0, 0, 0, -3.14159265358979323846, 3.14159265358979323846};
+    static const narc_arc point = {0, 0, 0, -PI, PI};
     const struct reference_body at_position = {&point, 1, body->x, body->y, 1, 0, 1};
     return -reference_gap_along(body, &at_position, x, y);
 }

@@ -34,6 +34,10 @@ void destroy_corpus(struct corpus *corpus);
 /* Prints pair k so that it can be put into a test of its own. */
 void print_corpus_pair(const struct corpus *corpus, size_t k);
 
+/* Counts a pair that is wrong, and prints the first three, with the answer if there is a contact. */
+void show_wrong_pair(const struct corpus *corpus, size_t k, const char *name, const char *wrong,
+                     const narc_contact *told, unsigned outcome, size_t *count);
+
 /* The calls of narc_methods.h on a scene; any error fails the test. Outputs are full of junk before. `query` may be
  * NULL. */
 uint64_t *query_overlaps(const struct scene *scene, const narc_method_options *options, const narc_query *query);

@@ -6,8 +6,6 @@
 
 #include <math.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* One rounding of a float, relative. */
 static const double rounding = 0x1p-24;
 
@@ -18,7 +16,7 @@ const char *placement_name(enum placement placement) {
 }
 
 static struct body random_pose(struct test_random *random, double scale) {
-    return turned_body(random_between(random, -pi, pi), scale);
+    return turned_body(random_between(random, -PI, PI), scale);
 }
 
 /* A point of a shape in the axes of a pose, but relative to its position. */
@@ -77,13 +75,13 @@ static void place_on_junction(struct test_random *random, const struct shape *a,
                               struct body *body_a, struct body *body_b) {
     narc_arc arc_a = a->arcs[random_below(random, a->count)], arc_b = b->arcs[random_below(random, b->count)];
     if (random_below(random, 2))
-        arc_b.start = random_between(random, arc_b.start, arc_b.end < arc_b.start ? arc_b.end + 2 * pi : arc_b.end);
-    double angle = random_below(random, 2) ? random_between(random, -pi, pi) : -arc_a.start,
+        arc_b.start = random_between(random, arc_b.start, arc_b.end < arc_b.start ? arc_b.end + 2 * PI : arc_b.end);
+    double angle = random_below(random, 2) ? random_between(random, -PI, PI) : -arc_a.start,
            normal = angle + arc_a.start;
     double gap =
         random_below(random, 2) ? random_between(random, -0.2, 0.2) : rounding * random_between(random, -40, 40);
     *body_a = turned_body(angle, 1);
-    *body_b = turned_body(normal + pi - arc_b.start, 1);
+    *body_b = turned_body(normal + PI - arc_b.start, 1);
     narc_point from = start_point(&arc_a, body_a), to = start_point(&arc_b, body_b);
     body_b->x = from.x - to.x + gap * cos(normal);
     body_b->y = from.y - to.y + gap * sin(normal);
@@ -117,7 +115,7 @@ static void place_near(struct test_random *random, const struct shape *a, const 
                        double scale_b, double target, struct body *body_a, struct body *body_b) {
     *body_a = random_pose(random, scale_a);
     *body_b = random_pose(random, scale_b);
-    place_at_gap(a, b, random_between(random, -pi, pi), target, body_a, body_b);
+    place_at_gap(a, b, random_between(random, -PI, PI), target, body_a, body_b);
 }
 
 void place_pair(struct test_random *random, enum placement placement, narc_precision precision, const struct shape *a,
@@ -128,7 +126,7 @@ void place_pair(struct test_random *random, enum placement placement, narc_preci
     case PLACE_TOUCH:
         *out_a = random_pose(random, 1);
         *out_b = random_pose(random, 1);
-        angle = random_between(random, -pi, pi);
+        angle = random_between(random, -PI, PI);
         place_at_gap(a, b, angle, 0, out_a, out_b);
         at_a = pose_shape(a, out_a);
         at_b = pose_shape(b, out_b);
@@ -178,7 +176,7 @@ void place_pair(struct test_random *random, enum placement placement, narc_preci
     double distance = placement == PLACE_FAR ? (precision == NARC_FLOAT32 ? 1e4 : 1e7) : 0;
     if (placement == PLACE_NEAR || placement == PLACE_DEEP || placement == PLACE_COINCIDENT)
         distance = random_between(random, 0, 2);
-    angle = random_between(random, -pi, pi);
+    angle = random_between(random, -PI, PI);
     out_a->x += distance * cos(angle);
     out_a->y += distance * sin(angle);
     out_b->x += distance * cos(angle);

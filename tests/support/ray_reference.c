@@ -8,8 +8,6 @@
 
 #include "narc.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* ------------------------------------------------------------------------------------------------ outline */
 
 struct outline_reference make_outline_reference(const struct shape *shape) {
@@ -243,10 +241,10 @@ static void choose_place(struct test_random *random, const struct shape *shape, 
     const size_t k = random_below(random, shape->count), before = (k + shape->count - 1) % shape->count;
     const narc_arc *arc = &shape->arcs[k];
     double normal = arc->start, x = arc->center_x, y = arc->center_y, r = arc->radius;
-    *out_angle = random_between(random, -pi, pi);
+    *out_angle = random_between(random, -PI, PI);
     if (kind == RAY_TANGENT || kind == RAY_INSIDE) {
-        const double sweep = fmod(arc->end - arc->start + 4 * pi, 2 * pi);
-        normal += random_unit(random) * (shape->count == 1 ? 2 * pi : sweep);
+        const double sweep = fmod(arc->end - arc->start + 4 * PI, 2 * PI);
+        normal += random_unit(random) * (shape->count == 1 ? 2 * PI : sweep);
     }
     if (kind == RAY_EDGE) {
         const double part = random_between(random, -0.2, 1.2);
@@ -257,7 +255,7 @@ static void choose_place(struct test_random *random, const struct shape *shape, 
     }
     if (kind == RAY_TANGENT || kind == RAY_JUNCTION || kind == RAY_EDGE) {
         const double beside = size * nearly_nothing(random, 1e-9, 1e-3);
-        *out_angle = normal + (random_below(random, 2) ? 1 : -1) * pi / 2 + nearly_nothing(random, 1e-9, 1e-2);
+        *out_angle = normal + (random_below(random, 2) ? 1 : -1) * PI / 2 + nearly_nothing(random, 1e-9, 1e-2);
         r += beside;
     }
     if (kind == RAY_INSIDE && random_below(random, 4))
@@ -279,7 +277,7 @@ struct test_ray make_ray(struct test_random *random, const struct shape *shape, 
     double x, y, angle;
     choose_place(random, shape, kind, bound.radius, &x, &y, &angle);
     const double px = body->x + scale * (c * x - s * y), py = body->y + scale * (s * x + c * y);
-    const double turned = random_below(random, 8) ? angle + atan2(s, c) : pi / 2 * (double)random_below(random, 4);
+    const double turned = random_below(random, 8) ? angle + atan2(s, c) : PI / 2 * (double)random_below(random, 4);
     const double size = scale * bound.radius;
     const double away =
         kind == RAY_INSIDE ? 0 : size * random_log_between(random, 1e-2, random_below(random, 3) ? 10 : 1e6);

@@ -10,8 +10,7 @@
 
 #include "expect.h"
 #include "guard.h"
-
-static const double pi = 3.14159265358979323846;
+#include "narc_broad_phase.h"
 
 static void *allocate(size_t count, size_t size) {
     void *memory = calloc(count ? count : 1, size);
@@ -206,7 +205,7 @@ struct scene make_random_scene(struct test_random *random, narc_precision precis
     }
     for (size_t k = 0; k < bodies; k++) {
         bool lattice = random_below(random, 8) == 0;
-        double angle = lattice ? pi / 2 * (double)random_below(random, 4) : random_between(random, -pi, pi);
+        double angle = lattice ? PI / 2 * (double)random_below(random, 4) : random_between(random, -PI, PI);
         struct body body = turned_body(angle, lattice ? 1 : random_log_between(random, 0.25, 2));
         body.x = random_between(random, 0, world);
         body.y = random_between(random, 0, world);
@@ -218,4 +217,13 @@ struct scene make_random_scene(struct test_random *random, narc_precision precis
         scene_add_pair(&scene, a, (uint32_t)random_below(random, bodies));
     }
     return scene;
+}
+
+narc_index *index_bodies(const narc_shapes *shapes, const narc_bodies *bodies, const narc_index_options *options,
+                         narc_box *out_boxes) {
+    narc_index *index = NULL;
+    assert_int_equal(narc_compute_boxes(shapes, bodies, NULL, out_boxes, NULL), NARC_OK);
+    assert_int_equal(narc_create_index(NULL, &index), NARC_OK);
+    assert_int_equal(narc_build_index(index, out_boxes, bodies->count, options, NULL), NARC_OK);
+    return index;
 }

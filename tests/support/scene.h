@@ -7,6 +7,7 @@
 
 #include "families.h"
 #include "narc_methods.h"
+#include "narc_scene.h"
 #include "reference.h"
 
 /* A position has both precisions, so that one array serves both kinds of batch. In a scene with single-precision
@@ -107,5 +108,9 @@ static inline unsigned arc_of_a(unsigned feature) { return feature & 0x3f; }
 static inline unsigned arc_of_b(unsigned feature) { return feature >> 8 & 0x3f; }
 
 static inline bool bit_is_set(const uint64_t *bits, size_t k) { return bits[k / 64] >> (k % 64) & 1; }
+
+/* An index of the boxes of bodies, which come to `out_boxes`; options may be NULL. */
+narc_index *index_bodies(const narc_shapes *shapes, const narc_bodies *bodies, const narc_index_options *options,
+                         narc_box *out_boxes);
 
 #endif

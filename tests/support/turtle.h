@@ -11,7 +11,7 @@
 #include "narc_chains.h"
 #include "support.h"
 
-#define TEST_PI 3.14159265358979323846
+#define TEST_PI PI
 
 struct turtle {
     narc_arc *arcs;
