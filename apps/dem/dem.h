@@ -8,8 +8,8 @@
  *   here, a file for each part:
  *
  *       main.c        the command line, stages, progress, signals
- *       input.c       the JSON file; its sections: input_grains.c, input_walls.c, input_run.c
- *       json_path.c   checked access to it and to options, with messages
+ *       input.c       the JSON file; input_bodies.c: its shapes, walls and grains
+ *       schema.c      what it may hold, by tables of keys, with messages
  *       model.c       memory, shapes, bodies
  *       place.c       where grains start
  *       neighbours.c  boxes, pairs with a skin, history

@@ -19,7 +19,7 @@ typedef struct dem_sizes {
 } dem_sizes;
 
 typedef struct dem_filling {
-    size_t count; /* of a lattice: at most, 0: as many as it has places */
+    uint64_t count; /* of a lattice: at most, 0: as many as it has places */
     dem_region region;
     uint32_t shapes[DEM_MAX_CHOICES]; /* one of them, all alike in chance */
     size_t shape_count;
@@ -31,7 +31,7 @@ typedef struct dem_filling {
     dem_vec spacing; /* of a lattice */
     double jitter;   /* of a lattice: up to this share of half the spacing, in both directions */
     bool upright;    /* angle 0, else a random one */
-    size_t tries;    /* for one grain, before a random filling gives up */
+    uint64_t tries;  /* for one grain, before a random filling gives up */
 } dem_filling;
 
 /* `random` is the state of a generator. */
