@@ -15,8 +15,7 @@
  *       neighbours.c  boxes, pairs with a skin, history
  *       boundary.c    periodic images, wrapping, shear
  *       step.c        velocity Verlet, the narrow phase
- *       laws.c        forces of contacts
- *       gather.c      forces of bodies
+ *       laws.c        forces of contacts and bodies
  *       walls.c       motion of walls, servo control
  *       measures.c    energies, stress, counts
  *       csv.c         tables of measures, and of grains
@@ -240,13 +239,6 @@ typedef struct dem_region {
     double low_x, high_x, low_y, high_y;
 } dem_region;
 
-/* An incidence list: which pairs have a part of body i as B, ascending: of[first[i]] .. of[first[i + 1] - 1];
- * and where the pairs that have it as A begin. */
-typedef struct dem_incidence {
-    uint32_t *first_b, *of_b, *first_a;
-    size_t capacity;
-} dem_incidence;
-
 typedef struct dem {
     dem_settings settings;
     dem_material materials[DEM_MAX_MATERIALS];
@@ -273,7 +265,6 @@ typedef struct dem {
     double time; /* step * time_step, summed over stages with their own steps */
     uint64_t list_builds;
     dem_pairs pairs, last_pairs;
-    dem_incidence incidence; /* of the pairs */
     dem_contacts contacts;
 
     /* Summed up since the start. */

@@ -37,8 +37,7 @@ typedef struct dem_scratch {
     uint32_t *match;
     dem_extra *extra;
     size_t extra_count, extra_capacity;
-    uint32_t *slot; /* of a pair: its contact, if the pair of that says so */
-    bool adds;      /* a single thread adds forces to bodies as it finds them */
+    bool adds; /* a single thread adds forces to bodies as it finds them, several do when all are found */
     dem_sums *sums;
     size_t sums_capacity;
     narc_body *poses; /* of all parts, when narc was last asked */
@@ -76,7 +75,6 @@ void *dem_body_column(const dem *d, size_t index, size_t *out_item_size);
 uint64_t dem_hash_bytes(uint64_t hash, const void *bytes, size_t size);
 
 /* neighbours.c */
-bool dem_index_pairs(dem *d);
 bool dem_make_room_for_boxes(dem *d, size_t count);
 
 /* step.c: as many as there is room for pairs */
@@ -97,11 +95,9 @@ void dem_move_walls(dem *d);
 void dem_count_wall_work(dem *d);
 bool dem_add_plate_pairs(dem *d);
 
-/* laws.c, gather.c */
+/* laws.c */
 void dem_find_dashpots(dem *d);
 bool dem_apply_laws(dem *d);
-void dem_clear_forces(dem *d);
 bool dem_find_first_forces(dem *d); /* of where bodies begin */
-void dem_gather_forces(dem *d);     /* unless they were added before */
 
 #endif

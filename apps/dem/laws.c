@@ -215,10 +215,15 @@ static double apply_rolling(dem *d, const contact *c, size_t k, double stiffness
     return torque;
 }
 
-INLINE void add_to_body(const dem_bodies *b, size_t k, double fx, double fy, double torque) {
-    b->fx[k] += fx;
-    b->fy[k] += fy;
-    b->torque[k] += torque;
+INLINE void add_to_bodies(const dem *d, const dem_contact *row) {
+    const dem_bodies *b = &d->bodies;
+    const size_t i = dem_body_a(d, row->pair), j = dem_body_b(d, row->pair);
+    b->fx[i] -= row->force.x;
+    b->fy[i] -= row->force.y;
+    b->torque[i] += row->force.torque_a;
+    b->fx[j] += row->force.x;
+    b->fy[j] += row->force.y;
+    b->torque[j] += row->force.torque_b;
 }
 
 /* Is the contact deeper than it may be? */
@@ -310,10 +315,8 @@ INLINE bool apply_law(dem *d, size_t k, dem_contact *out_row, bool hertz, bool r
         force.torque_b -= torque;
     }
     *out_row = (dem_contact){p, c.normal, c.point, depth, force};
-    if (d->scratch->adds) {
-        add_to_body(b, c.a, -force.x, -force.y, force.torque_a);
-        add_to_body(b, c.b, force.x, force.y, force.torque_b);
-    }
+    if (d->scratch->adds)
+        add_to_bodies(d, out_row);
     if (!(depth <= d->safe_depth) && sums->too_deep == SIZE_MAX && is_too_deep(d, c.a, c.b, depth))
         sums->too_deep = p;
     return true;
@@ -357,7 +360,7 @@ static void join_blocks(dem *d, size_t blocks) {
         c->count += count;
     }
     for (size_t k = 0; !d->scratch->adds && k < c->count; k++)
-        d->scratch->slot[c->rows[k].pair] = (uint32_t)k;
+        add_to_bodies(d, &c->rows[k]);
 }
 
 bool dem_apply_laws(dem *d) {
@@ -365,9 +368,11 @@ bool dem_apply_laws(dem *d) {
     const size_t count = d->contacts.found_count, blocks = (count + DEM_BLOCK - 1) / DEM_BLOCK;
     const bool hertz = d->settings.law == DEM_HERTZ, rolls = dem_has_rolling(d);
     const unsigned team = dem_team(d);
+    const size_t size = d->bodies.count * sizeof *d->bodies.fx;
     s->adds = team == 1;
-    if (s->adds)
-        dem_clear_forces(d);
+    memset(d->bodies.fx, 0, size);
+    memset(d->bodies.fy, 0, size);
+    memset(d->bodies.torque, 0, size);
     if (!dem_reserve(d, &s->sums, &s->sums_capacity, blocks, sizeof *s->sums))
         return false;
 #pragma omp parallel for schedule(static) num_threads(team) if (team > 1)

@@ -115,10 +115,7 @@ bool dem_create(dem *d, dem_settings settings) {
 void dem_destroy(dem *d) {
     dem_scratch *s = d->scratch;
     dem_contacts *c = &d->contacts;
-    void *const arrays[] = {d->shapes,        d->outlines,          d->walls,
-                            d->parts.body,    d->parts.outline,     c->rows,
-                            c->found,         d->incidence.first_a, d->incidence.first_b,
-                            d->incidence.of_b};
+    void *const arrays[] = {d->shapes, d->outlines, d->walls, d->parts.body, d->parts.outline, c->rows, c->found};
     for (size_t k = 0; k < d->outline_count; k++)
         free(d->outlines[k].sides);
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++)
@@ -127,8 +124,8 @@ void dem_destroy(dem *d) {
     free_columns(&d->pairs, pair_columns, PAIR_COLUMNS);
     free_columns(&d->last_pairs, pair_columns, PAIR_COLUMNS);
     if (s) {
-        void *const scratch[] = {s->boxes, s->still, s->group, s->image_of, s->image_x, s->image_y,
-                                 s->match, s->extra, s->slot,  s->sums,     s->poses};
+        void *const scratch[] = {s->boxes,   s->still, s->group, s->image_of, s->image_x,
+                                 s->image_y, s->match, s->extra, s->sums,     s->poses};
         for (size_t i = 0; i < sizeof scratch / sizeof scratch[0]; i++)
             free(scratch[i]);
         free(s);

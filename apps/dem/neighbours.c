@@ -121,33 +121,6 @@ static bool carry_over(dem *d) {
     return true;
 }
 
-/* Which pairs a body has, and what of them depends on the bodies alone. */
-bool dem_index_pairs(dem *d) {
-    const dem_pairs *p = &d->pairs;
-    dem_incidence *n = &d->incidence;
-    const size_t bodies = d->bodies.count;
-    if (!dem_resize(d, &n->first_a, bodies + 1, sizeof *n->first_a) ||
-        !dem_resize(d, &n->first_b, bodies + 2, sizeof *n->first_b) ||
-        !dem_reserve(d, &n->of_b, &n->capacity, p->count, sizeof *n->of_b) ||
-        !dem_resize(d, &d->scratch->slot, p->capacity + 1, sizeof *d->scratch->slot))
-        return false;
-    for (size_t k = 0, next = 0; k <= bodies; k++) {
-        while (next < p->count && dem_body_a(d, next) < k)
-            next++;
-        n->first_a[k] = (uint32_t)next;
-    }
-    memset(n->first_b, 0, (bodies + 2) * sizeof *n->first_b);
-    for (size_t k = 0; k < p->count; k++)
-        n->first_b[dem_body_b(d, k) + 2]++;
-    for (size_t k = 2; k < bodies + 2; k++)
-        n->first_b[k] += n->first_b[k - 1];
-    for (size_t k = 0; k < p->count; k++) /* moves each beginning to the next body's */
-        n->of_b[n->first_b[dem_body_b(d, k) + 1]++] = (uint32_t)k;
-    memset(d->scratch->slot, 0, p->count * sizeof *d->scratch->slot);
-    dem_find_dashpots(d);
-    return true;
-}
-
 /* From where bodies move. */
 static void remember_places(dem *d) {
     dem_bodies *b = &d->bodies;
@@ -165,8 +138,9 @@ bool dem_renew_lists(dem *d) {
         return false;
     d->pairs = d->last_pairs;
     d->last_pairs = last;
-    if (!merge_pairs(d) || !carry_over(d) || !dem_index_pairs(d))
+    if (!merge_pairs(d) || !carry_over(d))
         return false;
+    dem_find_dashpots(d);
     remember_places(d);
     d->list_builds++;
     return true;

@@ -198,8 +198,10 @@ bool dem_read_restart(dem *d, dem_place *place, const char *path) {
         ok = in.ok && make_room(d, &n);
         if (ok)
             pass_all(&in, d, place);
-        if (!ok || !in.ok || in.used != in.size || !check_indices(d) || !dem_index_pairs(d))
+        if (!ok || !in.ok || in.used != in.size || !check_indices(d))
             ok = dem_fail(d, "%s: its counts do not fit the input", path);
+        else
+            dem_find_dashpots(d);
     }
     free(bytes);
     return ok;

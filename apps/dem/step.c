@@ -119,10 +119,7 @@ bool dem_find_first_forces(dem *d) {
     dem_move_walls(d); /* walls get their velocities */
     const bool found = find_contacts(d) && dem_apply_laws(d);
     d->settings.time_step = time_step;
-    if (!found)
-        return false;
-    dem_gather_forces(d);
-    return true;
+    return found;
 }
 
 double dem_seconds(void) {
@@ -147,7 +144,6 @@ bool dem_step(dem *d) {
     dem_count_shear_work(d);
     if (!dem_apply_laws(d))
         return false;
-    dem_gather_forces(d);
     dem_count_wall_work(d);
     dem_count_shear_work(d);
     kick(d);
