@@ -10,13 +10,13 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "frames.h"
+#include "dem.h"
 
 static const char HEAD[] = "step,time,kinetic,potential,elastic,damping,friction,walls,stress_xx,stress_xy,stress_yx,"
                            "stress_yy,contacts,coordination,deepest,fastest";
 
-static FILE *fail_csv(const char *path, const char *reason, FILE *file, char *error) {
-    snprintf(error, 512, "%.400s: %s", path, reason);
+static FILE *fail_csv(dem *d, const char *path, const char *reason, FILE *file) {
+    dem_fail(d, "%.400s: %s", path, reason);
     if (file)
         fclose(file);
     return NULL;
@@ -52,26 +52,26 @@ static bool is_table(const dem *d, FILE *file, uint64_t position) {
     return letter == '\n' && (step == UINT64_MAX || step <= d->step);
 }
 
-FILE *dem_open_csv(const dem *d, const char *path, uint64_t *position, char *error) {
+FILE *dem_open_csv(dem *d, const char *path, uint64_t *position) {
     FILE *file = *position > 0 ? fopen(path, "r+") : NULL;
     if (!file && (*position == 0 || errno == ENOENT)) {
         file = fopen(path, "w");
         *position = 0;
     }
     if (!file)
-        return fail_csv(path, strerror(errno), NULL, error);
+        return fail_csv(d, path, strerror(errno), NULL);
     if (*position == 0) {
         write_head(file, d);
         *position = (uint64_t)ftell(file);
         return file;
     }
     if (fseek(file, 0, SEEK_END) != 0 || ftell(file) < 0 || (uint64_t)ftell(file) < *position)
-        return fail_csv(path, "it is shorter than the table was when the restart was written", file, error);
+        return fail_csv(d, path, "it is shorter than the table was when the restart was written", file);
     rewind(file);
     if (!is_table(d, file, *position))
-        return fail_csv(path, "it is not the table that the restart goes on with", file, error);
+        return fail_csv(d, path, "it is not the table that the restart goes on with", file);
     if (ftruncate(fileno(file), (off_t)*position) != 0 || fseek(file, (long)*position, SEEK_SET) != 0)
-        return fail_csv(path, strerror(errno), file, error);
+        return fail_csv(d, path, strerror(errno), file);
     return file;
 }
 
@@ -99,10 +99,10 @@ static void write_grain(FILE *file, const dem *d, size_t k, const dem_load *load
             (int)b->cell_x[k], (int)b->cell_y[k]);
 }
 
-bool dem_write_grains(const dem *d, const char *path, char *error) {
-    dem_load *loads = dem_find_loads(d, error);
+bool dem_write_grains(dem *d, const char *path) {
+    dem_load *loads = dem_find_loads(d);
     dem_file file;
-    if (!loads || !dem_open_file(&file, path, error)) {
+    if (!loads || !dem_open_file(&file, path, d->error)) {
         free(loads);
         return false;
     }
@@ -110,5 +110,5 @@ bool dem_write_grains(const dem *d, const char *path, char *error) {
     for (size_t k = 0; k < d->grain_count; k++)
         write_grain(file.file, d, k, &loads[k]);
     free(loads);
-    return dem_close_file(&file, true, error);
+    return dem_close_file(&file, true, d->error);
 }

@@ -21,7 +21,6 @@
  *       csv.c         tables of measures, and of grains
  *       restart.c     the state in a file, bit for bit
  *       files.c       files that are read, or appear, as a whole
- *       frames.c      what files for ParaView and tables of grains have in common
  *       vtk.c         files for ParaView
  *
  * Conventions
@@ -47,6 +46,7 @@
 
 #include "touch.h"
 
+#define DEM_PI 3.14159265358979323846
 enum { DEM_MAX_MATERIALS = 16, DEM_NAME_SIZE = 64, DEM_PATH_SIZE = 1024 };
 
 typedef struct dem_vec {
@@ -342,6 +342,24 @@ bool dem_renew_lists(dem *d); /* neighbours.c */
 
 void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measures);
 
+/* A body's contacts of the last step. Its stress is the sum of force times arm over its contacts, by its volume:
+ * compression is positive. Walls have contacts, and no stress.
+ *
+ * Grains with too few contacts to be held are rattlers, and so are those that are held by them: a grain is held by two
+ * contacts that press, or, where no pair of materials has friction, three. */
+typedef struct dem_load {
+    uint32_t contacts;
+    uint32_t bearing; /* contacts that press, with walls and grains that are no rattlers; of a rattler 0 */
+    uint32_t count;   /* while they are counted */
+    double stress_xx, stress_xy, stress_yx, stress_yy;
+} dem_load;
+
+/* Of all bodies, in memory that the caller frees; NULL, with an error, if there is none left. */
+dem_load *dem_find_loads(dem *d);
+
+/* How hard the bodies of a contact press each other. */
+double dem_normal_force(const dem_contact *contact);
+
 /* The force of the grains on a wall. */
 dem_vec dem_wall_force(const dem *d, size_t wall);
 
@@ -372,22 +390,21 @@ typedef struct dem_file {
 bool dem_open_file(dem_file *out, const char *path, char *error);
 bool dem_close_file(dem_file *out, bool ok, char *error);
 
-/* ------------------------------------------------------------------------------------------------ frames */
+/* ------------------------------------------------------------------------------------------------ vtk.c, csv.c */
 
-/* Writes the state for ParaView: frame 12 of "out/pile" is out/pile-000012.vtk and out/pile-contacts-000012.vtk.
- * Errors as above, into `error` (512 bytes). */
-bool dem_write_vtk(const dem *d, const char *stem, uint64_t frame, char *error);
+/* Writes the state for ParaView: frame 12 of "out/pile" is out/pile-000012.vtk and out/pile-contacts-000012.vtk. */
+bool dem_write_vtk(dem *d, const char *stem, uint64_t frame);
 
 /* The table of measures, a line for each time, which grows while the run goes on. A new one; or, if the position is
  * above 0 and the file is there, an old one, cut off there: if it is one of this input, and the line that ends there is
  * not of a later step than the world's. Sets the position to its end. */
-FILE *dem_open_csv(const dem *d, const char *path, uint64_t *position, char *error);
+FILE *dem_open_csv(dem *d, const char *path, uint64_t *position);
 
 /* Adds a line; false if it cannot be written. */
 bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m);
 
 /* A line of CSV for each grain. */
-bool dem_write_grains(const dem *d, const char *path, char *error);
+bool dem_write_grains(dem *d, const char *path);
 
 /* ------------------------------------------------------------------------------------------------ restart.c */
 
@@ -401,7 +418,7 @@ typedef struct dem_place {
     uint64_t random;       /* the generator's state */
 } dem_place;
 
-bool dem_write_restart(const dem *d, const dem_place *place, const char *path, char *error);
+bool dem_write_restart(dem *d, const dem_place *place, const char *path);
 
 /* Into a world with the same input, after dem_start(). */
 bool dem_read_restart(dem *d, dem_place *place, const char *path);

@@ -44,7 +44,7 @@ static void end_badly(const run *r) { fail("%s", r->world.error); }
 
 static void write_restart(run *r) {
     const dem_output *o = &r->input.output;
-    if (o->restart[0] && !dem_write_restart(&r->world, &r->place, o->restart, r->world.error))
+    if (o->restart[0] && !dem_write_restart(&r->world, &r->place, o->restart))
         end_badly(r);
 }
 
@@ -64,11 +64,11 @@ static void write_frame(run *r) {
             fail("%s: it cannot be written", o->csv);
         r->place.csv_position = (uint64_t)ftell(r->csv);
     }
-    if (o->vtk[0] && !dem_write_vtk(d, o->vtk, r->place.frame, d->error))
+    if (o->vtk[0] && !dem_write_vtk(d, o->vtk, r->place.frame))
         end_badly(r);
     if (o->grains[0]) {
         number_name(o->grains, r->place.frame, name, sizeof name);
-        if (!dem_write_grains(d, name, d->error))
+        if (!dem_write_grains(d, name))
             end_badly(r);
     }
     r->place.frame++;
@@ -150,7 +150,7 @@ static void begin(run *r, const char *restart) {
     if (restart && stage < r->input.stage_count && r->place.stage_step > r->input.stages[stage].steps)
         fail("%s: it has done %" PRIu64 " steps of stage %" PRIu64 ", which has %" PRIu64 " in the input", restart,
              r->place.stage_step, stage, r->input.stages[stage].steps);
-    if (o->csv[0] && !(r->csv = dem_open_csv(&r->world, o->csv, &r->place.csv_position, r->world.error)))
+    if (o->csv[0] && !(r->csv = dem_open_csv(&r->world, o->csv, &r->place.csv_position)))
         end_badly(r);
     if (!restart)
         write_frame(r);

@@ -9,6 +9,7 @@
  * Shapes, materials and laws are not there: the input has them, and the input's hash says that it is the same. What
  * stages have changed is: gravity, laws, walls.
  */
+#define _XOPEN_SOURCE 700 /* open_memstream */
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,25 +30,19 @@ typedef struct counts {
 
 /* ------------------------------------------------------------------------------------------------ one way for both */
 
-/* Writing, `file`; reading, from `bytes`; or only counting and hashing. */
+/* Writing, to `file`; reading, from `bytes`. */
 typedef struct stream {
     FILE *file;
-    const char *bytes; /* reading */
+    const char *bytes;
     size_t size, used;
-    uint64_t hash;
-    bool reads, ok;
+    bool ok;
 } stream;
 
 static void pass(stream *s, void *data, size_t size) {
-    if (s->reads) {
-        s->ok = s->ok && size <= s->size - s->used;
-        if (s->ok && size > 0)
-            memcpy(data, s->bytes + s->used, size);
-    } else {
-        s->hash = dem_hash_bytes(s->hash, data, size);
-        if (s->file && size > 0)
-            s->ok = fwrite(data, 1, size, s->file) == size && s->ok;
-    }
+    if (s->file)
+        s->ok = fwrite(data, 1, size, s->file) == size && s->ok;
+    else if ((s->ok = s->ok && size <= s->size - s->used) && size > 0)
+        memcpy(data, s->bytes + s->used, size);
     s->used += size;
 }
 
@@ -109,27 +104,34 @@ static void pass_all(stream *s, dem *d, dem_place *place) {
 
 /* ------------------------------------------------------------------------------------------------ writing */
 
-bool dem_write_restart(const dem *d, const dem_place *place, const char *path, char *error) {
+bool dem_write_restart(dem *d, const dem_place *place, const char *path) {
     counts n = {d->bodies.count, d->wall_count, d->pairs.count, d->contacts.count, d->scratch->extra_count};
-    dem state = *d; /* pass() reads it only */
     dem_place where = *place;
-    stream count = {.hash = DEM_HASH_START, .ok = true}, out = {.hash = DEM_HASH_START, .ok = true};
-    pass(&count, &n, sizeof n);
-    pass_all(&count, &state, &where);
-    header head = {.version = VERSION,
-                   .byte_order = BYTE_ORDER_MARK,
-                   .size = count.used,
-                   .checksum = count.hash,
-                   .input = place->input};
-    memcpy(head.magic, MAGIC, sizeof head.magic);
     dem_file file;
-    if (!dem_open_file(&file, path, error))
-        return false;
-    out.file = file.file;
-    pass(&out, &head, sizeof head);
-    pass(&out, &n, sizeof n);
-    pass_all(&out, &state, &where);
-    return dem_close_file(&file, true, error);
+    char *bytes = NULL;
+    size_t size = 0;
+    stream out = {.file = open_memstream(&bytes, &size), .ok = true};
+    if (out.file) {
+        pass(&out, &n, sizeof n);
+        pass_all(&out, d, &where);
+        out.ok = fclose(out.file) == 0 && out.ok;
+    }
+    bool ok = out.file && out.ok;
+    if (!ok)
+        dem_fail(d, "%.400s: not enough memory for a restart", path);
+    else if ((ok = dem_open_file(&file, path, d->error))) {
+        header head = {.version = VERSION,
+                       .byte_order = BYTE_ORDER_MARK,
+                       .size = size,
+                       .checksum = dem_hash_bytes(DEM_HASH_START, bytes, size),
+                       .input = place->input};
+        memcpy(head.magic, MAGIC, sizeof head.magic);
+        fwrite(&head, 1, sizeof head, file.file); /* closing tells of errors */
+        fwrite(bytes, 1, size, file.file);
+        ok = dem_close_file(&file, true, d->error);
+    }
+    free(bytes);
+    return ok;
 }
 
 /* ------------------------------------------------------------------------------------------------ reading */
@@ -192,7 +194,7 @@ bool dem_read_restart(dem *d, dem_place *place, const char *path) {
         return false;
     bool ok = check_header(d, path, bytes, size, place->input);
     if (ok) {
-        stream in = {.bytes = bytes + sizeof(header), .size = size - sizeof(header), .reads = true, .ok = true};
+        stream in = {.bytes = bytes + sizeof(header), .size = size - sizeof(header), .ok = true};
         counts n;
         pass(&in, &n, sizeof n);
         ok = in.ok && make_room(d, &n);
