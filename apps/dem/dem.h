@@ -259,7 +259,6 @@ typedef struct dem {
     double grain_reach, grain_extent; /* the largest */
     double safe_depth;                /* a contact that is not deeper is allowed for all grains */
     double diagonal;                  /* of the box around all grains and the places of walls, at the start */
-    bool started;                     /* no body can be added any more */
 
     uint64_t step;
     double time; /* step * time_step, summed over stages with their own steps */
