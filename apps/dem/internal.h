@@ -57,6 +57,20 @@ static inline int dem_find_lift(const dem *d, size_t pair) {
     return (d->pairs.shift_y[pair] > 0) - (d->pairs.shift_y[pair] < 0);
 }
 
+/* A rotation is a unit vector, and turns within a step by 2 atan(angle / 2), which is the angle to the third order and
+ * needs no sine. What rounding takes from its length is given back each time. */
+static inline dem_vec dem_find_turn(double angle) {
+    const double half = 0.5 * angle, share = 1 / (1 + half * half);
+    return (dem_vec){(1 - half * half) * share, 2 * half * share};
+}
+
+static inline void dem_turn(const dem_bodies *b, size_t k, dem_vec by) {
+    const double c = b->cosine[k] * by.x - b->sine[k] * by.y, s = b->sine[k] * by.x + b->cosine[k] * by.y;
+    const double unit = 1.5 - 0.5 * (c * c + s * s);
+    b->cosine[k] = c * unit;
+    b->sine[k] = s * unit;
+}
+
 /* All parts where they are now, for narc, until the next call. */
 bool dem_make_poses(dem *d, narc_bodies *out);
 bool dem_fail_narc(dem *d, const char *what, const narc_error *error);

@@ -276,6 +276,8 @@ bool dem_add_grain(dem *d, dem_grain grain) {
 
 bool dem_add_wall(dem *d, dem_wall wall) {
     const double length = hypot(wall.normal.x, wall.normal.y);
+    if (wall.kind == DEM_BOX && !((float)wall.scale > 0 && isfinite((float)wall.scale)))
+        return dem_fail(d, "wall '%s': scale %g is out of range", wall.name, wall.scale);
     if (!dem_reserve(d, &d->walls, &d->wall_capacity, d->wall_count + 1, sizeof *d->walls))
         return false;
     if (wall.kind == DEM_PLATE)

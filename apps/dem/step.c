@@ -6,8 +6,7 @@
  * the time step, dashpots of first. (So is the tangential spring where the contact turns: it takes the tangent of the
  * step's end.) Forces before the first step are those of where grains begin.
  *
- * A rotation is a unit vector, and turns within a step by 2 atan(spin dt / 2), which is spin dt to the third order and
- * needs no sine. What rounding takes from its length is given back each time.
+ * How bodies turn: dem_turn().
  */
 #define _XOPEN_SOURCE 700 /* clock_gettime */
 #include <math.h>
@@ -17,39 +16,21 @@
 
 /* ------------------------------------------------------------------------------------------------ motion */
 
-static void kick(dem *d) {
-    const dem_bodies b = d->bodies;
-    const double half = 0.5 * d->settings.time_step, gx = d->settings.gravity.x, gy = d->settings.gravity.y;
-    const size_t count = d->grain_count;
-#pragma omp parallel for simd schedule(static) num_threads(dem_team(d)) if (parallel : dem_team(d) > 1)
-    for (size_t k = 0; k < count; k++) {
-        b.vx[k] += half * (b.fx[k] * b.inverse_mass[k] + gx);
-        b.vy[k] += half * (b.fy[k] * b.inverse_mass[k] + gy);
-        b.spin[k] += half * (b.torque[k] * b.inverse_inertia[k]);
-    }
-}
-
-/* A kick, and the way. */
-static void kick_and_drift(dem *d) {
+/* Half of a step's change of velocities; and, if `drifts`, the way. */
+static void kick(dem *d, bool drifts) {
     const dem_bodies b = d->bodies;
     const double dt = d->settings.time_step, kick = 0.5 * dt, gx = d->settings.gravity.x, gy = d->settings.gravity.y;
     const size_t count = d->grain_count;
 #pragma omp parallel for simd schedule(static) num_threads(dem_team(d)) if (parallel : dem_team(d) > 1)
     for (size_t k = 0; k < count; k++) {
-        const double vx = b.vx[k] + kick * (b.fx[k] * b.inverse_mass[k] + gx);
-        const double vy = b.vy[k] + kick * (b.fy[k] * b.inverse_mass[k] + gy);
-        const double spin = b.spin[k] + kick * (b.torque[k] * b.inverse_inertia[k]);
-        b.vx[k] = vx;
-        b.vy[k] = vy;
-        b.spin[k] = spin;
-        b.x[k] += dt * vx;
-        b.y[k] += dt * vy;
-        const double half = 0.5 * dt * spin, share = 1 / (1 + half * half);
-        const double cosine = (1 - half * half) * share, sine = 2 * half * share;
-        const double c = b.cosine[k] * cosine - b.sine[k] * sine, s = b.sine[k] * cosine + b.cosine[k] * sine;
-        const double unit = 1.5 - 0.5 * (c * c + s * s);
-        b.cosine[k] = c * unit;
-        b.sine[k] = s * unit;
+        b.vx[k] += kick * (b.fx[k] * b.inverse_mass[k] + gx);
+        b.vy[k] += kick * (b.fy[k] * b.inverse_mass[k] + gy);
+        b.spin[k] += kick * (b.torque[k] * b.inverse_inertia[k]);
+        if (!drifts)
+            continue;
+        b.x[k] += dt * b.vx[k];
+        b.y[k] += dt * b.vy[k];
+        dem_turn(&b, k, dem_find_turn(dt * b.spin[k]));
     }
 }
 
@@ -133,7 +114,7 @@ bool dem_step(dem *d) {
     d->time += d->settings.time_step;
     if (!dem_steer_walls(d))
         return false;
-    kick_and_drift(d);
+    kick(d, true);
     dem_move_walls(d);
     dem_shear_cell(d);
     if (have_moved(d, false) && have_moved(d, true) && !dem_renew_lists(d))
@@ -146,6 +127,6 @@ bool dem_step(dem *d) {
         return false;
     dem_count_wall_work(d);
     dem_count_shear_work(d);
-    kick(d);
+    kick(d, false);
     return true;
 }
