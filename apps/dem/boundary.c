@@ -16,7 +16,7 @@
  */
 #include <math.h>
 
-#include "internal.h"
+#include "dem.h"
 
 /* Where a coordinate is in [low, low + width): by steps of whole widths. What is lost stays so. */
 static double wrap(double value, double low, double width, int32_t *cell) {

@@ -10,8 +10,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "internal.h"
-
 void dem_fail_at(const json_value *value, const dem *d) {
     fail("%s: %s%s%s", value->file, value->place, value->place[0] ? ": " : "", d->error);
 }

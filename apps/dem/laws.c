@@ -30,7 +30,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "internal.h"
+#include "dem.h"
 
 /* Inlined wherever it is called, for the constants that it is called with. */
 #if defined(__GNUC__)
@@ -40,8 +40,7 @@
 #endif
 
 double dem_damping_ratio(dem_law law, double restitution) {
-    const double pi = 3.14159265358979323846, logarithm = -log(restitution);
-    const double b = logarithm / sqrt(pi * pi + logarithm * logarithm);
+    const double logarithm = -log(restitution), b = logarithm / sqrt(DEM_PI * DEM_PI + logarithm * logarithm);
     return (law == DEM_HERTZ ? sqrt(5.0) : 2) * b;
 }
 
@@ -55,28 +54,21 @@ void dem_set_law(dem *d, uint8_t a, uint8_t b, dem_contact_law law) {
     d->laws[a][b] = d->laws[b][a] = law;
 }
 
-static double find_duration(const dem *d, size_t grain, size_t a, size_t b, double mass) {
-    const dem_contact_law *law = &d->laws[a][b];
-    const double size = 0.5 * d->bodies.extent[grain]; /* of two grains R is half of it, and their depth as much */
-    const double stiffness = law->kn * (d->settings.law == DEM_HERTZ ? size * sqrt(d->settings.max_overlap) : 1);
-    return 3.14159265358979323846 * sqrt(mass / stiffness);
-}
-
 double dem_find_shortest_contact(const dem *d) {
-    size_t lightest[DEM_MAX_MATERIALS];
-    double shortest = INFINITY;
-    for (size_t a = 0; a < d->material_count; a++) {
-        lightest[a] = SIZE_MAX;
-        for (size_t k = 0; k < d->grain_count; k++)
-            if (d->bodies.material[k] == a &&
-                (lightest[a] == SIZE_MAX || d->bodies.mass[k] < d->bodies.mass[lightest[a]]))
-                lightest[a] = k;
+    const double softness = d->settings.law == DEM_HERTZ ? sqrt(d->settings.max_overlap) : 0;
+    double mass[DEM_MAX_MATERIALS], size[DEM_MAX_MATERIALS], shortest = INFINITY; /* of the lightest */
+    for (size_t a = 0; a < d->material_count; a++)
+        mass[a] = size[a] = INFINITY; /* none: a wall */
+    for (size_t k = 0; k < d->grain_count; k++) {
+        const size_t a = d->bodies.material[k];
+        size[a] = d->bodies.mass[k] < mass[a] ? 0.5 * d->bodies.extent[k] : size[a];
+        mass[a] = fmin(mass[a], d->bodies.mass[k]);
     }
     for (size_t a = 0; a < d->material_count; a++)
-        for (size_t b = 0; b < d->material_count && lightest[a] < SIZE_MAX; b++) {
-            const double m = d->bodies.mass[lightest[a]];
-            const double with = lightest[b] < SIZE_MAX ? d->bodies.mass[lightest[b]] : INFINITY; /* or a wall */
-            shortest = fmin(shortest, find_duration(d, lightest[a], a, b, m / (1 + m / with)));
+        for (size_t b = 0; b < d->material_count && mass[a] < INFINITY; b++) {
+            /* Of two grains R is half of the size, and their depth as much. */
+            const double stiffness = d->laws[a][b].kn * (softness > 0 ? size[a] * softness : 1);
+            shortest = fmin(shortest, DEM_PI * sqrt(mass[a] / (1 + mass[a] / mass[b]) / stiffness));
         }
     return shortest;
 }
@@ -306,8 +298,7 @@ INLINE bool apply_law(dem *d, size_t k, dem_contact *out_row, bool hertz, bool r
     const double fx = along * c.normal.x - drag * c.normal.y, fy = along * c.normal.y + drag * c.normal.x;
     dem_force force = {fx, fy, -(c.point.x * fy - c.point.y * fx), c.arm_b.x * fy - c.arm_b.y * fx};
     if (count == 2)
-        force = (dem_force){force.x + ends.x, force.y + ends.y, force.torque_a + ends.torque_a,
-                            force.torque_b + ends.torque_b};
+        force = (dem_force){fx + ends.x, fy + ends.y, force.torque_a + ends.torque_a, force.torque_b + ends.torque_b};
     if (rolls) {
         const double bound = law->rolling_friction * radius * fabs(push);
         const double torque = apply_rolling(d, &c, k, kt * radius * radius, bound, is_old, sums);
@@ -330,21 +321,15 @@ INLINE dem_sums apply_laws(dem *d, size_t first, size_t end, bool hertz, bool ro
     return sums;
 }
 
-static dem_sums apply_block(dem *d, size_t first, size_t end, bool hertz, bool rolls) {
-    return rolls   ? apply_laws(d, first, end, hertz, true)
-           : hertz ? apply_laws(d, first, end, true, false)
-                   : apply_laws(d, first, end, false, false);
-}
-
 static bool fail_depth(dem *d, size_t p) {
-    const size_t a = dem_body_a(d, p), b = dem_body_b(d, p), k = d->contacts.count;
+    const size_t a = dem_body_a(d, p), b = dem_body_b(d, p);
     const bool is_grain = b < d->grain_count;
-    double depth = 0;
-    for (size_t i = 0; i < k; i++)
-        depth = d->contacts.rows[i].pair == p ? d->contacts.rows[i].depth : depth;
+    const dem_contact *row = d->contacts.rows;
+    while (row->pair != p)
+        row++;
     return dem_fail(d, "step %llu: grain %zu overlaps %s %zu by %g, more than %g of the smaller one's extent. %s",
                     (unsigned long long)d->step, a, is_grain ? "grain" : "wall", is_grain ? b : b - d->grain_count,
-                    depth, d->settings.max_overlap,
+                    row->depth, d->settings.max_overlap,
                     d->step == 0 ? "They are placed so: the run has not begun"
                                  : "Use a shorter time step, or stiffer contacts");
 }
@@ -366,7 +351,10 @@ static void join_blocks(dem *d, size_t blocks) {
 bool dem_apply_laws(dem *d) {
     dem_scratch *s = d->scratch;
     const size_t count = d->contacts.found_count, blocks = (count + DEM_BLOCK - 1) / DEM_BLOCK;
-    const bool hertz = d->settings.law == DEM_HERTZ, rolls = dem_has_rolling(d);
+    const bool hertz = d->settings.law == DEM_HERTZ;
+    bool rolls = false;
+    for (size_t i = 0; i < d->material_count * d->material_count; i++)
+        rolls |= d->laws[i / d->material_count][i % d->material_count].rolling_friction > 0;
     const unsigned team = dem_team(d);
     const size_t size = d->bodies.count * sizeof *d->bodies.fx;
     s->adds = team == 1;
@@ -378,7 +366,9 @@ bool dem_apply_laws(dem *d) {
 #pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
     for (size_t block = 0; block < blocks; block++) {
         const size_t first = block * DEM_BLOCK, end = block + 1 < blocks ? first + DEM_BLOCK : count;
-        s->sums[block] = apply_block(d, first, end, hertz, rolls);
+        s->sums[block] = rolls   ? apply_laws(d, first, end, hertz, true)
+                         : hertz ? apply_laws(d, first, end, true, false)
+                                 : apply_laws(d, first, end, false, false);
     }
     join_blocks(d, blocks);
     d->pull = 0;

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "internal.h"
+#include "dem.h"
 
 static dem_energies measure_energies(const dem *d, double *out_fastest) {
     const dem_bodies *b = &d->bodies;

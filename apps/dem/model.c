@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "internal.h"
+#include "dem.h"
 
 const dem_settings dem_defaults = {
     .time_step = 1e-5, .skin = 0.1, .thickness = 1, .gravity = {0, -9.81}, .max_overlap = 0.05};
@@ -403,14 +403,6 @@ bool dem_find_broken_body(dem *d) {
 unsigned dem_team(const dem *d) { return d->settings.threads > 0 ? d->settings.threads : 1; }
 
 narc_workers dem_workers(const dem *d) { return narc_openmp_workers(dem_team(d)); }
-
-bool dem_has_rolling(const dem *d) {
-    for (size_t a = 0; a < d->material_count; a++)
-        for (size_t b = 0; b < d->material_count; b++)
-            if (d->laws[a][b].rolling_friction > 0)
-                return true;
-    return false;
-}
 
 double dem_cell_width(const dem *d) { return d->settings.high_x - d->settings.low_x; }
 double dem_cell_height(const dem *d) { return d->settings.high_y - d->settings.low_y; }

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "internal.h"
+#include "dem.h"
 
 bool dem_make_room_for_boxes(dem *d, size_t count) {
     dem_scratch *s = d->scratch;

@@ -3,12 +3,11 @@
  * place.c - where grains start. A random filling puts grain after grain at a random place with a random angle, and
  * tries again while it would touch: narc_find_contacts() decides, a grid of cells tells whom to ask about.
  */
-#include "place.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "internal.h"
+#include "dem.h"
 
 /* SplitMix64: the state counts, its mixture is the number, 0 <= x < 1. */
 static double draw_unit(uint64_t *state) {

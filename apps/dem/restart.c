@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "internal.h"
+#include "dem.h"
 
 typedef struct header {
     char magic[8];

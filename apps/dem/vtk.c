@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "internal.h"
+#include "dem.h"
 
 /* A polygon is nowhere further from its outline than this share of the diameter of the disc of equal area;
  * its corners are on it. */

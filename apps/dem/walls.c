@@ -8,7 +8,7 @@
  */
 #include <math.h>
 
-#include "internal.h"
+#include "dem.h"
 
 dem_vec dem_wall_force(const dem *d, size_t wall) {
     const size_t k = d->grain_count + wall;

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "internal.h"
 #include "worlds.h"
 
 #define PI 3.14159265358979323846

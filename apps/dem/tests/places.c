@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "internal.h"
-#include "place.h"
 #include "worlds.h"
 
 /* The mean of many draws is within five deviations of the mean of one, over the root of their number. */

@@ -6,7 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "place.h"
 #include "worlds.h"
 
 static const double RATE = 2, SIDE = 16;

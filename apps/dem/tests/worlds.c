@@ -7,8 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "place.h"
-
 #define PI 3.14159265358979323846
 
 static struct CMUnitTest tests[40]; /* those without a name are none to cmocka */
