@@ -20,9 +20,7 @@ static volatile sig_atomic_t caught;
 static void on_signal(int number) { caught = number; }
 
 static void watch_signals(void) {
-    struct sigaction action;
-    memset(&action, 0, sizeof action);
-    action.sa_handler = on_signal;
+    const struct sigaction action = {.sa_handler = on_signal};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
     signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit is an error of writing */
@@ -48,15 +46,12 @@ static void write_restart(run *r) {
         end_badly(r);
 }
 
-/* "out/pile.csv" and 12 make "out/pile-000012.csv". */
-static void number_name(const char *name, uint64_t number, char *out_name, size_t size) {
-    snprintf(out_name, size, "%.*s-%06" PRIu64 ".csv", (int)strlen(name) - 4, name, number);
-}
-
 static void write_frame(run *r) {
     const dem_output *o = &r->input.output;
     dem *d = &r->world;
     char name[DEM_PATH_SIZE];
+    if (o->grains[0]) /* "out/pile.csv" and 12 make "out/pile-000012.csv" */
+        snprintf(name, sizeof name, "%.*s-%06" PRIu64 ".csv", (int)strlen(o->grains) - 4, o->grains, r->place.frame);
     if (r->csv) {
         dem_measures measures;
         dem_measure(d, &o->region, &measures);
@@ -64,13 +59,8 @@ static void write_frame(run *r) {
             fail("%s: it cannot be written", o->csv);
         r->place.csv_position = (uint64_t)ftell(r->csv);
     }
-    if (o->vtk[0] && !dem_write_vtk(d, o->vtk, r->place.frame))
+    if ((o->vtk[0] && !dem_write_vtk(d, o->vtk, r->place.frame)) || (o->grains[0] && !dem_write_grains(d, name)))
         end_badly(r);
-    if (o->grains[0]) {
-        number_name(o->grains, r->place.frame, name, sizeof name);
-        if (!dem_write_grains(d, name))
-            end_badly(r);
-    }
     r->place.frame++;
 }
 
@@ -108,12 +98,8 @@ static _Noreturn void stop(run *r) {
     if (r->terminal)
         fprintf(stderr, "\r\033[K");
     write_restart(r);
-    if (o->restart[0])
-        fprintf(stderr, "dem: signal %d at step %" PRIu64 ": go on with --restart %s\n", number, r->world.step,
-                o->restart);
-    else
-        fprintf(stderr, "dem: signal %d at step %" PRIu64 ": no restart, the input's output names none\n", number,
-                r->world.step);
+    fprintf(stderr, "dem: signal %d at step %" PRIu64 ": %s%s\n", number, r->world.step,
+            o->restart[0] ? "go on with --restart " : "no restart, the input's output names none", o->restart);
     exit(128 + number);
 }
 
@@ -180,13 +166,10 @@ static void report(const run *r) {
     fprintf(stderr, "dem: %.1f s, %.1f microseconds a step\n", seconds, steps > 0 ? 1e6 * seconds / steps : 0);
 }
 
-static int print_usage(FILE *to) {
-    fprintf(to, "usage: dem INPUT.json [--restart FILE] [--threads N]\n\n"
-                "Runs the discrete element simulation that the input describes (apps/dem/README.md).\n"
-                "  --restart FILE   go on from a restart file\n"
-                "  --threads N      1 to 256; otherwise 1\n");
-    return to == stdout ? 0 : 2;
-}
+static const char USAGE[] = "usage: dem INPUT.json [--restart FILE] [--threads N]\n\n"
+                            "Runs the discrete element simulation that the input describes (apps/dem/README.md).\n"
+                            "  --restart FILE   go on from a restart file\n"
+                            "  --threads N      1 to 256; otherwise 1\n";
 
 int main(int argc, char **argv) {
     static const struct option options[] = {{"help", no_argument, NULL, 'h'},
@@ -198,7 +181,7 @@ int main(int argc, char **argv) {
     argv[0] = (char[]){"dem"}; /* with which getopt_long() begins its messages */
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         if (option == 'h')
-            return print_usage(stdout);
+            return fputs(USAGE, stdout) == EOF;
         if (option == '?')
             return 2;
         if (option == 'r')
@@ -209,7 +192,7 @@ int main(int argc, char **argv) {
     if (optind == argc)
         fail("INPUT is missing");
     if (optind + 1 < argc)
-        return print_usage(stderr);
+        fail("'%s' is one input too many", argv[optind + 1]);
     run *r = calloc(1, sizeof *r);
     if (!r)
         fail("not enough memory");
