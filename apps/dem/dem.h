@@ -257,13 +257,17 @@ typedef struct dem_extra {
     float shift_x, shift_y;
 } dem_extra;
 
+/* What a box is of: a part, or its image, which is some way from it. */
+typedef struct dem_image {
+    uint32_t part, group; /* the body + 1 */
+    float x, y;
+    uint8_t still;
+} dem_image;
+
 typedef struct dem_scratch {
     narc_box *boxes; /* parts, then images of parts */
-    uint8_t *still;
-    uint32_t *group;          /* the body + 1, of an image too */
-    uint32_t *image_of;       /* a part */
-    float *image_x, *image_y; /* where an image is, from its body */
-    size_t box_capacity, image_count;
+    dem_image *images;
+    size_t box_capacity, image_capacity, image_count;
     const uint32_t *found_a, *found_b; /* pairs of boxes; the broad phase owns them */
     size_t found_count;
     uint32_t *match;

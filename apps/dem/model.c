@@ -116,9 +116,9 @@ void dem_destroy(dem *d) {
     s = s ? s : &none;
     for (size_t k = 0; k < d->outline_count; k++)
         free(d->outlines[k].sides);
-    void *const arrays[] = {d->shapes,        d->outlines,       d->walls, d->parts.body, d->parts.outline, s->boxes,
-                            d->contacts.rows, d->contacts.found, s->still, s->group,      s->image_of,      s->image_x,
-                            s->image_y,       s->match,          s->extra, s->sums,       s->poses,         d->scratch};
+    void *const arrays[] = {d->shapes, d->outlines,      d->walls,          d->parts.body, d->parts.outline,
+                            s->boxes,  d->contacts.rows, d->contacts.found, s->images,     s->match,
+                            s->extra,  s->sums,          s->poses,          d->scratch};
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++)
         free(arrays[i]);
     free_columns(&d->bodies, body_columns, BODY_COLUMNS);
