@@ -27,7 +27,7 @@ static double sample_reach(const dem *d, const dem_shape *shape) {
 
 /* Flat arcs too, whose circles reach far. */
 TEST(test_reach) {
-    dem d = make_world(plain_settings(), plain_law());
+    dem d = plain_world();
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     uint32_t lens;
@@ -48,12 +48,10 @@ TEST(test_reach) {
  * the side. Three contacts with depths of 0.02 / 3 if all are alike; they are placed so. */
 static dem make_column(double friction, double aside) {
     const double depth = 0.02 / 3;
-    dem_contact_law law = plain_law();
-    law.friction = friction;
-    dem_settings settings = plain_settings();
-    settings.time_step = 1e-9; /* forces of where they are put */
-    settings.thickness = 2;
-    dem d = make_world(settings, law);
+    dem d = plain_world();
+    d.laws[0][0].friction = friction;
+    d.settings.time_step = 1e-9; /* forces of where they are put */
+    d.settings.thickness = 2;
     add_plate(&d, "floor", 0, 0, 0, 1);
     add_plate(&d, "lid", 0, 4 - 3 * depth, 0, -1);
     add_grain(&d, DISC, 5, 1 - depth, 0, 0);
