@@ -170,11 +170,6 @@ typedef struct dem_memory {
     uint64_t step;
 } dem_memory;
 
-/* The damping of a pair, per velocity; for contacts of unit size. */
-typedef struct dem_dashpot {
-    double normal, tangential;
-} dem_dashpot;
-
 typedef struct dem_rolling {
     double angle, torque;
 } dem_rolling;
@@ -185,7 +180,6 @@ typedef struct dem_pairs {
     uint32_t *a, *b;          /* parts */
     float *shift_x, *shift_y; /* added to B's position */
     uint32_t *hints;          /* narc's */
-    dem_dashpot *dashpot;
     dem_memory *memory;
     dem_rolling *rolling; /* used only if there is rolling friction */
 } dem_pairs;
@@ -459,7 +453,6 @@ double dem_find_drift(const dem *d);               /* the speed of the cell abov
 bool dem_step(dem *d);
 bool dem_find_first_forces(dem *d);      /* of where bodies begin */
 bool dem_make_room_for_contacts(dem *d); /* as many as there is room for pairs */
-double dem_seconds(void);                /* on a clock that never goes back */
 
 /* ------------------------------------------------------------------------------------------------ laws.c */
 
@@ -473,7 +466,6 @@ void dem_set_law(dem *d, uint8_t a, uint8_t b, dem_contact_law law);
  * Hertz law at the deepest overlap that is allowed. Infinite without grains. */
 double dem_find_shortest_contact(const dem *d);
 
-void dem_find_dashpots(dem *d); /* of all pairs */
 bool dem_apply_laws(dem *d);
 
 /* ------------------------------------------------------------------------------------------------ walls.c */

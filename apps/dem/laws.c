@@ -73,19 +73,6 @@ double dem_find_shortest_contact(const dem *d) {
     return shortest;
 }
 
-/* The dashpots of pairs do not change while a list lasts: for unit size of the contact (see apply_law()). */
-void dem_find_dashpots(dem *d) {
-    const dem_bodies *b = &d->bodies;
-    for (size_t k = 0; k < d->pairs.count; k++) {
-        const size_t i = dem_body_a(d, k), j = dem_body_b(d, k);
-        const dem_contact_law *law = &d->laws[b->material[i]][b->material[j]];
-        const double mass = 1 / (b->inverse_mass[i] + b->inverse_mass[j]);
-        const double by_ratio = law->damping_ratio * sqrt(law->kn * mass);
-        d->pairs.dashpot[k] = law->damping_ratio >= 0 ? (dem_dashpot){by_ratio, law->tangential_share * by_ratio}
-                                                      : (dem_dashpot){law->gamma_n * mass, law->gamma_t * mass};
-    }
-}
-
 /* A contact, for its law. The tangent is (-normal.y, normal.x). */
 typedef struct contact {
     size_t a, b;
@@ -271,7 +258,11 @@ INLINE bool apply_law(dem *d, size_t k, dem_contact *out_row, bool hertz, bool r
     const double radius = hertz || rolls ? find_radius(b, c.a, c.b) : 0;
     const double size = hertz ? sqrt(radius * depth) : 1;
     const double kn = law->kn * size, kt = law->kt * size;
-    const double damped = hertz ? (law->damping_ratio >= 0 ? sqrt(size) : size) : 1;
+    const double mass = 1 / (b->inverse_mass[c.a] + b->inverse_mass[c.b]);
+    const bool by_ratio = law->damping_ratio >= 0;
+    const double damped = hertz ? (by_ratio ? sqrt(size) : size) : 1;
+    const double dashpot_n = by_ratio ? law->damping_ratio * sqrt(law->kn * mass) : law->gamma_n * mass;
+    const double dashpot_t = by_ratio ? law->tangential_share * dashpot_n : law->gamma_t * mass;
 
     dem_memory memory = d->pairs.memory[p];
     const bool is_old = memory.step + 1 == d->step;
@@ -280,18 +271,18 @@ INLINE bool apply_law(dem *d, size_t k, dem_contact *out_row, bool hertz, bool r
     sums->old_springs += 0.5 * memory.spring * memory.slide;
 
     dem_force ends = {0, 0, 0, 0};
-    double dashpot = -d->pairs.dashpot[p].normal * damped * c.vn, power = dashpot * c.vn, push = kn * depth + dashpot;
+    double dashpot = -dashpot_n * damped * c.vn, power = dashpot * c.vn, push = kn * depth + dashpot;
     double along = push, before = memory.damping * c.vn; /* the dashpot's power at the step's beginning */
     if (count == 2) {                                    /* and of two ends as if it had been what it is */
-        push = push_ends(b, c, &t, kn, d->pairs.dashpot[p].normal * damped, &ends, &dashpot, &power);
+        push = push_ends(b, c, &t, kn, dashpot_n * damped, &ends, &dashpot, &power);
         before = is_old ? power : 0;
         along = 0;
     }
     sums->damping -= 0.5 * (power + before) * dt;
     sums->normal_energy += (hertz ? 0.4 : 0.5) * kn * depth * depth;
     memory.damping = dashpot;
-    const double drag = -slide(&memory.slide, &memory.spring, kt, d->pairs.dashpot[p].tangential * damped * c.vt,
-                               c.vt * dt, law->friction * fabs(push), sums);
+    const double drag = -slide(&memory.slide, &memory.spring, kt, dashpot_t * damped * c.vt, c.vt * dt,
+                               law->friction * fabs(push), sums);
     sums->tangential_energy += 0.5 * memory.spring * memory.slide;
     d->pairs.memory[p] = memory;
 

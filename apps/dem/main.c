@@ -11,9 +11,17 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "input.h"
+
+/* On a clock that never goes back. */
+static double find_seconds(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
 
 static volatile sig_atomic_t caught;
 
@@ -66,7 +74,7 @@ static void write_frame(run *r) {
 
 /* Once a second on a terminal: how far it is, and how long it will take. */
 static void show_run(run *r, const dem_stage *stage) {
-    const double now = r->terminal ? dem_seconds() : 0;
+    const double now = r->terminal ? find_seconds() : 0;
     if (!r->terminal || now - r->shown < 0.5)
         return;
     const uint64_t done = r->world.step - r->first_step;
@@ -144,13 +152,13 @@ static void begin(run *r, const char *restart) {
     for (size_t i = (size_t)r->place.stage; i < r->input.stage_count; i++)
         r->total_steps += r->input.stages[i].steps - (i == r->place.stage ? r->place.stage_step : 0);
     r->terminal = isatty(STDERR_FILENO);
-    r->began = r->shown = dem_seconds();
+    r->began = r->shown = find_seconds();
 }
 
 static void report(const run *r) {
     dem_measures m;
     dem_measure(&r->world, &r->input.output.region, &m);
-    const double steps = (double)(r->world.step - r->first_step), seconds = dem_seconds() - r->began;
+    const double steps = (double)(r->world.step - r->first_step), seconds = find_seconds() - r->began;
     if (r->terminal)
         fprintf(stderr, "\r\033[K");
     if (r->total_steps == r->first_step)

@@ -66,7 +66,7 @@ static const column body_columns[] = {
 enum { BODY_COLUMNS = sizeof body_columns / sizeof body_columns[0] };
 
 static const column pair_columns[] = {PAIR(a),     PAIR(b),      PAIR(shift_x), PAIR(shift_y),
-                                      PAIR(hints), PAIR(memory), PAIR(dashpot), PAIR(rolling)};
+                                      PAIR(hints), PAIR(memory), PAIR(rolling)};
 enum { PAIR_COLUMNS = sizeof pair_columns / sizeof pair_columns[0] };
 
 void *dem_body_column(const dem *d, size_t index, size_t *out_item_size) {

@@ -128,7 +128,6 @@ bool dem_renew_lists(dem *d) {
     d->last_pairs = last;
     if (!merge_pairs(d) || !carry_over(d))
         return false;
-    dem_find_dashpots(d);
     remember_places(d);
     d->list_builds++;
     return true;

@@ -179,9 +179,7 @@ bool dem_read_restart(dem *d, dem_place *place, const char *path) {
         }
         ok = ok && in.ok && in.used == in.size && check_indices(d);
     }
-    if (ok)
-        dem_find_dashpots(d);
-    else if (belongs)
+    if (belongs && !ok)
         dem_fail(d, "%s: its counts do not fit the input", path);
     free(bytes);
     return ok;

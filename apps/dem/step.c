@@ -8,9 +8,7 @@
  *
  * How bodies turn: dem_turn().
  */
-#define _XOPEN_SOURCE 700 /* clock_gettime */
 #include <math.h>
-#include <time.h>
 
 #include "dem.h"
 
@@ -101,12 +99,6 @@ bool dem_find_first_forces(dem *d) {
     const bool found = find_contacts(d) && dem_apply_laws(d);
     d->settings.time_step = time_step;
     return found;
-}
-
-double dem_seconds(void) {
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
 bool dem_step(dem *d) {
