@@ -389,11 +389,11 @@ static inline dem_vec dem_find_turn(double angle) {
     return (dem_vec){(1 - half * half) * share, 2 * half * share};
 }
 
-static inline void dem_turn(const dem_bodies *b, size_t k, dem_vec by) {
-    const double c = b->cosine[k] * by.x - b->sine[k] * by.y, s = b->sine[k] * by.x + b->cosine[k] * by.y;
+static inline void dem_turn(double *cosine, double *sine, dem_vec by) {
+    const double c = *cosine * by.x - *sine * by.y, s = *sine * by.x + *cosine * by.y;
     const double unit = 1.5 - 0.5 * (c * c + s * s);
-    b->cosine[k] = c * unit;
-    b->sine[k] = s * unit;
+    *cosine = c * unit;
+    *sine = s * unit;
 }
 
 /* ------------------------------------------------------------------------------------------------ place.c */

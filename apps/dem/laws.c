@@ -194,15 +194,13 @@ static double apply_rolling(dem *d, const contact *c, size_t k, double stiffness
     return torque;
 }
 
-INLINE void add_to_bodies(const dem *d, const dem_contact *row) {
-    const dem_bodies *b = &d->bodies;
-    const size_t i = dem_body_a(d, row->pair), j = dem_body_b(d, row->pair);
-    b->fx[i] -= row->force.x;
-    b->fy[i] -= row->force.y;
-    b->torque[i] += row->force.torque_a;
-    b->fx[j] += row->force.x;
-    b->fy[j] += row->force.y;
-    b->torque[j] += row->force.torque_b;
+INLINE void add_to_bodies(const dem_bodies *b, size_t i, size_t j, dem_force force) {
+    b->fx[i] -= force.x;
+    b->fy[i] -= force.y;
+    b->torque[i] += force.torque_a;
+    b->fx[j] += force.x;
+    b->fy[j] += force.y;
+    b->torque[j] += force.torque_b;
 }
 
 /* Is the contact deeper than it may be? */
@@ -298,7 +296,7 @@ INLINE bool apply_law(dem *d, size_t k, dem_contact *out_row, bool hertz, bool r
     }
     *out_row = (dem_contact){p, c.normal, c.point, depth, force};
     if (d->scratch->adds)
-        add_to_bodies(d, out_row);
+        add_to_bodies(b, c.a, c.b, force);
     if (!(depth <= d->safe_depth) && sums->too_deep == SIZE_MAX && is_too_deep(d, c.a, c.b, depth))
         sums->too_deep = p;
     return true;
@@ -336,7 +334,7 @@ static void join_blocks(dem *d, size_t blocks) {
         c->count += count;
     }
     for (size_t k = 0; !d->scratch->adds && k < c->count; k++)
-        add_to_bodies(d, &c->rows[k]);
+        add_to_bodies(&d->bodies, dem_body_a(d, c->rows[k].pair), dem_body_b(d, c->rows[k].pair), c->rows[k].force);
 }
 
 bool dem_apply_laws(dem *d) {

@@ -14,21 +14,27 @@
 
 /* ------------------------------------------------------------------------------------------------ motion */
 
-/* Half of a step's change of velocities; and, if `drifts`, the way. */
-static void kick(dem *d, bool drifts) {
+static void kick(dem *d) {
     const dem_bodies b = d->bodies;
-    const double dt = d->settings.time_step, kick = 0.5 * dt, gx = d->settings.gravity.x, gy = d->settings.gravity.y;
+    const double half = 0.5 * d->settings.time_step, gx = d->settings.gravity.x, gy = d->settings.gravity.y;
     const size_t count = d->grain_count;
 #pragma omp parallel for simd schedule(static) num_threads(dem_team(d)) if (parallel : dem_team(d) > 1)
     for (size_t k = 0; k < count; k++) {
-        b.vx[k] += kick * (b.fx[k] * b.inverse_mass[k] + gx);
-        b.vy[k] += kick * (b.fy[k] * b.inverse_mass[k] + gy);
-        b.spin[k] += kick * (b.torque[k] * b.inverse_inertia[k]);
-        if (!drifts)
-            continue;
+        b.vx[k] += half * (b.fx[k] * b.inverse_mass[k] + gx);
+        b.vy[k] += half * (b.fy[k] * b.inverse_mass[k] + gy);
+        b.spin[k] += half * (b.torque[k] * b.inverse_inertia[k]);
+    }
+}
+
+static void drift(dem *d) {
+    const dem_bodies b = d->bodies;
+    const double dt = d->settings.time_step;
+    const size_t count = d->grain_count;
+#pragma omp parallel for simd schedule(static) num_threads(dem_team(d)) if (parallel : dem_team(d) > 1)
+    for (size_t k = 0; k < count; k++) {
         b.x[k] += dt * b.vx[k];
         b.y[k] += dt * b.vy[k];
-        dem_turn(&b, k, dem_find_turn(dt * b.spin[k]));
+        dem_turn(&b.cosine[k], &b.sine[k], dem_find_turn(dt * b.spin[k]));
     }
 }
 
@@ -106,7 +112,8 @@ bool dem_step(dem *d) {
     d->time += d->settings.time_step;
     if (!dem_steer_walls(d))
         return false;
-    kick(d, true);
+    kick(d);
+    drift(d);
     dem_move_walls(d);
     dem_shear_cell(d);
     if (have_moved(d, false) && have_moved(d, true) && !dem_renew_lists(d))
@@ -119,6 +126,6 @@ bool dem_step(dem *d) {
         return false;
     dem_count_wall_work(d);
     dem_count_shear_work(d);
-    kick(d, false);
+    kick(d);
     return true;
 }

@@ -93,7 +93,7 @@ void dem_move_walls(dem *d) {
         const dem_vec turn = dem_find_turn(dt * wall->spin);
         const dem_vec arm = {b->x[k] - wall->pivot.x, b->y[k] - wall->pivot.y};
         const dem_vec now = {turn.x * arm.x - turn.y * arm.y, turn.y * arm.x + turn.x * arm.y};
-        dem_turn(b, k, turn);
+        dem_turn(&b->cosine[k], &b->sine[k], turn);
         b->x[k] = wall->pivot.x + now.x;
         b->y[k] = wall->pivot.y + now.y;
         b->vx[k] -= wall->spin * now.y;
