@@ -330,9 +330,6 @@ bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count,
 bool dem_add_compound(dem *d, const char *name, const narc_arc *arcs, const size_t *counts, size_t part_count,
                       uint32_t *out_shape);
 
-/* Its laws are set by dem_set_law(). */
-bool dem_add_material(dem *d, dem_material material, uint8_t *out_material);
-
 /* A grain as it is added. */
 typedef struct dem_grain {
     uint32_t shape;

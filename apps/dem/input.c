@@ -29,15 +29,14 @@ uint8_t dem_find_material(const json_value *name, const dem *d) {
 
 static void read_materials(const json_value *list, dem *d) {
     for (json_value item = {0}; json_next(list, &item);) {
-        dem_material material = {.young = 0};
-        uint8_t index;
-        json_read(&item, (json_key[]){{"name", MUST | TEXT, material.name, 0, sizeof material.name},
-                                      {"density", MUST | POSITIVE, &material.density},
-                                      {"young", POSITIVE, &material.young},
-                                      {"poisson", NUMBER, &material.poisson, 0, 0.5},
+        dem_material *material = &d->materials[d->material_count];
+        json_read(&item, (json_key[]){{"name", MUST | TEXT, material->name, 0, sizeof material->name},
+                                      {"density", MUST | POSITIVE, &material->density},
+                                      {"young", POSITIVE, &material->young},
+                                      {"poisson", NUMBER, &material->poisson, 0, 0.5},
                                       {NULL}});
         for (size_t m = 0; m < d->material_count; m++)
-            if (strcmp(d->materials[m].name, material.name) == 0)
+            if (strcmp(d->materials[m].name, material->name) == 0)
                 json_refuse(&item, "name", "is the name of another material");
         if (d->settings.law == DEM_LINEAR)
             json_refuse(&item, "young poisson", "is of the Hertz law: the linear law's stiffness is kn");
@@ -45,8 +44,7 @@ static void read_materials(const json_value *list, dem *d) {
             json_require(&item, "young");
             json_require(&item, "poisson");
         }
-        if (!dem_add_material(d, material, &index))
-            dem_fail_at(&item, d);
+        d->material_count++;
     }
 }
 

@@ -186,6 +186,7 @@ int main(int argc, char **argv) {
                                             {NULL, 0, NULL, 0}};
     const char *restart = NULL;
     unsigned threads = 0;
+    int read = 0;
     argv[0] = (char[]){"dem"}; /* with which getopt_long() begins its messages */
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         if (option == 'h')
@@ -194,8 +195,8 @@ int main(int argc, char **argv) {
             return 2;
         if (option == 'r')
             restart = optarg;
-        else
-            threads = (unsigned)read_whole("--threads", optarg, 1, 256);
+        else if (sscanf(optarg, "%3u%n", &threads, &read) != 1 || optarg[read] || threads < 1 || threads > 256)
+            fail("--threads must be a whole number from 1 to 256, not '%.40s'", optarg);
     }
     if (optind == argc)
         fail("INPUT is missing");

@@ -196,14 +196,6 @@ bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count,
     return dem_add_compound(d, name, arcs, &count, 1, out_shape);
 }
 
-bool dem_add_material(dem *d, dem_material material, uint8_t *out_material) {
-    if (d->material_count == DEM_MAX_MATERIALS)
-        return dem_fail(d, "material '%s': at most %d materials are possible", material.name, DEM_MAX_MATERIALS);
-    *out_material = (uint8_t)d->material_count;
-    d->materials[d->material_count++] = material;
-    return true;
-}
-
 /* ------------------------------------------------------------------------------------------------ bodies */
 
 /* A body of mass 0, without speed. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * schema.c - checked numbers of options, objects of JSON by tables of their keys.
+ * schema.c - objects of JSON by tables of their keys.
  */
 #include "schema.h"
 
@@ -24,14 +24,6 @@ void fail(const char *format, ...) {
             *c = '?';
     fprintf(stderr, "%s\n", line);
     _Exit(2);
-}
-
-unsigned long long read_whole(const char *option, const char *text, unsigned long long low, unsigned long long high) {
-    char *end;
-    const unsigned long long value = strtoull(text, &end, 10); /* of a number that is too large, the largest */
-    if (text[strspn(text, "0123456789")] || end == text || value < low || value > high)
-        fail("%s must be a whole number from %llu to %llu, not '%.*s'", option, low, high, LONGEST, text);
-    return value;
 }
 
 json_value json_read_file(const char *path) {

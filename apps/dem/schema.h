@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * schema.h - what the user gives, checked: numbers of options, and objects of a JSON file by tables of their keys.
+ * schema.h - what the user gives, checked: objects of a JSON file by tables of their keys.
  * Whatever is wrong ends the program with a message that names file, place and value:
  * "dem: pile.json: stages[1].duration: is not above 0 '-1'".
  */
@@ -16,9 +16,6 @@
 
 /* Ends the program with status 2: "dem: message", one line on standard error. */
 __attribute__((format(printf, 1, 2))) _Noreturn void fail(const char *format, ...);
-
-/* A whole number, of an option with this name. */
-unsigned long long read_whole(const char *option, const char *text, unsigned long long low, unsigned long long high);
 
 typedef struct json_value {
     const char *file;
