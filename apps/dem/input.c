@@ -277,7 +277,7 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
                                   {"contact", MUST | ANY, &contact},
                                   {"walls", LIST, &walls},
                                   {"grains", MUST | LIST, &grains},
-                                  {"stages", MUST | LIST, &stages, 1, 1e6},
+                                  {"stages", MUST | LIST, &stages, 1, 1e9},
                                   {"output", ANY, &output},
                                   {NULL}});
     s.threads = threads;

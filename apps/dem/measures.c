@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * measures.c - energies, stress, counts, each grain's share of the contacts. All of them are sums over bodies or contacts in their order, by one thread.
+ * measures.c - energies, stress, counts, each grain's share of the contacts. All of them are sums over bodies or
+ * contacts in their order, by one thread.
  */
 #include <math.h>
 #include <stdlib.h>

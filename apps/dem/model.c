@@ -279,7 +279,8 @@ bool dem_add_wall(dem *d, dem_wall wall) {
 }
 
 /* A plate's body is a block whose upper side is the plate: with four times the largest grain's reach and the skin in
- * half its side, so that it goes on further than any grain that may touch it, whatever both move before the next list. */
+ * half its side, so that it goes on further than any grain that may touch it, whatever both move before the next list.
+ */
 static bool add_walls(dem *d) {
     const double half = 4 * (d->grain_reach + d->settings.skin);
     narc_arc arcs[NARC_MAX_ARCS];

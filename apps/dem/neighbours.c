@@ -60,7 +60,8 @@ static bool find_pairs(dem *d) {
 
 static int compare_pairs(const void *left, const void *right) {
     const dem_extra *l = left, *r = right;
-    return l->a != r->a ? (l->a > r->a) - (l->a < r->a) : (l->b > r->b) - (l->b < r->b);
+    const uint64_t first = (uint64_t)l->a << 32 | l->b, second = (uint64_t)r->a << 32 | r->b;
+    return (first > second) - (first < second);
 }
 
 /* Merges found and extra pairs in the order of (a, b). */

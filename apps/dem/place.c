@@ -53,8 +53,8 @@ static dem_grain draw_grain(const dem *d, const dem_filling *f, uint64_t *random
 
 /* ------------------------------------------------------------------------------------------------ random */
 
-/* Cells as wide as two of the largest grains reach, so that who touches is in a neighbouring one: the last grain of those
- * whose cells share a place in the table, and of each grain the one before. */
+/* Cells as wide as two of the largest grains reach, so that who touches is in a neighbouring one: the last grain of
+ * those whose cells share a place in the table, and of each grain the one before. */
 typedef struct grid {
     double width;
     uint64_t mask;

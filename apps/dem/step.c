@@ -39,8 +39,9 @@ static void drift(dem *d) {
 }
 
 /* Has a point of any body moved half of the skin since the pairs were found, or of what shear has left of it? A turn
- * moves it by at most the body's reach times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below
- * the limit so has not moved, and only if all is not, roots are drawn. A NaN has moved. */
+ * moves it by at most the body's reach times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2),
+ * which needs no root: what is below the limit so has not moved, and only if all is not, roots are drawn. A NaN has
+ * moved. */
 static bool have_moved(const dem *d, bool exactly) {
     const dem_bodies b = d->bodies;
     const double limit = 0.5 * (d->settings.skin - fabs(d->offset - d->list_offset));
