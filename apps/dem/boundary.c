@@ -16,7 +16,7 @@
  */
 #include <math.h>
 
-#include "internal.h"
+#include "dem.h"
 
 /* Where a coordinate is in [low, low + width): by steps of whole widths. What is lost stays so. */
 static double wrap(double value, double low, double width, int32_t *cell) {
@@ -86,7 +86,7 @@ void dem_wrap_bodies(dem *d) {
     for (size_t k = 0; k < b->count; k++) {
         const double old_x = b->x[k], old_y = b->y[k];
         dem_wall *wall = k < d->grain_count ? NULL : &d->walls[k - d->grain_count];
-        if ((wall && wall->kind == DEM_PLATE))
+        if (wall && wall->kind == DEM_PLATE)
             continue;
         if (s->periodic_y)
             wrap_height(d, k);
@@ -103,38 +103,33 @@ static bool is_empty(narc_box box) { return !(box.min_x <= box.max_x); }
 static narc_point find_size(const dem *d, size_t part) {
     const narc_box box = d->scratch->boxes[part];
     const size_t k = d->parts.body[part];
-    if (d->shapes[d->bodies.shape[k]].outline_count == 1)
-        return (narc_point){(double)(box.max_x - box.min_x), (double)(box.max_y - box.min_y)};
     const double whole = 2 * d->bodies.reach[k] + d->settings.skin;
-    return (narc_point){whole, whole};
+    return d->shapes[d->bodies.shape[k]].outline_count == 1
+               ? (narc_point){(double)(box.max_x - box.min_x), (double)(box.max_y - box.min_y)}
+               : (narc_point){whole, whole};
 }
 
 /* The box around the boxes of all grains; and is the cell wide enough for each body and the largest grain? */
 static bool find_widths(dem *d, narc_box *out_all) {
     const narc_box *boxes = d->scratch->boxes;
+    const dem_settings *s = &d->settings;
     narc_box all = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    double grain_width = 0, grain_height = 0;
-    for (size_t i = 0; i < d->parts.count; i++) {
-        const narc_box box = boxes[i];
-        if (is_empty(box))
-            continue;
-        if (d->parts.body[i] < d->grain_count) {
-            all = (narc_box){fminf(all.min_x, box.min_x), fminf(all.min_y, box.min_y), fmaxf(all.max_x, box.max_x),
-                             fmaxf(all.max_y, box.max_y)};
-            grain_width = fmax(grain_width, find_size(d, i).x);
-            grain_height = fmax(grain_height, find_size(d, i).y);
-        }
+    narc_point grain = {0, 0}; /* the largest */
+    for (size_t i = 0; i < d->parts.count && d->parts.body[i] < d->grain_count; i++) {
+        all = (narc_box){fminf(all.min_x, boxes[i].min_x), fminf(all.min_y, boxes[i].min_y),
+                         fmaxf(all.max_x, boxes[i].max_x), fmaxf(all.max_y, boxes[i].max_y)};
+        grain = (narc_point){fmax(grain.x, find_size(d, i).x), fmax(grain.y, find_size(d, i).y)};
     }
     for (size_t i = 0; i < d->parts.count; i++) {
         const size_t k = d->parts.body[i];
-        const double width = find_size(d, i).x + grain_width, height = find_size(d, i).y + grain_height;
-        if ((d->settings.periodic_x && !is_empty(boxes[i]) && width >= dem_cell_width(d)) ||
-            (d->settings.periodic_y && !is_empty(boxes[i]) && height >= dem_cell_height(d)))
+        const narc_point both = {find_size(d, i).x + grain.x, find_size(d, i).y + grain.y};
+        if (!is_empty(boxes[i]) &&
+            ((s->periodic_x && both.x >= dem_cell_width(d)) || (s->periodic_y && both.y >= dem_cell_height(d))))
             return dem_fail(d,
                             "the periodic cell is too small: %s %zu and the largest grain, with the skin, are %g by %g "
                             "together",
-                            k < d->grain_count ? "grain" : "wall", k < d->grain_count ? k : k - d->grain_count, width,
-                            height);
+                            k < d->grain_count ? "grain" : "wall", k < d->grain_count ? k : k - d->grain_count, both.x,
+                            both.y);
     }
     *out_all = all;
     return true;
@@ -144,7 +139,7 @@ static bool overlap(narc_box a, narc_box b) {
     return a.min_x <= b.max_x && b.min_x <= a.max_x && a.min_y <= b.max_y && b.min_y <= a.max_y;
 }
 
-static bool add_image(dem *d, size_t part, float x, float y, narc_box all) {
+static bool add_image(dem *d, uint32_t part, float x, float y, narc_box all) {
     dem_scratch *s = d->scratch;
     const narc_box box = s->boxes[part];
     const narc_box moved = {box.min_x + x, box.min_y + y, box.max_x + x, box.max_y + y};
@@ -158,11 +153,7 @@ static bool add_image(dem *d, size_t part, float x, float y, narc_box all) {
     if (!dem_make_room_for_boxes(d, k + 1))
         return false;
     s->boxes[k] = image;
-    s->still[k] = 1;
-    s->group[k] = s->group[part];
-    s->image_of[k] = (uint32_t)part;
-    s->image_x[k] = x;
-    s->image_y[k] = y;
+    s->images[k] = (dem_image){part, s->images[part].group, x, y, 1};
     s->image_count++;
     return true;
 }
@@ -176,7 +167,7 @@ bool dem_add_images(dem *d) {
         return true;
     if (!find_widths(d, &all))
         return false;
-    for (size_t k = 0; k < d->parts.count; k++) {
+    for (uint32_t k = 0; k < d->parts.count; k++) {
         const int count = d->parts.body[k] < d->grain_count ? 4 : 8;
         for (int i = 0; i < count && !is_empty(d->scratch->boxes[k]); i++) {
             if ((steps[i].x != 0 && !s->periodic_x) || (steps[i].y != 0 && !s->periodic_y))
@@ -193,14 +184,13 @@ bool dem_add_images(dem *d) {
 bool dem_take_image_pairs(dem *d) {
     dem_scratch *s = d->scratch;
     for (size_t k = 0; k < s->found_count; k++) {
-        const uint32_t a = s->found_a[k], image = s->found_b[k];
-        if (image < d->parts.count)
+        if (s->found_b[k] < d->parts.count)
             continue;
         if (!dem_reserve(d, &s->extra, &s->extra_capacity, s->extra_count + 1, sizeof *s->extra))
             return false;
-        const uint32_t b = s->image_of[image];
-        const float x = s->image_x[image], y = s->image_y[image];
-        s->extra[s->extra_count++] = a < b ? (dem_extra){a, b, x, y} : (dem_extra){b, a, -x, -y};
+        const dem_image of = s->images[s->found_b[k]];
+        const uint32_t a = s->found_a[k], b = of.part;
+        s->extra[s->extra_count++] = a < b ? (dem_extra){a, b, of.x, of.y} : (dem_extra){b, a, -of.x, -of.y};
     }
     return true;
 }

@@ -10,68 +10,51 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "frames.h"
+#include "dem.h"
 
 static const char HEAD[] = "step,time,kinetic,potential,elastic,damping,friction,walls,stress_xx,stress_xy,stress_yx,"
                            "stress_yy,contacts,coordination,deepest,fastest";
 
-static FILE *fail_csv(const char *path, const char *reason, FILE *file, char *error) {
-    snprintf(error, 512, "%.400s: %s", path, reason);
-    if (file)
-        fclose(file);
-    return NULL;
-}
-
-static void write_head(FILE *csv, const dem *d) {
-    fprintf(csv, "%s", HEAD);
-    for (size_t w = 0; w < d->wall_count; w++) {
-        const char *name = d->walls[w].name;
-        fprintf(csv, ",%s_x,%s_y,%s_fx,%s_fy", name, name, name, name);
-    }
-    fprintf(csv, "\n");
-}
-
-/* Does the file begin as a table does, and does a line end at the position, of a step that has been? */
-static bool is_table(const dem *d, FILE *file, uint64_t position) {
-    char head[sizeof HEAD];
-    if (!fgets(head, sizeof head, file) || strcmp(head, HEAD) != 0)
+/* Does the text begin as a table does, and does a line end at the position, of a step that has been? */
+static bool is_table(const dem *d, const char *text, size_t position) {
+    const char *line = text + position - 1;
+    if (strncmp(text, HEAD, sizeof HEAD - 1) != 0 || *line != '\n')
         return false;
-    uint64_t step = UINT64_MAX; /* of the line that begins after the last line's end */
-    int before = 0, letter = 0;
-    bool in_step = false;
-    for (uint64_t at = sizeof HEAD - 1; at < position; at++) {
-        before = letter;
-        if ((letter = getc(file)) == EOF)
-            return false;
-        if (before == '\n')
-            step = 0;
-        in_step = letter >= '0' && letter <= '9' && (before == '\n' || in_step);
-        if (in_step)
-            step = 10 * step + (uint64_t)(letter - '0');
-    }
-    return letter == '\n' && (step == UINT64_MAX || step <= d->step);
+    while (line > text && line[-1] != '\n')
+        line--;
+    return strtoull(line, NULL, 10) <= d->step; /* of the head 0 */
 }
 
-FILE *dem_open_csv(const dem *d, const char *path, uint64_t *position, char *error) {
-    FILE *file = *position > 0 ? fopen(path, "r+") : NULL;
-    if (!file && (*position == 0 || errno == ENOENT)) {
-        file = fopen(path, "w");
-        *position = 0;
+static bool check_table(dem *d, const char *path, size_t position) {
+    size_t size;
+    char *text = dem_read_file(path, &size, d->error);
+    if (!text)
+        return false;
+    const bool ok = size >= position && is_table(d, text, position);
+    free(text);
+    return ok || dem_fail(d, "%.400s: %s", path,
+                          size < position ? "it is shorter than the table was when the restart was written"
+                                          : "it is not the table that the restart goes on with");
+}
+
+FILE *dem_open_csv(dem *d, const char *path, uint64_t *position) {
+    *position = access(path, F_OK) == 0 ? *position : 0;
+    if (*position > 0 && !check_table(d, path, (size_t)*position))
+        return NULL;
+    FILE *file = fopen(path, *position > 0 ? "r+" : "w");
+    if (!file || (*position > 0 && (ftruncate(fileno(file), (off_t)*position) || fseek(file, 0, SEEK_END)))) {
+        dem_fail(d, "%.400s: %s", path, strerror(errno));
+        if (file)
+            fclose(file);
+        return NULL;
     }
-    if (!file)
-        return fail_csv(path, strerror(errno), NULL, error);
     if (*position == 0) {
-        write_head(file, d);
+        fprintf(file, "%s", HEAD);
+        for (const dem_wall *w = d->walls; w < d->walls + d->wall_count; w++)
+            fprintf(file, ",%s_x,%s_y,%s_fx,%s_fy", w->name, w->name, w->name, w->name);
+        fprintf(file, "\n");
         *position = (uint64_t)ftell(file);
-        return file;
     }
-    if (fseek(file, 0, SEEK_END) != 0 || ftell(file) < 0 || (uint64_t)ftell(file) < *position)
-        return fail_csv(path, "it is shorter than the table was when the restart was written", file, error);
-    rewind(file);
-    if (!is_table(d, file, *position))
-        return fail_csv(path, "it is not the table that the restart goes on with", file, error);
-    if (ftruncate(fileno(file), (off_t)*position) != 0 || fseek(file, (long)*position, SEEK_SET) != 0)
-        return fail_csv(path, strerror(errno), file, error);
     return file;
 }
 
@@ -91,24 +74,20 @@ bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m) {
 
 /* ------------------------------------------------------------------------------------------------ grains */
 
-static void write_grain(FILE *file, const dem *d, size_t k, const dem_load *load) {
+bool dem_write_grains(dem *d, const char *path) {
     const dem_bodies *b = &d->bodies;
-    fprintf(file, "%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%u,%u,%.9g,%.9g,%d,%d\n", d->shapes[b->shape[k]].name,
-            b->x[k], b->y[k], atan2(b->sine[k], b->cosine[k]), (double)b->scale[k], b->extent[k], b->vx[k], b->vy[k],
-            b->spin[k], load->contacts, load->bearing, 0.5 * (load->stress_xx + load->stress_yy), b->mass[k],
-            (int)b->cell_x[k], (int)b->cell_y[k]);
-}
-
-bool dem_write_grains(const dem *d, const char *path, char *error) {
-    dem_load *loads = dem_find_loads(d, error);
+    dem_load *loads = dem_find_loads(d);
     dem_file file;
-    if (!loads || !dem_open_file(&file, path, error)) {
+    if (!loads || !dem_open_file(&file, path, d->error)) {
         free(loads);
         return false;
     }
     fprintf(file.file, "shape,x,y,angle,scale,size,vx,vy,spin,contacts,bearing,pressure,mass,cell_x,cell_y\n");
     for (size_t k = 0; k < d->grain_count; k++)
-        write_grain(file.file, d, k, &loads[k]);
+        fprintf(file.file, "%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%u,%u,%.9g,%.9g,%d,%d\n",
+                d->shapes[b->shape[k]].name, b->x[k], b->y[k], atan2(b->sine[k], b->cosine[k]), (double)b->scale[k],
+                b->extent[k], b->vx[k], b->vy[k], b->spin[k], loads[k].contacts, loads[k].bearing,
+                0.5 * (loads[k].stress_xx + loads[k].stress_yy), b->mass[k], (int)b->cell_x[k], (int)b->cell_y[k]);
     free(loads);
-    return dem_close_file(&file, true, error);
+    return dem_close_file(&file, true, d->error);
 }

@@ -8,21 +8,19 @@
  *   here, a file for each part:
  *
  *       main.c        the command line, stages, progress, signals
- *       input.c       the JSON file; its sections: input_grains.c, input_walls.c, input_run.c
- *       json_path.c   checked access to it and to options, with messages
+ *       input.c       the JSON file; input_bodies.c: its shapes, walls and grains
+ *       schema.c      what it may hold, by tables of keys, with messages
  *       model.c       memory, shapes, bodies
  *       place.c       where grains start
  *       neighbours.c  boxes, pairs with a skin, history
  *       boundary.c    periodic images, wrapping, shear
  *       step.c        velocity Verlet, the narrow phase
- *       laws.c        forces of contacts
- *       gather.c      forces of bodies
+ *       laws.c        forces of contacts and bodies
  *       walls.c       motion of walls, servo control
  *       measures.c    energies, stress, counts
  *       csv.c         tables of measures, and of grains
  *       restart.c     the state in a file, bit for bit
  *       files.c       files that are read, or appear, as a whole
- *       frames.c      what files for ParaView and tables of grains have in common
  *       vtk.c         files for ParaView
  *
  * Conventions
@@ -48,6 +46,7 @@
 
 #include "touch.h"
 
+#define DEM_PI 3.14159265358979323846
 enum { DEM_MAX_MATERIALS = 16, DEM_NAME_SIZE = 64, DEM_PATH_SIZE = 1024 };
 
 typedef struct dem_vec {
@@ -171,11 +170,6 @@ typedef struct dem_memory {
     uint64_t step;
 } dem_memory;
 
-/* The damping of a pair, per velocity; for contacts of unit size. */
-typedef struct dem_dashpot {
-    double normal, tangential;
-} dem_dashpot;
-
 typedef struct dem_rolling {
     double angle, torque;
 } dem_rolling;
@@ -186,7 +180,6 @@ typedef struct dem_pairs {
     uint32_t *a, *b;          /* parts */
     float *shift_x, *shift_y; /* added to B's position */
     uint32_t *hints;          /* narc's */
-    dem_dashpot *dashpot;
     dem_memory *memory;
     dem_rolling *rolling; /* used only if there is rolling friction */
 } dem_pairs;
@@ -240,12 +233,46 @@ typedef struct dem_region {
     double low_x, high_x, low_y, high_y;
 } dem_region;
 
-/* An incidence list: which pairs have a part of body i as B, ascending: of[first[i]] .. of[first[i + 1] - 1];
- * and where the pairs that have it as A begin. */
-typedef struct dem_incidence {
-    uint32_t *first_b, *of_b, *first_a;
-    size_t capacity;
-} dem_incidence;
+/* Contacts are worked on in blocks of this many. A block's sums do not depend on who makes them. */
+enum { DEM_BLOCK = 256 };
+
+/* What a block of contacts adds up to. */
+typedef struct dem_sums {
+    size_t count; /* of contacts */
+    double normal_energy, tangential_energy, rolling_energy;
+    double old_springs; /* what the springs of these contacts held in the last step */
+    double damping, friction;
+    size_t too_deep; /* the first pair that is, or SIZE_MAX */
+} dem_sums;
+
+/* A pair that narc does not find: across a periodic border, or with a plate. */
+typedef struct dem_extra {
+    uint32_t a, b;
+    float shift_x, shift_y;
+} dem_extra;
+
+/* What a box is of: a part, or its image, which is some way from it. */
+typedef struct dem_image {
+    uint32_t part, group; /* the body + 1 */
+    float x, y;
+    uint8_t still;
+} dem_image;
+
+typedef struct dem_scratch {
+    narc_box *boxes; /* parts, then images of parts */
+    dem_image *images;
+    size_t box_capacity, image_capacity, image_count;
+    const uint32_t *found_a, *found_b; /* pairs of boxes; the broad phase owns them */
+    size_t found_count;
+    uint32_t *match;
+    dem_extra *extra;
+    size_t extra_count, extra_capacity;
+    bool adds; /* a single thread adds forces to bodies as it finds them, several do when all are found */
+    dem_sums *sums;
+    size_t sums_capacity;
+    narc_body *poses; /* of all parts, when narc was last asked */
+    size_t pose_capacity;
+} dem_scratch;
 
 typedef struct dem {
     dem_settings settings;
@@ -267,13 +294,11 @@ typedef struct dem {
     double grain_reach, grain_extent; /* the largest */
     double safe_depth;                /* a contact that is not deeper is allowed for all grains */
     double diagonal;                  /* of the box around all grains and the places of walls, at the start */
-    bool started;                     /* no body can be added any more */
 
     uint64_t step;
     double time; /* step * time_step, summed over stages with their own steps */
     uint64_t list_builds;
     dem_pairs pairs, last_pairs;
-    dem_incidence incidence; /* of the pairs */
     dem_contacts contacts;
 
     /* Summed up since the start. */
@@ -285,16 +310,17 @@ typedef struct dem {
     double offset, list_offset, pull, shear_work;
 
     narc_broad_phase *broad;
-    struct dem_scratch *scratch; /* memory of the neighbour list and of sums */
-    char error[512];             /* what went wrong, when a function here says that something did */
+    dem_scratch *scratch; /* memory of the neighbour list and of sums */
+    char error[512];      /* what went wrong, when a function here says that something did */
 } dem;
+
+/* Everything below that returns bool tells of an error by false, and says what in d->error. */
 
 /* ------------------------------------------------------------------------------------------------ model.c */
 
 extern const dem_settings dem_defaults;
 
-/* An empty world. Everything that returns bool tells of an error by false, and says what in d->error. dem_destroy()
- * frees what there is, after an error too. */
+/* An empty world. dem_destroy() frees what there is, after an error too. */
 bool dem_create(dem *d, dem_settings settings);
 void dem_destroy(dem *d);
 
@@ -304,9 +330,6 @@ bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count,
 bool dem_add_compound(dem *d, const char *name, const narc_arc *arcs, const size_t *counts, size_t part_count,
                       uint32_t *out_shape);
 
-/* Adds a material. Laws with it are set in d->laws by dem_set_law(). */
-bool dem_add_material(dem *d, dem_material material, uint8_t *out_material);
-
 /* A grain as it is added. */
 typedef struct dem_grain {
     uint32_t shape;
@@ -315,7 +338,7 @@ typedef struct dem_grain {
     double vx, vy, spin;
 } dem_grain;
 
-/* Grains and walls in any order. A wall as it is added: {.name, .kind, .material, .place}, and of a box .shape, .scale
+/* All grains, then dem_start(). A wall as it is added: {.name, .kind, .material, .place}, and of a box .shape, .scale
  * and .angle, of a plate .normal (of any length); its place is a point of its border. */
 bool dem_add_grain(dem *d, dem_grain grain);
 bool dem_add_wall(dem *d, dem_wall wall);
@@ -323,13 +346,112 @@ bool dem_add_wall(dem *d, dem_wall wall);
 /* Checks the whole, makes room. To be called once, before the first step. */
 bool dem_start(dem *d);
 
+/* Report an error; return false. */
+bool dem_fail(dem *d, const char *format, ...);
+bool dem_fail_narc(dem *d, const char *what, const narc_error *error);
+bool dem_find_broken_body(dem *d);
+
+/* An array of `count` items; one with room for `needed`, which grows by halves. The items that there are stay. */
+bool dem_resize(dem *d, void *array_pointer, size_t count, size_t size);
+bool dem_reserve(dem *d, void *array_pointer, size_t *capacity, size_t needed, size_t size);
+bool dem_grow_pairs(dem *d, dem_pairs *pairs, size_t needed);
+
+/* The arrays of bodies, as bytes: for the restart and the hash. NULL behind the last. */
+void *dem_body_column(const dem *d, size_t index, size_t *out_item_size);
+
+/* All parts where they are now, for narc, until the next call. */
+bool dem_make_poses(dem *d, narc_bodies *out);
+
+/* The box around all grains: squares as large as they reach. */
+dem_region dem_bound_grains(const dem *d);
+
+unsigned dem_team(const dem *d); /* threads */
+narc_workers dem_workers(const dem *d);
+double dem_cell_width(const dem *d);
+double dem_cell_height(const dem *d);
+
+/* The bodies of a pair. */
+static inline size_t dem_body_a(const dem *d, size_t pair) { return d->parts.body[d->pairs.a[pair]]; }
+static inline size_t dem_body_b(const dem *d, size_t pair) { return d->parts.body[d->pairs.b[pair]]; }
+
+/* By how many cells the B of a pair is above A: its image. */
+static inline int dem_find_lift(const dem *d, size_t pair) {
+    return (d->pairs.shift_y[pair] > 0) - (d->pairs.shift_y[pair] < 0);
+}
+
+/* A rotation is a unit vector, and turns within a step by 2 atan(angle / 2), which is the angle to the third order and
+ * needs no sine. What rounding takes from its length is given back each time. */
+static inline dem_vec dem_find_turn(double angle) {
+    const double half = 0.5 * angle, share = 1 / (1 + half * half);
+    return (dem_vec){(1 - half * half) * share, 2 * half * share};
+}
+
+static inline void dem_turn(double *cosine, double *sine, dem_vec by) {
+    const double c = *cosine * by.x - *sine * by.y, s = *sine * by.x + *cosine * by.y;
+    const double unit = 1.5 - 0.5 * (c * c + s * s);
+    *cosine = c * unit;
+    *sine = s * unit;
+}
+
+/* ------------------------------------------------------------------------------------------------ place.c */
+
+enum { DEM_MAX_CHOICES = 64 };
+
+/* A size is the diameter of the disc of equal area. */
+typedef enum dem_distribution { DEM_FIXED, DEM_UNIFORM, DEM_NORMAL, DEM_LOGNORMAL } dem_distribution;
+
+typedef struct dem_sizes {
+    dem_distribution kind;
+    double mean, deviation; /* of the lognormal distribution: the median, and the deviation of the logarithm */
+    double low, high;       /* sizes outside are drawn again */
+} dem_sizes;
+
+typedef struct dem_filling {
+    uint64_t count; /* of a lattice: at most, 0: as many as it has places */
+    dem_region region;
+    uint32_t shapes[DEM_MAX_CHOICES]; /* one of them, all alike in chance */
+    size_t shape_count;
+    uint8_t material;
+    dem_sizes sizes;
+    double gap;      /* grains start at least this far apart, and from walls */
+    double speed;    /* each component of the velocity is drawn up to this */
+    double spin;     /* as well */
+    dem_vec spacing; /* of a lattice */
+    double jitter;   /* of a lattice: up to this share of half the spacing, in both directions */
+    bool upright;    /* angle 0, else a random one */
+    uint64_t tries;  /* for one grain, before a random filling gives up */
+} dem_filling;
+
+/* `random` is the state of a generator. Walls must have been added before. */
+double dem_draw_size(const dem_sizes *sizes, uint64_t *random);
+bool dem_fill_randomly(dem *d, const dem_filling *filling, uint64_t *random);
+bool dem_fill_lattice(dem *d, const dem_filling *filling, uint64_t *random);
+
+/* ------------------------------------------------------------------------------------------------ neighbours.c */
+
+bool dem_renew_lists(dem *d);
+bool dem_make_room_for_boxes(dem *d, size_t count);
+
+/* ------------------------------------------------------------------------------------------------ boundary.c */
+
 /* Another rate of shear, from now on: all grains get the velocities that go with it. */
 void dem_set_shear(dem *d, double rate);
 
-/* Reports an error; returns false. */
-bool dem_fail(dem *d, const char *format, ...);
+void dem_wrap_bodies(dem *d);
+bool dem_add_images(dem *d);
+bool dem_take_image_pairs(dem *d);                 /* adds the found pairs with images to the extra ones */
+void dem_shear_cell(dem *d);                       /* the way of a step */
+void dem_count_shear_work(dem *d);                 /* of half a step, with the forces as they are */
+dem_vec dem_find_shift(const dem *d, size_t pair); /* of B, exactly */
+double dem_find_drift(const dem *d);               /* the speed of the cell above */
 
-/* ---------------------------------------------------------------------------------------- laws.c, step.c ... */
+/* ------------------------------------------------------------------------------------------------ step.c */
+
+bool dem_step(dem *d);
+bool dem_find_first_forces(dem *d);      /* of where bodies begin */
+bool dem_make_room_for_contacts(dem *d); /* as many as there is room for pairs */
+
+/* ------------------------------------------------------------------------------------------------ laws.c */
 
 /* The damping ratio that gives a restitution, above 0 and at most 1. */
 double dem_damping_ratio(dem_law law, double restitution);
@@ -341,26 +463,47 @@ void dem_set_law(dem *d, uint8_t a, uint8_t b, dem_contact_law law);
  * Hertz law at the deepest overlap that is allowed. Infinite without grains. */
 double dem_find_shortest_contact(const dem *d);
 
-/* One step. */
-bool dem_step(dem *d);
+bool dem_apply_laws(dem *d);
 
-/* Seconds on a clock that never goes back. */
-double dem_seconds(void);
+/* ------------------------------------------------------------------------------------------------ walls.c */
 
-bool dem_renew_lists(dem *d); /* neighbours.c */
-
-void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measures);
+bool dem_steer_walls(dem *d);
+void dem_move_walls(dem *d);
+void dem_count_wall_work(dem *d); /* of half a step, with the forces as they are */
+bool dem_add_plate_pairs(dem *d);
 
 /* The force of the grains on a wall. */
 dem_vec dem_wall_force(const dem *d, size_t wall);
 
-/* The box around all grains: squares as large as they reach. */
-dem_region dem_bound_grains(const dem *d);
-
 /* How far the face of a plate is from its body's place: half the side of its block. */
 double dem_half_block(const dem *d, const dem_wall *plate);
 
-/* FNV-1a over the whole state. */
+/* ------------------------------------------------------------------------------------------------ measures.c */
+
+/* Stresses of a region, or NULL for all. */
+void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measures);
+
+/* A body's contacts of the last step. Its stress is the sum of force times arm over its contacts, by its volume:
+ * compression is positive. Walls have contacts, and no stress.
+ *
+ * Grains with too few contacts to be held are rattlers, and so are those that are held by them: a grain is held by two
+ * contacts that press, or, where no pair of materials has friction, three. */
+typedef struct dem_load {
+    uint32_t contacts;
+    uint32_t bearing; /* contacts that press, with walls and grains that are no rattlers; of a rattler 0 */
+    uint32_t count;   /* while they are counted */
+    double stress_xx, stress_xy, stress_yx, stress_yy;
+} dem_load;
+
+/* Of all bodies, in memory that the caller frees; NULL, with an error, if there is none left. */
+dem_load *dem_find_loads(dem *d);
+
+/* How hard the bodies of a contact press each other. */
+double dem_normal_force(const dem_contact *contact);
+
+/* FNV-1a, 64 bits, continued; and over the whole state. */
+#define DEM_HASH_START 0xcbf29ce484222325u
+uint64_t dem_hash_bytes(uint64_t hash, const void *bytes, size_t size);
 uint64_t dem_hash(const dem *d);
 
 /* ------------------------------------------------------------------------------------------------ files.c */
@@ -381,22 +524,21 @@ typedef struct dem_file {
 bool dem_open_file(dem_file *out, const char *path, char *error);
 bool dem_close_file(dem_file *out, bool ok, char *error);
 
-/* ------------------------------------------------------------------------------------------------ frames */
+/* ------------------------------------------------------------------------------------------------ vtk.c, csv.c */
 
-/* Writes the state for ParaView: frame 12 of "out/pile" is out/pile-000012.vtk and out/pile-contacts-000012.vtk.
- * Errors as above, into `error` (512 bytes). */
-bool dem_write_vtk(const dem *d, const char *stem, uint64_t frame, char *error);
+/* Writes the state for ParaView: frame 12 of "out/pile" is out/pile-000012.vtk and out/pile-contacts-000012.vtk. */
+bool dem_write_vtk(dem *d, const char *stem, uint64_t frame);
 
 /* The table of measures, a line for each time, which grows while the run goes on. A new one; or, if the position is
  * above 0 and the file is there, an old one, cut off there: if it is one of this input, and the line that ends there is
  * not of a later step than the world's. Sets the position to its end. */
-FILE *dem_open_csv(const dem *d, const char *path, uint64_t *position, char *error);
+FILE *dem_open_csv(dem *d, const char *path, uint64_t *position);
 
 /* Adds a line; false if it cannot be written. */
 bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m);
 
 /* A line of CSV for each grain. */
-bool dem_write_grains(const dem *d, const char *path, char *error);
+bool dem_write_grains(dem *d, const char *path);
 
 /* ------------------------------------------------------------------------------------------------ restart.c */
 
@@ -410,7 +552,7 @@ typedef struct dem_place {
     uint64_t random;       /* the generator's state */
 } dem_place;
 
-bool dem_write_restart(const dem *d, const dem_place *place, const char *path, char *error);
+bool dem_write_restart(dem *d, const dem_place *place, const char *path);
 
 /* Into a world with the same input, after dem_start(). */
 bool dem_read_restart(dem *d, dem_place *place, const char *path);

@@ -5,8 +5,7 @@
 #ifndef DEM_INPUT_H
 #define DEM_INPUT_H
 
-#include "dem.h"
-#include "json_path.h"
+#include "schema.h"
 
 /* What a stage does to a wall. */
 typedef struct dem_wall_change {
@@ -28,14 +27,17 @@ typedef struct dem_stage {
     size_t change_count;
 } dem_stage;
 
+enum { DEM_STEM_SIZE = DEM_PATH_SIZE - 32 }; /* frames have numbers and suffixes behind it */
+
 /* File names are empty for what is not wanted. */
 typedef struct dem_output {
     uint64_t every, restart_every; /* steps */
-    char csv[DEM_PATH_SIZE], grains[DEM_PATH_SIZE], vtk[DEM_PATH_SIZE], restart[DEM_PATH_SIZE];
+    char csv[DEM_STEM_SIZE], grains[DEM_STEM_SIZE], vtk[DEM_STEM_SIZE], restart[DEM_STEM_SIZE];
     dem_region region; /* of stresses */
 } dem_output;
 
 typedef struct dem_input {
+    char shapes[2 * DEM_PATH_SIZE]; /* the file */
     dem_stage *stages;
     size_t stage_count;
     dem_output output;
@@ -47,21 +49,17 @@ typedef struct dem_input {
 void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *out_input);
 void dem_free_input(dem_input *input);
 
-/* Its parts: input_grains.c, input_walls.c, input_run.c. */
-void dem_read_shapes(const json_value *root, dem *d);
-enum { DEM_SHAPES_PATH_SIZE = 2 * DEM_PATH_SIZE };
-void dem_find_shapes_file(const json_value *root, char path[DEM_SHAPES_PATH_SIZE]);
-void dem_read_grains(const json_value *root, dem *d, uint64_t *random);
-void dem_read_walls(const json_value *root, dem *d);
-void dem_read_motion(const json_value *object, const dem *d, bool has_servo, dem_wall_change *out_change);
-void dem_apply_change(dem *d, const dem_wall_change *change);
-void dem_read_stages(const json_value *root, dem *d, dem_input *input);
-void dem_read_output(const json_value *root, const dem *d, dem_output *out_output);
+/* What input_bodies.c reads of it: shapes from the file, which `name` names, then walls and grains. */
+void dem_read_shapes(const json_value *name, const char *path, dem *d);
+void dem_read_walls(const json_value *list, dem *d);
+void dem_read_grains(const json_value *list, dem *d, uint64_t *random);
 
-/* Names to indices; a name that is not known is an error. */
+/* Of a stage, {"floor": {"velocity": [0, 1]}, ...}; and at its beginning. has_servo: of each wall, kept up to date. */
+void dem_read_changes(const json_value *walls, const dem *d, bool *has_servo, dem_stage *stage);
+void dem_apply_change(dem *d, const dem_wall_change *change);
+
 uint8_t dem_find_material(const json_value *name, const dem *d);
-uint32_t dem_find_shape(const json_value *name, const dem *d);
-dem_region dem_read_region(const json_value *list);
+void *dem_allocate(size_t count, size_t size); /* zeros, or the program ends */
 
 /* Ends the program with the world's error, which came from this value. */
 _Noreturn void dem_fail_at(const json_value *value, const dem *d);

@@ -30,7 +30,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "internal.h"
+#include "dem.h"
 
 /* Inlined wherever it is called, for the constants that it is called with. */
 #if defined(__GNUC__)
@@ -40,8 +40,7 @@
 #endif
 
 double dem_damping_ratio(dem_law law, double restitution) {
-    const double pi = 3.14159265358979323846, logarithm = -log(restitution);
-    const double b = logarithm / sqrt(pi * pi + logarithm * logarithm);
+    const double logarithm = -log(restitution), b = logarithm / sqrt(DEM_PI * DEM_PI + logarithm * logarithm);
     return (law == DEM_HERTZ ? sqrt(5.0) : 2) * b;
 }
 
@@ -55,43 +54,23 @@ void dem_set_law(dem *d, uint8_t a, uint8_t b, dem_contact_law law) {
     d->laws[a][b] = d->laws[b][a] = law;
 }
 
-static double find_duration(const dem *d, size_t grain, size_t a, size_t b, double mass) {
-    const dem_contact_law *law = &d->laws[a][b];
-    const double size = 0.5 * d->bodies.extent[grain]; /* of two grains R is half of it, and their depth as much */
-    const double stiffness = law->kn * (d->settings.law == DEM_HERTZ ? size * sqrt(d->settings.max_overlap) : 1);
-    return 3.14159265358979323846 * sqrt(mass / stiffness);
-}
-
 double dem_find_shortest_contact(const dem *d) {
-    size_t lightest[DEM_MAX_MATERIALS];
-    double shortest = INFINITY;
-    for (size_t a = 0; a < d->material_count; a++) {
-        lightest[a] = SIZE_MAX;
-        for (size_t k = 0; k < d->grain_count; k++)
-            if (d->bodies.material[k] == a &&
-                (lightest[a] == SIZE_MAX || d->bodies.mass[k] < d->bodies.mass[lightest[a]]))
-                lightest[a] = k;
+    const double softness = d->settings.law == DEM_HERTZ ? sqrt(d->settings.max_overlap) : 0;
+    double mass[DEM_MAX_MATERIALS], size[DEM_MAX_MATERIALS], shortest = INFINITY; /* of the lightest */
+    for (size_t a = 0; a < d->material_count; a++)
+        mass[a] = size[a] = INFINITY; /* none: a wall */
+    for (size_t k = 0; k < d->grain_count; k++) {
+        const size_t a = d->bodies.material[k];
+        size[a] = d->bodies.mass[k] < mass[a] ? 0.5 * d->bodies.extent[k] : size[a];
+        mass[a] = fmin(mass[a], d->bodies.mass[k]);
     }
     for (size_t a = 0; a < d->material_count; a++)
-        for (size_t b = 0; b < d->material_count && lightest[a] < SIZE_MAX; b++) {
-            const double m = d->bodies.mass[lightest[a]];
-            const double with = lightest[b] < SIZE_MAX ? d->bodies.mass[lightest[b]] : INFINITY; /* or a wall */
-            shortest = fmin(shortest, find_duration(d, lightest[a], a, b, m / (1 + m / with)));
+        for (size_t b = 0; b < d->material_count && mass[a] < INFINITY; b++) {
+            /* Of two grains R is half of the size, and their depth as much. */
+            const double stiffness = d->laws[a][b].kn * (softness > 0 ? size[a] * softness : 1);
+            shortest = fmin(shortest, DEM_PI * sqrt(mass[a] / (1 + mass[a] / mass[b]) / stiffness));
         }
     return shortest;
-}
-
-/* The dashpots of pairs do not change while a list lasts: for unit size of the contact (see apply_law()). */
-void dem_find_dashpots(dem *d) {
-    const dem_bodies *b = &d->bodies;
-    for (size_t k = 0; k < d->pairs.count; k++) {
-        const size_t i = dem_body_a(d, k), j = dem_body_b(d, k);
-        const dem_contact_law *law = &d->laws[b->material[i]][b->material[j]];
-        const double mass = 1 / (b->inverse_mass[i] + b->inverse_mass[j]);
-        const double by_ratio = law->damping_ratio * sqrt(law->kn * mass);
-        d->pairs.dashpot[k] = law->damping_ratio >= 0 ? (dem_dashpot){by_ratio, law->tangential_share * by_ratio}
-                                                      : (dem_dashpot){law->gamma_n * mass, law->gamma_t * mass};
-    }
 }
 
 /* A contact, for its law. The tangent is (-normal.y, normal.x). */
@@ -215,10 +194,13 @@ static double apply_rolling(dem *d, const contact *c, size_t k, double stiffness
     return torque;
 }
 
-INLINE void add_to_body(const dem_bodies *b, size_t k, double fx, double fy, double torque) {
-    b->fx[k] += fx;
-    b->fy[k] += fy;
-    b->torque[k] += torque;
+INLINE void add_to_bodies(const dem_bodies *b, size_t i, size_t j, dem_force force) {
+    b->fx[i] -= force.x;
+    b->fy[i] -= force.y;
+    b->torque[i] += force.torque_a;
+    b->fx[j] += force.x;
+    b->fy[j] += force.y;
+    b->torque[j] += force.torque_b;
 }
 
 /* Is the contact deeper than it may be? */
@@ -274,7 +256,11 @@ INLINE bool apply_law(dem *d, size_t k, dem_contact *out_row, bool hertz, bool r
     const double radius = hertz || rolls ? find_radius(b, c.a, c.b) : 0;
     const double size = hertz ? sqrt(radius * depth) : 1;
     const double kn = law->kn * size, kt = law->kt * size;
-    const double damped = hertz ? (law->damping_ratio >= 0 ? sqrt(size) : size) : 1;
+    const double mass = 1 / (b->inverse_mass[c.a] + b->inverse_mass[c.b]);
+    const bool by_ratio = law->damping_ratio >= 0;
+    const double damped = hertz ? (by_ratio ? sqrt(size) : size) : 1;
+    const double dashpot_n = by_ratio ? law->damping_ratio * sqrt(law->kn * mass) : law->gamma_n * mass;
+    const double dashpot_t = by_ratio ? law->tangential_share * dashpot_n : law->gamma_t * mass;
 
     dem_memory memory = d->pairs.memory[p];
     const bool is_old = memory.step + 1 == d->step;
@@ -283,26 +269,25 @@ INLINE bool apply_law(dem *d, size_t k, dem_contact *out_row, bool hertz, bool r
     sums->old_springs += 0.5 * memory.spring * memory.slide;
 
     dem_force ends = {0, 0, 0, 0};
-    double dashpot = -d->pairs.dashpot[p].normal * damped * c.vn, power = dashpot * c.vn, push = kn * depth + dashpot;
+    double dashpot = -dashpot_n * damped * c.vn, power = dashpot * c.vn, push = kn * depth + dashpot;
     double along = push, before = memory.damping * c.vn; /* the dashpot's power at the step's beginning */
     if (count == 2) {                                    /* and of two ends as if it had been what it is */
-        push = push_ends(b, c, &t, kn, d->pairs.dashpot[p].normal * damped, &ends, &dashpot, &power);
+        push = push_ends(b, c, &t, kn, dashpot_n * damped, &ends, &dashpot, &power);
         before = is_old ? power : 0;
         along = 0;
     }
     sums->damping -= 0.5 * (power + before) * dt;
     sums->normal_energy += (hertz ? 0.4 : 0.5) * kn * depth * depth;
     memory.damping = dashpot;
-    const double drag = -slide(&memory.slide, &memory.spring, kt, d->pairs.dashpot[p].tangential * damped * c.vt,
-                               c.vt * dt, law->friction * fabs(push), sums);
+    const double drag = -slide(&memory.slide, &memory.spring, kt, dashpot_t * damped * c.vt, c.vt * dt,
+                               law->friction * fabs(push), sums);
     sums->tangential_energy += 0.5 * memory.spring * memory.slide;
     d->pairs.memory[p] = memory;
 
     const double fx = along * c.normal.x - drag * c.normal.y, fy = along * c.normal.y + drag * c.normal.x;
     dem_force force = {fx, fy, -(c.point.x * fy - c.point.y * fx), c.arm_b.x * fy - c.arm_b.y * fx};
     if (count == 2)
-        force = (dem_force){force.x + ends.x, force.y + ends.y, force.torque_a + ends.torque_a,
-                            force.torque_b + ends.torque_b};
+        force = (dem_force){fx + ends.x, fy + ends.y, force.torque_a + ends.torque_a, force.torque_b + ends.torque_b};
     if (rolls) {
         const double bound = law->rolling_friction * radius * fabs(push);
         const double torque = apply_rolling(d, &c, k, kt * radius * radius, bound, is_old, sums);
@@ -310,10 +295,8 @@ INLINE bool apply_law(dem *d, size_t k, dem_contact *out_row, bool hertz, bool r
         force.torque_b -= torque;
     }
     *out_row = (dem_contact){p, c.normal, c.point, depth, force};
-    if (d->scratch->adds) {
-        add_to_body(b, c.a, -force.x, -force.y, force.torque_a);
-        add_to_body(b, c.b, force.x, force.y, force.torque_b);
-    }
+    if (d->scratch->adds)
+        add_to_bodies(b, c.a, c.b, force);
     if (!(depth <= d->safe_depth) && sums->too_deep == SIZE_MAX && is_too_deep(d, c.a, c.b, depth))
         sums->too_deep = p;
     return true;
@@ -327,21 +310,15 @@ INLINE dem_sums apply_laws(dem *d, size_t first, size_t end, bool hertz, bool ro
     return sums;
 }
 
-static dem_sums apply_block(dem *d, size_t first, size_t end, bool hertz, bool rolls) {
-    return rolls   ? apply_laws(d, first, end, hertz, true)
-           : hertz ? apply_laws(d, first, end, true, false)
-                   : apply_laws(d, first, end, false, false);
-}
-
 static bool fail_depth(dem *d, size_t p) {
-    const size_t a = dem_body_a(d, p), b = dem_body_b(d, p), k = d->contacts.count;
+    const size_t a = dem_body_a(d, p), b = dem_body_b(d, p);
     const bool is_grain = b < d->grain_count;
-    double depth = 0;
-    for (size_t i = 0; i < k; i++)
-        depth = d->contacts.rows[i].pair == p ? d->contacts.rows[i].depth : depth;
+    const dem_contact *row = d->contacts.rows;
+    while (row->pair != p)
+        row++;
     return dem_fail(d, "step %llu: grain %zu overlaps %s %zu by %g, more than %g of the smaller one's extent. %s",
                     (unsigned long long)d->step, a, is_grain ? "grain" : "wall", is_grain ? b : b - d->grain_count,
-                    depth, d->settings.max_overlap,
+                    row->depth, d->settings.max_overlap,
                     d->step == 0 ? "They are placed so: the run has not begun"
                                  : "Use a shorter time step, or stiffer contacts");
 }
@@ -357,23 +334,30 @@ static void join_blocks(dem *d, size_t blocks) {
         c->count += count;
     }
     for (size_t k = 0; !d->scratch->adds && k < c->count; k++)
-        d->scratch->slot[c->rows[k].pair] = (uint32_t)k;
+        add_to_bodies(&d->bodies, dem_body_a(d, c->rows[k].pair), dem_body_b(d, c->rows[k].pair), c->rows[k].force);
 }
 
 bool dem_apply_laws(dem *d) {
     dem_scratch *s = d->scratch;
     const size_t count = d->contacts.found_count, blocks = (count + DEM_BLOCK - 1) / DEM_BLOCK;
-    const bool hertz = d->settings.law == DEM_HERTZ, rolls = dem_has_rolling(d);
+    const bool hertz = d->settings.law == DEM_HERTZ;
+    bool rolls = false;
+    for (size_t i = 0; i < d->material_count * d->material_count; i++)
+        rolls |= d->laws[i / d->material_count][i % d->material_count].rolling_friction > 0;
     const unsigned team = dem_team(d);
+    const size_t size = d->bodies.count * sizeof *d->bodies.fx;
     s->adds = team == 1;
-    if (s->adds)
-        dem_clear_forces(d);
+    memset(d->bodies.fx, 0, size);
+    memset(d->bodies.fy, 0, size);
+    memset(d->bodies.torque, 0, size);
     if (!dem_reserve(d, &s->sums, &s->sums_capacity, blocks, sizeof *s->sums))
         return false;
 #pragma omp parallel for schedule(static) num_threads(team) if (team > 1)
     for (size_t block = 0; block < blocks; block++) {
         const size_t first = block * DEM_BLOCK, end = block + 1 < blocks ? first + DEM_BLOCK : count;
-        s->sums[block] = apply_block(d, first, end, hertz, rolls);
+        s->sums[block] = rolls   ? apply_laws(d, first, end, hertz, true)
+                         : hertz ? apply_laws(d, first, end, true, false)
+                                 : apply_laws(d, first, end, false, false);
     }
     join_blocks(d, blocks);
     d->pull = 0;

@@ -11,18 +11,24 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "input.h"
+
+/* On a clock that never goes back. */
+static double find_seconds(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
 
 static volatile sig_atomic_t caught;
 
 static void on_signal(int number) { caught = number; }
 
 static void watch_signals(void) {
-    struct sigaction action;
-    memset(&action, 0, sizeof action);
-    action.sa_handler = on_signal;
+    const struct sigaction action = {.sa_handler = on_signal};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
     signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit is an error of writing */
@@ -44,19 +50,16 @@ static void end_badly(const run *r) { fail("%s", r->world.error); }
 
 static void write_restart(run *r) {
     const dem_output *o = &r->input.output;
-    if (o->restart[0] && !dem_write_restart(&r->world, &r->place, o->restart, r->world.error))
+    if (o->restart[0] && !dem_write_restart(&r->world, &r->place, o->restart))
         end_badly(r);
-}
-
-/* "out/pile.csv" and 12 make "out/pile-000012.csv". */
-static void number_name(const char *name, uint64_t number, char *out_name, size_t size) {
-    snprintf(out_name, size, "%.*s-%06" PRIu64 ".csv", (int)strlen(name) - 4, name, number);
 }
 
 static void write_frame(run *r) {
     const dem_output *o = &r->input.output;
     dem *d = &r->world;
     char name[DEM_PATH_SIZE];
+    if (o->grains[0]) /* "out/pile.csv" and 12 make "out/pile-000012.csv" */
+        snprintf(name, sizeof name, "%.*s-%06" PRIu64 ".csv", (int)strlen(o->grains) - 4, o->grains, r->place.frame);
     if (r->csv) {
         dem_measures measures;
         dem_measure(d, &o->region, &measures);
@@ -64,19 +67,14 @@ static void write_frame(run *r) {
             fail("%s: it cannot be written", o->csv);
         r->place.csv_position = (uint64_t)ftell(r->csv);
     }
-    if (o->vtk[0] && !dem_write_vtk(d, o->vtk, r->place.frame, d->error))
+    if ((o->vtk[0] && !dem_write_vtk(d, o->vtk, r->place.frame)) || (o->grains[0] && !dem_write_grains(d, name)))
         end_badly(r);
-    if (o->grains[0]) {
-        number_name(o->grains, r->place.frame, name, sizeof name);
-        if (!dem_write_grains(d, name, d->error))
-            end_badly(r);
-    }
     r->place.frame++;
 }
 
 /* Once a second on a terminal: how far it is, and how long it will take. */
 static void show_run(run *r, const dem_stage *stage) {
-    const double now = r->terminal ? dem_seconds() : 0;
+    const double now = r->terminal ? find_seconds() : 0;
     if (!r->terminal || now - r->shown < 0.5)
         return;
     const uint64_t done = r->world.step - r->first_step;
@@ -108,12 +106,8 @@ static _Noreturn void stop(run *r) {
     if (r->terminal)
         fprintf(stderr, "\r\033[K");
     write_restart(r);
-    if (o->restart[0])
-        fprintf(stderr, "dem: signal %d at step %" PRIu64 ": go on with --restart %s\n", number, r->world.step,
-                o->restart);
-    else
-        fprintf(stderr, "dem: signal %d at step %" PRIu64 ": no restart, the input's output names none\n", number,
-                r->world.step);
+    fprintf(stderr, "dem: signal %d at step %" PRIu64 ": %s%s\n", number, r->world.step,
+            o->restart[0] ? "go on with --restart " : "no restart, the input's output names none", o->restart);
     exit(128 + number);
 }
 
@@ -150,7 +144,7 @@ static void begin(run *r, const char *restart) {
     if (restart && stage < r->input.stage_count && r->place.stage_step > r->input.stages[stage].steps)
         fail("%s: it has done %" PRIu64 " steps of stage %" PRIu64 ", which has %" PRIu64 " in the input", restart,
              r->place.stage_step, stage, r->input.stages[stage].steps);
-    if (o->csv[0] && !(r->csv = dem_open_csv(&r->world, o->csv, &r->place.csv_position, r->world.error)))
+    if (o->csv[0] && !(r->csv = dem_open_csv(&r->world, o->csv, &r->place.csv_position)))
         end_badly(r);
     if (!restart)
         write_frame(r);
@@ -158,13 +152,13 @@ static void begin(run *r, const char *restart) {
     for (size_t i = (size_t)r->place.stage; i < r->input.stage_count; i++)
         r->total_steps += r->input.stages[i].steps - (i == r->place.stage ? r->place.stage_step : 0);
     r->terminal = isatty(STDERR_FILENO);
-    r->began = r->shown = dem_seconds();
+    r->began = r->shown = find_seconds();
 }
 
 static void report(const run *r) {
     dem_measures m;
     dem_measure(&r->world, &r->input.output.region, &m);
-    const double steps = (double)(r->world.step - r->first_step), seconds = dem_seconds() - r->began;
+    const double steps = (double)(r->world.step - r->first_step), seconds = find_seconds() - r->began;
     if (r->terminal)
         fprintf(stderr, "\r\033[K");
     if (r->total_steps == r->first_step)
@@ -180,13 +174,10 @@ static void report(const run *r) {
     fprintf(stderr, "dem: %.1f s, %.1f microseconds a step\n", seconds, steps > 0 ? 1e6 * seconds / steps : 0);
 }
 
-static int print_usage(FILE *to) {
-    fprintf(to, "usage: dem INPUT.json [--restart FILE] [--threads N]\n\n"
-                "Runs the discrete element simulation that the input describes (apps/dem/README.md).\n"
-                "  --restart FILE   go on from a restart file\n"
-                "  --threads N      1 to 256; otherwise 1\n");
-    return to == stdout ? 0 : 2;
-}
+static const char USAGE[] = "usage: dem INPUT.json [--restart FILE] [--threads N]\n\n"
+                            "Runs the discrete element simulation that the input describes (apps/dem/README.md).\n"
+                            "  --restart FILE   go on from a restart file\n"
+                            "  --threads N      1 to 256; otherwise 1\n";
 
 int main(int argc, char **argv) {
     static const struct option options[] = {{"help", no_argument, NULL, 'h'},
@@ -195,21 +186,22 @@ int main(int argc, char **argv) {
                                             {NULL, 0, NULL, 0}};
     const char *restart = NULL;
     unsigned threads = 0;
+    int read = 0;
     argv[0] = (char[]){"dem"}; /* with which getopt_long() begins its messages */
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         if (option == 'h')
-            return print_usage(stdout);
+            return fputs(USAGE, stdout) == EOF;
         if (option == '?')
             return 2;
         if (option == 'r')
             restart = optarg;
-        else
-            threads = (unsigned)read_whole("--threads", optarg, 1, 256);
+        else if (sscanf(optarg, "%3u%n", &threads, &read) != 1 || optarg[read] || threads < 1 || threads > 256)
+            fail("--threads must be a whole number from 1 to 256, not '%.40s'", optarg);
     }
     if (optind == argc)
         fail("INPUT is missing");
     if (optind + 1 < argc)
-        return print_usage(stderr);
+        fail("'%s' is one input too many", argv[optind + 1]);
     run *r = calloc(1, sizeof *r);
     if (!r)
         fail("not enough memory");

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * measures.c - energies, stress, counts. All of them are sums over bodies or contacts in their order, by one thread.
+ * measures.c - energies, stress, counts, each grain's share of the contacts. All of them are sums over bodies or
+ * contacts in their order, by one thread.
  */
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
 
-#include "internal.h"
+#include "dem.h"
 
 static dem_energies measure_energies(const dem *d, double *out_fastest) {
     const dem_bodies *b = &d->bodies;
@@ -90,6 +91,67 @@ void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measu
     m.stress_yy /= volume;
     *out_measures = m;
 }
+
+/* ------------------------------------------------------------------------------------------------ loads */
+
+double dem_normal_force(const dem_contact *c) { return c->force.x * c->normal.x + c->force.y * c->normal.y; }
+
+/* Counts, takes away who is not held, counts again, until all are. */
+static void find_bearing(const dem *d, dem_load *loads) {
+    uint32_t least = 3;
+    for (size_t i = 0; i < d->material_count * d->material_count; i++)
+        if (d->laws[i / d->material_count][i % d->material_count].friction > 0)
+            least = 2;
+    for (size_t k = 0; k < d->bodies.count; k++)
+        loads[k].bearing = least;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (size_t k = 0; k < d->bodies.count; k++)
+            loads[k].count = 0;
+        for (size_t k = 0; k < d->contacts.count; k++) {
+            const dem_contact *c = &d->contacts.rows[k];
+            dem_load *a = &loads[dem_body_a(d, c->pair)], *b = &loads[dem_body_b(d, c->pair)];
+            const bool bears = a->bearing > 0 && b->bearing > 0 && dem_normal_force(c) > 0;
+            a->count += bears;
+            b->count += bears;
+        }
+        for (size_t k = 0; k < d->grain_count; k++) {
+            const uint32_t now = loads[k].bearing > 0 && loads[k].count >= least ? loads[k].count : 0;
+            changed |= (now == 0) != (loads[k].bearing == 0);
+            loads[k].bearing = now;
+        }
+    }
+}
+
+static void add_load(const dem *d, dem_load *loads, size_t k, double fx, double fy, double x, double y) {
+    const double area = DEM_PI / 4 * d->bodies.extent[k] * d->bodies.extent[k];
+    const double share = k < d->grain_count ? 1 / (area * d->settings.thickness) : 0;
+    loads[k].contacts++;
+    loads[k].stress_xx -= share * fx * x;
+    loads[k].stress_xy -= share * fx * y;
+    loads[k].stress_yx -= share * fy * x;
+    loads[k].stress_yy -= share * fy * y;
+}
+
+dem_load *dem_find_loads(dem *d) {
+    const dem_bodies *b = &d->bodies;
+    dem_load *loads = calloc(b->count, sizeof *loads);
+    if (!loads) {
+        dem_fail(d, "not enough memory for a frame of %zu bodies", b->count);
+        return NULL;
+    }
+    for (size_t k = 0; k < d->contacts.count; k++) {
+        const dem_contact *c = &d->contacts.rows[k];
+        const size_t p = c->pair, i = dem_body_a(d, p), j = dem_body_b(d, p);
+        add_load(d, loads, i, -c->force.x, -c->force.y, c->point.x, c->point.y);
+        add_load(d, loads, j, c->force.x, c->force.y, c->point.x + (b->x[i] - b->x[j] - (double)d->pairs.shift_x[p]),
+                 c->point.y + (b->y[i] - b->y[j] - (double)d->pairs.shift_y[p]));
+    }
+    find_bearing(d, loads);
+    return loads;
+}
+
+/* ------------------------------------------------------------------------------------------------ the hash */
 
 /* FNV-1a, 64 bits, continued. */
 uint64_t dem_hash_bytes(uint64_t hash, const void *bytes, size_t size) {

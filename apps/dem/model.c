@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "internal.h"
+#include "dem.h"
 
 const dem_settings dem_defaults = {
     .time_step = 1e-5, .skin = 0.1, .thickness = 1, .gravity = {0, -9.81}, .max_overlap = 0.05};
@@ -66,7 +66,7 @@ static const column body_columns[] = {
 enum { BODY_COLUMNS = sizeof body_columns / sizeof body_columns[0] };
 
 static const column pair_columns[] = {PAIR(a),     PAIR(b),      PAIR(shift_x), PAIR(shift_y),
-                                      PAIR(hints), PAIR(memory), PAIR(dashpot), PAIR(rolling)};
+                                      PAIR(hints), PAIR(memory), PAIR(rolling)};
 enum { PAIR_COLUMNS = sizeof pair_columns / sizeof pair_columns[0] };
 
 void *dem_body_column(const dem *d, size_t index, size_t *out_item_size) {
@@ -85,6 +85,7 @@ static bool resize_columns(dem *d, void *structure, const column *columns, size_
     return true;
 }
 
+/* Frees what array pointers of a structure point to. */
 static void free_columns(void *structure, const column *columns, size_t column_count) {
     for (size_t i = 0; i < column_count; i++) {
         void *array;
@@ -94,12 +95,10 @@ static void free_columns(void *structure, const column *columns, size_t column_c
 }
 
 bool dem_grow_pairs(dem *d, dem_pairs *pairs, size_t needed) {
-    if (needed <= pairs->capacity)
-        return true;
     const size_t capacity = needed + needed / 2 + 16;
-    if (!resize_columns(d, pairs, pair_columns, PAIR_COLUMNS, capacity))
+    if (needed > pairs->capacity && !resize_columns(d, pairs, pair_columns, PAIR_COLUMNS, capacity))
         return false;
-    pairs->capacity = capacity;
+    pairs->capacity = needed > pairs->capacity ? capacity : pairs->capacity;
     return true;
 }
 
@@ -113,26 +112,18 @@ bool dem_create(dem *d, dem_settings settings) {
 }
 
 void dem_destroy(dem *d) {
-    dem_scratch *s = d->scratch;
-    dem_contacts *c = &d->contacts;
-    void *const arrays[] = {d->shapes,        d->outlines,          d->walls,
-                            d->parts.body,    d->parts.outline,     c->rows,
-                            c->found,         d->incidence.first_a, d->incidence.first_b,
-                            d->incidence.of_b};
+    dem_scratch *s = d->scratch, none = {0};
+    s = s ? s : &none;
     for (size_t k = 0; k < d->outline_count; k++)
         free(d->outlines[k].sides);
+    void *const arrays[] = {d->shapes, d->outlines,      d->walls,          d->parts.body, d->parts.outline,
+                            s->boxes,  d->contacts.rows, d->contacts.found, s->images,     s->match,
+                            s->extra,  s->sums,          s->poses,          d->scratch};
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++)
         free(arrays[i]);
     free_columns(&d->bodies, body_columns, BODY_COLUMNS);
     free_columns(&d->pairs, pair_columns, PAIR_COLUMNS);
     free_columns(&d->last_pairs, pair_columns, PAIR_COLUMNS);
-    if (s) {
-        void *const scratch[] = {s->boxes, s->still, s->group, s->image_of, s->image_x, s->image_y,
-                                 s->match, s->extra, s->slot,  s->sums,     s->poses};
-        for (size_t i = 0; i < sizeof scratch / sizeof scratch[0]; i++)
-            free(scratch[i]);
-        free(s);
-    }
     narc_destroy_shapes(d->store);
     narc_destroy_broad_phase(d->broad);
     memset(d, 0, sizeof *d);
@@ -194,7 +185,7 @@ bool dem_add_compound(dem *d, const char *name, const narc_arc *arcs, const size
         return false;
     shape.area = mass.area;
     shape.second_moment = mass.second_moment;
-    shape.extent = 2 * sqrt(mass.area / 3.14159265358979323846);
+    shape.extent = 2 * sqrt(mass.area / DEM_PI);
     snprintf(shape.name, sizeof shape.name, "%s", name);
     *out_shape = (uint32_t)d->shape_count;
     d->shapes[d->shape_count++] = shape;
@@ -205,83 +196,59 @@ bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count,
     return dem_add_compound(d, name, arcs, &count, 1, out_shape);
 }
 
-bool dem_add_material(dem *d, dem_material material, uint8_t *out_material) {
-    if (d->material_count == DEM_MAX_MATERIALS)
-        return dem_fail(d, "material '%s': at most %d materials are possible", material.name, DEM_MAX_MATERIALS);
-    *out_material = (uint8_t)d->material_count;
-    d->materials[d->material_count++] = material;
-    return true;
-}
-
 /* ------------------------------------------------------------------------------------------------ bodies */
 
-static bool add_parts(dem *d, uint32_t body) {
-    dem_parts *p = &d->parts;
-    const dem_shape *shape = &d->shapes[d->bodies.shape[body]];
-    const size_t needed = p->count + shape->outline_count;
-    if (needed > p->capacity) {
-        const size_t capacity = 2 * needed + 64;
-        if (!dem_resize(d, &p->body, capacity, sizeof *p->body) ||
-            !dem_resize(d, &p->outline, capacity, sizeof *p->outline))
-            return false;
-        p->capacity = capacity;
-    }
-    for (uint32_t i = 0; i < shape->outline_count; i++) {
-        p->body[p->count] = body;
-        p->outline[p->count++] = shape->first_outline + i;
-    }
-    return true;
-}
-
-/* A body of scale 1 and mass 0, without speed. */
-static bool add_body(dem *d, uint32_t shape, uint8_t material, double x, double y, double angle, float scale) {
+/* A body of mass 0, without speed. */
+static bool add_body(dem *d, uint32_t shape_index, uint8_t material, dem_vec at, double angle, double scale) {
     dem_bodies *b = &d->bodies;
-    if (b->count + 1 > b->capacity) {
-        const size_t capacity = 2 * b->capacity + 64;
-        if (!resize_columns(d, b, body_columns, BODY_COLUMNS, capacity))
+    dem_parts *p = &d->parts;
+    const dem_shape *shape = &d->shapes[shape_index];
+    const size_t k = b->count, parts = p->count + shape->outline_count;
+    if (k + 1 > b->capacity) {
+        b->capacity = 2 * k + 64;
+        if (!resize_columns(d, b, body_columns, BODY_COLUMNS, b->capacity))
             return false;
-        b->capacity = capacity;
     }
-    const size_t k = b->count++;
+    if (parts > p->capacity) {
+        p->capacity = 2 * parts + 64;
+        if (!dem_resize(d, &p->body, p->capacity, sizeof *p->body) ||
+            !dem_resize(d, &p->outline, p->capacity, sizeof *p->outline))
+            return false;
+    }
     for (size_t i = 0; i < BODY_COLUMNS; i++) {
         size_t size;
         char *array = dem_body_column(d, i, &size);
         memset(array + k * size, 0, size);
     }
-    b->x[k] = x;
-    b->y[k] = y;
+    const dem_outline *outline = &d->outlines[shape->first_outline];
+    const touch_side *side = outline->sides;
+    const bool is_disc = shape->outline_count == 1 && outline->side_count == 1 && side->x == 0 && side->y == 0;
+    b->x[k] = at.x;
+    b->y[k] = at.y;
     b->cosine[k] = cos(angle);
     b->sine[k] = sin(angle);
-    b->scale[k] = scale;
-    b->shape[k] = shape;
+    b->scale[k] = (float)scale;
+    b->shape[k] = shape_index;
     b->material[k] = material;
-    b->reach[k] = (double)scale * d->shapes[shape].reach;
-    b->extent[k] = (double)scale * d->shapes[shape].extent;
-    b->first_part[k] = (uint32_t)d->parts.count;
-    const dem_outline *outline = &d->outlines[d->shapes[shape].first_outline];
-    const touch_side *side = outline->sides;
-    const bool is_disc =
-        d->shapes[shape].outline_count == 1 && outline->side_count == 1 && side->x == 0 && side->y == 0;
-    b->disc[k] = is_disc ? (double)scale * side->radius : 0;
-    return add_parts(d, (uint32_t)k);
+    b->reach[k] = (double)b->scale[k] * shape->reach;
+    b->extent[k] = (double)b->scale[k] * shape->extent;
+    b->disc[k] = is_disc ? (double)b->scale[k] * side->radius : 0;
+    b->first_part[k] = (uint32_t)p->count;
+    for (uint32_t i = 0; i < shape->outline_count; i++) {
+        p->body[p->count] = (uint32_t)k;
+        p->outline[p->count++] = shape->first_outline + i;
+    }
+    b->count++;
+    return true;
 }
 
 bool dem_add_grain(dem *d, dem_grain grain) {
-    const double numbers[] = {grain.x, grain.y, grain.angle, grain.scale, grain.vx, grain.vy, grain.spin};
     const size_t k = d->bodies.count;
-    if (d->started || grain.shape >= d->shape_count || grain.material >= d->material_count)
-        return dem_fail(d, "grain %zu: %s", k, d->started ? "the run has begun" : "no such shape or material");
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-        if (!isfinite(numbers[i]))
-            return dem_fail(d, "grain %zu: a number is not finite", k);
-    const float scale = (float)grain.scale;
-    if (!(scale > 0) || !isfinite(scale))
-        return dem_fail(d, "grain %zu: scale %g is not above 0", k, grain.scale);
-    if (!add_body(d, grain.shape, grain.material, grain.x, grain.y, grain.angle, scale))
+    if (!add_body(d, grain.shape, grain.material, (dem_vec){grain.x, grain.y}, grain.angle, grain.scale))
         return false;
     dem_bodies *b = &d->bodies;
     const dem_shape *shape = &d->shapes[grain.shape];
-    const double s = (double)scale, pillar = d->materials[grain.material].density * d->settings.thickness;
+    const double s = (double)b->scale[k], pillar = d->materials[grain.material].density * d->settings.thickness;
     b->vx[k] = grain.vx;
     b->vy[k] = grain.vy;
     b->spin[k] = grain.spin;
@@ -301,14 +268,8 @@ bool dem_add_grain(dem *d, dem_grain grain) {
 
 bool dem_add_wall(dem *d, dem_wall wall) {
     const double length = hypot(wall.normal.x, wall.normal.y);
-    if (d->started || wall.material >= d->material_count)
-        return dem_fail(d, "wall '%s': %s", wall.name, d->started ? "the run has begun" : "no such material");
-    if (wall.kind == DEM_BOX && (wall.shape >= d->shape_count || !((float)wall.scale > 0)))
-        return dem_fail(d, "wall '%s': no such shape, or scale %g", wall.name, wall.scale);
-    if (wall.kind == DEM_PLATE && !(isfinite(length) && length > 0))
-        return dem_fail(d, "wall '%s': the normal has no direction", wall.name);
-    if (!isfinite(wall.place.x) || !isfinite(wall.place.y) || !isfinite(wall.angle))
-        return dem_fail(d, "wall '%s': a number is not finite", wall.name);
+    if (wall.kind == DEM_BOX && !((float)wall.scale > 0 && isfinite((float)wall.scale)))
+        return dem_fail(d, "wall '%s': scale %g is out of range", wall.name, wall.scale);
     if (!dem_reserve(d, &d->walls, &d->wall_capacity, d->wall_count + 1, sizeof *d->walls))
         return false;
     if (wall.kind == DEM_PLATE)
@@ -317,67 +278,50 @@ bool dem_add_wall(dem *d, dem_wall wall) {
     return true;
 }
 
-/* The block of plates: four times the largest grain's reach and the skin in half its side, so that it goes on further
- * than any grain that may touch it, whatever both move before the next list. */
-static bool add_block(dem *d, uint32_t *out_shape, double *out_half) {
+/* A plate's body is a block whose upper side is the plate: with four times the largest grain's reach and the skin in
+ * half its side, so that it goes on further than any grain that may touch it, whatever both move before the next list.
+ */
+static bool add_walls(dem *d) {
+    const double half = 4 * (d->grain_reach + d->settings.skin);
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     narc_error error;
-    const double half = 4 * (d->grain_reach + d->settings.skin);
-    if (narc_build_box(2 * half, 2 * half, 0, arcs, &count, &error) != NARC_OK)
-        return dem_fail_narc(d, "the block of a plate", &error);
-    *out_half = half;
-    return dem_add_shape(d, "plate", arcs, count, out_shape);
-}
-
-static bool add_walls(dem *d) {
-    uint32_t block = 0;
-    double half = 0;
+    uint32_t block = UINT32_MAX;
     for (size_t w = 0; w < d->wall_count; w++) {
         dem_wall *wall = &d->walls[w];
-        dem_vec place = wall->place;
-        if (wall->kind == DEM_PLATE) {
-            if (half <= 0 && !add_block(d, &block, &half))
+        const bool plate = wall->kind == DEM_PLATE;
+        if (plate && block == UINT32_MAX) {
+            if (narc_build_box(2 * half, 2 * half, 0, arcs, &count, &error) != NARC_OK)
+                return dem_fail_narc(d, "the block of a plate", &error);
+            if (!dem_add_shape(d, "plate", arcs, count, &block))
                 return false;
-            wall->shape = block;
-            wall->scale = 1;
-            place = (dem_vec){place.x - half * wall->normal.x, place.y - half * wall->normal.y};
         }
+        wall->shape = plate ? block : wall->shape;
+        wall->scale = plate ? 1 : wall->scale;
+        const double down = plate ? half : 0; /* a box has no normal */
+        const dem_vec place = {wall->place.x - down * wall->normal.x, wall->place.y - down * wall->normal.y};
         const size_t k = d->bodies.count;
-        if (!add_body(d, wall->shape, wall->material, place.x, place.y, wall->angle, (float)wall->scale))
+        if (!add_body(d, wall->shape, wall->material, place, wall->angle, wall->scale))
             return false;
-        if (wall->kind == DEM_PLATE) { /* the block's upper side is the plate */
-            d->bodies.cosine[k] = wall->normal.y;
-            d->bodies.sine[k] = -wall->normal.x;
-        }
+        d->bodies.cosine[k] = plate ? wall->normal.y : d->bodies.cosine[k];
+        d->bodies.sine[k] = plate ? -wall->normal.x : d->bodies.sine[k];
         d->bodies.still[k] = 1;
     }
     return true;
 }
 
-dem_region dem_bound_grains(const dem *d) {
-    const dem_bodies *b = &d->bodies;
-    dem_region r = {.low_x = INFINITY, .low_y = INFINITY, .high_x = -INFINITY, .high_y = -INFINITY};
-    for (size_t k = 0; k < d->grain_count; k++) {
-        r.low_x = fmin(r.low_x, b->x[k] - b->reach[k]);
-        r.high_x = fmax(r.high_x, b->x[k] + b->reach[k]);
-        r.low_y = fmin(r.low_y, b->y[k] - b->reach[k]);
-        r.high_y = fmax(r.high_y, b->y[k] + b->reach[k]);
-    }
-    return r;
+static void enlarge(dem_region *r, double x, double y, double by) {
+    r->low_x = fmin(r->low_x, x - by);
+    r->low_y = fmin(r->low_y, y - by);
+    r->high_x = fmax(r->high_x, x + by);
+    r->high_y = fmax(r->high_y, y + by);
 }
 
-/* Of the box around all grains and the places of walls. */
-static double find_diagonal(const dem *d) {
-    dem_region r = dem_bound_grains(d);
-    for (size_t w = 0; w < d->wall_count; w++) {
-        const dem_vec place = d->walls[w].place;
-        r.low_x = fmin(r.low_x, place.x);
-        r.high_x = fmax(r.high_x, place.x);
-        r.low_y = fmin(r.low_y, place.y);
-        r.high_y = fmax(r.high_y, place.y);
-    }
-    return hypot(r.high_x - r.low_x, r.high_y - r.low_y);
+dem_region dem_bound_grains(const dem *d) {
+    dem_region r = {.low_x = INFINITY, .low_y = INFINITY, .high_x = -INFINITY, .high_y = -INFINITY};
+    for (size_t k = 0; k < d->grain_count; k++)
+        enlarge(&r, d->bodies.x[k], d->bodies.y[k], d->bodies.reach[k]);
+    return r;
 }
 
 /* A periodic cell's width is rounded to a float: the shift of an image is one. */
@@ -391,11 +335,7 @@ static bool check_cell(dem *d, const char *axis, double low, double *high) {
 
 bool dem_start(dem *d) {
     dem_settings *s = &d->settings;
-    if (d->started || d->grain_count == 0)
-        return dem_fail(d, d->started ? "the run has begun" : "there are no grains");
-    if (!(s->time_step > 0) || !(s->skin > 0) || !isfinite(s->skin) || !isfinite(s->time_step))
-        return dem_fail(d, "time step %g and skin %g are not both above 0", s->time_step, s->skin);
-    const double shortest = dem_find_shortest_contact(d);
+    const double shortest = dem_find_shortest_contact(d), rate = s->shear;
     if (s->time_step > shortest / 5)
         return dem_fail(
             d,
@@ -407,12 +347,13 @@ bool dem_start(dem *d) {
     if ((s->periodic_x && !check_cell(d, "x", s->low_x, &s->high_x)) ||
         (s->periodic_y && !check_cell(d, "y", s->low_y, &s->high_y)) || !add_walls(d))
         return false;
-    d->started = true;
-    const double rate = s->shear;
     s->shear = 0;
     dem_set_shear(d, rate);
     d->shear_work = 0; /* grains begin so */
-    d->diagonal = find_diagonal(d);
+    dem_region all = dem_bound_grains(d);
+    for (size_t w = 0; w < d->wall_count; w++)
+        enlarge(&all, d->walls[w].place.x, d->walls[w].place.y, 0);
+    d->diagonal = hypot(all.high_x - all.low_x, all.high_y - all.low_y);
     return dem_renew_lists(d) && dem_find_first_forces(d);
 }
 
@@ -455,14 +396,6 @@ bool dem_find_broken_body(dem *d) {
 unsigned dem_team(const dem *d) { return d->settings.threads > 0 ? d->settings.threads : 1; }
 
 narc_workers dem_workers(const dem *d) { return narc_openmp_workers(dem_team(d)); }
-
-bool dem_has_rolling(const dem *d) {
-    for (size_t a = 0; a < d->material_count; a++)
-        for (size_t b = 0; b < d->material_count; b++)
-            if (d->laws[a][b].rolling_friction > 0)
-                return true;
-    return false;
-}
 
 double dem_cell_width(const dem *d) { return d->settings.high_x - d->settings.low_x; }
 double dem_cell_height(const dem *d) { return d->settings.high_y - d->settings.low_y; }

@@ -8,22 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "internal.h"
+#include "dem.h"
 
 bool dem_make_room_for_boxes(dem *d, size_t count) {
     dem_scratch *s = d->scratch;
-    const size_t capacity = count + count / 2 + 16;
-    if (count <= s->box_capacity)
-        return true;
-    if (!dem_resize(d, &s->boxes, capacity, sizeof *s->boxes) ||
-        !dem_resize(d, &s->still, capacity, sizeof *s->still) ||
-        !dem_resize(d, &s->group, capacity, sizeof *s->group) ||
-        !dem_resize(d, &s->image_of, capacity, sizeof *s->image_of) ||
-        !dem_resize(d, &s->image_x, capacity, sizeof *s->image_x) ||
-        !dem_resize(d, &s->image_y, capacity, sizeof *s->image_y))
-        return false;
-    s->box_capacity = capacity;
-    return true;
+    return dem_reserve(d, &s->boxes, &s->box_capacity, count, sizeof *s->boxes) &&
+           dem_reserve(d, &s->images, &s->image_capacity, count, sizeof *s->images);
 }
 
 static bool find_boxes(dem *d) {
@@ -35,9 +25,9 @@ static bool find_boxes(dem *d) {
     narc_error error;
     if (!dem_make_room_for_boxes(d, d->parts.count) || !dem_make_poses(d, &bodies))
         return false;
-    for (size_t i = 0; i < d->parts.count; i++) {
-        d->scratch->still[i] = d->bodies.still[d->parts.body[i]];
-        d->scratch->group[i] = d->parts.body[i] + 1;
+    for (uint32_t i = 0; i < d->parts.count; i++) {
+        const uint32_t k = d->parts.body[i];
+        d->scratch->images[i] = (dem_image){.part = i, .group = k + 1, .still = d->bodies.still[k]};
     }
     if (narc_compute_boxes(d->store, &bodies, &options, d->scratch->boxes, &error) != NARC_OK)
         return dem_fail_narc(d, "boxes", &error);
@@ -51,13 +41,13 @@ static bool find_boxes(dem *d) {
 
 static bool find_pairs(dem *d) {
     dem_scratch *s = d->scratch;
-    narc_pair_filter filter = {.kind = NARC_ARRAY(s->still)};
+    narc_pair_filter filter = {.kind = NARC_COLUMN(s->images, still)};
     const narc_workers workers = dem_workers(d);
     const narc_pair_options options = {.filter = &filter, .workers = &workers};
     const narc_pair_list *list;
     narc_error error;
     if (d->parts.count > d->bodies.count)
-        filter.group = NARC_ARRAY(s->group);
+        filter.group = NARC_COLUMN(s->images, group);
     narc_forget_pairs(d->broad); /* pairs are matched when those of images have become those of bodies */
     if (narc_update_box_pairs(d->broad, s->boxes, d->parts.count + s->image_count, &options, &list, &error) != NARC_OK)
         return dem_fail_narc(d, "pairs", &error);
@@ -68,13 +58,10 @@ static bool find_pairs(dem *d) {
     return (s->image_count == 0 || dem_take_image_pairs(d)) && dem_add_plate_pairs(d);
 }
 
-static int compare(uint32_t a, uint32_t b, uint32_t other_a, uint32_t other_b) {
-    return a != other_a ? (a > other_a) - (a < other_a) : (b > other_b) - (b < other_b);
-}
-
-static int compare_extra(const void *left, const void *right) {
+static int compare_pairs(const void *left, const void *right) {
     const dem_extra *l = left, *r = right;
-    return compare(l->a, l->b, r->a, r->b);
+    const uint64_t first = (uint64_t)l->a << 32 | l->b, second = (uint64_t)r->a << 32 | r->b;
+    return (first > second) - (first < second);
 }
 
 /* Merges found and extra pairs in the order of (a, b). */
@@ -84,22 +71,24 @@ static bool merge_pairs(dem *d) {
     if (!dem_grow_pairs(d, p, s->found_count + s->extra_count))
         return false;
     if (s->extra_count > 0)
-        qsort(s->extra, s->extra_count, sizeof *s->extra, compare_extra);
+        qsort(s->extra, s->extra_count, sizeof *s->extra, compare_pairs);
     size_t i = 0, j = 0;
     for (p->count = 0;; p->count++) {
         while (i < s->found_count && s->found_b[i] >= d->parts.count) /* of an image, among the extra ones too */
             i++;
         if (i == s->found_count && j == s->extra_count)
             return true;
-        const dem_extra *extra = &s->extra[j];
-        const bool is_found = j == s->extra_count ||
-                              (i < s->found_count && compare(s->found_a[i], s->found_b[i], extra->a, extra->b) < 0);
-        p->a[p->count] = is_found ? s->found_a[i] : extra->a;
-        p->b[p->count] = is_found ? s->found_b[i] : extra->b;
-        p->shift_x[p->count] = is_found ? 0 : extra->shift_x;
-        p->shift_y[p->count] = is_found ? 0 : extra->shift_y;
+        dem_extra next = {.a = UINT32_MAX};
+        if (i < s->found_count)
+            next = (dem_extra){.a = s->found_a[i], .b = s->found_b[i]};
+        const bool is_found = j == s->extra_count || compare_pairs(&next, &s->extra[j]) < 0;
+        next = is_found ? next : s->extra[j];
         i += is_found;
         j += !is_found;
+        p->a[p->count] = next.a;
+        p->b[p->count] = next.b;
+        p->shift_x[p->count] = next.shift_x;
+        p->shift_y[p->count] = next.shift_y;
     }
 }
 
@@ -121,33 +110,6 @@ static bool carry_over(dem *d) {
     return true;
 }
 
-/* Which pairs a body has, and what of them depends on the bodies alone. */
-bool dem_index_pairs(dem *d) {
-    const dem_pairs *p = &d->pairs;
-    dem_incidence *n = &d->incidence;
-    const size_t bodies = d->bodies.count;
-    if (!dem_resize(d, &n->first_a, bodies + 1, sizeof *n->first_a) ||
-        !dem_resize(d, &n->first_b, bodies + 2, sizeof *n->first_b) ||
-        !dem_reserve(d, &n->of_b, &n->capacity, p->count, sizeof *n->of_b) ||
-        !dem_resize(d, &d->scratch->slot, p->capacity + 1, sizeof *d->scratch->slot))
-        return false;
-    for (size_t k = 0, next = 0; k <= bodies; k++) {
-        while (next < p->count && dem_body_a(d, next) < k)
-            next++;
-        n->first_a[k] = (uint32_t)next;
-    }
-    memset(n->first_b, 0, (bodies + 2) * sizeof *n->first_b);
-    for (size_t k = 0; k < p->count; k++)
-        n->first_b[dem_body_b(d, k) + 2]++;
-    for (size_t k = 2; k < bodies + 2; k++)
-        n->first_b[k] += n->first_b[k - 1];
-    for (size_t k = 0; k < p->count; k++) /* moves each beginning to the next body's */
-        n->of_b[n->first_b[dem_body_b(d, k) + 1]++] = (uint32_t)k;
-    memset(d->scratch->slot, 0, p->count * sizeof *d->scratch->slot);
-    dem_find_dashpots(d);
-    return true;
-}
-
 /* From where bodies move. */
 static void remember_places(dem *d) {
     dem_bodies *b = &d->bodies;
@@ -165,7 +127,7 @@ bool dem_renew_lists(dem *d) {
         return false;
     d->pairs = d->last_pairs;
     d->last_pairs = last;
-    if (!merge_pairs(d) || !carry_over(d) || !dem_index_pairs(d))
+    if (!merge_pairs(d) || !carry_over(d))
         return false;
     remember_places(d);
     d->list_builds++;

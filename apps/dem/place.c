@@ -3,12 +3,11 @@
  * place.c - where grains start. A random filling puts grain after grain at a random place with a random angle, and
  * tries again while it would touch: narc_find_contacts() decides, a grid of cells tells whom to ask about.
  */
-#include "place.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "internal.h"
+#include "dem.h"
 
 /* SplitMix64: the state counts, its mixture is the number, 0 <= x < 1. */
 static double draw_unit(uint64_t *state) {
@@ -23,7 +22,7 @@ static double draw_between(uint64_t *random, double low, double high) { return l
 
 /* Box and Muller 1958. */
 static double draw_normal(uint64_t *random) {
-    const double u = 1 - draw_unit(random), angle = 6.283185307179586477 * draw_unit(random);
+    const double u = 1 - draw_unit(random), angle = 2 * DEM_PI * draw_unit(random);
     return sqrt(-2 * log(u)) * cos(angle);
 }
 
@@ -45,7 +44,7 @@ static dem_grain draw_grain(const dem *d, const dem_filling *f, uint64_t *random
     const size_t choice = (size_t)(draw_unit(random) * (double)f->shape_count);
     dem_grain grain = {.shape = f->shapes[choice], .material = f->material};
     grain.scale = (double)(float)(dem_draw_size(&f->sizes, random) / d->shapes[grain.shape].extent);
-    grain.angle = f->upright ? 0 : draw_between(random, -3.14159265358979324, 3.14159265358979324);
+    grain.angle = f->upright ? 0 : draw_between(random, -DEM_PI, DEM_PI);
     grain.vx = draw_between(random, -f->speed, f->speed);
     grain.vy = draw_between(random, -f->speed, f->speed);
     grain.spin = draw_between(random, -f->spin, f->spin);
@@ -54,65 +53,47 @@ static dem_grain draw_grain(const dem *d, const dem_filling *f, uint64_t *random
 
 /* ------------------------------------------------------------------------------------------------ random */
 
-/* A grid over the region's grains: the first one of each cell, and the next one of the same cell. Cells are at least as
- * wide as two largest grains reach, so that who touches is in a neighbouring one. */
+/* Cells as wide as two of the largest grains reach, so that who touches is in a neighbouring one: the last grain of
+ * those whose cells share a place in the table, and of each grain the one before. */
 typedef struct grid {
-    double low_x, low_y, width, height;
-    size_t columns, rows;
-    uint32_t *first, *next;
-    size_t next_capacity;
-    double reach; /* of the largest grain that can be */
+    double width;
+    uint64_t mask;
+    uint32_t *last, *before;
 } grid;
 
 static const uint32_t NOBODY = UINT32_MAX;
 
-static size_t find_cell(double value, double low, double width, size_t count) {
-    const double cell = floor((value - low) / width);
-    return cell < 0 ? 0 : cell >= (double)count ? count - 1 : (size_t)cell;
+/* The place of the cell that is so many to the right and up. */
+static uint32_t *find_cell(const grid *g, double x, double y, int right, int up) {
+    const double most = 1e15; /* cells that are further away are one */
+    const int64_t column = (int64_t)fmax(fmin(floor(x / g->width), most), -most) + right;
+    const int64_t row = (int64_t)fmax(fmin(floor(y / g->width), most), -most) + up;
+    const uint64_t mixed = ((uint64_t)column * 0x9e3779b97f4a7c15 ^ (uint64_t)row) * 0xbf58476d1ce4e5b9;
+    return &g->last[mixed >> 32 & g->mask];
 }
 
-static bool add_to_grid(dem *d, grid *g, uint32_t body) {
-    const size_t cell = find_cell(d->bodies.y[body], g->low_y, g->height, g->rows) * g->columns +
-                        find_cell(d->bodies.x[body], g->low_x, g->width, g->columns);
-    if (body >= g->next_capacity) {
-        const size_t capacity = 2 * (size_t)body + 64;
-        uint32_t *larger = realloc(g->next, capacity * sizeof *larger);
-        if (!larger)
-            return dem_fail(d, "not enough memory for %zu grains", capacity);
-        g->next = larger;
-        g->next_capacity = capacity;
-    }
-    g->next[body] = g->first[cell];
-    g->first[cell] = body;
-    return true;
-}
-
-static double largest_reach(const dem *d, const dem_filling *f) {
-    const double largest = f->sizes.kind == DEM_FIXED ? f->sizes.mean : f->sizes.high;
-    double reach = d->grain_reach;
-    for (size_t i = 0; i < f->shape_count; i++)
-        reach = fmax(reach, d->shapes[f->shapes[i]].reach * largest / d->shapes[f->shapes[i]].extent);
-    return reach;
+static void add_to_grid(const dem *d, grid *g, uint32_t body) {
+    uint32_t *last = find_cell(g, d->bodies.x[body], d->bodies.y[body], 0, 0);
+    g->before[body] = *last;
+    *last = body;
 }
 
 static bool open_grid(dem *d, const dem_filling *f, grid *g) {
-    const dem_region r = f->region;
-    enum { MOST_CELLS = 4096 };
-    g->reach = largest_reach(d, f);
-    g->low_x = r.low_x;
-    g->low_y = r.low_y;
-    g->columns = (size_t)fmin(fmax(floor((r.high_x - r.low_x) / (2 * g->reach + f->gap)), 1), MOST_CELLS);
-    g->rows = (size_t)fmin(fmax(floor((r.high_y - r.low_y) / (2 * g->reach + f->gap)), 1), MOST_CELLS);
-    g->width = (r.high_x - r.low_x) / (double)g->columns;
-    g->height = (r.high_y - r.low_y) / (double)g->rows;
-    g->first = malloc(g->columns * g->rows * sizeof *g->first);
-    if (!g->first)
-        return dem_fail(d, "not enough memory for a grid");
-    for (size_t i = 0; i < g->columns * g->rows; i++)
-        g->first[i] = NOBODY;
+    const double largest = f->sizes.kind == DEM_FIXED ? f->sizes.mean : f->sizes.high;
+    const size_t count = d->grain_count + (size_t)f->count;
+    double reach = d->grain_reach;
+    for (size_t i = 0; i < f->shape_count; i++)
+        reach = fmax(reach, d->shapes[f->shapes[i]].reach * largest / d->shapes[f->shapes[i]].extent);
+    g->width = 2 * reach + f->gap;
+    for (g->mask = 255; g->mask < count;)
+        g->mask = 2 * g->mask + 1;
+    if (!dem_resize(d, &g->last, (size_t)g->mask + 1, sizeof *g->last) ||
+        !dem_resize(d, &g->before, count, sizeof *g->before))
+        return false;
+    for (size_t i = 0; i <= g->mask; i++)
+        g->last[i] = NOBODY;
     for (size_t k = 0; k < d->grain_count; k++)
-        if (!add_to_grid(d, g, (uint32_t)k))
-            return false;
+        add_to_grid(d, g, (uint32_t)k);
     return true;
 }
 
@@ -142,35 +123,25 @@ static bool is_clear_of(const dem *d, narc_body grain, narc_body other, double g
     return true;
 }
 
-static bool is_clear_of_cell(const dem *d, const grid *g, const dem_filling *f, narc_body grain) {
+static bool is_clear_of_grains(const dem *d, const grid *g, double gap, narc_body grain) {
     const dem_bodies *b = &d->bodies;
-    const double x = grain.x, y = grain.y;
-    const size_t column = find_cell(x, g->low_x, g->width, g->columns),
-                 row = find_cell(y, g->low_y, g->height, g->rows);
-    const double reach = (double)grain.scale * d->shapes[grain.shape].reach;
-    for (size_t i = row > 0 ? row - 1 : 0; i <= row + 1 && i < g->rows; i++)
-        for (size_t j = column > 0 ? column - 1 : 0; j <= column + 1 && j < g->columns; j++)
-            for (uint32_t k = g->first[i * g->columns + j]; k != NOBODY; k = g->next[k]) {
-                const double far = reach + b->reach[k] + f->gap;
-                if ((b->x[k] - x) * (b->x[k] - x) + (b->y[k] - y) * (b->y[k] - y) <= far * far &&
-                    !is_clear_of(
-                        d, grain,
-                        (narc_body){b->x[k], b->y[k], (float)b->cosine[k], (float)b->sine[k], b->scale[k], b->shape[k]},
-                        f->gap))
-                    return false;
-            }
+    const double far = (double)grain.scale * d->shapes[grain.shape].reach + gap;
+    for (int i = 0; i < 9; i++)
+        for (uint32_t k = *find_cell(g, grain.x, grain.y, i % 3 - 1, i / 3 - 1); k != NOBODY; k = g->before[k]) {
+            const double x = b->x[k] - grain.x, y = b->y[k] - grain.y, most = far + b->reach[k];
+            const narc_body other = {b->x[k],           b->y[k],     (float)b->cosine[k],
+                                     (float)b->sine[k], b->scale[k], b->shape[k]};
+            if (x * x + y * y <= most * most && !is_clear_of(d, grain, other, gap))
+                return false;
+        }
     return true;
 }
 
-/* Of boxes among the walls. */
-static bool is_clear_of_boxes(const dem *d, const dem_filling *f, narc_body grain) {
-    for (size_t w = 0; w < d->wall_count; w++) {
-        const dem_wall *wall = &d->walls[w];
-        if (wall->kind == DEM_BOX &&
-            !is_clear_of(d, grain, make_body(wall->shape, wall->place.x, wall->place.y, wall->angle, wall->scale),
-                         f->gap))
+static bool is_clear_of_boxes(const dem *d, double gap, narc_body grain) {
+    for (const dem_wall *w = d->walls; w < d->walls + d->wall_count; w++)
+        if (w->kind == DEM_BOX &&
+            !is_clear_of(d, grain, make_body(w->shape, w->place.x, w->place.y, w->angle, w->scale), gap))
             return false;
-    }
     return true;
 }
 
@@ -191,42 +162,42 @@ static bool is_clear_of_plate(const dem *d, const dem_grain *grain, const dem_wa
 }
 
 /* Also of images, and of walls. */
-static bool is_free(const dem *d, const grid *g, const dem_filling *f, const dem_grain *grain) {
+static bool is_free(const dem *d, const grid *g, double gap, const dem_grain *grain) {
     const dem_settings *s = &d->settings;
     narc_body body = make_body(grain->shape, 0, 0, grain->angle, grain->scale);
     for (int i = s->periodic_x ? -1 : 0; i <= (s->periodic_x ? 1 : 0); i++)
         for (int j = s->periodic_y ? -1 : 0; j <= (s->periodic_y ? 1 : 0); j++) {
             body.x = grain->x + i * (s->high_x - s->low_x);
             body.y = grain->y + j * (s->high_y - s->low_y);
-            if (!is_clear_of_cell(d, g, f, body) || !is_clear_of_boxes(d, f, body))
+            if (!is_clear_of_grains(d, g, gap, body) || !is_clear_of_boxes(d, gap, body))
                 return false;
         }
     for (size_t w = 0; w < d->wall_count; w++)
-        if (d->walls[w].kind == DEM_PLATE && !is_clear_of_plate(d, grain, &d->walls[w], f->gap))
+        if (d->walls[w].kind == DEM_PLATE && !is_clear_of_plate(d, grain, &d->walls[w], gap))
             return false;
     return true;
 }
 
-static bool insert(dem *d, grid *g, const dem_filling *f, uint64_t *random, size_t index) {
-    dem_grain grain = draw_grain(d, f, random);
-    for (size_t tries = 0; tries < f->tries; tries++) {
-        grain.x = draw_between(random, f->region.low_x, f->region.high_x);
-        grain.y = draw_between(random, f->region.low_y, f->region.high_y);
-        grain.angle = f->upright ? 0 : draw_between(random, -3.14159265358979324, 3.14159265358979324);
-        if (is_free(d, g, f, &grain))
-            return dem_add_grain(d, grain) && add_to_grid(d, g, (uint32_t)(d->grain_count - 1));
-    }
-    return dem_fail(d, "grain %zu of %zu found no free place in %zu tries: the region is full", index, f->count,
-                    f->tries);
-}
-
 bool dem_fill_randomly(dem *d, const dem_filling *f, uint64_t *random) {
-    grid g = {.first = NULL};
+    grid g = {.last = NULL};
     bool ok = open_grid(d, f, &g);
-    for (size_t i = 0; i < f->count && ok; i++)
-        ok = insert(d, &g, f, random, i);
-    free(g.first);
-    free(g.next);
+    for (size_t i = 0; i < f->count && ok; i++) {
+        dem_grain grain = draw_grain(d, f, random);
+        uint64_t tries = 0;
+        do {
+            grain.x = draw_between(random, f->region.low_x, f->region.high_x);
+            grain.y = draw_between(random, f->region.low_y, f->region.high_y);
+            grain.angle = f->upright ? 0 : draw_between(random, -DEM_PI, DEM_PI);
+            ok = is_free(d, &g, f->gap, &grain);
+        } while (!ok && ++tries < f->tries);
+        if (!ok)
+            dem_fail(d, "grain %zu of %zu found no free place in %zu tries: the region is full", i, (size_t)f->count,
+                     (size_t)f->tries);
+        else if ((ok = dem_add_grain(d, grain)))
+            add_to_grid(d, &g, (uint32_t)(d->grain_count - 1));
+    }
+    free(g.last);
+    free(g.before);
     return ok;
 }
 

@@ -9,10 +9,11 @@
  * Shapes, materials and laws are not there: the input has them, and the input's hash says that it is the same. What
  * stages have changed is: gravity, laws, walls.
  */
+#define _XOPEN_SOURCE 700 /* open_memstream */
 #include <stdlib.h>
 #include <string.h>
 
-#include "internal.h"
+#include "dem.h"
 
 typedef struct header {
     char magic[8];
@@ -29,107 +30,94 @@ typedef struct counts {
 
 /* ------------------------------------------------------------------------------------------------ one way for both */
 
-/* Writing, `file`; reading, from `bytes`; or only counting and hashing. */
+/* Writing, to `file`; reading, from `bytes`. */
 typedef struct stream {
     FILE *file;
-    const char *bytes; /* reading */
+    const char *bytes;
     size_t size, used;
-    uint64_t hash;
-    bool reads, ok;
+    bool ok;
 } stream;
 
 static void pass(stream *s, void *data, size_t size) {
-    if (s->reads) {
-        s->ok = s->ok && size <= s->size - s->used;
-        if (s->ok && size > 0)
-            memcpy(data, s->bytes + s->used, size);
-    } else {
-        s->hash = dem_hash_bytes(s->hash, data, size);
-        if (s->file && size > 0)
-            s->ok = fwrite(data, 1, size, s->file) == size && s->ok;
-    }
+    if (s->file)
+        s->ok = fwrite(data, 1, size, s->file) == size && s->ok;
+    else if ((s->ok = s->ok && size <= s->size - s->used) && size > 0)
+        memcpy(data, s->bytes + s->used, size);
     s->used += size;
 }
 
-/* What is not an array. */
-static void pass_sums(stream *s, dem *d, dem_place *place) {
-    pass(s, &d->step, sizeof d->step);
-    pass(s, &d->list_builds, sizeof d->list_builds);
+#define PASS(thing) pass(s, &(thing), sizeof(thing))
+
+/* Of walls all but names and whatever else does not change. */
+static void pass_all(stream *s, dem *d, dem_place *place) {
+    const dem_pairs *p = &d->pairs;
     double *const sums[] = {&d->time,           &d->damping, &d->friction,    &d->normal_energy, &d->tangential_energy,
                             &d->rolling_energy, &d->offset,  &d->list_offset, &d->pull,          &d->shear_work,
                             &d->settings.shear};
+    PASS(d->step);
+    PASS(d->list_builds);
     for (size_t i = 0; i < sizeof sums / sizeof sums[0]; i++)
-        pass(s, sums[i], sizeof *sums[i]);
-    pass(s, &d->settings.gravity, sizeof d->settings.gravity);
-    pass(s, d->laws, sizeof d->laws);
-    pass(s, place, sizeof *place);
-}
-
-/* Walls without their names and whatever else does not change. */
-static void pass_walls(stream *s, dem *d) {
-    for (size_t i = 0; i < d->wall_count; i++) {
-        dem_wall *w = &d->walls[i];
+        PASS(*sums[i]);
+    PASS(d->settings.gravity);
+    PASS(d->laws);
+    PASS(*place);
+    for (dem_wall *w = d->walls; w < d->walls + d->wall_count; w++) {
         dem_servo *servo = &w->servo;
         int32_t on[2] = {servo->on, 0};
         double *const numbers[] = {&w->spin,       &w->work,     &w->idle_way,      &servo->force,
                                    &servo->stress, &servo->gain, &servo->max_speed, &servo->travel};
-        pass(s, &w->velocity, sizeof w->velocity);
-        pass(s, &w->pivot, sizeof w->pivot);
-        pass(s, &servo->direction, sizeof servo->direction);
+        PASS(w->velocity);
+        PASS(w->pivot);
+        PASS(servo->direction);
         for (size_t k = 0; k < sizeof numbers / sizeof numbers[0]; k++)
-            pass(s, numbers[k], sizeof *numbers[k]);
-        pass(s, servo->between, sizeof servo->between);
-        pass(s, on, sizeof on);
+            PASS(*numbers[k]);
+        PASS(servo->between);
+        PASS(on);
         servo->on = on[0] != 0;
     }
-}
-
-static void pass_arrays(stream *s, dem *d) {
-    const dem_pairs *p = &d->pairs;
     void *column;
     size_t size;
     for (size_t i = 0; (column = dem_body_column(d, i, &size)) != NULL; i++)
         pass(s, column, d->bodies.count * size);
-    pass(s, p->a, p->count * sizeof *p->a);
-    pass(s, p->b, p->count * sizeof *p->b);
-    pass(s, p->shift_x, p->count * sizeof *p->shift_x);
-    pass(s, p->shift_y, p->count * sizeof *p->shift_y);
-    pass(s, p->hints, p->count * sizeof *p->hints);
-    pass(s, p->memory, p->count * sizeof *p->memory);
-    pass(s, p->rolling, p->count * sizeof *p->rolling);
+    void *const pairs[] = {p->a, p->b, p->shift_x, p->shift_y, p->hints, p->memory, p->rolling};
+    const size_t sizes[] = {sizeof *p->a,     sizeof *p->b,      sizeof *p->shift_x, sizeof *p->shift_y,
+                            sizeof *p->hints, sizeof *p->memory, sizeof *p->rolling};
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++)
+        pass(s, pairs[i], p->count * sizes[i]);
     /* What the last step found: a run that has no more steps is asked for it. */
     pass(s, d->contacts.rows, d->contacts.count * sizeof *d->contacts.rows);
 }
 
-static void pass_all(stream *s, dem *d, dem_place *place) {
-    pass_sums(s, d, place);
-    pass_walls(s, d);
-    pass_arrays(s, d);
-}
-
 /* ------------------------------------------------------------------------------------------------ writing */
 
-bool dem_write_restart(const dem *d, const dem_place *place, const char *path, char *error) {
+bool dem_write_restart(dem *d, const dem_place *place, const char *path) {
     counts n = {d->bodies.count, d->wall_count, d->pairs.count, d->contacts.count, d->scratch->extra_count};
-    dem state = *d; /* pass() reads it only */
     dem_place where = *place;
-    stream count = {.hash = DEM_HASH_START, .ok = true}, out = {.hash = DEM_HASH_START, .ok = true};
-    pass(&count, &n, sizeof n);
-    pass_all(&count, &state, &where);
-    header head = {.version = VERSION,
-                   .byte_order = BYTE_ORDER_MARK,
-                   .size = count.used,
-                   .checksum = count.hash,
-                   .input = place->input};
-    memcpy(head.magic, MAGIC, sizeof head.magic);
     dem_file file;
-    if (!dem_open_file(&file, path, error))
-        return false;
-    out.file = file.file;
-    pass(&out, &head, sizeof head);
-    pass(&out, &n, sizeof n);
-    pass_all(&out, &state, &where);
-    return dem_close_file(&file, true, error);
+    char *bytes = NULL;
+    size_t size = 0;
+    stream out = {.file = open_memstream(&bytes, &size), .ok = true};
+    if (out.file) {
+        pass(&out, &n, sizeof n);
+        pass_all(&out, d, &where);
+        out.ok = fclose(out.file) == 0 && out.ok;
+    }
+    bool ok = out.file && out.ok;
+    if (!ok)
+        dem_fail(d, "%.400s: not enough memory for a restart", path);
+    else if ((ok = dem_open_file(&file, path, d->error))) {
+        header head = {.version = VERSION,
+                       .byte_order = BYTE_ORDER_MARK,
+                       .size = size,
+                       .checksum = dem_hash_bytes(DEM_HASH_START, bytes, size),
+                       .input = place->input};
+        memcpy(head.magic, MAGIC, sizeof head.magic);
+        fwrite(&head, 1, sizeof head, file.file); /* closing tells of errors */
+        fwrite(bytes, 1, size, file.file);
+        ok = dem_close_file(&file, true, d->error);
+    }
+    free(bytes);
+    return ok;
 }
 
 /* ------------------------------------------------------------------------------------------------ reading */
@@ -155,34 +143,19 @@ static bool check_header(dem *d, const char *path, const char *bytes, size_t siz
 
 /* The checksum has passed: what is checked here only fails for a file that was made to fail. */
 static bool check_indices(const dem *d) {
-    for (size_t k = 0; k < d->pairs.count; k++)
-        if (d->pairs.a[k] >= d->pairs.b[k] || d->pairs.b[k] >= d->parts.count || dem_body_a(d, k) >= d->grain_count)
-            return false;
-    for (size_t k = 0; k < d->contacts.count; k++)
-        if (d->contacts.rows[k].pair >= d->pairs.count)
-            return false;
-    for (size_t k = 0; k < d->bodies.count; k++)
-        if (d->bodies.shape[k] >= d->shape_count || d->parts.body[d->bodies.first_part[k]] != k ||
-            d->bodies.material[k] >= d->material_count)
-            return false;
-    for (size_t w = 0; w < d->wall_count; w++)
-        for (size_t i = 0; i < 2; i++) {
-            const int other = d->walls[w].servo.between[i];
-            if (other < -1 || (other >= 0 && (size_t)other >= d->wall_count) ||
-                (other < 0) != (d->walls[w].servo.between[0] < 0))
-                return false;
-        }
-    return true;
-}
-
-static bool make_room(dem *d, const counts *n) {
-    if (n->bodies != d->bodies.count || n->walls != d->wall_count || n->pairs >= UINT32_MAX || n->contacts > n->pairs ||
-        !dem_grow_pairs(d, &d->pairs, n->pairs) || !dem_make_room_for_contacts(d))
-        return false;
-    d->pairs.count = n->pairs;
-    d->contacts.count = n->contacts;
-    d->scratch->extra_count = n->extra;
-    return true;
+    bool ok = true;
+    for (size_t k = 0; k < d->pairs.count && ok; k++)
+        ok = d->pairs.a[k] < d->pairs.b[k] && d->pairs.b[k] < d->parts.count && dem_body_a(d, k) < d->grain_count;
+    for (size_t k = 0; k < d->contacts.count && ok; k++)
+        ok = d->contacts.rows[k].pair < d->pairs.count;
+    for (size_t k = 0; k < d->bodies.count && ok; k++)
+        ok = d->bodies.shape[k] < d->shape_count && d->bodies.material[k] < d->material_count &&
+             d->bodies.first_part[k] < d->parts.count && d->parts.body[d->bodies.first_part[k]] == k;
+    for (size_t i = 0; i < 2 * d->wall_count && ok; i++) {
+        const int *between = d->walls[i / 2].servo.between, other = between[i % 2];
+        ok = other >= -1 && other < (int)d->wall_count && (other < 0) == (between[0] < 0);
+    }
+    return ok;
 }
 
 bool dem_read_restart(dem *d, dem_place *place, const char *path) {
@@ -190,17 +163,24 @@ bool dem_read_restart(dem *d, dem_place *place, const char *path) {
     char *bytes = dem_read_file(path, &size, d->error);
     if (!bytes)
         return false;
-    bool ok = check_header(d, path, bytes, size, place->input);
-    if (ok) {
-        stream in = {.bytes = bytes + sizeof(header), .size = size - sizeof(header), .reads = true, .ok = true};
+    const bool belongs = check_header(d, path, bytes, size, place->input);
+    bool ok = belongs;
+    if (belongs) {
+        stream in = {.bytes = bytes + sizeof(header), .size = size - sizeof(header), .ok = true};
         counts n;
         pass(&in, &n, sizeof n);
-        ok = in.ok && make_room(d, &n);
-        if (ok)
+        ok = in.ok && n.bodies == d->bodies.count && n.walls == d->wall_count && n.pairs < UINT32_MAX &&
+             n.contacts <= n.pairs && dem_grow_pairs(d, &d->pairs, n.pairs) && dem_make_room_for_contacts(d);
+        if (ok) {
+            d->pairs.count = n.pairs;
+            d->contacts.count = n.contacts;
+            d->scratch->extra_count = n.extra;
             pass_all(&in, d, place);
-        if (!ok || !in.ok || in.used != in.size || !check_indices(d) || !dem_index_pairs(d))
-            ok = dem_fail(d, "%s: its counts do not fit the input", path);
+        }
+        ok = ok && in.ok && in.used == in.size && check_indices(d);
     }
+    if (belongs && !ok)
+        dem_fail(d, "%s: its counts do not fit the input", path);
     free(bytes);
     return ok;
 }

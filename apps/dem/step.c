@@ -6,14 +6,11 @@
  * the time step, dashpots of first. (So is the tangential spring where the contact turns: it takes the tangent of the
  * step's end.) Forces before the first step are those of where grains begin.
  *
- * A rotation is a unit vector, and turns within a step by 2 atan(spin dt / 2), which is spin dt to the third order and
- * needs no sine. What rounding takes from its length is given back each time.
+ * How bodies turn: dem_turn().
  */
-#define _XOPEN_SOURCE 700 /* clock_gettime */
 #include <math.h>
-#include <time.h>
 
-#include "internal.h"
+#include "dem.h"
 
 /* ------------------------------------------------------------------------------------------------ motion */
 
@@ -29,33 +26,22 @@ static void kick(dem *d) {
     }
 }
 
-/* A kick, and the way. */
-static void kick_and_drift(dem *d) {
+static void drift(dem *d) {
     const dem_bodies b = d->bodies;
-    const double dt = d->settings.time_step, kick = 0.5 * dt, gx = d->settings.gravity.x, gy = d->settings.gravity.y;
+    const double dt = d->settings.time_step;
     const size_t count = d->grain_count;
 #pragma omp parallel for simd schedule(static) num_threads(dem_team(d)) if (parallel : dem_team(d) > 1)
     for (size_t k = 0; k < count; k++) {
-        const double vx = b.vx[k] + kick * (b.fx[k] * b.inverse_mass[k] + gx);
-        const double vy = b.vy[k] + kick * (b.fy[k] * b.inverse_mass[k] + gy);
-        const double spin = b.spin[k] + kick * (b.torque[k] * b.inverse_inertia[k]);
-        b.vx[k] = vx;
-        b.vy[k] = vy;
-        b.spin[k] = spin;
-        b.x[k] += dt * vx;
-        b.y[k] += dt * vy;
-        const double half = 0.5 * dt * spin, share = 1 / (1 + half * half);
-        const double cosine = (1 - half * half) * share, sine = 2 * half * share;
-        const double c = b.cosine[k] * cosine - b.sine[k] * sine, s = b.sine[k] * cosine + b.cosine[k] * sine;
-        const double unit = 1.5 - 0.5 * (c * c + s * s);
-        b.cosine[k] = c * unit;
-        b.sine[k] = s * unit;
+        b.x[k] += dt * b.vx[k];
+        b.y[k] += dt * b.vy[k];
+        dem_turn(&b.cosine[k], &b.sine[k], dem_find_turn(dt * b.spin[k]));
     }
 }
 
 /* Has a point of any body moved half of the skin since the pairs were found, or of what shear has left of it? A turn
- * moves it by at most the body's reach times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2), which needs no root: what is below
- * the limit so has not moved, and only if all is not, roots are drawn. A NaN has moved. */
+ * moves it by at most the body's reach times the chord between both rotations. (p + q)^2 is at most 2 (p^2 + q^2),
+ * which needs no root: what is below the limit so has not moved, and only if all is not, roots are drawn. A NaN has
+ * moved. */
 static bool have_moved(const dem *d, bool exactly) {
     const dem_bodies b = d->bodies;
     const double limit = 0.5 * (d->settings.skin - fabs(d->offset - d->list_offset));
@@ -119,16 +105,7 @@ bool dem_find_first_forces(dem *d) {
     dem_move_walls(d); /* walls get their velocities */
     const bool found = find_contacts(d) && dem_apply_laws(d);
     d->settings.time_step = time_step;
-    if (!found)
-        return false;
-    dem_gather_forces(d);
-    return true;
-}
-
-double dem_seconds(void) {
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+    return found;
 }
 
 bool dem_step(dem *d) {
@@ -136,7 +113,8 @@ bool dem_step(dem *d) {
     d->time += d->settings.time_step;
     if (!dem_steer_walls(d))
         return false;
-    kick_and_drift(d);
+    kick(d);
+    drift(d);
     dem_move_walls(d);
     dem_shear_cell(d);
     if (have_moved(d, false) && have_moved(d, true) && !dem_renew_lists(d))
@@ -147,7 +125,6 @@ bool dem_step(dem *d) {
     dem_count_shear_work(d);
     if (!dem_apply_laws(d))
         return false;
-    dem_gather_forces(d);
     dem_count_wall_work(d);
     dem_count_shear_work(d);
     kick(d);

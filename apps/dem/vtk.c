@@ -7,17 +7,31 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "frames.h"
-#include "internal.h"
+#include "dem.h"
 
 /* A polygon is nowhere further from its outline than this share of the diameter of the disc of equal area;
  * its corners are on it. */
-static const double PI = 3.14159265358979323846;
 static const double OUTLINE_TOLERANCE = 1.0 / 400;
 
-enum { MOST_CORNERS = 4096 };
+enum { MOST_CORNERS = 4096, WIDEST = 25 };
 
-/* ------------------------------------------------------------------------------------------------ numbers */
+/* Cells, which are polygons or points, each of corners of its own, and a row of numbers for each: those of the fields,
+ * which end with one of size 0. */
+typedef struct field {
+    const char *name, *type;
+    size_t size;
+} field;
+
+typedef struct frame {
+    const char *cell_name, *data_name;
+    const field *fields;
+    size_t cell_count, point_count, point_capacity;
+    uint32_t *corners; /* how many a cell has */
+    dem_vec *points;
+    double (*rows)[WIDEST];
+} frame;
+
+/* ------------------------------------------------------------------------------------------------ the format */
 
 static void put_word(FILE *file, uint32_t word) {
     for (int shift = 24; shift >= 0; shift -= 8)
@@ -31,30 +45,55 @@ static void put_number(FILE *file, double value) {
     put_word(file, word);
 }
 
-static void put_place(FILE *file, double x, double y) {
-    put_number(file, x);
-    put_number(file, y);
-    put_number(file, 0);
-}
-
-static void put_head(FILE *file, const dem *d, size_t points) {
-    uint64_t bits;
-    memcpy(&bits, &d->time, sizeof bits);
+static void put_frame(FILE *file, const dem *d, const frame *f) {
+    uint64_t time;
+    memcpy(&time, &d->time, sizeof time);
     fprintf(file,
             "# vtk DataFile Version 3.0\nstep %llu, time %.9g\nBINARY\nDATASET POLYDATA\nFIELD FieldData 1\n"
             "TimeValue 1 1 double\n",
             (unsigned long long)d->step, d->time);
-    put_word(file, (uint32_t)(bits >> 32));
-    put_word(file, (uint32_t)bits);
-    fprintf(file, "\nPOINTS %zu float\n", points);
+    put_word(file, (uint32_t)(time >> 32));
+    put_word(file, (uint32_t)time);
+    fprintf(file, "\nPOINTS %zu float\n", f->point_count);
+    for (size_t i = 0; i < f->point_count; i++) {
+        put_number(file, f->points[i].x);
+        put_number(file, f->points[i].y);
+        put_number(file, 0);
+    }
+    fprintf(file, "\n%s %zu %zu\n", f->cell_name, f->cell_count, f->cell_count + f->point_count);
+    for (size_t k = 0, point = 0; k < f->cell_count; k++) {
+        put_word(file, f->corners[k]);
+        for (size_t i = 0; i < f->corners[k]; i++)
+            put_word(file, (uint32_t)point++);
+    }
+    size_t count = 0, first = 0;
+    while (f->fields[count].size > 0)
+        count++;
+    fprintf(file, "\n%s %zu\nFIELD FieldData %zu", f->data_name, f->cell_count, count);
+    for (const field *at = f->fields; at->size > 0; first += at++->size) {
+        fprintf(file, "\n%s %zu %zu %s\n", at->name, at->size, f->cell_count, at->type);
+        for (size_t k = 0; k < f->cell_count; k++)
+            for (size_t i = first; i < first + at->size; i++)
+                if (at->type[0] == 'i')
+                    put_word(file, (uint32_t)f->rows[k][i]);
+                else
+                    put_number(file, f->rows[k][i]);
+    }
 }
 
-/* ------------------------------------------------------------------------------------------------ outlines */
+static bool open_frame(dem *d, frame *f, size_t cell_count) {
+    f->cell_count = cell_count;
+    return dem_resize(d, &f->corners, cell_count, sizeof *f->corners) &&
+           dem_resize(d, &f->rows, cell_count, sizeof *f->rows);
+}
 
-typedef struct outline {
-    dem_vec *corners;
-    size_t count;
-} outline;
+/* ------------------------------------------------------------------------------------------------ bodies */
+
+static const field body_fields[] = {
+    {"id", "int", 1},           {"wall", "int", 1},       {"shape", "int", 1},      {"material", "int", 1},
+    {"coordination", "int", 1}, {"bearing", "int", 1},    {"speed", "float", 1},    {"spin", "float", 1},
+    {"size", "float", 1},       {"pressure", "float", 1}, {"velocity", "float", 3}, {"centre", "float", 3},
+    {"stress", "float", 9},     {NULL, NULL, 0}};
 
 /* A chord that spans the angle 2 a is r (1 - cos a) from its arc. An arc's end is left out where the next one, or the
  * first, starts there. */
@@ -62,8 +101,7 @@ static size_t sample_arcs(const narc_arc *arcs, size_t count, double tolerance, 
     size_t used = 0;
     for (size_t i = 0; i < count; i++) {
         const narc_arc *arc = &arcs[i], *next = &arcs[(i + 1) % count];
-        const double turn = 6.283185307179586477;
-        const double sweep = arc->end - arc->start + (arc->end < arc->start ? turn : 0);
+        const double sweep = arc->end - arc->start + (arc->end < arc->start ? 2 * DEM_PI : 0);
         const double share = fmin(tolerance / fmax(arc->radius, tolerance), 1);
         const size_t chords = arc->radius > tolerance ? (size_t)ceil(sweep / (2 * acos(1 - share))) : 1;
         for (size_t j = 0; j <= chords && used < MOST_CORNERS; j++) {
@@ -78,176 +116,155 @@ static size_t sample_arcs(const narc_arc *arcs, size_t count, double tolerance, 
     return used;
 }
 
-static void free_outlines(outline *outlines, size_t count) {
-    for (size_t k = 0; outlines && k < count; k++)
-        free(outlines[k].corners);
-    free(outlines);
-}
-
-/* Of each shape. NULL: there is not enough memory. */
-static outline *sample_shapes(const dem *d) {
-    outline *outlines = calloc(d->outline_count, sizeof *outlines);
-    for (size_t k = 0; outlines && k < d->outline_count; k++) {
-        narc_arc arcs[NARC_MAX_ARCS];
-        const size_t count = narc_get_arcs(d->store, (uint32_t)k, arcs);
-        outlines[k].corners = malloc(MOST_CORNERS * sizeof *outlines[k].corners);
-        if (!outlines[k].corners) {
-            free_outlines(outlines, d->outline_count);
-            return NULL;
-        }
-        narc_mass mass;
-        narc_compute_mass(arcs, count, &mass);
-        outlines[k].count = sample_arcs(arcs, count, OUTLINE_TOLERANCE * 2 * sqrt(mass.area / PI), outlines[k].corners);
-    }
-    return outlines;
-}
-
-/* ------------------------------------------------------------------------------------------------ bodies */
-
-static size_t count_corners(const dem *d, const outline *outlines, size_t part) {
-    const size_t k = d->parts.body[part];
-    const bool is_plate = k >= d->grain_count && d->walls[k - d->grain_count].kind == DEM_PLATE;
-    return is_plate ? 4 : outlines[d->parts.outline[part]].count;
-}
-
-static void put_outline(FILE *file, const dem *d, const outline *outlines, const dem_region *all, size_t part) {
+static size_t put_outline(const dem *d, size_t part, dem_vec *points) {
     const dem_bodies *b = &d->bodies;
-    const outline *form = &outlines[d->parts.outline[part]];
     const size_t k = d->parts.body[part];
     const double c = (double)b->scale[k] * b->cosine[k], s = (double)b->scale[k] * b->sine[k];
-    dem_vec corners[4];
-    if (k >= d->grain_count && d->walls[k - d->grain_count].kind == DEM_PLATE) {
-        dem_outline_plate(d, k - d->grain_count, all, corners);
-        for (size_t i = 0; i < 4; i++)
-            put_place(file, corners[i].x, corners[i].y);
-        return;
+    narc_arc arcs[NARC_MAX_ARCS];
+    narc_mass mass;
+    const size_t count = narc_get_arcs(d->store, d->parts.outline[part], arcs);
+    narc_compute_mass(arcs, count, &mass);
+    const size_t corners = sample_arcs(arcs, count, OUTLINE_TOLERANCE * 2 * sqrt(mass.area / DEM_PI), points);
+    for (size_t i = 0; i < corners; i++) {
+        const dem_vec p = points[i];
+        points[i] = (dem_vec){b->x[k] + c * p.x - s * p.y, b->y[k] + s * p.x + c * p.y};
     }
-    for (size_t i = 0; i < form->count; i++) {
-        const dem_vec p = form->corners[i];
-        put_place(file, b->x[k] + c * p.x - s * p.y, b->y[k] + s * p.x + c * p.y);
+    return corners;
+}
+
+/* The part of a plate that lies along the box, as a strip as thick as a grain: corners counter-clockwise. */
+static void put_plate(const dem *d, size_t k, dem_vec low, dem_vec high, dem_vec *points) {
+    const dem_wall *wall = &d->walls[k - d->grain_count];
+    const dem_vec n = wall->normal, t = {-n.y, n.x};
+    const double half = dem_half_block(d, wall);
+    dem_vec face = {d->bodies.x[k] + half * n.x, d->bodies.y[k] + half * n.y};
+    const double foot = (0.5 * (low.x + high.x) - face.x) * t.x + (0.5 * (low.y + high.y) - face.y) * t.y;
+    const double reach = 0.5 * (fabs(t.x) * (high.x - low.x) + fabs(t.y) * (high.y - low.y));
+    for (int i = 0; i < 4; i++) { /* the tangent is a quarter turn from the normal: the face comes first */
+        const double along = foot + (i == 0 || i == 3 ? -reach : reach), depth = i < 2 ? 0 : d->grain_extent;
+        points[i] = (dem_vec){face.x + along * t.x - depth * n.x, face.y + along * t.y - depth * n.y};
     }
 }
 
-/* Of each part those of its body. */
-static void put_fields(FILE *file, const dem *d, const dem_load *loads) {
-    static const char *const words[] = {"id", "wall", "shape", "material", "coordination", "bearing"};
-    static const char *const numbers[] = {"speed", "spin", "size", "pressure"};
-    static const char *const vectors[] = {"velocity", "centre"};
-    const dem_bodies *b = &d->bodies;
-    const size_t count = d->parts.count;
-    const uint32_t *body = d->parts.body, *end = body + count;
-    fprintf(file, "\nCELL_DATA %zu\nFIELD FieldData 13", count);
-    for (size_t i = 0; i < 6; i++) {
-        fprintf(file, "\n%s 1 %zu int\n", words[i], count);
-        for (const uint32_t *k = body; k < end; k++)
-            put_word(file, (const uint32_t[]){*k, *k >= d->grain_count, b->shape[*k], b->material[*k],
-                                              loads[*k].contacts, loads[*k].bearing}[i]);
-    }
-    for (size_t i = 0; i < 4; i++) {
-        fprintf(file, "\n%s 1 %zu float\n", numbers[i], count);
-        for (const uint32_t *k = body; k < end; k++)
-            put_number(file, (const double[]){hypot(b->vx[*k], b->vy[*k]), b->spin[*k], b->extent[*k],
-                                              0.5 * (loads[*k].stress_xx + loads[*k].stress_yy)}[i]);
-    }
-    for (size_t i = 0; i < 2; i++) {
-        fprintf(file, "\n%s 3 %zu float\n", vectors[i], count);
-        for (const uint32_t *k = body; k < end; k++)
-            put_place(file, (i ? b->x : b->vx)[*k], (i ? b->y : b->vy)[*k]);
-    }
-    fprintf(file, "\nstress 9 %zu float\n", count);
-    for (const uint32_t *k = body; k < end; k++) {
-        put_place(file, loads[*k].stress_xx, loads[*k].stress_xy);
-        put_place(file, loads[*k].stress_yx, loads[*k].stress_yy);
-        put_place(file, 0, 0);
-    }
+static bool is_plate(const dem *d, size_t k) {
+    return k >= d->grain_count && d->walls[k - d->grain_count].kind == DEM_PLATE;
 }
 
-static bool write_bodies(FILE *file, const dem *d, char *error) {
-    const dem_region all = dem_bound_all(d);
-    outline *outlines = sample_shapes(d);
-    dem_load *loads = outlines ? dem_find_loads(d, error) : NULL;
-    size_t points = 0, first = 0;
-    if (!outlines)
-        snprintf(error, 512, "not enough memory for a VTK file");
-    for (size_t k = 0; loads && k < d->parts.count; k++)
-        points += count_corners(d, outlines, k);
-    if (loads) {
-        put_head(file, d, points);
-        for (size_t k = 0; k < d->parts.count; k++)
-            put_outline(file, d, outlines, &all, k);
-        fprintf(file, "\nPOLYGONS %zu %zu\n", d->parts.count, d->parts.count + points);
-        for (size_t k = 0; k < d->parts.count; k++) {
-            const size_t corners = count_corners(d, outlines, k);
-            put_word(file, (uint32_t)corners);
-            for (size_t i = 0; i < corners; i++)
-                put_word(file, (uint32_t)first++);
+static bool put_polygons(dem *d, frame *f) {
+    dem_vec low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY}; /* of all but plates */
+    for (size_t part = 0; part < d->parts.count; part++) {
+        if (!dem_reserve(d, &f->points, &f->point_capacity, f->point_count + MOST_CORNERS, sizeof *f->points))
+            return false;
+        const bool plate = is_plate(d, d->parts.body[part]);
+        dem_vec *p = f->points + f->point_count;
+        f->corners[part] = plate ? 4 : (uint32_t)put_outline(d, part, p);
+        f->point_count += f->corners[part];
+        for (size_t i = 0; i < f->corners[part] && !plate; i++) {
+            low = (dem_vec){fmin(low.x, p[i].x), fmin(low.y, p[i].y)};
+            high = (dem_vec){fmax(high.x, p[i].x), fmax(high.y, p[i].y)};
         }
-        put_fields(file, d, loads);
     }
-    free_outlines(outlines, d->outline_count);
+    for (size_t part = 0, first = 0; part < d->parts.count; first += f->corners[part++])
+        if (is_plate(d, d->parts.body[part]))
+            put_plate(d, d->parts.body[part], low, high, f->points + first);
+    return true;
+}
+
+static bool make_bodies(dem *d, frame *f) {
+    const dem_bodies *b = &d->bodies;
+    *f = (frame){.cell_name = "POLYGONS", .data_name = "CELL_DATA", .fields = body_fields};
+    dem_load *loads = dem_find_loads(d);
+    const bool ok = loads && open_frame(d, f, d->parts.count) && put_polygons(d, f);
+    for (size_t part = 0; part < d->parts.count && ok; part++) { /* of each part those of its body */
+        const size_t k = d->parts.body[part];
+        const dem_load *l = &loads[k];
+        const double row[WIDEST] = {(double)k,
+                                    k >= d->grain_count,
+                                    b->shape[k],
+                                    b->material[k],
+                                    l->contacts,
+                                    l->bearing,
+                                    hypot(b->vx[k], b->vy[k]),
+                                    b->spin[k],
+                                    b->extent[k],
+                                    0.5 * (l->stress_xx + l->stress_yy),
+                                    b->vx[k],
+                                    b->vy[k],
+                                    0,
+                                    b->x[k],
+                                    b->y[k],
+                                    0,
+                                    l->stress_xx,
+                                    l->stress_xy,
+                                    0,
+                                    l->stress_yx,
+                                    l->stress_yy,
+                                    0};
+        memcpy(f->rows[part], row, sizeof row);
+    }
     free(loads);
-    return loads != NULL;
+    return ok;
 }
 
 /* ------------------------------------------------------------------------------------------------ contacts */
 
-/* Tangential by friction times normal force. */
-static double find_mobilised_friction(const dem *d, size_t k) {
-    const size_t p = d->contacts.rows[k].pair;
-    const uint8_t *material = d->bodies.material;
-    const double bound = d->laws[material[dem_body_a(d, p)]][material[dem_body_b(d, p)]].friction;
-    const double most = bound * fabs(dem_normal_force(d, k));
-    return most > 0 ? fmin(fabs(dem_tangential_force(d, k)) / most, 1) : 0;
-}
+static const field contact_fields[] = {{"body_a", "int", 1},
+                                       {"body_b", "int", 1},
+                                       {"force", "float", 3},
+                                       {"normal", "float", 3},
+                                       {"normal_force", "float", 1},
+                                       {"tangential_force", "float", 1},
+                                       {"mobilised_friction", "float", 1},
+                                       {"overlap", "float", 1},
+                                       {NULL, NULL, 0}};
 
-static bool write_contacts(FILE *file, const dem *d, char *error) {
-    static const char *const words[] = {"body_a", "body_b"}, *const vectors[] = {"force", "normal"};
-    static const char *const numbers[] = {"normal_force", "tangential_force", "mobilised_friction", "overlap"};
+static bool make_contacts(dem *d, frame *f) {
+    const dem_bodies *b = &d->bodies;
     const size_t count = d->contacts.count;
-    const dem_contact *row = d->contacts.rows;
-    (void)error;
-    put_head(file, d, count);
+    *f = (frame){.cell_name = "VERTICES", .data_name = "POINT_DATA", .fields = contact_fields, .point_count = count};
+    if (!open_frame(d, f, count) || !dem_resize(d, &f->points, count, sizeof *f->points))
+        return false;
     for (size_t k = 0; k < count; k++) {
-        const size_t a = dem_body_a(d, row[k].pair);
-        put_place(file, d->bodies.x[a] + row[k].point.x, d->bodies.y[a] + row[k].point.y);
-    }
-    fprintf(file, "\nVERTICES %zu %zu\n", count, 2 * count);
-    for (size_t k = 0; k < count; k++) {
-        put_word(file, 1);
-        put_word(file, (uint32_t)k);
-    }
-    fprintf(file, "\nPOINT_DATA %zu\nFIELD FieldData 8", count);
-    for (size_t i = 0; i < 2; i++) {
-        fprintf(file, "\n%s 1 %zu int\n", words[i], count);
-        for (size_t k = 0; k < count; k++)
-            put_word(file, (uint32_t)(i == 0 ? dem_body_a(d, row[k].pair) : dem_body_b(d, row[k].pair)));
-    }
-    for (size_t i = 0; i < 2; i++) {
-        fprintf(file, "\n%s 3 %zu float\n", vectors[i], count);
-        for (size_t k = 0; k < count; k++)
-            put_place(file, i == 0 ? row[k].force.x : row[k].normal.x, i == 0 ? row[k].force.y : row[k].normal.y);
-    }
-    for (size_t i = 0; i < 4; i++) {
-        fprintf(file, "\n%s 1 %zu float\n", numbers[i], count);
-        for (size_t k = 0; k < count; k++)
-            put_number(file, (const double[]){dem_normal_force(d, k), dem_tangential_force(d, k),
-                                              find_mobilised_friction(d, k), row[k].depth}[i]);
+        const dem_contact *c = &d->contacts.rows[k];
+        const size_t i = dem_body_a(d, c->pair), j = dem_body_b(d, c->pair);
+        const double push = dem_normal_force(c), drag = c->force.y * c->normal.x - c->force.x * c->normal.y;
+        const double most = d->laws[b->material[i]][b->material[j]].friction * fabs(push);
+        const double row[WIDEST] = {(double)i,
+                                    (double)j,
+                                    c->force.x,
+                                    c->force.y,
+                                    0,
+                                    c->normal.x,
+                                    c->normal.y,
+                                    0,
+                                    push,
+                                    drag,
+                                    most > 0 ? fmin(fabs(drag) / most, 1) : 0,
+                                    c->depth};
+        memcpy(f->rows[k], row, sizeof row);
+        f->points[k] = (dem_vec){b->x[i] + c->point.x, b->y[i] + c->point.y};
+        f->corners[k] = 1;
     }
     return true;
 }
 
 /* ------------------------------------------------------------------------------------------------ both */
 
-bool dem_write_vtk(const dem *d, const char *stem, uint64_t frame, char *error) {
+bool dem_write_vtk(dem *d, const char *stem, uint64_t number) {
     bool ok = true;
     for (int i = 0; i < 2 && ok; i++) {
         char path[DEM_PATH_SIZE];
         dem_file file;
-        snprintf(path, sizeof path, "%.1000s%s-%06llu.vtk", stem, i ? "-contacts" : "", (unsigned long long)frame);
-        if (!dem_open_file(&file, path, error))
-            return false;
-        ok = i ? write_contacts(file.file, d, error) : write_bodies(file.file, d, error);
-        ok = dem_close_file(&file, ok, error);
+        frame f;
+        snprintf(path, sizeof path, "%.1000s%s-%06llu.vtk", stem, i ? "-contacts" : "", (unsigned long long)number);
+        ok = (i ? make_contacts : make_bodies)(d, &f) && dem_open_file(&file, path, d->error);
+        if (ok) {
+            put_frame(file.file, d, &f);
+            ok = dem_close_file(&file, true, d->error);
+        }
+        free(f.corners);
+        free(f.points);
+        free(f.rows);
     }
     return ok;
 }

@@ -8,7 +8,7 @@
  */
 #include <math.h>
 
-#include "internal.h"
+#include "dem.h"
 
 dem_vec dem_wall_force(const dem *d, size_t wall) {
     const size_t k = d->grain_count + wall;
@@ -70,46 +70,34 @@ bool dem_steer_walls(dem *d) {
 /* ------------------------------------------------------------------------------------------------ motion */
 
 /* A plate moves across itself only: along itself its place means nothing, and its velocity is seen by friction. */
-static void move_plate(dem_wall *wall, dem_bodies *b, size_t k, double dt) {
-    const double across = dt * (wall->velocity.x * wall->normal.x + wall->velocity.y * wall->normal.y);
-    b->x[k] += across * wall->normal.x;
-    b->y[k] += across * wall->normal.y;
-    b->vx[k] = wall->velocity.x;
-    b->vy[k] = wall->velocity.y;
-}
-
-/* A rotation by 2 atan(spin dt / 2): see step.c. */
-static void move_box(dem_wall *wall, dem_bodies *b, size_t k, double dt) {
-    b->vx[k] = wall->velocity.x;
-    b->vy[k] = wall->velocity.y;
-    b->spin[k] = wall->spin;
-    wall->pivot.x += dt * wall->velocity.x;
-    wall->pivot.y += dt * wall->velocity.y;
-    b->x[k] += dt * wall->velocity.x;
-    b->y[k] += dt * wall->velocity.y;
-    if (wall->spin == 0)
-        return;
-    const double half = 0.5 * dt * wall->spin, share = 1 / (1 + half * half);
-    const double cosine = (1 - half * half) * share, sine = 2 * half * share;
-    const double arm_x = b->x[k] - wall->pivot.x, arm_y = b->y[k] - wall->pivot.y;
-    const double new_x = cosine * arm_x - sine * arm_y, new_y = sine * arm_x + cosine * arm_y;
-    const double c = b->cosine[k] * cosine - b->sine[k] * sine, s = b->sine[k] * cosine + b->cosine[k] * sine;
-    const double unit = 1.5 - 0.5 * (c * c + s * s);
-    b->x[k] = wall->pivot.x + new_x;
-    b->y[k] = wall->pivot.y + new_y;
-    b->cosine[k] = c * unit;
-    b->sine[k] = s * unit;
-    b->vx[k] -= wall->spin * new_y;
-    b->vy[k] += wall->spin * new_x;
-}
-
 void dem_move_walls(dem *d) {
+    const dem_bodies *b = &d->bodies;
+    const double dt = d->settings.time_step;
     for (size_t w = 0; w < d->wall_count; w++) {
         const size_t k = d->grain_count + w;
-        if (d->walls[w].kind == DEM_PLATE)
-            move_plate(&d->walls[w], &d->bodies, k, d->settings.time_step);
-        else
-            move_box(&d->walls[w], &d->bodies, k, d->settings.time_step);
+        dem_wall *wall = &d->walls[w];
+        const dem_vec v = wall->velocity, n = wall->normal;
+        const double across = dt * (v.x * n.x + v.y * n.y);
+        const dem_vec way =
+            wall->kind == DEM_PLATE ? (dem_vec){across * n.x, across * n.y} : (dem_vec){dt * v.x, dt * v.y};
+        b->x[k] += way.x;
+        b->y[k] += way.y;
+        b->vx[k] = v.x;
+        b->vy[k] = v.y;
+        b->spin[k] = wall->spin;
+        if (wall->kind == DEM_PLATE)
+            continue;
+        wall->pivot = (dem_vec){wall->pivot.x + way.x, wall->pivot.y + way.y};
+        if (wall->spin == 0)
+            continue;
+        const dem_vec turn = dem_find_turn(dt * wall->spin);
+        const dem_vec arm = {b->x[k] - wall->pivot.x, b->y[k] - wall->pivot.y};
+        const dem_vec now = {turn.x * arm.x - turn.y * arm.y, turn.y * arm.x + turn.x * arm.y};
+        dem_turn(&b->cosine[k], &b->sine[k], turn);
+        b->x[k] = wall->pivot.x + now.x;
+        b->y[k] = wall->pivot.y + now.y;
+        b->vx[k] -= wall->spin * now.y;
+        b->vy[k] += wall->spin * now.x;
     }
 }
 

@@ -10,17 +10,15 @@
 /* Two grains that collide off their centres, while both move on together, with friction and damping; in a cell of 16 by
  * 16 or in the plane. Times and places are chosen so that the contact, soft and long, is carried across the border. */
 static dem collide_at(double x, double y, bool periodic, double drift_x, double drift_y) {
-    dem_settings settings = plain_settings();
-    dem_contact_law law = plain_law();
-    settings.periodic_x = settings.periodic_y = periodic;
-    settings.high_x = settings.high_y = 16;
-    settings.max_overlap = 0.5;
-    settings.time_step = 5e-5;
-    settings.skin = 0.1; /* lists are renewed within the contact */
-    law.friction = 0.3;
-    law.damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.7);
-    law.rolling_friction = 0.1;
-    dem d = make_world(settings, law);
+    dem d = plain_world();
+    d.settings.periodic_x = d.settings.periodic_y = periodic;
+    d.settings.high_x = d.settings.high_y = 16;
+    d.settings.max_overlap = 0.5;
+    d.settings.time_step = 5e-5;
+    d.settings.skin = 0.1; /* lists are renewed within the contact */
+    d.laws[0][0].friction = 0.3;
+    d.laws[0][0].damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.7);
+    d.laws[0][0].rolling_friction = 0.1;
     add_grain(&d, ARCS, x - 1.25, y - 0.3, 3 + drift_x, 1 + drift_y);
     add_grain(&d, OCTAGON, x + 0.95, y + 0.2, -2 + drift_x, drift_y);
     start(&d);
@@ -69,19 +67,12 @@ TEST(test_collision_across_borders) {
 /* A wall across the border: a box, found from both sides. */
 TEST(test_wall_across_border) {
     for (int side = 0; side < 2; side++) {
-        dem_settings settings = plain_settings();
-        settings.periodic_x = true;
-        settings.high_x = 16;
-        settings.gravity = (dem_vec){0, -10};
-        dem_contact_law law = plain_law();
-        law.damping_ratio = 1;
-        dem d = make_world(settings, law);
-        assert_true(dem_add_wall(&d, (dem_wall){.name = "box",
-                                                .kind = DEM_BOX,
-                                                .shape = OCTAGON,
-                                                .scale = 2,
-                                                .place = {side ? 0.5 : 15.5, 0},
-                                                .servo = {.between = {-1, -1}}}));
+        dem d = plain_world();
+        d.settings.periodic_x = true;
+        d.settings.high_x = 16;
+        d.settings.gravity = (dem_vec){0, -10};
+        d.laws[0][0].damping_ratio = 1;
+        add_box(&d, OCTAGON, 2, side ? 0.5 : 15.5, 0);
         add_grain(&d, DISC, side ? 15.9 : 0.1, 2 * cos(3.14159265358979324 / 8) + 1, 0, 0);
         start(&d);
         step(&d, 2000);

@@ -4,7 +4,6 @@
  */
 #include <math.h>
 
-#include "place.h"
 #include "worlds.h"
 
 /* 200 grains of a shape in a box of periodic borders, with elastic contacts and no friction. */

@@ -5,14 +5,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "internal.h"
 #include "worlds.h"
 
 #define PI 3.14159265358979323846
 
 /* Two discs that touch, and two boxes whose union is one of 3 by 1, far from their centroid. */
 TEST(test_mass_of_parts) {
-    dem d = make_world(plain_settings(), plain_law());
+    dem d = plain_world();
     const double r = 0.5, dimer = 2 * (PI * pow(r, 4) / 2 + PI * pow(r, 4)), box = 3.0 * (9 + 1) / 12;
     narc_arc arcs[2 * NARC_MAX_ARCS], moved[NARC_MAX_ARCS];
     size_t counts[2];
@@ -36,11 +35,9 @@ TEST(test_mass_of_parts) {
  * momenta of both by P and the dimer's spin by P a / I; energy tells P. Contacts are soft: the dimer turns a little while
  * they last, by the speed times their time, 2e-3 of the arm. */
 TEST(test_collision_off_centre) {
-    dem_settings settings = plain_settings();
-    dem_contact_law law = plain_law();
-    settings.time_step = 1e-5;
-    law.kn = 1e7;
-    dem d = make_world(settings, law);
+    dem d = plain_world();
+    d.settings.time_step = 1e-5;
+    d.laws[0][0].kn = 1e7;
     add_grain(&d, DIMER, 0, 0, 0, 0);
     add_grain(&d, DISC, 0.5, 1.51, 0, -1);
     start(&d);
@@ -57,11 +54,9 @@ TEST(test_collision_off_centre) {
 
 /* Forces within a grain there are none, though its parts lie over each other; pairs are of parts, forces on bodies. */
 TEST(test_parts_are_one_body) {
-    dem_contact_law law = plain_law();
-    dem_settings settings = plain_settings();
-    settings.periodic_x = settings.periodic_y = true;
-    settings.high_x = settings.high_y = 8;
-    dem d = make_world(settings, law);
+    dem d = plain_world();
+    d.settings.periodic_x = d.settings.periodic_y = true;
+    d.settings.high_x = d.settings.high_y = 8;
     add_grain(&d, ELL, 0.1, 0.1, 0, 0); /* across both borders */
     add_grain(&d, ELL, 4, 4, 0, 0);
     start(&d);
@@ -74,11 +69,9 @@ TEST(test_parts_are_one_body) {
 
 /* An upright dimer on a plate and one that lies on it: one contact and two, each of which bears its share. */
 TEST(test_dimers_on_a_plate) {
-    dem_settings settings = plain_settings();
-    settings.gravity = (dem_vec){0, -10};
-    dem_contact_law law = plain_law();
-    law.damping_ratio = 1;
-    dem d = make_world(settings, law);
+    dem d = plain_world();
+    d.settings.gravity = (dem_vec){0, -10};
+    d.laws[0][0].damping_ratio = 1;
     add_plate(&d, "floor", 0, 0, 0, 1);
     add_grain(&d, DIMER, 0, 0.5, 0, 0);
     assert_true(dem_add_grain(&d, (dem_grain){.shape = DIMER, .x = 5, .y = 1, .angle = PI / 2, .scale = 1}));
@@ -94,14 +87,12 @@ TEST(test_dimers_on_a_plate) {
 
 /* Momentum stays in collisions of many grains of parts, with friction. */
 TEST(test_momentum_of_parts) {
-    dem_settings settings = plain_settings();
-    dem_contact_law law = plain_law();
-    settings.periodic_x = settings.periodic_y = true;
-    settings.high_x = settings.high_y = 20;
-    law.friction = 0.5;
-    law.kn = 3e3; /* long contacts */
-    settings.max_overlap = 0.5;
-    dem d = make_world(settings, law);
+    dem d = plain_world();
+    d.settings.periodic_x = d.settings.periodic_y = true;
+    d.settings.high_x = d.settings.high_y = 20;
+    d.laws[0][0].friction = 0.5;
+    d.laws[0][0].kn = 3e3; /* long contacts */
+    d.settings.max_overlap = 0.5;
     for (int k = 0; k < 64; k++)
         assert_true(dem_add_grain(&d, (dem_grain){.shape = k % 2 ? ELL : DIMER,
                                                   .x = 2.5 * (k % 8) + 1,

@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "internal.h"
-#include "place.h"
 #include "worlds.h"
 
 /* The mean of many draws is within five deviations of the mean of one, over the root of their number. */
@@ -43,17 +41,11 @@ static dem_filling plain_filling(size_t count) {
 }
 
 static dem make_room(void) {
-    dem_settings settings = plain_settings();
-    settings.periodic_x = true;
-    settings.high_x = 30;
-    dem d = make_world(settings, plain_law());
+    dem d = plain_world();
+    d.settings.periodic_x = true;
+    d.settings.high_x = 30;
     add_plate(&d, "floor", 0, 1, 0, 1);
-    assert_true(dem_add_wall(&d, (dem_wall){.name = "rock",
-                                            .kind = DEM_BOX,
-                                            .shape = OCTAGON,
-                                            .scale = 4,
-                                            .place = {15, 15},
-                                            .servo = {.between = {-1, -1}}}));
+    add_box(&d, OCTAGON, 4, 15, 15);
     return d;
 }
 
@@ -97,7 +89,7 @@ TEST(test_full_region) {
 }
 
 TEST(test_lattice) {
-    dem d = make_world(plain_settings(), plain_law());
+    dem d = plain_world();
     dem_filling filling = plain_filling(0);
     uint64_t random = 5;
     filling.spacing = (dem_vec){3, 5};

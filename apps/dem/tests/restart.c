@@ -42,7 +42,6 @@ static void check_same_walls(const dem *d, const dem *other) {
 
 /* Borders, history, rolling friction, walls that move, turn and are controlled: all of it goes on. */
 TEST(test_bit_for_bit) {
-    char error[512];
     dem d = make_busy_world(1), again = make_busy_world(2);
     const dem_place place = {.input = 5, .stage = 1, .stage_step = 17, .csv_position = 99, .frame = 3, .random = 4};
     dem_place found = {.input = 5};
@@ -54,7 +53,7 @@ TEST(test_bit_for_bit) {
     start(&d);
     start(&again);
     step(&d, 3000);
-    assert_true(dem_write_restart(&d, &place, path, error));
+    assert_true(dem_write_restart(&d, &place, path));
     assert_true(dem_read_restart(&again, &found, path));
     assert_memory_equal(&place, &found, sizeof place);
     assert_true(dem_hash(&d) == dem_hash(&again));
@@ -97,13 +96,12 @@ TEST(test_damage) {
     } flips[] = {{0, "not a restart file"}, {7, "not a restart file"}, {8, "its version is"},
                  {12, "order of bytes"},    {16, "and should have"},   {24, "damaged"},
                  {32, "another input"},     {40, "damaged"},           {5000, "damaged"}};
-    char error[512];
     dem d = make_busy_world(1);
     size_t size;
     start(&d);
     step(&d, 10);
-    assert_true(dem_write_restart(&d, &(dem_place){.input = 5}, path, error));
-    char *bytes = dem_read_file(path, &size, error);
+    assert_true(dem_write_restart(&d, &(dem_place){.input = 5}, path));
+    char *bytes = dem_read_file(path, &size, d.error);
     assert_non_null(bytes);
     for (size_t i = 0; i < sizeof flips / sizeof flips[0]; i++) {
         bytes[flips[i].offset] ^= 1;
@@ -126,10 +124,9 @@ TEST(test_damage) {
 
 /* A file that cannot be written leaves the old one. */
 TEST(test_no_place_to_write) {
-    char error[512] = "";
     dem d = make_busy_world(1);
     start(&d);
-    assert_false(dem_write_restart(&d, &(dem_place){.input = 1}, "/nonexistent/folder/file", error));
-    assert_non_null(strstr(error, "/nonexistent/folder/file: "));
+    assert_false(dem_write_restart(&d, &(dem_place){.input = 1}, "/nonexistent/folder/file"));
+    assert_non_null(strstr(d.error, "/nonexistent/folder/file: "));
     dem_destroy(&d);
 }

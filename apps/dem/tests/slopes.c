@@ -14,15 +14,13 @@ static const double GRAVITY = 10, ANGLE = 0.4;
 static double find_depth(const dem *d) { return d->bodies.mass[0] * GRAVITY * cos(ANGLE) / d->laws[0][0].kn; }
 
 static dem make_slope(uint32_t shape, double friction, double rolling_friction, bool periodic) {
-    dem_settings settings = plain_settings();
-    dem_contact_law law = plain_law();
-    settings.gravity = (dem_vec){GRAVITY * sin(ANGLE), -GRAVITY * cos(ANGLE)};
-    settings.periodic_x = periodic;
-    settings.high_x = 7;
-    law.friction = friction;
-    law.rolling_friction = rolling_friction;
-    law.damping_ratio = 1;
-    dem d = make_world(settings, law);
+    dem d = plain_world();
+    d.settings.gravity = (dem_vec){GRAVITY * sin(ANGLE), -GRAVITY * cos(ANGLE)};
+    d.settings.periodic_x = periodic;
+    d.settings.high_x = 7;
+    d.laws[0][0].friction = friction;
+    d.laws[0][0].rolling_friction = rolling_friction;
+    d.laws[0][0].damping_ratio = 1;
     add_plate(&d, "slope", 0, 0, 0, 1);
     add_grain(&d, shape, 0, 1, 0, 0);
     d.bodies.y[0] = 1 - find_depth(&d);

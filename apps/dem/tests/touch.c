@@ -71,7 +71,7 @@ static pose move(pose p, const double by[4], double step) {
 
 /* Along small ways the depth changes by no more than they are long: 2e-5, and at both ends by sqrt(2) times that. */
 TEST(test_depth_never_jumps) {
-    dem d = make_world(plain_settings(), plain_law());
+    dem d = plain_world();
     uint64_t random = 5;
     size_t doubles = 0;
     double worst = 0;
@@ -99,7 +99,7 @@ TEST(test_depth_never_jumps) {
 
 /* What a force of 1 does in a small motion is what the depth loses: by central differences of 1e-6. */
 TEST(test_force_is_the_gradient_of_the_depth) {
-    dem d = make_world(plain_settings(), plain_law());
+    dem d = plain_world();
     uint64_t random = 6;
     size_t slides = 0;
     double worst = 0;
@@ -137,11 +137,9 @@ TEST(test_force_is_the_gradient_of_the_depth) {
 TEST(test_depth_is_double) {
     static const double depths[] = {1e-3, 1e-6, 1e-9};
     for (int i = 0; i < 3; i++) {
-        dem_contact_law law = plain_law();
-        law.damping_ratio = 0;
-        dem_settings settings = plain_settings();
-        settings.time_step = 1e-12;
-        dem d = make_world(settings, law);
+        dem d = plain_world();
+        d.laws[0][0].damping_ratio = 0;
+        d.settings.time_step = 1e-12;
         add_plate(&d, "floor", 0, 0, 0, 1);
         add_grain(&d, DISC, 100, 1 - depths[i], 0, 0);
         add_grain(&d, SQUARE, 105, 0.5 - depths[i], 0, 0);
@@ -161,15 +159,13 @@ TEST(test_depth_is_double) {
 
 /* A wall of bricks in bond, five courses, comes to rest: nothing moves, and the same contacts stay. */
 TEST(test_bricks_stand_still) {
-    dem_contact_law law = plain_law();
-    law.damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.3);
-    law.friction = 0.5;
-    law.kn = 1e4;
-    law.kt = 3e3;
-    dem_settings settings = plain_settings();
-    settings.gravity = (dem_vec){0, -1};
-    settings.time_step = 1e-3;
-    dem d = make_world(settings, law);
+    dem d = plain_world();
+    d.laws[0][0].damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.3);
+    d.laws[0][0].friction = 0.5;
+    d.laws[0][0].kn = 1e4;
+    d.laws[0][0].kt = 3e3;
+    d.settings.gravity = (dem_vec){0, -1};
+    d.settings.time_step = 1e-3;
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     uint32_t brick;

@@ -11,9 +11,8 @@
 
 /* A plate that moves at a constant speed throws a grain at twice that speed, and its work is the grain's energy. */
 TEST(test_work_of_a_wall) {
-    dem_settings settings = plain_settings();
-    settings.time_step = 1e-5;
-    dem d = make_world(settings, plain_law());
+    dem d = plain_world();
+    d.settings.time_step = 1e-5;
     add_plate(&d, "piston", 0, 0, 1, 0);
     add_grain(&d, DISC, 1.01, 0, 0, 0);
     d.walls[0].velocity = (dem_vec){2, 0};
@@ -23,7 +22,7 @@ TEST(test_work_of_a_wall) {
     assert_int_equal(d.contacts.count, 0);
     assert_true(fabs(d.bodies.vx[0] - 4) < 4e-3);
     assert_true(fabs(d.walls[0].work - energies(&d).kinetic) < 1e-4); /* 1e-7 of a depth, in each of some steps */
-    assert_true(fabs(d.bodies.x[1] + 4 * (d.grain_reach + settings.skin) - 2 * d.time) < 1e-9);
+    assert_true(fabs(d.bodies.x[1] + 4 * (d.grain_reach + d.settings.skin) - 2 * d.time) < 1e-9);
     dem_destroy(&d);
 }
 
@@ -32,7 +31,7 @@ TEST(test_oblique_plate_far_away) {
     const double depth = 1e-3;
     for (int k = 0; k < 20; k++) {
         const double along = 1e4 + 7.7 * k;
-        dem d = make_world(plain_settings(), plain_law());
+        dem d = plain_world();
         const double above = d.shapes[DISC].reach - depth;
         add_plate(&d, "slope", 0, 0, 0.6, 0.8);
         add_grain(&d, DISC, 0.8 * along + 0.6 * above, -0.6 * along + 0.8 * above, 0, 0);
@@ -45,19 +44,13 @@ TEST(test_oblique_plate_far_away) {
 
 /* A box on an arm: after one turn it is where it was, and its surface moves as it turns. */
 TEST(test_turning_wall) {
-    dem_settings settings = plain_settings();
-    settings.time_step = 1e-3;
-    dem d = make_world(settings, plain_law());
-    assert_true(dem_add_wall(&d, (dem_wall){.name = "blade",
-                                            .kind = DEM_BOX,
-                                            .shape = OCTAGON,
-                                            .scale = 1,
-                                            .place = {5, 1},
-                                            .angle = 0.25,
-                                            .pivot = {2, 1},
-                                            .spin = 2 * PI,
-                                            .velocity = {0, 1},
-                                            .servo = {.between = {-1, -1}}}));
+    dem d = plain_world();
+    d.settings.time_step = 1e-3;
+    dem_wall *blade = add_box(&d, OCTAGON, 1, 5, 1);
+    blade->angle = 0.25;
+    blade->pivot.x = 2;
+    blade->spin = 2 * PI;
+    blade->velocity.y = 1;
     add_grain(&d, DISC, 100, 0, 0, 0);
     start(&d);
     step(&d, 250);
@@ -71,16 +64,16 @@ TEST(test_turning_wall) {
     dem_destroy(&d);
 }
 
-/* A tower of three discs between plates, without gravity. */
-static dem make_press(dem_servo servo) {
-    dem_contact_law law = plain_law();
-    law.damping_ratio = 1;
-    dem d = make_world(plain_settings(), law);
+/* A tower of three discs between plates, without gravity. The lid goes up (1) or down (-1) until it presses. */
+static dem make_press(double up, double force, double gain, double max_speed, double travel) {
+    dem d = plain_world();
+    d.laws[0][0].damping_ratio = 1;
     add_plate(&d, "floor", 0, 0, 0, 1);
     add_plate(&d, "lid", 0, 6.01, 0, -1);
     for (int k = 0; k < 3; k++)
         add_grain(&d, DISC, 0, 1 + 2 * k, 0, 0);
-    d.walls[1].servo = servo;
+    d.walls[1].servo =
+        (dem_servo){true, {0, up}, force, .between = {-1, -1}, .gain = gain, .max_speed = max_speed, .travel = travel};
     start(&d);
     return d;
 }
@@ -89,8 +82,7 @@ static dem make_press(dem_servo servo) {
  * are floats, within 2e-6 of some 1e-3, so forces are within 0.2 %. */
 TEST(test_servo_force) {
     const double force = 150;
-    dem d = make_press((dem_servo){
-        .on = true, .direction = {0, -1}, .force = force, .between = {-1, -1}, .gain = 5e-4, .max_speed = 0.5});
+    dem d = make_press(-1, force, 5e-4, 0.5, 0);
     step(&d, 20000);
     print_message("forces %.6g and %.6g\n", dem_wall_force(&d, 0).y, dem_wall_force(&d, 1).y);
     assert_true(fabs(dem_wall_force(&d, 1).y / force - 1) < 1e-3);
@@ -110,8 +102,10 @@ TEST(test_servo_force) {
 
 /* A stress acts on the length between two walls. */
 TEST(test_servo_stress) {
-    dem d = make_press(
-        (dem_servo){.on = true, .direction = {0, -1}, .stress = 25, .between = {0, 1}, .gain = 5e-4, .max_speed = 0.5});
+    dem d = make_press(-1, 0, 5e-4, 0.5, 0);
+    d.walls[1].servo.stress = 25;
+    d.walls[1].servo.between[0] = 0;
+    d.walls[1].servo.between[1] = 1;
     step(&d, 20000);
     assert_true(fabs(dem_wall_force(&d, 1).y / (25 * 6) - 1) < 2e-3);
     dem_destroy(&d);
@@ -119,13 +113,10 @@ TEST(test_servo_stress) {
 
 /* A lid that finds nothing to press goes as far as it may, 0.01 a step, then the run ends. */
 TEST(test_servo_without_grains) {
-    const dem_servo servo = {
-        .on = true, .direction = {0, 1}, .force = 1, .between = {-1, -1}, .gain = 100, .max_speed = 100};
     const double travels[] = {0, 2.495, 39.995};
     for (size_t i = 0; i < 3; i++) {
-        dem_servo up = servo;
-        up.travel = travels[i];
-        dem d = make_press(up); /* grains from 0 to 6, 2 wide; the lid at 6.01, the floor at 0 */
+        dem d =
+            make_press(1, 1, 100, 100, travels[i]); /* grains from 0 to 6, 2 wide; the lid at 6.01, the floor at 0 */
         const double travel = i > 0 ? travels[i] : hypot(2, 6.01);
         while (d.step < 100000 && dem_step(&d)) {
         }
@@ -138,13 +129,7 @@ TEST(test_servo_without_grains) {
 
 /* A gap that is shorter than the travel is crossed; after a contact the way counts anew. */
 TEST(test_servo_touches_in_time) {
-    dem d = make_press((dem_servo){.on = true,
-                                   .direction = {0, -1},
-                                   .force = 150,
-                                   .between = {-1, -1},
-                                   .gain = 5e-4,
-                                   .max_speed = 0.5,
-                                   .travel = 0.011});
+    dem d = make_press(-1, 150, 5e-4, 0.5, 0.011);
     step(&d, 20000);
     assert_true(d.walls[1].idle_way == 0 && fabs(dem_wall_force(&d, 1).y / 150 - 1) < 1e-3);
     dem_destroy(&d);
@@ -152,8 +137,7 @@ TEST(test_servo_touches_in_time) {
 
 /* Who is to press with no force, and touches nothing, stays. */
 TEST(test_servo_of_no_force) {
-    dem d = make_press(
-        (dem_servo){.on = true, .direction = {0, -1}, .force = 0, .between = {-1, -1}, .gain = 5e-4, .max_speed = 0.5});
+    dem d = make_press(-1, 0, 5e-4, 0.5, 0);
     const double before = d.bodies.y[4];
     step(&d, 1000);
     assert_true(d.bodies.y[4] == before);
@@ -162,12 +146,10 @@ TEST(test_servo_of_no_force) {
 
 /* A plate's own velocity along itself drags a grain by friction until both move alike. */
 TEST(test_conveyor) {
-    dem_settings settings = plain_settings();
-    settings.gravity = (dem_vec){0, -10};
-    dem_contact_law law = plain_law();
-    law.friction = 0.3;
-    law.damping_ratio = 1;
-    dem d = make_world(settings, law);
+    dem d = plain_world();
+    d.settings.gravity = (dem_vec){0, -10};
+    d.laws[0][0].friction = 0.3;
+    d.laws[0][0].damping_ratio = 1;
     add_plate(&d, "belt", 0, 0, 0, 1);
     add_grain(&d, OCTAGON, 0, cos(PI / 8), 0, 0); /* it lies on a side, */
     d.bodies.cosine[0] = cos(PI / 8);             /* after an eighth of a turn */

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "place.h"
-
 #define PI 3.14159265358979323846
 
 static struct CMUnitTest tests[40]; /* those without a name are none to cmocka */
@@ -91,13 +89,14 @@ static void add_shapes(dem *d) {
 
 dem make_world(dem_settings settings, dem_contact_law law) {
     dem d;
-    uint8_t material;
     check(&d, dem_create(&d, settings));
     add_shapes(&d);
-    check(&d, dem_add_material(&d, (dem_material){"stuff", 1, 1e6, 0.25}, &material));
-    dem_set_law(&d, material, material, law);
+    d.materials[d.material_count++] = (dem_material){"stuff", 1, 1e6, 0.25};
+    dem_set_law(&d, 0, 0, law);
     return d;
 }
+
+dem plain_world(void) { return make_world(plain_settings(), plain_law()); }
 
 void add_grain(dem *d, uint32_t shape, double x, double y, double vx, double vy) {
     check(d, dem_add_grain(d, (dem_grain){.shape = shape, .x = x, .y = y, .scale = 1, .vx = vx, .vy = vy}));
@@ -110,30 +109,35 @@ void add_plate(dem *d, const char *name, double x, double y, double normal_x, do
     check(d, dem_add_wall(d, wall));
 }
 
+dem_wall *add_box(dem *d, uint32_t shape, double scale, double x, double y) {
+    check(d, dem_add_wall(d, (dem_wall){.name = "box",
+                                        .kind = DEM_BOX,
+                                        .shape = shape,
+                                        .scale = scale,
+                                        .place = {x, y},
+                                        .pivot = {x, y},
+                                        .servo = {.between = {-1, -1}}}));
+    return &d->walls[d->wall_count - 1];
+}
+
 dem make_busy_world(unsigned threads) {
-    dem_settings settings = plain_settings();
-    dem_contact_law law = plain_law();
-    settings.gravity = (dem_vec){1, -40};
-    settings.periodic_x = true;
-    settings.high_x = 24;
-    settings.threads = threads;
-    law.kn = 1e6;
-    law.kt = 3e5;
-    law.damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.6);
-    law.friction = 0.5;
-    law.rolling_friction = 0.05;
-    dem d = make_world(settings, law);
+    dem d = plain_world();
+    dem_contact_law *law = &d.laws[0][0];
+    d.settings.gravity = (dem_vec){1, -40};
+    d.settings.periodic_x = true;
+    d.settings.high_x = 24;
+    d.settings.threads = threads;
+    law->kn = 1e6;
+    law->kt = 3e5;
+    law->damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.6);
+    law->friction = 0.5;
+    law->rolling_friction = 0.05;
     add_plate(&d, "floor", 0, 0, 0, 1);
     add_plate(&d, "lid", 0, 22.5, 0, -1);
     d.walls[1].velocity = (dem_vec){3, 0};
-    check(&d, dem_add_wall(&d, (dem_wall){.name = "paddle",
-                                          .kind = DEM_BOX,
-                                          .shape = OCTAGON,
-                                          .scale = 1.5,
-                                          .place = {12, 3},
-                                          .pivot = {12.5, 3},
-                                          .spin = 2,
-                                          .servo = {.between = {-1, -1}}}));
+    dem_wall *paddle = add_box(&d, OCTAGON, 1.5, 12, 3);
+    paddle->pivot.x = 12.5;
+    paddle->spin = 2;
     d.walls[0].servo =
         (dem_servo){.on = true, .direction = {0, 1}, .stress = 100, .between = {0, 1}, .gain = 1e-4, .max_speed = 2};
     const dem_filling filling = {.count = 120,

@@ -34,7 +34,11 @@ dem make_world(dem_settings settings, dem_contact_law law);
 /* With kn = 1e5, kt = 2/7 kn. */
 dem_contact_law plain_law(void);
 
+/* Of both: settings and the law, d.laws[0][0], may be changed before there are grains (but for the Hertz law). */
+dem plain_world(void);
+
 void add_grain(dem *d, uint32_t shape, double x, double y, double vx, double vy);
+dem_wall *add_box(dem *d, uint32_t shape, double scale, double x, double y);
 void add_plate(dem *d, const char *name, double x, double y, double normal_x, double normal_y);
 
 /* 120 grains of all shapes in a cell that is periodic in x, between two plates of which the upper one moves along and
