@@ -20,6 +20,8 @@ struct ContactLaw {
     double kn = 0, kt = 0;
     double gamma_n = 0, gamma_t = 0;
     double friction = 0;
+    double damping =
+        0; /* above 0: dashpots are this times sqrt(stiffness mass), and gamma_t the share of the tangential */
     double rolling = 0;         /* the torque against rolling is at most this times radius times force */
     bool limit_damping = false; /* never pull */
 };
@@ -58,8 +60,10 @@ struct Force {
     double point_x, point_y, normal_x, normal_y; /* from the centre of A; from A to B */
 };
 
-/* How a command's arguments name the law: kn kt gamma_n gamma_t xmu dampflag [limit_damping] [rolling MU], NULL for kt
- * (2/7 of kn) and gamma_t (half of gamma_n). The number of arguments read, 0 if they are no law. `pressure_unit` is
+/* How a command's arguments name the law: kn kt gamma_n gamma_t xmu dampflag [limit_damping] [rolling MU]
+ * [restitution E], NULL for kt (2/7 of kn) and gamma_t (half of gamma_n). With a restitution dashpots are such that
+ * grains bounce so at any mass and speed; gamma_n says nothing, and gamma_t is the share of the normal dashpot that the
+ * tangential one is. The number of arguments read, 0 if they are no law. `pressure_unit` is
  * LAMMPS' force->nktv2p, by which Hertz' stiffnesses are divided. `number` reads an argument. */
 template <class Number>
 int read_law(ContactLaw &law, bool hertz, double pressure_unit, int count, char **arguments, Number number) {
@@ -81,17 +85,26 @@ int read_law(ContactLaw &law, bool hertz, double pressure_unit, int count, char 
         law.kt /= pressure_unit;
     }
     int read = 6;
+    double restitution = 1;
     for (; read < count; read++) {
         const std::string word = arguments[read];
         if (word == "rolling" && read + 1 < count)
             law.rolling = number(arguments[++read]);
+        else if (word == "restitution" && read + 1 < count)
+            restitution = number(arguments[++read]);
         else if (word == "limit_damping")
             law.limit_damping = true;
         else
             break;
     }
-    const bool good = law.kn >= 0 && law.kt >= 0 && law.gamma_n >= 0 && law.gamma_t >= 0 && law.friction >= 0 &&
-                      law.friction <= 10000 && law.rolling >= 0 && (damped == 0 || damped == 1);
+    if (restitution > 0 && restitution < 1) {
+        const double lost = -std::log(restitution), pi = std::acos(-1.0);
+        law.damping = (hertz ? std::sqrt(5.0) : 2) * lost / std::sqrt(pi * pi + lost * lost);
+        law.gamma_t = damped == 0 ? 0 : is_null(arguments[3]) ? 0.5 : law.gamma_t;
+    }
+    const bool good = restitution > 0 && restitution <= 1 && law.kn >= 0 && law.kt >= 0 && law.gamma_n >= 0 &&
+                      law.gamma_t >= 0 && law.friction >= 0 && law.friction <= 10000 && law.rolling >= 0 &&
+                      (damped == 0 || damped == 1);
     return good ? read : 0;
 }
 
@@ -111,14 +124,15 @@ inline void add_force(Force &sum, double x, double y, const double arm_a[2], con
 
 /* Along the normals of two ends (see touch.h), and along the side that they are the ends of. The whole push. (Contacts
  * go by value, so that those of one point stay in registers.) */
-[[gnu::noinline]] inline double push_ends(const ContactLaw &law, Contact c, double stiffening, Force &sum) {
+[[gnu::noinline]] inline double push_ends(const ContactLaw &law, Contact c, double stiffening, double dashpot,
+                                          Force &sum) {
     double whole = 0, velocity[2];
     const double spring = stiffening * law.kn * c.depth;
     for (const touch_end &end : c.ends->end) {
         const double arm_a[2] = {end.x, end.y}, arm_b[2] = {end.x - c.way_x, end.y - c.way_y};
         find_velocity(c, arm_a, arm_b, velocity);
         const double approach = velocity[0] * end.normal_x + velocity[1] * end.normal_y;
-        double push = end.share * (spring + stiffening * c.mass * law.gamma_n * approach);
+        double push = end.share * (spring + stiffening * dashpot * approach);
         if (law.limit_damping)
             push = std::max(push, 0.0);
         add_force(sum, -push * end.normal_x, -push * end.normal_y, arm_a, arm_b);
@@ -170,14 +184,16 @@ inline void add_rolling(const ContactLaw &law, const Contact &c, double stiffeni
     const double approach = velocity[0] * normal_x + velocity[1] * normal_y;
     const double tangent_x = velocity[0] - approach * normal_x, tangent_y = velocity[1] - approach * normal_y;
     const double stiffening = law.hertz ? std::sqrt(c.depth * c.radius) : 1;
+    const double dashpot =
+        law.damping > 0 ? law.damping * std::sqrt(law.kn * c.mass / stiffening) : c.mass * law.gamma_n;
     Force sum = {};
     double push, along = 0; /* along: the part of it that acts here, and not at two ends */
     if (c.ends) {
         Force of_ends = {};
-        push = push_ends(law, c, stiffening, of_ends);
+        push = push_ends(law, c, stiffening, dashpot, of_ends);
         sum = of_ends;
     } else {
-        push = stiffening * (law.kn * c.depth + c.mass * law.gamma_n * approach);
+        push = stiffening * (law.kn * c.depth + dashpot * approach);
         along = push = law.limit_damping ? std::max(push, 0.0) : push;
     }
 
@@ -188,7 +204,7 @@ inline void add_rolling(const ContactLaw &law, const Contact &c, double stiffeni
         slip.x -= along_normal * normal_x;
         slip.y -= along_normal * normal_y;
     }
-    const double drag = c.mass * law.gamma_t;
+    const double drag = (law.damping > 0 ? dashpot : c.mass) * law.gamma_t;
     double shear_x = -stiffening * (law.kt * slip.x + drag * tangent_x);
     double shear_y = -stiffening * (law.kt * slip.y + drag * tangent_y);
     const double shear = std::sqrt(shear_x * shear_x + shear_y * shear_y), most = law.friction * std::fabs(push);

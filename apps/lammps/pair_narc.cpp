@@ -59,7 +59,7 @@ narc_lammps::ContactLaw PairNarc::read_law(int count, char **arguments) {
     if (narc_lammps::read_law(read, law.hertz, force->nktv2p, count, arguments, number) != count)
         error->all(FLERR,
                    std::string("pair_style narc: kn kt gamma_n gamma_t xmu dampflag [limit_damping] [rolling MU] "
-                               "are wanted, none of them negative or out of range"));
+                               "[restitution E] are wanted, none of them negative or out of range"));
     return read;
 }
 

@@ -6,7 +6,8 @@
  *   pair_style narc/hertz/history LAW
  *   pair_coeff I J [LAW]
  *
- *   LAW    kn kt gamma_n gamma_t xmu dampflag [limit_damping] [rolling MU]; types without one have the pair style's
+ *   LAW    kn kt gamma_n gamma_t xmu dampflag [limit_damping] [rolling MU] [restitution E]; types without
+ *          one have the pair style's
  */
 #ifndef NARC_LAMMPS_PAIR_NARC_H
 #define NARC_LAMMPS_PAIR_NARC_H
