@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""For ../../dem/cases/cases.py: the input of apps/dem as LAMMPS has it. write_start() leaves start.data, the grains as
-apps/dem places them, and start.in, what all inputs of this folder include: grains, laws, time step, and variables for
-walls (law_NAME, NAME_x, NAME_width, the last NAME_vx ...) and stages (steps_NAME)."""
+"""An input of apps/dem as LAMMPS has it. write_start() leaves start.data, the grains as apps/dem places them, and
+start.in, which the inputs of apps/lammps/cases include: grains, laws, time step, output, and variables for walls (law_NAME, NAME_x, NAME_width, the last NAME_vx ...) and stages (steps_NAME)."""
 import json
 import math
 import os
@@ -40,16 +39,10 @@ def write_data(folder, world, table, kinds, box):
 
 
 def find_box(world, table):
-    """All that grains can reach, a little larger."""
-    places = [wall["plate"]["point"] if "plate" in wall else wall["at"] for wall in world.get("walls", [])]
-    box = ()
-    for axis, key in enumerate("xy"):
-        if key in world.get("boundary", {}):
-            box += tuple(world["boundary"][key])
-            continue
-        values = [place[axis] for place in places] + list(table[key])
-        low, high = min(values), max(values)
-        box += low - 0.05 * (high - low), high + 0.05 * (high - low)
+    """The periodic cell, else what is around all grains."""
+    box, room = (), 2 * max(table["size"])
+    for key in "xy":
+        box += tuple(world.get("boundary", {}).get(key, (min(table[key]) - room, max(table[key]) + room)))
     return box
 
 
@@ -76,7 +69,7 @@ def write_start(program, folder, case, world, read_table):
     density = {one["name"]: one["density"] * world.get("thickness", 1) for one in world["materials"]}
     periodic = world.get("boundary", {})
     lines = ["# Written by apps/dem/cases/cases.py.", "units lj", "dimension 2",
-             "boundary %s %s p" % tuple("p" if key in periodic else "f" for key in "xy"),
+             "boundary %s %s p" % tuple("p" if key in periodic else "m" for key in "xy"),
              "atom_style hybrid sphere dipole", "atom_modify map array", "newton off", "comm_modify vel yes",
              "read_data start.data", "fix shapes all narc/shapes shapes.json %s density %.17g mesh form"
              % (" ".join(name[1] for name in names), density[names[0][0]])]
@@ -108,7 +101,7 @@ def write_start(program, folder, case, world, read_table):
     lines += ["variable steps_%s equal %d" % (stage["name"], round(stage["duration"] / step))
               for stage in world["stages"]]
     lines += ["variable every equal %d" % round(world["output"]["every"] / step), "compute contacts all narc/contact",
-              "dump grains all custom ${every} %s-*.dump %s" % (case, COLUMNS), "dump_modify grains sort id pad 12",
+              "dump grains all custom ${every} %s-*.dump %s" % (case, COLUMNS), "dump_modify grains sort id pad 12 format float %.12g",
               "dump contacts all local ${every} %s-contacts-*.dump index %s"
               % (case, " ".join("c_contacts[%d]" % (k + 1) for k in range(9))), "dump_modify contacts pad 12",
               "thermo ${every}", ""]
