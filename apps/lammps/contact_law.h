@@ -160,8 +160,8 @@ inline void add_rolling(const ContactLaw &law, const Contact &c, double stiffeni
 
 /* The force of a contact. `slip` is its memory; it moves on by `step` of time, and not at all if `step` is 0.
  * gran/hooke/history takes the velocities along the tangent, and lets that force act, where the surface of each grain
- * lies deepest in the other: for discs at the end of each radius. So does this, for any form; of two ends in their mean.
- * A call would cost as much as the force of a disc. */
+ * lies deepest in the other: for discs at the end of each radius. So does this, for any form; of two ends in their
+ * mean. A call would cost as much as the force of a disc. */
 [[gnu::always_inline]] inline Force compute_force(const ContactLaw &law, const Contact &c, double step, Springs &slip) {
     const touch_end deep = c.end;
     double normal_x = deep.normal_x, normal_y = deep.normal_y, x = deep.x, y = deep.y, half = 0.5 * deep.depth;

@@ -219,7 +219,7 @@ def collision(cases):
     # With four times as many steps the error of damped collisions is a quarter, that of undamped ones a 64th.
     cases.tell("collision: restitution off by %.4f, momentum by %.0e, angular momentum by %.0e, energy by %.0e"
                % (largest, momentum, turn, energy), largest < 0.01, momentum < 1e-8,
-               cases.lammps or (turn < 1e-8 and energy < 2e-3),  # LAMMPS has friction at two depths, and no sum of losses
+               cases.lammps or (turn < 1e-8 and energy < 2e-3),  # LAMMPS has friction at two depths, no sum of losses
                30 < ratios[0] < 120, 2 < ratios[1] < 8, 20 < ratios[2] < 120, 2 < ratios[3] < 12)
     if cases.small:
         return

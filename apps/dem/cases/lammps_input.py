@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """An input of apps/dem as LAMMPS has it. write_start() leaves start.data, the grains as apps/dem places them, and
-start.in, which the inputs of apps/lammps/cases include: grains, laws, time step, output, and variables for walls (law_NAME, NAME_x, NAME_width, the last NAME_vx ...) and stages (steps_NAME)."""
+start.in, which the inputs of apps/lammps/cases include: grains, laws, time step, output, and variables for walls
+(law_NAME, NAME_x, NAME_width, the last NAME_vx ...) and stages (steps_NAME)."""
 import json
 import math
 import os
@@ -27,7 +28,8 @@ def write_data(folder, world, table, kinds, box):
                    % ((len(kinds), len(set(kinds))) + box))
         if "shear" in world.get("boundary", {}):
             file.write("0 0 0 xy xz yz\n")
-        names, rows = sorted(set(kinds)), list(zip(*(table[k] for k in ("x", "y", "angle", "scale", "vx", "vy", "spin"))))
+        names = sorted(set(kinds))
+        rows = list(zip(*(table[key] for key in ("x", "y", "angle", "scale", "vx", "vy", "spin"))))
         file.write("\nAtoms # hybrid\n\n")
         for i, (x, y, angle, scale, _, _, _) in enumerate(rows):
             file.write("%d %d %.17g %.17g 0 1 1 %.17g %.17g %.17g 0\n"
@@ -52,8 +54,11 @@ def make_law(world, materials):
     for pair in law.pop("pairs", []):
         if sorted(pair["materials"]) == sorted(materials):
             law.update(pair)
-    stiff = law.get("kn", 4 / 3 * world["materials"][0].get("young", 0) / 2)  # of equal materials whose Poisson ratio is 0
-    across = world["materials"][0]["young"] if law["law"] == "hertz" else 2 / 7 * stiff
+    if law["law"] == "hertz":  # of equal materials whose Poisson ratio is 0
+        across = world["materials"][0]["young"]
+        stiff = 4 / 3 * across / 2
+    else:
+        stiff, across = law["kn"], law.get("kt", 2 / 7 * law["kn"])
     text = "%.17g %.17g 0 %.17g %.17g 1 restitution %.17g" % (stiff, across, law.get("tangential_damping", 0.5),
                                                             law["friction"], law["restitution"])
     return law["law"].replace("linear", "hooke") + "/history", text
@@ -101,7 +106,8 @@ def write_start(program, folder, case, world, read_table):
     lines += ["variable steps_%s equal %d" % (stage["name"], round(stage["duration"] / step))
               for stage in world["stages"]]
     lines += ["variable every equal %d" % round(world["output"]["every"] / step), "compute contacts all narc/contact",
-              "dump grains all custom ${every} %s-*.dump %s" % (case, COLUMNS), "dump_modify grains sort id pad 12 format float %.12g",
+              "dump grains all custom ${every} %s-*.dump %s" % (case, COLUMNS),
+              "dump_modify grains sort id pad 12 format float %.12g",
               "dump contacts all local ${every} %s-contacts-*.dump index %s"
               % (case, " ".join("c_contacts[%d]" % (k + 1) for k in range(9))), "dump_modify contacts pad 12",
               "thermo ${every}", ""]

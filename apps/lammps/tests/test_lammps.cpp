@@ -102,8 +102,8 @@ void check_restitution(const std::string &shape, double radius, bool turned) {
     check_at_most("the collision stays straight", std::fabs(after[0].velocity_y) + std::fabs(after[0].spin), 1e-4);
 }
 
-/* The larger disc comes from the left and meets the smaller one, with the restitution that is given, whatever the masses
- * and the speed. 200 steps a contact and more leave 1e-2: see the cases of apps/dem. */
+/* The larger disc comes from the left and meets the smaller one, with the restitution that is given, whatever the
+ * masses and the speed. 200 steps a contact and more leave 1e-2: see the cases of apps/dem. */
 void check_given(const char *law, double speed) {
     Packing packing = {10, 10, {{1, 4, 5, 0.7, 0, speed, 0, 0}, {1, 5.11, 5, 0.4, 0, 0, 0, 0}}};
     Simulation pair(MPI_COMM_WORLD);
@@ -150,9 +150,9 @@ void test_hertz() {
                 {2, 5 + 2 * half_width * scale - d, 5, 0.5, 0, 0, 0, 0}, d * std::pow(2, 5.0 / 6), brick, brick);
 }
 
-/* A grain goes down a slope of 30 degrees from rest without sliding. A disc of radius R has the torque mu R N against it
- * and the moment of inertia m R^2 / 2: its acceleration is 2/3 (g sin - mu g cos), and 0 if that is negative. Springs
- * ring at first, with an amplitude that is the load's overlap. */
+/* A grain goes down a slope of 30 degrees from rest without sliding. A disc of radius R has the torque mu R N against
+ * it and the moment of inertia m R^2 / 2: its acceleration is 2/3 (g sin - mu g cos), and 0 if that is negative.
+ * Springs ring at first, with an amplitude that is the load's overlap. */
 void test_rolling() {
     const double angle = std::acos(-1.0) / 6, time = 4;
     for (const double mu : {0.0, 0.3, 0.7}) {
@@ -193,8 +193,8 @@ Kept sum_kept(Simulation &simulation, const double inertia[2]) {
 }
 
 /* A disc meets one end of a dimer, two discs that touch, square to its axis. The push P along y changes the momenta of
- * both by P and the dimer's spin by P a / I; energy tells P. The contact is soft: the dimer turns a little meanwhile, by
- * the speed times its time, 2e-3 of the arm a. */
+ * both by P and the dimer's spin by P a / I; energy tells P. The contact is soft: the dimer turns a little meanwhile,
+ * by the speed times its time, 2e-3 of the arm a. */
 void test_clumps() {
     const double r = 0.5, pi = std::acos(-1.0), m = pi * r * r, inertia = 2 * (pi * std::pow(r, 4) * (0.5 + 1));
     const double spins[2] = {inertia, m * r * r / 2};
