@@ -74,7 +74,7 @@ def read_table(path):
     with open(path, encoding="utf-8") as file:
         lines = file.read().split("\n")
     if lines[0].startswith("ITEM:"):
-        start = max(i for i, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
+        start = max(i for i, line in enumerate(lines) if line.startswith(("ITEM: ATOMS", "ITEM: ENTRIES")))
         return make_columns(lines[start].split()[2:], [line.split() for line in lines[start + 1 :] if line])
     if lines[0].startswith("LAMMPS"):
         head, rows, inside = [], [], False
@@ -98,6 +98,19 @@ def find_fabric(normals):
     fabric = normals.T @ normals / len(normals)
     values, vectors = np.linalg.eigh(fabric)
     return fabric, 2 * (values[1] - values[0]), math.degrees(math.atan2(vectors[1, 1], vectors[0, 1])) % 180
+
+
+def find_bearing(count, ends, least):
+    """Contacts of each of so many grains, by pairs of indices (below 0: a wall), without rattlers: who has fewer than
+    `least` is taken away until all are held."""
+    held = np.ones(count + 1, bool)  # the last one is for walls
+    while True:
+        both = ends[held[ends].all(1)]
+        number = np.bincount(both[both >= 0], minlength=count)
+        fall = held[:-1] & (number < least)
+        if not fall.any():
+            return np.where(held[:-1], number, 0)
+        held[:-1] &= ~fall
 
 
 def find_force_distribution(forces, bins=12, highest=4):
@@ -142,6 +155,26 @@ def find_packing_fraction(frame, region, rows=800):
             inside &= (b[0] - a[0]) * (y - a[1]) >= (b[1] - a[1]) * (x - a[0])
         covered[down:up, left:right] |= inside
     return covered.mean()
+
+
+def read_mesh(path):
+    """The polygons of a form that fix narc/shapes of LAMMPS has drawn, as lists of corners."""
+    with open(path, encoding="utf-8") as file:
+        lines = [line.split() for line in file]
+    corners = np.array([line[1:3] for line in lines if line[0] == "v"], float)
+    return [corners[np.array(line[1:], int) - 1] for line in lines if line[0] == "f"]
+
+
+def make_frame(table, meshes):
+    """Grains of a dump of LAMMPS as read_vtk() has them, by the mesh of each."""
+    points, cells, count = [], [], 0
+    for x, y, radius, angle, mesh in zip(table["x"], table["y"], table["radius"], table["c_picture[1]"], meshes):
+        turn = radius * np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+        for polygon in mesh:
+            points.append(polygon @ turn + (x, y))
+            cells.append(count + np.arange(len(polygon)))
+            count += len(polygon)
+    return {"points": np.concatenate(points), "cells": cells, "fields": {"wall": np.zeros(len(cells))}}
 
 
 def load_grains(path):

@@ -20,7 +20,21 @@ struct ContactLaw {
     double kn = 0, kt = 0;
     double gamma_n = 0, gamma_t = 0;
     double friction = 0;
+    double damping =
+        0; /* above 0: dashpots are this times sqrt(stiffness mass), and gamma_t the share of the tangential */
+    double rolling = 0;         /* the torque against rolling is at most this times radius times force */
     bool limit_damping = false; /* never pull */
+};
+
+/* What a contact remembers: the tangential spring, a vector, and the angle by which it has rolled. */
+struct Springs {
+    double x, y, angle;
+};
+
+/* A contact as it is put out: IDs, of a wall a negative number; where it is; its normal from A to B, and the force on
+ * B. */
+struct ContactRow {
+    double a, b, x, y, normal_x, normal_y, force_x, force_y, depth;
 };
 
 /* How a grain or a wall moves. */
@@ -36,21 +50,27 @@ struct Contact {
     double way_x, way_y; /* from A to B */
     Motion a, b;
     double mass;   /* effective */
-    double radius; /* 1 / (1 / R_a + 1 / R_b), of the discs of equal area, for Hertz */
+    double radius; /* 1 / (1 / R_a + 1 / R_b), of the discs of equal area, for Hertz and rolling */
 };
 
 struct Force {
     double x, y; /* on A, on B the opposite */
     double torque_a, torque_b;
-    double energy; /* elastic: of both springs */
+    double energy;                               /* elastic: of all springs */
+    double point_x, point_y, normal_x, normal_y; /* from the centre of A; from A to B */
 };
 
-/* How a style's arguments name the law: kn kt gamma_n gamma_t xmu dampflag, NULL for kt (2/7 of kn) and gamma_t (half
- * of gamma_n). False if they are no law. `pressure_unit` is LAMMPS' force->nktv2p, by which Hertz' stiffnesses are
- * divided. `number` reads an argument. */
+/* How a command's arguments name the law: kn kt gamma_n gamma_t xmu dampflag [limit_damping] [rolling MU]
+ * [restitution E], NULL for kt (2/7 of kn) and gamma_t (half of gamma_n). With a restitution dashpots are such that
+ * grains bounce so at any mass and speed; gamma_n says nothing, and gamma_t is the share of the normal dashpot that the
+ * tangential one is. The number of arguments read, 0 if they are no law. `pressure_unit` is
+ * LAMMPS' force->nktv2p, by which Hertz' stiffnesses are divided. `number` reads an argument. */
 template <class Number>
-bool read_law(ContactLaw &law, bool hertz, double pressure_unit, char **arguments, Number number) {
+int read_law(ContactLaw &law, bool hertz, double pressure_unit, int count, char **arguments, Number number) {
+    if (count < 6)
+        return 0;
     const auto is_null = [](const char *text) { return std::string(text) == "NULL"; };
+    law = {};
     law.hertz = hertz;
     law.kn = number(arguments[0]);
     law.kt = is_null(arguments[1]) ? law.kn * 2 / 7 : number(arguments[1]);
@@ -64,8 +84,28 @@ bool read_law(ContactLaw &law, bool hertz, double pressure_unit, char **argument
         law.kn /= pressure_unit;
         law.kt /= pressure_unit;
     }
-    return law.kn >= 0 && law.kt >= 0 && law.gamma_n >= 0 && law.gamma_t >= 0 && law.friction >= 0 &&
-           law.friction <= 10000 && (damped == 0 || damped == 1);
+    int read = 6;
+    double restitution = 1;
+    for (; read < count; read++) {
+        const std::string word = arguments[read];
+        if (word == "rolling" && read + 1 < count)
+            law.rolling = number(arguments[++read]);
+        else if (word == "restitution" && read + 1 < count)
+            restitution = number(arguments[++read]);
+        else if (word == "limit_damping")
+            law.limit_damping = true;
+        else
+            break;
+    }
+    if (restitution > 0 && restitution < 1) {
+        const double lost = -std::log(restitution), pi = std::acos(-1.0);
+        law.damping = (hertz ? std::sqrt(5.0) : 2) * lost / std::sqrt(pi * pi + lost * lost);
+        law.gamma_t = damped == 0 ? 0 : is_null(arguments[3]) ? 0.5 : law.gamma_t;
+    }
+    const bool good = restitution > 0 && restitution <= 1 && law.kn >= 0 && law.kt >= 0 && law.gamma_n >= 0 &&
+                      law.gamma_t >= 0 && law.friction >= 0 && law.friction <= 10000 && law.rolling >= 0 &&
+                      (damped == 0 || damped == 1);
+    return good ? read : 0;
 }
 
 /* The velocity of A's surface less that of B's, where the arms reach. */
@@ -84,14 +124,15 @@ inline void add_force(Force &sum, double x, double y, const double arm_a[2], con
 
 /* Along the normals of two ends (see touch.h), and along the side that they are the ends of. The whole push. (Contacts
  * go by value, so that those of one point stay in registers.) */
-[[gnu::noinline]] inline double push_ends(const ContactLaw &law, Contact c, double stiffening, Force &sum) {
+[[gnu::noinline]] inline double push_ends(const ContactLaw &law, Contact c, double stiffening, double dashpot,
+                                          Force &sum) {
     double whole = 0, velocity[2];
     const double spring = stiffening * law.kn * c.depth;
     for (const touch_end &end : c.ends->end) {
         const double arm_a[2] = {end.x, end.y}, arm_b[2] = {end.x - c.way_x, end.y - c.way_y};
         find_velocity(c, arm_a, arm_b, velocity);
         const double approach = velocity[0] * end.normal_x + velocity[1] * end.normal_y;
-        double push = end.share * (spring + stiffening * c.mass * law.gamma_n * approach);
+        double push = end.share * (spring + stiffening * dashpot * approach);
         if (law.limit_damping)
             push = std::max(push, 0.0);
         add_force(sum, -push * end.normal_x, -push * end.normal_y, arm_a, arm_b);
@@ -103,12 +144,25 @@ inline void add_force(Force &sum, double x, double y, const double arm_a[2], con
     return whole;
 }
 
-/* The force of a contact. `slip` is the memory of the tangential spring, a vector; it moves on by `step` of time, and
- * not at all if `step` is 0. gran/hooke/history takes the velocities along the tangent, and lets that force act, where
- * the surface of each grain lies deepest in the other: for discs at the end of each radius. So does this, for any form;
- * of two ends in their mean. A call would cost as much as the force of a disc. */
-[[gnu::always_inline]] inline Force compute_force(const ContactLaw &law, const Contact &c, double step,
-                                                  double slip[2]) {
+/* Against rolling: a spring with the stiffness of the tangential one at the arm R, cut back as friction is. */
+inline void add_rolling(const ContactLaw &law, const Contact &c, double stiffening, double push, double step,
+                        double &angle, Force &sum) {
+    const double stiffness = stiffening * law.kt * c.radius * c.radius;
+    const double most = law.rolling * c.radius * std::fabs(push);
+    angle += (c.b.spin - c.a.spin) * step;
+    const double torque = std::min(std::max(stiffness * angle, -most), most);
+    if (torque != stiffness * angle)
+        angle = torque / stiffness;
+    sum.torque_a += torque;
+    sum.torque_b -= torque;
+    sum.energy += 0.5 * torque * angle;
+}
+
+/* The force of a contact. `slip` is its memory; it moves on by `step` of time, and not at all if `step` is 0.
+ * gran/hooke/history takes the velocities along the tangent, and lets that force act, where the surface of each grain
+ * lies deepest in the other: for discs at the end of each radius. So does this, for any form; of two ends in their
+ * mean. A call would cost as much as the force of a disc. */
+[[gnu::always_inline]] inline Force compute_force(const ContactLaw &law, const Contact &c, double step, Springs &slip) {
     const touch_end deep = c.end;
     double normal_x = deep.normal_x, normal_y = deep.normal_y, x = deep.x, y = deep.y, half = 0.5 * deep.depth;
     if (c.ends) {
@@ -130,45 +184,59 @@ inline void add_force(Force &sum, double x, double y, const double arm_a[2], con
     const double approach = velocity[0] * normal_x + velocity[1] * normal_y;
     const double tangent_x = velocity[0] - approach * normal_x, tangent_y = velocity[1] - approach * normal_y;
     const double stiffening = law.hertz ? std::sqrt(c.depth * c.radius) : 1;
-    Force sum = {0, 0, 0, 0, 0};
+    const double dashpot =
+        law.damping > 0 ? law.damping * std::sqrt(law.kn * c.mass / stiffening) : c.mass * law.gamma_n;
+    Force sum = {};
     double push, along = 0; /* along: the part of it that acts here, and not at two ends */
     if (c.ends) {
-        Force of_ends = {0, 0, 0, 0, 0};
-        push = push_ends(law, c, stiffening, of_ends);
+        Force of_ends = {};
+        push = push_ends(law, c, stiffening, dashpot, of_ends);
         sum = of_ends;
     } else {
-        push = stiffening * (law.kn * c.depth + c.mass * law.gamma_n * approach);
+        push = stiffening * (law.kn * c.depth + dashpot * approach);
         along = push = law.limit_damping ? std::max(push, 0.0) : push;
     }
 
     if (step > 0) {
-        slip[0] += tangent_x * step;
-        slip[1] += tangent_y * step;
-        const double along_normal = slip[0] * normal_x + slip[1] * normal_y;
-        slip[0] -= along_normal * normal_x;
-        slip[1] -= along_normal * normal_y;
+        slip.x += tangent_x * step;
+        slip.y += tangent_y * step;
+        const double along_normal = slip.x * normal_x + slip.y * normal_y;
+        slip.x -= along_normal * normal_x;
+        slip.y -= along_normal * normal_y;
     }
-    const double drag = c.mass * law.gamma_t;
-    double shear_x = -stiffening * (law.kt * slip[0] + drag * tangent_x);
-    double shear_y = -stiffening * (law.kt * slip[1] + drag * tangent_y);
+    const double drag = (law.damping > 0 ? dashpot : c.mass) * law.gamma_t;
+    double shear_x = -stiffening * (law.kt * slip.x + drag * tangent_x);
+    double shear_y = -stiffening * (law.kt * slip.y + drag * tangent_y);
     const double shear = std::sqrt(shear_x * shear_x + shear_y * shear_y), most = law.friction * std::fabs(push);
     if (shear > most) {
         const double keep = most / shear;
-        const bool memory = slip[0] != 0 || slip[1] != 0;
+        const bool memory = slip.x != 0 || slip.y != 0;
         shear_x = memory ? shear_x * keep : 0;
         shear_y = memory ? shear_y * keep : 0;
         if (!(most > 0)) {
-            slip[0] = slip[1] = 0;         /* where nothing is borne there is no spring */
+            slip.x = slip.y = 0;           /* where nothing is borne there is no spring */
         } else if (law.kt > 0 && memory) { /* the spring is as long as what friction can hold */
-            slip[0] = keep * (slip[0] + drag * tangent_x / law.kt) - drag * tangent_x / law.kt;
-            slip[1] = keep * (slip[1] + drag * tangent_y / law.kt) - drag * tangent_y / law.kt;
+            slip.x = keep * (slip.x + drag * tangent_x / law.kt) - drag * tangent_x / law.kt;
+            slip.y = keep * (slip.y + drag * tangent_y / law.kt) - drag * tangent_y / law.kt;
         }
     }
     add_force(sum, shear_x - along * normal_x, shear_y - along * normal_y, arm_a, arm_b);
     /* The work of kn overlap is kn overlap^2 / 2, that of kn sqrt(R) overlap^(3/2) is 2/5 of force times overlap. */
     sum.energy = stiffening * (law.kn * c.depth * c.depth * (law.hertz ? 0.4 : 0.5) +
-                               0.5 * law.kt * (slip[0] * slip[0] + slip[1] * slip[1]));
+                               0.5 * law.kt * (slip.x * slip.x + slip.y * slip.y));
+    if (law.rolling > 0)
+        add_rolling(law, c, stiffening, push, step, slip.angle, sum);
+    sum.point_x = x;
+    sum.point_y = y;
+    sum.normal_x = normal_x;
+    sum.normal_y = normal_y;
     return sum;
+}
+
+/* The row of a contact whose A is there. */
+inline ContactRow make_row(const Force &on_a, double depth, double a, double b, const double place_a[2]) {
+    return {a,       b,    place_a[0] + on_a.point_x, place_a[1] + on_a.point_y, on_a.normal_x, on_a.normal_y, -on_a.x,
+            -on_a.y, depth};
 }
 
 } // namespace narc_lammps

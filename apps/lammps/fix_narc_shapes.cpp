@@ -24,7 +24,7 @@ using narc_lammps::Form;
 
 namespace {
 
-constexpr int memory_size = 4; /* doubles of a packed memory */
+constexpr int memory_size = 7; /* doubles of a packed memory */
 
 /* The text of a file, which rank 0 reads; false if it cannot. */
 bool read_file(MPI_Comm world, const char *path, std::string &text) {
@@ -112,26 +112,18 @@ void FixNarcShapes::read_forms(const char *path, int count, char **names) {
     std::string problem;
     try {
         const std::vector<Form> all = narc_lammps::parse_forms(path, text);
-        if (narc_create_shapes(nullptr, &store) != NARC_OK)
-            throw std::runtime_error("not enough memory for shapes");
         for (int i = 0; i < count; i++) {
             const auto found =
                 std::find_if(all.begin(), all.end(), [&](const Form &form) { return form.name == names[i]; });
-            const std::string part = std::string(names[i]) + "/1";
-            if (found == all.end() &&
-                std::any_of(all.begin(), all.end(), [&](const Form &form) { return form.name == part; }))
-                throw std::runtime_error(std::string(path) + ": '" + names[i] + "' has parts, " + part +
-                                         " and so on: a grain here is one shape");
             if (found == all.end())
                 throw std::runtime_error(std::string(path) + ": it has no shape '" + names[i] + "'");
-            narc_error failure;
-            if (narc_add_shape_at(store, static_cast<uint32_t>(i), found->arcs.data(), found->arcs.size(), &failure) !=
-                NARC_OK)
-                throw std::runtime_error(std::string(path) + ": shape '" + names[i] + "': " + failure.message);
+            first_part.push_back(i ? first_part.back() + static_cast<uint32_t>(forms.back().parts.size()) : 0);
             forms.push_back(*found);
+            most_parts = std::max(most_parts, found->parts.size());
             if (!mesh.empty() && comm->me == 0)
                 narc_lammps::write_mesh(*found, mesh + "." + found->name + ".obj");
         }
+        narc_lammps::store_parts(forms, &store);
     } catch (const std::runtime_error &failure) {
         problem = failure.what();
     }
@@ -217,16 +209,30 @@ void FixNarcShapes::orient(int i) {
     mu[3] = 1;
 }
 
-narc_body FixNarcShapes::body(int i) const {
+narc_body FixNarcShapes::body(int i, size_t part) const {
     const double *x = atom->x[i], *mu = atom->mu[i];
-    return {x[0],         x[1], static_cast<float>(mu[0]), static_cast<float>(mu[1]), static_cast<float>(scale(i)),
-            form_index(i)};
+    return {x[0],
+            x[1],
+            static_cast<float>(mu[0]),
+            static_cast<float>(mu[1]),
+            static_cast<float>(scale(i)),
+            first_part[form_index(i)] + static_cast<uint32_t>(part)};
+}
+
+void FixNarcShapes::number_rows() {
+    row_atom.clear();
+    first_row.clear();
+    for (int i = 0; i < atom->nlocal + atom->nghost; i++) {
+        first_row.push_back(static_cast<uint32_t>(row_atom.size()));
+        row_atom.insert(row_atom.end(), form(i).parts.size(), static_cast<uint32_t>(i));
+    }
 }
 
 narc_bodies FixNarcShapes::bodies() {
     rows.clear();
     for (int i = 0; i < atom->nlocal + atom->nghost; i++)
-        rows.push_back(body(i));
+        for (size_t part = 0; part < form(i).parts.size(); part++)
+            rows.push_back(body(i, part));
     return narc_view_bodies(rows.data(), rows.size());
 }
 
@@ -269,8 +275,11 @@ int FixNarcShapes::pack(const std::vector<Memory> &list, double *buffer) {
     buffer[n++] = static_cast<double>(list.size());
     for (const Memory &kept : list) {
         buffer[n++] = static_cast<double>(kept.other);
-        buffer[n++] = kept.slip[0];
-        buffer[n++] = kept.slip[1];
+        buffer[n++] = kept.parts[0];
+        buffer[n++] = kept.parts[1];
+        buffer[n++] = kept.springs.x;
+        buffer[n++] = kept.springs.y;
+        buffer[n++] = kept.springs.angle;
         buffer[n++] = kept.hint;
     }
     return n;
@@ -280,8 +289,10 @@ int FixNarcShapes::unpack(const double *buffer, std::vector<Memory> &list) {
     int n = 0;
     const int count = static_cast<int>(buffer[n++]);
     for (int k = 0; k < count; k++, n += memory_size)
-        list.push_back(
-            {static_cast<tagint>(buffer[n]), {buffer[n + 1], buffer[n + 2]}, static_cast<uint32_t>(buffer[n + 3])});
+        list.push_back({static_cast<tagint>(buffer[n]),
+                        {static_cast<uint32_t>(buffer[n + 1]), static_cast<uint32_t>(buffer[n + 2])},
+                        {buffer[n + 3], buffer[n + 4], buffer[n + 5]},
+                        static_cast<uint32_t>(buffer[n + 6])});
     return n;
 }
 

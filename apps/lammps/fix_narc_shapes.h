@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "atom.h"
+#include "contact_law.h"
 #include "fix.h"
 #include "shape_file.h"
 
@@ -55,26 +56,33 @@ class FixNarcShapes : public Fix {
     double scale(int i) const { return atom->radius[i] / form(i).reach; }
     double moment_of_inertia(int i) const;
     double equal_radius(int i) const; /* of the disc of equal area */
-    touch_grain outline(int i) const {
-        const narc_lammps::Form &of = form(i);
-        return {of.sides.data(), of.sides.size(), atom->mu[i][0], atom->mu[i][1], scale(i)};
+    touch_grain outline(int i, size_t part) const {
+        const std::vector<touch_side> &sides = form(i).parts[part].sides;
+        return {sides.data(), sides.size(), atom->mu[i][0], atom->mu[i][1], scale(i)};
     }
 
     /* Sees to it that an atom has an orientation: that of angle 0 if it has none. */
     void orient(int i);
 
-    /* A local or ghost atom as the library wants it, as it is now; and all of them. */
-    narc_body body(int i) const;
+    /* A part of a local or ghost atom as the library wants it, as it is now. And a row for each part of each atom: as
+     * they are numbered when there is a new neighbour list. */
+    narc_body body(int i, size_t part) const;
+    void number_rows();
     narc_bodies bodies();
+    std::vector<uint32_t> row_atom, first_row; /* the atom of a row, an atom's first row */
+    size_t row_part(uint32_t row) const { return row - first_row[row_atom[row]]; }
 
     narc_shapes *store = nullptr;
-    std::vector<narc_lammps::Form> forms; /* those that the command names, in its order; in the store as well */
+    std::vector<narc_lammps::Form> forms; /* those that the command names, in its order; their parts are in the store */
+    size_t most_parts = 0;                /* of a form */
     PairNarc *pair = nullptr;             /* whose contacts are remembered; it registers itself */
 
-    /* The memory of a contact: the slip of the grain with the lower ID, and where the next search begins. */
+    /* The memory of a contact: between which parts, that of the grain with the lower ID first; the springs of the
+     * contact law; and where the next search begins. */
     struct Memory {
         tagint other;
-        double slip[2];
+        uint32_t parts[2];
+        narc_lammps::Springs springs;
         uint32_t hint;
     };
     /* Of local atoms, between the end of a neighbour list and the next; while a list lives the pair style has it. */
@@ -96,6 +104,7 @@ class FixNarcShapes : public Fix {
     std::string mesh;     /* where meshes of the forms go */
     std::string property; /* without its "i_"; empty: the type decides */
     int property_index = -1;
+    std::vector<uint32_t> first_part; /* of each form, in the store */
     std::vector<narc_body> rows;
 };
 

@@ -20,48 +20,33 @@
 
 using namespace LAMMPS_NS;
 
-namespace {
-constexpr int arguments_before_wall = 10; /* ID group wall/narc LAW and six coefficients */
-}
-
 /* ---------------------------------------------------------------------------- the command */
 
 FixWallNarc::FixWallNarc(LAMMPS *lammps, int count, char **arguments) : Fix(lammps, count, arguments) {
-    if (count <= arguments_before_wall)
+    if (count < 11)
         error->all(FLERR, std::string("fix wall/narc: LAW kn kt gamma_n gamma_t xmu dampflag WALL is wanted"));
+    shapes = FixNarcShapes::find(lmp, "fix wall/narc");
     const std::string kind = arguments[3];
     if (kind != "hooke/history" && kind != "hertz/history")
         error->all(FLERR, "fix wall/narc: no such law: " + kind);
     const auto number = [this](const char *text) { return utils::numeric(FLERR, text, false, lmp); };
-    if (!narc_lammps::read_law(law, kind == "hertz/history", force->nktv2p, arguments + 4, number))
-        error->all(FLERR, std::string("fix wall/narc: a coefficient is negative or out of range"));
-    int i = read_wall(arguments_before_wall, count, arguments);
-    if (i + 3 <= count && !std::strcmp(arguments[i], "velocity")) {
-        for (int axis = 0; axis < 2; axis++) {
-            const char *text = arguments[i + 1 + axis];
-            if (std::strncmp(text, "v_", 2) != 0)
-                velocity[axis] = number(text);
-            else
-                velocity_variable[axis] = text + 2;
-        }
-        i += 3;
-        if (i + 2 == count && !std::strcmp(arguments[i], "every")) {
-            every = utils::inumeric(FLERR, arguments[i + 1], false, lmp);
-            i += 2;
-        }
-    }
+    int i = narc_lammps::read_law(law, kind == "hertz/history", force->nktv2p, count - 4, arguments + 4, number);
+    if (i == 0 || 4 + i >= count)
+        error->all(FLERR, std::string("fix wall/narc: a coefficient is negative or out of range, or no wall is named"));
+    i = read_wall(4 + i, count, arguments);
+    while (i < count)
+        i = read_motion(i, count, arguments);
     if (every < 1)
         error->all(FLERR, std::string("fix wall/narc: every is less than 1"));
-    if (i != count)
-        error->all(FLERR, std::string("fix wall/narc: not understood: ") + arguments[i]);
 
     scalar_flag = vector_flag = 1;
-    size_vector = 4;
+    size_vector = 6;
+    virial_global_flag = virial_peratom_flag = 1;
     global_freq = 1;
     extscalar = extvector = 0;
     restart_global = restart_peratom = 1;
     create_attribute = 1;
-    maxexchange = 2;
+    maxexchange = 3 * static_cast<int>(shapes->most_parts);
     grow_arrays(atom->nmax);
     atom->add_callback(Atom::GROW);
     atom->add_callback(Atom::RESTART);
@@ -100,7 +85,6 @@ int FixWallNarc::read_wall(int i, int count, char **arguments) {
     normal_x = std::cos(angle);
     normal_y = std::sin(angle);
     reach = 0.5 * std::hypot(width, height);
-    shapes = FixNarcShapes::find(lmp, "fix wall/narc");
     narc_arc arcs[NARC_MAX_ARCS];
     size_t arc_count;
     narc_error failure = {};
@@ -108,43 +92,66 @@ int FixWallNarc::read_wall(int i, int count, char **arguments) {
         error->all(FLERR, std::string("fix wall/narc: box: ") + failure.message);
     sides.resize(arc_count);
     make_touch_sides(arcs, arc_count, sides.data());
-    narc_status status = narc_create_shapes(nullptr, &store);
-    uint32_t next = 0; /* the shapes' own indices, also of equal ones, and behind them the box */
-    for (const narc_lammps::Form &form : shapes->forms)
-        if (status == NARC_OK)
-            status = narc_add_shape_at(store, next++, form.arcs.data(), form.arcs.size(), &failure);
-    if (status != NARC_OK || narc_add_shape_at(store, next, arcs, arc_count, &failure) != NARC_OK)
+    box_shape = narc_lammps::store_parts(shapes->forms, &store);
+    if (narc_add_shape_at(store, box_shape, arcs, arc_count, &failure) != NARC_OK)
         error->all(FLERR, std::string("fix wall/narc: box: ") + failure.message);
     return end;
+}
+
+/* Reads a keyword of how the wall moves; the number of the argument behind it. */
+int FixWallNarc::read_motion(int i, int count, char **arguments) {
+    const std::string word = arguments[i];
+    const auto read = [&](int axis, const char *text) {
+        if (!std::strncmp(text, "v_", 2))
+            variables[axis] = text + 2;
+        else
+            velocity[axis] = utils::numeric(FLERR, text, false, lmp);
+    };
+    if (word == "velocity" && i + 2 < count) {
+        read(0, arguments[i + 1]);
+        read(1, arguments[i + 2]);
+        return i + 3;
+    }
+    if (word == "spin" && i + 3 < count && !plate) {
+        read(2, arguments[i + 1]);
+        pivot[0] = utils::numeric(FLERR, arguments[i + 2], false, lmp);
+        pivot[1] = utils::numeric(FLERR, arguments[i + 3], false, lmp);
+        return i + 4;
+    }
+    if (word != "every" || i + 1 >= count)
+        error->all(FLERR, "fix wall/narc: not understood: " + word);
+    every = utils::inumeric(FLERR, arguments[i + 1], false, lmp);
+    return i + 2;
 }
 
 int FixWallNarc::setmask() { return FixConst::INITIAL_INTEGRATE | FixConst::POST_FORCE; }
 
 void FixWallNarc::init() {
     shapes = FixNarcShapes::find(lmp, "fix wall/narc");
-    for (const std::string &name : velocity_variable) {
+    for (const std::string &name : variables) {
         const int variable = name.empty() ? 0 : input->variable->find(const_cast<char *>(name.c_str()));
         if (variable < 0 || (!name.empty() && !input->variable->equalstyle(variable)))
             error->all(FLERR, "fix wall/narc: there is no equal-style variable " + name);
     }
-    if (store && narc_count_shapes(store) != shapes->forms.size() + 1)
+    if (maxexchange != 3 * static_cast<int>(shapes->most_parts) ||
+        (store && narc_count_shapes(store) != narc_count_shapes(shapes->store) + 1))
         error->all(FLERR, std::string("fix wall/narc: fix narc/shapes has changed since this wall was made"));
 }
 
 void FixWallNarc::setup(int virial_kind) { post_force(virial_kind); }
 
 void FixWallNarc::initial_integrate(int) {
-    const bool varies = !velocity_variable[0].empty() || !velocity_variable[1].empty();
+    const bool varies = !variables[0].empty() || !variables[1].empty() || !variables[2].empty();
     if (varies && update->ntimestep % every == 0) {
         modify->clearstep_compute();
-        for (int axis = 0; axis < 2; axis++)
-            if (!velocity_variable[axis].empty())
-                velocity[axis] = input->variable->compute_equal(
-                    input->variable->find(const_cast<char *>(velocity_variable[axis].c_str())));
+        for (int axis = 0; axis < 3; axis++)
+            if (!variables[axis].empty())
+                velocity[axis] =
+                    input->variable->compute_equal(input->variable->find(const_cast<char *>(variables[axis].c_str())));
         modify->addstep_compute(update->ntimestep + every);
     }
-    moved[0] += velocity[0] * update->dt;
-    moved[1] += velocity[1] * update->dt;
+    for (int axis = 0; axis < 3; axis++)
+        moved[axis] += velocity[axis] * update->dt;
 }
 
 /* ---------------------------------------------------------------------------- contacts */
@@ -159,93 +166,129 @@ void FixWallNarc::find_plate_contacts() {
             continue;
         const narc_lammps::Form &form = shapes->form(i);
         const double c = atom->mu[i][0], s = atom->mu[i][1];
-        narc_point deepest;
-        size_t arc;
-        narc_find_support(form.arcs.data(), form.arcs.size(), -(c * normal_x + s * normal_y),
-                          -(c * normal_y - s * normal_x), &deepest, &arc);
-        const touch_grain outline = shapes->outline(i);
         const touch_grain under = {sides.data(), sides.size(), normal_y, -normal_x, 4 * atom->radius[i]};
         const double way_x = -height * normal_x, way_y = -height * normal_y;
-        const unsigned feature = static_cast<unsigned>(arc) | NARC_FEATURE_EDGE << 8;
-        contacts.push_back({i, {}, way_x, way_y});
-        find_touch(&outline, &under, way_x, way_y, feature, &contacts.back().at);
+        for (size_t part = 0; part < form.parts.size(); part++) {
+            const std::vector<narc_arc> &arcs = form.parts[part].arcs;
+            narc_point deepest;
+            size_t arc;
+            narc_find_support(arcs.data(), arcs.size(), -(c * normal_x + s * normal_y), -(c * normal_y - s * normal_x),
+                              &deepest, &arc);
+            const touch_grain outline = shapes->outline(i, part);
+            const unsigned feature = static_cast<unsigned>(arc) | NARC_FEATURE_EDGE << 8;
+            contacts.push_back({i, part, {}, way_x, way_y});
+            find_touch(&outline, &under, way_x, way_y, feature, &contacts.back().at);
+        }
     }
 }
 
+/* Turned about the pivot, which moves. */
+void FixWallNarc::place_box() {
+    const double c = std::cos(moved[2]), s = std::sin(moved[2]), x = place_x - pivot[0], y = place_y - pivot[1];
+    box_cosine = c * normal_x - s * normal_y;
+    box_sine = s * normal_x + c * normal_y;
+    const double arm_x = c * x - s * y, arm_y = s * x + c * y;
+    box = {pivot[0] + moved[0] + arm_x,
+           pivot[1] + moved[1] + arm_y,
+           static_cast<float>(box_cosine),
+           static_cast<float>(box_sine),
+           1,
+           box_shape};
+    motion = {velocity[0] - velocity[2] * arm_y, velocity[1] + velocity[2] * arm_x, velocity[2]};
+}
+
 void FixWallNarc::find_box_contacts() {
-    const narc_body box = {place_x + moved[0],
-                           place_y + moved[1],
-                           static_cast<float>(normal_x),
-                           static_cast<float>(normal_y),
-                           1,
-                           static_cast<uint32_t>(shapes->forms.size())};
-    std::vector<int> grains;
-    std::vector<narc_body> bodies; /* each grain that may touch, and the box */
+    std::vector<std::pair<int, size_t>> grains; /* and which part */
+    std::vector<narc_body> bodies;              /* each part that may touch, and the box */
     for (int i = 0; i < atom->nlocal; i++) {
         if (!(atom->mask[i] & groupbit) ||
             std::hypot(atom->x[i][0] - box.x, atom->x[i][1] - box.y) >= reach + atom->radius[i])
             continue;
-        grains.push_back(i);
-        bodies.push_back(shapes->body(i));
-        bodies.push_back(box);
+        for (size_t part = 0; part < shapes->form(i).parts.size(); part++) {
+            grains.push_back({i, part});
+            bodies.push_back(shapes->body(i, part));
+            bodies.push_back(box);
+        }
     }
     const narc_bodies view = narc_view_bodies(bodies.data(), bodies.size());
     narc_pairs pairs = {};
     pairs.count = grains.size();
-    std::vector<narc_contact> rows(grains.size());
+    std::vector<narc_contact> found_rows(grains.size());
     size_t found = 0;
     narc_error failure = {};
     narc_query query = {};
     query.margin = static_cast<float>(8 * NARC_ERROR_BOUND * reach);
-    if (narc_find_contacts(store, &view, &pairs, &query, rows.data(), rows.size(), &found, &failure) != NARC_OK)
+    if (narc_find_contacts(store, &view, &pairs, &query, found_rows.data(), found_rows.size(), &found, &failure) !=
+        NARC_OK)
         error->one(FLERR, std::string("fix wall/narc: ") + failure.message);
-    rows.resize(found);
-    const touch_grain wall = {sides.data(), sides.size(), normal_x, normal_y, 1};
-    for (const narc_contact &row : rows) {
-        const int i = grains[row.pair];
-        const touch_grain outline = shapes->outline(i);
+    found_rows.resize(found);
+    const touch_grain wall = {sides.data(), sides.size(), box_cosine, box_sine, 1};
+    for (const narc_contact &row : found_rows) {
+        const int i = grains[row.pair].first;
+        const size_t part = grains[row.pair].second;
+        const touch_grain outline = shapes->outline(i, part);
         const double way_x = box.x - atom->x[i][0], way_y = box.y - atom->x[i][1];
-        contacts.push_back({i, {}, way_x, way_y});
+        contacts.push_back({i, part, {}, way_x, way_y});
         find_touch(&outline, &wall, way_x, way_y, row.feature, &contacts.back().at);
     }
 }
 
 void FixWallNarc::apply_contact(const Contact &contact, double step) {
     const int i = contact.grain;
+    /* Grains have the velocities of half a step ago. Those of a wall that turns have changed by its acceleration. */
+    const double late = step > 0 ? 0.5 * update->dt * velocity[2] * velocity[2] : 0;
+    narc_lammps::Motion then = motion;
+    then.x += late * (atom->x[i][0] + contact.at.end[0].x - pivot[0] - moved[0]);
+    then.y += late * (atom->x[i][1] + contact.at.end[0].y - pivot[1] - moved[1]);
     const narc_lammps::Contact at = {contact.at.end[0],
                                      contact.at.depth,
                                      contact.at.count == 2 ? &contact.at : nullptr,
                                      contact.way_x,
                                      contact.way_y,
                                      {atom->v[i][0], atom->v[i][1], atom->omega[i][2]},
-                                     {velocity[0], velocity[1], 0},
+                                     then,
                                      atom->rmass[i],
                                      shapes->equal_radius(i)};
-    const narc_lammps::Force on_grain = narc_lammps::compute_force(law, at, step, &slips[2 * static_cast<size_t>(i)]);
+    const narc_lammps::Force on_grain = narc_lammps::compute_force(law, at, step, springs[spring_index(contact)]);
     atom->f[i][0] += on_grain.x;
     atom->f[i][1] += on_grain.y;
     atom->torque[i][2] += on_grain.torque_a;
     mine[0] -= on_grain.x;
     mine[1] -= on_grain.y;
-    mine[2] += on_grain.energy;
+    mine[3] += on_grain.energy;
+    const narc_lammps::ContactRow row =
+        narc_lammps::make_row(on_grain, at.depth, static_cast<double>(atom->tag[i]), 0, atom->x[i]);
+    mine[2] += (row.x - pivot[0] - moved[0]) * row.force_y - (row.y - pivot[1] - moved[1]) * row.force_x;
+    if (keeps_rows)
+        rows.push_back(row);
+    if (evflag) {
+        const double x = -on_grain.point_x, y = -on_grain.point_y; /* from the contact to the grain */
+        double by_arm[6] = {x * on_grain.x, y * on_grain.y, 0, x * on_grain.y, 0, 0};
+        v_tally(i, by_arm);
+    }
 }
 
-void FixWallNarc::post_force(int) {
+void FixWallNarc::post_force(int virial_kind) {
+    v_init(virial_kind);
     contacts.clear();
-    if (plate)
+    rows.clear();
+    if (plate) {
+        motion = {velocity[0], velocity[1], 0};
         find_plate_contacts();
-    else
+    } else {
+        place_box();
         find_box_contacts();
+    }
     contacts.erase(std::remove_if(contacts.begin(), contacts.end(), [](const Contact &c) { return !c.at.count; }),
                    contacts.end());
-    std::fill(mine, mine + 3, 0.0);
+    std::fill(mine, mine + 4, 0.0);
     summed = false;
     std::fill(touched.begin(), touched.end(), 0);
     for (const Contact &contact : contacts)
-        touched[static_cast<size_t>(contact.grain)] = 1;
-    for (size_t i = 0; i < static_cast<size_t>(atom->nlocal); i++)
-        if (!touched[i])
-            slips[2 * i] = slips[2 * i + 1] = 0;
+        touched[spring_index(contact)] = 1;
+    for (size_t k = 0; k < static_cast<size_t>(atom->nlocal) * shapes->most_parts; k++)
+        if (!touched[k])
+            springs[k] = {0, 0, 0};
     const double step = update->setupflag ? 0 : update->dt;
     for (const Contact &contact : contacts)
         apply_contact(contact, step);
@@ -255,49 +298,49 @@ void FixWallNarc::post_force(int) {
 
 void FixWallNarc::sum_ranks() {
     if (!summed)
-        MPI_Allreduce(mine, total, 3, MPI_DOUBLE, MPI_SUM, world);
+        MPI_Allreduce(mine, total, 4, MPI_DOUBLE, MPI_SUM, world);
     summed = true;
 }
 
 double FixWallNarc::compute_scalar() {
     sum_ranks();
-    return total[2];
+    return total[3];
 }
 
 double FixWallNarc::compute_vector(int k) {
-    if (k >= 2)
-        return moved[k - 2];
+    if (k == 2 || k == 3 || k == 5)
+        return moved[k == 5 ? 2 : k - 2];
     sum_ranks();
-    return total[k];
+    return total[k == 4 ? 2 : k];
 }
 
 /* ---------------------------------------------------------------------------- memory that goes with the atoms */
 
 void FixWallNarc::grow_arrays(int most) {
-    slips.resize(2 * static_cast<size_t>(most), 0);
-    touched.resize(static_cast<size_t>(most), 0);
+    springs.resize(static_cast<size_t>(most) * shapes->most_parts, {0, 0, 0});
+    touched.resize(springs.size(), 0);
 }
 
 void FixWallNarc::copy_arrays(int from, int to, int) {
-    std::copy_n(&slips[2 * static_cast<size_t>(from)], 2, &slips[2 * static_cast<size_t>(to)]);
+    std::copy_n(springs_of(from), shapes->most_parts, springs_of(to));
 }
 
-void FixWallNarc::set_arrays(int i) { std::fill_n(&slips[2 * static_cast<size_t>(i)], 2, 0.0); }
+void FixWallNarc::set_arrays(int i) { std::fill_n(springs_of(i), shapes->most_parts, narc_lammps::Springs{0, 0, 0}); }
 
 int FixWallNarc::pack_exchange(int i, double *buffer) {
-    std::copy_n(&slips[2 * static_cast<size_t>(i)], 2, buffer);
-    return 2;
+    std::memcpy(buffer, springs_of(i), static_cast<size_t>(maxexchange) * sizeof *buffer);
+    return maxexchange;
 }
 
 int FixWallNarc::unpack_exchange(int i, double *buffer) {
-    std::copy_n(buffer, 2, &slips[2 * static_cast<size_t>(i)]);
-    return 2;
+    std::memcpy(springs_of(i), buffer, static_cast<size_t>(maxexchange) * sizeof *buffer);
+    return maxexchange;
 }
 
 /* The velocity too: variables may be looked at some steps later. */
 void FixWallNarc::write_restart(FILE *file) {
     if (comm->me == 0) {
-        const double state[] = {moved[0], moved[1], velocity[0], velocity[1]};
+        const double state[] = {moved[0], moved[1], moved[2], velocity[0], velocity[1], velocity[2]};
         const int size = sizeof state;
         fwrite(&size, sizeof size, 1, file);
         fwrite(state, sizeof state, 1, file);
@@ -305,19 +348,19 @@ void FixWallNarc::write_restart(FILE *file) {
 }
 
 void FixWallNarc::restart(char *buffer) {
-    double state[4];
+    double state[6];
     std::memcpy(state, buffer, sizeof state);
-    for (int axis = 0; axis < 2; axis++) {
+    for (int axis = 0; axis < 3; axis++) {
         moved[axis] = state[axis];
-        if (!velocity_variable[axis].empty())
-            velocity[axis] = state[2 + axis];
+        if (!variables[axis].empty())
+            velocity[axis] = state[3 + axis];
     }
 }
 
 int FixWallNarc::pack_restart(int i, double *buffer) {
-    buffer[0] = 3;
+    buffer[0] = size_restart(i);
     pack_exchange(i, buffer + 1);
-    return 3;
+    return size_restart(i);
 }
 
 void FixWallNarc::unpack_restart(int i, int nth) {

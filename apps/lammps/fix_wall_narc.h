@@ -2,16 +2,19 @@
  *
  * fix_wall_narc.h - a wall of infinite mass, at rest or in motion. It has no periodic images.
  *
- *   fix ID group wall/narc LAW kn kt gamma_n gamma_t xmu dampflag WALL [velocity VX VY [every N]]
+ *   fix ID group wall/narc LAW WALL [velocity VX VY] [spin OMEGA PX PY] [every N]
  *
- *   LAW    hooke/history or hertz/history, coefficients as those of the pair styles
+ *   LAW    hooke/history or hertz/history, and the numbers of the pair styles
  *   WALL   plate PX PY NX NY                a half plane: its border goes through (PX, PY), grains are where N points
  *          box CX CY WIDTH HEIGHT DEGREES   a box around (CX, CY), turned
  *
- *   VX VY  numbers, or equal-style variables (v_NAME), which may look at the wall's force: a servo. They are evaluated
- *          in steps whose number is a multiple of N, each if left out
+ *   VX VY OMEGA   numbers, or equal-style variables (v_NAME), which may look at the wall's force: a servo. They are
+ *                 evaluated in steps whose number is a multiple of N, each if left out
+ *   PX PY         about which a box turns; it moves with the wall
  *
- * Vector: 1, 2 the force on the wall; 3, 4 how far it has moved. Scalar: the elastic energy of its contacts.
+ * Vector: 1, 2 the force on the wall; 3, 4 how far it has moved; 5 the torque on it about (PX, PY); 6 the angle by
+ * which it has turned. Scalar: the elastic energy of its contacts. With fix_modify ID virial yes pressures and stresses
+ * know its contacts.
  */
 #ifndef NARC_LAMMPS_FIX_WALL_NARC_H
 #define NARC_LAMMPS_FIX_WALL_NARC_H
@@ -20,6 +23,7 @@
 
 #include "contact_law.h"
 #include "fix.h"
+#include "fix_narc_shapes.h"
 #include "shape_file.h"
 
 namespace LAMMPS_NS {
@@ -46,40 +50,54 @@ class FixWallNarc : public Fix {
     void restart(char *buffer) override;
     int pack_restart(int i, double *buffer) override;
     void unpack_restart(int i, int nth) override;
-    int size_restart(int) override { return 3; }
-    int maxsize_restart() override { return 3; }
+    int size_restart(int) override { return 1 + maxexchange; }
+    int maxsize_restart() override { return 1 + maxexchange; }
+
+    bool keeps_rows = false;                   /* set by who wants them */
+    std::vector<narc_lammps::ContactRow> rows; /* of this rank, in the last step; ID 0 is the wall */
 
   private:
     /* A grain that touches, A, and the wall's place from its centre. */
     struct Contact {
         int grain;
+        size_t part;
         touch at;
         double way_x, way_y;
     };
 
+    narc_lammps::Springs *springs_of(int i) { return &springs[static_cast<size_t>(i) * shapes->most_parts]; }
+    size_t spring_index(const Contact &c) const { return static_cast<size_t>(c.grain) * shapes->most_parts + c.part; }
     int read_wall(int i, int count, char **arguments);
+    int read_motion(int i, int count, char **arguments);
+    void place_box();
     void find_plate_contacts();
     void find_box_contacts();
     void apply_contact(const Contact &contact, double step);
     void sum_ranks();
 
     narc_lammps::ContactLaw law;
-    class FixNarcShapes *shapes = nullptr;
+    FixNarcShapes *shapes = nullptr;
     bool plate = false;
-    double place_x = 0, place_y = 0, normal_x = 0, normal_y = 0; /* a box: cosine and sine in place of the normal */
-    double reach = 0;                                            /* a box: the circle around it */
-    double velocity[2] = {0, 0};
+    double place_x = 0, place_y = 0, normal_x = 0,
+           normal_y = 0;            /* at the start; a box: of its angle, cosine and sine */
+    double pivot[2] = {0, 0};       /* at the start */
+    double reach = 0;               /* a box: the circle around it */
+    double velocity[3] = {0, 0, 0}; /* the third is the spin */
     int every = 1;
-    std::string velocity_variable[2]; /* equal-style variables that give it; empty: constant */
-    double moved[2] = {0, 0};
+    std::string variables[3]; /* equal-style ones that give them; empty: constant */
+    double moved[3] = {0, 0, 0};
     std::vector<touch_side> sides; /* of the box; of a plate a segment, which lies under each grain */
-    narc_shapes *store = nullptr;  /* a box: all forms of grains, and the box behind them */
+    narc_shapes *store = nullptr;  /* a box: all parts of grains, and the box behind them */
+    narc_body box = {};            /* where it is now */
+    uint32_t box_shape = 0;
+    double box_cosine = 1, box_sine = 0;
+    narc_lammps::Motion motion = {0, 0, 0}; /* of the wall, at the middle of a box */
 
     std::vector<Contact> contacts;
-    std::vector<double> slips;   /* two of each atom */
-    std::vector<char> touched;   /* by the wall, in the last step */
-    double mine[3] = {0, 0, 0};  /* force on the wall and energy: of this rank */
-    double total[3] = {0, 0, 0}; /* and of all, if summed */
+    std::vector<narc_lammps::Springs> springs; /* of each part of each atom */
+    std::vector<char> touched;                 /* by the wall, in the last step */
+    double mine[4] = {0, 0, 0, 0};             /* force on the wall, torque, energy: of this rank */
+    double total[4] = {0, 0, 0, 0};            /* and of all, if summed */
     bool summed = false;
 };
 

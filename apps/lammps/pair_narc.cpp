@@ -50,29 +50,39 @@ void PairNarc::allocate() {
     memory->create(cutsq, n, n, "pair:cutsq");
     for (int i = 0; i < n; i++)
         std::fill_n(setflag[i], n, 0);
+    laws.assign(static_cast<size_t>(n) * static_cast<size_t>(n), law);
+}
+
+narc_lammps::ContactLaw PairNarc::read_law(int count, char **arguments) {
+    narc_lammps::ContactLaw read;
+    const auto number = [this](const char *text) { return utils::numeric(FLERR, text, false, lmp); };
+    if (narc_lammps::read_law(read, law.hertz, force->nktv2p, count, arguments, number) != count)
+        error->all(FLERR,
+                   std::string("pair_style narc: kn kt gamma_n gamma_t xmu dampflag [limit_damping] [rolling MU] "
+                               "[restitution E] are wanted, none of them negative or out of range"));
+    return read;
 }
 
 void PairNarc::settings(int count, char **arguments) {
-    const bool limit = count == 7 && !std::strcmp(arguments[6], "limit_damping");
-    if (count != 6 && !limit)
-        error->all(FLERR, std::string("pair_style narc: kn kt gamma_n gamma_t xmu dampflag [limit_damping] is wanted"));
-    const auto number = [this](const char *text) { return utils::numeric(FLERR, text, false, lmp); };
-    if (!narc_lammps::read_law(law, law.hertz, force->nktv2p, arguments, number))
-        error->all(FLERR, std::string("pair_style narc: a coefficient is negative or out of range"));
-    law.limit_damping = limit;
+    law = read_law(count, arguments);
+    std::fill(laws.begin(), laws.end(), law);
 }
 
 void PairNarc::coeff(int count, char **arguments) {
-    if (count != 2)
-        error->all(FLERR, std::string("pair_coeff of narc: two types and nothing else are wanted"));
+    if (count < 2)
+        error->all(FLERR, std::string("pair_coeff of narc: two types are wanted"));
     if (!allocated)
         allocate();
+    const narc_lammps::ContactLaw of_types = count > 2 ? read_law(count - 2, arguments + 2) : law;
+    const int n = atom->ntypes + 1;
     int i_low, i_high, j_low, j_high, set = 0;
     utils::bounds(FLERR, arguments[0], 1, atom->ntypes, i_low, i_high, error);
     utils::bounds(FLERR, arguments[1], 1, atom->ntypes, j_low, j_high, error);
     for (int i = i_low; i <= i_high; i++)
-        for (int j = std::max(j_low, i); j <= j_high; j++, set++)
+        for (int j = std::max(j_low, i); j <= j_high; j++, set++) {
             setflag[i][j] = 1;
+            laws[static_cast<size_t>(i * n + j)] = laws[static_cast<size_t>(j * n + i)] = of_types;
+        }
     if (!set)
         error->all(FLERR, std::string("pair_coeff of narc: no pair of types is named"));
 }
@@ -141,6 +151,7 @@ bool PairNarc::remembers_for_ghosts() const { return force->newton_pair; }
 /* LAMMPS' list goes by the largest radius of each type; of its pairs those are kept whose own radii reach. */
 void PairNarc::build_pairs() {
     check_atoms();
+    shapes->number_rows();
     first.clear();
     second.clear();
     touching.clear();
@@ -155,22 +166,26 @@ void PairNarc::build_pairs() {
             if (dx * dx + dy * dy >= reach * reach)
                 continue;
             const bool ordered = tag[i] < tag[j] || (tag[i] == tag[j] && i < j);
-            first.push_back(static_cast<uint32_t>(ordered ? i : j));
-            second.push_back(static_cast<uint32_t>(ordered ? j : i));
+            const int a = ordered ? i : j, b = ordered ? j : i;
+            for (uint32_t p = 0; p < shapes->form(a).parts.size(); p++)
+                for (uint32_t q = 0; q < shapes->form(b).parts.size(); q++) {
+                    first.push_back(shapes->first_row[static_cast<size_t>(a)] + p);
+                    second.push_back(shapes->first_row[static_cast<size_t>(b)] + q);
+                }
         }
     }
     hints.assign(first.size(), 0);
-    slips.assign(2 * first.size(), 0);
+    springs.assign(first.size(), {0, 0, 0});
     contacts.resize(first.size());
     const size_t local = static_cast<size_t>(atom->nlocal);
     for (size_t k = 0; k < first.size(); k++) {
-        const bool has_first = first[k] < local;
-        const tagint other = tag[has_first ? second[k] : first[k]];
-        for (const auto &kept : shapes->memories[has_first ? first[k] : second[k]]) {
-            if (kept.other != other)
+        const uint32_t a = shapes->row_atom[first[k]], b = shapes->row_atom[second[k]];
+        const tagint other = tag[a < local ? b : a];
+        for (const auto &kept : shapes->memories[a < local ? a : b]) {
+            if (kept.other != other || kept.parts[0] != shapes->row_part(first[k]) ||
+                kept.parts[1] != shapes->row_part(second[k]))
                 continue;
-            slips[2 * k] = kept.slip[0];
-            slips[2 * k + 1] = kept.slip[1];
+            springs[k] = kept.springs;
             hints[k] = kept.hint;
             touching.push_back(static_cast<uint32_t>(k));
         }
@@ -182,8 +197,12 @@ void PairNarc::save_memories(std::vector<std::vector<FixNarcShapes::Memory>> &me
     const size_t local = static_cast<size_t>(atom->nlocal);
     const bool ghosts = remembers_for_ghosts();
     for (const uint32_t k : touching) {
-        const uint32_t a = first[k], b = second[k];
-        FixNarcShapes::Memory kept = {atom->tag[b], {slips[2 * k], slips[2 * k + 1]}, hints[k]};
+        const uint32_t a = shapes->row_atom[first[k]], b = shapes->row_atom[second[k]];
+        FixNarcShapes::Memory kept = {
+            atom->tag[b],
+            {static_cast<uint32_t>(shapes->row_part(first[k])), static_cast<uint32_t>(shapes->row_part(second[k]))},
+            springs[k],
+            hints[k]};
         if (ghosts || a < local)
             memories[a].push_back(kept);
         kept.other = atom->tag[a];
@@ -218,7 +237,8 @@ void PairNarc::find_contacts() {
 
 /* False if the grains are apart after all. */
 bool PairNarc::apply_contact(const narc_contact &row, double step) {
-    const int a = static_cast<int>(first[row.pair]), b = static_cast<int>(second[row.pair]);
+    const uint32_t row_a = first[row.pair], row_b = second[row.pair];
+    const int a = static_cast<int>(shapes->row_atom[row_a]), b = static_cast<int>(shapes->row_atom[row_b]);
     const double *x_a = atom->x[a], *x_b = atom->x[b], *v_a = atom->v[a], *v_b = atom->v[b];
     const double dx = x_a[0] - x_b[0], dy = x_a[1] - x_b[1];
     narc_lammps::Contact contact;
@@ -228,7 +248,8 @@ bool PairNarc::apply_contact(const narc_contact &row, double step) {
         contact.end = meet_discs(atom->radius[a], atom->radius[b], -dx, -dy);
         contact.depth = contact.end.depth;
     } else {
-        const touch_grain outline_a = shapes->outline(a), outline_b = shapes->outline(b);
+        const touch_grain outline_a = shapes->outline(a, shapes->row_part(row_a));
+        const touch_grain outline_b = shapes->outline(b, shapes->row_part(row_b));
         find_touch(&outline_a, &outline_b, -dx, -dy, row.feature, &at);
         contact.end = at.end[0];
         contact.depth = at.depth;
@@ -247,12 +268,12 @@ bool PairNarc::apply_contact(const narc_contact &row, double step) {
     if (atom->mask[b] & frozen)
         contact.mass = mass_a;
     contact.radius = 0;
-    if (law.hertz) {
+    const narc_lammps::ContactLaw &by = laws[static_cast<size_t>(atom->type[a] * (atom->ntypes + 1) + atom->type[b])];
+    if (by.hertz || by.rolling > 0) {
         const double radius_a = shapes->equal_radius(a), radius_b = shapes->equal_radius(b);
         contact.radius = radius_a * radius_b / (radius_a + radius_b);
     }
-    const narc_lammps::Force on_a =
-        narc_lammps::compute_force(law, contact, step, &slips[2 * static_cast<size_t>(row.pair)]);
+    const narc_lammps::Force on_a = narc_lammps::compute_force(by, contact, step, springs[row.pair]);
     if (force->newton_pair || a < atom->nlocal) {
         atom->f[a][0] += on_a.x;
         atom->f[a][1] += on_a.y;
@@ -263,6 +284,9 @@ bool PairNarc::apply_contact(const narc_contact &row, double step) {
         atom->f[b][1] -= on_a.y;
         atom->torque[b][2] += on_a.torque_b;
     }
+    if (keeps_rows && (force->newton_pair || a < atom->nlocal))
+        rows.push_back(narc_lammps::make_row(on_a, contact.depth, static_cast<double>(atom->tag[a]),
+                                             static_cast<double>(atom->tag[b]), x_a));
     if (evflag)
         ev_tally_xyz(a, b, atom->nlocal, force->newton_pair, on_a.energy, 0.0, on_a.x, on_a.y, 0.0, dx, dy, 0.0);
     return true;
@@ -277,6 +301,7 @@ void PairNarc::compute(int energy, int virial_kind) {
     /* Both lists rise. What touched and does so no more begins anew. */
     before.swap(touching);
     touching.clear();
+    rows.clear();
     const double step = update->setupflag ? 0 : update->dt;
     size_t next = 0;
     for (size_t k = 0; k < found_count; k++)
@@ -286,7 +311,7 @@ void PairNarc::compute(int energy, int virial_kind) {
         while (next < touching.size() && touching[next] < pair)
             next++;
         if (next == touching.size() || touching[next] != pair)
-            slips[2 * static_cast<size_t>(pair)] = slips[2 * static_cast<size_t>(pair) + 1] = 0;
+            springs[pair] = {0, 0, 0};
     }
     contact_count = touching.size();
 }
@@ -296,38 +321,32 @@ void PairNarc::compute(int energy, int virial_kind) {
 void PairNarc::write_restart(FILE *file) {
     write_restart_settings(file);
     for (int i = 1; i <= atom->ntypes; i++)
-        for (int j = i; j <= atom->ntypes; j++)
+        for (int j = 1; j <= atom->ntypes; j++)
             fwrite(&setflag[i][j], sizeof(int), 1, file);
+    fwrite(laws.data(), sizeof law, laws.size(), file);
 }
 
 void PairNarc::read_restart(FILE *file) {
     read_restart_settings(file);
     allocate();
     for (int i = 1; i <= atom->ntypes; i++) {
-        for (int j = i; j <= atom->ntypes; j++) {
+        for (int j = 1; j <= atom->ntypes; j++) {
             if (comm->me == 0)
                 utils::sfread(FLERR, &setflag[i][j], sizeof(int), 1, file, nullptr, error);
             MPI_Bcast(&setflag[i][j], 1, MPI_INT, 0, world);
         }
     }
+    if (comm->me == 0)
+        utils::sfread(FLERR, laws.data(), sizeof law, laws.size(), file, nullptr, error);
+    MPI_Bcast(laws.data(), static_cast<int>(laws.size() * sizeof law), MPI_BYTE, 0, world);
 }
 
-void PairNarc::write_restart_settings(FILE *file) {
-    const double values[] = {law.kn, law.kt, law.gamma_n, law.gamma_t, law.friction, law.limit_damping ? 1.0 : 0.0};
-    fwrite(values, sizeof values, 1, file);
-}
+void PairNarc::write_restart_settings(FILE *file) { fwrite(&law, sizeof law, 1, file); }
 
 void PairNarc::read_restart_settings(FILE *file) {
-    double values[6];
     if (comm->me == 0)
-        utils::sfread(FLERR, values, sizeof(double), 6, file, nullptr, error);
-    MPI_Bcast(values, 6, MPI_DOUBLE, 0, world);
-    law.kn = values[0];
-    law.kt = values[1];
-    law.gamma_n = values[2];
-    law.gamma_t = values[3];
-    law.friction = values[4];
-    law.limit_damping = values[5] != 0;
+        utils::sfread(FLERR, &law, sizeof law, 1, file, nullptr, error);
+    MPI_Bcast(&law, sizeof law, MPI_BYTE, 0, world);
 }
 
 /* Numbers that tests and measurements ask for. */
@@ -339,7 +358,8 @@ void *PairNarc::extract(const char *name, int &dimension) {
 }
 
 double PairNarc::memory_usage() {
-    return Pair::memory_usage() + static_cast<double>(first.capacity() * (3 * sizeof(uint32_t) + 2 * sizeof(double)) +
-                                                      (touching.capacity() + before.capacity()) * sizeof(uint32_t) +
-                                                      contacts.capacity() * sizeof(narc_contact));
+    return Pair::memory_usage() +
+           static_cast<double>(first.capacity() * (3 * sizeof(uint32_t) + sizeof(narc_lammps::Springs)) +
+                               (touching.capacity() + before.capacity()) * sizeof(uint32_t) +
+                               contacts.capacity() * sizeof(narc_contact));
 }

@@ -2,9 +2,12 @@
  *
  * pair_narc.h - forces between grains that touch. All pairs of a rank's neighbour list go to the library in one batch.
  *
- *   pair_style narc/hooke/history kn kt gamma_n gamma_t xmu dampflag [limit_damping]
- *   pair_style narc/hertz/history kn kt gamma_n gamma_t xmu dampflag [limit_damping]
- *   pair_coeff * *
+ *   pair_style narc/hooke/history LAW
+ *   pair_style narc/hertz/history LAW
+ *   pair_coeff I J [LAW]
+ *
+ *   LAW    kn kt gamma_n gamma_t xmu dampflag [limit_damping] [rolling MU] [restitution E]; types without
+ *          one have the pair style's
  */
 #ifndef NARC_LAMMPS_PAIR_NARC_H
 #define NARC_LAMMPS_PAIR_NARC_H
@@ -41,22 +44,28 @@ class PairNarc : public Pair {
     bool remembers_for_ghosts() const;
     void save_memories(std::vector<std::vector<FixNarcShapes::Memory>> &memories) const;
 
+    bool keeps_rows = false;                   /* set by who wants them */
+    std::vector<narc_lammps::ContactRow> rows; /* of the last step, each contact on one rank */
+
   private:
     void allocate();
+    narc_lammps::ContactLaw read_law(int count, char **arguments);
     void find_radii();
     void check_atoms() const;
     void find_contacts();
     bool apply_contact(const narc_contact &contact, double step);
 
-    narc_lammps::ContactLaw law;
+    narc_lammps::ContactLaw law;               /* the pair style's */
+    std::vector<narc_lammps::ContactLaw> laws; /* of two types: [i * (types + 1) + j] */
     FixNarcShapes *shapes = nullptr;
     int frozen = 0; /* group bit of fix freeze */
     std::vector<double> type_radius;
 
-    /* Pairs, A the grain with the lower ID: the order of a pair does not depend on the ranks, nor do its bits. */
+    /* Pairs of parts, by their rows, A of the grain with the lower ID: the order of a pair does not depend on the
+     * ranks, nor do its bits. */
     bool valid = false;
     std::vector<uint32_t> first, second, hints;
-    std::vector<double> slips;          /* two of each pair */
+    std::vector<narc_lammps::Springs> springs;
     std::vector<uint32_t> touching;     /* the pairs that touched in the last step */
     std::vector<uint32_t> before;       /* and in the one before it */
     std::vector<narc_contact> contacts; /* what may touch, and room for one of each pair */

@@ -5,6 +5,7 @@
 #include "register.h"
 
 #include "compute_narc_atom.h"
+#include "compute_narc_contact.h"
 #include "fix_narc_shapes.h"
 #include "fix_nve_narc.h"
 #include "fix_wall_narc.h"
@@ -34,4 +35,5 @@ void narc_lammps::register_styles(LAMMPS *lammps) {
     (*lammps->modify->fix_map)["narc/nve"] = make_fix<FixNVENarc>;
     (*lammps->modify->fix_map)["wall/narc"] = make_fix<FixWallNarc>;
     (*lammps->modify->compute_map)["narc/atom"] = make_compute<ComputeNarcAtom>;
+    (*lammps->modify->compute_map)["narc/contact"] = make_compute<ComputeNarcContact>;
 }

@@ -29,21 +29,49 @@ double find_reach(const std::vector<narc_arc> &arcs) {
     return reach;
 }
 
-/* Throws std::runtime_error with the library's message. */
-Form make_form(const std::string &name, const std::vector<narc_arc> &arcs) {
-    Form form = {name, arcs, std::vector<touch_side>(arcs.size()), 0, 0, false, 0};
+/* Of parts in one frame. Throws std::runtime_error with the library's message. */
+Form make_form(const std::string &name, const std::vector<narc_arc> &arcs, const std::vector<size_t> &counts) {
+    Form form = {name, {}, 0, 0, false, 0};
     narc_error error;
-    if (narc_center_arcs(arcs.data(), arcs.size(), form.arcs.data(), nullptr, &error) != NARC_OK)
-        throw std::runtime_error(error.message);
-    make_touch_sides(form.arcs.data(), form.arcs.size(), form.sides.data());
     narc_mass mass;
-    if (!narc_compute_mass(form.arcs.data(), form.arcs.size(), &mass) || !(mass.area > 0))
+    if (narc_compute_union_mass(arcs.data(), counts.data(), counts.size(), nullptr, &mass, &error) != NARC_OK)
+        throw std::runtime_error(error.message);
+    if (counts.size() == 1) /* simpler sums, of fewer roundings */
+        narc_compute_mass(arcs.data(), arcs.size(), &mass);
+    if (!(mass.area > 0))
         throw std::runtime_error("it has no area");
+    const narc_arc *next = arcs.data();
+    for (const size_t count : counts) {
+        Part part = {std::vector<narc_arc>(count), std::vector<touch_side>(count)};
+        if (narc_move_arcs(next, count, -mass.centroid_x, -mass.centroid_y, 0, 1, part.arcs.data(), &error) != NARC_OK)
+            throw std::runtime_error(error.message);
+        make_touch_sides(part.arcs.data(), count, part.sides.data());
+        form.reach = std::fmax(form.reach, find_reach(part.arcs));
+        form.parts.push_back(part);
+        next += count;
+    }
+    const touch_side &side = form.parts[0].sides[0];
+    form.is_disc = arcs.size() == 1 && side.x == 0 && side.y == 0;
     form.area = mass.area;
-    form.reach = find_reach(form.arcs);
-    form.is_disc = form.sides.size() == 1 && form.sides[0].x == 0 && form.sides[0].y == 0;
     form.inertia_ratio = mass.second_moment / (mass.area * form.reach * form.reach);
     return form;
+}
+
+/* NAME/1, NAME/2 ... where their origins tell. */
+Form make_compound(const narc_shape_list *list, const std::string &name) {
+    std::vector<narc_arc> arcs;
+    std::vector<size_t> counts;
+    for (size_t k;
+         (k = narc_find_named_shape(list, (name + "/" + std::to_string(counts.size() + 1)).c_str())) < list->count;) {
+        const narc_named_shape &part = list->items[k];
+        narc_arc moved[NARC_MAX_ARCS];
+        narc_error error;
+        if (narc_move_arcs(part.arcs, part.arc_count, part.origin.x, part.origin.y, 0, 1, moved, &error) != NARC_OK)
+            throw std::runtime_error(error.message);
+        arcs.insert(arcs.end(), moved, moved + part.arc_count);
+        counts.push_back(part.arc_count);
+    }
+    return make_form(name, arcs, counts);
 }
 
 } // namespace
@@ -54,18 +82,38 @@ std::vector<Form> parse_forms(const std::string &path, const std::string &text) 
     if (narc_read_shapes(text.data(), text.size(), nullptr, nullptr, &list, &error) != NARC_OK)
         throw std::runtime_error(path + ": " + error.message);
     const std::unique_ptr<narc_shape_list, void (*)(narc_shape_list *)> owner(list, narc_destroy_shape_list);
-    std::vector<Form> forms;
+    std::vector<Form> forms, compounds;
     for (size_t k = 0; k < list->count; k++) {
         const narc_named_shape &shape = list->items[k];
+        const std::string name = shape.name;
         try {
             if (shape.form != NARC_FORM_SHAPE)
                 throw std::runtime_error("is a chain, which no grain can be");
-            forms.push_back(make_form(shape.name, std::vector<narc_arc>(shape.arcs, shape.arcs + shape.arc_count)));
+            forms.push_back(
+                make_form(name, std::vector<narc_arc>(shape.arcs, shape.arcs + shape.arc_count), {shape.arc_count}));
+            const std::string whole = name.substr(0, name.rfind('/'));
+            if (name == whole + "/1" && narc_find_named_shape(list, whole.c_str()) == list->count)
+                compounds.push_back(make_compound(list, whole));
         } catch (const std::runtime_error &wrong) {
-            throw std::runtime_error(path + ": shape '" + shape.name + "': " + wrong.what());
+            throw std::runtime_error(path + ": shape '" + name + "': " + wrong.what());
         }
     }
+    forms.insert(forms.end(), compounds.begin(), compounds.end());
     return forms;
+}
+
+uint32_t store_parts(const std::vector<Form> &forms, narc_shapes **out_store) {
+    uint32_t next = 0; /* the parts' own indices, also of equal ones */
+    if (narc_create_shapes(nullptr, out_store) != NARC_OK)
+        throw std::runtime_error("not enough memory for shapes");
+    for (const Form &form : forms) {
+        for (const Part &part : form.parts) {
+            narc_error failure;
+            if (narc_add_shape_at(*out_store, next++, part.arcs.data(), part.arcs.size(), &failure) != NARC_OK)
+                throw std::runtime_error("shape '" + form.name + "': " + failure.message);
+        }
+    }
+    return next;
 }
 
 } // namespace narc_lammps

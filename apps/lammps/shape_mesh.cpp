@@ -14,6 +14,19 @@ namespace {
 /* Of an arc's sweep in one side of the polygon that is drawn: a chord is then 0.1 % of the radius off the arc. */
 constexpr double largest_sweep = 0.09;
 
+/* The points of an arc; how many they are. */
+int write_arc(const narc_arc &arc, double reach, FILE *file) {
+    const double turn = 2 * std::acos(-1.0);
+    const double sweep = arc.end > arc.start ? arc.end - arc.start : arc.end - arc.start + turn;
+    const int sides = arc.radius > 0 ? static_cast<int>(std::ceil(sweep / largest_sweep)) : 0;
+    for (int k = 0; k <= sides; k++) {
+        const double angle = arc.start + (sides ? sweep * k / sides : 0);
+        std::fprintf(file, "v %.9g %.9g 0\n", (arc.center_x + arc.radius * std::cos(angle)) / reach,
+                     (arc.center_y + arc.radius * std::sin(angle)) / reach);
+    }
+    return sides + 1;
+}
+
 } // namespace
 
 void write_mesh(const Form &form, const std::string &path) {
@@ -25,20 +38,15 @@ void write_mesh(const Form &form, const std::string &path) {
         throw std::runtime_error(path + ": cannot be written");
     std::fprintf(file, "# %s, reaching 1 from its centroid\n", form.name.c_str());
     int corners = 0;
-    for (const narc_arc &arc : form.arcs) {
-        const double turn = 2 * std::acos(-1.0);
-        const double sweep = arc.end > arc.start ? arc.end - arc.start : arc.end - arc.start + turn;
-        const int sides = arc.radius > 0 ? static_cast<int>(std::ceil(sweep / largest_sweep)) : 0;
-        for (int k = 0; k <= sides; k++, corners++) {
-            const double angle = arc.start + (sides ? sweep * k / sides : 0);
-            std::fprintf(file, "v %.9g %.9g 0\n", (arc.center_x + arc.radius * std::cos(angle)) / form.reach,
-                         (arc.center_y + arc.radius * std::sin(angle)) / form.reach);
-        }
+    for (const Part &outline : form.parts) {
+        const int before = corners;
+        for (const narc_arc &arc : outline.arcs)
+            corners += write_arc(arc, form.reach, file);
+        std::fprintf(file, "f");
+        for (int corner = before + 1; corner <= corners; corner++)
+            std::fprintf(file, " %d", corner);
+        std::fprintf(file, "\n");
     }
-    std::fprintf(file, "f");
-    for (int corner = 1; corner <= corners; corner++)
-        std::fprintf(file, " %d", corner);
-    std::fprintf(file, "\n");
     const bool failed = std::ferror(file) != 0;
     if (std::fclose(file) != 0 || failed || std::rename(part.c_str(), path.c_str()) != 0) {
         std::remove(part.c_str());

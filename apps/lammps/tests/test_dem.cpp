@@ -80,7 +80,8 @@ bool fill_dem(dem *d, const Packing &packing, const narc_lammps::Form forms[2], 
     contact.friction = law.friction;
     dem_set_law(d, stone, stone, contact);
     for (int k = 0; k < 2; k++)
-        good = good && dem_add_shape(d, forms[k].name.c_str(), forms[k].arcs.data(), forms[k].arcs.size(), &shapes[k]);
+        good = good && dem_add_shape(d, forms[k].name.c_str(), forms[k].parts[0].arcs.data(),
+                                     forms[k].parts[0].arcs.size(), &shapes[k]);
     for (const Grain &g : packing.grains) {
         dem_grain grain = {};
         grain.shape = shapes[g.type - 1];

@@ -9,6 +9,9 @@
 #include <dlfcn.h>
 
 #include "check.h"
+#include "compute.h"
+#include "lammps.h"
+#include "modify.h"
 
 namespace {
 
@@ -86,7 +89,8 @@ void check_restitution(const std::string &shape, double radius, bool turned) {
                       {1, 5 + gap / 2, 5, radius, 0, -1, 0, 0}};
     Simulation pair(MPI_COMM_WORLD);
     pair.create(packing);
-    pair.run(grains(shape, "narc/hooke/history 1e5 NULL 60 NULL 0.5 1") + "timestep 2e-6\nrun 0");
+    pair.run(grains(shape, "narc/hooke/history 1e4 NULL 0 NULL 0 1") +
+             "pair_coeff 1 1 1e5 NULL 60 NULL 0.5 1\ntimestep 2e-6\nrun 0");
     const double mass = pair.states()[0].mass / 2;
     const double frequency = std::sqrt(kn / mass - gamma * gamma / 4);
     const double restitution = std::exp(-gamma * 2 * quarter / (2 * frequency));
@@ -98,7 +102,23 @@ void check_restitution(const std::string &shape, double radius, bool turned) {
     check_at_most("the collision stays straight", std::fabs(after[0].velocity_y) + std::fabs(after[0].spin), 1e-4);
 }
 
+/* The larger disc comes from the left and meets the smaller one, with the restitution that is given, whatever the
+ * masses and the speed. 200 steps a contact and more leave 1e-2: see the cases of apps/dem. */
+void check_given(const char *law, double speed) {
+    Packing packing = {10, 10, {{1, 4, 5, 0.7, 0, speed, 0, 0}, {1, 5.11, 5, 0.4, 0, 0, 0, 0}}};
+    Simulation pair(MPI_COMM_WORLD);
+    pair.create(packing);
+    pair.run(grains("disc", std::string("narc/") + law + "/history 1e4 NULL 0 NULL 0.5 1 restitution 0.6") +
+             "timestep 5e-5\nrun 20000");
+    const std::vector<State> after = pair.states();
+    const double found = (after[1].velocity_x - after[0].velocity_x) / speed;
+    check_at_most((std::string("a given restitution, ") + law).c_str(), std::fabs(found - 0.6), 1e-2);
+}
+
 void test_restitution() {
+    for (const char *law : {"hooke", "hertz"})
+        for (const double speed : {0.2, 1.0})
+            check_given(law, speed);
     check_restitution("disc", 0.5, false);
     check_restitution("ellipse8", 0.5, true);
 }
@@ -130,16 +150,99 @@ void test_hertz() {
                 {2, 5 + 2 * half_width * scale - d, 5, 0.5, 0, 0, 0, 0}, d * std::pow(2, 5.0 / 6), brick, brick);
 }
 
+/* A grain goes down a slope of 30 degrees from rest without sliding. A disc of radius R has the torque mu R N against
+ * it and the moment of inertia m R^2 / 2: its acceleration is 2/3 (g sin - mu g cos), and 0 if that is negative.
+ * Springs ring at first, with an amplitude that is the load's overlap. */
+void test_rolling() {
+    const double angle = std::acos(-1.0) / 6, time = 4;
+    for (const double mu : {0.0, 0.3, 0.7}) {
+        Packing packing = {40, 4, {{1, 2, 0.5, 0.5, 0, 0, 0, 0}}};
+        Simulation slope(MPI_COMM_WORLD);
+        slope.create(packing, "f f p");
+        char floor[200];
+        std::snprintf(floor, sizeof floor,
+                      "fix floor all wall/narc hooke/history 1e5 NULL 200 NULL 0.9 1 rolling %g plate 0 0 0 1\n", mu);
+        slope.run(grains("disc", "narc/hooke/history 1e5 NULL 60 NULL 0 1") + floor +
+                  "fix gravity all gravity 1 vector 0.5 -0.86602540378443865 0\ntimestep 1e-4\nrun 20000");
+        const double before = slope.states()[0].velocity_x;
+        slope.run("run " + std::to_string(static_cast<int>(time / 1e-4)));
+        const double found = (slope.states()[0].velocity_x - before) / time;
+        const double expected = std::fmax(2.0 / 3 * (std::sin(angle) - mu * std::cos(angle)), 0);
+        check_at_most("acceleration of a disc that rolls", std::fabs(found - expected), 1e-4);
+    }
+}
+
+/* ---------------------------------------------------------------------------- grains of parts */
+
+/* What a collision must keep: momentum, angular momentum about the origin, energy. */
+struct Kept {
+    double x = 0, y = 0, turn = 0, energy = 0;
+};
+
+Kept sum_kept(Simulation &simulation, const double inertia[2]) {
+    Kept sum;
+    sum.energy = kinetic_energy(simulation);
+    const std::vector<State> states = simulation.states();
+    for (size_t i = 0; i < states.size(); i++) {
+        const State &s = states[i];
+        sum.x += s.mass * s.velocity_x;
+        sum.y += s.mass * s.velocity_y;
+        sum.turn += s.mass * (s.x * s.velocity_y - s.y * s.velocity_x) + inertia[i] * s.spin;
+    }
+    return sum;
+}
+
+/* A disc meets one end of a dimer, two discs that touch, square to its axis. The push P along y changes the momenta of
+ * both by P and the dimer's spin by P a / I; energy tells P. The contact is soft: the dimer turns a little meanwhile,
+ * by the speed times its time, 2e-3 of the arm a. */
+void test_clumps() {
+    const double r = 0.5, pi = std::acos(-1.0), m = pi * r * r, inertia = 2 * (pi * std::pow(r, 4) * (0.5 + 1));
+    const double spins[2] = {inertia, m * r * r / 2};
+    Packing packing = {10, 10, {{1, 4, 5, 2 * r, 0, 0, 0, 0}, {2, 4.5, 6.01, r, 0, 0, -1, 0}}};
+    packing.types = 2;
+    Simulation hit(MPI_COMM_WORLD);
+    hit.create(packing);
+    hit.run(grains("dimer disc", "narc/hooke/history 1e7 NULL 0 NULL 0 1") + "timestep 1e-5\nrun 0");
+    const Kept before = sum_kept(hit, spins);
+    hit.run("run 4000");
+    const Kept after = sum_kept(hit, spins);
+    const std::vector<State> states = hit.states();
+    const double push = 2 / (1 / m + 1 / (2 * m) + r * r / inertia);
+    check_at_most("mass of a dimer", std::fabs(states[0].mass / (2 * m) - 1), 1e-12);
+    check_at_most("spin of a dimer", std::fabs(states[0].spin / (-push * r / inertia) - 1), 5e-3);
+    check_at_most("velocity of the disc", std::fabs(states[1].velocity_y + 1 - push / m), 5e-3);
+    check_at_most("momentum", std::hypot(after.x - before.x, after.y - before.y), 1e-12);
+    check_at_most("angular momentum", std::fabs(after.turn - before.turn), 1e-12);
+    check_at_most("energy of a dimer's collision", std::fabs(after.energy / before.energy - 1), 1e-4);
+
+    /* Two angles whose arms reach into each other, and touch with several parts at once. */
+    packing.grains = {{1, 4, 4, 0.8, 0.3, 1, 0.5, 0.4}, {1, 5.3, 5.5, 0.8, 3.6, -1, -0.5, -0.3}};
+    Simulation clash(MPI_COMM_WORLD);
+    clash.create(packing);
+    clash.run(grains("ell ell", "narc/hooke/history 1e6 NULL 0 NULL 0 1") + "timestep 1e-5\nrun 0");
+    const double ratio = clash.variable("f_nve") / (0.5 * (0.4 * 0.4 + 0.3 * 0.3)); /* both are alike */
+    const double same[2] = {ratio, ratio};
+    const Kept first = sum_kept(clash, same);
+    const double speed = clash.states()[0].spin;
+    clash.run("run 200000");
+    const Kept last = sum_kept(clash, same);
+    check_at_most("the angles have met", -std::fabs(clash.states()[0].spin - speed), -0.1);
+    check_at_most("and are apart", clash.pair_energy(), 0);
+    check_at_most("momentum", std::hypot(last.x - first.x, last.y - first.y), 1e-12);
+    check_at_most("angular momentum", std::fabs(last.turn - first.turn), 1e-10); /* 2e5 roundings of x, 4e-16 each */
+    check_at_most("energy of the angles' collisions", std::fabs(last.energy / first.energy - 1), 1e-3);
+}
+
 /* Forces between grains are equal and opposite, so that momentum stays but for roundings of sums. */
 void test_momentum() {
     for (const bool newton : {false, true}) {
         Packing packing = make_lattice(20, 20, 1.15, 0.1, 1, 11);
-        packing.types = 2;
+        packing.types = 4;
         for (size_t i = 0; i < packing.grains.size(); i++)
-            packing.grains[i].type = 1 + static_cast<int>(i % 2);
+            packing.grains[i].type = 1 + static_cast<int>(i % 4);
         Simulation simulation(MPI_COMM_WORLD);
         simulation.create(packing, "p p p", newton);
-        simulation.run(grains("ellipse8 pebble8", "narc/hooke/history 1e4 NULL 50 NULL 0.5 1") +
+        simulation.run(grains("ellipse8 ell dimer pebble8", "narc/hooke/history 1e4 NULL 50 NULL 0.5 1") +
                        "timestep 2e-4\nrun 0");
         double momentum[2] = {0, 0}, scale = 0;
         for (const State &s : simulation.states()) {
@@ -188,7 +291,9 @@ void test_energy() {
 /* Dense grains that drift, so that many go from rank to rank while they touch others. */
 Packing make_drifting(unsigned seed) {
     Packing packing = make_lattice(20, 20, 1.15, 0.1, 1, seed);
+    packing.types = 2;
     for (Grain &grain : packing.grains) {
+        grain.type = grain.angle > 5 ? 2 : 1;
         grain.velocity_x += 13;
         grain.velocity_y += 7;
     }
@@ -198,7 +303,8 @@ Packing make_drifting(unsigned seed) {
 std::vector<State> run_piece(MPI_Comm world, bool newton, const Packing &packing) {
     Simulation simulation(world);
     simulation.create(packing, "p p p", newton);
-    simulation.run(grains("pebble8", "narc/hooke/history 1e4 NULL 50 NULL 0.5 1") + "timestep 2e-4\nrun 500");
+    simulation.run(grains("pebble8 ell", "narc/hooke/history 1e4 NULL 50 NULL 0.5 1 rolling 0.1") +
+                   "timestep 2e-4\nrun 500");
     return simulation.states();
 }
 
@@ -235,18 +341,23 @@ void test_newton() {
 /* A run that was broken off goes on as if it were not: the memory of contacts is in the restart file. */
 void test_restart() {
     const std::string file = "test.restart";
-    const Packing packing = make_lattice(20, 20, 1.15, 0.1, 0.2, 23);
+    Packing packing = make_lattice(20, 20, 1.15, 0.1, 0.2, 23);
+    packing.types = 2;
+    for (Grain &grain : packing.grains)
+        grain.type = grain.angle > 3 ? 2 : 1;
     const std::string wall = "fix floor all wall/narc hooke/history 1e4 NULL 50 NULL 0.5 1 plate 10 1 0.1 1 "
-                             "velocity 0 0.5\n";
+                             "velocity 0 0.5\nfix vane all wall/narc hooke/history 1e4 NULL 50 NULL 0.5 1 rolling 0.1 "
+                             "box 10 10 3 1 20 spin 5 11 10\n";
     Simulation whole(MPI_COMM_WORLD);
     whole.create(packing, "p f p", true);
-    whole.run(grains("pebble8", "narc/hooke/history 1e4 NULL 50 NULL 0.5 1") + wall +
+    whole.run(grains("pebble8 ell", "narc/hooke/history 1e3 NULL 5 NULL 0.1 1") +
+              "pair_coeff * * 1e4 NULL 50 NULL 0.5 1 rolling 0.1\n" + wall +
               "fix ceiling all wall/narc hooke/history 1e4 NULL 50 NULL 0.5 1 plate 10 20 0 -1\ntimestep 2e-4\n"
               "run 500\nwrite_restart " +
               file + "\nrun 500");
     Simulation rest(MPI_COMM_WORLD);
     rest.run("atom_modify map array\nread_restart " + file + "\n" + tracking + "comm_modify vel yes\n" +
-             "fix shapes all narc/shapes " + shapes_file + " pebble8 density 1\nfix nve all narc/nve\n" + wall +
+             "fix shapes all narc/shapes " + shapes_file + " pebble8 ell density 1\nfix nve all narc/nve\n" + wall +
              "fix ceiling all wall/narc hooke/history 1e4 NULL 50 NULL 0.5 1 plate 10 20 0 -1\ntimestep 2e-4\n"
              "run 0");
     rest.run("run 500");
@@ -292,6 +403,95 @@ void test_walls() {
         const double push = heap.variable("f_left[1]") + heap.variable("f_right[1]") + heap.variable("f_floor[1]");
         check_at_most("and push sideways as little", std::fabs(push / weight), 1e-3);
     }
+}
+
+/* A disc in a pocket of three boxes that turn about a point goes round with them: it has the velocity w r, the spin w,
+ * and the walls' force on it is m w^2 r towards the point. Its spring is m w^2 r / kn = 1e-5
+ * deep, and friction acts so much from the surface. */
+void test_turning() {
+    const double w = 2, r = 3, time = 4, pi = std::acos(-1.0);
+    Packing packing = {20, 20, {{1, 10 + r, 10, 0.5, 0, 0, w * r, w}}};
+    Simulation pocket(MPI_COMM_WORLD);
+    pocket.create(packing, "f f p");
+    const std::string law = "hooke/history 1e6 NULL 50 NULL 0.5 1";
+    const std::string turn = " 0 spin 2 10 10\n";
+    pocket.run(grains("disc", "narc/" + law) + "fix out all wall/narc " + law + " box 14 10 1 3" + turn +
+               "fix left all wall/narc " + law + " box 13 10.99999 3 1" + turn + "fix right all wall/narc " + law +
+               " box 13 9.00001 3 1" + turn + "timestep 1e-4\nrun " + std::to_string(static_cast<int>(time / 1e-4)));
+    const State s = pocket.states()[0];
+    const double c = std::cos(w * time), y = std::sin(w * time);
+    check_at_most("place", std::hypot(s.x - 10 - r * c, s.y - 10 - r * y), 1e-4);
+    check_at_most("angle", std::hypot(s.cosine - c, s.sine - y), 1e-3);
+    check_at_most("velocity", std::hypot(s.velocity_x + w * r * y, s.velocity_y - w * r * c), 1e-4);
+    const double pull = s.mass * w * w * r;
+    check_at_most("force", std::hypot(s.force_x + pull * c, s.force_y + pull * y) / pull, 1e-4);
+    const char *sum_x = "f_out[1]+f_left[1]+f_right[1]";
+    check_at_most("force on the walls", std::fabs(pocket.variable(sum_x) + s.force_x), 1e-12 * pull);
+    check_at_most("torque on the walls", std::fabs(pocket.variable("f_out[5]+f_left[5]+f_right[5]")), 1e-4 * pull);
+    check_at_most("angle of a wall", std::fabs(pocket.variable("f_out[6]") - w * time), 1e-10);
+    check_at_most("half a turn and more", pi, w * time);
+}
+
+/* Grains at rest between plates: the virial theorem has the sum of force times arm over all contacts, those with walls
+ * too, as the force on a plate times the distance of the plates (contacts lie up to half an overlap beyond them); the
+ * forces on each grain have no sum. */
+void check_pressed(const char *law) {
+    Packing packing = make_lattice(8, 8, 1.2, 0.1, 0.3, 43);
+    packing.types = 4;
+    for (size_t i = 0; i < packing.grains.size(); i++)
+        packing.grains[i].type = 1 + static_cast<int>(i % 4);
+    Simulation cell(MPI_COMM_WORLD);
+    cell.create(packing, "f f p");
+    const std::string coefficients = std::string(law) + "/history 2e4 NULL 100 NULL 0.3 1 ";
+    cell.run(grains("disc ell dimer pebble8", "narc/" + coefficients));
+    const std::string smooth = std::string(law) + "/history 2e4 NULL 100 NULL 0 1 ";
+    for (const char *plate : {"left 0 4 1 0", "right 7.6 4 -1 0", "floor 4 0 0 1", "ceiling 4 7.6 0 -1"}) {
+        const std::string text = plate, name = text.substr(0, text.find(' '));
+        cell.run("fix " + name + " all wall/narc " + smooth + "plate" + text.substr(name.size()) + "\nfix_modify " +
+                 name + " virial yes");
+    }
+    cell.run("compute rows all narc/contact\ncompute stress all pressure NULL virial\n"
+             "thermo_style custom step c_stress[1] c_stress[2]\nfix slow all viscous 2\ntimestep 2e-4\nrun 60000");
+    const double wide = 7.6, area = 64, forces[2] = {cell.variable("f_right[1]"), cell.variable("f_ceiling[2]")};
+    check_at_most("the cell is pressed", -std::fmin(forces[0], forces[1]), -10);
+    LAMMPS_NS::Modify *modify = cell.lammps->modify;
+    LAMMPS_NS::Compute *rows = modify->compute[modify->find_compute("rows")];
+    rows->compute_local();
+    const std::vector<State> states = cell.states();
+    std::vector<double> left(3 * states.size(), 0); /* force and torque */
+    double strongest = 0, length = 0, deepest = 0;
+    for (int k = 0; k < rows->size_local_rows; k++) {
+        const double *row = rows->array_local[k];
+        strongest = std::fmax(strongest, std::hypot(row[6], row[7]));
+        deepest = std::fmax(deepest, row[1] < 0 ? row[8] : 0);
+        length = std::fmax(length, std::fabs(std::hypot(row[4], row[5]) - 1));
+        for (int end = 0; end < 2; end++) {
+            const int id = static_cast<int>(row[end]);
+            if (id < 0)
+                continue;
+            const size_t i = static_cast<size_t>(id) - 1;
+            const double sign = end ? 1 : -1, x = row[2] - states[i].x, y = row[3] - states[i].y;
+            left[3 * i] += sign * row[6];
+            left[3 * i + 1] += sign * row[7];
+            left[3 * i + 2] += sign * (x * row[7] - y * row[6]);
+        }
+    }
+    for (const char axis : {'x', 'y'}) {
+        const std::string stress = std::string("c_stress[") + (axis == 'x' ? "1]" : "2]");
+        const double found = cell.variable(stress) * area / (forces[axis == 'y'] * wide);
+        check_at_most((std::string("stress along ") + axis).c_str(), std::fabs(found - 1), deepest / wide);
+    }
+    double most[2] = {0, 0};
+    for (size_t k = 0; k < left.size(); k++)
+        most[k % 3 == 2] = std::fmax(most[k % 3 == 2], std::fabs(left[k]));
+    check_at_most("normals are of length 1", length, 1e-12);
+    check_at_most("forces on a grain, summed", most[0] / strongest, 1e-6);
+    check_at_most("torques on a grain, summed: forces act half an overlap from there", most[1] / strongest, 0.02);
+}
+
+void test_pressed() {
+    check_pressed("hooke");
+    check_pressed("hertz");
 }
 
 /* Bricks on each other come to rest, where one point for each contact would rock. */
@@ -419,6 +619,10 @@ const std::map<std::string, void (*)()> tests = {
     {"pour", test_pour},
     {"mesh", test_mesh},
     {"hertz", test_hertz},
+    {"rolling", test_rolling},
+    {"clumps", test_clumps},
+    {"turning", test_turning},
+    {"pressed", test_pressed},
 };
 
 } // namespace
