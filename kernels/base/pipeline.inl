@@ -162,8 +162,6 @@ INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int
             const vm open = settle(call, block + (size_t)k, &circles, item);
             if (NARC_PIECES && !LIKELY(!call->pieces))
                 fetch_pieces(call, circles.valid, item);
-            if (NARC_PIECES && !LIKELY(!call->concave) && call->concave->count >= FLUSH)
-                run_stages(call, stages, stage_count, queues, false);
             if (stage_count > 0 && vm_any(open)) {
                 enter(queues, open, item, fields, edged_stage, polygon_stage, not_first);
                 if (queues->count >= FLUSH || queues[edged_stage].count >= FLUSH ||

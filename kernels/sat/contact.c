@@ -267,10 +267,7 @@ INLINE struct gap decide_gap(const narc_shapes *shapes, const struct queue *queu
 static void decide(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     (void)next;
     for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm all = vm_front(queue->count - k);
-        const vm live = NARC_PIECES && call->concave ? answer_concave(call, queue, k, all) : all;
-        if (!vm_any(live))
-            continue;
+        const vm live = vm_front(queue->count - k);
         const struct gap gap = decide_gap(call->batch->shapes, queue, k, live);
         store_hints(call, queue, k, live, gap.record_a, gap.record_b);
         const vm keep = vm_and(live, is_below(gap.separation, get_margins(call, queue, k)));
@@ -297,12 +294,13 @@ size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, 
         hinted ? start_from_hints : probe_axis, probe_again, climb_from, answer_polygons, decide, find_second_points};
     stage *const formula[] = {decide, find_second_points};
     const int stage_count = manifolds ? STAGES : STAGES - 1, edged_stage = hinted ? 0 : CLIMB;
-    struct queue queues[STAGES];
+    struct queue queues[STAGES], concave;
     struct box_queue boxes[BOX_QUEUES];
     struct rows rows;
     struct call call = begin_rows(batch, first, count, skipped, out, &rows);
     call.edges = !manifolds ? NULL : NARC_SHORTCUTS ? &queues[STAGES - 1] : &queues[1];
-    call.concave = !call.pieces ? NULL : NARC_SHORTCUTS ? &queues[DECIDE] : &queues[0];
+    call.concave = call.pieces ? &concave : NULL;
+    concave.count = 0;
     if (!NARC_SHORTCUTS) {
         run_pairs(&call, NULL, call.pieces ? triage_pieces : take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
     } else if (batch->shapes->box_count > 0) {
@@ -312,5 +310,7 @@ size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, 
     } else {
         run_pairs(&call, NULL, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
     }
+    while (NARC_PIECES && concave.count > 0)
+        answer_concave(&call);
     return end_rows(&call);
 }
