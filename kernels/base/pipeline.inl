@@ -173,6 +173,11 @@ INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int
     run_stages(call, stages, stage_count, queues, true);
 }
 
+/* Are there pieces of chains, and are they asked of as such? */
+static inline bool has_pieces(const narc_batch *batch) {
+    return NARC_PIECES && !batch->whole && batch->shapes->piece_count > 0;
+}
+
 static inline struct call begin_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
                                          uint64_t *out_bits) {
     memset(out_bits, 0, (count + 63) / 64 * sizeof *out_bits);
@@ -181,7 +186,7 @@ static inline struct call begin_overlaps(const narc_batch *batch, size_t first, 
                          .count = count,
                          .skipped = skipped,
                          .bits = out_bits,
-                         .pieces = NARC_PIECES && !batch->whole && batch->shapes->piece_count > 0};
+                         .pieces = has_pieces(batch)};
 }
 
 static inline struct call begin_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
@@ -194,7 +199,7 @@ static inline struct call begin_rows(const narc_batch *batch, size_t first, size
                          .margin = batch->query->margin,
                          .margins = batch->query->margins,
                          .rows = rows,
-                         .pieces = NARC_PIECES && !batch->whole && batch->shapes->piece_count > 0};
+                         .pieces = has_pieces(batch)};
 }
 
 /* The kernels of a method with one stage. */

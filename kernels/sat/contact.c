@@ -288,19 +288,20 @@ INLINE vm detour_rows(const struct call *call, const struct pair_indices *indice
     return take_detour(call, indices, k, placement, open, number, call->edges ? manifold_detours : contact_detours);
 }
 
-size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
+/* `concave`: a queue for pairs with concave arcs, or NULL if there are no pieces. */
+NOINLINE size_t find_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out,
+                          struct queue *concave) {
     const bool hinted = batch->query->hints.base != NULL, manifolds = batch->manifolds;
     stage *const stages[STAGES] = {
         hinted ? start_from_hints : probe_axis, probe_again, climb_from, answer_polygons, decide, find_second_points};
     stage *const formula[] = {decide, find_second_points};
     const int stage_count = manifolds ? STAGES : STAGES - 1, edged_stage = hinted ? 0 : CLIMB;
-    struct queue queues[STAGES], concave;
+    struct queue queues[STAGES];
     struct box_queue boxes[BOX_QUEUES];
     struct rows rows;
     struct call call = begin_rows(batch, first, count, skipped, out, &rows);
     call.edges = !manifolds ? NULL : NARC_SHORTCUTS ? &queues[STAGES - 1] : &queues[1];
-    call.concave = call.pieces ? &concave : NULL;
-    concave.count = 0;
+    call.concave = concave;
     if (!NARC_SHORTCUTS) {
         run_pairs(&call, NULL, call.pieces ? triage_pieces : take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
     } else if (batch->shapes->box_count > 0) {
@@ -310,7 +311,20 @@ size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, 
     } else {
         run_pairs(&call, NULL, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
     }
-    while (NARC_PIECES && concave.count > 0)
+    while (NARC_PIECES && concave && concave->count > 0)
         answer_concave(&call);
     return end_rows(&call);
+}
+
+/* Only where there are pieces is that queue on the stack. */
+NOINLINE size_t find_piece_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
+                                const narc_rows *out) {
+    struct queue concave;
+    concave.count = 0;
+    return find_rows(batch, first, count, skipped, out, &concave);
+}
+
+size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
+    return has_pieces(batch) ? find_piece_rows(batch, first, count, skipped, out)
+                             : find_rows(batch, first, count, skipped, out, NULL);
 }
