@@ -241,41 +241,58 @@ static size_t get_further(const narc_batch *batch, const char *row) {
     return manifold.count / NARC_FURTHER_ROW;
 }
 
-/* Lists all rows of a pair, of which `rows` has room for `room`. */
-static void list_pair(narc_row_kernel *kernel, const narc_batch *batch, size_t row_size, const char *first, size_t room,
-                      const narc_rows *rows, size_t to) {
+/* Pairs all of whose rows are wanted, at least two each, and from where on. */
+struct wanted {
+    uint32_t pair[NARC_MAX_ARCS / 2];
+    narc_row_list list[NARC_MAX_ARCS / 2];
+    size_t to[NARC_MAX_ARCS / 2];
+    size_t count, rows;
+};
+
+/* Lists all rows of the wanted pairs, as far as there is room. */
+NOINLINE void list_wanted(narc_row_kernel *kernel, const narc_batch *batch, size_t row_size, struct wanted *wanted,
+                          const narc_rows *rows, size_t capacity) {
     _Alignas(16) char all[NARC_MAX_ARCS * sizeof(narc_manifold)];
-    uint32_t pair;
     size_t skipped = 0, further = 0;
-    memcpy(&pair, first, sizeof pair);
     narc_query query = *batch->query;
-    query.selection = (narc_index_column){&pair, sizeof pair};
+    query.selection = (narc_index_column){wanted->pair, sizeof *wanted->pair};
     query.hints = (narc_hint_column){0};
-    narc_batch one = *batch;
-    one.query = &query;
-    const narc_rows apart = {all, (ptrdiff_t)row_size, &further, true};
-    const size_t count = kernel(&one, 0, 1, &skipped, &apart);
-    for (size_t k = 0; k < count && to + k < room; k++)
-        memcpy(find_row(rows, to + k), find_row(&apart, k), row_size);
+    narc_batch some = *batch;
+    some.query = &query;
+    const narc_rows apart = {all, (ptrdiff_t)row_size, &further, wanted->list};
+    if (wanted->count > 0)
+        kernel(&some, 0, wanted->count, &skipped, &apart);
+    for (size_t i = 0; i < wanted->count; i++)
+        for (size_t k = 0; k < wanted->list[i].count && wanted->to[i] + k < capacity; k++)
+            memcpy(find_row(rows, wanted->to[i] + k), find_row(&apart, wanted->list[i].first + k), row_size);
+    wanted->count = wanted->rows = 0;
 }
 
 /* Where pairs with concave arcs have several rows, the deepest one is there, of `count` rows: lists the others, from
  * the last pair on. What has no room is left out. */
 NOINLINE void list_further(narc_row_kernel *kernel, const narc_batch *batch, size_t row_size, const narc_rows *rows,
                            size_t count, size_t capacity) {
+    struct wanted wanted = {.count = 0};
     size_t to = count;
     for (size_t k = 0; k < count; k++)
         to += get_further(batch, find_row(rows, k));
     size_t k = count;
     while (to > k) {
         char *const row = find_row(rows, --k);
-        const size_t further = get_further(batch, row);
-        to -= further + 1;
-        if (further > 0)
-            list_pair(kernel, batch, row_size, row, capacity, rows, to);
-        else if (to < capacity)
+        const size_t own = get_further(batch, row) + 1;
+        to -= own;
+        if (own == 1 && to < capacity)
             memcpy(find_row(rows, to), row, row_size);
+        if (own == 1)
+            continue;
+        if (wanted.rows + own > NARC_MAX_ARCS)
+            list_wanted(kernel, batch, row_size, &wanted, rows, capacity);
+        memcpy(&wanted.pair[wanted.count], row, sizeof(uint32_t));
+        wanted.list[wanted.count] = (narc_row_list){.first = (uint32_t)wanted.rows, .room = (uint32_t)own};
+        wanted.to[wanted.count++] = to;
+        wanted.rows += own;
     }
+    list_wanted(kernel, batch, row_size, &wanted, rows, capacity);
 }
 
 narc_status narc_answer_rows(narc_row_kernel *kernel, const narc_batch *batch, void *out_rows, size_t capacity,

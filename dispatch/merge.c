@@ -42,16 +42,20 @@ static void drop_row(row_list *list, size_t k) {
 }
 
 static void move_row(row_list *list, size_t from, size_t to) {
+    if (from == to)
+        return;
     if (list->manifolds)
         list->manifolds[to] = list->manifolds[from];
     else
         list->contacts[to] = list->contacts[from];
 }
 
-static size_t find_body_a(const narc_pairs *pairs, size_t pair) {
+static size_t find_body_of(const row_list *list, size_t k) {
+    const narc_pairs *const pairs = list->pairs;
+    const uint32_t pair = list->manifolds ? list->manifolds[k].pair : list->contacts[k].pair;
     if (pairs->a.base)
         return narc_index_at(pairs->a, pair);
-    return pairs->other_bodies ? pair : 2 * pair;
+    return pairs->other_bodies ? pair : 2 * (size_t)pair;
 }
 
 static uint32_t find_run(const row_list *list, uint32_t pair) {
@@ -142,12 +146,11 @@ static void compare_rows(row_list *list, size_t j, size_t k) {
 
 /* ------------------------------------------------------------------------------------------------ lists */
 
-static size_t merge_rows(row_list *list, size_t count) {
-    size_t kept = 0, first = 0; /* the first row of the body */
-    for (size_t k = 0; k < count; k++) {
-        const uint32_t pair = get_row(list, k).pair;
-        if (kept == 0 || find_body_a(list->pairs, get_row(list, kept - 1).pair) != find_body_a(list->pairs, pair))
-            first = kept;
+/* Puts rows k .. end - 1, of one body, behind those that are kept, but for those that go. Returns how many rows are
+ * kept then. */
+static size_t merge_body(row_list *list, size_t kept, size_t k, size_t end) {
+    const size_t first = kept;
+    for (; k < end; k++) {
         move_row(list, k, kept);
         const size_t last = kept - first > LOOK_BACK ? kept - LOOK_BACK : first;
         for (size_t j = kept; j-- > last && get_row(list, kept).count > 0;)
@@ -155,11 +158,22 @@ static size_t merge_rows(row_list *list, size_t count) {
                 compare_rows(list, j, kept);
         kept += get_row(list, kept).count > 0;
     }
-    size_t left = 0;
-    for (size_t k = 0; k < kept; k++)
-        if (get_row(list, k).count > 0)
-            move_row(list, k, left++);
+    size_t left = first;
+    for (size_t j = first; j < kept; j++)
+        if (get_row(list, j).count > 0)
+            move_row(list, j, left++);
     return left;
+}
+
+static size_t merge_rows(row_list *list, size_t count) {
+    size_t kept = 0;
+    for (size_t k = 0, end; k < count; k = end) {
+        const size_t body = find_body_of(list, k);
+        for (end = k + 1; end < count && find_body_of(list, end) == body;)
+            end++;
+        kept = merge_body(list, kept, k, end);
+    }
+    return kept;
 }
 
 size_t narc_merge_contacts(const narc_pairs *pairs, narc_index_column run, narc_contact *rows, size_t count) {

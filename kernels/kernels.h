@@ -38,12 +38,17 @@ typedef struct narc_batch {
 /* Where a call's rows go: `base` is the place of its first one; of dense rows, of that of the batch's first pair.
  *   further     Pairs with a concave arc can have several rows. The kernel writes the deepest one, adds how many there are
  *               besides to `further`, and if rows are not dense NARC_FURTHER_ROW times that to the row's count.
- *   lists_one   It is asked of one pair, and lists all of its rows, at most NARC_MAX_ARCS. */
+ *   lists       NULL, or it is asked of pairs with concave arcs alone, and lists all rows of each, at most NARC_MAX_ARCS, in
+ *               the places that are that pair's. */
+typedef struct narc_row_list {
+    uint32_t first, room, count;
+} narc_row_list;
+
 typedef struct narc_rows {
     char *base;
     ptrdiff_t stride;
     size_t *further;
-    bool lists_one;
+    narc_row_list *lists;
 } narc_rows;
 
 enum { NARC_FURTHER_ROW = 256 };

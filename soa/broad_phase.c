@@ -128,7 +128,7 @@ narc_status narc_reserve_matches(narc_broad_phase *broad, size_t first_count, si
 
 narc_status narc_reserve_bodies(narc_broad_phase *broad, size_t count) {
     enum {
-        BYTES = sizeof(narc_pose_bits) + 2 * sizeof(narc_box) + sizeof(narc_body_filter) + 2 * sizeof(uint32_t) + 3
+        BYTES = sizeof(narc_pose_bits) + 2 * sizeof(narc_box) + sizeof(narc_body_filter) + 2 * sizeof(uint32_t) + 4
     };
     if (broad->body_memory && count <= broad->body_capacity)
         return NARC_OK;
@@ -144,6 +144,7 @@ narc_status narc_reserve_bodies(narc_broad_phase *broad, size_t count) {
     broad->filters = take(&at, n, sizeof *broad->filters);
     broad->last_index = take(&at, n, sizeof *broad->last_index);
     broad->place = take(&at, n, sizeof *broad->place);
+    broad->kinds = take(&at, n, 1);
     broad->taken = take(&at, n, 1);
     broad->fresh = take(&at, n, 1);
     broad->body_capacity = n;

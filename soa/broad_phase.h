@@ -118,12 +118,14 @@ struct narc_broad_phase {
     int last;
     bool is_current;      /* the last list holds all pairs of `kept_boxes` and `filters` */
     bool is_sorted;       /* what is sorted below are the kept boxes, but for strays */
-    bool has_filter;      /* `filters` are in use */
+    bool has_filter;      /* `kinds` and `filters` are in use */
+    bool has_sets;        /* `filters` may say other than that all bodies may form pairs */
     bool renewed;         /* lists may say more than that all is kept: new pairs, lost ones, flips */
     size_t body_capacity; /* for each body: */
     narc_box *boxes_now, *kept_boxes;
     narc_known_poses known; /* those of boxes_now */
     narc_body_filter *filters;
+    uint8_t *kinds;
     uint32_t *last_index; /* its number in the last list */
     uint32_t *place;      /* of its box in the columns, NARC_NO_PLACE or NARC_STRAY */
     uint8_t *fresh;       /* 1: it gets a new kept box, or may form other pairs */

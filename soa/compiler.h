@@ -35,6 +35,7 @@
 #endif
 
 #define LIKELY(condition) __builtin_expect(condition, 1)
+#define FETCH(address)    __builtin_prefetch(address)
 #define TYPE_OF(value)    __typeof__(value)
 
 /* After a type's name in its definition: a vector of so many bytes, with operators by lane. */

@@ -47,14 +47,37 @@ static uint64_t position_bits_at(narc_position_column column, size_t k) {
     return bits;
 }
 
-/* Put together in registers: a word that is read from two halves just written waits for both. */
+/* Two numbers of 32 bits as they follow each other in memory. Put together in registers: a word that is read from two halves
+ * just written waits for both. */
+static uint64_t join_bits(uint64_t first, uint64_t second) {
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+    return first << 32 | second;
+#else
+    return first | second << 32;
+#endif
+}
+
 static narc_pose_bits get_pose_bits(const narc_bodies *bodies, size_t k) {
     static const float one = 1;
     const narc_float_column cosine = bodies->cosine, sine = bodies->sine;
     const narc_float_column scale = bodies->scale.base ? bodies->scale : (narc_float_column){&one, 0};
     return (narc_pose_bits){{position_bits_at(bodies->x, k), position_bits_at(bodies->y, k),
-                             bits_at(cosine.base, cosine.stride, k) | bits_at(sine.base, sine.stride, k) << 32,
-                             bits_at(scale.base, scale.stride, k) | (uint64_t)narc_index_at(bodies->shape, k) << 32}};
+                             join_bits(bits_at(cosine.base, cosine.stride, k), bits_at(sine.base, sine.stride, k)),
+                             join_bits(bits_at(scale.base, scale.stride, k), narc_index_at(bodies->shape, k))}};
+}
+
+/* Is it just these bits that lie in memory for each body, as of narc_body? */
+static bool are_rows(const narc_bodies *bodies) {
+    const char *const row = bodies->x.base;
+    const ptrdiff_t stride = bodies->x.stride;
+    return bodies->x.precision == NARC_FLOAT64 && bodies->scale.base &&
+           bodies->y.base == row + offsetof(narc_body, y) &&
+           (const char *)bodies->cosine.base == row + offsetof(narc_body, cosine) &&
+           (const char *)bodies->sine.base == row + offsetof(narc_body, sine) &&
+           (const char *)bodies->scale.base == row + offsetof(narc_body, scale) &&
+           (const char *)bodies->shape.base == row + offsetof(narc_body, shape) && bodies->y.stride == stride &&
+           bodies->cosine.stride == stride && bodies->sine.stride == stride && bodies->scale.stride == stride &&
+           bodies->shape.stride == stride;
 }
 
 /* Lists those of bodies first .. end - 1 whose poses are not the known ones, which they are then. */
@@ -62,9 +85,14 @@ static size_t list_moved(const narc_bodies *given, const narc_known_poses *all, 
                          uint32_t *list) {
     const narc_bodies bodies = *given; /* copies, which nothing that is written could change */
     const narc_known_poses known = *all;
+    const bool rows = are_rows(&bodies);
     size_t count = 0;
     for (size_t k = first; k < end; k++) {
-        const narc_pose_bits now = get_pose_bits(&bodies, k);
+        narc_pose_bits now;
+        if (rows)
+            memcpy(&now, narc_at(bodies.x.base, bodies.x.stride, k), sizeof now);
+        else
+            now = get_pose_bits(&bodies, k);
         if (k < known.count) {
             const narc_pose_bits then = known.poses[k];
             const uint64_t other = (now.word[0] ^ then.word[0]) | (now.word[1] ^ then.word[1]) |

@@ -52,6 +52,11 @@ static narc_pair_filter filter_in_use(const update *u) {
     return u->options->filter ? *u->options->filter : (narc_pair_filter){.kind = {0}};
 }
 
+static bool has_sets(const update *u) {
+    const narc_pair_filter filter = filter_in_use(u);
+    return filter.category.base || filter.mask.base || filter.group.base;
+}
+
 static narc_body_filter filter_of(const update *u, size_t body) {
     const narc_pair_filter filter = filter_in_use(u);
     return narc_read_filter(&filter, body);
@@ -59,10 +64,39 @@ static narc_body_filter filter_of(const update *u, size_t body) {
 
 typedef struct changes {
     const update *update;
-    bool use_filters;
+    bool use_kinds, use_sets;
     atomic_uint found;
     atomic_size_t fresh_count;
 } changes;
+
+static uint8_t kind_at(narc_byte_column kind, size_t body) {
+    return kind.base ? narc_byte_at(kind, body) & NARC_KINDS : 0;
+}
+
+/* The first of bodies from .. end - 1 that has moved, or whose kind is another; `end` without one. */
+static size_t find_changed(const narc_broad_phase *broad, narc_byte_column kind, size_t from, size_t end) {
+    const uint64_t all = NARC_KINDS * UINT64_C(0x0101010101010101);
+    size_t k = from;
+    for (; kind.base && kind.stride == 1 && k + 8 <= end; k += 8) {
+        uint64_t now, then, moved;
+        memcpy(&now, narc_at(kind.base, 1, k), sizeof now);
+        memcpy(&then, broad->kinds + k, sizeof then);
+        memcpy(&moved, broad->known.moved + k, sizeof moved);
+        if (moved | ((now & all) ^ then))
+            break;
+    }
+    while (k < end && !broad->known.moved[k] && kind_at(kind, k) == broad->kinds[k])
+        k++;
+    return k;
+}
+
+/* The next body from `from` on that something is to be asked of. */
+static size_t find_next(const changes *all, narc_byte_column kind, size_t from, size_t end) {
+    const narc_broad_phase *const broad = all->update->broad;
+    return all->use_sets    ? from
+           : all->use_kinds ? find_changed(broad, kind, from, end)
+                            : narc_find_flag(broad->known.moved, from, end);
+}
 
 /* Bodies first .. end - 1, whose kept boxes and filters are those of the last list. */
 static void look_at_some(void *argument, size_t part, size_t first, size_t end) {
@@ -75,16 +109,18 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
     size_t fresh_count = 0, k = first;
     (void)part;
     memset(broad->fresh + first, 0, end - first);
-    for (; (k = all->use_filters ? k : narc_find_flag(broad->known.moved, k, end)) < end; k++) {
+    for (; (k = find_next(all, filter.kind, k, end)) < end; k++) {
         const narc_box *const box = &u->boxes[k], *const kept = &broad->kept_boxes[k];
         const bool moved = broad->known.moved[k];
         bool out = false;
-        if (all->use_filters) {
-            const narc_body_filter now = narc_read_filter(&filter, k), *const then = &broad->filters[k];
-            const unsigned other = now.kind ^ then->kind;
-            out = now.category != then->category || now.mask != then->mask || now.group != then->group ||
-                  (other & (NARC_STATIC | NARC_SENSOR));
+        if (all->use_kinds) {
+            const unsigned other = kind_at(filter.kind, k) ^ broad->kinds[k];
+            out = other & (NARC_STATIC | NARC_SENSOR);
             rest |= (other & NARC_ASLEEP) != 0;
+        }
+        if (all->use_sets) {
+            const narc_body_filter now = narc_read_filter(&filter, k), *const then = &broad->filters[k];
+            out |= now.category != then->category || now.mask != then->mask || now.group != then->group;
         }
         if (!moved && !out)
             continue;
@@ -102,7 +138,7 @@ static void look_at_some(void *argument, size_t part, size_t first, size_t end) 
 
 static unsigned look_at_all(const update *u, size_t *out_fresh_count) {
     const bool filter = u->options->filter, had_filter = u->broad->has_filter;
-    changes all = {u, filter || had_filter, 0, 0};
+    changes all = {u, filter || had_filter, has_sets(u) || (had_filter && u->broad->has_sets), 0, 0};
     if (!u->broad->is_current || (filter && !had_filter))
         return WHOLE;
     narc_run_ranges(u->options->workers, u->count, BODY_PART, look_at_some, &all);
@@ -139,7 +175,7 @@ static void keep_list(const update *u, bool rest) {
     if (!rest)
         return;
     for (size_t k = 0; k < u->count; k++)
-        broad->filters[k].kind = filter_of(u, k).kind;
+        broad->kinds[k] = filter_of(u, k).kind;
     narc_mark_pairs(broad, last);
 }
 
@@ -212,16 +248,19 @@ static size_t keep_bodies(const update *u, unsigned found, size_t skipped) {
         skipped = 0;
     }
     broad->has_filter = u->options->filter;
+    broad->has_sets = has_sets(u);
     for (size_t k = 0; k < u->count && broad->has_filter && (found & REST); k++)
-        broad->filters[k].kind = filter_of(u, k).kind;
+        broad->kinds[k] = filter_of(u, k).kind;
     for (size_t k = 0; (k = narc_find_flag(broad->fresh, k, u->count)) < u->count; k++) {
         const bool has = narc_is_box(&u->boxes[k]);
         skipped += !has;
         skipped -= !whole && !has_kept_box(broad, k);
         broad->kept_boxes[k] = has ? narc_widen_box(u->boxes[k], u->options->skin) : narc_empty_box();
         broad->known.moved[k] = 0;
-        if (broad->has_filter)
+        if (broad->has_filter) {
             broad->filters[k] = filter_of(u, k);
+            broad->kinds[k] = broad->filters[k].kind;
+        }
     }
     return skipped;
 }

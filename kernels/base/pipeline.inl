@@ -18,7 +18,9 @@
 #include "base/pair_setup.inl"
 #include "base/queue.inl"
 #include "base/rows.inl"
+#include "column.h"
 #include "kernels.h"
+#include "piece/pieces.inl"
 #include "polygon/polygon_edges.inl"
 #include "simd/simd.h"
 
@@ -101,6 +103,26 @@ INLINE void run_stages(const struct call *call, stage *const *stages, int stage_
     }
 }
 
+/* Asks the cache for what pairs from `first` to before `end` read: for one block the shapes, for the next one the bodies.
+ * Of the many pieces of ground each is another shape, and it would take longer to wait for them than to answer. */
+NOINLINE void fetch_ahead(const struct sources *given, const narc_shapes *shapes, size_t first, size_t end) {
+    const narc_index_column a = given->pairs.a, b = given->pairs.b;
+    if (!a.base || !b.base || given->selection.base)
+        return;
+    for (size_t k = first; k < end && k < first + BLOCK; k++) {
+        const uint32_t shape_a = narc_index_at(given->a.shape, narc_index_at(a, k));
+        const uint32_t shape_b = narc_index_at(given->b.shape, narc_index_at(b, k));
+        FETCH(&shapes->headers[shape_a]);
+        FETCH(&shapes->headers[shape_b]);
+        FETCH(&shapes->boxes[shape_a]);
+        FETCH(&shapes->boxes[shape_b]);
+    }
+    for (size_t k = first + BLOCK; k < end && k < first + 2 * BLOCK; k++) {
+        FETCH(narc_at(given->a.shape.base, given->a.shape.stride, narc_index_at(a, k)));
+        FETCH(narc_at(given->b.shape.base, given->b.shape.stride, narc_index_at(b, k)));
+    }
+}
+
 /* For so few pairs it is not worth a look how their poses lie, nor one whether polygons need no enumeration. */
 enum { FEW_PAIRS = 4 };
 
@@ -119,6 +141,8 @@ INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int
     for (size_t block = 0; block < call->count; block += BLOCK) {
         const int n = (int)(call->count - block < BLOCK ? call->count - block : BLOCK);
         load_indices(&given, call->first + block, n, &indices);
+        if (NARC_PIECES && !LIKELY(!call->pieces))
+            fetch_ahead(&given, call->batch->shapes, call->first + block + BLOCK, call->first + call->count);
         if (edged_stage > 0 && block % REMEMBERED == 0)
             queues->edged = queues->edged_left = 0;
         if (stage_count > 0 && block % (4 * BLOCK) == 0)
@@ -136,8 +160,8 @@ INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int
                 set_up_pairs(call, &indices, k, &placement, asked, (int32_t)(uint32_t)block, item);
             *call->skipped += (size_t)COUNT_BITS(vm_bits(circles.invalid));
             const vm open = settle(call, block + (size_t)k, &circles, item);
-            if (NARC_PIECES && !LIKELY(!call->concave) && call->concave->count >= FLUSH)
-                run_stages(call, stages, stage_count, queues, false);
+            if (NARC_PIECES && !LIKELY(!call->pieces))
+                fetch_pieces(call, circles.valid, item);
             if (stage_count > 0 && vm_any(open)) {
                 enter(queues, open, item, fields, edged_stage, polygon_stage, not_first);
                 if (queues->count >= FLUSH || queues[edged_stage].count >= FLUSH ||
@@ -149,6 +173,11 @@ INLINE void run_pairs(const struct call *call, detour *take, triage *settle, int
     run_stages(call, stages, stage_count, queues, true);
 }
 
+/* Are there pieces of chains, and are they asked of as such? */
+static inline bool has_pieces(const narc_batch *batch) {
+    return NARC_PIECES && !batch->whole && batch->shapes->piece_count > 0;
+}
+
 static inline struct call begin_overlaps(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
                                          uint64_t *out_bits) {
     memset(out_bits, 0, (count + 63) / 64 * sizeof *out_bits);
@@ -157,7 +186,7 @@ static inline struct call begin_overlaps(const narc_batch *batch, size_t first, 
                          .count = count,
                          .skipped = skipped,
                          .bits = out_bits,
-                         .pieces = NARC_PIECES && !batch->whole && batch->shapes->piece_count > 0};
+                         .pieces = has_pieces(batch)};
 }
 
 static inline struct call begin_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
@@ -170,7 +199,7 @@ static inline struct call begin_rows(const narc_batch *batch, size_t first, size
                          .margin = batch->query->margin,
                          .margins = batch->query->margins,
                          .rows = rows,
-                         .pieces = NARC_PIECES && !batch->whole && batch->shapes->piece_count > 0};
+                         .pieces = has_pieces(batch)};
 }
 
 /* The kernels of a method with one stage. */

@@ -148,34 +148,48 @@ INLINE void write_gaps(const struct call *call, const struct queue *queue, int k
 }
 
 /* Puts the last of a pair's rows among those before it: they are in the order of their normals, counter-clockwise. */
-INLINE void sort_last_row(const narc_rows *out, int last, size_t size, size_t normal_at) {
+INLINE void sort_last_row(char *rows, ptrdiff_t stride, int last, size_t size, size_t normal_at) {
     char row[sizeof(narc_manifold)];
     float normal[2], other[2];
     int k = last;
-    memcpy(row, out->base + last * out->stride, size);
+    memcpy(row, rows + last * stride, size);
     memcpy(normal, row + normal_at, sizeof normal);
     for (; k > 0; k--) {
-        const char *const before = out->base + (k - 1) * out->stride;
+        const char *const before = rows + (k - 1) * stride;
         memcpy(other, before + normal_at, sizeof other);
         if (!(other[0] * normal[1] - other[1] * normal[0] < 0))
             break;
-        memcpy(out->base + k * out->stride, before, size);
+        memcpy(rows + k * stride, before, size);
     }
-    memcpy(out->base + k * out->stride, row, size);
+    memcpy(rows + k * stride, row, size);
 }
 
-/* A call that asks for all rows of one pair: lists another. */
-INLINE void list_gap(const struct call *call, const struct queue *queue, const struct gap *gap) {
+/* A call that asks for all rows of pairs: lists another of each in the lanes `keep`. */
+INLINE void list_gaps(const struct call *call, const struct queue *queue, int k, vm keep, const struct gap *gap) {
     struct rows *const rows = call->rows;
+    const uint32_t kept = vm_bits(keep);
     char *place[V_WIDTH];
-    for (int lane = 0; lane < V_WIDTH; lane++)
-        place[lane] = lane > 0 ? rows->spare : rows->out.base + rows->listed * rows->out.stride;
-    write_gaps(call, queue, 0, gap, place);
-    if (call->batch->manifolds)
-        sort_last_row(&rows->out, rows->listed, sizeof(narc_manifold), offsetof(narc_manifold, normal_x));
-    else
-        sort_last_row(&rows->out, rows->listed, sizeof(narc_contact), offsetof(narc_contact, normal_x));
-    rows->listed++;
+    int32_t pair[V_WIDTH];
+    get_pairs(queue, k, pair);
+    for (int lane = 0; lane < V_WIDTH; lane++) {
+        const narc_row_list *const list = &rows->out.lists[kept >> lane & 1 ? pair[lane] : 0];
+        const bool has_room = (kept >> lane & 1) && list->count < list->room;
+        place[lane] = has_room ? rows->out.base + (list->first + list->count) * rows->out.stride : rows->spare;
+    }
+    write_gaps(call, queue, k, gap, place);
+    for (uint32_t lanes = kept; lanes; lanes &= lanes - 1) {
+        narc_row_list *const list = &rows->out.lists[pair[FIND_LOWEST(lanes)]];
+        char *const first = rows->out.base + list->first * rows->out.stride;
+        if (list->count == list->room)
+            continue;
+        if (call->batch->manifolds)
+            sort_last_row(first, rows->out.stride, (int)list->count, sizeof(narc_manifold),
+                          offsetof(narc_manifold, normal_x));
+        else
+            sort_last_row(first, rows->out.stride, (int)list->count, sizeof(narc_contact),
+                          offsetof(narc_contact, normal_x));
+        list->count++;
+    }
     rows->done = (int)call->count;
 }
 
@@ -212,7 +226,7 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
     const vf margin = get_margins(call, queue, k);
     const vm open = vm_and_not(live, has_mark(info, NARC_PIECE_CONCAVE)); /* concave against concave: none */
     const vm beside = v_lt(v_set(0), get(queue, SLACK, k));
-    const bool lists = call->rows->out.lists_one;
+    const bool lists = call->rows->out.lists;
     struct gap deepest = {v_set(INFINITY), {v_set(0), v_set(0)}, v_set(1), pairs.ring_a.base, pairs.ring_b.base};
     vi found = zero, first = zero, lowest = zero; /* lowest: the number of the deepest one's arc */
     const struct arcs piece = load_piece(records, &pairs);
@@ -244,7 +258,7 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
         lowest = vi_select(deeper, own, lowest);
         found = vi_add(found, vi_select(keep, one, zero));
         if (lists)
-            list_gap(call, queue, &gap);
+            list_gaps(call, queue, k, keep, &gap);
     }
     const vm any = vi_lt(zero, found);
     if (lists || !vm_any(any))
@@ -255,20 +269,20 @@ NOINLINE void answer_concave_pairs(const struct call *call, const struct queue *
     note_further_rows(call, found, place);
 }
 
-INLINE vm is_concave(vi info_a, vi info_b) {
-    return vm_or(has_mark(info_a, NARC_PIECE_CONCAVE), has_mark(info_b, NARC_PIECE_CONCAVE));
-}
-
 INLINE vm has_concave(const vf item[FIELDS]) {
-    return is_concave(get_item_bits(item, INFO_A), get_item_bits(item, INFO_B));
+    return vm_or(has_mark(get_item_bits(item, INFO_A), NARC_PIECE_CONCAVE),
+                 has_mark(get_item_bits(item, INFO_B), NARC_PIECE_CONCAVE));
 }
 
-/* Answers the pairs k ... of a queue with a concave arc, of those in the lanes `live`, and returns the others. */
-INLINE vm answer_concave(const struct call *call, const struct queue *queue, int k, vm live) {
-    const vm concave = vm_and(live, is_concave(get_bits(queue, INFO_A, k), get_bits(queue, INFO_B, k)));
-    if (vm_any(concave))
-        answer_concave_pairs(call, queue, k, concave);
-    return vm_and_not(live, concave);
+/* Answers the last pairs that wait: while there are others, whole vectors. */
+INLINE void answer_concave(const struct call *call) {
+    struct queue *const queue = call->concave;
+    const int begin = queue->count > STEP ? queue->count - STEP : 0;
+    if (queue->count % V_WIDTH != 0 && begin == 0)
+        pad(queue);
+    for (int k = begin; k < queue->count; k += V_WIDTH)
+        answer_concave_pairs(call, queue, k, vm_front(queue->count - k));
+    queue->count = begin;
 }
 
 /* Takes the pairs with a concave arc of those in the lanes `valid`, and returns the others of `near`. What is apart by
@@ -289,6 +303,8 @@ INLINE vm take_concave(const struct call *call, vm valid, vm near, const struct 
     own[CORE] = circles->size; /* it, and what joins the circles, for find_window() */
     set_vec2(own, AXIS, circles->between);
     push(call->concave, waits, own, CONTACT_FIELDS);
+    if (call->concave->count >= FLUSH)
+        answer_concave(call);
     return vm_and_not(near, concave);
 }
 

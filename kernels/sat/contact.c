@@ -267,10 +267,7 @@ INLINE struct gap decide_gap(const narc_shapes *shapes, const struct queue *queu
 static void decide(const struct call *call, struct queue *queue, int begin, struct queue *next) {
     (void)next;
     for (int k = begin; k < queue->count; k += V_WIDTH) {
-        const vm all = vm_front(queue->count - k);
-        const vm live = NARC_PIECES && call->concave ? answer_concave(call, queue, k, all) : all;
-        if (!vm_any(live))
-            continue;
+        const vm live = vm_front(queue->count - k);
         const struct gap gap = decide_gap(call->batch->shapes, queue, k, live);
         store_hints(call, queue, k, live, gap.record_a, gap.record_b);
         const vm keep = vm_and(live, is_below(gap.separation, get_margins(call, queue, k)));
@@ -291,7 +288,9 @@ INLINE vm detour_rows(const struct call *call, const struct pair_indices *indice
     return take_detour(call, indices, k, placement, open, number, call->edges ? manifold_detours : contact_detours);
 }
 
-size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
+/* `concave`: a queue for pairs with concave arcs, or NULL if there are no pieces. */
+NOINLINE size_t find_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out,
+                          struct queue *concave) {
     const bool hinted = batch->query->hints.base != NULL, manifolds = batch->manifolds;
     stage *const stages[STAGES] = {
         hinted ? start_from_hints : probe_axis, probe_again, climb_from, answer_polygons, decide, find_second_points};
@@ -302,7 +301,7 @@ size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, 
     struct rows rows;
     struct call call = begin_rows(batch, first, count, skipped, out, &rows);
     call.edges = !manifolds ? NULL : NARC_SHORTCUTS ? &queues[STAGES - 1] : &queues[1];
-    call.concave = !call.pieces ? NULL : NARC_SHORTCUTS ? &queues[DECIDE] : &queues[0];
+    call.concave = concave;
     if (!NARC_SHORTCUTS) {
         run_pairs(&call, NULL, call.pieces ? triage_pieces : take_valid, FIELDS, formula, manifolds ? 2 : 1, 0, queues);
     } else if (batch->shapes->box_count > 0) {
@@ -312,5 +311,20 @@ size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, 
     } else {
         run_pairs(&call, NULL, triage_rows, CONTACT_FIELDS, stages, stage_count, edged_stage, queues);
     }
+    while (NARC_PIECES && concave && concave->count > 0)
+        answer_concave(&call);
     return end_rows(&call);
+}
+
+/* Only where there are pieces is that queue on the stack. */
+NOINLINE size_t find_piece_rows(const narc_batch *batch, size_t first, size_t count, size_t *skipped,
+                                const narc_rows *out) {
+    struct queue concave;
+    concave.count = 0;
+    return find_rows(batch, first, count, skipped, out, &concave);
+}
+
+size_t NARC_NAMED(contact)(const narc_batch *batch, size_t first, size_t count, size_t *skipped, const narc_rows *out) {
+    return has_pieces(batch) ? find_piece_rows(batch, first, count, skipped, out)
+                             : find_rows(batch, first, count, skipped, out, NULL);
 }
