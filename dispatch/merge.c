@@ -12,6 +12,9 @@
 #define SAME_SEAM_NORMAL 1e-3f
 #define SAME_POINT       0x1p-12f
 
+/* What separations of one contact differ by where rows round them, relative to the points' coordinates. */
+#define SAME_SEPARATION 0x1p-16f
+
 enum { LOOK_BACK = 64 };
 
 /* One of both kinds of rows. */
@@ -71,17 +74,42 @@ static bool has_same_normal(const narc_manifold *a, const narc_manifold *b, floa
     return x * x + y * y <= limit * limit;
 }
 
+static float find_reach(const narc_manifold_point *p, const narc_manifold_point *q) {
+    return sqrtf(fmaxf(p->x * p->x + p->y * p->y, q->x * q->x + q->y * q->y));
+}
+
+static bool is_near(float x, float y, float room) { return x * x + y * y <= room * room; }
+
 static bool is_same_point(const narc_manifold_point *p, const narc_manifold_point *q) {
-    const float x = p->x - q->x, y = p->y - q->y, square = fmaxf(p->x * p->x + p->y * p->y, q->x * q->x + q->y * q->y);
-    return x * x + y * y <= SAME_POINT * SAME_POINT * square;
+    return is_near(p->x - q->x, p->y - q->y, SAME_POINT * find_reach(p, q));
+}
+
+/* Is a point of row a one of row b? Deep ones may agree on one of both surfaces alone: round the bottom of a valley two
+ * rows turn about the body's corner. */
+static bool is_told_by(const narc_manifold *a, const narc_manifold_point *p, const narc_manifold *b,
+                       const narc_manifold_point *q) {
+    const float half_a = p->separation / 2, half_b = q->separation / 2, reach = find_reach(p, q);
+    const float x = p->x - q->x, y = p->y - q->y;
+    const float turn_x = half_a * a->normal_x - half_b * b->normal_x,
+                turn_y = half_a * a->normal_y - half_b * b->normal_y;
+    return is_same_point(p, q) || (fabsf(p->separation - q->separation) <= SAME_SEPARATION * reach &&
+                                   (is_near(x - turn_x, y - turn_y, SAME_POINT * reach) ||
+                                    is_near(x + turn_x, y + turn_y, SAME_POINT * reach)));
+}
+
+/* Which point of b is that of a, or b->count. */
+static uint32_t find_point(const narc_manifold *a, uint32_t i, const narc_manifold *b) {
+    uint32_t k = 0;
+    while (k < b->count && !is_told_by(a, &a->point[i], b, &b->point[k]))
+        k++;
+    return k;
 }
 
 /* Is each point of a one of b? */
 static bool has_all_points(const narc_manifold *a, const narc_manifold *b) {
     bool all = true;
     for (uint32_t i = 0; i < a->count; i++)
-        all = all && (is_same_point(&a->point[i], &b->point[0]) ||
-                      (b->count > 1 && is_same_point(&a->point[i], &b->point[1])));
+        all = all && find_point(a, i, b) < b->count;
     return all;
 }
 
@@ -92,9 +120,11 @@ static const narc_manifold_point *find_deepest(const narc_manifold *a) {
 static float find_separation(const narc_manifold *a) { return find_deepest(a)->separation; }
 
 /* Joins b to a, which have one normal: the outermost points along it turned a quarter turn, and of the deeper row what
- * a row has once. */
+ * a row has once. Where the deepest point lies between them, a corner below an edge, it takes the place of the higher
+ * one. */
 static void join_rows(narc_manifold *a, const narc_manifold *b) {
     const narc_manifold first = *a, *const deeper = find_separation(b) < find_separation(a) ? b : &first;
+    const narc_manifold_point deepest = *find_deepest(deeper);
     narc_manifold_point low = first.point[0], high = low;
     for (uint32_t i = 0; i < first.count + b->count; i++) {
         const narc_manifold_point *p = i < first.count ? &first.point[i] : &b->point[i - first.count];
@@ -102,6 +132,9 @@ static void join_rows(narc_manifold *a, const narc_manifold *b) {
         low = along < low.y * first.normal_x - low.x * first.normal_y ? *p : low;
         high = along > high.y * first.normal_x - high.x * first.normal_y ? *p : high;
     }
+    const float room = SAME_SEPARATION * find_reach(&low, &high);
+    if (deepest.separation < fminf(low.separation, high.separation) - room)
+        *(low.separation > high.separation ? &low : &high) = deepest;
     const bool is_one = is_same_point(&low, &high);
     *a = *deeper;
     a->pair = first.pair;
@@ -125,9 +158,21 @@ static bool is_convex(const narc_manifold *a, const narc_manifold *b) {
            (!turns_back || x * x + y * y <= room * room || has_same_normal(a, b, SAME_RUN_NORMAL));
 }
 
+/* Of two rows with the same points that of number `from` goes. What stays is no less deep. */
+static void drop_seam(row_list *list, size_t from, size_t to) {
+    const narc_manifold gone = get_row(list, from), left = get_row(list, to);
+    for (uint32_t i = 0; i < gone.count; i++) {
+        const uint32_t k = find_point(&gone, i, &left);
+        float *const separation =
+            list->manifolds ? &list->manifolds[to].point[k].separation : &list->contacts[to].separation;
+        *separation = fminf(*separation, gone.point[i].separation);
+    }
+    drop_row(list, from);
+}
+
 /* Row k and row j before it: does one go? Of one run both stay where what they touch is not convex: a run that turns far
- * has two sides that face each other. */
-static void compare_rows(row_list *list, size_t j, size_t k) {
+ * has two sides that face each other. Returns whether row j has grown. */
+static bool compare_rows(row_list *list, size_t j, size_t k) {
     const narc_manifold a = get_row(list, j), b = get_row(list, k);
     const uint32_t run = find_run(list, b.pair);
     if (run != NARC_NO_RUN && run == find_run(list, a.pair) && is_convex(&a, &b)) {
@@ -137,11 +182,23 @@ static void compare_rows(row_list *list, size_t j, size_t k) {
             join_rows(&list->manifolds[j], &b);
         const bool is_better = is_flush ? !list->manifolds && other < one : other > one;
         drop_row(list, is_better ? j : k);
-    } else if (has_same_normal(&a, &b, SAME_SEAM_NORMAL)) {
+        return is_flush && list->manifolds;
+    }
+    if (has_same_normal(&a, &b, SAME_SEAM_NORMAL)) {
         const bool is_better = b.count == a.count ? b.radius_b < 0 && !(a.radius_b < 0) : b.count > a.count;
         if (is_better ? has_all_points(&a, &b) : has_all_points(&b, &a))
-            drop_row(list, is_better ? j : k);
+            drop_seam(list, is_better ? j : k, is_better ? k : j);
     }
+    return false;
+}
+
+/* Compares row k with those from `first` to `last`, and what it is joined to again with all of them. */
+static void compare_with(row_list *list, size_t k, size_t first, size_t last) {
+    for (size_t i = last + 1; i-- > first && get_row(list, k).count > 0;)
+        if (i != k && get_row(list, i).count > 0 && compare_rows(list, i < k ? i : k, i < k ? k : i)) {
+            k = i < k ? i : k;
+            i = last + 1;
+        }
 }
 
 /* ------------------------------------------------------------------------------------------------ lists */
@@ -152,10 +209,7 @@ static size_t merge_body(row_list *list, size_t kept, size_t k, size_t end) {
     const size_t first = kept;
     for (; k < end; k++) {
         move_row(list, k, kept);
-        const size_t last = kept - first > LOOK_BACK ? kept - LOOK_BACK : first;
-        for (size_t j = kept; j-- > last && get_row(list, kept).count > 0;)
-            if (get_row(list, j).count > 0)
-                compare_rows(list, j, kept);
+        compare_with(list, kept, kept - first > LOOK_BACK ? kept - LOOK_BACK : first, kept);
         kept += get_row(list, kept).count > 0;
     }
     size_t left = first;

@@ -37,6 +37,14 @@
 #define CONCAVE_SEAM      2e-6
 #define MOST_CONCAVE_SEAM 2e-4
 
+/* A run's last arc reaches beyond its end by no less: where an edge of a body lies along the tangent, what is within 2^-20
+ * radians of an end is taken for what follows (contact_point.inl), and directions are rounded. */
+#define LEAST_END_SEAM 0x1.8p-20
+
+/* Where a corner is cut each part goes on along its tangent there, by this part of its size: of a corner that touches it the
+ * direction is that of rounding, and of two parts each might leave it to the other. */
+#define FIN 0x1p-16
+
 /* The bottom of a valley turns further, as does what is right below it; lines reach beyond it by their roundings alone. */
 #define VALLEY_TURN 0.99e-3
 #define VALLEY_SEAM 0x1p-16
@@ -62,6 +70,7 @@ typedef struct piece {
     narc_point begin;
     double begin_angle, end_angle; /* of normals */
     uint32_t first_arc;
+    bool begins_in_corner, ends_in_corner; /* that was cut */
 } piece;
 
 typedef struct divider {
@@ -155,6 +164,16 @@ static void open_piece(divider *d, narc_point begin, double angle, uint32_t firs
     d->piece.begin = begin;
     d->piece.begin_angle = d->piece.end_angle = angle;
     d->piece.first_arc = first_arc;
+    d->piece.begins_in_corner = d->piece.ends_in_corner = false;
+}
+
+static void put_arc(divider *d, const narc_chain_arc *arc, double from, double to) {
+    piece *p = &d->piece;
+    const double start = p->end_angle + narc_wrap_angle(arc->start + from - p->end_angle);
+    if (p->count == 0)
+        p->first_arc = arc->number;
+    p->arcs[++p->count] = (narc_arc){arc->x, arc->y, arc->radius, start, start + (to - from)};
+    p->end_angle = start + (to - from);
 }
 
 static void end_piece(divider *d, narc_point end) {
@@ -162,7 +181,7 @@ static void end_piece(divider *d, narc_point end) {
     narc_encoded_shape encoded;
     narc_error reason = {.status = NARC_OK};
     const narc_point middle = {(p->begin.x + end.x) / 2, (p->begin.y + end.y) / 2};
-    const narc_point begin = {p->begin.x - middle.x, p->begin.y - middle.y};
+    narc_point begin = {p->begin.x - middle.x, p->begin.y - middle.y}, stop = {-begin.x, -begin.y};
     if (d->status != NARC_OK)
         return;
     for (size_t i = 1; i <= p->count; i++) {
@@ -172,7 +191,14 @@ static void end_piece(divider *d, narc_point end) {
     double size = measure_front(p, begin);
     if (size <= POINT * d->reach)
         size = d->reach / 8;
-    const size_t count = close_run(p, begin, (narc_point){-begin.x, -begin.y}, FAR * size);
+    if (p->begins_in_corner)
+        begin = move(begin, p->begin_angle - NARC_PI / 2, FIN * size);
+    if (p->ends_in_corner) {
+        const double angle = p->end_angle;
+        stop = move(stop, angle + NARC_PI / 2, FIN * size);
+        put_arc(d, &(narc_chain_arc){stop.x, stop.y, 0, angle, NARC_CHAIN_SEAM, 0}, 0, NARC_CHAIN_SEAM);
+    }
+    const size_t count = close_run(p, begin, stop, FAR * size);
     const narc_status status = narc_encode_run(p->arcs, count, &encoded, &reason);
     if (status != NARC_OK)
         fail_piece(d, status, p->first_arc, &reason);
@@ -200,15 +226,6 @@ static void add_line(divider *d, narc_point from, narc_point to, uint32_t next) 
     }
 }
 
-static void put_arc(divider *d, const narc_chain_arc *arc, double from, double to) {
-    piece *p = &d->piece;
-    const double start = p->end_angle + narc_wrap_angle(arc->start + from - p->end_angle);
-    if (p->count == 0)
-        p->first_arc = arc->number;
-    p->arcs[++p->count] = (narc_arc){arc->x, arc->y, arc->radius, start, start + (to - from)};
-    p->end_angle = start + (to - from);
-}
-
 /* A convex arc, cut where the piece turns enough or has no room for another arc. */
 static void add_arc(divider *d, const narc_chain_arc *arc, double from, double to, bool is_last) {
     double at = from;
@@ -220,8 +237,10 @@ static void add_arc(divider *d, const narc_chain_arc *arc, double from, double t
         const double seam = narc_find_seam(arc);
         const double end = fmin(cut + seam, to), begin = fmax(cut - seam, fmax(at, from));
         put_arc(d, arc, at, end);
+        d->piece.ends_in_corner = arc->radius == 0;
         end_piece(d, narc_find_chain_point(arc, end));
         open_piece(d, narc_find_chain_point(arc, begin), arc->start + begin, arc->number);
+        d->piece.begins_in_corner = arc->radius == 0;
         at = begin;
     }
     put_arc(d, arc, at, to);
@@ -236,8 +255,9 @@ static narc_point extend_line(const narc_chain_arc *concave, narc_point from, na
 
 /* How far, in radians, a run's last arc goes on where it meets a concave one. */
 static double extend_arc(const narc_chain_arc *concave, const narc_chain_arc *arc) {
-    return concave->radius != 0 && -concave->radius < arc->radius ? END_SEAM * (-concave->radius / arc->radius)
-                                                                  : END_SEAM;
+    return concave->radius != 0 && -concave->radius < arc->radius
+               ? fmax(END_SEAM * (-concave->radius / arc->radius), LEAST_END_SEAM)
+               : END_SEAM;
 }
 
 /* The size of the arcs first .. last and the lines between them, and of as many more as it takes if all are one point. */
@@ -291,6 +311,8 @@ static void divide_run(divider *d, size_t first, size_t end) {
         put_arc(d,
                 &(narc_chain_arc){from.x, from.y, 0, begins->start - NARC_CHAIN_SEAM, NARC_CHAIN_SEAM, before->number},
                 0, NARC_CHAIN_SEAM);
+    const bool is_cut = chain->closed && !before; /* a closed convex chain begins and ends where an arc is cut */
+    d->piece.begins_in_corner = is_cut && begins->radius == 0;
     narc_point at = from;
     for (size_t k = first; k < end && d->status == NARC_OK; k++) {
         const narc_chain_arc *arc = &arcs[k];
@@ -305,6 +327,7 @@ static void divide_run(divider *d, size_t first, size_t end) {
     if (has_end_corner)
         put_arc(d, &(narc_chain_arc){to.x, to.y, 0, d->piece.end_angle, NARC_CHAIN_SEAM, after->number}, 0,
                 NARC_CHAIN_SEAM);
+    d->piece.ends_in_corner = is_cut && ends->radius == 0;
     end_piece(d, to);
     d->out->run++;
 }

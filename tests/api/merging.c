@@ -133,6 +133,51 @@ TEST(joins_an_edge_on_a_hill) {
     }
 }
 
+/* A box's edge over a corner, deep: each side's row ends at the corner and at a corner of the box. The corner stays. */
+TEST(keeps_the_deepest_point_between_two) {
+    const uint32_t runs[MOST] = {4, 4};
+    for (int mirrored = 0; mirrored < 2; mirrored++) {
+        struct rows rows = {.count = 0};
+        const float side = mirrored ? -1 : 1;
+        add_row(&rows, 7, 0, down, 2, (const float[][3]){{-side, -1.05f, -0.05f}, {0, -1, -0.1f}});
+        add_row(&rows, 7, 1, down, 2, (const float[][3]){{0, -1, -0.1f}, {side, -1.02f, -0.08f}});
+        assert_int_equal(merge(&rows, runs), 1);
+        assert_int_equal(rows.manifolds[0].count, 2);
+        expect_point(&rows.manifolds[0].point[mirrored], 0, -1, -0.1f, 1);
+        expect_point(&rows.manifolds[0].point[1 - mirrored], side, -1.02f, -0.08f, 101);
+    }
+}
+
+/* Two parts of a run beside a concave arc, whose row is that of one end of both: it goes only once they are joined. */
+TEST(drops_what_joined_rows_tell) {
+    const uint32_t runs[MOST] = {NARC_NO_RUN, 4, 4};
+    struct rows rows = {.count = 0};
+    add_row(&rows, 7, 0, down, 1, (const float[][3]){{-1, -1, -0.01f}});
+    add_row(&rows, 7, 1, down, 2, (const float[][3]){{0.3f, -1, -0.01f}, {1, -1, -0.01f}});
+    add_row(&rows, 7, 2, down, 2, (const float[][3]){{-1, -1, -0.01f}, {0.5f, -1, -0.01f}});
+    assert_int_equal(merge(&rows, runs), 1);
+    assert_int_equal(rows.manifolds[0].count, 2);
+    expect_point(&rows.manifolds[0].point[0], -1, -1, -0.01f, 200);
+    expect_point(&rows.manifolds[0].point[1], 1, -1, -0.01f, 101);
+}
+
+/* A corner deep below the bottom of a valley, told by the valley and by a side of it: it is one point of the body, with
+ * normals from there to either, and halfway along these the points are apart. */
+TEST(drops_one_corner_with_two_normals) {
+    const uint32_t runs[MOST] = {NARC_NO_RUN, 4};
+    for (double turn = -9e-4; turn < 1e-3; turn += 1.8e-3) {
+        struct rows rows = {.count = 0};
+        const float depth = 0.5f, x = 0.05f, y = -0.1f; /* the body's corner */
+        for (uint32_t b = 0; b < 2; b++) {
+            const double angle = down + (b ? turn : 0);
+            add_row(&rows, 7, b, angle, 1,
+                    (const float[][3]){{(float)((double)x - (double)depth * cos(angle)),
+                                        (float)((double)y - (double)depth * sin(angle)), -depth}});
+        }
+        assert_int_equal(merge(&rows, runs), 1);
+    }
+}
+
 /* Of a closed outline with one valley both sides are of one run, however shallow the valley is. A hill as shallow is
  * convex: there the greater separation is that of all. */
 TEST(keeps_both_sides_of_a_shallow_valley) {
@@ -159,12 +204,14 @@ TEST(drops_points_that_are_told_twice) {
             if (k == order)
                 add_row(&rows, 7, 0, down, 2, points);
             else
-                add_row(&rows, 7, 1, down + 5e-4, 1, points + 1);
-        add_row(&rows, 7, 2, down + 0.002, 1, points + 1);                       /* another normal */
-        add_row(&rows, 7, 3, down, 1, (const float[][3]){{1.001f, -1, -0.01f}}); /* another point */
+                add_row(&rows, 7, 1, down + 5e-4, 1, (const float[][3]){{1, -1, -0.0101f}}); /* not less deep */
+        add_row(&rows, 7, 2, down + 0.002, 1, points + 1);                                   /* another normal */
+        add_row(&rows, 7, 3, down, 1, (const float[][3]){{1.001f, -1, -0.01f}});             /* another point */
         assert_int_equal(merge(&rows, runs), 3);
         assert_int_equal(rows.manifolds[0].pair, order);
         assert_int_equal(rows.manifolds[0].count, 2);
+        assert_true(rows.manifolds[0].point[0].separation == -0.01f &&
+                    rows.manifolds[0].point[1].separation == -0.0101f);
         assert_int_equal(rows.manifolds[1].pair, 2);
         assert_int_equal(rows.manifolds[2].pair, 3);
     }
@@ -256,10 +303,12 @@ TEST(merges_long_lists) {
         const narc_pairs pairs = {.count = ROWS, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b)};
         const size_t left = narc_merge_contacts(&pairs, NARC_ARRAY(runs), rows, ROWS);
         size_t next = 0;
-        for (size_t k = 0; k < left; k++) { /* some of the rows, untouched and in their order */
+        for (size_t k = 0; k < left; k++) { /* some of the rows in their order, untouched but for what is deeper */
             while (next < ROWS && rows[k].pair != before[next].pair)
                 next++;
             assert_true(next < ROWS);
+            assert_true(rows[k].separation <= before[next].separation);
+            before[next].separation = rows[k].separation;
             assert_memory_equal(&rows[k], &before[next], sizeof *rows);
             for (size_t i = k; i-- > 0 && a[rows[i].pair] == a[rows[k].pair];) {
                 const uint32_t run = runs[b[rows[k].pair]];

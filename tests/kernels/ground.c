@@ -1050,6 +1050,63 @@ static double find_corner(struct ground *g, const uint32_t *runs, uint32_t box, 
     return best;
 }
 
+static void expect_corner(struct ground *g, const uint32_t *runs, uint32_t box, double turn, size_t arc, double deep,
+                          double beside) {
+    const double found = find_corner(g, runs, box, turn, arc, deep, beside);
+    if (!(fabs(found + deep) < 1e-5))
+        fail_msg("at arc %zu, %g deep, %g beside, turned by %g: %g", arc, deep, beside, turn, found);
+}
+
+static uint32_t add_box(struct ground *g) {
+    const struct shape shape = box_of(0.4, 0.4, 0);
+    return scene_add_shape(&g->scene, &shape);
+}
+
+/* A box whose corner touches a corner that was cut is told of, though the way from one to the other is that of
+ * rounding. */
+TEST(test_corners_on_cut_corners) {
+    struct test_random random = test_random_named("corners on cut corners");
+    static const uint32_t runs[ENTRIES] = {0};
+    for (size_t round = 0; round < test_trials(40); round++) {
+        struct ground *g = calloc(1, sizeof *g);
+        const double sides = round % 2 ? 3 : 4, side = random_between(&random, 0.5, 5);
+        g->angle = random_between(&random, -PI, PI);
+        for (int k = 0; k < sides; k++) {
+            add_turn(g, 0, 2 * PI / sides);
+            add_line(g, side);
+        }
+        assert_true(place_chain(g, &(narc_chain_options){.closed = 1}, 2, 8));
+        const uint32_t box = add_box(g);
+        for (size_t trial = 0; trial < 200; trial++)
+            expect_corner(g, runs, box, PI / sides + random_between(&random, -0.5, 0.5),
+                          random_below(&random, g->arc_count), 0, 0);
+        destroy_scene(&g->scene);
+        free(g);
+    }
+}
+
+/* A box above where a large convex arc and a small concave one meet, its edge along the tangent and its corner there. */
+TEST(test_edges_along_junctions) {
+    struct test_random random = test_random_named("edges along junctions");
+    static const uint32_t runs[ENTRIES] = {0, NARC_NO_RUN, 1};
+    for (size_t round = 0; round < test_trials(200); round++) {
+        struct ground *g = malloc(sizeof *g);
+        const double large = random_between(&random, 0.5, 3), small = large / random_log_between(&random, 3, 300);
+        begin_chain(g, random_between(&random, -2, 2), 0, random_between(&random, -PI, PI));
+        add_turn(g, large, 0.4);
+        add_turn(g, -small, -0.3);
+        add_turn(g, large, 0.4);
+        end_chain(g);
+        assert_true(place_chain(g, NULL, 2, 8));
+        const uint32_t box = add_box(g);
+        for (size_t trial = 0; trial < 20; trial++) /* the edge above the convex arc */
+            expect_corner(g, runs, box, trial % 2 ? PI / 4 : -PI / 4, trial % 2 ? 3 : 2,
+                          -random_log_between(&random, 1e-4, 0.03), 0);
+        destroy_scene(&g->scene);
+        free(g);
+    }
+}
+
 /* A corner that is deep below where pieces meet, or next to that, is told of: at concave arcs by lines and by convex arcs,
  * at the bottom of a valley, at a cut. */
 TEST(test_corners_below_junctions) {
@@ -1067,17 +1124,13 @@ TEST(test_corners_below_junctions) {
         end_chain(g);
         assert_true(place_chain(g, NULL, 2, 8));
         assert_int_equal(g->entry_count, 5);
-        const struct shape shape = box_of(0.4, 0.4, 0);
-        const uint32_t box = scene_add_shape(&g->scene, &shape);
+        const uint32_t box = add_box(g);
         for (size_t trial = 0; trial < 300; trial++) {
             const size_t arc = 1 + random_below(&random, 3);
             const double deep = random_log_between(&random, 1e-4, 0.04), turn = random_between(&random, -0.5, 0.5);
             const double beside =
                 random_below(&random, 3) ? random_log_between(&random, 1e-9, 1e-3) * deep * (trial % 2 ? 1 : -1) : 0;
-            const double found = find_corner(g, runs, box, turn, arc, deep, beside);
-            if (!(fabs(found + deep) < 1e-5))
-                fail_msg("round %zu: at arc %zu, %g deep, %g beside, turned by %g: %g", round, arc, deep, beside, turn,
-                         found);
+            expect_corner(g, runs, box, turn, arc, deep, beside);
         }
         destroy_scene(&g->scene);
         free(g);

@@ -170,21 +170,6 @@ struct chain make_chain(struct test_random *random, enum chain_family family, na
     return chain;
 }
 
-double chain_grain(const struct chain *chain) {
-    double grain = 1;
-    for (size_t k = 0; k < chain->count; k++) {
-        const narc_arc *arc = &chain->arcs[k], *before = k ? arc - 1 : &chain->arcs[chain->count - 1];
-        const double x =
-            arc->center_x + arc->radius * cos(arc->start) - before->center_x - before->radius * cos(before->end);
-        const double y =
-            arc->center_y + arc->radius * sin(arc->start) - before->center_y - before->radius * sin(before->end);
-        const double edge = hypot(x, y), bow = fabs(arc->radius) * fabs(arc->end - arc->start);
-        grain = edge > 1e-3 ? fmin(grain, edge) : grain;
-        grain = bow > 1e-3 ? fmin(grain, bow) : grain;
-    }
-    return grain;
-}
-
 /* ------------------------------------------------------------------------------------------------ riders */
 
 static struct shape ellipse_of(double half_x, double half_y, size_t arcs) {

@@ -28,9 +28,6 @@ const char *chain_family_name(enum chain_family family);
 /* A random chain; `arcs` has room for CHAIN_ARCS. */
 struct chain make_chain(struct test_random *random, enum chain_family family, narc_arc *arcs);
 
-/* The smallest length or radius of its pieces that are no points, between 1e-3 and 1. */
-double chain_grain(const struct chain *chain);
-
 /* A shape, and a body of it on the chain, at its origin and not turned: a feature of the body over a place of the
  * chain, junctions preferred on both sides, at a distance of up to `margin`, or as deep. */
 struct shape make_rider(struct test_random *random, const struct chain *chain, enum chain_family family);

@@ -26,6 +26,8 @@ struct piece {
     narc_point center, low, high, middle;
     double radius, length, half, room; /* what rounding leaves between pieces */
     double size;                       /* of all of its arc or edge; INFINITY if that is next to a point */
+    size_t run;
+    double grain;
 };
 
 /* Most halvings of a stretch of the outline, and two. */
@@ -59,14 +61,15 @@ static void add_piece(struct ground *ground, struct piece piece) {
     ground->pieces[ground->count++] = piece;
 }
 
-static void add_arc(struct ground *ground, const narc_arc *arc) {
+static void add_arc(struct ground *ground, const narc_arc *arc, size_t run) {
     const bool concave = signbit(arc->radius);
     const double sweep = arc->end - arc->start;
     const size_t parts = (size_t)ceil(fabs(sweep) / widest);
     for (size_t k = 0; k < parts; k++) {
         double low = arc->start + sweep * (double)k / (double)parts;
         double high = arc->start + sweep * (double)(k + 1) / (double)parts;
-        struct piece piece = {.is_concave = concave, .center = {arc->center_x, arc->center_y}};
+        struct piece piece = {
+            .is_concave = concave, .center = {arc->center_x, arc->center_y}, .run = concave ? GROUND_CONCAVE : run};
         piece.from = on_arc(arc, low);
         piece.to = on_arc(arc, high);
         piece.radius = fabs(arc->radius);
@@ -78,15 +81,35 @@ static void add_arc(struct ground *ground, const narc_arc *arc) {
     }
 }
 
+/* Of each piece's size and radius the least of its own and its neighbours'; points are none. */
+static void find_grains(struct ground *ground) {
+    for (size_t k = 0; k < ground->count; k++) {
+        struct piece *piece = &ground->pieces[k];
+        piece->grain = INFINITY;
+        for (int side = -1; side <= 1; side++) {
+            const struct piece *other = piece;
+            for (size_t i = 0; i < ground->count && (other == piece || isinf(other->size)) && side; i++)
+                other =
+                    &ground->pieces[((size_t)(other - ground->pieces) + ground->count + (size_t)side) % ground->count];
+            const double radius = other->is_edge || isinf(other->size) ? INFINITY : other->radius;
+            piece->grain = fmin(piece->grain, fmin(other->size, radius));
+        }
+    }
+}
+
 struct ground *make_ground(const struct chain *chain) {
     struct ground *ground = calloc(1, sizeof *ground);
     ground->pieces = malloc(5 * chain->count * sizeof *ground->pieces);
     ground->open = !chain->closed;
     ground->ends[0] = on_arc(&chain->arcs[0], chain->arcs[0].start);
     ground->ends[1] = on_arc(&chain->arcs[chain->count - 1], chain->arcs[chain->count - 1].end);
+    size_t hollows = 0, run = 0; /* concave arcs: of all, and before arc k */
+    for (size_t k = 0; k < chain->count; k++)
+        hollows += signbit(chain->arcs[k].radius) != 0;
     for (size_t k = 0; k < chain->count; k++) {
         const narc_arc *arc = &chain->arcs[k], *before = k ? arc - 1 : &chain->arcs[chain->count - 1];
-        struct piece edge = {.is_edge = true, .from = on_arc(before, before->end), .to = on_arc(arc, arc->start)};
+        struct piece edge = {
+            .is_edge = true, .from = on_arc(before, before->end), .to = on_arc(arc, arc->start), .run = run};
         const narc_point along = minus(edge.to, edge.from);
         edge.length = length_of(along);
         edge.size = edge.length > point_size ? edge.length : INFINITY;
@@ -95,8 +118,11 @@ struct ground *make_ground(const struct chain *chain) {
         edge.low = (narc_point){edge.along.y, -edge.along.x};
         if ((k || chain->closed) && edge.length > edge.room)
             add_piece(ground, edge);
-        add_arc(ground, arc);
+        add_arc(ground, arc, run);
+        run += signbit(arc->radius) != 0;
+        run = chain->closed && run == hollows ? 0 : run; /* the last one is the first one */
     }
+    find_grains(ground);
     return ground;
 }
 
@@ -114,7 +140,9 @@ static bool find_foot(const struct piece *piece, narc_point point, struct ground
         *out = (struct ground_foot){dot(piece->low, from),
                                     {piece->from.x + t * piece->along.x, piece->from.y + t * piece->along.y},
                                     piece->low.x,
-                                    piece->low.y};
+                                    piece->low.y,
+                                    piece->run,
+                                    piece->grain};
         return true;
     }
     const double sign = piece->is_concave ? -1 : 1;
@@ -127,7 +155,9 @@ static bool find_foot(const struct piece *piece, narc_point point, struct ground
         sign * (distance - piece->radius),
         {piece->center.x + sign * piece->radius * normal.x, piece->center.y + sign * piece->radius * normal.y},
         normal.x,
-        normal.y};
+        normal.y,
+        piece->run,
+        piece->grain};
     return true;
 }
 

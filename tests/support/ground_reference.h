@@ -17,13 +17,18 @@ struct chain {
     bool closed;
 };
 
-/* A perpendicular from a point to a piece: how long (negative from the solid's side), to where, and the outward normal
- * there. */
+/* A perpendicular from a point to a piece: how long (negative from the solid's side), to where, the outward normal
+ * there, which convex stretch of the chain between concave arcs it is, or GROUND_CONCAVE, and the smallest length or
+ * radius of the piece and of those beside it. */
 struct ground_foot {
     double distance;
     narc_point at;
     double normal_x, normal_y;
+    size_t run;
+    double grain;
 };
+
+#define GROUND_CONCAVE ((size_t)-1)
 
 struct ground; /* a chain, piece by piece */
 struct ground *make_ground(const struct chain *chain);
