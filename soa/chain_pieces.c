@@ -208,7 +208,7 @@ static void end_piece(divider *d, narc_point end) {
                                      .x = middle.x,
                                      .y = middle.y,
                                      .first_arc = p->first_arc,
-                                     .arc_count = (uint32_t)p->count});
+                                     .arc_count = (uint32_t)p->count - p->ends_in_corner});
 }
 
 /* A straight line to `to`, cut into parts of one length if it is too long. */

@@ -66,7 +66,7 @@ typedef struct narc_chain_entry {
     uint32_t first_arc; /* of a run the chain's arc that is the shape's arc 1, or the one behind its edge if it has no
                            other feature; plain points do not count; a corner where the front's edge meets a
                            concave arc is of that arc. Of a concave arc its own number */
-    uint32_t arc_count; /* of a run how many arcs its front has, of a concave arc 1 */
+    uint32_t arc_count; /* of a run how many of the chain's arcs its front has, of a concave arc 1 */
 } narc_chain_entry;
 
 /* Adds a chain of `count` arcs (1 .. 2^30), in their order, to a store. The entries, in the order of the chain (of a

@@ -119,9 +119,17 @@ static void check_cover(const narc_arc *arcs, size_t count, bool closed, const s
     }
 }
 
+/* The last arc of a front, or its first: where a corner is cut that corner, beyond which it reaches along an edge. */
+static const narc_arc *find_end(const struct front *f, bool at_end) {
+    const narc_arc *end = &f->arcs[at_end && !f->is_concave ? f->count - 1 : 0];
+    const narc_arc *next = f->is_concave ? end : at_end ? end - 1 : end + 1;
+    const double edge = hypot(end->center_x - next->center_x, end->center_y - next->center_y);
+    return end->radius == 0 && next->radius == 0 && edge < 0x1p-15 * f->size ? next : end;
+}
+
 /* Is the end of a front, or its beginning, or the place from where it reaches on, inside another one? */
 static bool has_end(const struct front *f, bool at_end, const struct front *other) {
-    const narc_arc *arc = &f->arcs[at_end && !f->is_concave ? f->count - 1 : 0];
+    const narc_arc *arc = find_end(f, at_end);
     const double normal = at_end != f->is_concave ? arc->end : arc->start;
     bool found = false;
     for (int k = 0; k <= 1000 && !found; k++) { /* the bottom of a valley reaches on the furthest */
@@ -189,7 +197,7 @@ static size_t check_division(const narc_arc *arcs, size_t count, const narc_chai
             continue;
         }
         const size_t stored = narc_get_arcs(shapes, entry->shape, own);
-        assert_int_equal(stored, entry->arc_count + 6);
+        assert_in_range(stored, entry->arc_count + 6, entry->arc_count + 7); /* one more at a corner that was cut */
         assert_int_equal(narc_shape_flags(shapes, entry->shape) & NARC_SHAPE_RUN, NARC_SHAPE_RUN);
         assert_int_equal(entry->run, run);
         expect_ok(narc_validate_arcs(own, stored, &error), &error);
