@@ -226,7 +226,8 @@ enum {
 /* Where two moving bodies meet, 44 bytes: the time, and the contact of the bodies as they are placed then.
  *   pair       the number of the pair, or of the mover
  *   body       the other body: B
- *   feature    as in narc_contact, and so are the separation, normal and point (relative to A's position at that time)
+ *   feature    as in narc_contact, and so are the separation, normal and point (relative to A's position at that time); all
+ *              0 of an unfinished cast where there is no contact, beside or behind a piece of a chain
  *   count      NARC_CAST_...; 0: all else but `pair` is 0
  *   fraction   of the step, 0 .. 1 */
 typedef struct narc_impact {

@@ -325,11 +325,12 @@ static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t 
     const double end = casts->target < 0 ? 1 : casts->end[slot]; /* circles say nothing of how deep it is in a hollow */
     double time = (double)casts->time[slot];
     float before = casts->time[slot];
-    bool behind = false;
+    bool behind = false, told = false;
     for (int round = 0; round < MOST_CONTACTS; round++) {
         casts->time[slot] = round_time(time);
         const struct outlook o = look(shapes, casts, slot, (double)casts->time[slot]);
         const bool near = o.separation <= target + enough;
+        told = o.reached && o.separation < INFINITY;
         if (near && o.reached && !behind) {
             if (o.separation < target && before < casts->time[slot])
                 find_first_time(shapes, casts, slot, look, before);
@@ -346,6 +347,8 @@ static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t 
         if (round_time(time) <= before)
             time = (double)before * (1 + 0x1p-23) + 0x1p-126;
     }
+    if (!told)
+        casts->contact[slot] = (narc_contact){.count = 0};
     return NARC_CAST_UNFINISHED;
 }
 
