@@ -419,7 +419,9 @@ static void fly_all(const char *name, bool turns) {
     }
     print_message("%zu flights: %zu hits, %zu misses, %zu unfinished, %zu past an end, %zu untrue\n", tally.flights,
                   tally.hits, tally.misses, tally.unfinished, tally.round_ends, tally.untrue);
-    assert_true(tally.hits > tally.flights / 16 && tally.misses > 0 && 200 * tally.unfinished <= tally.flights);
+    assert_true(200 * tally.unfinished <= tally.flights);
+    if (tally.flights >= 100) /* fewer may all miss */
+        assert_true(tally.hits > tally.flights / 16 && tally.misses > 0);
     assert_true(500 * tally.untrue <= tally.flights + 500);
 }
 
