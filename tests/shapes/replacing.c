@@ -142,7 +142,8 @@ static struct shape make_polygon(size_t corners) {
 
 /* What a polygon with so many corners needs. */
 static size_t need_of(size_t corners) {
-    return narc_count_records(&(narc_shape_header){.count = (uint8_t)corners}) * sizeof(narc_record) + sizeof(narc_shape_header);
+    return narc_count_records(&(narc_shape_header){.count = (uint8_t)corners}) * sizeof(narc_record) +
+           sizeof(narc_shape_header);
 }
 
 /* A store never has more memory than four times what its shapes needed when they needed most, not even while it moves
