@@ -78,7 +78,7 @@ static void copy_shapes(const narc_shapes *store, narc_shapes *out_shapes, bool 
     *out_all_polygons = true;
     for (uint32_t k = 0; k < store->count; k++) {
         const narc_shape_header *from = &store->headers[k];
-        const size_t size = narc_count_records(from->count);
+        const size_t size = narc_count_records(from);
         narc_shape_header *header = &out_shapes->headers[k];
         narc_record *records = &out_shapes->records[next];
         const bool exists = narc_has_shape(store, k);
@@ -103,7 +103,7 @@ narc_status narc_refresh_methods(narc_methods *methods, narc_error *error) {
                          "the store has %zu pieces of chains, which other methods do not know", store->piece_count);
     size_t records = 0;
     for (size_t k = 0; k < store->count; k++)
-        records += narc_count_records(store->headers[k].count) + 1;
+        records += narc_count_records(&store->headers[k]) + 1;
     if (records > MAX_RECORDS)
         return narc_fail(error, NARC_ERROR_COUNT, 0, (double)store->count,
                          "the store's %zu shapes have too many arcs for other methods", store->count);

@@ -58,16 +58,28 @@
 /* The far corners lie this many times the front's size away. */
 #define FAR 4.0
 
+/* What of the chain is near a piece: beyond its ends so many times its front's size, as long as that turns by no more
+ * than this, in radians. */
+#define BEYOND      2.0
+#define BEYOND_TURN 1.0
+
 /* The front of a run is a point if it is smaller than this many times its neighbours; then their size serves. */
 #define POINT 0x1p-20
 
 enum { CLOSURE_ARCS = 6, MAX_FRONT = NARC_MAX_ARCS - CLOSURE_ARCS - 3 };
+
+/* Where the chain goes on from a point: in an arc, so far from its start, or on the line that leads there. */
+typedef struct place {
+    const narc_chain_arc *arc;
+    double turned;
+} place;
 
 /* The piece of a run that is being made: its front are arcs 1 .. count. */
 typedef struct piece {
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
     narc_point begin;
+    place before;                  /* what the chain has before it */
     double begin_angle, end_angle; /* of normals */
     uint32_t first_arc;
     bool begins_in_corner, ends_in_corner; /* that was cut */
@@ -109,12 +121,68 @@ static void put_entry(divider *d, narc_encoded_shape *encoded, narc_chain_entry 
         out->entries[out->count] = entry;
     }
     out->count++;
-    out->records += narc_count_records(encoded->header.count);
+    out->records += narc_count_records(&encoded->header);
 }
 
 static void fail_piece(divider *d, narc_status status, uint32_t number, const narc_error *reason) {
     d->status = narc_fail(d->error, status, number, reason->value, "the piece of the chain that begins at arc %lu: %s",
                           (unsigned long)number, reason->message);
+}
+
+/* ------------------------------------------------------------------------------------------------ what lies beyond */
+
+/* The arc after (way 1) or before (-1) one, or NULL. */
+static const narc_chain_arc *find_neighbour(const narc_chain *chain, const narc_chain_arc *arc, int way) {
+    const size_t count =
+        chain->count - (chain->closed && chain->arcs[0].turn < 0); /* the last one is the first again */
+    const size_t k = (size_t)(arc - chain->arcs) % count;
+    if (chain->closed)
+        return &chain->arcs[(k + (way > 0 ? 1 : count - 1)) % count];
+    return k + 1 == (way > 0 ? count : 1) ? NULL : arc + way;
+}
+
+/* Walks from an end of a piece, with this normal there, along the chain, after (way 1) or before it (-1). The first point
+ * is where that leads to; the second one lies as far along the tangent, and as low as a straight line from the end that
+ * the chain does not go below. */
+static void look_beyond(const narc_chain *chain, narc_point end, double angle, place at, int way, double length,
+                        narc_point *out_points) {
+    narc_point n, p = end;
+    double turned = 0, lowest = 0;
+    narc_find_normal(angle, &n.x, &n.y);
+    const narc_point along = {-n.y * way, n.x * way};
+    while (at.arc && length > 0) {
+        const narc_chain_arc *arc = at.arc;
+        const narc_point next = narc_find_chain_point(arc, at.turned);
+        const double line = find_distance(p, next), part = line > length ? length / line : 1;
+        p = (narc_point){p.x + part * (next.x - p.x), p.y + part * (next.y - p.y)};
+        length -= line;
+        if (length > 0) {
+            const double side = arc->turn < 0 ? -1 : 1;
+            const double rest = fmax(0, side * (way > 0 ? arc->turn - at.turned : at.turned));
+            const double most = fmin(BEYOND_TURN - side * turned, length / fabs(arc->radius));
+            const double turn = side * fmin(rest, most);
+            p = narc_find_chain_point(arc, at.turned + way * turn);
+            turned += turn;
+            length = rest > most ? 0 : length - fabs(arc->radius * turn);
+            at.arc = find_neighbour(chain, arc, way);
+            at.turned = at.arc && way < 0 ? at.arc->turn : 0;
+        }
+        const double far = (p.x - end.x) * along.x + (p.y - end.y) * along.y;
+        if (far > 0)
+            lowest = fmin(lowest, ((p.x - end.x) * n.x + (p.y - end.y) * n.y) / far);
+    }
+    const double far = fmax(0, (p.x - end.x) * along.x + (p.y - end.y) * along.y);
+    out_points[0] = p;
+    out_points[1] = (narc_point){end.x + far * (along.x + lowest * n.x), end.y + far * (along.y + lowest * n.y)};
+}
+
+static narc_beyond place_beyond(const narc_point *points, narc_point middle) {
+    narc_beyond out;
+    for (int k = 0; k < 4; k++) {
+        out.x[k] = (float)(points[k].x - middle.x);
+        out.y[k] = (float)(points[k].y - middle.y);
+    }
+    return out;
 }
 
 /* ------------------------------------------------------------------------------------------------ runs */
@@ -159,8 +227,9 @@ static size_t close_run(piece *p, narc_point begin, narc_point end, double lengt
     return n + CLOSURE_ARCS;
 }
 
-static void open_piece(divider *d, narc_point begin, double angle, uint32_t first_arc) {
+static void open_piece(divider *d, narc_point begin, place before, double angle, uint32_t first_arc) {
     d->piece.count = 0;
+    d->piece.before = before;
     d->piece.begin = begin;
     d->piece.begin_angle = d->piece.end_angle = angle;
     d->piece.first_arc = first_arc;
@@ -176,7 +245,7 @@ static void put_arc(divider *d, const narc_chain_arc *arc, double from, double t
     p->end_angle = start + (to - from);
 }
 
-static void end_piece(divider *d, narc_point end) {
+static void end_piece(divider *d, narc_point end, place after) {
     piece *p = &d->piece;
     narc_encoded_shape encoded;
     narc_error reason = {.status = NARC_OK};
@@ -191,6 +260,10 @@ static void end_piece(divider *d, narc_point end) {
     double size = measure_front(p, begin);
     if (size <= POINT * d->reach)
         size = d->reach / 8;
+    narc_point points[4];
+    look_beyond(d->chain, p->begin, p->begin_angle, p->before, -1, 2 * BEYOND * size, points);
+    look_beyond(d->chain, end, p->end_angle, after, 1, 2 * BEYOND * size, points + 2);
+    const narc_beyond beyond = place_beyond(points, middle);
     if (p->begins_in_corner)
         begin = move(begin, p->begin_angle - NARC_PI / 2, FIN * size);
     if (p->ends_in_corner) {
@@ -199,7 +272,7 @@ static void end_piece(divider *d, narc_point end) {
         put_arc(d, &(narc_chain_arc){stop.x, stop.y, 0, angle, NARC_CHAIN_SEAM, 0}, 0, NARC_CHAIN_SEAM);
     }
     const size_t count = close_run(p, begin, stop, FAR * size);
-    const narc_status status = narc_encode_run(p->arcs, count, &encoded, &reason);
+    const narc_status status = narc_encode_run(p->arcs, count, &beyond, &encoded, &reason);
     if (status != NARC_OK)
         fail_piece(d, status, p->first_arc, &reason);
     else
@@ -212,17 +285,20 @@ static void end_piece(divider *d, narc_point end) {
 }
 
 /* A straight line to `to`, cut into parts of one length if it is too long. */
-static void add_line(divider *d, narc_point from, narc_point to, uint32_t next) {
+static void add_line(divider *d, narc_point from, narc_point to, const narc_chain_arc *after) {
     const double length = find_distance(from, to), weld = d->chain->weld, common = LINE_OVERLAP * weld;
+    const narc_chain_arc *const before = after - 1;
+    const unsigned long next = after->number;
     const double parts = fmax(1, ceil((length - common) / (weld - common) - PART_ROOM)); /* 1 if weld is infinite */
     if (!((double)d->out->count + parts <= NARC_MAX_SHAPES))
-        d->status = narc_fail(d->error, NARC_ERROR_COUNT, next, parts, "arc %lu: the edge before it has %g parts",
-                              (unsigned long)next, parts);
+        d->status =
+            narc_fail(d->error, NARC_ERROR_COUNT, next, parts, "arc %lu: the edge before it has %g parts", next, parts);
     const double step_x = (to.x - from.x) / length, step_y = (to.y - from.y) / length;
     for (double k = 1; k < parts && d->status == NARC_OK; k++) {
         const double at = (length - common) * (k / parts), end = at + common;
-        end_piece(d, (narc_point){from.x + step_x * end, from.y + step_y * end});
-        open_piece(d, (narc_point){from.x + step_x * at, from.y + step_y * at}, d->piece.end_angle, next);
+        end_piece(d, (narc_point){from.x + step_x * end, from.y + step_y * end}, (place){after, 0});
+        open_piece(d, (narc_point){from.x + step_x * at, from.y + step_y * at}, (place){before, before->turn},
+                   d->piece.end_angle, after->number);
     }
 }
 
@@ -238,8 +314,8 @@ static void add_arc(divider *d, const narc_chain_arc *arc, double from, double t
         const double end = fmin(cut + seam, to), begin = fmax(cut - seam, fmax(at, from));
         put_arc(d, arc, at, end);
         d->piece.ends_in_corner = arc->radius == 0;
-        end_piece(d, narc_find_chain_point(arc, end));
-        open_piece(d, narc_find_chain_point(arc, begin), arc->start + begin, arc->number);
+        end_piece(d, narc_find_chain_point(arc, end), (place){arc, end});
+        open_piece(d, narc_find_chain_point(arc, begin), (place){arc, begin}, arc->start + begin, arc->number);
         d->piece.begins_in_corner = arc->radius == 0;
         at = begin;
     }
@@ -306,7 +382,8 @@ static void divide_run(divider *d, size_t first, size_t end) {
         from = narc_find_chain_point(begins, -over);
     if (end_over > 0)
         to = narc_find_chain_point(ends, ends->turn + end_over);
-    open_piece(d, from, begins->start - (has_corner ? NARC_CHAIN_SEAM : over), begins->number);
+    open_piece(d, from, before ? (place){before, before->turn} : (place){begins, 0},
+               begins->start - (has_corner ? NARC_CHAIN_SEAM : over), begins->number);
     if (has_corner)
         put_arc(d,
                 &(narc_chain_arc){from.x, from.y, 0, begins->start - NARC_CHAIN_SEAM, NARC_CHAIN_SEAM, before->number},
@@ -317,18 +394,18 @@ static void divide_run(divider *d, size_t first, size_t end) {
     for (size_t k = first; k < end && d->status == NARC_OK; k++) {
         const narc_chain_arc *arc = &arcs[k];
         if (k > first ? find_distance(at, narc_find_chain_start(arc)) > narc_find_chain_room(arc - 1, arc) : has_line)
-            add_line(d, at, narc_find_chain_start(arc), arc->number);
+            add_line(d, at, narc_find_chain_start(arc), arc);
         if (arc->turn > 0)
             add_arc(d, arc, k == first ? -over : 0, arc->turn + (k + 1 == end ? end_over : 0), k + 1 == end);
         at = narc_find_chain_end(arc);
     }
     if (has_end_line)
-        add_line(d, at, to, after->number);
+        add_line(d, at, to, after);
     if (has_end_corner)
         put_arc(d, &(narc_chain_arc){to.x, to.y, 0, d->piece.end_angle, NARC_CHAIN_SEAM, after->number}, 0,
                 NARC_CHAIN_SEAM);
     d->piece.ends_in_corner = is_cut && ends->radius == 0;
-    end_piece(d, to);
+    end_piece(d, to, after ? (place){after, 0} : (place){ends, ends->turn});
     d->out->run++;
 }
 
@@ -350,7 +427,12 @@ static void divide_concave(divider *d, size_t k) {
         const narc_arc own = {arc->x - middle.x, arc->y - middle.y, arc->radius, arc->start + low, arc->start + high};
         narc_encoded_shape encoded;
         narc_error reason = {.status = NARC_OK};
-        const narc_status status = narc_encode_concave(&own, VALLEY_SIZE * near, &encoded, &reason);
+        const double length = BEYOND * fmax(find_distance(start, end), VALLEY_SIZE * near);
+        narc_point points[4];
+        look_beyond(chain, start, own.start, (place){arc, low}, 1, length, points);
+        look_beyond(chain, end, own.end, (place){arc, high}, -1, length, points + 2);
+        const narc_beyond beyond = place_beyond(points, middle);
+        const narc_status status = narc_encode_concave(&own, VALLEY_SIZE * near, &beyond, &encoded, &reason);
         if (status != NARC_OK)
             fail_piece(d, status, arc->number, &reason);
         else

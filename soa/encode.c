@@ -188,10 +188,18 @@ narc_status narc_encode_shape(const narc_arc *arcs, size_t count, narc_encoded_s
 
 /* ------------------------------------------------------------------------------------------------ pieces of chains */
 
-narc_status narc_encode_run(const narc_arc *arcs, size_t count, narc_encoded_shape *out_shape, narc_error *error) {
+/* Of a piece, whose header is known. */
+static narc_beyond *find_beyond(narc_encoded_shape *shape) {
+    return &shape->records[narc_count_records(&shape->header) - 1].beyond;
+}
+
+narc_status narc_encode_run(const narc_arc *arcs, size_t count, const narc_beyond *beyond,
+                            narc_encoded_shape *out_shape, narc_error *error) {
     const narc_status status = narc_encode_shape(arcs, count, out_shape, error);
-    if (status == NARC_OK)
+    if (status == NARC_OK) {
         out_shape->header.first_arc |= NARC_PIECE_RUN;
+        *find_beyond(out_shape) = *beyond;
+    }
     return status;
 }
 
@@ -234,8 +242,8 @@ static void write_concave(narc_encoded_shape *shape, float least_bound) {
         (int16_t)(find_diamond_angle(arc->start_x, arc->start_y) * NARC_ANGLE_SCALE - NARC_ANGLE_OFFSET);
 }
 
-narc_status narc_encode_concave(const narc_arc *arc, double least_bound, narc_encoded_shape *out_shape,
-                                narc_error *error) {
+narc_status narc_encode_concave(const narc_arc *arc, double least_bound, const narc_beyond *beyond,
+                                narc_encoded_shape *out_shape, narc_error *error) {
     narc_point start, end;
     narc_find_normal(arc->start, &start.x, &start.y);
     narc_find_normal(arc->end, &end.x, &end.y);
@@ -247,6 +255,7 @@ narc_status narc_encode_concave(const narc_arc *arc, double least_bound, narc_en
                                                   .end_x = (float)end.x,
                                                   .end_y = (float)end.y};
     write_concave(out_shape, (float)least_bound);
+    *find_beyond(out_shape) = *beyond;
     const double bound = (double)out_shape->header.bound_radius;
     if (!(bound >= NARC_MIN_SIZE && bound <= NARC_MAX_BOUND_RADIUS))
         return narc_fail(error, NARC_ERROR_SIZE, 0, bound, "its bounding radius is %g, not in %g .. %g", bound,

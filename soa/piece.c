@@ -41,65 +41,59 @@ static double find_reach(const narc_toucher *a, const narc_toucher *b) {
 }
 
 /* What of a piece faces the air, as a body sees it: a convex outline in the body's axes and unit, within the points
- * and, in directions between two, a circle about the first one.
- *   of a concave arc   its sector: points are the centre, and beyond the arc's ends
- *   of a run           its front and what lies before its chord: both ends, and beyond them. In directions of the front
- *                      it has no end: along those a contact says how deep it is
- * What is not deep may have come through the next piece: points beyond the ends lie on the tangents there. */
-#define SHALLOW 0x1p-4 /* of the piece's size */
+ * and, in directions between two, a circle about the last one. Points are both ends and what lies beyond them.
+ *   of a concave arc   its sector, and the centre
+ *   of a run           its front and what lies before its chord. In directions of the front it has no end: along those a
+ *                      contact says how deep it is */
+enum { SURFACE_POINTS = 7 };
 typedef struct surface {
-    double x[4], y[4];
+    double x[SURFACE_POINTS], y[SURFACE_POINTS];
     double radius, from_x, from_y, to_x, to_y;
     double room; /* for rounding */
+    int count;
 } surface;
 
 #define SURFACE_ROOM 0x1p-16 /* of the piece's size and the body's together */
 
-/* Puts a point that is `beyond` behind an end along the tangent, counter-clockwise or (-1) clockwise. */
-static void extend_surface(surface *s, int end, int point, double n_x, double n_y, double beyond) {
-    s->x[point] = s->x[end] - beyond * n_y;
-    s->y[point] = s->y[end] + beyond * n_x;
-}
-
-/* But for what is beyond its ends. */
 static surface see_surface(const narc_toucher *piece, const narc_toucher *body) {
     const size_t count = piece->header->count, first = piece->header->first_arc & NARC_FIRST_ARC;
     const bool hollow = narc_is_concave(piece->header);
     const narc_stored_arc *const low = &piece->arcs[hollow ? 0 : (count - first) % count].arc,
                                  *const high = &piece->arcs[hollow ? 0 : (2 * count - 5 - first) % count].arc;
+    const narc_beyond *const beyond = &piece->arcs[count].beyond;
+    const double from_x = (double)(hollow ? low->start_x : low->end_x),
+                 from_y = (double)(hollow ? low->start_y : low->end_y),
+                 to_x = (double)(hollow ? low->end_x : high->start_x),
+                 to_y = (double)(hollow ? low->end_y : high->start_y);
+    const double own = hollow ? (double)low->radius : 0; /* a run ends with corners */
+    const double x[SURFACE_POINTS] = {(double)low->center_x + own * from_x,
+                                      (double)high->center_x + own * to_x,
+                                      (double)beyond->x[0],
+                                      (double)beyond->x[1],
+                                      (double)beyond->x[2],
+                                      (double)beyond->x[3],
+                                      (double)low->center_x};
+    const double y[SURFACE_POINTS] = {(double)low->center_y + own * from_y,
+                                      (double)high->center_y + own * to_y,
+                                      (double)beyond->y[0],
+                                      (double)beyond->y[1],
+                                      (double)beyond->y[2],
+                                      (double)beyond->y[3],
+                                      (double)low->center_y};
     const double c = piece->x * body->x + piece->y * body->y, s = piece->x * body->y - piece->y * body->x;
     const double part = piece->scale / body->scale, sign = hollow ? -1 : 1;
-    const double from_x = (double)(hollow ? low->start_x : low->end_x),
-                 to_x = (double)(hollow ? low->end_x : high->start_x);
-    const double from_y = (double)(hollow ? low->start_y : low->end_y),
-                 to_y = (double)(hollow ? low->end_y : high->start_y);
-    surface out = {.radius = hollow ? fabs(part * (double)low->radius) : INFINITY,
+    surface out = {.radius = hollow ? -part * own : INFINITY,
                    .from_x = sign * (c * from_x - s * from_y),
                    .from_y = sign * (s * from_x + c * from_y),
                    .to_x = sign * (c * to_x - s * to_y),
-                   .to_y = sign * (s * to_x + c * to_y)};
-    for (int k = 0; k < 2; k++) {
-        const narc_stored_arc *const a = k ? high : low;
-        const double x = part * (double)a->center_x, y = part * (double)a->center_y;
-        out.x[k] = body->other_x / body->scale + c * x - s * y;
-        out.y[k] = body->other_y / body->scale + s * x + c * y;
+                   .to_y = sign * (s * to_x + c * to_y),
+                   .room = SURFACE_ROOM * (find_piece_size(piece) / body->scale + (double)body->header->bound_radius),
+                   .count = hollow ? SURFACE_POINTS : SURFACE_POINTS - 1};
+    for (int k = 0; k < SURFACE_POINTS; k++) {
+        out.x[k] = body->other_x / body->scale + part * (c * x[k] - s * y[k]);
+        out.y[k] = body->other_y / body->scale + part * (s * x[k] + c * y[k]);
     }
     return out;
-}
-
-static void widen_surface(surface *s, const narc_toucher *piece, const narc_toucher *body, double depth) {
-    const double size = find_piece_size(piece), least = 0.25 * body->scale * (double)body->header->bound_radius;
-    const bool hollow = narc_is_concave(piece->header);
-    const double beyond = depth <= SHALLOW * (hollow && size < least ? least : size) ? 2 * depth / body->scale : 0;
-    s->room = SURFACE_ROOM * (size / body->scale + (double)body->header->bound_radius);
-    extend_surface(s, 0, 2, s->from_x, s->from_y, -beyond);
-    extend_surface(s, 1, 3, s->to_x, s->to_y, beyond);
-    if (hollow) { /* both were beside the centre */
-        s->x[2] += s->radius * s->from_x;
-        s->y[2] += s->radius * s->from_y;
-        s->x[3] += s->radius * s->to_x;
-        s->y[3] += s->radius * s->to_y;
-    }
 }
 
 /* Is a direction between the two? They are less than half a turn apart. */
@@ -110,8 +104,9 @@ static bool faces(const surface *s, double x, double y) {
 
 /* Is a direction of length 1, from the body, one along which it is apart, where the body reaches `height`? */
 static bool is_apart(const surface *s, double x, double y, double height) {
-    double best = faces(s, -x, -y) ? s->radius - (s->x[0] * x + s->y[0] * y) : -INFINITY;
-    for (int k = 0; k < 4; k++) {
+    const int center = SURFACE_POINTS - 1;
+    double best = faces(s, -x, -y) ? s->radius - (s->x[center] * x + s->y[center] * y) : -INFINITY;
+    for (int k = 0; k < s->count; k++) {
         const double along = -(s->x[k] * x + s->y[k] * y);
         best = along > best ? along : best;
     }
@@ -121,8 +116,8 @@ static bool is_apart(const surface *s, double x, double y, double height) {
 /* Is a body apart from it? Then so along a normal of one of them, or the way from a point to a centre. */
 static bool misses(const surface *s, const narc_toucher *body) {
     double size;
-    for (int k = 0; k < 4; k++)
-        for (int i = 0; i < 4; i++) {
+    for (int k = 0; k < s->count; k++)
+        for (int i = 0; i < s->count; i++) {
             const double x = s->y[i] - s->y[k], y = s->x[k] - s->x[i], length = sqrt(x * x + y * y);
             if (length > 0 && is_apart(s, x / length, y / length,
                                        narc_find_front_height(body->header, body->arcs, x / length, y / length, &size)))
@@ -134,7 +129,7 @@ static bool misses(const surface *s, const narc_toucher *body) {
         const double u_x = (double)a->start_x, u_y = (double)a->start_y, v_x = (double)a->end_x, v_y = (double)a->end_y;
         if (is_apart(s, u_x, u_y, c_x * u_x + c_y * u_y + radius))
             return true;
-        for (int i = 0; i < 4; i++) {
+        for (int i = 0; i < s->count; i++) {
             const double x = s->x[i] - c_x, y = s->y[i] - c_y, length = sqrt(x * x + y * y);
             if (u_x * y - u_y * x >= 0 && x * v_y - y * v_x >= 0 && length > 0 &&
                 is_apart(s, x / length, y / length, (c_x * x + c_y * y) / length + radius))
@@ -146,7 +141,8 @@ static bool misses(const surface *s, const narc_toucher *body) {
 
 /* Does the middle of a body lie on the air's side, beside the piece? */
 static bool lies_before(const surface *s, const narc_toucher *body) {
-    const double x = (double)body->header->inner_x - s->x[0], y = (double)body->header->inner_y - s->y[0];
+    const int from = s->radius < INFINITY ? SURFACE_POINTS - 1 : 0;
+    const double x = (double)body->header->inner_x - s->x[from], y = (double)body->header->inner_y - s->y[from];
     if (s->radius < INFINITY)
         return x * x + y * y <= s->radius * s->radius && faces(s, x, y);
     const double way_x = s->x[1] - s->x[0], way_y = s->y[1] - s->y[0], along = x * way_x + y * way_y;
@@ -164,9 +160,6 @@ bool narc_is_reached(const narc_toucher *a, const narc_toucher *b, double separa
         return depth <= 0;
     if (narc_is_piece(body->header))
         return true;
-    surface seen = see_surface(piece, body);
-    if (lies_before(&seen, body))
-        return true;
-    widen_surface(&seen, piece, body, depth);
-    return !misses(&seen, body);
+    const surface seen = see_surface(piece, body);
+    return lies_before(&seen, body) || !misses(&seen, body);
 }

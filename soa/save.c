@@ -3,7 +3,7 @@
  * save.c - a store as bytes, and back.
  *
  * All numbers are little-endian, floats as their bits (IEEE 754). A start of 40 bytes:
- *   "NARCSHPS", version 1 (4 bytes), indices, removed indices, the last that was removed (4 bytes each; 2^32 - 1:
+ *   "NARCSHPS", version 2 (4 bytes), indices, removed indices, the last that was removed (4 bytes each; 2^32 - 1:
  * none),
  *   all bytes (8), a checksum of all other bytes (8)
  * and for each index
@@ -20,7 +20,7 @@
 static const char magic[8] = "NARCSHPS";
 
 enum {
-    VERSION = 1,
+    VERSION = 2,
     AT_VERSION = 8,
     AT_COUNT = 12,
     AT_REMOVED = 16,
@@ -34,7 +34,14 @@ enum {
     HOLE_BYTES = 8
 };
 
-static size_t count_shape_bytes(size_t arcs) { return 4 + HEADER_BYTES + arcs * 4 * ARC_WORDS; }
+/* Arcs, and behind those of a piece of a chain what lies beyond. */
+static size_t count_saved_records(unsigned count, unsigned first_arc) {
+    return count + (first_arc & NARC_PIECE_MARKS ? 1 : 0);
+}
+
+static size_t count_shape_bytes(unsigned count, unsigned first_arc) {
+    return 4 + HEADER_BYTES + count_saved_records(count, first_arc) * 4 * ARC_WORDS;
+}
 
 static void put_word(unsigned char *bytes, uint32_t word) {
     for (int k = 0; k < 4; k++)
@@ -84,7 +91,8 @@ static uint64_t find_checksum(const unsigned char *bytes, size_t size) {
 size_t narc_count_saved_bytes(const narc_shapes *shapes) {
     size_t size = START;
     for (uint32_t k = 0; k < narc_count_shapes(shapes); k++)
-        size += narc_has_shape(shapes, k) ? count_shape_bytes(shapes->headers[k].count) : HOLE_BYTES;
+        size += narc_has_shape(shapes, k) ? count_shape_bytes(shapes->headers[k].count, shapes->headers[k].first_arc)
+                                          : HOLE_BYTES;
     return size;
 }
 
@@ -94,8 +102,9 @@ static size_t put_shape(const narc_shapes *shapes, uint32_t shape, unsigned char
     put_word(bytes, shapes->entries[shape].uses);
     memcpy(bytes + 4, small, sizeof small);
     put_words(bytes + 8, &header->bound_x, HEADER_FLOATS);
-    put_words(bytes + 4 + HEADER_BYTES, narc_arcs_of(shapes, header), ARC_WORDS * (size_t)header->count);
-    return count_shape_bytes(header->count);
+    put_words(bytes + 4 + HEADER_BYTES, narc_arcs_of(shapes, header),
+              ARC_WORDS * count_saved_records(header->count, header->first_arc));
+    return count_shape_bytes(header->count, header->first_arc);
 }
 
 narc_status narc_save_shapes(const narc_shapes *shapes, void *out_bytes, size_t size, narc_error *error) {
@@ -155,7 +164,7 @@ static narc_status load_shape(narc_shapes *shapes, uint32_t index, uint32_t uses
     narc_encoded_shape encoded = {.header = {.first_record = 0}};
     narc_shape_header *header = &encoded.header;
     narc_error reason = {.status = NARC_OK};
-    if (left < HEADER_BYTES || bytes[0] > NARC_MAX_ARCS || left < count_shape_bytes(bytes[0]) - 4)
+    if (left < HEADER_BYTES || bytes[0] > NARC_MAX_ARCS || left < count_shape_bytes(bytes[0], bytes[1]) - 4)
         return fail_format(error, index, "its arcs are not there");
     header->count = bytes[0];
     header->first_arc = bytes[1];
@@ -163,10 +172,10 @@ static narc_status load_shape(narc_shapes *shapes, uint32_t index, uint32_t uses
     header->extent_ratio = bytes[3];
     get_words(bytes + 4, &header->bound_x, HEADER_FLOATS);
     get_words(bytes + HEADER_BYTES, &encoded.records[narc_angle_records(header->count)],
-              ARC_WORDS * (size_t)header->count);
+              ARC_WORDS * count_saved_records(header->count, header->first_arc));
     if (narc_restore_shape(&encoded, &reason) != NARC_OK)
         return fail_format(error, index, reason.message);
-    *out_size = count_shape_bytes(header->count) - 4;
+    *out_size = count_shape_bytes(header->count, header->first_arc) - 4;
     const narc_status status = narc_put_encoded_shape(shapes, index, &encoded, error);
     if (status == NARC_OK)
         shapes->entries[index].uses = uses;
@@ -221,7 +230,7 @@ static narc_status load_all(narc_shapes *shapes, const unsigned char *bytes, siz
         const uint32_t uses = get_word(at);
         if (uses == 0)
             shapes->entries[k] = (narc_shape_entry){.hash = 1, .next = get_word(at + 4)}; /* 1: not met before */
-        at += uses ? count_shape_bytes(at[4]) : HOLE_BYTES;
+        at += uses ? count_shape_bytes(at[4], at[5]) : HOLE_BYTES;
     }
     return link_removed(shapes, get_word(bytes + AT_LAST), get_word(bytes + AT_REMOVED), error);
 }

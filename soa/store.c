@@ -145,7 +145,7 @@ static bool move_records(narc_shapes *shapes, size_t capacity) {
     memcpy(records, spare.records, SPARE_RECORDS * sizeof *records);
     for (uint32_t k = 0; k < shapes->count; k++) {
         narc_shape_header *header = &shapes->headers[k];
-        const size_t size = narc_count_records(header->count);
+        const size_t size = narc_count_records(header);
         if (!narc_has_shape(shapes, k)) {
             header->first_record = 0;
             header->count = SPARE_ARCS;
@@ -210,7 +210,7 @@ static narc_status fail_room(const narc_shapes *shapes, narc_status status, narc
 /* How many records an index's own block has: also that of a removed shape, until it is gone. */
 static size_t count_own_records(const narc_shapes *shapes, uint32_t shape) {
     const bool has_block = shape < shapes->count && shapes->headers[shape].first_record > 0;
-    return has_block ? narc_count_records(shapes->headers[shape].count) : 0;
+    return has_block ? narc_count_records(&shapes->headers[shape]) : 0;
 }
 
 static const size_t hashed_header = offsetof(narc_shape_header, first_record) + sizeof(uint32_t);
@@ -229,7 +229,7 @@ static uint64_t mix(uint64_t hash, const void *words, size_t size) {
 
 /* What two equal shapes have in common: all of the header but its place, and all records. */
 static size_t count_hashed_bytes(const narc_shape_header *header) {
-    return narc_count_records(header->count) * sizeof(narc_record);
+    return narc_count_records(header) * sizeof(narc_record);
 }
 
 static uint32_t hash_shape(const narc_encoded_shape *encoded) {
@@ -278,7 +278,7 @@ void narc_open_indices(narc_shapes *shapes, size_t count) {
 /* Puts an encoded shape at an index: in the place of the block that is there, if it fits. */
 narc_status narc_put_encoded_shape(narc_shapes *shapes, uint32_t shape, narc_encoded_shape *encoded,
                                    narc_error *error) {
-    const size_t size = narc_count_records(encoded->header.count), own_size = count_own_records(shapes, shape);
+    const size_t size = narc_count_records(&encoded->header), own_size = count_own_records(shapes, shape);
     const size_t used_size = narc_has_shape(shapes, shape) ? own_size : 0;
     const size_t count = shape < shapes->count ? shapes->count : (size_t)shape + 1;
     const uint32_t hash = hash_shape(encoded);
@@ -383,7 +383,7 @@ narc_status narc_remove_shape(narc_shapes *shapes, uint32_t shape, narc_error *e
     if (status != NARC_OK || --shapes->entries[shape].uses > 0)
         return status;
     narc_shape_header *header = &shapes->headers[shape];
-    shapes->used_records -= narc_count_records(header->count);
+    shapes->used_records -= narc_count_records(header);
     shapes->piece_count -= narc_is_piece(header);
     header->bound_radius = 0;
     put_box(shapes, shape, (narc_box_form){.info = 0});

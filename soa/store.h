@@ -113,9 +113,16 @@ typedef struct narc_stored_arc {
     float start_x, start_y, end_x, end_y;
 } narc_stored_arc;
 
+/* Behind the arcs of a piece of a chain: four points that the chain leads to beyond its ends, two at each, of the piece
+ * as it is stored. Between an end and its two points lies what of the chain is near (chain_pieces.c). */
+typedef struct narc_beyond {
+    float x[4], y[4];
+} narc_beyond;
+
 typedef union narc_record {
     int16_t angles[NARC_RECORD_ANGLES];
     narc_stored_arc arc;
+    narc_beyond beyond;
 } narc_record;
 
 /* A box about its own origin with sides along its axes, sharp or with equally rounded corners, beside its header: half
@@ -142,8 +149,10 @@ enum { NARC_READ_AHEAD = 2 };
 /* How many records the junction angles of a shape take: its first arc lies behind them. */
 static inline size_t narc_angle_records(size_t count) { return (count + NARC_RECORD_ANGLES - 1) / NARC_RECORD_ANGLES; }
 
-/* All records of a shape: its angles and its arcs. */
-static inline size_t narc_count_records(size_t count) { return narc_angle_records(count) + count; }
+/* All records of a shape: its angles, its arcs and, of a piece, what lies beyond. */
+static inline size_t narc_count_records(const narc_shape_header *header) {
+    return narc_angle_records(header->count) + header->count + narc_is_piece(header);
+}
 
 /* 96 roundings, so that the circles stay clear of the deciding formula's error. That error is 32 roundings
  * (NARC_ERROR_BOUND) of the distance between the positions plus both extents, and that distance exceeds the distance

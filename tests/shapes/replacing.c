@@ -21,9 +21,9 @@ static void expect_same_shape(const narc_shapes *shapes, uint32_t index, const s
     narc_shapes *fresh = empty_store();
     store_shape(fresh, *shape);
     narc_shape_header header = shapes->headers[index];
-    assert_true(header.first_record + narc_count_records(header.count) <= shapes->record_count);
+    assert_true(header.first_record + narc_count_records(&header) <= shapes->record_count);
     assert_memory_equal(&shapes->records[header.first_record], &fresh->records[fresh->headers[0].first_record],
-                        narc_count_records(header.count) * sizeof(narc_record));
+                        narc_count_records(&header) * sizeof(narc_record));
     header.first_record = fresh->headers[0].first_record;
     assert_memory_equal(&header, fresh->headers, sizeof header);
     assert_memory_equal(&shapes->boxes[index], fresh->boxes, sizeof *fresh->boxes);
@@ -43,13 +43,13 @@ struct model {
 };
 
 static void expect_model(const narc_shapes *shapes, const struct model *model) {
-    size_t used = narc_count_records(2); /* the circle that removed shapes have */
+    size_t used = narc_count_records(&(narc_shape_header){.count = 2}); /* the circle that removed shapes have */
     size_t boxes = 0;
     assert_int_equal(narc_count_shapes(shapes), model->count);
     for (uint32_t k = 0; k < model->count; k++) {
         assert_int_equal(narc_count_uses(shapes, k), model->uses[k]);
         if (model->exists[k]) {
-            used += narc_count_records(shapes->headers[k].count);
+            used += narc_count_records(&shapes->headers[k]);
             assert_int_equal(narc_get_arcs(shapes, k, NULL), model->shape[k].count);
             expect_same_shape(shapes, k, &model->shape[k]);
             boxes += shapes->boxes[k].info != 0;
@@ -140,7 +140,8 @@ static struct shape make_polygon(size_t corners) {
 
 /* What a polygon with so many corners needs. */
 static size_t need_of(size_t corners) {
-    return narc_count_records(corners) * sizeof(narc_record) + sizeof(narc_shape_header);
+    return narc_count_records(&(narc_shape_header){.count = (uint8_t)corners}) * sizeof(narc_record) +
+           sizeof(narc_shape_header);
 }
 
 /* A store never has more memory than four times what its shapes needed when they needed most, not even while it moves

@@ -61,7 +61,7 @@ static void expect_same_store(const narc_shapes *a, const narc_shapes *b) {
         assert_memory_equal(&header, &b->headers[k], sizeof header);
         assert_memory_equal(&a->boxes[k], &b->boxes[k], sizeof *a->boxes);
         assert_memory_equal(&a->records[a->headers[k].first_record], &b->records[header.first_record],
-                            narc_count_records(header.count) * sizeof(narc_record));
+                            narc_count_records(&header) * sizeof(narc_record));
     }
 }
 
@@ -137,7 +137,7 @@ TEST(saves_recorded_bytes) {
     unsigned char *bytes = save(shapes, &size);
     const uint64_t hash = test_hash(TEST_HASH_START, bytes, size);
     printf("  %zu bytes, 0x%016" PRIx64 "\n", size, hash);
-    assert_true(hash == 0x916e74ab19dace8du);
+    assert_true(hash == 0x49d01c9afad1a53fu);
     narc_destroy_shapes(shapes);
     free(bytes);
 }
@@ -155,8 +155,8 @@ TEST(refuses_bad_arguments) {
     expect_error(narc_load_shapes(NULL, NULL, size, &loaded, &error), NARC_ERROR_ARGUMENT, &error, "bytes is NULL");
     expect_error(narc_load_shapes(NULL, bytes, size, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_shapes is NULL");
     expect_error(narc_load_shapes(NULL, junk, sizeof junk, &loaded, &error), NARC_ERROR_FORMAT, &error, "no store");
-    bytes[AT_VERSION] = 2;
-    expect_error(narc_load_shapes(NULL, bytes, size, &loaded, &error), NARC_ERROR_FORMAT, &error, "version 2");
+    bytes[AT_VERSION] = 1;
+    expect_error(narc_load_shapes(NULL, bytes, size, &loaded, &error), NARC_ERROR_FORMAT, &error, "version 1");
     assert_null(loaded);
     assert_int_equal(narc_count_saved_bytes(NULL), START);
     narc_destroy_shapes(shapes);

@@ -167,7 +167,7 @@ TEST(methods_have_boxes) {
         const narc_record *arcs = narc_arcs_of(&methods->shapes, &header);
         assert_memory_equal(&methods->shapes.records[header.first_record],
                             &shapes->records[shapes->headers[k].first_record],
-                            narc_count_records(header.count) * sizeof *arcs);
+                            narc_count_records(&header) * sizeof *arcs);
         struct shape stored;
         stored.count = narc_get_arcs(shapes, (uint32_t)k, stored.arcs);
         expect_box(&stored, &header, arcs);
