@@ -30,7 +30,8 @@ INLINE void fetch_pieces(const struct call *call, vm which, const vf item[FIELDS
         for (; lanes; lanes &= lanes - 1) {
             const int lane = FIND_LOWEST(lanes);
             const narc_record *const first = call->batch->shapes->records + (uint32_t)record[lane];
-            for (size_t k = 0; k < narc_count_records((size_t)info[lane] & 0xff); k += 2)
+            const narc_shape_header header = {.count = (uint8_t)info[lane], .first_arc = NARC_PIECE_RUN};
+            for (size_t k = 0; k < narc_count_records(&header); k += 2)
                 FETCH(first + k);
         }
     }
