@@ -96,11 +96,12 @@ NARC_API narc_status narc_add_chain(narc_shapes *shapes, const narc_arc *arcs, s
  *   run     of each body `b`: its entry's run; base NULL: all are concave
  * Looked at are rows of one body a that follow each other, as a broad phase lists them, each beside the 64 before it:
  *   - Of two rows of one run that have one normal (within 1e-4 rad) the points are joined: the two outermost stay,
- *     in the first one's row. (A contact has one point: that with the smaller separation.) Else the row with the greater
+ *     but for the higher one where the deepest lies between them, in the first one's row, which is compared again. (A contact has one point: that with the smaller separation.) Else the row with the greater
  *     separation stays, which is that of the whole run, unless what they touch is not convex: the sides of a run that
  *     turns by more than half a turn may face each other.
  *   - Of two rows with one normal (within 1e-3 rad) and the same points (within 2^-12 of their distance from the
- *     position of a) the one with more points stays, else that of a concave arc, or the first one: a seam, told by both.
+ *     position of a; deep ones of one depth in the body's surface or the ground's) the one with more points stays, else
+ *     that of a concave arc, or the first one, with the smaller separation of each point: a seam, told by both.
  * The same bits on every machine. Time in proportion to the rows. Thread-safe. */
 NARC_API size_t narc_merge_contacts(const narc_pairs *pairs, narc_index_column run, narc_contact *rows, size_t count);
 NARC_API size_t narc_merge_manifolds(const narc_pairs *pairs, narc_index_column run, narc_manifold *rows, size_t count);

@@ -23,7 +23,7 @@ static const uint64_t golden[BUILDERS] = {
     0x19d216eacbbdc8e8u, 0xbc49f8946e15cd80u, 0x281bfae381ac007fu, 0xade32b2c6f131b14u, 0x3294aeac499b4ddcu,
     0xffd05cbd707cf129u, 0xc2f482952a4c9808u, 0x1e27dd554ac4b776u, 0xb94ba0f8df1204c1u, 0x391432fe6bacf207u};
 
-static const uint64_t golden_unions = 0xa19967682e62241cu, golden_chains = 0x697abfde13aa36c2u;
+static const uint64_t golden_unions = 0xa19967682e62241cu, golden_chains = 0x446266cd7997f769u;
 
 /* Of each builder. An ellipse takes much longer than the others. */
 static size_t shapes_of(enum builder builder) { return builder == ELLIPSE ? 24 : 300; }
@@ -94,7 +94,7 @@ static uint64_t hash_stored(uint64_t hash, const narc_shapes *shapes) {
     hash = test_hash(hash, bytes, sizeof bytes);
     hash = test_hash_items(hash, &header->bound_x, 6, sizeof(float));
     hash = test_hash_items(hash, records, angles * NARC_RECORD_ANGLES, sizeof(int16_t));
-    return test_hash_items(hash, &records[angles], header->count * 8u, sizeof(float)); /* the arcs */
+    return test_hash_items(hash, &records[angles], (narc_count_records(header) - angles) * 8, sizeof(float));
 }
 
 /* What is told of a list of arcs and of the stored shape. */
