@@ -68,9 +68,10 @@ bool fill_dem(dem *d, const Packing &packing, const narc_lammps::Form forms[2], 
     dem_material material = {};
     std::snprintf(material.name, sizeof material.name, "stone");
     material.density = 1;
-    uint8_t stone = 0;
+    const uint8_t stone = 0;
     uint32_t shapes[2] = {0, 0};
-    bool good = dem_create(d, settings) && dem_add_material(d, material, &stone);
+    bool good = dem_create(d, settings);
+    d->materials[d->material_count++] = material;
     dem_contact_law contact = {};
     contact.kn = law.kn;
     contact.kt = law.kt;
@@ -78,7 +79,7 @@ bool fill_dem(dem *d, const Packing &packing, const narc_lammps::Form forms[2], 
     contact.gamma_t = law.gamma_t;
     contact.damping_ratio = -1;
     contact.friction = law.friction;
-    dem_set_law(d, stone, stone, contact);
+    d->laws[stone][stone] = contact;
     for (int k = 0; k < 2; k++)
         good = good && dem_add_shape(d, forms[k].name.c_str(), forms[k].parts[0].arcs.data(),
                                      forms[k].parts[0].arcs.size(), &shapes[k]);
