@@ -174,12 +174,13 @@ INLINE void list_gaps(const struct call *call, const struct queue *queue, int k,
     for (int lane = 0; lane < V_WIDTH; lane++) {
         const narc_row_list *const list = &rows->out.lists[kept >> lane & 1 ? pair[lane] : 0];
         const bool has_room = (kept >> lane & 1) && list->count < list->room;
-        place[lane] = has_room ? rows->out.base + (list->first + list->count) * rows->out.stride : rows->spare;
+        const ptrdiff_t next = (ptrdiff_t)list->first + (ptrdiff_t)list->count;
+        place[lane] = has_room ? rows->out.base + next * rows->out.stride : rows->spare;
     }
     write_gaps(call, queue, k, gap, place);
     for (uint32_t lanes = kept; lanes; lanes &= lanes - 1) {
         narc_row_list *const list = &rows->out.lists[pair[FIND_LOWEST(lanes)]];
-        char *const first = rows->out.base + list->first * rows->out.stride;
+        char *const first = rows->out.base + (ptrdiff_t)list->first * rows->out.stride;
         if (list->count == list->room)
             continue;
         if (call->batch->manifolds)
