@@ -223,17 +223,46 @@ static double find_leaving(const struct scene *scene, int arc, double goal, plac
     return time >= 0 && may_touch(scene, arc, then) ? time : INFINITY;
 }
 
+/* The bodies' bounding circles: from the ground's to the body's, and the sum of their radii. */
+static place find_circles(const struct scene *scene, double *out_size) {
+    place center[2];
+    *out_size = 0;
+    for (int side = 0; side < 2; side++) {
+        const struct body_frame *const frame = side ? &scene->body : &scene->ground;
+        const narc_shape_header *const header = frame->header;
+        const place own = turn_to_world(frame, (place){(double)header->bound_x, (double)header->bound_y});
+        center[side] = (place){frame->position.x + frame->scale * own.x, frame->position.y + frame->scale * own.y};
+        *out_size += frame->scale * (double)header->bound_radius;
+    }
+    return (place){center[1].x - center[0].x, center[1].y - center[0].y};
+}
+
+/* Is a contact told? What is apart by its circles has none with a separation below 0 (piece/concave.inl). */
+static bool is_told(const struct scene *scene, double separation, double target) {
+    double size;
+    const place between = find_circles(scene, &size);
+    return separation <= target && (separation >= 0 || find_dot(between, between) <= size * size);
+}
+
+/* When do the circles come to meet? */
+static double find_meeting(const struct scene *scene, place motion) {
+    double size;
+    const place from = find_circles(scene, &size);
+    const double square = find_dot(motion, motion), across = find_cross(from, motion);
+    return (-find_dot(from, motion) - sqrt(size * size * square - across * across)) / square;
+}
+
 /* When does an arc that moves along a line come to be where it may touch, and is beyond the target then? It has come
  * past an end. */
-static double find_entering(const struct scene *scene, int arc, double target, place motion) {
+static double find_entering(const struct scene *scene, int arc, double target, place motion, double meeting) {
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place u = find_way(scene, arc),
                 start = turn_to_world(&scene->body, (place){(double)stored->start_x, (double)stored->start_y}),
                 end = turn_to_world(&scene->body, (place){(double)stored->end_x, (double)stored->end_y});
     const place sides[4] = {scene->arc.start, scene->arc.end, start, end};
     double least = INFINITY;
-    for (int k = 0; k < 4; k++) {
-        const double time = -find_cross(sides[k], u) / find_cross(sides[k], motion) + JUST_BEHIND;
+    for (int k = 0; k < 5; k++) {
+        const double time = (k < 4 ? -find_cross(sides[k], u) / find_cross(sides[k], motion) : meeting) + JUST_BEHIND;
         struct scene then = *scene;
         struct nearest nearest = {.separation = INFINITY};
         if (!(time >= 0 && time < least))
@@ -241,7 +270,7 @@ static double find_entering(const struct scene *scene, int arc, double target, p
         then.body.position.x += time * motion.x;
         then.body.position.y += time * motion.y;
         compare_arc(&then, arc, &nearest);
-        least = nearest.separation <= target ? time : least;
+        least = is_told(&then, nearest.separation, target) ? time : least;
     }
     return least;
 }
@@ -251,11 +280,12 @@ static int cast_straight(const narc_shapes *shapes, narc_casts *casts, size_t sl
     const place motion = {sign * casts->motion_x[slot], sign * casts->motion_y[slot]};
     struct scene scene = place_scene(shapes, casts, slot, side, 0);
     struct nearest nearest = find_nearest(&scene, false);
-    double least = nearest.separation <= target ? 0 : INFINITY;
+    const double meeting = find_meeting(&scene, motion);
+    double least = is_told(&scene, nearest.separation, target) ? 0 : INFINITY;
     for (int arc = 0; arc < scene.body.header->count; arc++) {
         const double goal = scene.arc.radius - get_radius(&scene, arc) - target;
         least = find_least(least, find_leaving(&scene, arc, goal, motion));
-        least = find_least(least, find_entering(&scene, arc, target, motion));
+        least = find_least(least, find_entering(&scene, arc, target, motion, meeting));
     }
     if (!(least <= 1))
         return NARC_CAST_MISS;

@@ -427,4 +427,43 @@ static void fly_all(const char *name, bool turns) {
 TEST(test_straight_flights) { fly_all("straight flights", false); }
 TEST(test_turning_flights) { fly_all("turning flights", true); }
 
+/* A concave arc that stands alone, and bodies beside and behind it of which an arc comes into its sector: they hit where
+ * something is told, and not while their circles are apart. */
+TEST(test_flights_past_a_concave_arc) {
+    struct test_random random = test_random_named("past a concave arc");
+    size_t hits = 0;
+    for (size_t round = 0; round < test_trials(600); round++) {
+        struct setting *s = calloc(1, sizeof *s);
+        const double turn = random_log_between(&random, 0.02, 1.5), radius = random_log_between(&random, 0.3, 3);
+        struct turtle t = create_turtle(0, 0, TEST_PI / 2 + turn / 2);
+        s->store = empty_store();
+        walk_arc(&t, radius, -turn);
+        take_turtle(s, &t, false);
+        assert_true(add_chain(s));
+        for (int k = 0; k < 20; k++) {
+            choose_body(&random, s, 1);
+            const double size = (double)s->mover.scale, way = random_between(&random, 0, 3) * size,
+                         along = random_between(&random, -TEST_PI, TEST_PI);
+            const double beside =
+                             turn * random_between(&random, -0.5, 0.5) + size / radius * random_between(&random, -2, 2),
+                         from = beside - TEST_PI / 2, far = radius + size * random_between(&random, -2, 2);
+            const struct flight flight = {(float)(way * cos(along)), (float)(way * sin(along)), 0};
+            s->mover.x = s->arcs[0].center_x + far * cos(from);
+            s->mover.y = s->arcs[0].center_y + far * sin(from);
+            const narc_impact hit = cast(s, &flight, 0, random_below(&random, 2));
+            if (hit.count != NARC_CAST_HIT || hit.fraction == 0)
+                continue;
+            const struct body then = move_body(&s->mover, &flight, (double)hit.fraction),
+                              next = move_body(&s->mover, &flight, (double)hit.fraction + 2e-4);
+            hits++;
+            if (!(fmin(find_deepest(s, &then, 1e-5), find_deepest(s, &next, 1e-5)) < INFINITY))
+                fail_msg("round %zu: met at %g with separation %g, but nothing is told there", round,
+                         (double)hit.fraction, (double)hit.separation);
+        }
+        narc_destroy_shapes(s->store);
+        free(s);
+    }
+    assert_true(hits > test_trials(300));
+}
+
 TEST_MAIN("ground_casts")
