@@ -3,6 +3,7 @@
 
   python3 grains.py draw FRAME.vtk PICTURE [--color FIELD|none] [--top VALUE] [--no-forces]
                     [--region LOW_X LOW_Y HIGH_X HIGH_Y] [--width INCHES]
+  python3 grains.py strain BEFORE AFTER PICTURE [--top VALUE]    shear strain between two frames of grains: bands
   python3 grains.py contacts CONTACTS.vtk ...    fabric, anisotropy, distribution of forces
   python3 grains.py average TABLE [--from TIME]  means of the columns, and how well they are known
   python3 grains.py repose GRAINS --half WIDTH   angle of repose on a table that wide on either side
@@ -243,6 +244,38 @@ def draw(path, out, color="speed", top=None, region=None, width=8, forces=True, 
     pyplot.close(figure)
 
 
+def find_strain(before, after, triangles):
+    """Of each triangle of points how much longer it has become one way than across: the logarithm of the ratio of its
+    principal stretches."""
+    sides = [points[triangles[:, 1:]] - points[triangles[:, :1]] for points in (before, after)]
+    stretches = np.linalg.svd(np.linalg.solve(*sides), compute_uv=False)
+    return np.log(stretches[:, 0] / stretches[:, 1])
+
+
+def draw_strain(before, after, out, top=None, width=6, dpi=110):
+    """Shear strain between grains' centres, a mean around each grain. Triangles
+    along the rim that are much longer than others are left out."""
+    pyplot = open_plots()
+    from matplotlib.tri import Triangulation
+
+    tables = [read_table(path) for path in (before, after)]
+    places = [np.transpose([table["x"], table["y"]]) for table in tables]
+    triangles = Triangulation(*places[0].T).triangles
+    sides = np.linalg.norm(places[0][triangles] - places[0][np.roll(triangles, 1, axis=1)], axis=2).max(axis=1)
+    triangles = triangles[sides < 3 * np.median(sides)]
+    strain, count = find_strain(*places, triangles), len(places[0])
+    sums, around = [np.bincount(triangles.ravel(), np.repeat(w, 3), count) for w in (strain, np.ones(len(strain)))]
+    means = sums / np.maximum(around, 1)
+    (low_x, low_y), (high_x, high_y) = places[1].min(0), places[1].max(0)
+    figure = pyplot.figure(figsize=(width, width * (high_y - low_y) / (high_x - low_x)))
+    axes = figure.add_axes([0, 0, 1, 1], xlim=(low_x, high_x), ylim=(low_y, high_y), aspect="equal")
+    axes.axis("off")
+    axes.tripcolor(Triangulation(*places[1].T, triangles), means, shading="gouraud", cmap="YlOrRd",
+                   clim=(0, top or np.quantile(means, 0.98)))
+    figure.savefig(out, dpi=dpi)
+    pyplot.close(figure)
+
+
 # ----------------------------------------------------------------------------------------------- the command
 
 
@@ -276,6 +309,11 @@ def main():
     one.add_argument("--region", type=float, nargs=4)
     one.add_argument("--width", type=float, default=8)
     one.add_argument("--no-forces", dest="forces", action="store_false")
+    one = commands.add_parser("strain")
+    one.add_argument("before")
+    one.add_argument("after")
+    one.add_argument("out")
+    one.add_argument("--top", type=float)
     commands.add_parser("contacts").add_argument("paths", nargs="+")
     one = commands.add_parser("average")
     one.add_argument("table")
@@ -287,6 +325,8 @@ def main():
     command = options.pop("command")
     if command == "draw":
         draw(**options)
+    elif command == "strain":
+        draw_strain(**options)
     elif command == "contacts":
         print_contacts(options["paths"])
     elif command == "average":

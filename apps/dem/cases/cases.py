@@ -2,8 +2,8 @@
 """python3 cases.py PROGRAM FOLDER [--sand SHAPES] [--jobs N] CASE ...: runs cases of apps/dem/README.md and tells what
 they found; inputs, tables and pictures go to FOLDER. --small PROGRAM FOLDER CASE: a small version, which must be right.
 --lammps NARC_LAMMPS: LAMMPS runs them, by the inputs of apps/lammps/cases, from the grains that PROGRAM places.
-CASE is one of the functions below: rolling, collision, sand (with --sand), pile, biaxial, hopper, packing,
-angularity, flow, drum; or all."""
+CASE is one of the functions below: rolling, collision, sand (with --sand), pile, biaxial, band, hopper,
+packing, angularity, flow, drum; or all."""
 import argparse
 import concurrent.futures
 import json
@@ -357,6 +357,14 @@ def biaxial(cases):
                     region=[-22, -22, -6, -12.7])
 
 
+def band(cases):
+    """A larger biaxial test, of grains that interlock: it fails along bands."""
+    shapes, begin = (cases.sand, "") if cases.sand else (SHAPES, "square")
+    cases.tell("band: angle of friction %.1f" % run_biaxial(cases, "band", shapes, begin, 0.5, 5000)[2])
+    frames = find_frames(os.path.join(cases.folder, "band"), "biaxial")
+    grains.draw_strain(frames[70], frames[-1], os.path.join(cases.folder, "band.png"))
+
+
 # ----------------------------------------------------------------------------------------------- shapes
 
 
@@ -499,12 +507,15 @@ def drum(cases):
 # ----------------------------------------------------------------------------------------------- hoppers
 
 
-def run_hopper(cases, opening):
+def run_hopper(cases, kind, opening):
     """The mass that crosses the periodic border below the opening in a unit of time, over the last two thirds."""
 
     def change(world):
         walls = {wall["name"]: wall for wall in world["walls"]}
         walls["left_bottom"]["at"][0], walls["right_bottom"]["at"][0] = -10.5 - opening / 2, 10.5 + opening / 2
+        world["grains"][0]["shapes"] = [kind]
+        if kind == "long":  # they need more room before they fall
+            world["grains"][0].update(count=1400, spacing=[1.5, 1.5])
         if not cases.small:
             return
         walls["left"]["plate"]["point"][0], walls["right"]["plate"]["point"][0] = -16, 16
@@ -513,7 +524,7 @@ def run_hopper(cases, opening):
         world["contact"]["kn"], world["time_step"], world["max_overlap"] = 5000, 0.0014, 0.3
         world["stages"][0]["duration"], world["output"]["every"] = 90, 1
 
-    folder, world = cases.run("hopper", "hopper-%g" % opening, change)
+    folder, world = cases.run("hopper", "hopper-%s-%g" % (kind, opening), change)
     frames = find_frames(folder, "hopper")
     last, first = len(frames) - 1, (len(frames) - 1) // 3
     tables = [read_frame(frames[k]) for k in (first, last)]
@@ -524,20 +535,25 @@ def run_hopper(cases, opening):
 def hopper(cases):
     """Beverloo's law in two dimensions, W = c (D - k d)^(3/2): W^(2/3) is a line over D. And the slope of log W over
     log(D - 1.4 d), with the k that Beverloo found."""
-    openings = np.array([5, 6.5, 8.5] if cases.small else [6, 8, 10, 13])
-    flow = np.array(list(cases.pool.map(lambda opening: run_hopper(cases, opening), openings)))
-    slope, height = np.polyfit(openings, flow ** (2 / 3), 1)
-    k = -height / slope
-    scatter = abs(flow / (slope * (openings - k)) ** 1.5 - 1).max()
-    exponent = np.polyfit(np.log(openings - 1.4), np.log(flow), 1)[0]
-    cases.tell("hopper: k %.2f, c %.3f, scatter %.3f, exponent with k = 1.4: %.2f" % (k, slope**1.5, scatter, exponent),
-               0 < k < 2.5, scatter < 0.15, 1.25 < exponent < 1.75)
-    if cases.small:
+    # Long grains close an opening of 6 with an arch.
+    kinds = {"disc": [5, 6.5, 8.5]} if cases.small else {"disc": [6, 8, 10, 13], "long": [8, 10, 13, 16]}
+    runs = {kind: [cases.pool.submit(run_hopper, cases, kind, opening) for opening in openings]
+            for kind, openings in kinds.items()}
+    figure, axes = (None, None) if cases.small else grains.open_plots().subplots(figsize=(5, 3.8))
+    for kind, openings in kinds.items():
+        flow, openings = np.array([run.result() for run in runs[kind]]), np.array(openings)
+        slope, height = np.polyfit(openings, flow ** (2 / 3), 1)
+        k = -height / slope
+        scatter = abs(flow / (slope * (openings - k)) ** 1.5 - 1).max()
+        exponent = np.polyfit(np.log(openings - 1.4), np.log(flow), 1)[0]
+        cases.tell("hopper, %s: k %.2f, c %.3f, scatter %.3f, exponent with k = 1.4: %.2f"
+                   % (kind, k, slope**1.5, scatter, exponent), 0 < k < 2.5, scatter < 0.15, 1.25 < exponent < 1.75)
+        if axes:
+            axes.plot([k, 20], [0, slope * (20 - k)], color="#999999")
+            axes.plot(openings, flow ** (2 / 3), "o", label="%s: %.2f (D - %.2f)" % (kind, slope, k))
+    if not axes:
         return
-    figure, axes = grains.open_plots().subplots(figsize=(5, 3.8))
-    axes.plot([k, 16], [0, slope * (16 - k)], color="#999999", label="%.2f (D - %.2f)" % (slope, k))
-    axes.plot(openings, flow ** (2 / 3), "o", label="flow of discs")
-    axes.set(xlabel="opening, grains", ylabel="flow^(2/3)", xlim=(0, 16), ylim=(0, None))
+    axes.set(xlabel="opening, grains", ylabel="flow^(2/3)", xlim=(0, 20), ylim=(0, None))
     axes.legend()
     cases.save(figure, "hopper.png")
 
@@ -546,8 +562,8 @@ def hopper(cases):
 
 
 def main():
-    known = {case.__name__: case for case in (rolling, collision, sand, pile, biaxial, hopper, packing, angularity,
-                                              flow, drum)}
+    known = {case.__name__: case for case in (rolling, collision, sand, pile, biaxial, band, hopper, packing,
+                                              angularity, flow, drum)}
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("--small", action="store_true")
     parser.add_argument("--sand", help="a file of fitted grains")

@@ -109,6 +109,12 @@ def check_measures():
     frame = {"points": np.concatenate([circle, circle + (1, 0)]), "cells": np.split(np.arange(1440), 2),
              "fields": {"wall": np.array([0, 1])}}  # what walls cover does not count
     assert abs(grains.find_packing_fraction(frame, [-0.5, 0, 1, 0.5]) - math.pi * 0.3**2 / 2 / 0.75) < 1e-3
+    turn = np.array([[math.cos(1), -math.sin(1)], [math.sin(1), math.cos(1)]])
+    before, triangles = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]), np.array([[0, 1, 2], [0, 2, 3]])
+    after = before @ np.diag([3, 1.5]) @ turn + (5, 6)
+    assert np.allclose(grains.find_strain(before, after, triangles), math.log(2))
+    sheared = before @ [[1, 0], [0.2, 1]]  # an angle by which lines shear is 2 sinh(half of it)
+    assert np.allclose(grains.find_strain(before, sheared, triangles), 2 * math.asinh(0.1))
     x = np.linspace(-1, 1, 4001)
     left, right = grains.find_repose(x, np.where(x < 0, 1 + 0.5 * x, 1 - 0.25 * x), 0 * x, 1)
     assert abs(left - math.degrees(math.atan(0.5))) < 1 and abs(right - math.degrees(math.atan(0.25))) < 1
@@ -155,6 +161,8 @@ def main(dem):
         with open("drawn.svg", encoding="utf-8") as file:
             svg = file.read()
         assert svg.count("<path") > 83 + 20, svg.count("<path")
+        grains.draw_strain("out-000000.csv", "out-000010.csv", "strain.png")
+        assert os.path.getsize("strain.png") > 1000
 
 
 main(sys.argv[1])
