@@ -427,8 +427,8 @@ static void fly_all(const char *name, bool turns) {
 TEST(test_straight_flights) { fly_all("straight flights", false); }
 TEST(test_turning_flights) { fly_all("turning flights", true); }
 
-/* A concave arc that stands alone, and bodies beside and behind it of which an arc comes into its sector: they hit where
- * something is told, and not while their circles are apart. */
+/* A concave arc that stands alone, and bodies beside and behind it of which an arc comes into its sector: they hit
+ * where something is told, and not while their circles are apart. */
 TEST(test_flights_past_a_concave_arc) {
     struct test_random random = test_random_named("past a concave arc");
     size_t hits = 0;
