@@ -253,8 +253,8 @@ def find_strain(before, after, triangles):
 
 
 def draw_strain(before, after, out, top=None, width=6, dpi=110):
-    """Shear strain between grains' centres, a mean around each grain. Triangles
-    along the rim that are much longer than others are left out."""
+    """Shear strain between grains' centres, a mean around each grain. Triangles along the rim that are much longer
+    than others are left out."""
     pyplot = open_plots()
     from matplotlib.tri import Triangulation
 

@@ -535,13 +535,14 @@ def run_hopper(cases, kind, opening):
 def hopper(cases):
     """Beverloo's law in two dimensions, W = c (D - k d)^(3/2): W^(2/3) is a line over D. And the slope of log W over
     log(D - 1.4 d), with the k that Beverloo found."""
-    # Long grains close an opening of 6 with an arch.
-    kinds = {"disc": [5, 6.5, 8.5]} if cases.small else {"disc": [6, 8, 10, 13], "long": [8, 10, 13, 16]}
+    kinds = {"disc": [5, 6.5, 8.5]} if cases.small else {"disc": [6, 8, 10, 13], "long": [6, 8, 10, 13, 16]}
     runs = {kind: [cases.pool.submit(run_hopper, cases, kind, opening) for opening in openings]
             for kind, openings in kinds.items()}
     figure, axes = (None, None) if cases.small else grains.open_plots().subplots(figsize=(5, 3.8))
     for kind, openings in kinds.items():
         flow, openings = np.array([run.result() for run in runs[kind]]), np.array(openings)
+        cases.tell("hopper, %s: %s" % (kind, ", ".join("%g: %.2f" % both for both in zip(openings, flow))))
+        flow, openings = flow[flow > 0], openings[flow > 0]  # long grains close an opening of 6 with an arch
         slope, height = np.polyfit(openings, flow ** (2 / 3), 1)
         k = -height / slope
         scatter = abs(flow / (slope * (openings - k)) ** 1.5 - 1).max()
