@@ -6,14 +6,7 @@
 
 #include <math.h>
 
-typedef struct vec {
-    double x, y;
-} vec;
-
-static vec add(vec a, vec b) { return (vec){a.x + b.x, a.y + b.y}; }
-static vec subtract(vec a, vec b) { return (vec){a.x - b.x, a.y - b.y}; }
-static vec scale(double s, vec a) { return (vec){s * a.x, s * a.y}; }
-static double dot(vec a, vec b) { return a.x * b.x + a.y * b.y; }
+#include "vec.h"
 
 /* An edge that is shorter than this share of the outline is none that another can lie on. */
 static const double LEAST_EDGE = 1e-4;
@@ -31,7 +24,7 @@ void make_touch_sides(const narc_arc *arcs, size_t count, touch_side *out_sides)
         if (count > 1 && length > LEAST_EDGE * size) {
             const double along = (before->radius - arc->radius) / dot(u, u);
             length = sqrt(fmax(dot(u, u) - along * along * dot(u, u), 0));
-            n = add(scale(along, u), scale(length / dot(u, u), (vec){u.y, -u.x}));
+            n = plus(times(along, u), times(length / dot(u, u), (vec){u.y, -u.x}));
         } else {
             length = 0;
         }
@@ -55,13 +48,11 @@ typedef struct edge {
     double height, length; /* its line is where normal.p = height */
 } edge;
 
-static vec turn(const touch_grain *g, double x, double y) {
-    return (vec){g->cosine * x - g->sine * y, g->sine * x + g->cosine * y};
-}
+static vec turn(const touch_grain *g, double x, double y) { return rotate((vec){g->cosine, g->sine}, (vec){x, y}); }
 
 static circle place_circle(const touch_grain *g, vec centre, size_t i) {
     const touch_side *s = &g->sides[i];
-    return (circle){add(centre, scale(g->scale, turn(g, s->x, s->y))), g->scale * s->radius};
+    return (circle){plus(centre, times(g->scale, turn(g, s->x, s->y))), g->scale * s->radius};
 }
 
 static edge place_edge(const touch_grain *g, vec centre, size_t i) {
@@ -78,7 +69,7 @@ static edge place_edge(const touch_grain *g, vec centre, size_t i) {
 /* An arc over the edge of the other one: of A if `is_b` is not set. */
 static touch_end meet_edge(circle c, edge e, bool is_b) {
     const double depth = e.height + c.radius - dot(e.normal, c.at), sign = is_b ? 1 : -1;
-    const vec p = add(c.at, scale(0.5 * depth - c.radius, e.normal));
+    const vec p = plus(c.at, times(0.5 * depth - c.radius, e.normal));
     return (touch_end){p.x, p.y, sign * e.normal.x, sign * e.normal.y, depth, 1};
 }
 
@@ -92,23 +83,23 @@ static double find_weight(double length, double edge_length, double *out_slope) 
 }
 
 /* Where an edge meets one of its arcs. */
-static vec find_junction(circle c, edge e) { return add(c.at, scale(c.radius, e.normal)); }
+static vec find_junction(circle c, edge e) { return plus(c.at, times(c.radius, e.normal)); }
 
 /* Edges of A and B that face each other, and the end of their common stretch that is deepest: `first`. It is the low
  * one where A's edge begins and B's ends. */
 static void meet_sides(edge a, edge b, bool low, touch_end first, touch *out) {
     const vec near_a = find_junction(low ? a.first : a.last, a), near_b = find_junction(low ? b.last : b.first, b);
     const vec far_a = find_junction(low ? a.last : a.first, a), far_b = find_junction(low ? b.first : b.last, b);
-    const vec along_a = scale(low ? 1 : -1, (vec){-a.normal.y, a.normal.x});
-    const vec along_b = scale(low ? -1 : 1, (vec){-b.normal.y, b.normal.x});
+    const vec along_a = times(low ? 1 : -1, (vec){-a.normal.y, a.normal.x});
+    const vec along_b = times(low ? -1 : 1, (vec){-b.normal.y, b.normal.x});
     /* The straight stretch goes from the near junction that is further inwards to the nearer one of the far ones. */
-    const bool begin_is_b = dot(subtract(near_b, near_a), along_a) > 0;
-    const bool end_is_b = dot(subtract(far_b, far_a), along_a) < 0;
+    const bool begin_is_b = dot(minus(near_b, near_a), along_a) > 0;
+    const bool end_is_b = dot(minus(far_b, far_a), along_a) < 0;
     const vec begin = begin_is_b ? near_b : near_a, along = end_is_b ? along_b : along_a;
     touch_end second = end_is_b ? meet_edge((circle){far_b, 0}, a, true) : meet_edge((circle){far_a, 0}, b, false);
     double weight = 1, slope = 0;
     if (begin_is_b != end_is_b) /* else it is an edge, whose length never changes */
-        weight = find_weight(dot(subtract(end_is_b ? far_b : far_a, begin), along), fmin(a.length, b.length), &slope);
+        weight = find_weight(dot(minus(end_is_b ? far_b : far_a, begin), along), fmin(a.length, b.length), &slope);
     if (!(first.depth > 0 && second.depth > 0 && weight > 0)) {
         put_point(first, out);
         return;
@@ -131,9 +122,9 @@ static void meet_sides(edge a, edge b, bool low, touch_end first, touch *out) {
 static void meet_edges(edge a, edge b, touch *out) {
     const vec t = {-a.normal.y, a.normal.x};
     const touch_end low =
-        dot(subtract(b.last.at, a.first.at), t) > 0 ? meet_edge(b.last, a, true) : meet_edge(a.first, b, false);
+        dot(minus(b.last.at, a.first.at), t) > 0 ? meet_edge(b.last, a, true) : meet_edge(a.first, b, false);
     const touch_end high =
-        dot(subtract(b.first.at, a.last.at), t) < 0 ? meet_edge(b.first, a, true) : meet_edge(a.last, b, false);
+        dot(minus(b.first.at, a.last.at), t) < 0 ? meet_edge(b.first, a, true) : meet_edge(a.last, b, false);
     if (low.depth >= high.depth)
         meet_sides(a, b, true, low, out);
     else

@@ -11,13 +11,6 @@
 
 #include "dem.h"
 
-enum { ERROR_SIZE = 512 };
-
-static bool fail_file(const char *path, char *error) {
-    snprintf(error, ERROR_SIZE, "%.400s: %s", path, strerror(errno));
-    return false;
-}
-
 char *dem_read_file(const char *path, size_t *out_size, char *error) {
     FILE *file = fopen(path, "rb");
     char *bytes = NULL;
@@ -31,7 +24,7 @@ char *dem_read_file(const char *path, size_t *out_size, char *error) {
         size += got;
     }
     if (got > 0 || !file || ferror(file)) {
-        snprintf(error, ERROR_SIZE, "%.400s: it cannot be read: %s", path, strerror(errno));
+        snprintf(error, 512, "%.400s: it cannot be read: %s", path, strerror(errno));
         free(bytes);
         bytes = NULL;
     } else {
@@ -43,26 +36,18 @@ char *dem_read_file(const char *path, size_t *out_size, char *error) {
     return bytes;
 }
 
-static void forget(dem_file *out) {
-    free(out->target);
-    free(out->temporary);
-    *out = (dem_file){0};
-}
-
-/* The temporary file is beside its target, and has the permissions of the file that it will replace. rename() would
- * replace one that may not be written to, and root may write to all. */
+/* Beside its target, with the permissions of the file that it will replace, if there is one. rename() would replace one
+ * that may not be written to, and root may write to all. */
 static FILE *open_temporary(dem_file *out, const struct stat *old) {
     const char *slash = strrchr(out->target, '/');
-    const size_t folder = slash ? (size_t)(slash - out->target) + 1 : 0;
+    const int folder = slash ? (int)(slash - out->target) + 1 : 0;
+    const size_t size = (size_t)folder + sizeof ".narc-XXXXXX"; /* short: the target's name may be as long as can be */
     const mode_t mask = umask(0);
     umask(mask);
     errno = old && !(old->st_mode & 0222) ? EACCES : 0;
-    if (errno || (old && access(out->target, W_OK) != 0))
+    if (errno || (old && access(out->target, W_OK) != 0) || !(out->temporary = malloc(size)))
         return NULL;
-    if (!(out->temporary = malloc(folder + sizeof ".narc-XXXXXX")))
-        return NULL;
-    memcpy(out->temporary, out->target, folder);
-    strcpy(out->temporary + folder, ".narc-XXXXXX"); /* short: the target's may be as long as can be */
+    snprintf(out->temporary, size, "%.*s.narc-XXXXXX", folder, out->target);
     const int descriptor = mkstemp(out->temporary);
     if (descriptor < 0)
         return NULL;
@@ -70,36 +55,31 @@ static FILE *open_temporary(dem_file *out, const struct stat *old) {
     return fdopen(descriptor, "wb");
 }
 
-bool dem_open_file(dem_file *out, const char *path, char *error) {
+bool dem_open_file(dem *d, dem_file *out, const char *path) {
     struct stat old;
     const bool exists = stat(path, &old) == 0;
-    *out = (dem_file){.path = path};
-    if (exists && !S_ISREG(old.st_mode)) { /* a device would be replaced by a file */
-        snprintf(error, ERROR_SIZE, "%.400s: it is there, and is not a file", path);
-        return false;
-    }
-    out->target = exists ? realpath(path, NULL) : strdup(path); /* a symbolic link stays one */
-    if (out->target)
-        out->file = open_temporary(out, exists ? &old : NULL);
-    if (out->file)
+    if (exists && !S_ISREG(old.st_mode)) /* a device would be replaced by a file */
+        return dem_fail(d, "%.400s: it is there, and is not a file", path);
+    *out = (dem_file){.path = path, .target = exists ? realpath(path, NULL) : strdup(path)}; /* a link stays one */
+    if (out->target && (out->file = open_temporary(out, exists ? &old : NULL)) != NULL)
         return true;
-    fail_file(path, error);
-    forget(out);
+    dem_fail(d, "%.400s: %s", path, strerror(errno));
+    free(out->target);
+    free(out->temporary);
     return false;
 }
 
-bool dem_close_file(dem_file *out, bool ok, char *error) {
+bool dem_close_file(dem *d, dem_file *file) {
     errno = 0;
-    const bool flushed = fflush(out->file) == 0, written = flushed && !ferror(out->file);
+    const bool written = fflush(file->file) == 0 && !ferror(file->file);
     const int reason = errno ? errno : EIO; /* an error that was earlier than the last flush has left none */
-    const bool closed = fclose(out->file) == 0;
-    const bool done = ok && written && closed && rename(out->temporary, out->target) == 0;
-    if (ok && !done) {
-        errno = written ? errno : reason;
-        fail_file(out->path, error);
+    const bool closed = fclose(file->file) == 0;
+    const bool ok = written && closed && rename(file->temporary, file->target) == 0;
+    if (!ok) {
+        dem_fail(d, "%.400s: %s", file->path, strerror(written ? errno : reason));
+        unlink(file->temporary);
     }
-    if (!done)
-        unlink(out->temporary);
-    forget(out);
-    return done;
+    free(file->target);
+    free(file->temporary);
+    return ok;
 }

@@ -23,8 +23,8 @@ void *dem_allocate(size_t count, size_t size) {
 
 /* ------------------------------------------------------------------------------------------------ materials */
 
-uint8_t dem_find_material(const json_value *name, const dem *d) {
-    return (uint8_t)json_find(name, d->materials, d->material_count, sizeof *d->materials, "is not a material");
+uint32_t dem_find_material(const json_value *name, const dem *d) {
+    return (uint32_t)json_find(name, d->materials, d->material_count, sizeof *d->materials, "is not a material");
 }
 
 static void read_materials(const json_value *list, dem *d) {
@@ -104,10 +104,10 @@ static void read_contact(const json_value *contact, dem *d) {
     read_law(contact, d->settings.law, &common, &pairs);
     for (size_t a = 0; a < d->material_count; a++)
         for (size_t b = a; b < d->material_count; b++)
-            dem_set_law(d, (uint8_t)a, (uint8_t)b, common);
+            dem_set_law(d, (uint32_t)a, (uint32_t)b, common);
     for (json_value item = {0}; json_next(&pairs, &item);) {
         dem_contact_law law = common;
-        uint8_t index[2];
+        uint32_t index[2];
         json_require(&item, "materials");
         json_refuse(&item, "law pairs", "is not for a pair");
         read_law(&item, d->settings.law, &law, &names);
@@ -214,7 +214,7 @@ static void read_output(const json_value *object, const dem *d, dem_input *input
 /* ------------------------------------------------------------------------------------------------ the whole */
 
 static void read_boundary(const json_value *boundary, dem_settings *s) {
-    dem_vec x = {0, 0}, y = {0, 0};
+    vec x = {0, 0}, y = {0, 0};
     json_read(boundary, (json_key[]){{"x", PAIR, &x}, {"y", PAIR, &y}, {"shear", NUMBER, &s->shear}, {NULL}});
     s->sheared = json_has(boundary, "shear");
     s->periodic_x = json_has(boundary, "x");
@@ -223,10 +223,8 @@ static void read_boundary(const json_value *boundary, dem_settings *s) {
         json_refuse(boundary, "x", "is not a range [low, high]");
     if (!(y.y > y.x))
         json_refuse(boundary, "y", "is not a range [low, high]");
-    s->low_x = x.x;
-    s->high_x = x.y;
-    s->low_y = y.x;
-    s->high_y = y.y;
+    s->low = (vec){x.x, y.x};
+    s->high = (vec){x.y, y.y};
 }
 
 /* The file of shapes is named from the input's folder. */

@@ -11,7 +11,7 @@
 typedef struct dem_wall_change {
     size_t wall;
     bool sets_velocity, sets_spin, sets_servo;
-    dem_vec velocity;
+    vec velocity;
     double spin;
     dem_servo servo;
 } dem_wall_change;
@@ -20,7 +20,7 @@ typedef struct dem_stage {
     char name[DEM_NAME_SIZE];
     uint64_t steps;
     bool sets_gravity, sets_friction, sets_shear;
-    dem_vec gravity;
+    vec gravity;
     double friction; /* of all contacts */
     double shear;
     dem_wall_change *changes;
@@ -58,7 +58,7 @@ void dem_read_grains(const json_value *list, dem *d, uint64_t *random);
 void dem_read_changes(const json_value *walls, const dem *d, bool *has_servo, dem_stage *stage);
 void dem_apply_change(dem *d, const dem_wall_change *change);
 
-uint8_t dem_find_material(const json_value *name, const dem *d);
+uint32_t dem_find_material(const json_value *name, const dem *d);
 void *dem_allocate(size_t count, size_t size); /* zeros, or the program ends */
 
 /* Ends the program with the world's error, which came from this value. */

@@ -97,12 +97,12 @@ static dem_servo read_servo(const json_value *value, const dem *d, size_t wall) 
                                   {"max_speed", MUST | POSITIVE, &servo.max_speed},
                                   {"travel", POSITIVE, &servo.travel},
                                   {NULL}});
-    const dem_vec normal = d->walls[wall].normal;
+    const vec normal = d->walls[wall].normal;
     const double length = hypot(servo.direction.x, servo.direction.y);
     if (!(length > 0))
         json_refuse(value, "direction", "has no length");
     servo.on = true;
-    servo.direction = (dem_vec){servo.direction.x / length, servo.direction.y / length};
+    servo.direction = (vec){servo.direction.x / length, servo.direction.y / length};
     if (d->walls[wall].kind == DEM_PLATE &&
         fabs(servo.direction.x * normal.x + servo.direction.y * normal.y) < LEAST_ACROSS)
         json_refuse(value, "direction", "runs along the plate, which has no ends");
@@ -259,7 +259,7 @@ static double find_deviations(const dem_sizes *sizes, double size) {
 static dem_sizes read_sizes(const json_value *item) {
     dem_sizes sizes = {.kind = DEM_FIXED};
     const json_value given = json_member(item, "size"), *value = &given;
-    dem_vec n;
+    vec n;
     if (!cJSON_IsObject(value->item)) {
         json_take(value, (json_key){"size", POSITIVE, &sizes.mean});
         return sizes;
@@ -324,23 +324,18 @@ static void fill(const json_value *item, bool lattice, dem *d, uint64_t *random)
 
 static void read_grain(const json_value *item, dem *d) {
     dem_grain grain = {.angle = 0};
-    dem_vec at, velocity = {0, 0};
     double size;
     json_value shape, material;
     json_read(item, (json_key[]){{"shape", MUST | ANY, &shape},
                                  {"material", MUST | ANY, &material},
-                                 {"at", MUST | PAIR, &at},
+                                 {"at", MUST | PAIR, &grain.place},
                                  {"size", MUST | POSITIVE, &size},
                                  {"angle", NUMBER, &grain.angle, -1e6, 1e6},
-                                 {"velocity", PAIR, &velocity},
+                                 {"velocity", PAIR, &grain.velocity},
                                  {"spin", NUMBER, &grain.spin},
                                  {NULL}});
     grain.shape = find_shape(&shape, d);
     grain.material = dem_find_material(&material, d);
-    grain.x = at.x;
-    grain.y = at.y;
-    grain.vx = velocity.x;
-    grain.vy = velocity.y;
     grain.scale = size / d->shapes[grain.shape].extent;
     if (!dem_add_grain(d, grain))
         dem_fail_at(item, d);

@@ -81,7 +81,7 @@ static void show_run(run *r, const dem_stage *stage) {
     const double left = (now - r->began) * (double)(r->total_steps - r->world.step) / (double)(done > 0 ? done : 1);
     r->shown = now;
     fprintf(stderr, "\r\033[K%s: step %" PRIu64 " of %" PRIu64 ", %zu contacts, %.0f s to go", stage->name,
-            r->world.step, r->total_steps, r->world.contacts.count, left);
+            r->world.step, r->total_steps, r->world.contact_count, left);
     fflush(stderr);
 }
 

@@ -3,7 +3,6 @@
  * place.c - where grains start. A random filling puts grain after grain at a random place with a random angle, and
  * tries again while it would touch: narc_find_contacts() decides, a grid of cells tells whom to ask about.
  */
-
 #include <math.h>
 #include <stdlib.h>
 
@@ -45,8 +44,8 @@ static dem_grain draw_grain(const dem *d, const dem_filling *f, uint64_t *random
     dem_grain grain = {.shape = f->shapes[choice], .material = f->material};
     grain.scale = (double)(float)(dem_draw_size(&f->sizes, random) / d->shapes[grain.shape].extent);
     grain.angle = f->upright ? 0 : draw_between(random, -DEM_PI, DEM_PI);
-    grain.vx = draw_between(random, -f->speed, f->speed);
-    grain.vy = draw_between(random, -f->speed, f->speed);
+    grain.velocity.x = draw_between(random, -f->speed, f->speed);
+    grain.velocity.y = draw_between(random, -f->speed, f->speed);
     grain.spin = draw_between(random, -f->spin, f->spin);
     return grain;
 }
@@ -64,16 +63,16 @@ typedef struct grid {
 static const uint32_t NOBODY = UINT32_MAX;
 
 /* The place of the cell that is so many to the right and up. */
-static uint32_t *find_cell(const grid *g, double x, double y, int right, int up) {
+static uint32_t *find_cell(const grid *g, vec place, int right, int up) {
     const double most = 1e15; /* cells that are further away are one */
-    const int64_t column = (int64_t)fmax(fmin(floor(x / g->width), most), -most) + right;
-    const int64_t row = (int64_t)fmax(fmin(floor(y / g->width), most), -most) + up;
+    const int64_t column = (int64_t)fmax(fmin(floor(place.x / g->width), most), -most) + right;
+    const int64_t row = (int64_t)fmax(fmin(floor(place.y / g->width), most), -most) + up;
     const uint64_t mixed = ((uint64_t)column * 0x9e3779b97f4a7c15 ^ (uint64_t)row) * 0xbf58476d1ce4e5b9;
     return &g->last[mixed >> 32 & g->mask];
 }
 
 static void add_to_grid(const dem *d, grid *g, uint32_t body) {
-    uint32_t *last = find_cell(g, d->bodies.x[body], d->bodies.y[body], 0, 0);
+    uint32_t *last = find_cell(g, d->bodies[body].place, 0, 0);
     g->before[body] = *last;
     *last = body;
 }
@@ -87,8 +86,8 @@ static bool open_grid(dem *d, const dem_filling *f, grid *g) {
     g->width = 2 * reach + f->gap;
     for (g->mask = 255; g->mask < count;)
         g->mask = 2 * g->mask + 1;
-    if (!dem_resize(d, &g->last, (size_t)g->mask + 1, sizeof *g->last) ||
-        !dem_resize(d, &g->before, count, sizeof *g->before))
+    if (!dem_grow(d, &g->last, (size_t)g->mask + 1, sizeof *g->last) ||
+        !dem_grow(d, &g->before, count, sizeof *g->before))
         return false;
     for (size_t i = 0; i <= g->mask; i++)
         g->last[i] = NOBODY;
@@ -97,8 +96,8 @@ static bool open_grid(dem *d, const dem_filling *f, grid *g) {
     return true;
 }
 
-static narc_body make_body(uint32_t shape, double x, double y, double angle, double scale) {
-    narc_body body = {.x = x, .y = y, .scale = (float)scale, .shape = shape};
+static narc_body make_body(uint32_t shape, vec place, double angle, double scale) {
+    narc_body body = {.x = place.x, .y = place.y, .scale = (float)scale, .shape = shape};
     const float turn = (float)angle;
     narc_compute_poses(&turn, 1, &body.cosine, &body.sine, NULL);
     return body;
@@ -124,57 +123,56 @@ static bool is_clear_of(const dem *d, narc_body grain, narc_body other, double g
 }
 
 static bool is_clear_of_grains(const dem *d, const grid *g, double gap, narc_body grain) {
-    const dem_bodies *b = &d->bodies;
+    const vec place = {grain.x, grain.y};
     const double far = (double)grain.scale * d->shapes[grain.shape].reach + gap;
     for (int i = 0; i < 9; i++)
-        for (uint32_t k = *find_cell(g, grain.x, grain.y, i % 3 - 1, i / 3 - 1); k != NOBODY; k = g->before[k]) {
-            const double x = b->x[k] - grain.x, y = b->y[k] - grain.y, most = far + b->reach[k];
-            const narc_body other = {b->x[k],           b->y[k],     (float)b->cosine[k],
-                                     (float)b->sine[k], b->scale[k], b->shape[k]};
-            if (x * x + y * y <= most * most && !is_clear_of(d, grain, other, gap))
+        for (uint32_t k = *find_cell(g, place, i % 3 - 1, i / 3 - 1); k != NOBODY; k = g->before[k]) {
+            const dem_body *b = &d->bodies[k];
+            const vec way = minus(b->place, place);
+            const double most = far + b->reach;
+            const narc_body other = {b->place.x, b->place.y, (float)b->turn.x, (float)b->turn.y, b->scale, b->shape};
+            if (dot(way, way) <= most * most && !is_clear_of(d, grain, other, gap))
                 return false;
         }
-    return true;
-}
-
-static bool is_clear_of_boxes(const dem *d, double gap, narc_body grain) {
-    for (const dem_wall *w = d->walls; w < d->walls + d->wall_count; w++)
-        if (w->kind == DEM_BOX &&
-            !is_clear_of(d, grain, make_body(w->shape, w->place.x, w->place.y, w->angle, w->scale), gap))
-            return false;
     return true;
 }
 
 /* By the supports of its outlines. */
 static bool is_clear_of_plate(const dem *d, const dem_grain *grain, const dem_wall *wall, double gap) {
     const dem_shape *shape = &d->shapes[grain->shape];
-    const double c = cos(grain->angle), s = sin(grain->angle), x = -wall->normal.x, y = -wall->normal.y;
+    const vec down = times(-1, wall->normal), back = {cos(grain->angle), -sin(grain->angle)};
+    const vec direction = rotate(back, down); /* as the shape has it */
     for (uint32_t i = 0; i < shape->outline_count; i++) {
         narc_arc arcs[NARC_MAX_ARCS];
         const size_t count = narc_get_arcs(d->store, shape->first_outline + i, arcs);
         narc_point lowest;
-        narc_find_support(arcs, count, c * x + s * y, c * y - s * x, &lowest, NULL);
-        const double depth = grain->scale * (lowest.x * (c * x + s * y) + lowest.y * (c * y - s * x));
-        if ((grain->x - wall->place.x) * -x + (grain->y - wall->place.y) * -y - depth <= gap)
+        narc_find_support(arcs, count, direction.x, direction.y, &lowest, NULL);
+        const double depth = grain->scale * dot((vec){lowest.x, lowest.y}, direction);
+        if (dot(minus(grain->place, wall->place), wall->normal) - depth <= gap)
             return false;
     }
     return true;
 }
 
+static bool is_clear_of_walls(const dem *d, const dem_grain *grain, narc_body body, double gap) {
+    for (const dem_wall *w = d->walls; w < d->walls + d->wall_count; w++)
+        if (!(w->kind == DEM_PLATE ? is_clear_of_plate(d, grain, w, gap)
+                                   : is_clear_of(d, body, make_body(w->shape, w->place, w->angle, w->scale), gap)))
+            return false;
+    return true;
+}
+
 /* Also of images, and of walls. */
 static bool is_free(const dem *d, const grid *g, double gap, const dem_grain *grain) {
-    const dem_settings *s = &d->settings;
-    narc_body body = make_body(grain->shape, 0, 0, grain->angle, grain->scale);
-    for (int i = s->periodic_x ? -1 : 0; i <= (s->periodic_x ? 1 : 0); i++)
-        for (int j = s->periodic_y ? -1 : 0; j <= (s->periodic_y ? 1 : 0); j++) {
-            body.x = grain->x + i * (s->high_x - s->low_x);
-            body.y = grain->y + j * (s->high_y - s->low_y);
-            if (!is_clear_of_grains(d, g, gap, body) || !is_clear_of_boxes(d, gap, body))
+    const int across = d->settings.periodic_x, up = d->settings.periodic_y;
+    const vec size = dem_cell_size(d);
+    for (int i = -across; i <= across; i++)
+        for (int j = -up; j <= up; j++) {
+            const vec place = {grain->place.x + i * size.x, grain->place.y + j * size.y};
+            const narc_body body = make_body(grain->shape, place, grain->angle, grain->scale);
+            if (!is_clear_of_grains(d, g, gap, body) || !is_clear_of_walls(d, grain, body, gap))
                 return false;
         }
-    for (size_t w = 0; w < d->wall_count; w++)
-        if (d->walls[w].kind == DEM_PLATE && !is_clear_of_plate(d, grain, &d->walls[w], gap))
-            return false;
     return true;
 }
 
@@ -185,8 +183,8 @@ bool dem_fill_randomly(dem *d, const dem_filling *f, uint64_t *random) {
         dem_grain grain = draw_grain(d, f, random);
         uint64_t tries = 0;
         do {
-            grain.x = draw_between(random, f->region.low_x, f->region.high_x);
-            grain.y = draw_between(random, f->region.low_y, f->region.high_y);
+            grain.place.x = draw_between(random, f->region.low.x, f->region.high.x);
+            grain.place.y = draw_between(random, f->region.low.y, f->region.high.y);
             grain.angle = f->upright ? 0 : draw_between(random, -DEM_PI, DEM_PI);
             ok = is_free(d, &g, f->gap, &grain);
         } while (!ok && ++tries < f->tries);
@@ -196,17 +194,16 @@ bool dem_fill_randomly(dem *d, const dem_filling *f, uint64_t *random) {
         else if ((ok = dem_add_grain(d, grain)))
             add_to_grid(d, &g, (uint32_t)(d->grain_count - 1));
     }
-    free(g.last);
-    free(g.before);
+    dem_release(g.last);
+    dem_release(g.before);
     return ok;
 }
 
 /* ------------------------------------------------------------------------------------------------ lattice */
 
 bool dem_fill_lattice(dem *d, const dem_filling *f, uint64_t *random) {
-    const dem_region r = f->region;
-    const double columns = floor((r.high_x - r.low_x) / f->spacing.x + 1e-9);
-    const double rows = floor((r.high_y - r.low_y) / f->spacing.y + 1e-9);
+    const vec low = f->region.low, size = minus(f->region.high, low), spacing = f->spacing;
+    const double columns = floor(size.x / spacing.x + 1e-9), rows = floor(size.y / spacing.y + 1e-9);
     if (columns * rows > 1e8)
         return dem_fail(d, "a lattice of %g by %g places is too large", columns, rows);
     if (columns * rows < (double)f->count || columns * rows < 1)
@@ -217,8 +214,8 @@ bool dem_fill_lattice(dem *d, const dem_filling *f, uint64_t *random) {
         dem_grain grain = draw_grain(d, f, random);
         const double off_x = 0.5 * f->jitter * draw_between(random, -1, 1);
         const double off_y = 0.5 * f->jitter * draw_between(random, -1, 1);
-        grain.x = r.low_x + f->spacing.x * ((double)column + 0.5 + off_x);
-        grain.y = r.low_y + f->spacing.y * ((double)row + 0.5 + off_y);
+        grain.place =
+            (vec){low.x + spacing.x * ((double)column + 0.5 + off_x), low.y + spacing.y * ((double)row + 0.5 + off_y)};
         if (!dem_add_grain(d, grain))
             return false;
     }

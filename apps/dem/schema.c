@@ -169,12 +169,12 @@ void json_take(const json_value *value, json_key key) {
         *(bool *)key.out = cJSON_IsTrue(value->item);
     } else if (kind == PAIR) {
         take_numbers(value, 2, n);
-        *(dem_vec *)key.out = (dem_vec){n[0], n[1]};
+        *(vec *)key.out = (vec){n[0], n[1]};
     } else if (kind == REGION) {
         take_numbers(value, 4, n);
         if (!(n[2] > n[0] && n[3] > n[1]))
             json_fail(value, "is not a region [low x, low y, high x, high y]");
-        *(dem_region *)key.out = (dem_region){true, n[0], n[2], n[1], n[3]};
+        *(dem_region *)key.out = (dem_region){true, {n[0], n[1]}, {n[2], n[3]}};
     } else if (kind == TEXT || kind == NAME)
         take_text(value, kind == NAME, key.out, (size_t)key.high);
     else {

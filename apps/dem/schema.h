@@ -30,7 +30,7 @@ enum {
     POSITIVE,   /* a double above 0 */
     WHOLE,      /* a uint64_t from `low` to `high` */
     BOOL,       /* a bool */
-    PAIR,       /* two finite numbers: a dem_vec */
+    PAIR,       /* two finite numbers: a vec */
     REGION,     /* [low x, low y, high x, high y]: a dem_region */
     TEXT,       /* a string that is not empty, with its NUL at most `high` bytes: an array of char */
     NAME,       /* a text that can stand in the head of a table and on a terminal */

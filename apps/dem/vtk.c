@@ -15,19 +15,20 @@ static const double OUTLINE_TOLERANCE = 1.0 / 400;
 
 enum { MOST_CORNERS = 4096, WIDEST = 25 };
 
-/* Cells, which are polygons or points, each of corners of its own, and a row of numbers for each: those of the fields,
- * which end with one of size 0. */
+/* What cells have: `size` numbers each. The last one has size 0. */
 typedef struct field {
     const char *name, *type;
     size_t size;
 } field;
 
+/* Cells, which are polygons or points, each of corners of its own, and a row of numbers for each: those of the fields.
+ * Arrays grow by dem_grow(). */
 typedef struct frame {
     const char *cell_name, *data_name;
     const field *fields;
-    size_t cell_count, point_count, point_capacity;
+    size_t cell_count, point_count;
     uint32_t *corners; /* how many a cell has */
-    dem_vec *points;
+    vec *points;
     double (*rows)[WIDEST];
 } frame;
 
@@ -83,21 +84,15 @@ static void put_frame(FILE *file, const dem *d, const frame *f) {
 
 static bool open_frame(dem *d, frame *f, size_t cell_count) {
     f->cell_count = cell_count;
-    return dem_resize(d, &f->corners, cell_count, sizeof *f->corners) &&
-           dem_resize(d, &f->rows, cell_count, sizeof *f->rows);
+    return dem_grow(d, &f->corners, cell_count, sizeof *f->corners) &&
+           dem_grow(d, &f->points, cell_count, sizeof *f->points) && dem_grow(d, &f->rows, cell_count, sizeof *f->rows);
 }
 
-/* ------------------------------------------------------------------------------------------------ bodies */
-
-static const field body_fields[] = {
-    {"id", "int", 1},           {"wall", "int", 1},       {"shape", "int", 1},      {"material", "int", 1},
-    {"coordination", "int", 1}, {"bearing", "int", 1},    {"speed", "float", 1},    {"spin", "float", 1},
-    {"size", "float", 1},       {"pressure", "float", 1}, {"velocity", "float", 3}, {"centre", "float", 3},
-    {"stress", "float", 9},     {NULL, NULL, 0}};
+/* ------------------------------------------------------------------------------------------------ outlines */
 
 /* A chord that spans the angle 2 a is r (1 - cos a) from its arc. An arc's end is left out where the next one, or the
  * first, starts there. */
-static size_t sample_arcs(const narc_arc *arcs, size_t count, double tolerance, dem_vec *out) {
+static size_t sample_arcs(const narc_arc *arcs, size_t count, double tolerance, vec *out) {
     size_t used = 0;
     for (size_t i = 0; i < count; i++) {
         const narc_arc *arc = &arcs[i], *next = &arcs[(i + 1) % count];
@@ -106,7 +101,7 @@ static size_t sample_arcs(const narc_arc *arcs, size_t count, double tolerance, 
         const size_t chords = arc->radius > tolerance ? (size_t)ceil(sweep / (2 * acos(1 - share))) : 1;
         for (size_t j = 0; j <= chords && used < MOST_CORNERS; j++) {
             const double angle = arc->start + sweep * (double)j / (double)chords;
-            const dem_vec p = {arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle)};
+            const vec p = {arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle)};
             const double next_x = next->center_x + next->radius * cos(next->start) - p.x;
             const double next_y = next->center_y + next->radius * sin(next->start) - p.y;
             if (j < chords || hypot(next_x, next_y) > 0.1 * tolerance)
@@ -116,97 +111,82 @@ static size_t sample_arcs(const narc_arc *arcs, size_t count, double tolerance, 
     return used;
 }
 
-static size_t put_outline(const dem *d, size_t part, dem_vec *points) {
-    const dem_bodies *b = &d->bodies;
-    const size_t k = d->parts.body[part];
-    const double c = (double)b->scale[k] * b->cosine[k], s = (double)b->scale[k] * b->sine[k];
+static size_t put_outline(const dem *d, const dem_part *part, vec *points) {
+    const dem_body *b = &d->bodies[part->body];
     narc_arc arcs[NARC_MAX_ARCS];
     narc_mass mass;
-    const size_t count = narc_get_arcs(d->store, d->parts.outline[part], arcs);
+    const size_t count = narc_get_arcs(d->store, part->outline, arcs);
     narc_compute_mass(arcs, count, &mass);
     const size_t corners = sample_arcs(arcs, count, OUTLINE_TOLERANCE * 2 * sqrt(mass.area / DEM_PI), points);
-    for (size_t i = 0; i < corners; i++) {
-        const dem_vec p = points[i];
-        points[i] = (dem_vec){b->x[k] + c * p.x - s * p.y, b->y[k] + s * p.x + c * p.y};
-    }
+    for (size_t i = 0; i < corners; i++)
+        points[i] = plus(b->place, rotate(times((double)b->scale, b->turn), points[i]));
     return corners;
 }
 
 /* The part of a plate that lies along the box, as a strip as thick as a grain: corners counter-clockwise. */
-static void put_plate(const dem *d, size_t k, dem_vec low, dem_vec high, dem_vec *points) {
-    const dem_wall *wall = &d->walls[k - d->grain_count];
-    const dem_vec n = wall->normal, t = {-n.y, n.x};
-    const double half = dem_half_block(d, wall);
-    dem_vec face = {d->bodies.x[k] + half * n.x, d->bodies.y[k] + half * n.y};
-    const double foot = (0.5 * (low.x + high.x) - face.x) * t.x + (0.5 * (low.y + high.y) - face.y) * t.y;
+static void put_plate(const dem *d, const dem_wall *wall, vec block, vec low, vec high, vec *points) {
+    const vec n = wall->normal, t = {-n.y, n.x}, face = plus(block, times(wall->half, n));
+    const double foot = dot(minus(times(0.5, plus(low, high)), face), t);
     const double reach = 0.5 * (fabs(t.x) * (high.x - low.x) + fabs(t.y) * (high.y - low.y));
     for (int i = 0; i < 4; i++) { /* the tangent is a quarter turn from the normal: the face comes first */
         const double along = foot + (i == 0 || i == 3 ? -reach : reach), depth = i < 2 ? 0 : d->grain_extent;
-        points[i] = (dem_vec){face.x + along * t.x - depth * n.x, face.y + along * t.y - depth * n.y};
+        points[i] = minus(plus(face, times(along, t)), times(depth, n));
     }
 }
 
-static bool is_plate(const dem *d, size_t k) {
-    return k >= d->grain_count && d->walls[k - d->grain_count].kind == DEM_PLATE;
+static const dem_wall *find_plate(const dem *d, size_t body) {
+    const dem_wall *wall = body < d->grain_count ? NULL : &d->walls[body - d->grain_count];
+    return wall && wall->kind == DEM_PLATE ? wall : NULL;
 }
 
 static bool put_polygons(dem *d, frame *f) {
-    dem_vec low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY}; /* of all but plates */
-    for (size_t part = 0; part < d->parts.count; part++) {
-        if (!dem_reserve(d, &f->points, &f->point_capacity, f->point_count + MOST_CORNERS, sizeof *f->points))
+    vec low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY}; /* of all but plates */
+    for (size_t i = 0; i < d->part_count; f->point_count += f->corners[i++]) {
+        if (!dem_grow(d, &f->points, f->point_count + MOST_CORNERS, sizeof *f->points))
             return false;
-        const bool plate = is_plate(d, d->parts.body[part]);
-        dem_vec *p = f->points + f->point_count;
-        f->corners[part] = plate ? 4 : (uint32_t)put_outline(d, part, p);
-        f->point_count += f->corners[part];
-        for (size_t i = 0; i < f->corners[part] && !plate; i++) {
-            low = (dem_vec){fmin(low.x, p[i].x), fmin(low.y, p[i].y)};
-            high = (dem_vec){fmax(high.x, p[i].x), fmax(high.y, p[i].y)};
+        const bool plate = find_plate(d, d->parts[i].body) != NULL;
+        vec *p = f->points + f->point_count;
+        f->corners[i] = plate ? 4 : (uint32_t)put_outline(d, &d->parts[i], p);
+        for (vec *end = p + f->corners[i]; p < end && !plate; p++) {
+            low = (vec){fmin(low.x, p->x), fmin(low.y, p->y)};
+            high = (vec){fmax(high.x, p->x), fmax(high.y, p->y)};
         }
     }
-    for (size_t part = 0, first = 0; part < d->parts.count; first += f->corners[part++])
-        if (is_plate(d, d->parts.body[part]))
-            put_plate(d, d->parts.body[part], low, high, f->points + first);
+    for (size_t i = 0, first = 0; i < d->part_count; first += f->corners[i++]) {
+        const size_t k = d->parts[i].body;
+        if (find_plate(d, k))
+            put_plate(d, find_plate(d, k), d->bodies[k].place, low, high, f->points + first);
+    }
     return true;
 }
 
+/* ------------------------------------------------------------------------------------------------ both frames */
+
+static const field body_fields[] = {
+    {"id", "int", 1},           {"wall", "int", 1},       {"shape", "int", 1},      {"material", "int", 1},
+    {"coordination", "int", 1}, {"bearing", "int", 1},    {"speed", "float", 1},    {"spin", "float", 1},
+    {"size", "float", 1},       {"pressure", "float", 1}, {"velocity", "float", 3}, {"centre", "float", 3},
+    {"stress", "float", 9},     {NULL, NULL, 0}};
+
 static bool make_bodies(dem *d, frame *f) {
-    const dem_bodies *b = &d->bodies;
     *f = (frame){.cell_name = "POLYGONS", .data_name = "CELL_DATA", .fields = body_fields};
     dem_load *loads = dem_find_loads(d);
-    const bool ok = loads && open_frame(d, f, d->parts.count) && put_polygons(d, f);
-    for (size_t part = 0; part < d->parts.count && ok; part++) { /* of each part those of its body */
-        const size_t k = d->parts.body[part];
-        const dem_load *l = &loads[k];
-        const double row[WIDEST] = {(double)k,
-                                    k >= d->grain_count,
-                                    b->shape[k],
-                                    b->material[k],
-                                    l->contacts,
-                                    l->bearing,
-                                    hypot(b->vx[k], b->vy[k]),
-                                    b->spin[k],
-                                    b->extent[k],
-                                    0.5 * (l->stress_xx + l->stress_yy),
-                                    b->vx[k],
-                                    b->vy[k],
-                                    0,
-                                    b->x[k],
-                                    b->y[k],
-                                    0,
-                                    l->stress_xx,
-                                    l->stress_xy,
-                                    0,
-                                    l->stress_yx,
-                                    l->stress_yy,
-                                    0};
+    const bool ok = loads && open_frame(d, f, d->part_count) && put_polygons(d, f);
+    for (size_t part = 0; part < d->part_count && ok; part++) { /* of each part those of its body */
+        const size_t k = d->parts[part].body;
+        const dem_body *b = &d->bodies[k];
+        const dem_stress *s = &loads[k].stress;
+        /* clang-format off */
+        const double row[WIDEST] = {
+            (double)k, k >= d->grain_count, b->shape, b->material, loads[k].contacts, loads[k].bearing,
+            hypot(b->velocity.x, b->velocity.y), b->spin, b->extent, 0.5 * (s->xx + s->yy),
+            b->velocity.x, b->velocity.y, 0, b->place.x, b->place.y, 0, s->xx, s->xy, 0, s->yx, s->yy};
+        /* clang-format on */
         memcpy(f->rows[part], row, sizeof row);
     }
     free(loads);
     return ok;
 }
-
-/* ------------------------------------------------------------------------------------------------ contacts */
 
 static const field contact_fields[] = {{"body_a", "int", 1},
                                        {"body_b", "int", 1},
@@ -219,52 +199,50 @@ static const field contact_fields[] = {{"body_a", "int", 1},
                                        {NULL, NULL, 0}};
 
 static bool make_contacts(dem *d, frame *f) {
-    const dem_bodies *b = &d->bodies;
-    const size_t count = d->contacts.count;
-    *f = (frame){.cell_name = "VERTICES", .data_name = "POINT_DATA", .fields = contact_fields, .point_count = count};
-    if (!open_frame(d, f, count) || !dem_resize(d, &f->points, count, sizeof *f->points))
+    *f = (frame){.cell_name = "VERTICES", .data_name = "POINT_DATA", .fields = contact_fields};
+    f->point_count = d->contact_count;
+    if (!open_frame(d, f, d->contact_count))
         return false;
-    for (size_t k = 0; k < count; k++) {
-        const dem_contact *c = &d->contacts.rows[k];
-        const size_t i = dem_body_a(d, c->pair), j = dem_body_b(d, c->pair);
-        const double push = dem_normal_force(c), drag = c->force.y * c->normal.x - c->force.x * c->normal.y;
-        const double most = d->laws[b->material[i]][b->material[j]].friction * fabs(push);
-        const double row[WIDEST] = {(double)i,
-                                    (double)j,
-                                    c->force.x,
-                                    c->force.y,
+    for (size_t k = 0; k < d->contact_count; k++) {
+        const dem_contact *c = &d->contacts[k];
+        const dem_body *a = dem_body_a(d, c->pair), *b = dem_body_b(d, c->pair);
+        const vec force = c->on.force, n = c->normal;
+        const double push = dem_normal_force(c), drag = cross(n, force);
+        const double most = d->laws[a->material][b->material].friction * fabs(push);
+        const double row[WIDEST] = {(double)(a - d->bodies),
+                                    (double)(b - d->bodies),
+                                    force.x,
+                                    force.y,
                                     0,
-                                    c->normal.x,
-                                    c->normal.y,
+                                    n.x,
+                                    n.y,
                                     0,
                                     push,
                                     drag,
                                     most > 0 ? fmin(fabs(drag) / most, 1) : 0,
                                     c->depth};
         memcpy(f->rows[k], row, sizeof row);
-        f->points[k] = (dem_vec){b->x[i] + c->point.x, b->y[i] + c->point.y};
+        f->points[k] = plus(a->place, c->point);
         f->corners[k] = 1;
     }
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------ both */
-
 bool dem_write_vtk(dem *d, const char *stem, uint64_t number) {
     bool ok = true;
     for (int i = 0; i < 2 && ok; i++) {
         char path[DEM_PATH_SIZE];
-        dem_file file;
+        dem_file out;
         frame f;
         snprintf(path, sizeof path, "%.1000s%s-%06llu.vtk", stem, i ? "-contacts" : "", (unsigned long long)number);
-        ok = (i ? make_contacts : make_bodies)(d, &f) && dem_open_file(&file, path, d->error);
+        ok = (i ? make_contacts : make_bodies)(d, &f) && dem_open_file(d, &out, path);
         if (ok) {
-            put_frame(file.file, d, &f);
-            ok = dem_close_file(&file, true, d->error);
+            put_frame(out.file, d, &f);
+            ok = dem_close_file(d, &out);
         }
-        free(f.corners);
-        free(f.points);
-        free(f.rows);
+        dem_release(f.corners);
+        dem_release(f.points);
+        dem_release(f.rows);
     }
     return ok;
 }

@@ -12,7 +12,7 @@
 static dem collide_at(double x, double y, bool periodic, double drift_x, double drift_y) {
     dem d = plain_world();
     d.settings.periodic_x = d.settings.periodic_y = periodic;
-    d.settings.high_x = d.settings.high_y = 16;
+    d.settings.high.x = d.settings.high.y = 16;
     d.settings.max_overlap = 0.5;
     d.settings.time_step = 5e-5;
     d.settings.skin = 0.1; /* lists are renewed within the contact */
@@ -29,9 +29,9 @@ static dem collide_at(double x, double y, bool periodic, double drift_x, double 
  * of places may be the next one, 1e-7 of it, which changes a force by 1e-5 at this depth. */
 static void check_same(const dem *d, const dem *reference) {
     for (size_t k = 0; k < 2; k++) {
-        assert_true(fabs(d->bodies.vx[k] - reference->bodies.vx[k]) < 1e-4);
-        assert_true(fabs(d->bodies.vy[k] - reference->bodies.vy[k]) < 1e-4);
-        assert_true(fabs(d->bodies.spin[k] - reference->bodies.spin[k]) < 1e-4);
+        assert_true(fabs(d->bodies[k].velocity.x - reference->bodies[k].velocity.x) < 1e-4);
+        assert_true(fabs(d->bodies[k].velocity.y - reference->bodies[k].velocity.y) < 1e-4);
+        assert_true(fabs(d->bodies[k].spin - reference->bodies[k].spin) < 1e-4);
     }
     const dem_energies e = energies(d), f = energies(reference);
     assert_true(fabs(e.damping - f.damping) < 1e-3 && fabs(e.friction - f.friction) < 1e-3);
@@ -46,13 +46,13 @@ TEST(test_collision_across_borders) {
         dem d = collide_at(p[0], p[1], true, p[2], p[3]), reference = collide_at(p[0], p[1], false, p[2], p[3]);
         size_t crossings = 0, contacts = 0;
         for (int s = 0; s < 1000; s++) {
-            const int32_t before = d.bodies.cell_x[0] + d.bodies.cell_y[0];
-            const bool touched = d.contacts.count > 0;
+            const int32_t before = d.bodies[0].cell_x + d.bodies[0].cell_y;
+            const bool touched = d.contact_count > 0;
             step(&d, 1);
             step(&reference, 1);
-            contacts += d.contacts.count;
-            crossings += touched && d.contacts.count > 0 && d.bodies.cell_x[0] + d.bodies.cell_y[0] != before;
-            assert_int_equal(d.contacts.count, reference.contacts.count);
+            contacts += d.contact_count;
+            crossings += touched && d.contact_count > 0 && d.bodies[0].cell_x + d.bodies[0].cell_y != before;
+            assert_int_equal(d.contact_count, reference.contact_count);
         }
         print_message("at %g, %g: %zu steps in contact, border crossed %zu times in contact\n", p[0], p[1], contacts,
                       crossings);
@@ -69,14 +69,14 @@ TEST(test_wall_across_border) {
     for (int side = 0; side < 2; side++) {
         dem d = plain_world();
         d.settings.periodic_x = true;
-        d.settings.high_x = 16;
-        d.settings.gravity = (dem_vec){0, -10};
+        d.settings.high.x = 16;
+        d.settings.gravity = (vec){0, -10};
         d.laws[0][0].damping_ratio = 1;
         add_box(&d, OCTAGON, 2, side ? 0.5 : 15.5, 0);
         add_grain(&d, DISC, side ? 15.9 : 0.1, 2 * cos(3.14159265358979324 / 8) + 1, 0, 0);
         start(&d);
         step(&d, 2000);
-        assert_int_equal(d.contacts.count, 1);
+        assert_int_equal(d.contact_count, 1);
         dem_destroy(&d);
     }
 }
@@ -92,11 +92,11 @@ static void expect_refusal(dem *d, const char *message) {
 TEST(test_refusals) {
     dem_settings settings = plain_settings();
     settings.periodic_x = true;
-    settings.high_x = 4.3; /* two discs of width 2, and the skin 0.2 for each */
+    settings.high.x = 4.3; /* two discs of width 2, and the skin 0.2 for each */
     dem small = make_world(settings, plain_law());
     add_grain(&small, DISC, 1, 0, 0, 0);
     expect_refusal(&small, "the periodic cell is too small");
-    settings.high_x = 4.5;
+    settings.high.x = 4.5;
     dem enough = make_world(settings, plain_law());
     add_grain(&enough, DISC, 1, 0, 0, 0);
     start(&enough);

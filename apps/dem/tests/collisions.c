@@ -24,25 +24,25 @@ static dem make_collision(uint32_t shape, dem_law kind, dem_contact_law law, dou
 /* Until they are apart. */
 static void collide(dem *d) {
     bool touched = false;
-    for (size_t i = 0; i < 1000000 && !(touched && d->contacts.count == 0); i++) {
+    for (size_t i = 0; i < 1000000 && !(touched && d->contact_count == 0); i++) {
         step(d, 1);
-        touched |= d->contacts.count > 0;
+        touched |= d->contact_count > 0;
     }
-    assert_int_equal(d->contacts.count, 0);
+    assert_int_equal(d->contact_count, 0);
 }
 
 static double momentum_x(const dem *d) {
-    return d->bodies.mass[0] * d->bodies.vx[0] + d->bodies.mass[1] * d->bodies.vx[1];
+    return d->bodies[0].mass * d->bodies[0].velocity.x + d->bodies[1].mass * d->bodies[1].velocity.x;
 }
 static double momentum_y(const dem *d) {
-    return d->bodies.mass[0] * d->bodies.vy[0] + d->bodies.mass[1] * d->bodies.vy[1];
+    return d->bodies[0].mass * d->bodies[0].velocity.y + d->bodies[1].mass * d->bodies[1].velocity.y;
 }
 
 static double angular_momentum(const dem *d) {
-    const dem_bodies *b = &d->bodies;
+    const dem_body *b = d->bodies;
     double sum = 0;
     for (size_t k = 0; k < 2; k++)
-        sum += b->mass[k] * (b->x[k] * b->vy[k] - b->y[k] * b->vx[k]) + b->inertia[k] * b->spin[k];
+        sum += b[k].mass * (b[k].place.x * b[k].velocity.y - b[k].place.y * b[k].velocity.x) + b[k].inertia * b[k].spin;
     return sum;
 }
 
@@ -52,9 +52,9 @@ static double find_restitution(double wanted, double time_step, double *out_imba
     dem_contact_law law = plain_law();
     law.damping_ratio = dem_damping_ratio(DEM_LINEAR, wanted);
     dem d = make_collision(DISC, DEM_LINEAR, law, time_step, 1, 0);
-    const double before = total_energy(&d), mass = 0.5 * d.bodies.mass[0];
+    const double before = total_energy(&d), mass = 0.5 * d.bodies[0].mass;
     collide(&d);
-    const double after = d.bodies.vx[1] - d.bodies.vx[0];
+    const double after = d.bodies[1].velocity.x - d.bodies[0].velocity.x;
     *out_imbalance = total_energy(&d) - before;
     *out_last_power = law.damping_ratio * sqrt(law.kn * mass) * after * after;
     dem_destroy(&d);
@@ -83,13 +83,13 @@ TEST(test_elastic_collision) {
     dem d = make_collision(DISC, DEM_LINEAR, plain_law(), period / 1000, 1, 0);
     double deepest = 0;
     step(&d, 1);
-    for (size_t i = 0; d.contacts.count > 0; i++) {
-        deepest = fmax(deepest, d.contacts.rows[0].depth);
+    for (size_t i = 0; d.contact_count > 0; i++) {
+        deepest = fmax(deepest, d.contacts[0].depth);
         step(&d, 1);
     }
     assert_true(fabs(d.time / period - 1) < 3e-3); /* steps, and where the first was within the contact */
     assert_true(fabs(deepest / sqrt(0.5 * PI / 1e5) - 1) < 1e-3);
-    assert_true(fabs(d.bodies.vx[1] - 1) < 1e-3 && fabs(d.bodies.vx[0]) < 1e-3);
+    assert_true(fabs(d.bodies[1].velocity.x - 1) < 1e-3 && fabs(d.bodies[0].velocity.x) < 1e-3);
     dem_destroy(&d);
 }
 
@@ -101,8 +101,8 @@ TEST(test_conservation) {
         law.friction = 0.4;
         law.rolling_friction = 0.1;
         dem d = make_collision(kind / 2 ? ARCS : DISC, kind % 2 ? DEM_HERTZ : DEM_LINEAR, law, 1e-5, 3, 2);
-        d.bodies.spin[0] = 4;
-        d.bodies.spin[1] = 1;
+        d.bodies[0].spin = 4;
+        d.bodies[1].spin = 1;
         const double x = momentum_x(&d), y = momentum_y(&d), turn = angular_momentum(&d), energy = total_energy(&d);
         collide(&d);
         print_message("momentum off by %.3g, %.3g, %.3g; energy by %.3g of %.3g\n", momentum_x(&d) - x,
@@ -121,12 +121,12 @@ TEST(test_no_friction_loses_nothing) {
     dem_contact_law law = plain_law();
     law.damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.5);
     dem d = make_collision(ARCS, DEM_LINEAR, law, 1e-5, 3, 2);
-    d.bodies.spin[0] = 4;
+    d.bodies[0].spin = 4;
     for (int i = 0; i < 60000; i++) {
         step(&d, 1);
-        assert_true(d.friction == 0 && d.tangential_energy == 0);
+        assert_true(d.account.friction == 0 && d.account.tangential == 0);
     }
-    assert_true(d.damping > 0.1);
+    assert_true(d.account.damping > 0.1);
     dem_destroy(&d);
 }
 
@@ -141,8 +141,8 @@ TEST(test_hertz_collision) {
     dem d = make_collision(DISC, DEM_HERTZ, law, duration / 2000, 1, 0);
     double deepest = 0;
     step(&d, 1);
-    for (size_t i = 0; d.contacts.count > 0; i++) {
-        deepest = fmax(deepest, d.contacts.rows[0].depth);
+    for (size_t i = 0; d.contact_count > 0; i++) {
+        deepest = fmax(deepest, d.contacts[0].depth);
         step(&d, 1);
     }
     print_message("Hertz: depth %.6g, expected %.6g; duration %.6g, expected %.6g\n", deepest, depth, d.time, duration);
@@ -159,7 +159,7 @@ TEST(test_hertz_restitution) {
             law.damping_ratio = dem_damping_ratio(DEM_HERTZ, wanted);
             dem d = make_collision(DISC, DEM_HERTZ, law, 2e-6 * pow(speed, -0.2), speed, 0);
             collide(&d);
-            const double found = (d.bodies.vx[1] - d.bodies.vx[0]) / speed;
+            const double found = (d.bodies[1].velocity.x - d.bodies[0].velocity.x) / speed;
             print_message("Hertz restitution %g at %g: %.6f\n", wanted, speed, found);
             assert_true(fabs(found - wanted) < 2e-3);
             dem_destroy(&d);
@@ -190,15 +190,17 @@ TEST(test_restitution_of_shapes) {
         dem d = make_world(settings, law);
         const uint32_t shape = cases[k / 2].shape;
         const double reach = 2 * d.shapes[shape].reach + 1e-3;
-        assert_true(dem_add_grain(&d, (dem_grain){.shape = shape, .angle = cases[k / 2].angle_a, .scale = 1, .vx = 1}));
+        assert_true(
+            dem_add_grain(&d, (dem_grain){.shape = shape, .angle = cases[k / 2].angle_a, .scale = 1, .velocity.x = 1}));
         assert_true(dem_add_grain(
-            &d, (dem_grain){.shape = shape, .angle = cases[k / 2].angle_b, .x = reach, .scale = 1, .vx = -1}));
+            &d, (dem_grain){
+                    .shape = shape, .angle = cases[k / 2].angle_b, .place.x = reach, .scale = 1, .velocity.x = -1}));
         start(&d);
         collide(&d);
-        const double found = 0.5 * (d.bodies.vx[1] - d.bodies.vx[0]);
+        const double found = 0.5 * (d.bodies[1].velocity.x - d.bodies[0].velocity.x);
         print_message("%s, %s: %.6f\n", cases[k / 2].name, k % 2 ? "Hertz" : "linear", found);
         assert_true(fabs(found - 0.6) < 2e-3);
-        assert_true(fabs(d.bodies.spin[0]) < 1e-6 && fabs(d.bodies.vy[0]) < 1e-6);
+        assert_true(fabs(d.bodies[0].spin) < 1e-6 && fabs(d.bodies[0].velocity.y) < 1e-6);
         dem_destroy(&d);
     }
 }
@@ -215,12 +217,13 @@ TEST(test_hertz_has_one_radius) {
         dem d = make_world(settings, law);
         const double depth = 1e-3, reach = corner ? sqrt(0.5) : 0.5, h = corner ? depth : sqrt(2) * depth;
         const dem_grain left = {.shape = SQUARE, .scale = 1};
-        const dem_grain right = {.shape = SQUARE, .x = 0.5 + reach - depth, .angle = corner ? PI / 4 : 0, .scale = 1};
+        const dem_grain right = {
+            .shape = SQUARE, .place.x = 0.5 + reach - depth, .angle = corner ? PI / 4 : 0, .scale = 1};
         assert_true(dem_add_grain(&d, left) && dem_add_grain(&d, right));
         start(&d);
         const double radius = 0.5 * sqrt(1 / PI), expected = d.laws[0][0].kn * sqrt(radius * h) * h;
-        assert_int_equal(d.contacts.count, 1);
-        const double force = d.contacts.rows[0].force.x * (corner ? 1 : sqrt(0.5));
+        assert_int_equal(d.contact_count, 1);
+        const double force = d.contacts[0].on.force.x * (corner ? 1 : sqrt(0.5));
         print_message("Hertz force %.12g, expected %.12g\n", force, expected);
         assert_true(fabs(force / expected - 1) < 1e-11); /* depths are within a rounding of 1 of 1e-3 */
         dem_destroy(&d);
@@ -233,9 +236,9 @@ TEST(test_hertz_has_one_radius) {
 static double find_error(double step_angle) {
     const double rate = sqrt(1e5 / (0.5 * PI)), speed = 8;
     dem d = make_collision(DISC, DEM_LINEAR, plain_law(), step_angle / rate, speed, 0);
-    d.bodies.x[1] = 2;
+    d.bodies[1].place.x = 2;
     step(&d, (size_t)lround(2 / step_angle));
-    const double depth = 2 - (d.bodies.x[1] - d.bodies.x[0]);
+    const double depth = 2 - (d.bodies[1].place.x - d.bodies[0].place.x);
     dem_destroy(&d);
     return fabs(depth / (speed / rate * sin(2)) - 1);
 }
@@ -269,11 +272,11 @@ static double spin_at(uint32_t shape, double friction, size_t steps) {
     dem_contact_law law = plain_law();
     law.friction = friction;
     dem d = make_collision(shape, DEM_LINEAR, law, end / (double)steps, 6, 4);
-    d.bodies.y[1] = shape == DISC ? 0 : 0.4;
-    d.bodies.x[1] = find_place(&d, shape, d.bodies.y[1]);
+    d.bodies[1].place.y = shape == DISC ? 0 : 0.4;
+    d.bodies[1].place.x = find_place(&d, shape, d.bodies[1].place.y);
     step(&d, steps);
-    assert_int_equal(d.contacts.count, 1);
-    const double spin = d.bodies.spin[1];
+    assert_int_equal(d.contact_count, 1);
+    const double spin = d.bodies[1].spin;
     dem_destroy(&d);
     return spin;
 }

@@ -10,14 +10,14 @@
 static dem make_gas(uint32_t shape, dem_law kind, double time_step) {
     dem_settings settings = plain_settings();
     settings.periodic_x = settings.periodic_y = true;
-    settings.high_x = settings.high_y = 40;
+    settings.high.x = settings.high.y = 40;
     settings.time_step = time_step;
     settings.law = kind;
     dem_contact_law law = plain_law();
     law.damping_ratio = 0;
     dem d = make_world(settings, law);
     const dem_filling filling = {.count = 200,
-                                 .region = {true, 0, 40, 0, 40},
+                                 .region = {true, {0, 0}, {40, 40}},
                                  .shapes = {shape},
                                  .shape_count = 1,
                                  .sizes = {DEM_UNIFORM, 0, 0, 1.4, 2.2},
@@ -39,7 +39,7 @@ static double find_drift(uint32_t shape, dem_law kind, size_t steps, double time
     for (size_t i = 0; i < steps; i += 50) {
         step(&d, 50);
         worst = fmax(worst, fabs(total_energy(&d) - before));
-        *out_most = d.contacts.count > *out_most ? d.contacts.count : *out_most;
+        *out_most = d.contact_count > *out_most ? d.contact_count : *out_most;
     }
     const dem_energies e = energies(&d);
     assert_true(e.damping == 0 && e.friction == 0);

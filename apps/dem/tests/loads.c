@@ -74,9 +74,9 @@ TEST(test_loads) {
     assert_int_equal(loads[0].bearing, 3);
     assert_int_equal(loads[1].bearing, 2);
     const double expected = 2 * push * arm / volume;
-    print_message("stress %.6g, expected %.6g\n", loads[1].stress_yy, expected);
-    assert_true(fabs(loads[1].stress_yy / expected - 1) < 1e-3); /* depths are within 1e-6 or so of 7e-3 */
-    assert_true(fabs(loads[1].stress_xx) < 1e-3 * expected);
+    print_message("stress %.6g, expected %.6g\n", loads[1].stress.yy, expected);
+    assert_true(fabs(loads[1].stress.yy / expected - 1) < 1e-3); /* depths are within 1e-6 or so of 7e-3 */
+    assert_true(fabs(loads[1].stress.xx) < 1e-3 * expected);
     free(loads);
     dem_destroy(&d);
 }

@@ -41,14 +41,15 @@ TEST(test_collision_off_centre) {
     add_grain(&d, DIMER, 0, 0, 0, 0);
     add_grain(&d, DISC, 0.5, 1.51, 0, -1);
     start(&d);
-    const double m = d.bodies.mass[1], mass = d.bodies.mass[0], inertia = d.bodies.inertia[0], arm = 0.5;
+    const double m = d.bodies[1].mass, mass = d.bodies[0].mass, inertia = d.bodies[0].inertia, arm = 0.5;
     const double push = 2 / (1 / m + 1 / mass + arm * arm / inertia);
     step(&d, 4000);
-    print_message("spin %.6g, %.6g of theory; disc %.6g, %.6g\n", d.bodies.spin[0], -push * arm / inertia,
-                  d.bodies.vy[1], -1 + push / m);
-    assert_int_equal(d.contacts.count, 0);
-    assert_true(fabs(d.bodies.spin[0] / (-push * arm / inertia) - 1) < 5e-3);
-    assert_true(fabs(d.bodies.vy[1] - (-1 + push / m)) < 5e-3 && fabs(d.bodies.vy[0] + push / mass) < 5e-3);
+    print_message("spin %.6g, %.6g of theory; disc %.6g, %.6g\n", d.bodies[0].spin, -push * arm / inertia,
+                  d.bodies[1].velocity.y, -1 + push / m);
+    assert_int_equal(d.contact_count, 0);
+    assert_true(fabs(d.bodies[0].spin / (-push * arm / inertia) - 1) < 5e-3);
+    assert_true(fabs(d.bodies[1].velocity.y - (-1 + push / m)) < 5e-3 &&
+                fabs(d.bodies[0].velocity.y + push / mass) < 5e-3);
     dem_destroy(&d);
 }
 
@@ -56,32 +57,32 @@ TEST(test_collision_off_centre) {
 TEST(test_parts_are_one_body) {
     dem d = plain_world();
     d.settings.periodic_x = d.settings.periodic_y = true;
-    d.settings.high_x = d.settings.high_y = 8;
+    d.settings.high.x = d.settings.high.y = 8;
     add_grain(&d, ELL, 0.1, 0.1, 0, 0); /* across both borders */
     add_grain(&d, ELL, 4, 4, 0, 0);
     start(&d);
-    assert_int_equal(d.parts.count, 4);
-    assert_int_equal(d.contacts.count, 0);
-    for (size_t p = 0; p < d.pairs.count; p++)
-        assert_int_not_equal(dem_body_a(&d, p), dem_body_b(&d, p));
+    assert_int_equal(d.part_count, 4);
+    assert_int_equal(d.contact_count, 0);
+    for (size_t p = 0; p < d.list.count; p++)
+        assert_ptr_not_equal(dem_body_a(&d, p), dem_body_b(&d, p));
     dem_destroy(&d);
 }
 
 /* An upright dimer on a plate and one that lies on it: one contact and two, each of which bears its share. */
 TEST(test_dimers_on_a_plate) {
     dem d = plain_world();
-    d.settings.gravity = (dem_vec){0, -10};
+    d.settings.gravity = (vec){0, -10};
     d.laws[0][0].damping_ratio = 1;
     add_plate(&d, "floor", 0, 0, 0, 1);
     add_grain(&d, DIMER, 0, 0.5, 0, 0);
-    assert_true(dem_add_grain(&d, (dem_grain){.shape = DIMER, .x = 5, .y = 1, .angle = PI / 2, .scale = 1}));
+    assert_true(dem_add_grain(&d, (dem_grain){.shape = DIMER, .place = {5, 1}, .angle = PI / 2, .scale = 1}));
     start(&d);
     step(&d, 3000);
-    assert_int_equal(d.contacts.count, 3);
-    const double weight = 10 * d.bodies.mass[0];
-    assert_true(fabs(d.bodies.fy[0] / weight - 1) < 1e-3 && fabs(d.bodies.fy[1] / weight - 1) < 1e-3);
-    assert_true(fabs(d.bodies.y[0] - (0.5 - weight / 2 / 1e5)) < 1e-6);
-    assert_true(fabs(d.bodies.y[1] - (1 - weight / 1e5)) < 1e-6);
+    assert_int_equal(d.contact_count, 3);
+    const double weight = 10 * d.bodies[0].mass;
+    assert_true(fabs(d.bodies[0].force.y / weight - 1) < 1e-3 && fabs(d.bodies[1].force.y / weight - 1) < 1e-3);
+    assert_true(fabs(d.bodies[0].place.y - (0.5 - weight / 2 / 1e5)) < 1e-6);
+    assert_true(fabs(d.bodies[1].place.y - (1 - weight / 1e5)) < 1e-6);
     dem_destroy(&d);
 }
 
@@ -89,30 +90,28 @@ TEST(test_dimers_on_a_plate) {
 TEST(test_momentum_of_parts) {
     dem d = plain_world();
     d.settings.periodic_x = d.settings.periodic_y = true;
-    d.settings.high_x = d.settings.high_y = 20;
+    d.settings.high.x = d.settings.high.y = 20;
     d.laws[0][0].friction = 0.5;
     d.laws[0][0].kn = 3e3; /* long contacts */
     d.settings.max_overlap = 0.5;
     for (int k = 0; k < 64; k++)
         assert_true(dem_add_grain(&d, (dem_grain){.shape = k % 2 ? ELL : DIMER,
-                                                  .x = 2.5 * (k % 8) + 1,
-                                                  .y = 2.5 * (k / 8.0) - 2.5 * (k % 8) / 8.0 + 1,
+                                                  .place = {2.5 * (k % 8) + 1, 2.5 * floor(k / 8.0) + 1},
                                                   .angle = k,
                                                   .scale = 0.9,
-                                                  .vx = 3 * cos(7.0 * k),
-                                                  .vy = 3 * sin(7.0 * k)}));
+                                                  .velocity = {3 * cos(7.0 * k), 3 * sin(7.0 * k)}}));
     start(&d);
     double before[2] = {0, 0}, after[2] = {0, 0}, scale = 0;
     size_t most = 0;
     for (int i = 0; i < 2; i++) {
         for (size_t k = 0; k < d.grain_count; k++) {
-            (i ? after : before)[0] += d.bodies.mass[k] * d.bodies.vx[k];
-            (i ? after : before)[1] += d.bodies.mass[k] * d.bodies.vy[k];
-            scale += d.bodies.mass[k] * hypot(d.bodies.vx[k], d.bodies.vy[k]);
+            (i ? after : before)[0] += d.bodies[k].mass * d.bodies[k].velocity.x;
+            (i ? after : before)[1] += d.bodies[k].mass * d.bodies[k].velocity.y;
+            scale += d.bodies[k].mass * hypot(d.bodies[k].velocity.x, d.bodies[k].velocity.y);
         }
         for (int s = 0; s < 20000 && i == 0; s++) {
             step(&d, 1);
-            most = d.contacts.count > most ? d.contacts.count : most;
+            most = d.contact_count > most ? d.contact_count : most;
         }
     }
     assert_true(most > 5);

@@ -33,7 +33,7 @@ TEST(test_sizes) {
 
 static dem_filling plain_filling(size_t count) {
     return (dem_filling){.count = count,
-                         .region = {true, 0, 30, 0, 30},
+                         .region = {true, {0, 0}, {30, 30}},
                          .shapes = {DISC, ROUND, OCTAGON, ARCS, ELL},
                          .shape_count = 5,
                          .sizes = {DEM_UNIFORM, 0, 0, 0.5, 2.5},
@@ -43,7 +43,7 @@ static dem_filling plain_filling(size_t count) {
 static dem make_room(void) {
     dem d = plain_world();
     d.settings.periodic_x = true;
-    d.settings.high_x = 30;
+    d.settings.high.x = 30;
     add_plate(&d, "floor", 0, 1, 0, 1);
     add_box(&d, OCTAGON, 4, 15, 15);
     return d;
@@ -61,19 +61,19 @@ TEST(test_free_places) {
     start(&d);
     narc_bodies bodies;
     assert_true(dem_make_poses(&d, &bodies));
-    const narc_pairs pairs = {.count = d.pairs.count,
-                              .a = NARC_ARRAY(d.pairs.a),
-                              .b = NARC_ARRAY(d.pairs.b),
-                              .shift_x = NARC_ARRAY(d.pairs.shift_x),
-                              .shift_y = NARC_ARRAY(d.pairs.shift_y)};
+    const narc_pairs pairs = {.count = d.list.count,
+                              .a = NARC_COLUMN(d.list.pairs, a),
+                              .b = NARC_COLUMN(d.list.pairs, b),
+                              .shift_x = NARC_COLUMN(d.list.pairs, shift_x),
+                              .shift_y = NARC_COLUMN(d.list.pairs, shift_y)};
     const narc_query query = {.margin = (float)gap - 1e-4f};
     size_t count = 99, walls = 0, images = 0;
-    for (size_t k = 0; k < d.pairs.count; k++) {
-        walls += dem_body_b(&d, k) >= d.grain_count;
-        images += dem_body_b(&d, k) < d.grain_count && d.pairs.shift_x[k] != 0;
+    for (size_t k = 0; k < d.list.count; k++) {
+        walls += dem_is_wall(dem_body_b(&d, k));
+        images += !dem_is_wall(dem_body_b(&d, k)) && d.list.pairs[k].shift_x != 0;
     }
     assert_int_equal(narc_find_contacts(d.store, &bodies, &pairs, &query, NULL, 0, &count, NULL), NARC_OK);
-    print_message("%zu pairs, %zu with walls, %zu across the border\n", d.pairs.count, walls, images);
+    print_message("%zu pairs, %zu with walls, %zu across the border\n", d.list.count, walls, images);
     assert_int_equal(count, 0);
     assert_true(walls > 5 && images > 0);
     dem_destroy(&d);
@@ -92,13 +92,13 @@ TEST(test_lattice) {
     dem d = plain_world();
     dem_filling filling = plain_filling(0);
     uint64_t random = 5;
-    filling.spacing = (dem_vec){3, 5};
+    filling.spacing = (vec){3, 5};
     filling.jitter = 0.5;
     assert_true(dem_fill_lattice(&d, &filling, &random));
     assert_int_equal(d.grain_count, 60);
     for (size_t k = 0; k < 60; k++) {
-        assert_true(fabs(d.bodies.x[k] - 3 * ((double)(k % 10) + 0.5)) <= 0.75);
-        assert_true(fabs(d.bodies.y[k] - 5 * ((double)(k / 10) + 0.5)) <= 1.25);
+        assert_true(fabs(d.bodies[k].place.x - 3 * ((double)(k % 10) + 0.5)) <= 0.75);
+        assert_true(fabs(d.bodies[k].place.y - 5 * ((double)(k / 10) + 0.5)) <= 1.25);
     }
     filling.count = 61;
     assert_false(dem_fill_lattice(&d, &filling, &random));

@@ -16,11 +16,11 @@ static void check_same_measures(const dem *d, const dem *other) {
     memset(&b, 0, sizeof b);
     dem_measure(d, NULL, &a);
     dem_measure(other, NULL, &b);
-    assert_true(a.contacts > 0 && a.stress_yy > 0);
+    assert_true(a.contacts > 0 && a.stress.yy > 0);
     assert_int_equal(a.contacts, b.contacts);
     assert_memory_equal(&a.energy, &b.energy, sizeof a.energy);
-    const double numbers[] = {a.coordination, a.stress_xx, a.stress_xy, a.stress_yx, a.stress_yy, a.deepest, a.fastest};
-    const double others[] = {b.coordination, b.stress_xx, b.stress_xy, b.stress_yx, b.stress_yy, b.deepest, b.fastest};
+    const double numbers[] = {a.coordination, a.stress.xx, a.stress.xy, a.stress.yx, a.stress.yy, a.deepest, a.fastest};
+    const double others[] = {b.coordination, b.stress.xx, b.stress.xy, b.stress.yx, b.stress.yy, b.deepest, b.fastest};
     assert_memory_equal(numbers, others, sizeof numbers);
 }
 
@@ -45,7 +45,7 @@ TEST(test_bit_for_bit) {
     dem d = make_busy_world(1), again = make_busy_world(2);
     const dem_place place = {.input = 5, .stage = 1, .stage_step = 17, .csv_position = 99, .frame = 3, .random = 4};
     dem_place found = {.input = 5};
-    d.walls[2].velocity = (dem_vec){0.01, 0.02};
+    d.walls[2].velocity = (vec){0.01, 0.02};
     d.walls[2].spin = 2.5;
     d.walls[2].idle_way = 1;
     d.walls[2].servo = (dem_servo){false, {0.6, 0.8}, 3, 4, {1, 0}, 0.5, 6, 7};
@@ -64,7 +64,7 @@ TEST(test_bit_for_bit) {
         step(&again, 100);
         assert_true(dem_hash(&d) == dem_hash(&again));
     }
-    assert_true(d.list_builds > 10 && d.walls[0].work != 0 && d.rolling_energy > 0);
+    assert_true(d.list_builds > 10 && d.walls[0].work != 0 && d.account.rolling > 0);
     assert_true(d.list_builds == again.list_builds);
     dem_destroy(&d);
     dem_destroy(&again);

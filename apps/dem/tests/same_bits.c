@@ -12,9 +12,9 @@ static uint64_t run_world(const char *isa, unsigned threads) {
     dem d = make_busy_world(threads);
     start(&d);
     step(&d, 7000);
-    assert_true(d.contacts.count > 60);
+    assert_true(d.contact_count > 60);
     const uint64_t hash = dem_hash(&d);
-    print_message("%s, %u threads: %016" PRIx64 ", %zu contacts\n", isa, threads, hash, d.contacts.count);
+    print_message("%s, %u threads: %016" PRIx64 ", %zu contacts\n", isa, threads, hash, d.contact_count);
     dem_destroy(&d);
     return hash;
 }
@@ -32,7 +32,7 @@ TEST(test_hash_sees_all) {
     dem d = make_busy_world(1);
     start(&d);
     const uint64_t before = dem_hash(&d);
-    d.bodies.spin[5] = nextafter(d.bodies.spin[5], 100);
+    d.bodies[5].spin = nextafter(d.bodies[5].spin, 100);
     assert_int_not_equal(dem_hash(&d), before);
     dem_destroy(&d);
 }

@@ -13,7 +13,7 @@ static const double RATE = 2, SIDE = 16;
 static dem_settings sheared_settings(void) {
     dem_settings settings = plain_settings();
     settings.periodic_x = settings.periodic_y = settings.sheared = true;
-    settings.high_x = settings.high_y = SIDE;
+    settings.high.x = settings.high.y = SIDE;
     settings.shear = RATE;
     return settings;
 }
@@ -35,11 +35,11 @@ static void put_pair(dem *d, bool sheared, double offset, double x) {
     add_grain(d, ELL, sheared ? fmod(x + 0.2 - offset + 10 * SIDE, SIDE) : x + 0.2, sheared ? 0.95 : 16.95, 0, 0);
     d->offset = offset;
     start(d);
-    assert_int_equal(d->contacts.count, 0);
-    d->bodies.vx[0] = drift / 2; /* so that they meet */
-    d->bodies.vy[0] = 2;
-    d->bodies.vx[1] = sheared ? -drift / 2 : drift / 2;
-    d->bodies.vy[1] = -3;
+    assert_int_equal(d->contact_count, 0);
+    d->bodies[0].velocity.x = drift / 2; /* so that they meet */
+    d->bodies[0].velocity.y = 2;
+    d->bodies[1].velocity.x = sheared ? -drift / 2 : drift / 2;
+    d->bodies[1].velocity.y = -3;
 }
 
 TEST(test_collision_across_the_sheared_border) {
@@ -52,17 +52,17 @@ TEST(test_collision_across_the_sheared_border) {
         for (int s = 0; s < 3000; s++) {
             step(&d, 1);
             step(&reference, 1);
-            contacts += d.contacts.count;
-            assert_int_equal(d.contacts.count, reference.contacts.count);
+            contacts += d.contact_count;
+            assert_int_equal(d.contact_count, reference.contact_count);
         }
         assert_true(contacts > 100);
-        assert_true(d.bodies.cell_y[0] - d.bodies.cell_y[1] != 0 || d.bodies.y[0] > 14);
+        assert_true(d.bodies[0].cell_y - d.bodies[1].cell_y != 0 || d.bodies[0].place.y > 14);
         for (size_t k = 0; k < 2; k++) {
             /* A starts in this cell, B one below its image. */
-            const double above = d.bodies.cell_y[k] + (k == 1);
-            assert_true(fabs(d.bodies.vx[k] + above * RATE * SIDE - reference.bodies.vx[k]) < 1e-9);
-            assert_true(fabs(d.bodies.vy[k] - reference.bodies.vy[k]) < 1e-9);
-            assert_true(fabs(d.bodies.spin[k] - reference.bodies.spin[k]) < 1e-9);
+            const double above = d.bodies[k].cell_y + (k == 1);
+            assert_true(fabs(d.bodies[k].velocity.x + above * RATE * SIDE - reference.bodies[k].velocity.x) < 1e-9);
+            assert_true(fabs(d.bodies[k].velocity.y - reference.bodies[k].velocity.y) < 1e-9);
+            assert_true(fabs(d.bodies[k].spin - reference.bodies[k].spin) < 1e-9);
         }
         assert_true(fabs(energies(&d).damping - energies(&reference).damping) < 1e-8);
         assert_true(fabs(energies(&d).friction - energies(&reference).friction) < 1e-8);
@@ -80,14 +80,14 @@ static dem make_flow(unsigned threads) {
     law.friction = 0.4;
     law.damping_ratio = dem_damping_ratio(DEM_LINEAR, 0.5);
     dem d = make_world(settings, law);
-    const dem_filling filling = {.region = {true, 0, SIDE, 0, SIDE},
+    const dem_filling filling = {.region = {true, {0, 0}, {SIDE, SIDE}},
                                  .shapes = {DISC, DISC, ELLIPSE, ELL},
                                  .shape_count = 4,
                                  .sizes = {DEM_UNIFORM, 0, 0, 0.85, 1.2},
                                  .spacing = {1, 1}};
     uint64_t random = 3;
     assert_true(dem_fill_lattice(&d, &filling, &random));
-    d.settings.max_overlap = d.safe_depth = 10; /* they begin one over the other */
+    d.settings.max_overlap = 10; /* they begin one over the other */
     start(&d);
     return d;
 }
@@ -100,9 +100,9 @@ typedef struct momentum {
 static momentum find_momentum(const dem *d) {
     momentum sum = {0, 0, 0};
     for (size_t k = 0; k < d->grain_count; k++) {
-        sum.x += d->bodies.mass[k] * (d->bodies.vx[k] + d->bodies.cell_y[k] * RATE * SIDE);
-        sum.y += d->bodies.mass[k] * d->bodies.vy[k];
-        sum.scale += d->bodies.mass[k] * RATE * SIDE;
+        sum.x += d->bodies[k].mass * (d->bodies[k].velocity.x + d->bodies[k].cell_y * RATE * SIDE);
+        sum.y += d->bodies[k].mass * d->bodies[k].velocity.y;
+        sum.scale += d->bodies[k].mass * RATE * SIDE;
     }
     return sum;
 }
@@ -121,11 +121,11 @@ TEST(test_flow) {
         dem_measures m;
         step(&d, 1);
         dem_measure(&d, NULL, &m);
-        stress -= 0.5 * (m.stress_xy + m.stress_yx);
+        stress -= 0.5 * (m.stress.xy + m.stress.yx);
         for (size_t k = 0; s % 50 == 0 && k < d.grain_count; k++) {
-            const double y = d.bodies.y[k] - SIDE * floor(d.bodies.y[k] / SIDE);
+            const double y = d.bodies[k].place.y - SIDE * floor(d.bodies[k].place.y / SIDE);
             const int band = (int)(BANDS * y / SIDE);
-            speed[band] += d.bodies.vx[k] + (d.bodies.y[k] - y) / SIDE * -RATE * SIDE;
+            speed[band] += d.bodies[k].velocity.x + (d.bodies[k].place.y - y) / SIDE * -RATE * SIDE;
             count[band]++;
         }
     }

@@ -147,9 +147,9 @@ TEST(test_depth_is_double) {
         add_grain(&d, SAND, 110, 5, 0, 0);
         start(&d);
         step(&d, 1);
-        assert_int_equal(d.contacts.count, 3);
+        assert_int_equal(d.contact_count, 3);
         for (size_t k = 0; k < 3; k++) {
-            const double h = d.contacts.rows[k].depth * (k == 0 ? 1 : sqrt(0.5));
+            const double h = d.contacts[k].depth * (k == 0 ? 1 : sqrt(0.5));
             print_message("depth %.12g of %g\n", h, depths[i]);
             assert_true(fabs(h - depths[i]) < 1e-14);
         }
@@ -164,7 +164,7 @@ TEST(test_bricks_stand_still) {
     d.laws[0][0].friction = 0.5;
     d.laws[0][0].kn = 1e4;
     d.laws[0][0].kt = 3e3;
-    d.settings.gravity = (dem_vec){0, -1};
+    d.settings.gravity = (vec){0, -1};
     d.settings.time_step = 1e-3;
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
@@ -177,18 +177,18 @@ TEST(test_bricks_stand_still) {
             add_grain(&d, brick, 2.01 * i + course % 2, 0.5 + 1.001 * course, 0, 0);
     start(&d);
     step(&d, 60000);
-    const size_t contacts = d.contacts.count;
-    const double x = d.bodies.x[22], y = d.bodies.y[22];
+    const size_t contacts = d.contact_count;
+    const double x = d.bodies[22].place.x, y = d.bodies[22].place.y;
     for (int i = 0; i < 20000; i++) {
         step(&d, 1);
-        assert_int_equal(d.contacts.count, contacts);
+        assert_int_equal(d.contact_count, contacts);
     }
     dem_measures m;
     dem_measure(&d, NULL, &m);
     print_message("%zu contacts, fastest %.3g, moved by %.3g\n", contacts, m.fastest,
-                  hypot(d.bodies.x[22] - x, d.bodies.y[22] - y));
+                  hypot(d.bodies[22].place.x - x, d.bodies[22].place.y - y));
     assert_int_equal(contacts, 5 + 4 * 9);
     assert_true(m.fastest < 1e-12 && m.energy.kinetic < 1e-22);
-    assert_true(hypot(d.bodies.x[22] - x, d.bodies.y[22] - y) < 1e-10);
+    assert_true(hypot(d.bodies[22].place.x - x, d.bodies[22].place.y - y) < 1e-10);
     dem_destroy(&d);
 }

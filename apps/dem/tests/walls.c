@@ -15,14 +15,14 @@ TEST(test_work_of_a_wall) {
     d.settings.time_step = 1e-5;
     add_plate(&d, "piston", 0, 0, 1, 0);
     add_grain(&d, DISC, 1.01, 0, 0, 0);
-    d.walls[0].velocity = (dem_vec){2, 0};
+    d.walls[0].velocity = (vec){2, 0};
     start(&d);
     step(&d, 5000);
-    print_message("speed %.9g, work %.9g of %.9g\n", d.bodies.vx[0], d.walls[0].work, energies(&d).kinetic);
-    assert_int_equal(d.contacts.count, 0);
-    assert_true(fabs(d.bodies.vx[0] - 4) < 4e-3);
+    print_message("speed %.9g, work %.9g of %.9g\n", d.bodies[0].velocity.x, d.walls[0].work, energies(&d).kinetic);
+    assert_int_equal(d.contact_count, 0);
+    assert_true(fabs(d.bodies[0].velocity.x - 4) < 4e-3);
     assert_true(fabs(d.walls[0].work - energies(&d).kinetic) < 1e-4); /* 1e-7 of a depth, in each of some steps */
-    assert_true(fabs(d.bodies.x[1] + 4 * (d.grain_reach + d.settings.skin) - 2 * d.time) < 1e-9);
+    assert_true(fabs(d.bodies[1].place.x + 4 * (d.grain_reach + d.settings.skin) - 2 * d.time) < 1e-9);
     dem_destroy(&d);
 }
 
@@ -36,8 +36,8 @@ TEST(test_oblique_plate_far_away) {
         add_plate(&d, "slope", 0, 0, 0.6, 0.8);
         add_grain(&d, DISC, 0.8 * along + 0.6 * above, -0.6 * along + 0.8 * above, 0, 0);
         start(&d);
-        assert_int_equal(d.contacts.count, 1);
-        assert_true(fabs(hypot(d.bodies.fx[0], d.bodies.fy[0]) / (plain_law().kn * depth) - 1) < 2e-3);
+        assert_int_equal(d.contact_count, 1);
+        assert_true(fabs(hypot(d.bodies[0].force.x, d.bodies[0].force.y) / (plain_law().kn * depth) - 1) < 2e-3);
         dem_destroy(&d);
     }
 }
@@ -55,12 +55,12 @@ TEST(test_turning_wall) {
     start(&d);
     step(&d, 250);
     /* A quarter of a turn: 2 atan(h) for each step of 2 h, less by a third of h^2, 3.3e-6. */
-    assert_true(fabs(d.bodies.x[1] - 2) < 1e-4 && fabs(d.bodies.y[1] - 4.25) < 1e-4);
-    assert_true(fabs(d.bodies.vx[1] + 3 * 2 * PI) < 1e-3 && fabs(d.bodies.vy[1] - 1) < 1e-3);
-    assert_true(fabs(atan2(d.bodies.sine[1], d.bodies.cosine[1]) - 0.25 - PI / 2) < 1e-4);
+    assert_true(fabs(d.bodies[1].place.x - 2) < 1e-4 && fabs(d.bodies[1].place.y - 4.25) < 1e-4);
+    assert_true(fabs(d.bodies[1].velocity.x + 3 * 2 * PI) < 1e-3 && fabs(d.bodies[1].velocity.y - 1) < 1e-3);
+    assert_true(fabs(atan2(d.bodies[1].turn.y, d.bodies[1].turn.x) - 0.25 - PI / 2) < 1e-4);
     step(&d, 750);
-    assert_true(fabs(d.bodies.x[1] - 5) < 1e-3 && fabs(d.bodies.y[1] - 2) < 1e-3);
-    assert_true(fabs(hypot(d.bodies.cosine[1], d.bodies.sine[1]) - 1) < 1e-14);
+    assert_true(fabs(d.bodies[1].place.x - 5) < 1e-3 && fabs(d.bodies[1].place.y - 2) < 1e-3);
+    assert_true(fabs(hypot(d.bodies[1].turn.x, d.bodies[1].turn.y) - 1) < 1e-14);
     dem_destroy(&d);
 }
 
@@ -89,12 +89,12 @@ TEST(test_servo_force) {
     assert_true(fabs(dem_wall_force(&d, 0).y / -force - 1) < 1e-3);
     assert_true(fabs(d.walls[1].work / (4 * 0.5 * force * force / 1e5) - 1) < 0.3); /* and what dashpots took */
     /* Compression of the tower: the force over its length in the volume of a region of 2 by 6. */
-    const dem_region region = {true, -1, 1, -1, 7};
+    const dem_region region = {true, {-1, -1}, {1, 7}};
     dem_measures m;
     dem_measure(&d, &region, &m);
     const double length = 6 - 4 * 0.5 * force / 1e5 - 2 * 0.5 * force / 1e5;
-    assert_true(fabs(m.stress_yy / (force * length / 16) - 1) < 2e-3);
-    assert_true(fabs(m.stress_xx) < 1e-9 && fabs(m.stress_xy) < 1e-6 && fabs(m.stress_yx) < 1e-6);
+    assert_true(fabs(m.stress.yy / (force * length / 16) - 1) < 2e-3);
+    assert_true(fabs(m.stress.xx) < 1e-9 && fabs(m.stress.xy) < 1e-6 && fabs(m.stress.yx) < 1e-6);
     assert_int_equal(m.contacts, 4);
     assert_true(fabs(m.coordination - 2) < 1e-12); /* two ends of two contacts, and two with walls, of three grains */
     dem_destroy(&d);
@@ -138,26 +138,26 @@ TEST(test_servo_touches_in_time) {
 /* Who is to press with no force, and touches nothing, stays. */
 TEST(test_servo_of_no_force) {
     dem d = make_press(-1, 0, 5e-4, 0.5, 0);
-    const double before = d.bodies.y[4];
+    const double before = d.bodies[4].place.y;
     step(&d, 1000);
-    assert_true(d.bodies.y[4] == before);
+    assert_true(d.bodies[4].place.y == before);
     dem_destroy(&d);
 }
 
 /* A plate's own velocity along itself drags a grain by friction until both move alike. */
 TEST(test_conveyor) {
     dem d = plain_world();
-    d.settings.gravity = (dem_vec){0, -10};
+    d.settings.gravity = (vec){0, -10};
     d.laws[0][0].friction = 0.3;
     d.laws[0][0].damping_ratio = 1;
     add_plate(&d, "belt", 0, 0, 0, 1);
     add_grain(&d, OCTAGON, 0, cos(PI / 8), 0, 0); /* it lies on a side, */
-    d.bodies.cosine[0] = cos(PI / 8);             /* after an eighth of a turn */
-    d.bodies.sine[0] = sin(PI / 8);
-    d.walls[0].velocity = (dem_vec){-2, 0};
+    d.bodies[0].turn.x = cos(PI / 8);             /* after an eighth of a turn */
+    d.bodies[0].turn.y = sin(PI / 8);
+    d.walls[0].velocity = (vec){-2, 0};
     start(&d);
     step(&d, 20000);
-    assert_true(fabs(d.bodies.vx[0] + 2) < 0.02);
-    assert_true(fabs(d.bodies.x[1]) < 1e-12); /* the plate's body stays */
+    assert_true(fabs(d.bodies[0].velocity.x + 2) < 0.02);
+    assert_true(fabs(d.bodies[1].place.x) < 1e-12); /* the plate's body stays */
     dem_destroy(&d);
 }

@@ -23,7 +23,7 @@ int main(void) { return cmocka_run_group_tests(tests, NULL, NULL); }
 
 dem_settings plain_settings(void) {
     dem_settings s = dem_defaults;
-    s.gravity = (dem_vec){0, 0};
+    s.gravity = (vec){0, 0};
     s.time_step = 1e-4;
     s.skin = 0.2;
     s.threads = 1;
@@ -99,7 +99,7 @@ dem make_world(dem_settings settings, dem_contact_law law) {
 dem plain_world(void) { return make_world(plain_settings(), plain_law()); }
 
 void add_grain(dem *d, uint32_t shape, double x, double y, double vx, double vy) {
-    check(d, dem_add_grain(d, (dem_grain){.shape = shape, .x = x, .y = y, .scale = 1, .vx = vx, .vy = vy}));
+    check(d, dem_add_grain(d, (dem_grain){.shape = shape, .place = {x, y}, .scale = 1, .velocity = {vx, vy}}));
 }
 
 void add_plate(dem *d, const char *name, double x, double y, double normal_x, double normal_y) {
@@ -123,9 +123,9 @@ dem_wall *add_box(dem *d, uint32_t shape, double scale, double x, double y) {
 dem make_busy_world(unsigned threads) {
     dem d = plain_world();
     dem_contact_law *law = &d.laws[0][0];
-    d.settings.gravity = (dem_vec){1, -40};
+    d.settings.gravity = (vec){1, -40};
     d.settings.periodic_x = true;
-    d.settings.high_x = 24;
+    d.settings.high.x = 24;
     d.settings.threads = threads;
     law->kn = 1e6;
     law->kt = 3e5;
@@ -134,14 +134,14 @@ dem make_busy_world(unsigned threads) {
     law->rolling_friction = 0.05;
     add_plate(&d, "floor", 0, 0, 0, 1);
     add_plate(&d, "lid", 0, 22.5, 0, -1);
-    d.walls[1].velocity = (dem_vec){3, 0};
+    d.walls[1].velocity = (vec){3, 0};
     dem_wall *paddle = add_box(&d, OCTAGON, 1.5, 12, 3);
     paddle->pivot.x = 12.5;
     paddle->spin = 2;
     d.walls[0].servo =
         (dem_servo){.on = true, .direction = {0, 1}, .stress = 100, .between = {0, 1}, .gain = 1e-4, .max_speed = 2};
     const dem_filling filling = {.count = 120,
-                                 .region = {true, 0, 24, 1.2, 21.3},
+                                 .region = {true, {0, 1.2}, {24, 21.3}},
                                  .shapes = {DISC, ROUND, OCTAGON, ARCS, ELL},
                                  .shape_count = 5,
                                  .sizes = {DEM_UNIFORM, 0, 0, 1.2, 2},

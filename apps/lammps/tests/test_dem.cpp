@@ -62,13 +62,12 @@ bool fill_dem(dem *d, const Packing &packing, const narc_lammps::Form forms[2], 
     settings.skin = 0.2;
     settings.max_overlap = 1;
     settings.periodic_x = settings.periodic_y = true;
-    settings.high_x = packing.width;
-    settings.high_y = packing.height;
+    settings.high = {packing.width, packing.height};
     settings.threads = 1;
     dem_material material = {};
     std::snprintf(material.name, sizeof material.name, "stone");
     material.density = 1;
-    const uint8_t stone = 0;
+    const uint32_t stone = 0;
     uint32_t shapes[2] = {0, 0};
     bool good = dem_create(d, settings);
     d->materials[d->material_count++] = material;
@@ -87,12 +86,10 @@ bool fill_dem(dem *d, const Packing &packing, const narc_lammps::Form forms[2], 
         dem_grain grain = {};
         grain.shape = shapes[g.type - 1];
         grain.material = stone;
-        grain.x = g.x;
-        grain.y = g.y;
+        grain.place = {g.x, g.y};
         grain.angle = g.angle;
         grain.scale = 0.5;
-        grain.vx = g.velocity_x;
-        grain.vy = g.velocity_y;
+        grain.velocity = {g.velocity_x, g.velocity_y};
         grain.spin = g.spin;
         good = good && dem_add_grain(d, grain);
     }
@@ -101,10 +98,9 @@ bool fill_dem(dem *d, const Packing &packing, const narc_lammps::Form forms[2], 
 
 std::vector<State> states_of(const dem &d) {
     std::vector<State> states;
-    const dem_bodies &b = d.bodies;
-    for (size_t i = 0; i < d.grain_count; i++)
-        states.push_back({b.x[i], b.y[i], b.cosine[i], b.sine[i], b.vx[i], b.vy[i], b.spin[i], b.fx[i], b.fy[i],
-                          b.torque[i], b.mass[i]});
+    for (const dem_body *b = d.bodies; b < d.bodies + d.grain_count; b++)
+        states.push_back({b->place.x, b->place.y, b->turn.x, b->turn.y, b->velocity.x, b->velocity.y, b->spin,
+                          b->force.x, b->force.y, b->torque, b->mass});
     return states;
 }
 

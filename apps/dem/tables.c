@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * csv.c - the table of measures, and tables of all grains.
+ * tables.c - the table of measures, and tables of all grains.
  */
 #define _XOPEN_SOURCE 700 /* ftruncate */
 #include <errno.h>
@@ -60,34 +60,32 @@ FILE *dem_open_csv(dem *d, const char *path, uint64_t *position) {
 
 bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m) {
     const dem_energies *e = &m->energy;
+    const dem_stress *s = &m->stress;
     fprintf(csv, "%" PRIu64 ",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%zu,%.6g,%.6g,%.6g", d->step,
-            d->time, e->kinetic, e->potential, e->elastic, e->damping, e->friction, e->walls, m->stress_xx,
-            m->stress_xy, m->stress_yx, m->stress_yy, m->contacts, m->coordination, m->deepest, m->fastest);
-    for (size_t w = 0; w < d->wall_count; w++) {
-        const size_t k = d->grain_count + w;
-        const dem_vec force = dem_wall_force(d, w);
-        fprintf(csv, ",%.9g,%.9g,%.9g,%.9g", d->bodies.x[k], d->bodies.y[k], force.x, force.y);
-    }
+            d->time, e->kinetic, e->potential, e->elastic, e->damping, e->friction, e->walls, s->xx, s->xy, s->yx,
+            s->yy, m->contacts, m->coordination, m->deepest, m->fastest);
+    for (const dem_body *b = d->bodies + d->grain_count; b < d->bodies + d->body_count; b++)
+        fprintf(csv, ",%.9g,%.9g,%.9g,%.9g", b->place.x, b->place.y, b->force.x, b->force.y);
     fprintf(csv, "\n");
     return fflush(csv) == 0 && !ferror(csv);
 }
 
-/* ------------------------------------------------------------------------------------------------ grains */
-
 bool dem_write_grains(dem *d, const char *path) {
-    const dem_bodies *b = &d->bodies;
     dem_load *loads = dem_find_loads(d);
-    dem_file file;
-    if (!loads || !dem_open_file(&file, path, d->error)) {
+    dem_file out;
+    if (!loads || !dem_open_file(d, &out, path)) {
         free(loads);
         return false;
     }
-    fprintf(file.file, "shape,x,y,angle,scale,size,vx,vy,spin,contacts,bearing,pressure,mass,cell_x,cell_y\n");
-    for (size_t k = 0; k < d->grain_count; k++)
-        fprintf(file.file, "%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%u,%u,%.9g,%.9g,%d,%d\n",
-                d->shapes[b->shape[k]].name, b->x[k], b->y[k], atan2(b->sine[k], b->cosine[k]), (double)b->scale[k],
-                b->extent[k], b->vx[k], b->vy[k], b->spin[k], loads[k].contacts, loads[k].bearing,
-                0.5 * (loads[k].stress_xx + loads[k].stress_yy), b->mass[k], (int)b->cell_x[k], (int)b->cell_y[k]);
+    fprintf(out.file, "shape,x,y,angle,scale,size,vx,vy,spin,contacts,bearing,pressure,mass,cell_x,cell_y\n");
+    for (size_t k = 0; k < d->grain_count; k++) {
+        const dem_body *b = &d->bodies[k];
+        const dem_load *l = &loads[k];
+        const double angle = atan2(b->turn.y, b->turn.x), pressure = 0.5 * (l->stress.xx + l->stress.yy);
+        fprintf(out.file, "%s,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%u,%u,%.9g,%.9g,%d,%d\n",
+                d->shapes[b->shape].name, b->place.x, b->place.y, angle, (double)b->scale, b->extent, b->velocity.x,
+                b->velocity.y, b->spin, l->contacts, l->bearing, pressure, b->mass, (int)b->cell_x, (int)b->cell_y);
+    }
     free(loads);
-    return dem_close_file(&file, true, d->error);
+    return dem_close_file(d, &out);
 }
