@@ -21,103 +21,88 @@ void *dem_allocate(size_t count, size_t size) {
     return memory;
 }
 
-/* ------------------------------------------------------------------------------------------------ materials */
+/* ------------------------------------------------------------------------------------------------ materials, laws */
 
-uint32_t dem_find_material(const json_value *name, const dem *d) {
-    return (uint32_t)json_find(name, d->materials, d->material_count, sizeof *d->materials, "is not a material");
+json_names dem_materials(const dem *d) {
+    return (json_names){d->materials, d->material_count, sizeof *d->materials, "is not a material"};
 }
 
 static void read_materials(const json_value *list, dem *d) {
+    const char *no = d->settings.law == DEM_HERTZ ? NULL : "is of the Hertz law: the linear law's stiffness is kn";
     for (json_value item = {0}; json_next(list, &item);) {
-        dem_material *material = &d->materials[d->material_count];
-        json_read(&item, (json_key[]){{"name", MUST | TEXT, material->name, 0, sizeof material->name},
-                                      {"density", MUST | POSITIVE, &material->density},
-                                      {"young", POSITIVE, &material->young},
-                                      {"poisson", NUMBER, &material->poisson, 0, 0.5},
+        dem_material *m = &d->materials[d->material_count];
+        json_names before = dem_materials(d);
+        before.problem = "is the name of another material";
+        json_read(&item, (json_key[]){{"name", MUST | TEXT, m->name, 0, sizeof m->name},
+                                      {"density", MUST | POSITIVE, &m->density},
+                                      {"young", MUST | POSITIVE, &m->young, .no = no},
+                                      {"poisson", MUST | NUMBER, &m->poisson, 0, 0.5, .no = no},
                                       {NULL}});
-        for (size_t m = 0; m < d->material_count; m++)
-            if (strcmp(d->materials[m].name, material->name) == 0)
-                json_refuse(&item, "name", "is the name of another material");
-        if (d->settings.law == DEM_LINEAR)
-            json_refuse(&item, "young poisson", "is of the Hertz law: the linear law's stiffness is kn");
-        else {
-            json_require(&item, "young");
-            json_require(&item, "poisson");
-        }
+        json_check_new(&item, m->name, before);
         d->material_count++;
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ laws */
-
-/* What is there replaces what `law` has. A list of pairs, or the materials of a pair, goes to `list`. */
-static void read_law(const json_value *object, dem_law kind, dem_contact_law *law, json_value *list) {
+/* Of all materials, with a list of pairs; or of a pair. What is there replaces what `law` has. */
+static void read_law(const json_value *object, const dem *d, json_value *pairs, uint32_t *pair, dem_contact_law *law) {
+    const bool hertz = d->settings.law == DEM_HERTZ;
+    const bool gamma = json_has(object, "gamma_n"), ratio = json_has(object, "restitution");
+    const bool by_ratio = ratio || (law->damping_ratio >= 0 && !gamma);
+    const char *no_pair = pair ? "is not for a pair" : NULL;
+    const char *no_stiffness = hertz ? "is not of the Hertz law: stiffness comes from the materials" : NULL;
+    const char *no_gamma_t = by_ratio ? "is for gamma_n; with restitution it is tangential_damping" : NULL;
+    const char *no_share = by_ratio ? NULL : "is for restitution; with gamma_n it is gamma_t";
+    const json_names materials = dem_materials(d);
+    const int must = pair ? 0 : MUST;
     double restitution = 1;
-    json_read(object, (json_key[]){{"law", ANY},
-                                   {"pairs", LIST, list},
-                                   {"materials", LIST, list, 2, 2},
-                                   {"kn", POSITIVE, &law->kn},
-                                   {"kt", NUMBER, &law->kt, 0, 1e300},
-                                   {"restitution", NUMBER, &restitution, 1e-6, 1},
-                                   {"gamma_n", NUMBER, &law->gamma_n, 0, 1e300},
-                                   {"gamma_t", NUMBER, &law->gamma_t, 0, 1e300},
-                                   {"tangential_damping", NUMBER, &law->tangential_share, 0, 100},
-                                   {"friction", NUMBER, &law->friction, 0, 1e6},
-                                   {"rolling_friction", NUMBER, &law->rolling_friction, 0, 1e6},
-                                   {NULL}});
-    if (kind == DEM_HERTZ)
-        json_refuse(object, "kn kt", "is not of the Hertz law: stiffness comes from the materials");
+    json_read(object,
+              (json_key[]){{"law", ANY, .no = no_pair},
+                           {"pairs", LIST, pairs, .no = no_pair},
+                           {"materials", MUST | SOME_OF, pair, 2, 2, &materials, pair ? NULL : "is for pairs"},
+                           {"kn", must | POSITIVE, &law->kn, .no = no_stiffness},
+                           {"kt", NUMBER, &law->kt, 0, 1e300, .no = no_stiffness},
+                           {"restitution", NUMBER, &restitution, 1e-6, 1},
+                           {"gamma_n", NUMBER, &law->gamma_n, 0, 1e300, .no = ratio ? "excludes restitution" : NULL},
+                           {"gamma_t", NUMBER, &law->gamma_t, 0, 1e300, .no = no_gamma_t},
+                           {"tangential_damping", NUMBER, &law->tangential_share, 0, 100, .no = no_share},
+                           {"friction", must | NUMBER, &law->friction, 0, 1e6},
+                           {"rolling_friction", NUMBER, &law->rolling_friction, 0, 1e6},
+                           {NULL}});
     if (json_has(object, "kn") && !json_has(object, "kt"))
         law->kt = 2.0 / 7 * law->kn; /* as LAMMPS has it */
-    if (json_has(object, "restitution")) {
-        json_refuse(object, "gamma_n", "excludes restitution");
-        law->damping_ratio = dem_damping_ratio(kind, restitution);
-    }
-    if (json_has(object, "gamma_n")) {
-        law->gamma_t = json_has(object, "gamma_t") ? law->gamma_t : 0.5 * law->gamma_n;
-        law->damping_ratio = -1;
-    }
+    if (gamma && !json_has(object, "gamma_t"))
+        law->gamma_t = 0.5 * law->gamma_n;
+    law->damping_ratio = ratio ? dem_damping_ratio(d->settings.law, restitution) : gamma ? -1 : law->damping_ratio;
     if (law->damping_ratio < 0 && law->gamma_n < 0)
         json_fail(object, "has neither restitution nor gamma_n");
-    if (law->damping_ratio < 0)
-        json_refuse(object, "tangential_damping", "is for restitution; with gamma_n it is gamma_t");
-    else
-        json_refuse(object, "gamma_t", "is for gamma_n; with restitution it is tangential_damping");
-}
-
-/* The law is asked before the materials, which depend on it. */
-static dem_law find_law(const json_value *contact) {
-    static const char names[][8] = {[DEM_LINEAR] = "linear", [DEM_HERTZ] = "hertz"};
-    json_require(contact, "law");
-    const json_value law = json_member(contact, "law");
-    return (dem_law)json_find(&law, names, 2, sizeof names[0], "is neither linear nor hertz");
 }
 
 static void read_contact(const json_value *contact, dem *d) {
     dem_contact_law common = {.damping_ratio = -1, .gamma_n = -1, .tangential_share = 0.5};
-    json_value pairs = {.item = NULL}, names;
+    json_value pairs = {.item = NULL};
     bool seen[DEM_MAX_MATERIALS][DEM_MAX_MATERIALS] = {{false}};
-    if (d->settings.law == DEM_LINEAR)
-        json_require(contact, "kn");
-    json_require(contact, "friction");
-    json_refuse(contact, "materials", "is for pairs");
-    read_law(contact, d->settings.law, &common, &pairs);
-    for (size_t a = 0; a < d->material_count; a++)
-        for (size_t b = a; b < d->material_count; b++)
-            dem_set_law(d, (uint32_t)a, (uint32_t)b, common);
+    read_law(contact, d, &pairs, NULL, &common);
+    for (uint32_t a = 0; a < d->material_count; a++)
+        for (uint32_t b = a; b < d->material_count; b++)
+            dem_set_law(d, a, b, common);
     for (json_value item = {0}; json_next(&pairs, &item);) {
         dem_contact_law law = common;
-        uint32_t index[2];
-        json_require(&item, "materials");
-        json_refuse(&item, "law pairs", "is not for a pair");
-        read_law(&item, d->settings.law, &law, &names);
-        for (json_value name = {0}; json_next(&names, &name);)
-            index[name.index] = dem_find_material(&name, d);
-        if (seen[index[0]][index[1]])
-            json_fail(&names, "is a pair that stands before");
-        seen[index[0]][index[1]] = seen[index[1]][index[0]] = true;
-        dem_set_law(d, index[0], index[1], law);
+        uint32_t of[2];
+        read_law(&item, d, NULL, of, &law);
+        if (seen[of[0]][of[1]])
+            json_refuse(&item, "materials", "is a pair that stands before");
+        seen[of[0]][of[1]] = seen[of[1]][of[0]] = true;
+        dem_set_law(d, of[0], of[1], law);
     }
+}
+
+/* The law is asked before the materials, which depend on it. */
+static dem_law find_law(const json_value *contact) {
+    static const char laws[][8] = {[DEM_LINEAR] = "linear", [DEM_HERTZ] = "hertz"};
+    const json_names names = {laws, 2, sizeof laws[0], "is neither linear nor hertz"};
+    uint32_t index;
+    json_read_some(contact, (json_key[]){{"law", MUST | ONE_OF, &index, .names = &names}, {NULL}});
+    return (dem_law)index;
 }
 
 /* ------------------------------------------------------------------------------------------------ stages */
@@ -131,35 +116,42 @@ static uint64_t count_steps(const json_value *object, const char *key, double ti
 }
 
 static void read_stages(const json_value *list, const dem *d, dem_input *input) {
+    const char *no_shear = d->settings.sheared ? NULL : "is of a cell whose boundary has shear";
+    const char *no_gravity = d->settings.sheared ? "is not for a sheared cell" : NULL;
     input->stages = dem_allocate((size_t)cJSON_GetArraySize(list->item), sizeof *input->stages);
     bool *has_servo = dem_allocate(d->wall_count, sizeof *has_servo);
     for (size_t w = 0; w < d->wall_count; w++)
         has_servo[w] = d->walls[w].servo.on;
     for (json_value item = {0}; json_next(list, &item);) {
-        dem_stage *stage = &input->stages[item.index];
+        dem_stage *stage = &input->stages[input->stage_count++];
         double duration;
         json_value walls = {.item = NULL};
+        *stage = (dem_stage){.gravity = {NAN, NAN}, .friction = NAN, .shear = NAN};
         snprintf(stage->name, sizeof stage->name, "stage %zu", item.index);
         json_read(&item, (json_key[]){{"name", NAME, stage->name, 0, sizeof stage->name},
                                       {"duration", MUST | POSITIVE, &duration},
-                                      {"gravity", PAIR, &stage->gravity},
+                                      {"gravity", PAIR, &stage->gravity, .no = no_gravity},
                                       {"friction", NUMBER, &stage->friction, 0, 1e6},
-                                      {"shear", NUMBER, &stage->shear},
+                                      {"shear", NUMBER, &stage->shear, .no = no_shear},
                                       {"walls", ANY, &walls},
                                       {NULL}});
         stage->steps = count_steps(&item, "duration", duration, d);
-        stage->sets_gravity = json_has(&item, "gravity");
-        stage->sets_friction = json_has(&item, "friction");
-        stage->sets_shear = json_has(&item, "shear");
-        if (!d->settings.sheared)
-            json_refuse(&item, "shear", "is of a cell whose boundary has shear");
-        if (stage->sets_gravity && d->settings.sheared)
-            json_fail(&item, "has gravity in a sheared cell");
         if (walls.item)
             dem_read_changes(&walls, d, has_servo, stage);
-        input->stage_count++;
     }
     free(has_servo);
+}
+
+/* Other gravity gives grains another potential energy at once. */
+void dem_enter_stage(dem *d, const dem_stage *stage) {
+    if (!isnan(stage->gravity.x))
+        d->settings.gravity = stage->gravity;
+    if (!isnan(stage->shear))
+        dem_set_shear(d, stage->shear);
+    for (size_t i = 0; i < d->material_count * d->material_count && !isnan(stage->friction); i++)
+        d->laws[i / d->material_count][i % d->material_count].friction = stage->friction;
+    for (size_t i = 0; i < stage->change_count; i++)
+        dem_apply_change(d, &stage->changes[i]);
 }
 
 /* ------------------------------------------------------------------------------------------------ output */
@@ -183,49 +175,34 @@ static void check_names(const json_value *object, const dem_output *o, const cha
             json_refuse(object, keys[i], "is the input itself");
         if (is_same_file(shapes, names[i]))
             json_refuse(object, keys[i], "is the file of shapes");
-        if (i < 2 && names[i][0] && !is_table(names[i]))
+        if (i < 2 && !is_table(names[i]))
             json_refuse(object, keys[i], "does not end in .csv");
     }
     if (o->restart[0] && strcmp(o->restart, o->csv) == 0)
         json_fail(object, "names one file twice");
-    if (!o->restart[0])
-        json_refuse(object, "restart_every", "is there without restart");
     if (strstr(o->vtk, ".vtk"))
         json_refuse(object, "vtk", "has a suffix: numbers of frames and .vtk are added");
 }
 
 static void read_output(const json_value *object, const dem *d, dem_input *input) {
     dem_output *o = &input->output;
-    double every, restart_every = 1e300;
+    const char *no = json_has(object, "restart") ? NULL : "is there without restart";
+    double every, restart_every = NAN;
     json_read(object, (json_key[]){{"every", MUST | POSITIVE, &every},
                                    {"csv", TEXT, o->csv, 0, sizeof o->csv},
                                    {"grains", TEXT, o->grains, 0, sizeof o->grains},
                                    {"vtk", TEXT, o->vtk, 0, sizeof o->vtk},
                                    {"restart", TEXT, o->restart, 0, sizeof o->restart},
-                                   {"restart_every", POSITIVE, &restart_every},
+                                   {"restart_every", POSITIVE, &restart_every, .no = no},
                                    {"region", REGION, &o->region},
                                    {NULL}});
     check_names(object, o, input->shapes);
     o->every = count_steps(object, "every", every, d);
-    if (json_has(object, "restart_every"))
+    if (!isnan(restart_every))
         o->restart_every = count_steps(object, "restart_every", restart_every, d);
 }
 
 /* ------------------------------------------------------------------------------------------------ the whole */
-
-static void read_boundary(const json_value *boundary, dem_settings *s) {
-    vec x = {0, 0}, y = {0, 0};
-    json_read(boundary, (json_key[]){{"x", PAIR, &x}, {"y", PAIR, &y}, {"shear", NUMBER, &s->shear}, {NULL}});
-    s->sheared = json_has(boundary, "shear");
-    s->periodic_x = json_has(boundary, "x");
-    s->periodic_y = json_has(boundary, "y");
-    if (!(x.y > x.x))
-        json_refuse(boundary, "x", "is not a range [low, high]");
-    if (!(y.y > y.x))
-        json_refuse(boundary, "y", "is not a range [low, high]");
-    s->low = (vec){x.x, y.x};
-    s->high = (vec){x.y, y.y};
-}
 
 /* The file of shapes is named from the input's folder. */
 static void find_shapes_file(const char *input, const char *name, char *out_path, size_t size) {
@@ -260,14 +237,17 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
     const json_value root = json_read_file(path), shapes_file = json_member(&root, "shapes");
     dem_settings s = dem_defaults;
     char shapes[DEM_PATH_SIZE];
-    json_value materials, contact, grains, stages, none = {.item = NULL}, boundary = none, walls = none, output = none;
+    vec x = {0, 1}, y = {0, 1};
+    json_value materials, contact, grains, stages, walls = {.item = NULL}, output = {.item = NULL};
     *input = (dem_input){.random = 1, .output = {.every = UINT64_MAX, .restart_every = UINT64_MAX}};
+    s.shear = NAN;
+    json_key boundary[] = {{"x", PAIR, &x}, {"y", PAIR, &y}, {"shear", NUMBER, &s.shear}, {NULL}};
     json_read(&root, (json_key[]){{"comment", ANY},
                                   {"materials", MUST | LIST, &materials, 1, DEM_MAX_MATERIALS},
                                   {"shapes", MUST | TEXT, shapes, 0, sizeof shapes},
                                   {"thickness", POSITIVE, &s.thickness},
                                   {"gravity", PAIR, &s.gravity},
-                                  {"boundary", ANY, &boundary},
+                                  {"boundary", OBJECT, boundary},
                                   {"time_step", MUST | POSITIVE, &s.time_step},
                                   {"skin", MUST | POSITIVE, &s.skin},
                                   {"max_overlap", NUMBER, &s.max_overlap, 1e-6, 1},
@@ -278,10 +258,19 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
                                   {"stages", MUST | LIST, &stages, 1, 1e9},
                                   {"output", ANY, &output},
                                   {NULL}});
+    const json_value cell = json_member(&root, "boundary");
+    if (!(x.y > x.x))
+        json_refuse(&cell, "x", "is not a range [low, high]");
+    if (!(y.y > y.x))
+        json_refuse(&cell, "y", "is not a range [low, high]");
+    s.periodic_x = json_has(&cell, "x");
+    s.periodic_y = json_has(&cell, "y");
+    s.low = (vec){x.x, y.x};
+    s.high = (vec){x.y, y.y};
+    s.sheared = !isnan(s.shear);
+    s.shear = s.sheared ? s.shear : 0;
     s.threads = threads;
     s.law = find_law(&contact);
-    if (boundary.item)
-        read_boundary(&boundary, &s);
     if (!dem_create(d, s))
         dem_fail_at(&root, d);
     find_shapes_file(path, shapes, input->shapes, sizeof input->shapes);

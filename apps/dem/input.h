@@ -7,19 +7,19 @@
 
 #include "schema.h"
 
-/* What a stage does to a wall. */
+/* What a stage does to a wall. NaN: nothing. */
 typedef struct dem_wall_change {
     size_t wall;
-    bool sets_velocity, sets_spin, sets_servo;
     vec velocity;
     double spin;
+    bool sets_servo;
     dem_servo servo;
 } dem_wall_change;
 
+/* What a stage changes at its beginning. NaN: nothing. */
 typedef struct dem_stage {
     char name[DEM_NAME_SIZE];
     uint64_t steps;
-    bool sets_gravity, sets_friction, sets_shear;
     vec gravity;
     double friction; /* of all contacts */
     double shear;
@@ -49,16 +49,18 @@ typedef struct dem_input {
 void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *out_input);
 void dem_free_input(dem_input *input);
 
+void dem_enter_stage(dem *d, const dem_stage *stage);
+
 /* What input_bodies.c reads of it: shapes from the file, which `name` names, then walls and grains. */
 void dem_read_shapes(const json_value *name, const char *path, dem *d);
 void dem_read_walls(const json_value *list, dem *d);
 void dem_read_grains(const json_value *list, dem *d, uint64_t *random);
 
-/* Of a stage, {"floor": {"velocity": [0, 1]}, ...}; and at its beginning. has_servo: of each wall, kept up to date. */
+/* Of a stage, {"floor": {"velocity": [0, 1]}, ...}. has_servo: of each wall, kept up to date. */
 void dem_read_changes(const json_value *walls, const dem *d, bool *has_servo, dem_stage *stage);
 void dem_apply_change(dem *d, const dem_wall_change *change);
 
-uint32_t dem_find_material(const json_value *name, const dem *d);
+json_names dem_materials(const dem *d);
 void *dem_allocate(size_t count, size_t size); /* zeros, or the program ends */
 
 /* Ends the program with the world's error, which came from this value. */

@@ -85,20 +85,6 @@ static void show_run(run *r, const dem_stage *stage) {
     fflush(stderr);
 }
 
-/* What a stage changes, at its beginning. Other gravity gives grains another potential energy at once. */
-static void enter_stage(run *r, const dem_stage *stage) {
-    dem *d = &r->world;
-    if (stage->sets_gravity)
-        d->settings.gravity = stage->gravity;
-    if (stage->sets_shear)
-        dem_set_shear(d, stage->shear);
-    for (size_t a = 0; stage->sets_friction && a < d->material_count; a++)
-        for (size_t b = 0; b < d->material_count; b++)
-            d->laws[a][b].friction = stage->friction;
-    for (size_t i = 0; i < stage->change_count; i++)
-        dem_apply_change(d, &stage->changes[i]);
-}
-
 /* A signal came: the step is complete. */
 static _Noreturn void stop(run *r) {
     const dem_output *o = &r->input.output;
@@ -115,7 +101,7 @@ static void run_stage(run *r, const dem_stage *stage) {
     const dem_output *o = &r->input.output;
     dem *d = &r->world;
     if (r->place.stage_step == 0)
-        enter_stage(r, stage);
+        dem_enter_stage(d, stage);
     while (r->place.stage_step < stage->steps) {
         if (caught)
             stop(r);

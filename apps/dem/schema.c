@@ -66,60 +66,49 @@ json_value json_member(const json_value *object, const char *key) {
 
 bool json_has(const json_value *object, const char *key) { return json_member(object, key).item != NULL; }
 
-void json_require(const json_value *object, const char *key) {
-    if (!cJSON_IsObject(object->item))
-        json_fail(object, "is not an object");
+void json_refuse(const json_value *object, const char *key, const char *problem) {
     const json_value member = json_member(object, key);
-    if (!member.item)
-        json_fail(&member, "is missing");
-}
-
-void json_refuse(const json_value *object, const char *keys, const char *problem) {
-    for (const char *word = keys; *word; word += strcspn(word, " "), word += *word == ' ') {
-        char key[32];
-        snprintf(key, sizeof key, "%.*s", (int)strcspn(word, " "), word);
-        const json_value member = json_member(object, key);
-        if (member.item)
-            json_fail(&member, problem);
-    }
+    if (member.item)
+        json_fail(&member, problem);
 }
 
 bool json_next(const json_value *list, json_value *item) {
     const cJSON *next = item->item ? item->item->next : list->item ? list->item->child : NULL;
     const size_t index = item->item ? item->index + 1 : 0;
-    *item = (json_value){.file = list->file, .item = next, .index = index};
+    *item = (json_value){.file = list->file, .item = next};
     if (next && next->string)
         *item = name_member(list, next->string, next);
     else
         snprintf(item->place, sizeof item->place, "%.80s[%zu]", list->place, index);
+    item->index = index;
     return next != NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------ values */
 
-static double take_number(const json_value *value, double low, double high, bool open) {
+/* With a number in the problem. */
+static _Noreturn void fail_by(const json_value *value, const char *format, double number) {
     char problem[96];
+    snprintf(problem, sizeof problem, format, number);
+    json_fail(value, problem);
+}
+
+static double take_number(const json_value *value, double low, double high, bool open) {
     if (!cJSON_IsNumber(value->item))
         json_fail(value, "is not a number");
     const double number = value->item->valuedouble;
     if (!isfinite(number))
         json_fail(value, "is not finite");
-    if (number < low || (open && number <= low)) {
-        snprintf(problem, sizeof problem, open ? "is not above %g" : "is less than %g", low);
-        json_fail(value, problem);
-    }
-    if (number > high) {
-        snprintf(problem, sizeof problem, "is more than %g", high);
-        json_fail(value, problem);
-    }
+    if (number < low || (open && number <= low))
+        fail_by(value, open ? "is not above %g" : "is less than %g", low);
+    if (number > high)
+        fail_by(value, "is more than %g", high);
     return number;
 }
 
 static void take_numbers(const json_value *list, size_t count, double *out_numbers) {
-    char problem[64];
-    snprintf(problem, sizeof problem, "is not a list of %zu numbers", count);
     if (!cJSON_IsArray(list->item) || (size_t)cJSON_GetArraySize(list->item) != count)
-        json_fail(list, problem);
+        fail_by(list, "is not a list of %g numbers", (double)count);
     for (json_value item = {0}; json_next(list, &item);)
         out_numbers[item.index] = take_number(&item, -1e300, 1e300, false);
 }
@@ -139,55 +128,111 @@ static void take_text(const json_value *value, bool is_name, char *out_text, siz
     strcpy(out_text, text);
 }
 
+size_t json_find(const json_names *names, const char *name) {
+    size_t k = 0;
+    while (k < names->count && strcmp((const char *)names->items + k * names->size, name) != 0)
+        k++;
+    return k;
+}
+
+static uint32_t take_choice(const json_value *value, const json_names *names) {
+    char text[DEM_NAME_SIZE];
+    take_text(value, false, text, sizeof text);
+    const size_t k = json_find(names, text);
+    if (k == names->count)
+        json_fail(value, names->problem);
+    return (uint32_t)k;
+}
+
+void json_check_new(const json_value *object, const char *name, json_names before) {
+    if (json_find(&before, name) < before.count)
+        json_refuse(object, "name", before.problem);
+}
+
 static void check_list(const json_value *list, double low, double high) {
-    char problem[64];
     if (!cJSON_IsArray(list->item))
         json_fail(list, "is not a list");
     const double count = cJSON_GetArraySize(list->item);
-    if (count < low || (high > 0 && count > high)) {
-        snprintf(problem, sizeof problem, low < high ? "has more than %g items" : "is not a list of %g names", high);
-        json_fail(list, count > 0 ? problem : "is empty");
-    }
+    if (count == 0 && low > 0)
+        json_fail(list, "is empty");
+    if (count < low || (high > 0 && count > high))
+        fail_by(list, low < high ? "has more than %g items" : "is not a list of %g names", high);
 }
 
 void json_take(const json_value *value, json_key key) {
     const bool any = key.low == 0 && key.high == 0;
-    const int kind = key.kind & ~MUST;
     double n[4];
-    if (kind == NUMBER)
+    switch (key.kind & ~MUST) {
+    case NUMBER:
         *(double *)key.out = take_number(value, any ? -1e300 : key.low, any ? 1e300 : key.high, false);
-    else if (kind == POSITIVE)
+        break;
+    case POSITIVE:
         *(double *)key.out = take_number(value, 0, 1e300, true);
-    else if (kind == WHOLE) {
+        break;
+    case WHOLE:
         n[0] = take_number(value, key.low, key.high, false);
         if (n[0] != floor(n[0]))
             json_fail(value, "is not a whole number");
         *(uint64_t *)key.out = (uint64_t)n[0];
-    } else if (kind == BOOL) {
+        break;
+    case BOOL:
         if (!cJSON_IsBool(value->item))
             json_fail(value, "is neither true nor false");
         *(bool *)key.out = cJSON_IsTrue(value->item);
-    } else if (kind == PAIR) {
+        break;
+    case PAIR:
         take_numbers(value, 2, n);
         *(vec *)key.out = (vec){n[0], n[1]};
-    } else if (kind == REGION) {
+        break;
+    case REGION:
         take_numbers(value, 4, n);
         if (!(n[2] > n[0] && n[3] > n[1]))
             json_fail(value, "is not a region [low x, low y, high x, high y]");
         *(dem_region *)key.out = (dem_region){true, {n[0], n[1]}, {n[2], n[3]}};
-    } else if (kind == TEXT || kind == NAME)
-        take_text(value, kind == NAME, key.out, (size_t)key.high);
-    else {
-        if (kind == LIST)
-            check_list(value, key.low, key.high);
+        break;
+    case TEXT:
+        take_text(value, false, key.out, (size_t)key.high);
+        break;
+    case NAME:
+        take_text(value, true, key.out, (size_t)key.high);
+        break;
+    case ONE_OF:
+        *(uint32_t *)key.out = take_choice(value, key.names);
+        break;
+    case SOME_OF:
+        check_list(value, key.low, key.high);
+        for (json_value item = {0}; json_next(value, &item);)
+            ((uint32_t *)key.out)[item.index] = take_choice(&item, key.names);
+        break;
+    case LIST:
+        check_list(value, key.low, key.high);
         *(json_value *)key.out = *value;
+        break;
+    case OBJECT:
+        json_read(value, key.out);
+        break;
+    default:
+        if (key.out)
+            *(json_value *)key.out = *value;
+    }
+}
+
+void json_read_some(const json_value *object, const json_key *keys) {
+    if (!cJSON_IsObject(object->item))
+        json_fail(object, "is not an object");
+    for (const json_key *key = keys; key->name; key++) {
+        const json_value member = json_member(object, key->name);
+        if (member.item && key->no)
+            json_fail(&member, key->no);
+        if (member.item)
+            json_take(&member, *key);
+        else if (key->kind & MUST && !key->no)
+            json_fail(&member, "is missing");
     }
 }
 
 void json_read(const json_value *object, const json_key *keys) {
-    if (!cJSON_IsObject(object->item))
-        json_fail(object, "is not an object");
-    for (json_value member = {0}; json_next(object, &member);) {
+    for (json_value member = {0}; cJSON_IsObject(object->item) && json_next(object, &member);) {
         const char *name = member.item->string;
         const json_key *key = keys;
         while (key->name && strcmp(key->name, name) != 0)
@@ -197,20 +242,5 @@ void json_read(const json_value *object, const json_key *keys) {
         if (cJSON_GetObjectItemCaseSensitive(object->item, name) != member.item)
             json_fail(&member, "is there twice, the second time as");
     }
-    for (const json_key *key = keys; key->name; key++) {
-        const json_value member = json_member(object, key->name);
-        if (key->kind & MUST)
-            json_require(object, key->name);
-        if (member.item && key->out)
-            json_take(&member, *key);
-    }
-}
-
-size_t json_find(const json_value *name, const void *items, size_t count, size_t size, const char *problem) {
-    char text[DEM_NAME_SIZE];
-    take_text(name, false, text, sizeof text);
-    for (size_t k = 0; k < count; k++)
-        if (strcmp((const char *)items + k * size, text) == 0)
-            return k;
-    json_fail(name, problem);
+    json_read_some(object, keys);
 }

@@ -24,6 +24,13 @@ typedef struct json_value {
     size_t index;      /* of an item of a list */
 } json_value;
 
+/* What has names: `count` structures of `size` bytes whose first member is theirs. `problem`: none has this one. */
+typedef struct json_names {
+    const void *items;
+    size_t count, size;
+    const char *problem;
+} json_names;
+
 /* What a value must be, and what it becomes. */
 enum {
     NUMBER = 1, /* a double from `low` to `high`; both 0: finite */
@@ -34,8 +41,11 @@ enum {
     REGION,     /* [low x, low y, high x, high y]: a dem_region */
     TEXT,       /* a string that is not empty, with its NUL at most `high` bytes: an array of char */
     NAME,       /* a text that can stand in the head of a table and on a terminal */
+    ONE_OF,     /* one of `names`: its index, a uint32_t */
+    SOME_OF,    /* a list of `low` to `high` of `names`: an array of uint32_t */
     LIST,       /* of `low` to `high` items; both 0: of any number: a json_value */
-    ANY,        /* a json_value */
+    OBJECT,     /* an object: a table of its keys */
+    ANY,        /* a json_value, or NULL */
     MUST = 64   /* added to one of these: the key must be there */
 };
 
@@ -45,6 +55,8 @@ typedef struct json_key {
     int kind;
     void *out;
     double low, high;
+    const json_names *names;
+    const char *no; /* unless it is NULL: the key must not be there, which is why */
 } json_key;
 
 /* The value of a file of JSON, which must last as long as the tree. */
@@ -53,23 +65,24 @@ json_value json_read_file(const char *path);
 /* Checks that the value is an object which has no key twice, none that is not among `keys` (the last one has no name)
  * and all that it must have, and reads their values. What is not there stays as it was. */
 void json_read(const json_value *object, const json_key *keys);
-void json_take(const json_value *value, json_key key); /* of one value */
+void json_read_some(const json_value *object, const json_key *keys); /* whatever else there is */
+void json_take(const json_value *value, json_key key);               /* of one value */
 
-/* "dem: file: place: problem 'value'". */
+/* "dem: file: place: problem 'value'"; of a member, if it is there. */
 _Noreturn void json_fail(const json_value *value, const char *problem);
+void json_refuse(const json_value *object, const char *key, const char *problem);
 
-/* A member, whose item is NULL if it is not there; is it there? It must be; none of these may be, words with blanks
- * between them. */
+/* A member, whose item is NULL if it is not there; is it there? */
 json_value json_member(const json_value *object, const char *key);
 bool json_has(const json_value *object, const char *key);
-void json_require(const json_value *object, const char *key);
-void json_refuse(const json_value *object, const char *keys, const char *problem);
 
 /* Goes to the next item of a list or member of an object, from {0} to the first; false behind the last. */
 bool json_next(const json_value *list, json_value *item);
 
-/* The index of the item that has a name; items are structures of `size` bytes whose first member is theirs. `problem`:
- * there is none. */
-size_t json_find(const json_value *name, const void *items, size_t count, size_t size, const char *problem);
+/* The index of a name; `count` if there is none. */
+size_t json_find(const json_names *names, const char *name);
+
+/* An object's name must not be that of one before it. */
+void json_check_new(const json_value *object, const char *name, json_names before);
 
 #endif

@@ -198,7 +198,7 @@ wrong 's/"x": \[0, 4\]/"x": [4, 0]/' "boundary.x: is not a range \[low, high\] '
 wrong 's/"x": \[0, 4\]/"x": [0, 1]/' "the periodic cell is too small"
 wrong 's/"x": \[0, 4\]/"y": [0, 20]/' "wall 'floor': a plate with normal 0, 1 crosses a periodic border"
 wrong 's/"x": \[0, 4\]/"x": [0, 4], "shear": 1/; s/"gravity": \[1, -9\], //' "a sheared cell is periodic in x and y, and has neither walls nor gravity"
-wrong 's/"x": \[0, 4\]/"x": [0, 4], "shear": 1/' "stages\[1\]: has gravity in a sheared cell"
+wrong 's/"x": \[0, 4\]/"x": [0, 4], "shear": 1/' "stages\[1\].gravity: is not for a sheared cell"
 wrong 's/"friction": 0.4/"friction": 0.4, "shear": 1/' "stages\[1\].shear: is of a cell whose boundary has shear '1'"
 wrong 's/"density": 1000/"density": 0/' "materials\[0\].density: is not above 0"
 wrong 's/"name": "steel"/"name": "sand"/' "materials\[1\].name: is the name of another material 'sand'\|materials\[1\].name: is the name of another material"
