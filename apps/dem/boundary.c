@@ -109,7 +109,7 @@ static vec find_size(const dem *d, size_t part) {
 }
 
 /* The box around the boxes of all grains; and is the cell wide enough for each body and the largest grain? */
-static bool find_widths(dem *d, narc_box *out_all) {
+static narc_box find_widths(dem *d) {
     const vec size = dem_cell_size(d);
     narc_box all = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     vec grain = {0, 0}; /* the largest */
@@ -124,20 +124,19 @@ static bool find_widths(dem *d, narc_box *out_all) {
         const vec both = plus(find_size(d, i), grain);
         if (!is_empty(d->boxes[i]) &&
             ((d->settings.periodic_x && both.x >= size.x) || (d->settings.periodic_y && both.y >= size.y)))
-            return dem_fail(d,
-                            "the periodic cell is too small: %s %zu and the largest grain, with the skin, are %g by %g "
-                            "together",
-                            dem_name_kind(d, k), dem_number(d, k), both.x, both.y);
+            dem_fail(d,
+                     "the periodic cell is too small: %s %zu and the largest grain, with the skin, are %g by %g "
+                     "together",
+                     dem_name_kind(d, k), dem_number(d, k), both.x, both.y);
     }
-    *out_all = all;
-    return true;
+    return all;
 }
 
 static bool overlap(narc_box a, narc_box b) {
     return a.min_x <= b.max_x && b.min_x <= a.max_x && a.min_y <= b.max_y && b.min_y <= a.max_y;
 }
 
-static bool add_image(dem *d, uint32_t part, float x, float y, narc_box all) {
+static void add_image(dem *d, uint32_t part, float x, float y, narc_box all) {
     const narc_box box = d->boxes[part];
     const narc_box moved = {box.min_x + x, box.min_y + y, box.max_x + x, box.max_y + y};
     /* Rounding of the sums may take away what it is of a coordinate: give it back. */
@@ -146,34 +145,28 @@ static bool add_image(dem *d, uint32_t part, float x, float y, narc_box all) {
     const narc_box image = {moved.min_x - room, moved.min_y - room, moved.max_x + room, moved.max_y + room};
     const size_t k = d->part_count + d->image_count;
     if (!overlap(image, all))
-        return true;
-    if (!dem_make_room_for_boxes(d, k + 1))
-        return false;
+        return;
+    dem_make_room_for_boxes(d, k + 1);
     d->boxes[k] = image;
     d->images[k] = (dem_image){part, d->images[part].group, x, y, 1};
     d->image_count++;
-    return true;
 }
 
-bool dem_add_images(dem *d) {
+void dem_add_images(dem *d) {
     static const struct { int x, y; } steps[] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {-1, 0}, {0, -1}, {-1, -1}, {-1, 1}};
     const dem_settings *s = &d->settings;
     const vec size = dem_cell_size(d);
-    narc_box all = {0};
     d->image_count = 0;
     if (!s->periodic_x && !s->periodic_y)
-        return true;
-    if (!find_widths(d, &all))
-        return false;
+        return;
+    const narc_box all = find_widths(d);
     for (uint32_t k = 0; k < d->part_count; k++) {
         const int count = d->parts[k].body < d->grain_count ? 4 : 8;
         for (int i = 0; i < count && !is_empty(d->boxes[k]); i++) {
             if ((steps[i].x != 0 && !s->periodic_x) || (steps[i].y != 0 && !s->periodic_y))
                 continue;
             const double x = steps[i].x * size.x + steps[i].y * d->offset, y = steps[i].y * size.y;
-            if (!add_image(d, k, (float)x, (float)y, all))
-                return false;
+            add_image(d, k, (float)x, (float)y, all);
         }
     }
-    return true;
 }

@@ -225,7 +225,8 @@ typedef struct dem_image {
 } dem_image;
 
 /* Arrays grow by dem_grow(). */
-typedef struct dem {
+typedef struct dem dem;
+struct dem {
     dem_settings settings;
     dem_material materials[DEM_MAX_MATERIALS];
     size_t material_count;
@@ -268,24 +269,30 @@ typedef struct dem {
     size_t extra_count;
     uint32_t *match;
 
-    char error[512]; /* what went wrong, when a function here says that something did */
-} dem;
+    char place[256];          /* in the input, "pile.json: walls[0]: ", while it is read: for errors */
+    char error[512];          /* what went wrong */
+    void (*on_error)(dem *d); /* NULL: the program ends; it must not return */
+};
 
-/* Everything below that returns bool tells of an error by false, and says what in d->error. */
+/* Ends the program with status 2: "dem: message", one line on standard error. */
+__attribute__((format(printf, 1, 2), noreturn)) void dem_quit(const char *format, ...);
+
+/* An error of the world: as dem_quit(), unless it has an on_error(). Functions below that find one do not return. */
+__attribute__((format(printf, 2, 3), noreturn)) void dem_fail(dem *d, const char *format, ...);
+void dem_demand(dem *d, narc_status status, const char *what, const narc_error *error); /* fails unless it is NARC_OK */
 
 /* ------------------------------------------------------------------------------------------------ model.c */
 
 extern const dem_settings dem_defaults;
 
 /* An empty world. dem_destroy() frees what there is, after an error too. */
-bool dem_create(dem *d, dem_settings settings);
+void dem_create(dem *d, dem_settings settings);
 void dem_destroy(dem *d);
 
 /* Adds a shape, moved so that its centroid is its origin: of one outline; of `part_count`, whose arcs, counts[i] each,
- * stand one behind the other in common coordinates. */
-bool dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count, uint32_t *out_shape);
-bool dem_add_compound(dem *d, const char *name, const narc_arc *arcs, const size_t *counts, size_t part_count,
-                      uint32_t *out_shape);
+ * stand one behind the other in common coordinates. Returns its index. */
+uint32_t dem_add_shape(dem *d, const char *name, const narc_arc *arcs, size_t count);
+uint32_t dem_add_compound(dem *d, const char *name, const narc_arc *arcs, const size_t *counts, size_t part_count);
 
 /* A grain as it is added. */
 typedef struct dem_grain {
@@ -298,23 +305,22 @@ typedef struct dem_grain {
 
 /* All grains, then dem_start(). A wall as it is added: {.name, .kind, .material, .place}, and of a box .shape, .scale
  * and .angle, of a plate .normal (of any length); its place is a point of its border. */
-bool dem_add_grain(dem *d, dem_grain grain);
-bool dem_add_wall(dem *d, dem_wall wall);
+void dem_add_grain(dem *d, dem_grain grain);
+void dem_add_wall(dem *d, dem_wall wall);
 
 /* Checks the whole, makes room. To be called once, before the first step. */
-bool dem_start(dem *d);
+void dem_start(dem *d);
 
-/* Report an error; return false. */
-bool dem_fail(dem *d, const char *format, ...);
-bool dem_fail_narc(dem *d, const char *what, const narc_error *error);
-bool dem_find_broken_body(dem *d);
+/* Some body is broken, or so far away that nothing finds it: which? */
+__attribute__((noreturn)) void dem_fail_lost(dem *d);
 
-/* Room for `needed` items of an array, NULL at first; it grows by halves. The items that there are stay. */
-bool dem_grow(dem *d, void *array_pointer, size_t needed, size_t size);
+/* Room for `needed` items of an array, NULL at first; it grows by halves. The items that there are stay. Where memory
+ * runs out the program ends. */
+void dem_grow(void *array_pointer, size_t needed, size_t size);
 void dem_release(void *array);
 
 /* All parts where they are now, for narc, until the next call. */
-bool dem_make_poses(dem *d, narc_bodies *out);
+narc_bodies dem_make_poses(dem *d);
 
 /* The box around all grains: squares as large as they reach. */
 dem_region dem_bound_grains(const dem *d);
@@ -382,28 +388,28 @@ typedef struct dem_filling {
 
 /* `random` is the state of a generator. Walls must have been added before. */
 double dem_draw_size(const dem_sizes *sizes, uint64_t *random);
-bool dem_fill_randomly(dem *d, const dem_filling *filling, uint64_t *random);
-bool dem_fill_lattice(dem *d, const dem_filling *filling, uint64_t *random);
+void dem_fill_randomly(dem *d, const dem_filling *filling, uint64_t *random);
+void dem_fill_lattice(dem *d, const dem_filling *filling, uint64_t *random);
 
 /* ------------------------------------------------------------------------------- neighbours.c, boundary.c */
 
-bool dem_renew_lists(dem *d);
-bool dem_add_extra_pair(dem *d, dem_pair pair);
-bool dem_make_room_for_boxes(dem *d, size_t count);
+void dem_renew_lists(dem *d);
+void dem_add_extra_pair(dem *d, dem_pair pair);
+void dem_make_room_for_boxes(dem *d, size_t count);
 
 /* Another rate of shear, from now on: all grains get the velocities that go with it. */
 void dem_set_shear(dem *d, double rate);
 
 void dem_wrap_bodies(dem *d);
-bool dem_add_images(dem *d);
+void dem_add_images(dem *d);
 void dem_shear_cell(dem *d);                            /* the way of a step */
 vec dem_find_shift(const dem *d, const dem_pair *pair); /* of B, exactly */
 double dem_find_drift(const dem *d);                    /* the speed of the cell above */
 
 /* ------------------------------------------------------------------------------------------ step.c, laws.c */
 
-bool dem_step(dem *d);
-bool dem_find_first_forces(dem *d); /* of where bodies begin */
+void dem_step(dem *d);
+void dem_find_first_forces(dem *d); /* of where bodies begin */
 
 /* The damping ratio that gives a restitution, above 0 and at most 1. */
 double dem_damping_ratio(dem_law law, double restitution);
@@ -415,13 +421,13 @@ void dem_set_law(dem *d, uint32_t a, uint32_t b, dem_contact_law law);
  * Hertz law at the deepest overlap that is allowed. Infinite without grains. */
 double dem_find_shortest_contact(const dem *d);
 
-bool dem_apply_laws(dem *d);
+void dem_apply_laws(dem *d);
 
 /* ------------------------------------------------------------------------------------------------ walls.c */
 
-bool dem_steer_walls(dem *d);
+void dem_steer_walls(dem *d);
 void dem_move_walls(dem *d);
-bool dem_add_plate_pairs(dem *d);
+void dem_add_plate_pairs(dem *d);
 
 /* Of walls and of shear in half a step, with the forces as they are. */
 void dem_count_work(dem *d);
@@ -467,8 +473,8 @@ typedef struct dem_load {
     dem_stress stress;
 } dem_load;
 
-/* Of all bodies, in memory that the caller frees; NULL, with an error, if there is none left. */
-dem_load *dem_find_loads(dem *d);
+/* Of all bodies, to be released. */
+dem_load *dem_find_loads(const dem *d);
 
 /* How hard the bodies of a contact press each other. */
 double dem_normal_force(const dem_contact *contact);
@@ -480,8 +486,8 @@ uint64_t dem_hash(const dem *d);
 
 /* ------------------------------------------------------------------------------------------------ files.c */
 
-/* All bytes of a file, and a NUL behind them: memory that the caller frees. NULL, with an error (512 bytes). */
-char *dem_read_file(const char *path, size_t *out_size, char *error);
+/* All bytes of a file, and a NUL behind them: to be released. */
+char *dem_read_file(const char *path, size_t *out_size);
 
 /* A file that is written under a temporary name and gets its own when it is closed. */
 typedef struct dem_file {
@@ -491,8 +497,8 @@ typedef struct dem_file {
 } dem_file;
 
 /* Errors tell the system's reason. */
-bool dem_open_file(dem *d, dem_file *out, const char *path);
-bool dem_close_file(dem *d, dem_file *file);
+dem_file dem_open_file(dem *d, const char *path);
+void dem_close_file(dem *d, dem_file *file);
 
 /* ---------------------------------------------------------------------------------------- tables.c, vtk.c */
 
@@ -505,10 +511,10 @@ FILE *dem_open_csv(dem *d, const char *path, uint64_t *position);
 bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m);
 
 /* A line of CSV for each grain. */
-bool dem_write_grains(dem *d, const char *path);
+void dem_write_grains(dem *d, const char *path);
 
 /* Writes the state for ParaView: frame 12 of "out/pile" is out/pile-000012.vtk and out/pile-contacts-000012.vtk. */
-bool dem_write_vtk(dem *d, const char *stem, uint64_t frame);
+void dem_write_vtk(dem *d, const char *stem, uint64_t frame);
 
 /* ------------------------------------------------------------------------------------------------ restart.c */
 
@@ -522,9 +528,9 @@ typedef struct dem_place {
     uint64_t random;       /* the generator's state */
 } dem_place;
 
-bool dem_write_restart(dem *d, const dem_place *place, const char *path);
+void dem_write_restart(dem *d, const dem_place *place, const char *path);
 
 /* Into a world with the same input, after dem_start(). */
-bool dem_read_restart(dem *d, dem_place *place, const char *path);
+void dem_read_restart(dem *d, dem_place *place, const char *path);
 
 #endif

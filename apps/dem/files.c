@@ -11,28 +11,20 @@
 
 #include "dem.h"
 
-char *dem_read_file(const char *path, size_t *out_size, char *error) {
+char *dem_read_file(const char *path, size_t *out_size) {
     FILE *file = fopen(path, "rb");
     char *bytes = NULL;
-    size_t size = 0, got = file ? 1 : 0;
-    for (size_t capacity = 65536; got > 0; capacity *= 2) {
-        char *larger = realloc(bytes, capacity);
-        if (!larger)
-            break;
-        bytes = larger;
-        got = fread(bytes + size, 1, capacity - 1 - size, file);
+    size_t size = 0, got = 1;
+    while (file && got > 0) {
+        dem_grow(&bytes, size + 65536, 1);
+        got = fread(bytes + size, 1, 65535, file);
         size += got;
     }
-    if (got > 0 || !file || ferror(file)) {
-        snprintf(error, 512, "%.400s: it cannot be read: %s", path, strerror(errno));
-        free(bytes);
-        bytes = NULL;
-    } else {
-        bytes[size] = 0;
-        *out_size = size;
-    }
-    if (file)
-        fclose(file);
+    if (!file || ferror(file))
+        dem_quit("%.400s: it cannot be read: %s", path, strerror(errno));
+    fclose(file);
+    bytes[size] = 0;
+    *out_size = size;
     return bytes;
 }
 
@@ -55,31 +47,32 @@ static FILE *open_temporary(dem_file *out, const struct stat *old) {
     return fdopen(descriptor, "wb");
 }
 
-bool dem_open_file(dem *d, dem_file *out, const char *path) {
+dem_file dem_open_file(dem *d, const char *path) {
     struct stat old;
     const bool exists = stat(path, &old) == 0;
     if (exists && !S_ISREG(old.st_mode)) /* a device would be replaced by a file */
-        return dem_fail(d, "%.400s: it is there, and is not a file", path);
-    *out = (dem_file){.path = path, .target = exists ? realpath(path, NULL) : strdup(path)}; /* a link stays one */
-    if (out->target && (out->file = open_temporary(out, exists ? &old : NULL)) != NULL)
-        return true;
-    dem_fail(d, "%.400s: %s", path, strerror(errno));
-    free(out->target);
-    free(out->temporary);
-    return false;
+        dem_fail(d, "%.400s: it is there, and is not a file", path);
+    dem_file out = {.path = path, .target = exists ? realpath(path, NULL) : strdup(path)}; /* a link stays one */
+    out.file = out.target ? open_temporary(&out, exists ? &old : NULL) : NULL;
+    const int reason = errno;
+    if (!out.file) {
+        free(out.target);
+        free(out.temporary);
+        dem_fail(d, "%.400s: %s", path, strerror(reason));
+    }
+    return out;
 }
 
-bool dem_close_file(dem *d, dem_file *file) {
+void dem_close_file(dem *d, dem_file *file) {
     errno = 0;
     const bool written = fflush(file->file) == 0 && !ferror(file->file);
-    const int reason = errno ? errno : EIO; /* an error that was earlier than the last flush has left none */
-    const bool closed = fclose(file->file) == 0;
-    const bool ok = written && closed && rename(file->temporary, file->target) == 0;
-    if (!ok) {
-        dem_fail(d, "%.400s: %s", file->path, strerror(written ? errno : reason));
+    int reason = errno ? errno : EIO; /* an error that was earlier than the last flush has left none */
+    const bool closed = fclose(file->file) == 0, ok = written && closed && rename(file->temporary, file->target) == 0;
+    reason = written ? errno : reason;
+    if (!ok)
         unlink(file->temporary);
-    }
     free(file->target);
     free(file->temporary);
-    return ok;
+    if (!ok)
+        dem_fail(d, "%.400s: %s", file->path, strerror(reason));
 }

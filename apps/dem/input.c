@@ -6,18 +6,17 @@
 #include "input.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-void dem_fail_at(const json_value *value, const dem *d) {
-    fail("%s: %s%s%s", value->file, value->place, value->place[0] ? ": " : "", d->error);
+void dem_go_to(dem *d, const json_value *at) {
+    snprintf(d->place, sizeof d->place, "%.100s: %s%s", at->file, at->place, at->place[0] ? ": " : "");
 }
 
 void *dem_allocate(size_t count, size_t size) {
-    void *memory = calloc(count + 1, size);
-    if (!memory)
-        fail("not enough memory for the input");
+    char *memory = NULL;
+    dem_grow(&memory, count, size);
+    memset(memory, 0, count * size);
     return memory;
 }
 
@@ -139,7 +138,7 @@ static void read_stages(const json_value *list, const dem *d, dem_input *input) 
         if (walls.item)
             dem_read_changes(&walls, d, has_servo, stage);
     }
-    free(has_servo);
+    dem_release(has_servo);
 }
 
 /* Other gravity gives grains another potential energy at once. */
@@ -214,17 +213,14 @@ static void find_shapes_file(const char *input, const char *name, char *out_path
 /* Of all that decides what bodies there are and how they push each other. */
 static uint64_t hash_input(const json_value *root, const dem *d) {
     uint64_t hash = DEM_HASH_START;
-    const cJSON *item;
-    cJSON_ArrayForEach(item, root->item) {
-        if (strcmp(item->string, "stages") == 0 || strcmp(item->string, "output") == 0)
-            continue;
-        char *text = cJSON_PrintUnformatted(item);
-        if (!text)
-            fail("not enough memory for the input");
-        hash = dem_hash_bytes(hash, item->string, strlen(item->string));
-        hash = dem_hash_bytes(hash, text, strlen(text));
-        cJSON_free(text);
-    }
+    cJSON *item = (cJSON *)root->item;
+    cJSON_DeleteItemFromObjectCaseSensitive(item, "stages");
+    cJSON_DeleteItemFromObjectCaseSensitive(item, "output");
+    char *text = cJSON_PrintUnformatted(item);
+    if (!text)
+        dem_quit("not enough memory for the input");
+    hash = dem_hash_bytes(hash, text, strlen(text));
+    cJSON_free(text);
     for (uint32_t k = 0; k < narc_count_shapes(d->store); k++) {
         narc_arc arcs[NARC_MAX_ARCS];
         const size_t count = narc_get_arcs(d->store, k, arcs);
@@ -271,8 +267,7 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
     s.shear = s.sheared ? s.shear : 0;
     s.threads = threads;
     s.law = find_law(&contact);
-    if (!dem_create(d, s))
-        dem_fail_at(&root, d);
+    dem_create(d, s);
     find_shapes_file(path, shapes, input->shapes, sizeof input->shapes);
     read_materials(&materials, d);
     read_contact(&contact, d);
@@ -282,14 +277,15 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
     read_stages(&stages, d, input);
     if (output.item)
         read_output(&output, d, input);
-    if (!dem_start(d))
-        dem_fail_at(&root, d);
+    dem_go_to(d, &root);
+    dem_start(d);
+    d->place[0] = 0;
     input->hash = hash_input(&root, d);
     cJSON_Delete((cJSON *)root.item);
 }
 
 void dem_free_input(dem_input *input) {
     for (size_t i = 0; i < input->stage_count; i++)
-        free(input->stages[i].changes);
-    free(input->stages);
+        dem_release(input->stages[i].changes);
+    dem_release(input->stages);
 }

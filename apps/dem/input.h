@@ -61,9 +61,7 @@ void dem_read_changes(const json_value *walls, const dem *d, bool *has_servo, de
 void dem_apply_change(dem *d, const dem_wall_change *change);
 
 json_names dem_materials(const dem *d);
-void *dem_allocate(size_t count, size_t size); /* zeros, or the program ends */
-
-/* Ends the program with the world's error, which came from this value. */
-_Noreturn void dem_fail_at(const json_value *value, const dem *d);
+void *dem_allocate(size_t count, size_t size); /* zeros, to be released */
+void dem_go_to(dem *d, const json_value *at);  /* errors of the world come from this value */
 
 #endif

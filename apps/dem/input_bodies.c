@@ -3,7 +3,6 @@
  * input_bodies.c - the JSON file's shapes, walls and grains; and how walls move: at the start, and in stages.
  */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <narc_files.h>
@@ -13,52 +12,47 @@
 /* ------------------------------------------------------------------------------------------------ shapes */
 
 /* NAME/1, NAME/2 ... are the parts of NAME, where their origins tell, if there is no shape of that name. */
-static void read_parts(const json_value *file, const narc_shape_list *shapes, const char *name, int length, dem *d) {
+static void read_parts(const narc_shape_list *shapes, const char *name, int length, dem *d) {
     char base[1024], text[1056];
     narc_arc *arcs = dem_allocate(shapes->count, NARC_MAX_ARCS * sizeof *arcs);
     size_t *counts = dem_allocate(shapes->count, sizeof *counts), count = 0, used = 0;
-    uint32_t index;
     snprintf(base, sizeof base, "%.*s", length, name);
-    const bool ok = narc_find_named_shape(shapes, base) == shapes->count;
-    for (size_t k; ok; used += counts[count++]) {
+    for (;; used += counts[count++]) {
         snprintf(text, sizeof text, "%s/%zu", base, count + 1);
-        if ((k = narc_find_named_shape(shapes, text)) == shapes->count)
+        const size_t k = narc_find_named_shape(shapes, text);
+        if (k == shapes->count)
             break;
         const narc_named_shape *part = &shapes->items[k];
         narc_error error;
         counts[count] = part->arc_count;
-        if (narc_move_arcs(part->arcs, part->arc_count, part->origin.x, part->origin.y, 0, 1, arcs + used, &error) !=
-            NARC_OK)
-            fail("%s: shape '%s': %s", file->file, text, error.message);
+        dem_demand(
+            d, narc_move_arcs(part->arcs, part->arc_count, part->origin.x, part->origin.y, 0, 1, arcs + used, &error),
+            text, &error);
     }
-    if (ok && !dem_add_compound(d, base, arcs, counts, count, &index))
-        dem_fail_at(file, d);
-    free(arcs);
-    free(counts);
+    if (narc_find_named_shape(shapes, base) == shapes->count)
+        dem_add_compound(d, base, arcs, counts, count);
+    dem_release(arcs);
+    dem_release(counts);
 }
 
 void dem_read_shapes(const json_value *name, const char *path, dem *d) {
     narc_shape_list *shapes;
     narc_error error;
     size_t size;
-    char *text = dem_read_file(path, &size, d->error);
-    if (!text)
-        fail("%s", d->error);
+    char *text = dem_read_file(path, &size);
     if (narc_read_shapes(text, size, NULL, NULL, &shapes, &error) != NARC_OK)
-        fail("%s: %s", path, error.message);
-    free(text);
-    for (size_t k = 0; k < shapes->count; k++) {
-        const narc_named_shape *shape = &shapes->items[k];
-        uint32_t index;
-        if (shape->form != NARC_FORM_SHAPE)
-            fail("%s: shape '%s' is a chain: grains and walls are shapes, or parts", path, shape->name);
-        if (!dem_add_shape(d, shape->name, shape->arcs, shape->arc_count, &index))
-            dem_fail_at(name, d);
+        dem_quit("%s: %s", path, error.message);
+    dem_release(text);
+    dem_go_to(d, name);
+    for (const narc_named_shape *s = shapes->items; s < shapes->items + shapes->count; s++) {
+        if (s->form != NARC_FORM_SHAPE)
+            dem_quit("%s: shape '%s' is a chain: grains and walls are shapes, or parts", path, s->name);
+        dem_add_shape(d, s->name, s->arcs, s->arc_count);
     }
     for (size_t k = 0; k < shapes->count; k++) {
         const char *slash = strrchr(shapes->items[k].name, '/');
         if (slash && strcmp(slash, "/1") == 0)
-            read_parts(name, shapes, shapes->items[k].name, (int)(slash - shapes->items[k].name), d);
+            read_parts(shapes, shapes->items[k].name, (int)(slash - shapes->items[k].name), d);
     }
     narc_destroy_shape_list(shapes);
 }
@@ -140,7 +134,7 @@ void dem_read_changes(const json_value *object, const dem *d, bool *has_servo, d
         *change = read_change(&item, d, w, has_servo[w], true);
         has_servo[w] = change->sets_servo ? change->servo.on : has_servo[w];
     }
-    free(seen);
+    dem_release(seen);
 }
 
 /* Without servo control a wall stays where it is. */
@@ -192,16 +186,17 @@ static void read_wall(const json_value *item, dem *d) {
         narc_arc arcs[NARC_MAX_ARCS];
         narc_error error;
         size_t count;
-        const bool built = narc_build_box(width, height, radius, arcs, &count, &error) == NARC_OK;
-        if (!(built ? dem_add_shape(d, wall.name, arcs, count, &wall.shape) : dem_fail(d, "%s", error.message)))
-            dem_fail_at(&part, d);
+        dem_go_to(d, &part);
+        if (narc_build_box(width, height, radius, arcs, &count, &error) != NARC_OK)
+            dem_fail(d, "%s", error.message);
+        wall.shape = dem_add_shape(d, wall.name, arcs, count);
     }
     if (shape)
         wall.scale = size / d->shapes[wall.shape].extent;
     if (!plate && !json_has(item, "pivot"))
         wall.pivot = wall.place;
-    if (!dem_add_wall(d, wall))
-        dem_fail_at(item, d);
+    dem_go_to(d, item);
+    dem_add_wall(d, wall);
 }
 
 void dem_read_walls(const json_value *list, dem *d) {
@@ -281,8 +276,8 @@ static void fill(const json_value *item, bool lattice, dem *d, uint64_t *random)
     f.sizes = read_sizes(item);
     if (lattice && !(f.spacing.x > 0 && f.spacing.y > 0))
         json_refuse(item, "spacing", "is not two lengths above 0");
-    if (!(lattice ? dem_fill_lattice : dem_fill_randomly)(d, &f, random))
-        dem_fail_at(item, d);
+    dem_go_to(d, item);
+    (lattice ? dem_fill_lattice : dem_fill_randomly)(d, &f, random);
 }
 
 static void read_grain(const json_value *item, dem *d) {
@@ -298,8 +293,8 @@ static void read_grain(const json_value *item, dem *d) {
                                  {"spin", NUMBER, &grain.spin},
                                  {NULL}});
     grain.scale = size / d->shapes[grain.shape].extent;
-    if (!dem_add_grain(d, grain))
-        dem_fail_at(item, d);
+    dem_go_to(d, item);
+    dem_add_grain(d, grain);
 }
 
 void dem_read_grains(const json_value *list, dem *d, uint64_t *random) {

@@ -288,19 +288,19 @@ INLINE dem_block apply_laws(dem *d, size_t first, size_t end, bool hertz, bool r
     return block;
 }
 
-static bool fail_depth(dem *d, size_t pair) {
+__attribute__((noreturn)) static void fail_depth(dem *d, size_t pair) {
     const size_t a = d->parts[d->list.pairs[pair].a].body, b = d->parts[d->list.pairs[pair].b].body;
     const dem_contact *row = d->contacts;
     while (row->pair != pair)
         row++;
-    return dem_fail(
-        d, "step %llu: grain %zu overlaps %s %zu by %g, more than %g of the smaller one's extent. %s",
-        (unsigned long long)d->step, a, dem_name_kind(d, b), dem_number(d, b), row->depth, d->settings.max_overlap,
-        d->step == 0 ? "They are placed so: the run has not begun" : "Use a shorter time step, or stiffer contacts");
+    dem_fail(d, "step %llu: grain %zu overlaps %s %zu by %g, more than %g of the smaller one's extent. %s",
+             (unsigned long long)d->step, a, dem_name_kind(d, b), dem_number(d, b), row->depth, d->settings.max_overlap,
+             d->step == 0 ? "They are placed so: the run has not begun"
+                          : "Use a shorter time step, or stiffer contacts");
 }
 
 /* The rows and sums of all blocks, without gaps between them. */
-static bool join_blocks(dem *d, size_t count) {
+static void join_blocks(dem *d, size_t count) {
     size_t too_deep = SIZE_MAX;
     double old_springs = 0;
     dem_account all = {0};
@@ -322,18 +322,18 @@ static bool join_blocks(dem *d, size_t count) {
     all.damping += d->account.damping;
     all.friction += d->account.friction;
     d->account = all;
-    return too_deep == SIZE_MAX || fail_depth(d, too_deep);
+    if (too_deep < SIZE_MAX)
+        fail_depth(d, too_deep);
 }
 
-bool dem_apply_laws(dem *d) {
+void dem_apply_laws(dem *d) {
     const size_t count = d->found_count, block_count = (count + DEM_BLOCK - 1) / DEM_BLOCK;
     const bool hertz = d->settings.law == DEM_HERTZ;
     const unsigned team = dem_team(d);
     bool rolls = false;
     for (size_t i = 0; i < d->material_count * d->material_count; i++)
         rolls |= d->laws[i / d->material_count][i % d->material_count].rolling_friction > 0;
-    if (!dem_grow(d, &d->blocks, block_count, sizeof *d->blocks))
-        return false;
+    dem_grow(&d->blocks, block_count, sizeof *d->blocks);
     for (dem_body *b = d->bodies; b < d->bodies + d->body_count; b++) {
         b->force = (vec){0, 0};
         b->torque = 0;
@@ -345,11 +345,10 @@ bool dem_apply_laws(dem *d) {
                        : hertz ? apply_laws(d, first, end, true, false)
                                : apply_laws(d, first, end, false, false);
     }
-    const bool ok = join_blocks(d, block_count);
+    join_blocks(d, block_count);
     for (const dem_contact *c = d->contacts; c < d->contacts + d->contact_count && team > 1; c++)
         add_to_bodies(dem_body_a(d, c->pair), dem_body_b(d, c->pair), c->on);
     d->pull = 0;
     for (const dem_contact *c = d->contacts; c < d->contacts + d->contact_count && d->settings.sheared; c++)
         d->pull += dem_find_lift(&d->list.pairs[c->pair]) * c->on.force.x;
-    return ok;
 }

@@ -46,29 +46,29 @@ typedef struct run {
     bool terminal;
 } run;
 
-static void end_badly(const run *r) { fail("%s", r->world.error); }
-
 static void write_restart(run *r) {
     const dem_output *o = &r->input.output;
-    if (o->restart[0] && !dem_write_restart(&r->world, &r->place, o->restart))
-        end_badly(r);
+    if (o->restart[0])
+        dem_write_restart(&r->world, &r->place, o->restart);
 }
 
 static void write_frame(run *r) {
     const dem_output *o = &r->input.output;
     dem *d = &r->world;
     char name[DEM_PATH_SIZE];
-    if (o->grains[0]) /* "out/pile.csv" and 12 make "out/pile-000012.csv" */
-        snprintf(name, sizeof name, "%.*s-%06" PRIu64 ".csv", (int)strlen(o->grains) - 4, o->grains, r->place.frame);
     if (r->csv) {
         dem_measures measures;
         dem_measure(d, &o->region, &measures);
         if (!dem_write_csv(r->csv, d, &measures))
-            fail("%s: it cannot be written", o->csv);
+            dem_quit("%s: it cannot be written", o->csv);
         r->place.csv_position = (uint64_t)ftell(r->csv);
     }
-    if ((o->vtk[0] && !dem_write_vtk(d, o->vtk, r->place.frame)) || (o->grains[0] && !dem_write_grains(d, name)))
-        end_badly(r);
+    if (o->vtk[0])
+        dem_write_vtk(d, o->vtk, r->place.frame);
+    if (o->grains[0]) { /* "out/pile.csv" and 12 make "out/pile-000012.csv" */
+        snprintf(name, sizeof name, "%.*s-%06" PRIu64 ".csv", (int)strlen(o->grains) - 4, o->grains, r->place.frame);
+        dem_write_grains(d, name);
+    }
     r->place.frame++;
 }
 
@@ -105,8 +105,7 @@ static void run_stage(run *r, const dem_stage *stage) {
     while (r->place.stage_step < stage->steps) {
         if (caught)
             stop(r);
-        if (!dem_step(d))
-            end_badly(r);
+        dem_step(d);
         r->place.stage_step++;
         if (d->step % o->every == 0)
             write_frame(r);
@@ -122,16 +121,16 @@ static void begin(run *r, const char *restart) {
     const dem_output *o = &r->input.output;
     r->place.input = r->input.hash;
     r->place.random = r->input.random;
-    if (restart && !dem_read_restart(&r->world, &r->place, restart))
-        end_badly(r);
+    if (restart)
+        dem_read_restart(&r->world, &r->place, restart);
     const uint64_t stage = r->place.stage;
     if (restart && stage > r->input.stage_count)
-        fail("%s: it is at stage %" PRIu64 ", the input has %zu", restart, stage, r->input.stage_count);
+        dem_quit("%s: it is at stage %" PRIu64 ", the input has %zu", restart, stage, r->input.stage_count);
     if (restart && stage < r->input.stage_count && r->place.stage_step > r->input.stages[stage].steps)
-        fail("%s: it has done %" PRIu64 " steps of stage %" PRIu64 ", which has %" PRIu64 " in the input", restart,
-             r->place.stage_step, stage, r->input.stages[stage].steps);
-    if (o->csv[0] && !(r->csv = dem_open_csv(&r->world, o->csv, &r->place.csv_position)))
-        end_badly(r);
+        dem_quit("%s: it has done %" PRIu64 " steps of stage %" PRIu64 ", which has %" PRIu64 " in the input", restart,
+                 r->place.stage_step, stage, r->input.stages[stage].steps);
+    if (o->csv[0])
+        r->csv = dem_open_csv(&r->world, o->csv, &r->place.csv_position);
     if (!restart)
         write_frame(r);
     r->first_step = r->total_steps = r->world.step;
@@ -156,7 +155,7 @@ static void report(const run *r) {
            m.energy.potential, m.energy.elastic, m.energy.damping, m.energy.friction, m.energy.walls);
     printf("state %016" PRIx64 "\n", dem_hash(&r->world));
     if (fflush(stdout) != 0 || ferror(stdout))
-        fail("the report cannot be written");
+        dem_quit("the report cannot be written");
     fprintf(stderr, "dem: %.1f s, %.1f microseconds a step\n", seconds, steps > 0 ? 1e6 * seconds / steps : 0);
 }
 
@@ -182,15 +181,15 @@ int main(int argc, char **argv) {
         if (option == 'r')
             restart = optarg;
         else if (sscanf(optarg, "%3u%n", &threads, &read) != 1 || optarg[read] || threads < 1 || threads > 256)
-            fail("--threads must be a whole number from 1 to 256, not '%.40s'", optarg);
+            dem_quit("--threads must be a whole number from 1 to 256, not '%.40s'", optarg);
     }
     if (optind == argc)
-        fail("INPUT is missing");
+        dem_quit("INPUT is missing");
     if (optind + 1 < argc)
-        fail("'%s' is one input too many", argv[optind + 1]);
+        dem_quit("'%s' is one input too many", argv[optind + 1]);
     run *r = calloc(1, sizeof *r);
     if (!r)
-        fail("not enough memory");
+        dem_quit("not enough memory");
     dem_read_input(argv[optind], threads, &r->world, &r->input);
     const double shortest = dem_find_shortest_contact(&r->world), time_step = r->world.settings.time_step;
     if (time_step > shortest / 15)
@@ -202,7 +201,7 @@ int main(int argc, char **argv) {
         run_stage(r, &r->input.stages[r->place.stage]);
     write_restart(r);
     if (r->csv && fclose(r->csv) != 0)
-        fail("%s: it cannot be written", r->input.output.csv);
+        dem_quit("%s: it cannot be written", r->input.output.csv);
     report(r);
     dem_destroy(&r->world);
     dem_free_input(&r->input);

@@ -4,7 +4,7 @@
  * contacts in their order, by one thread.
  */
 #include <math.h>
-#include <stdlib.h>
+#include <string.h>
 
 #include "dem.h"
 
@@ -118,12 +118,10 @@ static void add_load(const dem *d, dem_load *loads, const dem_body *b, vec force
     add_stress(&load->stress, times(-share, force), arm);
 }
 
-dem_load *dem_find_loads(dem *d) {
-    dem_load *loads = calloc(d->body_count, sizeof *loads);
-    if (!loads) {
-        dem_fail(d, "not enough memory for a frame of %zu bodies", d->body_count);
-        return NULL;
-    }
+dem_load *dem_find_loads(const dem *d) {
+    dem_load *loads = NULL;
+    dem_grow(&loads, d->body_count, sizeof *loads);
+    memset(loads, 0, d->body_count * sizeof *loads);
     for (const dem_contact *c = d->contacts; c < d->contacts + d->contact_count; c++) {
         const dem_pair *pair = &d->list.pairs[c->pair];
         const dem_body *a = dem_body_a(d, c->pair), *b = dem_body_b(d, c->pair);

@@ -9,38 +9,35 @@
 
 #include "dem.h"
 
-bool dem_make_room_for_boxes(dem *d, size_t count) {
-    return dem_grow(d, &d->boxes, count, sizeof *d->boxes) && dem_grow(d, &d->images, count, sizeof *d->images);
+void dem_make_room_for_boxes(dem *d, size_t count) {
+    dem_grow(&d->boxes, count, sizeof *d->boxes);
+    dem_grow(&d->images, count, sizeof *d->images);
 }
 
-bool dem_add_extra_pair(dem *d, dem_pair pair) {
-    if (!dem_grow(d, &d->extra, d->extra_count + 1, sizeof *d->extra))
-        return false;
+void dem_add_extra_pair(dem *d, dem_pair pair) {
+    dem_grow(&d->extra, d->extra_count + 1, sizeof *d->extra);
     d->extra[d->extra_count++] = pair;
-    return true;
 }
 
-static bool find_boxes(dem *d) {
-    narc_bodies bodies;
+static void find_boxes(dem *d) {
+    const narc_bodies bodies = dem_make_poses(d);
     size_t skipped = 0;
     const narc_workers workers = dem_workers(d);
     const narc_box_options options = {
         .margin = (float)(0.5 * d->settings.skin), .workers = &workers, .out_skipped = &skipped};
     narc_error error;
-    if (!dem_make_room_for_boxes(d, d->part_count) || !dem_make_poses(d, &bodies))
-        return false;
+    dem_make_room_for_boxes(d, d->part_count);
     for (uint32_t i = 0; i < d->part_count; i++) {
         const uint32_t k = d->parts[i].body;
         d->images[i] = (dem_image){.part = i, .group = k + 1, .still = k >= d->grain_count};
     }
-    if (narc_compute_boxes(d->store, &bodies, &options, d->boxes, &error) != NARC_OK)
-        return dem_fail_narc(d, "boxes", &error);
+    dem_demand(d, narc_compute_boxes(d->store, &bodies, &options, d->boxes, &error), "boxes", &error);
     if (skipped > 0)
-        return dem_find_broken_body(d);
+        dem_fail_lost(d);
     for (size_t w = 0; w < d->wall_count; w++) /* plates have pairs of their own */
         if (d->walls[w].kind == DEM_PLATE)
             d->boxes[d->bodies[d->grain_count + w].first_part] = (narc_box){1, 1, -1, -1};
-    return dem_add_images(d);
+    dem_add_images(d);
 }
 
 static int compare_pairs(const void *left, const void *right) {
@@ -50,7 +47,7 @@ static int compare_pairs(const void *left, const void *right) {
 }
 
 /* The pairs that narc finds, and extra ones, in the order of (a, b). Those with images are extra ones, too. */
-static bool find_pairs(dem *d, dem_list *list) {
+static void find_pairs(dem *d, dem_list *list) {
     narc_pair_filter filter = {.kind = NARC_COLUMN(d->images, still)};
     const narc_workers workers = dem_workers(d);
     const narc_pair_options options = {.filter = &filter, .workers = &workers};
@@ -59,18 +56,18 @@ static bool find_pairs(dem *d, dem_list *list) {
     if (d->part_count > d->body_count)
         filter.group = NARC_COLUMN(d->images, group);
     narc_forget_pairs(d->broad); /* pairs are matched when those of images have become those of bodies */
-    if (narc_update_box_pairs(d->broad, d->boxes, d->part_count + d->image_count, &options, &found, &error) != NARC_OK)
-        return dem_fail_narc(d, "pairs", &error);
+    dem_demand(d, narc_update_box_pairs(d->broad, d->boxes, d->part_count + d->image_count, &options, &found, &error),
+               "pairs", &error);
     const uint32_t *a = found->pairs.a.base, *b = found->pairs.b.base;
     d->extra_count = 0;
     for (size_t i = 0; i < found->pairs.count && d->image_count > 0; i++) {
         const dem_image *of = &d->images[b[i]];
         const dem_pair pair = {a[i], of->part, of->x, of->y, 0}, turned = {of->part, a[i], -of->x, -of->y, 0};
-        if (b[i] >= d->part_count && !dem_add_extra_pair(d, pair.a < pair.b ? pair : turned))
-            return false;
+        if (b[i] >= d->part_count)
+            dem_add_extra_pair(d, pair.a < pair.b ? pair : turned);
     }
-    if (!dem_add_plate_pairs(d) || !dem_grow(d, &list->pairs, found->pairs.count + d->extra_count, sizeof *list->pairs))
-        return false;
+    dem_add_plate_pairs(d);
+    dem_grow(&list->pairs, found->pairs.count + d->extra_count, sizeof *list->pairs);
     if (d->extra_count > 0)
         qsort(d->extra, d->extra_count, sizeof *d->extra, compare_pairs);
     list->count = 0;
@@ -85,31 +82,28 @@ static bool find_pairs(dem *d, dem_list *list) {
     }
     while (j < d->extra_count)
         list->pairs[list->count++] = d->extra[j++];
-    return true;
 }
 
 /* Hints and histories of the pairs that were in the last list; zeros for the others. */
-static bool carry_over(dem *d, const dem_list *last, dem_list *list) {
+static void carry_over(dem *d, const dem_list *last, dem_list *list) {
     const dem_pair *p = list->pairs, *q = last->pairs;
     const narc_pairs now = {.count = list->count, .a = NARC_COLUMN(p, a), .b = NARC_COLUMN(p, b)};
     const narc_pairs before = {.count = last->count, .a = NARC_COLUMN(q, a), .b = NARC_COLUMN(q, b)};
     const narc_workers workers = dem_workers(d);
     narc_error error;
-    if (!dem_grow(d, &d->match, list->count, sizeof *d->match) ||
-        !dem_grow(d, &list->memory, list->count, sizeof *list->memory))
-        return false;
-    if (narc_match_pairs(d->broad, &before, &now, &workers, d->match, &error) != NARC_OK)
-        return dem_fail_narc(d, "pairs", &error);
+    dem_grow(&d->match, list->count, sizeof *d->match);
+    dem_grow(&list->memory, list->count, sizeof *list->memory);
+    dem_demand(d, narc_match_pairs(d->broad, &before, &now, &workers, d->match, &error), "pairs", &error);
     narc_gather(d->match, list->count, sizeof *list->memory, last->memory, list->memory);
     for (size_t k = 0; k < list->count; k++)
         list->pairs[k].hint = d->match[k] != NARC_NO_MATCH ? q[d->match[k]].hint : 0;
-    return true;
 }
 
-bool dem_renew_lists(dem *d) {
+void dem_renew_lists(dem *d) {
     dem_wrap_bodies(d);
-    if (!find_boxes(d) || !find_pairs(d, &d->other_list) || !carry_over(d, &d->list, &d->other_list))
-        return false;
+    find_boxes(d);
+    find_pairs(d, &d->other_list);
+    carry_over(d, &d->list, &d->other_list);
     const dem_list last = d->list;
     d->list = d->other_list;
     d->other_list = last;
@@ -118,5 +112,4 @@ bool dem_renew_lists(dem *d) {
         d->bodies[k].list_turn = d->bodies[k].turn;
     }
     d->list_builds++;
-    return true;
 }

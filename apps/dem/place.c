@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * place.c - where grains start. A random filling puts grain after grain at a random place with a random angle, and
- * tries again while it would touch: narc_find_contacts() decides, a grid of cells tells whom to ask about.
+ * tries again while it would touch: narc_find_contacts() decides, of those whose circles touch.
  */
 #include <math.h>
-#include <stdlib.h>
 
 #include "dem.h"
 
@@ -52,56 +51,11 @@ static dem_grain draw_grain(const dem *d, const dem_filling *f, uint64_t *random
 
 /* ------------------------------------------------------------------------------------------------ random */
 
-/* Cells as wide as two of the largest grains reach, so that who touches is in a neighbouring one: the last grain of
- * those whose cells share a place in the table, and of each grain the one before. */
-typedef struct grid {
-    double width;
-    uint64_t mask;
-    uint32_t *last, *before;
-} grid;
-
-static const uint32_t NOBODY = UINT32_MAX;
-
-/* The place of the cell that is so many to the right and up. */
-static uint32_t *find_cell(const grid *g, vec place, int right, int up) {
-    const double most = 1e15; /* cells that are further away are one */
-    const int64_t column = (int64_t)fmax(fmin(floor(place.x / g->width), most), -most) + right;
-    const int64_t row = (int64_t)fmax(fmin(floor(place.y / g->width), most), -most) + up;
-    const uint64_t mixed = ((uint64_t)column * 0x9e3779b97f4a7c15 ^ (uint64_t)row) * 0xbf58476d1ce4e5b9;
-    return &g->last[mixed >> 32 & g->mask];
+static narc_body make_body(uint32_t shape, vec place, vec turn, double scale) {
+    return (narc_body){place.x, place.y, (float)turn.x, (float)turn.y, (float)scale, shape};
 }
 
-static void add_to_grid(const dem *d, grid *g, uint32_t body) {
-    uint32_t *last = find_cell(g, d->bodies[body].place, 0, 0);
-    g->before[body] = *last;
-    *last = body;
-}
-
-static bool open_grid(dem *d, const dem_filling *f, grid *g) {
-    const double largest = f->sizes.kind == DEM_FIXED ? f->sizes.mean : f->sizes.high;
-    const size_t count = d->grain_count + (size_t)f->count;
-    double reach = d->grain_reach;
-    for (size_t i = 0; i < f->shape_count; i++)
-        reach = fmax(reach, d->shapes[f->shapes[i]].reach * largest / d->shapes[f->shapes[i]].extent);
-    g->width = 2 * reach + f->gap;
-    for (g->mask = 255; g->mask < count;)
-        g->mask = 2 * g->mask + 1;
-    if (!dem_grow(d, &g->last, (size_t)g->mask + 1, sizeof *g->last) ||
-        !dem_grow(d, &g->before, count, sizeof *g->before))
-        return false;
-    for (size_t i = 0; i <= g->mask; i++)
-        g->last[i] = NOBODY;
-    for (size_t k = 0; k < d->grain_count; k++)
-        add_to_grid(d, g, (uint32_t)k);
-    return true;
-}
-
-static narc_body make_body(uint32_t shape, vec place, double angle, double scale) {
-    narc_body body = {.x = place.x, .y = place.y, .scale = (float)scale, .shape = shape};
-    const float turn = (float)angle;
-    narc_compute_poses(&turn, 1, &body.cosine, &body.sine, NULL);
-    return body;
-}
+static vec find_turn(double angle) { return (vec){cos(angle), sin(angle)}; }
 
 /* Is the grain further than the gap from a body? Their shapes are those of the world: all outlines of both. */
 static bool is_clear_of(const dem *d, narc_body grain, narc_body other, double gap) {
@@ -122,21 +76,6 @@ static bool is_clear_of(const dem *d, narc_body grain, narc_body other, double g
     return true;
 }
 
-static bool is_clear_of_grains(const dem *d, const grid *g, double gap, narc_body grain) {
-    const vec place = {grain.x, grain.y};
-    const double far = (double)grain.scale * d->shapes[grain.shape].reach + gap;
-    for (int i = 0; i < 9; i++)
-        for (uint32_t k = *find_cell(g, place, i % 3 - 1, i / 3 - 1); k != NOBODY; k = g->before[k]) {
-            const dem_body *b = &d->bodies[k];
-            const vec way = minus(b->place, place);
-            const double most = far + b->reach;
-            const narc_body other = {b->place.x, b->place.y, (float)b->turn.x, (float)b->turn.y, b->scale, b->shape};
-            if (dot(way, way) <= most * most && !is_clear_of(d, grain, other, gap))
-                return false;
-        }
-    return true;
-}
-
 /* By the supports of its outlines. */
 static bool is_clear_of_plate(const dem *d, const dem_grain *grain, const dem_wall *wall, double gap) {
     const dem_shape *shape = &d->shapes[grain->shape];
@@ -154,60 +93,60 @@ static bool is_clear_of_plate(const dem *d, const dem_grain *grain, const dem_wa
     return true;
 }
 
-static bool is_clear_of_walls(const dem *d, const dem_grain *grain, narc_body body, double gap) {
-    for (const dem_wall *w = d->walls; w < d->walls + d->wall_count; w++)
-        if (!(w->kind == DEM_PLATE ? is_clear_of_plate(d, grain, w, gap)
-                                   : is_clear_of(d, body, make_body(w->shape, w->place, w->angle, w->scale), gap)))
+/* Where the image of a place is that is nearest to a grain: no other can touch it. */
+static vec find_nearest(const dem *d, const dem_grain *grain, vec place) {
+    const vec size = dem_cell_size(d), way = minus(place, grain->place);
+    return (vec){place.x - (d->settings.periodic_x ? size.x * nearbyint(way.x / size.x) : 0),
+                 place.y - (d->settings.periodic_y ? size.y * nearbyint(way.y / size.y) : 0)};
+}
+
+/* Every grain and wall is looked at. */
+static bool is_free(const dem *d, double gap, const dem_grain *grain) {
+    const narc_body body = make_body(grain->shape, grain->place, find_turn(grain->angle), grain->scale);
+    const double far = grain->scale * d->shapes[grain->shape].reach + gap;
+    for (const dem_body *b = d->bodies; b < d->bodies + d->grain_count; b++) {
+        const vec place = find_nearest(d, grain, b->place), way = minus(place, grain->place);
+        const double most = far + b->reach;
+        if (dot(way, way) <= most * most &&
+            !is_clear_of(d, body, make_body(b->shape, place, b->turn, (double)b->scale), gap))
             return false;
+    }
+    for (const dem_wall *w = d->walls; w < d->walls + d->wall_count; w++) {
+        const vec place = find_nearest(d, grain, w->place);
+        if (!(w->kind == DEM_PLATE
+                  ? is_clear_of_plate(d, grain, w, gap)
+                  : is_clear_of(d, body, make_body(w->shape, place, find_turn(w->angle), w->scale), gap)))
+            return false;
+    }
     return true;
 }
 
-/* Also of images, and of walls. */
-static bool is_free(const dem *d, const grid *g, double gap, const dem_grain *grain) {
-    const int across = d->settings.periodic_x, up = d->settings.periodic_y;
-    const vec size = dem_cell_size(d);
-    for (int i = -across; i <= across; i++)
-        for (int j = -up; j <= up; j++) {
-            const vec place = {grain->place.x + i * size.x, grain->place.y + j * size.y};
-            const narc_body body = make_body(grain->shape, place, grain->angle, grain->scale);
-            if (!is_clear_of_grains(d, g, gap, body) || !is_clear_of_walls(d, grain, body, gap))
-                return false;
-        }
-    return true;
-}
-
-bool dem_fill_randomly(dem *d, const dem_filling *f, uint64_t *random) {
-    grid g = {.last = NULL};
-    bool ok = open_grid(d, f, &g);
-    for (size_t i = 0; i < f->count && ok; i++) {
+void dem_fill_randomly(dem *d, const dem_filling *f, uint64_t *random) {
+    const vec low = f->region.low, high = f->region.high;
+    for (uint64_t i = 0; i < f->count; i++) {
         dem_grain grain = draw_grain(d, f, random);
         uint64_t tries = 0;
         do {
-            grain.place.x = draw_between(random, f->region.low.x, f->region.high.x);
-            grain.place.y = draw_between(random, f->region.low.y, f->region.high.y);
+            if (tries++ == f->tries)
+                dem_fail(d, "grain %zu of %zu found no free place in %zu tries: the region is full", (size_t)i,
+                         (size_t)f->count, (size_t)f->tries);
+            grain.place.x = draw_between(random, low.x, high.x);
+            grain.place.y = draw_between(random, low.y, high.y);
             grain.angle = f->upright ? 0 : draw_between(random, -DEM_PI, DEM_PI);
-            ok = is_free(d, &g, f->gap, &grain);
-        } while (!ok && ++tries < f->tries);
-        if (!ok)
-            dem_fail(d, "grain %zu of %zu found no free place in %zu tries: the region is full", i, (size_t)f->count,
-                     (size_t)f->tries);
-        else if ((ok = dem_add_grain(d, grain)))
-            add_to_grid(d, &g, (uint32_t)(d->grain_count - 1));
+        } while (!is_free(d, f->gap, &grain));
+        dem_add_grain(d, grain);
     }
-    dem_release(g.last);
-    dem_release(g.before);
-    return ok;
 }
 
 /* ------------------------------------------------------------------------------------------------ lattice */
 
-bool dem_fill_lattice(dem *d, const dem_filling *f, uint64_t *random) {
+void dem_fill_lattice(dem *d, const dem_filling *f, uint64_t *random) {
     const vec low = f->region.low, size = minus(f->region.high, low), spacing = f->spacing;
     const double columns = floor(size.x / spacing.x + 1e-9), rows = floor(size.y / spacing.y + 1e-9);
     if (columns * rows > 1e8)
-        return dem_fail(d, "a lattice of %g by %g places is too large", columns, rows);
+        dem_fail(d, "a lattice of %g by %g places is too large", columns, rows);
     if (columns * rows < (double)f->count || columns * rows < 1)
-        return dem_fail(d, "a lattice of %g by %g places has no room for %zu grains", columns, rows, f->count);
+        dem_fail(d, "a lattice of %g by %g places has no room for %zu grains", columns, rows, f->count);
     const size_t count = f->count > 0 ? f->count : (size_t)(columns * rows);
     for (size_t k = 0; k < count; k++) {
         const size_t row = k / (size_t)columns, column = k % (size_t)columns;
@@ -216,8 +155,6 @@ bool dem_fill_lattice(dem *d, const dem_filling *f, uint64_t *random) {
         const double off_y = 0.5 * f->jitter * draw_between(random, -1, 1);
         grain.place =
             (vec){low.x + spacing.x * ((double)column + 0.5 + off_x), low.y + spacing.y * ((double)row + 0.5 + off_y)};
-        if (!dem_add_grain(d, grain))
-            return false;
+        dem_add_grain(d, grain);
     }
-    return true;
 }

@@ -89,13 +89,11 @@ static void pass_all(stream *s, dem *d, dem_place *place) {
     PASS_ALL(d->contacts, d->contact_count); /* a run that has no more steps is asked for them */
 }
 
-bool dem_write_restart(dem *d, const dem_place *place, const char *path) {
+void dem_write_restart(dem *d, const dem_place *place, const char *path) {
     counts n = {d->body_count, d->wall_count, d->list.count, d->contact_count, d->extra_count};
     dem_place where = *place;
     header head = {.version = VERSION, .byte_order = BYTE_ORDER_MARK, .input = place->input};
-    dem_file file;
-    if (!dem_open_file(d, &file, path))
-        return false;
+    dem_file file = dem_open_file(d, path);
     stream out = {.file = file.file, .checksum = DEM_HASH_START, .ok = true};
     memcpy(head.magic, MAGIC, sizeof head.magic);
     fwrite(&head, 1, sizeof head, file.file); /* its place */
@@ -105,28 +103,31 @@ bool dem_write_restart(dem *d, const dem_place *place, const char *path) {
     head.checksum = out.checksum;
     rewind(file.file);
     fwrite(&head, 1, sizeof head, file.file);
-    return dem_close_file(d, &file);
+    dem_close_file(d, &file);
 }
 
 /* ------------------------------------------------------------------------------------------------ reading */
 
-static bool check_header(dem *d, const char *path, const char *bytes, size_t size, uint64_t input) {
+/* What is wrong with the file, in `problem`. */
+static bool check_header(const char *bytes, size_t size, uint64_t input, char *problem, size_t problem_size) {
     header head;
+    memcpy(&head, bytes, size < sizeof head ? 0 : sizeof head);
     if (size < sizeof head || memcmp(bytes, MAGIC, sizeof MAGIC) != 0)
-        return dem_fail(d, "%s: it is not a restart file", path);
-    memcpy(&head, bytes, sizeof head);
-    if (head.byte_order != BYTE_ORDER_MARK)
-        return dem_fail(d, "%s: it comes from a machine with another order of bytes", path);
-    if (head.version != VERSION)
-        return dem_fail(d, "%s: its version is %u, this program reads %d", path, (unsigned)head.version, VERSION);
-    if (head.size != size - sizeof head)
-        return dem_fail(d, "%s: it has %zu bytes, and should have %llu", path, size,
-                        (unsigned long long)head.size + sizeof head);
-    if (head.checksum != dem_hash_bytes(DEM_HASH_START, bytes + sizeof head, size - sizeof head))
-        return dem_fail(d, "%s: it is damaged, its checksum does not fit", path);
-    if (head.input != input)
-        return dem_fail(d, "%s: it belongs to another input: grains, walls, laws, boundary or shapes differ", path);
-    return true;
+        snprintf(problem, problem_size, "it is not a restart file");
+    else if (head.byte_order != BYTE_ORDER_MARK)
+        snprintf(problem, problem_size, "it comes from a machine with another order of bytes");
+    else if (head.version != VERSION)
+        snprintf(problem, problem_size, "its version is %u, this program reads %d", (unsigned)head.version, VERSION);
+    else if (head.size != size - sizeof head)
+        snprintf(problem, problem_size, "it has %zu bytes, and should have %llu", size,
+                 (unsigned long long)head.size + sizeof head);
+    else if (head.checksum != dem_hash_bytes(DEM_HASH_START, bytes + sizeof head, size - sizeof head))
+        snprintf(problem, problem_size, "it is damaged, its checksum does not fit");
+    else if (head.input != input)
+        snprintf(problem, problem_size, "it belongs to another input: grains, walls, laws, boundary or shapes differ");
+    else
+        return true;
+    return false;
 }
 
 static bool check_indices(const dem *d) {
@@ -138,27 +139,26 @@ static bool check_indices(const dem *d) {
     return ok;
 }
 
-bool dem_read_restart(dem *d, dem_place *place, const char *path) {
+void dem_read_restart(dem *d, dem_place *place, const char *path) {
     size_t size;
-    char *bytes = dem_read_file(path, &size, d->error);
-    if (!bytes || !check_header(d, path, bytes, size, place->input)) {
-        free(bytes);
-        return false;
-    }
-    stream in = {.bytes = bytes + sizeof(header), .size = size - sizeof(header), .ok = true};
-    counts n = {0};
-    pass(&in, &n, sizeof n);
-    bool ok = n.bodies == d->body_count && n.walls == d->wall_count && n.pairs < UINT32_MAX && n.contacts <= n.pairs &&
-              dem_grow(d, &d->list.pairs, n.pairs, sizeof *d->list.pairs) &&
-              dem_grow(d, &d->list.memory, n.pairs, sizeof *d->list.memory) &&
-              dem_grow(d, &d->contacts, n.contacts, sizeof *d->contacts);
+    char *bytes = dem_read_file(path, &size), problem[128] = "its counts do not fit the input";
+    bool ok = check_header(bytes, size, place->input, problem, sizeof problem);
     if (ok) {
-        d->list.count = n.pairs;
-        d->contact_count = n.contacts;
+        stream in = {.bytes = bytes + sizeof(header), .size = size - sizeof(header), .ok = true};
+        counts n = {0};
+        pass(&in, &n, sizeof n);
+        ok = n.bodies == d->body_count && n.walls == d->wall_count && n.pairs <= in.size / sizeof(dem_pair) &&
+             n.contacts <= n.pairs;
+        d->list.count = ok ? n.pairs : 0;
+        d->contact_count = ok ? n.contacts : 0;
         d->extra_count = n.extra;
+        dem_grow(&d->list.pairs, d->list.count, sizeof *d->list.pairs);
+        dem_grow(&d->list.memory, d->list.count, sizeof *d->list.memory);
+        dem_grow(&d->contacts, d->contact_count, sizeof *d->contacts);
         pass_all(&in, d, place);
+        ok = ok && in.ok && in.used == in.size && check_indices(d);
     }
-    ok = ok && in.ok && in.used == in.size && check_indices(d);
-    free(bytes);
-    return ok || dem_fail(d, "%s: its counts do not fit the input", path);
+    dem_release(bytes);
+    if (!ok)
+        dem_fail(d, "%s: %s", path, problem);
 }

@@ -5,51 +5,32 @@
 #include "schema.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { LONGEST = 40 }; /* of what is shown of a file */
 
-/* _Exit() drops what is still buffered: nothing more gets written. */
-void fail(const char *format, ...) {
-    char line[2048] = "dem: ";
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(line + 5, sizeof line - 5, format, arguments);
-    va_end(arguments);
-    for (char *c = line; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?';
-    fprintf(stderr, "%s\n", line);
-    _Exit(2);
-}
-
 json_value json_read_file(const char *path) {
-    char error[512];
     size_t size, line = 1;
-    char *text = dem_read_file(path, &size, error);
-    if (!text)
-        fail("%s", error);
+    char *text = dem_read_file(path, &size);
     const char *end = text, *cut = strstr(text, "\\u0000"); /* cJSON would end a string there */
     json_value root = {.file = path, .item = cJSON_ParseWithOpts(text, &end, true)};
     end = root.item && cut ? cut : end;
     if (!root.item || end != text + size) {
         for (const char *c = text; c < end; c++)
             line += *c == '\n';
-        fail("%s: line %zu: not valid JSON here: '%.*s'", path, line, LONGEST, end);
+        dem_quit("%s: line %zu: not valid JSON here: '%.*s'", path, line, LONGEST, end);
     }
-    free(text);
+    dem_release(text);
     return root;
 }
 
 void json_fail(const json_value *value, const char *problem) {
     const char *colon = value->place[0] ? ": " : "", *text = cJSON_PrintUnformatted(value->item);
     if (text)
-        fail("%s: %s%s%s '%.*s%s'", value->file, value->place, colon, problem, LONGEST, text,
-             strlen(text) > LONGEST ? "..." : "");
-    fail("%s: %s%s%s", value->file, value->place, colon, problem);
+        dem_quit("%s: %s%s%s '%.*s%s'", value->file, value->place, colon, problem, LONGEST, text,
+                 strlen(text) > LONGEST ? "..." : "");
+    dem_quit("%s: %s%s%s", value->file, value->place, colon, problem);
 }
 
 /* ------------------------------------------------------------------------------------------------ members, items */

@@ -14,9 +14,6 @@
 
 #include "dem.h"
 
-/* Ends the program with status 2: "dem: message", one line on standard error. */
-__attribute__((format(printf, 1, 2))) _Noreturn void fail(const char *format, ...);
-
 typedef struct json_value {
     const char *file;
     const cJSON *item; /* NULL: not there */

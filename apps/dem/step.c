@@ -52,8 +52,8 @@ static void end_step(dem *d) {
         kick(&d->bodies[k], 0.5 * d->settings.time_step, d->settings.gravity);
 }
 
-static bool find_contacts(dem *d) {
-    narc_bodies bodies;
+static void find_contacts(dem *d) {
+    const narc_bodies bodies = dem_make_poses(d);
     const dem_pair *p = d->list.pairs;
     narc_pairs pairs = {.count = d->list.count, .a = NARC_COLUMN(p, a), .b = NARC_COLUMN(p, b)};
     if (d->extra_count > 0) {
@@ -69,37 +69,35 @@ static bool find_contacts(dem *d) {
                               .workers = &workers,
                               .out_skipped = &skipped};
     narc_error error;
-    if (!dem_grow(d, &d->contacts, d->list.count, sizeof *d->contacts) ||
-        !dem_grow(d, &d->found, d->list.count, sizeof *d->found) || !dem_make_poses(d, &bodies))
-        return false;
-    if (narc_find_contacts(d->store, &bodies, &pairs, &query, d->found, d->list.count, &d->found_count, &error) !=
-        NARC_OK)
-        return dem_fail_narc(d, "contacts", &error);
-    return skipped == 0 || dem_find_broken_body(d);
+    dem_grow(&d->contacts, d->list.count, sizeof *d->contacts);
+    dem_grow(&d->found, d->list.count, sizeof *d->found);
+    const narc_status status =
+        narc_find_contacts(d->store, &bodies, &pairs, &query, d->found, d->list.count, &d->found_count, &error);
+    dem_demand(d, status, "contacts", &error);
+    if (skipped > 0)
+        dem_fail_lost(d);
 }
 
 /* With a time step of 0 no spring stretches and no work is done. */
-bool dem_find_first_forces(dem *d) {
+void dem_find_first_forces(dem *d) {
     const double time_step = d->settings.time_step;
     d->settings.time_step = 0;
     dem_move_walls(d); /* walls get their velocities */
-    const bool found = find_contacts(d) && dem_apply_laws(d);
+    find_contacts(d);
+    dem_apply_laws(d);
     d->settings.time_step = time_step;
-    return found;
 }
 
-bool dem_step(dem *d) {
+void dem_step(dem *d) {
     d->step++;
     d->time += d->settings.time_step;
-    if (!dem_steer_walls(d))
-        return false;
+    dem_steer_walls(d);
     dem_shear_cell(d);
-    if ((begin_step(d) && !dem_renew_lists(d)) || !find_contacts(d))
-        return false;
+    if (begin_step(d))
+        dem_renew_lists(d);
+    find_contacts(d);
     dem_count_work(d);
-    if (!dem_apply_laws(d))
-        return false;
+    dem_apply_laws(d);
     dem_count_work(d);
     end_step(d);
-    return true;
 }

@@ -25,29 +25,23 @@ static bool is_table(const dem *d, const char *text, size_t position) {
     return strtoull(line, NULL, 10) <= d->step; /* of the head 0 */
 }
 
-static bool check_table(dem *d, const char *path, size_t position) {
+static void check_table(dem *d, const char *path, size_t position) {
     size_t size;
-    char *text = dem_read_file(path, &size, d->error);
-    if (!text)
-        return false;
-    const bool ok = size >= position && is_table(d, text, position);
-    free(text);
-    return ok || dem_fail(d, "%.400s: %s", path,
-                          size < position ? "it is shorter than the table was when the restart was written"
-                                          : "it is not the table that the restart goes on with");
+    char *text = dem_read_file(path, &size);
+    if (size < position)
+        dem_fail(d, "%.400s: it is shorter than the table was when the restart was written", path);
+    if (!is_table(d, text, position))
+        dem_fail(d, "%.400s: it is not the table that the restart goes on with", path);
+    dem_release(text);
 }
 
 FILE *dem_open_csv(dem *d, const char *path, uint64_t *position) {
     *position = access(path, F_OK) == 0 ? *position : 0;
-    if (*position > 0 && !check_table(d, path, (size_t)*position))
-        return NULL;
+    if (*position > 0)
+        check_table(d, path, (size_t)*position);
     FILE *file = fopen(path, *position > 0 ? "r+" : "w");
-    if (!file || (*position > 0 && (ftruncate(fileno(file), (off_t)*position) || fseek(file, 0, SEEK_END)))) {
+    if (!file || (*position > 0 && (ftruncate(fileno(file), (off_t)*position) || fseek(file, 0, SEEK_END))))
         dem_fail(d, "%.400s: %s", path, strerror(errno));
-        if (file)
-            fclose(file);
-        return NULL;
-    }
     if (*position == 0) {
         fprintf(file, "%s", HEAD);
         for (const dem_wall *w = d->walls; w < d->walls + d->wall_count; w++)
@@ -70,13 +64,9 @@ bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m) {
     return fflush(csv) == 0 && !ferror(csv);
 }
 
-bool dem_write_grains(dem *d, const char *path) {
+void dem_write_grains(dem *d, const char *path) {
+    dem_file out = dem_open_file(d, path);
     dem_load *loads = dem_find_loads(d);
-    dem_file out;
-    if (!loads || !dem_open_file(d, &out, path)) {
-        free(loads);
-        return false;
-    }
     fprintf(out.file, "shape,x,y,angle,scale,size,vx,vy,spin,contacts,bearing,pressure,mass,cell_x,cell_y\n");
     for (size_t k = 0; k < d->grain_count; k++) {
         const dem_body *b = &d->bodies[k];
@@ -86,6 +76,6 @@ bool dem_write_grains(dem *d, const char *path) {
                 d->shapes[b->shape].name, b->place.x, b->place.y, angle, (double)b->scale, b->extent, b->velocity.x,
                 b->velocity.y, b->spin, l->contacts, l->bearing, pressure, b->mass, (int)b->cell_x, (int)b->cell_y);
     }
-    free(loads);
-    return dem_close_file(d, &out);
+    dem_release(loads);
+    dem_close_file(d, &out);
 }

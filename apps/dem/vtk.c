@@ -4,7 +4,6 @@
  * contacts, which are points. All numbers are big-endian.
  */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "dem.h"
@@ -82,10 +81,11 @@ static void put_frame(FILE *file, const dem *d, const frame *f) {
     }
 }
 
-static bool open_frame(dem *d, frame *f, size_t cell_count) {
+static void open_frame(frame *f, size_t cell_count) {
     f->cell_count = cell_count;
-    return dem_grow(d, &f->corners, cell_count, sizeof *f->corners) &&
-           dem_grow(d, &f->points, cell_count, sizeof *f->points) && dem_grow(d, &f->rows, cell_count, sizeof *f->rows);
+    dem_grow(&f->corners, cell_count, sizeof *f->corners);
+    dem_grow(&f->points, cell_count, sizeof *f->points);
+    dem_grow(&f->rows, cell_count, sizeof *f->rows);
 }
 
 /* ------------------------------------------------------------------------------------------------ outlines */
@@ -139,11 +139,10 @@ static const dem_wall *find_plate(const dem *d, size_t body) {
     return wall && wall->kind == DEM_PLATE ? wall : NULL;
 }
 
-static bool put_polygons(dem *d, frame *f) {
+static void put_polygons(const dem *d, frame *f) {
     vec low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY}; /* of all but plates */
     for (size_t i = 0; i < d->part_count; f->point_count += f->corners[i++]) {
-        if (!dem_grow(d, &f->points, f->point_count + MOST_CORNERS, sizeof *f->points))
-            return false;
+        dem_grow(&f->points, f->point_count + MOST_CORNERS, sizeof *f->points);
         const bool plate = find_plate(d, d->parts[i].body) != NULL;
         vec *p = f->points + f->point_count;
         f->corners[i] = plate ? 4 : (uint32_t)put_outline(d, &d->parts[i], p);
@@ -157,7 +156,6 @@ static bool put_polygons(dem *d, frame *f) {
         if (find_plate(d, k))
             put_plate(d, find_plate(d, k), d->bodies[k].place, low, high, f->points + first);
     }
-    return true;
 }
 
 /* ------------------------------------------------------------------------------------------------ both frames */
@@ -168,11 +166,12 @@ static const field body_fields[] = {
     {"size", "float", 1},       {"pressure", "float", 1}, {"velocity", "float", 3}, {"centre", "float", 3},
     {"stress", "float", 9},     {NULL, NULL, 0}};
 
-static bool make_bodies(dem *d, frame *f) {
+static void make_bodies(const dem *d, frame *f) {
     *f = (frame){.cell_name = "POLYGONS", .data_name = "CELL_DATA", .fields = body_fields};
     dem_load *loads = dem_find_loads(d);
-    const bool ok = loads && open_frame(d, f, d->part_count) && put_polygons(d, f);
-    for (size_t part = 0; part < d->part_count && ok; part++) { /* of each part those of its body */
+    open_frame(f, d->part_count);
+    put_polygons(d, f);
+    for (size_t part = 0; part < d->part_count; part++) { /* of each part those of its body */
         const size_t k = d->parts[part].body;
         const dem_body *b = &d->bodies[k];
         const dem_stress *s = &loads[k].stress;
@@ -184,8 +183,7 @@ static bool make_bodies(dem *d, frame *f) {
         /* clang-format on */
         memcpy(f->rows[part], row, sizeof row);
     }
-    free(loads);
-    return ok;
+    dem_release(loads);
 }
 
 static const field contact_fields[] = {{"body_a", "int", 1},
@@ -198,11 +196,10 @@ static const field contact_fields[] = {{"body_a", "int", 1},
                                        {"overlap", "float", 1},
                                        {NULL, NULL, 0}};
 
-static bool make_contacts(dem *d, frame *f) {
+static void make_contacts(const dem *d, frame *f) {
     *f = (frame){.cell_name = "VERTICES", .data_name = "POINT_DATA", .fields = contact_fields};
     f->point_count = d->contact_count;
-    if (!open_frame(d, f, d->contact_count))
-        return false;
+    open_frame(f, d->contact_count);
     for (size_t k = 0; k < d->contact_count; k++) {
         const dem_contact *c = &d->contacts[k];
         const dem_body *a = dem_body_a(d, c->pair), *b = dem_body_b(d, c->pair);
@@ -225,24 +222,19 @@ static bool make_contacts(dem *d, frame *f) {
         f->points[k] = plus(a->place, c->point);
         f->corners[k] = 1;
     }
-    return true;
 }
 
-bool dem_write_vtk(dem *d, const char *stem, uint64_t number) {
-    bool ok = true;
-    for (int i = 0; i < 2 && ok; i++) {
+void dem_write_vtk(dem *d, const char *stem, uint64_t number) {
+    for (int i = 0; i < 2; i++) {
         char path[DEM_PATH_SIZE];
-        dem_file out;
         frame f;
         snprintf(path, sizeof path, "%.1000s%s-%06llu.vtk", stem, i ? "-contacts" : "", (unsigned long long)number);
-        ok = (i ? make_contacts : make_bodies)(d, &f) && dem_open_file(d, &out, path);
-        if (ok) {
-            put_frame(out.file, d, &f);
-            ok = dem_close_file(d, &out);
-        }
+        dem_file out = dem_open_file(d, path);
+        (i ? make_contacts : make_bodies)(d, &f);
+        put_frame(out.file, d, &f);
         dem_release(f.corners);
         dem_release(f.points);
         dem_release(f.rows);
+        dem_close_file(d, &out);
     }
-    return ok;
 }

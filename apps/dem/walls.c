@@ -25,18 +25,17 @@ static double find_distance(const dem *d, int first, int second) {
 }
 
 /* A wall with nothing to press would go on without end. */
-static bool count_idle_way(dem *d, dem_wall *wall, double speed, bool touches) {
+static void count_idle_way(dem *d, dem_wall *wall, double speed, bool touches) {
     const double travel = wall->servo.travel > 0 ? wall->servo.travel : d->diagonal;
     wall->idle_way = touches ? 0 : wall->idle_way + fabs(speed) * d->settings.time_step;
-    if (wall->idle_way <= travel)
-        return true;
-    return dem_fail(d,
-                    "step %llu: wall '%s' has moved by more than %g without touching a grain: its servo has "
-                    "nothing to press",
-                    (unsigned long long)d->step, wall->name, travel);
+    if (wall->idle_way > travel)
+        dem_fail(d,
+                 "step %llu: wall '%s' has moved by more than %g without touching a grain: its servo has "
+                 "nothing to press",
+                 (unsigned long long)d->step, wall->name, travel);
 }
 
-bool dem_steer_walls(dem *d) {
+void dem_steer_walls(dem *d) {
     for (size_t w = 0; w < d->wall_count; w++) {
         dem_wall *wall = &d->walls[w];
         const dem_servo *s = &wall->servo;
@@ -49,10 +48,8 @@ bool dem_steer_walls(dem *d) {
         const double missing = target + force.x * s->direction.x + force.y * s->direction.y;
         const double speed = fmin(fmax(s->gain * missing, -s->max_speed), s->max_speed);
         wall->velocity = times(speed, s->direction);
-        if (!count_idle_way(d, wall, speed, force.x != 0 || force.y != 0))
-            return false;
+        count_idle_way(d, wall, speed, force.x != 0 || force.y != 0);
     }
-    return true;
 }
 
 /* ------------------------------------------------------------------------------------------------ motion */
@@ -94,31 +91,27 @@ void dem_count_work(dem *d) {
 /* ------------------------------------------------------------------------------------------------ pairs */
 
 /* Every grain that is closer to the plate than the skin. (A box pair would be found a little further.) */
-static bool add_pairs_of_plate(dem *d, const dem_body *block, const dem_wall *plate) {
+static void add_pairs_of_plate(dem *d, const dem_body *block, const dem_wall *plate) {
     const vec n = plate->normal;
     for (uint32_t part = 0; part < d->bodies[d->grain_count].first_part; part++) { /* those of grains */
         const dem_body *b = &d->bodies[d->parts[part].body];
         const vec way = minus(b->place, block->place);
         const double height = dot(way, n) - plate->half, along = cross(n, way);
         const dem_pair pair = {part, block->first_part, (float)(-n.y * along), (float)(n.x * along), 0};
-        if (height - b->reach <= d->settings.skin * 1.001 && !dem_add_extra_pair(d, pair))
-            return false;
+        if (height - b->reach <= d->settings.skin * 1.001)
+            dem_add_extra_pair(d, pair);
     }
-    return true;
 }
 
 /* A plate of a periodic cell must run along the border, or it would end there. */
-bool dem_add_plate_pairs(dem *d) {
+void dem_add_plate_pairs(dem *d) {
     for (size_t w = 0; w < d->wall_count; w++) {
         const dem_wall *plate = &d->walls[w];
         const vec n = plate->normal;
         if (plate->kind != DEM_PLATE)
             continue;
         if ((d->settings.periodic_x && fabs(n.x) > 1e-12) || (d->settings.periodic_y && fabs(n.y) > 1e-12))
-            return dem_fail(d, "wall '%s': a plate with normal %g, %g crosses a periodic border", plate->name, n.x,
-                            n.y);
-        if (!add_pairs_of_plate(d, &d->bodies[d->grain_count + w], plate))
-            return false;
+            dem_fail(d, "wall '%s': a plate with normal %g, %g crosses a periodic border", plate->name, n.x, n.y);
+        add_pairs_of_plate(d, &d->bodies[d->grain_count + w], plate);
     }
-    return true;
 }

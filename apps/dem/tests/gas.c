@@ -25,8 +25,8 @@ static dem make_gas(uint32_t shape, dem_law kind, double time_step) {
                                  .spin = 1,
                                  .tries = 20000};
     uint64_t random = 11;
-    assert_true(dem_fill_randomly(&d, &filling, &random));
-    start(&d);
+    dem_fill_randomly(&d, &filling, &random);
+    dem_start(&d);
     return d;
 }
 
@@ -80,7 +80,7 @@ TEST(test_all_energy_is_accounted_for) {
     for (int i = 0; i < 2; i++) {
         dem d = make_busy_world(1);
         d.settings.time_step = i ? 2.5e-5 : 1e-4;
-        start(&d);
+        dem_start(&d);
         const double before = total_energy(&d);
         while (d.time < 1)
             step(&d, 100);

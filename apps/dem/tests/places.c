@@ -3,7 +3,6 @@
  * places.c - where grains start: free places, sizes as they are distributed, lattices.
  */
 #include <math.h>
-#include <string.h>
 
 #include "worlds.h"
 
@@ -56,11 +55,10 @@ TEST(test_free_places) {
     dem_filling filling = plain_filling(150);
     uint64_t random = 5;
     filling.gap = gap;
-    assert_true(dem_fill_randomly(&d, &filling, &random));
+    dem_fill_randomly(&d, &filling, &random);
     assert_int_equal(d.grain_count, 150);
-    start(&d);
-    narc_bodies bodies;
-    assert_true(dem_make_poses(&d, &bodies));
+    dem_start(&d);
+    const narc_bodies bodies = dem_make_poses(&d);
     const narc_pairs pairs = {.count = d.list.count,
                               .a = NARC_COLUMN(d.list.pairs, a),
                               .b = NARC_COLUMN(d.list.pairs, b),
@@ -83,8 +81,7 @@ TEST(test_full_region) {
     dem d = make_room();
     const dem_filling filling = plain_filling(2000);
     uint64_t random = 5;
-    assert_false(dem_fill_randomly(&d, &filling, &random));
-    assert_non_null(strstr(d.error, "found no free place in 5000 tries"));
+    EXPECT_ERROR(&d, "found no free place in 5000 tries", dem_fill_randomly(&d, &filling, &random));
     dem_destroy(&d);
 }
 
@@ -94,13 +91,13 @@ TEST(test_lattice) {
     uint64_t random = 5;
     filling.spacing = (vec){3, 5};
     filling.jitter = 0.5;
-    assert_true(dem_fill_lattice(&d, &filling, &random));
+    dem_fill_lattice(&d, &filling, &random);
     assert_int_equal(d.grain_count, 60);
     for (size_t k = 0; k < 60; k++) {
         assert_true(fabs(d.bodies[k].place.x - 3 * ((double)(k % 10) + 0.5)) <= 0.75);
         assert_true(fabs(d.bodies[k].place.y - 5 * ((double)(k / 10) + 0.5)) <= 1.25);
     }
     filling.count = 61;
-    assert_false(dem_fill_lattice(&d, &filling, &random));
+    EXPECT_ERROR(&d, "has no room for 61 grains", dem_fill_lattice(&d, &filling, &random));
     dem_destroy(&d);
 }

@@ -10,7 +10,7 @@
 static uint64_t run_world(const char *isa, unsigned threads) {
     assert_int_equal(narc_set_isa(isa, NULL), NARC_OK);
     dem d = make_busy_world(threads);
-    start(&d);
+    dem_start(&d);
     step(&d, 7000);
     assert_true(d.contact_count > 60);
     const uint64_t hash = dem_hash(&d);
@@ -30,7 +30,7 @@ TEST(test_same_bits) {
 /* The hash sees a last bit. */
 TEST(test_hash_sees_all) {
     dem d = make_busy_world(1);
-    start(&d);
+    dem_start(&d);
     const uint64_t before = dem_hash(&d);
     d.bodies[5].spin = nextafter(d.bodies[5].spin, 100);
     assert_int_not_equal(dem_hash(&d), before);

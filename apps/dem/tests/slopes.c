@@ -24,7 +24,7 @@ static dem make_slope(uint32_t shape, double friction, double rolling_friction, 
     add_plate(&d, "slope", 0, 0, 0, 1);
     add_grain(&d, shape, 0, 1, 0, 0);
     d.bodies[0].place.y = 1 - find_depth(&d);
-    start(&d);
+    dem_start(&d);
     return d;
 }
 

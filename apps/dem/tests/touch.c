@@ -145,7 +145,7 @@ TEST(test_depth_is_double) {
         add_grain(&d, SQUARE, 105, 0.5 - depths[i], 0, 0);
         add_grain(&d, SQUARE, 105, 1.5 - 2 * depths[i], 0, 0);
         add_grain(&d, SAND, 110, 5, 0, 0);
-        start(&d);
+        dem_start(&d);
         step(&d, 1);
         assert_int_equal(d.contact_count, 3);
         for (size_t k = 0; k < 3; k++) {
@@ -168,14 +168,13 @@ TEST(test_bricks_stand_still) {
     d.settings.time_step = 1e-3;
     narc_arc arcs[NARC_MAX_ARCS];
     size_t count;
-    uint32_t brick;
     assert_int_equal(narc_build_box(2, 1, 0, arcs, &count, NULL), NARC_OK);
-    assert_true(dem_add_shape(&d, "brick", arcs, count, &brick));
+    const uint32_t brick = dem_add_shape(&d, "brick", arcs, count);
     add_plate(&d, "floor", 0, 0, 0, 1);
     for (int course = 0; course < 5; course++)
         for (int i = 0; i < 5; i++)
             add_grain(&d, brick, 2.01 * i + course % 2, 0.5 + 1.001 * course, 0, 0);
-    start(&d);
+    dem_start(&d);
     step(&d, 60000);
     const size_t contacts = d.contact_count;
     const double x = d.bodies[22].place.x, y = d.bodies[22].place.y;

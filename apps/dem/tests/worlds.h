@@ -45,12 +45,26 @@ void add_plate(dem *d, const char *name, double x, double y, double normal_x, do
  * is held at a stress, with a box that turns. */
 dem make_busy_world(unsigned threads);
 
-void start(dem *d);
 void step(dem *d, size_t count);
 
 dem_energies energies(const dem *d);
 
 /* Kinetic, potential and elastic energy, and what was dissipated, less what walls gave. */
 double total_energy(const dem *d);
+
+/* The call, of this world, ends with an error whose message has this text. */
+#define EXPECT_ERROR(d, message, call)                                                                                 \
+    do {                                                                                                               \
+        watch_errors(d);                                                                                               \
+        if (setjmp(error_place) == 0) {                                                                                \
+            call;                                                                                                      \
+            fail_msg("no error: %s", message);                                                                         \
+        }                                                                                                              \
+        check_error(d, message);                                                                                       \
+    } while (0)
+extern jmp_buf error_place;
+void watch_errors(dem *d);
+void check_error(const dem *d, const char *message);
+void expect_start_error(dem *d, const char *message);
 
 #endif

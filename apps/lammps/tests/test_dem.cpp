@@ -55,7 +55,7 @@ Packing make_packing(const narc_lammps::Form forms[2]) {
     return packing;
 }
 
-bool fill_dem(dem *d, const Packing &packing, const narc_lammps::Form forms[2], const Law &law) {
+void fill_dem(dem *d, const Packing &packing, const narc_lammps::Form forms[2], const Law &law) {
     dem_settings settings = dem_defaults;
     settings.time_step = law.step;
     settings.gravity = {0, 0};
@@ -69,7 +69,7 @@ bool fill_dem(dem *d, const Packing &packing, const narc_lammps::Form forms[2], 
     material.density = 1;
     const uint32_t stone = 0;
     uint32_t shapes[2] = {0, 0};
-    bool good = dem_create(d, settings);
+    dem_create(d, settings);
     d->materials[d->material_count++] = material;
     dem_contact_law contact = {};
     contact.kn = law.kn;
@@ -80,8 +80,8 @@ bool fill_dem(dem *d, const Packing &packing, const narc_lammps::Form forms[2], 
     contact.friction = law.friction;
     d->laws[stone][stone] = contact;
     for (int k = 0; k < 2; k++)
-        good = good && dem_add_shape(d, forms[k].name.c_str(), forms[k].parts[0].arcs.data(),
-                                     forms[k].parts[0].arcs.size(), &shapes[k]);
+        shapes[k] = dem_add_shape(d, forms[k].name.c_str(), forms[k].parts[0].arcs.data(),
+                                  forms[k].parts[0].arcs.size());
     for (const Grain &g : packing.grains) {
         dem_grain grain = {};
         grain.shape = shapes[g.type - 1];
@@ -91,9 +91,9 @@ bool fill_dem(dem *d, const Packing &packing, const narc_lammps::Form forms[2], 
         grain.scale = 0.5;
         grain.velocity = {g.velocity_x, g.velocity_y};
         grain.spin = g.spin;
-        good = good && dem_add_grain(d, grain);
+        dem_add_grain(d, grain);
     }
-    return good && dem_start(d);
+    dem_start(d);
 }
 
 std::vector<State> states_of(const dem &d) {
@@ -119,10 +119,9 @@ Difference run_both(const Law &law) {
                "pair_coeff * *\nfix nve all narc/nve\ntimestep " + std::to_string(1e6 * law.step) + "e-6\nrun " +
                std::to_string(steps));
     dem d;
-    bool good = fill_dem(&d, packing, forms, law);
-    for (int k = 0; k < steps && good; k++)
-        good = dem_step(&d);
-    check_at_most(good ? "the other program runs" : d.error, good ? 0 : 1, 0);
+    fill_dem(&d, packing, forms, law);
+    for (int k = 0; k < steps; k++)
+        dem_step(&d);
     const Difference at = compare(states_of(d), lammps.states(), packing.width, packing.height);
     dem_destroy(&d);
     return at;
