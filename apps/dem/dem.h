@@ -422,6 +422,7 @@ void dem_set_law(dem *d, uint32_t a, uint32_t b, dem_contact_law law);
 double dem_find_shortest_contact(const dem *d);
 
 void dem_apply_laws(dem *d);
+const char *dem_explain_depth(const dem *d); /* why bodies overlap too far, for a message */
 
 /* ------------------------------------------------------------------------------------------------ walls.c */
 

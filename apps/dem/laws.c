@@ -288,6 +288,10 @@ INLINE dem_block apply_laws(dem *d, size_t first, size_t end, bool hertz, bool r
     return block;
 }
 
+const char *dem_explain_depth(const dem *d) {
+    return d->step == 0 ? "They are placed so: the run has not begun" : "Use a shorter time step, or stiffer contacts";
+}
+
 __attribute__((noreturn)) static void fail_depth(dem *d, size_t pair) {
     const size_t a = d->parts[d->list.pairs[pair].a].body, b = d->parts[d->list.pairs[pair].b].body;
     const dem_contact *row = d->contacts;
@@ -295,8 +299,7 @@ __attribute__((noreturn)) static void fail_depth(dem *d, size_t pair) {
         row++;
     dem_fail(d, "step %llu: grain %zu overlaps %s %zu by %g, more than %g of the smaller one's extent. %s",
              (unsigned long long)d->step, a, dem_name_kind(d, b), dem_number(d, b), row->depth, d->settings.max_overlap,
-             d->step == 0 ? "They are placed so: the run has not begun"
-                          : "Use a shorter time step, or stiffer contacts");
+             dem_explain_depth(d));
 }
 
 /* The rows and sums of all blocks, without gaps between them. */

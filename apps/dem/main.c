@@ -6,6 +6,7 @@
  * restart was written.
  */
 #define _XOPEN_SOURCE 700
+#include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
 #include <signal.h>
@@ -60,7 +61,7 @@ static void write_frame(run *r) {
         dem_measures measures;
         dem_measure(d, &o->region, &measures);
         if (!dem_write_csv(r->csv, d, &measures))
-            dem_quit("%s: it cannot be written", o->csv);
+            dem_quit("%s: it cannot be written: %s", o->csv, strerror(errno));
         r->place.csv_position = (uint64_t)ftell(r->csv);
     }
     if (o->vtk[0])
@@ -175,7 +176,7 @@ int main(int argc, char **argv) {
     argv[0] = (char[]){"dem"}; /* with which getopt_long() begins its messages */
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         if (option == 'h')
-            return fputs(USAGE, stdout) == EOF;
+            return fputs(USAGE, stdout) == EOF || fflush(stdout) != 0 ? 2 : 0;
         if (option == '?')
             return 2;
         if (option == 'r')

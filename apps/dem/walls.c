@@ -90,7 +90,8 @@ void dem_count_work(dem *d) {
 
 /* ------------------------------------------------------------------------------------------------ pairs */
 
-/* Every grain that is closer to the plate than the skin. (A box pair would be found a little further.) */
+/* Every grain that is closer to the plate than the skin. (A box pair would be found a little further.) One whose centre
+ * is deeper than that of the block would be pushed out behind it. */
 static void add_pairs_of_plate(dem *d, const dem_body *block, const dem_wall *plate) {
     const vec n = plate->normal;
     for (uint32_t part = 0; part < d->bodies[d->grain_count].first_part; part++) { /* those of grains */
@@ -98,6 +99,9 @@ static void add_pairs_of_plate(dem *d, const dem_body *block, const dem_wall *pl
         const vec way = minus(b->place, block->place);
         const double height = dot(way, n) - plate->half, along = cross(n, way);
         const dem_pair pair = {part, block->first_part, (float)(-n.y * along), (float)(n.x * along), 0};
+        if (height < -plate->half)
+            dem_fail(d, "step %llu: grain %zu is behind wall '%s'. %s", (unsigned long long)d->step,
+                     (size_t)(b - d->bodies), plate->name, dem_explain_depth(d));
         if (height - b->reach <= d->settings.skin * 1.001)
             dem_add_extra_pair(d, pair);
     }

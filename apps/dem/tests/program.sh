@@ -308,6 +308,8 @@ fails "a chain" "dem: ground.json: shape 'ground' is a chain" bad.json
 # Grains that overlap before the run begins.
 sed 's/"at": \[2, 9.5\]/"at": [2, 0.3]/' good.json >bad.json
 fails "grains in a wall" "dem: bad.json: step 0: grain 28 overlaps wall .*They are placed so" bad.json
+sed 's/"at": \[2, 9.5\]/"at": [2, -50]/' good.json >bad.json
+fails "a grain behind a wall" "dem: bad.json: step 0: grain 28 is behind wall 'floor'. They are placed so" bad.json
 # Where the report or the table cannot be written the run has failed.
 if [ -c /dev/full ]; then
     "$dem" good.json >/dev/full 2>err.txt && miss "a report on a full disk"
@@ -315,6 +317,8 @@ if [ -c /dev/full ]; then
     ln -s /dev/full full.csv
     sed 's/"csv": "out.csv"/"csv": "full.csv"/' good.json >full.json
     "$dem" full.json >/dev/null 2>err.txt && miss "a table on a full disk"
+    grep -q '^dem: full.csv: it cannot be written: No space left on device$' err.txt || miss "a table on a full disk is not told"
+    "$dem" --help >/dev/full 2>err.txt && miss "help on a full disk"
 fi
 # One thread, unless more are asked for.
 OMP_DISPLAY_ENV=false OMP_NUM_THREADS=2 "$dem" long.json >/dev/null 2>err.txt &
