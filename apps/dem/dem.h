@@ -133,7 +133,7 @@ typedef enum dem_wall_kind { DEM_BOX, DEM_PLATE } dem_wall_kind;
 
 /* Holds a wall's force along one axis at a target. */
 typedef struct dem_servo {
-    bool on;
+    int on;                 /* from a restart file it may have any bits */
     vec direction;          /* unit; the wall moves along it */
     double force;           /* the target: what grains press against the direction with. Used if `between` is empty */
     double stress;          /* times the distance of the two walls of `between` times the thickness */
@@ -261,6 +261,7 @@ struct dem {
     narc_contact *found; /* what may touch */
     size_t found_count;
     dem_block *blocks;
+    narc_workers workers;
     narc_broad_phase *broad;
     narc_box *boxes; /* parts, then images of parts */
     dem_image *images;
@@ -330,7 +331,6 @@ const char *dem_name_kind(const dem *d, size_t body);
 size_t dem_number(const dem *d, size_t body);
 
 unsigned dem_team(const dem *d); /* threads */
-narc_workers dem_workers(const dem *d);
 vec dem_cell_size(const dem *d);
 
 /* The bodies of a pair. */
@@ -477,9 +477,6 @@ typedef struct dem_load {
 /* Of all bodies, to be released. */
 dem_load *dem_find_loads(const dem *d);
 
-/* How hard the bodies of a contact press each other. */
-double dem_normal_force(const dem_contact *contact);
-
 /* FNV-1a, 64 bits, continued; and over the whole state. */
 #define DEM_HASH_START 0xcbf29ce484222325u
 uint64_t dem_hash_bytes(uint64_t hash, const void *bytes, size_t size);
@@ -515,7 +512,7 @@ bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m);
 void dem_write_grains(dem *d, const char *path);
 
 /* Writes the state for ParaView: frame 12 of "out/pile" is out/pile-000012.vtk and out/pile-contacts-000012.vtk. */
-void dem_write_vtk(dem *d, const char *stem, uint64_t frame);
+void dem_write_vtk(dem *d, const char *stem, uint64_t number);
 
 /* ------------------------------------------------------------------------------------------------ restart.c */
 
@@ -526,7 +523,6 @@ typedef struct dem_place {
     uint64_t stage_step;   /* steps done in it */
     uint64_t csv_position; /* bytes */
     uint64_t frame;        /* number of the next frame */
-    uint64_t random;       /* the generator's state */
 } dem_place;
 
 void dem_write_restart(dem *d, const dem_place *place, const char *path);

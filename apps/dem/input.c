@@ -233,9 +233,10 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
     const json_value root = json_read_file(path), shapes_file = json_member(&root, "shapes");
     dem_settings s = dem_defaults;
     char shapes[DEM_PATH_SIZE];
+    uint64_t random = 1; /* the generator's state */
     vec x = {0, 1}, y = {0, 1};
     json_value materials, contact, grains, stages, walls = {.item = NULL}, output = {.item = NULL};
-    *input = (dem_input){.random = 1, .output = {.every = UINT64_MAX, .restart_every = UINT64_MAX}};
+    *input = (dem_input){.output = {.every = UINT64_MAX, .restart_every = UINT64_MAX}};
     s.shear = NAN;
     json_key boundary[] = {{"x", PAIR, &x}, {"y", PAIR, &y}, {"shear", NUMBER, &s.shear}, {NULL}};
     json_read(&root, (json_key[]){{"comment", ANY},
@@ -247,7 +248,7 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
                                   {"time_step", MUST | POSITIVE, &s.time_step},
                                   {"skin", MUST | POSITIVE, &s.skin},
                                   {"max_overlap", NUMBER, &s.max_overlap, 1e-6, 1},
-                                  {"seed", WHOLE, &input->random, 0, 0x1p53},
+                                  {"seed", WHOLE, &random, 0, 0x1p53},
                                   {"contact", MUST | ANY, &contact},
                                   {"walls", LIST, &walls},
                                   {"grains", MUST | LIST, &grains},
@@ -273,7 +274,7 @@ void dem_read_input(const char *path, unsigned threads, dem *d, dem_input *input
     read_contact(&contact, d);
     dem_read_shapes(&shapes_file, input->shapes, d);
     dem_read_walls(&walls, d);
-    dem_read_grains(&grains, d, &input->random);
+    dem_read_grains(&grains, d, &random);
     read_stages(&stages, d, input);
     if (output.item)
         read_output(&output, d, input);

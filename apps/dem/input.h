@@ -41,8 +41,7 @@ typedef struct dem_input {
     dem_stage *stages;
     size_t stage_count;
     dem_output output;
-    uint64_t hash;   /* of all but stages and output */
-    uint64_t random; /* the generator's state */
+    uint64_t hash; /* of all but stages and output */
 } dem_input;
 
 /* Reads the file, makes the world and starts it. Errors end the program: "dem: file: place: problem 'value'". */

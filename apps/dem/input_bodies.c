@@ -117,16 +117,16 @@ static dem_wall_change read_change(const json_value *object, const dem *d, size_
     return change;
 }
 
-void dem_read_changes(const json_value *object, const dem *d, bool *has_servo, dem_stage *stage) {
-    json_names walls = {d->walls, d->wall_count, sizeof *d->walls, "is of no wall of that name"};
+void dem_read_changes(const json_value *walls, const dem *d, bool *has_servo, dem_stage *stage) {
+    const json_names names = {d->walls, d->wall_count, sizeof *d->walls, "is of no wall of that name"};
     bool *seen = dem_allocate(d->wall_count, sizeof *seen);
-    if (!cJSON_IsObject(object->item))
-        json_fail(object, "is not an object");
-    stage->changes = dem_allocate((size_t)cJSON_GetArraySize(object->item), sizeof *stage->changes);
-    for (json_value item = {0}; json_next(object, &item);) {
-        const size_t w = json_find(&walls, item.item->string);
+    if (!cJSON_IsObject(walls->item))
+        json_fail(walls, "is not an object");
+    stage->changes = dem_allocate((size_t)cJSON_GetArraySize(walls->item), sizeof *stage->changes);
+    for (json_value item = {0}; json_next(walls, &item);) {
+        const size_t w = json_find(&names, item.item->string);
         if (w == d->wall_count)
-            json_fail(&item, walls.problem);
+            json_fail(&item, names.problem);
         if (seen[w])
             json_fail(&item, "is there twice, the second time as");
         seen[w] = true;

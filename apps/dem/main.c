@@ -121,7 +121,6 @@ static void run_stage(run *r, const dem_stage *stage) {
 static void begin(run *r, const char *restart) {
     const dem_output *o = &r->input.output;
     r->place.input = r->input.hash;
-    r->place.random = r->input.random;
     if (restart)
         dem_read_restart(&r->world, &r->place, restart);
     const uint64_t stage = r->place.stage;

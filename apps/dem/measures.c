@@ -83,8 +83,6 @@ void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measu
 
 /* ------------------------------------------------------------------------------------------------ loads */
 
-double dem_normal_force(const dem_contact *c) { return dot(c->on.force, c->normal); }
-
 /* Counts, takes away who is not held, counts again, until all are. */
 static void find_bearing(const dem *d, dem_load *loads) {
     uint32_t least = 3;
@@ -99,7 +97,7 @@ static void find_bearing(const dem *d, dem_load *loads) {
             loads[k].count = 0;
         for (const dem_contact *c = d->contacts; c < d->contacts + d->contact_count; c++) {
             dem_load *a = &loads[dem_body_a(d, c->pair) - d->bodies], *b = &loads[dem_body_b(d, c->pair) - d->bodies];
-            const bool bears = a->bearing > 0 && b->bearing > 0 && dem_normal_force(c) > 0;
+            const bool bears = a->bearing > 0 && b->bearing > 0 && dot(c->on.force, c->normal) > 0;
             a->count += bears;
             b->count += bears;
         }

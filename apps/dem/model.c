@@ -269,6 +269,7 @@ void dem_start(dem *d) {
     if (s->periodic_y)
         s->high.y = s->low.y + round_width(d, "y", s->high.y - s->low.y);
     add_walls(d);
+    d->workers = narc_openmp_workers(dem_team(d));
     s->shear = 0;
     dem_set_shear(d, rate);
     d->shear_work = 0; /* grains begin so */
@@ -311,7 +312,5 @@ size_t dem_number(const dem *d, size_t body) { return body < d->grain_count ? bo
 
 /* Threads wait for each other several times a step: unless they are asked for there is one. */
 unsigned dem_team(const dem *d) { return d->settings.threads > 0 ? d->settings.threads : 1; }
-
-narc_workers dem_workers(const dem *d) { return narc_openmp_workers(dem_team(d)); }
 
 vec dem_cell_size(const dem *d) { return minus(d->settings.high, d->settings.low); }

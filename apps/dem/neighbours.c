@@ -22,9 +22,8 @@ void dem_add_extra_pair(dem *d, dem_pair pair) {
 static void find_boxes(dem *d) {
     const narc_bodies bodies = dem_make_poses(d);
     size_t skipped = 0;
-    const narc_workers workers = dem_workers(d);
     const narc_box_options options = {
-        .margin = (float)(0.5 * d->settings.skin), .workers = &workers, .out_skipped = &skipped};
+        .margin = (float)(0.5 * d->settings.skin), .workers = &d->workers, .out_skipped = &skipped};
     narc_error error;
     dem_make_room_for_boxes(d, d->part_count);
     for (uint32_t i = 0; i < d->part_count; i++) {
@@ -49,8 +48,7 @@ static int compare_pairs(const void *left, const void *right) {
 /* The pairs that narc finds, and extra ones, in the order of (a, b). Those with images are extra ones, too. */
 static void find_pairs(dem *d, dem_list *list) {
     narc_pair_filter filter = {.kind = NARC_COLUMN(d->images, still)};
-    const narc_workers workers = dem_workers(d);
-    const narc_pair_options options = {.filter = &filter, .workers = &workers};
+    const narc_pair_options options = {.filter = &filter, .workers = &d->workers};
     const narc_pair_list *found;
     narc_error error;
     if (d->part_count > d->body_count)
@@ -89,11 +87,10 @@ static void carry_over(dem *d, const dem_list *last, dem_list *list) {
     const dem_pair *p = list->pairs, *q = last->pairs;
     const narc_pairs now = {.count = list->count, .a = NARC_COLUMN(p, a), .b = NARC_COLUMN(p, b)};
     const narc_pairs before = {.count = last->count, .a = NARC_COLUMN(q, a), .b = NARC_COLUMN(q, b)};
-    const narc_workers workers = dem_workers(d);
     narc_error error;
     dem_grow(&d->match, list->count, sizeof *d->match);
     dem_grow(&list->memory, list->count, sizeof *list->memory);
-    dem_demand(d, narc_match_pairs(d->broad, &before, &now, &workers, d->match, &error), "pairs", &error);
+    dem_demand(d, narc_match_pairs(d->broad, &before, &now, &d->workers, d->match, &error), "pairs", &error);
     narc_gather(d->match, list->count, sizeof *list->memory, last->memory, list->memory);
     for (size_t k = 0; k < list->count; k++)
         list->pairs[k].hint = d->match[k] != NARC_NO_MATCH ? q[d->match[k]].hint : 0;

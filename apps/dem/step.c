@@ -60,13 +60,12 @@ static void find_contacts(dem *d) {
         pairs.shift_x = NARC_COLUMN(p, shift_x);
         pairs.shift_y = NARC_COLUMN(p, shift_y);
     }
-    const narc_workers workers = dem_workers(d);
     size_t skipped = 0;
     /* touch.h decides; shifts of a sheared cell are rounded. */
     const double rounding = d->settings.sheared ? 2e-7 * dem_cell_size(d).x : 0;
     const narc_query query = {.margin = (float)(4 * NARC_ERROR_BOUND * d->grain_reach + rounding),
                               .hints = NARC_HINT_COLUMN(d->list.pairs, hint),
-                              .workers = &workers,
+                              .workers = &d->workers,
                               .out_skipped = &skipped};
     narc_error error;
     dem_grow(&d->contacts, d->list.count, sizeof *d->contacts);

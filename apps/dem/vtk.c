@@ -204,7 +204,7 @@ static void make_contacts(const dem *d, frame *f) {
         const dem_contact *c = &d->contacts[k];
         const dem_body *a = dem_body_a(d, c->pair), *b = dem_body_b(d, c->pair);
         const vec force = c->on.force, n = c->normal;
-        const double push = dem_normal_force(c), drag = cross(n, force);
+        const double push = dot(force, n), drag = cross(n, force);
         const double most = d->laws[a->material][b->material].friction * fabs(push);
         const double row[WIDEST] = {(double)(a - d->bodies),
                                     (double)(b - d->bodies),

@@ -42,7 +42,7 @@ static void check_same_walls(const dem *d, const dem *other) {
 /* Borders, history, rolling friction, walls that move, turn and are controlled: all of it goes on. */
 TEST(test_bit_for_bit) {
     dem d = make_busy_world(1), again = make_busy_world(2);
-    const dem_place place = {.input = 5, .stage = 1, .stage_step = 17, .csv_position = 99, .frame = 3, .random = 4};
+    const dem_place place = {.input = 5, .stage = 1, .stage_step = 17, .csv_position = 99, .frame = 3};
     dem_place found = {.input = 5};
     d.walls[2].velocity = (vec){0.01, 0.02};
     d.walls[2].spin = 2.5;
