@@ -1,18 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * boundary.c - periodic borders. Bodies are wrapped into the cell when pairs are found, and only then. For pairs across
- * a border some bodies get images: boxes, a cell's width away, which only take part in finding pairs. A pair then has a
- * shift, which narc adds to B's position.
- *
- * Of the eight neighbours of a cell, four are enough for pairs of grains: what is missing is found from the other
- * grain's side. Walls have all eight, for two bodies that are marked "still" form no pair, and images are so marked.
+ * boundary.c - periodic borders: bodies are wrapped into the cell when pairs are found, and only then. Shear.
  *
  * A sheared cell (Lees and Edwards 1972): the cell above moves to the right, by the rate of shear times the height. Who
  * is in it is `offset` further right than its image here, and faster by that speed; who crosses the border gets both.
  * Shifts of pairs across it change in each step. A float is enough for narc; forces take them anew in double precision.
- *
- * A pair of bodies must stand in the list once, so that its history can find it: two images of B that both are near A
- * would be two. This cannot be if the cell is as wide as the boxes of the two together, which find_widths() demands.
  */
 #include <math.h>
 
@@ -91,82 +83,5 @@ void dem_wrap_bodies(dem *d) {
             b->place.x = wrap(b->place.x, s->low.x, size.x, &b->cell_x);
         if (wall)
             wall->pivot = plus(wall->pivot, minus(b->place, old));
-    }
-}
-
-/* ------------------------------------------------------------------------------------------------ images */
-
-static bool is_empty(narc_box box) { return !(box.min_x <= box.max_x); }
-
-/* Of a part's box; of a body of several, what its whole may take at most. */
-static vec find_size(const dem *d, size_t part) {
-    const narc_box box = d->boxes[part];
-    const dem_body *b = &d->bodies[d->parts[part].body];
-    const double whole = 2 * b->reach + d->settings.skin;
-    return d->shapes[b->shape].outline_count == 1
-               ? (vec){(double)(box.max_x - box.min_x), (double)(box.max_y - box.min_y)}
-               : (vec){whole, whole};
-}
-
-/* The box around the boxes of all grains; and is the cell wide enough for each body and the largest grain? */
-static narc_box find_widths(dem *d) {
-    const vec size = dem_cell_size(d);
-    narc_box all = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    vec grain = {0, 0}; /* the largest */
-    for (size_t i = 0; i < d->part_count && d->parts[i].body < d->grain_count; i++) {
-        const narc_box box = d->boxes[i];
-        all = (narc_box){fminf(all.min_x, box.min_x), fminf(all.min_y, box.min_y), fmaxf(all.max_x, box.max_x),
-                         fmaxf(all.max_y, box.max_y)};
-        grain = (vec){fmax(grain.x, find_size(d, i).x), fmax(grain.y, find_size(d, i).y)};
-    }
-    for (size_t i = 0; i < d->part_count; i++) {
-        const size_t k = d->parts[i].body;
-        const vec both = plus(find_size(d, i), grain);
-        if (!is_empty(d->boxes[i]) &&
-            ((d->settings.periodic_x && both.x >= size.x) || (d->settings.periodic_y && both.y >= size.y)))
-            dem_fail(d,
-                     "the periodic cell is too small: %s %zu and the largest grain, with the skin, are %g by %g "
-                     "together",
-                     dem_name_kind(d, k), dem_number(d, k), both.x, both.y);
-    }
-    return all;
-}
-
-static bool overlap(narc_box a, narc_box b) {
-    return a.min_x <= b.max_x && b.min_x <= a.max_x && a.min_y <= b.max_y && b.min_y <= a.max_y;
-}
-
-static void add_image(dem *d, uint32_t part, float x, float y, narc_box all) {
-    const narc_box box = d->boxes[part];
-    const narc_box moved = {box.min_x + x, box.min_y + y, box.max_x + x, box.max_y + y};
-    /* Rounding of the sums may take away what it is of a coordinate: give it back. */
-    const float room = 4e-7f * (fabsf(x) + fabsf(y) + fabsf(moved.max_x) + fabsf(moved.max_y) + fabsf(moved.min_x) +
-                                fabsf(moved.min_y));
-    const narc_box image = {moved.min_x - room, moved.min_y - room, moved.max_x + room, moved.max_y + room};
-    const size_t k = d->part_count + d->image_count;
-    if (!overlap(image, all))
-        return;
-    dem_make_room_for_boxes(d, k + 1);
-    d->boxes[k] = image;
-    d->images[k] = (dem_image){part, d->images[part].group, x, y, 1};
-    d->image_count++;
-}
-
-void dem_add_images(dem *d) {
-    static const struct { int x, y; } steps[] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {-1, 0}, {0, -1}, {-1, -1}, {-1, 1}};
-    const dem_settings *s = &d->settings;
-    const vec size = dem_cell_size(d);
-    d->image_count = 0;
-    if (!s->periodic_x && !s->periodic_y)
-        return;
-    const narc_box all = find_widths(d);
-    for (uint32_t k = 0; k < d->part_count; k++) {
-        const int count = d->parts[k].body < d->grain_count ? 4 : 8;
-        for (int i = 0; i < count && !is_empty(d->boxes[k]); i++) {
-            if ((steps[i].x != 0 && !s->periodic_x) || (steps[i].y != 0 && !s->periodic_y))
-                continue;
-            const double x = steps[i].x * size.x + steps[i].y * d->offset, y = steps[i].y * size.y;
-            add_image(d, k, (float)x, (float)y, all);
-        }
     }
 }

@@ -11,8 +11,8 @@
  *       input.c       the JSON file; input_bodies.c: its shapes, walls and grains; schema.c: tables of keys
  *       model.c       memory, shapes, bodies
  *       place.c       where grains start
- *       neighbours.c  boxes, pairs with a skin, history
- *       boundary.c    periodic images, wrapping, shear
+ *       neighbours.c  boxes, pairs with a skin, images, history
+ *       boundary.c    wrapping, shear
  *       step.c        velocity Verlet, the narrow phase
  *       laws.c        forces of contacts and bodies
  *       walls.c       motion of walls, servo control
@@ -394,14 +394,11 @@ void dem_fill_lattice(dem *d, const dem_filling *filling, uint64_t *random);
 /* ------------------------------------------------------------------------------- neighbours.c, boundary.c */
 
 void dem_renew_lists(dem *d);
-void dem_add_extra_pair(dem *d, dem_pair pair);
-void dem_make_room_for_boxes(dem *d, size_t count);
 
 /* Another rate of shear, from now on: all grains get the velocities that go with it. */
 void dem_set_shear(dem *d, double rate);
 
 void dem_wrap_bodies(dem *d);
-void dem_add_images(dem *d);
 void dem_shear_cell(dem *d);                            /* the way of a step */
 vec dem_find_shift(const dem *d, const dem_pair *pair); /* of B, exactly */
 double dem_find_drift(const dem *d);                    /* the speed of the cell above */
@@ -428,7 +425,6 @@ const char *dem_explain_depth(const dem *d); /* why bodies overlap too far, for 
 
 void dem_steer_walls(dem *d);
 void dem_move_walls(dem *d);
-void dem_add_plate_pairs(dem *d);
 
 /* Of walls and of shear in half a step, with the forces as they are. */
 void dem_count_work(dem *d);

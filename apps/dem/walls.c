@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
  * walls.c - walls move as they are told, or so that the grains press against them with a given force.
- *
- * A plate is a half plane. Its body is a block whose upper side is the plate. A pair of a grain and the plate has a
- * shift along the plate that brings the block under the grain: so the plate has no ends, and narc sees two bodies of
- * similar size, whose separation is precise.
  */
 #include <math.h>
 
@@ -86,36 +82,4 @@ void dem_count_work(dem *d) {
         d->walls[w].work -= half * (dot(b->force, b->velocity) + b->torque * b->spin);
     }
     d->shear_work -= half * dem_find_drift(d) * d->pull;
-}
-
-/* ------------------------------------------------------------------------------------------------ pairs */
-
-/* Every grain that is closer to the plate than the skin. (A box pair would be found a little further.) One whose centre
- * is deeper than that of the block would be pushed out behind it. */
-static void add_pairs_of_plate(dem *d, const dem_body *block, const dem_wall *plate) {
-    const vec n = plate->normal;
-    for (uint32_t part = 0; part < d->bodies[d->grain_count].first_part; part++) { /* those of grains */
-        const dem_body *b = &d->bodies[d->parts[part].body];
-        const vec way = minus(b->place, block->place);
-        const double height = dot(way, n) - plate->half, along = cross(n, way);
-        const dem_pair pair = {part, block->first_part, (float)(-n.y * along), (float)(n.x * along), 0};
-        if (height < -plate->half)
-            dem_fail(d, "step %llu: grain %zu is behind wall '%s'. %s", (unsigned long long)d->step,
-                     (size_t)(b - d->bodies), plate->name, dem_explain_depth(d));
-        if (height - b->reach <= d->settings.skin * 1.001)
-            dem_add_extra_pair(d, pair);
-    }
-}
-
-/* A plate of a periodic cell must run along the border, or it would end there. */
-void dem_add_plate_pairs(dem *d) {
-    for (size_t w = 0; w < d->wall_count; w++) {
-        const dem_wall *plate = &d->walls[w];
-        const vec n = plate->normal;
-        if (plate->kind != DEM_PLATE)
-            continue;
-        if ((d->settings.periodic_x && fabs(n.x) > 1e-12) || (d->settings.periodic_y && fabs(n.y) > 1e-12))
-            dem_fail(d, "wall '%s': a plate with normal %g, %g crosses a periodic border", plate->name, n.x, n.y);
-        add_pairs_of_plate(d, &d->bodies[d->grain_count + w], plate);
-    }
 }
