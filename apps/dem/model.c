@@ -71,6 +71,7 @@ void dem_create(dem *d, dem_settings settings) {
     d->settings = settings;
     if (narc_create_shapes(NULL, &d->store) != NARC_OK || narc_create_broad_phase(NULL, &d->broad) != NARC_OK)
         dem_quit("not enough memory");
+    dem_grow(&d->list.pairs, 0, sizeof *d->list.pairs); /* columns are of an array, which may be empty */
 }
 
 void dem_destroy(dem *d) {

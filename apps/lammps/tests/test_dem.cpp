@@ -80,8 +80,8 @@ void fill_dem(dem *d, const Packing &packing, const narc_lammps::Form forms[2], 
     contact.friction = law.friction;
     d->laws[stone][stone] = contact;
     for (int k = 0; k < 2; k++)
-        shapes[k] = dem_add_shape(d, forms[k].name.c_str(), forms[k].parts[0].arcs.data(),
-                                  forms[k].parts[0].arcs.size());
+        shapes[k] =
+            dem_add_shape(d, forms[k].name.c_str(), forms[k].parts[0].arcs.data(), forms[k].parts[0].arcs.size());
     for (const Grain &g : packing.grains) {
         dem_grain grain = {};
         grain.shape = shapes[g.type - 1];
