@@ -189,10 +189,6 @@ void FixNarcShapes::init() {
 
 /* ---------------------------------------------------------------------------- grains */
 
-double FixNarcShapes::moment_of_inertia(int i) const {
-    return form(i).inertia_ratio * atom->rmass[i] * atom->radius[i] * atom->radius[i];
-}
-
 double FixNarcShapes::equal_radius(int i) const { return scale(i) * std::sqrt(form(i).area / std::acos(-1.0)); }
 
 void FixNarcShapes::set_mass(int i) {
@@ -229,10 +225,10 @@ void FixNarcShapes::number_rows() {
 }
 
 narc_bodies FixNarcShapes::bodies() {
-    rows.clear();
-    for (int i = 0; i < atom->nlocal + atom->nghost; i++)
-        for (size_t part = 0; part < form(i).parts.size(); part++)
-            rows.push_back(body(i, part));
+    rows.resize(row_atom.size());
+    for (size_t row = 0, i = 0; row < rows.size(); i++)
+        for (size_t part = 0; part < form(static_cast<int>(i)).parts.size(); part++)
+            rows[row++] = body(static_cast<int>(i), part);
     return narc_view_bodies(rows.data(), rows.size());
 }
 
