@@ -96,6 +96,7 @@ class FixNarcShapes : public Fix {
     void read_forms(const char *path, int count, char **names);
     void set_mass(int i);
     void refuse_what_does_not_fit();
+    void refuse_spin_without_turn();
     void save_memories();
     static int pack(const std::vector<Memory> &list, double *buffer);
     static int unpack(const double *buffer, std::vector<Memory> &list);
