@@ -4,8 +4,8 @@
  *   compare [--grains N] [--steps N] [--rounds N]
  *
  * Discs of uneven sizes in a periodic box run until nothing is left of the lattice that they began on: dilute, where
- * few touch, and jammed. From their places all styles go on, with grains of the same areas. Times are those of LAMMPS'
- * own timer. Styles take turns, so that what else the machine does hits them all alike; of the rounds the median counts.
+ * few touch, and jammed. From their places all styles go on, with grains of the same areas. Times are the
+ * processor's, as LAMMPS' own timer has them. Styles take turns; of the rounds the median counts.
  */
 #include <cmath>
 #include <cstdio>
@@ -13,7 +13,6 @@
 #include <memory>
 
 #include "force.h"
-#include "lammps.h"
 #include "measure.h"
 #include "pair.h"
 
@@ -25,7 +24,7 @@ const std::string law = " 1e4 NULL 20 NULL 0.5 1\npair_coeff * *\n";
 const std::string discs =
     "set group all density/disc 1\npair_style gran/hooke/history" + law + "fix nve all nve/sphere disc\n";
 const std::string motion = "neighbor 0.2 bin\nneigh_modify delay 0 every 1 check yes\ntimestep 5e-4\nthermo 1000000\n"
-                           "atom_modify sort 1000 0\n";
+                           "atom_modify sort 1000 0\ntimer full\n";
 
 struct Style {
     const char *name, *grains;

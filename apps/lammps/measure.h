@@ -12,6 +12,7 @@
 #include <cstring>
 #include <vector>
 
+#include "lammps.h"
 #include "simulation.h"
 #include "timer.h"
 
@@ -51,12 +52,13 @@ inline double mean_of_ranks(double value) {
     return sum / ranks;
 }
 
-/* LAMMPS' own times of the last run, in some unit. */
+/* The processor's time for the last run in some unit, which after `timer full` LAMMPS has, and which does not count what
+ * else the machine does. */
 inline void add_times(const Simulation &simulation, double unit, std::vector<double> *times) {
     using LAMMPS_NS::Timer;
-    const int sections[] = {Timer::PAIR, Timer::NEIGH, Timer::MODIFY, Timer::COMM, Timer::TOTAL};
+    const Timer::ttype sections[] = {Timer::PAIR, Timer::NEIGH, Timer::MODIFY, Timer::COMM, Timer::TOTAL};
     for (int k = 0; k < section_count; k++)
-        times[k].push_back(unit * mean_of_ranks(simulation.seconds_of(sections[k])));
+        times[k].push_back(unit * mean_of_ranks(simulation.lammps->timer->get_cpu(sections[k])));
 }
 
 inline double median(std::vector<double> values) {

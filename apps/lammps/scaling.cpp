@@ -9,7 +9,6 @@
 #include <cstdio>
 
 #include "atom.h"
-#include "lammps.h"
 #include "measure.h"
 
 namespace {
@@ -26,7 +25,7 @@ void measure(const Sizes &sizes) {
     simulation.run(std::string("neighbor 0.1 bin\nneigh_modify delay 0 every 1 check yes\n") +
                    "fix shapes all narc/shapes " + GRAINS_FILE + " pebble8 density 1\n" +
                    "pair_style narc/hooke/history 1e4 NULL 20 NULL 0.5 1\npair_coeff * *\nfix nve all narc/nve\n" +
-                   "timestep 5e-4\nthermo 1000000\nrun 400");
+                   "timestep 5e-4\nthermo 1000000\ntimer full\nrun 400");
     const double grains = mean_of_ranks(simulation.lammps->atom->nlocal);
     std::vector<double> times[section_count];
     double bytes = 0, messages = 0, ghosts = 0;

@@ -286,6 +286,8 @@ def pile(cases):
 def sand(cases):
     """A pile of fitted grains, and pictures of it."""
     cases.tell("sand: %.1f and %.1f degrees" % tuple(run_pile(cases, "pile", cases.sand, "")))
+    if cases.small or cases.lammps:
+        return
     last = find_frames(os.path.join(cases.folder, "pile"), "pile")[-1].replace(".csv", ".vtk")
     grains.draw(last, os.path.join(cases.folder, "pile.png"), color="none", region=[-0.064, -0.006, 0.064, 0.034])
     grains.draw(last, os.path.join(cases.folder, "flow.png"), color="none", forces=False)
@@ -353,7 +355,7 @@ def biaxial(cases):
         axes.set(xlabel="strain, %", ylabel=label)
         axes.legend()
     cases.save(figure, "biaxial.png")
-    if cases.sand:
+    if cases.sand and not cases.lammps:
         last = find_frames(os.path.join(cases.folder, "biaxial-sand"), "biaxial")[-1].replace(".csv", ".vtk")
         grains.draw(last, os.path.join(cases.folder, "forces.png"), color="coordination", width=6,
                     region=[-22, -22, -6, -12.7])

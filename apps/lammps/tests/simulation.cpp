@@ -21,7 +21,6 @@
 #include "neighbor.h"
 #include "pair.h"
 #include "register.h"
-#include "timer.h"
 #include "variable.h"
 
 using namespace LAMMPS_NS;
@@ -119,8 +118,6 @@ long long Simulation::list_pairs() const {
     MPI_Allreduce(&mine, &all, 1, MPI_LONG_LONG, MPI_SUM, world);
     return all;
 }
-
-double Simulation::seconds_of(int section) const { return lammps->timer->get_wall(static_cast<Timer::ttype>(section)); }
 
 Packing make_lattice(int columns, int rows, double fill, double spread, double speed, unsigned seed) {
     std::mt19937 random(seed);

@@ -53,8 +53,7 @@ class Simulation {
     std::vector<State> states() const;
     double pair_energy() const;
     double variable(const std::string &expression);
-    long long list_pairs() const;         /* in the neighbour lists of all ranks */
-    double seconds_of(int section) const; /* of LAMMPS' timer, in the last run, this rank's */
+    long long list_pairs() const; /* in the neighbour lists of all ranks */
 
     LAMMPS_NS::LAMMPS *lammps;
 
