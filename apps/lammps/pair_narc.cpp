@@ -149,44 +149,45 @@ double PairNarc::init_one(int i, int j) {
 bool PairNarc::remembers_for_ghosts() const { return force->newton_pair; }
 
 /* LAMMPS' list goes by the largest radius of each type; of its pairs those are kept whose own radii reach. */
+void PairNarc::add_pairs(bool of_discs) {
+    for (int n = 0; n < list->inum; n++) {
+        const int i = list->ilist[n];
+        const double *x = atom->x[i];
+        for (int m = 0; m < list->numneigh[i]; m++) {
+            const int j = list->firstneigh[i][m] & NEIGHMASK;
+            if ((shapes->form(i).is_disc && shapes->form(j).is_disc) != of_discs)
+                continue;
+            const double reach = atom->radius[i] + atom->radius[j] + neighbor->skin;
+            const double dx = atom->x[j][0] - x[0], dy = atom->x[j][1] - x[1];
+            if (dx * dx + dy * dy >= reach * reach)
+                continue;
+            const bool ordered = atom->tag[i] < atom->tag[j] || (atom->tag[i] == atom->tag[j] && i < j);
+            const int a = ordered ? i : j, b = ordered ? j : i;
+            for (uint32_t p = 0; p < shapes->form(a).parts.size(); p++)
+                for (uint32_t q = 0; q < shapes->form(b).parts.size(); q++) {
+                    first.push_back(shapes->first_row[static_cast<size_t>(a)] + p);
+                    second.push_back(shapes->first_row[static_cast<size_t>(b)] + q);
+                }
+        }
+    }
+}
+
 void PairNarc::build_pairs() {
     check_atoms();
     shapes->number_rows();
     first.clear();
     second.clear();
     touching.clear();
-    std::vector<uint32_t> others[2];
-    const tagint *tag = atom->tag;
-    for (int n = 0; n < list->inum; n++) {
-        const int i = list->ilist[n];
-        const double *x = atom->x[i];
-        for (int m = 0; m < list->numneigh[i]; m++) {
-            const int j = list->firstneigh[i][m] & NEIGHMASK;
-            const double reach = atom->radius[i] + atom->radius[j] + neighbor->skin;
-            const double dx = atom->x[j][0] - x[0], dy = atom->x[j][1] - x[1];
-            if (dx * dx + dy * dy >= reach * reach)
-                continue;
-            const bool ordered = tag[i] < tag[j] || (tag[i] == tag[j] && i < j);
-            const int a = ordered ? i : j, b = ordered ? j : i;
-            const narc_lammps::Form &form_a = shapes->form(a), &form_b = shapes->form(b);
-            const bool discs = form_a.is_disc && form_b.is_disc;
-            for (uint32_t p = 0; p < form_a.parts.size(); p++)
-                for (uint32_t q = 0; q < form_b.parts.size(); q++) {
-                    (discs ? first : others[0]).push_back(shapes->first_row[static_cast<size_t>(a)] + p);
-                    (discs ? second : others[1]).push_back(shapes->first_row[static_cast<size_t>(b)] + q);
-                }
-        }
-    }
+    add_pairs(true);
     disc_pairs = first.size();
-    first.insert(first.end(), others[0].begin(), others[0].end());
-    second.insert(second.end(), others[1].begin(), others[1].end());
+    add_pairs(false);
     hints.assign(first.size(), 0);
     springs.assign(first.size(), {0, 0, 0});
-    contacts.resize(others[0].size());
+    contacts.resize(first.size() - disc_pairs);
     const size_t local = static_cast<size_t>(atom->nlocal);
     for (size_t k = 0; k < first.size(); k++) {
         const uint32_t a = shapes->row_atom[first[k]], b = shapes->row_atom[second[k]];
-        const tagint other = tag[a < local ? b : a];
+        const tagint other = atom->tag[a < local ? b : a];
         for (const auto &kept : shapes->memories[a < local ? a : b]) {
             if (kept.other != other || kept.parts[0] != shapes->row_part(first[k]) ||
                 kept.parts[1] != shapes->row_part(second[k]))

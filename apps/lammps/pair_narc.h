@@ -53,6 +53,7 @@ class PairNarc : public Pair {
     narc_lammps::ContactLaw read_law(int count, char **arguments);
     void find_radii();
     void check_atoms() const;
+    void add_pairs(bool of_discs);
     void find_contacts();
     void apply_discs(double step);
     void apply_others(double step);

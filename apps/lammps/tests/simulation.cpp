@@ -12,13 +12,9 @@
 #include <unistd.h>
 
 #include "atom.h"
-#include "comm.h"
 #include "force.h"
 #include "input.h"
 #include "lammps.h"
-#include "modify.h"
-#include "neigh_list.h"
-#include "neighbor.h"
 #include "pair.h"
 #include "register.h"
 #include "variable.h"
@@ -108,15 +104,6 @@ double Simulation::pair_energy() const {
 
 double Simulation::variable(const std::string &expression) {
     return lammps->input->variable->compute_equal(expression);
-}
-
-long long Simulation::list_pairs() const {
-    const NeighList *list = lammps->force->pair->list;
-    long long mine = 0, all = 0;
-    for (int n = 0; n < list->inum; n++)
-        mine += list->numneigh[list->ilist[n]];
-    MPI_Allreduce(&mine, &all, 1, MPI_LONG_LONG, MPI_SUM, world);
-    return all;
 }
 
 Packing make_lattice(int columns, int rows, double fill, double spread, double speed, unsigned seed) {

@@ -53,7 +53,6 @@ class Simulation {
     std::vector<State> states() const;
     double pair_energy() const;
     double variable(const std::string &expression);
-    long long list_pairs() const; /* in the neighbour lists of all ranks */
 
     LAMMPS_NS::LAMMPS *lammps;
 
