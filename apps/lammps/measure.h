@@ -17,7 +17,7 @@
 #include "timer.h"
 
 /* What the time of a step goes to. */
-enum { pair, neighbour, modify, communication, whole, section_count };
+enum { pair, neighbour, modify, communication, rest, whole, section_count };
 
 struct Sizes {
     int side, steps, rounds; /* grains: side times side */
@@ -56,9 +56,14 @@ inline double mean_of_ranks(double value) {
  * else the machine does. */
 inline void add_times(const Simulation &simulation, double unit, std::vector<double> *times) {
     using LAMMPS_NS::Timer;
-    const Timer::ttype sections[] = {Timer::PAIR, Timer::NEIGH, Timer::MODIFY, Timer::COMM, Timer::TOTAL};
+    const auto spent = [&](Timer::ttype section) {
+        return unit * mean_of_ranks(simulation.lammps->timer->get_cpu(section));
+    };
+    double row[section_count] = {spent(Timer::PAIR), spent(Timer::NEIGH), spent(Timer::MODIFY), spent(Timer::COMM)};
+    row[whole] = spent(Timer::TOTAL);
+    row[rest] = row[whole] - row[pair] - row[neighbour] - row[modify] - row[communication];
     for (int k = 0; k < section_count; k++)
-        times[k].push_back(unit * mean_of_ranks(simulation.lammps->timer->get_cpu(sections[k])));
+        times[k].push_back(row[k]);
 }
 
 inline double median(std::vector<double> values) {
@@ -66,14 +71,10 @@ inline double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-/* A row's columns: the sections, the rest, the whole. */
+/* A row's columns. */
 inline void print_times(const std::vector<double> *times) {
-    double rest = median(times[whole]);
-    for (int k = 0; k < whole; k++) {
-        rest -= median(times[k]);
+    for (int k = 0; k < section_count; k++)
         std::printf("| %.1f ", median(times[k]));
-    }
-    std::printf("| %.1f | %.1f ", rest, median(times[whole]));
 }
 
 #endif
