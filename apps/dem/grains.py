@@ -4,12 +4,12 @@
   python3 grains.py draw FRAME.vtk PICTURE [--color FIELD|none] [--top VALUE] [--no-forces]
                     [--region LOW_X LOW_Y HIGH_X HIGH_Y] [--width INCHES]
   python3 grains.py strain BEFORE AFTER PICTURE [--top VALUE]    shear strain between two frames of grains: bands
-  python3 grains.py contacts CONTACTS.vtk ...    fabric, anisotropy, distribution of forces
+  python3 grains.py contacts CONTACTS ...        fabric, anisotropy, distribution of forces
   python3 grains.py average TABLE [--from TIME]  means of the columns, and how well they are known
   python3 grains.py repose GRAINS --half WIDTH   angle of repose on a table that wide on either side
 
-TABLE is apps/dem's table of measures or a log of LAMMPS, GRAINS apps/dem's table of grains or a dump of LAMMPS, of
-which the last frame counts. A picture has the kind that its name ends in: .png, .svg, .pdf."""
+TABLE is apps/dem's table of measures or a log of LAMMPS, GRAINS apps/dem's table of grains or a dump of LAMMPS, CONTACTS
+apps/dem's .vtk or a dump of LAMMPS' compute narc/contact with the ID contacts; of a dump the last frame counts. A picture has the kind that its name ends in: .png, .svg, .pdf."""
 import argparse
 import math
 
@@ -281,13 +281,20 @@ def draw_strain(before, after, out, top=None, width=6, dpi=110):
 
 def print_contacts(paths):
     for path in paths:
-        fields = read_vtk(path)["fields"]
-        fabric, anisotropy, principal = find_fabric(fields["normal"][:, :2])
-        print("%s: %d contacts" % (path, len(fields["normal"])))
+        if path.endswith(".vtk"):
+            fields = read_vtk(path)["fields"]
+            normals, forces, mobilised = fields["normal"][:, :2], fields["normal_force"], fields["mobilised_friction"]
+        else:
+            table = read_table(path)
+            normals, force = [np.transpose([table["c_contacts[%d]" % (k + i)] for i in (0, 1)]) for k in (5, 7)]
+            forces, mobilised = np.sum(normals * force, axis=1), None
+        fabric, anisotropy, principal = find_fabric(normals)
+        print("%s: %d contacts" % (path, len(normals)))
         print("fabric %.4f %.4f %.4f, anisotropy %.4f along %.1f degrees"
               % (fabric[0, 0], fabric[0, 1], fabric[1, 1], anisotropy, principal))
-        print("mobilised friction %.4f" % fields["mobilised_friction"].mean())
-        for force, density in zip(*find_force_distribution(fields["normal_force"])):
+        if mobilised is not None:
+            print("mobilised friction %.4f" % mobilised.mean())
+        for force, density in zip(*find_force_distribution(forces)):
             print("force / mean %.3f density %.4f" % (force, density))
 
 

@@ -13,6 +13,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "compute.h"
 #include "domain.h"
 #include "error.h"
 #include "modify.h"
@@ -149,8 +150,17 @@ void FixNarcShapes::refuse_what_does_not_fit() {
         error->all(FLERR, std::string("fix narc/shapes: grains cannot be minimized: rotations are no variables of it"));
     if (!std::strncmp(update->integrate_style, "respa", 5))
         error->all(FLERR, std::string("fix narc/shapes: run_style respa is not known, use verlet"));
+    for (int i = 0; i < modify->ncompute; i++) {
+        const std::string kind = modify->compute[i]->style;
+        if (kind == "erotate/sphere" || kind == "temp/sphere")
+            error->all(FLERR, "fix narc/shapes: compute " + kind +
+                                  " has the moments of inertia of spheres, take the scalar of fix narc/nve");
+    }
     for (int i = 0; i < modify->nfix; i++) {
         const Fix *fix = modify->fix[i];
+        if (!std::strncmp(fix->style, "wall/gran", 9))
+            error->all(FLERR, std::string("fix narc/shapes: fix ") + fix->style +
+                                  " takes grains for discs, use fix wall/narc");
         if (fix->time_integrate && std::strcmp(fix->style, "narc/nve") != 0 && std::strcmp(fix->style, "move") != 0)
             error->all(FLERR, std::string("fix narc/shapes: fix ") + fix->id + " of style " + fix->style +
                                   " moves grains and does not turn them, use fix narc/nve");
@@ -189,10 +199,6 @@ void FixNarcShapes::init() {
 
 /* ---------------------------------------------------------------------------- grains */
 
-double FixNarcShapes::moment_of_inertia(int i) const {
-    return form(i).inertia_ratio * atom->rmass[i] * atom->radius[i] * atom->radius[i];
-}
-
 double FixNarcShapes::equal_radius(int i) const { return scale(i) * std::sqrt(form(i).area / std::acos(-1.0)); }
 
 void FixNarcShapes::set_mass(int i) {
@@ -229,10 +235,10 @@ void FixNarcShapes::number_rows() {
 }
 
 narc_bodies FixNarcShapes::bodies() {
-    rows.clear();
-    for (int i = 0; i < atom->nlocal + atom->nghost; i++)
-        for (size_t part = 0; part < form(i).parts.size(); part++)
-            rows.push_back(body(i, part));
+    rows.resize(row_atom.size());
+    for (size_t row = 0, i = 0; row < rows.size(); i++)
+        for (size_t part = 0; part < form(static_cast<int>(i)).parts.size(); part++)
+            rows[row++] = body(static_cast<int>(i), part);
     return narc_view_bodies(rows.data(), rows.size());
 }
 
@@ -245,11 +251,24 @@ void FixNarcShapes::post_neighbor() {
         pair->build_pairs();
 }
 
-void FixNarcShapes::pre_exchange() { save_memories(); }
+void FixNarcShapes::pre_exchange() {
+    save_memories();
+    refuse_spin_without_turn();
+}
+
+/* fix move lets grains spin that it does not turn. */
+void FixNarcShapes::refuse_spin_without_turn() {
+    for (int k = 0; k < modify->nfix; k++)
+        for (int i = 0; !std::strcmp(modify->fix[k]->style, "move") && i < atom->nlocal; i++)
+            if ((atom->mask[i] & modify->fix[k]->groupbit) && atom->omega[i][2] != 0)
+                error->one(FLERR, std::string("fix narc/shapes: fix ") + modify->fix[k]->id +
+                                      " of style move does not turn grains, and atom " + std::to_string(atom->tag[i]) +
+                                      " has a spin");
+}
 
 /* Commands between two runs find memories with their atoms. */
 void FixNarcShapes::post_run() {
-    save_memories();
+    pre_exchange();
     if (pair)
         pair->forget_pairs();
 }

@@ -54,7 +54,7 @@ class FixNarcShapes : public Fix {
     const narc_lammps::Form &form(int i) const { return forms[form_index(i)]; }
     /* By which the form is drawn larger. */
     double scale(int i) const { return atom->radius[i] / form(i).reach; }
-    double moment_of_inertia(int i) const;
+    double inertia_by_mass(int i) const { return form(i).inertia_ratio * atom->radius[i] * atom->radius[i]; }
     double equal_radius(int i) const; /* of the disc of equal area */
     touch_grain outline(int i, size_t part) const {
         const std::vector<touch_side> &sides = form(i).parts[part].sides;
@@ -96,6 +96,7 @@ class FixNarcShapes : public Fix {
     void read_forms(const char *path, int count, char **names);
     void set_mass(int i);
     void refuse_what_does_not_fit();
+    void refuse_spin_without_turn();
     void save_memories();
     static int pack(const std::vector<Memory> &list, double *buffer);
     static int unpack(const double *buffer, std::vector<Memory> &list);

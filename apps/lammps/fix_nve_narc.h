@@ -23,7 +23,7 @@ class FixNVENarc : public Fix {
     double compute_scalar() override;
 
   private:
-    void kick(int i);
+    template <bool moves> void integrate();
     class FixNarcShapes *shapes = nullptr;
 };
 

@@ -84,7 +84,8 @@ int FixWallNarc::read_wall(int i, int count, char **arguments) {
     const double width = number(i + 3), height = number(i + 4), angle = number(i + 5) * std::acos(-1.0) / 180;
     normal_x = std::cos(angle);
     normal_y = std::sin(angle);
-    reach = 0.5 * std::hypot(width, height);
+    half_width = 0.5 * width;
+    half_height = 0.5 * height;
     narc_arc arcs[NARC_MAX_ARCS];
     size_t arc_count;
     narc_error failure = {};
@@ -201,8 +202,9 @@ void FixWallNarc::find_box_contacts() {
     std::vector<std::pair<int, size_t>> grains; /* and which part */
     std::vector<narc_body> bodies;              /* each part that may touch, and the box */
     for (int i = 0; i < atom->nlocal; i++) {
-        if (!(atom->mask[i] & groupbit) ||
-            std::hypot(atom->x[i][0] - box.x, atom->x[i][1] - box.y) >= reach + atom->radius[i])
+        const double dx = atom->x[i][0] - box.x, dy = atom->x[i][1] - box.y;
+        if (!(atom->mask[i] & groupbit) || std::fabs(box_cosine * dx + box_sine * dy) >= half_width + atom->radius[i] ||
+            std::fabs(box_cosine * dy - box_sine * dx) >= half_height + atom->radius[i])
             continue;
         for (size_t part = 0; part < shapes->form(i).parts.size(); part++) {
             grains.push_back({i, part});
@@ -217,7 +219,7 @@ void FixWallNarc::find_box_contacts() {
     size_t found = 0;
     narc_error failure = {};
     narc_query query = {};
-    query.margin = static_cast<float>(8 * NARC_ERROR_BOUND * reach);
+    query.margin = static_cast<float>(8 * NARC_ERROR_BOUND * (half_width + half_height));
     if (narc_find_contacts(store, &view, &pairs, &query, found_rows.data(), found_rows.size(), &found, &failure) !=
         NARC_OK)
         error->one(FLERR, std::string("fix wall/narc: ") + failure.message);

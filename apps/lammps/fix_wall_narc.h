@@ -79,10 +79,10 @@ class FixWallNarc : public Fix {
     FixNarcShapes *shapes = nullptr;
     bool plate = false;
     double place_x = 0, place_y = 0, normal_x = 0,
-           normal_y = 0;            /* at the start; a box: of its angle, cosine and sine */
-    double pivot[2] = {0, 0};       /* at the start */
-    double reach = 0;               /* a box: the circle around it */
-    double velocity[3] = {0, 0, 0}; /* the third is the spin */
+           normal_y = 0;                    /* at the start; a box: of its angle, cosine and sine */
+    double pivot[2] = {0, 0};               /* at the start */
+    double half_width = 0, half_height = 0; /* a box */
+    double velocity[3] = {0, 0, 0};         /* the third is the spin */
     int every = 1;
     std::string variables[3]; /* equal-style ones that give them; empty: constant */
     double moved[3] = {0, 0, 0};

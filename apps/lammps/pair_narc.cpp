@@ -149,23 +149,19 @@ double PairNarc::init_one(int i, int j) {
 bool PairNarc::remembers_for_ghosts() const { return force->newton_pair; }
 
 /* LAMMPS' list goes by the largest radius of each type; of its pairs those are kept whose own radii reach. */
-void PairNarc::build_pairs() {
-    check_atoms();
-    shapes->number_rows();
-    first.clear();
-    second.clear();
-    touching.clear();
-    const tagint *tag = atom->tag;
+void PairNarc::add_pairs(bool of_discs) {
     for (int n = 0; n < list->inum; n++) {
         const int i = list->ilist[n];
         const double *x = atom->x[i];
         for (int m = 0; m < list->numneigh[i]; m++) {
             const int j = list->firstneigh[i][m] & NEIGHMASK;
+            if ((shapes->form(i).is_disc && shapes->form(j).is_disc) != of_discs)
+                continue;
             const double reach = atom->radius[i] + atom->radius[j] + neighbor->skin;
             const double dx = atom->x[j][0] - x[0], dy = atom->x[j][1] - x[1];
             if (dx * dx + dy * dy >= reach * reach)
                 continue;
-            const bool ordered = tag[i] < tag[j] || (tag[i] == tag[j] && i < j);
+            const bool ordered = atom->tag[i] < atom->tag[j] || (atom->tag[i] == atom->tag[j] && i < j);
             const int a = ordered ? i : j, b = ordered ? j : i;
             for (uint32_t p = 0; p < shapes->form(a).parts.size(); p++)
                 for (uint32_t q = 0; q < shapes->form(b).parts.size(); q++) {
@@ -174,13 +170,24 @@ void PairNarc::build_pairs() {
                 }
         }
     }
+}
+
+void PairNarc::build_pairs() {
+    check_atoms();
+    shapes->number_rows();
+    first.clear();
+    second.clear();
+    touching.clear();
+    add_pairs(true);
+    disc_pairs = first.size();
+    add_pairs(false);
     hints.assign(first.size(), 0);
     springs.assign(first.size(), {0, 0, 0});
-    contacts.resize(first.size());
+    contacts.resize(first.size() - disc_pairs);
     const size_t local = static_cast<size_t>(atom->nlocal);
     for (size_t k = 0; k < first.size(); k++) {
         const uint32_t a = shapes->row_atom[first[k]], b = shapes->row_atom[second[k]];
-        const tagint other = tag[a < local ? b : a];
+        const tagint other = atom->tag[a < local ? b : a];
         for (const auto &kept : shapes->memories[a < local ? a : b]) {
             if (kept.other != other || kept.parts[0] != shapes->row_part(first[k]) ||
                 kept.parts[1] != shapes->row_part(second[k]))
@@ -213,17 +220,21 @@ void PairNarc::save_memories(std::vector<std::vector<FixNarcShapes::Memory>> &me
 
 /* ---------------------------------------------------------------------------- forces */
 
+/* Of all pairs that are not two discs. */
 void PairNarc::find_contacts() {
+    found_count = 0;
+    if (contacts.empty())
+        return;
     const narc_bodies bodies = shapes->bodies();
     narc_pairs pairs = {};
-    pairs.count = first.size();
-    pairs.a = NARC_ARRAY(first);
-    pairs.b = NARC_ARRAY(second);
+    pairs.count = contacts.size();
+    pairs.a = {&first[disc_pairs], sizeof first[0]};
+    pairs.b = {&second[disc_pairs], sizeof second[0]};
     const narc_workers workers = narc_openmp_workers(static_cast<unsigned>(comm->nthreads));
     size_t skipped = 0;
     narc_query query = {}; /* what touches by rounding is looked at again, in double precision */
     query.margin = static_cast<float>(4 * NARC_ERROR_BOUND * *std::max_element(type_radius.begin(), type_radius.end()));
-    query.hints = NARC_HINT_ARRAY(hints);
+    query.hints = {&hints[disc_pairs], sizeof hints[0]};
     query.workers = &workers;
     query.out_skipped = &skipped;
     narc_error failure = {};
@@ -235,30 +246,11 @@ void PairNarc::find_contacts() {
         error->one(FLERR, std::string("pair_style narc: ") + failure.message);
 }
 
-/* False if the grains are apart after all. */
-bool PairNarc::apply_contact(const narc_contact &row, double step) {
-    const uint32_t row_a = first[row.pair], row_b = second[row.pair];
-    const int a = static_cast<int>(shapes->row_atom[row_a]), b = static_cast<int>(shapes->row_atom[row_b]);
-    const double *x_a = atom->x[a], *x_b = atom->x[b], *v_a = atom->v[a], *v_b = atom->v[b];
-    const double dx = x_a[0] - x_b[0], dy = x_a[1] - x_b[1];
-    narc_lammps::Contact contact;
-    touch at;
-    contact.ends = nullptr;
-    if (shapes->form(a).is_disc && shapes->form(b).is_disc) {
-        contact.end = meet_discs(atom->radius[a], atom->radius[b], -dx, -dy);
-        contact.depth = contact.end.depth;
-    } else {
-        const touch_grain outline_a = shapes->outline(a, shapes->row_part(row_a));
-        const touch_grain outline_b = shapes->outline(b, shapes->row_part(row_b));
-        find_touch(&outline_a, &outline_b, -dx, -dy, row.feature, &at);
-        contact.end = at.end[0];
-        contact.depth = at.depth;
-        contact.ends = at.count == 2 ? &at : nullptr;
-    }
-    if (!(contact.depth > 0))
-        return false;
-    contact.way_x = -dx;
-    contact.way_y = -dy;
+/* Inline, so that a contact of discs stays in registers. */
+[[gnu::always_inline]] inline void PairNarc::apply_contact(uint32_t pair, int a, int b, narc_lammps::Contact contact,
+                                                           double step) {
+    touching.push_back(pair);
+    const double *x_a = atom->x[a], *v_a = atom->v[a], *v_b = atom->v[b];
     contact.a = {v_a[0], v_a[1], atom->omega[a][2]};
     contact.b = {v_b[0], v_b[1], atom->omega[b][2]};
     const double mass_a = atom->rmass[a], mass_b = atom->rmass[b];
@@ -273,7 +265,7 @@ bool PairNarc::apply_contact(const narc_contact &row, double step) {
         const double radius_a = shapes->equal_radius(a), radius_b = shapes->equal_radius(b);
         contact.radius = radius_a * radius_b / (radius_a + radius_b);
     }
-    const narc_lammps::Force on_a = narc_lammps::compute_force(by, contact, step, springs[row.pair]);
+    const narc_lammps::Force on_a = narc_lammps::compute_force(by, contact, step, springs[pair]);
     if (force->newton_pair || a < atom->nlocal) {
         atom->f[a][0] += on_a.x;
         atom->f[a][1] += on_a.y;
@@ -288,8 +280,38 @@ bool PairNarc::apply_contact(const narc_contact &row, double step) {
         rows.push_back(narc_lammps::make_row(on_a, contact.depth, static_cast<double>(atom->tag[a]),
                                              static_cast<double>(atom->tag[b]), x_a));
     if (evflag)
-        ev_tally_xyz(a, b, atom->nlocal, force->newton_pair, on_a.energy, 0.0, on_a.x, on_a.y, 0.0, dx, dy, 0.0);
-    return true;
+        ev_tally_xyz(a, b, atom->nlocal, force->newton_pair, on_a.energy, 0.0, on_a.x, on_a.y, 0.0, -contact.way_x,
+                     -contact.way_y, 0.0);
+}
+
+void PairNarc::apply_discs(double step) {
+    for (uint32_t pair = 0; pair < disc_pairs; pair++) {
+        const int a = static_cast<int>(shapes->row_atom[first[pair]]),
+                  b = static_cast<int>(shapes->row_atom[second[pair]]);
+        const double x = atom->x[b][0] - atom->x[a][0], y = atom->x[b][1] - atom->x[a][1];
+        const double radius_a = atom->radius[a], radius_b = atom->radius[b], reach = radius_a + radius_b;
+        if (!(x * x + y * y < reach * reach))
+            continue;
+        const touch_end end = meet_discs(radius_a, radius_b, x, y);
+        if (end.depth > 0)
+            apply_contact(pair, a, b, {end, end.depth, nullptr, x, y, {}, {}, 0, 0}, step);
+    }
+}
+
+/* What the library has found may be apart after all. */
+void PairNarc::apply_others(double step) {
+    for (size_t k = 0; k < found_count; k++) {
+        const uint32_t pair = static_cast<uint32_t>(disc_pairs) + contacts[k].pair, row_a = first[pair],
+                       row_b = second[pair];
+        const int a = static_cast<int>(shapes->row_atom[row_a]), b = static_cast<int>(shapes->row_atom[row_b]);
+        const touch_grain outline_a = shapes->outline(a, shapes->row_part(row_a));
+        const touch_grain outline_b = shapes->outline(b, shapes->row_part(row_b));
+        const double x = atom->x[b][0] - atom->x[a][0], y = atom->x[b][1] - atom->x[a][1];
+        touch at;
+        find_touch(&outline_a, &outline_b, x, y, contacts[k].feature, &at);
+        if (at.depth > 0)
+            apply_contact(pair, a, b, {at.end[0], at.depth, at.count == 2 ? &at : nullptr, x, y, {}, {}, 0, 0}, step);
+    }
 }
 
 void PairNarc::compute(int energy, int virial_kind) {
@@ -303,10 +325,9 @@ void PairNarc::compute(int energy, int virial_kind) {
     touching.clear();
     rows.clear();
     const double step = update->setupflag ? 0 : update->dt;
+    apply_discs(step);
+    apply_others(step);
     size_t next = 0;
-    for (size_t k = 0; k < found_count; k++)
-        if (apply_contact(contacts[k], step))
-            touching.push_back(contacts[k].pair);
     for (const uint32_t pair : before) {
         while (next < touching.size() && touching[next] < pair)
             next++;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later
  *
- * pair_narc.h - forces between grains that touch. All pairs of a rank's neighbour list go to the library in one batch.
+ * pair_narc.h - forces between grains that touch. All pairs of a rank's neighbour list go to the library in one batch, but
+ * for those of two discs.
  *
  *   pair_style narc/hooke/history LAW
  *   pair_style narc/hertz/history LAW
@@ -52,8 +53,11 @@ class PairNarc : public Pair {
     narc_lammps::ContactLaw read_law(int count, char **arguments);
     void find_radii();
     void check_atoms() const;
+    void add_pairs(bool of_discs);
     void find_contacts();
-    bool apply_contact(const narc_contact &contact, double step);
+    void apply_discs(double step);
+    void apply_others(double step);
+    void apply_contact(uint32_t pair, int a, int b, narc_lammps::Contact contact, double step);
 
     narc_lammps::ContactLaw law;               /* the pair style's */
     std::vector<narc_lammps::ContactLaw> laws; /* of two types: [i * (types + 1) + j] */
@@ -62,13 +66,14 @@ class PairNarc : public Pair {
     std::vector<double> type_radius;
 
     /* Pairs of parts, by their rows, A of the grain with the lower ID: the order of a pair does not depend on the
-     * ranks, nor do its bits. */
+     * ranks, nor do its bits. First come those of two discs, which need no search. */
     bool valid = false;
+    size_t disc_pairs = 0;
     std::vector<uint32_t> first, second, hints;
     std::vector<narc_lammps::Springs> springs;
     std::vector<uint32_t> touching;     /* the pairs that touched in the last step */
     std::vector<uint32_t> before;       /* and in the one before it */
-    std::vector<narc_contact> contacts; /* what may touch, and room for one of each pair */
+    std::vector<narc_contact> contacts; /* what may touch, and room for one of each pair of others */
     size_t found_count = 0, contact_count = 0;
 };
 

@@ -2,6 +2,7 @@
 """python3 cases.py PROGRAM FOLDER [--sand SHAPES] [--jobs N] CASE ...: runs cases of apps/dem/README.md and tells what
 they found; inputs, tables and pictures go to FOLDER. --small PROGRAM FOLDER CASE: a small version, which must be right.
 --lammps NARC_LAMMPS: LAMMPS runs them, by the inputs of apps/lammps/cases, from the grains that PROGRAM places.
+--seed N: other places and sizes of grains than those of the inputs.
 CASE is one of the functions below: rolling, collision, sand (with --sand), pile, biaxial, band, hopper,
 packing, angularity, flow, drum; or all."""
 import argparse
@@ -27,8 +28,8 @@ SHAPES = os.path.join(HERE, "shapes.json")
 
 
 class Cases:
-    def __init__(self, program, folder, small, sand, jobs, lammps):
-        self.program, self.folder, self.small, self.sand = os.path.abspath(program), folder, small, sand
+    def __init__(self, program, folder, small, sand, jobs, lammps, seed):
+        self.program, self.folder, self.small, self.sand, self.seed = os.path.abspath(program), folder, small, sand, seed
         self.lammps = lammps and os.path.abspath(lammps)
         self.pool = concurrent.futures.ThreadPoolExecutor(jobs)
 
@@ -39,6 +40,7 @@ class Cases:
         shutil.copy(shapes, os.path.join(folder, "shapes.json"))
         with open(os.path.join(HERE, case + ".json"), encoding="utf-8") as file:
             world = json.load(file)
+        world["seed"] = self.seed
         if self.small:
             world["output"].pop("vtk", None)
         change(world)
@@ -284,6 +286,8 @@ def pile(cases):
 def sand(cases):
     """A pile of fitted grains, and pictures of it."""
     cases.tell("sand: %.1f and %.1f degrees" % tuple(run_pile(cases, "pile", cases.sand, "")))
+    if cases.small or cases.lammps:
+        return
     last = find_frames(os.path.join(cases.folder, "pile"), "pile")[-1].replace(".csv", ".vtk")
     grains.draw(last, os.path.join(cases.folder, "pile.png"), color="none", region=[-0.064, -0.006, 0.064, 0.034])
     grains.draw(last, os.path.join(cases.folder, "flow.png"), color="none", forces=False)
@@ -351,7 +355,7 @@ def biaxial(cases):
         axes.set(xlabel="strain, %", ylabel=label)
         axes.legend()
     cases.save(figure, "biaxial.png")
-    if cases.sand:
+    if cases.sand and not cases.lammps:
         last = find_frames(os.path.join(cases.folder, "biaxial-sand"), "biaxial")[-1].replace(".csv", ".vtk")
         grains.draw(last, os.path.join(cases.folder, "forces.png"), color="coordination", width=6,
                     region=[-22, -22, -6, -12.7])
@@ -570,11 +574,13 @@ def main():
     parser.add_argument("--sand", help="a file of fitted grains")
     parser.add_argument("--lammps", help="runs the cases in the place of the program")
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("program")
     parser.add_argument("folder")
     parser.add_argument("cases", nargs="+", choices=list(known) + ["all"])
     options = parser.parse_args()
-    cases = Cases(options.program, options.folder, options.small, options.sand, options.jobs, options.lammps)
+    cases = Cases(options.program, options.folder, options.small, options.sand, options.jobs, options.lammps,
+                  options.seed)
     for name in known if options.cases == ["all"] else options.cases:
         known[name](cases)
 

@@ -12,16 +12,11 @@
 #include <unistd.h>
 
 #include "atom.h"
-#include "comm.h"
 #include "force.h"
 #include "input.h"
 #include "lammps.h"
-#include "modify.h"
-#include "neigh_list.h"
-#include "neighbor.h"
 #include "pair.h"
 #include "register.h"
-#include "timer.h"
 #include "variable.h"
 
 using namespace LAMMPS_NS;
@@ -48,7 +43,8 @@ void Simulation::run(const std::string &commands) {
             lammps->input->one(line);
 }
 
-void Simulation::create(const Packing &packing, const std::string &boundary, bool newton) {
+void Simulation::create(const Packing &packing, const std::string &boundary, bool newton,
+                        const std::string &atom_style) {
     int rank;
     MPI_Comm_rank(world, &rank);
     int process = static_cast<int>(getpid());
@@ -59,11 +55,17 @@ void Simulation::create(const Packing &packing, const std::string &boundary, boo
         std::fprintf(file, "grains\n\n%zu atoms\n%d atom types\n0 %.17g xlo xhi\n0 %.17g ylo yhi\n-0.5 0.5 zlo zhi\n",
                      packing.grains.size(), packing.types, packing.width, packing.height);
         /* ID, type, x y z; of style sphere diameter and density, of style dipole charge and moment. */
-        std::fprintf(file, "\nAtoms # hybrid\n\n");
+        std::fprintf(file, "\nAtoms\n\n");
         int id = 0;
-        for (const Grain &grain : packing.grains)
-            std::fprintf(file, "%d %d %.17g %.17g 0 %.17g 1 0 %.17g %.17g 0\n", ++id, grain.type, grain.x, grain.y,
-                         2 * grain.radius, std::cos(grain.angle), std::sin(grain.angle));
+        const bool turns = atom_style != "sphere";
+        for (const Grain &grain : packing.grains) {
+            if (turns)
+                std::fprintf(file, "%d %d %.17g %.17g 0 %.17g 1 0 %.17g %.17g 0\n", ++id, grain.type, grain.x, grain.y,
+                             2 * grain.radius, std::cos(grain.angle), std::sin(grain.angle));
+            else
+                std::fprintf(file, "%d %d %.17g 1 %.17g %.17g 0\n", ++id, grain.type, 2 * grain.radius, grain.x,
+                             grain.y);
+        }
         std::fprintf(file, "\nVelocities\n\n");
         id = 0;
         for (const Grain &grain : packing.grains)
@@ -71,9 +73,9 @@ void Simulation::create(const Packing &packing, const std::string &boundary, boo
         std::fclose(file);
     }
     MPI_Barrier(world);
-    run("units lj\ndimension 2\natom_style hybrid sphere dipole\natom_modify map array sort 10 1\ncomm_modify vel yes\n"
-        "boundary " +
-        boundary + "\nnewton " + (newton ? "on" : "off") + "\nread_data " + name.c_str());
+    run("units lj\ndimension 2\natom_style " + atom_style +
+        "\natom_modify map array sort 10 1\ncomm_modify vel yes\nboundary " + boundary + "\nnewton " +
+        (newton ? "on" : "off") + "\nread_data " + name.c_str());
     MPI_Barrier(world);
     if (rank == 0)
         std::remove(name.c_str());
@@ -83,10 +85,13 @@ std::vector<State> Simulation::states() const {
     const Atom *atom = lammps->atom;
     constexpr int columns = sizeof(State) / sizeof(double);
     std::vector<State> all(static_cast<size_t>(atom->natoms), State{});
-    for (int i = 0; i < atom->nlocal; i++)
+    for (int i = 0; i < atom->nlocal; i++) {
+        const double still[] = {1, 0}, *mu = atom->mu ? atom->mu[i] : still;
         all[static_cast<size_t>(atom->tag[i] - 1)] = {
-            atom->x[i][0],     atom->x[i][1], atom->mu[i][0], atom->mu[i][1],     atom->v[i][0], atom->v[i][1],
-            atom->omega[i][2], atom->f[i][0], atom->f[i][1],  atom->torque[i][2], atom->rmass[i]};
+            atom->x[i][0], atom->x[i][1],     mu[0],         mu[1],         atom->v[i][0],
+            atom->v[i][1], atom->omega[i][2], atom->f[i][0], atom->f[i][1], atom->torque[i][2],
+            atom->rmass[i]};
+    }
     MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()) * columns, MPI_DOUBLE, MPI_SUM, world);
     return all;
 }
@@ -100,17 +105,6 @@ double Simulation::pair_energy() const {
 double Simulation::variable(const std::string &expression) {
     return lammps->input->variable->compute_equal(expression);
 }
-
-long long Simulation::list_pairs() const {
-    const NeighList *list = lammps->force->pair->list;
-    long long mine = 0, all = 0;
-    for (int n = 0; n < list->inum; n++)
-        mine += list->numneigh[list->ilist[n]];
-    MPI_Allreduce(&mine, &all, 1, MPI_LONG_LONG, MPI_SUM, world);
-    return all;
-}
-
-double Simulation::seconds_of(int section) const { return lammps->timer->get_wall(static_cast<Timer::ttype>(section)); }
 
 Packing make_lattice(int columns, int rows, double fill, double spread, double speed, unsigned seed) {
     std::mt19937 random(seed);

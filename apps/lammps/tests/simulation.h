@@ -46,14 +46,13 @@ class Simulation {
     /* Runs commands, one a line. */
     void run(const std::string &commands);
 
-    /* Box, atoms and what all tests have in common; `boundary` as of LAMMPS. */
-    void create(const Packing &packing, const std::string &boundary = "p p p", bool newton = false);
+    /* Box, atoms and what all tests have in common; `boundary` as of LAMMPS. Of atom style sphere there is no rotation. */
+    void create(const Packing &packing, const std::string &boundary = "p p p", bool newton = false,
+                const std::string &atom_style = "hybrid sphere dipole");
 
     std::vector<State> states() const;
     double pair_energy() const;
     double variable(const std::string &expression);
-    long long list_pairs() const;         /* in the neighbour lists of all ranks */
-    double seconds_of(int section) const; /* of LAMMPS' timer, in the last run, this rank's */
 
     LAMMPS_NS::LAMMPS *lammps;
 

@@ -338,6 +338,26 @@ void test_newton() {
     check_at_most("angles, newton on and off", at.angle, 1e-6);
 }
 
+/* A cell that is sheared further than it is wide by half gets another tilt, with the same images. */
+void test_flips() {
+    const Packing packing = make_lattice(10, 10, 1.15, 0.1, 1, 41);
+    const auto shear = [&](Simulation &cell, const std::string &flip) {
+        cell.create(packing);
+        cell.run("change_box all triclinic");
+        cell.run(grains("pebble8", "narc/hooke/history 1e4 NULL 50 NULL 0.5 1") +
+                 "fix shear all deform 1 xy erate 1 flip " + flip + " remap v\ntimestep 2e-4\nrun 3500");
+    };
+    Simulation flips(MPI_COMM_WORLD), tilts(MPI_COMM_WORLD);
+    shear(flips, "yes");
+    shear(tilts, "no");
+    check_at_most("one tilt", std::fabs(tilts.variable("xy") - 7), 1e-9);
+    check_at_most("the other", std::fabs(flips.variable("xy") + 3), 1e-9);
+    const Difference at = compare(flips.states(), tilts.states(), packing.width, packing.height);
+    check_at_most("velocities after a flip", at.velocity, 1e-6);
+    check_at_most("spins after a flip", at.spin, 1e-6);
+    check_at_most("angles after a flip", at.angle, 1e-6);
+}
+
 /* A run that was broken off goes on as if it were not: the memory of contacts is in the restart file. */
 void test_restart() {
     const std::string file = "test.restart";
@@ -403,6 +423,25 @@ void test_walls() {
         const double push = heap.variable("f_left[1]") + heap.variable("f_right[1]") + heap.variable("f_floor[1]");
         check_at_most("and push sideways as little", std::fabs(push / weight), 1e-3);
     }
+}
+
+/* A floor of grains that are frozen carries the weight of those that fall on it; with a velocity it moves. */
+void test_rough() {
+    Packing packing = make_lattice(8, 8, 0.95, 0.1, 0, 47);
+    Simulation heap(MPI_COMM_WORLD);
+    heap.create(packing, "f f p");
+    const std::string law = "hooke/history 2e4 NULL 200 NULL 0 1 ";
+    heap.run(grains("octagon_sharp", "narc/hooke/history 2e4 NULL 200 NULL 0.5 1"));
+    heap.run("fix left all wall/narc " + law + "plate 0 0 1 0\nfix right all wall/narc " + law + "plate 8 0 -1 0");
+    heap.run("group floor id 1:8\nfix gravity all gravity 1 vector 0 -1 0\nfix slow all viscous 0.5\n"
+             "fix hold floor freeze\ntimestep 1e-3\nrun 40000");
+    double weight = 0;
+    for (const State &s : heap.states())
+        weight += s.mass;
+    check_at_most("the floor carries the weight", std::fabs(heap.variable("f_hold[2]") / weight + 1), 1e-4);
+    const double before = heap.states()[0].x;
+    heap.run("velocity floor set 0.1 NULL NULL\nrun 1000");
+    check_at_most("and moves", std::fabs(heap.states()[0].x - before - 0.1), 1e-12);
 }
 
 /* A disc in a pocket of three boxes that turn about a point goes round with them: it has the velocity w r, the spin w,
@@ -613,6 +652,8 @@ const std::map<std::string, void (*)()> tests = {
     {"newton", test_newton},
     {"restart", test_restart},
     {"walls", test_walls},
+    {"rough", test_rough},
+    {"flips", test_flips},
     {"by_atom", test_by_atom},
     {"plugin", test_plugin},
     {"bricks", test_bricks},
