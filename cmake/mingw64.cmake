@@ -17,6 +17,7 @@ set(CMAKE_CROSSCOMPILING_EMULATOR env WINEDEBUG=-all LC_ALL=C.UTF-8
   "WINEPREFIX=${wine_folder}" /usr/lib/wine/wine64)
 # Libraries that mingw64.sh has built, all static.
 get_filename_component(packages "${CMAKE_CURRENT_LIST_DIR}/../build/packages/mingw64" ABSOLUTE)
+set(NARC_LICENCES "${packages}/licences")
 set(ENV{PKG_CONFIG_LIBDIR} "${packages}/lib/pkgconfig")
 set(PKG_CONFIG_ARGN --static)
 set(CMAKE_FIND_ROOT_PATH "${packages}" /usr/x86_64-w64-mingw32)

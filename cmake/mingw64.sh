@@ -8,7 +8,7 @@ root=$PWD/build/packages host=x86_64-w64-mingw32
 prefix=$root/mingw64
 [ ! -e "$prefix/complete" ] || exit 0
 rm -rf "$prefix" "$root/mingw64-source"
-mkdir -p "$prefix" "$root/mingw64-source/lists/partial" "$root/mingw64-source/parts"
+mkdir -p "$prefix/licences" "$root/mingw64-source/lists/partial" "$root/mingw64-source/parts"
 cd "$root/mingw64-source"
 
 # The system's own package sources, asked for source packages.
@@ -22,7 +22,7 @@ apt="apt-get -q -o APT::Sandbox::User=root -o Dir::State::lists=$PWD/lists -o Di
     -o Dir::Etc::SourceList=$PWD/sources.list -o Dir::Etc::SourceParts=$PWD/parts"
 # shellcheck disable=SC2086 # a list of words
 fetch() { $apt source --download-only --only-source "$@"; }
-$apt update
+$apt update || true # the downloads decide
 
 # unpack PACKAGE: with Debian's changes, or where not all files of those can be had, as its authors gave it out.
 unpack() {
@@ -33,6 +33,9 @@ unpack() {
         mkdir "$1"
         tar -xf "$1"_*.orig.tar.* -C "$1" --strip-components=1
     fi
+    for file in "$1"/LICENSE* "$1"/COPYING*; do
+        [ ! -f "$file" ] || cp "$file" "$prefix/licences/$1-$(basename "$file")"
+    done
 }
 
 # by_cmake PACKAGE OPTION ..., by_configure PACKAGE FOLDER SOURCES OPTION ...: SOURCES is the folder of the library itself.
@@ -63,8 +66,9 @@ export PKG_CONFIG_LIBDIR="$prefix/lib/pkgconfig"
 mkdir -p "$prefix/include" "$prefix/lib/pkgconfig"
 cp /usr/$host/include/zlib.h /usr/$host/include/zconf.h "$prefix/include"
 cp /usr/$host/lib/libz.a "$prefix/lib"
+cp /usr/share/doc/libz-mingw-w64-dev/copyright "$prefix/licences/zlib"
 sed "s|/usr/$host|$prefix|" /usr/$host/lib/pkgconfig/zlib.pc >"$prefix/lib/pkgconfig/zlib.pc"
-by_cmake cjson -DENABLE_CUSTOM_COMPILER_FLAGS=OFF -DENABLE_CJSON_TEST=OFF -DBUILD_SHARED_AND_STATIC_LIBS=OFF
+by_cmake cjson -DCMAKE_C_FLAGS=-DCJSON_HIDE_SYMBOLS -DENABLE_CUSTOM_COMPILER_FLAGS=OFF -DENABLE_CJSON_TEST=OFF -DBUILD_SHARED_AND_STATIC_LIBS=OFF
 by_cmake libpng1.6 -DPNG_SHARED=OFF -DPNG_TESTS=OFF
 by_cmake freetype -DFT_DISABLE_HARFBUZZ=ON -DFT_DISABLE_BROTLI=ON -DFT_DISABLE_BZIP2=ON -DFT_DISABLE_PNG=ON
 by_cmake nlopt -DNLOPT_PYTHON=OFF -DNLOPT_OCTAVE=OFF -DNLOPT_MATLAB=OFF -DNLOPT_GUILE=OFF -DNLOPT_SWIG=OFF -DNLOPT_CXX=OFF

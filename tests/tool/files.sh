@@ -32,6 +32,11 @@ works "an output may have another name of an input" collide $known --pairs pair.
 check "then they are two files" sh -c '[ "$(cat pair.csv)" = "$(printf "a,b\n0,1")" ] && ! cmp -s pair.csv hard.csv'
 check "inputs are unchanged" sh -c 'cmp shapes.json kept.json && cmp bodies.csv kept.txt && [ -L soft.csv ]'
 
+mkdir "ü👻"
+works "names of any letters" collide $known --out "ü👻/人.csv" --picture "ü👻/人.png"
+check "are the file's own" sh -c 'cmp "ü👻/人.csv" known.csv && [ "$(find ü👻 -type f | wc -l)" -eq 2 ]'
+fails "a name of any letters, no file" "narc: ü👻/no.csv: " collide --shapes shapes.json --bodies "ü👻/no.csv"
+
 # The longest name that a file system allows has no room for a suffix.
 long=$(printf '%0250d' 0)
 works "a long name" collide $known --out $long
