@@ -275,8 +275,9 @@ if [ -n "$font" ]; then
     fails "no glyph" "narc: .*U+10FFFD" fit "$font" --characters "$(printf '\364\217\277\275')" --arcs 8 \
         --out new.json
     fails "a blank has no outline" "narc: .*U+0020" fit "$font" --characters " " --arcs 8 --out new.json
-    fails "invalid UTF-8" "narc: --characters .*UTF-8" fit "$font" --characters "$(printf 'a\300\200')" --arcs 8 \
-        --out new.json
+    [ "$system" = Windows ] || # where arguments are UTF-16
+        fails "invalid UTF-8" "narc: --characters .*UTF-8" fit "$font" --characters "$(printf 'a\300\200')" --arcs 8 \
+            --out new.json
     fails "selectors only" "narc: --characters" fit "$font" --characters "$(printf '\357\270\217')" --arcs 8 \
         --out new.json
     fails "a font without --characters" "narc: $font: .*--characters" fit "$font" --arcs 8 --out new.json
