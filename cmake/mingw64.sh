@@ -53,8 +53,9 @@ by_configure() {
     unpack "$package"
     (
         cd "$folder"
+        flags="-O2 -I$prefix/include -Wp,-U_FORTIFY_SOURCE" # which needs another library of GCC's
         ./configure --host=$host --prefix="$prefix" --disable-shared --enable-static "$@" \
-            CC=$host-gcc-posix CXX=$host-g++-posix CFLAGS="-O2 -I$prefix/include" CXXFLAGS="-O2 -I$prefix/include" \
+            CC=$host-gcc-posix CXX=$host-g++-posix CFLAGS="$flags" CXXFLAGS="$flags" \
             LDFLAGS="-L$prefix/lib" PKG_CONFIG=pkg-config
         # Debian changes what configure is made of, for other systems.
         make -j "$(nproc)" ACLOCAL=: AUTOCONF=: AUTOHEADER=: AUTOMAKE=: SUBDIRS="$sources" install
@@ -73,8 +74,7 @@ by_cmake libpng1.6 -DPNG_SHARED=OFF -DPNG_TESTS=OFF
 by_cmake freetype -DFT_DISABLE_HARFBUZZ=ON -DFT_DISABLE_BROTLI=ON -DFT_DISABLE_BZIP2=ON -DFT_DISABLE_PNG=ON
 by_cmake nlopt -DNLOPT_PYTHON=OFF -DNLOPT_OCTAVE=OFF -DNLOPT_MATLAB=OFF -DNLOPT_GUILE=OFF -DNLOPT_SWIG=OFF -DNLOPT_CXX=OFF
 by_configure pixman . pixman --disable-gtk --disable-libpng
-by_configure cairo . src --disable-ft --disable-fc --disable-ps --disable-pdf --disable-gobject --disable-trace --disable-interpreter \
-    cairo_cv_warn_cflags="-fno-strict-aliasing -fno-common" # not what needs libssp
+by_configure cairo . src --disable-ft --disable-fc --disable-ps --disable-pdf --disable-gobject --disable-trace --disable-interpreter
 by_configure coinutils CoinUtils src --without-blas --without-lapack --without-glpk F77=unavailable
 by_configure clp Clp src --without-blas --without-lapack --without-glpk F77=unavailable
 touch "$prefix/complete"
