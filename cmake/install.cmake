@@ -72,8 +72,17 @@ install(DIRECTORY docs apps DESTINATION "${CMAKE_INSTALL_DOCDIR}" FILES_MATCHING
   PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN cases EXCLUDE PATTERN tests EXCLUDE PATTERN compat EXCLUDE)
 install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" FILES_MATCHING PATTERN "*.[ch]" PATTERN "*.cpp")
 
-# cpack: libnarc0.3, libnarc-dev and narc-tools, which need what the objects in them are linked with.
-if(PROJECT_IS_TOP_LEVEL)
+# Of libraries that the command holds.
+if(NARC_LICENCES)
+  install(DIRECTORY "${NARC_LICENCES}" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT narc_tools)
+endif()
+
+# cpack: libnarc0.3, libnarc-dev and narc-tools, which need what the objects in them are linked with. For Windows one
+# archive of all.
+if(PROJECT_IS_TOP_LEVEL AND WIN32)
+  set(CPACK_GENERATOR ZIP)
+  include(CPack)
+elseif(PROJECT_IS_TOP_LEVEL)
   set(CPACK_GENERATOR DEB)
   set(CPACK_PACKAGE_CONTACT "narc <narc@localhost>")
   set(CPACK_PACKAGING_INSTALL_PREFIX /usr)

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "elementary.h"
 #include "fail.h"
 #include "narc.h"
 #include "table.h"
@@ -74,7 +75,7 @@ static void add_chain(catalogue *c, size_t k) {
     for (size_t i = 0; i < chain->count; i++) {
         narc_aabb box;
         narc_get_aabb(c->store, chain->items[i].shape, 1, 0, 1, &box);
-        c->bounds[k] = fmax(c->bounds[k], hypot(box.max_x - box.min_x, box.max_y - box.min_y) / 2);
+        c->bounds[k] = fmax(c->bounds[k], narc_hypot(box.max_x - box.min_x, box.max_y - box.min_y) / 2);
     }
 }
 
@@ -158,12 +159,14 @@ static void add_part(table *rows, body_list *bodies, const compound *of, size_t 
     const body_part *part = &of->parts[k];
     const double scale = has_column(rows, SCALE) ? (double)read_scale(rows, bounds[part->item]) : 1;
     const double angle = remainder(row_number(rows, ANGLE), FULL_TURN);
+    narc_point turn;
+    narc_find_cosine(angle, &turn.x, &turn.y);
     const narc_point away = {scale * (part->at.x - of->centroid.x), scale * (part->at.y - of->centroid.y)};
     if (bodies->count == UINT32_MAX)
         fail_at(rows->path, rows->csv.line, "more than %u bodies", UINT32_MAX);
     bodies->items = grow(bodies->items, &bodies->capacity, bodies->count + 1, sizeof *bodies->items);
-    bodies->items[bodies->count++] = (body){.x = row_number(rows, X) + cos(angle) * away.x - sin(angle) * away.y,
-                                            .y = row_number(rows, Y) + sin(angle) * away.x + cos(angle) * away.y,
+    bodies->items[bodies->count++] = (body){.x = row_number(rows, X) + turn.x * away.x - turn.y * away.y,
+                                            .y = row_number(rows, Y) + turn.y * away.x + turn.x * away.y,
                                             .scale = (float)scale,
                                             .shape = part->shape,
                                             .item = (uint32_t)part->item,

@@ -4,7 +4,6 @@
  */
 #include "fit_inputs.h"
 
-#include <glib.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +11,12 @@
 #include "fail.h"
 #include "names.h"
 #include "progress.h"
+#include "system.h"
 #include "text.h"
+
+#if NARC_SVG
+#include <glib.h>
+#endif
 
 /* ---------------------------------------------------------------------------- kinds of files */
 
@@ -54,7 +58,7 @@ enum { SUFFIX_COUNT = sizeof suffixes / sizeof suffixes[0] };
 /* The part of a path that names the file, and how much of that stands before its suffix; a first dot begins none. */
 static const char *base_name(const char *path, size_t *out_stem) {
     path = strcmp(path, "-") == 0 ? "stdin" : path;
-    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path, *dot = strrchr(base, '.');
+    const char *base = path + folder_length(path), *dot = strrchr(base, '.');
     *out_stem = dot && dot != base ? (size_t)(dot - base) : strlen(base);
     return base;
 }
@@ -245,6 +249,63 @@ static void read_glyphs(const char *file, const char *bytes, size_t size, const 
     free(codes);
 }
 
+/* ---------------------------------------------------------------------------- what is below librsvg */
+
+#if NARC_SVG
+/* The first warning of Pango and others below librsvg, which they would print themselves. */
+static char warning[256];
+
+static GLogWriterOutput keep_warning(GLogLevelFlags level, const GLogField *fields, gsize count, gpointer context) {
+    (void)context;
+    for (gsize i = 0; i < count && level <= G_LOG_LEVEL_WARNING && !warning[0]; i++)
+        if (strcmp(fields[i].key, "MESSAGE") == 0)
+            snprintf(warning, sizeof warning, "%s", (const char *)fields[i].value);
+    return G_LOG_WRITER_HANDLED;
+}
+
+static void watch_warnings(void) { g_log_set_writer_func(keep_warning, NULL, NULL); }
+
+/* Notes the id of an element that a drawing itself holds, if it shows something. */
+static void note_id(GMarkupParseContext *context, const char *element, const char **names, const char **values,
+                    gpointer ids, GError **error) {
+    static const char *const seen[] = {"a",        "circle", "ellipse", "g",      "image", "line", "path", "polygon",
+                                       "polyline", "rect",   "svg",     "switch", "text",  "use",  NULL};
+    (void)error;
+    if (g_slist_length((GSList *)g_markup_parse_context_get_element_stack(context)) != 2 ||
+        !g_strv_contains(seen, element))
+        return;
+    for (size_t k = 0; names[k]; k++)
+        if (strcmp(names[k], "id") == 0)
+            g_string_append_printf(ids, ",%s", values[k]);
+}
+
+/* The ids of all elements that a drawing itself holds, with commas between them; NULL, and an error is told. */
+static char *list_ids(const char *file, const char *bytes, size_t size) {
+    const GMarkupParser parser = {.start_element = note_id};
+    GString *ids = g_string_new(NULL);
+    GError *error = NULL;
+    GMarkupParseContext *context = g_markup_parse_context_new(&parser, G_MARKUP_DEFAULT_FLAGS, ids, NULL);
+    if (!g_markup_parse_context_parse(context, bytes, (gssize)size, &error))
+        report_at(file, 0, "its ids cannot be listed, name them: %s", error->message);
+    else if (ids->len == 0)
+        report_at(file, 0, "no element of the drawing itself has an id");
+    char *list = ids->len > 0 && !error ? strcpy(allocate(ids->len, 1), ids->str + 1) : NULL;
+    g_clear_error(&error);
+    g_markup_parse_context_free(context);
+    g_string_free(ids, TRUE);
+    return list;
+}
+#else /* narc_read_svg() tells what is wrong */
+static char warning[1];
+
+static void watch_warnings(void) {}
+
+static char *list_ids(const char *file, const char *bytes, size_t size) {
+    (void)file, (void)bytes, (void)size;
+    return strcpy(allocate(2, 1), "*");
+}
+#endif
+
 /* ---------------------------------------------------------------------------- other files */
 
 static narc_silhouette choose_silhouette(const char *name) {
@@ -274,17 +335,6 @@ static narc_status call_reader(file_kind kind, const char *bytes, size_t size, c
 /* Drawings of this size, in KB, may take long, and librsvg draws them without a report. Paths that cross themselves take
  * longest: 2,000 long curves, some 80 KB, take seconds. */
 enum { KB = 1024, LARGE_DRAWING = 64 };
-
-/* The first warning of Pango and others below librsvg, which they would print themselves. */
-static char warning[256];
-
-static GLogWriterOutput keep_warning(GLogLevelFlags level, const GLogField *fields, gsize count, gpointer context) {
-    (void)context;
-    for (gsize i = 0; i < count && level <= G_LOG_LEVEL_WARNING && !warning[0]; i++)
-        if (strcmp(fields[i].key, "MESSAGE") == 0)
-            snprintf(warning, sizeof warning, "%s", (const char *)fields[i].value);
-    return G_LOG_WRITER_HANDLED;
-}
 
 /* A name made of the first `length` bytes of any text: what cannot be in a name becomes '_', blanks at the ends go, and
  * digits alone, which would be an index, get "shape-" in front; of nothing it makes "shape". To be freed. */
@@ -339,37 +389,6 @@ static void read_outline(const char *file, file_kind kind, const char *bytes, si
         warn_at(file, "%s throughout, its outline is a rectangle", how->silhouette);
 }
 
-/* Notes the id of an element that a drawing itself holds, if it shows something. */
-static void note_id(GMarkupParseContext *context, const char *element, const char **names, const char **values,
-                    gpointer ids, GError **error) {
-    static const char *const seen[] = {"a",        "circle", "ellipse", "g",      "image", "line", "path", "polygon",
-                                       "polyline", "rect",   "svg",     "switch", "text",  "use",  NULL};
-    (void)error;
-    if (g_slist_length((GSList *)g_markup_parse_context_get_element_stack(context)) != 2 ||
-        !g_strv_contains(seen, element))
-        return;
-    for (size_t k = 0; names[k]; k++)
-        if (strcmp(names[k], "id") == 0)
-            g_string_append_printf(ids, ",%s", values[k]);
-}
-
-/* The ids of all elements that a drawing itself holds, with commas between them; NULL, and an error is told. */
-static char *list_ids(const char *file, const char *bytes, size_t size) {
-    const GMarkupParser parser = {.start_element = note_id};
-    GString *ids = g_string_new(NULL);
-    GError *error = NULL;
-    GMarkupParseContext *context = g_markup_parse_context_new(&parser, G_MARKUP_DEFAULT_FLAGS, ids, NULL);
-    if (!g_markup_parse_context_parse(context, bytes, (gssize)size, &error))
-        report_at(file, 0, "its ids cannot be listed, name them: %s", error->message);
-    else if (ids->len == 0)
-        report_at(file, 0, "no element of the drawing itself has an id");
-    char *list = ids->len > 0 && !error ? strcpy(allocate(ids->len, 1), ids->str + 1) : NULL;
-    g_clear_error(&error);
-    g_markup_parse_context_free(context);
-    g_string_free(ids, TRUE);
-    return list;
-}
-
 static void read_elements(const char *file, const char *bytes, size_t size, const reading *how,
                           outline_list *outlines) {
     const bool all = strcmp(how->ids, "*") == 0;
@@ -386,7 +405,7 @@ static void read_elements(const char *file, const char *bytes, size_t size, cons
 
 void read_outlines(const char *const *files, size_t count, const reading *how, outline_list *out_outlines) {
     bool met[KIND_COUNT] = {false};
-    g_log_set_writer_func(keep_warning, NULL, NULL);
+    watch_warnings();
     for (size_t i = 0; i < count; i++) {
         size_t size;
         char *bytes = try_read_bytes(files[i], &size);

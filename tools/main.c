@@ -2,18 +2,16 @@
  *
  * main.c - the narc command: finds the command that is asked for and runs it.
  */
-#define _POSIX_C_SOURCE 200809L
-#include <fcntl.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "commands.h"
 #include "fail.h"
 #include "narc.h"
 #include "output.h"
 #include "progress.h"
+#include "system.h"
 #include "text.h"
 
 static const command *const commands[] = {&fit_command, &scene_command, &collide_command, &cast_command, &info_command};
@@ -52,16 +50,8 @@ static const command *find_command(const char *name) {
          narc_make_excerpt(name).text);
 }
 
-/* A file that is opened while a standard stream is closed takes its place: a picture would hold what was printed. So
- * something takes it that can only be read: then writing fails, and that is reported. */
-static void occupy_standard_streams(void) {
-    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++)
-        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDONLY) != stream)
-            fail("a standard stream is closed, and /dev/null cannot stand in for it");
-}
-
 int main(int argc, char **argv) {
-    occupy_standard_streams();
+    start_system(&argc, &argv);
     start_progress();
     if (argc < 2)
         fail("a command is missing; see narc --help");

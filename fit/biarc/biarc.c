@@ -23,7 +23,7 @@ static const double CIRCLE_ANGLE = 1e-10;
 static const double MOST_TURN = 0.95 * PI;
 
 /* sin(share w) / sin(w), which is the share for small w. */
-static double sine_share(double share, double w) { return fabs(w) < 1e-9 ? share : sin(share * w) / sin(w); }
+static double sine_share(double share, double w) { return fabs(w) < 1e-9 ? share : narc_sin(share * w) / narc_sin(w); }
 
 static narc_point rotate(narc_point v, double angle) {
     const narc_point u = unit_at(angle);
@@ -31,7 +31,7 @@ static narc_point rotate(narc_point v, double angle) {
 }
 
 /* Angle from a to b. */
-static double angle_between(narc_point a, narc_point b) { return atan2(cross(a, b), dot(a, b)); }
+static double angle_between(narc_point a, narc_point b) { return narc_atan2(cross(a, b), dot(a, b)); }
 
 static narc_spline_arc make_arc(narc_post start, narc_post end, double turn) {
     const narc_point chord = minus(end.point, start.point);
@@ -40,7 +40,7 @@ static narc_spline_arc make_arc(narc_post start, narc_post end, double turn) {
         const narc_point tangent = {chord.x / size, chord.y / size};
         return (narc_spline_arc){start.point, end.point, tangent, tangent, 0, 0};
     }
-    return (narc_spline_arc){start.point, end.point, start.tangent, end.tangent, 2 * sin(turn / 2) / size, turn};
+    return (narc_spline_arc){start.point, end.point, start.tangent, end.tangent, 2 * narc_sin(turn / 2) / size, turn};
 }
 
 size_t narc_join_posts(narc_post start, narc_post end, double share, narc_spline_arc out_arcs[2]) {
@@ -95,7 +95,7 @@ double narc_find_share(const narc_cubic *curve, narc_post start, narc_post end) 
     const double w = (angle_between(chord, start.tangent) - angle_between(chord, end.tangent)) / 2;
     const narc_point tangent = rotate(chord, w), normal = {-tangent.y / size, tangent.x / size};
     double g[7], h[5];
-    narc_expand_circle(curve, start.point, normal, -2 * sin(w) / size, g);
+    narc_expand_circle(curve, start.point, normal, -2 * narc_sin(w) / size, g);
     for (int i = 1; i < 6; i++)
         h[i - 1] = g[i] * 30 / (i * (6 - i));
     const double t = find_middle_root(h);

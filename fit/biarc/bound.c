@@ -127,7 +127,7 @@ static double bound_arc(const narc_cubic *part, const narc_spline_arc *arc, doub
         return INFINITY;
     double bound = s.upper;
     if (s.leaves_sector && bound * fabs(arc->curvature) >= 1)
-        bound = fmax(bound, 2 * sin(fabs(arc->turn) / 4) / fabs(arc->curvature) + off);
+        bound = fmax(bound, 2 * narc_sin(fabs(arc->turn) / 4) / fabs(arc->curvature) + off);
     return bound <= limit ? bound : INFINITY;
 }
 

@@ -15,10 +15,10 @@ static const double SMOOTH = 1e-6;
 static double find_normal(const narc_curve_arc *piece) {
     if (piece->turn == 0) {
         const narc_point along_line = minus(piece->end, piece->start);
-        return atan2(-along_line.x, along_line.y);
+        return narc_atan2(-along_line.x, along_line.y);
     }
     const narc_point away = minus(piece->start, piece->center);
-    return piece->turn > 0 ? atan2(away.y, away.x) : atan2(-away.y, -away.x);
+    return piece->turn > 0 ? narc_atan2(away.y, away.x) : narc_atan2(-away.y, -away.x);
 }
 
 typedef struct writer {

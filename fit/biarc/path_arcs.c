@@ -167,7 +167,7 @@ static size_t begin_of(const narc_arc_chains *chains, size_t k) { return k ? cha
 /* A place in the middle of a piece. */
 static narc_point find_middle(const narc_curve_arc *piece) {
     const narc_point chord = minus(piece->end, piece->start);
-    return along(along(piece->start, 0.5, chord), -0.5 * tan(piece->turn / 4), turned(chord));
+    return along(along(piece->start, 0.5, chord), -0.5 * tangent(piece->turn / 4), turned(chord));
 }
 
 /* By the chain's ends and middles of pieces, which is right but for chains closer to each other than their chords. */

@@ -64,7 +64,7 @@ static narc_point look(const struct chain *chain, size_t k, double distance) {
 static double turn_at(const struct chain *chain, size_t k, double window) {
     const narc_point p = chain->line->points[k];
     const narc_point in = minus(p, look(chain, k, -window)), out = minus(look(chain, k, window), p);
-    return fabs(atan2(cross(in, out), dot(in, out)));
+    return fabs(narc_atan2(cross(in, out), dot(in, out)));
 }
 
 static narc_point unit(narc_point v) {

@@ -72,7 +72,10 @@ static double find_full_tilt(const narc_derivatives *d, double tolerance) {
     const double square = dot(d->first, d->first), bend = cross(d->first, d->second);
     const double slope = cross(d->first, d->third) * square - 3 * bend * dot(d->first, d->second);
     const double rate = slope / (square * square * square);
-    const double arc = cbrt(tolerance / (sqrt(3) / 216 * fabs(rate)));
+    const double cube = tolerance / (sqrt(3) / 216 * fabs(rate));
+    if (!isfinite(cube))
+        return 0;
+    const double arc = narc_pow(cube, 1.0 / 3);
     const double tilt = -rate * arc * arc / 12;
     return isnan(tilt) ? 0 : fmax(-MOST_TILT, fmin(MOST_TILT, tilt));
 }

@@ -78,7 +78,7 @@ void narc_offset_chain(narc_chain *chain, double distance, bool polygon) {
         for (size_t k = 0; k < n; k++) {
             const double before = chain->angle[k] - (k ? chain->angle[k - 1] : chain->angle[n - 1] - 2 * PI);
             const double after = narc_end_angle(chain, k) - chain->angle[k];
-            chain->edge[k] += distance * (tan(before / 2) + tan(after / 2));
+            chain->edge[k] += distance * (tangent(before / 2) + tangent(after / 2));
         }
     } else {
         for (size_t k = 0; k < n; k++)

@@ -120,7 +120,7 @@ static double sum_interval(struct quadrature *quadrature, const struct piece *pi
     return sum;
 }
 
-static double angle_of(narc_point p) { return atan2(p.y, p.x); }
+static double angle_of(narc_point p) { return narc_atan2(p.y, p.x); }
 
 /* How far it is from one angle to another, counter-clockwise; nearly a whole turn is taken for a rounding below 0. */
 static double turn_to(double start, double end) {

@@ -118,7 +118,7 @@ size_t narc_add_violated(const narc_problem *problem, const narc_interval *inter
 
 /* The arc of the chain that holds a direction. */
 static size_t find_arc(const narc_chain *chain, narc_point u) {
-    double angle = atan2(u.y, u.x) - chain->angle[0];
+    double angle = narc_atan2(u.y, u.x) - chain->angle[0];
     angle -= 2 * PI * floor(angle / (2 * PI));
     size_t i = 0;
     while (i + 1 < chain->count && chain->angle[i + 1] - chain->angle[0] <= angle)

@@ -13,6 +13,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "elementary.h"
 #include "error.h"
 
 /* Most chords of one curve. The default flatness never needs 1000: with E the larger side of the curve's bounding box,
@@ -20,7 +21,7 @@
 enum { MAX_CHORDS = 20000 };
 
 /* Rounding, in DBL_EPSILON times the curve's largest absolute coordinate M: D takes two roundings in each coordinate,
- * of sums up to 3 M and 4 M, and hypot(); all together not more than 11, of which d (d - 1) / 8 counts: 8.3. The
+ * of sums up to 3 M and 4 M, and narc_hypot(); all together not more than 11, of which d (d - 1) / 8 counts: 8.3. The
  * division and the root are right to 4 epsilon of at most 0.75 * 4 sqrt(2) M: 17. Both are divided by k^2. A single
  * chord has exact ends; with more, these are off by 5 in each coordinate (see evaluate_curve()): 7, and their steps are
  * up to (1 + k epsilon) / k, which makes at most 2 * 4.3 / k more. That is 26 for k = 1, and less for others. */
@@ -46,7 +47,7 @@ static double find_bend(const narc_point *controls, unsigned degree) {
     double difference = 0;
     for (unsigned i = 0; i + 2 <= degree; i++) {
         const narc_point a = controls[i], b = controls[i + 1], c = controls[i + 2];
-        difference = fmax(difference, hypot(a.x - 2 * b.x + c.x, a.y - 2 * b.y + c.y));
+        difference = fmax(difference, narc_hypot(a.x - 2 * b.x + c.x, a.y - 2 * b.y + c.y));
     }
     return degree * (degree - 1) * difference / 8;
 }

@@ -80,7 +80,7 @@ static void measure_hull(narc_hull *hull) {
         const narc_point a = hull->corners[k], b = hull->corners[(k + 1) % hull->count];
         const narc_point side = minus(b, a);
         hull->normals[k] = (narc_point){side.y / length(side), -side.x / length(side)};
-        double angle = atan2(hull->normals[k].y, hull->normals[k].x);
+        double angle = narc_atan2(hull->normals[k].y, hull->normals[k].x);
         while (k > 0 && angle < last)
             angle += 2 * PI;
         hull->angles[k] = last = angle;

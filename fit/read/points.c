@@ -163,7 +163,7 @@ static narc_status read_json_point(struct json_reader *reader, const cJSON *item
                  reader->contour);
         return fail_value(reader, item, what);
     }
-    narc_point p;
+    narc_point p = {0};
     narc_status status = read_coordinate(reader, x, "x", &p.x);
     status = status ? status : read_coordinate(reader, y, "y", &p.y);
     return status ? status : add_point(&reader->pen, p, reader->error);

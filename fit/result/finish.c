@@ -36,7 +36,7 @@ enum { CERTIFY_ROUNDS = 40, SAMPLES = 1000 };
 /* ---------------------------------------------------------------------------- from a chain to arcs */
 
 static bool is_one_arc(const narc_arc *a, const narc_arc *b) {
-    return hypot(a->center_x - b->center_x, a->center_y - b->center_y) < NOTHING &&
+    return narc_hypot(a->center_x - b->center_x, a->center_y - b->center_y) < NOTHING &&
            fabs(a->radius - b->radius) < NOTHING;
 }
 

@@ -60,7 +60,7 @@ static size_t find_sharpest(const narc_point *points, size_t count) {
     for (size_t k = 0; k < count; k++) {
         const narc_point incoming = minus(points[k], points[(k + count - 1) % count]);
         const narc_point outgoing = minus(points[(k + 1) % count], points[k]);
-        const double turn = atan2(cross(incoming, outgoing), dot(incoming, outgoing));
+        const double turn = narc_atan2(cross(incoming, outgoing), dot(incoming, outgoing));
         if (turn > largest + 1e-9) {
             largest = turn;
             sharpest = k;
@@ -98,7 +98,7 @@ narc_status narc_follow_paper(const narc_point *polygon, size_t sides, size_t co
      * be flat; the first try is the most even one. */
     const double low = fmax(smallest, 1e-3), high = fmin(largest, 64);
     for (unsigned k = 0; k <= (count % 2 ? 0 : RADII); k++) {
-        const double radius = k == 0 ? 0 : low * pow(high / low, (k - 0.5) / RADII);
+        const double radius = k == 0 ? 0 : low * narc_pow(high / low, (k - 0.5) / RADII);
         narc_arc arcs[NARC_MAX_ARCS];
         size_t arc_count;
         double area;

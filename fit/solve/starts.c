@@ -146,7 +146,7 @@ static void add_chords(narc_start_list *starts, const narc_problem *problem, siz
         corners[k] = meet_sides(problem->hull, flush[(k + found - 1) % found], flush[k]);
     for (size_t k = 0; k < found; k++) {
         const double side = length(minus(corners[(k + 1) % found], corners[k]));
-        const double half = asin(fmin(1, 0.5 * side / problem->max_radius));
+        const double half = narc_asin(fmin(1, 0.5 * side / problem->max_radius));
         angles[2 * k] = flush[k] - half;
         angles[2 * k + 1] = flush[k] + half;
     }

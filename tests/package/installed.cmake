@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: MIT
 # Tests of the installed tree: programs that use it as a stranger would.
 set(work "${PROJECT_BINARY_DIR}/package")
+set(toolchain "${CMAKE_TOOLCHAIN_FILE}")
+if(toolchain)
+  get_filename_component(toolchain "${toolchain}" ABSOLUTE BASE_DIR "${PROJECT_SOURCE_DIR}")
+endif()
 set(package_script ${CMAKE_COMMAND} "-DSOURCE=${PROJECT_SOURCE_DIR}" "-DBUILD=${PROJECT_BINARY_DIR}" "-DWORK=${work}"
   "-DCONFIG=$<CONFIG>" "-DC_COMPILER=${CMAKE_C_COMPILER}" "-DFLAGS=${CMAKE_C_FLAGS}" "-DGENERATOR=${CMAKE_GENERATOR}"
-  "-DTOOLCHAIN=${CMAKE_TOOLCHAIN_FILE}" "-DSLEEF=${NARC_SLEEF}" "-DPKG_CONFIG=${PKG_CONFIG_EXECUTABLE}")
+  "-DTOOLCHAIN=${toolchain}" "-DSLEEF=${NARC_SLEEF}" "-DPKG_CONFIG=${PKG_CONFIG_EXECUTABLE}")
 
 # Steps in run.cmake. One that needs what this machine does not have says so and counts as skipped.
 function(add_step step)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Includes go one way. A file includes headers of its own folder, and of the layers below that stand in the list; of
-# those in `public_only` just the public headers, and soa/error.h, soa/memory.h and soa/compiler.h. Run as
+# those in `public_only` just the public headers, and soa/error.h, soa/memory.h, soa/compiler.h and soa/elementary.h. Run as
 #   cmake -D SOURCE=<the project's folder> -P layers.cmake
 cmake_minimum_required(VERSION 3.22)
 set(root "${SOURCE}")
 
 set(public narc_export.h narc_columns.h narc_workers.h narc_shapes.h narc_pairs.h narc_scene.h narc_chains.h narc.h narc.hpp narc_methods.h narc_broad_phase.h
-  narc_files.h narc_fit.h error.h memory.h compiler.h)
+  narc_files.h narc_fit.h error.h memory.h compiler.h elementary.h)
 set(layers soa kernels dispatch methods files fit tools examples apps tests bench)
 set(below_soa "")
 set(below_kernels soa)

@@ -15,6 +15,7 @@ function(skip reason)
 endfunction()
 
 set(prefix "${WORK}/prefix")
+set(ENV{WINEPATH} "Z:${prefix}/bin") # where wine looks for DLLs
 set(folder "${WORK}/${STEP}")
 file(REMOVE_RECURSE "${folder}")
 file(MAKE_DIRECTORY "${folder}")

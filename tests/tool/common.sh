@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 #
-# common.sh - what the scripts beside it share. Each is called with the command, NARC [FONT], and tests it from outside:
-# files in, files, reports and errors out, in a folder of its own. FONT is a font with the ghost, house, rocket and tree;
-# without one the checks of glyphs are skipped.
+# common.sh - what the scripts beside it share. Each is called with the command, NARC [FONT [SVG [SYSTEM]]], and tests it from
+# outside: files in, files, reports and errors out, in a folder of its own. FONT is a font with the ghost, house, rocket
+# and tree; without one the checks of glyphs are skipped. SVG, ON or OFF: does this build read SVG files? SYSTEM, such as
+# Linux or Windows: what the command runs on.
 set -u
 unset NARC_ISA
 
 narc=$1
-font=${2:-}
+font=${2:-} svg=${3:-ON} system=${4:-}
 case $narc in */*) narc=$(cd "$(dirname "$narc")" && pwd)/$(basename "$narc") ;; esac
 docs=$(cd "$(dirname "$0")/../../docs" && pwd)
 folder=$(mktemp -d) || exit 1
@@ -65,6 +66,18 @@ reports() { [ "$(awk -v key="$1" 'index($0, key) == 1 { print $NF }' out.txt)" =
 begins_with() { [ "$(head -c "${#2}" "$1" | tr '\211' 'X')" = "$2" ]; }
 # says TEXT: a line of the report is this, blanks aside.
 says() { sed 's/  */ /g' out.txt | grep -qx "$1"; }
+# value SHAPE COLUMN: a number of the printed table. is SHAPE COLUMN NUMBER: it is this, within 1 %: enough to tell one
+# objective from another. Columns: 2 arcs, 3 edges, 4 area, 5 hull area, 6 ratio, 7 perimeter, 8 max, 9 mean distance, 10 and 11 origin.
+value() { awk -v shape="$1" -v column="$2" '$1 == shape { print $column }' out.txt; }
+is() { less "$(product "$3" 0.99)" "$(value "$1" "$2")" && less "$(value "$1" "$2")" "$(product "$3" 1.01)"; }
+less() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && b != "" && a + 0 < b + 0) }'; }
+product() { awk -v a="$1" -v b="$2" 'BEGIN { print a * b }'; }
+names() { [ "$(grep -o '"name": "[^"]*"' "$1" | cut -d'"' -f4 | tr '\n' ' ')" = "$2" ]; }
+# Progress is for terminals: `script` gives the command one, where it is installed and is that of util-linux. wine draws a
+# console on it.
+has_terminal() {
+    [ "$system" != Windows ] && command -v script >/dev/null && script -qec true /dev/null >script.txt 2>&1 </dev/null
+}
 # The last command of a script.
 finish() {
     if [ $failures -ne 0 ]; then

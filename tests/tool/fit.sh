@@ -5,36 +5,19 @@
 . "$(dirname "$0")/common.sh"
 
 # ------------------------------------------------------------------------------------------- fits
-# value SHAPE COLUMN: a number of the printed table. is SHAPE COLUMN NUMBER: it is this, within 1 %: enough to tell one
-# objective from another. Columns: 2 arcs, 3 edges, 4 area, 5 hull area, 6 ratio, 7 perimeter, 8 max, 9 mean distance, 10 and 11 origin.
-value() { awk -v shape="$1" -v column="$2" '$1 == shape { print $column }' out.txt; }
-is() { less "$(product "$3" 0.99)" "$(value "$1" "$2")" && less "$(value "$1" "$2")" "$(product "$3" 1.01)"; }
-less() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && b != "" && a + 0 < b + 0) }'; }
-product() { awk -v a="$1" -v b="$2" 'BEGIN { print a * b }'; }
-names() { [ "$(grep -o '"name": "[^"]*"' "$1" | cut -d'"' -f4 | tr '\n' ' ')" = "$2" ]; }
-
 # One outline in every format: a square with side 2. A polygon's arcs are its corners.
 mkdir fits fits/more
 printf '1,1\n3,1\n3,3\n1,3\n' >fits/square.csv
 printf '\357\273\277x,y\r\n1,1\r\n1,3\r\n3,3\r\n3,1\r\n' >fits/header.csv
 echo '[[1, 1], [3, 1], [3, 3], [1, 3]]' >fits/list.json
 echo '{"points": [[1, 1], [3, 1], [3, 3], [1, 3]]}' >fits/object.json
-cat >fits/rectangle.svg <<'EOT'
-<?xml version="1.0"?>
-<svg xmlns="http://www.w3.org/2000/svg" width="10" height="10">
-  <g transform="translate(1 1)"><rect width="1" height="1" transform="scale(2)"/></g>
-</svg>
-EOT
-cat >fits/circle.svg <<'EOT'
-<svg xmlns="http://www.w3.org/2000/svg"><circle cx="5" cy="5" r="2"/></svg>
-EOT
-squares="fits/square.csv fits/header.csv fits/list.json fits/object.json fits/rectangle.svg"
+squares="fits/square.csv fits/header.csv fits/list.json fits/object.json"
 
 works "fit" fit $squares --arcs 4 --starts 2 --out fits.json --picture fits.svg
-check "a shape for each file, named after it" names fits.json "square header list object rectangle "
+check "a shape for each file, named after it" names fits.json "square header list object "
 check "picture of the fits" begins_with fits.svg "<?xml"
 check "its end" grep -q "</svg>" fits.svg
-for one in square header list object rectangle; do
+for one in square header list object; do
     check "$one: area of the hull" is $one 5 4
     check "$one: larger than the hull" less 0.99999 "$(value $one 6)"
     check "$one: at most 4 arcs" less "$(value $one 2)" 5
@@ -118,16 +101,6 @@ check "a circle is not enough: arcs" less 3 "$(value square 2)"
 check "a circle is not enough: kept" less "$(value square 8)" 0.1
 works "tolerance with edges" fit fits/square.csv --tolerance 1e-3 --edges --out some.json
 check "tolerance with edges: kept" less "$(value square 8)" 1e-3
-# A polygon with 32 sides around a circle of radius 2 has corners that are 2 / cos(pi / 32) - 2 = 0.0097 away; it
-# leaves room for a pixel, a 4096th of 4, and tells another.
-fails "tolerance beyond reach" "narc: fits/circle.svg: .*0\\.011.*0\\.005" fit fits/circle.svg --tolerance 0.005 \
-    --polygon --starts 1 --out new.json
-
-# A drawing: its pixels are told.
-works "circle" fit fits/circle.svg --arcs 1 --out one.json
-check "circle: it bounds" less 0.99999 "$(value circle 6)"
-check "circle: closely" less "$(value circle 6)" 1.002
-
 # A collider lies over its outline, at its origin or with the input's own coordinates: discs of radius 0.01 at the
 # outline's corners reach 0.01 deep into the polygon.
 printf '101,51\n103,51\n103.5,53\n101,53.3\n' >fits/far.csv
@@ -154,18 +127,13 @@ printf '900000000,0\n900000001,0\n900000000,1\n' >fits/away.csv
 fails "kept too far away" "narc: fits/away.csv: .*9e+08 from its origin, where single precision rounds by" fit \
     fits/away.csv --arcs 4 --starts 1 --keep-origin --out new.json
 
-# Progress is for terminals: `script` gives the command one, where it is installed and is that of util-linux.
-if command -v script >/dev/null && script -qec true /dev/null >script.txt 2>&1 </dev/null; then
-    { printf '<svg viewBox="0 0 4 4" xmlns="http://www.w3.org/2000/svg"><!--' && head -c 100000 /dev/zero | tr '\0' x &&
-        printf -- '--><path d="M0 0H3V2z"/></svg>'; } >fits/large.svg
-    script -qec "'$narc' fit fits/large.svg --arcs 1 --out large.json" /dev/null >script.txt 2>&1 </dev/null
-    check "a large drawing is announced" grep -q "drawing, 97 KB of SVG" script.txt
+if has_terminal; then
     awk 'BEGIN { for (k = 0; k < 60; k++) print cos(k * 0.1047) "," 0.4 * sin(k * 0.1047) }' >fits/ellipse.csv
     script -qec "'$narc' fit fits/ellipse.csv --arcs 12 --edges --objective distance --out long.json" /dev/null \
         >script.txt 2>&1 </dev/null
     check "a long fit tells how far it is" grep -q "fitting: [1-9][0-9]* %" script.txt
 else
-    echo "skipped: progress on a terminal (no script command)"
+    echo "skipped: progress on a terminal"
 fi
 
 # Chains: lines are edges between corners; of a hole these are valleys. Open strokes end in plain points.
@@ -233,26 +201,6 @@ printf 'x,y,motion_x,motion_y\n-10,0,20,0\n' >rays.csv
 works "a ray at a body in parts" cast --shapes parts.json --bodies frames.csv --rays rays.csv --out hit.txt
 check "a ray at a body in parts: the first frame" grep -qE "^0,0,0\.(4|39999)" hit.txt
 
-# Elements of a drawing by their ids, where they are in it.
-cat >fits/layers.svg <<'EOT'
-<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10">
-  <g id="walls" transform="translate(1 2)"><rect width="2" height="4"/><rect x="4" width="2" height="4" id="right"/></g>
-  <circle id="ball" cx="8" cy="8" r="1"/>
-</svg>
-EOT
-echo '<svg xmlns="http://www.w3.org/2000/svg"><rect width="2" height="4"/></svg>' >fits/plain.svg
-echo '<svg xmlns="http://www.w3.org/2000/svg"><g id="a"></svg>' >fits/broken.svg
-works "elements" fit fits/layers.svg --ids walls,ball,right --arcs 4 --edges --starts 1 --out layers.json
-check "elements: names" names layers.json "walls ball right "
-check "elements: the layer's hull" is walls 5 24
-check "elements: the ball" is ball 5 3.141593
-check "elements: the right one's place" is right 10 6
-check "elements: the same, y up" less "$(value right 11)" -3.99
-works "all elements" fit fits/layers.svg --ids '*' --arcs 4 --edges --starts 1 --out all.json
-check "all elements: those of the drawing itself" names all.json "walls ball "
-fails "no ids" "narc: fits/plain.svg: no element of the drawing itself has an id" fit fits/plain.svg --ids '*' --arcs 4 --out new.json
-fails "ids of a broken drawing" "narc: fits/broken.svg: its ids cannot be listed" fit fits/broken.svg --ids '*' --arcs 4 --out new.json
-fails "no such element" "narc: fits/layers.svg: .*'roof'" fit fits/layers.svg --ids roof --arcs 4 --out new.json
 fails "ids without SVG" "narc: --ids is for SVG" fit fits/square.csv --ids roof --arcs 4 --out new.json
 
 # Images: what narc draws.
@@ -278,24 +226,6 @@ check "what is dark: nothing is said" lines err.txt 0
 works "what is light" fit fits/drawn.png --arcs 4 --polygon --starts 1 --silhouette=light --out opaque.json
 check "what is light: the paper" is drawn 5 "$rectangle"
 
-# Faint ink of drawings: a shadow to the right of a square.
-cat >fits/shadow.svg <<'EOT'
-<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 10">
-  <rect x="5" y="2" width="12" height="6" opacity="0.2"/><rect x="2" y="2" width="6" height="6"/>
-</svg>
-EOT
-works "a faint shadow" fit fits/shadow.svg --arcs 4 --polygon --starts 1 --out shadow.json
-check "a faint shadow: the square" is shadow 5 36
-works "a faint shadow that counts" fit fits/shadow.svg --arcs 4 --polygon --starts 1 --threshold 0.1 --out shadow.json
-check "a faint shadow that counts: with the square" is shadow 5 90
-echo '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 4"><rect width="9" height="4" fill="white"/>
-<rect x="2" y="1" width="2" height="2"/></svg>' >fits/paper.svg
-works "a drawing on paper" fit fits/paper.svg --arcs 4 --polygon --starts 1 --out paper.json
-check "a drawing on paper: said" grep -q "^narc: fits/paper.svg: opaque throughout" err.txt
-check "a drawing on paper: the page" is paper 5 36
-works "a drawing on paper, dark" fit fits/paper.svg --arcs 4 --polygon --starts 1 --silhouette dark --out paper.json
-check "a drawing on paper, dark: what is drawn" is paper 5 4
-
 # Points in any order.
 printf '1,1\n3,3\n3,1\n1,3\n2,2\n2.5,1.5\n' >fits/cloud.csv
 works "a cloud" fit fits/cloud.csv --arcs 4 --polygon --out cloud.json --picture cloud.svg
@@ -308,9 +238,11 @@ check "a cloud of JSON: its hull" is cloud 4 4
 check "an outline from standard input" names stdin.json "stdin "
 
 # Names, and kinds told by content.
-cp fits/square.csv fits/more/square.csv && cp fits/square.csv fits/7.csv && cp fits/square.csv "fits/ a,b\"c.tar.csv"
-cp fits/rectangle.svg fits/kind.csv && cp fits/list.json fits/kind && cp fits/square.csv fits/.csv
-works "names" fit fits/square.csv fits/more/square.csv fits/7.csv "fits/ a,b\"c.tar.csv" fits/kind.csv fits/kind \
+odd=' a,b"c.tar.csv'
+[ "$system" != Windows ] || odd=' a,b,c.tar.csv' # whose names have no quotes
+cp fits/square.csv fits/more/square.csv && cp fits/square.csv fits/7.csv && cp fits/square.csv "fits/$odd"
+cp fits/list.json fits/kind.csv && cp fits/list.json fits/kind && cp fits/square.csv fits/.csv
+works "names" fit fits/square.csv fits/more/square.csv fits/7.csv "fits/$odd" fits/kind.csv fits/kind \
     fits/.csv fits/square.csv --arcs 1 --out named.json --picture named.SVG
 check "a picture's suffix in capitals" begins_with named.SVG "<?xml"
 check "names are made fit and unlike" names named.json "square square-2 shape-7 a_b_c.tar kind kind-2 .csv square-3 "
@@ -343,8 +275,9 @@ if [ -n "$font" ]; then
     fails "no glyph" "narc: .*U+10FFFD" fit "$font" --characters "$(printf '\364\217\277\275')" --arcs 8 \
         --out new.json
     fails "a blank has no outline" "narc: .*U+0020" fit "$font" --characters " " --arcs 8 --out new.json
-    fails "invalid UTF-8" "narc: --characters .*UTF-8" fit "$font" --characters "$(printf 'a\300\200')" --arcs 8 \
-        --out new.json
+    [ "$system" = Windows ] || # where arguments are UTF-16
+        fails "invalid UTF-8" "narc: --characters .*UTF-8" fit "$font" --characters "$(printf 'a\300\200')" --arcs 8 \
+            --out new.json
     fails "selectors only" "narc: --characters" fit "$font" --characters "$(printf '\357\270\217')" --arcs 8 \
         --out new.json
     fails "a font without --characters" "narc: $font: .*--characters" fit "$font" --arcs 8 --out new.json

@@ -109,3 +109,10 @@ void *grow(void *items, size_t *capacity, size_t needed, size_t size) {
     *capacity = larger;
     return memory;
 }
+
+char *join_text(const char *text, size_t length, const char *suffix) {
+    char *joined = allocate(length + strlen(suffix) + 1, 1);
+    memcpy(joined, text, length);
+    strcpy(joined + length, suffix);
+    return joined;
+}

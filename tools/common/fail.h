@@ -35,4 +35,7 @@ void *allocate(size_t count, size_t size);
 /* Makes room for `needed` items in an array that grows by doubling; `items` may be NULL at first. */
 void *grow(void *items, size_t *capacity, size_t needed, size_t size);
 
+/* `suffix` behind the first `length` bytes of `text`. */
+char *join_text(const char *text, size_t length, const char *suffix);
+
 #endif

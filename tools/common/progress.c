@@ -7,7 +7,8 @@
 
 #include <stdio.h>
 #include <time.h>
-#include <unistd.h>
+
+#include "system.h"
 
 enum { LOOK_EVERY = 256 }; /* reports between two looks at the clock */
 static const double PATIENCE = 1.0, REFRESH = 0.1;
@@ -23,7 +24,7 @@ double seconds_now(void) {
 
 void start_progress(void) {
     start_time = seconds_now();
-    terminal = isatty(STDERR_FILENO);
+    terminal = is_terminal();
 }
 
 void show_share(const char *what, double share) {

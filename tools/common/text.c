@@ -2,7 +2,8 @@
  *
  * text.c - whole files and numbers.
  */
-#define _POSIX_C_SOURCE 200809L /* fileno */
+#define _POSIX_C_SOURCE   200809L /* fileno */
+#define _FILE_OFFSET_BITS 64      /* of files too large to read */
 #include "text.h"
 
 #include <errno.h>
@@ -15,11 +16,12 @@
 #include "fail.h"
 #include "number.h"
 #include "output.h"
+#include "system.h"
 
 static FILE *open_input(const char *path) {
     static bool is_input_taken;
     if (strcmp(path, "-") != 0) {
-        FILE *file = fopen(path, "rb");
+        FILE *file = open_file(path, "rb");
         if (file)
             protect_input(path);
         return file;
