@@ -110,7 +110,7 @@ if [ -c /dev/full ]; then
 fi
 # A command waits for a reader of its picture, while its contacts have a temporary file: signals leave no such file.
 mkfifo stuck.png
-for signal in HUP INT QUIT ALRM TERM XCPU; do
+for signal in HUP INT QUIT ALRM TERM XCPU ABRT; do
     env --default-signal=$signal "$narc" collide $known --out new.csv --picture stuck.png >out.txt 2>err.txt &
     waiting=$!
     tries=0

@@ -104,10 +104,11 @@ static void on_signal(int number) {
     raise(number);
 }
 
-/* Signals that end a command remove its temporary files; a file that grows beyond a limit is an error of writing. */
+/* Signals that end a command remove its temporary files, also those of libraries that give up without memory; a file that
+ * grows beyond a limit is an error of writing. */
 static void watch_signals(void) {
-    static const int numbers[] = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE,   SIGQUIT, SIGALRM,
-                                  SIGXCPU, SIGUSR1, SIGUSR2, SIGVTALRM, SIGPROF};
+    static const int numbers[] = {SIGINT,  SIGTERM, SIGHUP,    SIGPIPE, SIGQUIT, SIGALRM, SIGXCPU,
+                                  SIGUSR1, SIGUSR2, SIGVTALRM, SIGPROF, SIGABRT, SIGTRAP};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         if (signal(numbers[i], on_signal) == SIG_IGN)
             signal(numbers[i], SIG_IGN);
@@ -116,6 +117,8 @@ static void watch_signals(void) {
 
 void protect_input(const char *path) {
     char *target = find_target(path);
+    if (!target && errno == ENOMEM)
+        fail("%s: %s", path, strerror(errno));
     if (target) {
         inputs = grow(inputs, &input_capacity, input_count + 1, sizeof *inputs);
         inputs[input_count++] = target;
