@@ -30,6 +30,9 @@ struct scarcity {
     bool (*spares)(void); /* one that would fail does not; NULL: none is spared */
 };
 
+/* Blocks that are given out, counted or not. */
+extern size_t live_blocks;
+
 extern struct scarcity scarcity;
 
 #endif
