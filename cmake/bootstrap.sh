@@ -15,6 +15,8 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
              WebAssembly in node, Windows under wine; and narc as a subproject of meson
   fuzz       the fuzzing programs of tests/fuzz on their seeds, and on for 60 seconds each, or as many as the option says
+  soak       random and hard pairs of all families beside the reference, and all queries on every instruction set, until it
+             is interrupted, or for as many seconds as the option says
   bench      the benchmarks beside Box2D, Chipmunk and libccd; tables and plots go to out/. Options are Google
              Benchmark's and those of bench/README.md
   bench-scene  what a scene is asked, beside Box2D, Chipmunk and GEOS; tables go to out/
@@ -50,7 +52,7 @@ build_packages="$library_packages $fit_packages libcairo2-dev libglib2.0-dev lib
 run_packages="$build_packages fonts-symbola"
 peer_packages="g++ libbenchmark-dev libbox2d-dev libchipmunk-dev libccd-dev libgeos-dev"
 test_packages="$run_packages g++ binutils python3 python3-numpy dpkg-dev file meson"
-gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang-tidy"
+gate_packages="$test_packages $peer_packages clang libomp-dev clang-format clang-tidy valgrind"
 bench_packages="$library_packages $peer_packages gnuplot-nox"
 study_packages="$run_packages openclipart-svg r-cran-shapes gnuplot-nox"
 lammps_packages="$run_packages g++ liblammps-dev libopenmpi-dev openmpi-bin python3 python3-numpy"
@@ -441,6 +443,13 @@ fuzz() {
     NARC_FUZZ_SECONDS=$1 NARC_FUZZ_SEED=$2 ${3:-} ctest --preset fuzz || fail "a fuzzing program found something: build/fuzz/tests/fuzz/*-crash-*"
 }
 
+# From other random numbers each time.
+soak() {
+    require_packages $test_packages
+    build release test_soak
+    NARC_TEST_SEED=${NARC_TEST_SEED:-$(date +%s)} NARC_SOAK_SECONDS=${1:-inf} exec build/release/tests/kernels/test_soak
+}
+
 reference() {
     require_packages doxygen
     rm -rf out/api
@@ -455,6 +464,7 @@ test) test_release ;;
 gate) gate ;;
 platforms) platforms ;;
 fuzz) fuzz "${2:-60}" 0 ;;
+soak) soak "${2:-}" ;;
 docs) reference ;;
 bench)
     shift

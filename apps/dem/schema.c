@@ -4,6 +4,7 @@
  */
 #include "schema.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +15,10 @@ json_value json_read_file(const char *path) {
     size_t size, line = 1;
     char *text = dem_read_file(path, &size);
     const char *end = text, *cut = strstr(text, "\\u0000"); /* cJSON would end a string there */
+    errno = 0;                                              /* cJSON does not tell what is wrong; malloc() does */
     json_value root = {.file = path, .item = cJSON_ParseWithOpts(text, &end, true)};
+    if (!root.item && errno == ENOMEM)
+        fail("%s: not enough memory", path);
     end = root.item && cut ? cut : end;
     if (!root.item || end != text + size) {
         for (const char *c = text; c < end; c++)

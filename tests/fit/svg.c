@@ -381,6 +381,7 @@ TEST(tells_what_is_wrong) {
         {"M0 0h1v1z", NARC_ERROR_FORMAT, 1, "not SVG: "},
         {"<svg xmlns='http://www.w3.org/2000/svg'>\n<g>\n</svg>", NARC_ERROR_FORMAT, 3, "not SVG: "},
         {"<svg xmlns='http://www.w3.org/2000/svg'>\n<path d='M0 0h4v4'", NARC_ERROR_FORMAT, 2, "not SVG: "},
+        {"<svg xmlns='http://www.w3.org/2000/svg'>\n<g></g.></svg>", NARC_ERROR_FORMAT, 2, "and g"}, /* no full stop */
         {"\x1f\x8b\x08", NARC_ERROR_FORMAT, 0, "compressed"},
         {"<html><body/></html>", NARC_ERROR_FORMAT, 0, "not SVG: XML does not have <svg> root"},
         {"<svg xmlns='http://www.w3.org/2000/svg'/>", NARC_ERROR_FORMAT, 0, "nothing is seen in the SVG file"},

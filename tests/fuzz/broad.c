@@ -81,7 +81,7 @@ static void ask_pairs(const void *question, const narc_workers *workers, void *o
 }
 
 static void check_pairs(const struct world *w) {
-    struct list *const list = ask_everywhere(ask_pairs, w, sizeof *list);
+    struct list *const list = ask_everywhere(ask_pairs, w, sizeof *list, NULL);
     size_t at = 0;
     for (uint32_t a = 0; a < w->count; a++)
         for (uint32_t b = a + 1; b < w->count; b++)
@@ -115,7 +115,7 @@ static void ask_index(const void *question, const narc_workers *workers, void *o
 }
 
 static void check_index(const struct world *w) {
-    struct list *const list = ask_everywhere(ask_index, w, sizeof *list);
+    struct list *const list = ask_everywhere(ask_index, w, sizeof *list, NULL);
     size_t at = 0;
     for (uint32_t a = 0; a < w->count; a++)
         for (uint32_t b = 0; b < w->count; b++)

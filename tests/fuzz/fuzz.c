@@ -119,32 +119,3 @@ struct scene take_scene(struct bytes *from, size_t shapes, size_t bodies, size_t
         scene_add_pair(&scene, (uint32_t)(k % bodies), (uint32_t)((k + 1 + k / bodies) % bodies));
     return scene;
 }
-
-static void run_backwards(void *context, unsigned count, void (*task)(void *argument, unsigned index), void *argument) {
-    (void)context;
-    while (count-- > 0)
-        task(argument, count);
-}
-
-void *ask_everywhere(void (*ask)(const void *question, const narc_workers *workers, void *out_rows),
-                     const void *question, size_t size) {
-    static const narc_workers backwards = {NULL, 3, run_backwards};
-    char *first = NULL;
-    for (size_t k = 0; narc_isa_name(k); k++) {
-        if (!narc_isa_supported(narc_isa_name(k)))
-            continue;
-        test_use_isa(narc_isa_name(k));
-        char *const rows = malloc(size + 1);
-        assert_non_null(rows);
-        memset(rows, 0x5a, size);
-        ask(question, first ? &backwards : NULL, rows);
-        for (size_t at = 0; first && at < size; at++)
-            if (first[at] != rows[at])
-                fail_msg("%s answers otherwise than %s at byte %zu", narc_isa_name(k), narc_isa_name(0), at);
-        if (first)
-            free(rows);
-        else
-            first = rows;
-    }
-    return first;
-}

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * fuzz.h - what the fuzzing programs share: a fuzzer's bytes as numbers, shapes and bodies, and checks on every
- * instruction set. A check that fails ends the program, as libFuzzer wants it.
+ * fuzz.h - what the fuzzing programs share: a fuzzer's bytes as numbers, shapes and bodies. A check that fails ends
+ * the program, as libFuzzer wants it.
  */
 #ifndef NARC_FUZZ_H
 #define NARC_FUZZ_H
 
+#include "everywhere.h"
 #include "scene.h"
 
 /* What libFuzzer calls. */
@@ -30,10 +31,5 @@ struct shape take_shape(struct bytes *from);
 
 /* A few shapes, and bodies of them; one in 8 bodies has broken numbers. */
 struct scene take_scene(struct bytes *from, size_t shapes, size_t bodies, size_t pairs);
-
-/* Calls `ask` on each instruction set that there is. It fills `size` bytes of junk, which must come out the same. The
- * rows of the best one are returned, for the caller to free. `workers` is NULL, or runs its tasks last to first. */
-void *ask_everywhere(void (*ask)(const void *question, const narc_workers *workers, void *out_rows),
-                     const void *question, size_t size);
 
 #endif

@@ -10,14 +10,8 @@
 #include "check.h"
 #include "placements.h"
 
-/* One pair of families: for every placement some pairs, each of shapes picked from a few. */
 /* How many wrong pairs are shown in full. */
 enum { SHOWN = 5 };
-
-struct tally {
-    size_t pairs, colliding, inside_band;
-    struct fractions worst;
-};
 
 /* Errors add up at random, so they stay far below the bound, which adds their largest values: 0.13 is the most seen, of
  * separations in 20 million pairs. Above this, a kernel has become worse, though not wrong. */
@@ -27,19 +21,6 @@ struct report {
     struct tally family[FAMILY_COUNT], placement[PLACE_COUNT];
     size_t wrong;
 };
-
-static void raise_fractions(struct fractions *worst, const struct fractions *other) {
-    worst->separation = fmax(worst->separation, other->separation);
-    worst->normal = fmax(worst->normal, other->normal);
-    worst->point = fmax(worst->point, other->point);
-}
-
-static void count_pair(struct tally *tally, double gap, double bound, const struct fractions *errors) {
-    tally->pairs++;
-    tally->colliding += gap < 0;
-    tally->inside_band += fabs(gap) <= bound;
-    raise_fractions(&tally->worst, errors);
-}
 
 static void print_tally(const char *name, const struct tally *tally) {
     printf("  %-11s %8zu %9zu %7zu %12.3f %7.3f %7.3f\n", name, tally->pairs, tally->colliding, tally->inside_band,
@@ -63,29 +44,18 @@ static void check_scene(const struct scene *scene, enum family family_a, enum fa
     for (size_t k = 0; k < scene->pair_count; k++) {
         struct reference_body a = scene_reference(scene, scene->pairs[k].a),
                               b = scene_reference(scene, scene->pairs[k].b);
-        double gap = reference_find_gap(&a, &b).gap, bound = separation_bound(&a, &b);
-        bool overlap = bit_is_set(bits, k);
+        const double gap = reference_find_gap(&a, &b).gap, bound = separation_bound(&a, &b);
+        const bool overlap = bit_is_set(bits, k);
         struct fractions errors = {0};
-        const char *wrong = check_contact(&a, &b, gap, &all.rows[k], &errors);
-        if (fabs(gap) > bound && overlap != (gap < 0))
-            wrong = "overlap";
-        else if (overlap != (all.rows[k].separation < 0))
-            wrong = "overlap and contact differ";
-        else if (all.rows[k].pair != k)
-            wrong = "pair index";
-        enum placement placement = (enum placement)(k % PLACE_COUNT);
+        const char *const wrong = check_answer(&a, &b, gap, k, overlap, &all.rows[k], &errors);
+        const enum placement placement = (enum placement)(k % PLACE_COUNT);
         count_pair(&report->family[family_a], gap, bound, &errors);
         count_pair(&report->family[family_b], gap, bound, &errors);
         count_pair(&report->placement[placement], gap, bound, &errors);
         if (wrong && report->wrong++ < SHOWN) {
-            print_error(
-                "%s - %s, %s: wrong %s; exact gap %.9g, bound %.3g; answer: overlap %d, separation %.9g, normal "
-                "(%.9g, %.9g), point (%.9g, %.9g), arcs %d and %d\n",
-                family_name(family_a), family_name(family_b), placement_name(placement), wrong, gap, bound, overlap,
-                (double)all.rows[k].separation, (double)all.rows[k].normal_x, (double)all.rows[k].normal_y,
-                (double)all.rows[k].point_x, (double)all.rows[k].point_y, arc_of_a(all.rows[k].feature),
-                arc_of_b(all.rows[k].feature));
-            print_pair(&a, &b);
+            print_error("%s - %s, %s: wrong %s\n", family_name(family_a), family_name(family_b),
+                        placement_name(placement), wrong);
+            print_answer(&a, &b, gap, overlap, &all.rows[k]);
         }
     }
     free(all.rows);

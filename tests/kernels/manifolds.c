@@ -14,121 +14,14 @@
 
 enum { SHOWN = 5 };
 
-/* A point's place and separation may be off by that many bounds of a separation: both edges' ends, a rotated normal,
- * and the slope of an edge at the flat angle. */
-static const double point_bounds = 4;
-
-struct tally {
-    size_t pairs, two, stretches, doubtful, swaps_skipped, wrong;
-    double worst;
+struct manifold_report {
+    struct manifold_tally checked;
+    size_t swaps_skipped, wrong;
 };
-
-static bool same_radius(double expected, double found) {
-    return expected == found || fabs(expected - found) <= 1e-6 * expected;
-}
-
-/* Point i of a manifold against one of the reference; NULL, or what is wrong. */
-static const char *check_point(const struct reference_point *right, const narc_manifold_point *point, double bound,
-                               double *worst) {
-    const double off = hypot((double)point->x - right->x, (double)point->y - right->y);
-    const double error = fmax(off, fabs((double)point->separation - right->separation));
-    *worst = fmax(*worst, error / bound);
-    if (!(error <= bound))
-        return "point or separation";
-    return point->feature != right->feature ? "feature" : NULL;
-}
-
-/* Radii are those of the deepest point; of a stretch either end may be it. */
-static bool has_radii(const struct reference_manifold *right, const narc_manifold *m, const narc_contact *contact) {
-    for (size_t i = 0; i < m->count; i++) {
-        const bool deepest = right->stretch ? m->point[i].separation == contact->separation : i == right->deepest;
-        if (deepest && same_radius(right->point[i].radius_a, (double)m->radius_a) &&
-            same_radius(right->point[i].radius_b, (double)m->radius_b))
-            return true;
-    }
-    return false;
-}
-
-/* How far a contact's normal may be from the one that reaches were computed from, in radians: a dozen roundings of a
- * float for square root, division and two rotations, as in check.c. */
-static const double normal_doubt = 1e-6;
-
-/* Is that how far the normal may turn on what touches, clockwise and counter-clockwise? `sign`: 1 of A, -1 of B. */
-static bool is_reach(const struct reference_body *body, unsigned feature, double x, double y, double sign,
-                     const uint16_t reach[2]) {
-    if (feature & NARC_FEATURE_EDGE)
-        return reach[0] == 0 && reach[1] == 0;
-    if (body->count == 1)
-        return reach[0] == NARC_REACH_ONE && reach[1] == NARC_REACH_ONE;
-    const narc_arc *arc = &body->arcs[feature];
-    const double angle = atan2(sign * y, sign * x) - atan2(body->sine, body->cosine);
-    for (size_t i = 0; i < 2; i++) {
-        double turn = remainder(i ? arc->end - angle : angle - arc->start, 2 * PI);
-        turn = turn < -PI / 2 ? turn + 2 * PI : turn; /* half a turn, and a rounding */
-        const double right = NARC_REACH_ONE * sin(fmin(fmax(turn, 0), PI / 2)), doubt = NARC_REACH_ONE * normal_doubt;
-        if (reach[i] < right - 1 - doubt || reach[i] > right + doubt)
-            return false;
-    }
-    return true;
-}
-
-/* A manifold found with an infinite margin against the contact and the reference. */
-static const char *check_manifold(const struct reference_body *a, const struct reference_body *b,
-                                  const narc_contact *found, const narc_manifold *m, struct tally *tally) {
-    const struct exact_contact contact = {(double)found->separation, (double)found->normal_x, (double)found->normal_y,
-                                          (double)found->point_x,    (double)found->point_y,  arc_of_a(found->feature),
-                                          arc_of_b(found->feature)};
-    const struct reference_manifold right = reference_find_manifold(a, b, &contact, (double)NARC_FLAT_ANGLE);
-    const double bound = point_bounds * separation_bound(a, b);
-    if (m->count < 1 || m->count > 2)
-        return "number of points";
-    if (memcmp(&m->normal_x, &found->normal_x, 2 * sizeof(float)) != 0)
-        return "normal";
-    /* One of the points is the contact, bit for bit; nothing is deeper. */
-    bool exact = false, exact_place = false;
-    for (size_t i = 0; i < m->count; i++) {
-        const narc_manifold_point *point = &m->point[i];
-        const bool same = memcmp(&point->separation, &found->separation, sizeof(float)) == 0;
-        exact = exact || same;
-        exact_place = exact_place || (same && memcmp(&point->x, &found->point_x, 2 * sizeof(float)) == 0);
-        if (point->separation < found->separation)
-            return "a point deeper than the contact";
-    }
-    if (m->count == 2 && m->point[0].feature == m->point[1].feature)
-        return "id of two points";
-    if (!exact)
-        return "the deepest separation";
-    if (m->count == 1 && memcmp(&m->radius_a, &found->radius_a, 2 * sizeof(float)) != 0)
-        return "radius, of contact and manifold";
-    if (!is_reach(a, found->feature & 0xff, contact.normal_x, contact.normal_y, 1, m->reach_a) ||
-        !is_reach(b, found->feature >> 8, contact.normal_x, contact.normal_y, -1, m->reach_b))
-        return "reach";
-    tally->pairs++;
-    tally->two += m->count == 2;
-    if (right.doubtful) {
-        tally->doubtful++;
-        return NULL;
-    }
-    if (m->count != right.count)
-        return "number of points";
-    tally->stretches += right.stretch;
-    if (!exact_place && !right.stretch)
-        return "the deepest place";
-    /* What is certain but for the radii is which features; of a stretch, not which end is deeper. */
-    for (size_t i = 0; i < m->count; i++) {
-        struct reference_point point = right.point[i];
-        if (right.stretch)
-            point.separation = fmax(point.separation, contact.separation);
-        const char *wrong = check_point(&point, &m->point[i], bound, &tally->worst);
-        if (wrong && !(right.doubtful_radius && strcmp(wrong, "feature") == 0 && m->count == 1))
-            return wrong;
-    }
-    return right.doubtful_radius || has_radii(&right, m, found) ? NULL : "radius";
-}
 
 /* The manifold of (b, a) against that of (a, b). */
 static const char *check_swapped(const narc_manifold *m, const narc_manifold *swapped, double x, double y, double bound,
-                                 struct tally *tally) {
+                                 struct manifold_report *tally) {
     const double turn = hypot((double)(m->normal_x + swapped->normal_x), (double)(m->normal_y + swapped->normal_y));
     /* Another local maximum of the same value, or a choice within rounding. */
     if (turn > 1e-4 || swapped->count != m->count) {
@@ -150,7 +43,7 @@ static const char *check_swapped(const narc_manifold *m, const narc_manifold *sw
     return NULL;
 }
 
-static void check_scene(const struct scene *scene, const char *families, struct tally *tally) {
+static void check_scene(const struct scene *scene, const char *families, struct manifold_report *tally) {
     struct contacts all = scene_contacts(scene, INFINITY);
     struct manifolds list = scene_manifolds(scene, INFINITY);
     struct scene turned = *scene;
@@ -166,9 +59,9 @@ static void check_scene(const struct scene *scene, const char *families, struct 
         const struct reference_body b = scene_reference(scene, scene->pairs[k].b);
         const narc_manifold *m = &list.rows[k];
         assert_int_equal(m->pair, k);
-        const char *wrong = check_manifold(&a, &b, &all.rows[k], m, tally);
+        const char *wrong = check_manifold(&a, &b, &all.rows[k], m, &tally->checked);
         if (!wrong)
-            wrong = check_swapped(m, &swapped.rows[k], b.x - a.x, b.y - a.y, point_bounds * separation_bound(&a, &b),
+            wrong = check_swapped(m, &swapped.rows[k], b.x - a.x, b.y - a.y, manifold_bounds * separation_bound(&a, &b),
                                   tally);
         if (wrong && tally->wrong++ < SHOWN) {
             print_error("%s, %s: wrong %s; radii %g and %g, reaches %u %u and %u %u\n", families,
@@ -188,7 +81,8 @@ static void check_scene(const struct scene *scene, const char *families, struct 
 
 static void check_all_families(const char *name, narc_precision precision, size_t rounds) {
     struct test_random random = test_random_named(name);
-    struct tally tally = {0};
+    struct manifold_report tally = {0};
+    const struct manifold_tally *const checked = &tally.checked;
     const size_t pairs = PLACE_COUNT * test_trials(rounds);
     for (int family_a = 0; family_a < FAMILY_COUNT; family_a++) {
         for (int family_b = 0; family_b < FAMILY_COUNT; family_b++) {
@@ -203,12 +97,12 @@ static void check_all_families(const char *name, narc_precision precision, size_
     }
     printf(
         "  %zu pairs, %zu with two points, %zu stretches, %zu doubtful, %zu not compared swapped, largest error %.3f\n",
-        tally.pairs, tally.two, tally.stretches, tally.doubtful, tally.swaps_skipped, tally.worst);
+        checked->pairs, checked->two, checked->stretches, checked->doubtful, tally.swaps_skipped, checked->worst);
     assert_int_equal(tally.wrong, 0);
-    assert_true(tally.two > tally.pairs / 20);
-    assert_true(tally.stretches > tally.pairs / 500);
-    assert_true(tally.doubtful < tally.pairs / 20);
-    assert_true(tally.swaps_skipped < tally.pairs / 20);
+    assert_true(checked->two > checked->pairs / 20);
+    assert_true(checked->stretches > checked->pairs / 500);
+    assert_true(checked->doubtful < checked->pairs / 20);
+    assert_true(tally.swaps_skipped < checked->pairs / 20);
 }
 
 TEST(test_single_positions) { check_all_families("manifolds, single positions", NARC_FLOAT32, 10); }

@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "chains.h"
+#include "methods.h"
 #include "placements.h"
 
 /* What the reference claims, relative to sizes near 1. */
@@ -203,6 +204,24 @@ TEST(test_maximum) {
             assert_true(reference_gap_along(&a, &b, cos(angle), sin(angle)) <= found.gap + tolerance * reach);
         }
     }
+}
+
+/* Piece by piece against the search, for all that there is. */
+TEST(test_pieces) {
+    double worst = 0;
+    for (int precision = 0; precision < 2; precision++) {
+        struct corpus corpus = make_corpus("pieces", precision ? NARC_FLOAT64 : NARC_FLOAT32, 0.5, false);
+        solve_corpus(&corpus);
+        for (size_t k = 0; k < corpus.scene.pair_count; k++) {
+            const struct exact_pair *pair = &corpus.pairs[k];
+            const struct reference_gap found = reference_solve_gap(&pair->a, &pair->b);
+            const double along = reference_gap_along(&pair->a, &pair->b, found.normal_x, found.normal_y);
+            worst = fmax(worst, fmax(fabs(found.gap - pair->gap), fabs(found.gap - along)) / pair->reach);
+        }
+        printf("  %zu pairs, largest difference %.3g of their reach\n", corpus.scene.pair_count, worst);
+        destroy_corpus(&corpus);
+    }
+    assert_true(worst < tolerance);
 }
 
 /* The distance from a point by search against the library's closed form. */

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * check.c - is a contact right?
+ * check.c - are contacts and manifolds right?
  */
 #include "check.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+
+#include "manifold_reference.h"
 
 /* How far from 1 a normal's length may be, and how far, in radians, a normal may stray from a stored one: a dozen
  * roundings of a float for square root, division and two rotations. */
@@ -118,6 +121,134 @@ const char *check_contact(const struct reference_body *a, const struct reference
     return NULL;
 }
 
+const char *check_answer(const struct reference_body *a, const struct reference_body *b, double gap, size_t k,
+                         bool overlap, const narc_contact *contact, struct fractions *worst) {
+    const char *const wrong = check_contact(a, b, gap, contact, worst);
+    if (fabs(gap) > separation_bound(a, b) && overlap != (gap < 0))
+        return "overlap";
+    if (overlap != (contact->separation < 0))
+        return "overlap and contact differ";
+    return contact->pair != k ? "pair index" : wrong;
+}
+
+void count_pair(struct tally *tally, double gap, double bound, const struct fractions *errors) {
+    tally->pairs++;
+    tally->colliding += gap < 0;
+    tally->inside_band += fabs(gap) <= bound;
+    tally->worst.separation = fmax(tally->worst.separation, errors->separation);
+    tally->worst.normal = fmax(tally->worst.normal, errors->normal);
+    tally->worst.point = fmax(tally->worst.point, errors->point);
+}
+
+/* ------------------------------------------------------------------------------------------------ manifolds */
+
+const double manifold_bounds = 4;
+
+static bool same_radius(double expected, double found) {
+    return expected == found || fabs(expected - found) <= 1e-6 * expected;
+}
+
+/* Point i of a manifold against one of the reference; NULL, or what is wrong. */
+static const char *check_manifold_point(const struct reference_point *right, const narc_manifold_point *point,
+                                        double bound, double *worst) {
+    const double off = hypot((double)point->x - right->x, (double)point->y - right->y);
+    const double error = fmax(off, fabs((double)point->separation - right->separation));
+    *worst = fmax(*worst, error / bound);
+    if (!(error <= bound))
+        return "point or separation";
+    return point->feature != right->feature ? "feature" : NULL;
+}
+
+/* Radii are those of the deepest point; of a stretch either end may be it. */
+static bool has_radii(const struct reference_manifold *right, const narc_manifold *m, const narc_contact *contact) {
+    for (size_t i = 0; i < m->count; i++) {
+        const bool deepest = right->stretch ? m->point[i].separation == contact->separation : i == right->deepest;
+        if (deepest && same_radius(right->point[i].radius_a, (double)m->radius_a) &&
+            same_radius(right->point[i].radius_b, (double)m->radius_b))
+            return true;
+    }
+    return false;
+}
+
+/* How far a contact's normal may be from the one that reaches were computed from, in radians: a dozen roundings of a
+ * float for square root, division and two rotations. */
+static const double normal_doubt = 1e-6;
+
+/* Is that how far the normal may turn on what touches, clockwise and counter-clockwise? `sign`: 1 of A, -1 of B. */
+static bool is_reach(const struct reference_body *body, unsigned feature, double x, double y, double sign,
+                     const uint16_t reach[2]) {
+    if (feature & NARC_FEATURE_EDGE)
+        return reach[0] == 0 && reach[1] == 0;
+    if (body->count == 1)
+        return reach[0] == NARC_REACH_ONE && reach[1] == NARC_REACH_ONE;
+    const narc_arc *arc = &body->arcs[feature];
+    const double angle = atan2(sign * y, sign * x) - atan2(body->sine, body->cosine);
+    for (size_t i = 0; i < 2; i++) {
+        double turn = remainder(i ? arc->end - angle : angle - arc->start, 2 * PI);
+        turn = turn < -PI / 2 ? turn + 2 * PI : turn; /* half a turn, and a rounding */
+        const double right = NARC_REACH_ONE * sin(fmin(fmax(turn, 0), PI / 2)), doubt = NARC_REACH_ONE * normal_doubt;
+        if (reach[i] < right - 1 - doubt || reach[i] > right + doubt)
+            return false;
+    }
+    return true;
+}
+
+/* A manifold found with an infinite margin against the contact and the reference. */
+const char *check_manifold(const struct reference_body *a, const struct reference_body *b, const narc_contact *found,
+                           const narc_manifold *m, struct manifold_tally *tally) {
+    const struct exact_contact contact = {(double)found->separation, (double)found->normal_x, (double)found->normal_y,
+                                          (double)found->point_x,    (double)found->point_y,  arc_of_a(found->feature),
+                                          arc_of_b(found->feature)};
+    const struct reference_manifold right = reference_find_manifold(a, b, &contact, (double)NARC_FLAT_ANGLE);
+    const double bound = manifold_bounds * separation_bound(a, b);
+    if (m->count < 1 || m->count > 2)
+        return "number of points";
+    if (memcmp(&m->normal_x, &found->normal_x, 2 * sizeof(float)) != 0)
+        return "normal";
+    /* One of the points is the contact, bit for bit; nothing is deeper. */
+    bool exact = false, exact_place = false;
+    for (size_t i = 0; i < m->count; i++) {
+        const narc_manifold_point *point = &m->point[i];
+        const bool same = memcmp(&point->separation, &found->separation, sizeof(float)) == 0;
+        exact = exact || same;
+        exact_place = exact_place || (same && memcmp(&point->x, &found->point_x, 2 * sizeof(float)) == 0);
+        if (point->separation < found->separation)
+            return "a point deeper than the contact";
+    }
+    if (m->count == 2 && m->point[0].feature == m->point[1].feature)
+        return "id of two points";
+    if (!exact)
+        return "the deepest separation";
+    if (m->count == 1 && memcmp(&m->radius_a, &found->radius_a, 2 * sizeof(float)) != 0)
+        return "radius, of contact and manifold";
+    if (!is_reach(a, found->feature & 0xff, contact.normal_x, contact.normal_y, 1, m->reach_a) ||
+        !is_reach(b, found->feature >> 8, contact.normal_x, contact.normal_y, -1, m->reach_b))
+        return "reach";
+    tally->pairs++;
+    tally->two += m->count == 2;
+    if (right.doubtful) {
+        tally->doubtful++;
+        return NULL;
+    }
+    if (m->count != right.count)
+        return "number of points";
+    tally->stretches += right.stretch;
+    if (!exact_place && !right.stretch)
+        return "the deepest place";
+    /* What is certain but for the radii is which features; of a stretch, not which end is deeper. */
+    for (size_t i = 0; i < m->count; i++) {
+        struct reference_point point = right.point[i];
+        if (right.stretch)
+            point.separation = fmax(point.separation, contact.separation);
+        const char *wrong = check_manifold_point(&point, &m->point[i], bound, &tally->worst);
+        if (wrong && !(right.doubtful_radius && strcmp(wrong, "feature") == 0 && m->count == 1))
+            return wrong;
+    }
+    return right.doubtful_radius || has_radii(&right, m, found) ? NULL : "radius";
+}
+
+/* ------------------------------------------------------------------------------------------------ what is told */
+
 static void print_body(const char *name, const struct reference_body *body) {
     print_error("  %s: x %a, y %a, cosine %a, sine %a, scale %a\n", name, body->x, body->y, body->cosine, body->sine,
                 body->scale);
@@ -130,4 +261,14 @@ static void print_body(const char *name, const struct reference_body *body) {
 void print_pair(const struct reference_body *a, const struct reference_body *b) {
     print_body("A", a);
     print_body("B", b);
+}
+
+void print_answer(const struct reference_body *a, const struct reference_body *b, double gap, bool overlap,
+                  const narc_contact *contact) {
+    print_error("  exact gap %.9g, bound %.3g; answer: overlap %d, separation %.9g, normal (%.9g, %.9g), point (%.9g, "
+                "%.9g), arcs %d and %d\n",
+                gap, separation_bound(a, b), overlap, (double)contact->separation, (double)contact->normal_x,
+                (double)contact->normal_y, (double)contact->point_x, (double)contact->point_y,
+                arc_of_a(contact->feature), arc_of_b(contact->feature));
+    print_pair(a, b);
 }

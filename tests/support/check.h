@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * check.h - is a contact right? Compared with the reference, within the documented error bound.
+ * check.h - are contacts and manifolds right? Compared with the references, within the documented error bound.
  */
 #ifndef NARC_TEST_CHECK_H
 #define NARC_TEST_CHECK_H
 
 #include "scene.h"
+
+/* Prints a pair so that it can be put into a test of its own. */
+void print_pair(const struct reference_body *a, const struct reference_body *b);
 
 /* Errors as fractions of what is allowed. */
 struct fractions {
@@ -20,7 +23,33 @@ double separation_bound(const struct reference_body *a, const struct reference_b
 const char *check_contact(const struct reference_body *a, const struct reference_body *b, double gap,
                           const narc_contact *contact, struct fractions *worst);
 
-/* Prints a pair so that it can be put into a test of its own. */
-void print_pair(const struct reference_body *a, const struct reference_body *b);
+/* The same of pair `k` of a batch, which must be what its row tells, and with whether the pair's overlap is told. */
+const char *check_answer(const struct reference_body *a, const struct reference_body *b, double gap, size_t k,
+                         bool overlap, const narc_contact *contact, struct fractions *worst);
+void print_answer(const struct reference_body *a, const struct reference_body *b, double gap, bool overlap,
+                  const narc_contact *contact);
+
+/* Pairs of a kind: how many collide, how many are too near to touching to be sure, and the largest errors. */
+struct tally {
+    size_t pairs, colliding, inside_band;
+    struct fractions worst;
+};
+void count_pair(struct tally *tally, double gap, double bound, const struct fractions *errors);
+
+/* A point of a manifold and its separation may be off by that many bounds of a separation: both edges' ends, a rotated
+ * normal, and the slope of an edge at the flat angle. */
+extern const double manifold_bounds;
+
+/* Of manifolds: `doubtful` ones have choices within rounding, so that the contact in them is all that is certain. `worst`
+ * is the largest error of a point as a fraction of what is allowed. */
+struct manifold_tally {
+    size_t pairs, two, stretches, doubtful;
+    double worst;
+};
+
+/* A manifold found with an infinite margin against the pair's contact, found so too, and the reference. NULL, or what is
+ * wrong. */
+const char *check_manifold(const struct reference_body *a, const struct reference_body *b, const narc_contact *found,
+                           const narc_manifold *m, struct manifold_tally *tally);
 
 #endif

@@ -107,7 +107,7 @@ static void add_touches(struct place *place) {
     struct reference_body a = pose_shape(&place->scene->shapes[place->a.shape], &place->a);
     struct reference_body b = pose_shape(&place->scene->shapes[place->b.shape], &place->b);
     a.x = a.y = 0;
-    const struct reference_gap found = reference_find_gap(&a, &b);
+    const struct reference_gap found = reference_solve_gap(&a, &b);
     for (size_t k = 0; k < HARD_BODIES / 2 - 5; k++) {
         const double way = place->size * series_item(k, 1e-8, 3.0) - found.gap;
         place->b.x = b.x + way * found.normal_x;

@@ -16,7 +16,8 @@ static const double angle_doubt = 1e-5;
 /* Is n the normal of a junction (PARALLEL in kernels/base/contact_point.inl, 2^-20)? Yes below, perhaps between. */
 static const double parallel_certain = 4e-7, parallel_doubt = 2e-6;
 
-/* Edges above the larger one, relative to the reach, are edges; below the smaller one they are rounding. */
+/* Edges above the larger one, relative to the pair's reach, are edges; below the smaller one, relative to the body's own
+ * extent, they are rounding. */
 static const double edge_doubt_low = 1e-8, edge_doubt_high = 1e-4;
 
 struct end {
@@ -53,6 +54,7 @@ static struct side look_at(const struct frame *frame, const struct reference_bod
     const size_t count = body->count;
     const double turned = atan2(sign * frame->normal_y, sign * frame->normal_x) - atan2(body->sine, body->cosine);
     struct side side = {.touching_radius = body->scale * body->arcs[arc].radius, .touching_feature = (unsigned)arc};
+    const double least_edge = edge_doubt_low * reference_extent(body);
     double angle[2], length[2];
     struct end start[2], end[2];
     for (size_t k = 0; k < 2; k++) { /* the edge before the arc, and the one after it */
@@ -68,7 +70,7 @@ static struct side look_at(const struct frame *frame, const struct reference_bod
     }
     bool is_edge[2];
     for (size_t k = 0; k < 2; k++) {
-        is_edge[k] = count > 1 && length[k] > edge_doubt_low * reach;
+        is_edge[k] = count > 1 && length[k] > least_edge;
         side.doubtful = side.doubtful || (is_edge[k] && length[k] < edge_doubt_high * reach) ||
                         (is_edge[k] && fabs(angle[k] - flat_angle) < angle_doubt);
         side.doubtful_parallel =
@@ -86,7 +88,7 @@ static struct side look_at(const struct frame *frame, const struct reference_bod
     side.high_arc = (unsigned)(sign > 0 ? side.number : (side.number + count - 1) % count);
     side.parallel = side.has_edge && angle[chosen] < parallel_doubt;
     for (size_t k = 0; k < 2; k++) {
-        if (count > 1 && length[k] > edge_doubt_low * reach && angle[k] < parallel_doubt) {
+        if (is_edge[k] && angle[k] < parallel_doubt) {
             side.touching_feature = (unsigned)((arc + k) % count) | NARC_FEATURE_EDGE;
             side.touching_radius = INFINITY;
         }
@@ -94,9 +96,9 @@ static struct side look_at(const struct frame *frame, const struct reference_bod
     return side;
 }
 
-/* Has a body no edges? */
-static bool is_smooth(const struct reference_body *body) {
-    const double reach = reference_extent(body) / body->scale;
+/* The longest edge of a body, as a part of its extent. */
+static double longest_edge(const struct reference_body *body) {
+    const double extent = reference_extent(body) / body->scale;
     double length = 0;
     for (size_t k = 0; k < body->count; k++) {
         const narc_arc *before = &body->arcs[(k + body->count - 1) % body->count], *after = &body->arcs[k];
@@ -104,8 +106,10 @@ static bool is_smooth(const struct reference_body *body) {
         length = fmax(length, hypot(after->center_x - before->center_x + radii * c,
                                     after->center_y - before->center_y + radii * s));
     }
-    return body->count == 1 || length < edge_doubt_high * reach;
+    return body->count == 1 ? 0 : length / extent;
 }
+
+static bool is_edge_doubtful(double length) { return length > edge_doubt_low && length < edge_doubt_high; }
 
 /* What of a body lies at t, at the low or the high end of its edge. */
 static unsigned feature_at(const struct side *side, double t, bool low, double doubt, bool *doubtful) {
@@ -116,8 +120,6 @@ static unsigned feature_at(const struct side *side, double t, bool low, double d
     return low ? side->low_arc : side->high_arc;
 }
 
-static bool is_nearer_low(const struct side *side, double t) { return fabs(t - side->low.t) <= fabs(side->high.t - t); }
-
 /* What of a body lies at the only point of two: an edge that touches does so at the end where the other one's corner
  * has its own edge beside it. */
 static unsigned feature_of_one(const struct side *side, const struct side *other, double t, double doubt,
@@ -125,7 +127,9 @@ static unsigned feature_of_one(const struct side *side, const struct side *other
     if (!side->parallel)
         return side->touching_feature;
     const struct side *corner = other->has_edge && !other->parallel ? other : side;
-    return feature_at(side, t, is_nearer_low(corner, t), doubt, doubtful);
+    const double nearer = fabs(corner->high.t - t) - fabs(t - corner->low.t);
+    *doubtful = *doubtful || fabs(nearer) < doubt;
+    return feature_at(side, t, nearer >= 0, doubt, doubtful);
 }
 
 static double height_at(const struct side *side, double t) {
@@ -163,18 +167,21 @@ struct reference_manifold reference_find_manifold(const struct reference_body *a
                                    .doubtful_radius = side_a.doubtful_parallel || side_b.doubtful_parallel};
     const double deepest = frame.normal_x * contact->point_y - frame.normal_y * contact->point_x;
     unsigned touching_a = side_a.touching_feature, touching_b = side_b.touching_feature;
-    if (!is_smooth(a) && !is_smooth(b)) {
-        touching_a = feature_of_one(&side_a, &side_b, deepest, doubt, &m.doubtful);
-        touching_b = feature_of_one(&side_b, &side_a, deepest, doubt, &m.doubtful);
+    bool doubtful_if_one = false;
+    const double edge_a = longest_edge(a), edge_b = longest_edge(b);
+    m.doubtful = m.doubtful || is_edge_doubtful(edge_a) || is_edge_doubtful(edge_b); /* has it any edges? */
+    if (edge_a >= edge_doubt_high && edge_b >= edge_doubt_high) {
+        touching_a = feature_of_one(&side_a, &side_b, deepest, doubt, &doubtful_if_one);
+        touching_b = feature_of_one(&side_b, &side_a, deepest, doubt, &doubtful_if_one);
     }
     const struct reference_point exact = {contact->separation,          contact->point_x,       contact->point_y,
                                           touching_a | touching_b << 8, side_a.touching_radius, side_b.touching_radius};
     m.point[0] = exact;
     const double low = fmax(side_a.low.t, side_b.low.t), high = fmin(side_a.high.t, side_b.high.t);
-    if (!side_a.offered || !side_b.offered)
-        return m;
-    m.doubtful = m.doubtful || fabs(high - low) < doubt;
-    if (high <= low)
+    const bool two = side_a.offered && side_b.offered && high > low;
+    m.doubtful =
+        m.doubtful || (side_a.offered && side_b.offered && fabs(high - low) < doubt) || (!two && doubtful_if_one);
+    if (!two)
         return m;
     m.count = 2;
     m.stretch = side_a.parallel && side_b.parallel;

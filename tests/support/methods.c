@@ -13,7 +13,7 @@
 
 /* ------------------------------------------------------------------------------------------------ shapes and pairs */
 
-enum { KINDS = FAMILY_COUNT + HARD_COUNT, SHAPES_PER_KIND = 4 };
+enum { SHAPES_PER_KIND = 4 };
 
 /* The kinds that have polygons: all numbers below FAMILY_COUNT are families, the rest are hard ones. */
 static const size_t polygon_kinds[] = {FAMILY_POLYGON,
@@ -23,11 +23,6 @@ static const size_t polygon_kinds[] = {FAMILY_POLYGON,
                                        FAMILY_COUNT + HARD_STACK,
                                        FAMILY_COUNT + HARD_LONG};
 enum { POLYGON_KINDS = sizeof(polygon_kinds) / sizeof(polygon_kinds[0]) };
-
-static const char *kind_name(size_t kind) {
-    return kind < FAMILY_COUNT ? family_name((enum family)kind)
-                               : hard_family_name((enum hard_family)(kind - FAMILY_COUNT));
-}
 
 static bool is_polygon(const struct shape *shape) {
     bool polygon = true;
@@ -39,8 +34,7 @@ static bool is_polygon(const struct shape *shape) {
 static struct shape make_kind(struct test_random *random, size_t kind, bool polygon) {
     struct shape shape;
     do {
-        shape = kind < FAMILY_COUNT ? make_shape(random, (enum family)kind)
-                                    : make_hard_shape(random, (enum hard_family)(kind - FAMILY_COUNT));
+        shape = make_any_shape(random, kind);
     } while (polygon && !is_polygon(&shape));
     return shape;
 }
@@ -87,8 +81,8 @@ static void find_exact(struct corpus *corpus, size_t k) {
 /* Names for the pairs from number `first` on. */
 static void name_pairs(struct corpus *corpus, size_t first, size_t kind_a, size_t kind_b, const char *place) {
     for (size_t k = first; k < corpus->scene.pair_count; k++) {
-        corpus->pairs[k].kind_a = kind_name(kind_a);
-        corpus->pairs[k].kind_b = kind_name(kind_b);
+        corpus->pairs[k].kind_a = kind_a;
+        corpus->pairs[k].kind_b = kind_b;
         corpus->pairs[k].place = place;
     }
 }
@@ -102,7 +96,7 @@ static size_t spread(size_t i, size_t count, size_t all) { return count < all ? 
 
 struct corpus make_corpus(const char *name, narc_precision precision, double rounds, bool polygons) {
     struct test_random random = test_random_named(name);
-    const size_t kinds = polygons ? POLYGON_KINDS : KINDS;
+    const size_t kinds = polygons ? POLYGON_KINDS : ALL_FAMILIES;
     const size_t places = kinds * kinds * PLACE_COUNT, hard_places = kinds * HARD_PLACES;
     const size_t placed = test_trials((size_t)(rounds * (double)places)),
                  hard = test_trials((size_t)(rounds * (double)hard_places));
@@ -110,7 +104,7 @@ struct corpus make_corpus(const char *name, narc_precision precision, double rou
     struct corpus corpus = {.scene = create_scene(precision, kinds * SHAPES_PER_KIND, 2 * most, most),
                             .pairs = calloc(most, sizeof(struct exact_pair))};
     assert_non_null(corpus.pairs);
-    size_t kind[KINDS];
+    size_t kind[ALL_FAMILIES];
     for (size_t k = 0; k < kinds; k++) {
         kind[k] = polygons ? polygon_kinds[k] : k;
         for (size_t i = 0; i < SHAPES_PER_KIND; i++) {
@@ -151,8 +145,8 @@ void print_corpus_pair(const struct corpus *corpus, size_t k) {
     const struct exact_pair *pair = &corpus->pairs[k];
     const struct scene *scene = &corpus->scene;
     print_error("  pair %zu: %s - %s, %s; exact gap %.9g, normal (%.9g, %.9g), bound %.3g, size %.6g, reach %.6g\n", k,
-                pair->kind_a, pair->kind_b, pair->place, pair->gap, pair->normal_x, pair->normal_y, pair->bound,
-                pair->size, pair->reach);
+                any_family_name(pair->kind_a), any_family_name(pair->kind_b), pair->place, pair->gap, pair->normal_x,
+                pair->normal_y, pair->bound, pair->size, pair->reach);
     const struct reference_body a = scene_reference(scene, scene->pairs[k].a),
                                 b = scene_reference(scene, scene->pairs[k].b);
     print_pair(&a, &b);

@@ -15,9 +15,10 @@ struct exact_pair {
     struct reference_body a, b;
     double gap, normal_x, normal_y;
     double reach;
-    double size;  /* the sum of both bounding radii */
-    double bound; /* of a separation's error: the documented one, and by how much the arcs fail to join */
-    const char *kind_a, *kind_b, *place;
+    double size;           /* the sum of both bounding radii */
+    double bound;          /* of a separation's error: the documented one, and by how much the arcs fail to join */
+    size_t kind_a, kind_b; /* see make_any_shape() */
+    const char *place;
 };
 
 struct corpus {

@@ -59,7 +59,7 @@ void place_at_gap(const struct shape *a, const struct shape *b, double direction
     for (int step = 0; step < max_steps; step++) {
         reference_b.x = reference_a.x + from.x - to.x + way * x;
         reference_b.y = reference_a.y + from.y - to.y + way * y;
-        struct reference_gap found = reference_find_gap(&reference_a, &reference_b);
+        struct reference_gap found = reference_solve_gap(&reference_a, &reference_b);
         double slope = found.normal_x * x + found.normal_y * y;
         if (slope < least_slope || fabs(found.gap - target) < 1e-3 * rounding * size)
             break;

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * reference.c - the separation by searching all directions.
+ * reference.c - the separation by searching all directions, and piece by piece.
  */
 #include "reference.h"
 
 #include <assert.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 static const double full_turn = 6.283185307179586476925;
@@ -136,6 +137,67 @@ struct reference_gap reference_find_gap(const struct reference_body *a, const st
         }
     }
     return (struct reference_gap){best_gap, cos(best_angle), sin(best_angle)};
+}
+
+/* Where the pieces of g begin: at A's junctions and opposite to B's, in the order of their angles. */
+struct turn {
+    double angle;
+    size_t arc;
+    bool of_b;
+};
+
+/* Both lists are in that order already, but for where they begin. */
+static size_t merge_turns(const struct posed_pair *pair, struct turn turns[2 * NARC_MAX_ARCS + 1]) {
+    const struct posed *const shape[2] = {&pair->a, &pair->b};
+    struct turn next[2];
+    size_t left[2], count = 0;
+    for (int k = 0; k < 2; k++) {
+        next[k] = (struct turn){INFINITY, 0, k};
+        for (size_t i = 0; i < shape[k]->count; i++) {
+            const double angle = wrap(shape[k]->start[i] + k * full_turn / 2);
+            if (angle < next[k].angle)
+                next[k] = (struct turn){angle, i, k};
+        }
+        left[k] = shape[k]->count;
+    }
+    while (left[0] + left[1] > 0) {
+        const int k = left[0] == 0 || (left[1] > 0 && next[1].angle < next[0].angle);
+        turns[count++] = next[k];
+        next[k].arc = (next[k].arc + 1) % shape[k]->count;
+        next[k].angle = wrap(shape[k]->start[next[k].arc] + k * full_turn / 2);
+        left[k]--;
+    }
+    turns[count] = turns[0];
+    turns[count].angle += full_turn;
+    return count;
+}
+
+struct reference_gap reference_solve_gap(const struct reference_body *a, const struct reference_body *b) {
+    const struct posed_pair pair = pose_pair(a, b);
+    struct turn turns[2 * NARC_MAX_ARCS + 1];
+    const size_t count = merge_turns(&pair, turns);
+    struct reference_gap best = {.gap = -INFINITY};
+    /* What holds before the first turn began last. */
+    size_t i = 0, j = 0;
+    for (size_t k = 0; k < count; k++)
+        *(turns[k].of_b ? &j : &i) = turns[k].arc;
+    for (size_t k = 0; k < count; k++) {
+        *(turns[k].of_b ? &j : &i) = turns[k].arc;
+        const double u_x = pair.offset_x + pair.b.center_x[j] - pair.a.center_x[i];
+        const double u_y = pair.offset_y + pair.b.center_y[j] - pair.a.center_y[i];
+        const double radii = pair.a.radius[i] + pair.b.radius[j], length = sqrt(u_x * u_x + u_y * u_y);
+        if (length - radii <= best.gap) /* nowhere more */
+            continue;
+        double angle = turns[k].angle, x = cos(angle), y = sin(angle), gap = u_x * x + u_y * y - radii;
+        if (wrap(atan2(u_y, u_x) - angle) < turns[k + 1].angle - angle) {
+            x = u_x / length;
+            y = u_y / length;
+            gap = length - radii;
+        }
+        if (gap > best.gap)
+            best = (struct reference_gap){gap, x, y};
+    }
+    return best;
 }
 
 double reference_gap_along(const struct reference_body *a, const struct reference_body *b, double x, double y) {

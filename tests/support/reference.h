@@ -28,6 +28,11 @@ struct reference_gap {
 /* The separation, to about 1e-14 of the sizes, and a direction that has it. */
 struct reference_gap reference_find_gap(const struct reference_body *a, const struct reference_body *b);
 
+/* The same in a tenth of the time, for millions of pairs: between neighbouring junctions, those of B turned around, g is
+ * |u| cos(angle to u) minus two radii, u from one centre to the other. The test `reference` and the soak compare it with
+ * the search. */
+struct reference_gap reference_solve_gap(const struct reference_body *a, const struct reference_body *b);
+
 /* g in the direction of a vector of any length. */
 double reference_gap_along(const struct reference_body *a, const struct reference_body *b, double x, double y);
 

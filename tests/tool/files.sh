@@ -110,12 +110,18 @@ if [ -c /dev/full ]; then
         --picture new.png
     "$narc" collide $known --out new.csv --picture new.png >/dev/full 2>err.txt
     check "full disk for the report" test $? -eq 2 -a -z "$(find . -name 'new*' -o -name '.narc-*')"
-    "$narc" --help >/dev/full 2>err.txt
-    check "full standard output" test $? -eq 2
+    printf 'x,y,motion_x,motion_y\n-5,0,10,0\n' >rays.csv
+    fails "full disk, hits" "narc: /dev/full: No space left on device" cast $known --rays rays.csv --out /dev/full
+    fails "full disk, scene" "narc: /dev/full: No space left on device" scene $five --density 1 --seed 1 --out /dev/full
+    for command in --help --version info "collide --help" "collide $known --out -" "cast $known --rays rays.csv" \
+        "scene $five --density 1 --seed 1" "fit triangle.csv --arcs 3"; do
+        "$narc" $command >/dev/full 2>err.txt
+        check "full standard output, $command" test $? -eq 2
+    done
 fi
 # A command waits for a reader of its picture, while its contacts have a temporary file: signals leave no such file.
 mkfifo stuck.png
-signals="HUP INT QUIT ALRM TERM XCPU"
+signals="HUP INT QUIT ALRM TERM XCPU ABRT"
 [ "$system" != Windows ] || signals= # wine ends by them
 for signal in $signals; do
     env --default-signal=$signal "$narc" collide $known --out new.csv --picture stuck.png >out.txt 2>err.txt &

@@ -55,6 +55,8 @@ void discard_outputs(void) {
 
 void protect_input(const char *path) {
     char *target = find_target(path);
+    if (!target && errno == ENOMEM)
+        fail("%s: %s", path, strerror(errno));
     if (target) {
         inputs = grow(inputs, &input_capacity, input_count + 1, sizeof *inputs);
         inputs[input_count++] = target;

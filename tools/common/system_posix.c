@@ -80,8 +80,8 @@ static void on_signal(int number) {
 }
 
 void watch_signals(void (*clean_up)(void)) {
-    static const int numbers[] = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE,   SIGQUIT, SIGALRM,
-                                  SIGXCPU, SIGUSR1, SIGUSR2, SIGVTALRM, SIGPROF};
+    static const int numbers[] = {SIGINT,  SIGTERM, SIGHUP,    SIGPIPE, SIGQUIT, SIGALRM, SIGXCPU,
+                                  SIGUSR1, SIGUSR2, SIGVTALRM, SIGPROF, SIGABRT, SIGTRAP};
     at_end = clean_up;
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         if (signal(numbers[i], on_signal) == SIG_IGN)

@@ -98,6 +98,11 @@ for output in vtk.vtk grains.csv; do
     grep -q "^dem: ${output%.*}-000000.${output#*.}: File too large$" err.txt || miss "a full disk is not told: $(cat err.txt)"
     [ -z "$(find . -name '.narc-*' -o -name "${output%.*}-0*")" ] || miss "a file stays on a full disk: $output"
 done
+echo old >full.restart
+sed 's/"csv": "out.csv", "restart": "out.restart"/"restart": "full.restart"/' first.json >full.json
+(ulimit -f 1 && exec "$dem" full.json --threads 1) >/dev/null 2>err.txt && miss "a restart on a full disk"
+grep -q "^dem: full.restart: " err.txt || miss "a restart on a full disk is not told: $(cat err.txt)"
+{ [ "$(cat full.restart)" = old ] && [ -z "$(find . -name '.narc-*')" ]; } || miss "a restart is lost on a full disk"
 # At a restart outputs may have other names, and files of theirs may be gone: they begin anew.
 "$dem" first.json --threads 1 >/dev/null 2>err.txt || miss "the first stage again"
 cp out.restart first.restart

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * everywhere.c - one question to every instruction set.
+ */
+#include "everywhere.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "narc.h"
+#include "scene.h"
+
+static void run_backwards(void *context, unsigned count, void (*task)(void *argument, unsigned index), void *argument) {
+    (void)context;
+    while (count-- > 0)
+        task(argument, count);
+}
+
+static void compare(const unsigned char *first, const unsigned char *rows, size_t size, const char *isa,
+                    struct difference *out) {
+    if (out->isa || memcmp(first, rows, size) == 0)
+        return;
+    while (*first++ == *rows++)
+        out->at++;
+    out->isa = isa;
+}
+
+void *ask_everywhere(void (*ask)(const void *question, const narc_workers *workers, void *out_rows),
+                     const void *question, size_t size, struct difference *out) {
+    static const narc_workers backwards = {NULL, 3, run_backwards};
+    struct difference found = {NULL, 0};
+    void *first = NULL;
+    for (size_t k = 0; narc_isa_name(k); k++) {
+        if (!narc_isa_supported(narc_isa_name(k)))
+            continue;
+        test_use_isa(narc_isa_name(k));
+        void *const rows = make_junk(size);
+        ask(question, first ? &backwards : NULL, rows);
+        if (first) {
+            compare(first, rows, size, narc_isa_name(k), &found);
+            free(rows);
+        } else {
+            first = rows;
+        }
+    }
+    if (out)
+        *out = found;
+    else if (found.isa)
+        fail_msg("%s answers otherwise than %s at byte %zu", found.isa, narc_isa_name(0), found.at);
+    return first;
+}
