@@ -41,7 +41,8 @@ bool replace_file(const char *from, const char *target);
 /* Removes a file, open or not. */
 void remove_file(const char *path);
 
-/* What ends the command from outside, and libraries that give up without memory, call `clean_up` first. A file that grows beyond a limit is an error of writing. */
+/* What ends the command from outside, or from a library that gives up without memory, calls `clean_up` first. A file that
+ * grows beyond a limit is an error of writing. */
 void watch_signals(void (*clean_up)(void));
 
 #endif
