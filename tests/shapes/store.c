@@ -446,6 +446,26 @@ TEST(leaves_room_for_arcs_that_are_apart) {
     }
 }
 
+/* As many shapes as a store takes, and as many uses of one, are more than a test can add: the counts are set. */
+TEST(tells_that_it_is_full) {
+    narc_shapes *shapes = empty_store();
+    const struct shape circle = circle_of(1), other = circle_of(2);
+    uint32_t index = 7;
+    narc_error error;
+    store_shape(shapes, circle);
+    shapes->entries[0].uses = UINT32_MAX;
+    expect_error(narc_add_shape(shapes, circle.arcs, 1, &index, &error), NARC_ERROR_COUNT, &error,
+                 "shape 0 is used 4294967295 times, which is most");
+    shapes->entries[0].uses = 1;
+    const size_t all = shapes->count;
+    shapes->count = NARC_MAX_SHAPES;
+    expect_error(narc_add_shape(shapes, other.arcs, 1, &index, &error), NARC_ERROR_COUNT, &error,
+                 "the store is full, it has 2147483647 shapes");
+    shapes->count = all;
+    assert_int_equal(index, 7);
+    narc_destroy_shapes(shapes);
+}
+
 TEST(refuses_bad_arguments) {
     narc_shapes *shapes = NULL;
     narc_error error;
