@@ -758,6 +758,39 @@ TEST(notices_all_that_boxes_are_made_from) {
     narc_destroy_shapes(shapes);
 }
 
+/* Bodies that move by the last bit of a number, with a skin of some of them. */
+TEST(notices_the_last_bit) {
+    const narc_pair_options options = {.skin = 0x1p-22f};
+    narc_shapes *shapes = empty_store();
+    store_shape(shapes, circle_of(0.5));
+    for (int number = 0; number < 4; number++) {
+        narc_broad_phase *broad = create_broad_phase(NULL), *other = create_broad_phase(NULL);
+        disc discs[] = {{1, 1, 0.6f, 0.8f, 0, 0, 0}, {2, 2, 1, 0, 0, 0, 0}};
+        double x[] = {1, 2}, y[] = {1, 2};
+        narc_bodies bodies = view(discs, 2);
+        size_t renewed = 0;
+        if (number >= 2) {
+            bodies.x = NARC_POSITION_ARRAY(x);
+            bodies.y = NARC_POSITION_ARRAY(y);
+        }
+        for (int step = 0; step < 40; step++) {
+            narc_box boxes[2];
+            assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, boxes, NULL), NARC_OK);
+            const narc_pair_list *const list = update(broad, shapes, &bodies, &options);
+            check_equal_lists(list, update_boxes(other, boxes, 2, &options));
+            renewed += !list->kept;
+            float *const position = number % 2 ? &discs[0].y : &discs[0].x;
+            *position = nextafterf(*position, 2);
+            x[0] = number == 2 ? (double)discs[0].x : 1;
+            y[0] = number == 3 ? (double)discs[0].y : 1;
+        }
+        assert_in_range(renewed, 4, 36);
+        narc_destroy_broad_phase(broad);
+        narc_destroy_broad_phase(other);
+    }
+    narc_destroy_shapes(shapes);
+}
+
 /* A position of 3 in single precision has the bits of one near 0 in double precision. */
 TEST(notices_the_precision_of_positions) {
     narc_broad_phase *broad = create_broad_phase(NULL);
