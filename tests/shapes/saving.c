@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "families.h"
+#include "ledger.h"
 #include "narc.h"
 #include "store.h"
 #include "support.h"
@@ -159,6 +160,32 @@ TEST(refuses_bad_arguments) {
     expect_error(narc_load_shapes(NULL, bytes, size, &loaded, &error), NARC_ERROR_FORMAT, &error, "version 1");
     assert_null(loaded);
     assert_int_equal(narc_count_saved_bytes(NULL), START);
+    narc_destroy_shapes(shapes);
+    free(bytes);
+}
+
+/* Whichever allocation of loading fails, nothing is loaded. */
+TEST(loading_survives_failing_allocations) {
+    struct test_random random = test_random_named("loading without memory");
+    narc_shapes *shapes = make_store(&random, 2), *loaded = NULL;
+    size_t size, failures = 0;
+    unsigned char *bytes = save(shapes, &size);
+    narc_error error;
+    for (;; failures++) {
+        struct ledger ledger = {.limited = true, .left = failures};
+        const narc_allocator allocator = ledger_allocator(&ledger);
+        const narc_status status = narc_load_shapes(&allocator, bytes, size, &loaded, &error);
+        if (status == NARC_OK) {
+            expect_same_store(shapes, loaded);
+            narc_destroy_shapes(loaded);
+            assert_int_equal(ledger.live, 0);
+            break;
+        }
+        expect_error(status, NARC_ERROR_MEMORY, &error, "");
+        assert_null(loaded);
+        assert_int_equal(ledger.live, 0);
+    }
+    assert_true(failures >= 3);
     narc_destroy_shapes(shapes);
     free(bytes);
 }

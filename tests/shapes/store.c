@@ -466,6 +466,17 @@ TEST(tells_that_it_is_full) {
     narc_destroy_shapes(shapes);
 }
 
+/* The largest circle has room for rounding about its origin, but not a radius away from it. */
+TEST(refuses_circles_without_room) {
+    narc_shapes *shapes = empty_store();
+    narc_arc circle = {0, 0, NARC_MAX_SIZE, -PI, PI};
+    narc_error error;
+    expect_ok(narc_add_shape(shapes, &circle, 1, NULL, &error), &error);
+    circle.center_x = NARC_MAX_SIZE;
+    expect_error(narc_add_shape(shapes, &circle, 1, NULL, &error), NARC_ERROR_SIZE, &error, "with room for rounding");
+    narc_destroy_shapes(shapes);
+}
+
 TEST(refuses_bad_arguments) {
     narc_shapes *shapes = NULL;
     narc_error error;
