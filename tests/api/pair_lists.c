@@ -286,7 +286,7 @@ static void check_step(reference *r, body *bodies, size_t count, bool with_ids, 
         boxes[k] = bodies[k].box;
         kinds[k] = bodies[k].kind;
     }
-    const size_t stride = sizeof *bodies;
+    const ptrdiff_t stride = sizeof *bodies;
     const narc_pair_filter alone = {.kind = {kinds, 1}}, all = {.kind = {&bodies->kind, stride},
                                                                 .category = {&bodies->category, stride},
                                                                 .mask = {&bodies->mask, stride},
@@ -641,7 +641,8 @@ TEST(notices_shapes_that_change) {
 typedef struct placed {
     double x, y;
     float near_x, near_y, cosine, sine, scale;
-    uint32_t shape;
+    uint32_t shape, group;
+    uint8_t kind;
 } placed;
 
 static narc_bodies view_placed(const placed *bodies, size_t count, bool doubles, bool scales) {
@@ -661,7 +662,7 @@ static narc_bodies view_placed(const placed *bodies, size_t count, bool doubles,
 }
 
 static void change_placed(struct test_random *random, placed *one) {
-    switch (random_below(random, 6)) {
+    switch (random_below(random, 8)) {
     case 0:
         one->x += random_between(random, -1, 1);
         one->near_x = (float)one->x;
@@ -682,10 +683,30 @@ static void change_placed(struct test_random *random, placed *one) {
     case 4:
         one->shape = 1 - one->shape;
         break;
+    case 5:
+        one->group = 1 - one->group;
+        break;
+    case 6:
+        one->kind ^= (uint8_t)(1 << random_below(random, 3));
+        break;
     default:
         one->y = one->near_y = 0;
         break;
     }
+}
+
+/* How bodies are filtered: not, by kinds next to each other, by kinds of their own, or by groups too. */
+enum filtered { UNFILTERED, BY_KINDS, BY_OWN_KINDS, BY_GROUPS, WAYS };
+
+static narc_pair_filter filter_placed(const placed *bodies, size_t count, enum filtered way, uint8_t *kinds) {
+    narc_pair_filter filter = {.kind = NARC_COLUMN(bodies, kind)};
+    for (size_t k = 0; k < count; k++)
+        kinds[k] = bodies[k].kind;
+    if (way == BY_KINDS)
+        filter.kind = (narc_byte_column){kinds, 1};
+    if (way == BY_GROUPS)
+        filter.group = NARC_COLUMN(bodies, group);
+    return filter;
 }
 
 /* Boxes of bodies that rest are not computed again: the list is that of boxes that are, whatever changes. */
@@ -696,7 +717,9 @@ TEST(notices_all_that_boxes_are_made_from) {
     narc_shapes *shapes = empty_store();
     placed bodies[COUNT];
     narc_box boxes[COUNT];
+    uint8_t kinds[COUNT];
     float margin = 0.25f, skin_now = 0.25f;
+    enum filtered way = UNFILTERED;
     bool doubles = true, scales = true;
     size_t kept = 0, count = COUNT;
     narc_arc capsule[NARC_MAX_ARCS];
@@ -706,15 +729,18 @@ TEST(notices_all_that_boxes_are_made_from) {
     assert_int_equal(narc_add_shape(shapes, capsule, arc_count, NULL, NULL), NARC_OK);
     for (size_t k = 0; k < COUNT; k++) {
         const float x = (float)random_between(&random, 0, 16), y = (float)random_between(&random, 0, 16);
-        bodies[k] = (placed){(double)x, (double)y, x, y, 1, 0, 1, (uint32_t)k % 2};
+        bodies[k] = (placed){(double)x, (double)y, x, y, 1, 0, 1, (uint32_t)k % 2, 0, 0};
     }
     const size_t steps = 40 + test_trials(360);
     for (size_t step = 0; step < steps; step++) {
         const narc_workers workers = narc_openmp_workers(1 + (unsigned)step % 2);
         const narc_bodies view = view_placed(bodies, count, doubles, scales);
         const narc_box_options box_options = {.margin = margin / 2};
-        const narc_pair_options options = {.margin = margin, .skin = skin_now, .workers = &workers},
-                                without = {.skin = skin_now};
+        const narc_pair_filter filter = filter_placed(bodies, count, way, kinds), *const given = way == UNFILTERED
+                                                                                                     ? NULL
+                                                                                                     : &filter;
+        const narc_pair_options options = {.margin = margin, .skin = skin_now, .filter = given, .workers = &workers},
+                                without = {.skin = skin_now, .filter = given};
         assert_int_equal(narc_compute_boxes(shapes, &view, &box_options, boxes, NULL), NARC_OK);
         const narc_pair_list *const list = update(broad, shapes, &view, &options);
         check_equal_lists(list, update_boxes(other, boxes, count, &without));
@@ -747,6 +773,9 @@ TEST(notices_all_that_boxes_are_made_from) {
                 boxes[k].max_x += 1;
             update_boxes(broad, boxes, count, &options);
             update_boxes(other, boxes, count, &options);
+            break;
+        case 7:
+            way = (enum filtered)random_below(&random, WAYS);
             break;
         default:
             break;
