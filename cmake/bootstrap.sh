@@ -15,6 +15,7 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   platforms  the tests on every platform but this one: NEON, 32-bit x86 and ARM, s390x, RISC-V and POWER under qemu,
              WebAssembly in node, Windows under wine; and narc as a subproject of meson
   fuzz       the fuzzing programs of tests/fuzz on their seeds, and on for 60 seconds each, or as many as the option says
+  coverage   which lines of soa, kernels and dispatch the tests run, and which they do not
   bench      the benchmarks beside Box2D, Chipmunk and libccd; tables and plots go to out/. Options are Google
              Benchmark's and those of bench/README.md
   bench-scene  what a scene is asked, beside Box2D, Chipmunk and GEOS; tables go to out/
@@ -419,6 +420,15 @@ fuzz() {
     NARC_FUZZ_SECONDS=$1 NARC_FUZZ_SEED=$2 ${3:-} ctest --preset fuzz || fail "a fuzzing program found something: build/fuzz/tests/fuzz/*-crash-*"
 }
 
+# What the tests of the library run of it, with a tenth of the trials: all lines, without optimisation.
+coverage() {
+    require_packages $test_packages gcovr
+    build coverage all
+    find build/coverage -name '*.gcda' -delete
+    ctest --preset coverage || fail "tests failed in build/coverage"
+    gcovr --root . --object-directory build/coverage --filter 'soa/|kernels/|dispatch/' build/coverage
+}
+
 reference() {
     require_packages doxygen
     rm -rf out/api
@@ -433,6 +443,7 @@ test) test_release ;;
 gate) gate ;;
 platforms) platforms ;;
 fuzz) fuzz "${2:-60}" 0 ;;
+coverage) coverage ;;
 docs) reference ;;
 bench)
     shift
