@@ -31,9 +31,10 @@ static const uint64_t golden_boxes[] = {0x82c50e42c4824bc1u, 0xf33d99eef204246fu
 static const uint64_t golden_methods[] = {0x85810ad0d8fcad45u, 0xde05f3d86d13b145u, 0xb72adc1892a6c4b6u,
                                           0x656376e9cda0e835u, 0x7ec640b6e75a6511u, 0x88b6eccb0495ec6du};
 #ifndef NARC_SMALL
-/* With margins, flat angles and hints. */
+/* With margins, flat angles and hints: of all shapes, then of those with edges. */
 static const uint64_t golden_options[] = {0x7eb0ec61bfb327c5u, 0xf3466e065087098eu, 0x2f1a7d6b0b10e611u,
-                                          0x29e07556c7e1bab8u};
+                                          0x29e07556c7e1bab8u, 0x51340ea22a195ba6u, 0x89ff86af5a47f142u,
+                                          0xa042a9caddcff272u, 0xd450c1a226291e8du};
 /* Contacts, merged manifolds, straight and turning casts, rays, points. */
 static const uint64_t golden_ground[] = {0xc2aee636d08634b3u, 0xb60542b447156425u, 0xa0ed81ebe958773bu,
                                          0x2e40d8578210dec8u, 0x61fd0c6162d066bdu, 0x297755085bdb519du};
@@ -326,13 +327,18 @@ TEST(test_options) {
                                          {.margin = INFINITY, .flat_angle = -1},
                                          {.margin = 1, .flat_angle = 0.0625f, .second_margin = 1}};
     enum { COUNT = sizeof options / sizeof *options };
+    static const uint32_t flat[] = {2, 4, 5, 7}; /* a capsule, boxes, a triangle */
     struct scene scene = make_scene(NARC_FLOAT32);
     const narc_bodies bodies = scene_bodies(&scene);
     const narc_pairs pairs = scene_pairs(&scene);
-    uint64_t hashes[COUNT];
+    uint64_t hashes[2 * COUNT];
     for (size_t k = 0; k < COUNT; k++)
         hashes[k] = hash_hinted(scene.store, &bodies, &pairs, &options[k]);
-    check_hashes("options", hashes, golden_options, COUNT);
+    for (size_t k = 0; k < BODIES; k++)
+        scene.bodies[k].shape = flat[scene.bodies[k].shape % 4];
+    for (size_t k = 0; k < COUNT; k++)
+        hashes[COUNT + k] = hash_hinted(scene.store, &bodies, &pairs, &options[k]);
+    check_hashes("options", hashes, golden_options, 2 * COUNT);
     destroy_scene(&scene);
 }
 #endif
