@@ -344,16 +344,12 @@ static uint64_t choose_mask(struct test_random *random) {
     return kinds_alone || random_below(random, 8) ? UINT64_MAX : (uint64_t)1 << (31 + random_below(random, 4));
 }
 
-static uint32_t choose_group(struct test_random *random) {
-    return kinds_alone || random_below(random, 4) ? 0 : 1 + (uint32_t)random_below(random, 3);
-}
-
 static body random_body(struct test_random *random, size_t side, uint64_t id) {
     return (body){.id = id * 0x9e3779b97f4a7c15u,
                   .category = choose_mask(random),
                   .mask = choose_mask(random),
                   .box = eighths_box(random, side),
-                  .group = choose_group(random),
+                  .group = kinds_alone || random_below(random, 4) ? 0 : 1 + (uint32_t)random_below(random, 3),
                   .kind = random_below(random, 2) ? 0 : (uint8_t)random_below(random, 8)};
 }
 
@@ -379,7 +375,7 @@ static size_t change(struct test_random *random, body *bodies, size_t count, siz
         bodies[k].category = choose_mask(random);
         break;
     case 2:
-        bodies[k].group = choose_group(random);
+        bodies[k].group = kinds_alone ? 0 : (uint32_t)random_below(random, 3);
         break;
     case 3:
         if (skin > 0) /* without one there is no room for rounding */
@@ -966,7 +962,7 @@ TEST(survives_failing_allocations) {
     struct test_random random = test_random_named("failing lists");
     for (size_t k = 0; k < MANY; k++) {
         boxes[k] = eighths_box(&random, 30);
-        moved[k] = k % (MANY / MOVED) ? boxes[k] : (narc_box){0, 0, 30, 30};
+        moved[k] = k % (MANY / MOVED) ? boxes[k] : (narc_box){0, 0, 6, 6};
         ids[k] = random_bits(&random);
         later_ids[k] = k % 3 ? ids[k] : random_bits(&random);
     }

@@ -299,6 +299,39 @@ TEST(test_chains_in_chains) {
     }
 }
 
+/* A box that two arcs of touch a hollow has two rows, as often as it is asked. */
+TEST(test_rows_of_many_pairs) {
+    enum { COUNT = 50 };
+    static narc_contact rows[COUNT * NARC_MAX_ARCS];
+    struct setting *s = calloc(1, sizeof *s);
+    struct turtle t = create_turtle(0, 0, TEST_PI / 2 + 0.9);
+    const uint32_t zero = 0;
+    s->store = empty_store();
+    walk_arc(&t, 2, -1.8);
+    take_turtle(s, &t, false);
+    assert_true(add_chain(s));
+    s->mover = turned_body(0, 1);
+    s->mover.shape = store_shape(s->store, box_of(2, 1, 0.125));
+    s->mover.x = s->arcs[0].center_x;
+    s->mover.y = s->arcs[0].center_y - 1.3;
+    const narc_bodies a = bodies_of(&s->mover, 1), b = bodies_of(s->bodies, s->count);
+    const narc_pairs pairs = {.count = COUNT, .a = {&zero, 0}, .b = {&zero, 0}, .other_bodies = &b};
+    size_t count, own = 0;
+    assert_int_equal(s->count, 1);
+    assert_int_equal(
+        narc_find_contacts(s->store, &a, &pairs, &(narc_query){0}, rows, COUNT * NARC_MAX_ARCS, &count, NULL), NARC_OK);
+    while (own < count && rows[own].pair == 0)
+        own++;
+    assert_true(own >= 2 && count == COUNT * own);
+    for (size_t k = 0; k < count; k++) {
+        assert_int_equal(rows[k].pair, k / own);
+        rows[k].pair = 0;
+        assert_memory_equal(&rows[k], &rows[k % own], sizeof *rows);
+    }
+    narc_destroy_shapes(s->store);
+    free(s);
+}
+
 /* ------------------------------------------------------------------------------------------------ casts */
 
 struct flight {
