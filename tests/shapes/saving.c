@@ -509,6 +509,40 @@ TEST(refuses_forged_shapes) {
     narc_destroy_shapes(shapes);
 }
 
+static float read_float(const unsigned char *bytes) {
+    const uint32_t word = bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+    float value;
+    memcpy(&value, &word, sizeof value);
+    return value;
+}
+
+/* A lens whose arcs become flatter than arcs may be, all numbers together. */
+TEST(refuses_forged_flat_arcs) {
+    const double radius = 60, flatter = 70; /* half the chord is 1 */
+    narc_shapes *shapes = empty_store();
+    struct shape lens;
+    size_t size;
+    assert_int_equal(narc_build_four_arc((narc_four_arc){radius, radius, 2 * sqrt(radius * radius - 1), 0, 0},
+                                         lens.arcs, &lens.count, NULL),
+                     NARC_OK);
+    store_shape(shapes, lens);
+    unsigned char *bytes = save(shapes, &size);
+    for (size_t k = 0; k < lens.count; k++) {
+        unsigned char *const arc = bytes + ARCS + k * ARC;
+        if (read_float(arc + 8) > 0) {
+            write_float(arc + 4, copysignf((float)sqrt(flatter * flatter - 1), read_float(arc + 4)));
+            write_float(arc + 8, (float)flatter);
+        }
+        for (size_t at = 16; at < 32; at += 8) {
+            write_float(arc + at, copysignf((float)(1 / flatter), read_float(arc + at)));
+            write_float(arc + at + 4, copysignf((float)sqrt(1 - 1 / flatter / flatter), read_float(arc + at + 4)));
+        }
+    }
+    expect_refused(bytes, size, "an arc that is too flat");
+    free(bytes);
+    narc_destroy_shapes(shapes);
+}
+
 /* The list of removed indices ends where the last one says that there are no more. */
 TEST(refuses_a_list_that_goes_on) {
     narc_shapes *shapes = empty_store();
