@@ -420,7 +420,7 @@ fuzz() {
     NARC_FUZZ_SECONDS=$1 NARC_FUZZ_SEED=$2 ${3:-} ctest --preset fuzz || fail "a fuzzing program found something: build/fuzz/tests/fuzz/*-crash-*"
 }
 
-# What the tests of the library run of it, with a tenth of the trials: all lines, without optimisation.
+# What the tests of the library run of it, with a tenth of the trials.
 coverage() {
     require_packages $test_packages gcovr
     build coverage all
