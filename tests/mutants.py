@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Do the tests notice when the library is wrong? Changes one operator, constant or statement of soa/, kernels/ or
-dispatch/ at a time, at random, in copies of the tree in build/mutants with the plain C kernels alone, and runs its tests
-until one fails: first with a tenth of the trials, then with all.
+dispatch/ at a time, at random, in copies of the tree in build/mutants with the plain C kernels alone, and runs those of
+its tests that run this line, until one fails: first with a tenth of the trials, then with all.
 
 usage: python3 tests/mutants.py SEED COUNT [PATTERN]     PATTERN: of the files to change, as 'soa/store.c'
 
-A mutant counts if it compiles to other libraries than the original. Each gets a line, and the last line is the sum. A
-mutant that has a line in build/mutants/<seed>-<hash of the sources>.txt is not tried again: a run goes on where it was
-interrupted, and tries survivors again when their lines are deleted."""
+A mutant counts if it compiles to other libraries than the original. Each gets a line, and the last line is the sum. One
+that has a line in build/mutants/<seed>-<hash of the sources>.txt is not tried again: a run goes on where it was
+interrupted, and tries survivors again when their lines are deleted. NARC_TEST_TRIALS=0.1: with a tenth alone."""
 import collections, filecmp, glob, hashlib, json, os, random, re, resource, shutil, subprocess, sys, threading
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 FOLDER = ROOT + "/build/mutants"
-OPTIONS = ["-GNinja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG",
+OPTIONS = ["-GNinja", "--no-warn-unused-cli", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG",
            "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON", "-DNARC_SLEEF=OFF", "-DNARC_BUILD_FILES=OFF", "-DNARC_BUILD_FIT=OFF",
            "-DNARC_BUILD_TOOLS=OFF", "-DNARC_INSTALL=OFF"]
 OPTIONS += ["-DNARC_COMPILES_%s=OFF" % isa for isa in ("avx512", "avx2", "sse41", "neon", "wasm128")]
@@ -78,7 +78,8 @@ class Copy:
                 write(path, open(ROOT + "/" + name).read().replace(STATIC, SHARED))
             elif not os.path.exists(path) or not filecmp.cmp(ROOT + "/" + name, path, shallow=False):
                 shutil.copyfile(ROOT + "/" + name, path)  # what differs is built again
-        subprocess.run(["cmake", "-S", self.tree, "-B", self.build] + OPTIONS + list(options), check=True, stdout=subprocess.DEVNULL)
+        command = ["cmake", "-S", self.tree, "-B", self.build] + OPTIONS + list(options)
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         if self.run_ninja([]):
             sys.exit("mutants: the original does not compile in " + self.build)
         command = ["ctest", "--test-dir", self.build, "--show-only=json-v1", "-L", TESTS, "-LE", SKIPPED]
@@ -128,7 +129,8 @@ class Copy:
             if not made or made == self.original:
                 return "same program" if made else "does not compile"
             for trials in TRIALS:
-                for name in sorted(tests, key=lambda name: tests[name] / (kills[name, path] + 0.1 * kills[name] + 0.05)):
+                chances = {name: kills[name, path] + 0.1 * kills[name] + 0.05 for name in tests}
+                for name in sorted(tests, key=lambda name: tests[name] / chances[name]):
                     if not self.passes(name, trials, (10 * tests[name] + 2) * float(trials) / float(TRIALS[0])):
                         kills[name, path] += 1
                         kills[name] += 1
