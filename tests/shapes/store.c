@@ -489,6 +489,7 @@ TEST(refuses_bad_arguments) {
     assert_int_equal(narc_create_shapes(&incomplete, &shapes), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
     expect_error(narc_add_shape(NULL, &arc, 1, &index, &error), NARC_ERROR_ARGUMENT, &error, "shapes");
+    expect_error(narc_add_shape_at(NULL, 0, &arc, 1, &error), NARC_ERROR_ARGUMENT, &error, "shapes is NULL");
     expect_error(narc_add_shape(shapes, NULL, 1, &index, &error), NARC_ERROR_ARGUMENT, &error, "arcs");
     expect_error(narc_add_shape(shapes, &arc, 0, &index, &error), NARC_ERROR_COUNT, &error, "0 arcs");
     expect_error(narc_add_shape(shapes, &arc, 1, &index, &error), NARC_ERROR_RADIUS, &error, "arc 0: radius is -1");

@@ -140,6 +140,13 @@ TEST(refuses_bad_sizes) {
     expect_ok(narc_validate_arcs(&largest, 1, &error), &error);
     narc_arc far = {2e9, 0, 1, -PI, PI};
     expect_error(narc_validate_arcs(&far, 1, &error), NARC_ERROR_SIZE, &error, "away from its origin");
+    for (size_t i = 0; i < 4; i++) {
+        narc_arc box[4];
+        make_box(box);
+        box[i].center_x = 1e200;
+        expect_error(narc_validate_arcs(box, 4, &error), NARC_ERROR_SIZE, &error, "a coordinate or radius is 1e+200");
+        assert_int_equal(error.index, i);
+    }
     /* A segment, a point, and a triangle whose corners lie on a line. */
     narc_arc segment[2] = {{1, 2, 0, -PI / 2, PI / 2}, {-1, 2, 0, PI / 2, -PI / 2}};
     expect_ok(narc_validate_arcs(segment, 2, &error), &error);
