@@ -595,6 +595,9 @@ TEST(welds_polygons) {
         assert_memory_equal(points, left, count * sizeof *left);
     }
     const narc_point flat[4] = {{0, 0}, {1, -1e-7}, {2, 0}, {1, 1e-7}};
+    const narc_point nearly[4] = {{0, 0}, {1, -1e-4}, {2, 0}, {1, 1}}; /* a triangle is left */
+    expect_ok(narc_weld_polygon(nearly, 4, 1e-3, left, &count, &error), &error);
+    assert_int_equal(count, 3);
     expect_error(narc_weld_polygon(flat, 4, 1e-3, left, &count, &error), NARC_ERROR_COUNT, &error, "fewer than 3");
     expect_error(narc_weld_polygon(flat, 2, 1, left, &count, &error), NARC_ERROR_COUNT, &error, "2 points");
     expect_error(narc_weld_polygon(flat, 4, -1, left, &count, &error), NARC_ERROR_SIZE, &error, "tolerance is -1");

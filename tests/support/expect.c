@@ -18,7 +18,8 @@ void expect_error(narc_status status, narc_status expected, const narc_error *er
     const size_t length = strlen(error->message);
     if (length == 0 || strchr(error->message, '\n') || error->message[length - 1] == '.')
         fail_msg("not one line without a full stop: \"%s\"", error->message);
-    if (length > 8 && strcmp(error->message + length - 8, " is NULL") == 0 && (error->index != 0 || error->value != 0))
+    const char *const missing = strstr(error->message, " is NULL");
+    if (missing && !strchr(error->message, ':') && (error->index != 0 || error->value != 0))
         fail_msg("what is missing has no index and no value: %zu, %g", error->index, error->value);
 }
 
