@@ -377,6 +377,7 @@ TEST(builds_ellipses) {
     expect_refused(&o, narc_build_ellipse(100, 1, 32, arcs, count, NULL, error), NARC_ERROR_RADIUS, "");
     expect_refused(&o, narc_build_ellipse(1, 129, 8, arcs, count, NULL, error), NARC_ERROR_RADIUS, "is too thin");
     expect_refused(&o, narc_build_ellipse(1e-151, 1e-151, 8, arcs, count, NULL, error), NARC_ERROR_SIZE, "1e-150");
+    expect_refused(&o, narc_build_ellipse(1e-151, 1e-149, 8, arcs, count, NULL, error), NARC_ERROR_SIZE, "1e-150");
     expect_refused(&o, narc_build_ellipse(1e151, 1e151, 8, arcs, count, NULL, error), NARC_ERROR_SIZE, "1e150");
     assert_int_equal(narc_build_ellipse(2, 1, 8, NULL, count, NULL, error), NARC_ERROR_ARGUMENT);
 }
