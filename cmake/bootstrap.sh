@@ -17,6 +17,7 @@ usage: sh cmake/bootstrap.sh COMMAND [OPTION ...]
   fuzz       the fuzzing programs of tests/fuzz on their seeds, and on for 60 seconds each, or as many as the option says
   soak       random and hard pairs of all families beside the reference, and all queries on every instruction set, until it
              is interrupted, or for as many seconds as the option says
+  coverage   which lines of soa, kernels and dispatch the tests run, and which they do not
   bench      the benchmarks beside Box2D, Chipmunk and libccd; tables and plots go to out/. Options are Google
              Benchmark's and those of bench/README.md
   bench-scene  what a scene is asked, beside Box2D, Chipmunk and GEOS; tables go to out/
@@ -450,6 +451,15 @@ soak() {
     NARC_TEST_SEED=${NARC_TEST_SEED:-$(date +%s)} NARC_SOAK_SECONDS=${1:-inf} exec build/release/tests/kernels/test_soak
 }
 
+# What the tests of the library run of it, with a tenth of the trials.
+coverage() {
+    require_packages $test_packages gcovr
+    build coverage all
+    find build/coverage -name '*.gcda' -delete
+    ctest --preset coverage || fail "tests failed in build/coverage"
+    gcovr --root . --object-directory build/coverage --filter 'soa/|kernels/|dispatch/' build/coverage
+}
+
 reference() {
     require_packages doxygen
     rm -rf out/api
@@ -465,6 +475,7 @@ gate) gate ;;
 platforms) platforms ;;
 fuzz) fuzz "${2:-60}" 0 ;;
 soak) soak "${2:-}" ;;
+coverage) coverage ;;
 docs) reference ;;
 bench)
     shift

@@ -1,23 +1,28 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Do the tests notice when the library is wrong? Changes one operator, constant or statement of soa/, kernels/ or
-dispatch/ at a time, at random, in a copy of the tree in build/mutants with the plain C kernels alone, and runs its
-tests until one fails.
+dispatch/ at a time, at random, in copies of the tree in build/mutants with the plain C kernels alone, and runs those of
+its tests that run this line, until one fails: first with a tenth of the trials, then with all.
 
 usage: python3 tests/mutants.py SEED COUNT [PATTERN]     PATTERN: of the files to change, as 'soa/store.c'
 
-A mutant counts if it compiles to another library than the original. Each gets a line, and the last line is the sum.
-With NARC_TEST_TRIALS=0.1 survivors take a tenth of the time, and some of them are none."""
-import glob, hashlib, json, os, random, re, shutil, subprocess, sys, time
+A mutant counts if it compiles to other libraries than the original. Each gets a line, and the last line is the sum. One
+that has a line in build/mutants/<seed>-<hash of the sources>.txt is not tried again: a run goes on where it was
+interrupted, and tries survivors again when their lines are deleted. NARC_TEST_TRIALS=0.1: with a tenth alone."""
+import collections, filecmp, glob, hashlib, json, os, random, re, resource, shutil, subprocess, sys, threading
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-TREE, BUILD = ROOT + "/build/mutants/tree", ROOT + "/build/mutants/build"
-CONFIGURE = ["cmake", "-S", TREE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG",
-             "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON", "-DNARC_OPENMP=OFF", "-DNARC_SLEEF=OFF", "-DNARC_BUILD_FILES=OFF",
-             "-DNARC_BUILD_FIT=OFF", "-DNARC_BUILD_TOOLS=OFF"]
-CONFIGURE += ["-DNARC_COMPILES_%s=OFF" % isa for isa in ("avx512", "avx2", "sse41", "neon", "wasm128")]
+FOLDER = ROOT + "/build/mutants"
+OPTIONS = ["-GNinja", "--no-warn-unused-cli", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG",
+           "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON", "-DNARC_SLEEF=OFF", "-DNARC_BUILD_FILES=OFF", "-DNARC_BUILD_FIT=OFF",
+           "-DNARC_BUILD_TOOLS=OFF", "-DNARC_INSTALL=OFF"]
+OPTIONS += ["-DNARC_COMPILES_%s=OFF" % isa for isa in ("avx512", "avx2", "sse41", "neon", "wasm128")]
+# A shared library of what tests share, so that programs need not be linked for each mutant.
+SUPPORT, STATIC = "tests/support/CMakeLists.txt", "add_library(narc_test_support STATIC"
+SHARED = "set(CMAKE_C_VISIBILITY_PRESET default)\nadd_library(narc_test_support SHARED"
 TESTS = "^(shapes|api|.*isa-scalar)$"  # labels
 SKIPPED = "slow"
+TRIALS = os.environ.get("NARC_TEST_TRIALS", "0.1 1").split()
 
 # What stands for what. In C, both sides of an operator have a space.
 SWAPS = [("<", "<="), (">", ">="), ("==", "!="), ("&&", "||"), ("+", "-"), ("*", "/"), ("&", "|"), ("<<", ">>"),
@@ -39,10 +44,10 @@ def blank(match):
     return re.sub(r"[^\n]", " ", match.group())
 
 
-def find_changes(path):
+def find_changes(path, text):
     """Every (path, line number, column, old text, new text) of a file."""
-    text = re.sub(r'/\*.*?\*/|//[^\n]*|"(\\.|[^"\n])*"|^ *#(\\\n|[^\n])*|_Static_assert[^;]*;', blank,
-                  open(path).read(), flags=re.S | re.M)
+    text = re.sub(r'/\*.*?\*/|//[^\n]*|"(\\.|[^"\n])*"|^ *#(\\\n|[^\n])*|_Static_assert[^;]*;', blank, text,
+                  flags=re.S | re.M)
     before = ";"
     for number, line in enumerate(text.split("\n")):
         for match in OPERATOR.finditer(line):
@@ -54,92 +59,166 @@ def find_changes(path):
         before = line.rstrip() or before
 
 
-def change(path, number, column, old, new):
-    lines = open(path).read().split("\n")
-    line = lines[number]
-    lines[number] = line[:column] + new + line[column + len(old):]
+def write(path, text):
     with open(path, "w") as file:
-        file.write("\n".join(lines))
+        file.write(text)
 
 
-def run(command, seconds, environment={}):
-    """Has it ended with success, or with the code of a skipped test, in time?"""
-    with open(BUILD + "/last.txt", "w") as out:
+class Copy:
+    """A copy of the tree with its build: each tries a mutant at a time."""
+
+    def __init__(self, folder, options=()):
+        self.tree, self.build = folder + "/tree", folder + "/build"
+        names = subprocess.run(["git", "ls-files"], cwd=ROOT, stdout=subprocess.PIPE, check=True, text=True).stdout
+        self.hash = hashlib.sha256(b"".join(open(ROOT + "/" + name, "rb").read() for name in names.split())).hexdigest()
+        for name in names.split():
+            path = self.tree + "/" + name
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            if name == SUPPORT:
+                write(path, open(ROOT + "/" + name).read().replace(STATIC, SHARED))
+            elif not os.path.exists(path) or not filecmp.cmp(ROOT + "/" + name, path, shallow=False):
+                shutil.copyfile(ROOT + "/" + name, path)  # what differs is built again
+        command = ["cmake", "-S", self.tree, "-B", self.build] + OPTIONS + list(options)
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        if self.run_ninja([]):
+            sys.exit("mutants: the original does not compile in " + self.build)
+        command = ["ctest", "--test-dir", self.build, "--show-only=json-v1", "-L", TESTS, "-LE", SKIPPED]
+        listed = subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout
+        self.tests = {}
+        for test in json.loads(listed)["tests"]:
+            if test["command"][0].startswith(self.build):
+                variables = [item["value"] for item in test["properties"] if item["name"] == "ENVIRONMENT"]
+                self.tests[test["name"]] = test["command"], dict(text.split("=", 1) for text in sum(variables, []))
+        self.original = self.make()
+
+    def run_ninja(self, targets):
+        return subprocess.run(["ninja", "-C", self.build, "-j1"] + targets, stdout=subprocess.DEVNULL).returncode
+
+    def make(self):
+        """A hash of the libraries; None if they or the tests do not compile."""
+        if self.run_ninja(sorted({os.path.relpath(command[0], self.build) for command, _ in self.tests.values()})):
+            return None
+        paths = [self.build + "/libnarc.so"] + glob.glob(self.build + "/**/libnarc_methods.so", recursive=True)
+        return hashlib.sha256(b"".join(open(path, "rb").read() for path in paths)).hexdigest()
+
+    def passes(self, name, trials, seconds):
+        """Does a test end with success, or as skipped, in this time of the processor?"""
+        command, environment = self.tests[name]
+        environment = {**os.environ, "NARC_TEST_TRIALS": trials, **environment}
+        command = ["sh", "-c", 'ulimit -t %d && exec "$@"' % seconds, "sh"] + command
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=environment,
+                                   cwd=self.build)
+        timer = threading.Timer(600, process.kill)
+        timer.start()
+        failed = False
+        for line in process.stderr:
+            if b"[  FAILED  ]" in line:
+                failed = True
+                process.kill()
+        timer.cancel()
+        return process.wait() in (0, 77) and not failed
+
+    def attempt(self, mutant, text, tests, kills):
+        """The test that kills a mutant, the likeliest and quickest ones first, or another fate."""
+        path, number, column, old, new = mutant
+        lines = text.split("\n")
+        lines[number] = lines[number][:column] + new + lines[number][column + len(old):]
+        write(self.tree + "/" + path, "\n".join(lines))
         try:
-            return subprocess.run(command, stdout=out, stderr=out, timeout=seconds, env={**os.environ, **environment},
-                                  cwd=BUILD).returncode in (0, 77)
-        except subprocess.TimeoutExpired:
-            return False
+            made = self.make()
+            if not made or made == self.original:
+                return "same program" if made else "does not compile"
+            for trials in TRIALS:
+                chances = {name: kills[name, path] + 0.1 * kills[name] + 0.05 for name in tests}
+                for name in sorted(tests, key=lambda name: tests[name] / chances[name]):
+                    if not self.passes(name, trials, (10 * tests[name] + 2) * float(trials) / float(TRIALS[0])):
+                        kills[name, path] += 1
+                        kills[name] += 1
+                        return name
+            return "SURVIVED"
+        finally:
+            write(self.tree + "/" + path, text)
 
 
-def build():
-    if not run(["cmake", "--build", BUILD], 600):
-        return None
-    return hashlib.sha256(open(glob.glob(BUILD + "/libnarc.so.*.*.*")[0], "rb").read()).hexdigest()
+class Lines:
+    """Which tests run a line, and what they take with a tenth of the trials; they must pass without a mutant."""
 
+    def __init__(self):
+        copy = Copy(FOLDER + "/lines", ["-DCMAKE_C_FLAGS=--coverage"])
+        path = "%s/lines-%s.json" % (FOLDER, copy.hash[:8])
+        if not os.path.exists(path):
+            self.seconds, self.tests = {}, {}  # by name; by path:line, and by path for lines that are no code
+            for name in copy.tests:
+                self.measure(copy, name)
+            write(path, json.dumps([self.seconds, {key: sorted(self.tests[key]) for key in self.tests}]))
+        self.seconds, self.tests = json.load(open(path))
+        print("%d tests, %.0f seconds without a mutant" % (len(self.seconds), sum(self.seconds.values())), flush=True)
 
-def find_tests():
-    """The tests, each with what it takes when nothing is wrong."""
-    command = ["ctest", "--test-dir", BUILD, "--show-only=json-v1", "-L", TESTS, "-LE", SKIPPED]
-    tests = []
-    for test in json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout)["tests"]:
-        variables = {"NARC_TEST_TRIALS": os.environ.get("NARC_TEST_TRIALS", "1")}
-        for item in test["properties"]:
-            if item["name"] == "ENVIRONMENT":
-                variables.update(text.split("=", 1) for text in item["value"])
-        begin = time.time()
-        if not run(test["command"], 600, variables):
-            sys.exit("mutants: %s fails without a mutant: %s/last.txt" % (test["name"], BUILD))
-        tests.append({"name": test["name"], "command": test["command"], "environment": variables, "kills": 0,
-                      "seconds": time.time() - begin})
-    return tests
+    def measure(self, copy, name):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        if not copy.passes(name, TRIALS[0], 600):
+            sys.exit("mutants: %s fails without a mutant in %s" % (name, copy.build))
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        self.seconds[name] = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        counts = glob.glob(copy.build + "/**/*.gcda", recursive=True)
+        command = ["gcov", "--json-format", "--stdout"] + counts
+        for text in subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout.splitlines():
+            unit = json.loads(text)
+            for file in unit["files"]:
+                path = os.path.relpath(os.path.join(unit["current_working_directory"], file["file"]), copy.tree)
+                for line in file["lines"]:
+                    tests = self.tests.setdefault("%s:%d" % (path, line["line_number"]), set())
+                    if line["count"]:
+                        tests.add(name)
+                        self.tests.setdefault(path, set()).add(name)
+        for path in counts:
+            os.remove(path)
 
-
-def kill(tests):
-    """The test that fails, the likeliest and quickest ones first; None: none does."""
-    for test in sorted(tests, key=lambda test: test["seconds"] / (test["kills"] + 0.5)):
-        if not run(test["command"], 10 * test["seconds"] + 10, test["environment"]):
-            test["kills"] += 1
-            return test["name"]
-    return None
+    def find_tests(self, path, number):
+        names = self.tests.get("%s:%d" % (path, number), self.tests.get(path, self.seconds))
+        return {name: self.seconds[name] for name in names}
 
 
 def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__)
     seed, count, pattern = int(sys.argv[1]), int(sys.argv[2]), (sys.argv[3:] or [""])[0]
-    shutil.rmtree(TREE, ignore_errors=True)
-    os.makedirs(BUILD, exist_ok=True)
-    files = subprocess.run(["git", "ls-files"], cwd=ROOT, stdout=subprocess.PIPE, check=True, text=True).stdout
-    for path in files.split():
-        os.makedirs(os.path.dirname(TREE + "/" + path), exist_ok=True)
-        shutil.copy2(ROOT + "/" + path, TREE + "/" + path)
-    subprocess.run(CONFIGURE, check=True, stdout=subprocess.DEVNULL)
-    original = build() or sys.exit("mutants: the original does not compile: " + BUILD + "/last.txt")
-    tests = find_tests()
-    print("%d tests, %.0f seconds without a mutant" % (len(tests), sum(test["seconds"] for test in tests)), flush=True)
-    changes = []
+    texts = {}
     for folder in ("soa", "kernels", "dispatch"):
-        for path in sorted(glob.glob(TREE + "/" + folder + "/**/*.*", recursive=True)):
-            if pattern in path and not re.search(r"/narc[^/]*$|/simd/(?!scalar)|\.def$", path):
-                changes += find_changes(path)
-    random.Random(seed).shuffle(changes)
-    killed, survived = 0, 0
-    for path, number, column, old, new in changes:
-        if killed + survived == count:
-            break
-        kept = open(path).read()
-        change(path, number, column, old, new)
-        made = build()
-        result = "does not compile" if not made else "same program" if made == original else kill(tests)
-        killed += result in [test["name"] for test in tests]
-        survived += result is None
-        print("%-18s %s:%d: '%s' -> '%s'" %
-              (result or "SURVIVED", path[len(TREE) + 1:], number + 1, old.strip(), new.strip()), flush=True)
-        with open(path, "w") as file:
-            file.write(kept)
+        for path in sorted(glob.glob(folder + "/**/*.*", root_dir=ROOT, recursive=True)):
+            if not re.search(r"/narc[^/]*$|/simd/(?!scalar)|\.def$", path):
+                texts[path] = open(ROOT + "/" + path).read()
+    mutants = [mutant for path in texts if pattern in path for mutant in find_changes(path, texts[path])]
+    random.Random(seed).shuffle(mutants)
+    copies = [Copy("%s/%d" % (FOLDER, number)) for number in range(os.cpu_count())]
+    code = Lines()
+    log = open("%s/%d-%s.txt" % (FOLDER, seed, hashlib.sha256(repr(texts).encode()).hexdigest()[:8]), "a+")
+    log.seek(0)
+    known = dict(reversed(line.rstrip("\n").split("\t")) for line in log)
+    fates, kills, left, lock = collections.Counter(), collections.Counter(), iter(mutants), threading.Lock()
+
+    def work(copy):
+        while True:
+            with lock:
+                mutant = next(left, None)
+                if not mutant or fates["killed"] + fates["SURVIVED"] >= count:
+                    return
+            path, number, column, old, new = mutant
+            line = "%s:%d:%d: '%s' -> '%s'" % (path, number + 1, column + 1, old.strip(), new.strip())
+            fate = known.get(line) or copy.attempt(mutant, texts[path], code.find_tests(path, number + 1), kills)
+            with lock:
+                fates["killed" if fate in copy.tests else fate] += 1
+                if line not in known:
+                    print(fate, line, sep="\t", file=log, flush=True)
+                    print("%-18s %s" % (fate, line), flush=True)
+
+    threads = [threading.Thread(target=work, args=(copy,)) for copy in copies]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
     print("seed %d: %d mutants of %d possible ones, %d killed, %d survived" %
-          (seed, killed + survived, len(changes), killed, survived))
+          (seed, fates["killed"] + fates["SURVIVED"], len(mutants), fates["killed"], fates["SURVIVED"]))
 
 
 main()

@@ -13,6 +13,8 @@
 #include <unistd.h>
 
 #include "narc.h"
+#include "narc_broad_phase.h"
+#include "narc_scene.h"
 #include "support.h"
 
 /* In a child: ends it, and the parent's test fails, if `condition` is false. */
@@ -34,7 +36,7 @@ static void run_child(const char *narc_isa, void (*body)(void)) {
         else
             unsetenv("NARC_ISA");
         body();
-        _exit(0);
+        exit(0);
     }
     int status;
     assert_int_equal(waitpid(child, &status, 0), child);
@@ -92,6 +94,58 @@ static const char *unsupported_name(void) {
             return narc_isa_name(k);
     return NULL;
 }
+
+/* All calls that compute anything, one after the other: none chooses an instruction set. */
+static void all_calls_unknown(void) {
+    const struct tiny_batch batch = make_batch();
+    const narc_shapes *const shapes = batch.shapes;
+    const narc_bodies *const bodies = &batch.bodies;
+    const narc_status unknown = NARC_ERROR_ISA_UNKNOWN;
+    const float zero = 0, angle = 1;
+    const narc_motions motions = {.x = NARC_ARRAY(&zero), .y = NARC_ARRAY(&zero)};
+    const narc_position_column place = NARC_POSITION_ARRAY(&zero);
+    const narc_points points = {.count = 1, .x = place, .y = place};
+    const narc_rays rays = {
+        .count = 1, .x = place, .y = place, .motion_x = NARC_ARRAY(&angle), .motion_y = NARC_ARRAY(&zero)};
+    const narc_pair_list *list;
+    narc_broad_phase *broad;
+    narc_index *index;
+    narc_box box = {0, 0, 1, 1};
+    narc_pairs pairs;
+    narc_contact contact;
+    narc_manifold manifold;
+    narc_impact impact;
+    narc_distance distance;
+    narc_ray_hit hit;
+    uint64_t bits;
+    uint32_t a, b;
+    float cosine, sine;
+    size_t count;
+    REQUIRE(narc_create_broad_phase(NULL, &broad) == NARC_OK && narc_create_index(NULL, &index) == NARC_OK);
+    REQUIRE(narc_find_overlaps(shapes, bodies, &batch.pairs, NULL, &bits, NULL) == unknown);
+    REQUIRE(narc_find_contacts(shapes, bodies, &batch.pairs, NULL, &contact, 1, &count, NULL) == unknown);
+    REQUIRE(narc_find_manifolds(shapes, bodies, &batch.pairs, NULL, &manifold, 1, &count, NULL) == unknown);
+    REQUIRE(narc_compute_poses(&angle, 1, &cosine, &sine, NULL) == unknown);
+    REQUIRE(narc_compute_boxes(shapes, bodies, NULL, &box, NULL) == unknown);
+    REQUIRE(narc_find_pairs(broad, &box, 1, NULL, NULL, &a, &b, 1, &count, NULL) == unknown);
+    REQUIRE(narc_update_pairs(broad, shapes, bodies, NULL, &list, NULL) == unknown);
+    REQUIRE(narc_update_box_pairs(broad, &box, 1, NULL, &list, NULL) == unknown);
+    REQUIRE(narc_build_index(index, &box, 1, NULL, NULL) == unknown);
+    REQUIRE(narc_refit_index(index, &box, 0, NULL, NULL, NULL) == unknown); /* it has no bodies yet */
+    REQUIRE(narc_query_index(index, &box, 1, NULL, &pairs, NULL) == unknown);
+    REQUIRE(narc_cast_pairs(shapes, bodies, &motions, &batch.pairs, NULL, NULL, &impact, 1, NULL) == unknown);
+    REQUIRE(narc_find_distances(shapes, bodies, &points, (narc_index_column){0}, NULL, &distance, NULL) == unknown);
+    const narc_bodies none = {.count = 0}; /* as many as the index has */
+    REQUIRE(narc_cast_rays(index, shapes, &none, &rays, NULL, &hit, 1, NULL) == unknown);
+    REQUIRE(narc_cast_shapes(index, shapes, &none, bodies, &motions, NULL, NULL, &impact, 1, NULL) == unknown);
+    REQUIRE(narc_find_nearest(index, shapes, &none, &points, NULL, &distance, 1, NULL) == unknown);
+    REQUIRE(narc_get_isa() == NULL);
+    narc_destroy_broad_phase(broad);
+    narc_destroy_index(index);
+    narc_destroy_shapes(batch.shapes);
+}
+
+TEST(test_all_calls_unknown) { run_child("sse9", all_calls_unknown); }
 
 static void unsupported_isa(void) { require_error(NARC_ERROR_ISA_UNSUPPORTED, unsupported_name()); }
 

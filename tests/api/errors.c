@@ -173,6 +173,8 @@ TEST(test_queries) {
         f.call.query = cases[k].query;
         check_call(&f.call, cases[k].kinds, cases[k].status, &cases[k].words, 1);
     }
+    f.call.query = (narc_query){.selection_count = 1};
+    check_batch(f.call, NARC_ERROR_ARGUMENT, NAMES("selection is NULL"));
     for (size_t k = 0; k < 4; k++) {
         f.call.query = (narc_query){0};
         f.call.query.reserved[k] = &f;

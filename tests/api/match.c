@@ -164,6 +164,9 @@ TEST(tells_that_there_is_no_memory) {
     const narc_pairs news = {.count = 2, .a = {falling, sizeof *falling}, .b = {falling, sizeof *falling}};
     assert_int_equal(narc_match_pairs(broad, &olds, &news, &workers, match, &error), NARC_ERROR_MEMORY);
     assert_string_equal(error.message, "not enough memory for 1073741825 pairs");
+    const narc_pairs most = {.count = UINT32_MAX, .a = {&zero, 0}, .b = {&zero, 0}};
+    assert_int_equal(narc_match_pairs(broad, &most, &news, &workers, match, &error), NARC_ERROR_ARGUMENT);
+    assert_string_equal(error.message, "old_pairs: 4294967295 pairs, at most 4294967294");
     assert_int_equal(match[0], 7);
     assert_int_equal(narc_match_pairs(broad, &news, &news, &workers, match, &error), NARC_OK);
     narc_destroy_broad_phase(broad);

@@ -68,6 +68,7 @@ static const narc_pair_list *update(narc_broad_phase *broad, const narc_shapes *
 }
 
 static double half_of_margin = 0.25, skin = 0.5625;
+static bool kinds_alone = false; /* bodies have no categories, masks and groups, and kinds next to each other */
 
 static wide_box widen(const wide_box *b, double by) {
     return (wide_box){b->min_x - by, b->min_y - by, b->max_x + by, b->max_y + by, b->exists};
@@ -280,13 +281,17 @@ typedef struct totals {
 /* Gives all objects the same step. */
 static void check_step(reference *r, body *bodies, size_t count, bool with_ids, totals *sums) {
     narc_box *boxes = malloc((count + 1) * sizeof *boxes);
-    for (size_t k = 0; k < count; k++)
+    uint8_t *kinds = malloc(count + 1);
+    for (size_t k = 0; k < count; k++) {
         boxes[k] = bodies[k].box;
-    const size_t stride = sizeof *bodies;
-    const narc_pair_filter filter = {.kind = {&bodies->kind, stride},
-                                     .category = {&bodies->category, stride},
-                                     .mask = {&bodies->mask, stride},
-                                     .group = {&bodies->group, stride}};
+        kinds[k] = bodies[k].kind;
+    }
+    const ptrdiff_t stride = sizeof *bodies;
+    const narc_pair_filter alone = {.kind = {kinds, 1}}, all = {.kind = {&bodies->kind, stride},
+                                                                .category = {&bodies->category, stride},
+                                                                .mask = {&bodies->mask, stride},
+                                                                .group = {&bodies->group, stride}};
+    const narc_pair_filter filter = kinds_alone ? alone : all;
     narc_pair_options options = {
         .margin = 2 * (float)half_of_margin, .skin = (float)skin, .reach = {&bodies->reach, stride}, .filter = &filter};
     if (with_ids)
@@ -323,6 +328,7 @@ static void check_step(reference *r, body *bodies, size_t count, bool with_ids, 
     r->pair_count = r->next_count;
     hash_pairs(r);
     free(boxes);
+    free(kinds);
 }
 
 /* ------------------------------------------------------------------------------------------------ a world */
@@ -335,7 +341,7 @@ static narc_box eighths_box(struct test_random *random, size_t side) {
 }
 
 static uint64_t choose_mask(struct test_random *random) {
-    return random_below(random, 8) ? UINT64_MAX : (uint64_t)1 << (31 + random_below(random, 4));
+    return kinds_alone || random_below(random, 8) ? UINT64_MAX : (uint64_t)1 << (31 + random_below(random, 4));
 }
 
 static body random_body(struct test_random *random, size_t side, uint64_t id) {
@@ -343,7 +349,7 @@ static body random_body(struct test_random *random, size_t side, uint64_t id) {
                   .category = choose_mask(random),
                   .mask = choose_mask(random),
                   .box = eighths_box(random, side),
-                  .group = random_below(random, 4) ? 0 : 1 + (uint32_t)random_below(random, 3),
+                  .group = kinds_alone || random_below(random, 4) ? 0 : 1 + (uint32_t)random_below(random, 3),
                   .kind = random_below(random, 2) ? 0 : (uint8_t)random_below(random, 8)};
 }
 
@@ -369,7 +375,7 @@ static size_t change(struct test_random *random, body *bodies, size_t count, siz
         bodies[k].category = choose_mask(random);
         break;
     case 2:
-        bodies[k].group = (uint32_t)random_below(random, 3);
+        bodies[k].group = kinds_alone ? 0 : (uint32_t)random_below(random, 3);
         break;
     case 3:
         if (skin > 0) /* without one there is no room for rounding */
@@ -462,6 +468,14 @@ TEST(keeps_nothing_without_a_skin) {
 
 /* So many that several threads share the work. */
 TEST(follows_thousands) { run_world("thousands", 12, MOST_BODIES - 10, MOST_BODIES, 150, true); }
+
+TEST(follows_kinds_alone) {
+    kinds_alone = true;
+    const size_t steps = test_trials(1000);
+    const totals sums = run_world("kinds", steps, 40, 60, 10, false);
+    assert_true(sums.kept > steps / 30 && sums.renewed > steps / 30 && sums.sleeping > 0 && sums.sensors > 0);
+    kinds_alone = false;
+}
 
 /* A scene at rest: boxes of all sizes of which a few move, a little or far away, one of them ever further down; now and
  * then anything else happens. */
@@ -623,7 +637,8 @@ TEST(notices_shapes_that_change) {
 typedef struct placed {
     double x, y;
     float near_x, near_y, cosine, sine, scale;
-    uint32_t shape;
+    uint32_t shape, group;
+    uint8_t kind;
 } placed;
 
 static narc_bodies view_placed(const placed *bodies, size_t count, bool doubles, bool scales) {
@@ -643,7 +658,7 @@ static narc_bodies view_placed(const placed *bodies, size_t count, bool doubles,
 }
 
 static void change_placed(struct test_random *random, placed *one) {
-    switch (random_below(random, 6)) {
+    switch (random_below(random, 8)) {
     case 0:
         one->x += random_between(random, -1, 1);
         one->near_x = (float)one->x;
@@ -664,10 +679,30 @@ static void change_placed(struct test_random *random, placed *one) {
     case 4:
         one->shape = 1 - one->shape;
         break;
+    case 5:
+        one->group = 1 - one->group;
+        break;
+    case 6:
+        one->kind ^= (uint8_t)(1 << random_below(random, 3));
+        break;
     default:
         one->y = one->near_y = 0;
         break;
     }
+}
+
+/* How bodies are filtered: not, by kinds next to each other, by kinds of their own, or by groups too. */
+enum filtered { UNFILTERED, BY_KINDS, BY_OWN_KINDS, BY_GROUPS, WAYS };
+
+static narc_pair_filter filter_placed(const placed *bodies, size_t count, enum filtered way, uint8_t *kinds) {
+    narc_pair_filter filter = {.kind = NARC_COLUMN(bodies, kind)};
+    for (size_t k = 0; k < count; k++)
+        kinds[k] = bodies[k].kind;
+    if (way == BY_KINDS)
+        filter.kind = (narc_byte_column){kinds, 1};
+    if (way == BY_GROUPS)
+        filter.group = NARC_COLUMN(bodies, group);
+    return filter;
 }
 
 /* Boxes of bodies that rest are not computed again: the list is that of boxes that are, whatever changes. */
@@ -678,7 +713,9 @@ TEST(notices_all_that_boxes_are_made_from) {
     narc_shapes *shapes = empty_store();
     placed bodies[COUNT];
     narc_box boxes[COUNT];
+    uint8_t kinds[COUNT];
     float margin = 0.25f, skin_now = 0.25f;
+    enum filtered way = UNFILTERED;
     bool doubles = true, scales = true;
     size_t kept = 0, count = COUNT;
     narc_arc capsule[NARC_MAX_ARCS];
@@ -688,15 +725,18 @@ TEST(notices_all_that_boxes_are_made_from) {
     assert_int_equal(narc_add_shape(shapes, capsule, arc_count, NULL, NULL), NARC_OK);
     for (size_t k = 0; k < COUNT; k++) {
         const float x = (float)random_between(&random, 0, 16), y = (float)random_between(&random, 0, 16);
-        bodies[k] = (placed){(double)x, (double)y, x, y, 1, 0, 1, (uint32_t)k % 2};
+        bodies[k] = (placed){(double)x, (double)y, x, y, 1, 0, 1, (uint32_t)k % 2, 0, 0};
     }
     const size_t steps = 40 + test_trials(360);
     for (size_t step = 0; step < steps; step++) {
         const narc_workers workers = narc_openmp_workers(1 + (unsigned)step % 2);
         const narc_bodies view = view_placed(bodies, count, doubles, scales);
         const narc_box_options box_options = {.margin = margin / 2};
-        const narc_pair_options options = {.margin = margin, .skin = skin_now, .workers = &workers},
-                                without = {.skin = skin_now};
+        const narc_pair_filter filter = filter_placed(bodies, count, way, kinds), *const given = way == UNFILTERED
+                                                                                                     ? NULL
+                                                                                                     : &filter;
+        const narc_pair_options options = {.margin = margin, .skin = skin_now, .filter = given, .workers = &workers},
+                                without = {.skin = skin_now, .filter = given};
         assert_int_equal(narc_compute_boxes(shapes, &view, &box_options, boxes, NULL), NARC_OK);
         const narc_pair_list *const list = update(broad, shapes, &view, &options);
         check_equal_lists(list, update_boxes(other, boxes, count, &without));
@@ -730,6 +770,9 @@ TEST(notices_all_that_boxes_are_made_from) {
             update_boxes(broad, boxes, count, &options);
             update_boxes(other, boxes, count, &options);
             break;
+        case 7:
+            way = (enum filtered)random_below(&random, WAYS);
+            break;
         default:
             break;
         }
@@ -737,6 +780,39 @@ TEST(notices_all_that_boxes_are_made_from) {
     assert_true(kept > steps / 10);
     narc_destroy_broad_phase(broad);
     narc_destroy_broad_phase(other);
+    narc_destroy_shapes(shapes);
+}
+
+/* Bodies that move by the last bit of a number, with a skin of some of them. */
+TEST(notices_the_last_bit) {
+    const narc_pair_options options = {.skin = 0x1p-22f};
+    narc_shapes *shapes = empty_store();
+    store_shape(shapes, circle_of(0.5));
+    for (int number = 0; number < 4; number++) {
+        narc_broad_phase *broad = create_broad_phase(NULL), *other = create_broad_phase(NULL);
+        disc discs[] = {{1, 1, 0.6f, 0.8f, 0, 0, 0}, {2, 2, 1, 0, 0, 0, 0}};
+        double x[] = {1, 2}, y[] = {1, 2};
+        narc_bodies bodies = view(discs, 2);
+        size_t renewed = 0;
+        if (number >= 2) {
+            bodies.x = NARC_POSITION_ARRAY(x);
+            bodies.y = NARC_POSITION_ARRAY(y);
+        }
+        for (int step = 0; step < 40; step++) {
+            narc_box boxes[2];
+            assert_int_equal(narc_compute_boxes(shapes, &bodies, NULL, boxes, NULL), NARC_OK);
+            const narc_pair_list *const list = update(broad, shapes, &bodies, &options);
+            check_equal_lists(list, update_boxes(other, boxes, 2, &options));
+            renewed += !list->kept;
+            float *const position = number % 2 ? &discs[0].y : &discs[0].x;
+            *position = nextafterf(*position, 2);
+            x[0] = number == 2 ? (double)discs[0].x : 1;
+            y[0] = number == 3 ? (double)discs[0].y : 1;
+        }
+        assert_in_range(renewed, 4, 36);
+        narc_destroy_broad_phase(broad);
+        narc_destroy_broad_phase(other);
+    }
     narc_destroy_shapes(shapes);
 }
 
@@ -833,54 +909,68 @@ TEST(allocates_nothing_once_it_has_grown) {
     narc_destroy_broad_phase(broad);
 }
 
-/* Every allocation of a step fails once: the last list stays, and the next step is as if nothing had been. */
-TEST(survives_failing_allocations) {
-    enum { FEW = 300, MANY = 5000 };
-    static narc_box boxes[MANY];
-    static uint64_t ids[MANY], later_ids[MANY];
-    struct test_random random = test_random_named("failing lists");
-    for (size_t k = 0; k < MANY; k++) {
-        boxes[k] = eighths_box(&random, 30);
-        ids[k] = random_bits(&random);
-        later_ids[k] = k % 3 ? ids[k] : random_bits(&random);
-    }
-    narc_pair_options options = {.skin = 0.125f};
-    size_t failures = 0;
-    for (size_t left = 0;; left++) {
+/* What is given in a step; ids may be none. */
+struct step {
+    const narc_box *boxes;
+    const uint64_t *ids;
+    size_t count;
+};
+
+static narc_status take_step(narc_broad_phase *broad, const struct step *step, const narc_pair_list **out_list) {
+    const narc_pair_options options = {.skin = 0.125f, .id = {step->ids, sizeof *step->ids}};
+    return narc_update_box_pairs(broad, step->boxes, step->count, &options, out_list, NULL);
+}
+
+/* Every allocation of the second step fails once: the last list stays, and the next step is as if nothing had been.
+ * Returns how many there are. */
+static size_t fail_allocations(const struct step *before, const struct step *after) {
+    for (size_t failures = 0;; failures++) {
         struct ledger ledger = {0}, other_ledger = {0};
         narc_broad_phase *broad = create_broad_phase(&ledger), *whole = create_broad_phase(&other_ledger);
-        const narc_pair_list *list, *whole_list, *untouched;
-        options.id = (narc_word_column){ids, sizeof *ids};
-        list = update_boxes(broad, boxes, FEW, &options);
-        whole_list = update_boxes(whole, boxes, FEW, &options);
-        options.id = (narc_word_column){later_ids, sizeof *later_ids};
+        const narc_pair_list *list = NULL, *whole_list = NULL, *untouched;
+        assert_int_equal(take_step(broad, before, &list), NARC_OK);
+        assert_int_equal(take_step(whole, before, &whole_list), NARC_OK);
         ledger.limited = true;
-        ledger.left = left;
+        ledger.left = failures;
         untouched = list;
-        narc_error error;
-        const narc_status status = narc_update_box_pairs(broad, boxes, MANY, &options, &untouched, &error);
+        const narc_status status = take_step(broad, after, &untouched);
         if (status != NARC_OK) {
-            failures++;
             assert_int_equal(status, NARC_ERROR_MEMORY);
             assert_ptr_equal(untouched, list);
             check_equal_lists(list, whole_list);
             ledger.limited = false;
             /* The same bodies again, which must not be taken for those that the step that failed had. */
-            options.id = (narc_word_column){ids, sizeof *ids};
-            list = update_boxes(broad, boxes, FEW, &options);
+            assert_int_equal(take_step(broad, before, &list), NARC_OK);
             assert_true(list->added_count == 0 && list->lost_count == 0);
-            options.id = (narc_word_column){later_ids, sizeof *later_ids};
-            list = update_boxes(broad, boxes, MANY, &options);
+            assert_int_equal(take_step(broad, after, &untouched), NARC_OK);
         }
-        whole_list = update_boxes(whole, boxes, MANY, &options);
+        assert_int_equal(take_step(whole, after, &whole_list), NARC_OK);
         assert_true(whole_list->lost_count > 0 && whole_list->added_count > 0);
-        check_equal_lists(status == NARC_OK ? untouched : list, whole_list);
+        check_equal_lists(untouched, whole_list);
         narc_destroy_broad_phase(broad);
         narc_destroy_broad_phase(whole);
         if (status == NARC_OK)
-            break;
+            return failures;
     }
-    assert_true(failures >= 5);
+}
+
+/* More bodies than before; bodies that had no ids get some; few bodies that move into the midst of many. */
+TEST(survives_failing_allocations) {
+    enum { FEW = 300, MANY = 5000, MOVED = 100 };
+    static narc_box boxes[MANY], moved[MANY];
+    static uint64_t ids[MANY], later_ids[MANY];
+    struct test_random random = test_random_named("failing lists");
+    for (size_t k = 0; k < MANY; k++) {
+        boxes[k] = eighths_box(&random, 30);
+        moved[k] = k % (MANY / MOVED) ? boxes[k] : (narc_box){0, 0, 6, 6};
+        ids[k] = random_bits(&random);
+        later_ids[k] = k % 3 ? ids[k] : random_bits(&random);
+    }
+    for (size_t k = 0; k < 40; k++)
+        moved[1 + k * (MANY / 40)] = (narc_box){100, 100, 101, 101}; /* and some go far away */
+    assert_true(fail_allocations(&(struct step){boxes, ids, FEW}, &(struct step){boxes, later_ids, MANY}) >= 5);
+    assert_true(fail_allocations(&(struct step){boxes, NULL, MANY}, &(struct step){boxes, later_ids, MANY}) >= 3);
+    assert_true(fail_allocations(&(struct step){boxes, ids, MANY}, &(struct step){moved, ids, MANY}) >= 2);
 }
 
 /* There is memory for the bodies but not for their pairs. They have moved, and the last list is not theirs, however

@@ -139,10 +139,10 @@ TEST(finds_pairs_among_extremes) {
 }
 
 /* Boxes of one row: spread evenly, over many powers of two, all but one or two in a crowd, in one place, too far apart for
- * a difference in floats; fewer and more than the sort has buckets. */
+ * a difference in floats, too near each other for its inverse; fewer and more than the sort has buckets. */
 TEST(sorts_rows_of_all_kinds) {
     static const size_t counts[] = {1, 2, 31, 32, 33, 500, 3000, 17000};
-    enum { EVEN, POWERS, CROWD, TWO_CROWDS, ONE_PLACE, FAR_APART, KINDS };
+    enum { EVEN, POWERS, CROWD, TWO_CROWDS, ONE_PLACE, FAR_APART, SPECKS, KINDS };
     struct test_random random = test_random_named("rows of boxes");
     narc_broad_phase *broad = create_broad_phase(NULL);
     for (size_t trial = 0; trial < KINDS * sizeof counts / sizeof counts[0]; trial++) {
@@ -161,6 +161,8 @@ TEST(sorts_rows_of_all_kinds) {
                                           [ONE_PLACE] = 5,
                                           [FAR_APART] = k < 2 ? far : x};
             boxes[k] = box_at(places[trial % KINDS], part, 0.5, 1);
+            if (trial % KINDS == SPECKS)
+                boxes[k] = (narc_box){1e-41f * (float)part, (float)part, 1e-41f, (float)part + 1};
         }
         check_pairs(broad, boxes, count, NULL);
         free(boxes);

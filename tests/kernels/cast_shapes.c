@@ -9,6 +9,7 @@
 
 #include "expect.h"
 #include "guard.h"
+#include "ledger.h"
 #include "narc_broad_phase.h"
 #include "narc_scene.h"
 #include "scene.h"
@@ -257,6 +258,18 @@ TEST(test_errors) {
                  "2 rows");
     expect_error(narc_cast_pairs(store, &bodies, &motions, &pairs, NULL, NULL, NULL, 2, &e), NARC_ERROR_ARGUMENT, &e,
                  "out_rows is NULL");
+    s.movers.bodies[5].shape = 0;
+    struct ledger ledger = {0};
+    const narc_allocator allocator = ledger_allocator(&ledger);
+    narc_box boxes[10];
+    narc_index *poor = NULL;
+    expect_ok(narc_create_index(&allocator, &poor), &e);
+    expect_ok(narc_compute_boxes(store, &bodies, NULL, boxes, &e), &e);
+    expect_ok(narc_build_index(poor, boxes, 10, NULL, &e), &e);
+    ledger.limited = true;
+    expect_error(narc_cast_shapes(poor, store, &bodies, &movers, &motions, NULL, NULL, rows, MOVERS, &e),
+                 NARC_ERROR_MEMORY, &e, "no memory for 300 movers");
+    narc_destroy_index(poor);
     assert_true(is_junk(rows, MOVERS * sizeof *rows));
     expect_ok(narc_cast_pairs(store, &bodies, NULL, &(narc_pairs){0}, NULL, NULL, NULL, 0, &e), &e);
     free(rows);

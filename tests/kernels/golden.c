@@ -14,6 +14,7 @@
 
 #include "methods.h"
 #include "narc_broad_phase.h"
+#include "narc_chains.h"
 #include "narc_scene.h"
 #include "scene.h"
 
@@ -29,6 +30,15 @@ static const uint64_t golden_boxes[] = {0x82c50e42c4824bc1u, 0xf33d99eef204246fu
 /* Those of the other methods, in their order. */
 static const uint64_t golden_methods[] = {0x85810ad0d8fcad45u, 0xde05f3d86d13b145u, 0xb72adc1892a6c4b6u,
                                           0x656376e9cda0e835u, 0x7ec640b6e75a6511u, 0x88b6eccb0495ec6du};
+#ifndef NARC_SMALL
+/* With margins, flat angles and hints: of all shapes, then of those with edges. */
+static const uint64_t golden_options[] = {0x7eb0ec61bfb327c5u, 0xf3466e065087098eu, 0x2f1a7d6b0b10e611u,
+                                          0x29e07556c7e1bab8u, 0x51340ea22a195ba6u, 0x89ff86af5a47f142u,
+                                          0xa042a9caddcff272u, 0xd450c1a226291e8du};
+/* Contacts, merged manifolds, straight and turning casts, rays, points. */
+static const uint64_t golden_ground[] = {0xc2aee636d08634b3u, 0xb60542b447156425u, 0xa0ed81ebe958773bu,
+                                         0x2e40d8578210dec8u, 0x61fd0c6162d066bdu, 0x297755085bdb519du};
+#endif
 #ifdef NARC_TEST_POSES
 /* Without SLEEF, and of SLEEF 3.5.1. */
 static const uint64_t golden_poses[] = {0x04246f5f8f209554u, 0x8b6998bde9bc55d9u};
@@ -273,6 +283,85 @@ TEST(test_manifolds) {
     check_hash("reaches, double positions", reaches[1], golden_reaches);
 }
 
+#ifndef NARC_SMALL /* which has other hints, and no chains */
+static void check_hashes(const char *name, const uint64_t *hashes, const uint64_t *golden, size_t count) {
+    bool right = true;
+    for (size_t k = 0; k < count; k++) {
+        printf("  %s: 0x%016" PRIx64 "\n", name, hashes[k]);
+        right = right && hashes[k] == golden[k];
+    }
+    assert_true(right);
+}
+
+/* Overlaps, contacts, and manifolds twice, all with the hints of the call before. */
+static uint64_t hash_hinted(const narc_shapes *store, const narc_bodies *bodies, const narc_pairs *pairs,
+                            const narc_query *options) {
+    uint32_t *hints = calloc(pairs->count, sizeof *hints);
+    uint64_t hash = TEST_HASH_START;
+    narc_query query = *options;
+    query.hints = NARC_HINT_ARRAY(hints);
+    uint64_t *bits = find_overlaps(store, bodies, pairs, &query);
+    hash = test_hash_items(hash, bits, NARC_BIT_WORDS(pairs->count), sizeof *bits);
+    hash = test_hash_items(hash, hints, pairs->count, sizeof *hints);
+    struct contacts contacts = find_contacts(store, bodies, pairs, &query);
+    HASH_FIELD(hash, contacts, pair);
+    hash = hash_contacts(hash, contacts);
+    HASH_FIELD(hash, contacts, radius_a);
+    HASH_FIELD(hash, contacts, radius_b);
+    hash = test_hash_items(hash, hints, pairs->count, sizeof *hints);
+    for (int round = 0; round < 2; round++) {
+        struct manifolds list = find_manifolds(store, bodies, pairs, &query);
+        hash = hash_reaches(hash_manifolds(hash, list), list);
+        hash = test_hash_items(hash, hints, pairs->count, sizeof *hints);
+        free(list.rows);
+    }
+    free(contacts.rows);
+    free(bits);
+    free(hints);
+    return hash;
+}
+
+TEST(test_options) {
+    static const narc_query options[] = {{.margin = 0.0625f, .flat_angle = 0.5f, .second_margin = 0.25f},
+                                         {.margin = -0.125f, .flat_angle = NARC_MAX_FLAT_ANGLE},
+                                         {.margin = INFINITY, .flat_angle = -1},
+                                         {.margin = 1, .flat_angle = 0.0625f, .second_margin = 1}};
+    enum { COUNT = sizeof options / sizeof *options };
+    static const uint32_t flat[] = {2, 4, 5, 7}; /* a capsule, boxes, a triangle */
+    struct scene scene = make_scene(NARC_FLOAT32);
+    const narc_bodies bodies = scene_bodies(&scene);
+    const narc_pairs pairs = scene_pairs(&scene);
+    uint64_t hashes[2 * COUNT];
+    for (size_t k = 0; k < COUNT; k++)
+        hashes[k] = hash_hinted(scene.store, &bodies, &pairs, &options[k]);
+    for (size_t k = 0; k < BODIES; k++)
+        scene.bodies[k].shape = flat[scene.bodies[k].shape % 4];
+    for (size_t k = 0; k < COUNT; k++)
+        hashes[COUNT + k] = hash_hinted(scene.store, &bodies, &pairs, &options[k]);
+    check_hashes("options", hashes, golden_options, 2 * COUNT);
+    destroy_scene(&scene);
+}
+#endif
+
+struct impacts {
+    narc_impact *rows;
+    size_t count;
+};
+
+static uint64_t hash_impacts(struct impacts list) {
+    uint64_t hash = TEST_HASH_START;
+    HASH_FIELD(hash, list, body);
+    HASH_FIELD(hash, list, feature);
+    HASH_FIELD(hash, list, count);
+    HASH_FIELD(hash, list, fraction);
+    HASH_FIELD(hash, list, separation);
+    HASH_FIELD(hash, list, normal_x);
+    HASH_FIELD(hash, list, normal_y);
+    HASH_FIELD(hash, list, point_x);
+    HASH_FIELD(hash, list, point_y);
+    return hash;
+}
+
 TEST(test_casts) {
     for (int precision = 0; precision < 2; precision++) {
         struct scene scene = make_scene((narc_precision)precision);
@@ -286,23 +375,10 @@ TEST(test_casts) {
             const narc_motions motions = {.x = column,
                                           .y = {motion + BODIES - 1, -column.stride},
                                           .angle = {turning ? motion : NULL, column.stride}};
-            struct {
-                narc_impact *rows;
-                size_t count;
-            } list = {make_junk(PAIRS * sizeof *list.rows), PAIRS};
-            uint64_t hash = TEST_HASH_START;
+            struct impacts list = {make_junk(PAIRS * sizeof *list.rows), PAIRS};
             assert_int_equal(
                 narc_cast_pairs(scene.store, &bodies, &motions, &pairs, NULL, NULL, list.rows, PAIRS, NULL), NARC_OK);
-            HASH_FIELD(hash, list, body);
-            HASH_FIELD(hash, list, feature);
-            HASH_FIELD(hash, list, count);
-            HASH_FIELD(hash, list, fraction);
-            HASH_FIELD(hash, list, separation);
-            HASH_FIELD(hash, list, normal_x);
-            HASH_FIELD(hash, list, normal_y);
-            HASH_FIELD(hash, list, point_x);
-            HASH_FIELD(hash, list, point_y);
-            check_hash(turning ? "turning casts" : "casts", hash, golden_casts[turning]);
+            check_hash(turning ? "turning casts" : "casts", hash_impacts(list), golden_casts[turning]);
             free(list.rows);
         }
         destroy_scene(&scene);
@@ -413,6 +489,125 @@ TEST(test_rays) {
         destroy_scene(&scene);
     }
 }
+
+#ifndef NARC_SMALL
+/* Hills and valleys from right to left, of arcs with the normals (3, 4) / 5 and (-3, 4) / 5 at their ends, an edge, a
+ * corner, an edge and a valley's bottom. */
+static size_t add_ground(narc_shapes *store, narc_chain_entry *out_entries, size_t capacity) {
+    enum { HILLS = 5, PARTS = 4 };
+    static const double from = ANGLE_5, to = PI - ANGLE_5;
+    narc_arc arcs[HILLS * PARTS];
+    size_t count;
+    for (int k = 0; k < HILLS; k++) {
+        const double x = 11 - 4.4 * k;
+        narc_arc *const part = &arcs[PARTS * k];
+        part[0] = (narc_arc){x, 0, 1, from, to};
+        part[1] = (narc_arc){x - 1.2, 1.6, -1, to, from};
+        part[2] = (narc_arc){x - 2.8, 1.55, 0, from, to};
+        part[3] = (narc_arc){x - 3.8, 0.8, -0.0, to, from};
+    }
+    const narc_status status = narc_add_chain(store, arcs, HILLS * PARTS, NULL, out_entries, capacity, &count, NULL);
+    assert_int_equal(status, NARC_OK);
+    return count;
+}
+
+/* The bits of overlaps are those of contacts. */
+static void check_bits(const narc_shapes *store, const narc_bodies *bodies, const narc_pairs *pairs) {
+    uint64_t *bits = find_overlaps(store, bodies, pairs, &(narc_query){0});
+    struct contacts contacts = find_contacts(store, bodies, pairs, &(narc_query){0});
+    for (size_t k = 0; k < contacts.count; k++)
+        bits[contacts.rows[k].pair / 64] &= ~(UINT64_C(1) << contacts.rows[k].pair % 64);
+    for (size_t k = 0; k < NARC_BIT_WORDS(pairs->count); k++)
+        assert_true(bits[k] == 0);
+    free(contacts.rows);
+    free(bits);
+}
+
+/* Bodies on ground and on a few others: contacts, what is left of them when they are merged, casts, rays and points. */
+TEST(test_ground) {
+    enum { MOST = 64, GUESTS = 120, OTHERS = 4 };
+    struct scene scene = make_scene(NARC_FLOAT32);
+    narc_chain_entry entries[MOST];
+    const size_t pieces_count = add_ground(scene.store, entries, MOST - OTHERS), count = pieces_count + OTHERS,
+                 pair_count = count * GUESTS;
+    narc_body ground[MOST], guests[GUESTS];
+    uint32_t *a = malloc(pair_count * sizeof *a), *b = malloc(pair_count * sizeof *b), runs[MOST];
+    float motion[GUESTS + 1];
+    uint64_t hashes[6];
+    struct test_random random = {3};
+    for (size_t k = 0; k < OTHERS; k++) {
+        ground[pieces_count + k] = (narc_body){(float)(4 * k) - 8, 2, 0.6f, 0.8f, 1, (uint32_t)(3 * k)};
+        runs[pieces_count + k] = NARC_NO_RUN;
+    }
+    for (size_t k = 0; k < pieces_count; k++) {
+        ground[k] = (narc_body){(float)entries[k].x, (float)entries[k].y, 1, 0, 1, entries[k].shape};
+        runs[k] = entries[k].run;
+    }
+    for (size_t k = 0; k < GUESTS; k++) {
+        const struct body *body = &scene.bodies[k];
+        guests[k] = (narc_body){0, 0, body->cosine, body->sine, body->scale, body->shape};
+        guests[k].x = (float)random_below(&random, 20000) / 1024 - 10;
+        guests[k].y = (float)random_below(&random, 3000) / 1024;
+        motion[k] = ((float)(k % 17) - 8) / 4;
+    }
+    motion[GUESTS] = 0.5f;
+    for (size_t k = 0; k < pair_count; k++) {
+        a[k] = (uint32_t)(k / count);
+        b[k] = (uint32_t)(k % count);
+    }
+    const narc_bodies bodies = narc_view_bodies(guests, GUESTS), pieces = narc_view_bodies(ground, count);
+    const narc_pairs pairs = {.count = pair_count, .a = NARC_ARRAY(a), .b = NARC_ARRAY(b), .other_bodies = &pieces};
+    check_bits(scene.store, &bodies, &pairs);
+    hashes[0] = hash_hinted(scene.store, &bodies, &pairs, &(narc_query){.margin = 0.125f, .flat_angle = 0.25f});
+    struct manifolds merged = find_manifolds(scene.store, &bodies, &pairs, &(narc_query){.margin = 0.125f});
+    printf("  %zu manifolds on ground\n", merged.count);
+    assert_true(merged.count > GUESTS / 2);
+    merged.count = narc_merge_manifolds(&pairs, NARC_ARRAY(runs), merged.rows, merged.count);
+    hashes[1] = hash_reaches(hash_manifolds(TEST_HASH_START, merged), merged);
+    free(merged.rows);
+    for (int turning = 0; turning < 2; turning++) {
+        const narc_motions motions = {.x = NARC_ARRAY(motion),
+                                      .y = {motion + GUESTS, -(ptrdiff_t)sizeof *motion},
+                                      .angle = {turning ? motion : NULL, sizeof *motion}};
+        const narc_cast_options options = {.target = turning ? 0.0625f : 0, .tolerance = turning ? 0x1p-8f : 0};
+        struct impacts list = {make_junk(pair_count * sizeof *list.rows), pair_count};
+        assert_int_equal(
+            narc_cast_pairs(scene.store, &bodies, &motions, &pairs, NULL, &options, list.rows, pair_count, NULL),
+            NARC_OK);
+        hashes[2 + turning] = hash_impacts(list);
+        free(list.rows);
+    }
+    narc_box boxes[MOST];
+    narc_index *const index = index_bodies(scene.store, &pieces, NULL, boxes);
+    const narc_rays rays = {.count = GUESTS,
+                            .x = bodies.x,
+                            .y = bodies.y,
+                            .motion_x = NARC_ARRAY(motion),
+                            .motion_y = {motion + GUESTS, -(ptrdiff_t)sizeof *motion}};
+    narc_ray_hit hits[2 * GUESTS];
+    narc_distance nearest[2 * GUESTS];
+    hashes[4] = hashes[5] = TEST_HASH_START;
+    const narc_points points = {.count = GUESTS, .x = bodies.x, .y = bodies.y};
+    assert_int_equal(
+        narc_cast_rays(index, scene.store, &pieces, &rays, &(narc_ray_options){.most = 2}, hits, 2 * GUESTS, NULL),
+        NARC_OK);
+    assert_int_equal(narc_find_nearest(index, scene.store, &pieces, &points, &(narc_nearest_options){.most = 2},
+                                       nearest, 2 * GUESTS, NULL),
+                     NARC_OK);
+    for (size_t k = 0; k < 2 * GUESTS; k++) {
+        hashes[4] = test_hash_items(hashes[4], &hits[k].fraction, 1, sizeof hits[k].fraction);
+        hashes[4] = test_hash_items(hashes[4], &hits[k].normal_x, 1, sizeof hits[k].normal_x);
+        hashes[4] = test_hash_items(hashes[4], &hits[k].radius, 1, sizeof hits[k].radius);
+        hashes[5] = test_hash_items(hashes[5], &nearest[k].feature, 2, sizeof nearest[k].feature);
+        hashes[5] = test_hash_items(hashes[5], &nearest[k].separation, 6, sizeof nearest[k].separation);
+    }
+    check_hashes("ground", hashes, golden_ground, 6);
+    narc_destroy_index(index);
+    free(a);
+    free(b);
+    destroy_scene(&scene);
+}
+#endif
 
 #ifdef NARC_TEST_POSES
 TEST(test_poses) {

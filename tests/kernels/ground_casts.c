@@ -299,6 +299,39 @@ TEST(test_chains_in_chains) {
     }
 }
 
+/* A box that two arcs of touch a hollow has two rows, as often as it is asked. */
+TEST(test_rows_of_many_pairs) {
+    enum { COUNT = 50 };
+    static narc_contact rows[COUNT * NARC_MAX_ARCS];
+    struct setting *s = calloc(1, sizeof *s);
+    struct turtle t = create_turtle(0, 0, TEST_PI / 2 + 0.9);
+    const uint32_t zero = 0;
+    s->store = empty_store();
+    walk_arc(&t, 2, -1.8);
+    take_turtle(s, &t, false);
+    assert_true(add_chain(s));
+    s->mover = turned_body(0, 1);
+    s->mover.shape = store_shape(s->store, box_of(2, 1, 0.125));
+    s->mover.x = s->arcs[0].center_x;
+    s->mover.y = s->arcs[0].center_y - 1.3;
+    const narc_bodies a = bodies_of(&s->mover, 1), b = bodies_of(s->bodies, s->count);
+    const narc_pairs pairs = {.count = COUNT, .a = {&zero, 0}, .b = {&zero, 0}, .other_bodies = &b};
+    size_t count, own = 0;
+    assert_int_equal(s->count, 1);
+    assert_int_equal(
+        narc_find_contacts(s->store, &a, &pairs, &(narc_query){0}, rows, COUNT * NARC_MAX_ARCS, &count, NULL), NARC_OK);
+    while (own < count && rows[own].pair == 0)
+        own++;
+    assert_true(own >= 2 && count == COUNT * own);
+    for (size_t k = 0; k < count; k++) {
+        assert_int_equal(rows[k].pair, k / own);
+        rows[k].pair = 0;
+        assert_memory_equal(&rows[k], &rows[k % own], sizeof *rows);
+    }
+    narc_destroy_shapes(s->store);
+    free(s);
+}
+
 /* ------------------------------------------------------------------------------------------------ casts */
 
 struct flight {
@@ -464,6 +497,50 @@ TEST(test_flights_past_a_concave_arc) {
         free(s);
     }
     assert_true(hits > test_trials(300));
+}
+
+/* A circle that flies along the normal at an end of a concave arc, from its centre or from anywhere on the way: by
+ * rounding it may meet the arc or pass it, but what it meets is where it should be. The normal is a multiple of the
+ * motion, to the last bit. */
+TEST(test_flights_along_an_end) {
+    struct test_random random = test_random_named("along an end");
+    const size_t rounds = 20 + test_trials(200);
+    size_t hits = 0;
+    for (size_t round = 0; round < rounds; round++) {
+        struct setting *s = calloc(1, sizeof *s);
+        const bool at_start = round % 2;
+        const double radius = 1 + random_unit(&random), size = 0.25 + random_unit(&random) / 2;
+        struct turtle t = create_turtle(0, 0, at_start ? TEST_PI / 2 : TEST_PI / 2 + 1);
+        s->store = empty_store();
+        walk_arc(&t, radius, -1);
+        take_turtle(s, &t, false);
+        assert_true(add_chain(s));
+        struct body *const ground = &s->bodies[0];
+        const struct body turned = turned_body(random_between(&random, -TEST_PI, TEST_PI), 1);
+        ground->cosine = turned.cosine;
+        ground->sine = turned.sine;
+        const double c = (double)turned.cosine, sn = (double)turned.sine, length = hypot(c, sn);
+        narc_arc stored;
+        assert_int_equal(narc_get_arcs(s->store, ground->shape, &stored), 1);
+        const double own_x = stored.center_x, own_y = stored.center_y;
+        const double from = round % 4 < 2 ? 0 : random_unit(&random) * (radius - size) / length;
+        s->shape = circle_of(size);
+        s->mover = turned_body(0, 1);
+        s->mover.shape = store_shape(s->store, s->shape);
+        s->mover.x = ground->x + (c * own_x - sn * own_y) / length + from * sn;
+        s->mover.y = ground->y + (sn * own_x + c * own_y) / length - from * c;
+        const struct flight flight = {turned.sine * 2, -turned.cosine * 2, 0};
+        const narc_impact hit = cast(s, &flight, 0, random_below(&random, 2));
+        if (hit.count == NARC_CAST_HIT) {
+            hits++;
+            assert_true(fabs(2 * length * (double)hit.fraction - (radius - size - from * length)) < 1e-5);
+            assert_true(fabs((double)hit.separation) < 1e-5);
+        }
+        narc_destroy_shapes(s->store);
+        free(s);
+    }
+    print_message("  %zu flights along an end, %zu hits\n", rounds, hits);
+    assert_true(4 * hits > rounds);
 }
 
 TEST_MAIN("ground_casts")

@@ -375,6 +375,10 @@ TEST(builds_ellipses) {
     expect_refused(&o, narc_build_ellipse(0, 1, 8, arcs, count, NULL, error), NARC_ERROR_SIZE, "half_x is 0");
     expect_refused(&o, narc_build_ellipse(1, NAN, 8, arcs, count, NULL, error), NARC_ERROR_NOT_FINITE, "half_y is");
     expect_refused(&o, narc_build_ellipse(100, 1, 32, arcs, count, NULL, error), NARC_ERROR_RADIUS, "");
+    expect_refused(&o, narc_build_ellipse(1, 129, 8, arcs, count, NULL, error), NARC_ERROR_RADIUS, "is too thin");
+    expect_refused(&o, narc_build_ellipse(1e-151, 1e-151, 8, arcs, count, NULL, error), NARC_ERROR_SIZE, "1e-150");
+    expect_refused(&o, narc_build_ellipse(1e-151, 1e-149, 8, arcs, count, NULL, error), NARC_ERROR_SIZE, "1e-150");
+    expect_refused(&o, narc_build_ellipse(1e151, 1e151, 8, arcs, count, NULL, error), NARC_ERROR_SIZE, "1e150");
     assert_int_equal(narc_build_ellipse(2, 1, 8, NULL, count, NULL, error), NARC_ERROR_ARGUMENT);
 }
 
@@ -592,6 +596,9 @@ TEST(welds_polygons) {
         assert_memory_equal(points, left, count * sizeof *left);
     }
     const narc_point flat[4] = {{0, 0}, {1, -1e-7}, {2, 0}, {1, 1e-7}};
+    const narc_point nearly[4] = {{0, 0}, {1, -1e-4}, {2, 0}, {1, 1}}; /* a triangle is left */
+    expect_ok(narc_weld_polygon(nearly, 4, 1e-3, left, &count, &error), &error);
+    assert_int_equal(count, 3);
     expect_error(narc_weld_polygon(flat, 4, 1e-3, left, &count, &error), NARC_ERROR_COUNT, &error, "fewer than 3");
     expect_error(narc_weld_polygon(flat, 2, 1, left, &count, &error), NARC_ERROR_COUNT, &error, "2 points");
     expect_error(narc_weld_polygon(flat, 4, -1, left, &count, &error), NARC_ERROR_SIZE, &error, "tolerance is -1");

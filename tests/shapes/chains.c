@@ -704,6 +704,42 @@ static void add_ring(narc_shapes *shapes, size_t teeth, narc_chain_entry *out_en
     free(t.arcs);
 }
 
+TEST(refuses_pieces_that_are_too_large) {
+    narc_shapes *shapes = empty_store();
+    struct turtle t = create_turtle(0, 0, PI / 2 + 1);
+    size_t count = 77;
+    narc_error error;
+    walk_arc(&t, 3e9, -1.9);
+    expect_error(narc_add_chain(shapes, t.arcs, t.count, NULL, entries, MOST, &count, &error), NARC_ERROR_SIZE, &error,
+                 "its bounding radius is");
+    assert_int_equal(narc_count_shapes(shapes), 0);
+    assert_int_equal(count, 77);
+    narc_destroy_shapes(shapes);
+    free(t.arcs);
+}
+
+/* A chain whose last piece is a shape with as many uses as it can have: none of its pieces is added. */
+TEST(adds_no_piece_where_one_is_used_most) {
+    static narc_chain_entry first[MOST], second[MOST];
+    narc_shapes *shapes = empty_store();
+    struct turtle t = walk_gear(6, 0.5);
+    size_t count, again = 77;
+    narc_error error;
+    add_ring(shapes, 6, first, &count);
+    const uint32_t last = first[count - 1].shape, uses = shapes->entries[last].uses;
+    shapes->entries[last].uses = UINT32_MAX;
+    expect_error(
+        narc_add_chain(shapes, t.arcs, t.count, &(narc_chain_options){.closed = 1}, second, MOST, &again, &error),
+        NARC_ERROR_COUNT, &error, "which is most");
+    assert_int_equal(again, 77);
+    shapes->entries[last].uses = uses;
+    for (size_t k = count; k-- > 0;)
+        assert_int_equal(narc_remove_shape(shapes, first[k].shape, NULL), NARC_OK);
+    assert_int_equal(shapes->piece_count, 0);
+    narc_destroy_shapes(shapes);
+    free(t.arcs);
+}
+
 /* Pieces come and go as shapes do, and are none that a list of arcs makes. */
 TEST(keeps_pieces_as_shapes) {
     static narc_chain_entry first[MOST], second[MOST];

@@ -183,6 +183,10 @@ TEST(refuses_bad_points) {
     expect_error(narc_build_points(square, 4, 0.4, arcs, &count, &error), NARC_ERROR_RADIUS, &error, "not between 0.5");
     expect_error(narc_build_points(clockwise, 4, 0, arcs, &count, &error), NARC_ERROR_NOT_CONVEX, &error, "point 0");
     expect_error(narc_build_points(same, 4, 0, arcs, &count, &error), NARC_ERROR_SIZE, &error, "point 1");
+    narc_point star[5];
+    for (size_t i = 0; i < 5; i++)
+        star[i] = (narc_point){cos(0.8 * PI * (double)i), sin(0.8 * PI * (double)i)};
+    expect_error(narc_build_points(star, 5, 0, arcs, &count, &error), NARC_ERROR_NOT_CONVEX, &error, "not once");
     expect_error(narc_find_radius_range(square, 4, NULL, &most, &chosen, &error), NARC_ERROR_ARGUMENT, &error,
                  "output");
     expect_ok(narc_find_radius_range(square, 4, &least, &most, &chosen, &error), &error);
@@ -370,5 +374,10 @@ TEST(refuses_bad_polygons) {
     expect_error(narc_adjust_polygon(touch, 5, out, &error), NARC_ERROR_NOT_SIMPLE, &error, "sides 0 and 2");
     expect_error(narc_adjust_polygon(twice, 6, out, &error), NARC_ERROR_NOT_SIMPLE, &error, "sides 0 and 2");
     expect_error(narc_adjust_polygon(one, 3, out, &error), NARC_ERROR_NOT_SIMPLE, &error, "all points");
+    for (int k = 0; k < 2; k++) {
+        const double size = k ? 4 * NARC_MAX_SIZE : NARC_MIN_SIZE / 4;
+        const narc_point sized[3] = {{0, 0}, {size, 0}, {0, size}};
+        expect_error(narc_adjust_polygon(sized, 3, out, &error), NARC_ERROR_SIZE, &error, "the polygon's size is");
+    }
     assert_true(out[0].x == 7 && out[0].y == 7);
 }

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "families.h"
+#include "ledger.h"
 #include "narc.h"
 #include "store.h"
 #include "support.h"
@@ -163,6 +164,32 @@ TEST(refuses_bad_arguments) {
     free(bytes);
 }
 
+/* Whichever allocation of loading fails, nothing is loaded. */
+TEST(loading_survives_failing_allocations) {
+    struct test_random random = test_random_named("loading without memory");
+    narc_shapes *shapes = make_store(&random, 2), *loaded = NULL;
+    size_t size, failures = 0;
+    unsigned char *bytes = save(shapes, &size);
+    narc_error error;
+    for (;; failures++) {
+        struct ledger ledger = {.limited = true, .left = failures};
+        const narc_allocator allocator = ledger_allocator(&ledger);
+        const narc_status status = narc_load_shapes(&allocator, bytes, size, &loaded, &error);
+        if (status == NARC_OK) {
+            expect_same_store(shapes, loaded);
+            narc_destroy_shapes(loaded);
+            assert_int_equal(ledger.live, 0);
+            break;
+        }
+        expect_error(status, NARC_ERROR_MEMORY, &error, "");
+        assert_null(loaded);
+        assert_int_equal(ledger.live, 0);
+    }
+    assert_true(failures >= 3);
+    narc_destroy_shapes(shapes);
+    free(bytes);
+}
+
 static void write_checksum(unsigned char *bytes, size_t size) {
     uint64_t hash = 0xcbf29ce484222325u;
     for (size_t k = 0; k < size; k++)
@@ -245,6 +272,12 @@ static void write_word(unsigned char *bytes, uint32_t word) {
         bytes[k] = (unsigned char)(word >> 8 * k);
 }
 
+static void write_float(unsigned char *bytes, float value) {
+    uint32_t word;
+    memcpy(&word, &value, sizeof word);
+    write_word(bytes, word);
+}
+
 static void check_forged(struct shape box) {
     narc_shapes *shapes = empty_store(), *loaded = NULL;
     unsigned char is[4], *at = NULL;
@@ -253,15 +286,12 @@ static void check_forged(struct shape box) {
     assert_int_equal(narc_add_shape(shapes, box.arcs, box.count, NULL, NULL), NARC_OK);
     assert_int_equal(shapes->box_count, 1);
     unsigned char *bytes = save(shapes, &size);
-    uint32_t word;
-    memcpy(&word, &shapes->headers[0].bound_radius, sizeof word);
-    write_word(is, word);
+    write_float(is, shapes->headers[0].bound_radius);
     for (size_t k = START; k + 4 <= size && !at; k++)
         at = memcmp(bytes + k, is, 4) == 0 ? bytes + k : NULL;
     assert_non_null(at);
     const float forged = 2 * shapes->headers[0].bound_radius;
-    memcpy(&word, &forged, sizeof word);
-    write_word(at, word);
+    write_float(at, forged);
     write_checksum(bytes, size);
     expect_ok(narc_load_shapes(NULL, bytes, size, &loaded, &error), &error);
     assert_true(loaded->headers[0].bound_radius == forged);
@@ -387,15 +417,148 @@ static void check_piece_forgery(const unsigned char *bytes, size_t size, size_t 
 
 static void check_float_forgery(const unsigned char *bytes, size_t size, size_t at, float forged) {
     unsigned char word[4];
-    uint32_t bits;
-    memcpy(&bits, &forged, sizeof bits);
-    write_word(word, bits);
+    write_float(word, forged);
     check_piece_forgery(bytes, size, at, word, sizeof word);
+}
+
+/* Where the numbers of a store's first shape are. */
+enum { SHAPE = START + 4, MARK = SHAPE + 1, FLAGS = SHAPE + 2, RATIO = SHAPE + 3, CIRCLE = SHAPE + 4 };
+enum { ARCS = SHAPE + 28, ARC = 32 };
+
+static void expect_refused(unsigned char *bytes, size_t size, const char *words) {
+    narc_shapes *loaded = NULL;
+    narc_error error;
+    write_checksum(bytes, size);
+    expect_error(narc_load_shapes(NULL, bytes, size, &loaded, &error), NARC_ERROR_FORMAT, &error, words);
+    assert_null(loaded);
+}
+
+/* Arc k becomes that of another place, and ends with the normal that the next one begins with. */
+static void put_arcs_in_order(const unsigned char *from, unsigned char *to, size_t count, const size_t *order) {
+    for (size_t k = 0; k < count; k++) {
+        memcpy(to + ARCS + k * ARC, from + ARCS + order[k] * ARC, ARC);
+        memcpy(to + ARCS + k * ARC + 24, from + ARCS + order[(k + 1) % count] * ARC + 16, 8);
+    }
+}
+
+/* What is stored of a shape is not believed: what is wrong is named. */
+TEST(refuses_forged_shapes) {
+    enum { CORNERS = 5 };
+    static const struct {
+        size_t at;
+        float value;
+        const char *words;
+    } numbers[] = {
+        {ARCS, INFINITY, "a number that no arc has"},
+        {ARCS + 4, NAN, "a number that no arc has"},
+        {ARCS + 8, NAN, "a number that no arc has"},
+        {ARCS + 8, -1, "a number that no arc has"},
+        {ARCS + 16, 1.5f, "normals that do not join"},
+        {ARCS + 20, NAN, "normals that do not join"},
+        {ARCS + 24, 0.5f, "normals that do not join"},
+        {ARCS + 28, 0.5f, "normals that do not join"},
+        {ARCS, 1e13f, "arcs that are too large"},
+        {ARCS, 10, "arcs that do not meet"},
+        {CIRCLE, NAN, "a circle that is out of range"},
+        {CIRCLE + 4, INFINITY, "a circle that is out of range"},
+        {CIRCLE + 8, 1e-12f, "a circle that is out of range"},
+        {CIRCLE + 8, 2e9f, "a circle that is out of range"},
+        {CIRCLE + 12, NAN, "a circle that is out of range"},
+        {CIRCLE + 16, NAN, "a circle that is out of range"},
+        {CIRCLE + 20, INFINITY, "a circle that is out of range"},
+        {CIRCLE, 1.1e9f, "a shape too far from its origin"},
+        {CIRCLE + 8, 0.9f, "a circle that does not hold its shape"},
+        {CIRCLE, 10.1f, "a circle that does not hold its shape"},
+        {CIRCLE + 20, 1, "a circle that is not in its shape"},
+        {CIRCLE + 12, 10.1f, "a circle that is not in its shape"},
+    };
+    static const struct {
+        size_t order[CORNERS];
+        const char *words;
+    } orders[] = {{{0, 2, 4, 1, 3}, "arcs that do not make one turn"},
+                  {{0, 0, 1, 2, 3}, "an arc that does not turn"},
+                  {{1, 2, 3, 4, 0}, "arcs out of order"}};
+    struct shape pentagon;
+    narc_point points[CORNERS];
+    narc_shapes *shapes = empty_store();
+    size_t size;
+    for (size_t k = 0; k < CORNERS; k++)
+        points[k] = (narc_point){10 + cos(0.4 * PI * (double)k), sin(0.4 * PI * (double)k)};
+    assert_int_equal(narc_build_polygon(points, CORNERS, 0, pentagon.arcs, &pentagon.count, NULL), NARC_OK);
+    store_shape(shapes, pentagon);
+    unsigned char *bytes = save(shapes, &size), *forged = malloc(size);
+    assert_non_null(forged);
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
+        memcpy(forged, bytes, size);
+        write_float(forged + numbers[k].at, numbers[k].value);
+        expect_refused(forged, size, numbers[k].words);
+    }
+    for (size_t k = 0; k < sizeof orders / sizeof *orders; k++) {
+        memcpy(forged, bytes, size);
+        put_arcs_in_order(bytes, forged, CORNERS, orders[k].order);
+        expect_refused(forged, size, orders[k].words);
+    }
+    memcpy(forged, bytes, size);
+    forged[RATIO]--;
+    expect_refused(forged, size, "an extent that is too small");
+    memcpy(forged, bytes, size);
+    forged[FLAGS] ^= NARC_SHAPE_SMOOTH;
+    expect_refused(forged, size, "flags that are not the shape's");
+    free(bytes);
+    free(forged);
+    narc_destroy_shapes(shapes);
+}
+
+static float read_float(const unsigned char *bytes) {
+    const uint32_t word = bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+    float value;
+    memcpy(&value, &word, sizeof value);
+    return value;
+}
+
+/* A lens whose arcs become flatter than arcs may be, all numbers together. */
+TEST(refuses_forged_flat_arcs) {
+    const double radius = 60, flatter = 70; /* half the chord is 1 */
+    narc_shapes *shapes = empty_store();
+    struct shape lens;
+    size_t size;
+    assert_int_equal(narc_build_four_arc((narc_four_arc){radius, radius, 2 * sqrt(radius * radius - 1), 0, 0},
+                                         lens.arcs, &lens.count, NULL),
+                     NARC_OK);
+    store_shape(shapes, lens);
+    unsigned char *bytes = save(shapes, &size);
+    for (size_t k = 0; k < lens.count; k++) {
+        unsigned char *const arc = bytes + ARCS + k * ARC;
+        if (read_float(arc + 8) > 0) {
+            write_float(arc + 4, copysignf((float)sqrt(flatter * flatter - 1), read_float(arc + 4)));
+            write_float(arc + 8, (float)flatter);
+        }
+        for (size_t at = 16; at < 32; at += 8) {
+            write_float(arc + at, copysignf((float)(1 / flatter), read_float(arc + at)));
+            write_float(arc + at + 4, copysignf((float)sqrt(1 - 1 / flatter / flatter), read_float(arc + at + 4)));
+        }
+    }
+    expect_refused(bytes, size, "an arc that is too flat");
+    free(bytes);
+    narc_destroy_shapes(shapes);
+}
+
+/* The list of removed indices ends where the last one says that there are no more. */
+TEST(refuses_a_list_that_goes_on) {
+    narc_shapes *shapes = empty_store();
+    size_t size;
+    store_shape(shapes, circle_of(1));
+    store_shape(shapes, circle_of(2));
+    assert_int_equal(narc_remove_shape(shapes, 1, NULL), NARC_OK);
+    unsigned char *bytes = save(shapes, &size);
+    write_word(bytes + size - 4, 0);
+    expect_refused(bytes, size, "removed indices are no list");
+    free(bytes);
+    narc_destroy_shapes(shapes);
 }
 
 /* What is stored of a piece is not believed: one number that is wrong, and it is refused. */
 TEST(refuses_forged_pieces) {
-    enum { SHAPE = START + 4, MARK = SHAPE + 1, CIRCLE = SHAPE + 4, ARCS = SHAPE + 28, ARC = 32 };
     const struct {
         size_t at;
         float value;

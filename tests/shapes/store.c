@@ -446,6 +446,37 @@ TEST(leaves_room_for_arcs_that_are_apart) {
     }
 }
 
+/* As many shapes as a store takes, and as many uses of one, are more than a test can add: the counts are set. */
+TEST(tells_that_it_is_full) {
+    narc_shapes *shapes = empty_store();
+    const struct shape circle = circle_of(1), other = circle_of(2);
+    uint32_t index = 7;
+    narc_error error;
+    store_shape(shapes, circle);
+    shapes->entries[0].uses = UINT32_MAX;
+    expect_error(narc_add_shape(shapes, circle.arcs, 1, &index, &error), NARC_ERROR_COUNT, &error,
+                 "shape 0 is used 4294967295 times, which is most");
+    shapes->entries[0].uses = 1;
+    const size_t all = shapes->count;
+    shapes->count = NARC_MAX_SHAPES;
+    expect_error(narc_add_shape(shapes, other.arcs, 1, &index, &error), NARC_ERROR_COUNT, &error,
+                 "the store is full, it has 2147483647 shapes");
+    shapes->count = all;
+    assert_int_equal(index, 7);
+    narc_destroy_shapes(shapes);
+}
+
+/* The largest circle has room for rounding about its origin, but not a radius away from it. */
+TEST(refuses_circles_without_room) {
+    narc_shapes *shapes = empty_store();
+    narc_arc circle = {0, 0, NARC_MAX_SIZE, -PI, PI};
+    narc_error error;
+    expect_ok(narc_add_shape(shapes, &circle, 1, NULL, &error), &error);
+    circle.center_x = NARC_MAX_SIZE;
+    expect_error(narc_add_shape(shapes, &circle, 1, NULL, &error), NARC_ERROR_SIZE, &error, "with room for rounding");
+    narc_destroy_shapes(shapes);
+}
+
 TEST(refuses_bad_arguments) {
     narc_shapes *shapes = NULL;
     narc_error error;
@@ -458,6 +489,7 @@ TEST(refuses_bad_arguments) {
     assert_int_equal(narc_create_shapes(&incomplete, &shapes), NARC_ERROR_ARGUMENT);
     assert_int_equal(narc_create_shapes(NULL, &shapes), NARC_OK);
     expect_error(narc_add_shape(NULL, &arc, 1, &index, &error), NARC_ERROR_ARGUMENT, &error, "shapes");
+    expect_error(narc_add_shape_at(NULL, 0, &arc, 1, &error), NARC_ERROR_ARGUMENT, &error, "shapes is NULL");
     expect_error(narc_add_shape(shapes, NULL, 1, &index, &error), NARC_ERROR_ARGUMENT, &error, "arcs");
     expect_error(narc_add_shape(shapes, &arc, 0, &index, &error), NARC_ERROR_COUNT, &error, "0 arcs");
     expect_error(narc_add_shape(shapes, &arc, 1, &index, &error), NARC_ERROR_RADIUS, &error, "arc 0: radius is -1");

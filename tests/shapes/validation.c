@@ -115,6 +115,12 @@ TEST(refuses_what_does_not_meet) {
     for (size_t i = 0; i < 4; i++)
         arcs[i].center_x = -arcs[i].center_x;
     expect_error(narc_validate_arcs(arcs, 4, &error), NARC_ERROR_NOT_CONVEX, &error, "arc 1: the edge from arc 0");
+    /* An arc that turns by as little as it may, between two that reach as far into it as they may. */
+    const double little = 1.01e-5, most = 0.99e-5;
+    const narc_arc overlapping[4] = {
+        {0, 0, 1, 0, 2 + most}, {0, 0, 1, 2, 2 + little}, {0, 0, 1, 2 + little - most, 4}, {0, 0, 1, 4, 2 * PI}};
+    expect_error(narc_validate_arcs(overlapping, 4, &error), NARC_ERROR_SWEEP, &error, "it turns by nothing");
+    assert_int_equal(error.index, 1);
     /* Within the tolerance. */
     make_box(arcs);
     arcs[1].center_y += 0.9e-5;
@@ -134,6 +140,13 @@ TEST(refuses_bad_sizes) {
     expect_ok(narc_validate_arcs(&largest, 1, &error), &error);
     narc_arc far = {2e9, 0, 1, -PI, PI};
     expect_error(narc_validate_arcs(&far, 1, &error), NARC_ERROR_SIZE, &error, "away from its origin");
+    for (size_t i = 0; i < 4; i++) {
+        narc_arc box[4];
+        make_box(box);
+        box[i].center_x = 1e200;
+        expect_error(narc_validate_arcs(box, 4, &error), NARC_ERROR_SIZE, &error, "a coordinate or radius is 1e+200");
+        assert_int_equal(error.index, i);
+    }
     /* A segment, a point, and a triangle whose corners lie on a line. */
     narc_arc segment[2] = {{1, 2, 0, -PI / 2, PI / 2}, {-1, 2, 0, PI / 2, -PI / 2}};
     expect_ok(narc_validate_arcs(segment, 2, &error), &error);
