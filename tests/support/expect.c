@@ -18,8 +18,8 @@ void expect_error(narc_status status, narc_status expected, const narc_error *er
     const size_t length = strlen(error->message);
     if (length == 0 || strchr(error->message, '\n') || error->message[length - 1] == '.')
         fail_msg("not one line without a full stop: \"%s\"", error->message);
-    if (!strpbrk(error->message, "0123456789") && error->index != 0)
-        fail_msg("\"%s\" has no number, but the index is %zu", error->message, error->index);
+    if (!strpbrk(error->message, "0123456789'+") && error->index != 0) /* numbers, 'names', U+FFFF */
+        fail_msg("\"%s\" tells no item, but the index is %zu", error->message, error->index);
     if (strstr(error->message, "NULL") && error->value != 0)
         fail_msg("\"%s\" has no value, but it is %g", error->message, error->value);
 }
