@@ -33,7 +33,7 @@ enum { SHOWN = 10 };
 enum { SEARCHED = 64 };
 
 struct report {
-    struct tally contacts[ALL_FAMILIES];
+    struct contact_tally contacts[ALL_FAMILIES];
     struct manifold_tally manifolds[ALL_FAMILIES];
     uint64_t pairs, searched, moved, casts, rays, points, wrong;
     size_t round;
@@ -59,7 +59,7 @@ static void print_table(const struct report *report) {
     printf("%-10s %11s %10s %9s %10s %6s %6s %8s   (largest errors, as fractions of what is allowed)\n", "", "pairs",
            "colliding", "in band", "separation", "normal", "point", "manifold");
     for (size_t k = 0; k < ALL_FAMILIES; k++) {
-        const struct tally *const row = &report->contacts[k];
+        const struct contact_tally *const row = &report->contacts[k];
         printf("%-10s %11zu %10zu %9zu %10.3f %6.3f %6.3f %8.3f\n", any_family_name(k), row->pairs, row->colliding,
                row->inside_band, row->worst.separation, row->worst.normal, row->worst.point,
                report->manifolds[k].worst);

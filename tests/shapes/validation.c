@@ -141,7 +141,7 @@ TEST(refuses_bad_sizes) {
     narc_arc far = {2e9, 0, 1, -PI, PI};
     expect_error(narc_validate_arcs(&far, 1, &error), NARC_ERROR_SIZE, &error, "away from its origin");
     for (size_t i = 0; i < 4; i++) {
-        narc_arc box[4];
+        narc_arc box[NARC_MAX_ARCS];
         make_box(box);
         box[i].center_x = 1e200;
         expect_error(narc_validate_arcs(box, 4, &error), NARC_ERROR_SIZE, &error, "a coordinate or radius is 1e+200");

@@ -131,7 +131,7 @@ const char *check_answer(const struct reference_body *a, const struct reference_
     return contact->pair != k ? "pair index" : wrong;
 }
 
-void count_pair(struct tally *tally, double gap, double bound, const struct fractions *errors) {
+void count_pair(struct contact_tally *tally, double gap, double bound, const struct fractions *errors) {
     tally->pairs++;
     tally->colliding += gap < 0;
     tally->inside_band += fabs(gap) <= bound;

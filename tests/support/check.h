@@ -30,11 +30,11 @@ void print_answer(const struct reference_body *a, const struct reference_body *b
                   const narc_contact *contact);
 
 /* Pairs of a kind: how many collide, how many are too near to touching to be sure, and the largest errors. */
-struct tally {
+struct contact_tally {
     size_t pairs, colliding, inside_band;
     struct fractions worst;
 };
-void count_pair(struct tally *tally, double gap, double bound, const struct fractions *errors);
+void count_pair(struct contact_tally *tally, double gap, double bound, const struct fractions *errors);
 
 /* A point of a manifold and its separation may be off by that many bounds of a separation: both edges' ends, a rotated
  * normal, and the slope of an edge at the flat angle. */

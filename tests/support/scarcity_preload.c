@@ -19,8 +19,8 @@ typedef int start_function(main_function *main, int count, char **arguments, voi
 static main_function *program;
 
 /* Within libraries that crash without memory: fontconfig reads through NULL, or goes round in circles, cairo jumps to a
- * frame that is gone, glib and librsvg end the process. */
-static const char *const spared_libraries[] = {"/libfontconfig.", "/libcairo.", "/libglib-", "/librsvg-"};
+ * frame that is gone, glib, librsvg and OpenMP's end the process. */
+static const char *const spared_libraries[] = {"/libfontconfig.", "/libcairo.", "/libglib-", "/librsvg-", "/libgomp."};
 
 static bool belongs_to_spared(const char *file) {
     bool spared = false;
