@@ -28,8 +28,8 @@
 #include "read/trace.h"
 
 /* Pixels of the page's longer side in the first look, of the ink's longer side, and of the page's at most: of a page of
- * 8192 x 8192, librsvg needs 256 MB for each group that it has to put together before it draws it. Fuzzing takes few pixels, or it would do
- * nothing but trace. */
+ * 8192 x 8192, librsvg needs 256 MB for each group that it has to put together before it draws it. Fuzzing takes few
+ * pixels, or it would do nothing but trace. */
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
 enum { LOOK = 64, INK = 256, PAGE = 512 };
 #else
