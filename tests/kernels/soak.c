@@ -301,7 +301,6 @@ static void compare_everywhere(struct test_random *random, struct scene *scene, 
             compare_part(random, scene, first, hints, report);
         scene_move_bodies(scene, random, random_log_between(random, 1e-7, 0.1));
     }
-    test_use_isa(test_isa());
     free(hints);
 }
 

@@ -29,6 +29,7 @@ void *ask_everywhere(void (*ask)(const void *question, const narc_workers *worke
                      const void *question, size_t size, struct difference *out) {
     static const narc_workers backwards = {NULL, 3, run_backwards};
     struct difference found = {NULL, 0};
+    const char *const usual = narc_get_isa();
     void *first = NULL;
     for (size_t k = 0; narc_isa_name(k); k++) {
         if (!narc_isa_supported(narc_isa_name(k)))
@@ -43,6 +44,7 @@ void *ask_everywhere(void (*ask)(const void *question, const narc_workers *worke
             first = rows;
         }
     }
+    test_use_isa(usual);
     if (out)
         *out = found;
     else if (found.isa)
