@@ -19,8 +19,8 @@ typedef int start_function(main_function *main, int count, char **arguments, voi
 static main_function *program;
 
 /* Within libraries that crash without memory: fontconfig reads through NULL, or goes round in circles, cairo jumps to a
- * frame that is gone, glib, librsvg and OpenMP's end the process. */
-static const char *const spared_libraries[] = {"/libfontconfig.", "/libcairo.", "/libglib-", "/librsvg-", "/libgomp."};
+ * frame that is gone, glib and librsvg end the process. */
+static const char *const spared_libraries[] = {"/libfontconfig.", "/libcairo.", "/libglib-", "/librsvg-"};
 
 static bool belongs_to_spared(const char *file) {
     bool spared = false;
@@ -34,10 +34,14 @@ static bool is_spared(void) {
     void *frames[DEPTH];
     scarcity.counts = false;
     const int count = backtrace(frames, DEPTH);
-    bool spared = false;
+    /* Nor what libgomp itself allocates, which ends the process too; it calls narc. */
+    bool spared = false, direct = true;
+    Dl_info here, object;
     for (int k = 0; k < count && !spared; k++) {
-        Dl_info object;
-        spared = dladdr(frames[k], &object) && object.dli_fname && belongs_to_spared(object.dli_fname);
+        if (!dladdr(frames[0], &here) || !dladdr(frames[k], &object) || object.dli_fbase == here.dli_fbase)
+            continue;
+        spared = belongs_to_spared(object.dli_fname) || (direct && strstr(object.dli_fname, "/libgomp."));
+        direct = false;
     }
     scarcity.counts = true;
     return spared;
