@@ -284,6 +284,26 @@ TEST(test_shape_index) {
     destroy_scene(&f.scene);
 }
 
+/* Of two sets of bodies, either of which may have a shape that there is not. */
+TEST(test_shapes_of_two_sets) {
+    struct fixture f;
+    set_up(&f);
+    struct body *others = make_junk(BODIES * sizeof *others);
+    memcpy(others, f.scene.bodies, BODIES * sizeof *others);
+    const struct scene second = {.bodies = others, .body_count = BODIES, .precision = NARC_FLOAT32};
+    const narc_bodies other_bodies = scene_bodies(&second);
+    f.pairs.other_bodies = &other_bodies;
+    for (size_t k = 0; k < PAIRS; k++)
+        f.scene.pairs[k] = (struct pair){(uint32_t)(k % 20), (uint32_t)(k / 20)};
+    f.scene.pairs[141] = (struct pair){22, 23};
+    others[23].shape = 4711;
+    check_batch(f.call, NARC_ERROR_INDEX, NAMES("141", "23", "4711"));
+    f.scene.bodies[22].shape = 4712;
+    check_batch(f.call, NARC_ERROR_INDEX, NAMES("141", "22", "4712"));
+    free(others);
+    destroy_scene(&f.scene);
+}
+
 /* A selection that names a pair there is not, or a pair that names a body there is not. What is not asked of may be
  * wrong. */
 TEST(test_selections) {

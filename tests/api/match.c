@@ -167,6 +167,9 @@ TEST(tells_that_there_is_no_memory) {
     const narc_pairs most = {.count = UINT32_MAX, .a = {&zero, 0}, .b = {&zero, 0}};
     assert_int_equal(narc_match_pairs(broad, &most, &news, &workers, match, &error), NARC_ERROR_ARGUMENT);
     assert_string_equal(error.message, "old_pairs: 4294967295 pairs, at most 4294967294");
+    const narc_pairs allowed = {.count = UINT32_MAX - 1};
+    assert_int_equal(narc_match_pairs(broad, &allowed, &news, &workers, match, &error), NARC_ERROR_ARGUMENT);
+    assert_string_equal(error.message, "old_pairs.a is NULL");
     assert_int_equal(match[0], 7);
     assert_int_equal(narc_match_pairs(broad, &news, &news, &workers, match, &error), NARC_OK);
     narc_destroy_broad_phase(broad);

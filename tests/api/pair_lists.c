@@ -13,6 +13,7 @@
 #include "boxes.h"
 #include "broad_phase.h"
 #include "families.h"
+#include "guard.h"
 #include "ledger.h"
 #include "narc.h"
 
@@ -280,8 +281,8 @@ typedef struct totals {
 
 /* Gives all objects the same step. */
 static void check_step(reference *r, body *bodies, size_t count, bool with_ids, totals *sums) {
-    narc_box *boxes = malloc((count + 1) * sizeof *boxes);
-    uint8_t *kinds = malloc(count + 1);
+    narc_box *boxes = guard_allocate(count * sizeof *boxes);
+    uint8_t *kinds = guard_allocate(count);
     for (size_t k = 0; k < count; k++) {
         boxes[k] = bodies[k].box;
         kinds[k] = bodies[k].kind;
@@ -327,8 +328,8 @@ static void check_step(reference *r, body *bodies, size_t count, bool with_ids, 
     r->next = last;
     r->pair_count = r->next_count;
     hash_pairs(r);
-    free(boxes);
-    free(kinds);
+    guard_release(boxes);
+    guard_release(kinds);
 }
 
 /* ------------------------------------------------------------------------------------------------ a world */

@@ -147,6 +147,27 @@ static void place(struct test_random *random, const struct scene *scene, const s
     b->y = a->y + y * up + x * along;
 }
 
+/* Puts a corner of B straight before a corner of A, or behind it, along the normal of an edge of either. */
+static void place_corner(struct test_random *random, const struct scene *scene, const struct body *a, struct body *b) {
+    const struct shape *const shapes[2] = {&scene->shapes[a->shape], &scene->shapes[b->shape]};
+    const struct body *const bodies[2] = {a, b};
+    const size_t of = random_below(random, 2), edge = random_below(random, shapes[of]->count);
+    const double angle = shapes[of]->arcs[edge].start, x = round(cos(angle)), y = round(sin(angle));
+    const double c = (double)bodies[of]->cosine, s = (double)bodies[of]->sine;
+    double at[2][2], radii = 0;
+    for (int side = 0; side < 2; side++) {
+        const narc_arc *arc = &shapes[side]->arcs[random_below(random, shapes[side]->count)];
+        const double scale = (double)bodies[side]->scale;
+        const double turned_c = scale * (double)bodies[side]->cosine, turned_s = scale * (double)bodies[side]->sine;
+        at[side][0] = turned_c * arc->center_x - turned_s * arc->center_y;
+        at[side][1] = turned_s * arc->center_x + turned_c * arc->center_y;
+        radii += scale * arc->radius;
+    }
+    const double beside = radii + random_log_between(random, 1e-7, 1) * (double)a->scale * shapes[0]->arcs[0].center_x;
+    b->x = a->x + at[0][0] - at[1][0] + beside * (c * x - s * y);
+    b->y = a->y + at[0][1] - at[1][1] + beside * (s * x + c * y);
+}
+
 static struct scene make_boxes(struct test_random *random, enum sizes sizes, enum kinds kinds) {
     const bool mixed = kinds == OTHERS;
     const narc_precision precision = random_below(random, 2) ? NARC_FLOAT64 : NARC_FLOAT32;
@@ -182,7 +203,10 @@ static struct scene make_boxes(struct test_random *random, enum sizes sizes, enu
             turn(random, &b);
         if (mixed && random_below(random, 40) == 0)
             b.sine = NAN;
-        place(random, &scene, &a, &b, grid);
+        if (random_below(random, 4))
+            place(random, &scene, &a, &b, grid);
+        else
+            place_corner(random, &scene, &a, &b);
         scene_add_two(&scene, a, b);
         if (random_below(random, 64) == 0)
             scene.pairs[k].b = scene.pairs[k].a;

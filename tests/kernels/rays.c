@@ -171,11 +171,13 @@ TEST(bodies_count_within_their_boxes) {
     const struct test_ray ray = {-5, 0.5, 8, 0, 1}, rising = {-5, -1, 8, 2, 1}, within = {0, 0.5, 8, 0, 1};
     const narc_ray_options leaves = {.inside = NARC_INSIDE_LEAVES};
     const narc_box late = {-0.5f, -1, 1, 1}, early = {-1, -1, 0.5f, 1}, beside = {-1, 0.625f, 1, 1},
-                   other = {3, -1, 4, 1};
+                   other = {3, -1, 4, 1}, front = {-1, -1, -1, 1};
     const narc_ray_hit *hit = meet_two(0, &late, &ray, 1, (narc_ray_options){0});
     assert_true(hit->count && hit->fraction == 0.5625f && hit->point_x == -0.5f);
     hit = meet_two(0, &early, &within, 1, leaves);
     assert_true(hit->count && hit->fraction == 0.0625f && hit->point_x == 0.5f);
+    hit = meet_two(0, &front, &ray, 1, (narc_ray_options){0}); /* no wider than the edge that is met */
+    assert_true(hit->count && hit->fraction == 0.5f && hit->point_x == -1);
     assert_int_equal(meet_two(0, &beside, &rising, 1, (narc_ray_options){0})->count, 0);
     assert_int_equal(meet_two(0, &other, &ray, 1, (narc_ray_options){0})->count, 0);
 }

@@ -30,9 +30,16 @@ static void expect_refused(const struct output *out, narc_status status, narc_st
     assert_memory_equal(&out->count, &untouched.count, sizeof out->count);
 }
 
+/* Arcs are written up to a count, and not behind it. */
+static void expect_nothing_behind(const struct output *out, size_t count) {
+    const struct output untouched = make_output();
+    assert_memory_equal(out->arcs + count, untouched.arcs, (NARC_MAX_ARCS - count) * sizeof *out->arcs);
+}
+
 static void expect_measures(const struct output *out, double area, double second_moment, double perimeter) {
     narc_mass mass;
     double length;
+    expect_nothing_behind(out, out->count);
     assert_true(narc_compute_mass(out->arcs, out->count, &mass));
     assert_true(narc_compute_perimeter(out->arcs, out->count, &length));
     expect_near(mass.area, area, 1e-13 * area, "area");
@@ -450,6 +457,8 @@ TEST(moves_arcs) {
                      tolerance = 1e-9 * reach; /* some roundings of angles and large radii */
         expect_near(hypot(moved.centroid_x, moved.centroid_y), 0, tolerance, "centroid");
         assert_true(mirror.arcs[0].radius == shape.arcs[shape.count - 1].radius);
+        expect_nothing_behind(&mirror, shape.count);
+        expect_nothing_behind(&centered, shape.count);
         for (int i = 0; i < 50; i++) {
             const double angle = random_between(&random, -PI, PI), x = cos(angle), y = sin(angle);
             assert_true(narc_find_support(shape.arcs, shape.count, x, y, &a, NULL));

@@ -156,6 +156,9 @@ TEST(refuses_bad_arguments) {
     expect_error(narc_load_shapes(NULL, NULL, size, &loaded, &error), NARC_ERROR_ARGUMENT, &error, "bytes is NULL");
     expect_error(narc_load_shapes(NULL, bytes, size, NULL, &error), NARC_ERROR_ARGUMENT, &error, "out_shapes is NULL");
     expect_error(narc_load_shapes(NULL, junk, sizeof junk, &loaded, &error), NARC_ERROR_FORMAT, &error, "no store");
+    struct ledger ledger = {.limited = true};
+    const narc_allocator allocator = ledger_allocator(&ledger);
+    expect_error(narc_load_shapes(&allocator, bytes, size, &loaded, &error), NARC_ERROR_MEMORY, &error, "no store");
     bytes[AT_VERSION] = 1;
     expect_error(narc_load_shapes(NULL, bytes, size, &loaded, &error), NARC_ERROR_FORMAT, &error, "version 1");
     assert_null(loaded);
