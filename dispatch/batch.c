@@ -109,7 +109,7 @@ static void move_rows(const struct job *job, size_t to, size_t from, size_t coun
 
 /* Moves the rows of all parts that are due. Of several threads one does it; one that ends a part while another is at it
  * leaves it to that one, which looks again after it has let go. */
-static void close_gaps(struct job *job, size_t parts) {
+NOINLINE void close_gaps(struct job *job, size_t parts) {
     size_t due = atomic_load(&job->due);
     while (due < parts && atomic_load(&job->ended[due]) && !atomic_flag_test_and_set(&job->closing)) {
         for (due = atomic_load(&job->due); due < parts && atomic_load(&job->ended[due]); due++) {

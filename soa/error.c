@@ -7,7 +7,6 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 narc_status narc_fail(narc_error *error, narc_status status, size_t index, double value, const char *format, ...) {
     if (error) {
@@ -18,9 +17,6 @@ narc_status narc_fail(narc_error *error, narc_status status, size_t index, doubl
         va_start(arguments, format);
         vsnprintf(error->message, sizeof error->message, format, arguments);
         va_end(arguments);
-        /* Words of a file, or of a library, may end with a full stop; and so may what is cut. */
-        for (size_t last = strlen(error->message); last > 0 && error->message[last - 1] == '.';)
-            error->message[--last] = '\0';
     }
     return status;
 }

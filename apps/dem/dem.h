@@ -349,7 +349,7 @@ static inline int dem_find_lift(const dem_pair *pair) { return (pair->shift_y > 
  * needs no sine. What rounding takes from its length is given back each time. */
 static inline vec dem_find_turn(double angle) {
     const double half = 0.5 * angle, share = 1 / (1 + half * half);
-    return make_vec((1 - half * half) * share, 2 * half * share);
+    return (vec){(1 - half * half) * share, 2 * half * share};
 }
 
 static inline vec dem_turn(vec turn, vec by) {

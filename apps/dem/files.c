@@ -44,7 +44,12 @@ static FILE *open_temporary(dem_file *out, const struct stat *old) {
     if (descriptor < 0)
         return NULL;
     fchmod(descriptor, old ? old->st_mode & 0777 : 0666 & ~mask);
-    return fdopen(descriptor, "wb");
+    FILE *file = fdopen(descriptor, "wb");
+    if (!file) {
+        unlink(out->temporary);
+        errno = ENOMEM;
+    }
+    return file;
 }
 
 dem_file dem_open_file(dem *d, const char *path) {

@@ -9,7 +9,8 @@
   python3 grains.py repose GRAINS --half WIDTH   angle of repose on a table that wide on either side
 
 TABLE is apps/dem's table of measures or a log of LAMMPS, GRAINS apps/dem's table of grains or a dump of LAMMPS, CONTACTS
-apps/dem's .vtk or a dump of LAMMPS' compute narc/contact with the ID contacts; of a dump the last frame counts. A picture has the kind that its name ends in: .png, .svg, .pdf."""
+apps/dem's .vtk or a dump of LAMMPS' compute narc/contact with the ID contacts; of a dump the last frame counts. A
+picture has the kind that its name ends in: .png, .svg, .pdf."""
 import argparse
 import math
 

@@ -73,7 +73,7 @@ static void write_frame(run *r) {
     r->place.frame++;
 }
 
-/* Once a second on a terminal: how far it is, and how long it will take. */
+/* Twice a second on a terminal: how far it is, and how long it will take. */
 static void show_run(run *r, const dem_stage *stage) {
     const double now = r->terminal ? find_seconds() : 0;
     if (!r->terminal || now - r->shown < 0.5)

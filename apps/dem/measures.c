@@ -71,7 +71,7 @@ void dem_measure(const dem *d, const dem_region *region, dem_measures *out_measu
         ends += is_wall ? 1 : 2;
         m.deepest = fmax(m.deepest, c->depth / (is_wall ? a->extent : fmin(a->extent, b->extent)));
         /* From the centre of A to that of B; of a wall, to the contact. */
-        const vec shift = {(double)pair->shift_x, (double)pair->shift_y};
+        const vec shift = dem_find_shift(d, pair);
         if (is_inside(d, r, plus(a->place, c->point)))
             add_stress(&m.stress, c->on.force, is_wall ? c->point : plus(minus(b->place, a->place), shift));
     }
@@ -123,7 +123,7 @@ dem_load *dem_find_loads(const dem *d) {
     for (const dem_contact *c = d->contacts; c < d->contacts + d->contact_count; c++) {
         const dem_pair *pair = &d->list.pairs[c->pair];
         const dem_body *a = dem_body_a(d, c->pair), *b = dem_body_b(d, c->pair);
-        const vec shift = {(double)pair->shift_x, (double)pair->shift_y};
+        const vec shift = dem_find_shift(d, pair);
         add_load(d, loads, a, times(-1, c->on.force), c->point);
         add_load(d, loads, b, c->on.force, plus(c->point, minus(minus(a->place, b->place), shift)));
     }

@@ -193,7 +193,7 @@ void dem_add_grain(dem *d, dem_grain grain) {
     b->inertia = pillar * shape->second_moment * s * s * s * s;
     b->inverse_mass = 1 / b->mass;
     b->inverse_inertia = 1 / b->inertia;
-    if (!isfinite(b->inverse_mass) || !isfinite(b->inverse_inertia) || !isfinite(b->inertia))
+    if (!(b->inverse_mass > 0 && isfinite(b->inverse_mass) && b->inverse_inertia > 0 && isfinite(b->inverse_inertia)))
         dem_fail(d, "grain %zu: mass %g is out of range", d->grain_count, b->mass);
     d->grain_count++;
     d->grain_reach = fmax(d->grain_reach, b->reach);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * place.c - where grains start. A random filling puts grain after grain at a random place with a random angle, and
- * tries again while it would touch: narc_find_contacts() decides, of those whose circles touch.
+ * tries again while it would touch: narc_find_contacts() decides, of grains whose circles touch, and of walls.
  */
 #include <math.h>
 

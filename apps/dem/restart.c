@@ -63,7 +63,10 @@ static void pass_wall(stream *s, dem *d, size_t index) {
 static void pass_body(stream *s, dem_body *b) {
     dem_body now = *b;
     PASS(now);
-    s->ok = s->ok && now.shape == b->shape && now.material == b->material && now.first_part == b->first_part;
+    s->ok = s->ok && now.shape == b->shape && now.material == b->material && now.first_part == b->first_part &&
+            now.inverse_mass == b->inverse_mass && now.inverse_inertia == b->inverse_inertia && now.mass == b->mass &&
+            now.inertia == b->inertia && now.extent == b->extent && now.disc == b->disc && now.reach == b->reach &&
+            now.scale == b->scale;
     *b = s->ok ? now : *b;
 }
 
@@ -141,7 +144,7 @@ static bool check_indices(const dem *d) {
 
 void dem_read_restart(dem *d, dem_place *place, const char *path) {
     size_t size;
-    char *bytes = dem_read_file(path, &size), problem[128] = "its counts do not fit the input";
+    char *bytes = dem_read_file(path, &size), problem[128] = "its bodies do not fit the input";
     bool ok = check_header(bytes, size, place->input, problem, sizeof problem);
     if (ok) {
         stream in = {.bytes = bytes + sizeof(header), .size = size - sizeof(header), .ok = true};

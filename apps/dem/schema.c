@@ -18,7 +18,7 @@ json_value json_read_file(const char *path) {
     errno = 0;                                              /* cJSON does not tell what is wrong; malloc() does */
     json_value root = {.file = path, .item = cJSON_ParseWithOpts(text, &end, true)};
     if (!root.item && errno == ENOMEM)
-        fail("%s: not enough memory", path);
+        dem_quit("%s: not enough memory", path);
     end = root.item && cut ? cut : end;
     if (!root.item || end != text + size) {
         for (const char *c = text; c < end; c++)

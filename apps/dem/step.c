@@ -61,8 +61,8 @@ static void find_contacts(dem *d) {
         pairs.shift_y = NARC_COLUMN(p, shift_y);
     }
     size_t skipped = 0;
-    /* touch.h decides; shifts of a sheared cell are rounded. */
-    const double rounding = d->settings.sheared ? 2e-7 * dem_cell_size(d).x : 0;
+    /* touch.h decides. Shifts are rounded: those of a sheared cell, and along plates, which may be long. */
+    const double rounding = 2e-7 * (d->settings.sheared ? dem_cell_size(d).x : d->wall_count > 0 ? d->diagonal : 0);
     const narc_query query = {.margin = (float)(4 * NARC_ERROR_BOUND * d->grain_reach + rounding),
                               .hints = NARC_HINT_COLUMN(d->list.pairs, hint),
                               .workers = &d->workers,

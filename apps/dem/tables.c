@@ -65,8 +65,8 @@ bool dem_write_csv(FILE *csv, const dem *d, const dem_measures *m) {
 }
 
 void dem_write_grains(dem *d, const char *path) {
-    dem_file out = dem_open_file(d, path);
     dem_load *loads = dem_find_loads(d);
+    dem_file out = dem_open_file(d, path);
     fprintf(out.file, "shape,x,y,angle,scale,size,vx,vy,spin,contacts,bearing,pressure,mass,cell_x,cell_y\n");
     for (size_t k = 0; k < d->grain_count; k++) {
         const dem_body *b = &d->bodies[k];

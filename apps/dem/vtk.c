@@ -229,8 +229,8 @@ void dem_write_vtk(dem *d, const char *stem, uint64_t number) {
         char path[DEM_PATH_SIZE];
         frame f;
         snprintf(path, sizeof path, "%.1000s%s-%06llu.vtk", stem, i ? "-contacts" : "", (unsigned long long)number);
-        dem_file out = dem_open_file(d, path);
         (i ? make_contacts : make_bodies)(d, &f);
+        dem_file out = dem_open_file(d, path);
         put_frame(out.file, d, &f);
         dem_release(f.corners);
         dem_release(f.points);

@@ -258,12 +258,15 @@ void FixNarcShapes::pre_exchange() {
 
 /* fix move lets grains spin that it does not turn. */
 void FixNarcShapes::refuse_spin_without_turn() {
-    for (int k = 0; k < modify->nfix; k++)
-        for (int i = 0; !std::strcmp(modify->fix[k]->style, "move") && i < atom->nlocal; i++)
+    for (int k = 0; k < modify->nfix; k++) {
+        if (std::strcmp(modify->fix[k]->style, "move") != 0)
+            continue;
+        for (int i = 0; i < atom->nlocal; i++)
             if ((atom->mask[i] & modify->fix[k]->groupbit) && atom->omega[i][2] != 0)
                 error->one(FLERR, std::string("fix narc/shapes: fix ") + modify->fix[k]->id +
                                       " of style move does not turn grains, and atom " + std::to_string(atom->tag[i]) +
                                       " has a spin");
+    }
 }
 
 /* Commands between two runs find memories with their atoms. */

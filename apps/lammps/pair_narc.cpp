@@ -290,9 +290,12 @@ void PairNarc::apply_discs(double step) {
                   b = static_cast<int>(shapes->row_atom[second[pair]]);
         const double x = atom->x[b][0] - atom->x[a][0], y = atom->x[b][1] - atom->x[a][1];
         const double radius_a = atom->radius[a], radius_b = atom->radius[b], reach = radius_a + radius_b;
-        if (!(x * x + y * y < reach * reach))
+        if (x * x + y * y >= reach * reach)
             continue;
         const touch_end end = meet_discs(radius_a, radius_b, x, y);
+        if (!std::isfinite(end.depth))
+            error->one(FLERR, "pair_style narc: atoms " + std::to_string(atom->tag[a]) + " and " +
+                                  std::to_string(atom->tag[b]) + ": the place of one is no number");
         if (end.depth > 0)
             apply_contact(pair, a, b, {end, end.depth, nullptr, x, y, {}, {}, 0, 0}, step);
     }

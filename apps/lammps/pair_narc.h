@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later
  *
- * pair_narc.h - forces between grains that touch. All pairs of a rank's neighbour list go to the library in one batch, but
- * for those of two discs.
+ * pair_narc.h - forces between grains that touch. All pairs of a rank's neighbour list go to the library in one batch,
+ * but for those of two discs.
  *
  *   pair_style narc/hooke/history LAW
  *   pair_style narc/hertz/history LAW

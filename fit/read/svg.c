@@ -28,8 +28,8 @@
 #include "read/trace.h"
 
 /* Pixels of the page's longer side in the first look, of the ink's longer side, and of the page's at most: of a page of
- * 8192 x 8192, librsvg needs 256 MB for each group that it has to put together before it draws it. Fuzzing takes few pixels, or it would do
- * nothing but trace. */
+ * 8192 x 8192, librsvg needs 256 MB for each group that it has to put together before it draws it. Fuzzing takes few
+ * pixels, or it would do nothing but trace. */
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
 enum { LOOK = 64, INK = 256, PAGE = 512 };
 #else
@@ -79,14 +79,19 @@ struct extent {
 
 /* ---------------------------------------------------------------------------- opening */
 
-/* The parser's message has the line inside: "... on line 3 column 7 of data: what is wrong". */
+enum { LONGEST_REASON = 160 };
+
+/* The parser's message has the line inside: "... on line 3 column 7 of data: what is wrong". It may end with a full stop. */
 static narc_status fail_svg(GError *problem, narc_error *error) {
     static const char before_line[] = " on line ", before_reason[] = " of data: ";
     const char *text = problem ? problem->message : "no reason told";
     const char *place = strstr(text, before_line), *reason = strstr(text, before_reason);
     const unsigned long line = place ? strtoul(place + strlen(before_line), NULL, 10) : 0;
     reason = reason ? reason + strlen(before_reason) : text;
-    const int size = (int)strcspn(reason, "\r\n");
+    int size = (int)strcspn(reason, "\r\n");
+    size = size < LONGEST_REASON ? size : LONGEST_REASON;
+    while (size > 0 && reason[size - 1] == '.')
+        size--;
     const narc_status status =
         line ? narc_fail(error, NARC_ERROR_FORMAT, line, 0, "line %lu: not SVG: %.*s", line, size, reason)
              : narc_fail(error, NARC_ERROR_FORMAT, 0, 0, "not SVG: %.*s", size, reason);

@@ -33,6 +33,10 @@ enum { MOST_CONTACTS = 1024, HALVINGS = 8 };
 /* So much of a step behind a time signs are not those of rounding. */
 #define JUST_BEHIND 0x1p-20
 
+/* What goes along a side of a sector, within this angle, is within rounding of it for the whole step: which side of it is
+ * chance, and so is when it would enter. */
+#define ALONG_A_SIDE 1e-9
+
 /* The bodies at a time, from A's position. */
 struct scene {
     struct body_frame ground, body;
@@ -260,12 +264,14 @@ static double find_entering(const struct scene *scene, int arc, double target, p
                 start = turn_to_world(&scene->body, (place){(double)stored->start_x, (double)stored->start_y}),
                 end = turn_to_world(&scene->body, (place){(double)stored->end_x, (double)stored->end_y});
     const place sides[4] = {scene->arc.start, scene->arc.end, start, end};
+    const double along = ALONG_A_SIDE * sqrt(find_dot(motion, motion));
     double least = INFINITY;
     for (int k = 0; k < 5; k++) {
-        const double time = (k < 4 ? -find_cross(sides[k], u) / find_cross(sides[k], motion) : meeting) + JUST_BEHIND;
+        const double across = k < 4 ? find_cross(sides[k], motion) : INFINITY;
+        const double time = (k < 4 ? -find_cross(sides[k], u) / across : meeting) + JUST_BEHIND;
         struct scene then = *scene;
         struct nearest nearest = {.separation = INFINITY};
-        if (!(time >= 0 && time < least))
+        if (!(fabs(across) > along && time >= 0 && time < least))
             continue;
         then.body.position.x += time * motion.x;
         then.body.position.y += time * motion.y;

@@ -28,7 +28,8 @@ static void compare(const unsigned char *first, const unsigned char *rows, size_
 void *ask_everywhere(void (*ask)(const void *question, const narc_workers *workers, void *out_rows),
                      const void *question, size_t size, struct difference *out) {
     static const narc_workers backwards = {NULL, 3, run_backwards};
-    struct difference found = {NULL, 0};
+    struct difference found = {NULL, NULL, 0};
+    const char *const usual = narc_get_isa();
     void *first = NULL;
     for (size_t k = 0; narc_isa_name(k); k++) {
         if (!narc_isa_supported(narc_isa_name(k)))
@@ -41,11 +42,13 @@ void *ask_everywhere(void (*ask)(const void *question, const narc_workers *worke
             free(rows);
         } else {
             first = rows;
+            found.first = narc_isa_name(k);
         }
     }
+    test_use_isa(usual);
     if (out)
         *out = found;
     else if (found.isa)
-        fail_msg("%s answers otherwise than %s at byte %zu", found.isa, narc_isa_name(0), found.at);
+        fail_msg("%s answers otherwise than %s at byte %zu", found.isa, found.first, found.at);
     return first;
 }

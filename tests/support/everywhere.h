@@ -9,9 +9,9 @@
 
 #include "narc_workers.h"
 
-/* `isa` gave another byte than the first instruction set did. */
+/* `isa` gave another byte than `first`, the first instruction set, did. */
 struct difference {
-    const char *isa; /* NULL: none */
+    const char *isa, *first; /* NULL: none */
     size_t at;
 };
 

@@ -189,7 +189,7 @@ struct reference_gap reference_solve_gap(const struct reference_body *a, const s
         if (length - radii <= best.gap) /* nowhere more */
             continue;
         double angle = turns[k].angle, x = cos(angle), y = sin(angle), gap = u_x * x + u_y * y - radii;
-        if (wrap(atan2(u_y, u_x) - angle) < turns[k + 1].angle - angle) {
+        if (length > 0 && wrap(atan2(u_y, u_x) - angle) < turns[k + 1].angle - angle) {
             x = u_x / length;
             y = u_y / length;
             gap = length - radii;

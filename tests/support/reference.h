@@ -3,8 +3,8 @@
  * reference.h - what the kernels must answer, in double precision and straight from the definition.
  *
  * For a unit direction n from A towards B the gap is g(n) = -h_A(n) - h_B(-n), h the support function: how far the
- * shapes are apart as seen along n. The separation is the largest gap of all directions. Nothing here knows of pairs
- * of arcs.
+ * shapes are apart as seen along n. The separation is the largest gap of all directions. The search knows nothing of
+ * pairs of arcs; reference_solve_gap() goes through them, and is compared with the search.
  */
 #ifndef NARC_TEST_REFERENCE_H
 #define NARC_TEST_REFERENCE_H

@@ -16,6 +16,7 @@ once() {
     [ $status -eq 0 ]
 }
 
+growing= # outputs that the command writes bit by bit: a failed one leaves a part
 # run_out NAME STATUS OUTPUTS COMMAND...: whichever allocation fails, one or all from it on, the command ends as it
 # otherwise does, with the same outputs (without any: what it prints), or with STATUS, word of memory, and outputs as they
 # were. Nothing else stays. Of the first allocations each one fails, of later ones, which are much the same, some.
@@ -26,13 +27,13 @@ run_out() {
     [ -f allocations.txt ] || exit 77 # another C library
     count=$(cat allocations.txt)
     mv printed.txt usual.txt
-    for output in $files; do mv "$output" "usual-$output"; done
+    for output in $files $growing; do mv "$output" "usual-$output"; done
     number=1
     while [ "$number" -le "$count" ]; do
         for on in "" on; do
             if once "$on" "$files" "$@"; then
                 [ -n "$files" ] || cmp -s printed.txt usual.txt || miss "$name, allocation $number $on: prints something else"
-                for output in $files; do
+                for output in $files $growing; do
                     cmp -s "$output" "usual-$output" || miss "$name, allocation $number $on: $output is not what it was"
                 done
             else

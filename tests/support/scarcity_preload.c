@@ -34,10 +34,14 @@ static bool is_spared(void) {
     void *frames[DEPTH];
     scarcity.counts = false;
     const int count = backtrace(frames, DEPTH);
-    bool spared = false;
+    /* Nor what libgomp itself allocates, which ends the process too; it calls narc. */
+    bool spared = false, direct = true;
+    Dl_info here, object;
     for (int k = 0; k < count && !spared; k++) {
-        Dl_info object;
-        spared = dladdr(frames[k], &object) && object.dli_fname && belongs_to_spared(object.dli_fname);
+        if (!dladdr(frames[0], &here) || !dladdr(frames[k], &object) || object.dli_fbase == here.dli_fbase)
+            continue;
+        spared = belongs_to_spared(object.dli_fname) || (direct && strstr(object.dli_fname, "/libgomp."));
+        direct = false;
     }
     scarcity.counts = true;
     return spared;

@@ -38,5 +38,6 @@ sed 's/"duration": 0.1/"duration": 0.2/; s/"every": 0.05, "restart": "first/"eve
 
 run_out "a run" 2 first.restart "$dem" first.json --threads 1
 "$dem" first.json --threads 1 >usual.txt 2>err.txt || miss "a run, again"
-run_out "a restart" 2 "out.csv out.restart" "$dem" second.json --restart first.restart --threads 1
+growing=out.csv
+run_out "a restart" 2 out.restart "$dem" second.json --restart first.restart --threads 1
 [ $failures -eq 0 ] || exit 1

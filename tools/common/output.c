@@ -5,6 +5,7 @@
 #include "output.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +36,8 @@ static char *find_target(const char *path) {
     const size_t length = folder_length(path);
     char *as_given = join_text(path, length, "."), *folder = find_real_path(as_given);
     if (folder) {
-        char *with_slash = join_text(folder, strlen(folder), path_separator);
+        const bool is_root = folder_length(folder) == strlen(folder); /* its name has the separator */
+        char *with_slash = join_text(folder, strlen(folder), is_root ? "" : path_separator);
         found = join_text(with_slash, strlen(with_slash), path + length);
         free(with_slash);
     }
@@ -127,7 +129,9 @@ void commit_outputs(void) {
         if (outputs[i].temporary) {
             if (!replace_file(outputs[i].temporary, outputs[i].target))
                 fail("%s: %s", outputs[i].path, strerror(errno));
-            free(outputs[i].temporary);
+            char *name = outputs[i].temporary;
+            outputs[i].temporary = NULL; /* before a signal finds it freed */
+            free(name);
         }
         free(outputs[i].target);
         outputs[i] = (output){0};

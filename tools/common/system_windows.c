@@ -32,11 +32,17 @@ static char *narrow(const wchar_t *wide) {
     return text;
 }
 
+static UINT code_page;
+
+static void restore_console(void) { SetConsoleOutputCP(code_page); }
+
 /* Lines end as they do elsewhere. */
 void start_system(int *argc, char ***argv) {
     for (int stream = 0; stream <= 2; stream++)
         _setmode(stream, _O_BINARY);
-    SetConsoleOutputCP(CP_UTF8);
+    code_page = GetConsoleOutputCP();
+    if (code_page && SetConsoleOutputCP(CP_UTF8))
+        atexit(restore_console);
     wchar_t **wide = CommandLineToArgvW(GetCommandLineW(), argc);
     if (!wide)
         fail("the command line cannot be read");
@@ -77,7 +83,9 @@ static void set_errno(void) {
     const DWORD error = GetLastError();
     errno = error == ERROR_FILE_NOT_FOUND || error == ERROR_PATH_NOT_FOUND || error == ERROR_INVALID_NAME ? ENOENT
             : error == ERROR_ACCESS_DENIED || error == ERROR_SHARING_VIOLATION                            ? EACCES
-            : error == ERROR_FILE_EXISTS                                                                  ? EEXIST
+            : error == ERROR_WRITE_PROTECT                                                                ? EROFS
+            : error == ERROR_FILENAME_EXCED_RANGE                                                         ? ENAMETOOLONG
+            : error == ERROR_FILE_EXISTS || error == ERROR_ALREADY_EXISTS                                 ? EEXIST
             : error == ERROR_DISK_FULL || error == ERROR_HANDLE_DISK_FULL                                 ? ENOSPC
                                                                                                           : EIO;
 }

@@ -85,6 +85,15 @@ TEST(test_full_region) {
     dem_destroy(&d);
 }
 
+/* Infinite mass is what walls have. */
+TEST(test_mass_out_of_range) {
+    dem d = plain_world();
+    d.materials[0].density = 1e300;
+    d.settings.thickness = 1e8; /* so that the moment of inertia, half the mass, is finite */
+    EXPECT_ERROR(&d, "mass inf is out of range", add_grain(&d, DISC, 0, 0, 0, 0));
+    dem_destroy(&d);
+}
+
 TEST(test_lattice) {
     dem d = plain_world();
     dem_filling filling = plain_filling(0);

@@ -119,6 +119,16 @@ TEST(test_damage) {
     dem_destroy(&d);
 }
 
+/* A whole file, but a body has no mass, as a wall has none. */
+TEST(test_foreign_bodies) {
+    dem d = make_busy_world(1);
+    dem_start(&d);
+    d.bodies[0].inverse_mass = 0;
+    dem_write_restart(&d, &(dem_place){.input = 5}, path);
+    expect_refusal("its bodies do not fit the input", 5);
+    dem_destroy(&d);
+}
+
 /* A file that cannot be written leaves the old one. */
 TEST(test_no_place_to_write) {
     dem d = make_busy_world(1);
