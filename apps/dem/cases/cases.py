@@ -29,7 +29,8 @@ SHAPES = os.path.join(HERE, "shapes.json")
 
 class Cases:
     def __init__(self, program, folder, small, sand, jobs, lammps, seed):
-        self.program, self.folder, self.small, self.sand, self.seed = os.path.abspath(program), folder, small, sand, seed
+        self.program, self.folder = os.path.abspath(program), folder
+        self.small, self.sand, self.seed = small, sand, seed
         self.lammps = lammps and os.path.abspath(lammps)
         self.pool = concurrent.futures.ThreadPoolExecutor(jobs)
 
