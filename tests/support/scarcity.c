@@ -24,7 +24,7 @@ static void *keep_book(void *memory) {
 }
 
 static bool denies(void) {
-    if (!scarcity.counts)
+    if (!scarcity.counts || (scarcity.ignores && scarcity.ignores()))
         return false;
     const size_t number = __atomic_add_fetch(&scarcity.count, 1, __ATOMIC_RELAXED);
     const bool denied =

@@ -27,7 +27,8 @@
 struct scarcity {
     bool counts, forever;
     size_t count, denied; /* allocations while it counts; the first that fails, from 1; 0: none */
-    bool (*spares)(void); /* one that would fail does not; NULL: none is spared */
+    bool (*ignores)(void); /* one that does not count; NULL: all do */
+    bool (*spares)(void);  /* one that would fail does not; NULL: none is spared */
 };
 
 /* Blocks that are given out, counted or not. */

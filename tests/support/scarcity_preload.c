@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * scarcity_preload.c - for LD_PRELOAD: from main() on allocation NARC_DENIED fails, from 1, and with NARC_DENIED_ON each
- * one behind it. How many there were goes to the file NARC_ALLOCATIONS, when the program ends by exit().
+ * one behind it. With NARC_DENIED_TO those alone count that a program or library with this word in its file's name asks
+ * for. How many there were goes to the file NARC_ALLOCATIONS, when the program ends by exit().
  */
 #define _GNU_SOURCE /* RTLD_NEXT, dladdr */
 #include "scarcity.h"
@@ -17,6 +18,7 @@ typedef int start_function(main_function *main, int count, char **arguments, voi
                            void (*end_linker)(void), void *stack);
 
 static main_function *program;
+static const char *denied_to;
 
 /* Within libraries that crash without memory: fontconfig reads through NULL, or goes round in circles, cairo jumps to a
  * frame that is gone, glib and librsvg end the process. */
@@ -47,10 +49,26 @@ static bool is_spared(void) {
     return spared;
 }
 
+/* Containers of the C++ library are its callers'. */
+static bool is_of_another(void) {
+    void *frames[8];
+    scarcity.counts = false;
+    const int count = backtrace(frames, sizeof frames / sizeof *frames);
+    Dl_info here, object = {.dli_fname = ""};
+    for (int k = 1; k < count && dladdr(frames[0], &here); k++)
+        if (dladdr(frames[k], &object) && object.dli_fbase != here.dli_fbase &&
+            !strstr(object.dli_fname, "/libstdc++."))
+            break;
+    scarcity.counts = true;
+    return !strstr(object.dli_fname, denied_to);
+}
+
 static int run(int count, char **arguments, char **environment) {
     const char *const denied = getenv("NARC_DENIED");
     scarcity.denied = denied ? strtoul(denied, NULL, 10) : 0;
     scarcity.forever = getenv("NARC_DENIED_ON") != NULL;
+    denied_to = getenv("NARC_DENIED_TO");
+    scarcity.ignores = denied_to ? is_of_another : NULL;
     scarcity.spares = is_spared;
     is_spared(); /* loads what it needs */
     scarcity.counts = true;
