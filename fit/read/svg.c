@@ -263,15 +263,21 @@ static narc_status find_scale(const struct subject *of, double *out_scale, narc_
 
 /* ---------------------------------------------------------------------------- the outline */
 
-/* Marks what is within REACH of a sample with the bit `from`, in a line of samples, with `to`. */
-static void mark_near(uint16_t *samples, size_t count, size_t step, unsigned from, unsigned to) {
+enum { LINES = 64 };
+
+/* Marks what is within REACH of a sample with the bit `from`, in a line of samples, with `to`; in up to LINES of them that
+ * begin side by side, or the columns of a large picture would miss the cache. */
+static void mark_near(uint16_t *samples, size_t lines, size_t count, size_t step, unsigned from, unsigned to) {
     for (int pass = 0; pass < 2; pass++) {
-        size_t since = REACH + 1;
+        unsigned since[LINES];
+        for (size_t line = 0; line < lines; line++)
+            since[line] = REACH + 1;
         for (size_t k = 0; k < count; k++) {
             uint16_t *at = samples + step * (pass ? count - 1 - k : k);
-            since = *at & from ? 0 : since + 1;
-            if (since <= REACH)
-                *at = (uint16_t)(*at | to);
+            for (size_t line = 0; line < lines; line++) {
+                since[line] = at[line] & from ? 0 : since[line] + 1;
+                at[line] = (uint16_t)(at[line] | (since[line] <= REACH ? to : 0));
+            }
         }
     }
 }
@@ -284,10 +290,10 @@ static void mark_ink(const struct drawing *drawing, struct extent part, int leas
     for (size_t y = 0; y < height; y++) {
         for (size_t x = 0; x < width; x++)
             samples[y * width + x] = first[y * drawing->stride + x] >= least ? STRONG : 0;
-        mark_near(samples + y * width, width, 1, STRONG, NEAR_IN_ROW);
+        mark_near(samples + y * width, 1, width, 1, STRONG, NEAR_IN_ROW);
     }
-    for (size_t x = 0; x < width; x++)
-        mark_near(samples + x, height, width, NEAR_IN_ROW, NEAR);
+    for (size_t x = 0; x < width; x += LINES)
+        mark_near(samples + x, width - x < LINES ? width - x : LINES, height, width, NEAR_IN_ROW, NEAR);
     for (size_t y = 0; y < height; y++)
         for (size_t x = 0; x < width; x++)
             samples[y * width + x] = first[y * drawing->stride + x] && samples[y * width + x] & NEAR ? FULL : 0;
