@@ -390,15 +390,16 @@ static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t 
 
 /* ------------------------------------------------------------------------------------------------ turning, concave */
 
-/* When can an arc of the body have a contact, or no more? */
-static double find_arc_wait(const struct scene *scene, int arc, double target, const struct speeds *s, int side) {
+/* When can an arc of the body have a contact, or no more? The circles are `between` apart. */
+static double find_arc_wait(const struct scene *scene, int arc, double target, double between, const struct speeds *s,
+                            int side) {
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place u = find_way(scene, arc), own = turn_to_shape(&scene->body, u), back = {-u.x, -u.y};
     const place start = {(double)stored->start_x, (double)stored->start_y},
                 end = {(double)stored->end_x, (double)stored->end_y};
     const bool round = scene->body.header->flags & NARC_SHAPE_CIRCLE;
     const double separation = scene->arc.radius - sqrt(find_dot(u, u)) - get_radius(scene, arc),
-                 apart = find_most(separation - target, find_least(-separation, find_circle_gap(scene)));
+                 apart = find_most(separation - target, find_least(-separation, between));
     const double beside = find_most(-find_cross(scene->arc.start, back), -find_cross(back, scene->arc.end)),
                  beyond = round ? -INFINITY : find_most(-find_cross(start, own), -find_cross(own, end));
     const double speed = find_speed_seen(s, 1 - side, s->reach[1 - side]),
@@ -413,10 +414,11 @@ static struct outlook look_at_concave(const narc_shapes *shapes, narc_casts *cas
     const struct speeds s = find_speeds(both, casts, slot);
     const struct nearest nearest = find_nearest(&scene, false);
     const bool reached = nearest.separation < INFINITY;
+    const double target = (double)casts->target, between = find_circle_gap(&scene);
     struct outlook out = {INFINITY, !reached && nearest.unreached ? -INFINITY : nearest.separation, reached};
     for (int arc = 0; arc < scene.body.header->count; arc++)
         if (narc_touches(scene.body.header, find_feature_number(scene.body.header, arc, false)))
-            out.wait = find_least(out.wait, find_arc_wait(&scene, arc, (double)casts->target, &s, side));
+            out.wait = find_least(out.wait, find_arc_wait(&scene, arc, target, between, &s, side));
     if (reached)
         write_contact(&scene, &nearest, side, &casts->contact[slot]);
     return out;
