@@ -120,6 +120,27 @@ static bool may_touch(const struct scene *scene, int arc, place u) {
            holds_normal(&scene->arc, (place){-u.x, -u.y});
 }
 
+/* The bodies' bounding circles: from the ground's to the body's, and the sum of their radii. */
+static place find_circles(const struct scene *scene, double *out_size) {
+    place center[2];
+    *out_size = 0;
+    for (int side = 0; side < 2; side++) {
+        const struct body_frame *const frame = side ? &scene->body : &scene->ground;
+        const narc_shape_header *const header = frame->header;
+        const place own = turn_to_world(frame, (place){(double)header->bound_x, (double)header->bound_y});
+        center[side] = (place){frame->position.x + frame->scale * own.x, frame->position.y + frame->scale * own.y};
+        *out_size += frame->scale * (double)header->bound_radius;
+    }
+    return (place){center[1].x - center[0].x, center[1].y - center[0].y};
+}
+
+/* How far the circles are apart. While they are, no contact with a separation below 0 is told (piece/concave.inl). */
+static double find_circle_gap(const struct scene *scene) {
+    double size;
+    const place between = find_circles(scene, &size);
+    return sqrt(find_dot(between, between)) - size;
+}
+
 static void compare_arc(const struct scene *scene, int arc, struct nearest *best) {
     place u = find_way(scene, arc);
     const double length = sqrt(find_dot(u, u)), separation = scene->arc.radius - length - get_radius(scene, arc);
@@ -129,7 +150,7 @@ static void compare_arc(const struct scene *scene, int arc, struct nearest *best
         const place middle = find_middle_normal(&scene->arc);
         u = (place){-middle.x, -middle.y};
     }
-    if (!may_touch(scene, arc, u))
+    if (!may_touch(scene, arc, u) || (separation < 0 && find_circle_gap(scene) > 0))
         return;
     const double size = sqrt(find_dot(u, u));
     const place n = {-u.x / size, -u.y / size};
@@ -227,27 +248,6 @@ static double find_leaving(const struct scene *scene, int arc, double goal, plac
     return time >= 0 && may_touch(scene, arc, then) ? time : INFINITY;
 }
 
-/* The bodies' bounding circles: from the ground's to the body's, and the sum of their radii. */
-static place find_circles(const struct scene *scene, double *out_size) {
-    place center[2];
-    *out_size = 0;
-    for (int side = 0; side < 2; side++) {
-        const struct body_frame *const frame = side ? &scene->body : &scene->ground;
-        const narc_shape_header *const header = frame->header;
-        const place own = turn_to_world(frame, (place){(double)header->bound_x, (double)header->bound_y});
-        center[side] = (place){frame->position.x + frame->scale * own.x, frame->position.y + frame->scale * own.y};
-        *out_size += frame->scale * (double)header->bound_radius;
-    }
-    return (place){center[1].x - center[0].x, center[1].y - center[0].y};
-}
-
-/* Is a contact told? What is apart by its circles has none with a separation below 0 (piece/concave.inl). */
-static bool is_told(const struct scene *scene, double separation, double target) {
-    double size;
-    const place between = find_circles(scene, &size);
-    return separation <= target && (separation >= 0 || find_dot(between, between) <= size * size);
-}
-
 /* When do the circles come to meet? */
 static double find_meeting(const struct scene *scene, place motion) {
     double size;
@@ -276,7 +276,7 @@ static double find_entering(const struct scene *scene, int arc, double target, p
         then.body.position.x += time * motion.x;
         then.body.position.y += time * motion.y;
         compare_arc(&then, arc, &nearest);
-        least = is_told(&then, nearest.separation, target) ? time : least;
+        least = nearest.separation <= target ? time : least;
     }
     return least;
 }
@@ -287,7 +287,7 @@ static int cast_straight(const narc_shapes *shapes, narc_casts *casts, size_t sl
     struct scene scene = place_scene(shapes, casts, slot, side, 0);
     struct nearest nearest = find_nearest(&scene, false);
     const double meeting = find_meeting(&scene, motion);
-    double least = is_told(&scene, nearest.separation, target) ? 0 : INFINITY;
+    double least = nearest.separation <= target ? 0 : INFINITY;
     for (int arc = 0; arc < scene.body.header->count; arc++) {
         const double goal = scene.arc.radius - get_radius(&scene, arc) - target;
         least = find_least(least, find_leaving(&scene, arc, goal, motion));
@@ -390,14 +390,16 @@ static int advance_in_time(const narc_shapes *shapes, narc_casts *casts, size_t 
 
 /* ------------------------------------------------------------------------------------------------ turning, concave */
 
-/* When can an arc of the body have a contact, or no more? */
-static double find_arc_wait(const struct scene *scene, int arc, double target, const struct speeds *s, int side) {
+/* When can an arc of the body have a contact, or no more? The circles are `between` apart. */
+static double find_arc_wait(const struct scene *scene, int arc, double target, double between, const struct speeds *s,
+                            int side) {
     const narc_stored_arc *const stored = &scene->body.arcs[arc].arc;
     const place u = find_way(scene, arc), own = turn_to_shape(&scene->body, u), back = {-u.x, -u.y};
     const place start = {(double)stored->start_x, (double)stored->start_y},
                 end = {(double)stored->end_x, (double)stored->end_y};
     const bool round = scene->body.header->flags & NARC_SHAPE_CIRCLE;
-    const double apart = scene->arc.radius - sqrt(find_dot(u, u)) - get_radius(scene, arc) - target;
+    const double separation = scene->arc.radius - sqrt(find_dot(u, u)) - get_radius(scene, arc),
+                 apart = find_most(separation - target, find_least(-separation, between));
     const double beside = find_most(-find_cross(scene->arc.start, back), -find_cross(back, scene->arc.end)),
                  beyond = round ? -INFINITY : find_most(-find_cross(start, own), -find_cross(own, end));
     const double speed = find_speed_seen(s, 1 - side, s->reach[1 - side]),
@@ -412,10 +414,11 @@ static struct outlook look_at_concave(const narc_shapes *shapes, narc_casts *cas
     const struct speeds s = find_speeds(both, casts, slot);
     const struct nearest nearest = find_nearest(&scene, false);
     const bool reached = nearest.separation < INFINITY;
+    const double target = (double)casts->target, between = find_circle_gap(&scene);
     struct outlook out = {INFINITY, !reached && nearest.unreached ? -INFINITY : nearest.separation, reached};
     for (int arc = 0; arc < scene.body.header->count; arc++)
         if (narc_touches(scene.body.header, find_feature_number(scene.body.header, arc, false)))
-            out.wait = find_least(out.wait, find_arc_wait(&scene, arc, (double)casts->target, &s, side));
+            out.wait = find_least(out.wait, find_arc_wait(&scene, arc, target, between, &s, side));
     if (reached)
         write_contact(&scene, &nearest, side, &casts->contact[slot]);
     return out;
@@ -448,18 +451,21 @@ static bool is_held(const struct outline *o, int arc, place n) {
            find_dot(n, o->start[arc]) + find_dot(n, o->end[arc]) >= 0;
 }
 
-/* The arc that reaches furthest along a unit vector, and how far. */
+/* The arc that reaches furthest along a unit vector, and how far: one that holds it, as of a corner's arcs all reach as
+ * far, but not all may touch. By rounding none may hold it. */
 static int find_furthest(const struct outline *o, place n, double *out_height) {
     int best = 0;
+    bool best_holds = false;
     *out_height = -INFINITY;
     for (int k = 0; k < o->count; k++) {
-        const place p = o->center[k];
-        const double turn = is_held(o, k, n) ? 1 : find_most(find_dot(o->start[k], n), find_dot(o->end[k], n));
-        const double height = find_dot(p, n) + o->radius[k] * turn;
-        if (height > *out_height) {
-            *out_height = height;
-            best = k;
-        }
+        const bool holds = is_held(o, k, n);
+        const double turn = holds ? 1 : find_most(find_dot(o->start[k], n), find_dot(o->end[k], n));
+        const double height = find_dot(o->center[k], n) + o->radius[k] * turn;
+        if (holds < best_holds || (holds == best_holds && !(height > *out_height)))
+            continue;
+        *out_height = height;
+        best_holds = holds;
+        best = k;
     }
     return best;
 }

@@ -119,10 +119,11 @@ static narc_point place_point(const struct reference_body *b, double x, double y
 
 /* Does a body hold an end of an arc of the chain? */
 static bool holds_ground(const struct setting *s, const struct reference_body *b) {
-    for (size_t k = 0; k < s->chain.count; k++) {
-        const narc_arc *arc = &s->arcs[k];
-        const double x = arc->center_x + arc->radius * cos(arc->start) - b->x,
-                     y = arc->center_y + arc->radius * sin(arc->start) - b->y;
+    for (size_t k = 0; k < 2 * s->chain.count; k++) {
+        const narc_arc *arc = &s->arcs[k / 2];
+        const double angle = k % 2 ? arc->end : arc->start;
+        const double x = arc->center_x + arc->radius * cos(angle) - b->x,
+                     y = arc->center_y + arc->radius * sin(angle) - b->y;
         const narc_point own = {(b->cosine * x + b->sine * y) / b->scale, (b->cosine * y - b->sine * x) / b->scale};
         if (narc_contains_point(b->arcs, b->count, own))
             return true;
@@ -130,12 +131,26 @@ static bool holds_ground(const struct setting *s, const struct reference_body *b
     return false;
 }
 
-/* The least signed distance of a body's outline from the ground, at places `step` apart at most; 0 if it is around some
- * of the ground. */
-static double find_clearance(const struct setting *s, const struct reference_body *b, double step) {
-    double least = holds_ground(s, b) ? 0 : INFINITY;
-    for (size_t k = 0; k < b->count; k++) {
-        const narc_arc *arc = &b->arcs[k], *next = &b->arcs[(k + 1) % b->count];
+/* What a walk along an outline finds: the least signed distance from the ground, what is beyond an open end has none;
+ * and whether it crosses the ground. Beside an end it may have points on either side and not cross. */
+struct outline_walk {
+    double step, least, last;
+    bool crosses;
+};
+
+static void walk_to(const struct setting *s, narc_point p, struct outline_walk *walk) {
+    const double height = ground_distance(s->ground, p).distance, last = walk->last;
+    const bool other_side = height < 0 ? last >= 0 : last < 0;
+    walk->crosses |= other_side && fabs(height) + fabs(last) <= 1.001 * walk->step;
+    walk->least = fmin(walk->least, height);
+    walk->last = height;
+}
+
+/* In steps of a length at most; over the first arc twice, so that all of it is seen. */
+static struct outline_walk walk_outline(const struct setting *s, const struct reference_body *b, double step) {
+    struct outline_walk walk = {step, INFINITY, INFINITY, false};
+    for (size_t k = 0; k <= b->count; k++) {
+        const narc_arc *arc = &b->arcs[k % b->count], *next = &b->arcs[(k + 1) % b->count];
         const double sweep = b->count > 1 ? arc->end - arc->start : 2 * TEST_PI,
                      turn = sweep < 0 ? sweep + 2 * TEST_PI : sweep;
         const int parts = 1 + (int)(arc->radius * turn * b->scale / step);
@@ -143,18 +158,22 @@ static double find_clearance(const struct setting *s, const struct reference_bod
         for (int i = 0; i <= parts; i++) {
             const double angle = arc->start + turn * i / parts;
             last = place_point(b, arc->center_x + arc->radius * cos(angle), arc->center_y + arc->radius * sin(angle));
-            least = fmin(least, ground_distance(s->ground, last).distance);
+            walk_to(s, last, &walk);
         }
         const narc_point to = place_point(b, next->center_x + next->radius * cos(next->start),
                                           next->center_y + next->radius * sin(next->start));
         const int steps = (int)(hypot(to.x - last.x, to.y - last.y) / step);
         for (int i = 1; i <= steps; i++) {
             const double part = (double)i / (steps + 1);
-            const narc_point p = {last.x + part * (to.x - last.x), last.y + part * (to.y - last.y)};
-            least = fmin(least, ground_distance(s->ground, p).distance);
+            walk_to(s, (narc_point){last.x + part * (to.x - last.x), last.y + part * (to.y - last.y)}, &walk);
         }
     }
-    return least;
+    return walk;
+}
+
+/* The least signed distance of a body's outline from the ground; 0 if it is around some of the ground. */
+static double find_clearance(const struct setting *s, const struct reference_body *b, double step) {
+    return fmin(holds_ground(s, b) ? 0 : INFINITY, walk_outline(s, b, step).least);
 }
 
 /* How large the chain is: the furthest end of a piece from the origin. */
@@ -384,8 +403,67 @@ static narc_impact cast(const struct setting *s, const struct flight *flight, fl
 
 struct tally {
     size_t flights, hits, misses, unfinished, round_ends;
-    size_t untrue; /* told of in the air, or as more than twice as deep as they are */
+    size_t untrue;   /* told of in the air, or as more than twice as deep as they are */
+    size_t doubtful; /* have come past an end, and are told of beside where they are hit */
 };
+
+/* Rows with separations below `most` begin between two times. Does the body slip past an open end, so that it need not be
+ * hit? It does if it gets into the solid without meeting the ground, which it has left by then: from behind, its deepest
+ * place first. What comes from the air crosses the ground, or is around its end; of that rows tell unless it is deeper
+ * than it is wide. */
+static bool slips_past_end(const struct setting *s, const struct flight *flight, double most, double before,
+                           double after) {
+    enum { PARTS = 64, HALVINGS = 24 };
+    const double from = before, part = (after - before) / PARTS, margin = fmax(most, 0);
+    bool told = false;
+    for (int k = 1; k < PARTS && !told; k++) {
+        const double time = from + k * part;
+        const struct body now = move_body(&s->mover, flight, time);
+        told = find_deepest(s, &now, margin) < most;
+        *(told ? &after : &before) = time;
+    }
+    for (int k = 0; k < HALVINGS; k++) {
+        const double middle = (before + after) / 2;
+        const struct body now = move_body(&s->mover, flight, middle);
+        *(find_deepest(s, &now, margin) < most ? &after : &before) = middle;
+    }
+    if (s->chain.closed)
+        return false;
+    const struct body first = move_body(&s->mover, flight, after);
+    double deepest = find_deepest(s, &first, margin); /* a part that is next to nothing may be over the ground */
+    narc_circle inner;
+    narc_compute_inscribed_circle(s->shape.arcs, s->shape.count, &inner);
+    if (-deepest > 2 * (double)s->mover.scale * inner.radius)
+        return true;
+    for (double time = after; time > 0; time -= part) {
+        const struct body then = move_body(&s->mover, flight, time);
+        const struct reference_body placed = pose_shape(&s->shape, &then);
+        const struct outline_walk walk = walk_outline(s, &placed, 1e-3);
+        if (!walk.crosses && !holds_ground(s, &placed))
+            return fmin(walk.least, deepest) < 0;
+        deepest = INFINITY;
+    }
+    return false;
+}
+
+/* Is there a contact beside an impact, as far along the ground as rounding may move where one begins? Past an open end,
+ * where the front's closure turns by 2^-10, the gap along the closure is greater by a 1024th of the way from the end. */
+static bool is_told_beside(const struct setting *s, const struct body *mover, const narc_impact *hit, double margin) {
+    enum { PARTS = 8 };
+    const struct reference_body body = pose_shape(&s->shape, mover);
+    const struct body *const entry = &s->bodies[hit->pair];
+    const double reach =
+                     hypot(mover->x - entry->x, mover->y - entry->y) + reference_extent(&body) + find_extent(&s->chain),
+                 step = 0x1p-12 * reach / PARTS;
+    bool told = false;
+    for (int k = -PARTS; k <= PARTS && !told; k++) {
+        struct body beside = *mover;
+        beside.x -= k * step * (double)hit->normal_y;
+        beside.y += k * step * (double)hit->normal_x;
+        told = find_deepest(s, &beside, margin) < INFINITY;
+    }
+    return told;
+}
 
 static void fly(struct test_random *random, struct setting *s, const char *kind, bool turns, struct tally *tally) {
     const double extent = find_extent(&s->chain), step = 0.02;
@@ -407,25 +485,24 @@ static void fly(struct test_random *random, struct setting *s, const char *kind,
     if (hit.count == NARC_CAST_UNFINISHED)
         tally->unfinished++;
     const double until = hit.count == NARC_CAST_MISS ? 1 : (double)hit.fraction;
+    double before = 0;
     for (int k = 0; k <= TIMES; k++) {
-        const struct body now = move_body(&s->mover, &flight, until * k / TIMES);
-        const struct reference_body placed = pose_shape(&s->shape, &now);
-        if (until * k / TIMES < until || hit.count == NARC_CAST_MISS) {
-            const double deepest = find_deepest(s, &now, (double)target + 0.01);
-            const double clearance = deepest < (double)target - room ? find_clearance(s, &placed, step) : 0;
-            if (deepest < (double)target - room &&
-                (clearance > (double)target + step || (deepest < -4 * step && clearance > 0.5 * deepest))) {
+        const double time = until * k / TIMES;
+        const struct body now = move_body(&s->mover, &flight, time);
+        const double deepest = find_deepest(s, &now, (double)target + 0.01);
+        if ((time < until || hit.count == NARC_CAST_MISS) && deepest < (double)target - room) {
+            const struct reference_body placed = pose_shape(&s->shape, &now);
+            const double clearance = find_clearance(s, &placed, step);
+            if (clearance > (double)target + step || (deepest < -4 * step && clearance > 0.5 * deepest))
                 tally->untrue++;
-                return;
-            }
-            if (deepest < (double)target - room)
-                fail_msg("%s: told of %g at %g (%d), but %s at %g; %zu", kind, deepest, until * k / TIMES, k,
+            else if (slips_past_end(s, &flight, (double)target - room, before, time))
+                tally->round_ends++;
+            else
+                fail_msg("%s: told of %g at %g (%d), but %s at %g; %zu", kind, deepest, time, k,
                          hit.count == NARC_CAST_MISS ? "a miss" : "met", until, tally->flights);
-        }
-        if (!s->chain.closed && find_clearance(s, &placed, step) < -step) { /* round an open end, from behind */
-            tally->round_ends++;
             return;
         }
+        before = time;
     }
     tally->misses += hit.count == NARC_CAST_MISS;
     if (hit.count != NARC_CAST_HIT)
@@ -433,10 +510,12 @@ static void fly(struct test_random *random, struct setting *s, const char *kind,
     tally->hits++;
     const struct body then = move_body(&s->mover, &flight, until), next = move_body(&s->mover, &flight, until + 2e-4);
     const double most = (double)target + tolerance + 2 * room; /* what has passed an end is told of from one time on */
-    const double deepest = fmin(find_deepest(s, &then, most), find_deepest(s, &next, most));
-    if (!(deepest < INFINITY))
+    if (fmin(find_deepest(s, &then, most), find_deepest(s, &next, most)) < INFINITY)
+        return;
+    if (!is_told_beside(s, &then, &hit, most))
         fail_msg("%s: met at %g with separation %g, but nothing is told there; %zu", kind, until,
                  (double)hit.separation, tally->flights);
+    tally->doubtful++;
 }
 
 /* No body gets through the ground between two entries, whichever side of a piece it meets first. */
@@ -450,18 +529,66 @@ static void fly_all(const char *name, bool turns) {
             fly(&random, s, kind_name(kind), turns, &tally);
         end_setting(s);
     }
-    print_message("%zu flights: %zu hits, %zu misses, %zu unfinished, %zu past an end, %zu untrue\n", tally.flights,
-                  tally.hits, tally.misses, tally.unfinished, tally.round_ends, tally.untrue);
+    print_message("%zu flights: %zu hits, %zu misses, %zu unfinished, %zu past an end, %zu untrue, %zu doubtful\n",
+                  tally.flights, tally.hits, tally.misses, tally.unfinished, tally.round_ends, tally.untrue,
+                  tally.doubtful);
     if (tally.flights >= 100) /* a few may all hit, or all miss */
         assert_true(tally.hits > tally.flights / 16 && tally.misses > 0 && 200 * tally.unfinished <= tally.flights);
     assert_true(500 * tally.untrue <= tally.flights + 500);
+    assert_true(1000 * tally.doubtful <= tally.flights + 1000);
 }
 
 TEST(test_straight_flights) { fly_all("straight flights", false); }
 TEST(test_turning_flights) { fly_all("turning flights", true); }
 
+/* A box in the air that turns onto a corner with its edge, while it is behind the ground on one side of that: the corner is
+ * where a hollow ends, so its entry is closed by an arc of the same centre that touches nothing. */
+TEST(test_turns_onto_a_corner) {
+    struct test_random random = test_random_named("onto a corner");
+    struct setting *s = calloc(1, sizeof *s);
+    struct turtle t = create_turtle(0, 0, TEST_PI / 2);
+    size_t flights = 0;
+    s->store = empty_store();
+    walk_arc(&t, 1.5, -1);
+    walk_arc(&t, 0, TEST_PI / 2);
+    walk_line(&t, 0.5);
+    walk_arc(&t, 0, TEST_PI / 2);
+    take_turtle(s, &t, false);
+    assert_true(add_chain(s));
+    s->ground = make_ground(&s->chain);
+    const narc_arc *const corner = &s->arcs[1];
+    for (size_t round = 0; round < test_trials(2000); round++) {
+        const double width = random_between(&random, 0.3, 1), thickness = random_between(&random, 0.05, 0.3);
+        const double normal = random_between(&random, corner->start + 0.01, corner->end - 0.01),
+                     along = width * random_between(&random, -0.49, 0.49), turn = random_between(&random, -2, 2);
+        s->shape = box_of(2 * width, 2 * thickness, 0);
+        s->mover = turned_body(normal - TEST_PI / 2 - turn, 1);
+        s->mover.shape = store_shape(s->store, s->shape);
+        s->mover.x = corner->center_x + thickness * cos(normal) - along * sin(normal);
+        s->mover.y = corner->center_y + thickness * sin(normal) + along * cos(normal);
+        const struct flight flight = {0, 0, (float)(1.05 * turn)};
+        const struct body late = move_body(&s->mover, &flight, 1);
+        bool clear = find_deepest(s, &late, 0) < -1e-3;
+        for (int k = 0; k < 20 && clear; k++) {
+            const struct body now = move_body(&s->mover, &flight, k / 21.0);
+            const struct reference_body placed = pose_shape(&s->shape, &now);
+            clear = find_clearance(s, &placed, 0.01) > 0 && !(find_deepest(s, &now, 1e-4) < INFINITY);
+        }
+        if (!clear)
+            continue;
+        flights++;
+        const narc_impact hit = cast(s, &flight, 0, random_below(&random, 2));
+        const struct body then = move_body(&s->mover, &flight, (double)hit.fraction);
+        assert_int_equal(hit.count, NARC_CAST_HIT);
+        assert_true(find_deepest(s, &then, 2e-3) < INFINITY);
+    }
+    print_message("  %zu flights\n", flights);
+    assert_true(20 * flights > test_trials(2000) || test_trials(2000) < 100);
+    end_setting(s);
+}
+
 /* A concave arc that stands alone, and bodies beside and behind it of which an arc comes into its sector: they hit
- * where something is told, and not while their circles are apart. */
+ * where something is told, and not while their circles are apart. Every other body turns. */
 TEST(test_flights_past_a_concave_arc) {
     struct test_random random = test_random_named("past a concave arc");
     size_t hits = 0;
@@ -480,7 +607,9 @@ TEST(test_flights_past_a_concave_arc) {
             const double beside =
                              turn * random_between(&random, -0.5, 0.5) + size / radius * random_between(&random, -2, 2),
                          from = beside - TEST_PI / 2, far = radius + size * random_between(&random, -2, 2);
-            const struct flight flight = {(float)(way * cos(along)), (float)(way * sin(along)), 0};
+            const float angle = k % 2 ? (float)random_between(&random, -3, 3) : 0;
+            const struct flight flight = {(float)(way * cos(along)), (float)(way * sin(along)), angle};
+            const double margin = 1e-5 + (k % 2 ? size * 4e-3 : 0);
             s->mover.x = s->arcs[0].center_x + far * cos(from);
             s->mover.y = s->arcs[0].center_y + far * sin(from);
             const narc_impact hit = cast(s, &flight, 0, random_below(&random, 2));
@@ -489,7 +618,7 @@ TEST(test_flights_past_a_concave_arc) {
             const struct body then = move_body(&s->mover, &flight, (double)hit.fraction),
                               next = move_body(&s->mover, &flight, (double)hit.fraction + 2e-4);
             hits++;
-            if (!(fmin(find_deepest(s, &then, 1e-5), find_deepest(s, &next, 1e-5)) < INFINITY))
+            if (!(fmin(find_deepest(s, &then, margin), find_deepest(s, &next, margin)) < INFINITY))
                 fail_msg("round %zu: met at %g with separation %g, but nothing is told there", round,
                          (double)hit.fraction, (double)hit.separation);
         }
